@@ -1,0 +1,2 @@
+//! teeter
+fn main() {}
