@@ -1,1 +1,55 @@
-//! teeter
+//! The border between those who pose frictional contact problems and those who solve them.
+//!
+//! This crate holds the problem, the law, the judge and the trait of a solver; it knows nothing of bodies,
+//! of time steps or of any particular solver.
+//!
+//! # The problem
+//!
+//! Unknown are the impulses `p = (p¹, …, pⁿ)`, each in `R^D` (D = 2 or 3), normal component first. With the
+//! Delassus operator `H`, the constant vector `q` and the friction coefficients `μ`,
+//!
+//! ```text
+//! u = H p + q        û = u + (μ‖u_T‖, 0[, 0])
+//! K_μ ∋ p ⊥ û ∈ K_μ*          K_μ = { p : ‖p_T‖ ≤ μ p_N },   K_μ* = { u : u_N ≥ μ‖u_T‖ }
+//! ```
+//!
+//! which is exact Signorini–Coulomb (De Saxcé and Feng 1998, doi 10.1016/S0895-7177(98)00119-8). Every solution,
+//! whoever found it, is judged by the same scaled natural-map residual: see [`judge()`].
+//!
+//! # Example
+//!
+//! A contact that is pressed and pushed sideways, harder than friction can hold:
+//!
+//! ```
+//! use nalgebra::{Matrix2, Vector2};
+//! use teeter_contact::{ContactProblem, Delassus, judge};
+//!
+//! let h = [Matrix2::identity()];
+//! let q = [Vector2::new(-1.0, 2.0)];
+//! let mu = [0.5];
+//! let problem = ContactProblem::new(Delassus::Dense(&h), &q, &mu)?;
+//! // It slides to the right, so friction is at its limit, to the left.
+//! let p = [Vector2::new(1.0, -0.5)];
+//! assert!(judge(&problem, &p).global < 1e-15);
+//! # Ok::<(), teeter_contact::ProblemError>(())
+//! ```
+
+mod cone;
+#[cfg(feature = "conformance")]
+pub mod conformance;
+mod delassus;
+mod judge;
+mod problem;
+mod solver;
+
+pub use cone::{de_saxce, project};
+pub use delassus::{BlockSparse, BlockSparseError, Delassus, DelassusOperator};
+pub use judge::{Residual, judge};
+pub use problem::{ContactProblem, ProblemError};
+pub use solver::{ContactSolver, Law, Outcome, Status, Stop};
+
+/// One contact's impulse or relative velocity: normal component first. N·s or m/s.
+pub type Vector<const D: usize> = nalgebra::SVector<f64, D>;
+
+/// One D × D block of a Delassus operator, in 1/kg.
+pub type Block<const D: usize> = nalgebra::SMatrix<f64, D, D>;

@@ -1,0 +1,110 @@
+//! The one judge of a solution: the scaled residual of the natural map.
+
+use crate::cone::{de_saxce, project};
+use crate::{ContactProblem, Vector};
+
+/// How far impulses are from solving a contact problem; 0 is exact. Both numbers are without unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Residual {
+    /// `‖p − Π(p − ρû)‖ / max(‖p‖, ρ‖q‖)` over all contacts together, ρ = 1/mean(diag H).
+    pub global: f64,
+    /// The largest single contact's residual, each in its own scale: a light contact beside a heavy one can't hide.
+    pub worst: f64,
+    /// The contact with that residual (0 if there is none).
+    pub worst_contact: usize,
+}
+
+/// The floor of a scale, so that the residual of "nothing moves, nothing presses" is 0, not 0/0.
+const SCALE_FLOOR: f64 = 1e-300;
+
+/// Judges `p` against the exact Coulomb law, whatever a solver minimised inside (`docs/theory.md` §6):
+///
+/// ```text
+/// err(p) = ‖p − Π_{K_μ}(p − ρ û)‖ / max(‖p‖, ρ‖q‖, 1e-300),   ρ = 1/mean(diag H)
+/// ```
+///
+/// # Panics
+/// If `p` doesn't hold one impulse a contact: a mistake of the calling code.
+#[must_use]
+pub fn judge<const D: usize>(problem: &ContactProblem<'_, D>, p: &[Vector<D>]) -> Residual {
+    assert_eq!(p.len(), problem.contacts(), "one impulse a contact");
+    let n = p.len();
+    let mut residual = Residual { global: 0.0, worst: 0.0, worst_contact: 0 };
+    if n == 0 {
+        return residual;
+    }
+    let trace: f64 = (0..n).map(|i| problem.diagonal(i).trace()).sum();
+    let rho = (n * D) as f64 / trace;
+    let (mut p_norm, mut q_norm, mut map_norm) = (0.0, 0.0, 0.0);
+    for i in 0..n {
+        let (mu, q) = (problem.mu()[i], problem.q()[i]);
+        let u_hat = de_saxce(&problem.velocity(i, p), mu);
+        let map = |rho: f64| p[i] - project(&(p[i] - u_hat * rho), mu);
+        p_norm += p[i].norm_squared();
+        q_norm += q.norm_squared();
+        map_norm += map(rho).norm_squared();
+
+        let rho_i = D as f64 / problem.diagonal(i).trace();
+        let own = map(rho_i).norm() / p[i].norm().max(rho_i * q.norm()).max(SCALE_FLOOR);
+        // NaN counts as worst: `!(own <= worst)` is true for it.
+        if !(own <= residual.worst) {
+            residual.worst = own;
+            residual.worst_contact = i;
+        }
+    }
+    residual.global = map_norm.sqrt() / p_norm.sqrt().max(rho * q_norm.sqrt()).max(SCALE_FLOOR);
+    residual
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Delassus;
+    use nalgebra::{Matrix2, Vector2};
+
+    fn residual(q: Vector2<f64>, p: Vector2<f64>, mu: f64) -> f64 {
+        let h = [Matrix2::new(2.0, 0.3, 0.3, 1.0)];
+        judge(&ContactProblem::new(Delassus::Dense(&h), &[q], &[mu]).unwrap(), &[p]).global
+    }
+
+    #[test]
+    fn exact_solutions_have_no_residual() {
+        assert_eq!(residual(Vector2::new(1.0, 5.0), Vector2::zeros(), 0.4), 0.0);
+        assert_eq!(residual(Vector2::zeros(), Vector2::zeros(), 0.4), 0.0);
+        // Sticking: H p + q = 0 with p inside the cone.
+        let p = Vector2::new(1.0, 0.1);
+        assert!(residual(-(Matrix2::new(2.0, 0.3, 0.3, 1.0) * p), p, 0.4) < 1e-15);
+    }
+
+    #[test]
+    fn violations_of_each_part_of_the_law_are_seen() {
+        assert!(residual(Vector2::new(-1.0, 0.0), Vector2::zeros(), 0.4) > 0.5, "penetrates");
+        assert!(residual(Vector2::new(1.0, 0.0), Vector2::new(0.2, 0.0), 0.4) > 0.1, "pulls while open");
+        let p = Vector2::new(1.0, 0.9);
+        assert!(residual(-(Matrix2::new(2.0, 0.3, 0.3, 1.0) * p), p, 0.4) > 0.1, "beyond the cone");
+        // Slides to the right with friction to the right.
+        let p = Vector2::new(1.0, 0.4);
+        let q = Vector2::new(0.0, 2.0) - Matrix2::new(2.0, 0.3, 0.3, 1.0) * p;
+        assert!(residual(q, p, 0.4) > 0.1, "friction drives");
+    }
+
+    #[test]
+    fn the_residual_does_not_depend_on_units() {
+        let h = Matrix2::new(2.0, 0.3, 0.3, 1.0);
+        let (q, p) = (Vector2::new(-1.0, 0.7), Vector2::new(0.4, -0.1));
+        let err = |mass: f64, speed: f64| {
+            let (h, q, p) = ([h / mass], [q * speed], [p * (mass * speed)]);
+            judge(&ContactProblem::new(Delassus::Dense(&h), &q, &[0.3]).unwrap(), &p).global
+        };
+        assert!((err(1.0, 1.0) - err(1e-6, 1e3)).abs() < 1e-14 * err(1.0, 1.0));
+    }
+
+    #[test]
+    fn a_light_contact_beside_a_heavy_one_shows_in_the_worst_only() {
+        let h = [Matrix2::identity(), Matrix2::zeros(), Matrix2::zeros(), Matrix2::identity() * 1e3];
+        let q = [Vector2::new(-1e6, 0.0), Vector2::new(-1e-3, 0.0)];
+        let p = [Vector2::new(1e6, 0.0), Vector2::zeros()];
+        let r = judge(&ContactProblem::new(Delassus::Dense(&h), &q, &[0.3, 0.3]).unwrap(), &p);
+        assert!(r.global < 1e-9 && r.worst > 0.9 && r.worst_contact == 1);
+    }
+}

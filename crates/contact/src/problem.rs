@@ -1,0 +1,228 @@
+//! The contact problem: a Delassus operator, a constant vector, friction coefficients; checked once.
+
+use crate::{Block, Delassus, Vector};
+
+/// A frictional contact problem of `n` contacts in D dimensions; see the crate's page for the law.
+///
+/// Sizes, finiteness, `μ ≥ 0` and a positive normal compliance `H_NN` of each contact are checked by
+/// [`ContactProblem::new`], so a solver can rely on them. Symmetry and definiteness of `H` are not required.
+#[derive(Clone, Copy, Debug)]
+pub struct ContactProblem<'a, const D: usize> {
+    h: Delassus<'a, D>,
+    q: &'a [Vector<D>],
+    mu: &'a [f64],
+}
+
+/// What is wrong with the data of a contact problem.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ProblemError {
+    /// Sizes that don't belong together.
+    #[error("{what} has {found} entries, but a problem of {contacts} contacts needs {expected}")]
+    Size {
+        /// Which of the data.
+        what: &'static str,
+        /// Entries found.
+        found: usize,
+        /// Entries needed.
+        expected: usize,
+        /// Number of contacts, from `q`.
+        contacts: usize,
+    },
+    /// A number that is not finite.
+    #[error("{what} of contact {contact} is {value}, but must be finite")]
+    NotFinite {
+        /// Which of the data.
+        what: &'static str,
+        /// The contact (the row, for the Delassus operator).
+        contact: usize,
+        /// The offending number.
+        value: f64,
+    },
+    /// A negative friction coefficient.
+    #[error("the friction coefficient of contact {contact} is {value}, but must be at least 0")]
+    NegativeFriction {
+        /// The contact.
+        contact: usize,
+        /// Its coefficient.
+        value: f64,
+    },
+    /// A contact along whose normal nothing can move, or moves against the impulse.
+    #[error("the normal compliance H_NN of contact {contact} is {value} 1/kg, but must be greater than 0")]
+    NotCompliant {
+        /// The contact.
+        contact: usize,
+        /// Its normal compliance.
+        value: f64,
+    },
+}
+
+impl<'a, const D: usize> ContactProblem<'a, D> {
+    /// Poses the problem of `q.len()` contacts: `h` in 1/kg, `q` in m/s, `mu` without unit.
+    ///
+    /// # Errors
+    /// If sizes differ, a number is not finite, a friction coefficient is negative, or `H_NN ≤ 0` for a contact.
+    pub fn new(h: Delassus<'a, D>, q: &'a [Vector<D>], mu: &'a [f64]) -> Result<Self, ProblemError> {
+        let contacts = q.len();
+        let size = |what, found, expected| {
+            if found == expected { Ok(()) } else { Err(ProblemError::Size { what, found, expected, contacts }) }
+        };
+        size("mu", mu.len(), contacts)?;
+        match h {
+            Delassus::Dense(blocks) => {
+                size("the dense Delassus operator", blocks.len(), contacts * contacts)?;
+                check_blocks(blocks, |k| k / contacts)?;
+            }
+            Delassus::Blocks(sparse) => {
+                size("the block-sparse Delassus operator (rows)", sparse.contacts(), contacts)?;
+                check_blocks(sparse.all_blocks(), |k| row_of_block(sparse, k))?;
+            }
+            Delassus::Operator(operator) => size("the Delassus operator", operator.contacts(), contacts)?,
+        }
+        for contact in 0..contacts {
+            for &value in q[contact].iter() {
+                if !value.is_finite() {
+                    return Err(ProblemError::NotFinite { what: "q", contact, value });
+                }
+            }
+            let value = mu[contact];
+            if !value.is_finite() {
+                return Err(ProblemError::NotFinite { what: "mu", contact, value });
+            }
+            if value < 0.0 {
+                return Err(ProblemError::NegativeFriction { contact, value });
+            }
+            let value = h.diagonal(contact, contacts)[(0, 0)];
+            // Written so that NaN fails too.
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(ProblemError::NotCompliant { contact, value });
+            }
+        }
+        Ok(Self { h, q, mu })
+    }
+
+    /// Number of contacts.
+    #[inline]
+    #[must_use]
+    pub fn contacts(&self) -> usize {
+        self.q.len()
+    }
+
+    /// The Delassus operator, 1/kg.
+    #[inline]
+    #[must_use]
+    pub fn delassus(&self) -> Delassus<'a, D> {
+        self.h
+    }
+
+    /// The constant vector, m/s: the free velocity plus what the impact law adds.
+    #[inline]
+    #[must_use]
+    pub fn q(&self) -> &'a [Vector<D>] {
+        self.q
+    }
+
+    /// The friction coefficients.
+    #[inline]
+    #[must_use]
+    pub fn mu(&self) -> &'a [f64] {
+        self.mu
+    }
+
+    /// The diagonal block of contact `i`.
+    #[inline]
+    #[must_use]
+    pub fn diagonal(&self, i: usize) -> Block<D> {
+        self.h.diagonal(i, self.q.len())
+    }
+
+    /// The velocity `u_i = Σ_j H_ij p_j + q_i` at contact `i`; `p` holds all impulses.
+    ///
+    /// # Panics
+    /// If `p` doesn't hold one impulse a contact, or there is no contact `i`: a mistake of the calling code.
+    #[inline]
+    #[must_use]
+    pub fn velocity(&self, i: usize, p: &[Vector<D>]) -> Vector<D> {
+        assert_eq!(p.len(), self.q.len(), "one impulse a contact");
+        self.h.row_product(i, p) + self.q[i]
+    }
+}
+
+fn check_blocks<const D: usize>(blocks: &[Block<D>], row: impl Fn(usize) -> usize) -> Result<(), ProblemError> {
+    for (k, block) in blocks.iter().enumerate() {
+        for &value in block.iter() {
+            if !value.is_finite() {
+                return Err(ProblemError::NotFinite { what: "the Delassus operator", contact: row(k), value });
+            }
+        }
+    }
+    Ok(())
+}
+
+fn row_of_block<const D: usize>(h: &crate::BlockSparse<D>, k: usize) -> usize {
+    let mut before = 0;
+    for i in 0..h.contacts() {
+        before += h.row(i).count();
+        if k < before {
+            return i;
+        }
+    }
+    h.contacts()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Matrix2, Vector2};
+
+    #[test]
+    fn wrong_data_is_refused_with_the_contact_and_the_number() {
+        let one = Matrix2::identity();
+        let q = [Vector2::zeros(), Vector2::zeros()];
+        let good = [one, Matrix2::zeros(), Matrix2::zeros(), one];
+        assert!(ContactProblem::new(Delassus::Dense(&good), &q, &[0.1, 0.2]).is_ok());
+        let error = |h: &[Matrix2<f64>], q: &[Vector2<f64>], mu: &[f64]| {
+            ContactProblem::new(Delassus::Dense(h), q, mu).unwrap_err().to_string()
+        };
+        assert_eq!(
+            error(&good[..3], &q, &[0.1, 0.2]),
+            "the dense Delassus operator has 3 entries, but a problem of 2 contacts needs 4"
+        );
+        assert_eq!(error(&good, &q, &[0.1]), "mu has 1 entries, but a problem of 2 contacts needs 2");
+        assert!(error(&good, &q, &[0.1, -0.2]).contains("contact 1 is -0.2"));
+        assert!(error(&good, &q, &[f64::NAN, 0.2]).contains("mu of contact 0 is NaN"));
+        let bad_q = [Vector2::zeros(), Vector2::new(0.0, f64::INFINITY)];
+        assert!(error(&good, &bad_q, &[0.1, 0.2]).contains("q of contact 1 is inf"));
+        let mut rigid = good;
+        rigid[3][(0, 0)] = 0.0;
+        assert!(error(&rigid, &q, &[0.1, 0.2]).contains("H_NN of contact 1 is 0"));
+        rigid[2][(1, 0)] = f64::NAN;
+        assert!(error(&rigid, &q, &[0.1, 0.2]).contains("the Delassus operator of contact 1 is NaN"));
+    }
+
+    #[test]
+    fn all_shapes_of_the_operator_give_the_same_velocity() {
+        struct Product(Vec<Matrix2<f64>>);
+        impl crate::DelassusOperator<2> for Product {
+            fn contacts(&self) -> usize {
+                2
+            }
+            fn diagonal(&self, i: usize) -> Matrix2<f64> {
+                self.0[3 * i]
+            }
+            fn row_product(&self, i: usize, p: &[Vector2<f64>]) -> Vector2<f64> {
+                self.0[2 * i] * p[0] + self.0[2 * i + 1] * p[1]
+            }
+        }
+        let blocks: Vec<_> = (0..4).map(|k| Matrix2::identity() * 2.0 + Matrix2::repeat(0.1 * f64::from(k))).collect();
+        let rows: Vec<_> = (0..2).map(|i| (0..2).map(|j| (j, blocks[2 * i + j])).collect()).collect();
+        let sparse = crate::BlockSparse::from_rows(&rows).unwrap();
+        let operator = Product(blocks.clone());
+        let q = [Vector2::new(0.1, 0.2), Vector2::new(-0.3, 0.4)];
+        let p = [Vector2::new(1.0, 2.0), Vector2::new(3.0, -4.0)];
+        let of = |h| ContactProblem::new(h, &q, &[0.1, 0.1]).map(|c| (c.velocity(0, &p), c.velocity(1, &p))).unwrap();
+        let dense = of(Delassus::Dense(&blocks));
+        assert_eq!(dense, of(Delassus::Blocks(&sparse)));
+        assert_eq!(dense, of(Delassus::Operator(&operator)));
+    }
+}

@@ -1,0 +1,121 @@
+//! What every contact solver offers, and how it says how it ended.
+
+use crate::{ContactProblem, Vector};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The law that a solver's result obeys.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Law {
+    /// Signorini's condition with Coulomb's friction, exactly.
+    Exact,
+    /// The associated (convex) law: a sliding contact separates at μ‖u_T‖. Never counted as exact.
+    Convex,
+}
+
+/// When a solver stops.
+#[derive(Clone, Copy, Debug)]
+pub struct Stop<'a> {
+    /// Largest global residual of [`judge()`](crate::judge()) that counts as solved; without unit.
+    pub tolerance: f64,
+    /// Most iterations; what one is, each solver says.
+    pub max_iterations: u32,
+    /// Set by someone else to end the solve early.
+    pub cancel: Option<&'a AtomicBool>,
+}
+
+impl Stop<'_> {
+    /// Whether the caller wants the solve to end.
+    #[must_use]
+    pub fn cancelled(&self) -> bool {
+        self.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed))
+    }
+}
+
+impl Default for Stop<'_> {
+    /// The program's defaults: 1e-10 and 10 000 iterations.
+    fn default() -> Self {
+        Self { tolerance: 1e-10, max_iterations: 10_000, cancel: None }
+    }
+}
+
+/// How a solve ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Status {
+    /// The residual is within the tolerance.
+    Converged,
+    /// The iterations ran out.
+    MaxIterations,
+    /// The residual no longer falls.
+    Stalled,
+    /// The method can't go on with this problem: a singular system, no state that fits, too many contacts.
+    Breakdown,
+    /// The caller cancelled.
+    Cancelled,
+}
+
+impl Status {
+    /// The word for it in tables and files.
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Converged => "converged",
+            Self::MaxIterations => "max-iterations",
+            Self::Stalled => "stalled",
+            Self::Breakdown => "breakdown",
+            Self::Cancelled => "cancelled",
+        }
+    }
+}
+
+impl std::fmt::Display for Status {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.as_str())
+    }
+}
+
+/// The result of a solve beside the impulses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Outcome {
+    /// How it ended.
+    pub status: Status,
+    /// Name of the method that gave the impulses (one of a chain names the one that did it).
+    pub used: &'static str,
+    /// Iterations taken; what one is, each solver says.
+    pub iterations: u32,
+    /// The global residual of [`judge()`](crate::judge()), computed from the impulses returned.
+    pub residual: f64,
+}
+
+impl Outcome {
+    /// An outcome; `status` is taken as given.
+    #[must_use]
+    pub fn new(status: Status, used: &'static str, iterations: u32, residual: f64) -> Self {
+        Self { status, used, iterations, residual }
+    }
+
+    /// Whether the residual is within the tolerance.
+    #[must_use]
+    pub fn converged(&self) -> bool {
+        self.status == Status::Converged
+    }
+}
+
+/// A solver of frictional contact problems in D dimensions.
+///
+/// A solver may keep what it learns between calls (memory, analysis), but what it returns depends on the problem and
+/// on the start only, so that equal runs give equal bytes.
+pub trait ContactSolver<const D: usize>: Send {
+    /// The name by which users choose it.
+    fn name(&self) -> &'static str;
+    /// The law of its results.
+    fn law(&self) -> Law;
+    /// Prepares for problems of up to `contacts` contacts and `blocks` non-zero blocks, so that no later solve within
+    /// them allocates.
+    fn reserve(&mut self, contacts: usize, blocks: usize);
+    /// Starts from `p` (warm start) and leaves the impulses in it. `p` holds one impulse a contact.
+    fn solve(&mut self, problem: &ContactProblem<'_, D>, stop: &Stop<'_>, p: &mut [Vector<D>]) -> Outcome;
+    /// A solver of the same kind and settings for another worker.
+    fn fork(&self) -> Box<dyn ContactSolver<D>>;
+}
