@@ -31,11 +31,12 @@ pub(crate) fn tangential_norm<const D: usize>(x: &Vector<D>) -> f64 {
 pub fn project<const D: usize>(x: &Vector<D>, mu: f64) -> Vector<D> {
     let x_n = x[0];
     let x_t = tangential_norm(x);
-    if x_t <= mu * x_n {
-        return *x;
-    }
+    // The polar cone first: with mu = 0 the other test can't tell p_N < 0 from inside.
     if mu * x_t <= -x_n {
         return Vector::zeros();
+    }
+    if x_t <= mu * x_n {
+        return *x;
     }
     // Onto the ray along (1, μ d), d = x_T/‖x_T‖, with the foot at (x_N + μ‖x_T‖)/(1 + μ²).
     let foot = if mu <= 1.0 {
