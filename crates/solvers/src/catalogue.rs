@@ -1,0 +1,75 @@
+//! The solvers by name, for programs that let their users choose.
+
+use crate::{Auto, Enumeration, Pgs};
+use teeter_contact::{ContactSolver, Law};
+
+/// What a user wants to know of a solver before choosing it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct SolverInfo {
+    /// The name by which it is chosen.
+    pub name: &'static str,
+    /// The dimensions that it solves.
+    pub dimensions: &'static [usize],
+    /// The law of its results.
+    pub law: Law,
+    /// What it does, in a line.
+    pub summary: &'static str,
+    /// The paper that it comes from.
+    pub reference: &'static str,
+}
+
+/// All solvers of this crate.
+pub const SOLVERS: &[SolverInfo] = &[
+    SolverInfo {
+        name: Auto::NAME,
+        dimensions: &[2],
+        law: Law::Exact,
+        summary: "enumeration up to three contacts; pgs above, and where enumeration fails",
+        reference: "",
+    },
+    SolverInfo {
+        name: Enumeration::NAME,
+        dimensions: &[2],
+        law: Law::Exact,
+        summary: "all contact states, exactly; up to three contacts",
+        reference: "Klarbring 1990, doi 10.1007/BF00534316",
+    },
+    SolverInfo {
+        name: Pgs::NAME,
+        dimensions: &[2],
+        law: Law::Exact,
+        summary: "Gauss-Seidel over contacts with an exact local solve",
+        reference: "Jean 1999, doi 10.1016/S0045-7825(98)00383-1",
+    },
+];
+
+/// The plane solver of that name; `None` for an unknown one.
+///
+/// ```
+/// assert_eq!(teeter_solvers::plane_solver("pgs").unwrap().name(), "pgs");
+/// assert!(teeter_solvers::plane_solver("magic").is_none());
+/// ```
+#[must_use]
+pub fn plane_solver(name: &str) -> Option<Box<dyn ContactSolver<2>>> {
+    match name {
+        Auto::NAME => Some(Box::new(Auto)),
+        Enumeration::NAME => Some(Box::new(Enumeration)),
+        Pgs::NAME => Some(Box::new(Pgs)),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_listed_solver_can_be_made_and_agrees_with_its_entry() {
+        for info in SOLVERS {
+            let solver = plane_solver(info.name).unwrap();
+            assert_eq!((solver.name(), solver.law()), (info.name, info.law));
+            assert_eq!(solver.fork().name(), info.name);
+        }
+    }
+}
