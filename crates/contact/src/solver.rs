@@ -1,6 +1,6 @@
 //! What every contact solver offers, and how it says how it ended.
 
-use crate::{ContactProblem, Vector};
+use crate::{ContactProblem, Residual, Vector};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The law that a solver's result obeys.
@@ -84,14 +84,14 @@ pub struct Outcome {
     pub used: &'static str,
     /// Iterations taken; what one is, each solver says.
     pub iterations: u32,
-    /// The global residual of [`judge()`](crate::judge()), computed from the impulses returned.
-    pub residual: f64,
+    /// What [`judge()`](crate::judge()) says of the impulses returned; `converged` is about the global one.
+    pub residual: Residual,
 }
 
 impl Outcome {
     /// An outcome; `status` is taken as given.
     #[must_use]
-    pub fn new(status: Status, used: &'static str, iterations: u32, residual: f64) -> Self {
+    pub fn new(status: Status, used: &'static str, iterations: u32, residual: Residual) -> Self {
         Self { status, used, iterations, residual }
     }
 

@@ -1,1 +1,87 @@
-//! teeter
+//! Contact detection: which points of bodies are near which surfaces, how far, in what frame, and who is who over time.
+//!
+//! A detector sees bodies through [`Geometry`] only, so it knows nothing of blocks, beams, or states. What it finds are
+//! [`Candidate`]s: all within a margin; whether one is a contact, the time scheme decides.
+//!
+//! Conventions (`docs/theory.md` §3): a point of one body, side 0, against the surface of another, side 1. The normal `n`
+//! points out of the surface; in the plane `t = (n_y, −n_x)`, so `t` points to the right where `n` points up. The gap
+//! is `n · (x_point − x_foot)`, negative in penetration. `u = v_0 − v_1`, and an impulse `p` acts on side 0.
+//!
+//! ```
+//! use nalgebra::Vector2;
+//! use teeter_detect::*;
+//!
+//! /// One body whose pose is a height, above a floor.
+//! struct Scene(f64);
+//! impl Geometry<2> for Scene {
+//!     fn place(&self, _: BodyId, local: &[Vector2<f64>], out: &mut [Vector2<f64>]) {
+//!         for (x, l) in out.iter_mut().zip(local) {
+//!             *x = l + Vector2::new(0.0, self.0);
+//!         }
+//!     }
+//!     fn surface(&self, _: BodyId, _: Kinematics, at: &Vector2<f64>) -> Option<SurfacePoint<2>> {
+//!         let foot = Vector2::new(at.x, 0.0);
+//!         Some(SurfacePoint { place: foot, normal: Vector2::y(), material: foot })
+//!     }
+//! }
+//!
+//! let detector = PointDetector::new(vec![PointPair {
+//!     pair: 0,
+//!     points: vec![Vector2::new(-1.0, 0.0), Vector2::new(1.0, 0.5)],
+//!     body: BodyId(0),
+//!     surface: BodyId(1),
+//!     kinematics: Kinematics::Deformed,
+//! }]);
+//! let mut found = Candidates::new();
+//! detector.detect(&Scene(0.1), 0.2, &mut found);
+//! assert_eq!(found.len(), 1);
+//! assert_eq!((found[0].gap, found[0].id.point()), (0.1, 0));
+//! ```
+
+mod candidate;
+mod points;
+
+pub use candidate::{Anchor, BodyId, Candidate, Candidates, ContactId, Frame, plane_frame};
+pub use points::{PointDetector, PointPair};
+
+/// A point or direction of the world, or of a body.
+pub type Vector<const D: usize> = nalgebra::SVector<f64, D>;
+
+/// How the motion of a deformable surface enters gap and frame (`docs/theory.md` §3).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Kinematics {
+    /// Normal and gap of the deflected surface.
+    #[default]
+    Deformed,
+    /// Normal and gap as if the surface stayed level: cheaper, for small slopes.
+    Linear,
+}
+
+/// The point of a surface that answers to a point of the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfacePoint<const D: usize> {
+    /// The foot point, in the world.
+    pub place: Vector<D>,
+    /// The unit normal there, out of the body.
+    pub normal: Vector<D>,
+    /// The foot in coordinates fixed in the body, for its owner to find it again.
+    pub material: Vector<D>,
+}
+
+/// What a detector may ask of the bodies in one configuration.
+pub trait Geometry<const D: usize> {
+    /// Places points fixed in a body: `out[k]` is where `local[k]` is in the world. Both have the same length.
+    fn place(&self, body: BodyId, local: &[Vector<D>], out: &mut [Vector<D>]);
+    /// The point of the body's surface that answers to the world's point `at`; `None` where the surface doesn't reach.
+    fn surface(&self, body: BodyId, kinematics: Kinematics, at: &Vector<D>) -> Option<SurfacePoint<D>>;
+}
+
+/// Finds candidates for contact.
+pub trait ContactDetector<const D: usize>: Send + Sync {
+    /// Puts all candidates with a gap of at most `margin` (m) into `out`, which is cleared first, in an order that
+    /// depends on nothing but the detector. Allocates only where there are more than ever before.
+    fn detect(&self, at: &dyn Geometry<D>, margin: f64, out: &mut Candidates<D>);
+    /// Most candidates that there can ever be.
+    fn capacity(&self) -> usize;
+}

@@ -81,9 +81,9 @@ impl ContactSolver<2> for Enumeration {
             2..=MAX_CONTACTS => Table::new(problem).enumerate(p),
             _ => (false, 0),
         };
-        let residual = judge(problem, p).global;
+        let residual = judge(problem, p);
         // Written so that a NaN counts as not solved.
-        let status = if found && residual <= stop.tolerance { Status::Converged } else { Status::Breakdown };
+        let status = if found && residual.global <= stop.tolerance { Status::Converged } else { Status::Breakdown };
         Outcome::new(status, Self::NAME, tried, residual)
     }
 

@@ -42,13 +42,13 @@ impl ContactSolver<2> for Pgs {
     fn reserve(&mut self, _contacts: usize, _blocks: usize) {}
 
     fn solve(&mut self, problem: &ContactProblem<'_, 2>, stop: &Stop<'_>, p: &mut [Vector2<f64>]) -> Outcome {
-        let mut residual = judge(problem, p).global;
-        let (mut best, mut best_at) = (residual, 0);
+        let mut residual = judge(problem, p);
+        let (mut best, mut best_at) = (residual.global, 0);
         let mut sweep = 0;
         let ended = |status, sweep, residual| Outcome::new(status, Self::NAME, sweep, residual);
         loop {
             // `<=` is false for NaN, which then runs into the limits below.
-            if residual <= stop.tolerance {
+            if residual.global <= stop.tolerance {
                 return ended(Status::Converged, sweep, residual);
             }
             if sweep >= stop.max_iterations {
@@ -67,9 +67,9 @@ impl ContactSolver<2> for Pgs {
                 }
                 sweep += 1;
             }
-            residual = judge(problem, p).global;
-            if residual < best {
-                (best, best_at) = (residual, sweep);
+            residual = judge(problem, p);
+            if residual.global < best {
+                (best, best_at) = (residual.global, sweep);
             }
         }
     }
@@ -108,7 +108,7 @@ mod tests {
         let stop = Stop { tolerance: 1e-14, max_iterations: 2, ..Stop::default() };
         let outcome = Pgs::new().solve(&case.problem().unwrap(), &stop, &mut p);
         assert_eq!((outcome.status, outcome.iterations), (Status::MaxIterations, 2));
-        assert!(outcome.residual > 1e-14);
+        assert!(outcome.residual.global > 1e-14);
         let outcome = Pgs::new().solve(&case.problem().unwrap(), &Stop { tolerance: 1e-12, ..stop }, &mut p);
         assert_eq!(outcome.status, Status::MaxIterations);
         let outcome = Pgs::new().solve(&case.problem().unwrap(), &Stop { tolerance: 1e-12, ..Stop::default() }, &mut p);
