@@ -1,1 +1,76 @@
-//! teeter
+//! Non-smooth time integration: subsystems with velocities that can be hit, schemes that step them, the energy
+//! ledger that checks every step.
+//!
+//! The layers below know nothing of each other; this crate composes them behind traits:
+//!
+//! - a [`Subsystem`] is a model of something with velocities: [`Blocks`], a [`BeamBody`], the [`Ground`], or yours;
+//!   it offers forces, products, Jacobian rows and a [`Compliance`], and owns no state;
+//! - a [`Model`] is subsystems, contact pairs and a detector: immutable;
+//! - a [`State`] is all that decides the next step: flat, to be cloned or stored;
+//! - a [`Scheme`] owns every formula of time integration and decides which candidates are contacts:
+//!   [`MoreauJean`];
+//! - a [`Workspace`] is the memory and the contact solver of one worker;
+//! - [`run`] takes steps and shows each to [`Observer`]s.
+//!
+//! # Example: a block dropped on the ground
+//!
+//! ```
+//! use nalgebra::{Vector2, Vector3};
+//! use teeter_detect::{Kinematics, PointDetector, PointPair};
+//! use teeter_integrator::*;
+//! use teeter_rigid::{MassProperties, Rectangle};
+//!
+//! let shape = Rectangle::new(0.1, 0.05)?;
+//! let mass = MassProperties::rectangle(&shape, 0.1, 2700.0)?;
+//! let mut parts = ModelBuilder::new();
+//! let block = parts.add(Box::new(Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -9.81))));
+//! let ground = parts.add(Box::new(Ground::flat(0.0)));
+//! let pair = parts.pair(PairLaw { friction: 0.5, restitution: 0.0 });
+//! let model = parts.build(Box::new(PointDetector::new(vec![PointPair {
+//!     pair,
+//!     points: shape.corners().to_vec(),
+//!     body: block,
+//!     surface: ground,
+//!     kinematics: Kinematics::Deformed,
+//! }])))?;
+//!
+//! let mut state = State::new(&model, &[0.0, 0.03, 0.0], &[0.0, 0.0, 0.0], 1e-3)?;
+//! let mut work = Workspace::new(&model, Box::new(teeter_solvers::Auto::new()), SolverSettings::default());
+//! let mut scheme = MoreauJean::new(MoreauJeanSettings::default())?;
+//! let ended = run(&model, &mut scheme, &mut state, &mut work, &Plan { steps: 100, require_convergence: true }, &mut [])?;
+//! assert_eq!(ended, Ended::Complete);
+//! assert!(state.v.iter().all(|v| v.abs() < 1e-12), "at rest");
+//! assert!((state.q[1] - 0.025).abs() < 1e-3, "on the ground");
+//! # Ok::<(), Box<dyn std::error::Error + Send + Sync>>(())
+//! ```
+
+mod beam;
+mod blocks;
+mod contacts;
+mod ground;
+mod ledger;
+mod model;
+mod monitor;
+mod moreau_jean;
+mod run;
+mod scheme;
+mod state;
+mod subsystem;
+mod workspace;
+
+pub use beam::{BeamBody, BeamSurface};
+pub use blocks::{Block, Blocks};
+pub use contacts::{Contact, ContactState};
+pub use ground::Ground;
+pub use ledger::{Ledger, PositiveWork, StepEnergy};
+pub use model::{Model, ModelBuilder, ModelError, PairLaw};
+pub use monitor::{Crossing, Peak, RockingMonitor};
+pub use moreau_jean::{MoreauJean, MoreauJeanSettings};
+pub use run::{Ended, Observer, ObserverError, Plan, RunError, run};
+pub use scheme::{Scheme, SettingError, StepError, StepReport};
+pub use state::{State, StateError, Tally, WarmStart};
+pub use subsystem::{Compliance, Coupling, Energy, FactorError, PartRows, Rows, Size, Subsystem, Weights};
+pub use workspace::{SolverSettings, Workspace};
+
+/// A point, direction, impulse or relative velocity in D dimensions.
+pub type Vector<const D: usize> = nalgebra::SVector<f64, D>;

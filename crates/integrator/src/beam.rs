@@ -1,0 +1,218 @@
+//! A beam as a subsystem: the adapter above `teeter-beam`, with the contact kinematics of `docs/theory.md` §3.
+
+use crate::{Compliance, Energy, FactorError, Rows, Size, Subsystem, Weights};
+use nalgebra::Vector2;
+use std::sync::Arc;
+use teeter_beam::{Beam, Factor, Load, MatrixWeights};
+use teeter_detect::{Frame, Kinematics, SurfacePoint};
+
+/// Which fibre of a beam is its contact surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BeamSurface {
+    /// The axis: contact forces do no work on the rotation of the section.
+    Axis,
+    /// The top fibre, half a thickness (m) above the axis.
+    Top {
+        /// Distance of the fibre from the axis, m.
+        offset: f64,
+    },
+}
+
+impl BeamSurface {
+    fn offset(self) -> f64 {
+        match self {
+            Self::Axis => 0.0,
+            Self::Top { offset } => offset,
+        }
+    }
+}
+
+/// A straight level beam in the world.
+pub struct BeamBody {
+    beam: Arc<Beam>,
+    position: Vector2<f64>,
+    surface: BeamSurface,
+    loads: Vec<Box<dyn Load>>,
+}
+
+impl std::fmt::Debug for BeamBody {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("BeamBody")
+            .field("position", &self.position)
+            .field("surface", &self.surface)
+            .field("loads", &self.loads.len())
+            .finish_non_exhaustive()
+    }
+}
+
+impl BeamBody {
+    /// A beam with its left end at `position` (m).
+    #[must_use]
+    pub fn new(beam: Arc<Beam>, position: Vector2<f64>, surface: BeamSurface) -> Self {
+        Self { beam, position, surface, loads: Vec::new() }
+    }
+
+    /// The same beam under one more load.
+    #[must_use]
+    pub fn with_load(mut self, load: Box<dyn Load>) -> Self {
+        self.loads.push(load);
+        self
+    }
+
+    /// The beam.
+    #[must_use]
+    pub fn beam(&self) -> &Arc<Beam> {
+        &self.beam
+    }
+
+    /// The foot point at the beam's own coordinate of `at`: the point of the surface with the same x.
+    fn foot(&self, q: &[f64], kinematics: Kinematics, at: &Vector2<f64>) -> Option<SurfacePoint<2>> {
+        let x = at.x - self.position.x;
+        let offset = self.surface.offset();
+        let d = self.beam.deflection_at(q, x)?; // None beyond the ends, which belong to the beam
+        if kinematics == Kinematics::Linear {
+            let place = Vector2::new(at.x, self.position.y + d.w + offset);
+            return Some(SurfacePoint { place, normal: Vector2::y(), material: Vector2::new(x, offset) });
+        }
+        let normal_of = |slope: f64| {
+            let cos = (1.0 + slope * slope).sqrt().recip();
+            Vector2::new(-slope * cos, cos)
+        };
+        let (mut foot, mut w, mut normal) = (x, d.w, normal_of(d.slope));
+        if offset != 0.0 {
+            // x_f − offset sin ψ(x_f) = x: each round gains a factor offset·w'' on the last, a curvature radius of many
+            // thicknesses for anything that is a beam; 1e-16 of the span is reached in some four rounds.
+            for _ in 0..FOOT_ROUNDS {
+                let next = (x - offset * normal.x).clamp(0.0, self.beam.spec().span);
+                let moved = (next - foot).abs();
+                let d = self.beam.deflection_at(q, next)?;
+                (foot, w, normal) = (next, d.w, normal_of(d.slope));
+                if moved <= f64::EPSILON * self.beam.spec().span {
+                    break;
+                }
+            }
+        }
+        let place = Vector2::new(at.x, self.position.y + w + offset * normal.y);
+        Some(SurfacePoint { place, normal, material: Vector2::new(foot, offset) })
+    }
+}
+
+/// Most rounds of the fixed point for the foot on the top fibre.
+const FOOT_ROUNDS: usize = 20;
+
+impl Subsystem<2> for BeamBody {
+    fn size(&self) -> Size {
+        Size { q: self.beam.dofs(), v: self.beam.dofs(), bodies: 1, row: 4 }
+    }
+
+    fn internal_force(&self, q: &[f64], v: &[f64], f: &mut [f64]) {
+        self.beam.add_stiffness_product(-1.0, q, f);
+        if self.beam.is_damped() {
+            self.beam.add_damping_product(-1.0, v, f);
+        }
+    }
+
+    fn is_loaded(&self) -> bool {
+        !self.loads.is_empty()
+    }
+
+    fn load(&self, t: f64, f: &mut [f64]) {
+        for load in &self.loads {
+            load.add(&self.beam, t, f);
+        }
+    }
+
+    fn is_damped(&self) -> bool {
+        self.beam.is_damped()
+    }
+
+    fn apply(&self, w: Weights, _q: &[f64], x: &[f64], y: &mut [f64]) {
+        if w.mass != 0.0 {
+            self.beam.add_mass_product(w.mass, x, y);
+        }
+        if w.damping != 0.0 {
+            self.beam.add_damping_product(w.damping, x, y);
+        }
+        if w.stiffness != 0.0 {
+            self.beam.add_stiffness_product(w.stiffness, x, y);
+        }
+    }
+
+    fn energy(&self, q: &[f64], v: &[f64]) -> Energy {
+        Energy { kinetic: self.beam.kinetic_energy(v), elastic: self.beam.elastic_energy(q), gravity: 0.0 }
+    }
+
+    fn place(&self, _body: u32, q: &[f64], local: &[Vector2<f64>], out: &mut [Vector2<f64>]) {
+        for (place, point) in out.iter_mut().zip(local) {
+            let (w, slope) = self
+                .beam
+                .deflection_at(q, point.x.clamp(0.0, self.beam.spec().span))
+                .map_or((0.0, 0.0), |d| (d.w, d.slope));
+            let cos = (1.0 + slope * slope).sqrt().recip();
+            *place = self.position + Vector2::new(point.x - point.y * slope * cos, w + point.y * cos);
+        }
+    }
+
+    fn surface(&self, _: u32, q: &[f64], kinematics: Kinematics, at: &Vector2<f64>) -> Option<SurfacePoint<2>> {
+        self.foot(q, kinematics, at)
+    }
+
+    /// The frame is taken to be that of the surface point: its normal (−sin ψ, cos ψ) says how the section stands, so that
+    /// v_s = (−offset cos ψ·ψ̇, ẇ − offset sin ψ·ψ̇) with ψ̇ = ẇ' cos² ψ; for linear kinematics ψ = 0.
+    fn rows(&self, _: u32, _q: &[f64], point: &Vector2<f64>, frame: &Frame<2>, out: &mut Rows<'_, 2>) -> usize {
+        let shape = self.beam.shape_clamped(point.x);
+        let (sin, cos) = (-frame[(0, 0)], frame[(0, 1)]);
+        let up: Vector2<f64> = frame.column(1).into();
+        if point.y == 0.0 {
+            for k in 0..shape.len {
+                out.columns[k] = shape.columns[k];
+                out.values[k] = up * shape.n[k];
+            }
+        } else {
+            let turn = frame * Vector2::new(-cos, -sin) * (point.y * cos * cos);
+            for k in 0..shape.len {
+                out.columns[k] = shape.columns[k];
+                out.values[k] = up * shape.n[k] + turn * shape.dn[k];
+            }
+        }
+        shape.len
+    }
+
+    fn factor(&self, w: Weights, _q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
+        match self.beam.factor(matrix_weights(w)) {
+            Ok(factor) => Ok(Box::new(BeamCompliance { beam: Arc::clone(&self.beam), weights: w, factor })),
+            Err(error) => Err(FactorError { weights: w, reason: error.to_string() }),
+        }
+    }
+}
+
+fn matrix_weights(w: Weights) -> MatrixWeights {
+    MatrixWeights { mass: w.mass, damping: w.damping, stiffness: w.stiffness }
+}
+
+/// W_be of the source paper, by a sparse Cholesky factor.
+struct BeamCompliance {
+    beam: Arc<Beam>,
+    weights: Weights,
+    factor: Factor,
+}
+
+impl Compliance<2> for BeamCompliance {
+    fn weights(&self) -> Weights {
+        self.weights
+    }
+
+    fn refactor(&mut self, w: Weights, _q: &[f64]) -> Result<(), FactorError> {
+        match self.beam.refactor(matrix_weights(w), &mut self.factor) {
+            Ok(()) => {
+                self.weights = w;
+                Ok(())
+            }
+            Err(error) => Err(FactorError { weights: w, reason: error.to_string() }),
+        }
+    }
+
+    fn solve(&mut self, f: &mut [f64]) {
+        self.factor.solve(f);
+    }
+}

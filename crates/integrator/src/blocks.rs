@@ -1,0 +1,149 @@
+//! Rigid blocks as a subsystem: the adapter above `teeter-rigid`.
+
+use crate::{Compliance, Coupling, Energy, FactorError, PartRows, Rows, Size, Subsystem, Weights};
+use nalgebra::{Matrix2, Vector2, Vector3};
+use teeter_detect::Frame;
+use teeter_rigid::{MassProperties, Pose, Rectangle};
+
+/// A block as dynamics sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Block {
+    mass: MassProperties,
+    radius: f64,
+}
+
+impl Block {
+    /// A rectangular block.
+    #[must_use]
+    pub fn new(mass: MassProperties, shape: &Rectangle) -> Self {
+        Self { mass, radius: shape.radius() }
+    }
+}
+
+/// All blocks of a scene: three coordinates each, (X, Y, φ), under their weight.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Blocks {
+    blocks: Vec<Block>,
+    gravity: Vector2<f64>,
+}
+
+impl Blocks {
+    /// Blocks under gravity `gravity`, m/s².
+    #[must_use]
+    pub fn new(blocks: Vec<Block>, gravity: Vector2<f64>) -> Self {
+        Self { blocks, gravity }
+    }
+}
+
+fn triple(x: &[f64], body: usize) -> Vector3<f64> {
+    Vector3::new(x[3 * body], x[3 * body + 1], x[3 * body + 2])
+}
+
+impl Subsystem<2> for Blocks {
+    fn size(&self) -> Size {
+        let n = self.blocks.len();
+        Size { q: 3 * n, v: 3 * n, bodies: n, row: 3 }
+    }
+
+    fn internal_force(&self, _q: &[f64], _v: &[f64], f: &mut [f64]) {
+        for (f, block) in f.chunks_exact_mut(3).zip(&self.blocks) {
+            f[0] += block.mass.mass * self.gravity.x;
+            f[1] += block.mass.mass * self.gravity.y;
+        }
+    }
+
+    fn apply(&self, w: Weights, _q: &[f64], x: &[f64], y: &mut [f64]) {
+        if w.mass != 0.0 {
+            for ((y, x), block) in y.chunks_exact_mut(3).zip(x.chunks_exact(3)).zip(&self.blocks) {
+                let m = block.mass.diagonal();
+                for k in 0..3 {
+                    y[k] += w.mass * m[k] * x[k];
+                }
+            }
+        }
+    }
+
+    fn energy(&self, q: &[f64], v: &[f64]) -> Energy {
+        let mut energy = Energy::default();
+        for (k, block) in self.blocks.iter().enumerate() {
+            energy.kinetic += block.mass.kinetic_energy(&triple(v, k));
+            energy.gravity -= block.mass.mass * (self.gravity.x * q[3 * k] + self.gravity.y * q[3 * k + 1]);
+        }
+        energy
+    }
+
+    fn energy_scale(&self) -> f64 {
+        let g = self.gravity.norm();
+        self.blocks.iter().map(|block| block.mass.mass * g * block.radius).sum()
+    }
+
+    fn place(&self, body: u32, q: &[f64], local: &[Vector2<f64>], out: &mut [Vector2<f64>]) {
+        let pose = Pose::new(&triple(q, body as usize));
+        for (x, rho) in out.iter_mut().zip(local) {
+            *x = pose.point(rho);
+        }
+    }
+
+    fn rows(&self, body: u32, q: &[f64], point: &Vector2<f64>, frame: &Frame<2>, out: &mut Rows<'_, 2>) -> usize {
+        let jacobian = frame * Pose::new(&triple(q, body as usize)).jacobian(point);
+        for k in 0..3 {
+            out.columns[k] = 3 * body as usize + k;
+            out.values[k] = jacobian.column(k).into();
+        }
+        3
+    }
+
+    fn factor(&self, w: Weights, _q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
+        let mass = self.blocks.iter().flat_map(|block| block.mass.diagonal().data.0[0]).collect();
+        let mut compliance = BlockCompliance { weights: w, mass, inverse: vec![0.0; 3 * self.blocks.len()] };
+        compliance.refactor(w, &[])?;
+        Ok(Box::new(compliance))
+    }
+}
+
+/// diag(1/m, 1/m, 1/I) of every block.
+struct BlockCompliance {
+    weights: Weights,
+    mass: Vec<f64>,
+    inverse: Vec<f64>,
+}
+
+impl Compliance<2> for BlockCompliance {
+    fn weights(&self) -> Weights {
+        self.weights
+    }
+
+    fn refactor(&mut self, w: Weights, _q: &[f64]) -> Result<(), FactorError> {
+        // Written so that NaN fails too.
+        if !(w.mass > 0.0) {
+            return Err(FactorError { weights: w, reason: "a rigid block has mass only".into() });
+        }
+        for (inverse, mass) in self.inverse.iter_mut().zip(&self.mass) {
+            *inverse = (w.mass * mass).recip();
+        }
+        self.weights = w;
+        Ok(())
+    }
+
+    fn solve(&mut self, f: &mut [f64]) {
+        for (f, inverse) in f.iter_mut().zip(&self.inverse) {
+            *f *= inverse;
+        }
+    }
+
+    fn couple(&mut self, rows: &PartRows<'_, 2>, _scratch: &mut [f64], h: &mut Coupling<'_, 2>) {
+        for (i, columns_i, values_i) in rows.iter() {
+            for (j, columns_j, values_j) in rows.iter() {
+                // Contacts of different blocks don't meet here: W is diagonal.
+                if columns_i[0] == columns_j[0] {
+                    let mut block = Matrix2::zeros();
+                    for ((&c, a), b) in columns_i.iter().zip(values_i).zip(values_j) {
+                        block += a * (b * self.inverse[c]).transpose();
+                    }
+                    h.add(i, j, &block);
+                }
+            }
+        }
+    }
+}
+

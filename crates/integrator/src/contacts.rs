@@ -1,0 +1,211 @@
+//! The active contacts of a step: their rows, their problem, and what became of them.
+
+use crate::model::{Model, Part};
+use crate::subsystem::Span;
+use crate::{Compliance, Coupling, PartRows, Rows, Vector, WarmStart};
+use teeter_contact::{Block, ContactProblem, Delassus, ProblemError};
+use teeter_detect::{Candidate, ContactId};
+
+/// What a contact does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ContactState {
+    /// No impulse.
+    Open,
+    /// No tangential velocity.
+    Stick,
+    /// Slides, friction at its limit.
+    Slip,
+}
+
+impl ContactState {
+    /// The word for it in tables.
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Open => "open",
+            Self::Stick => "stick",
+            Self::Slip => "slip",
+        }
+    }
+}
+
+/// A contact that was active in a step, in its frame (normal first), with the step's Jacobian.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact<const D: usize> {
+    /// Who it is.
+    pub id: ContactId,
+    /// Gap where the activation was decided, m.
+    pub gap: f64,
+    /// Impulse on side 0, N·s.
+    pub p: Vector<D>,
+    /// Relative velocity before the step, m/s.
+    pub u_before: Vector<D>,
+    /// Relative velocity after the step, m/s.
+    pub u_after: Vector<D>,
+    /// Whether it was active in the step before, too.
+    pub persisting: bool,
+    /// Speed below which it counts as zero, m/s: a small part of the fastest of the step's contact problem.
+    pub still: f64,
+}
+
+/// A tangential speed below this part of the problem's largest |q| is sticking: above the default solver tolerance's
+/// error, below any slide worth the name.
+const STILL: f64 = 1e-8;
+
+impl<const D: usize> Contact<D> {
+    /// What the contact does in this step.
+    #[must_use]
+    pub fn state(&self) -> ContactState {
+        if self.p[0] <= 0.0 {
+            ContactState::Open
+        } else if tangential(&self.u_after).norm() <= self.still {
+            ContactState::Stick
+        } else {
+            ContactState::Slip
+        }
+    }
+}
+
+pub(crate) fn tangential<const D: usize>(u: &Vector<D>) -> Vector<D> {
+    let mut t = *u;
+    t[0] = 0.0;
+    t
+}
+
+/// The arena of a step's contacts; kept over steps, so that it allocates only where there are more than ever before.
+#[derive(Debug)]
+pub(crate) struct ContactSet<const D: usize> {
+    pub(crate) contacts: Vec<Contact<D>>,
+    spans: Vec<[Span; 2]>,
+    columns: Vec<usize>,
+    values: Vec<Vector<D>>,
+    blocks: Vec<Block<D>>,
+    pub(crate) q: Vec<Vector<D>>,
+    mu: Vec<f64>,
+    pub(crate) p: Vec<Vector<D>>,
+}
+
+impl<const D: usize> ContactSet<D> {
+    pub(crate) fn with_capacity(contacts: usize, row: usize) -> Self {
+        Self {
+            contacts: Vec::with_capacity(contacts),
+            spans: Vec::with_capacity(contacts),
+            columns: Vec::with_capacity(2 * contacts * row),
+            values: Vec::with_capacity(2 * contacts * row),
+            blocks: Vec::with_capacity(contacts * contacts),
+            q: Vec::with_capacity(contacts),
+            mu: Vec::with_capacity(contacts),
+            p: Vec::with_capacity(contacts),
+        }
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.contacts.clear();
+        self.spans.clear();
+        self.columns.clear();
+        self.values.clear();
+        self.q.clear();
+        self.mu.clear();
+        self.p.clear();
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.contacts.len()
+    }
+
+    /// Takes a candidate in, with its rows at coordinates `q`; side 1 enters with a minus, for u = v_0 − v_1.
+    pub(crate) fn activate(&mut self, model: &Model<D>, q: &[f64], candidate: &Candidate<D>, warm: &WarmStart) {
+        let mut spans = [Span { part: 0, start: 0, len: 0 }; 2];
+        for (side, anchor) in candidate.sides.iter().enumerate() {
+            let start = self.columns.len();
+            let Some((index, part, body)) = model.owner(anchor.body) else { continue };
+            let row = part.system.size().row;
+            self.columns.resize(start + row, 0);
+            self.values.resize(start + row, Vector::zeros());
+            let mut rows = Rows { columns: &mut self.columns[start..], values: &mut self.values[start..] };
+            let q = &q[part.q.clone()];
+            let len = part.system.rows(body, q, &anchor.point, &candidate.frame, &mut rows).min(row);
+            self.columns.truncate(start + len);
+            self.values.truncate(start + len);
+            if side == 1 {
+                self.values[start..].iter_mut().for_each(|value| *value = -*value);
+            }
+            spans[side] = Span { part: index, start, len };
+        }
+        self.spans.push(spans);
+        let before = warm.impulse::<D>(candidate.id);
+        self.p.push(before.unwrap_or_else(Vector::zeros));
+        self.mu.push(model.law(candidate.id.pair()).friction);
+        self.contacts.push(Contact {
+            id: candidate.id,
+            gap: candidate.gap,
+            p: Vector::zeros(),
+            u_before: Vector::zeros(),
+            u_after: Vector::zeros(),
+            persisting: before.is_some(),
+            still: 0.0,
+        });
+    }
+
+    /// The relative velocity J_i v of contact `i`.
+    pub(crate) fn velocity(&self, parts: &[Part<D>], i: usize, v: &[f64]) -> Vector<D> {
+        let mut u = Vector::zeros();
+        for side in self.spans[i] {
+            if side.len > 0 {
+                let v = &v[parts[side.part].v.clone()];
+                for k in side.start..side.start + side.len {
+                    u += self.values[k] * v[self.columns[k]];
+                }
+            }
+        }
+        u
+    }
+
+    /// H = Σ J W Jᵀ over the subsystems.
+    pub(crate) fn assemble(&mut self, parts: &[Part<D>], factors: &mut [Box<dyn Compliance<D>>], scratch: &mut [f64]) {
+        let n = self.contacts.len();
+        self.blocks.clear();
+        self.blocks.resize(n * n, Block::zeros());
+        let mut coupling = Coupling { contacts: n, blocks: &mut self.blocks };
+        for (index, (part, factor)) in parts.iter().zip(factors).enumerate() {
+            if part.v.is_empty() {
+                continue;
+            }
+            let rows = PartRows { part: index, spans: &self.spans, columns: &self.columns, values: &self.values };
+            factor.couple(&rows, &mut scratch[..part.v.len()], &mut coupling);
+        }
+    }
+
+    /// Adds Jᵀp to the generalised impulse `f`, and says which parts it touched.
+    pub(crate) fn scatter_impulses(&self, parts: &[Part<D>], f: &mut [f64]) {
+        for (sides, p) in self.spans.iter().zip(&self.p) {
+            for side in sides.iter().filter(|side| side.len > 0) {
+                let f = &mut f[parts[side.part].v.clone()];
+                for k in side.start..side.start + side.len {
+                    f[self.columns[k]] += self.values[k].dot(p);
+                }
+            }
+        }
+    }
+
+    /// Whether any active contact acts on a part.
+    pub(crate) fn acts_on(&self, part: usize) -> bool {
+        self.spans.iter().flatten().any(|side| side.part == part && side.len > 0)
+    }
+
+    /// The problem, and the impulses to start from and to leave the solution in.
+    pub(crate) fn problem(&mut self) -> Result<(ContactProblem<'_, D>, &mut [Vector<D>]), ProblemError> {
+        let problem = ContactProblem::new(Delassus::Dense(&self.blocks), &self.q, &self.mu)?;
+        Ok((problem, &mut self.p))
+    }
+
+    /// Completes the contacts after a solve, with velocities after the step.
+    pub(crate) fn complete(&mut self, parts: &[Part<D>], v: &[f64]) {
+        let fastest = self.q.iter().map(Vector::norm).fold(0.0, f64::max);
+        for i in 0..self.contacts.len() {
+            let u_after = self.velocity(parts, i, v);
+            let contact = &mut self.contacts[i];
+            (contact.p, contact.u_after, contact.still) = (self.p[i], u_after, STILL * fastest);
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! The energy account: an identity of the scheme, computed every step (`docs/theory.md` §7).
+//!
+//! For every θ, up to rounding,
+//!
+//! ```text
+//! Δ(T+V) = −h v_θᵀC v_θ + h v_θᵀP_θ + Σ U_θ·p − (θ−½)(ΔvᵀM Δv + ΔqᵀK Δq)
+//! ```
+//!
+//! viscous loss, work of loads, contact and friction, numerical dissipation. What is left over is rounding, or a mistake.
+
+use crate::Energy;
+
+/// The terms of one step, J, signed as in the identity: a loss is negative.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepEnergy {
+    /// Work of external loads.
+    pub external: f64,
+    /// Normal contact: Σ U_θ,n p_n.
+    pub contact: f64,
+    /// Friction: Σ U_θ,t·p_t.
+    pub friction: f64,
+    /// Viscous loss.
+    pub viscous: f64,
+    /// Numerical dissipation.
+    pub numerical: f64,
+    /// Work of a projection of the positions.
+    pub projection: f64,
+    /// Δ(T+V) minus all of the above.
+    pub residual: f64,
+}
+
+impl StepEnergy {
+    fn add(&mut self, step: &Self) {
+        self.external += step.external;
+        self.contact += step.contact;
+        self.friction += step.friction;
+        self.viscous += step.viscous;
+        self.numerical += step.numerical;
+        self.projection += step.projection;
+        self.residual += step.residual;
+    }
+
+    fn explained(&self) -> f64 {
+        self.external + self.contact + self.friction + self.viscous + self.numerical + self.projection
+    }
+}
+
+/// Steps in which contact and friction together gave energy to the bodies.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PositiveWork {
+    /// How many.
+    pub steps: u64,
+    /// The largest gain in one step, J.
+    pub largest: f64,
+    /// All gains together, J.
+    pub sum: f64,
+}
+
+/// The account of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ledger {
+    /// At the start.
+    pub initial: Energy,
+    /// Now.
+    pub current: Energy,
+    /// The terms added up since the start; `residual` is the sum of the signed residuals.
+    pub sum: StepEnergy,
+    /// Largest |residual| of a step, J.
+    pub largest_residual: f64,
+    /// The scene's energy scale so far, J: max |T| + |V_elastic| + |ΔV_gravity|, at least Σ m g R.
+    pub scale: f64,
+    /// Gains by contact.
+    pub positive_contact_work: PositiveWork,
+    /// Largest U¹_t·p_t of a contact in a step, J; the law makes it ≤ 0 up to rounding.
+    pub largest_tangential_work: f64,
+}
+
+/// A step's contact work above this part of the energy scale counts as a gain; below, it is rounding.
+const ROUNDING: f64 = 1e-15;
+
+impl Ledger {
+    pub(crate) fn new(initial: Energy, floor: f64) -> Self {
+        let mut ledger = Self {
+            initial,
+            current: initial,
+            sum: StepEnergy::default(),
+            largest_residual: 0.0,
+            scale: floor,
+            positive_contact_work: PositiveWork::default(),
+            largest_tangential_work: f64::NEG_INFINITY,
+        };
+        ledger.rescale();
+        ledger
+    }
+
+    fn rescale(&mut self) {
+        let Energy { kinetic, elastic, gravity } = self.current;
+        self.scale = self.scale.max(kinetic.abs() + elastic.abs() + (gravity - self.initial.gravity).abs());
+    }
+
+    /// Enters a step that ends with energies `now`; completes `step` with its residual.
+    pub(crate) fn enter(&mut self, now: Energy, step: &mut StepEnergy) {
+        let before = self.current;
+        // Part by part: the sum of large and small energies would lose digits of the difference.
+        let change = (now.kinetic - before.kinetic) + (now.elastic - before.elastic) + (now.gravity - before.gravity);
+        step.residual = change - step.explained();
+        self.current = now;
+        self.rescale();
+        self.sum.add(step);
+        self.largest_residual = self.largest_residual.max(step.residual.abs());
+        let work = step.contact + step.friction;
+        if work > ROUNDING * self.scale {
+            self.positive_contact_work.steps += 1;
+            self.positive_contact_work.largest = self.positive_contact_work.largest.max(work);
+            self.positive_contact_work.sum += work;
+        }
+    }
+
+    /// The largest residual relative to the energy scale; 0 for a scene without energy.
+    #[must_use]
+    pub fn relative_residual(&self) -> f64 {
+        if self.scale > 0.0 { self.largest_residual / self.scale } else { self.largest_residual }
+    }
+}

@@ -1,0 +1,214 @@
+//! A scene for the integrator: subsystems, who can touch whom by what law, and a detector. Immutable.
+
+use crate::{Energy, Size, Subsystem, Vector};
+use std::ops::Range;
+use teeter_detect::{BodyId, ContactDetector, Geometry, Kinematics, SurfacePoint};
+
+/// The contact law of a pair of bodies.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PairLaw {
+    /// Coulomb's coefficient μ ≥ 0.
+    pub friction: f64,
+    /// Newton's coefficient of restitution e in [0, 1].
+    pub restitution: f64,
+}
+
+/// What is wrong with a model.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ModelError {
+    /// A coefficient outside its range.
+    #[error("{what} of pair {pair} is {value}, but must be {rule}")]
+    Law {
+        /// Which coefficient.
+        what: &'static str,
+        /// Number of the pair.
+        pair: u32,
+        /// Its value.
+        value: f64,
+        /// The range.
+        rule: &'static str,
+    },
+}
+
+/// A subsystem with its places in the state.
+pub(crate) struct Part<const D: usize> {
+    pub(crate) system: Box<dyn Subsystem<D>>,
+    pub(crate) q: Range<usize>,
+    pub(crate) v: Range<usize>,
+}
+
+/// The subsystems, bodies, pairs and the detector of a scene.
+pub struct Model<const D: usize> {
+    parts: Vec<Part<D>>,
+    /// Part and number within it of each body.
+    bodies: Vec<(usize, u32)>,
+    laws: Vec<PairLaw>,
+    detector: Box<dyn ContactDetector<D>>,
+    size: Size,
+}
+
+impl<const D: usize> std::fmt::Debug for Model<D> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Model").field("size", &self.size).field("laws", &self.laws).finish_non_exhaustive()
+    }
+}
+
+/// Collects the parts of a [`Model`].
+pub struct ModelBuilder<const D: usize> {
+    parts: Vec<Part<D>>,
+    bodies: Vec<(usize, u32)>,
+    laws: Vec<PairLaw>,
+    size: Size,
+}
+
+impl<const D: usize> std::fmt::Debug for ModelBuilder<D> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("ModelBuilder").field("size", &self.size).field("laws", &self.laws).finish_non_exhaustive()
+    }
+}
+
+impl<const D: usize> Default for ModelBuilder<D> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<const D: usize> ModelBuilder<D> {
+    /// Nothing yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self { parts: Vec::new(), bodies: Vec::new(), laws: Vec::new(), size: Size::default() }
+    }
+
+    /// Adds a subsystem. Returns its first body; its others follow in number.
+    pub fn add(&mut self, system: Box<dyn Subsystem<D>>) -> BodyId {
+        let (size, part) = (system.size(), self.parts.len());
+        let first = self.bodies.len() as u32;
+        self.bodies.extend((0..size.bodies as u32).map(|local| (part, local)));
+        let (q, v) = (self.size.q..self.size.q + size.q, self.size.v..self.size.v + size.v);
+        self.parts.push(Part { system, q, v });
+        self.size = Size {
+            q: self.size.q + size.q,
+            v: self.size.v + size.v,
+            bodies: self.size.bodies + size.bodies,
+            row: self.size.row.max(size.row),
+        };
+        BodyId(first)
+    }
+
+    /// Adds a pair of bodies that can touch; the detector refers to it by the number returned.
+    pub fn pair(&mut self, law: PairLaw) -> u32 {
+        self.laws.push(law);
+        (self.laws.len() - 1) as u32
+    }
+
+    /// The model.
+    ///
+    /// # Errors
+    /// If a coefficient of a pair is out of its range.
+    pub fn build(self, detector: Box<dyn ContactDetector<D>>) -> Result<Model<D>, ModelError> {
+        for (pair, law) in self.laws.iter().enumerate() {
+            let check = |what, value, good, rule| {
+                if good { Ok(()) } else { Err(ModelError::Law { what, pair: pair as u32, value, rule }) }
+            };
+            let (mu, e) = (law.friction, law.restitution);
+            check("the friction coefficient", mu, mu >= 0.0 && mu.is_finite(), "at least 0 and finite")?;
+            check("the coefficient of restitution", e, (0.0..=1.0).contains(&e), "in [0, 1]")?;
+        }
+        Ok(Model { parts: self.parts, bodies: self.bodies, laws: self.laws, detector, size: self.size })
+    }
+}
+
+impl<const D: usize> Model<D> {
+    /// Coordinates, velocities, bodies, and the longest row.
+    #[must_use]
+    pub fn size(&self) -> Size {
+        self.size
+    }
+
+    /// Number of subsystems.
+    #[must_use]
+    pub fn subsystems(&self) -> usize {
+        self.parts.len()
+    }
+
+    /// The subsystem that a body belongs to: its number, and the ranges of its coordinates and velocities in the state.
+    /// `None` for a body that the model doesn't have.
+    #[must_use]
+    pub fn place_in_state(&self, body: BodyId) -> Option<(usize, Range<usize>, Range<usize>)> {
+        let &(part, _) = self.bodies.get(body.0 as usize)?;
+        Some((part, self.parts[part].q.clone(), self.parts[part].v.clone()))
+    }
+
+    /// The law of a pair; the default (no friction, no restitution) for a pair that the model doesn't have.
+    #[must_use]
+    pub fn law(&self, pair: u32) -> PairLaw {
+        self.laws.get(pair as usize).copied().unwrap_or_default()
+    }
+
+    /// The detector.
+    #[must_use]
+    pub fn detector(&self) -> &dyn ContactDetector<D> {
+        self.detector.as_ref()
+    }
+
+    /// The bodies placed at coordinates `q`, for a detector to look at.
+    #[must_use]
+    pub fn placed<'a>(&'a self, q: &'a [f64]) -> Placed<'a, D> {
+        Placed { model: self, q }
+    }
+
+    /// The energies at (q, v).
+    #[must_use]
+    pub fn energy(&self, q: &[f64], v: &[f64]) -> Energy {
+        let mut energy = Energy::default();
+        for part in &self.parts {
+            energy += part.system.energy(&q[part.q.clone()], &v[part.v.clone()]);
+        }
+        energy
+    }
+
+    /// The least energy scale of the scene, J: the sum of m g R over its blocks.
+    #[must_use]
+    pub fn energy_scale(&self) -> f64 {
+        self.parts.iter().map(|part| part.system.energy_scale()).sum()
+    }
+
+    /// `out = q ⊕ dq`.
+    pub fn retract(&self, q: &[f64], dq: &[f64], out: &mut [f64]) {
+        for part in &self.parts {
+            part.system.retract(&q[part.q.clone()], &dq[part.v.clone()], &mut out[part.q.clone()]);
+        }
+    }
+
+    pub(crate) fn parts(&self) -> &[Part<D>] {
+        &self.parts
+    }
+
+    /// The number of a body's part, the part, and the body's number within it.
+    pub(crate) fn owner(&self, body: BodyId) -> Option<(usize, &Part<D>, u32)> {
+        let &(part, local) = self.bodies.get(body.0 as usize)?;
+        Some((part, &self.parts[part], local))
+    }
+}
+
+/// The bodies of a model at given coordinates.
+#[derive(Debug)]
+pub struct Placed<'a, const D: usize> {
+    model: &'a Model<D>,
+    q: &'a [f64],
+}
+
+impl<const D: usize> Geometry<D> for Placed<'_, D> {
+    fn place(&self, body: BodyId, local: &[Vector<D>], out: &mut [Vector<D>]) {
+        if let Some((_, part, number)) = self.model.owner(body) {
+            part.system.place(number, &self.q[part.q.clone()], local, out);
+        }
+    }
+
+    fn surface(&self, body: BodyId, kinematics: Kinematics, at: &Vector<D>) -> Option<SurfacePoint<D>> {
+        let (_, part, number) = self.model.owner(body)?;
+        part.system.surface(number, &self.q[part.q.clone()], kinematics, at)
+    }
+}

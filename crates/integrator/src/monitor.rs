@@ -1,0 +1,130 @@
+//! The numbers of rocking: zero crossings of an angle and the peaks between them (`docs/theory.md` §9).
+
+/// A zero crossing of an angle: on a rigid base, the impact of a rocking block.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossing {
+    /// Time, s, linear between steps.
+    pub t: f64,
+}
+
+/// The largest |φ| of a step between two crossings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Peak {
+    /// Time of the step, s.
+    pub t: f64,
+    /// The angle, rad, signed.
+    pub phi: f64,
+}
+
+/// An excursion smaller than this is rounding, not rocking; rad.
+const STILL: f64 = 1e-12;
+
+/// Finds the crossings and peaks of one angle, step by step.
+///
+/// ```
+/// use teeter_integrator::RockingMonitor;
+///
+/// let mut monitor = RockingMonitor::new(0.0, 0.1);
+/// for (t, phi) in [(1.0, 0.2), (2.0, -0.2), (3.0, -0.3), (4.0, 0.1)] {
+///     monitor.enter(t, phi);
+/// }
+/// let times: Vec<f64> = monitor.crossings().iter().map(|c| c.t).collect();
+/// assert_eq!(times, [1.5, 3.75]);
+/// let peaks: Vec<f64> = monitor.peaks().iter().map(|p| p.phi).collect();
+/// assert_eq!(peaks, [0.2, -0.3]); // the unfinished one at the end is none
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct RockingMonitor {
+    last: (f64, f64),
+    /// Where the sign last changed, until the excursion beyond it shows that it was more than rounding.
+    pending: Option<f64>,
+    extreme: Peak,
+    crossings: Vec<Crossing>,
+    peaks: Vec<Peak>,
+}
+
+impl RockingMonitor {
+    /// Starts at time `t` with angle `phi`.
+    #[must_use]
+    pub fn new(t: f64, phi: f64) -> Self {
+        Self {
+            last: (t, phi),
+            pending: None,
+            extreme: Peak { t, phi },
+            crossings: Vec::new(),
+            peaks: Vec::new(),
+        }
+    }
+
+    /// Enters the end of a step.
+    pub fn enter(&mut self, t: f64, phi: f64) {
+        let (t0, phi0) = self.last;
+        self.last = (t, phi);
+        // The side that the current excursion is on; none before the angle has left zero for the first time.
+        let side = if self.extreme.phi.abs() > STILL { self.extreme.phi.signum() } else { 0.0 };
+        if side == 0.0 {
+            if phi.abs() > self.extreme.phi.abs() {
+                self.extreme = Peak { t, phi };
+            }
+            return;
+        }
+        if phi * side > 0.0 {
+            self.pending = None;
+            if phi.abs() > self.extreme.phi.abs() {
+                self.extreme = Peak { t, phi };
+            }
+            return;
+        }
+        if phi0 * side > 0.0 {
+            self.pending = Some(t0 + (t - t0) * (phi0 / (phi0 - phi)));
+        }
+        if phi.abs() > STILL
+            && let Some(t_zero) = self.pending.take()
+        {
+            self.crossings.push(Crossing { t: t_zero });
+            self.peaks.push(self.extreme);
+            self.extreme = Peak { t, phi };
+        }
+    }
+
+    /// The crossings so far.
+    #[must_use]
+    pub fn crossings(&self) -> &[Crossing] {
+        &self.crossings
+    }
+
+    /// The peaks so far, the release being the first.
+    #[must_use]
+    pub fn peaks(&self) -> &[Peak] {
+        &self.peaks
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn crossings(phi: &[f64]) -> Vec<f64> {
+        let mut monitor = RockingMonitor::new(0.0, phi[0]);
+        for (k, &phi) in phi.iter().enumerate().skip(1) {
+            monitor.enter(k as f64, phi);
+        }
+        monitor.crossings().iter().map(|c| c.t).collect()
+    }
+
+    #[test]
+    fn rounding_about_zero_is_no_rocking() {
+        assert!(crossings(&[0.0, 1e-17, -1e-17, 2e-16, -3e-16]).is_empty());
+        assert!(crossings(&[0.1, 1e-17, -1e-17, 2e-16, 0.1]).is_empty());
+    }
+
+    #[test]
+    fn a_crossing_that_pauses_at_zero_counts_once_where_it_began() {
+        assert_eq!(crossings(&[0.1, 0.0, -1e-17, -0.1]), [1.0]);
+    }
+
+    #[test]
+    fn a_body_that_starts_upright_crosses_first_when_it_comes_back() {
+        assert_eq!(crossings(&[0.0, 0.1, 0.2, -0.2]), [2.5]);
+    }
+}

@@ -1,0 +1,164 @@
+//! All that decides the next step, flat: clone it to reject a step, store it for a checkpoint.
+
+use crate::{Ledger, Model, Vector};
+use teeter_detect::ContactId;
+
+/// The contacts of the last step with their impulses, in order of identity: where a solver starts from, and who was
+/// active.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WarmStart {
+    ids: Vec<ContactId>,
+    /// D numbers a contact.
+    impulses: Vec<f64>,
+}
+
+impl WarmStart {
+    pub(crate) fn reserve(&mut self, contacts: usize, dimension: usize) {
+        self.ids.reserve(contacts);
+        self.impulses.reserve(contacts * dimension);
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.ids.clear();
+        self.impulses.clear();
+    }
+
+    /// Adds a contact; in order of identity.
+    pub(crate) fn push<const D: usize>(&mut self, id: ContactId, p: &Vector<D>) {
+        self.ids.push(id);
+        self.impulses.extend(p.iter());
+    }
+
+    /// The contacts of the last step.
+    #[must_use]
+    pub fn ids(&self) -> &[ContactId] {
+        &self.ids
+    }
+
+    /// The impulse of a contact in the last step, N·s; `None` if it was not active.
+    #[must_use]
+    pub fn impulse<const D: usize>(&self, id: ContactId) -> Option<Vector<D>> {
+        let at = self.ids.binary_search(&id).ok()?;
+        self.impulses.get(at * D..(at + 1) * D).map(Vector::<D>::from_column_slice)
+    }
+}
+
+/// Counts and extremes over the steps so far.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tally {
+    /// Deepest penetration at the end of a step, m; 0 if there was none.
+    pub max_penetration: f64,
+    /// Largest global residual of a contact problem.
+    pub max_residual: f64,
+    /// Largest residual of a single contact.
+    pub max_contact_residual: f64,
+    /// Most iterations of a contact solve.
+    pub max_iterations: u32,
+    /// Most active contacts.
+    pub max_contacts: usize,
+    /// Steps with a contact problem.
+    pub contact_steps: u64,
+    /// Steps whose contact problem was not solved to tolerance.
+    pub unconverged_steps: u64,
+}
+
+/// The state of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// Steps taken.
+    pub step: u64,
+    /// Time, s; `step · dt` while dt doesn't change.
+    pub t: f64,
+    /// Step size, s.
+    pub dt: f64,
+    /// Coordinates of all subsystems.
+    pub q: Vec<f64>,
+    /// Velocities of all subsystems.
+    pub v: Vec<f64>,
+    /// What a scheme remembers from step to step.
+    pub memory: Vec<f64>,
+    /// The contacts of the last step.
+    pub warm: WarmStart,
+    /// The energy account.
+    pub ledger: Ledger,
+    /// Counts and extremes.
+    pub tally: Tally,
+}
+
+/// What is wrong with an initial state.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StateError {
+    /// Too few or too many numbers.
+    #[error("{what} has {found} numbers, but the model needs {expected}")]
+    Length {
+        /// Coordinates or velocities.
+        what: &'static str,
+        /// Numbers given.
+        found: usize,
+        /// Numbers needed.
+        expected: usize,
+    },
+    /// A number that is not finite.
+    #[error("{what} number {index} is {value}, but must be finite")]
+    NotFinite {
+        /// Coordinates or velocities.
+        what: &'static str,
+        /// Which.
+        index: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// A step size that is not positive and finite.
+    #[error("the step size is {0} s, but must be positive and finite")]
+    StepSize(f64),
+}
+
+impl State {
+    /// The state at t = 0, with step size `dt` (s).
+    ///
+    /// # Errors
+    /// If a length doesn't fit the model, a number is not finite, or `dt` is not positive.
+    pub fn new<const D: usize>(model: &Model<D>, q: &[f64], v: &[f64], dt: f64) -> Result<Self, StateError> {
+        let check = |what, x: &[f64], expected| {
+            if x.len() != expected {
+                return Err(StateError::Length { what, found: x.len(), expected });
+            }
+            match x.iter().position(|x| !x.is_finite()) {
+                Some(index) => Err(StateError::NotFinite { what, index, value: x[index] }),
+                None => Ok(()),
+            }
+        };
+        check("the coordinates", q, model.size().q)?;
+        check("the velocities", v, model.size().v)?;
+        // Written so that NaN fails too.
+        if !(dt > 0.0 && dt.is_finite()) {
+            return Err(StateError::StepSize(dt));
+        }
+        Ok(Self {
+            step: 0,
+            t: 0.0,
+            dt,
+            q: q.to_vec(),
+            v: v.to_vec(),
+            memory: Vec::new(),
+            warm: WarmStart::default(),
+            ledger: Ledger::new(model.energy(q, v), model.energy_scale()),
+            tally: Tally::default(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_warm_start_knows_who_was_active() {
+        let mut warm = WarmStart::default();
+        warm.push(ContactId::new(0, 1), &Vector::<2>::new(1.0, 2.0));
+        warm.push(ContactId::new(0, 3), &Vector::<2>::new(3.0, 4.0));
+        assert_eq!(warm.impulse::<2>(ContactId::new(0, 3)), Some(Vector::<2>::new(3.0, 4.0)));
+        assert_eq!(warm.impulse::<2>(ContactId::new(0, 2)), None);
+    }
+}

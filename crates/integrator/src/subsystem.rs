@@ -1,0 +1,231 @@
+//! What a model of something with velocities offers to a time scheme.
+
+use crate::Vector;
+use teeter_contact::Block;
+use teeter_detect::{Frame, Kinematics, SurfacePoint};
+
+/// The sizes of a subsystem.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Size {
+    /// Coordinates.
+    pub q: usize,
+    /// Velocities.
+    pub v: usize,
+    /// Bodies, numbered from 0 within the subsystem.
+    pub bodies: usize,
+    /// Most non-zero columns in the Jacobian row of one point.
+    pub row: usize,
+}
+
+/// The combination `mass·M + damping·C + stiffness·K` that a scheme asks for; the key of a factorisation.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Weights {
+    /// Factor of M; without unit.
+    pub mass: f64,
+    /// Factor of C, s.
+    pub damping: f64,
+    /// Factor of K, s².
+    pub stiffness: f64,
+}
+
+/// The energies of a subsystem or of a model, J.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    /// ½ vᵀM v.
+    pub kinetic: f64,
+    /// Stored in deformation.
+    pub elastic: f64,
+    /// Of weight, from the origin's level.
+    pub gravity: f64,
+}
+
+impl Energy {
+    /// The sum, J.
+    #[must_use]
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.elastic + self.gravity
+    }
+}
+
+impl std::ops::AddAssign for Energy {
+    fn add_assign(&mut self, other: Self) {
+        self.kinetic += other.kinetic;
+        self.elastic += other.elastic;
+        self.gravity += other.gravity;
+    }
+}
+
+/// The Jacobian rows of one point, to be filled: the point's velocity in the contact's frame is
+/// `Σ_k values[k] · v[columns[k]]`.
+#[derive(Debug)]
+pub struct Rows<'a, const D: usize> {
+    /// Columns, within the subsystem; as long as [`Size::row`].
+    pub columns: &'a mut [usize],
+    /// Entries, a D-vector (normal first) a column.
+    pub values: &'a mut [Vector<D>],
+}
+
+/// A model of something with velocities that can be hit: blocks, a beam, a frame of someone else's. It has no state:
+/// `q` and `v` are its own slices of the [`State`](crate::State).
+///
+/// Bodies are numbered within the subsystem. Methods that add into their last argument say so.
+pub trait Subsystem<const D: usize>: Send + Sync {
+    /// Its sizes; they never change.
+    fn size(&self) -> Size;
+
+    /// Adds the internal forces at (q, v) to `f`: elastic, viscous and weight, `−∂V/∂q − C v`. N (N·m for couples).
+    fn internal_force(&self, q: &[f64], v: &[f64], f: &mut [f64]);
+
+    /// Whether [`Subsystem::load`] adds anything.
+    fn is_loaded(&self) -> bool {
+        false
+    }
+
+    /// Adds the external loads P(t) to `f`: all forces but weight that don't come from the motion.
+    fn load(&self, t: f64, f: &mut [f64]) {
+        let _ = (t, f);
+    }
+
+    /// Whether C is other than zero.
+    fn is_damped(&self) -> bool {
+        false
+    }
+
+    /// Adds `(mass·M + damping·C + stiffness·K) x` to `y`.
+    fn apply(&self, w: Weights, q: &[f64], x: &[f64], y: &mut [f64]);
+
+    /// `out = q ⊕ dq`, with `dq` a velocity times a time. The default is the sum.
+    fn retract(&self, q: &[f64], dq: &[f64], out: &mut [f64]) {
+        for ((o, q), d) in out.iter_mut().zip(q).zip(dq) {
+            *o = q + d;
+        }
+    }
+
+    /// The energies at (q, v).
+    fn energy(&self, q: &[f64], v: &[f64]) -> Energy;
+
+    /// The least that counts as the scene's energy scale on account of this subsystem, J; m g R for a block.
+    fn energy_scale(&self) -> f64 {
+        0.0
+    }
+
+    /// Places points fixed in a body of its: `out[k]` is where `local[k]` is in the world.
+    fn place(&self, body: u32, q: &[f64], local: &[Vector<D>], out: &mut [Vector<D>]);
+
+    /// The point of a body's surface that answers to the world's point `at`; `None` where the body has no surface or it
+    /// doesn't reach. See [`teeter_detect::Geometry`].
+    fn surface(&self, body: u32, q: &[f64], kinematics: Kinematics, at: &Vector<D>) -> Option<SurfacePoint<D>> {
+        let _ = (body, q, kinematics, at);
+        None
+    }
+
+    /// Fills the Jacobian rows of a body's point (in the coordinates that detection used for it) in `frame`, and returns
+    /// how many columns it took.
+    fn rows(&self, body: u32, q: &[f64], point: &Vector<D>, frame: &Frame<D>, out: &mut Rows<'_, D>) -> usize;
+
+    /// Factorises `mass·M + damping·C + stiffness·K`.
+    ///
+    /// # Errors
+    /// If the matrix is not positive definite.
+    fn factor(&self, w: Weights, q: &[f64]) -> Result<Box<dyn Compliance<D>>, FactorError>;
+}
+
+/// A matrix that can't be factorised.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{mass} M + {damping} C + {stiffness} K can't be factorised: {reason}", mass = weights.mass, damping = weights.damping, stiffness = weights.stiffness)]
+pub struct FactorError {
+    /// The combination asked for.
+    pub weights: Weights,
+    /// Why not.
+    pub reason: String,
+}
+
+/// `W = (mass·M + damping·C + stiffness·K)⁻¹` of one subsystem: W_be of the source paper for a beam, diag(1/m, 1/m, 1/I)
+/// for a block.
+pub trait Compliance<const D: usize>: Send {
+    /// The combination that it is the inverse of.
+    fn weights(&self) -> Weights;
+
+    /// Becomes the inverse of another combination; allocates nothing.
+    ///
+    /// # Errors
+    /// If the matrix is not positive definite.
+    fn refactor(&mut self, w: Weights, q: &[f64]) -> Result<(), FactorError>;
+
+    /// `f ← W f`.
+    fn solve(&mut self, f: &mut [f64]);
+
+    /// Adds `J_i W J_jᵀ` for all pairs of rows to the Delassus operator. `scratch` is as long as the subsystem's
+    /// velocities. The default solves once for each row; a subsystem whose W is known in closed form does better.
+    fn couple(&mut self, rows: &PartRows<'_, D>, scratch: &mut [f64], h: &mut Coupling<'_, D>) {
+        for (j, columns_j, values_j) in rows.iter() {
+            for d in 0..D {
+                scratch.fill(0.0);
+                for (&c, value) in columns_j.iter().zip(values_j) {
+                    scratch[c] += value[d];
+                }
+                self.solve(scratch);
+                for (i, columns_i, values_i) in rows.iter() {
+                    let mut u = Vector::<D>::zeros();
+                    for (&c, value) in columns_i.iter().zip(values_i) {
+                        u += value * scratch[c];
+                    }
+                    h.add_column(i, j, d, &u);
+                }
+            }
+        }
+    }
+}
+
+/// Where the rows of one side of a contact lie in the arena.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Span {
+    pub(crate) part: usize,
+    pub(crate) start: usize,
+    pub(crate) len: usize,
+}
+
+/// The rows of all active contacts that act on one subsystem.
+#[derive(Clone, Copy, Debug)]
+pub struct PartRows<'a, const D: usize> {
+    pub(crate) part: usize,
+    pub(crate) spans: &'a [[Span; 2]],
+    pub(crate) columns: &'a [usize],
+    pub(crate) values: &'a [Vector<D>],
+}
+
+impl<'a, const D: usize> PartRows<'a, D> {
+    /// The rows: (contact, columns within the subsystem, entries); twice for a contact within the subsystem. The entries
+    /// carry the sign of their side.
+    pub fn iter(&self) -> impl Iterator<Item = (usize, &'a [usize], &'a [Vector<D>])> + use<'a, D> {
+        let Self { part, spans, columns, values } = *self;
+        spans.iter().enumerate().flat_map(move |(contact, sides)| {
+            sides.iter().filter(move |side| side.part == part && side.len > 0).map(move |side| {
+                let range = side.start..side.start + side.len;
+                (contact, &columns[range.clone()], &values[range])
+            })
+        })
+    }
+}
+
+/// The Delassus operator of a step while its subsystems add to it: dense blocks by rows.
+#[derive(Debug)]
+pub struct Coupling<'a, const D: usize> {
+    pub(crate) contacts: usize,
+    pub(crate) blocks: &'a mut [Block<D>],
+}
+
+impl<const D: usize> Coupling<'_, D> {
+    /// Adds to the block of contacts (i, j).
+    #[inline]
+    pub fn add(&mut self, i: usize, j: usize, block: &Block<D>) {
+        self.blocks[i * self.contacts + j] += block;
+    }
+
+    /// Adds to column `d` of the block of contacts (i, j).
+    #[inline]
+    pub fn add_column(&mut self, i: usize, j: usize, d: usize, u: &Vector<D>) {
+        let mut column = self.blocks[i * self.contacts + j].column_mut(d);
+        column += u;
+    }
+}

@@ -1,0 +1,6 @@
+//! The integrator's public face.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stderr, unsafe_code)]
+
+mod allocations;
+mod reference;
+mod scenes;

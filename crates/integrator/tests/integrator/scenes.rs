@@ -1,0 +1,47 @@
+//! Models for tests: a block on rigid ground or on a beam.
+
+use nalgebra::Vector2;
+use std::sync::Arc;
+use teeter_beam::Beam;
+use teeter_detect::{Kinematics, PointDetector, PointPair};
+use teeter_integrator::*;
+use teeter_rigid::{MassProperties, Rectangle};
+
+/// What a block of the tests is.
+pub struct BlockSpec {
+    pub width: f64,
+    pub height: f64,
+    pub depth: f64,
+    pub density: f64,
+}
+
+/// The block of the source paper.
+pub const PAPER_BLOCK: BlockSpec = BlockSpec { width: 0.03, height: 0.135, depth: 0.03, density: 2700.0 };
+
+/// A block above a surface.
+pub fn model(
+    spec: &BlockSpec,
+    gravity: Vector2<f64>,
+    law: PairLaw,
+    kinematics: Kinematics,
+    surface: Box<dyn Subsystem<2>>,
+) -> Model<2> {
+    let shape = Rectangle::new(spec.width, spec.height).unwrap();
+    let mass = MassProperties::rectangle(&shape, spec.depth, spec.density).unwrap();
+    let mut parts = ModelBuilder::new();
+    let body = parts.add(Box::new(Blocks::new(vec![Block::new(mass, &shape)], gravity)));
+    let surface = parts.add(surface);
+    let pair = parts.pair(law);
+    let points = shape.corners().to_vec();
+    parts.build(Box::new(PointDetector::new(vec![PointPair { pair, points, body, surface, kinematics }]))).unwrap()
+}
+
+/// A beam at the origin, contact on its axis.
+pub fn beam_body(beam: &Arc<Beam>) -> BeamBody {
+    BeamBody::new(Arc::clone(beam), Vector2::zeros(), BeamSurface::Axis)
+}
+
+/// A workspace with the default solver.
+pub fn workspace(model: &Model<2>) -> Workspace<2> {
+    Workspace::new(model, Box::new(teeter_solvers::Auto::new()), SolverSettings::default())
+}
