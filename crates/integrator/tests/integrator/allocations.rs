@@ -75,7 +75,7 @@ fn a_step_on_a_beam_allocates_nothing() {
         })
         .unwrap(),
     );
-    let surface = |offset| -> Box<dyn Subsystem<2>> {
+    let surface = |offset: Option<f64>| -> Box<dyn Subsystem<2>> {
         match offset {
             None => Box::new(beam_body(&beam)),
             Some(offset) => Box::new(BeamBody::new(
