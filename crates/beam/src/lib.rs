@@ -1,1 +1,92 @@
-//! teeter
+//! Plane Euler–Bernoulli beams by finite elements: assembly, damping, statics, loads, frequencies, and the effective
+//! inverse mass of a time step.
+//!
+//! The model (`docs/theory.md` §1), with w the deflection, positive upwards:
+//!
+//! ```text
+//! EI w'''' + c ẇ + ρA ẅ = f(x, t)        semi-discrete:  M q̈ + C q̇ + K q = P(t) + r(t)
+//! ```
+//!
+//! Cubic Hermite elements of one length, consistent mass, two dofs per node: w in m and w' in rad. The dofs that a
+//! support fixes are left out, the others numbered node by node; every vector has [`Beam::dofs`] entries, and all
+//! matrices a half bandwidth of three. x runs from 0 to the span along the beam's own axis: where the beam stands in the
+//! world is not its business, nor is contact. SI units throughout.
+//!
+//! A [`Beam`] is immutable and can be shared by threads. The calls of a time step (products, energies, shape functions,
+//! [`Factor::solve`], [`Beam::refactor`]) allocate nothing.
+//!
+//! # Example
+//!
+//! One step of the θ scheme (`docs/theory.md` §5, θ = ½) under a moving force:
+//!
+//! ```
+//! use teeter_beam::{Beam, BeamSpec, Damping, Load, MatrixWeights, MovingLoad, Section, Support};
+//!
+//! let mut spec = BeamSpec {
+//!     span: 0.36,
+//!     elements: 20,
+//!     section: Section::rectangle(0.03, 0.0015, 69e9, 2700.0)?,
+//!     supports: [Support::Pinned, Support::Pinned],
+//!     damping: Damping::default(),
+//! };
+//! spec.damping.viscous = spec.viscous_for_ratio(1, 0.01)?;
+//! let beam = Beam::new(spec)?;
+//! let load = MovingLoad::new(-10.0, 2.0, 0.0)?;
+//!
+//! let (h, theta) = (1e-4, 0.5);
+//! let w = beam.factor(MatrixWeights { mass: 1.0, damping: h * theta, stiffness: h * h * theta * theta })?;
+//! let (mut q, mut v) = (vec![0.0; beam.dofs()], vec![0.0; beam.dofs()]);
+//! let mut dv = vec![0.0; beam.dofs()];
+//! for step in 0..900 {
+//!     let t = f64::from(step) * h;
+//!     dv.fill(0.0);
+//!     load.add(&beam, t, &mut dv);
+//!     let p0 = dv.clone();
+//!     dv.fill(0.0);
+//!     load.add(&beam, t + h, &mut dv);
+//!     dv.iter_mut().zip(&p0).for_each(|(p1, p0)| *p1 = theta * *p1 + (1.0 - theta) * p0);
+//!     beam.add_stiffness_product(-1.0, &q, &mut dv);
+//!     beam.add_stiffness_product(-h * theta, &v, &mut dv);
+//!     beam.add_damping_product(-1.0, &v, &mut dv);
+//!     w.solve(&mut dv);
+//!     for i in 0..beam.dofs() {
+//!         let v1 = v[i] + h * dv[i];
+//!         q[i] += h * (theta * v1 + (1.0 - theta) * v[i]);
+//!         v[i] = v1;
+//!     }
+//! }
+//! let mid = beam.deflection_at(&q, 0.18).ok_or("off the beam")?;
+//! assert!(mid.w < -0.015);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Limits
+//!
+//! - Small deflections of a slender beam: no shear, no rotatory inertia, no axial force or stretching. The deflection
+//!   should stay below a few hundredths of the span.
+//! - One section and one element length all along; supports at the ends only.
+//! - The error of the assembled matrices grows with the mesh: cond(K) ~ n⁴. [`Beam::solve_static`] and the products are
+//!   built to lose less than that; [`Factor::solve`] with little mass in its weights is not. See [`MAX_ELEMENTS`].
+//! - A vector of the wrong length is the caller's error: functions that return no `Result` panic on it, and say so.
+
+mod assembly;
+mod band;
+mod beam;
+mod element;
+mod error;
+mod factor;
+mod layout;
+mod load;
+mod modes;
+mod product;
+mod shape;
+mod spec;
+mod statics;
+
+pub use beam::Beam;
+pub use error::{BeamError, FactorError, StaticError};
+pub use factor::{Factor, MatrixWeights};
+pub use layout::Dof;
+pub use load::{DistributedLoad, Load, MovingLoad, NodalLoad};
+pub use shape::{Deflection, ShapeAt};
+pub use spec::{BeamSpec, Damping, MAX_ELEMENTS, Section, Support};

@@ -1,0 +1,170 @@
+//! What can be wrong with a beam, a factorisation, a static solve.
+
+use crate::factor::MatrixWeights;
+use crate::spec::Support;
+
+/// A value that a beam cannot be built from, or cannot be asked.
+///
+/// Every variant names the offending field, its value and the rule that it breaks.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BeamError {
+    /// A real number out of its range, or not finite.
+    #[error("{field} = {value}: must be {rule}")]
+    Value {
+        /// The field or argument, e.g. `section.bending_stiffness`.
+        field: &'static str,
+        /// The value found there.
+        value: f64,
+        /// What it must be, e.g. "finite and > 0".
+        rule: &'static str,
+    },
+    /// A whole number out of its range.
+    #[error("{field} = {value}: must be {rule}")]
+    Count {
+        /// The field or argument.
+        field: &'static str,
+        /// The value found there.
+        value: usize,
+        /// What it must be.
+        rule: &'static str,
+    },
+    /// A slice of the wrong length.
+    #[error("{field}: has {found} entries, must have {expected}")]
+    Length {
+        /// The argument.
+        field: &'static str,
+        /// The length it must have.
+        expected: usize,
+        /// The length it has.
+        found: usize,
+    },
+    /// A nodal shape that moves where the support holds it.
+    #[error("nodal[{node}][{component}] = {value}: must be 0, the end is {support:?}")]
+    BrokenSupport {
+        /// The node, 0 or the last.
+        node: usize,
+        /// 0 for the deflection w, 1 for the slope w'.
+        component: usize,
+        /// The value found there, m or rad.
+        value: f64,
+        /// The support of that end.
+        support: Support,
+    },
+    /// A position that is not on the beam.
+    #[error("x = {x}: must be on the beam, in [0, {span}]")]
+    OutsideSpan {
+        /// The position, m.
+        x: f64,
+        /// The beam's span, m.
+        span: f64,
+    },
+}
+
+/// Why `mass M + damping C + stiffness K` has no Cholesky factor.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FactorError {
+    /// A weight that is not finite.
+    #[error("weights.{field} = {value}: must be finite")]
+    Weight {
+        /// `mass`, `damping` or `stiffness`.
+        field: &'static str,
+        /// The value found there.
+        value: f64,
+    },
+    /// The weighted sum is not positive definite, at least not to rounding.
+    #[error(
+        "{weights:?}: the weighted sum of M, C and K is not positive definite (found at pivot {pivot})"
+    )]
+    NotPositiveDefinite {
+        /// The weights asked for.
+        weights: MatrixWeights,
+        /// The pivot, counted from 1, at which the factorisation stopped.
+        pivot: usize,
+    },
+    /// The factor to be renewed is one of a beam whose matrices have another pattern.
+    #[error(
+        "the factor is one of another beam ({found} dofs, this beam has {expected}): make it with this beam's `factor`"
+    )]
+    OtherBeam {
+        /// Degrees of freedom of this beam.
+        expected: usize,
+        /// Degrees of freedom of the factor.
+        found: usize,
+    },
+}
+
+/// Why a static load has no deflection.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StaticError {
+    /// The supports leave a rigid motion, so no static equilibrium is unique.
+    #[error("supports = {supports:?}: {missing}")]
+    RigidMotion {
+        /// The supports of the left and the right end.
+        supports: [Support; 2],
+        /// The motion that is left, and the support that would take it.
+        missing: &'static str,
+    },
+    /// The load vector has the wrong length.
+    #[error("load: has {found} entries, must have {expected}")]
+    Length {
+        /// Degrees of freedom of the beam.
+        expected: usize,
+        /// The length found.
+        found: usize,
+    },
+    /// A load that is not finite.
+    #[error("load[{index}] = {value}: must be finite")]
+    Load {
+        /// The entry.
+        index: usize,
+        /// Its value, N or N m.
+        value: f64,
+    },
+    /// The iterative refinement did not settle: the mesh is too fine for double precision.
+    #[error(
+        "elements = {elements}: the static solve does not settle in double precision (last correction {correction:e} of the deflection); take a coarser mesh"
+    )]
+    NotSettled {
+        /// Elements of the mesh.
+        elements: usize,
+        /// The last correction, relative to the solution.
+        correction: f64,
+    },
+    /// The stiffness matrix could not be factorised.
+    #[error("stiffness matrix: {0}")]
+    Factor(#[from] FactorError),
+}
+
+/// `Ok` for a finite number that satisfies `rule`, else the error that names it.
+pub(crate) fn check(
+    field: &'static str,
+    value: f64,
+    holds: bool,
+    rule: &'static str,
+) -> Result<(), BeamError> {
+    if value.is_finite() && holds {
+        Ok(())
+    } else {
+        Err(BeamError::Value { field, value, rule })
+    }
+}
+
+/// `Ok` where a slice has one entry per degree of freedom.
+pub(crate) fn check_len(
+    field: &'static str,
+    expected: usize,
+    found: usize,
+) -> Result<(), BeamError> {
+    if found == expected {
+        Ok(())
+    } else {
+        Err(BeamError::Length {
+            field,
+            expected,
+            found,
+        })
+    }
+}

@@ -1,0 +1,368 @@
+//! Consistent nodal loads, and loads that vary in time.
+
+use std::fmt;
+
+use crate::beam::Beam;
+use crate::error::{BeamError, check, check_len};
+use crate::layout::add_to_end;
+use crate::shape::ShapeAt;
+
+/// Four-point Gauss–Legendre on [−1, 1]: exact to degree 7, so for loads up to degree 4 against the cubic N.
+const GAUSS: [(f64, f64); 4] = [
+    (-0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
+    (-0.339_981_043_584_856_26, 0.652_145_154_862_546_1),
+    (0.339_981_043_584_856_26, 0.652_145_154_862_546_1),
+    (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
+];
+
+impl Beam {
+    /// f += N(x)ᵀ force: a force (N, upwards) at x.
+    ///
+    /// # Errors
+    /// [`BeamError::OutsideSpan`], [`BeamError::Value`] for a force that is not finite, [`BeamError::Length`].
+    ///
+    /// ```
+    /// # use teeter_beam::{Beam, BeamSpec, Damping, Section, Support};
+    /// # let beam = Beam::new(BeamSpec { span: 1.0, elements: 2, section: Section::new(1.0, 1.0)?,
+    /// #     supports: [Support::Pinned; 2], damping: Damping::default() })?;
+    /// let mut f = vec![0.0; beam.dofs()];
+    /// beam.add_point_load(0.5, -2.0, &mut f)?;
+    /// assert_eq!(f, [0.0, -2.0, 0.0, 0.0]);
+    /// assert!(beam.add_point_load(1.5, -2.0, &mut f).is_err());
+    /// # Ok::<(), teeter_beam::BeamError>(())
+    /// ```
+    pub fn add_point_load(&self, x: f64, force: f64, f: &mut [f64]) -> Result<(), BeamError> {
+        check("force", force, true, "finite")?;
+        self.shape_for_load(x, f)?.add_load(force, 0.0, f);
+        Ok(())
+    }
+
+    /// f += N'(x)ᵀ couple: a couple (N m, counter-clockwise) at x.
+    ///
+    /// # Errors
+    /// As [`Beam::add_point_load`].
+    ///
+    /// ```
+    /// # use teeter_beam::{Beam, BeamSpec, Damping, Section, Support};
+    /// # let beam = Beam::new(BeamSpec { span: 1.0, elements: 2, section: Section::new(1.0, 1.0)?,
+    /// #     supports: [Support::Pinned; 2], damping: Damping::default() })?;
+    /// let mut f = vec![0.0; beam.dofs()];
+    /// beam.add_point_couple(0.5, 3.0, &mut f)?;
+    /// assert_eq!(f, [0.0, 0.0, 3.0, 0.0]);
+    /// # Ok::<(), teeter_beam::BeamError>(())
+    /// ```
+    pub fn add_point_couple(&self, x: f64, couple: f64, f: &mut [f64]) -> Result<(), BeamError> {
+        check("couple", couple, true, "finite")?;
+        self.shape_for_load(x, f)?.add_load(0.0, couple, f);
+        Ok(())
+    }
+
+    fn shape_for_load(&self, x: f64, f: &[f64]) -> Result<ShapeAt, BeamError> {
+        check_len("f", self.dofs(), f.len())?;
+        self.shape_at(x).ok_or(BeamError::OutsideSpan {
+            x,
+            span: self.spec.span,
+        })
+    }
+
+    /// f += ∫ Nᵀ p dx for a distributed load p(x), N/m, upwards: four Gauss points an element, exact where p is a
+    /// polynomial of degree 4 on each element.
+    ///
+    /// # Errors
+    /// [`BeamError::Length`]; [`BeamError::Value`] for a load that is not finite (f then holds part of the load).
+    ///
+    /// ```
+    /// # use teeter_beam::{Beam, BeamSpec, Damping, Section, Support};
+    /// # let beam = Beam::new(BeamSpec { span: 1.0, elements: 2, section: Section::new(1.0, 1.0)?,
+    /// #     supports: [Support::Free; 2], damping: Damping::default() })?;
+    /// let mut f = vec![0.0; beam.dofs()];
+    /// beam.add_distributed_load(&|x| 2.0 * x, &mut f)?;
+    /// let total: f64 = f.iter().step_by(2).sum();
+    /// assert!((total - 1.0).abs() < 1e-15);
+    /// # Ok::<(), teeter_beam::BeamError>(())
+    /// ```
+    pub fn add_distributed_load(
+        &self,
+        load: &dyn Fn(f64) -> f64,
+        f: &mut [f64],
+    ) -> Result<(), BeamError> {
+        check_len("f", self.dofs(), f.len())?;
+        let half = 0.5 * self.element_length();
+        for element in 0..self.layout.elements {
+            let middle = (2 * element + 1) as f64 * half;
+            for (s, weight) in GAUSS {
+                let x = middle + s * half;
+                let p = load(x);
+                check("load", p, true, "finite")?;
+                self.shape_clamped(x).add_load(p * weight * half, 0.0, f);
+            }
+        }
+        Ok(())
+    }
+
+    /// f += ∫ Nᵀ dx · p for a load p, N/m, upwards, the same all along; in closed form.
+    ///
+    /// # Errors
+    /// [`BeamError::Length`]; [`BeamError::Value`] for a load that is not finite.
+    ///
+    /// ```
+    /// # use teeter_beam::{Beam, BeamSpec, Damping, Section, Support};
+    /// # let beam = Beam::new(BeamSpec { span: 1.0, elements: 2, section: Section::new(1.0, 1.0)?,
+    /// #     supports: [Support::Free; 2], damping: Damping::default() })?;
+    /// let mut f = vec![0.0; beam.dofs()];
+    /// beam.add_uniform_load(4.0, &mut f)?;
+    /// assert_eq!(f[..4], [1.0, 4.0 * 0.25 / 12.0, 2.0, 0.0]);
+    /// # Ok::<(), teeter_beam::BeamError>(())
+    /// ```
+    pub fn add_uniform_load(&self, load: f64, f: &mut [f64]) -> Result<(), BeamError> {
+        check_len("f", self.dofs(), f.len())?;
+        check("load", load, true, "finite")?;
+        self.add_uniform(load, f);
+        Ok(())
+    }
+
+    fn add_uniform(&self, load: f64, f: &mut [f64]) {
+        let l = self.element.length;
+        let (head, inner, tail) = self.layout.split_mut(f);
+        let (force, couple) = (0.5 * load * l, load * l * l / 12.0);
+        add_to_end(head, [force, couple]);
+        add_to_end(tail, [force, -couple]);
+        for pair in inner {
+            pair[0] += 2.0 * force;
+        }
+    }
+}
+
+/// A load P(t) on a beam.
+pub trait Load: Send + Sync {
+    /// f += P(t), one entry per dof of `beam`.
+    ///
+    /// # Panics
+    /// The implementations of this crate do if `f` has not [`Beam::dofs`] entries.
+    fn add(&self, beam: &Beam, t: f64, f: &mut [f64]);
+}
+
+/// A value that depends on time.
+type History = Box<dyn Fn(f64) -> f64 + Send + Sync>;
+
+/// A force at a fixed point, its consistent nodal load.
+pub struct NodalLoad {
+    x: f64,
+    history: History,
+}
+
+impl NodalLoad {
+    /// A force `history(t)` (N, upwards) at x, which must be on `beam`. The history must return finite values.
+    ///
+    /// # Errors
+    /// [`BeamError::OutsideSpan`].
+    ///
+    /// ```
+    /// # use teeter_beam::{Beam, BeamSpec, Damping, Load, NodalLoad, Section, Support};
+    /// # let beam = Beam::new(BeamSpec { span: 1.0, elements: 2, section: Section::new(1.0, 1.0)?,
+    /// #     supports: [Support::Pinned; 2], damping: Damping::default() })?;
+    /// let load = NodalLoad::new(&beam, 0.5, |t| -10.0 * t)?;
+    /// let mut f = vec![0.0; beam.dofs()];
+    /// load.add(&beam, 0.2, &mut f);
+    /// assert_eq!(f, [0.0, -2.0, 0.0, 0.0]);
+    /// # Ok::<(), teeter_beam::BeamError>(())
+    /// ```
+    pub fn new(
+        beam: &Beam,
+        x: f64,
+        history: impl Fn(f64) -> f64 + Send + Sync + 'static,
+    ) -> Result<Self, BeamError> {
+        beam.shape_at(x).ok_or(BeamError::OutsideSpan {
+            x,
+            span: beam.spec.span,
+        })?;
+        Ok(Self {
+            x,
+            history: Box::new(history),
+        })
+    }
+}
+
+impl fmt::Debug for NodalLoad {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("NodalLoad")
+            .field("x", &self.x)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Load for NodalLoad {
+    fn add(&self, beam: &Beam, t: f64, f: &mut [f64]) {
+        if let Some(shape) = beam.shape_at(self.x) {
+            shape.add_load((self.history)(t), 0.0, f);
+        }
+    }
+}
+
+/// A distributed load, the same all along the beam.
+pub struct DistributedLoad {
+    history: History,
+}
+
+impl DistributedLoad {
+    /// A load `history(t)`, N/m, upwards. The history must return finite values.
+    ///
+    /// ```
+    /// # use teeter_beam::{Beam, BeamSpec, Damping, DistributedLoad, Load, Section, Support};
+    /// # let beam = Beam::new(BeamSpec { span: 1.0, elements: 2, section: Section::new(1.0, 1.0)?,
+    /// #     supports: [Support::Free; 2], damping: Damping::default() })?;
+    /// let weight = DistributedLoad::new(|_| -9.81);
+    /// let mut f = vec![0.0; beam.dofs()];
+    /// weight.add(&beam, 0.0, &mut f);
+    /// assert!((f[0] + f[2] + f[4] + 9.81).abs() < 1e-14);
+    /// # Ok::<(), teeter_beam::BeamError>(())
+    /// ```
+    pub fn new(history: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Self {
+        Self {
+            history: Box::new(history),
+        }
+    }
+}
+
+impl fmt::Debug for DistributedLoad {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("DistributedLoad").finish_non_exhaustive()
+    }
+}
+
+impl Load for DistributedLoad {
+    fn add(&self, beam: &Beam, t: f64, f: &mut [f64]) {
+        beam.add_uniform((self.history)(t), f);
+    }
+}
+
+/// A constant force that crosses the beam at constant speed; no load while it is off the beam.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MovingLoad {
+    force: f64,
+    speed: f64,
+    start: f64,
+}
+
+impl MovingLoad {
+    /// `force` (N, upwards) at x = `start` + `speed` t (m, m/s).
+    ///
+    /// # Errors
+    /// [`BeamError::Value`] for a number that is not finite.
+    ///
+    /// ```
+    /// # use teeter_beam::{Beam, BeamSpec, Damping, Load, MovingLoad, Section, Support};
+    /// # let beam = Beam::new(BeamSpec { span: 1.0, elements: 2, section: Section::new(1.0, 1.0)?,
+    /// #     supports: [Support::Pinned; 2], damping: Damping::default() })?;
+    /// let load = MovingLoad::new(-10.0, 2.0, 0.0)?;
+    /// let mut f = vec![0.0; beam.dofs()];
+    /// load.add(&beam, 0.25, &mut f); // at x = 0.5
+    /// load.add(&beam, 0.75, &mut f); // gone
+    /// assert_eq!(f, [0.0, -10.0, 0.0, 0.0]);
+    /// # Ok::<(), teeter_beam::BeamError>(())
+    /// ```
+    pub fn new(force: f64, speed: f64, start: f64) -> Result<Self, BeamError> {
+        check("force", force, true, "finite")?;
+        check("speed", speed, true, "finite")?;
+        check("start", start, true, "finite")?;
+        Ok(Self {
+            force,
+            speed,
+            start,
+        })
+    }
+
+    /// Where it is at time t, m.
+    pub fn position(&self, t: f64) -> f64 {
+        self.start + self.speed * t
+    }
+}
+
+impl Load for MovingLoad {
+    fn add(&self, beam: &Beam, t: f64, f: &mut [f64]) {
+        if let Some(shape) = beam.shape_at(self.position(t)) {
+            shape.add_load(self.force, 0.0, f);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::beam::tests::{all_supports, beam};
+
+    #[test]
+    fn quadrature_is_the_closed_form_for_a_uniform_load_and_exact_to_degree_four() {
+        for supports in all_supports() {
+            let beam = beam(5, supports);
+            let (mut a, mut b) = (vec![0.0; beam.dofs()], vec![0.0; beam.dofs()]);
+            beam.add_uniform_load(3.0, &mut a).unwrap();
+            beam.add_distributed_load(&|_| 3.0, &mut b).unwrap();
+            assert!(
+                a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1e-15),
+                "{supports:?}"
+            );
+        }
+        // Work of x⁴ on the rigid motions of a free beam: 1/5 and 1/6.
+        let beam = beam(3, [crate::Support::Free; 2]);
+        let mut f = vec![0.0; beam.dofs()];
+        beam.add_distributed_load(&|x| x.powi(4), &mut f).unwrap();
+        let work = |q: Vec<f64>| f.iter().zip(&q).map(|(f, q)| f * q).sum::<f64>();
+        let turned: Vec<[f64; 2]> = (0..4).map(|i| [f64::from(i) / 3.0, 1.0]).collect();
+        assert!((work(beam.from_nodes(&[[1.0, 0.0]; 4]).unwrap()) - 0.2).abs() < 1e-15);
+        assert!((work(beam.from_nodes(&turned).unwrap()) - 1.0 / 6.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_couple_is_the_limit_of_two_forces() {
+        let beam = beam(4, [crate::Support::Free; 2]);
+        let (mut couple, mut pair) = (vec![0.0; beam.dofs()], vec![0.0; beam.dofs()]);
+        let arm = 1e-4;
+        beam.add_point_couple(0.3, 2.0, &mut couple).unwrap();
+        beam.add_point_load(0.3 + 0.5 * arm, 2.0 / arm, &mut pair)
+            .unwrap();
+        beam.add_point_load(0.3 - 0.5 * arm, -2.0 / arm, &mut pair)
+            .unwrap();
+        assert!(couple.iter().zip(&pair).all(|(a, b)| (a - b).abs() < 1e-5));
+    }
+
+    #[test]
+    fn bad_loads_are_named() {
+        let beam = beam(4, [crate::Support::Pinned; 2]);
+        let mut f = vec![0.0; beam.dofs()];
+        let named = |error: Result<(), BeamError>, words: &[&str]| {
+            let text = error.unwrap_err().to_string();
+            assert!(words.iter().all(|word| text.contains(word)), "{text}");
+        };
+        named(
+            beam.add_point_load(0.5, f64::NAN, &mut f),
+            &["force", "NaN", "finite"],
+        );
+        named(
+            beam.add_point_load(1.5, 1.0, &mut f),
+            &["x = 1.5", "[0, 1]"],
+        );
+        named(
+            beam.add_point_couple(-0.5, 1.0, &mut f),
+            &["x = -0.5", "[0, 1]"],
+        );
+        named(
+            beam.add_point_load(0.5, 1.0, &mut [0.0]),
+            &["f:", "1 entries", "8"],
+        );
+        named(
+            beam.add_uniform_load(f64::INFINITY, &mut f),
+            &["load", "inf"],
+        );
+        named(
+            beam.add_distributed_load(&|_| f64::NAN, &mut f),
+            &["load", "NaN"],
+        );
+        named(NodalLoad::new(&beam, 2.0, |_| 0.0).map(drop), &["x = 2"]);
+        named(
+            MovingLoad::new(1.0, f64::NAN, 0.0).map(drop),
+            &["speed", "NaN"],
+        );
+        assert!(f.iter().all(|f| *f == 0.0));
+    }
+}

@@ -1,0 +1,190 @@
+//! From dofs to the points of the beam, and back from forces there.
+
+use crate::beam::Beam;
+
+/// The shape functions at a point of the beam, constrained columns left out: `w = Σ n[i] q[columns[i]]` and
+/// `w' = Σ dn[i] q[columns[i]]` over `i < len`.
+///
+/// What lies beyond `len` is 0 (column 0, value 0), so a sum over all four is the same where the beam has any dof.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShapeAt {
+    /// How many of the four places are in use.
+    pub len: usize,
+    /// Indices of free dofs, ascending.
+    pub columns: [usize; 4],
+    /// N: of a deflection dimensionless, of a slope in m.
+    pub n: [f64; 4],
+    /// dN/dx: of a deflection in 1/m, of a slope dimensionless.
+    pub dn: [f64; 4],
+}
+
+impl ShapeAt {
+    /// Deflection and slope (or their rates) for the dofs `q` (or their rates).
+    ///
+    /// # Panics
+    /// If `q` is shorter than the beam's vectors.
+    #[inline]
+    pub fn deflection(&self, q: &[f64]) -> Deflection {
+        let mut d = Deflection { w: 0.0, slope: 0.0 };
+        for i in 0..self.len.min(4) {
+            let value = q[self.columns[i]];
+            d.w += self.n[i] * value;
+            d.slope += self.dn[i] * value;
+        }
+        d
+    }
+
+    /// f += force Nᵀ + couple N'ᵀ: the consistent nodal load of a force (N) and a couple (N m, counter-clockwise) there.
+    ///
+    /// # Panics
+    /// If `f` is shorter than the beam's vectors.
+    #[inline]
+    pub fn add_load(&self, force: f64, couple: f64, f: &mut [f64]) {
+        for i in 0..self.len.min(4) {
+            f[self.columns[i]] += force * self.n[i] + couple * self.dn[i];
+        }
+    }
+}
+
+/// Deflection and slope of a point of the beam.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Deflection {
+    /// w, m, upwards.
+    pub w: f64,
+    /// w', rad.
+    pub slope: f64,
+}
+
+impl Beam {
+    /// The shape functions at x; `None` outside the closed [0, span], and for NaN.
+    ///
+    /// ```
+    /// # use teeter_beam::{Beam, BeamSpec, Damping, Section, Support};
+    /// # let beam = Beam::new(BeamSpec { span: 1.0, elements: 4, section: Section::new(1.0, 1.0)?,
+    /// #     supports: [Support::Pinned; 2], damping: Damping::default() })?;
+    /// let shape = beam.shape_at(0.1).ok_or("off the beam")?;
+    /// assert_eq!(shape.columns[..shape.len], [0, 1, 2]); // w of the pinned node is not a dof
+    /// assert!(beam.shape_at(1.0).is_some() && beam.shape_at(1.0 + 1e-12).is_none());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[inline]
+    pub fn shape_at(&self, x: f64) -> Option<ShapeAt> {
+        (x >= 0.0 && x <= self.spec.span).then(|| self.shape_inside(x))
+    }
+
+    /// The shape functions at the point of [0, span] nearest to x; at 0 for NaN.
+    ///
+    /// ```
+    /// # use teeter_beam::{Beam, BeamSpec, Damping, Dof, Section, Support};
+    /// # let beam = Beam::new(BeamSpec { span: 1.0, elements: 4, section: Section::new(1.0, 1.0)?,
+    /// #     supports: [Support::Pinned; 2], damping: Damping::default() })?;
+    /// assert_eq!(Some(beam.shape_clamped(1.5)), beam.shape_at(1.0));
+    /// # Ok::<(), teeter_beam::BeamError>(())
+    /// ```
+    #[inline]
+    pub fn shape_clamped(&self, x: f64) -> ShapeAt {
+        // f64::max returns the other operand for NaN; `clamp` would keep it.
+        self.shape_inside(x.max(0.0).min(self.spec.span))
+    }
+
+    fn shape_inside(&self, x: f64) -> ShapeAt {
+        let position = x * self.elements_per_length;
+        let element = (position as usize).min(self.layout.elements - 1);
+        // x/l of the far end may round to a little above the last node.
+        let xi = (position - element as f64).min(1.0);
+        let (n, dn) = (self.element.shape(xi), self.element.shape_slope(xi));
+        let first = self.layout.first(element);
+        let (left, right) = (self.layout.free(element), self.layout.free(element + 1));
+        if left + right == 4 {
+            return ShapeAt {
+                len: 4,
+                columns: [first, first + 1, first + 2, first + 3],
+                n,
+                dn,
+            };
+        }
+        let mut shape = ShapeAt {
+            len: 0,
+            columns: [0; 4],
+            n: [0.0; 4],
+            dn: [0.0; 4],
+        };
+        let kept = (2 - left..2).chain(4 - right..4);
+        for (i, local) in kept.enumerate() {
+            shape.columns[i] = first + i;
+            (shape.n[i], shape.dn[i]) = (n[local], dn[local]);
+            shape.len = i + 1;
+        }
+        shape
+    }
+
+    /// Deflection and slope at x; `None` outside [0, span]. For rates give the rates of `q`.
+    ///
+    /// # Panics
+    /// If `q` has not [`Beam::dofs`] entries.
+    ///
+    /// ```
+    /// # use teeter_beam::{Beam, BeamSpec, Damping, Dof, Section, Support};
+    /// # let beam = Beam::new(BeamSpec { span: 1.0, elements: 4, section: Section::new(1.0, 1.0)?,
+    /// #     supports: [Support::Free; 2], damping: Damping::default() })?;
+    /// let rising = beam.from_nodes(&[[0.5, 0.0]; 5])?;
+    /// assert!(beam.deflection_at(&rising, 0.3).is_some_and(|d| (d.w - 0.5).abs() < 1e-15 && d.slope.abs() < 1e-14));
+    /// # Ok::<(), teeter_beam::BeamError>(())
+    /// ```
+    pub fn deflection_at(&self, q: &[f64], x: f64) -> Option<Deflection> {
+        assert_eq!(
+            q.len(),
+            self.dofs(),
+            "a vector must have one entry per degree of freedom"
+        );
+        self.shape_at(x).map(|shape| shape.deflection(q))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::beam::tests::{all_supports, beam};
+    use crate::spec::Support;
+
+    #[test]
+    fn shapes_reproduce_a_cubic_everywhere_for_all_supports() {
+        for supports in all_supports() {
+            let beam = beam(6, supports);
+            // Zero at both ends, and flat at the left one: every support but a clamp at the right.
+            let cubic = |x: f64| [x * x * (1.0 - x), 2.0 * x - 3.0 * x * x];
+            let nodes: Vec<[f64; 2]> = (0..7).map(|i| cubic(f64::from(i) / 6.0)).collect();
+            let Ok(q) = beam.from_nodes(&nodes) else {
+                assert_eq!(
+                    supports[1],
+                    Support::Clamped,
+                    "only the far slope is not zero"
+                );
+                continue;
+            };
+            for k in 0..=60 {
+                let x = f64::from(k) / 60.0;
+                let d = beam.deflection_at(&q, x).unwrap();
+                assert!(
+                    (d.w - cubic(x)[0]).abs() < 1e-15 && (d.slope - cubic(x)[1]).abs() < 1e-14,
+                    "{supports:?} {x}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn shapes_end_at_the_closed_span() {
+        let beam = beam(3, [Support::Free, Support::Pinned]);
+        for x in [-1e-300, 1.0 + f64::EPSILON, f64::NAN, f64::INFINITY] {
+            assert_eq!(beam.shape_at(x), None, "{x}");
+        }
+        assert_eq!(beam.shape_clamped(7.0), beam.shape_at(1.0).unwrap());
+        assert_eq!(
+            beam.shape_clamped(f64::NEG_INFINITY),
+            beam.shape_at(0.0).unwrap()
+        );
+        assert_eq!(beam.shape_clamped(f64::NAN), beam.shape_at(0.0).unwrap());
+        let end = beam.shape_at(1.0).unwrap();
+        assert_eq!((end.len, end.columns[..3].to_vec()), (3, vec![4, 5, 6]));
+    }
+}

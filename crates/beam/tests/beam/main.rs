@@ -1,0 +1,31 @@
+//! The public face of `teeter-beam`: against closed forms, against an independent implementation, and what it allocates.
+
+// The counting allocator of `allocation` implements an unsafe trait; nothing else here is unsafe.
+#![allow(unsafe_code)]
+// A helper of a test is a test.
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr)]
+
+mod allocation;
+mod bad_input;
+mod frequencies;
+mod reference;
+mod statics;
+mod stepping;
+
+use teeter_beam::{Beam, BeamSpec, Damping, Section, Support};
+
+/// The beam of `docs/theory.md` §8, undamped.
+fn spec(elements: usize, supports: [Support; 2]) -> BeamSpec {
+    let section = Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap();
+    BeamSpec {
+        span: 0.36,
+        elements,
+        section,
+        supports,
+        damping: Damping::default(),
+    }
+}
+
+fn beam(elements: usize, supports: [Support; 2]) -> Beam {
+    Beam::new(spec(elements, supports)).unwrap()
+}
