@@ -1,2 +1,52 @@
-//! teeter
-fn main() {}
+//! The program `teeter`.
+
+#![allow(clippy::print_stderr, reason = "a program talks to its user")]
+
+mod run;
+
+use clap::{Parser, Subcommand};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Simulates rigid blocks that rock, slide and bounce on elastic beams and on rigid ground.
+#[derive(Debug, Parser)]
+#[command(name = "teeter", version, arg_required_else_help = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Simulate a scene and write its motion, contacts, energy and summary
+    #[command(after_help = "Examples:\n  teeter run scenarios/free-rocking-on-beam.toml\n  \
+        teeter run scene.toml --out results --set time.step=50us --set contact.feet.friction=0.3")]
+    Run {
+        /// The scene file; `-` reads standard input
+        scene: PathBuf,
+        /// Folder for the results [default: runs/<file stem>]
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Override a key of the scene, such as beam.table.thickness="2 mm"; may be repeated
+        #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value)]
+        set: Vec<(String, String)>,
+        /// Print errors only
+        #[arg(long)]
+        quiet: bool,
+        /// Replace results of an earlier run
+        #[arg(long)]
+        force: bool,
+    },
+}
+
+fn key_value(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().to_owned(), value.trim().to_owned())),
+        _ => Err("write KEY=VALUE, such as time.step=50us".to_owned()),
+    }
+}
+
+fn main() -> ExitCode {
+    let Command::Run { scene, out, set, quiet, force } = Arguments::parse().command;
+    run::run(&run::Options { scene, out, set, quiet, force }).into()
+}

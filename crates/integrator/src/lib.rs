@@ -63,7 +63,7 @@ pub use blocks::{Block, Blocks};
 pub use contacts::{Contact, ContactState};
 pub use ground::Ground;
 pub use ledger::{Ledger, PositiveWork, StepEnergy};
-pub use model::{Model, ModelBuilder, ModelError, PairLaw};
+pub use model::{Model, ModelBuilder, ModelError, PairLaw, Placed};
 pub use monitor::{Crossing, Peak, RockingMonitor};
 pub use moreau_jean::{MoreauJean, MoreauJeanSettings};
 pub use run::{Ended, Observer, ObserverError, Plan, RunError, run};

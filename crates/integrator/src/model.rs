@@ -1,8 +1,9 @@
 //! A scene for the integrator: subsystems, who can touch whom by what law, and a detector. Immutable.
 
-use crate::{Energy, Size, Subsystem, Vector};
+use crate::contacts::ContactSet;
+use crate::{Energy, Size, Subsystem, Vector, WarmStart};
 use std::ops::Range;
-use teeter_detect::{BodyId, ContactDetector, Geometry, Kinematics, SurfacePoint};
+use teeter_detect::{BodyId, Candidate, ContactDetector, Geometry, Kinematics, SurfacePoint};
 
 /// The contact law of a pair of bodies.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -180,6 +181,14 @@ impl<const D: usize> Model<D> {
         for part in &self.parts {
             part.system.retract(&q[part.q.clone()], &dq[part.v.clone()], &mut out[part.q.clone()]);
         }
+    }
+
+    /// The relative velocity u = v_0 − v_1 of a candidate in its frame, with its rows taken at `q`.
+    #[must_use]
+    pub fn relative_velocity(&self, candidate: &Candidate<D>, q: &[f64], v: &[f64]) -> Vector<D> {
+        let mut set = ContactSet::with_capacity(1, self.size.row);
+        set.activate(self, q, candidate, &WarmStart::default());
+        set.velocity(&self.parts, 0, v)
     }
 
     pub(crate) fn parts(&self) -> &[Part<D>] {

@@ -1,1 +1,72 @@
-//! teeter
+//! Scene files of teeter: TOML with units, read against one table of keys.
+//!
+//! [`decode::parse`] takes the text of a scene file and returns a [`document::Document`]: every value by its path, in SI units, with
+//! the defaults filled in, or all that is wrong as [`diagnostic::Diagnostics`] that point into the file. What a scene
+//! may say stands in one place, [`keys::TABLES`]. [`resolve::resolve`] makes it a [`scene::Scene`], and
+//! [`simulation::Simulation`] a model with its start, ready to run in memory.
+//!
+//! ```
+//! use teeter_scenario::simulation::Simulation;
+//!
+//! let text = r#"
+//!     [time]
+//!     end = "0.1 s"
+//!     step = "1 ms"
+//!     [ground]
+//!     [material.wood]
+//!     density = "600 kg/m^3"
+//!     [block.cube]
+//!     material = "wood"
+//!     width = "10 cm"
+//!     height = "10 cm"
+//!     depth = "10 cm"
+//!     position = ["0 m", "6 cm"]
+//!     [contact.floor]
+//!     between = ["cube", "ground"]
+//!     friction = 0.4
+//! "#;
+//! let resolved = teeter_scenario::load(text.as_bytes(), "cube.toml", "cube", &[])?;
+//! let mut simulation = Simulation::new(&resolved.scene)?;
+//! simulation.run(&mut [])?;
+//! assert!((simulation.state.q[1] - 0.05).abs() < 1e-3, "it has fallen on the floor");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod decode;
+pub mod diagnostic;
+pub mod dimension;
+pub mod document;
+mod judge;
+pub mod keys;
+mod placement;
+pub mod quantity;
+pub mod resolve;
+pub mod scene;
+mod sets;
+pub mod simulation;
+pub mod source;
+mod stability;
+mod suggest;
+mod syntax;
+mod table;
+mod tree;
+mod unit_expression;
+pub mod units;
+pub mod value;
+mod wording;
+
+pub use placement::PlacementError;
+
+/// Reads a scene: text, keys, units, references. `file` is its name in messages, `stem` its title if it has none,
+/// `sets` are overrides by path.
+///
+/// # Errors
+/// All that is wrong with it, at once.
+pub fn load(
+    bytes: &[u8],
+    file: &str,
+    stem: &str,
+    sets: &[(String, String)],
+) -> Result<resolve::Resolved, diagnostic::Diagnostics> {
+    resolve::resolve(decode::parse(decode::text(bytes, file)?, file, sets)?, stem)
+}

@@ -1,0 +1,91 @@
+//! The rows of `contacts.csv`: impulses of each contact added up since the last written row.
+
+use crate::number::{push, push_next};
+use std::collections::BTreeMap;
+use teeter_detect::{Candidate, ContactId};
+use teeter_integrator::{Contact, Model, State, Vector};
+use teeter_rigid::Rectangle;
+use teeter_scenario::simulation::Layout;
+
+pub(crate) const HEADER: &str = "t,contact,a,b,point,gap,p_n,p_t,u_n,u_t,state\n";
+
+/// Impulses since the last row, by contact.
+#[derive(Debug, Default)]
+pub(crate) struct Impulses {
+    sums: BTreeMap<ContactId, Vector<2>>,
+    candidates: Vec<Candidate<2>>,
+}
+
+impl Impulses {
+    pub(crate) fn add(&mut self, contacts: &[Contact<2>]) {
+        for contact in contacts {
+            *self.sums.entry(contact.id).or_insert_with(Vector::<2>::zeros) += contact.p;
+        }
+    }
+
+    /// Appends the rows at the state's time, and starts over.
+    pub(crate) fn rows(
+        &mut self,
+        layout: &Layout,
+        model: &Model<2>,
+        state: &State,
+        contacts: &[Contact<2>],
+        out: &mut String,
+    ) {
+        if self.sums.is_empty() {
+            return;
+        }
+        model.detector().detect(&model.placed(&state.q), f64::INFINITY, &mut self.candidates);
+        for (id, p) in &self.sums {
+            let Some(names) = Names::of(layout, *id) else { continue };
+            let now = self.candidates.iter().find(|candidate| candidate.id == *id);
+            let active = contacts.iter().find(|contact| contact.id == *id);
+            push(out, state.t);
+            names.push(out);
+            // A point that has left the surface has no gap to it, and no frame for a velocity.
+            match now {
+                Some(candidate) => push_next(out, candidate.gap),
+                None => out.push(','),
+            }
+            push_next(out, p[0]);
+            push_next(out, p[1]);
+            let u = active
+                .map(|contact| contact.u_after)
+                .or_else(|| now.map(|candidate| model.relative_velocity(candidate, &state.q, &state.v)));
+            match u {
+                Some(u) => {
+                    push_next(out, u[0]);
+                    push_next(out, u[1]);
+                }
+                None => out.push_str(",,"),
+            }
+            out.push(',');
+            out.push_str(active.map_or("open", |contact| contact.state().as_str()));
+            out.push('\n');
+        }
+        self.sums.clear();
+    }
+}
+
+/// The names of a contact in tables.
+pub(crate) struct Names<'a> {
+    pub(crate) contact: &'a str,
+    between: &'a [String; 2],
+    pub(crate) point: &'static str,
+}
+
+impl<'a> Names<'a> {
+    pub(crate) fn of(layout: &'a Layout, id: ContactId) -> Option<Self> {
+        let pair = layout.pairs.get(id.pair() as usize)?;
+        let point = Rectangle::CORNER_NAMES.get(id.point() as usize)?;
+        Some(Self { contact: &pair.name, between: &pair.between, point })
+    }
+
+    /// `,contact,a,b,point`.
+    pub(crate) fn push(&self, out: &mut String) {
+        for name in [self.contact, &self.between[0], &self.between[1], self.point] {
+            out.push(',');
+            out.push_str(name);
+        }
+    }
+}

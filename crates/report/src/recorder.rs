@@ -1,0 +1,245 @@
+//! The observer that writes the tables and keeps what the summary needs.
+
+use crate::contacts::{self, Impulses, Names};
+use crate::number::{push, push_next};
+use crate::{Results, ResultsError, Schedule, WarningLog, impact_threshold};
+use serde::Serialize;
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::ops::ControlFlow;
+use teeter_integrator::{Model, Observer, ObserverError, RockingMonitor, State, StepReport};
+use teeter_scenario::diagnostic::Diagnostic;
+use teeter_scenario::scene::Scene;
+use teeter_scenario::simulation::Layout;
+
+/// An impact as the summary lists it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ImpactRow {
+    /// End of the step, s.
+    pub t: f64,
+    /// The contact's name.
+    pub contact: String,
+    /// The corner.
+    pub point: &'static str,
+    /// Normal impulse, N·s.
+    pub impulse_n: f64,
+    /// Normal velocity before, m/s.
+    pub u_n_before: f64,
+}
+
+/// Impacts that the summary lists; `impacts.csv` has all.
+const LISTED_IMPACTS: usize = 1000;
+
+/// What a run showed, beside its tables.
+#[derive(Debug, Default)]
+pub struct Record {
+    /// The first impacts.
+    pub impacts: Vec<ImpactRow>,
+    /// Zero crossings and peaks, by block.
+    pub rocking: Vec<RockingMonitor>,
+    /// What the run warned of.
+    pub warnings: WarningLog,
+}
+
+/// Writes the tables of a run as it goes.
+pub struct Recorder<'a> {
+    layout: &'a Layout,
+    schedule: Schedule,
+    threshold: f64,
+    trajectory: BufWriter<File>,
+    contacts: BufWriter<File>,
+    impacts: BufWriter<File>,
+    energy: BufWriter<File>,
+    impulses: Impulses,
+    line: String,
+    record: Record,
+    tell: &'a mut dyn FnMut(&str),
+}
+
+impl std::fmt::Debug for Recorder<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Recorder").field("record", &self.record).finish_non_exhaustive()
+    }
+}
+
+impl<'a> Recorder<'a> {
+    /// Opens the tables of a run of `scene`; `tell` hears warnings as they come.
+    ///
+    /// # Errors
+    /// If a table can't be written.
+    pub fn new(
+        results: &Results,
+        scene: &Scene,
+        layout: &'a Layout,
+        tell: &'a mut dyn FnMut(&str),
+    ) -> Result<Self, ResultsError> {
+        Ok(Self {
+            layout,
+            schedule: Schedule::new(scene.every, scene.time.steps, scene.time.step),
+            threshold: impact_threshold(scene.gravity, scene.time.step),
+            trajectory: results.table("trajectory.csv", &trajectory_header(layout))?,
+            contacts: results.table("contacts.csv", contacts::HEADER)?,
+            impacts: results
+                .table("impacts.csv", "t,contact,a,b,point,impulse_n,impulse_t,u_n_before,u_n_after\n")?,
+            energy: results.table(
+                "energy.csv",
+                "t,kinetic,elastic,gravity,external,contact,friction,viscous,numerical,projection,residual\n",
+            )?,
+            impulses: Impulses::default(),
+            line: String::new(),
+            record: Record::default(),
+            tell,
+        })
+    }
+
+    /// Notes what looked wrong before the run.
+    pub fn note(&mut self, findings: &[Diagnostic]) {
+        for finding in findings {
+            // The recorder hears of them late: they have been told.
+            let _ = self.record.warnings.enter("scene", None, || finding.to_string());
+        }
+    }
+
+    /// Completes the tables, and hands over what was seen.
+    ///
+    /// # Errors
+    /// If the last rows can't be written.
+    pub fn finish(mut self) -> Result<Record, io::Error> {
+        for table in [&mut self.trajectory, &mut self.contacts, &mut self.impacts, &mut self.energy] {
+            table.flush()?;
+        }
+        Ok(self.record)
+    }
+
+    fn write_row(&mut self, state: &State) -> io::Result<()> {
+        self.line.clear();
+        push(&mut self.line, state.t);
+        for block in &self.layout.blocks {
+            for x in state.q[block.range.clone()].iter().chain(&state.v[block.range.clone()]) {
+                push_next(&mut self.line, *x);
+            }
+        }
+        for beam in &self.layout.beams {
+            let (q, v) = (&state.q[beam.range.clone()], &state.v[beam.range.clone()]);
+            let middle = beam.beam.shape_clamped(0.5 * beam.beam.spec().span);
+            push_next(&mut self.line, middle.deflection(q).w);
+            push_next(&mut self.line, middle.deflection(v).w);
+            for &x in &beam.probes {
+                push_next(&mut self.line, beam.beam.shape_clamped(x).deflection(q).w);
+            }
+        }
+        self.line.push('\n');
+        self.trajectory.write_all(self.line.as_bytes())?;
+
+        self.line.clear();
+        push(&mut self.line, state.t);
+        let (now, sum) = (&state.ledger.current, &state.ledger.sum);
+        for x in [
+            now.kinetic,
+            now.elastic,
+            now.gravity,
+            sum.external,
+            sum.contact,
+            sum.friction,
+            sum.viscous,
+            sum.numerical,
+            sum.projection,
+            sum.residual,
+        ] {
+            push_next(&mut self.line, x);
+        }
+        self.line.push('\n');
+        self.energy.write_all(self.line.as_bytes())
+    }
+
+    fn write_impacts(&mut self, step: &StepReport<'_, 2>) -> io::Result<()> {
+        for contact in step.contacts {
+            if contact.persisting || contact.u_before[0] >= -self.threshold {
+                continue;
+            }
+            let Some(names) = Names::of(self.layout, contact.id) else { continue };
+            self.line.clear();
+            push(&mut self.line, step.t_end);
+            names.push(&mut self.line);
+            for x in [contact.p[0], contact.p[1], contact.u_before[0], contact.u_after[0]] {
+                push_next(&mut self.line, x);
+            }
+            self.line.push('\n');
+            self.impacts.write_all(self.line.as_bytes())?;
+            if self.record.impacts.len() < LISTED_IMPACTS {
+                self.record.impacts.push(ImpactRow {
+                    t: step.t_end,
+                    contact: names.contact.to_owned(),
+                    point: names.point,
+                    impulse_n: contact.p[0],
+                    u_n_before: contact.u_before[0],
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn warn_of(&mut self, step: &StepReport<'_, 2>) {
+        let Some(outcome) = step.outcome.filter(|outcome| !outcome.converged()) else { return };
+        let told = self.record.warnings.enter("unconverged", Some(step.t_end), || {
+            format!(
+                "the contact problem of the step to t = {} s ({} contacts) was not solved: {} after {} iterations of {}, residual {:.1e}",
+                step.t_end,
+                step.contacts.len(),
+                outcome.status,
+                outcome.iterations,
+                outcome.used,
+                outcome.residual.global
+            )
+        });
+        if let Some(text) = told {
+            (self.tell)(&text);
+        }
+    }
+}
+
+impl Observer<2> for Recorder<'_> {
+    fn start(&mut self, _model: &Model<2>, state: &State) -> Result<(), ObserverError> {
+        self.record.rocking =
+            self.layout.blocks.iter().map(|block| RockingMonitor::new(state.t, state.q[block.range.start + 2])).collect();
+        Ok(self.write_row(state)?)
+    }
+
+    fn observe(
+        &mut self,
+        model: &Model<2>,
+        step: &StepReport<'_, 2>,
+        state: &State,
+    ) -> Result<ControlFlow<()>, ObserverError> {
+        self.impulses.add(step.contacts);
+        self.write_impacts(step)?;
+        self.warn_of(step);
+        for (monitor, block) in self.record.rocking.iter_mut().zip(&self.layout.blocks) {
+            monitor.enter(state.t, state.q[block.range.start + 2]);
+        }
+        if self.schedule.takes(state.step, state.t) {
+            self.write_row(state)?;
+            self.line.clear();
+            self.impulses.rows(self.layout, model, state, step.contacts, &mut self.line);
+            self.contacts.write_all(self.line.as_bytes())?;
+        }
+        Ok(ControlFlow::Continue(()))
+    }
+}
+
+fn trajectory_header(layout: &Layout) -> String {
+    let mut header = String::from("t");
+    for block in &layout.blocks {
+        for column in ["x", "y", "phi", "vx", "vy", "omega"] {
+            header.push_str(&format!(",{}.{column}", block.name));
+        }
+    }
+    for beam in &layout.beams {
+        header.push_str(&format!(",{0}.w_mid,{0}.v_mid", beam.name));
+        for x in &beam.probes {
+            header.push_str(&format!(",{}.w@{x}", beam.name));
+        }
+    }
+    header.push('\n');
+    header
+}

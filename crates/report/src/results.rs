@@ -1,0 +1,91 @@
+//! The folder that a run writes.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// The files of a run.
+pub const FILES: [&str; 6] =
+    ["trajectory.csv", "contacts.csv", "impacts.csv", "energy.csv", "summary.json", "scene.toml"];
+
+/// Why results can't be written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ResultsError {
+    /// There are results already.
+    #[error("{} holds results already; --force replaces them", .0.display())]
+    Exists(PathBuf),
+    /// The name is taken by a file.
+    #[error("{} is a file, not a folder", .0.display())]
+    NotFolder(PathBuf),
+    /// A folder or file that can't be made or written.
+    #[error("can't write {}: {source}", path.display())]
+    Io {
+        /// The folder or file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+}
+
+/// A folder for results, made if missing, free of results of an earlier run.
+#[derive(Debug)]
+pub struct Results {
+    folder: PathBuf,
+}
+
+impl Results {
+    /// Takes a folder for the results of a run. Nothing is replaced without `force`.
+    ///
+    /// # Errors
+    /// If it holds results and `force` is not given, or it can't be made or written.
+    pub fn create(folder: &Path, force: bool) -> Result<Self, ResultsError> {
+        if folder.exists() && !folder.is_dir() {
+            return Err(ResultsError::NotFolder(folder.to_owned()));
+        }
+        let results = Self { folder: folder.to_owned() };
+        let old: Vec<PathBuf> = FILES.iter().map(|file| folder.join(file)).filter(|path| path.exists()).collect();
+        if !old.is_empty() && !force {
+            return Err(ResultsError::Exists(folder.to_owned()));
+        }
+        fs::create_dir_all(folder).map_err(|source| ResultsError::Io { path: folder.to_owned(), source })?;
+        // An old summary beside new tables would look like one run.
+        for path in old {
+            fs::remove_file(&path).map_err(|source| ResultsError::Io { path, source })?;
+        }
+        Ok(results)
+    }
+
+    /// The folder.
+    #[must_use]
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// A new table of the folder, with its header row.
+    pub(crate) fn table(&self, name: &str, header: &str) -> Result<BufWriter<File>, ResultsError> {
+        let path = self.folder.join(name);
+        let open = || -> io::Result<_> {
+            let mut writer = BufWriter::with_capacity(1 << 16, File::create(&path)?);
+            writer.write_all(header.as_bytes())?;
+            writer.flush()?;
+            Ok(writer)
+        };
+        open().map_err(|source| ResultsError::Io { path, source })
+    }
+
+    /// Writes a whole file, under a temporary name until it is complete.
+    ///
+    /// # Errors
+    /// If it can't be written.
+    pub fn write(&self, name: &str, text: &str) -> Result<(), ResultsError> {
+        let path = self.folder.join(name);
+        let temporary = self.folder.join(format!(".{name}.part"));
+        let written = fs::write(&temporary, text).and_then(|()| fs::rename(&temporary, &path));
+        written.map_err(|source| {
+            // The first error is the one to tell; what is left of the file may stay where it can't be removed.
+            let _ = fs::remove_file(&temporary);
+            ResultsError::Io { path, source }
+        })
+    }
+}

@@ -1,0 +1,273 @@
+//! `summary.json`: the numbers of a run.
+
+use crate::{ImpactRow, Record, Warning};
+use serde::Serialize;
+use teeter_integrator::{Ended, State, StepError};
+use teeter_scenario::scene::Scene;
+use teeter_scenario::simulation::Layout;
+
+/// How a run ended, as files say it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum EndedWord {
+    /// All steps were taken.
+    Complete,
+    /// The motion is no longer finite, or a step could not be posed.
+    Diverged,
+    /// A step was not solved, and the scene requires it.
+    Unconverged,
+    /// The user ended it.
+    Interrupted,
+    /// No room for the results.
+    DiskFull,
+}
+
+impl From<&Ended> for EndedWord {
+    fn from(ended: &Ended) -> Self {
+        match ended {
+            Ended::Complete => Self::Complete,
+            Ended::Unconverged => Self::Unconverged,
+            Ended::Interrupted => Self::Interrupted,
+            _ => Self::Diverged,
+        }
+    }
+}
+
+/// What `summary.json` holds.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Summary {
+    /// The scene's title.
+    pub title: String,
+    /// The program's version.
+    pub version: &'static str,
+    /// The time scheme.
+    pub scheme: &'static str,
+    /// Step size, s.
+    pub dt: f64,
+    /// Steps taken.
+    pub steps: u64,
+    /// Time that the steps took, output included, s.
+    pub wall_seconds: f64,
+    /// The same for one step, µs.
+    pub us_per_step: f64,
+    /// The contact solver.
+    pub contact: ContactSummary,
+    /// Deepest penetration at the end of a step, m.
+    pub max_penetration: f64,
+    /// The energy account.
+    pub energy: EnergySummary,
+    /// The first 1000 impacts.
+    pub impacts: Vec<ImpactRow>,
+    /// Zero crossings of the angles.
+    pub crossings: Vec<CrossingRow>,
+    /// Peaks of the angles between crossings.
+    pub peaks: Vec<PeakRow>,
+    /// Until when the motion can be trusted, s; not measured yet.
+    pub horizon: Option<f64>,
+    /// How the run ended.
+    pub ended: EndedWord,
+    /// What was modelled and what was left out.
+    pub model: ModelSummary,
+    /// Warnings, each kind once.
+    pub warnings: Vec<Warning>,
+}
+
+/// How the contact problems were solved.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ContactSummary {
+    /// The method chosen.
+    pub solver: String,
+    /// Largest residual of a step, over all its contacts.
+    pub max_residual: f64,
+    /// Largest residual of a single contact.
+    pub max_contact_residual: f64,
+    /// Most iterations of a step.
+    pub max_iterations: u32,
+    /// Most contacts in a step.
+    pub max_contacts: usize,
+    /// Steps not solved to tolerance.
+    pub unconverged_steps: u64,
+}
+
+/// The energy account.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EnergySummary {
+    /// Largest residual of the identity in a step, relative to `scale`.
+    pub largest_residual: f64,
+    /// Kinetic and potential energy at the start, J.
+    pub initial: f64,
+    /// The same at the end, J.
+    #[serde(rename = "final")]
+    pub last: f64,
+    /// The scene's energy scale: max |T| + |V_elastic| + |ΔV_gravity|, at least m g R; J.
+    pub scale: f64,
+    /// Steps in which contacts gave energy to the bodies.
+    pub positive_contact_work: PositiveWorkSummary,
+    /// Largest U¹_t·p_t of a contact, J: at most 0 but for rounding; 0 without contacts.
+    pub largest_tangential_work: f64,
+}
+
+/// Steps in which contacts gave energy to the bodies.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PositiveWorkSummary {
+    /// How many.
+    pub steps: u64,
+    /// The largest gain, J.
+    pub largest: f64,
+    /// All gains, J.
+    pub sum: f64,
+}
+
+/// A zero crossing of a block's angle.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CrossingRow {
+    /// When, s.
+    pub t: f64,
+    /// The block.
+    pub body: String,
+}
+
+/// A peak of a block's angle.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PeakRow {
+    /// When, s.
+    pub t: f64,
+    /// The block.
+    pub body: String,
+    /// The angle, rad.
+    pub phi: f64,
+}
+
+/// What was modelled and what was left out.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ModelSummary {
+    /// Names of the blocks.
+    pub blocks: Vec<String>,
+    /// The beams.
+    pub beams: Vec<BeamSummary>,
+    /// Whether there is rigid ground.
+    pub ground: bool,
+    /// Names of the contact pairs.
+    pub contacts: Vec<String>,
+    /// Contacts that are possible at all.
+    pub possible_contacts: usize,
+    /// Velocities of blocks and beams together.
+    pub dofs: usize,
+    /// What the model leaves out, and why.
+    pub left_out: Vec<&'static str>,
+}
+
+/// A beam as modelled.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BeamSummary {
+    /// Its name.
+    pub name: String,
+    /// Its elements.
+    pub elements: usize,
+    /// Its degrees of freedom.
+    pub dofs: usize,
+    /// How its matrix is solved.
+    pub backend: &'static str,
+}
+
+impl Summary {
+    /// The summary of a run that took `wall_seconds`.
+    #[must_use]
+    pub fn new(scene: &Scene, layout: &Layout, state: &State, record: &Record, ended: &Ended, wall_seconds: f64) -> Self {
+        let (ledger, tally) = (&state.ledger, &state.tally);
+        let monitored = || layout.blocks.iter().zip(&record.rocking);
+        let mut crossings: Vec<CrossingRow> = monitored()
+            .flat_map(|(block, m)| m.crossings().iter().map(|c| CrossingRow { t: c.t, body: block.name.clone() }))
+            .collect();
+        crossings.sort_by(|a, b| a.t.total_cmp(&b.t));
+        let mut peaks: Vec<PeakRow> = monitored()
+            .flat_map(|(block, m)| m.peaks().iter().map(|p| PeakRow { t: p.t, body: block.name.clone(), phi: p.phi }))
+            .collect();
+        peaks.sort_by(|a, b| a.t.total_cmp(&b.t));
+        let mut warnings = record.warnings.clone();
+        if let Ended::Failed(error) = ended {
+            let t = match error {
+                StepError::Diverged { t } | StepError::Problem { t, .. } => Some(*t),
+                _ => None,
+            };
+            warnings.enter("ended", t, || error.to_string());
+        }
+        let gains = &ledger.positive_contact_work;
+        Self {
+            title: scene.title.clone(),
+            version: env!("CARGO_PKG_VERSION"),
+            scheme: teeter_integrator::MoreauJean::NAME,
+            dt: state.dt,
+            steps: state.step,
+            wall_seconds,
+            us_per_step: if state.step > 0 { wall_seconds * 1e6 / state.step as f64 } else { 0.0 },
+            contact: ContactSummary {
+                solver: scene.solver.method.clone(),
+                max_residual: tally.max_residual,
+                max_contact_residual: tally.max_contact_residual,
+                max_iterations: tally.max_iterations,
+                max_contacts: tally.max_contacts,
+                unconverged_steps: tally.unconverged_steps,
+            },
+            max_penetration: tally.max_penetration,
+            energy: EnergySummary {
+                largest_residual: ledger.relative_residual(),
+                initial: ledger.initial.total(),
+                last: ledger.current.total(),
+                scale: ledger.scale,
+                positive_contact_work: PositiveWorkSummary { steps: gains.steps, largest: gains.largest, sum: gains.sum },
+                // −∞ while there was no contact, which JSON can't hold.
+                largest_tangential_work: if ledger.largest_tangential_work.is_finite() { ledger.largest_tangential_work } else { 0.0 },
+            },
+            impacts: record.impacts.clone(),
+            crossings,
+            peaks,
+            horizon: None,
+            ended: ended.into(),
+            model: ModelSummary::new(scene, layout),
+            warnings: warnings.warnings().to_vec(),
+        }
+    }
+
+    /// As JSON text.
+    ///
+    /// # Errors
+    /// If a number is not finite.
+    pub fn to_json(&self) -> Result<String, serde_json::Error> {
+        Ok(serde_json::to_string_pretty(self)? + "\n")
+    }
+}
+
+impl ModelSummary {
+    fn new(scene: &Scene, layout: &Layout) -> Self {
+        let beams: Vec<BeamSummary> = layout
+            .beams
+            .iter()
+            .map(|place| BeamSummary {
+                name: place.name.clone(),
+                elements: place.beam.spec().elements,
+                dofs: place.beam.dofs(),
+                backend: "sparse Cholesky, factorised once",
+            })
+            .collect();
+        let mut left_out = Vec::new();
+        if beams.is_empty() {
+            left_out.push("no beam: no beam dofs, no factorisation");
+        } else {
+            left_out.push("axial motion of beams: their supports are free along the axis");
+            left_out.push("self-weight of beams: deflections count from the shape under it");
+        }
+        if scene.blocks.len() > 1 {
+            left_out.push("contact between blocks");
+        }
+        Self {
+            blocks: layout.blocks.iter().map(|place| place.name.clone()).collect(),
+            dofs: 3 * layout.blocks.len() + beams.iter().map(|beam| beam.dofs).sum::<usize>(),
+            beams,
+            ground: scene.ground,
+            contacts: layout.pairs.iter().map(|pair| pair.name.clone()).collect(),
+            possible_contacts: 4 * scene.contacts.len(),
+            left_out,
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! Warnings of a run: counted, the first of each kind kept, told as they come but not without end.
+
+use serde::Serialize;
+
+/// A kind of warning that a run met.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Warning {
+    /// Its kind, for programs.
+    pub code: &'static str,
+    /// How often.
+    pub count: u64,
+    /// When first, s; `null` if it isn't about a time.
+    pub first_t: Option<f64>,
+    /// The first one's text.
+    pub text: String,
+}
+
+/// The warnings of a run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WarningLog {
+    warnings: Vec<Warning>,
+}
+
+/// Of one kind, this many are told in full; then each time that the count has grown tenfold.
+const TOLD: u64 = 3;
+
+impl WarningLog {
+    /// Enters a warning, its text made only where it is needed. Returns the text if it is to be told now.
+    pub fn enter(&mut self, code: &'static str, t: Option<f64>, text: impl FnOnce() -> String) -> Option<String> {
+        let Some(known) = self.warnings.iter_mut().find(|warning| warning.code == code) else {
+            let text = text();
+            self.warnings.push(Warning { code, count: 1, first_t: t, text: text.clone() });
+            return Some(text);
+        };
+        known.count += 1;
+        match known.count {
+            count if count <= TOLD => Some(text()),
+            count if count.ilog10() > (count - 1).ilog10() => Some(format!("{} ({count} times so far)", text())),
+            _ => None,
+        }
+    }
+
+    /// The warnings, in the order of their first.
+    #[must_use]
+    pub fn warnings(&self) -> &[Warning] {
+        &self.warnings
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_flood_is_counted_but_told_rarely() {
+        let mut log = WarningLog::default();
+        let told = (0..1000).filter(|k| log.enter("flood", Some(f64::from(*k)), || "wet".into()).is_some()).count();
+        assert_eq!(told, 3 + 3, "the first three, then at 10, 100, 1000");
+        assert_eq!(
+            log.warnings(),
+            [Warning { code: "flood", count: 1000, first_t: Some(0.0), text: "wet".into() }]
+        );
+    }
+}

@@ -1,0 +1,312 @@
+//! From the text of a scene file to a [`Document`]: the whole file against the table of keys, all errors at once.
+
+use crate::diagnostic::{Diagnostic, Diagnostics, printable};
+use crate::document::{Document, Entry};
+use crate::judge::{Judge, MOST_FINDINGS, name_rule};
+use crate::keys::{self, Key, Occurrence, Presence, Table};
+use crate::sets::setting;
+use crate::source::{Origin, Source};
+use crate::tree::{Branch, Node, Raw, Twig, lenient_value};
+use crate::wording::expected;
+use crate::{sets, suggest, syntax};
+
+/// Reads a scene. `file` is its name for messages; each of `sets` is a key's path and a value that take precedence over the file.
+///
+/// The text may start with a byte order mark and may have Windows line ends. The value of a setting is taken as
+/// TOML if it is TOML, else as a text: `("time.step", "50 us")` needs no inner quotes.
+///
+/// ```
+/// use teeter_scenario::decode;
+/// let text = "
+/// [time]
+/// end = '0.5 s'
+/// step = '100 us'
+/// ";
+/// let sets = [("time.step".to_owned(), "50 us".to_owned())];
+/// let scene = decode::parse(text, "scene.toml", &sets).unwrap();
+/// assert_eq!(scene.quantity("time.step"), Some(5e-5));
+/// assert_eq!(scene.number("time.theta"), Some(0.5)); // the default
+///
+/// let errors = decode::parse("[time]\nend = '0.5 kg'", "scene.toml", &[]).unwrap_err();
+/// assert_eq!(errors.0.len(), 2); // a wrong unit and a missing step
+/// ```
+///
+/// # Errors
+/// All that is wrong in the file and the settings, in the order of the file (of a hopeless file, the first hundreds).
+pub fn parse(source: &str, file: &str, sets: &[(String, String)]) -> Result<Document, Diagnostics> {
+    let source = Source::new(file, source);
+    let syntax::Parsed { mut root, errors, bad_lines, complete } = syntax::read(&source);
+    let mut found = Diagnostics(errors);
+    found.0.extend(sets::apply(&mut root, sets, &source));
+    if root.twigs.is_empty() && found.0.is_empty() {
+        let empty = Diagnostic::error(file, "the file holds no scene: it is empty")
+            .with_remedy("a scene has at least a table [time] with end and step");
+        return Err(empty.into());
+    }
+    let mut walk = Walk {
+        judge: Judge { source: &source, findings: Vec::new() },
+        missing: Vec::new(),
+        document: Document::new(source.clone()),
+    };
+    walk.root(&root);
+    let Walk { judge, missing, document } = walk;
+    // What was recovered from a broken line has its message already; and what seems to be missing may stand in it.
+    found.0.extend(judge.findings.into_iter().filter(|finding| {
+        let place = finding.span.as_ref().map(|span| source.line(span.start));
+        place.is_none_or(|line| !bad_lines.contains(&line))
+    }));
+    if complete {
+        found.0.extend(missing);
+    }
+    found.0.sort_by_key(|finding| {
+        // Those about settings in the order of the settings; the rest is put in order below.
+        let text = finding.set.as_ref()?;
+        sets.iter().position(|(path, value)| *text == setting(path, value))
+    });
+    found.sort();
+    if found.has_errors() { Err(found) } else { Ok(document) }
+}
+
+/// The text of a file's bytes.
+///
+/// # Errors
+/// The bytes are not UTF-8; the message names the first wrong one.
+pub fn text<'a>(bytes: &'a [u8], file: &str) -> Result<&'a str, Diagnostics> {
+    std::str::from_utf8(bytes).map_err(|error| {
+        let rule = format!("not a text file in UTF-8: byte {} cannot be read", error.valid_up_to());
+        Diagnostic::error(file, rule).into()
+    })
+}
+
+/// The walk over the tree beside the table of keys.
+struct Walk<'a> {
+    judge: Judge<'a>,
+    /// Kept apart: not to be told where a syntax error may have swallowed the key.
+    missing: Vec<Diagnostic>,
+    document: Document,
+}
+
+/// A path one step longer; quoted where the key is no bare one.
+fn join(path: &str, key: &str) -> String {
+    let bare = !key.is_empty() && key.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-');
+    match (path, bare) {
+        ("", true) => key.to_owned(),
+        ("", false) => format!("{key:?}"),
+        (path, true) => format!("{path}.{key}"),
+        (path, false) => format!("{path}.{key:?}"),
+    }
+}
+
+impl Walk<'_> {
+    fn is_full(&self) -> bool {
+        self.judge.is_full() || self.missing.len() >= MOST_FINDINGS
+    }
+
+    fn root(&mut self, branch: &Branch) {
+        let Some(root) = keys::root() else {
+            return;
+        };
+        self.table(root, "", branch, &Origin::Default);
+        for table in root.children() {
+            if table.occurrence == Occurrence::Always && branch.get(table.pattern).is_none() {
+                self.table(table, table.pattern, &Branch::default(), &Origin::Default);
+            }
+        }
+        self.unique_names(branch);
+    }
+
+    /// Names are unique over all bodies, and `ground` is taken.
+    fn unique_names(&mut self, root: &Branch) {
+        let mut seen: Vec<(&str, String, &Twig)> = Vec::new();
+        for group in ["beam", "block"] {
+            let Some(Raw::Branch(branch)) = root.get(group).map(|node| &node.raw) else {
+                continue;
+            };
+            for twig in &branch.twigs {
+                seen.push((&twig.key, format!("{group}.{}", twig.key), twig));
+            }
+        }
+        seen.sort_by(|a, b| a.0.cmp(b.0));
+        for twins in seen.windows(2) {
+            if let [(name, first, twig_1), (other, second, twig_2)] = twins
+                && name == other
+            {
+                if self.is_full() {
+                    return;
+                }
+                let line = match &twig_1.key_origin {
+                    Origin::File(span) => {
+                        format!(" on line {}", self.judge.source.position(span.start).0)
+                    }
+                    _ => String::new(),
+                };
+                let rule = format!("the name `{name}` is taken by {first}{line}");
+                let found = self.judge.source.error(&twig_2.key_origin, second, rule);
+                self.judge.push(found).remedy = Some("names are unique over beams and blocks".to_owned());
+            }
+        }
+        for (_, path, twig) in seen.iter().filter(|(name, ..)| *name == "ground") {
+            let rule = "the name `ground` is taken by the ground";
+            let found = self.judge.source.error(&twig.key_origin, path, rule);
+            self.judge.push(found);
+        }
+    }
+
+    fn table(&mut self, table: &'static Table, path: &str, branch: &Branch, origin: &Origin) {
+        if !path.is_empty() {
+            self.document.add_table(path, origin.clone());
+        }
+        for twig in &branch.twigs {
+            if self.is_full() {
+                return;
+            }
+            let inner = join(path, &twig.key);
+            if let Some(key) = table.key(&twig.key) {
+                self.key(table, key, &inner, twig);
+            } else if let Some(child) = table.children().find(|child| child.name() == twig.key) {
+                if child.occurrence == Occurrence::Named {
+                    self.group(child, &inner, &twig.node);
+                } else if let Some(branch) = self.branch_of(child, &inner, &twig.node) {
+                    self.table(child, &inner, branch, &twig.node.origin);
+                }
+            } else {
+                self.unknown(table, path, &inner, twig);
+            }
+        }
+        self.absent(table, path, branch, origin);
+    }
+
+    fn key(&mut self, table: &Table, key: &'static Key, path: &str, twig: &Twig) {
+        if key.presence == Presence::NotYet {
+            let found = self.judge.blame(&twig.node, path, "known, but not built in yet");
+            let allowed = table.allowed();
+            if !allowed.is_empty() {
+                found.remedy = Some(format!("built in: {}", allowed.join(", ")));
+            }
+            return;
+        }
+        if let Some(value) = self.judge.value(key, path, &twig.node) {
+            let entry = Entry { key, value, origin: twig.node.origin.clone(), written: twig.node.written.clone() };
+            self.document.add(path, entry);
+        }
+    }
+
+    /// The tables of a group, one for each name.
+    fn group(&mut self, table: &'static Table, path: &str, node: &Node) {
+        let Some(group) = self.branch_of(table, path, node) else {
+            return;
+        };
+        for twig in &group.twigs {
+            if self.is_full() {
+                return;
+            }
+            let inner = join(path, &twig.key);
+            if let Raw::Branch(branch) = &twig.node.raw {
+                if let Some(rule) = name_rule(&twig.key) {
+                    let found = self.judge.source.error(&twig.key_origin, &inner, rule);
+                    self.judge.push(found);
+                }
+                self.document.add_name(table.name(), &twig.key);
+                self.table(table, &inner, branch, &twig.node.origin);
+            } else {
+                // `[beam]` with the keys right below it: say so once.
+                let rule = format!("each {} has a name and a table of its own", table.name());
+                self.judge.blame(&twig.node, &inner, rule).remedy =
+                    Some(format!("write its keys under [{}.NAME]", table.name()));
+                return;
+            }
+        }
+    }
+
+    fn branch_of<'n>(&mut self, table: &Table, path: &str, node: &'n Node) -> Option<&'n Branch> {
+        if let Raw::Branch(branch) = &node.raw {
+            return Some(branch);
+        }
+        let rule = format!("a table is expected, got {}", node.raw.what());
+        let remedy = match table.occurrence {
+            Occurrence::Named => format!("write its keys under [{}.NAME]", table.name()),
+            Occurrence::Inline => format!("write {} = {{ … }} with {}", table.name(), table.allowed().join(", ")),
+            _ => format!("write its keys under [{path}]"),
+        };
+        self.judge.blame(node, path, rule).remedy = Some(remedy);
+        None
+    }
+
+    fn unknown(&mut self, table: &Table, path: &str, inner: &str, twig: &Twig) {
+        let allowed = table.allowed();
+        let mut found = self.judge.source.error(&twig.key_origin, inner, "unknown key");
+        found.did_you_mean = suggest::nearest(&twig.key, allowed.iter().copied()).map(str::to_owned);
+        let place = match path {
+            "" => "at the top of a scene".to_owned(),
+            path => format!("in [{}]", printable(path)),
+        };
+        let mut remedy = format!("the keys allowed {place} are {}", allowed.join(", "));
+        let elsewhere = keys::TABLES.iter().find(|other| other.key(&twig.key).is_some());
+        if let Some(other) = elsewhere
+            && found.did_you_mean.is_none()
+        {
+            let name = match other.pattern {
+                "" => "the top of the scene".to_owned(),
+                pattern => format!("[{}]", pattern.replace('*', "NAME")),
+            };
+            remedy.push_str(&format!("; {} is a key of {name}", twig.key));
+        }
+        found.remedy = Some(remedy);
+        self.judge.push(found);
+    }
+
+    /// Defaults of the keys that are not there, and messages for those that must be.
+    fn absent(&mut self, table: &'static Table, path: &str, branch: &Branch, origin: &Origin) {
+        let mut required = Vec::new();
+        for key in table.keys.iter().filter(|key| branch.get(key.name).is_none()) {
+            match key.presence {
+                Presence::Required => required.push(key),
+                Presence::Default(text) => self.default(key, text, path),
+                Presence::DefaultWith { sibling, value } if branch.get(sibling).is_some() => {
+                    self.default(key, value, path);
+                }
+                _ => {}
+            }
+        }
+        if required.is_empty() {
+            return;
+        }
+        let names: Vec<&str> = required.iter().map(|key| key.name).collect();
+        let names = names.join(", ");
+        match origin {
+            Origin::Default => {
+                let rule = format!("the table [{path}] is missing");
+                self.missing
+                    .push(self.judge.source.error(origin, path, rule).with_remedy(format!("it must give {names}")));
+            }
+            // Made by a --set, and not whole: most likely a slip in the name.
+            Origin::Set { .. } if table.occurrence == Occurrence::Named => {
+                let rule = format!("not in the file, and as a new table it lacks {names}");
+                let name = path.rsplit('.').next().unwrap_or(path);
+                let known = self.document.names(table.name());
+                let near = suggest::nearest(name, known);
+                let near = near.map(|near| format!("{}.{near}", table.name()));
+                self.missing.push(self.judge.source.error(origin, path, rule).with_suggestion(near));
+            }
+            _ => {
+                for key in required {
+                    let found = self.judge.source.error(origin, &join(path, key.name), "missing").with_remedy(format!(
+                        "{} ({})",
+                        expected(key),
+                        key.doc.trim_end_matches('.')
+                    ));
+                    self.missing.push(found);
+                }
+            }
+        }
+    }
+
+    fn default(&mut self, key: &'static Key, text: &str, path: &str) {
+        let path = join(path, key.name);
+        let node = lenient_value(text, Origin::Default);
+        if let Some(value) = self.judge.value(key, &path, &node) {
+            let entry = Entry { key, value, origin: Origin::Default, written: node.written };
+            self.document.add(&path, entry);
+        }
+    }
+}

@@ -1,0 +1,215 @@
+//! What is wrong with a scene, where, and what would be right.
+
+use std::fmt;
+use std::ops::Range;
+
+/// How bad it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Severity {
+    /// The scene cannot be run.
+    Error,
+    /// The scene can be run, but probably does not mean what was meant.
+    Warning,
+}
+
+/// One finding about a scene.
+///
+/// Printed as
+/// ```text
+/// error: scene.toml:12:13: beam.table.thickness = "-0.0015 m": must be greater than 0 m
+///   help: a length with its unit, such as "1.5 mm"
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// Error or warning.
+    pub severity: Severity,
+    /// The file's name as it was given.
+    pub file: String,
+    /// Line and column (both from 1; the column in characters), where the finding has a place in the file.
+    pub position: Option<(usize, usize)>,
+    /// Bytes of the source that it is about.
+    pub span: Option<Range<usize>>,
+    /// `KEY=VALUE`, where it is about a `--set` and not about the file.
+    pub set: Option<String>,
+    /// Full path of the key, such as `beam.table.thickness`; empty where the finding is about no key.
+    pub path: String,
+    /// The value as written, shortened if long.
+    pub written: Option<String>,
+    /// The rule that is broken.
+    pub rule: String,
+    /// What would be right.
+    pub remedy: Option<String>,
+    /// The word that was probably meant.
+    pub did_you_mean: Option<String>,
+}
+
+impl Diagnostic {
+    /// An error about a file as a whole.
+    pub fn error(file: &str, rule: impl Into<String>) -> Self {
+        Self {
+            severity: Severity::Error,
+            file: file.to_owned(),
+            position: None,
+            span: None,
+            set: None,
+            path: String::new(),
+            written: None,
+            rule: rule.into(),
+            remedy: None,
+            did_you_mean: None,
+        }
+    }
+
+    /// The same finding with a remedy.
+    #[must_use]
+    pub fn with_remedy(mut self, remedy: impl Into<String>) -> Self {
+        self.remedy = Some(remedy.into());
+        self
+    }
+
+    /// The same finding with a suggestion.
+    #[must_use]
+    pub fn with_suggestion(mut self, word: Option<impl Into<String>>) -> Self {
+        self.did_you_mean = word.map(Into::into);
+        self
+    }
+
+    /// The same finding as a warning.
+    #[must_use]
+    pub fn as_warning(mut self) -> Self {
+        self.severity = Severity::Warning;
+        self
+    }
+}
+
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self.severity {
+            Severity::Error => "error: ",
+            Severity::Warning => "warning: ",
+        })?;
+        match (&self.set, self.position) {
+            (Some(set), _) => write!(f, "--set {}: ", printable(set))?,
+            (None, Some((line, column))) => write!(f, "{}:{line}:{column}: ", self.file)?,
+            (None, None) => write!(f, "{}: ", self.file)?,
+        }
+        if !self.path.is_empty() {
+            f.write_str(&printable(&self.path))?;
+            if let Some(written) = &self.written {
+                write!(f, " = {}", printable(written))?;
+            }
+            f.write_str(": ")?;
+        }
+        f.write_str(&escaped(&self.rule))?;
+        if let Some(word) = &self.did_you_mean {
+            write!(f, "\n  help: did you mean `{}`?", escaped(word))?;
+        }
+        if let Some(remedy) = &self.remedy {
+            write!(f, "\n  help: {}", escaped(remedy))?;
+        }
+        Ok(())
+    }
+}
+
+/// All findings about a scene, in the order of the file, those about `--set` last.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Diagnostics(pub Vec<Diagnostic>);
+
+/// Findings that are printed; the rest is counted.
+const MOST_PRINTED: usize = 50;
+
+impl Diagnostics {
+    /// Sorts by place: findings about the whole file, then by position, then those about `--set` in the order given.
+    pub fn sort(&mut self) {
+        self.0.sort_by_key(|found| (found.set.is_some(), found.span.as_ref().map(|s| s.start)));
+    }
+
+    /// Whether one of them is an error.
+    pub fn has_errors(&self) -> bool {
+        self.0.iter().any(|found| found.severity == Severity::Error)
+    }
+
+    /// The findings, one after the other.
+    pub fn iter(&self) -> std::slice::Iter<'_, Diagnostic> {
+        self.0.iter()
+    }
+}
+
+impl From<Diagnostic> for Diagnostics {
+    fn from(found: Diagnostic) -> Self {
+        Self(vec![found])
+    }
+}
+
+impl fmt::Display for Diagnostics {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, found) in self.0.iter().take(MOST_PRINTED).enumerate() {
+            if index > 0 {
+                f.write_str("\n")?;
+            }
+            write!(f, "{found}")?;
+        }
+        match self.0.len().saturating_sub(MOST_PRINTED) {
+            0 => Ok(()),
+            more => write!(f, "\n… and {more} more"),
+        }
+    }
+}
+
+impl std::error::Error for Diagnostics {}
+
+/// Longest piece of the user's text that a message repeats, in characters.
+const LONGEST_PIECE: usize = 80;
+
+/// A piece of the user's text made fit for a terminal: shortened, control characters escaped.
+pub(crate) fn printable(text: &str) -> String {
+    match text.char_indices().nth(LONGEST_PIECE) {
+        Some((end, _)) => escaped(text.get(..end).unwrap_or_default()) + "…",
+        None => escaped(text),
+    }
+}
+
+/// Control characters made visible, so that a file cannot steer the terminal.
+fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        if c.is_control() {
+            out.extend(c.escape_default());
+        } else {
+            out.push(c);
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Diagnostic, Diagnostics, printable};
+
+    #[test]
+    fn a_diagnostic_prints_place_path_value_rule_and_help() {
+        let mut found = Diagnostic::error("scene.toml", "must be greater than 0 m")
+            .with_remedy("a length with its unit")
+            .with_suggestion(Some("thickness"));
+        found.position = Some((12, 13));
+        found.path = "beam.table.thickness".to_owned();
+        found.written = Some("\"-0.0015 m\"".to_owned());
+        assert_eq!(
+            found.to_string(),
+            "error: scene.toml:12:13: beam.table.thickness = \"-0.0015 m\": must be greater than 0 m\n  \
+             help: did you mean `thickness`?\n  help: a length with its unit"
+        );
+        found.set = Some("beam.table.thickness=-0.0015 m".to_owned());
+        let text = found.as_warning().to_string();
+        assert!(text.starts_with("warning: --set beam.table.thickness=-0.0015 m: beam"));
+    }
+
+    #[test]
+    fn long_lists_are_cut_and_control_characters_escaped() {
+        let many = Diagnostics(vec![Diagnostic::error("f", "x"); 52]);
+        assert!(many.to_string().ends_with("\n… and 2 more"));
+        assert_eq!(printable("a\u{1b}[0m"), "a\\u{1b}[0m");
+        assert_eq!(printable(&"é".repeat(1000)).chars().count(), 81);
+    }
+}

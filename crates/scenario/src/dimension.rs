@@ -1,0 +1,165 @@
+//! Physical dimensions: exponents over kilogram, metre, second, radian and kelvin, and how people call them.
+
+use std::fmt;
+
+/// The dimension of a quantity, as exponents of the base units kg, m, s, rad, K.
+///
+/// The radian is kept apart so that an angle can be told from a bare number, but it counts as dimensionless wherever
+/// no angle is wanted: see [`Dimension::accepts`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Dimension {
+    /// Exponent of the kilogram.
+    pub kg: i8,
+    /// Exponent of the metre.
+    pub m: i8,
+    /// Exponent of the second.
+    pub s: i8,
+    /// Exponent of the radian.
+    pub rad: i8,
+    /// Exponent of the kelvin.
+    pub kelvin: i8,
+}
+
+impl Dimension {
+    /// A dimension from its exponents of kg, m, s, rad, K.
+    pub const fn new(kg: i8, m: i8, s: i8, rad: i8, kelvin: i8) -> Self {
+        Self { kg, m, s, rad, kelvin }
+    }
+
+    /// A pure number.
+    pub const NONE: Self = Self::new(0, 0, 0, 0, 0);
+    /// Length, m.
+    pub const LENGTH: Self = Self::new(0, 1, 0, 0, 0);
+    /// Mass, kg.
+    pub const MASS: Self = Self::new(1, 0, 0, 0, 0);
+    /// Time, s.
+    pub const TIME: Self = Self::new(0, 0, 1, 0, 0);
+    /// Angle, rad.
+    pub const ANGLE: Self = Self::new(0, 0, 0, 1, 0);
+    /// Temperature, K.
+    pub const TEMPERATURE: Self = Self::new(0, 0, 0, 0, 1);
+    /// Velocity, m/s.
+    pub const VELOCITY: Self = Self::new(0, 1, -1, 0, 0);
+    /// Acceleration, m/s².
+    pub const ACCELERATION: Self = Self::new(0, 1, -2, 0, 0);
+    /// Angular velocity, rad/s.
+    pub const ANGULAR_VELOCITY: Self = Self::new(0, 0, -1, 1, 0);
+    /// Rate or frequency, 1/s. A hertz is 1/s here; it is not multiplied by 2π.
+    pub const RATE: Self = Self::new(0, 0, -1, 0, 0);
+    /// Density, kg/m³.
+    pub const DENSITY: Self = Self::new(1, -3, 0, 0, 0);
+    /// Pressure or elastic modulus, Pa.
+    pub const PRESSURE: Self = Self::new(1, -1, -2, 0, 0);
+    /// Force, N.
+    pub const FORCE: Self = Self::new(1, 1, -2, 0, 0);
+    /// Energy or moment, J = N m.
+    pub const ENERGY: Self = Self::new(1, 2, -2, 0, 0);
+    /// Power, W.
+    pub const POWER: Self = Self::new(1, 2, -3, 0, 0);
+    /// Impulse, N s.
+    pub const IMPULSE: Self = Self::new(1, 1, -1, 0, 0);
+    /// Viscous damping per length of a beam, N s/m².
+    pub const DAMPING_PER_LENGTH: Self = Self::new(1, -1, -1, 0, 0);
+    /// Stiffness, N/m.
+    pub const STIFFNESS: Self = Self::new(1, 0, -2, 0, 0);
+    /// Viscous damping, N s/m.
+    pub const DAMPING: Self = Self::new(1, 0, -1, 0, 0);
+
+    /// Whether a quantity of dimension `got` may stand where `self` is wanted. Where an angle is wanted the radian must
+    /// be there; elsewhere it counts as dimensionless (1/s accepts rad/s, N m accepts N m/rad).
+    ///
+    /// ```
+    /// use teeter_scenario::dimension::Dimension;
+    /// assert!(Dimension::RATE.accepts(Dimension::ANGULAR_VELOCITY));
+    /// assert!(!Dimension::ANGULAR_VELOCITY.accepts(Dimension::RATE));
+    /// ```
+    pub const fn accepts(self, got: Self) -> bool {
+        self.kg == got.kg
+            && self.m == got.m
+            && self.s == got.s
+            && self.kelvin == got.kelvin
+            && (self.rad == 0 || self.rad == got.rad)
+    }
+
+    /// What people call it, with its article: "a length", or "a quantity" where it has no name of its own.
+    pub fn name(self) -> &'static str {
+        NAMED.iter().find(|named| named.dimension == self).map_or("a quantity", |named| named.name)
+    }
+
+    /// Its SI unit in the syntax of scene files: `m`, `Pa`, `N s/m^2`; made of base units where it has no usual one, and
+    /// empty for a pure number.
+    ///
+    /// ```
+    /// use teeter_scenario::dimension::Dimension;
+    /// assert_eq!(Dimension::DENSITY.unit(), "kg/m^3");
+    /// assert_eq!(Dimension::new(1, 2, 0, 0, -1).unit(), "kg m^2/K");
+    /// ```
+    pub fn unit(self) -> String {
+        if let Some(named) = NAMED.iter().find(|named| named.dimension == self) {
+            return named.unit.to_owned();
+        }
+        let base = [("kg", self.kg), ("m", self.m), ("s", self.s), ("rad", self.rad), ("K", self.kelvin)];
+        let power = |symbol: &str, exponent: i32| match exponent {
+            1 => symbol.to_owned(),
+            _ => format!("{symbol}^{exponent}"),
+        };
+        let above: Vec<String> = base
+            .iter()
+            .filter(|(_, exponent)| *exponent > 0)
+            .map(|(symbol, exponent)| power(symbol, i32::from(*exponent)))
+            .collect();
+        let mut text = if above.is_empty() { "1".to_owned() } else { above.join(" ") };
+        for (symbol, exponent) in base.iter().filter(|(_, exponent)| *exponent < 0) {
+            text.push('/');
+            text.push_str(&power(symbol, -i32::from(*exponent)));
+        }
+        text
+    }
+
+    /// The units most used for it, the SI one first; for messages.
+    pub fn usual_units(self) -> &'static [&'static str] {
+        NAMED.iter().find(|named| named.dimension == self).map_or(&[], |named| named.usual)
+    }
+}
+
+/// "a length (m)".
+impl fmt::Display for Dimension {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if *self == Self::NONE { f.write_str("a pure number") } else { write!(f, "{} ({})", self.name(), self.unit()) }
+    }
+}
+
+struct Named {
+    dimension: Dimension,
+    name: &'static str,
+    unit: &'static str,
+    usual: &'static [&'static str],
+}
+
+const fn named(dimension: Dimension, name: &'static str, unit: &'static str, usual: &'static [&'static str]) -> Named {
+    Named { dimension, name, unit, usual }
+}
+
+static NAMED: &[Named] = &[
+    named(Dimension::NONE, "a pure number", "", &[]),
+    named(Dimension::LENGTH, "a length", "m", &["m", "cm", "mm", "um", "km"]),
+    named(Dimension::MASS, "a mass", "kg", &["kg", "g", "t"]),
+    named(Dimension::TIME, "a time", "s", &["s", "ms", "us", "min", "h"]),
+    named(Dimension::ANGLE, "an angle", "rad", &["rad", "deg", "mrad"]),
+    named(Dimension::TEMPERATURE, "a temperature", "K", &["K"]),
+    named(Dimension::VELOCITY, "a velocity", "m/s", &["m/s", "mm/s", "km/h"]),
+    named(Dimension::ACCELERATION, "an acceleration", "m/s^2", &["m/s^2", "mm/s^2"]),
+    named(Dimension::ANGULAR_VELOCITY, "an angular velocity", "rad/s", &["rad/s", "deg/s", "rpm"]),
+    named(Dimension::RATE, "a rate", "1/s", &["1/s", "Hz", "kHz"]),
+    named(Dimension::DENSITY, "a density", "kg/m^3", &["kg/m^3", "g/cm^3", "t/m^3"]),
+    named(Dimension::PRESSURE, "a pressure or elastic modulus", "Pa", &["Pa", "kPa", "MPa", "GPa", "N/mm^2"]),
+    named(Dimension::FORCE, "a force", "N", &["N", "kN", "mN"]),
+    named(Dimension::ENERGY, "an energy or moment", "J", &["J", "N m", "kJ"]),
+    named(Dimension::POWER, "a power", "W", &["W", "kW"]),
+    named(Dimension::IMPULSE, "an impulse", "N s", &["N s"]),
+    named(Dimension::DAMPING_PER_LENGTH, "a viscous damping per length", "N s/m^2", &["N s/m^2", "kg/m/s"]),
+    named(Dimension::STIFFNESS, "a stiffness", "N/m", &["N/m", "kN/m", "N/mm"]),
+    named(Dimension::DAMPING, "a viscous damping", "N s/m", &["N s/m", "kg/s"]),
+    named(Dimension::new(0, 2, 0, 0, 0), "an area", "m^2", &["m^2", "cm^2", "mm^2"]),
+    named(Dimension::new(0, 3, 0, 0, 0), "a volume", "m^3", &["m^3", "cm^3", "mm^3"]),
+];

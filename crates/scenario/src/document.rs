@@ -1,0 +1,299 @@
+//! A decoded scene: values by path, with defaults and origins, and the way back to TOML.
+
+use std::collections::BTreeMap;
+
+use crate::diagnostic::Diagnostic;
+use crate::judge::Judge;
+use crate::keys::{self, Found, Key, Kind, Occurrence, TABLES, Table};
+use crate::source::{Origin, Source};
+use crate::tree::lenient_value;
+use crate::value::Value;
+
+/// A value of a scene with its key and origin.
+#[derive(Debug, Clone)]
+pub struct Entry {
+    /// Its entry in the table of keys.
+    pub key: &'static Key,
+    /// In SI units.
+    pub value: Value,
+    /// Where it came from.
+    pub origin: Origin,
+    /// As written there, shortened.
+    pub written: String,
+}
+
+/// A scene as decoded by [`crate::decode::parse`]: each value by its path, such as `beam.table.thickness`.
+///
+/// All values are of the kind and in the range that the table of keys gives; the defaults of the table are filled in. Nothing is checked here
+/// that takes two keys: references to names, damping given twice, geometry.
+///
+/// The getters return `None` for a path that is absent or holds another kind of value.
+#[derive(Debug, Clone)]
+pub struct Document {
+    source: Source,
+    entries: BTreeMap<String, Entry>,
+    tables: BTreeMap<String, Origin>,
+    names: BTreeMap<&'static str, Vec<String>>,
+}
+
+/// Why [`Document::set`] refused a value.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SetError {
+    /// The path is no key of the table of keys, or its table is not in the scene.
+    #[error("the scene has no place for the key {0}")]
+    NoSuchKey(String),
+    /// The key holds another type of value.
+    #[error("the value is not of the type of the key {0}")]
+    WrongType(String),
+    /// The key does not take this value.
+    #[error("{0}: {1}")]
+    NotAllowed(String, String),
+}
+
+impl Document {
+    pub(crate) fn new(source: Source) -> Self {
+        Self { source, entries: BTreeMap::new(), tables: BTreeMap::new(), names: BTreeMap::new() }
+    }
+
+    pub(crate) fn add(&mut self, path: &str, entry: Entry) {
+        self.entries.insert(path.to_owned(), entry);
+    }
+
+    pub(crate) fn add_table(&mut self, path: &str, origin: Origin) {
+        self.tables.insert(path.to_owned(), origin);
+    }
+
+    pub(crate) fn add_name(&mut self, group: &'static str, name: &str) {
+        self.names.entry(group).or_default().push(name.to_owned());
+    }
+
+    /// The file's name as given.
+    pub fn file(&self) -> &str {
+        &self.source.file
+    }
+
+    /// The text of the file; the spans of diagnostics count in it.
+    pub fn source(&self) -> &str {
+        &self.source.text
+    }
+
+    /// The value at a path with all that is known about it.
+    pub fn entry(&self, path: &str) -> Option<&Entry> {
+        self.entries.get(path)
+    }
+
+    /// All values, sorted by path.
+    pub fn entries(&self) -> impl Iterator<Item = (&str, &Entry)> {
+        self.entries.iter().map(|(path, entry)| (path.as_str(), entry))
+    }
+
+    /// Whether there is a value at the path, given or by default.
+    pub fn has(&self, path: &str) -> bool {
+        self.entries.contains_key(path)
+    }
+
+    /// Whether the value at the path was given by the file or a `--set`, so that it is no default.
+    pub fn is_given(&self, path: &str) -> bool {
+        self.entries.get(path).is_some_and(|entry| matches!(entry.origin, Origin::File(_) | Origin::Set { .. }))
+    }
+
+    /// Whether the scene has this table: `ground`, `beam.table`, `beam.table.rayleigh`. Tables that always hold
+    /// (`time`, `world`, `solver`, `output`) are there even if the file does not name them.
+    pub fn has_table(&self, path: &str) -> bool {
+        self.tables.contains_key(path)
+    }
+
+    /// The names in a group (`material`, `beam`, `block`, `contact`) in the order of the file.
+    pub fn names(&self, group: &str) -> Vec<&str> {
+        self.names.get(group).map(|names| names.iter().map(String::as_str).collect()).unwrap_or_default()
+    }
+
+    /// A quantity in SI units.
+    pub fn quantity(&self, path: &str) -> Option<f64> {
+        match self.entries.get(path)? {
+            Entry { key: Key { kind: Kind::Quantity(..), .. }, value: Value::Number(value), .. } => Some(*value),
+            _ => None,
+        }
+    }
+
+    /// A bare number.
+    pub fn number(&self, path: &str) -> Option<f64> {
+        match self.entries.get(path)? {
+            Entry { key: Key { kind: Kind::Number(_), .. }, value: Value::Number(value), .. } => Some(*value),
+            _ => None,
+        }
+    }
+
+    /// A whole number.
+    pub fn integer(&self, path: &str) -> Option<i64> {
+        match self.entries.get(path)?.value {
+            Value::Integer(value) => Some(value),
+            _ => None,
+        }
+    }
+
+    /// A text, name or choice.
+    pub fn text(&self, path: &str) -> Option<&str> {
+        match &self.entries.get(path)?.value {
+            Value::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    /// A flag.
+    pub fn flag(&self, path: &str) -> Option<bool> {
+        match self.entries.get(path)?.value {
+            Value::Flag(flag) => Some(flag),
+            _ => None,
+        }
+    }
+
+    /// A vector x, y in SI units. Gravity given as one number g is (0, −g).
+    pub fn pair(&self, path: &str) -> Option<[f64; 2]> {
+        let entry = self.entries.get(path)?;
+        match (&entry.value, entry.key.kind) {
+            (Value::Pair(pair), _) => Some(*pair),
+            (Value::Number(down), Kind::Gravity) => Some([0.0, 0.0 - down]),
+            _ => None,
+        }
+    }
+
+    /// A list of quantities in SI units.
+    pub fn list(&self, path: &str) -> Option<&[f64]> {
+        match &self.entries.get(path)?.value {
+            Value::List(values) => Some(values),
+            _ => None,
+        }
+    }
+
+    /// Two words: the supports of a beam, the bodies of a contact.
+    pub fn text_pair(&self, path: &str) -> Option<[&str; 2]> {
+        match &self.entries.get(path)?.value {
+            Value::TextPair([first, second]) => Some([first, second]),
+            _ => None,
+        }
+    }
+
+    /// Where the value at a path came from; for a path without a value, where its table came from.
+    pub fn origin(&self, path: &str) -> Origin {
+        if let Some(entry) = self.entries.get(path) {
+            return entry.origin.clone();
+        }
+        self.table_origin(path)
+    }
+
+    fn table_origin(&self, path: &str) -> Origin {
+        let mut above = path;
+        loop {
+            if let Some(origin) = self.tables.get(above) {
+                return origin.clone();
+            }
+            match above.rsplit_once('.') {
+                Some((parent, _)) => above = parent,
+                None => return Origin::Default,
+            }
+        }
+    }
+
+    /// An error about the value or table at a path, placed where it was written; a value that was not written is
+    /// blamed on the header of its table. For rules that take more than one key; make it a warning with
+    /// [`Diagnostic::as_warning`].
+    pub fn error(&self, path: &str, rule: impl Into<String>, remedy: impl Into<String>) -> Diagnostic {
+        let entry = self.entries.get(path);
+        let given = entry.filter(|_| self.is_given(path));
+        let origin = given.map_or_else(|| self.table_origin(path), |entry| entry.origin.clone());
+        let mut found = self.source.error(&origin, path, rule).with_remedy(remedy);
+        found.written = entry.map(|entry| entry.written.clone());
+        found
+    }
+
+    /// Line (from 1) on which the value or table at a path stands, if the file has it.
+    pub fn line(&self, path: &str) -> Option<usize> {
+        match self.origin(path) {
+            Origin::File(span) => Some(self.source.position(span.start).0),
+            _ => None,
+        }
+    }
+
+    /// Puts in a value that follows from others, such as `time.gap_tolerance`, so that [`Document::to_toml`] writes it out.
+    ///
+    /// # Errors
+    /// The path is no key, its table is not in the scene, or the key does not take the value.
+    pub fn set(&mut self, path: &str, value: Value) -> Result<(), SetError> {
+        let no_such_key = || SetError::NoSuchKey(path.to_owned());
+        let Some(Found::Key(_, key)) = keys::find(path) else {
+            return Err(no_such_key());
+        };
+        if let Some((table, _)) = path.rsplit_once('.')
+            && !self.tables.contains_key(table)
+        {
+            return Err(no_such_key());
+        }
+        if !value.fits(key.kind) {
+            return Err(SetError::WrongType(path.to_owned()));
+        }
+        // By the same judge as the file, so that what is written out can be read again.
+        let written = value.to_toml(key.kind);
+        let mut judge = Judge { source: &self.source, findings: Vec::new() };
+        let judged = judge.value(key, path, &lenient_value(&written, Origin::Derived));
+        if judged.is_none() {
+            let rule = judge.findings.pop().map(|found| found.rule);
+            return Err(SetError::NotAllowed(path.to_owned(), rule.unwrap_or_default()));
+        }
+        let entry = Entry { key, value, origin: Origin::Derived, written };
+        self.add(path, entry);
+        Ok(())
+    }
+
+    /// The scene as it stands: every value in the order of the table of keys, defaults written out, quantities in SI units.
+    /// It parses to the same values bit for bit, and writing that out again gives the same bytes.
+    pub fn to_toml(&self) -> String {
+        let mut out = String::new();
+        for table in TABLES.iter().filter(|table| table.occurrence != Occurrence::Inline) {
+            if table.occurrence == Occurrence::Named {
+                for name in self.names(table.name()) {
+                    self.write_table(table, &format!("{}.{name}", table.name()), &mut out);
+                }
+            } else {
+                self.write_table(table, table.pattern, &mut out);
+            }
+        }
+        out
+    }
+
+    fn write_table(&self, table: &Table, path: &str, out: &mut String) {
+        let mut lines = self.lines(table, path);
+        for inline in table.children().filter(|child| child.occurrence == Occurrence::Inline) {
+            let path = format!("{path}.{}", inline.name());
+            if self.has_table(&path) {
+                let values = self.lines(inline, &path).join(", ");
+                lines.push(format!("{} = {{ {values} }}", inline.name()));
+            }
+        }
+        // A table that always holds says nothing when empty; [ground] does.
+        let say = !lines.is_empty() || (table.occurrence != Occurrence::Always && self.has_table(path));
+        if !say {
+            return;
+        }
+        if !path.is_empty() {
+            out.push_str(&format!("\n[{path}]\n"));
+        }
+        for line in lines {
+            out.push_str(&line);
+            out.push('\n');
+        }
+    }
+
+    fn lines(&self, table: &Table, path: &str) -> Vec<String> {
+        let line = |key: &Key| {
+            let full = match path {
+                "" => key.name.to_owned(),
+                path => format!("{path}.{}", key.name),
+            };
+            let entry = self.entries.get(&full)?;
+            Some(format!("{} = {}", key.name, entry.value.to_toml(key.kind)))
+        };
+        table.keys.iter().filter_map(line).collect()
+    }
+}

@@ -1,0 +1,323 @@
+//! Decoding of one TOML value against one entry of the table of keys.
+
+use crate::diagnostic::Diagnostic;
+use crate::dimension::Dimension;
+use crate::keys::{Key, Kind, Range};
+use crate::quantity::{self, QuantityError};
+use crate::source::Source;
+use crate::suggest;
+use crate::tree::{Node, Raw};
+use crate::value::Value;
+use crate::wording::{expected, noun, with_unit};
+
+/// Findings after which a file is not read on.
+pub(crate) const MOST_FINDINGS: usize = 200;
+
+/// Decodes nodes and collects what is wrong with them.
+pub(crate) struct Judge<'a> {
+    pub(crate) source: &'a Source,
+    pub(crate) findings: Vec<Diagnostic>,
+}
+
+/// Names longer than this make unreadable tables of results.
+const LONGEST_NAME: usize = 64;
+
+/// Why a name is no name; `None` if it is one.
+pub(crate) fn name_rule(name: &str) -> Option<String> {
+    let letter = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    if name.is_empty() || !name.chars().all(letter) {
+        Some("a name holds letters (a-z, A-Z), digits, `_`, `-` and nothing else".to_owned())
+    } else if name.len() > LONGEST_NAME {
+        Some(format!("a name has at most {LONGEST_NAME} characters"))
+    } else {
+        None
+    }
+}
+
+impl Judge<'_> {
+    /// An error about a node.
+    pub(crate) fn blame(&mut self, node: &Node, path: &str, rule: impl Into<String>) -> &mut Diagnostic {
+        let mut found = self.source.error(&node.origin, path, rule);
+        found.written = Some(node.written.clone());
+        self.push(found)
+    }
+
+    /// Whether so much is wrong that reading on helps nobody.
+    pub(crate) fn is_full(&self) -> bool {
+        self.findings.len() >= MOST_FINDINGS
+    }
+
+    /// Adds a finding and hands it back for details.
+    pub(crate) fn push(&mut self, found: Diagnostic) -> &mut Diagnostic {
+        let at = self.findings.len();
+        self.findings.push(found);
+        &mut self.findings[at]
+    }
+
+    /// The value of `key`, or `None` after saying what is wrong.
+    pub(crate) fn value(&mut self, key: &Key, path: &str, node: &Node) -> Option<Value> {
+        if self.is_reserved(key, path, node) {
+            return None;
+        }
+        match key.kind {
+            Kind::Text => self.text(key, path, node).map(Value::Text),
+            Kind::Name => self.name(key, path, node).map(Value::Text),
+            Kind::Choice(choices) => self.choice(key, choices, path, node).map(Value::Text),
+            Kind::Flag => self.flag(key, path, node).map(Value::Flag),
+            Kind::Integer { min, max } => self.integer(key, (min, max), path, node).map(Value::Integer),
+            Kind::Version(known) => self.version(key, known, path, node).map(Value::Integer),
+            Kind::Number(range) => self.number(key, &range, path, node).map(Value::Number),
+            Kind::Quantity(dimension, range) => self.quantity(key, dimension, &range, path, node).map(Value::Number),
+            Kind::Pair(dimension, range) => {
+                let items = self.items(key, path, node, Some(2))?;
+                let read = |judge: &mut Self, item: &Node| judge.quantity(key, dimension, &range, path, item);
+                self.pair(items, read).map(Value::Pair)
+            }
+            Kind::List(dimension, range) => {
+                let items = self.items(key, path, node, None)?;
+                let mut values = Vec::new();
+                for item in items {
+                    values.extend(self.quantity(key, dimension, &range, path, item));
+                    if self.is_full() {
+                        return None;
+                    }
+                }
+                (values.len() == items.len()).then_some(Value::List(values))
+            }
+            Kind::ChoicePair(choices) => {
+                let items = self.items(key, path, node, Some(2))?;
+                let read = |judge: &mut Self, item: &Node| {
+                    if judge.is_reserved(key, path, item) { None } else { judge.choice(key, choices, path, item) }
+                };
+                self.pair(items, read).map(Value::TextPair)
+            }
+            Kind::NamePair => {
+                let items = self.items(key, path, node, Some(2))?;
+                let read = |judge: &mut Self, item: &Node| judge.name(key, path, item);
+                self.pair(items, read).map(Value::TextPair)
+            }
+            Kind::Gravity => match &node.raw {
+                Raw::Array(_) => {
+                    let items = self.items(key, path, node, Some(2))?;
+                    let read = |judge: &mut Self, item: &Node| {
+                        judge.quantity(key, Dimension::ACCELERATION, &Range::ANY, path, item)
+                    };
+                    self.pair(items, read).map(Value::Pair)
+                }
+                _ => self.gravity(key, path, node).map(Value::Number),
+            },
+        }
+    }
+
+    /// Says so if the value is known but not built in yet.
+    fn is_reserved(&mut self, key: &Key, path: &str, node: &Node) -> bool {
+        let reserved = key.reserved.iter().find(|reserved| match &node.raw {
+            Raw::Text(text) => text == reserved.value,
+            Raw::Flag(flag) => reserved.value == if *flag { "true" } else { "false" },
+            Raw::Branch(branch) => branch.get(reserved.value).is_some(),
+            _ => false,
+        });
+        let Some(reserved) = reserved else {
+            return false;
+        };
+        let rule = format!("`{}` is known, but not built in yet", reserved.value);
+        let remedy = match reserved.instead {
+            "" => expected(key),
+            instead => instead.to_owned(),
+        };
+        self.blame(node, path, rule).remedy = Some(remedy);
+        true
+    }
+
+    /// The value is of another type than the key's.
+    fn mistyped(&mut self, key: &Key, path: &str, node: &Node) {
+        // "true" in quotes, or a number: right but for the quotes.
+        let unquoted = match (&node.raw, key.kind) {
+            (Raw::Text(text), Kind::Flag) => matches!(text.as_str(), "true" | "false").then_some(text),
+            (Raw::Text(text), Kind::Number(_)) => text.parse::<f64>().is_ok().then_some(text),
+            (Raw::Text(text), Kind::Integer { .. } | Kind::Version(_)) => text.parse::<i64>().is_ok().then_some(text),
+            _ => None,
+        };
+        let remedy = match unquoted {
+            Some(text) => format!("write {} without quotes", text.trim()),
+            None => expected(key),
+        };
+        let rule = format!("{} is expected, got {}", noun(key), node.raw.what());
+        self.blame(node, path, rule).remedy = Some(remedy);
+    }
+
+    fn text(&mut self, key: &Key, path: &str, node: &Node) -> Option<String> {
+        if let Raw::Text(text) = &node.raw {
+            return Some(text.clone());
+        }
+        self.mistyped(key, path, node);
+        None
+    }
+
+    fn name(&mut self, key: &Key, path: &str, node: &Node) -> Option<String> {
+        let text = self.text(key, path, node)?;
+        match name_rule(&text) {
+            Some(rule) => {
+                self.blame(node, path, rule);
+                None
+            }
+            None => Some(text),
+        }
+    }
+
+    fn choice(&mut self, key: &Key, choices: &[&str], path: &str, node: &Node) -> Option<String> {
+        let text = self.text(key, path, node)?;
+        if choices.contains(&text.as_str()) {
+            return Some(text);
+        }
+        let nearest = suggest::nearest(&text, choices.iter().copied());
+        let found = self.blame(node, path, format!("unknown {}", key.name));
+        found.remedy = Some(expected(key));
+        found.did_you_mean = nearest.map(str::to_owned);
+        None
+    }
+
+    fn flag(&mut self, key: &Key, path: &str, node: &Node) -> Option<bool> {
+        if let Raw::Flag(flag) = node.raw {
+            return Some(flag);
+        }
+        self.mistyped(key, path, node);
+        None
+    }
+
+    fn integer(&mut self, key: &Key, (min, max): (i64, i64), path: &str, node: &Node) -> Option<i64> {
+        let rule = match node.raw {
+            Raw::Integer(Some(value)) if (min..=max).contains(&value) => return Some(value),
+            Raw::Integer(Some(value)) if value < min => format!("must be at least {min}"),
+            Raw::Integer(_) => format!("must lie in [{min}, {max}]"),
+            Raw::Float(_) => "a whole number is expected".to_owned(),
+            _ => {
+                self.mistyped(key, path, node);
+                return None;
+            }
+        };
+        self.blame(node, path, rule).remedy = Some(expected(key));
+        None
+    }
+
+    fn version(&mut self, key: &Key, known: &[i64], path: &str, node: &Node) -> Option<i64> {
+        let value = self.integer(key, (i64::MIN, i64::MAX), path, node)?;
+        if known.contains(&value) {
+            return Some(value);
+        }
+        let known: Vec<String> = known.iter().map(i64::to_string).collect();
+        let rule = format!("this program reads version {} of scene files, got {value}", known.join(", "));
+        self.blame(node, path, rule);
+        None
+    }
+
+    fn number(&mut self, key: &Key, range: &Range, path: &str, node: &Node) -> Option<f64> {
+        let value = match node.raw {
+            Raw::Float(value) => value,
+            // Whole numbers of a physical meaning are far below 2^53.
+            #[expect(clippy::cast_precision_loss)]
+            Raw::Integer(Some(value)) => value as f64,
+            Raw::Integer(None) => f64::INFINITY,
+            _ => {
+                self.mistyped(key, path, node);
+                return None;
+            }
+        };
+        self.within(range, value, Dimension::NONE, key, path, node)
+    }
+
+    fn quantity(&mut self, key: &Key, dimension: Dimension, range: &Range, path: &str, node: &Node) -> Option<f64> {
+        let text = match &node.raw {
+            Raw::Text(text) => text,
+            Raw::Float(value) if !value.is_finite() => {
+                self.blame(node, path, "not a finite number").remedy = Some(expected(key));
+                return None;
+            }
+            Raw::Float(_) | Raw::Integer(_) => {
+                let rule = format!("{} needs its unit, got a bare number", dimension.name());
+                self.blame(node, path, rule).remedy = Some(with_unit(&node.written, dimension));
+                return None;
+            }
+            other => {
+                let (wanted, got) = (dimension.name(), other.what());
+                let rule = format!("{wanted} with its unit is expected, got {got}");
+                self.blame(node, path, rule).remedy = Some(expected(key));
+                return None;
+            }
+        };
+        match quantity::parse(text, dimension) {
+            Ok(value) => self.within(range, value, dimension, key, path, node),
+            Err(error) => {
+                let remedy = match &error {
+                    QuantityError::MissingUnit => Some(with_unit(text.trim(), dimension)),
+                    _ => error.remedy(),
+                };
+                let rule = match &error {
+                    QuantityError::MissingNumber => {
+                        format!("{} with its unit is expected, got a text that starts with no number", dimension.name())
+                    }
+                    _ => error.to_string(),
+                };
+                let found = self.blame(node, path, rule);
+                found.did_you_mean = error.did_you_mean().map(str::to_owned);
+                found.remedy = remedy.or_else(|| Some(expected(key)));
+                None
+            }
+        }
+    }
+
+    fn gravity(&mut self, key: &Key, path: &str, node: &Node) -> Option<f64> {
+        let range = Range::ANY;
+        let value = self.quantity(key, Dimension::ACCELERATION, &range, path, node)?;
+        if let Some(rule) = Range::NOT_NEGATIVE.check(value, Dimension::ACCELERATION) {
+            let remedy = "a single number is downwards; upwards is the vector [\"0 m/s^2\", \"1 m/s^2\"]";
+            self.blame(node, path, rule).remedy = Some(remedy.to_owned());
+            return None;
+        }
+        Some(value)
+    }
+
+    fn within(
+        &mut self,
+        range: &Range,
+        value: f64,
+        dimension: Dimension,
+        key: &Key,
+        path: &str,
+        node: &Node,
+    ) -> Option<f64> {
+        match range.check(value, dimension) {
+            None => Some(value),
+            Some(rule) => {
+                self.blame(node, path, rule).remedy = Some(expected(key));
+                None
+            }
+        }
+    }
+
+    fn items<'n>(&mut self, key: &Key, path: &str, node: &'n Node, count: Option<usize>) -> Option<&'n [Node]> {
+        match &node.raw {
+            Raw::Array(items) if count.is_none_or(|count| items.len() == count) => Some(items),
+            Raw::Array(items) => {
+                let rule = format!("an array of two is expected, got {}", items.len());
+                self.blame(node, path, rule).remedy = Some(expected(key));
+                None
+            }
+            _ => {
+                self.mistyped(key, path, node);
+                None
+            }
+        }
+    }
+
+    /// Both items, each with its own message if it is wrong.
+    fn pair<T>(&mut self, items: &[Node], mut read: impl FnMut(&mut Self, &Node) -> Option<T>) -> Option<[T; 2]> {
+        let [first, second] = items else {
+            return None;
+        };
+        match (read(self, first), read(self, second)) {
+            (Some(first), Some(second)) => Some([first, second]),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! A scene resolved: plain SI numbers, references checked, nothing left to guess.
+
+/// A scene that can be run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// What it is called.
+    pub title: String,
+    /// How long, in which steps, by which scheme.
+    pub time: Time,
+    /// Acceleration of gravity, m/s².
+    pub gravity: [f64; 2],
+    /// Whether there is rigid ground, flat at y = 0.
+    pub ground: bool,
+    /// The beams, in the order of the file.
+    pub beams: Vec<BeamScene>,
+    /// The blocks, in the order of the file.
+    pub blocks: Vec<BlockScene>,
+    /// The contacts, in the order of the file.
+    pub contacts: Vec<ContactScene>,
+    /// The contact solver.
+    pub solver: SolverScene,
+    /// Time between rows, s; `None`: thinned to some 10 000 rows.
+    pub every: Option<f64>,
+}
+
+/// How a scene is stepped.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Time {
+    /// The time asked for, s.
+    pub end: f64,
+    /// Step size, s.
+    pub step: f64,
+    /// Steps: up to the first time at or past `end`.
+    pub steps: u64,
+    /// θ of the scheme.
+    pub theta: f64,
+    /// γ of the activation.
+    pub activation_gamma: f64,
+    /// Largest predicted gap of an active contact, m.
+    pub gap_tolerance: f64,
+}
+
+/// A beam of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BeamScene {
+    /// Its name.
+    pub name: String,
+    /// Its numbers.
+    pub spec: teeter_beam::BeamSpec,
+    /// Thickness, m.
+    pub thickness: f64,
+    /// Whether contacts lie on the top fibre, not on the axis.
+    pub top: bool,
+    /// Whether it starts in equilibrium under the blocks that stand on it.
+    pub static_start: bool,
+    /// Place of its left end, m.
+    pub position: [f64; 2],
+    /// Places along the span whose deflection is written, m.
+    pub probes: Vec<f64>,
+}
+
+/// A block of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BlockScene {
+    /// Its name.
+    pub name: String,
+    /// Width b, m.
+    pub width: f64,
+    /// Height H, m.
+    pub height: f64,
+    /// Depth out of the plane, m.
+    pub depth: f64,
+    /// Density, kg/m³.
+    pub density: f64,
+    /// Where it starts.
+    pub placement: Placement,
+    /// Velocity of the mass centre, m/s.
+    pub velocity: [f64; 2],
+    /// Angular velocity, rad/s.
+    pub spin: f64,
+}
+
+/// Where a block starts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Placement {
+    /// Its mass centre (m) and angle (rad).
+    Free {
+        /// Mass centre, m.
+        position: [f64; 2],
+        /// Angle, rad.
+        angle: f64,
+    },
+    /// Standing on a surface.
+    On {
+        /// What it stands on.
+        support: Support,
+        /// x of the middle of its base before it is tilted, m.
+        at: f64,
+        /// Turn about the corner that it stays on, rad.
+        tilt: f64,
+        /// The contact that joins the two.
+        contact: usize,
+    },
+}
+
+/// What a block can stand on or touch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Support {
+    /// The ground.
+    Ground,
+    /// A beam, by its number in the scene.
+    Beam(usize),
+}
+
+/// A contact between a block and a surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactScene {
+    /// Its name.
+    pub name: String,
+    /// The bodies by name, as in the file.
+    pub between: [String; 2],
+    /// The block, by its number in the scene.
+    pub block: usize,
+    /// What it touches.
+    pub surface: Support,
+    /// Coulomb's coefficient.
+    pub friction: f64,
+    /// Newton's coefficient.
+    pub restitution: f64,
+    /// How the surface's deflection enters.
+    pub kinematics: teeter_detect::Kinematics,
+}
+
+/// The contact solver of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SolverScene {
+    /// Its name.
+    pub method: String,
+    /// Largest residual that counts as solved.
+    pub tolerance: f64,
+    /// Most iterations.
+    pub max_iterations: u32,
+    /// Whether an unsolved step ends the run.
+    pub require_convergence: bool,
+}
+
+impl BlockScene {
+    /// The critical angle α = atan(b/H), rad.
+    #[must_use]
+    pub fn critical_angle(&self) -> f64 {
+        self.width.atan2(self.height)
+    }
+}

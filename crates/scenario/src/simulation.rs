@@ -1,0 +1,258 @@
+//! A resolved scene made into a model and its start: ready to run in memory.
+
+use crate::placement::{PlacementError, beam_shape, block_pose};
+use crate::scene::{Scene, Support};
+use nalgebra::Vector2;
+use std::ops::Range;
+use std::sync::Arc;
+use teeter_beam::{Beam, BeamError};
+use teeter_detect::{BodyId, PointDetector, PointPair};
+use teeter_integrator::{
+    BeamBody, BeamSurface, Block, Blocks, Ended, Ground, Model, ModelBuilder, ModelError, MoreauJean,
+    MoreauJeanSettings, Observer, PairLaw, Plan, RunError, Scheme, SettingError, SolverSettings, State, StateError,
+    Subsystem, Workspace, run,
+};
+use teeter_rigid::{MassProperties, Rectangle, RigidError};
+
+/// Why a scene can't be made into a model.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BuildError {
+    /// A block's numbers.
+    #[error("block `{0}`: {1}")]
+    Block(String, RigidError),
+    /// A beam's numbers.
+    #[error("beam `{0}`: {1}")]
+    Beam(String, BeamError),
+    /// A start that doesn't exist.
+    #[error(transparent)]
+    Placement(#[from] PlacementError),
+    /// A contact law.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// The initial state.
+    #[error(transparent)]
+    State(#[from] StateError),
+    /// The scheme's settings.
+    #[error(transparent)]
+    Scheme(#[from] SettingError),
+    /// A solver that is not built in.
+    #[error("there is no solver `{0}`")]
+    Solver(String),
+    /// A corner that starts below its surface.
+    #[error(
+        "block `{block}`: the corner {corner} starts {depth:e} m below the surface of `{surface}`; up to {tolerance:e} m is taken for rounding"
+    )]
+    Penetration {
+        /// The block.
+        block: String,
+        /// The corner.
+        corner: &'static str,
+        /// What it is in.
+        surface: String,
+        /// How deep, m.
+        depth: f64,
+        /// What is allowed, m.
+        tolerance: f64,
+    },
+}
+
+/// Where a block is in the state.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BlockPlace {
+    /// Its name.
+    pub name: String,
+    /// Its coordinates X, Y, φ; its velocities have the same places.
+    pub range: Range<usize>,
+}
+
+/// Where a beam is in the state.
+#[derive(Debug, Clone)]
+pub struct BeamPlace {
+    /// Its name.
+    pub name: String,
+    /// The beam.
+    pub beam: Arc<Beam>,
+    /// Its coordinates; its velocities have the same places.
+    pub range: Range<usize>,
+    /// Places whose deflection is written, m from its left end.
+    pub probes: Vec<f64>,
+}
+
+/// The names of a contact pair.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PairPlace {
+    /// The contact's name.
+    pub name: String,
+    /// The bodies, in the order of the file.
+    pub between: [String; 2],
+}
+
+/// Who is where in model and state.
+#[derive(Debug, Clone, Default)]
+pub struct Layout {
+    /// The blocks, in the order of the file.
+    pub blocks: Vec<BlockPlace>,
+    /// The beams, in the order of the file.
+    pub beams: Vec<BeamPlace>,
+    /// The pairs, by their number in the model.
+    pub pairs: Vec<PairPlace>,
+}
+
+/// A scene ready to run.
+pub struct Simulation {
+    /// The model.
+    pub model: Model<2>,
+    /// The state, at t = 0 at first.
+    pub state: State,
+    /// Who is where.
+    pub layout: Layout,
+    /// How far it runs.
+    pub plan: Plan,
+    scheme: Box<dyn Scheme<2>>,
+    work: Workspace<2>,
+}
+
+impl std::fmt::Debug for Simulation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Simulation").field("layout", &self.layout).field("plan", &self.plan).finish_non_exhaustive()
+    }
+}
+
+impl Simulation {
+    /// Makes the model of a scene, and its start.
+    ///
+    /// # Errors
+    /// If a number doesn't make sense to a layer, a beam has no equilibrium, or a corner starts inside a surface.
+    pub fn new(scene: &Scene) -> Result<Self, BuildError> {
+        let mut parts = ModelBuilder::new();
+        let mut layout = Layout::default();
+
+        let mut shapes = Vec::new();
+        let mut blocks = Vec::new();
+        for block in &scene.blocks {
+            let named = |error| BuildError::Block(block.name.clone(), error);
+            let shape = Rectangle::new(block.width, block.height).map_err(named)?;
+            let mass = MassProperties::rectangle(&shape, block.depth, block.density).map_err(named)?;
+            blocks.push(Block::new(mass, &shape));
+            let start = 3 * shapes.len();
+            layout.blocks.push(BlockPlace { name: block.name.clone(), range: start..start + 3 });
+            shapes.push(shape);
+        }
+        let gravity = Vector2::from(scene.gravity);
+        let first_block = parts.add(Box::new(Blocks::new(blocks, gravity)));
+
+        let mut beam_bodies = Vec::new();
+        let mut beam_coordinates = Vec::new();
+        let mut dofs = 3 * shapes.len();
+        for (number, scene_beam) in scene.beams.iter().enumerate() {
+            let beam = Beam::new(scene_beam.spec).map_err(|error| BuildError::Beam(scene_beam.name.clone(), error))?;
+            let beam = Arc::new(beam);
+            let body = || beam_body(&beam, scene_beam);
+            beam_coordinates.push(beam_shape(scene, number, &body())?);
+            let range = dofs..dofs + beam.dofs();
+            dofs = range.end;
+            beam_bodies.push((parts.add(Box::new(body())), body()));
+            layout.beams.push(BeamPlace {
+                name: scene_beam.name.clone(),
+                beam: Arc::clone(&beam),
+                range,
+                probes: scene_beam.probes.clone(),
+            });
+        }
+        let ground = Ground::flat(0.0);
+        let ground_body = scene.ground.then(|| parts.add(Box::new(ground)));
+
+        let (mut q, mut v) = (Vec::with_capacity(dofs), Vec::with_capacity(dofs));
+        for block in &scene.blocks {
+            let surface: Option<(&dyn Subsystem<2>, &[f64])> = match block.placement {
+                crate::scene::Placement::On { support: Support::Beam(k), .. } => {
+                    Some((&beam_bodies[k].1, &beam_coordinates[k]))
+                }
+                crate::scene::Placement::On { support: Support::Ground, .. } => Some((&ground, &[])),
+                crate::scene::Placement::Free { .. } => None,
+            };
+            q.extend(block_pose(scene, block, surface)?.iter());
+            v.extend([block.velocity[0], block.velocity[1], block.spin]);
+        }
+        beam_coordinates.iter().for_each(|coordinates| q.extend(coordinates));
+        v.resize(dofs, 0.0);
+
+        let mut pairs = Vec::new();
+        for contact in &scene.contacts {
+            let law = PairLaw { friction: contact.friction, restitution: contact.restitution };
+            let surface = match contact.surface {
+                Support::Beam(k) => beam_bodies[k].0,
+                Support::Ground => match ground_body {
+                    Some(body) => body,
+                    None => continue, // the resolver refuses a contact with ground that isn't there
+                },
+            };
+            pairs.push(PointPair {
+                pair: parts.pair(law),
+                points: shapes[contact.block].corners().to_vec(),
+                body: BodyId(first_block.0 + contact.block as u32),
+                surface,
+                kinematics: contact.kinematics,
+            });
+            layout.pairs.push(PairPlace { name: contact.name.clone(), between: contact.between.clone() });
+        }
+        let model = parts.build(Box::new(PointDetector::new(pairs)))?;
+        check_start(scene, &model, &layout, &q)?;
+
+        let state = State::new(&model, &q, &v, scene.time.step)?;
+        let solver = teeter_solvers::plane_solver(&scene.solver.method)
+            .ok_or_else(|| BuildError::Solver(scene.solver.method.clone()))?;
+        let settings =
+            SolverSettings { tolerance: scene.solver.tolerance, max_iterations: scene.solver.max_iterations };
+        let work = Workspace::new(&model, solver, settings);
+        let scheme = MoreauJean::new(MoreauJeanSettings {
+            theta: scene.time.theta,
+            activation_gamma: scene.time.activation_gamma,
+            gap_tolerance: scene.time.gap_tolerance,
+        })?;
+        let plan = Plan { steps: scene.time.steps, require_convergence: scene.solver.require_convergence };
+        Ok(Self { model, state, layout, plan, scheme: Box::new(scheme), work })
+    }
+
+    /// Runs to the plan's end, showing every step to the observers. The state is left at the last step taken.
+    ///
+    /// # Errors
+    /// If an observer fails.
+    pub fn run(&mut self, observers: &mut [&mut dyn Observer<2>]) -> Result<Ended, RunError> {
+        run(&self.model, self.scheme.as_mut(), &mut self.state, &mut self.work, &self.plan, observers)
+    }
+}
+
+fn beam_body(beam: &Arc<Beam>, scene: &crate::scene::BeamScene) -> BeamBody {
+    let surface = if scene.top { BeamSurface::Top { offset: 0.5 * scene.thickness } } else { BeamSurface::Axis };
+    BeamBody::new(Arc::clone(beam), Vector2::from(scene.position), surface)
+}
+
+/// A corner may start below its surface by this part of its block's larger side, for the rounding of places given in
+/// decimals.
+const START_TOLERANCE: f64 = 1e-9;
+
+/// Refuses a start with a corner inside a surface.
+fn check_start(scene: &Scene, model: &Model<2>, layout: &Layout, q: &[f64]) -> Result<(), BuildError> {
+    let mut candidates = Vec::new();
+    model.detector().detect(&model.placed(q), 0.0, &mut candidates);
+    for candidate in &candidates {
+        let pair = candidate.id.pair() as usize;
+        let contact = &scene.contacts[pair];
+        let block = &scene.blocks[contact.block];
+        let tolerance = START_TOLERANCE * block.width.max(block.height);
+        if -candidate.gap > tolerance {
+            let between = &layout.pairs[pair].between;
+            let surface = if between[0] == block.name { &between[1] } else { &between[0] };
+            return Err(BuildError::Penetration {
+                block: block.name.clone(),
+                corner: Rectangle::CORNER_NAMES[candidate.id.point() as usize],
+                surface: surface.clone(),
+                depth: -candidate.gap,
+                tolerance,
+            });
+        }
+    }
+    Ok(())
+}

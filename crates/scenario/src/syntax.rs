@@ -1,0 +1,176 @@
+//! From the text of a file to a tree: TOML's own errors, all of them at once.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use toml::de::DeTable;
+
+use crate::diagnostic::Diagnostic;
+use crate::quantity::Quantity;
+use crate::source::{Origin, Source};
+use crate::tree::{Branch, Planter};
+
+/// Largest scene file, in bytes. A scene of ten thousand blocks takes about 3 MB.
+const LARGEST_FILE: usize = 4 << 20;
+
+/// Syntax errors that are reported; past that the file is probably no scene at all.
+const MOST_ERRORS: usize = 50;
+
+/// A file as a tree, as far as it could be read.
+pub(crate) struct Parsed {
+    pub(crate) root: Branch,
+    pub(crate) errors: Vec<Diagnostic>,
+    /// Lines (from 0) with syntax errors: what was recovered from them should not be judged again.
+    pub(crate) bad_lines: BTreeSet<usize>,
+    /// Whether no part of the file was lost: a key that is not in the tree is not in the file.
+    pub(crate) complete: bool,
+}
+
+/// Reads the TOML of a file, going on after errors.
+pub(crate) fn read(source: &Source) -> Parsed {
+    let mut parsed =
+        Parsed { root: Branch::default(), errors: Vec::new(), bad_lines: BTreeSet::new(), complete: false };
+    let size = source.text.len();
+    if size > LARGEST_FILE {
+        let rule = format!("the file holds {size} bytes; the limit is {LARGEST_FILE}");
+        parsed.errors.push(Diagnostic::error(&source.file, rule));
+        return parsed;
+    }
+    if let Some(at) = source.text.find('\0') {
+        let rule = format!("not a text file: byte {at} is zero");
+        parsed.errors.push(Diagnostic::error(&source.file, rule));
+        return parsed;
+    }
+    // The parser gives up the rest of the file at a key without value: blank such lines and read again. After an unclosed
+    // header it is anyone's guess which table the keys belong to: what follows is left out.
+    let mut text = source.text.clone();
+    let mut seen = BTreeSet::new();
+    for round in 1.. {
+        let (table, errors) = DeTable::parse_recoverable(&text);
+        let (mut blank, mut cut) = (BTreeSet::new(), None);
+        for error in errors.iter().take(MOST_ERRORS) {
+            let span = span_within(error.span(), source);
+            let fresh = seen.insert((span.start, error.message().to_owned()));
+            if fresh && parsed.errors.len() < MOST_ERRORS {
+                let found = finding(source, &span, error.message());
+                // A value that is missing altogether is reported twice by the parser.
+                let same_place = |other: &Diagnostic| other.span.as_ref() == Some(&span);
+                if !parsed.errors.iter().any(same_place) {
+                    parsed.errors.push(found);
+                }
+                if error.message() != DUPLICATE {
+                    parsed.bad_lines.insert(source.line(span.start));
+                }
+                if error.message().starts_with(NO_VALUE) {
+                    blank.insert(source.line(span.start));
+                } else if error.message().starts_with("unclosed table") {
+                    cut.get_or_insert(source.line(span.start));
+                }
+            }
+        }
+        let again = round < MOST_ROUNDS && errors.len() <= MOST_ERRORS;
+        if let (Some(line), true) = (cut, again) {
+            text.truncate(source.line_range(line).start);
+        } else if again && !blank.is_empty() {
+            for line in blank {
+                let range = source.line_range(line);
+                let blanks = " ".repeat(range.len());
+                text.replace_range(range, &blanks);
+            }
+        } else {
+            let planter = Planter { source, origin: None };
+            parsed.root = planter.branch(table.get_ref());
+            break;
+        }
+    }
+    parsed.complete = parsed.bad_lines.is_empty();
+    parsed
+}
+
+// Messages of the TOML parser that are told better here.
+const DUPLICATE: &str = "duplicate key";
+const NO_VALUE: &str = "key with no value";
+const UNQUOTED: &str = "string values must be quoted";
+/// Readings of one file, each of which gets past lines that stop the parser.
+const MOST_ROUNDS: u32 = 3;
+
+/// The parser's span, or the whole file's start where it gives none; never past the end.
+fn span_within(span: Option<Range<usize>>, source: &Source) -> Range<usize> {
+    let end = source.text.len();
+    let span = span.unwrap_or(0..0);
+    span.start.min(end)..span.end.min(end)
+}
+
+/// The header of the table that a line belongs to, as a dotted path; empty above the first header.
+fn table_of(source: &Source, line: usize) -> String {
+    (0..=line).rev().find_map(|line| header_of(source, line)).unwrap_or_default()
+}
+
+/// The path in a line that is a table's header.
+fn header_of(source: &Source, line: usize) -> Option<String> {
+    let text = source.line_text(line).trim_start();
+    let text = text.split('#').next().unwrap_or_default();
+    text.starts_with('[').then(|| text.trim_matches(['[', ']', ' ', '\t']).to_owned())
+}
+
+/// The key before the `=` of a line.
+fn key_of(source: &Source, line: usize) -> &str {
+    let text = source.line_text(line);
+    text.split('=').next().unwrap_or_default().trim()
+}
+
+fn finding(source: &Source, span: &Range<usize>, message: &str) -> Diagnostic {
+    if message == DUPLICATE {
+        return duplicate(source, span);
+    }
+    let origin = Origin::File(span.clone());
+    let line = source.line(span.start);
+    let text = source.line_text(line);
+    let key = join(&table_of(source, line), key_of(source, line));
+    if message.starts_with(NO_VALUE) {
+        let remedy = format!("write {} = and its value", key_of(source, line));
+        let rule = "a key without a value";
+        return source.error(&origin, &key, rule).with_remedy(remedy);
+    }
+    if let (true, Some((name, value))) = (message.starts_with(UNQUOTED), text.split_once('=')) {
+        let value = value.split('#').next().unwrap_or_default().trim();
+        if value.is_empty() {
+            return source.error(&origin, &key, "a value is missing after the `=`");
+        }
+        if Quantity::read(value).is_ok() {
+            let rule = format!("a value with a unit is written in quotes, got {value}");
+            let remedy = format!("write {} = \"{value}\"", name.trim());
+            return source.error(&origin, &key, rule).with_remedy(remedy);
+        }
+    }
+    let rule = message.replace("literal string", "a text in quotes");
+    source.error(&origin, "", rule)
+}
+
+fn join(table: &str, key: &str) -> String {
+    if table.is_empty() { key.to_owned() } else { format!("{table}.{key}") }
+}
+
+fn duplicate(source: &Source, span: &Range<usize>) -> Diagnostic {
+    let line = source.line(span.start);
+    let (path, first) = if let Some(header) = header_of(source, line) {
+        let first = (0..line).find(|earlier| header_of(source, *earlier).as_ref() == Some(&header));
+        (header, first)
+    } else {
+        let table = table_of(source, line);
+        let whole = key_of(source, line);
+        let key = source.text.get(span.clone()).unwrap_or_default();
+        if whole == key || whole.ends_with(&format!(".{key}")) {
+            let same = |earlier: &usize| key_of(source, *earlier) == whole && table_of(source, *earlier) == table;
+            (join(&table, whole), (0..line).find(same))
+        } else {
+            // Within { … }.
+            (join(&join(&table, whole), key), None)
+        }
+    };
+    let rule = match first {
+        Some(first) => format!("given twice, first on line {}", first + 1),
+        None => "given twice".to_owned(),
+    };
+    source.error(&Origin::File(span.clone()), &path, rule).with_remedy("keep one of the two")
+}
