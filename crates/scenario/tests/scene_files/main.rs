@@ -2,6 +2,8 @@
 
 mod reading;
 mod refusing;
+mod resolving;
+mod running;
 mod settings;
 mod writing;
 

@@ -1,0 +1,217 @@
+//! The program from outside: what it writes, what it says, how it exits.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use serde_json::Value;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+fn workspace() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn scenario(name: &str) -> PathBuf {
+    workspace().join("scenarios").join(format!("{name}.toml"))
+}
+
+/// An empty folder of this test's own.
+fn folder(test: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn teeter(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_teeter")).current_dir(folder).args(arguments).output().unwrap()
+}
+
+fn run(folder: &Path, name: &str, arguments: &[&str]) -> Output {
+    let file = scenario(name);
+    let mut all = vec!["run", file.to_str().unwrap(), "--out", "out"];
+    all.extend(arguments);
+    teeter(folder, &all)
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+fn table(path: &Path) -> (Vec<String>, Vec<Vec<String>>) {
+    let text = std::fs::read_to_string(path).unwrap();
+    let mut lines = text.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
+    (lines.next().unwrap(), lines.collect())
+}
+
+fn summary(folder: &Path) -> Value {
+    serde_json::from_str(&std::fs::read_to_string(folder.join("out/summary.json")).unwrap()).unwrap()
+}
+
+const FILES: [&str; 6] =
+    ["contacts.csv", "energy.csv", "impacts.csv", "scene.toml", "summary.json", "trajectory.csv"];
+
+fn files(folder: &Path) -> Vec<String> {
+    let mut names: Vec<_> =
+        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_run_writes_its_files_with_the_columns_of_the_contract() {
+    let folder = folder("files");
+    let output = run(&folder, "free-rocking-on-beam", &["--set", "beam.table.probes=['9 cm']"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(output.stdout.is_empty(), "results go to files");
+    assert_eq!(files(&folder.join("out")), FILES);
+    let header = |file: &str| table(&folder.join("out").join(file)).0.join(",");
+    assert_eq!(
+        header("trajectory.csv"),
+        "t,rocker.x,rocker.y,rocker.phi,rocker.vx,rocker.vy,rocker.omega,table.w_mid,table.v_mid,table.w@0.09"
+    );
+    assert_eq!(header("contacts.csv"), "t,contact,a,b,point,gap,p_n,p_t,u_n,u_t,state");
+    assert_eq!(header("impacts.csv"), "t,contact,a,b,point,impulse_n,impulse_t,u_n_before,u_n_after");
+    assert_eq!(
+        header("energy.csv"),
+        "t,kinetic,elastic,gravity,external,contact,friction,viscous,numerical,projection,residual"
+    );
+    let rows = table(&folder.join("out/trajectory.csv")).1;
+    assert_eq!(rows.len(), 501, "t = 0 and every millisecond");
+    assert_eq!((rows[0][0].as_str(), rows[500][0].as_str()), ("0.0", "0.5"));
+
+    let summary = summary(&folder);
+    for key in ["title", "version", "scheme", "dt", "steps", "wall_seconds", "us_per_step", "contact", "max_penetration",
+        "energy", "impacts", "crossings", "peaks", "horizon", "ended", "model", "warnings"]
+    {
+        assert!(summary.get(key).is_some(), "{key}");
+    }
+    assert_eq!((summary["ended"].as_str(), summary["steps"].as_u64()), (Some("complete"), Some(5000)));
+    assert!(summary["energy"]["largest_residual"].as_f64().unwrap() <= 1e-12);
+    assert_eq!(summary["contact"]["unconverged_steps"], 0);
+    let peaks: Vec<f64> = summary["peaks"].as_array().unwrap().iter().map(|p| p["phi"].as_f64().unwrap()).collect();
+    let crossings = summary["crossings"].as_array().unwrap();
+    assert_eq!((peaks.len(), crossings.len()), (3, 3), "the release is the first peak, the last is unfinished");
+    assert!((peaks[0] - 5_f64.to_radians()).abs() < 1e-15);
+    // From the independent implementation.
+    assert!((crossings[0]["t"].as_f64().unwrap() - 0.10629444291395758).abs() < 1e-11);
+}
+
+#[test]
+fn the_impulses_of_the_contact_table_add_up_to_the_change_of_momentum() {
+    let folder = folder("momentum");
+    assert!(run(&folder, "free-rocking-on-ground", &[]).status.success());
+    let (_, motion) = table(&folder.join("out/trajectory.csv"));
+    let (_, contacts) = table(&folder.join("out/contacts.csv"));
+    let number = |text: &String| text.parse::<f64>().unwrap();
+    let (mut p_n, mut p_t) = (0.0, 0.0);
+    for row in &contacts {
+        p_n += number(&row[6]);
+        p_t += number(&row[7]);
+    }
+    let last = motion.last().unwrap();
+    let (t, m) = (number(&last[0]), 0.32805);
+    assert!((m * number(&last[4]) - p_t).abs() < 1e-12);
+    assert!((m * number(&last[5]) - (p_n - m * 9.81 * t)).abs() < 1e-11);
+    assert!(contacts.iter().all(|row| row[10] == "stick" || row[10] == "open"), "it never slides on µ = 0.5");
+}
+
+#[test]
+fn the_scene_as_run_gives_the_same_bytes() {
+    let folder = folder("again");
+    assert!(run(&folder, "drop", &["--set", "time.end=0.3 s", "--set", "contact.base.restitution=0.5"]).status.success());
+    let again = teeter(&folder, &["run", "out/scene.toml", "--out", "again", "--quiet"]);
+    assert!(again.status.success() && again.stderr.is_empty(), "{}", stderr(&again));
+    for file in FILES.iter().filter(|file| **file != "summary.json") {
+        let read = |run: &str| std::fs::read(folder.join(run).join(file)).unwrap();
+        assert_eq!(read("out"), read("again"), "{file}");
+    }
+    let stable = |run: &str| {
+        let text = std::fs::read_to_string(folder.join(run).join("summary.json")).unwrap();
+        let timing = |line: &&str| !line.contains("wall_seconds") && !line.contains("us_per_step");
+        text.lines().filter(timing).collect::<Vec<_>>().join("\n")
+    };
+    assert_eq!(stable("out"), stable("again"));
+}
+
+#[test]
+fn bad_scenes_exit_with_2_and_write_nothing() {
+    let folder = folder("bad");
+    let cases: [(&[&str], &[&str]); 4] = [
+        (&["--set", "beam.table.thicknes=2 mm"], &["beam.table.thicknes", "did you mean", "thickness"]),
+        (&["--set", "beam.table.span=36 kg"], &["beam.table.span", "length", "mass"]),
+        (&["--set", "time.step=0 s"], &["time.step", "greater than 0 s"]),
+        (&["--set", "solver.method=magic"], &["solver.method", "auto", "pgs", "enumeration"]),
+    ];
+    for (arguments, parts) in cases {
+        let output = run(&folder, "free-rocking-on-beam", arguments);
+        let message = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        for part in parts {
+            assert!(message.contains(part), "«{part}» is missing in:\n{message}");
+        }
+        assert!(files(&folder).is_empty(), "{:?}", files(&folder));
+    }
+    for (file, part) in [("nowhere.toml", "no such file"), (".", "is a folder")] {
+        let output = teeter(&folder, &["run", file]);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).contains(part), "{}", stderr(&output));
+    }
+    assert_eq!(teeter(&folder, &["run"]).status.code(), Some(2), "usage");
+    assert_eq!(teeter(&folder, &["rum", "x.toml"]).status.code(), Some(2), "usage");
+}
+
+#[test]
+fn results_are_not_replaced_without_force() {
+    let folder = folder("force");
+    let short = ["--set", "time.end=10 ms"];
+    assert!(run(&folder, "sliding", &short).status.success());
+    let again = run(&folder, "sliding", &short);
+    assert_eq!(again.status.code(), Some(2));
+    assert!(stderr(&again).contains("--force"), "{}", stderr(&again));
+    assert!(run(&folder, "sliding", &["--set", "time.end=10 ms", "--force"]).status.success());
+    std::fs::write(folder.join("file"), "").unwrap();
+    let file = teeter(&folder, &["run", scenario("sliding").to_str().unwrap(), "--out", "file"]);
+    assert_eq!(file.status.code(), Some(2));
+    assert!(stderr(&file).contains("not a folder"));
+}
+
+#[test]
+fn an_unsolved_step_is_warned_of_and_with_require_convergence_ends_the_run() {
+    let folder = folder("unconverged");
+    // One sweep of Gauss–Seidel can't solve two coupled contacts.
+    let hard = ["--set", "solver.method=pgs", "--set", "solver.max_iterations=1", "--set", "solver.tolerance=1e-14"];
+    let output = run(&folder, "sliding", &hard);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let message = stderr(&output);
+    assert!(message.contains("2 contacts") && message.contains("residual") && message.contains("t = "), "{message}");
+    assert!(message.matches("was not solved").count() <= 6, "rate-limited:\n{message}");
+    let unconverged = summary(&folder)["contact"]["unconverged_steps"].as_u64().unwrap();
+    assert!(unconverged > 10);
+    let warning = &summary(&folder)["warnings"][0];
+    assert_eq!((warning["code"].as_str(), warning["count"].as_u64()), (Some("unconverged"), Some(unconverged)));
+
+    let strict = [&hard[..], &["--force", "--set", "solver.require_convergence=true"]].concat();
+    let output = run(&folder, "sliding", &strict);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stderr(&output).contains("the run ended at t = "), "{}", stderr(&output));
+    let summary = summary(&folder);
+    assert_eq!(summary["ended"], "unconverged");
+    let (_, rows) = table(&folder.join("out/trajectory.csv"));
+    assert_eq!(rows.len() as u64, summary["steps"].as_u64().unwrap() + 1, "all rows so far");
+}
+
+#[test]
+fn a_scene_from_standard_input() {
+    let folder = folder("stdin");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_teeter"))
+        .current_dir(&folder)
+        .args(["run", "-", "--quiet"])
+        .stdin(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(&std::fs::read(scenario("sliding")).unwrap()).unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert_eq!(files(&folder.join("runs/stdin")), FILES);
+}

@@ -1,0 +1,167 @@
+//! What takes two keys to be wrong: each refused with a message that names the key, the rule and the remedy.
+
+use crate::ROCKING;
+use teeter_scenario::load;
+use teeter_scenario::simulation::Simulation;
+
+/// The message for the interface's scene with lines replaced.
+fn refused(changes: &[(&str, &str)]) -> String {
+    let mut text = ROCKING.to_owned();
+    for (from, to) in changes {
+        assert!(text.contains(from), "{from}");
+        text = text.replace(from, to);
+    }
+    match load(text.as_bytes(), "scene.toml", "scene", &[]) {
+        Err(errors) => errors.to_string(),
+        Ok(resolved) => match Simulation::new(&resolved.scene) {
+            Err(error) => error.to_string(),
+            Ok(_) => panic!("accepted: {changes:?}"),
+        },
+    }
+}
+
+fn set(sets: &[(&str, &str)]) -> Result<(teeter_scenario::resolve::Resolved, Simulation), String> {
+    let sets: Vec<_> = sets.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
+    let resolved = load(ROCKING.as_bytes(), "scene.toml", "scene", &sets).map_err(|errors| errors.to_string())?;
+    let simulation = Simulation::new(&resolved.scene).map_err(|error| error.to_string())?;
+    Ok((resolved, simulation))
+}
+
+#[track_caller]
+fn says(message: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(message.contains(part), "«{part}» is missing in:\n{message}");
+    }
+}
+
+#[test]
+fn references_to_nothing() {
+    says(
+        &refused(&[("[block.rocker]\nmaterial = \"aluminium\"", "[block.rocker]\nmaterial = \"steel\"")]),
+        &["scene.toml:", "block.rocker.material", "`steel` is not defined", "aluminium"],
+    );
+    says(
+        &refused(&[("[\"rocker\", \"table\"]", "[\"rocker\", \"tabel\"]")]),
+        &["contact.feet.between", "there is no body `tabel`", "rocker, table"],
+    );
+    says(&refused(&[("[\"rocker\", \"table\"]", "[\"rocker\", \"rocker\"]")]), &["`rocker` can't touch itself"]);
+    says(
+        &refused(&[("on       = \"table\"", "on = \"ground\"")]),
+        &["block.rocker.on", "there is no body `ground`", "add [ground]"],
+    );
+    says(&refused(&[("youngs_modulus = \"69 GPa\"", "")]), &["material.aluminium.youngs_modulus", "used by beam.table"]);
+}
+
+#[test]
+fn a_block_needs_a_contact_with_what_it_stands_on() {
+    says(
+        &refused(&[("[\"rocker\", \"table\"]", "[\"rocker\", \"ground\"]"), ("[world]", "[ground]\n[world]")]),
+        &["block.rocker.on", "no contact joins the two", "between = [\"rocker\", \"table\"]"],
+    );
+}
+
+#[test]
+fn places_given_twice_or_not_at_all() {
+    let position = "position = [\"18 cm\", \"6.75 cm\"]\non = \"table\"";
+    says(&refused(&[("on       = \"table\"", position)]), &["position already says where the block is"]);
+    says(&refused(&[("on       = \"table\"", ""), ("at       =", "# at ="), ("tilt     =", "# tilt =")]), &[
+        "block.rocker",
+        "the block has no place",
+    ]);
+}
+
+#[test]
+fn damping_given_twice() {
+    let Err(message) = set(&[("beam.table.viscous_damping", "0.4 N s/m^2")]) else { panic!("accepted") };
+    says(&message, &["viscous_damping", "damping_ratio", "keep one"]);
+}
+
+#[test]
+fn blocks_that_do_not_fit_on_the_beam() {
+    let of = |sets: &[(&str, &str)]| set(sets).err().expect("accepted");
+    says(&of(&[("block.rocker.width", "50 cm")]), &["0.5 m wide", "0.36 m"]);
+    says(&of(&[("block.rocker.at", "35 cm"), ("block.rocker.tilt", "0 deg")]), &["bottom-right", "0.365 m", "0.36 m"]);
+    says(&of(&[("block.rocker.at", "1 cm")]), &["bottom-left"]);
+    assert!(set(&[("block.rocker.at", "35 cm")]).is_ok(), "the lifted corner may hang over the end");
+}
+
+#[test]
+fn a_corner_that_starts_inside_a_surface() {
+    let message = refused(&[
+        ("on       = \"table\"", "position = [\"18 cm\", \"6.65 cm\"]"),
+        ("at       =", "# at ="),
+        ("tilt     =", "# tilt ="),
+        ("start     = \"static\"", "start = \"undeformed\""),
+    ]);
+    says(&message, &["block `rocker`", "bottom-left", "1.0", "e-3 m below", "table"]);
+}
+
+#[test]
+fn beams_that_can_move_have_no_static_start() {
+    for supports in ["['free', 'free']", "['pinned', 'free']"] {
+        let message = set(&[("beam.table.supports", supports), ("beam.table.damping_ratio.ratio", "0")]).err();
+        says(&message.expect("accepted"), &["beam.table.start", "rigid body", "clamp one end or pin both"]);
+    }
+    set(&[("beam.table.supports", "['free', 'clamped']"), ("beam.table.thickness", "5 mm")]).unwrap();
+    assert!(set(&[("beam.table.supports", "['free', 'free']"), ("beam.table.start", "undeformed")]).is_ok());
+}
+
+#[test]
+fn times_that_do_not_fit_together() {
+    let of = |sets: &[(&str, &str)]| set(sets).err().expect("accepted");
+    says(&of(&[("time.step", "2 s")]), &["time.step", "longer than the whole run of 0.5 s"]);
+    says(&of(&[("time.end", "1e6 s"), ("time.step", "1e-9 s")]), &["1.0e15 steps", "limit", "years"]);
+    let (resolved, _) = set(&[("time.end", "0.50005 s")]).unwrap();
+    assert_eq!(resolved.scene.time.steps, 5001);
+    says(&resolved.warnings[0].to_string(), &["warning", "time.end", "goes on to 0.5001 s"]);
+    let (resolved, _) = set(&[("time.end", "0.3 s"), ("time.step", "0.1 s")]).unwrap();
+    assert_eq!((resolved.scene.time.steps, resolved.warnings.len()), (3, 0), "0.3/0.1 is 2.9999999999999996");
+}
+
+#[test]
+fn theta_below_a_half_needs_leave_and_names_the_largest_step() {
+    let message = set(&[("time.theta", "0.3")]).err().expect("accepted");
+    says(&message, &["time.theta", "stable only for steps up to", "allow_conditional_stability = true"]);
+    let leave = ("time.allow_conditional_stability", "true");
+    let (resolved, _) = set(&[("time.theta", "0.3"), leave]).unwrap();
+    says(&resolved.warnings[0].to_string(), &["stable only for steps up to"]);
+    let undamped = set(&[("time.theta", "0.3"), ("beam.table.damping_ratio.ratio", "0")]).err().expect("accepted");
+    says(&undamped, &["grow at every step size"]);
+}
+
+#[test]
+fn probes_and_rows_within_reason() {
+    let of = |sets: &[(&str, &str)]| set(sets).err().expect("accepted");
+    says(&of(&[("beam.table.probes", "['40 cm']")]), &["probes", "0.4 m", "0.36"]);
+    says(&of(&[("time.end", "1e5 s"), ("output.every", "1e-4 s")]), &["output.every", "GB"]);
+}
+
+#[test]
+fn a_tilt_beyond_the_critical_angle_is_a_warning_that_names_it() {
+    let (resolved, _) = set(&[("block.rocker.tilt", "13 deg")]).unwrap();
+    says(&resolved.warnings[0].to_string(), &["block.rocker.tilt", "12.53 deg"]);
+}
+
+#[test]
+fn the_gap_tolerance_follows_the_largest_block() {
+    let of = |size: &str| {
+        let (resolved, _) = set(&[
+            ("block.rocker.height", size),
+            ("beam.table.start", "undeformed"),
+        ])
+        .unwrap();
+        resolved.scene.time.gap_tolerance
+    };
+    assert_eq!(of("13.5 cm"), 1e-12);
+    assert_eq!(of("1 m"), 1e-12);
+    assert_eq!(of("2 m"), 2e-11);
+}
+
+#[test]
+fn the_scene_as_run_runs_again_to_the_same_bytes() {
+    let (resolved, _) = set(&[("time.step", "50us")]).unwrap();
+    let written = resolved.document.to_toml();
+    let again = load(written.as_bytes(), "scene.toml", "other", &[]).unwrap();
+    assert_eq!(again.scene, resolved.scene);
+    assert_eq!(again.document.to_toml(), written);
+}
