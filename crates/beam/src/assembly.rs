@@ -37,11 +37,7 @@ pub(crate) fn assemble(
             }
             for a in 2 - layout.free(node)..=b {
                 let left = if node > 0 { element[2 + a][2 + b] } else { 0.0 };
-                let right = if node < layout.elements {
-                    element[a][b]
-                } else {
-                    0.0
-                };
+                let right = if node < layout.elements { element[a][b] } else { 0.0 };
                 values.push(left + right);
             }
         }

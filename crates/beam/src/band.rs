@@ -58,13 +58,8 @@ mod tests {
     #[test]
     fn substitution_undoes_a_product_with_the_factor() {
         // Lower columns of L, the band cut off at the end; A = L Lᵀ.
-        let columns: [&[f64]; 5] = [
-            &[2.0, 0.5, -1.0, 0.25],
-            &[1.5, -0.3, 0.7, 0.2],
-            &[3.0, 1.0, -0.5],
-            &[0.5, 0.1],
-            &[4.0],
-        ];
+        let columns: [&[f64]; 5] =
+            [&[2.0, 0.5, -1.0, 0.25], &[1.5, -0.3, 0.7, 0.2], &[3.0, 1.0, -0.5], &[0.5, 0.1], &[4.0]];
         let mut start = vec![0];
         for column in columns {
             start.push(start[start.len() - 1] + column.len());
@@ -78,15 +73,9 @@ mod tests {
         }
         let mut f = [0.0; 5];
         for j in 0..5 {
-            columns[j]
-                .iter()
-                .zip(&mut f[j..])
-                .for_each(|(l, f)| *f += l * upper_x[j]);
+            columns[j].iter().zip(&mut f[j..]).for_each(|(l, f)| *f += l * upper_x[j]);
         }
         band.solve(&mut f);
-        assert!(
-            f.iter().zip(&x).all(|(f, x)| (f - x).abs() < 1e-14),
-            "{f:?}"
-        );
+        assert!(f.iter().zip(&x).all(|(f, x)| (f - x).abs() < 1e-14), "{f:?}");
     }
 }

@@ -57,18 +57,11 @@ impl Beam {
         spec.validate()?;
         let layout = Layout::new(spec.elements, spec.supports);
         let length = spec.span / spec.elements as f64;
-        let element = Element::new(
-            length,
-            spec.section.bending_stiffness,
-            spec.section.mass_per_length,
-        );
-        let damping_of_mass =
-            spec.damping.viscous / spec.section.mass_per_length + spec.damping.rayleigh_mass;
+        let element = Element::new(length, spec.section.bending_stiffness, spec.section.mass_per_length);
+        let damping_of_mass = spec.damping.viscous / spec.section.mass_per_length + spec.damping.rayleigh_mass;
         let (m, k) = (element.mass_matrix(), element.stiffness());
         let c = std::array::from_fn(|i| {
-            std::array::from_fn(|j| {
-                damping_of_mass * m[i][j] + spec.damping.rayleigh_stiffness * k[i][j]
-            })
+            std::array::from_fn(|j| damping_of_mass * m[i][j] + spec.damping.rayleigh_stiffness * k[i][j])
         });
         let pattern = pattern(&layout);
         // The analysis of a valid band can only fail for want of memory.
@@ -163,11 +156,7 @@ impl Beam {
     pub fn from_nodes(&self, nodal: &[[f64; 2]]) -> Result<Vec<f64>, BeamError> {
         check_len("nodal", self.nodes(), nodal.len())?;
         if let Some(&value) = nodal.iter().flatten().find(|value| !value.is_finite()) {
-            return Err(BeamError::Value {
-                field: "nodal",
-                value,
-                rule: "finite",
-            });
+            return Err(BeamError::Value { field: "nodal", value, rule: "finite" });
         }
         let largest = |k: usize| nodal.iter().fold(0.0_f64, |m, pair| m.max(pair[k].abs()));
         let zero = [largest(0), largest(1)].map(|size| SUPPORT_TOLERANCE * size);
@@ -178,12 +167,7 @@ impl Beam {
                 let value = pair[component];
                 if value.abs() > zero[component] {
                     let support = self.support_of(node);
-                    return Err(BeamError::BrokenSupport {
-                        node,
-                        component,
-                        value,
-                        support,
-                    });
+                    return Err(BeamError::BrokenSupport { node, component, value, support });
                 }
             }
             q.extend(&pair[fixed..]);
@@ -237,14 +221,7 @@ pub(crate) mod tests {
 
     fn build(elements: usize, supports: [Support; 2], damping: Damping) -> Beam {
         let section = Section::new(2.0, 3.0).unwrap();
-        Beam::new(BeamSpec {
-            span: 1.0,
-            elements,
-            section,
-            supports,
-            damping,
-        })
-        .unwrap()
+        Beam::new(BeamSpec { span: 1.0, elements, section, supports, damping }).unwrap()
     }
 
     pub(crate) fn beam(elements: usize, supports: [Support; 2]) -> Beam {
@@ -252,15 +229,7 @@ pub(crate) mod tests {
     }
 
     pub(crate) fn damped(elements: usize, supports: [Support; 2]) -> Beam {
-        build(
-            elements,
-            supports,
-            Damping {
-                viscous: 0.7,
-                rayleigh_mass: 0.3,
-                rayleigh_stiffness: 0.01,
-            },
-        )
+        build(elements, supports, Damping { viscous: 0.7, rayleigh_mass: 0.3, rayleigh_stiffness: 0.01 })
     }
 
     /// Values without a pattern that a support or a symmetry could hide.
@@ -284,19 +253,10 @@ pub(crate) mod tests {
         for supports in all_supports() {
             let beam = beam(3, supports);
             for matrix in [beam.damping(), beam.stiffness()] {
-                assert_eq!(
-                    matrix.symbolic().col_ptr(),
-                    beam.mass().symbolic().col_ptr()
-                );
-                assert_eq!(
-                    matrix.symbolic().row_idx(),
-                    beam.mass().symbolic().row_idx()
-                );
+                assert_eq!(matrix.symbolic().col_ptr(), beam.mass().symbolic().col_ptr());
+                assert_eq!(matrix.symbolic().row_idx(), beam.mass().symbolic().row_idx());
             }
-            let (w, slope) = (
-                beam.dof(1, Dof::Deflection).unwrap(),
-                beam.dof(1, Dof::Slope).unwrap(),
-            );
+            let (w, slope) = (beam.dof(1, Dof::Deflection).unwrap(), beam.dof(1, Dof::Slope).unwrap());
             for matrix in [beam.mass(), beam.damping(), beam.stiffness()] {
                 assert_eq!(matrix.get(w, slope), Some(&0.0), "{supports:?}");
             }
@@ -324,11 +284,7 @@ pub(crate) mod tests {
         for supports in all_supports() {
             let beam = beam(4, supports);
             let q = wave(beam.dofs());
-            assert_eq!(
-                beam.from_nodes(&beam.to_nodes(&q)).unwrap(),
-                q,
-                "{supports:?}"
-            );
+            assert_eq!(beam.from_nodes(&beam.to_nodes(&q)).unwrap(), q, "{supports:?}");
         }
     }
 

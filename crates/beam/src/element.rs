@@ -28,12 +28,7 @@ impl Element {
     /// K_e = EI ∫ N''ᵀN'' dx.
     pub(crate) fn stiffness(&self) -> [[f64; 4]; 4] {
         let l = self.length;
-        let table = [
-            [12.0, 6.0, -12.0, 6.0],
-            [6.0, 4.0, -6.0, 2.0],
-            [-12.0, -6.0, 12.0, -6.0],
-            [6.0, 2.0, -6.0, 4.0],
-        ];
+        let table = [[12.0, 6.0, -12.0, 6.0], [6.0, 4.0, -6.0, 2.0], [-12.0, -6.0, 12.0, -6.0], [6.0, 2.0, -6.0, 4.0]];
         scaled(table, self.bend / (l * l), l)
     }
 
@@ -53,12 +48,7 @@ impl Element {
     pub(crate) fn shape(&self, xi: f64) -> [f64; 4] {
         let (l, eta) = (self.length, 1.0 - xi);
         // 1 − 3ξ² + 2ξ³ = (1−ξ)²(1+2ξ) and so on: products keep small values accurate near the far node.
-        [
-            eta * eta * (1.0 + 2.0 * xi),
-            l * xi * eta * eta,
-            xi * xi * (1.0 + 2.0 * eta),
-            -l * xi * xi * eta,
-        ]
+        [eta * eta * (1.0 + 2.0 * xi), l * xi * eta * eta, xi * xi * (1.0 + 2.0 * eta), -l * xi * xi * eta]
     }
 
     /// dN/dx at ξ ∈ [0, 1].
@@ -73,10 +63,7 @@ impl Element {
     /// d₂ = θ₁ + θ₂ − 2(w₂ − w₁)/l. The rigid motions drop out here, before they are multiplied by a stiffness.
     #[inline]
     pub(crate) fn deformations(&self, a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-        [
-            b[1] - a[1],
-            a[1] + b[1] - self.two_per_length * (b[0] - a[0]),
-        ]
+        [b[1] - a[1], a[1] + b[1] - self.two_per_length * (b[0] - a[0])]
     }
 
     /// Forces of the element on its two nodes for the generalised moments of the two deformations: their transpose.
@@ -129,24 +116,12 @@ mod tests {
     /// Five-point Gauss–Legendre on [0, 1], exact to degree 9.
     fn integrate(f: impl Fn(f64) -> f64) -> f64 {
         let (a, b) = (0.906_179_845_938_664, 0.538_469_310_105_683_1);
-        let (wa, wb, wc) = (
-            0.236_926_885_056_189_08,
-            0.478_628_670_499_366_47,
-            0.568_888_888_888_888_9,
-        );
-        [(-a, wa), (-b, wb), (0.0, wc), (b, wb), (a, wa)]
-            .iter()
-            .map(|(s, w)| 0.5 * w * f(0.5 * (1.0 + s)))
-            .sum()
+        let (wa, wb, wc) = (0.236_926_885_056_189_08, 0.478_628_670_499_366_47, 0.568_888_888_888_888_9);
+        [(-a, wa), (-b, wb), (0.0, wc), (b, wb), (a, wa)].iter().map(|(s, w)| 0.5 * w * f(0.5 * (1.0 + s))).sum()
     }
 
     fn curvature(xi: f64) -> [f64; 4] {
-        [
-            (12.0 * xi - 6.0) / (L * L),
-            (6.0 * xi - 4.0) / L,
-            (6.0 - 12.0 * xi) / (L * L),
-            (6.0 * xi - 2.0) / L,
-        ]
+        [(12.0 * xi - 6.0) / (L * L), (6.0 * xi - 4.0) / L, (6.0 - 12.0 * xi) / (L * L), (6.0 * xi - 2.0) / L]
     }
 
     #[test]
@@ -173,10 +148,7 @@ mod tests {
         }
         let close = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-15;
         assert!(close(k[0][0], 12.0 * EI / (L * L * L)) && close(k[1][3], 2.0 * EI / L));
-        assert!(
-            close(m[0][0], 156.0 * RHO_A * L / 420.0)
-                && close(m[1][3], -3.0 * RHO_A * L * L * L / 420.0)
-        );
+        assert!(close(m[0][0], 156.0 * RHO_A * L / 420.0) && close(m[1][3], -3.0 * RHO_A * L * L * L / 420.0));
     }
 
     #[test]
@@ -185,18 +157,8 @@ mod tests {
         for k in 0..=20 {
             let x: f64 = f64::from(k) / 20.0;
             let (x2, x3) = (x * x, x * x * x);
-            let n = [
-                1.0 - 3.0 * x2 + 2.0 * x3,
-                L * (x - 2.0 * x2 + x3),
-                3.0 * x2 - 2.0 * x3,
-                L * (x3 - x2),
-            ];
-            let dn = [
-                (6.0 * x2 - 6.0 * x) / L,
-                1.0 - 4.0 * x + 3.0 * x2,
-                (6.0 * x - 6.0 * x2) / L,
-                3.0 * x2 - 2.0 * x,
-            ];
+            let n = [1.0 - 3.0 * x2 + 2.0 * x3, L * (x - 2.0 * x2 + x3), 3.0 * x2 - 2.0 * x3, L * (x3 - x2)];
+            let dn = [(6.0 * x2 - 6.0 * x) / L, 1.0 - 4.0 * x + 3.0 * x2, (6.0 * x - 6.0 * x2) / L, 3.0 * x2 - 2.0 * x];
             for i in 0..4 {
                 assert!((e.shape(x)[i] - n[i]).abs() < 4e-16, "N{i} at {x}");
                 assert!((e.shape_slope(x)[i] - dn[i]).abs() < 4e-15, "N'{i} at {x}");
@@ -208,11 +170,8 @@ mod tests {
     fn energies_are_the_quadratic_forms_of_the_matrices() {
         let e = element();
         let q = [0.3, -1.1, 0.8, 0.45];
-        let form = |m: [[f64; 4]; 4]| -> f64 {
-            (0..4)
-                .map(|i| (0..4).map(|j| q[i] * m[i][j] * q[j]).sum::<f64>())
-                .sum()
-        };
+        let form =
+            |m: [[f64; 4]; 4]| -> f64 { (0..4).map(|i| (0..4).map(|j| q[i] * m[i][j] * q[j]).sum::<f64>()).sum() };
         let (a, b) = ([q[0], q[1]], [q[2], q[3]]);
         assert!((e.twice_elastic_energy(a, b) / form(e.stiffness()) - 1.0).abs() < 1e-14);
         assert!((e.twice_kinetic_energy(a, b) / form(e.mass_matrix()) - 1.0).abs() < 1e-14);

@@ -74,9 +74,7 @@ pub enum FactorError {
         value: f64,
     },
     /// The weighted sum is not positive definite, at least not to rounding.
-    #[error(
-        "{weights:?}: the weighted sum of M, C and K is not positive definite (found at pivot {pivot})"
-    )]
+    #[error("{weights:?}: the weighted sum of M, C and K is not positive definite (found at pivot {pivot})")]
     NotPositiveDefinite {
         /// The weights asked for.
         weights: MatrixWeights,
@@ -139,32 +137,11 @@ pub enum StaticError {
 }
 
 /// `Ok` for a finite number that satisfies `rule`, else the error that names it.
-pub(crate) fn check(
-    field: &'static str,
-    value: f64,
-    holds: bool,
-    rule: &'static str,
-) -> Result<(), BeamError> {
-    if value.is_finite() && holds {
-        Ok(())
-    } else {
-        Err(BeamError::Value { field, value, rule })
-    }
+pub(crate) fn check(field: &'static str, value: f64, holds: bool, rule: &'static str) -> Result<(), BeamError> {
+    if value.is_finite() && holds { Ok(()) } else { Err(BeamError::Value { field, value, rule }) }
 }
 
 /// `Ok` where a slice has one entry per degree of freedom.
-pub(crate) fn check_len(
-    field: &'static str,
-    expected: usize,
-    found: usize,
-) -> Result<(), BeamError> {
-    if found == expected {
-        Ok(())
-    } else {
-        Err(BeamError::Length {
-            field,
-            expected,
-            found,
-        })
-    }
+pub(crate) fn check_len(field: &'static str, expected: usize, found: usize) -> Result<(), BeamError> {
+    if found == expected { Ok(()) } else { Err(BeamError::Length { field, expected, found }) }
 }

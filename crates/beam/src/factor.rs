@@ -5,8 +5,7 @@ use std::sync::Arc;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
 use faer::sparse::linalg::cholesky::simplicial::{
-    self, SymbolicSimplicialCholesky, factorize_simplicial_numeric_llt,
-    factorize_simplicial_numeric_llt_scratch,
+    self, SymbolicSimplicialCholesky, factorize_simplicial_numeric_llt, factorize_simplicial_numeric_llt_scratch,
 };
 use faer::sparse::{SparseColMat, SymbolicSparseColMat};
 
@@ -30,11 +29,7 @@ pub struct MatrixWeights {
 
 impl MatrixWeights {
     fn validate(&self) -> Result<(), FactorError> {
-        for (field, value) in [
-            ("mass", self.mass),
-            ("damping", self.damping),
-            ("stiffness", self.stiffness),
-        ] {
+        for (field, value) in [("mass", self.mass), ("damping", self.damping), ("stiffness", self.stiffness)] {
             if !value.is_finite() {
                 return Err(FactorError::Weight { field, value });
             }
@@ -57,10 +52,7 @@ pub struct Factor {
 
 impl std::fmt::Debug for Factor {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Factor")
-            .field("dofs", &self.dofs())
-            .field("weights", &self.weights)
-            .finish_non_exhaustive()
+        f.debug_struct("Factor").field("dofs", &self.dofs()).field("weights", &self.weights).finish_non_exhaustive()
     }
 }
 
@@ -80,11 +72,7 @@ impl Factor {
     /// # Panics
     /// If `f` has not [`Factor::dofs`] entries.
     pub fn solve(&self, f: &mut [f64]) {
-        assert_eq!(
-            f.len(),
-            self.dofs(),
-            "a right-hand side must have one entry per degree of freedom"
-        );
+        assert_eq!(f.len(), self.dofs(), "a right-hand side must have one entry per degree of freedom");
         self.band.solve(f);
     }
 
@@ -92,17 +80,8 @@ impl Factor {
     fn update(&mut self, beam: &Beam, weights: MatrixWeights) -> Result<(), FactorError> {
         weights.validate()?;
         self.weights = weights;
-        let MatrixWeights {
-            mass,
-            damping,
-            stiffness,
-        } = weights;
-        let parts = beam
-            .mass()
-            .val()
-            .iter()
-            .zip(beam.damping().val())
-            .zip(beam.stiffness().val());
+        let MatrixWeights { mass, damping, stiffness } = weights;
+        let parts = beam.mass().val().iter().zip(beam.damping().val()).zip(beam.stiffness().val());
         for (a, ((m, c), k)) in self.matrix.val_mut().iter_mut().zip(parts) {
             *a = mass * m + damping * c + stiffness * k;
         }
@@ -121,29 +100,22 @@ impl Factor {
             Err(LltError::NonPositivePivot { index }) => {
                 // Half a factor must not pass for one.
                 self.band.invalidate();
-                Err(FactorError::NotPositiveDefinite {
-                    weights,
-                    pivot: index,
-                })
+                Err(FactorError::NotPositiveDefinite { weights, pivot: index })
             }
         }
     }
 }
 
 /// The symbolic factorisation of a banded pattern in its own order (nothing fills in outside the band).
-pub(crate) fn analyse(
-    pattern: &SymbolicSparseColMat<usize>,
-) -> Option<SymbolicSimplicialCholesky<usize>> {
+pub(crate) fn analyse(pattern: &SymbolicSparseColMat<usize>) -> Option<SymbolicSimplicialCholesky<usize>> {
     let n = pattern.ncols();
     let mut tree = vec![0_isize; n];
     let mut counts = vec![0_usize; n];
-    let request =
-        simplicial::prefactorize_symbolic_cholesky_scratch::<usize>(n, pattern.row_idx().len())
-            .or(simplicial::factorize_simplicial_symbolic_cholesky_scratch::<usize>(n));
+    let request = simplicial::prefactorize_symbolic_cholesky_scratch::<usize>(n, pattern.row_idx().len())
+        .or(simplicial::factorize_simplicial_symbolic_cholesky_scratch::<usize>(n));
     let mut buffer = MemBuffer::new(request);
     let stack = MemStack::new(&mut buffer);
-    let tree =
-        simplicial::prefactorize_symbolic_cholesky(&mut tree, &mut counts, pattern.as_ref(), stack);
+    let tree = simplicial::prefactorize_symbolic_cholesky(&mut tree, &mut counts, pattern.as_ref(), stack);
     simplicial::factorize_simplicial_symbolic_cholesky(pattern.as_ref(), tree, &counts, stack).ok()
 }
 
@@ -168,9 +140,7 @@ impl Beam {
     /// ```
     pub fn factor(&self, weights: MatrixWeights) -> Result<Factor, FactorError> {
         let symbolic = Arc::clone(&self.symbolic);
-        let scratch = MemBuffer::new(factorize_simplicial_numeric_llt_scratch::<usize, f64>(
-            self.dofs(),
-        ));
+        let scratch = MemBuffer::new(factorize_simplicial_numeric_llt_scratch::<usize, f64>(self.dofs()));
         let values = vec![0.0; symbolic.len_val()];
         let mut factor = Factor {
             weights,
@@ -204,10 +174,7 @@ impl Beam {
         // By pattern, not by identity: a beam of another section or span may take over the memory.
         let (ours, theirs) = (self.stiffness().symbolic(), factor.matrix.symbolic());
         if ours.col_ptr() != theirs.col_ptr() {
-            return Err(FactorError::OtherBeam {
-                expected: self.dofs(),
-                found: factor.dofs(),
-            });
+            return Err(FactorError::OtherBeam { expected: self.dofs(), found: factor.dofs() });
         }
         factor.update(self, weights)
     }
@@ -219,11 +186,7 @@ mod tests {
     use crate::Support::{Clamped, Free, Pinned};
     use crate::beam::tests::{all_supports, beam, damped, wave};
 
-    const STEP: MatrixWeights = MatrixWeights {
-        mass: 1.0,
-        damping: 5e-3,
-        stiffness: 2.5e-5,
-    };
+    const STEP: MatrixWeights = MatrixWeights { mass: 1.0, damping: 5e-3, stiffness: 2.5e-5 };
 
     #[test]
     fn solving_undoes_the_products_for_all_supports() {
@@ -246,13 +209,7 @@ mod tests {
     #[test]
     fn a_renewed_factor_is_bitwise_a_new_one() {
         let beam = damped(12, [Pinned, Pinned]);
-        let mut renewed = beam
-            .factor(MatrixWeights {
-                mass: 1.0,
-                damping: 0.0,
-                stiffness: 0.0,
-            })
-            .unwrap();
+        let mut renewed = beam.factor(MatrixWeights { mass: 1.0, damping: 0.0, stiffness: 0.0 }).unwrap();
         beam.refactor(STEP, &mut renewed).unwrap();
         let fresh = beam.factor(STEP).unwrap();
         let (mut a, mut b) = (wave(beam.dofs()), wave(beam.dofs()));
@@ -267,10 +224,7 @@ mod tests {
         let beam = beam(6, [Clamped, Free]);
         let mut factor = beam.factor(STEP).unwrap();
         let negative = MatrixWeights { mass: -1.0, ..STEP };
-        assert!(matches!(
-            beam.refactor(negative, &mut factor),
-            Err(FactorError::NotPositiveDefinite { pivot: 1, .. })
-        ));
+        assert!(matches!(beam.refactor(negative, &mut factor), Err(FactorError::NotPositiveDefinite { pivot: 1, .. })));
         let mut x = vec![1.0; beam.dofs()];
         factor.solve(&mut x);
         assert!(x.iter().all(|x| x.is_nan()));
@@ -279,27 +233,9 @@ mod tests {
         factor.solve(&mut x);
         assert!(x.iter().all(|x| x.is_finite()));
         for (field, weights) in [
-            (
-                "mass",
-                MatrixWeights {
-                    mass: f64::NAN,
-                    ..STEP
-                },
-            ),
-            (
-                "damping",
-                MatrixWeights {
-                    damping: f64::INFINITY,
-                    ..STEP
-                },
-            ),
-            (
-                "stiffness",
-                MatrixWeights {
-                    stiffness: f64::NEG_INFINITY,
-                    ..STEP
-                },
-            ),
+            ("mass", MatrixWeights { mass: f64::NAN, ..STEP }),
+            ("damping", MatrixWeights { damping: f64::INFINITY, ..STEP }),
+            ("stiffness", MatrixWeights { stiffness: f64::NEG_INFINITY, ..STEP }),
         ] {
             let text = beam.factor(weights).unwrap_err().to_string();
             assert!(text.contains(field), "{text}");
@@ -309,15 +245,8 @@ mod tests {
     #[test]
     fn the_factor_of_another_beam_is_refused() {
         let mut factor = beam(6, [Clamped, Free]).factor(STEP).unwrap();
-        for other in [
-            beam(7, [Clamped, Free]),
-            beam(6, [Pinned, Pinned]),
-            beam(6, [Free, Free]),
-        ] {
-            assert!(matches!(
-                other.refactor(STEP, &mut factor),
-                Err(FactorError::OtherBeam { .. })
-            ));
+        for other in [beam(7, [Clamped, Free]), beam(6, [Pinned, Pinned]), beam(6, [Free, Free])] {
+            assert!(matches!(other.refactor(STEP, &mut factor), Err(FactorError::OtherBeam { .. })));
         }
     }
 }

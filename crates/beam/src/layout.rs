@@ -24,11 +24,7 @@ pub(crate) struct Layout {
 
 impl Layout {
     pub(crate) fn new(elements: usize, supports: [Support; 2]) -> Self {
-        Self {
-            elements,
-            head: supports[0].free_dofs(),
-            tail: supports[1].free_dofs(),
-        }
+        Self { elements, head: supports[0].free_dofs(), tail: supports[1].free_dofs() }
     }
 
     pub(crate) fn dofs(&self) -> usize {
@@ -48,11 +44,7 @@ impl Layout {
 
     /// Index of the first free dof of `node` (for a clamped last node: one past the end).
     pub(crate) fn first(&self, node: usize) -> usize {
-        if node == 0 {
-            0
-        } else {
-            self.head + 2 * (node - 1)
-        }
+        if node == 0 { 0 } else { self.head + 2 * (node - 1) }
     }
 
     pub(crate) fn dof(&self, node: usize, kind: Dof) -> Option<usize> {
@@ -69,11 +61,7 @@ impl Layout {
     /// A vector as (first node, inner nodes, last node), fixed dofs as 0.
     #[inline]
     pub(crate) fn split<'a>(&self, q: &'a [f64]) -> ([f64; 2], &'a [[f64; 2]], [f64; 2]) {
-        assert_eq!(
-            q.len(),
-            self.dofs(),
-            "a vector must have one entry per degree of freedom"
-        );
+        assert_eq!(q.len(), self.dofs(), "a vector must have one entry per degree of freedom");
         let (head, rest) = q.split_at(self.head);
         let (inner, tail) = rest.split_at(rest.len() - self.tail);
         (pad(head), inner.as_chunks().0, pad(tail))
@@ -81,15 +69,8 @@ impl Layout {
 
     /// As [`Layout::split`], the end nodes as the slices of what is free of them.
     #[inline]
-    pub(crate) fn split_mut<'a>(
-        &self,
-        f: &'a mut [f64],
-    ) -> (&'a mut [f64], &'a mut [[f64; 2]], &'a mut [f64]) {
-        assert_eq!(
-            f.len(),
-            self.dofs(),
-            "a vector must have one entry per degree of freedom"
-        );
+    pub(crate) fn split_mut<'a>(&self, f: &'a mut [f64]) -> (&'a mut [f64], &'a mut [[f64; 2]], &'a mut [f64]) {
+        assert_eq!(f.len(), self.dofs(), "a vector must have one entry per degree of freedom");
         let (head, rest) = f.split_at_mut(self.head);
         let (inner, tail) = rest.split_at_mut(rest.len() - self.tail);
         (head, inner.as_chunks_mut().0, tail)
@@ -124,26 +105,14 @@ mod tests {
 
     #[test]
     fn dofs_are_numbered_in_node_major_order_without_gaps() {
-        for supports in [
-            [Free, Free],
-            [Pinned, Free],
-            [Clamped, Pinned],
-            [Free, Pinned],
-            [Pinned, Pinned],
-        ] {
+        for supports in [[Free, Free], [Pinned, Free], [Clamped, Pinned], [Free, Pinned], [Pinned, Pinned]] {
             for elements in [1, 2, 5] {
                 let layout = Layout::new(elements, supports);
                 let numbers: Vec<usize> = (0..=elements)
-                    .flat_map(|node| {
-                        [Dof::Deflection, Dof::Slope].map(|kind| layout.dof(node, kind))
-                    })
+                    .flat_map(|node| [Dof::Deflection, Dof::Slope].map(|kind| layout.dof(node, kind)))
                     .flatten()
                     .collect();
-                assert_eq!(
-                    numbers,
-                    (0..layout.dofs()).collect::<Vec<_>>(),
-                    "{supports:?} {elements}"
-                );
+                assert_eq!(numbers, (0..layout.dofs()).collect::<Vec<_>>(), "{supports:?} {elements}");
                 assert_eq!(layout.dof(elements + 1, Dof::Slope), None);
             }
         }
@@ -153,9 +122,6 @@ mod tests {
     fn a_pinned_end_keeps_its_slope() {
         let layout = Layout::new(2, [Pinned, Pinned]);
         let (first, inner, last) = layout.split(&[1.0, 2.0, 3.0, 4.0]);
-        assert_eq!(
-            (first, inner, last),
-            ([0.0, 1.0], &[[2.0, 3.0]][..], [0.0, 4.0])
-        );
+        assert_eq!((first, inner, last), ([0.0, 1.0], &[[2.0, 3.0]][..], [0.0, 4.0]));
     }
 }

@@ -59,10 +59,7 @@ impl Beam {
 
     fn shape_for_load(&self, x: f64, f: &[f64]) -> Result<ShapeAt, BeamError> {
         check_len("f", self.dofs(), f.len())?;
-        self.shape_at(x).ok_or(BeamError::OutsideSpan {
-            x,
-            span: self.spec.span,
-        })
+        self.shape_at(x).ok_or(BeamError::OutsideSpan { x, span: self.spec.span })
     }
 
     /// f += ∫ Nᵀ p dx for a distributed load p(x), N/m, upwards: four Gauss points an element, exact where p is a
@@ -81,11 +78,7 @@ impl Beam {
     /// assert!((total - 1.0).abs() < 1e-15);
     /// # Ok::<(), teeter_beam::BeamError>(())
     /// ```
-    pub fn add_distributed_load(
-        &self,
-        load: &dyn Fn(f64) -> f64,
-        f: &mut [f64],
-    ) -> Result<(), BeamError> {
+    pub fn add_distributed_load(&self, load: &dyn Fn(f64) -> f64, f: &mut [f64]) -> Result<(), BeamError> {
         check_len("f", self.dofs(), f.len())?;
         let half = 0.5 * self.element_length();
         for element in 0..self.layout.elements {
@@ -167,27 +160,15 @@ impl NodalLoad {
     /// assert_eq!(f, [0.0, -2.0, 0.0, 0.0]);
     /// # Ok::<(), teeter_beam::BeamError>(())
     /// ```
-    pub fn new(
-        beam: &Beam,
-        x: f64,
-        history: impl Fn(f64) -> f64 + Send + Sync + 'static,
-    ) -> Result<Self, BeamError> {
-        beam.shape_at(x).ok_or(BeamError::OutsideSpan {
-            x,
-            span: beam.spec.span,
-        })?;
-        Ok(Self {
-            x,
-            history: Box::new(history),
-        })
+    pub fn new(beam: &Beam, x: f64, history: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Result<Self, BeamError> {
+        beam.shape_at(x).ok_or(BeamError::OutsideSpan { x, span: beam.spec.span })?;
+        Ok(Self { x, history: Box::new(history) })
     }
 }
 
 impl fmt::Debug for NodalLoad {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("NodalLoad")
-            .field("x", &self.x)
-            .finish_non_exhaustive()
+        f.debug_struct("NodalLoad").field("x", &self.x).finish_non_exhaustive()
     }
 }
 
@@ -218,9 +199,7 @@ impl DistributedLoad {
     /// # Ok::<(), teeter_beam::BeamError>(())
     /// ```
     pub fn new(history: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Self {
-        Self {
-            history: Box::new(history),
-        }
+        Self { history: Box::new(history) }
     }
 }
 
@@ -265,11 +244,7 @@ impl MovingLoad {
         check("force", force, true, "finite")?;
         check("speed", speed, true, "finite")?;
         check("start", start, true, "finite")?;
-        Ok(Self {
-            force,
-            speed,
-            start,
-        })
+        Ok(Self { force, speed, start })
     }
 
     /// Where it is at time t, m.
@@ -298,10 +273,7 @@ mod tests {
             let (mut a, mut b) = (vec![0.0; beam.dofs()], vec![0.0; beam.dofs()]);
             beam.add_uniform_load(3.0, &mut a).unwrap();
             beam.add_distributed_load(&|_| 3.0, &mut b).unwrap();
-            assert!(
-                a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1e-15),
-                "{supports:?}"
-            );
+            assert!(a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1e-15), "{supports:?}");
         }
         // Work of x⁴ on the rigid motions of a free beam: 1/5 and 1/6.
         let beam = beam(3, [crate::Support::Free; 2]);
@@ -319,10 +291,8 @@ mod tests {
         let (mut couple, mut pair) = (vec![0.0; beam.dofs()], vec![0.0; beam.dofs()]);
         let arm = 1e-4;
         beam.add_point_couple(0.3, 2.0, &mut couple).unwrap();
-        beam.add_point_load(0.3 + 0.5 * arm, 2.0 / arm, &mut pair)
-            .unwrap();
-        beam.add_point_load(0.3 - 0.5 * arm, -2.0 / arm, &mut pair)
-            .unwrap();
+        beam.add_point_load(0.3 + 0.5 * arm, 2.0 / arm, &mut pair).unwrap();
+        beam.add_point_load(0.3 - 0.5 * arm, -2.0 / arm, &mut pair).unwrap();
         assert!(couple.iter().zip(&pair).all(|(a, b)| (a - b).abs() < 1e-5));
     }
 
@@ -334,35 +304,14 @@ mod tests {
             let text = error.unwrap_err().to_string();
             assert!(words.iter().all(|word| text.contains(word)), "{text}");
         };
-        named(
-            beam.add_point_load(0.5, f64::NAN, &mut f),
-            &["force", "NaN", "finite"],
-        );
-        named(
-            beam.add_point_load(1.5, 1.0, &mut f),
-            &["x = 1.5", "[0, 1]"],
-        );
-        named(
-            beam.add_point_couple(-0.5, 1.0, &mut f),
-            &["x = -0.5", "[0, 1]"],
-        );
-        named(
-            beam.add_point_load(0.5, 1.0, &mut [0.0]),
-            &["f:", "1 entries", "8"],
-        );
-        named(
-            beam.add_uniform_load(f64::INFINITY, &mut f),
-            &["load", "inf"],
-        );
-        named(
-            beam.add_distributed_load(&|_| f64::NAN, &mut f),
-            &["load", "NaN"],
-        );
+        named(beam.add_point_load(0.5, f64::NAN, &mut f), &["force", "NaN", "finite"]);
+        named(beam.add_point_load(1.5, 1.0, &mut f), &["x = 1.5", "[0, 1]"]);
+        named(beam.add_point_couple(-0.5, 1.0, &mut f), &["x = -0.5", "[0, 1]"]);
+        named(beam.add_point_load(0.5, 1.0, &mut [0.0]), &["f:", "1 entries", "8"]);
+        named(beam.add_uniform_load(f64::INFINITY, &mut f), &["load", "inf"]);
+        named(beam.add_distributed_load(&|_| f64::NAN, &mut f), &["load", "NaN"]);
         named(NodalLoad::new(&beam, 2.0, |_| 0.0).map(drop), &["x = 2"]);
-        named(
-            MovingLoad::new(1.0, f64::NAN, 0.0).map(drop),
-            &["speed", "NaN"],
-        );
+        named(MovingLoad::new(1.0, f64::NAN, 0.0).map(drop), &["speed", "NaN"]);
         assert!(f.iter().all(|f| *f == 0.0));
     }
 }

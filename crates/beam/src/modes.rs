@@ -23,11 +23,7 @@ type Equation = fn(f64) -> (f64, f64);
 /// β = k L of elastic mode `mode`, counted from 1 without the rigid motions.
 pub(crate) fn beta(supports: [Support; 2], mode: usize) -> Result<f64, BeamError> {
     if mode == 0 || mode > MAX_MODE {
-        return Err(BeamError::Count {
-            field: "mode",
-            value: mode,
-            rule: "1 to 1000000",
-        });
+        return Err(BeamError::Count { field: "mode", value: mode, rule: "1 to 1000000" });
     }
     let i = mode as f64;
     let (equation, near): (Equation, f64) = match supports {
@@ -59,11 +55,7 @@ fn root(equation: Equation, near: f64) -> f64 {
         if (newton - x).abs() <= f64::EPSILON * x {
             return newton;
         }
-        x = if newton > low && newton < high {
-            newton
-        } else {
-            low + 0.5 * (high - low)
-        };
+        x = if newton > low && newton < high { newton } else { low + 0.5 * (high - low) };
     }
     x
 }
@@ -80,10 +72,7 @@ fn cos_plus_sech(b: f64) -> (f64, f64) {
 
 fn tan_is_tanh(b: f64) -> (f64, f64) {
     let (sech, tanh) = (1.0 / b.cosh(), b.tanh());
-    (
-        b.sin() - b.cos() * tanh,
-        b.cos() + b.sin() * tanh - b.cos() * sech * sech,
-    )
+    (b.sin() - b.cos() * tanh, b.cos() + b.sin() * tanh - b.cos() * sech * sech)
 }
 
 #[cfg(test)]
@@ -93,27 +82,9 @@ mod tests {
     /// Blevins, *Formulas for natural frequency and mode shape*, table 8-1, to the digits of double precision.
     #[test]
     fn published_roots_of_all_nine_pairs() {
-        let cc = [
-            4.730040744862704,
-            7.853204624095838,
-            10.99560783800167,
-            14.137165491257464,
-            17.278759657399483,
-        ];
-        let cf = [
-            1.8751040687119611,
-            4.694091132974175,
-            7.854757438237613,
-            10.995540734875464,
-            14.13716839104647,
-        ];
-        let cp = [
-            3.9266023120479185,
-            7.068582745628732,
-            10.210176122813031,
-            13.351768777754093,
-            16.493361431346415,
-        ];
+        let cc = [4.730040744862704, 7.853204624095838, 10.99560783800167, 14.137165491257464, 17.278759657399483];
+        let cf = [1.8751040687119611, 4.694091132974175, 7.854757438237613, 10.995540734875464, 14.13716839104647];
+        let cp = [3.9266023120479185, 7.068582745628732, 10.210176122813031, 13.351768777754093, 16.493361431346415];
         let pp = [1.0, 2.0, 3.0, 4.0, 5.0].map(|i| i * PI);
         let table: [([Support; 2], [f64; 5]); 9] = [
             ([Clamped, Clamped], cc),
@@ -129,11 +100,7 @@ mod tests {
         for (supports, published) in table {
             for (i, expected) in published.into_iter().enumerate() {
                 let found = beta(supports, i + 1).unwrap();
-                assert!(
-                    (found / expected - 1.0).abs() < 4e-16,
-                    "{supports:?} {} {found} {expected}",
-                    i + 1
-                );
+                assert!((found / expected - 1.0).abs() < 4e-16, "{supports:?} {} {found} {expected}", i + 1);
             }
         }
     }
@@ -141,10 +108,7 @@ mod tests {
     #[test]
     fn high_modes_do_not_overflow() {
         for supports in [[Clamped, Clamped], [Clamped, Free], [Clamped, Pinned]] {
-            let (a, b) = (
-                beta(supports, MAX_MODE - 1).unwrap(),
-                beta(supports, MAX_MODE).unwrap(),
-            );
+            let (a, b) = (beta(supports, MAX_MODE - 1).unwrap(), beta(supports, MAX_MODE).unwrap());
             assert!((b - a - PI).abs() < 1e-8, "{supports:?}");
         }
     }
@@ -153,10 +117,7 @@ mod tests {
     fn mode_zero_and_absurd_modes_are_refused() {
         for mode in [0, MAX_MODE + 1, usize::MAX] {
             let text = beta([Pinned, Pinned], mode).unwrap_err().to_string();
-            assert!(
-                text.contains("mode") && text.contains(&mode.to_string()),
-                "{text}"
-            );
+            assert!(text.contains("mode") && text.contains(&mode.to_string()), "{text}");
         }
     }
 }

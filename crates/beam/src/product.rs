@@ -42,14 +42,8 @@ impl Beam {
             ]
         };
         let last = x_inner.len();
-        add_to_end(
-            y_head,
-            end(x_head, x_inner.first().copied().unwrap_or(x_tail), 1.0),
-        );
-        add_to_end(
-            y_tail,
-            end(x_tail, x_inner.last().copied().unwrap_or(x_head), -1.0),
-        );
+        add_to_end(y_head, end(x_head, x_inner.first().copied().unwrap_or(x_tail), 1.0));
+        add_to_end(y_tail, end(x_tail, x_inner.last().copied().unwrap_or(x_head), -1.0));
         let mut left = x_head;
         for i in 0..last {
             let here = x_inner[i];
@@ -200,25 +194,13 @@ mod tests {
                     let size = matrix.iter().flatten().fold(0.0_f64, |m, a| m.max(a.abs()));
                     for (row, y) in matrix.iter().zip(&y) {
                         let expected: f64 = row.iter().zip(&x).map(|(a, x)| 2.0 * a * x).sum();
-                        assert!(
-                            (y - 1.0 - expected).abs() < 1e-14 * size.max(1.0),
-                            "{supports:?} {elements}"
-                        );
+                        assert!((y - 1.0 - expected).abs() < 1e-14 * size.max(1.0), "{supports:?} {elements}");
                     }
-                    matrix
-                        .iter()
-                        .zip(&x)
-                        .map(|(r, xi)| xi * r.iter().zip(&x).map(|(a, x)| a * x).sum::<f64>())
-                        .sum()
+                    matrix.iter().zip(&x).map(|(r, xi)| xi * r.iter().zip(&x).map(|(a, x)| a * x).sum::<f64>()).sum()
                 };
-                let twice_kinetic: f64 =
-                    check(dense(beam.mass()), &|y| beam.add_mass_product(2.0, &x, y));
-                check(dense(beam.damping()), &|y| {
-                    beam.add_damping_product(2.0, &x, y)
-                });
-                let twice_elastic: f64 = check(dense(beam.stiffness()), &|y| {
-                    beam.add_stiffness_product(2.0, &x, y)
-                });
+                let twice_kinetic: f64 = check(dense(beam.mass()), &|y| beam.add_mass_product(2.0, &x, y));
+                check(dense(beam.damping()), &|y| beam.add_damping_product(2.0, &x, y));
+                let twice_elastic: f64 = check(dense(beam.stiffness()), &|y| beam.add_stiffness_product(2.0, &x, y));
                 assert!((2.0 * beam.kinetic_energy(&x) / twice_kinetic - 1.0).abs() < 1e-13);
                 assert!((2.0 * beam.elastic_energy(&x) / twice_elastic - 1.0).abs() < 1e-13);
             }
@@ -239,10 +221,7 @@ mod tests {
     fn the_stiffness_product_loses_less_than_the_assembled_matrix() {
         let n = 512;
         let section = crate::Section::new(0.7, 1.0).unwrap();
-        let spec = crate::BeamSpec {
-            section,
-            ..*beam(n, [crate::Support::Pinned; 2]).spec()
-        };
+        let spec = crate::BeamSpec { section, ..*beam(n, [crate::Support::Pinned; 2]).spec() };
         let beam = crate::Beam::new(spec).unwrap();
         let shape = |x: f64| [x * (x - 1.0) * (x + 1.0), 3.0 * x * x - 1.0];
         let nodes: Vec<[f64; 2]> = (0..=n).map(|i| shape(i as f64 / n as f64)).collect();
@@ -250,13 +229,9 @@ mod tests {
         let mut natural = vec![0.0; beam.dofs()];
         beam.add_stiffness_product(1.0, &q, &mut natural);
         let matrix = dense(beam.stiffness());
-        let worst =
-            |f: &dyn Fn(usize) -> f64| (1..2 * n - 1).map(|i| f(i).abs()).fold(0.0, f64::max);
+        let worst = |f: &dyn Fn(usize) -> f64| (1..2 * n - 1).map(|i| f(i).abs()).fold(0.0, f64::max);
         let by_modes = worst(&|i| natural[i]);
         let by_matrix = worst(&|i| matrix[i].iter().zip(&q).map(|(a, x)| a * x).sum());
-        assert!(
-            by_modes < 1e-12 && by_matrix > 1e-9,
-            "{by_modes:e} {by_matrix:e}"
-        );
+        assert!(by_modes < 1e-12 && by_matrix > 1e-9, "{by_modes:e} {by_matrix:e}");
     }
 }

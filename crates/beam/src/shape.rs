@@ -96,19 +96,9 @@ impl Beam {
         let first = self.layout.first(element);
         let (left, right) = (self.layout.free(element), self.layout.free(element + 1));
         if left + right == 4 {
-            return ShapeAt {
-                len: 4,
-                columns: [first, first + 1, first + 2, first + 3],
-                n,
-                dn,
-            };
+            return ShapeAt { len: 4, columns: [first, first + 1, first + 2, first + 3], n, dn };
         }
-        let mut shape = ShapeAt {
-            len: 0,
-            columns: [0; 4],
-            n: [0.0; 4],
-            dn: [0.0; 4],
-        };
+        let mut shape = ShapeAt { len: 0, columns: [0; 4], n: [0.0; 4], dn: [0.0; 4] };
         let kept = (2 - left..2).chain(4 - right..4);
         for (i, local) in kept.enumerate() {
             shape.columns[i] = first + i;
@@ -132,11 +122,7 @@ impl Beam {
     /// # Ok::<(), teeter_beam::BeamError>(())
     /// ```
     pub fn deflection_at(&self, q: &[f64], x: f64) -> Option<Deflection> {
-        assert_eq!(
-            q.len(),
-            self.dofs(),
-            "a vector must have one entry per degree of freedom"
-        );
+        assert_eq!(q.len(), self.dofs(), "a vector must have one entry per degree of freedom");
         self.shape_at(x).map(|shape| shape.deflection(q))
     }
 }
@@ -154,20 +140,13 @@ mod tests {
             let cubic = |x: f64| [x * x * (1.0 - x), 2.0 * x - 3.0 * x * x];
             let nodes: Vec<[f64; 2]> = (0..7).map(|i| cubic(f64::from(i) / 6.0)).collect();
             let Ok(q) = beam.from_nodes(&nodes) else {
-                assert_eq!(
-                    supports[1],
-                    Support::Clamped,
-                    "only the far slope is not zero"
-                );
+                assert_eq!(supports[1], Support::Clamped, "only the far slope is not zero");
                 continue;
             };
             for k in 0..=60 {
                 let x = f64::from(k) / 60.0;
                 let d = beam.deflection_at(&q, x).unwrap();
-                assert!(
-                    (d.w - cubic(x)[0]).abs() < 1e-15 && (d.slope - cubic(x)[1]).abs() < 1e-14,
-                    "{supports:?} {x}"
-                );
+                assert!((d.w - cubic(x)[0]).abs() < 1e-15 && (d.slope - cubic(x)[1]).abs() < 1e-14, "{supports:?} {x}");
             }
         }
     }
@@ -179,10 +158,7 @@ mod tests {
             assert_eq!(beam.shape_at(x), None, "{x}");
         }
         assert_eq!(beam.shape_clamped(7.0), beam.shape_at(1.0).unwrap());
-        assert_eq!(
-            beam.shape_clamped(f64::NEG_INFINITY),
-            beam.shape_at(0.0).unwrap()
-        );
+        assert_eq!(beam.shape_clamped(f64::NEG_INFINITY), beam.shape_at(0.0).unwrap());
         assert_eq!(beam.shape_clamped(f64::NAN), beam.shape_at(0.0).unwrap());
         let end = beam.shape_at(1.0).unwrap();
         assert_eq!((end.len, end.columns[..3].to_vec()), (3, vec![4, 5, 6]));

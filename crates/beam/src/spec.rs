@@ -30,10 +30,7 @@ impl Section {
     /// # Ok::<(), teeter_beam::BeamError>(())
     /// ```
     pub fn new(bending_stiffness: f64, mass_per_length: f64) -> Result<Self, BeamError> {
-        let section = Self {
-            bending_stiffness,
-            mass_per_length,
-        };
+        let section = Self { bending_stiffness, mass_per_length };
         section.validate()?;
         Ok(section)
     }
@@ -49,20 +46,12 @@ impl Section {
     /// assert!((section.bending_stiffness - 0.5821875).abs() < 1e-15);
     /// # Ok::<(), teeter_beam::BeamError>(())
     /// ```
-    pub fn rectangle(
-        width: f64,
-        thickness: f64,
-        youngs_modulus: f64,
-        density: f64,
-    ) -> Result<Self, BeamError> {
+    pub fn rectangle(width: f64, thickness: f64, youngs_modulus: f64, density: f64) -> Result<Self, BeamError> {
         positive("width", width)?;
         positive("thickness", thickness)?;
         positive("youngs_modulus", youngs_modulus)?;
         positive("density", density)?;
-        Self::new(
-            youngs_modulus * width * thickness * thickness * thickness / 12.0,
-            density * width * thickness,
-        )
+        Self::new(youngs_modulus * width * thickness * thickness * thickness / 12.0, density * width * thickness)
     }
 
     fn validate(&self) -> Result<(), BeamError> {
@@ -130,18 +119,12 @@ pub struct BeamSpec {
 impl BeamSpec {
     pub(crate) fn validate(&self) -> Result<(), BeamError> {
         self.validate_continuous()?;
-        let count = |rule| BeamError::Count {
-            field: "elements",
-            value: self.elements,
-            rule,
-        };
+        let count = |rule| BeamError::Count { field: "elements", value: self.elements, rule };
         if self.elements == 0 || self.elements > MAX_ELEMENTS {
             return Err(count("1 to 10000"));
         }
         if self.elements == 1 && self.supports == [Support::Clamped; 2] {
-            return Err(count(
-                "at least 2 between two clamped ends, else nothing can move",
-            ));
+            return Err(count("at least 2 between two clamped ends, else nothing can move"));
         }
         let d = &self.damping;
         not_negative("damping.viscous", d.viscous)?;
@@ -152,12 +135,7 @@ impl BeamSpec {
         let stiffest = self.section.bending_stiffness / (l * l * l);
         let heaviest = self.section.mass_per_length * l * l * l;
         let rule = "such that EI/l³ and ρA l³ (l the element length) are finite and > 0";
-        check(
-            "span",
-            self.span,
-            stiffest.is_normal() && heaviest.is_normal(),
-            rule,
-        )
+        check("span", self.span, stiffest.is_normal() && heaviest.is_normal(), rule)
     }
 
     fn validate_continuous(&self) -> Result<(), BeamError> {
@@ -188,15 +166,8 @@ impl BeamSpec {
     pub fn circular_frequency(&self, mode: usize) -> Result<f64, BeamError> {
         self.validate_continuous()?;
         let wave_number = modes::beta(self.supports, mode)? / self.span;
-        let omega = wave_number
-            * wave_number
-            * (self.section.bending_stiffness / self.section.mass_per_length).sqrt();
-        check(
-            "span",
-            self.span,
-            omega.is_normal(),
-            "such that the circular frequency is finite and > 0",
-        )?;
+        let omega = wave_number * wave_number * (self.section.bending_stiffness / self.section.mass_per_length).sqrt();
+        check("span", self.span, omega.is_normal(), "such that the circular frequency is finite and > 0")?;
         Ok(omega)
     }
 

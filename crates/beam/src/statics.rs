@@ -38,29 +38,15 @@ impl Beam {
     /// ```
     pub fn solve_static(&self, load: &mut [f64]) -> Result<(), StaticError> {
         if let Some(missing) = rigid_motion(self.spec.supports) {
-            return Err(StaticError::RigidMotion {
-                supports: self.spec.supports,
-                missing,
-            });
+            return Err(StaticError::RigidMotion { supports: self.spec.supports, missing });
         }
         if load.len() != self.dofs() {
-            return Err(StaticError::Length {
-                expected: self.dofs(),
-                found: load.len(),
-            });
+            return Err(StaticError::Length { expected: self.dofs(), found: load.len() });
         }
-        if let Some((index, &value)) = load
-            .iter()
-            .enumerate()
-            .find(|(_, value)| !value.is_finite())
-        {
+        if let Some((index, &value)) = load.iter().enumerate().find(|(_, value)| !value.is_finite()) {
             return Err(StaticError::Load { index, value });
         }
-        let factor = self.factor(MatrixWeights {
-            mass: 0.0,
-            damping: 0.0,
-            stiffness: 1.0,
-        })?;
+        let factor = self.factor(MatrixWeights { mass: 0.0, damping: 0.0, stiffness: 1.0 })?;
         let mut residual = load.to_vec();
         let mut q = vec![0.0; load.len()];
         let mut last = f64::INFINITY;
@@ -70,11 +56,7 @@ impl Beam {
             for (q, dq) in q.iter_mut().zip(&residual) {
                 *q += dq;
             }
-            let correction = if size == 0.0 {
-                0.0
-            } else {
-                size / self.size(&q)
-            };
+            let correction = if size == 0.0 { 0.0 } else { size / self.size(&q) };
             // Rounding is reached where a correction no longer shrinks (a NaN counts as that).
             if !(correction < 0.5 * last && correction > 0.0) {
                 last = correction;
@@ -89,10 +71,7 @@ impl Beam {
             load.copy_from_slice(&q);
             Ok(())
         } else {
-            Err(StaticError::NotSettled {
-                elements: self.layout.elements,
-                correction: last,
-            })
+            Err(StaticError::NotSettled { elements: self.layout.elements, correction: last })
         }
     }
 
@@ -100,24 +79,15 @@ impl Beam {
     fn size(&self, q: &[f64]) -> f64 {
         let (head, inner, tail) = self.layout.split(q);
         let of = |pair: &[f64; 2]| pair[0].abs().max(self.spec.span * pair[1].abs());
-        inner
-            .iter()
-            .map(of)
-            .fold(of(&head).max(of(&tail)), f64::max)
+        inner.iter().map(of).fold(of(&head).max(of(&tail)), f64::max)
     }
 }
 
 fn rigid_motion(supports: [Support; 2]) -> Option<&'static str> {
     match supports {
-        [Free, Free] => Some(
-            "both ends are free, the beam can move and turn as a whole; clamp one end or pin both",
-        ),
-        [Pinned, Free] => Some(
-            "the beam can turn about its pinned left end; support the right end or clamp the left",
-        ),
-        [Free, Pinned] => Some(
-            "the beam can turn about its pinned right end; support the left end or clamp the right",
-        ),
+        [Free, Free] => Some("both ends are free, the beam can move and turn as a whole; clamp one end or pin both"),
+        [Pinned, Free] => Some("the beam can turn about its pinned left end; support the right end or clamp the left"),
+        [Free, Pinned] => Some("the beam can turn about its pinned right end; support the left end or clamp the right"),
         _ => None,
     }
 }
@@ -130,39 +100,20 @@ mod tests {
 
     #[test]
     fn a_rigid_motion_is_refused_with_the_missing_support() {
-        for (supports, words) in [
-            ([Free, Free], "both"),
-            ([Pinned, Free], "right end"),
-            ([Free, Pinned], "left end"),
-        ] {
+        for (supports, words) in [([Free, Free], "both"), ([Pinned, Free], "right end"), ([Free, Pinned], "left end")] {
             let beam = beam(4, supports);
-            let text = beam
-                .solve_static(&mut vec![1.0; beam.dofs()])
-                .unwrap_err()
-                .to_string();
-            assert!(
-                text.contains(words) && text.contains("supports = ["),
-                "{text}"
-            );
+            let text = beam.solve_static(&mut vec![1.0; beam.dofs()]).unwrap_err().to_string();
+            assert!(text.contains(words) && text.contains("supports = ["), "{text}");
         }
     }
 
     #[test]
     fn a_bad_load_is_named() {
         let beam = beam(4, [Clamped, Free]);
-        assert!(matches!(
-            beam.solve_static(&mut [1.0]),
-            Err(StaticError::Length {
-                expected: 8,
-                found: 1
-            })
-        ));
+        assert!(matches!(beam.solve_static(&mut [1.0]), Err(StaticError::Length { expected: 8, found: 1 })));
         let mut load = vec![0.0; 8];
         load[3] = f64::NAN;
-        assert!(matches!(
-            beam.solve_static(&mut load),
-            Err(StaticError::Load { index: 3, .. })
-        ));
+        assert!(matches!(beam.solve_static(&mut load), Err(StaticError::Load { index: 3, .. })));
     }
 
     #[test]

@@ -47,8 +47,7 @@ fn summary(folder: &Path) -> Value {
     serde_json::from_str(&std::fs::read_to_string(folder.join("out/summary.json")).unwrap()).unwrap()
 }
 
-const FILES: [&str; 6] =
-    ["contacts.csv", "energy.csv", "impacts.csv", "scene.toml", "summary.json", "trajectory.csv"];
+const FILES: [&str; 6] = ["contacts.csv", "energy.csv", "impacts.csv", "scene.toml", "summary.json", "trajectory.csv"];
 
 fn files(folder: &Path) -> Vec<String> {
     let mut names: Vec<_> =
@@ -80,9 +79,25 @@ fn a_run_writes_its_files_with_the_columns_of_the_contract() {
     assert_eq!((rows[0][0].as_str(), rows[500][0].as_str()), ("0.0", "0.5"));
 
     let summary = summary(&folder);
-    for key in ["title", "version", "scheme", "dt", "steps", "wall_seconds", "us_per_step", "contact", "max_penetration",
-        "energy", "impacts", "crossings", "peaks", "horizon", "ended", "model", "warnings"]
-    {
+    for key in [
+        "title",
+        "version",
+        "scheme",
+        "dt",
+        "steps",
+        "wall_seconds",
+        "us_per_step",
+        "contact",
+        "max_penetration",
+        "energy",
+        "impacts",
+        "crossings",
+        "peaks",
+        "horizon",
+        "ended",
+        "model",
+        "warnings",
+    ] {
         assert!(summary.get(key).is_some(), "{key}");
     }
     assert_eq!((summary["ended"].as_str(), summary["steps"].as_u64()), (Some("complete"), Some(5000)));
@@ -118,7 +133,9 @@ fn the_impulses_of_the_contact_table_add_up_to_the_change_of_momentum() {
 #[test]
 fn the_scene_as_run_gives_the_same_bytes() {
     let folder = folder("again");
-    assert!(run(&folder, "drop", &["--set", "time.end=0.3 s", "--set", "contact.base.restitution=0.5"]).status.success());
+    assert!(
+        run(&folder, "drop", &["--set", "time.end=0.3 s", "--set", "contact.base.restitution=0.5"]).status.success()
+    );
     let again = teeter(&folder, &["run", "out/scene.toml", "--out", "again", "--quiet"]);
     assert!(again.status.success() && again.stderr.is_empty(), "{}", stderr(&again));
     for file in FILES.iter().filter(|file| **file != "summary.json") {

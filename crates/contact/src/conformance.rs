@@ -31,13 +31,7 @@ impl<const D: usize> Case<D> {
 /// A plane rigid body of mass 1 and moment of inertia `inertia` touched at `points` (x, y) from its mass centre by a
 /// floor below: `H = Σ J M⁻¹ Jᵀ` of hyperstatic contacts, singular from two contacts on.
 #[must_use]
-pub fn body_on_floor(
-    name: &'static str,
-    inertia: f64,
-    points: &[(f64, f64)],
-    velocity: [f64; 3],
-    mu: f64,
-) -> Case<2> {
+pub fn body_on_floor(name: &'static str, inertia: f64, points: &[(f64, f64)], velocity: [f64; 3], mu: f64) -> Case<2> {
     let inverse = [1.0, 1.0, inertia.recip()];
     // Rows of J for a point at ρ: normal (0, 1, ρ_x), tangent (1, 0, −ρ_y).
     let rows = |&(x, y): &(f64, f64)| [[0.0, 1.0, x], [1.0, 0.0, -y]];
@@ -87,11 +81,7 @@ pub fn plane_cases() -> Vec<Case<2>> {
 ///
 /// # Errors
 /// A sentence that says which part of the law fails, at which contact, by how much.
-pub fn check_law<const D: usize>(
-    problem: &ContactProblem<'_, D>,
-    p: &[Vector<D>],
-    slack: f64,
-) -> Result<(), String> {
+pub fn check_law<const D: usize>(problem: &ContactProblem<'_, D>, p: &[Vector<D>], slack: f64) -> Result<(), String> {
     let speed = problem.q().iter().map(Vector::norm).fold(1e-300, f64::max);
     let impulse = (0..p.len()).map(|i| speed / problem.diagonal(i)[(0, 0)]).fold(1e-300, f64::max);
     for i in 0..p.len() {
@@ -127,11 +117,7 @@ pub fn check_law<const D: usize>(
 ///
 /// # Errors
 /// A sentence that names the case and what failed.
-pub fn run<const D: usize>(
-    solver: &mut dyn ContactSolver<D>,
-    cases: &[Case<D>],
-    tolerance: f64,
-) -> Result<(), String> {
+pub fn run<const D: usize>(solver: &mut dyn ContactSolver<D>, cases: &[Case<D>], tolerance: f64) -> Result<(), String> {
     for case in cases {
         let problem = case.problem().map_err(|e| format!("{}: {e}", case.name))?;
         let mut p = vec![Vector::<D>::zeros(); case.q.len()];

@@ -1,7 +1,7 @@
 //! Points of one body (the corners of a block) against the surface of another (a beam, the ground).
 
-use crate::{Anchor, BodyId, Candidate, Candidates, ContactDetector, ContactId, Geometry, Kinematics, Vector};
 use crate::plane_frame;
+use crate::{Anchor, BodyId, Candidate, Candidates, ContactDetector, ContactId, Geometry, Kinematics, Vector};
 
 /// Points of a body that can touch a surface of another.
 #[derive(Clone, Debug, PartialEq)]

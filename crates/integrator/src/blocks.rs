@@ -146,4 +146,3 @@ impl Compliance<2> for BlockCompliance {
         }
     }
 }
-

@@ -47,13 +47,7 @@ impl RockingMonitor {
     /// Starts at time `t` with angle `phi`.
     #[must_use]
     pub fn new(t: f64, phi: f64) -> Self {
-        Self {
-            last: (t, phi),
-            pending: None,
-            extreme: Peak { t, phi },
-            crossings: Vec::new(),
-            peaks: Vec::new(),
-        }
+        Self { last: (t, phi), pending: None, extreme: Peak { t, phi }, crossings: Vec::new(), peaks: Vec::new() }
     }
 
     /// Enters the end of a step.

@@ -51,7 +51,12 @@ impl MoreauJean {
         };
         let MoreauJeanSettings { theta, activation_gamma, gap_tolerance } = settings;
         check("theta", theta, (0.0..=1.0).contains(&theta), "in [0, 1]")?;
-        check("activation_gamma", activation_gamma, activation_gamma >= 0.0 && activation_gamma.is_finite(), "at least 0")?;
+        check(
+            "activation_gamma",
+            activation_gamma,
+            activation_gamma >= 0.0 && activation_gamma.is_finite(),
+            "at least 0",
+        )?;
         check("gap_tolerance", gap_tolerance, gap_tolerance >= 0.0 && gap_tolerance.is_finite(), "at least 0 m")?;
         Ok(Self { settings })
     }
@@ -246,11 +251,7 @@ fn impact<const D: usize>(
         set.q.push(q);
     }
     set.assemble(parts, &mut work.factors, &mut work.scratch);
-    let stop = Stop {
-        tolerance: work.settings.tolerance,
-        max_iterations: work.settings.max_iterations,
-        cancel: None,
-    };
+    let stop = Stop { tolerance: work.settings.tolerance, max_iterations: work.settings.max_iterations, cancel: None };
     let (problem, p) = set.problem()?;
     let outcome = work.solver.solve(&problem, &stop, p);
 

@@ -79,8 +79,7 @@ impl<'a> Recorder<'a> {
             threshold: impact_threshold(scene.gravity, scene.time.step),
             trajectory: results.table("trajectory.csv", &trajectory_header(layout))?,
             contacts: results.table("contacts.csv", contacts::HEADER)?,
-            impacts: results
-                .table("impacts.csv", "t,contact,a,b,point,impulse_n,impulse_t,u_n_before,u_n_after\n")?,
+            impacts: results.table("impacts.csv", "t,contact,a,b,point,impulse_n,impulse_t,u_n_before,u_n_after\n")?,
             energy: results.table(
                 "energy.csv",
                 "t,kinetic,elastic,gravity,external,contact,friction,viscous,numerical,projection,residual\n",
@@ -200,8 +199,12 @@ impl<'a> Recorder<'a> {
 
 impl Observer<2> for Recorder<'_> {
     fn start(&mut self, _model: &Model<2>, state: &State) -> Result<(), ObserverError> {
-        self.record.rocking =
-            self.layout.blocks.iter().map(|block| RockingMonitor::new(state.t, state.q[block.range.start + 2])).collect();
+        self.record.rocking = self
+            .layout
+            .blocks
+            .iter()
+            .map(|block| RockingMonitor::new(state.t, state.q[block.range.start + 2]))
+            .collect();
         Ok(self.write_row(state)?)
     }
 

@@ -173,7 +173,14 @@ pub struct BeamSummary {
 impl Summary {
     /// The summary of a run that took `wall_seconds`.
     #[must_use]
-    pub fn new(scene: &Scene, layout: &Layout, state: &State, record: &Record, ended: &Ended, wall_seconds: f64) -> Self {
+    pub fn new(
+        scene: &Scene,
+        layout: &Layout,
+        state: &State,
+        record: &Record,
+        ended: &Ended,
+        wall_seconds: f64,
+    ) -> Self {
         let (ledger, tally) = (&state.ledger, &state.tally);
         let monitored = || layout.blocks.iter().zip(&record.rocking);
         let mut crossings: Vec<CrossingRow> = monitored()
@@ -215,9 +222,17 @@ impl Summary {
                 initial: ledger.initial.total(),
                 last: ledger.current.total(),
                 scale: ledger.scale,
-                positive_contact_work: PositiveWorkSummary { steps: gains.steps, largest: gains.largest, sum: gains.sum },
+                positive_contact_work: PositiveWorkSummary {
+                    steps: gains.steps,
+                    largest: gains.largest,
+                    sum: gains.sum,
+                },
                 // −∞ while there was no contact, which JSON can't hold.
-                largest_tangential_work: if ledger.largest_tangential_work.is_finite() { ledger.largest_tangential_work } else { 0.0 },
+                largest_tangential_work: if ledger.largest_tangential_work.is_finite() {
+                    ledger.largest_tangential_work
+                } else {
+                    0.0
+                },
             },
             impacts: record.impacts.clone(),
             crossings,

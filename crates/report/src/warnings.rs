@@ -56,9 +56,6 @@ mod tests {
         let mut log = WarningLog::default();
         let told = (0..1000).filter(|k| log.enter("flood", Some(f64::from(*k)), || "wet".into()).is_some()).count();
         assert_eq!(told, 3 + 3, "the first three, then at 10, 100, 1000");
-        assert_eq!(
-            log.warnings(),
-            [Warning { code: "flood", count: 1000, first_t: Some(0.0), text: "wet".into() }]
-        );
+        assert_eq!(log.warnings(), [Warning { code: "flood", count: 1000, first_t: Some(0.0), text: "wet".into() }]);
     }
 }

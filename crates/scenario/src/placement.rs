@@ -173,11 +173,7 @@ impl<'a> Standing<'a> {
 }
 
 fn off_surface(block: &BlockScene, foot: &Foot) -> PlacementError {
-    PlacementError::OffSurface {
-        block: block.name.clone(),
-        corner: Rectangle::CORNER_NAMES[foot.corner],
-        x: foot.x,
-    }
+    PlacementError::OffSurface { block: block.name.clone(), corner: Rectangle::CORNER_NAMES[foot.corner], x: foot.x }
 }
 
 fn surface_height(

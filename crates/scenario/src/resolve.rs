@@ -170,7 +170,11 @@ impl Resolver<'_> {
         if let Some(span) = span {
             for &x in &probes {
                 if x > span {
-                    self.error(&at("probes"), format!("the probe at {x} m lies outside the span [0, {span}] m"), "give places along the beam, from its left end");
+                    self.error(
+                        &at("probes"),
+                        format!("the probe at {x} m lies outside the span [0, {span}] m"),
+                        "give places along the beam, from its left end",
+                    );
                 }
             }
         }
@@ -206,7 +210,11 @@ impl Resolver<'_> {
         match usize::try_from(elements) {
             Ok(elements) if elements <= MAX_ELEMENTS => Some(elements),
             _ => {
-                self.error(path, format!("must be at most {MAX_ELEMENTS}"), "20 to 100 elements give more digits than the model has");
+                self.error(
+                    path,
+                    format!("must be at most {MAX_ELEMENTS}"),
+                    "20 to 100 elements give more digits than the model has",
+                );
                 None
             }
         }
@@ -370,11 +378,18 @@ impl Resolver<'_> {
         if doc.has(&at("position")) {
             for key in ["on", "at", "tilt"] {
                 if doc.is_given(&at(key)) {
-                    self.error(&at(key), "position already says where the block is", "keep position and angle, or on, at and tilt");
+                    self.error(
+                        &at(key),
+                        "position already says where the block is",
+                        "keep position and angle, or on, at and tilt",
+                    );
                     return None;
                 }
             }
-            return Some(Placement::Free { position: self.pair(&at("position"))?, angle: self.quantity(&at("angle"))? });
+            return Some(Placement::Free {
+                position: self.pair(&at("position"))?,
+                angle: self.quantity(&at("angle"))?,
+            });
         }
         if doc.is_given(&at("angle")) {
             self.error(&at("angle"), "angle goes with position", "write tilt, or give position");
@@ -450,12 +465,19 @@ impl Resolver<'_> {
         let gap_tolerance = self.doc.quantity("time.gap_tolerance").unwrap_or_else(|| gap_tolerance(blocks));
         let (end, step) = (end?, step?);
         if step > end {
-            self.error("time.step", format!("longer than the whole run of {end} s"), "give a step far shorter than time.end");
+            self.error(
+                "time.step",
+                format!("longer than the whole run of {end} s"),
+                "give a step far shorter than time.end",
+            );
             return None;
         }
         let steps = end / step;
         if steps > MAX_STEPS {
-            let rule = format!("{steps:.1e} steps to {end} s, over the limit of {MAX_STEPS:.0e}; at 1 µs each they would take {}", duration(steps * 1e-6));
+            let rule = format!(
+                "{steps:.1e} steps to {end} s, over the limit of {MAX_STEPS:.0e}; at 1 µs each they would take {}",
+                duration(steps * 1e-6)
+            );
             self.error("time.step", rule, "take a longer step or an earlier end");
             return None;
         }
@@ -464,7 +486,8 @@ impl Resolver<'_> {
         let steps = if (steps - whole).abs() <= 1e-9 * whole { whole } else { steps.ceil() };
         if steps != whole || (steps * step - end).abs() > 1e-9 * end {
             let rule = format!("not a whole number of steps of {step} s: the run goes on to {} s", steps * step);
-            self.warnings.push(self.doc.error("time.end", rule, "choose an end that is a multiple of the step").as_warning());
+            self.warnings
+                .push(self.doc.error("time.end", rule, "choose an end that is a multiple of the step").as_warning());
         }
         Some(Time { end, step, steps: steps as u64, theta, activation_gamma, gap_tolerance })
     }
@@ -487,7 +510,8 @@ impl Resolver<'_> {
             "below 0.5 the undamped modes of the beam grow at every step size".to_owned()
         };
         if self.doc.flag("time.allow_conditional_stability") == Some(true) {
-            self.warnings.push(self.doc.error("time.theta", rule, "0.5 keeps energy and is always stable").as_warning());
+            self.warnings
+                .push(self.doc.error("time.theta", rule, "0.5 keeps energy and is always stable").as_warning());
         } else {
             self.error("time.theta", rule, "take theta of at least 0.5, or set allow_conditional_stability = true");
         }
@@ -512,7 +536,10 @@ impl Resolver<'_> {
             let rows = (time.end / every.max(time.step)).min(time.steps as f64);
             let bytes = rows * columns as f64 * 20.0;
             if bytes > MAX_BYTES {
-                let rule = format!("{rows:.1e} rows would take some {:.0} GB in trajectory.csv alone, over the limit of 10 GB", bytes / 1e9);
+                let rule = format!(
+                    "{rows:.1e} rows would take some {:.0} GB in trajectory.csv alone, over the limit of 10 GB",
+                    bytes / 1e9
+                );
                 self.error("output.every", rule, "write fewer rows");
             }
         }

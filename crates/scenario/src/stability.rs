@@ -24,7 +24,8 @@ fn highest_eigenvalue(spec: &BeamSpec) -> Option<f64> {
     let beam = Beam::new(*spec).ok()?;
     let inverse_mass = beam.factor(MatrixWeights { mass: 1.0, damping: 0.0, stiffness: 0.0 }).ok()?;
     // Fixed, with a part along every mode: signs alternate like the highest mode's, sizes don't repeat.
-    let mut x: Vec<f64> = (0..beam.dofs()).map(|k| (if k % 4 < 2 { 1.0 } else { -1.0 }) + 0.3 * (k as f64).sin()).collect();
+    let mut x: Vec<f64> =
+        (0..beam.dofs()).map(|k| (if k % 4 < 2 { 1.0 } else { -1.0 }) + 0.3 * (k as f64).sin()).collect();
     let mut y = vec![0.0; x.len()];
     let mut quotient = 0.0;
     for _ in 0..ROUNDS {
@@ -71,9 +72,8 @@ mod tests {
         let limit = largest_stable_step(&spec, theta);
         let grows = |h: f64| {
             let beam = Beam::new(spec).unwrap();
-            let w = beam
-                .factor(MatrixWeights { mass: 1.0, damping: h * theta, stiffness: h * h * theta * theta })
-                .unwrap();
+            let w =
+                beam.factor(MatrixWeights { mass: 1.0, damping: h * theta, stiffness: h * h * theta * theta }).unwrap();
             let n = beam.dofs();
             let (mut q, mut v) = (vec![1e-6; n], vec![0.0; n]);
             let size = |q: &[f64]| q.iter().fold(0.0_f64, |m, x| m.max(x.abs()));

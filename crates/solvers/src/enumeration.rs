@@ -365,7 +365,8 @@ mod tests {
 
     fn solve(case: &teeter_contact::conformance::Case<2>) -> Vec<Vector2<f64>> {
         let mut p = vec![Vector2::zeros(); case.q.len()];
-        let outcome = Enumeration::new().solve(&case.problem().unwrap(), &Stop { tolerance: 1e-14, ..Stop::default() }, &mut p);
+        let outcome =
+            Enumeration::new().solve(&case.problem().unwrap(), &Stop { tolerance: 1e-14, ..Stop::default() }, &mut p);
         assert!(outcome.converged(), "{outcome:?}");
         p
     }

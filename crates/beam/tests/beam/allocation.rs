@@ -48,11 +48,7 @@ fn the_calls_of_a_step_allocate_nothing() {
         spec.damping.viscous = 0.4;
         spec.damping.rayleigh_stiffness = 1e-5;
         let beam = teeter_beam::Beam::new(spec).unwrap();
-        let mut weights = MatrixWeights {
-            mass: 1.0,
-            damping: 5e-5,
-            stiffness: 2.5e-9,
-        };
+        let mut weights = MatrixWeights { mass: 1.0, damping: 5e-5, stiffness: 2.5e-9 };
         let mut factor = beam.factor(weights).unwrap();
         let load = MovingLoad::new(-10.0, 2.0, 0.0).unwrap();
         let x = vec![1e-3; beam.dofs()];
@@ -62,11 +58,7 @@ fn the_calls_of_a_step_allocate_nothing() {
             beam.add_damping_product(1.0, &x, &mut y);
             beam.add_stiffness_product(1.0, &x, &mut y);
             black_box(beam.kinetic_energy(&x) + beam.elastic_energy(&x));
-            black_box((
-                beam.shape_at(0.1),
-                beam.shape_clamped(2.0),
-                beam.deflection_at(&x, 0.2),
-            ));
+            black_box((beam.shape_at(0.1), beam.shape_clamped(2.0), beam.deflection_at(&x, 0.2)));
             load.add(&beam, 0.1, &mut y);
             factor.solve(&mut y);
             weights.stiffness *= 0.25;

@@ -23,10 +23,7 @@ pub(crate) fn circular_frequencies(beam: &Beam) -> Vec<f64> {
         a = a.transpose().to_owned();
     }
     let values = a.self_adjoint_eigenvalues(Side::Lower).unwrap();
-    values
-        .into_iter()
-        .map(|value| value.max(0.0).sqrt())
-        .collect()
+    values.into_iter().map(|value| value.max(0.0).sqrt()).collect()
 }
 
 const ALL: [Support; 3] = [Support::Free, Support::Pinned, Support::Clamped];
@@ -56,10 +53,7 @@ fn finite_elements_converge_from_above_with_order_four_for_every_pair_of_support
             // Fine enough for the asymptotic range, coarse enough to stay above the eigenvalues' rounding.
             let (coarse, fine) = (error(4 + 2 * mode), error(8 + 4 * mode));
             let order = (coarse / fine).log2();
-            assert!(
-                fine > 0.0 && (order - 4.0).abs() < 0.12,
-                "{supports:?} mode {mode}: order {order}"
-            );
+            assert!(fine > 0.0 && (order - 4.0).abs() < 0.12, "{supports:?} mode {mode}: order {order}");
         }
     }
 }
@@ -69,10 +63,7 @@ fn a_beam_without_enough_supports_has_its_rigid_motions_at_zero() {
     for supports in [[Support::Free; 2], [Support::Pinned, Support::Free]] {
         let found = circular_frequencies(&super::beam(10, supports));
         for omega in &found[..rigid(supports)] {
-            assert!(
-                *omega < 1e-4 * found[rigid(supports)],
-                "{supports:?}: {omega}"
-            );
+            assert!(*omega < 1e-4 * found[rigid(supports)], "{supports:?}: {omega}");
         }
     }
 }
@@ -87,9 +78,6 @@ fn first_frequencies_of_ten_elements_are_those_of_an_independent_program() {
     ] {
         let found = circular_frequencies(&super::beam(10, supports))[0];
         // The eigen-solver's error is about eps of the largest eigenvalue: eps n⁴ on mode 1.
-        assert!(
-            (found / expected - 1.0).abs() < 1e-9,
-            "{supports:?}: {found}"
-        );
+        assert!((found / expected - 1.0).abs() < 1e-9, "{supports:?}: {found}");
     }
 }

@@ -25,20 +25,9 @@ fn number(value: &Value) -> f64 {
 
 fn spec(case: &Value, elements: usize, supports: [Support; 2]) -> BeamSpec {
     let b = &case["params"]["beam"];
-    let section = Section::rectangle(
-        number(&b["width"]),
-        number(&b["thickness"]),
-        number(&b["E"]),
-        number(&b["rho"]),
-    )
-    .unwrap();
-    BeamSpec {
-        span: number(&b["L"]),
-        elements,
-        section,
-        supports,
-        damping: Damping::default(),
-    }
+    let section =
+        Section::rectangle(number(&b["width"]), number(&b["thickness"]), number(&b["E"]), number(&b["rho"])).unwrap();
+    BeamSpec { span: number(&b["L"]), elements, section, supports, damping: Damping::default() }
 }
 
 fn supports(name: &str) -> [Support; 2] {
@@ -62,17 +51,9 @@ fn f1_frequencies() {
             let tolerance = number(&case["tolerance"]["rel"][n]);
             for (mode, listed) in listed.as_array().unwrap().iter().enumerate() {
                 let error = (found[mode] / number(listed) - 1.0).abs();
-                assert!(
-                    error < tolerance,
-                    "{name} n {n} mode {}: {error:e}",
-                    mode + 1
-                );
+                assert!(error < tolerance, "{name} n {n} mode {}: {error:e}", mode + 1);
                 let exact = beam.circular_frequency(mode + 1).unwrap();
-                assert!(
-                    (exact / number(&results["exact_rad_s"][mode]) - 1.0).abs() < 2e-15,
-                    "{name} {}",
-                    mode + 1
-                );
+                assert!((exact / number(&results["exact_rad_s"][mode]) - 1.0).abs() < 2e-15, "{name} {}", mode + 1);
             }
         }
     }
@@ -86,50 +67,29 @@ fn f2_static_deflections() {
     for (name, listed) in case["results"]["fem"].as_object().unwrap() {
         let (pair, n) = name.split_once(" n").unwrap();
         let beam = Beam::new(spec(&case, n.parse().unwrap(), supports(pair))).unwrap();
-        for (x, key) in [
-            (number(&listed["load_x"]), "w_at_load"),
-            (0.165, "w_at_0165_for_load_at_0165"),
-        ] {
+        for (x, key) in [(number(&listed["load_x"]), "w_at_load"), (0.165, "w_at_0165_for_load_at_0165")] {
             let mut q = vec![0.0; beam.dofs()];
             beam.add_point_load(x, -1.0, &mut q).unwrap();
             beam.solve_static(&mut q).unwrap();
             let error = (beam.deflection_at(&q, x).unwrap().w / number(&listed[key]) - 1.0).abs();
-            assert!(
-                error < number(&case["tolerance"]["rel"]),
-                "{name} {key}: {error:e}"
-            );
+            assert!(error < number(&case["tolerance"]["rel"]), "{name} {key}: {error:e}");
         }
     }
 }
 
 fn nodes(list: &Value) -> Vec<[f64; 2]> {
-    list.as_array()
-        .unwrap()
-        .iter()
-        .map(|pair| [number(&pair[0]), number(&pair[1])])
-        .collect()
+    list.as_array().unwrap().iter().map(|pair| [number(&pair[0]), number(&pair[1])]).collect()
 }
 
 /// Runs a case and compares midspan deflection and velocity at its sample times.
 fn run(case: &Value, load: Option<&dyn Load>) {
     let elements = case["params"]["beam"]["n_el"].as_u64().unwrap() as usize;
-    let mut spec = spec(
-        case,
-        elements,
-        supports(case["params"]["beam"]["bc"].as_str().unwrap()),
-    );
+    let mut spec = spec(case, elements, supports(case["params"]["beam"]["bc"].as_str().unwrap()));
     spec.damping.viscous = case["params"]["c"].as_f64().unwrap_or(0.0);
     let beam = Beam::new(spec).unwrap();
-    let q = beam
-        .from_nodes(&nodes(&case["initial"]["beam_q_nodes"]))
-        .unwrap();
-    let v = beam
-        .from_nodes(&nodes(&case["initial"]["beam_v_nodes"]))
-        .unwrap();
-    let (h, theta) = (
-        number(&case["scheme"]["h"]),
-        number(&case["scheme"]["theta"]),
-    );
+    let q = beam.from_nodes(&nodes(&case["initial"]["beam_q_nodes"])).unwrap();
+    let v = beam.from_nodes(&nodes(&case["initial"]["beam_v_nodes"])).unwrap();
+    let (h, theta) = (number(&case["scheme"]["h"]), number(&case["scheme"]["theta"]));
     let mut run = Stepper::new(&beam, h, theta, q, v, load);
     let rows = case["samples"]["rows"].as_array().unwrap();
     let tolerances = case["tolerance"]["same_scheme"].as_array().unwrap();
@@ -141,18 +101,11 @@ fn run(case: &Value, load: Option<&dyn Load>) {
         let middle = |x: &[f64]| beam.deflection_at(x, 0.5 * spec.span).unwrap().w;
         for (column, found) in [(1, middle(&run.q)), (2, middle(&run.v))] {
             let error = (found - number(&row[column])).abs();
-            assert!(
-                error <= number(&tolerance[column]),
-                "t {t} column {column}: {error:e}"
-            );
+            assert!(error <= number(&tolerance[column]), "t {t} column {column}: {error:e}");
         }
     }
     let last = number(&case["results"]["energy"]["final"]);
-    assert!(
-        (run.energy() / last - 1.0).abs() < 1e-8,
-        "{} {last}",
-        run.energy()
-    );
+    assert!((run.energy() / last - 1.0).abs() < 1e-8, "{} {last}", run.energy());
 }
 
 #[test]
@@ -168,12 +121,7 @@ fn f4_moving_force() {
     let Some(case) = case("F4_moving_force_h1e-4") else {
         return;
     };
-    let load = MovingLoad::new(
-        number(&case["params"]["force"]),
-        number(&case["params"]["speed"]),
-        0.0,
-    )
-    .unwrap();
+    let load = MovingLoad::new(number(&case["params"]["force"]), number(&case["params"]["speed"]), 0.0).unwrap();
     run(&case, Some(&load));
 }
 

@@ -19,9 +19,7 @@ fn exact(supports: [Support; 2], a: f64, x: f64) -> f64 {
     let b = l - a;
     match supports {
         [Support::Pinned, Support::Pinned] => b * x * ((l - b) * (l + b) - x * x) / (6.0 * l * EI),
-        [Support::Clamped, Support::Clamped] => {
-            b * b * x * x * (3.0 * a * (l - x) - b * x) / (6.0 * l * l * l * EI)
-        }
+        [Support::Clamped, Support::Clamped] => b * b * x * x * (3.0 * a * (l - x) - b * x) / (6.0 * l * l * l * EI),
         [Support::Clamped, Support::Free] => cantilever(a, x),
         [Support::Free, Support::Clamped] => cantilever(l - a, l - x),
         // The cantilever with the reaction that keeps its tip in place.
@@ -53,9 +51,7 @@ fn worst(supports: [Support; 2], n: usize, solve: &dyn Fn(&teeter_beam::Beam, &m
         let mut q = vec![0.0; beam.dofs()];
         beam.add_point_load(at(loaded), 1.0, &mut q).unwrap();
         solve(&beam, &mut q);
-        let expected: Vec<f64> = (0..=n)
-            .map(|node| exact(supports, at(loaded), at(node)))
-            .collect();
+        let expected: Vec<f64> = (0..=n).map(|node| exact(supports, at(loaded), at(node))).collect();
         let size = expected.iter().fold(0.0, |m: f64, w| m.max(w.abs()));
         for (pair, expected) in beam.to_nodes(&q).iter().zip(&expected) {
             worst = worst.max((pair[0] - expected).abs() / size);
@@ -84,22 +80,10 @@ fn nodal_deflections_are_exact_for_every_mesh_and_support() {
 fn refinement_takes_the_conditioning_out() {
     for supports in SUPPORTS {
         let plain = |beam: &teeter_beam::Beam, q: &mut [f64]| {
-            beam.factor(MatrixWeights {
-                mass: 0.0,
-                damping: 0.0,
-                stiffness: 1.0,
-            })
-            .unwrap()
-            .solve(q);
+            beam.factor(MatrixWeights { mass: 0.0, damping: 0.0, stiffness: 1.0 }).unwrap().solve(q);
         };
-        let (without, with) = (
-            worst(supports, 1000, &plain),
-            worst(supports, 1000, &refined),
-        );
-        assert!(
-            with < 1e-13 && without > 1e-9,
-            "{supports:?}: {without:e} {with:e}"
-        );
+        let (without, with) = (worst(supports, 1000, &plain), worst(supports, 1000, &refined));
+        assert!(with < 1e-13 && without > 1e-9, "{supports:?}: {without:e} {with:e}");
     }
 }
 
@@ -124,9 +108,6 @@ fn a_couple_bends_a_cantilever_to_a_parabola() {
     for k in 0..=30 {
         let x = SPAN * f64::from(k) / 30.0;
         let d = beam.deflection_at(&q, x).unwrap();
-        assert!(
-            (d.w - 0.1 * x * x / (2.0 * EI)).abs() < 1e-15
-                && (d.slope - 0.1 * x / EI).abs() < 1e-14
-        );
+        assert!((d.w - 0.1 * x * x / (2.0 * EI)).abs() < 1e-15 && (d.slope - 0.1 * x / EI).abs() < 1e-14);
     }
 }

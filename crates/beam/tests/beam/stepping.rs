@@ -25,30 +25,13 @@ impl<'a> Stepper<'a> {
         load: Option<&'a dyn Load>,
     ) -> Self {
         let k = h * theta;
-        let factor = beam
-            .factor(MatrixWeights {
-                mass: 1.0,
-                damping: k,
-                stiffness: k * k,
-            })
-            .unwrap();
+        let factor = beam.factor(MatrixWeights { mass: 1.0, damping: k, stiffness: k * k }).unwrap();
         let zero = vec![0.0; beam.dofs()];
         let mut p = [zero.clone(), zero.clone()];
         if let Some(load) = load {
             load.add(beam, 0.0, &mut p[1]);
         }
-        Self {
-            beam,
-            load,
-            h,
-            theta,
-            factor,
-            step: 0,
-            q,
-            v,
-            p,
-            f: zero,
-        }
+        Self { beam, load, h, theta, factor, step: 0, q, v, p, f: zero }
     }
 
     pub(crate) fn time(&self) -> f64 {
@@ -67,8 +50,7 @@ impl<'a> Stepper<'a> {
             self.f[i] = theta * self.p[1][i] + (1.0 - theta) * self.p[0][i];
         }
         self.beam.add_stiffness_product(-1.0, &self.q, &mut self.f);
-        self.beam
-            .add_stiffness_product(-h * theta, &self.v, &mut self.f);
+        self.beam.add_stiffness_product(-h * theta, &self.v, &mut self.f);
         self.beam.add_damping_product(-1.0, &self.v, &mut self.f);
         self.factor.solve(&mut self.f);
         for i in 0..self.f.len() {
@@ -90,10 +72,7 @@ pub(crate) fn sines(beam: &Beam, terms: &[(f64, f64)]) -> Vec<f64> {
         .map(|i| i as f64 / (beam.nodes() - 1) as f64 * std::f64::consts::PI)
         .map(|s| {
             terms.iter().fold([0.0, 0.0], |[w, slope], (k, a)| {
-                [
-                    w + a * (k * s).sin(),
-                    slope + a * k * std::f64::consts::PI / span * (k * s).cos(),
-                ]
+                [w + a * (k * s).sin(), slope + a * k * std::f64::consts::PI / span * (k * s).cos()]
             })
         })
         .collect();
@@ -104,14 +83,7 @@ pub(crate) fn sines(beam: &Beam, terms: &[(f64, f64)]) -> Vec<f64> {
 #[test]
 fn energy_of_an_undamped_beam_stays_for_a_hundred_thousand_steps() {
     let beam = super::beam(20, [Support::Pinned; 2]);
-    let mut run = Stepper::new(
-        &beam,
-        1e-3,
-        0.5,
-        vec![0.0; beam.dofs()],
-        sines(&beam, &[(1.0, 1.0), (3.0, 0.5)]),
-        None,
-    );
+    let mut run = Stepper::new(&beam, 1e-3, 0.5, vec![0.0; beam.dofs()], sines(&beam, &[(1.0, 1.0), (3.0, 0.5)]), None);
     let start = run.energy();
     let mut drift = 0.0_f64;
     for _ in 0..100_000 {
@@ -125,18 +97,9 @@ fn energy_of_an_undamped_beam_stays_for_a_hundred_thousand_steps() {
 #[test]
 fn a_larger_theta_takes_the_energy_that_the_identity_says() {
     let beam = super::beam(20, [Support::Clamped, Support::Pinned]);
-    let nodes: Vec<[f64; 2]> = (0..21)
-        .map(|i| f64::from(i) / 20.0)
-        .map(|s| [s * s * (1.0 - s), (2.0 * s - 3.0 * s * s) / 0.36])
-        .collect();
-    let mut run = Stepper::new(
-        &beam,
-        1e-3,
-        1.0,
-        beam.from_nodes(&nodes).unwrap(),
-        vec![0.0; beam.dofs()],
-        None,
-    );
+    let nodes: Vec<[f64; 2]> =
+        (0..21).map(|i| f64::from(i) / 20.0).map(|s| [s * s * (1.0 - s), (2.0 * s - 3.0 * s * s) / 0.36]).collect();
+    let mut run = Stepper::new(&beam, 1e-3, 1.0, beam.from_nodes(&nodes).unwrap(), vec![0.0; beam.dofs()], None);
     let start = run.energy();
     for _ in 0..100 {
         let (q, v, before) = (run.q.clone(), run.v.clone(), run.energy());
@@ -154,14 +117,7 @@ fn the_first_mode_decays_with_the_damping_ratio_it_was_given() {
     let mut spec = super::spec(20, [Support::Pinned; 2]);
     spec.damping.viscous = spec.viscous_for_ratio(1, 0.01).unwrap();
     let beam = Beam::new(spec).unwrap();
-    let mut run = Stepper::new(
-        &beam,
-        1e-4,
-        0.5,
-        sines(&beam, &[(1.0, 1e-3)]),
-        vec![0.0; beam.dofs()],
-        None,
-    );
+    let mut run = Stepper::new(&beam, 1e-4, 0.5, sines(&beam, &[(1.0, 1e-3)]), vec![0.0; beam.dofs()], None);
     let start = run.energy();
     while run.step < 5000 {
         run.advance();

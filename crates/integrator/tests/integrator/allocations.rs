@@ -78,11 +78,9 @@ fn a_step_on_a_beam_allocates_nothing() {
     let surface = |offset: Option<f64>| -> Box<dyn Subsystem<2>> {
         match offset {
             None => Box::new(beam_body(&beam)),
-            Some(offset) => Box::new(BeamBody::new(
-                Arc::clone(&beam),
-                Vector2::new(0.0, -offset),
-                BeamSurface::Top { offset },
-            )),
+            Some(offset) => {
+                Box::new(BeamBody::new(Arc::clone(&beam), Vector2::new(0.0, -offset), BeamSurface::Top { offset }))
+            }
         }
     };
     assert_eq!(allocations(surface(None), beam.dofs(), 0.5), 0);

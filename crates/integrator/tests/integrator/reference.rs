@@ -79,7 +79,8 @@ fn compare(name: &str) {
     let mut v = numbers(&case["initial"]["block_v"]);
     let beam = params["beam"].as_object().map(|b| {
         let section =
-            Section::rectangle(number(&b["width"]), number(&b["thickness"]), number(&b["E"]), number(&b["rho"])).unwrap();
+            Section::rectangle(number(&b["width"]), number(&b["thickness"]), number(&b["E"]), number(&b["rho"]))
+                .unwrap();
         Arc::new(
             Beam::new(BeamSpec {
                 span: number(&b["L"]),
@@ -105,8 +106,7 @@ fn compare(name: &str) {
         }
         None => Box::new(Ground::flat(0.0)),
     };
-    let kinematics =
-        if scheme["kinematics"] == "linear" { Kinematics::Linear } else { Kinematics::Deformed };
+    let kinematics = if scheme["kinematics"] == "linear" { Kinematics::Linear } else { Kinematics::Deformed };
     let model = model(&spec, gravity, law, kinematics, surface);
     let mut state = State::new(&model, &q, &v, number(&scheme["h"])).unwrap();
     let mut work = workspace(&model);

@@ -49,7 +49,10 @@ fn references_to_nothing() {
         &refused(&[("on       = \"table\"", "on = \"ground\"")]),
         &["block.rocker.on", "there is no body `ground`", "add [ground]"],
     );
-    says(&refused(&[("youngs_modulus = \"69 GPa\"", "")]), &["material.aluminium.youngs_modulus", "used by beam.table"]);
+    says(
+        &refused(&[("youngs_modulus = \"69 GPa\"", "")]),
+        &["material.aluminium.youngs_modulus", "used by beam.table"],
+    );
 }
 
 #[test]
@@ -64,10 +67,10 @@ fn a_block_needs_a_contact_with_what_it_stands_on() {
 fn places_given_twice_or_not_at_all() {
     let position = "position = [\"18 cm\", \"6.75 cm\"]\non = \"table\"";
     says(&refused(&[("on       = \"table\"", position)]), &["position already says where the block is"]);
-    says(&refused(&[("on       = \"table\"", ""), ("at       =", "# at ="), ("tilt     =", "# tilt =")]), &[
-        "block.rocker",
-        "the block has no place",
-    ]);
+    says(
+        &refused(&[("on       = \"table\"", ""), ("at       =", "# at ="), ("tilt     =", "# tilt =")]),
+        &["block.rocker", "the block has no place"],
+    );
 }
 
 #[test]
@@ -145,11 +148,7 @@ fn a_tilt_beyond_the_critical_angle_is_a_warning_that_names_it() {
 #[test]
 fn the_gap_tolerance_follows_the_largest_block() {
     let of = |size: &str| {
-        let (resolved, _) = set(&[
-            ("block.rocker.height", size),
-            ("beam.table.start", "undeformed"),
-        ])
-        .unwrap();
+        let (resolved, _) = set(&[("block.rocker.height", size), ("beam.table.start", "undeformed")]).unwrap();
         resolved.scene.time.gap_tolerance
     };
     assert_eq!(of("13.5 cm"), 1e-12);

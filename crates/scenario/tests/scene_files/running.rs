@@ -250,11 +250,7 @@ fn a_static_start_stays_in_equilibrium_while_the_block_is_upright() {
     for (surface, kinematics) in [("axis", "deformed"), ("axis", "linear"), ("top", "deformed"), ("top", "linear")] {
         let simulation = scenario(
             "free-rocking-on-beam",
-            &[
-                ("block.rocker.tilt", "0 deg"),
-                ("beam.table.surface", surface),
-                ("contact.feet.kinematics", kinematics),
-            ],
+            &[("block.rocker.tilt", "0 deg"), ("beam.table.surface", surface), ("contact.feet.kinematics", kinematics)],
         );
         let mut candidates = Vec::new();
         let placed = simulation.model.placed(&simulation.state.q);
@@ -274,10 +270,8 @@ fn a_static_start_stays_in_equilibrium_while_the_block_is_upright() {
 #[test]
 fn a_tilted_block_on_the_top_fibre_starts_in_touch_and_moves_like_one_on_the_axis_of_a_thin_beam() {
     let run = |surface| {
-        let mut simulation = scenario(
-            "free-rocking-on-beam",
-            &[("beam.table.surface", surface), ("time.end", "0.05 s")],
-        );
+        let mut simulation =
+            scenario("free-rocking-on-beam", &[("beam.table.surface", surface), ("time.end", "0.05 s")]);
         simulation.run(&mut []).unwrap();
         assert!(simulation.state.ledger.relative_residual() <= 1e-12);
         simulation.state.q[2]
