@@ -156,13 +156,14 @@ pub trait Compliance<const D: usize>: Send {
     fn solve(&mut self, f: &mut [f64]);
 
     /// Adds `J_i W J_jᵀ` for all pairs of rows to the Delassus operator. `scratch` is as long as the subsystem's
-    /// velocities. The default solves once for each row; a subsystem whose W is known in closed form does better.
+    /// velocities. The default solves once for each direction in which a contact can push; a subsystem whose W is known in
+    /// closed form does better.
     fn couple(&mut self, rows: &PartRows<'_, D>, scratch: &mut [f64], h: &mut Coupling<'_, D>) {
         for (j, columns_j, values_j) in rows.iter() {
-            for d in 0..D {
+            let mut column = |direction: &Vector<D>| {
                 scratch.fill(0.0);
                 for (&c, value) in columns_j.iter().zip(values_j) {
-                    scratch[c] += value[d];
+                    scratch[c] += value.dot(direction);
                 }
                 self.solve(scratch);
                 for (i, columns_i, values_i) in rows.iter() {
@@ -170,11 +171,24 @@ pub trait Compliance<const D: usize>: Send {
                     for (&c, value) in columns_i.iter().zip(values_i) {
                         u += value * scratch[c];
                     }
-                    h.add_column(i, j, d, &u);
+                    h.add(i, j, &(u * direction.transpose()));
                 }
+            };
+            match common_direction(values_j) {
+                Some(direction) => column(&direction),
+                None => (0..D).for_each(|d| column(&Vector::<D>::from_fn(|r, _| f64::from(u8::from(r == d))))),
             }
         }
     }
+}
+
+/// The one direction in which a point can be pushed, if its entries are all parallel: so for a beam that is touched on its
+/// axis, which moves up and down only, whatever the contact's frame.
+fn common_direction<const D: usize>(values: &[Vector<D>]) -> Option<Vector<D>> {
+    let longest = values.iter().max_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()))?;
+    let direction = longest.try_normalize(0.0)?;
+    let rounding = 4.0 * f64::EPSILON * longest.norm();
+    values.iter().all(|value| (value - direction * value.dot(&direction)).norm() <= rounding).then_some(direction)
 }
 
 /// Where the rows of one side of a contact lie in the arena.
@@ -220,12 +234,5 @@ impl<const D: usize> Coupling<'_, D> {
     #[inline]
     pub fn add(&mut self, i: usize, j: usize, block: &Block<D>) {
         self.blocks[i * self.contacts + j] += block;
-    }
-
-    /// Adds to column `d` of the block of contacts (i, j).
-    #[inline]
-    pub fn add_column(&mut self, i: usize, j: usize, d: usize, u: &Vector<D>) {
-        let mut column = self.blocks[i * self.contacts + j].column_mut(d);
-        column += u;
     }
 }

@@ -27,7 +27,7 @@ impl Schedule {
     /// Whether the end of a step is a row; to be asked once for every step, in order.
     pub fn takes(&mut self, step: u64, t: f64) -> bool {
         let due = match self.every {
-            None => step % self.stride == 0,
+            None => step.is_multiple_of(self.stride),
             Some(every) => {
                 let reached = ((t + ROUNDING * self.dt) / every).floor();
                 let due = reached >= self.next as f64;

@@ -4,6 +4,10 @@
 //! (n ≤ 3: at most 6 × 6) whose solution is checked against the inequalities of the law. There is no iteration and no
 //! tolerance of its own beyond rounding.
 //!
+//! The combinations are the leaves of a tree. On the way down each contact is eliminated in one of its states, so that a
+//! leaf is left with the 2 × 2 problem of the last contact: all leaves share the work above them, and most fail a
+//! sign there.
+//!
 //! Hyperstatic contacts (two sticking corners of one body) make the system of a state singular: its solution of least
 //! norm is taken. The least-norm point of all impulses that obey the law lies on a face of the cones, and a face is a
 //! state; so of the states that fit, the one of smallest norm is that point.
@@ -11,19 +15,13 @@
 //! The enumeration of states is as old as the linear complementarity form of plane friction (Klarbring 1990,
 //! doi 10.1007/BF00534316); choosing by the norm is ours.
 
+use crate::least_norm::{MAX, RANK_TOLERANCE, System};
 use crate::one_contact;
-use nalgebra::Vector2;
-use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, Status, Stop, judge};
+use nalgebra::{Matrix2, Vector2};
+use teeter_contact::{ContactProblem, ContactSolver, Delassus, Law, Outcome, Status, Stop, judge};
 
 /// Most contacts that are enumerated: 4³ = 64 states.
-const MAX_CONTACTS: usize = 3;
-/// Most unknowns: a normal and a tangential impulse a contact.
-const MAX: usize = 2 * MAX_CONTACTS;
-
-/// A pivot below this, relative to the compliances of its row and column, is taken for zero: hyperstatic contacts leave
-/// pivots of some 1e-16, while two corners on a beam that slopes by w' leave w'² and more.
-const RANK_TOLERANCE: f64 = 1e-12;
-
+pub(crate) const MAX_CONTACTS: usize = 3;
 /// How far an inequality may be missed, relative to the terms that its left side is the sum of: rounding of a 6 × 6 solve.
 const ROUNDING: f64 = 1e-13;
 
@@ -78,7 +76,7 @@ impl ContactSolver<2> for Enumeration {
                 }
                 None => (false, 1),
             },
-            2..=MAX_CONTACTS => Table::new(problem).enumerate(p),
+            2..=MAX_CONTACTS => Table::new(problem).search(p),
             _ => (false, 0),
         };
         let residual = judge(problem, p);
@@ -92,170 +90,81 @@ impl ContactSolver<2> for Enumeration {
     }
 }
 
-/// The problem as plain arrays: row 2i is the normal, row 2i + 1 the tangent of contact i.
+/// The problem with its blocks at hand.
 struct Table {
     n: usize,
-    h: [[f64; MAX]; MAX],
-    q: [f64; MAX],
+    h: [[Matrix2<f64>; MAX_CONTACTS]; MAX_CONTACTS],
+    q: [Vector2<f64>; MAX_CONTACTS],
     mu: [f64; MAX_CONTACTS],
 }
+
+/// Impulses of all contacts.
+type Impulses = [Vector2<f64>; MAX_CONTACTS];
 
 impl Table {
     fn new(problem: &ContactProblem<'_, 2>) -> Self {
         let n = problem.contacts();
-        let mut table = Self { n, h: [[0.0; MAX]; MAX], q: [0.0; MAX], mu: [0.0; MAX_CONTACTS] };
-        let mut unit = [Vector2::zeros(); MAX_CONTACTS];
+        let mut table = Self {
+            n,
+            h: [[Matrix2::zeros(); MAX_CONTACTS]; MAX_CONTACTS],
+            q: [Vector2::zeros(); MAX_CONTACTS],
+            mu: [0.0; MAX_CONTACTS],
+        };
         table.mu[..n].copy_from_slice(problem.mu());
-        for i in 0..n {
-            table.q[2 * i] = problem.q()[i][0];
-            table.q[2 * i + 1] = problem.q()[i][1];
-        }
-        if let teeter_contact::Delassus::Dense(blocks) = problem.delassus() {
+        table.q[..n].copy_from_slice(problem.q());
+        if let Delassus::Dense(blocks) = problem.delassus() {
             for i in 0..n {
-                for j in 0..n {
-                    let block = &blocks[i * n + j];
-                    for r in 0..2 {
-                        for c in 0..2 {
-                            table.h[2 * i + r][2 * j + c] = block[(r, c)];
-                        }
-                    }
-                }
+                table.h[i][..n].copy_from_slice(&blocks[i * n..(i + 1) * n]);
             }
         } else {
             // Any other shape, column by column: H e_k = (velocity of e_k) − q.
-            for k in 0..2 * n {
-                unit[k / 2][k % 2] = 1.0;
-                for i in 0..n {
-                    let u = problem.velocity(i, &unit[..n]) - problem.q()[i];
-                    table.h[2 * i][k] = u[0];
-                    table.h[2 * i + 1][k] = u[1];
+            let mut unit = [Vector2::zeros(); MAX_CONTACTS];
+            for j in 0..n {
+                for c in 0..2 {
+                    unit[j][c] = 1.0;
+                    for i in 0..n {
+                        table.h[i][j].set_column(c, &(problem.velocity(i, &unit[..n]) - problem.q()[i]));
+                    }
+                    unit[j][c] = 0.0;
                 }
-                unit[k / 2][k % 2] = 0.0;
             }
         }
         table
     }
 
     /// Tries the states; leaves the smallest impulses that fit in `p`. Returns whether one fits, and how many were tried.
-    fn enumerate(&self, p: &mut [Vector2<f64>]) -> (bool, u32) {
-        let mut best: Option<(f64, [f64; MAX])> = None;
-        let mut tried = 0;
-        let mut states = [State::Open; MAX_CONTACTS];
-        for code in 0..4_u32.pow(self.n as u32) {
-            if !self.decode(code, &mut states) {
-                continue;
-            }
-            tried += 1;
-            let Some(x) = self.fit(&states) else { continue };
-            let norm = x.iter().map(|c| c * c).sum::<f64>();
-            if best.is_none_or(|(b, _)| norm < b) {
-                best = Some((norm, x));
-            }
-            if norm == 0.0 {
-                break; // nothing is smaller
-            }
+    fn search(&self, p: &mut [Vector2<f64>]) -> (bool, u32) {
+        let mut search = Search {
+            table: self,
+            states: [State::Open; MAX_CONTACTS],
+            gains: [Matrix2::zeros(); MAX_CONTACTS],
+            speed: self.q.iter().map(Vector2::amax).fold(0.0, f64::max),
+            best: None,
+            tried: 0,
+        };
+        search.descend(0, &self.h, &self.q);
+        if let Some((_, best)) = search.best {
+            p.copy_from_slice(&best[..self.n]);
         }
-        if let Some((_, x)) = best {
-            for (i, p_i) in p.iter_mut().enumerate() {
-                *p_i = Vector2::new(x[2 * i], x[2 * i + 1]);
-            }
-        }
-        (best.is_some(), tried)
+        (search.best.is_some(), search.tried)
     }
 
-    /// The states of a code in base 4. False for a code that only repeats another one: without friction there is
-    /// nothing to stick, and sliding to the left is sliding to the right.
-    fn decode(&self, code: u32, states: &mut [State; MAX_CONTACTS]) -> bool {
-        for (i, state) in states.iter_mut().enumerate().take(self.n) {
-            let digit = (code >> (2 * i)) & 3;
-            if self.mu[i] == 0.0 && digit > 1 {
-                return false;
-            }
-            *state = match digit {
-                0 => State::Open,
-                1 => State::Slide(1.0),
-                2 => State::Slide(-1.0),
-                _ => State::Stick,
-            };
-        }
-        true
-    }
-
-    /// The impulses of a combination of states, if they obey the law.
-    fn fit(&self, states: &[State; MAX_CONTACTS]) -> Option<[f64; MAX]> {
-        // Unknown k acts along direction d_k = (1, −σμ) at a contact (or (0, 1) for the tangent of a sticking one) and
-        // its equation is a row of u = 0.
-        let mut rows = [0; MAX];
-        let mut tangent = [0.0; MAX];
-        let mut m = 0;
+    /// Whether impulses obey the law in these states, up to rounding.
+    fn obeys(&self, states: &[State; MAX_CONTACTS], p: &Impulses) -> bool {
         for i in 0..self.n {
-            match states[i] {
-                State::Open => {}
-                State::Slide(sigma) => {
-                    rows[m] = 2 * i;
-                    tangent[m] = -sigma * self.mu[i];
-                    m += 1;
-                }
-                State::Stick => {
-                    rows[m] = 2 * i;
-                    rows[m + 1] = 2 * i + 1;
-                    m += 2;
-                }
+            let mut u = self.q[i];
+            let mut size = u.abs();
+            for j in 0..self.n {
+                u += self.h[i][j] * p[j];
+                size += self.h[i][j].abs() * p[j].abs();
             }
-        }
-        let mut system = System { m, a: [[0.0; MAX]; MAX], x: [0.0; MAX] };
-        for r in 0..m {
-            let row = &self.h[rows[r]];
-            for c in 0..m {
-                let mut a = row[rows[c]];
-                if tangent[c] != 0.0 {
-                    a += row[rows[c] + 1] * tangent[c];
-                }
-                system.a[r][c] = a;
-            }
-            system.x[r] = -self.q[rows[r]];
-        }
-        let mut scale = [0.0; MAX];
-        for k in 0..m {
-            scale[k] = self.h[rows[k]][rows[k]].max(f64::MIN_POSITIVE).sqrt();
-        }
-        let x = system.solve(&scale)?;
-        let mut p = [0.0; MAX];
-        for k in 0..m {
-            p[rows[k]] += x[k];
-            if tangent[k] != 0.0 {
-                p[rows[k] + 1] += tangent[k] * x[k];
-            }
-        }
-        self.obeys(states, &p).then_some(p)
-    }
-
-    /// Whether impulses with the equations of `states` also keep its inequalities, up to rounding.
-    fn obeys(&self, states: &[State; MAX_CONTACTS], p: &[f64; MAX]) -> bool {
-        for i in 0..self.n {
-            let (n, t) = (2 * i, 2 * i + 1);
-            let (mut u_n, mut u_t) = (self.q[n], self.q[t]);
-            let (mut size_n, mut size_t) = (u_n.abs(), u_t.abs());
-            for k in 0..2 * self.n {
-                let (a, b) = (self.h[n][k] * p[k], self.h[t][k] * p[k]);
-                u_n += a;
-                u_t += b;
-                size_n += a.abs();
-                size_t += b.abs();
-            }
-            let (slack_n, slack_t) = (ROUNDING * size_n, ROUNDING * (size_t + size_n));
-            let slack_p = slack_n / self.h[n][n];
+            let (slack_n, slack_t) = (ROUNDING * size[0], ROUNDING * (size[0] + size[1]));
+            let slack_p = slack_n / self.h[i][i][(0, 0)];
+            let presses = p[i][0] >= -slack_p && u[0].abs() <= slack_n;
             let fits = match states[i] {
-                State::Open => u_n >= -slack_n,
-                State::Slide(sigma) => {
-                    p[n] >= -slack_p && u_n.abs() <= slack_n && (sigma * u_t >= -slack_t || self.mu[i] == 0.0)
-                }
-                State::Stick => {
-                    p[t].abs() <= self.mu[i] * p[n] + slack_p
-                        && p[n] >= -slack_p
-                        && u_n.abs() <= slack_n
-                        && u_t.abs() <= slack_t
-                }
+                State::Open => u[0] >= -slack_n,
+                State::Slide(sigma) => presses && (sigma * u[1] >= -slack_t || self.mu[i] == 0.0),
+                State::Stick => presses && p[i][1].abs() <= self.mu[i] * p[i][0] + slack_p && u[1].abs() <= slack_t,
             };
             if !fits {
                 return false;
@@ -263,93 +172,203 @@ impl Table {
         }
         true
     }
-}
 
-/// A square system `a x = b` of order m ≤ 6, with `b` given in `x`.
-struct System {
-    m: usize,
-    a: [[f64; MAX]; MAX],
-    x: [f64; MAX],
-}
-
-impl System {
-    /// The solution of least norm, by Gaussian elimination with complete pivoting relative to `scale`; `None` where a
-    /// number overflows. Whether a singular system was consistent, the caller sees from the velocities.
-    fn solve(mut self, scale: &[f64; MAX]) -> Option<[f64; MAX]> {
-        let m = self.m;
-        let mut column = [0, 1, 2, 3, 4, 5];
-        let mut row_scale = *scale;
-        let mut rank = m;
-        for k in 0..m {
-            let (mut best, mut at) = (0.0, (k, k));
-            for r in k..m {
-                for c in k..m {
-                    let size = self.a[r][column[c]].abs() / (row_scale[r] * scale[column[c]]);
-                    if size > best {
-                        (best, at) = (size, (r, c));
-                    }
-                }
+    /// The impulses of a combination of states by a pivoted solve, of least norm where it leaves a choice.
+    fn pivoted(&self, states: &[State; MAX_CONTACTS]) -> Option<Impulses> {
+        // Unknown k is the size of an impulse along (1, −σμ) at a contact, or a component of a sticking one's; its
+        // equation is a row of u = 0.
+        let mut rows = [(0, 0); MAX];
+        let mut tangent = [0.0; MAX];
+        let mut m = 0;
+        for i in 0..self.n {
+            if states[i] == State::Open {
+                continue;
             }
-            if best <= RANK_TOLERANCE {
-                rank = k;
-                break;
-            }
-            self.a.swap(k, at.0);
-            self.x.swap(k, at.0);
-            row_scale.swap(k, at.0);
-            column.swap(k, at.1);
-            let pivot = self.a[k];
-            for r in k + 1..m {
-                let factor = self.a[r][column[k]] / pivot[column[k]];
-                if factor != 0.0 {
-                    for c in k + 1..m {
-                        self.a[r][column[c]] -= factor * pivot[column[c]];
-                    }
-                    self.x[r] -= factor * self.x[k];
+            rows[m] = (i, 0);
+            m += 1;
+            match states[i] {
+                State::Slide(sigma) => tangent[m - 1] = -sigma * self.mu[i],
+                _ => {
+                    rows[m] = (i, 1);
+                    m += 1;
                 }
             }
         }
-        // Back substitution with the free unknowns at zero …
-        let mut solution = [0.0; MAX];
-        let b = self.x;
-        self.back_substitute(rank, &column, &b, &mut solution);
-        // … then out of it what lies in the null space, so that the norm is least.
-        let mut basis = [[0.0; MAX]; MAX_CONTACTS];
-        for free in rank..m.min(rank + MAX_CONTACTS) {
-            let mut null = [0.0; MAX];
-            let mut b = [0.0; MAX];
-            for r in 0..rank {
-                b[r] = -self.a[r][column[free]];
+        let mut system = System::new(m);
+        for (r, &(i, a)) in rows[..m].iter().enumerate() {
+            for (c, &(j, b)) in rows[..m].iter().enumerate() {
+                let h = &self.h[i][j];
+                system.a[r][c] = h[(a, b)] + if tangent[c] == 0.0 { 0.0 } else { h[(a, 1)] * tangent[c] };
             }
-            self.back_substitute(rank, &column, &b, &mut null);
-            null[column[free]] = 1.0;
-            for earlier in &basis[..free - rank] {
-                subtract_projection(&mut null, earlier);
-            }
-            let norm = null.iter().map(|c| c * c).sum::<f64>().sqrt();
-            null.iter_mut().for_each(|c| *c /= norm);
-            subtract_projection(&mut solution, &null);
-            basis[free - rank] = null;
+            system.b[r] = -self.q[i][a];
+            system.scale[r] = self.h[i][i][(a, a)].max(f64::MIN_POSITIVE).sqrt();
+            system.length[r] = tangent[r].hypot(1.0);
         }
-        solution.iter().all(|c| c.is_finite()).then_some(solution)
+        let x = system.solve()?;
+        let mut p = [Vector2::zeros(); MAX_CONTACTS];
+        for (k, &(i, a)) in rows[..m].iter().enumerate() {
+            p[i][a] += x[k];
+            p[i][1] += tangent[k] * x[k];
+        }
+        Some(p)
+    }
+}
+
+/// A walk through the tree of states.
+struct Search<'a> {
+    table: &'a Table,
+    states: [State; MAX_CONTACTS],
+    /// p_k = −gain (velocity of contact k without its own impulse), for the contacts eliminated so far.
+    gains: [Matrix2<f64>; MAX_CONTACTS],
+    /// The largest component of q: what velocities are small against.
+    speed: f64,
+    best: Option<(f64, Impulses)>,
+    tried: u32,
+}
+
+const STATES: [State; 4] = [State::Open, State::Slide(1.0), State::Slide(-1.0), State::Stick];
+
+impl Search<'_> {
+    /// The states of contact `k` that differ: without friction there is nothing to stick, and sliding to the left is
+    /// sliding to the right.
+    fn states_of(&self, k: usize) -> &'static [State] {
+        if self.table.mu[k] == 0.0 { &STATES[..2] } else { &STATES }
     }
 
-    fn back_substitute(&self, rank: usize, column: &[usize; MAX], b: &[f64; MAX], x: &mut [f64; MAX]) {
-        for r in (0..rank).rev() {
-            let mut sum = b[r];
-            for c in r + 1..rank {
-                sum -= self.a[r][column[c]] * x[column[c]];
+    /// Whether impulses as small as can be were found.
+    fn done(&self) -> bool {
+        self.best.is_some_and(|(norm, _)| norm == 0.0)
+    }
+
+    /// Eliminates contact `k` in each of its states from the problem (h, q) of the contacts from `k` on.
+    fn descend(&mut self, k: usize, h: &[[Matrix2<f64>; MAX_CONTACTS]; MAX_CONTACTS], q: &Impulses) {
+        let n = self.table.n;
+        for &state in self.states_of(k) {
+            if self.done() {
+                return;
             }
-            x[column[r]] = sum / self.a[r][column[r]];
+            self.states[k] = state;
+            let Some(gain) = gain(state, &h[k][k], self.table.mu[k], &self.table.h[k][k]) else {
+                self.all_pivoted(k + 1);
+                continue;
+            };
+            self.gains[k] = gain;
+            if k + 1 == n {
+                self.tried += 1;
+                let p = -(gain * q[k]);
+                let slack = ROUGHLY * self.speed;
+                if plausible(state, &(q[k] + h[k][k] * p), slack, &p, slack * gain.amax(), self.table.mu[k]) {
+                    self.leaf(&p);
+                }
+                continue;
+            }
+            let (mut reduced, mut rest) = (*h, *q);
+            if state != State::Open {
+                for i in k + 1..n {
+                    let back = h[i][k] * gain;
+                    rest[i] -= back * q[k];
+                    for j in k + 1..n {
+                        reduced[i][j] -= back * h[k][j];
+                    }
+                }
+            }
+            self.descend(k + 1, &reduced, &rest);
+        }
+    }
+
+    /// Goes back up from the last contact's impulse, and offers the impulses of all.
+    fn leaf(&mut self, last: &Vector2<f64>) {
+        let table = self.table;
+        let mut p = [Vector2::zeros(); MAX_CONTACTS];
+        p[table.n - 1] = *last;
+        // Contact k was eliminated before those after it, in the velocities that those before it had left.
+        for k in (0..table.n - 1).rev() {
+            p[k] = self.eliminated(k, &p);
+        }
+        if !self.offer(&p) {
+            // Small pivots on the way down cost digits that the pivoted solve keeps.
+            self.offer_pivoted();
+        }
+    }
+
+    /// The impulse of contact `k` given those after it, with those before it eliminated.
+    fn eliminated(&self, k: usize, p: &Impulses) -> Vector2<f64> {
+        let table = self.table;
+        let velocity = |i: usize| (k + 1..table.n).fold(table.q[i], |u, j| u + table.h[i][j] * p[j]);
+        match k {
+            0 => -(self.gains[0] * velocity(0)),
+            // Contact 1 of three: contact 0 gives way to it and to contact 2.
+            _ => {
+                let give = table.h[1][0] * self.gains[0];
+                let u = velocity(1) - give * velocity(0);
+                -(self.gains[1] * u)
+            }
+        }
+    }
+
+    /// Offers the pivoted solutions of all combinations of states from contact `k` on, those before it as they are.
+    fn all_pivoted(&mut self, k: usize) {
+        if k < self.table.n {
+            for &state in self.states_of(k) {
+                self.states[k] = state;
+                self.all_pivoted(k + 1);
+            }
+            return;
+        }
+        self.tried += 1;
+        self.offer_pivoted();
+    }
+
+    fn offer_pivoted(&mut self) {
+        if let Some(p) = self.table.pivoted(&self.states) {
+            self.offer(&p);
+        }
+    }
+
+    /// Keeps impulses that obey the law if none smaller are known; false for impulses that don't obey it.
+    fn offer(&mut self, p: &Impulses) -> bool {
+        let norm: f64 = p.iter().map(Vector2::norm_squared).sum();
+        if self.best.is_some_and(|(best, _)| norm >= best) {
+            return true;
+        }
+        let obeys = self.table.obeys(&self.states, p);
+        if obeys {
+            self.best = Some((norm, *p));
+        }
+        obeys
+    }
+}
+
+/// How the impulse of a contact in a state answers its velocity: p = −gain u. `h` is its block with other contacts
+/// eliminated, `original` the block itself. `None` where the state leaves the impulse undetermined, or nearly.
+fn gain(state: State, h: &Matrix2<f64>, mu: f64, original: &Matrix2<f64>) -> Option<Matrix2<f64>> {
+    match state {
+        State::Open => Some(Matrix2::zeros()),
+        State::Slide(sigma) => {
+            let compliance = h[(0, 0)] - sigma * mu * h[(0, 1)];
+            let size = original[(0, 0)] + mu * original[(0, 1)].abs();
+            (compliance.abs() > RANK_TOLERANCE * size)
+                .then(|| Matrix2::new(1.0 / compliance, 0.0, -sigma * mu / compliance, 0.0))
+        }
+        State::Stick => {
+            let determinant = h[(0, 0)] * h[(1, 1)] - h[(0, 1)] * h[(1, 0)];
+            let size = original[(0, 0)] * original[(1, 1)];
+            (determinant.abs() > RANK_TOLERANCE * size)
+                .then(|| Matrix2::new(h[(1, 1)], -h[(0, 1)], -h[(1, 0)], h[(0, 0)]) / determinant)
         }
     }
 }
 
-/// Removes from `x` its part along the unit vector `e`.
-fn subtract_projection(x: &mut [f64; MAX], e: &[f64; MAX]) {
-    let along: f64 = x.iter().zip(e).map(|(a, b)| a * b).sum();
-    for (a, b) in x.iter_mut().zip(e) {
-        *a -= along * b;
+/// What a sign of the last contact may be missed by, relative to the speeds of the problem, before the exact test is not
+/// worth its cost: far above rounding on the way down.
+const ROUGHLY: f64 = 1e-9;
+
+/// Whether the last contact's velocity `u` and impulse `p` may belong to its state, up to `slack_u` and `slack_p`.
+fn plausible(state: State, u: &Vector2<f64>, slack_u: f64, p: &Vector2<f64>, slack_p: f64, mu: f64) -> bool {
+    match state {
+        State::Open => u[0] >= -slack_u,
+        State::Slide(sigma) => p[0] >= -slack_p && (sigma * u[1] >= -slack_u || mu == 0.0),
+        State::Stick => p[1].abs() <= mu * p[0] + slack_p * (1.0 + mu),
     }
 }
 

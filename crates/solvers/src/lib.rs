@@ -23,6 +23,7 @@
 mod auto;
 mod catalogue;
 mod enumeration;
+mod least_norm;
 mod one_contact;
 mod pgs;
 

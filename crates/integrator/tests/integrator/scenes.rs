@@ -8,18 +8,18 @@ use teeter_integrator::*;
 use teeter_rigid::{MassProperties, Rectangle};
 
 /// What a block of the tests is.
-pub struct BlockSpec {
-    pub width: f64,
-    pub height: f64,
-    pub depth: f64,
-    pub density: f64,
+pub(crate) struct BlockSpec {
+    pub(crate) width: f64,
+    pub(crate) height: f64,
+    pub(crate) depth: f64,
+    pub(crate) density: f64,
 }
 
 /// The block of the source paper.
-pub const PAPER_BLOCK: BlockSpec = BlockSpec { width: 0.03, height: 0.135, depth: 0.03, density: 2700.0 };
+pub(crate) const PAPER_BLOCK: BlockSpec = BlockSpec { width: 0.03, height: 0.135, depth: 0.03, density: 2700.0 };
 
 /// A block above a surface.
-pub fn model(
+pub(crate) fn model(
     spec: &BlockSpec,
     gravity: Vector2<f64>,
     law: PairLaw,
@@ -37,11 +37,11 @@ pub fn model(
 }
 
 /// A beam at the origin, contact on its axis.
-pub fn beam_body(beam: &Arc<Beam>) -> BeamBody {
+pub(crate) fn beam_body(beam: &Arc<Beam>) -> BeamBody {
     BeamBody::new(Arc::clone(beam), Vector2::zeros(), BeamSurface::Axis)
 }
 
 /// A workspace with the default solver.
-pub fn workspace(model: &Model<2>) -> Workspace<2> {
+pub(crate) fn workspace(model: &Model<2>) -> Workspace<2> {
     Workspace::new(model, Box::new(teeter_solvers::Auto::new()), SolverSettings::default())
 }

@@ -144,8 +144,9 @@ cases! {
 /// Some of the reference's numbers, so that they are tested without its files too: t, X, Y, φ.
 #[test]
 fn carried_numbers_of_the_independent_implementation() {
-    type Rows = &'static [[f64; 4]];
-    let cases: [(&str, &[(&str, &str)], Rows); 4] = [
+    /// A scenario, its overrides, and rows of t, X, Y, φ.
+    type Case = (&'static str, &'static [(&'static str, &'static str)], &'static [[f64; 4]]);
+    let cases: [Case; 4] = [
         (
             "free-rocking-on-beam",
             &[],
