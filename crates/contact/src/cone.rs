@@ -81,7 +81,7 @@ mod tests {
                         assert!(p[0] >= 0.0);
                         assert!(tangential_norm(&p) <= mu * p[0] * (1.0 + 1e-15) + 1e-15);
                         for angle in 0..12 {
-                            let a = f64::from(angle) * 0.5236;
+                            let a = f64::from(angle) * std::f64::consts::FRAC_PI_6;
                             let y = Vector3::new(1.0, mu * a.cos(), mu * a.sin());
                             let scale = (x.norm() + p.norm()) * (y.norm() + p.norm()) + 1.0;
                             assert!((x - p).dot(&(y - p)) <= 1e-13 * scale, "mu {mu} x {x} p {p}");
