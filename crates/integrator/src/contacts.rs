@@ -1,6 +1,6 @@
 //! The active contacts of a step: their rows, their problem, and what became of them.
 
-use crate::model::{Model, Part};
+use crate::model::Model;
 use crate::subsystem::Span;
 use crate::{Compliance, Coupling, PartRows, Rows, Vector, WarmStart};
 use teeter_contact::{Block, ContactProblem, Delassus, ProblemError};
@@ -66,27 +66,36 @@ impl<const D: usize> Contact<D> {
     }
 }
 
-pub(crate) fn tangential<const D: usize>(u: &Vector<D>) -> Vector<D> {
+/// The tangential part of a vector in a contact's frame: its normal component set to zero.
+#[must_use]
+pub fn tangential<const D: usize>(u: &Vector<D>) -> Vector<D> {
     let mut t = *u;
     t[0] = 0.0;
     t
 }
 
-/// The arena of a step's contacts; kept over steps, so that it allocates only where there are more than ever before.
+/// The active contacts of a step with their rows and their problem; kept over steps, so that it allocates only where
+/// there are more than ever before.
+///
+/// A scheme fills it in this order: [`clear`](Self::clear), [`activate`](Self::activate) for each contact,
+/// [`pose`](Self::pose) for each, [`assemble`](Self::assemble), [`problem`](Self::problem) for a solver,
+/// [`add_impulses`](Self::add_impulses), [`complete`](Self::complete).
 #[derive(Debug)]
-pub(crate) struct ContactSet<const D: usize> {
-    pub(crate) contacts: Vec<Contact<D>>,
+pub struct ContactSet<const D: usize> {
+    contacts: Vec<Contact<D>>,
     spans: Vec<[Span; 2]>,
     columns: Vec<usize>,
     values: Vec<Vector<D>>,
     blocks: Vec<Block<D>>,
-    pub(crate) q: Vec<Vector<D>>,
+    q: Vec<Vector<D>>,
     mu: Vec<f64>,
-    pub(crate) p: Vec<Vector<D>>,
+    p: Vec<Vector<D>>,
 }
 
 impl<const D: usize> ContactSet<D> {
-    pub(crate) fn with_capacity(contacts: usize, row: usize) -> Self {
+    /// No contacts, with room for so many, their rows at most `row` columns long on a side.
+    #[must_use]
+    pub fn with_capacity(contacts: usize, row: usize) -> Self {
         Self {
             contacts: Vec::with_capacity(contacts),
             spans: Vec::with_capacity(contacts),
@@ -99,7 +108,14 @@ impl<const D: usize> ContactSet<D> {
         }
     }
 
-    pub(crate) fn clear(&mut self) {
+    /// The contacts, in the order in which they were activated.
+    #[must_use]
+    pub fn contacts(&self) -> &[Contact<D>] {
+        &self.contacts
+    }
+
+    /// Drops all contacts.
+    pub fn clear(&mut self) {
         self.contacts.clear();
         self.spans.clear();
         self.columns.clear();
@@ -109,12 +125,9 @@ impl<const D: usize> ContactSet<D> {
         self.p.clear();
     }
 
-    pub(crate) fn len(&self) -> usize {
-        self.contacts.len()
-    }
-
-    /// Takes a candidate in, with its rows at coordinates `q`; side 1 enters with a minus, for u = v_0 − v_1.
-    pub(crate) fn activate(&mut self, model: &Model<D>, q: &[f64], candidate: &Candidate<D>, warm: &WarmStart) {
+    /// Takes a candidate in, with its rows at coordinates `q`; side 1 enters with a minus, for u = v_0 − v_1. Its impulse
+    /// starts from that of the step before.
+    pub fn activate(&mut self, model: &Model<D>, q: &[f64], candidate: &Candidate<D>, warm: &WarmStart) {
         let mut spans = [Span { part: 0, start: 0, len: 0 }; 2];
         for (side, anchor) in candidate.sides.iter().enumerate() {
             let start = self.columns.len();
@@ -135,6 +148,7 @@ impl<const D: usize> ContactSet<D> {
         self.spans.push(spans);
         let before = warm.impulse::<D>(candidate.id);
         self.p.push(before.unwrap_or_else(Vector::zeros));
+        self.q.push(Vector::zeros());
         self.mu.push(model.law(candidate.id.pair()).friction);
         self.contacts.push(Contact {
             id: candidate.id,
@@ -148,26 +162,31 @@ impl<const D: usize> ContactSet<D> {
     }
 
     /// The relative velocity J_i v of contact `i`.
-    pub(crate) fn velocity(&self, parts: &[Part<D>], i: usize, v: &[f64]) -> Vector<D> {
+    #[must_use]
+    pub fn velocity(&self, model: &Model<D>, i: usize, v: &[f64]) -> Vector<D> {
         let mut u = Vector::zeros();
-        for side in self.spans[i] {
-            if side.len > 0 {
-                let v = &v[parts[side.part].v.clone()];
-                for k in side.start..side.start + side.len {
-                    u += self.values[k] * v[self.columns[k]];
-                }
+        for side in self.spans[i].iter().filter(|side| side.len > 0) {
+            let v = &v[model.parts()[side.part].v.clone()];
+            for k in side.start..side.start + side.len {
+                u += self.values[k] * v[self.columns[k]];
             }
         }
         u
     }
 
-    /// H = Σ J W Jᵀ over the subsystems.
-    pub(crate) fn assemble(&mut self, parts: &[Part<D>], factors: &mut [Box<dyn Compliance<D>>], scratch: &mut [f64]) {
+    /// Gives contact `i` its velocity before the step and its constant vector `q` of the problem, m/s.
+    pub fn pose(&mut self, i: usize, u_before: Vector<D>, q: Vector<D>) {
+        self.contacts[i].u_before = u_before;
+        self.q[i] = q;
+    }
+
+    /// H = Σ J W Jᵀ over the subsystems; `scratch` is as long as the model's velocities.
+    pub fn assemble(&mut self, model: &Model<D>, factors: &mut [Box<dyn Compliance<D>>], scratch: &mut [f64]) {
         let n = self.contacts.len();
         self.blocks.clear();
         self.blocks.resize(n * n, Block::zeros());
         let mut coupling = Coupling { contacts: n, blocks: &mut self.blocks };
-        for (index, (part, factor)) in parts.iter().zip(factors).enumerate() {
+        for (index, (part, factor)) in model.parts().iter().zip(factors).enumerate() {
             if part.v.is_empty() {
                 continue;
             }
@@ -176,34 +195,48 @@ impl<const D: usize> ContactSet<D> {
         }
     }
 
-    /// Adds Jᵀp to the generalised impulse `f`, and says which parts it touched.
-    pub(crate) fn scatter_impulses(&self, parts: &[Part<D>], f: &mut [f64]) {
-        for (sides, p) in self.spans.iter().zip(&self.p) {
-            for side in sides.iter().filter(|side| side.len > 0) {
-                let f = &mut f[parts[side.part].v.clone()];
-                for k in side.start..side.start + side.len {
-                    f[self.columns[k]] += self.values[k].dot(p);
-                }
-            }
-        }
-    }
-
-    /// Whether any active contact acts on a part.
-    pub(crate) fn acts_on(&self, part: usize) -> bool {
-        self.spans.iter().flatten().any(|side| side.part == part && side.len > 0)
-    }
-
     /// The problem, and the impulses to start from and to leave the solution in.
-    pub(crate) fn problem(&mut self) -> Result<(ContactProblem<'_, D>, &mut [Vector<D>]), ProblemError> {
+    ///
+    /// # Errors
+    /// As [`ContactProblem::new`].
+    pub fn problem(&mut self) -> Result<(ContactProblem<'_, D>, &mut [Vector<D>]), ProblemError> {
         let problem = ContactProblem::new(Delassus::Dense(&self.blocks), &self.q, &self.mu)?;
         Ok((problem, &mut self.p))
     }
 
+    /// Adds W Jᵀ p to `v`; `scratch` is as long as the model's velocities.
+    pub fn add_impulses(
+        &self,
+        model: &Model<D>,
+        factors: &mut [Box<dyn Compliance<D>>],
+        scratch: &mut [f64],
+        v: &mut [f64],
+    ) {
+        for (index, (part, factor)) in model.parts().iter().zip(factors).enumerate() {
+            let rows = PartRows { part: index, spans: &self.spans, columns: &self.columns, values: &self.values };
+            let f = &mut scratch[part.v.clone()];
+            let mut touched = false;
+            for (contact, columns, values) in rows.iter() {
+                if !touched {
+                    f.fill(0.0);
+                    touched = true;
+                }
+                for (&c, value) in columns.iter().zip(values) {
+                    f[c] += value.dot(&self.p[contact]);
+                }
+            }
+            if touched {
+                factor.solve(f);
+                v[part.v.clone()].iter_mut().zip(f.iter()).for_each(|(v, dv)| *v += dv);
+            }
+        }
+    }
+
     /// Completes the contacts after a solve, with velocities after the step.
-    pub(crate) fn complete(&mut self, parts: &[Part<D>], v: &[f64]) {
+    pub fn complete(&mut self, model: &Model<D>, v: &[f64]) {
         let fastest = self.q.iter().map(Vector::norm).fold(0.0, f64::max);
         for i in 0..self.contacts.len() {
-            let u_after = self.velocity(parts, i, v);
+            let u_after = self.velocity(model, i, v);
             let contact = &mut self.contacts[i];
             (contact.p, contact.u_after, contact.still) = (self.p[i], u_after, STILL * fastest);
         }

@@ -99,7 +99,7 @@ impl Ledger {
     }
 
     /// Enters a step that ends with energies `now`; completes `step` with its residual.
-    pub(crate) fn enter(&mut self, now: Energy, step: &mut StepEnergy) {
+    pub fn enter(&mut self, now: Energy, step: &mut StepEnergy) {
         let before = self.current;
         // Part by part: the sum of large and small energies would lose digits of the difference.
         let change = (now.kinetic - before.kinetic) + (now.elastic - before.elastic) + (now.gravity - before.gravity);

@@ -60,10 +60,10 @@ mod workspace;
 
 pub use beam::{BeamBody, BeamSurface};
 pub use blocks::{Block, Blocks};
-pub use contacts::{Contact, ContactState};
+pub use contacts::{Contact, ContactSet, ContactState, tangential};
 pub use ground::Ground;
 pub use ledger::{Ledger, PositiveWork, StepEnergy};
-pub use model::{Model, ModelBuilder, ModelError, PairLaw, Placed};
+pub use model::{Model, ModelBuilder, ModelError, PairLaw, Part, Placed};
 pub use monitor::{Crossing, Peak, RockingMonitor};
 pub use moreau_jean::{MoreauJean, MoreauJeanSettings};
 pub use run::{Ended, Observer, ObserverError, Plan, RunError, run};

@@ -33,10 +33,20 @@ pub enum ModelError {
 }
 
 /// A subsystem with its places in the state.
-pub(crate) struct Part<const D: usize> {
-    pub(crate) system: Box<dyn Subsystem<D>>,
-    pub(crate) q: Range<usize>,
-    pub(crate) v: Range<usize>,
+#[non_exhaustive]
+pub struct Part<const D: usize> {
+    /// The subsystem.
+    pub system: Box<dyn Subsystem<D>>,
+    /// Its coordinates.
+    pub q: Range<usize>,
+    /// Its velocities.
+    pub v: Range<usize>,
+}
+
+impl<const D: usize> std::fmt::Debug for Part<D> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Part").field("q", &self.q).field("v", &self.v).finish_non_exhaustive()
+    }
 }
 
 /// The subsystems, bodies, pairs and the detector of a scene.
@@ -128,20 +138,6 @@ impl<const D: usize> Model<D> {
         self.size
     }
 
-    /// Number of subsystems.
-    #[must_use]
-    pub fn subsystems(&self) -> usize {
-        self.parts.len()
-    }
-
-    /// The subsystem that a body belongs to: its number, and the ranges of its coordinates and velocities in the state.
-    /// `None` for a body that the model doesn't have.
-    #[must_use]
-    pub fn place_in_state(&self, body: BodyId) -> Option<(usize, Range<usize>, Range<usize>)> {
-        let &(part, _) = self.bodies.get(body.0 as usize)?;
-        Some((part, self.parts[part].q.clone(), self.parts[part].v.clone()))
-    }
-
     /// The law of a pair; the default (no friction, no restitution) for a pair that the model doesn't have.
     #[must_use]
     pub fn law(&self, pair: u32) -> PairLaw {
@@ -188,15 +184,19 @@ impl<const D: usize> Model<D> {
     pub fn relative_velocity(&self, candidate: &Candidate<D>, q: &[f64], v: &[f64]) -> Vector<D> {
         let mut set = ContactSet::with_capacity(1, self.size.row);
         set.activate(self, q, candidate, &WarmStart::default());
-        set.velocity(&self.parts, 0, v)
+        set.velocity(self, 0, v)
     }
 
-    pub(crate) fn parts(&self) -> &[Part<D>] {
+    /// The subsystems with their places in the state.
+    #[must_use]
+    pub fn parts(&self) -> &[Part<D>] {
         &self.parts
     }
 
-    /// The number of a body's part, the part, and the body's number within it.
-    pub(crate) fn owner(&self, body: BodyId) -> Option<(usize, &Part<D>, u32)> {
+    /// The number of a body's part, the part, and the body's number within it; `None` for a body that the model doesn't
+    /// have.
+    #[must_use]
+    pub fn owner(&self, body: BodyId) -> Option<(usize, &Part<D>, u32)> {
         let &(part, local) = self.bodies.get(body.0 as usize)?;
         Some((part, &self.parts[part], local))
     }

@@ -10,8 +10,10 @@
 //! The law is Signorini's at velocity level with Newton's restitution, and Coulomb's.
 
 use crate::contacts::tangential;
-use crate::{Model, Scheme, SettingError, State, StepEnergy, StepError, StepReport, Weights, Workspace};
-use teeter_contact::{Outcome, Stop};
+use crate::{
+    Model, Scheme, SettingError, Size, State, StepEnergy, StepError, StepReport, Subsystem, Weights, Workspace,
+};
+use teeter_contact::{Outcome, ProblemError};
 
 /// The settings of [`MoreauJean`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,9 +34,44 @@ impl Default for MoreauJeanSettings {
 }
 
 /// The scheme; see the module's page.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct MoreauJean {
     settings: MoreauJeanSettings,
+    buffers: Buffers,
+}
+
+/// Vectors of a step: they carry nothing from one to the next.
+#[derive(Clone, Debug, Default)]
+struct Buffers {
+    /// Coordinates at which forces or gaps are taken; at last q¹.
+    q_at: Vec<f64>,
+    /// v_free; once the impulses are known, v¹.
+    v_free: Vec<f64>,
+    /// v_θ.
+    v_mean: Vec<f64>,
+    dq: Vec<f64>,
+    dv: Vec<f64>,
+    /// P_θ.
+    load: Vec<f64>,
+    product: Vec<f64>,
+}
+
+impl Buffers {
+    /// Takes the sizes of a model; allocates nothing where they are the same.
+    fn resize(&mut self, size: Size) {
+        self.q_at.resize(size.q, 0.0);
+        for v in [&mut self.v_free, &mut self.v_mean, &mut self.dq, &mut self.dv, &mut self.load, &mut self.product] {
+            v.resize(size.v, 0.0);
+        }
+    }
+
+    /// Leaves q ⊕ τ v in `q_at`.
+    fn predict<const D: usize>(&mut self, model: &Model<D>, state: &State, tau: f64) {
+        for (dq, v) in self.dq.iter_mut().zip(&state.v) {
+            *dq = tau * v;
+        }
+        model.retract(&state.q, &self.dq, &mut self.q_at);
+    }
 }
 
 impl MoreauJean {
@@ -58,7 +95,7 @@ impl MoreauJean {
             "at least 0",
         )?;
         check("gap_tolerance", gap_tolerance, gap_tolerance >= 0.0 && gap_tolerance.is_finite(), "at least 0 m")?;
-        Ok(Self { settings })
+        Ok(Self { settings, buffers: Buffers::default() })
     }
 
     /// The settings.
@@ -79,6 +116,7 @@ impl<const D: usize> Scheme<D> for MoreauJean {
     }
 
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {
+        self.buffers.resize(model.size());
         state.warm.reserve(model.detector().capacity(), D);
         work.factorise(model, self.weights(state.dt), &state.q)?;
         Ok(())
@@ -93,28 +131,26 @@ impl<const D: usize> Scheme<D> for MoreauJean {
         let MoreauJeanSettings { theta, activation_gamma, gap_tolerance } = self.settings;
         let h = state.dt;
         let t_end = (state.step + 1) as f64 * h;
+        self.buffers.resize(model.size());
         work.factorise(model, self.weights(h), &state.q)?;
 
         self.free_velocity(model, state, work, t_end);
-        predict(model, state, activation_gamma * h, work);
-        model.detector().detect(&model.placed(&work.q_at), gap_tolerance, &mut work.candidates);
-        let outcome = impact(model, state, work).map_err(|source| StepError::Problem { t: state.t, source })?;
+        self.buffers.predict(model, state, activation_gamma * h);
+        work.detect(model, &self.buffers.q_at, gap_tolerance);
+        let outcome = self.impact(model, state, work).map_err(|source| StepError::Problem { t: state.t, source })?;
 
-        // From here on `v_free` holds v¹.
-        let v_mean = &mut work.v_mean;
-        for ((mean, v1), v0) in v_mean.iter_mut().zip(&work.v_free).zip(&state.v) {
+        let Buffers { q_at, v_free: v_end, v_mean, dq, .. } = &mut self.buffers;
+        for (((mean, dq), v1), v0) in v_mean.iter_mut().zip(dq.iter_mut()).zip(v_end.iter()).zip(&state.v) {
             *mean = theta * v1 + (1.0 - theta) * v0;
+            *dq = h * *mean;
         }
-        for (dq, v) in work.dq.iter_mut().zip(&work.v_mean) {
-            *dq = h * v;
-        }
-        model.retract(&state.q, &work.dq, &mut work.q_at);
-        if !(all_finite(&work.v_free) && all_finite(&work.q_at)) {
+        model.retract(&state.q, dq, q_at);
+        if !(all_finite(v_end) && all_finite(q_at)) {
             return Err(StepError::Diverged { t: state.t });
         }
 
-        let mut energy = self.work_of_forces(model, state, work);
-        for contact in &work.contacts.contacts {
+        let mut energy = self.work_of_forces(model, state);
+        for contact in work.contacts.contacts() {
             let u_theta = contact.u_after * theta + contact.u_before * (1.0 - theta);
             energy.contact += u_theta[0] * contact.p[0];
             energy.friction += tangential(&u_theta).dot(&contact.p);
@@ -122,63 +158,87 @@ impl<const D: usize> Scheme<D> for MoreauJean {
             state.ledger.largest_tangential_work = state.ledger.largest_tangential_work.max(slip);
         }
 
-        state.q.copy_from_slice(&work.q_at);
-        state.v.copy_from_slice(&work.v_free);
+        state.q.copy_from_slice(&self.buffers.q_at);
+        state.v.copy_from_slice(&self.buffers.v_free);
         let t_start = std::mem::replace(&mut state.t, t_end);
         state.step += 1;
         state.ledger.enter(model.energy(&state.q, &state.v), &mut energy);
         state.warm.clear();
-        for contact in &work.contacts.contacts {
+        for contact in work.contacts.contacts() {
             state.warm.push(contact.id, &contact.p);
         }
-        model.detector().detect(&model.placed(&state.q), 0.0, &mut work.candidates);
-        let penetration = work.candidates.iter().map(|c| -c.gap).fold(0.0, f64::max);
-        tally(state, outcome.as_ref(), work.contacts.len(), penetration);
-        let contacts = &work.contacts.contacts;
+        let penetration = work.penetration(model, &state.q);
+        let contacts = work.contacts.contacts();
+        state.tally.count(outcome.as_ref(), contacts.len(), penetration);
         Ok(StepReport { step: state.step, t_start, t_end, contacts, outcome, penetration, energy })
     }
 }
 
 impl MoreauJean {
-    /// Leaves v_free in `work.v_free` and P_θ in `work.load`.
-    fn free_velocity<const D: usize>(&self, model: &Model<D>, state: &State, work: &mut Workspace<D>, t_end: f64) {
+    /// Leaves v_free and P_θ in the buffers.
+    fn free_velocity<const D: usize>(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>, t_end: f64) {
         let theta = self.settings.theta;
         let h = state.dt;
-        predict(model, state, h * theta, work);
+        let buffers = &mut self.buffers;
+        buffers.predict(model, state, h * theta);
         for (part, factor) in model.parts().iter().zip(&mut work.factors) {
             let (q, v) = (part.q.clone(), part.v.clone());
             if v.is_empty() {
                 continue;
             }
-            let dv = &mut work.dv[v.clone()];
+            let dv = &mut buffers.dv[v.clone()];
             dv.fill(0.0);
-            part.system.internal_force(&work.q_at[q], &state.v[v.clone()], dv);
+            part.system.internal_force(&buffers.q_at[q], &state.v[v.clone()], dv);
             if part.system.is_loaded() {
-                let (load, scratch) = (&mut work.load[v.clone()], &mut work.scratch[..v.len()]);
+                let (load, scratch) = (&mut buffers.load[v.clone()], &mut work.scratch[..v.len()]);
                 mean_load(part.system.as_ref(), theta, [state.t, t_end], load, scratch);
                 add(dv, load);
             }
             dv.iter_mut().for_each(|f| *f *= h);
             factor.solve(dv);
-            for ((free, v0), dv) in work.v_free[v.clone()].iter_mut().zip(&state.v[v]).zip(dv.iter()) {
+            for ((free, v0), dv) in buffers.v_free[v.clone()].iter_mut().zip(&state.v[v]).zip(dv.iter()) {
                 *free = v0 + dv;
             }
         }
     }
 
+    /// Poses and solves the contact problem of the candidates at the predicted position; turns v_free into v¹.
+    fn impact<const D: usize>(
+        &mut self,
+        model: &Model<D>,
+        state: &State,
+        work: &mut Workspace<D>,
+    ) -> Result<Option<Outcome>, ProblemError> {
+        let Buffers { q_at, v_free, .. } = &mut self.buffers;
+        let Workspace { contacts, candidates, .. } = work;
+        contacts.clear();
+        if candidates.is_empty() {
+            return Ok(None);
+        }
+        for (i, candidate) in candidates.iter().enumerate() {
+            contacts.activate(model, q_at, candidate, &state.warm);
+            let u_before = contacts.velocity(model, i, &state.v);
+            let mut q = contacts.velocity(model, i, v_free);
+            q[0] += model.law(candidate.id.pair()).restitution * u_before[0].min(0.0);
+            contacts.pose(i, u_before, q);
+        }
+        work.solve_contacts(model, v_free).map(Some)
+    }
+
     /// The terms of the energy identity that aren't contact: loads, damping, the scheme itself.
-    fn work_of_forces<const D: usize>(&self, model: &Model<D>, state: &State, work: &mut Workspace<D>) -> StepEnergy {
+    fn work_of_forces<const D: usize>(&mut self, model: &Model<D>, state: &State) -> StepEnergy {
         let theta = self.settings.theta;
         let h = state.dt;
+        let Buffers { v_free: v_end, v_mean, dq, dv, load, product, .. } = &mut self.buffers;
         let mut energy = StepEnergy::default();
         if theta != 0.5 {
-            for ((dv, v1), v0) in work.dv.iter_mut().zip(&work.v_free).zip(&state.v) {
+            for ((dv, v1), v0) in dv.iter_mut().zip(v_end.iter()).zip(&state.v) {
                 *dv = v1 - v0;
             }
         }
         for part in model.parts() {
             let (q, v) = (&state.q[part.q.clone()], part.v.clone());
-            let product = &mut work.product[v.clone()];
+            let product = &mut product[v.clone()];
             let mut form = |w: Weights, x: &[f64]| {
                 product.fill(0.0);
                 part.system.apply(w, q, x, product);
@@ -186,32 +246,24 @@ impl MoreauJean {
             };
             if part.system.is_damped() {
                 let c = Weights { damping: 1.0, ..Weights::default() };
-                energy.viscous -= h * form(c, &work.v_mean[v.clone()]);
+                energy.viscous -= h * form(c, &v_mean[v.clone()]);
             }
             if theta != 0.5 {
                 let m = Weights { mass: 1.0, ..Weights::default() };
                 let k = Weights { stiffness: 1.0, ..Weights::default() };
-                energy.numerical -= (theta - 0.5) * (form(m, &work.dv[v.clone()]) + form(k, &work.dq[v.clone()]));
+                energy.numerical -= (theta - 0.5) * (form(m, &dv[v.clone()]) + form(k, &dq[v.clone()]));
             }
             if part.system.is_loaded() {
-                energy.external += h * dot(&work.v_mean[v.clone()], &work.load[v]);
+                energy.external += h * dot(&v_mean[v.clone()], &load[v]);
             }
         }
         energy
     }
 }
 
-/// Leaves q⁰ ⊕ τ v⁰ in `work.q_at`.
-fn predict<const D: usize>(model: &Model<D>, state: &State, tau: f64, work: &mut Workspace<D>) {
-    for (dq, v) in work.dq.iter_mut().zip(&state.v) {
-        *dq = tau * v;
-    }
-    model.retract(&state.q, &work.dq, &mut work.q_at);
-}
-
 /// θP¹ + (1−θ)P⁰ into `load`.
 fn mean_load<const D: usize>(
-    system: &dyn crate::Subsystem<D>,
+    system: &dyn Subsystem<D>,
     theta: f64,
     t: [f64; 2],
     load: &mut [f64],
@@ -224,61 +276,6 @@ fn mean_load<const D: usize>(
         for (sum, p) in load.iter_mut().zip(scratch.iter()) {
             *sum += weight * p;
         }
-    }
-}
-
-/// Poses and solves the contact problem of the candidates at `work.q_at`; turns v_free into v¹.
-fn impact<const D: usize>(
-    model: &Model<D>,
-    state: &State,
-    work: &mut Workspace<D>,
-) -> Result<Option<Outcome>, teeter_contact::ProblemError> {
-    let parts = model.parts();
-    let set = &mut work.contacts;
-    set.clear();
-    if work.candidates.is_empty() {
-        return Ok(None);
-    }
-    work.candidates.sort_unstable_by_key(|candidate| candidate.id);
-    for candidate in &work.candidates {
-        set.activate(model, &work.q_at, candidate, &state.warm);
-    }
-    for i in 0..set.len() {
-        let u_before = set.velocity(parts, i, &state.v);
-        let mut q = set.velocity(parts, i, &work.v_free);
-        q[0] += model.law(set.contacts[i].id.pair()).restitution * u_before[0].min(0.0);
-        set.contacts[i].u_before = u_before;
-        set.q.push(q);
-    }
-    set.assemble(parts, &mut work.factors, &mut work.scratch);
-    let stop = Stop { tolerance: work.settings.tolerance, max_iterations: work.settings.max_iterations, cancel: None };
-    let (problem, p) = set.problem()?;
-    let outcome = work.solver.solve(&problem, &stop, p);
-
-    // v¹ = v_free + W Jᵀ p
-    work.dv.fill(0.0);
-    set.scatter_impulses(parts, &mut work.dv);
-    for (index, (part, factor)) in parts.iter().zip(&mut work.factors).enumerate() {
-        if set.acts_on(index) {
-            let dv = &mut work.dv[part.v.clone()];
-            factor.solve(dv);
-            add(&mut work.v_free[part.v.clone()], dv);
-        }
-    }
-    set.complete(parts, &work.v_free);
-    Ok(Some(outcome))
-}
-
-fn tally(state: &mut State, outcome: Option<&Outcome>, contacts: usize, penetration: f64) {
-    let tally = &mut state.tally;
-    tally.max_penetration = tally.max_penetration.max(penetration);
-    tally.max_contacts = tally.max_contacts.max(contacts);
-    if let Some(outcome) = outcome {
-        tally.contact_steps += 1;
-        tally.max_residual = tally.max_residual.max(outcome.residual.global);
-        tally.max_contact_residual = tally.max_contact_residual.max(outcome.residual.worst);
-        tally.max_iterations = tally.max_iterations.max(outcome.iterations);
-        tally.unconverged_steps += u64::from(!outcome.converged());
     }
 }
 

@@ -1,6 +1,7 @@
 //! All that decides the next step, flat: clone it to reject a step, store it for a checkpoint.
 
 use crate::{Ledger, Model, Vector};
+use teeter_contact::Outcome;
 use teeter_detect::ContactId;
 
 /// The contacts of the last step with their impulses, in order of identity: where a solver starts from, and who was
@@ -13,18 +14,20 @@ pub struct WarmStart {
 }
 
 impl WarmStart {
-    pub(crate) fn reserve(&mut self, contacts: usize, dimension: usize) {
+    /// Makes room for so many contacts in D dimensions.
+    pub fn reserve(&mut self, contacts: usize, dimension: usize) {
         self.ids.reserve(contacts);
         self.impulses.reserve(contacts * dimension);
     }
 
-    pub(crate) fn clear(&mut self) {
+    /// Forgets all contacts.
+    pub fn clear(&mut self) {
         self.ids.clear();
         self.impulses.clear();
     }
 
-    /// Adds a contact; in order of identity.
-    pub(crate) fn push<const D: usize>(&mut self, id: ContactId, p: &Vector<D>) {
+    /// Adds a contact with its impulse, N·s. Contacts have to come in order of identity.
+    pub fn push<const D: usize>(&mut self, id: ContactId, p: &Vector<D>) {
         self.ids.push(id);
         self.impulses.extend(p.iter());
     }
@@ -112,6 +115,21 @@ pub enum StateError {
     /// A step size that is not positive and finite.
     #[error("the step size is {0} s, but must be positive and finite")]
     StepSize(f64),
+}
+
+impl Tally {
+    /// Counts a step in: how its contact problem was solved, its number of contacts, the penetration (m) at its end.
+    pub fn count(&mut self, outcome: Option<&Outcome>, contacts: usize, penetration: f64) {
+        self.max_penetration = self.max_penetration.max(penetration);
+        self.max_contacts = self.max_contacts.max(contacts);
+        if let Some(outcome) = outcome {
+            self.contact_steps += 1;
+            self.max_residual = self.max_residual.max(outcome.residual.global);
+            self.max_contact_residual = self.max_contact_residual.max(outcome.residual.worst);
+            self.max_iterations = self.max_iterations.max(outcome.iterations);
+            self.unconverged_steps += u64::from(!outcome.converged());
+        }
+    }
 }
 
 impl State {

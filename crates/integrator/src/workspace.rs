@@ -2,7 +2,7 @@
 
 use crate::contacts::ContactSet;
 use crate::{Compliance, FactorError, Model, Weights};
-use teeter_contact::{ContactSolver, Stop};
+use teeter_contact::{ContactSolver, Outcome, ProblemError, Stop};
 use teeter_detect::Candidates;
 
 /// When the contact solver of a run stops.
@@ -25,23 +25,21 @@ impl Default for SolverSettings {
 /// dense operator of this many takes 2 MB in the plane.
 const RESERVED_CONTACTS: usize = 256;
 
-/// All memory that steps need, and the contact solver. It carries nothing that decides a step.
+/// The contact solver, the factors and the memory that any scheme needs. It carries nothing that decides a step.
+#[non_exhaustive]
 pub struct Workspace<const D: usize> {
-    pub(crate) solver: Box<dyn ContactSolver<D>>,
-    pub(crate) settings: SolverSettings,
-    pub(crate) factors: Vec<Box<dyn Compliance<D>>>,
-    pub(crate) candidates: Candidates<D>,
-    pub(crate) contacts: ContactSet<D>,
-    /// Coordinates at which forces or gaps are taken.
-    pub(crate) q_at: Vec<f64>,
-    /// Velocities, or their increments.
-    pub(crate) v_free: Vec<f64>,
-    pub(crate) v_mean: Vec<f64>,
-    pub(crate) dq: Vec<f64>,
-    pub(crate) dv: Vec<f64>,
-    pub(crate) load: Vec<f64>,
-    pub(crate) product: Vec<f64>,
-    pub(crate) scratch: Vec<f64>,
+    /// The contact solver.
+    pub solver: Box<dyn ContactSolver<D>>,
+    /// When it stops.
+    pub settings: SolverSettings,
+    /// The inverses of the effective mass matrices, one a subsystem.
+    pub factors: Vec<Box<dyn Compliance<D>>>,
+    /// What detection found last.
+    pub candidates: Candidates<D>,
+    /// The contacts of the step.
+    pub contacts: ContactSet<D>,
+    /// As long as the model's velocities.
+    pub scratch: Vec<f64>,
 }
 
 impl<const D: usize> std::fmt::Debug for Workspace<D> {
@@ -56,27 +54,21 @@ impl<const D: usize> Workspace<D> {
     pub fn new(model: &Model<D>, mut solver: Box<dyn ContactSolver<D>>, settings: SolverSettings) -> Self {
         let contacts = model.detector().capacity().min(RESERVED_CONTACTS);
         solver.reserve(contacts, contacts * contacts);
-        let size = model.size();
-        let v = || vec![0.0; size.v];
         Self {
             solver,
             settings,
-            factors: Vec::with_capacity(model.subsystems()),
+            factors: Vec::with_capacity(model.parts().len()),
             candidates: Vec::with_capacity(contacts),
-            contacts: ContactSet::with_capacity(contacts, size.row),
-            q_at: vec![0.0; size.q],
-            v_free: v(),
-            v_mean: v(),
-            dq: v(),
-            dv: v(),
-            load: v(),
-            product: v(),
-            scratch: v(),
+            contacts: ContactSet::with_capacity(contacts, model.size().row),
+            scratch: vec![0.0; model.size().v],
         }
     }
 
     /// Makes `factors` the inverses of these weights: once for a given step size.
-    pub(crate) fn factorise(&mut self, model: &Model<D>, w: Weights, q: &[f64]) -> Result<(), FactorError> {
+    ///
+    /// # Errors
+    /// If a matrix can't be factorised.
+    pub fn factorise(&mut self, model: &Model<D>, w: Weights, q: &[f64]) -> Result<(), FactorError> {
         if self.factors.is_empty() {
             for part in model.parts() {
                 self.factors.push(part.system.factor(w, &q[part.q.clone()])?);
@@ -89,5 +81,31 @@ impl<const D: usize> Workspace<D> {
             }
         }
         Ok(())
+    }
+
+    /// Puts the candidates with a gap of at most `margin` (m) at coordinates `q` into `candidates`, in order of identity.
+    pub fn detect(&mut self, model: &Model<D>, q: &[f64], margin: f64) {
+        model.detector().detect(&model.placed(q), margin, &mut self.candidates);
+        self.candidates.sort_unstable_by_key(|candidate| candidate.id);
+    }
+
+    /// Deepest penetration at coordinates `q`, m; 0 if there is none. Replaces `candidates`.
+    pub fn penetration(&mut self, model: &Model<D>, q: &[f64]) -> f64 {
+        model.detector().detect(&model.placed(q), 0.0, &mut self.candidates);
+        self.candidates.iter().map(|candidate| -candidate.gap).fold(0.0, f64::max)
+    }
+
+    /// Assembles and solves the problem of `contacts`, and adds W Jᵀ p to `v`, which becomes the velocity after the step.
+    ///
+    /// # Errors
+    /// If the contacts don't make a problem: a number is not finite, or a contact can't move.
+    pub fn solve_contacts(&mut self, model: &Model<D>, v: &mut [f64]) -> Result<Outcome, ProblemError> {
+        self.contacts.assemble(model, &mut self.factors, &mut self.scratch);
+        let SolverSettings { tolerance, max_iterations } = self.settings;
+        let (problem, p) = self.contacts.problem()?;
+        let outcome = self.solver.solve(&problem, &Stop { tolerance, max_iterations, cancel: None }, p);
+        self.contacts.add_impulses(model, &mut self.factors, &mut self.scratch, v);
+        self.contacts.complete(model, v);
+        Ok(outcome)
     }
 }
