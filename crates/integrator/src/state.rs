@@ -93,7 +93,7 @@ pub struct State {
 #[non_exhaustive]
 pub enum StateError {
     /// Too few or too many numbers.
-    #[error("{what} has {found} numbers, but the model needs {expected}")]
+    #[error("{found} numbers given for {what}, but the model needs {expected}")]
     Length {
         /// Coordinates or velocities.
         what: &'static str,

@@ -2,5 +2,6 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stderr, unsafe_code)]
 
 mod allocations;
+mod own_parts;
 mod reference;
 mod scenes;
