@@ -143,11 +143,11 @@ fn told(summary: &Summary, folder: &Path) -> String {
         "{}: {} steps of {} s in {:.2} s ({:.2} µs a step)\n",
         summary.title, summary.steps, summary.dt, summary.wall_seconds, summary.us_per_step
     );
-    let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+    let count = |n: u64, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
     text.push_str(&format!(
         "  {}, {}, deepest penetration {:.1e} m, energy identity to {:.0e}\n",
-        count(summary.impacts.len(), "impact"),
-        count(summary.crossings.len(), "zero crossing"),
+        count(summary.impact_count, "impact"),
+        count(summary.crossings.len() as u64, "zero crossing"),
         summary.max_penetration,
         summary.energy.largest_residual
     ));

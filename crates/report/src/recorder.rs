@@ -35,6 +35,8 @@ const LISTED_IMPACTS: usize = 1000;
 pub struct Record {
     /// The first impacts.
     pub impacts: Vec<ImpactRow>,
+    /// All impacts, counted.
+    pub impact_count: u64,
     /// Zero crossings and peaks, by block.
     pub rocking: Vec<RockingMonitor>,
     /// What the run warned of.
@@ -165,6 +167,7 @@ impl<'a> Recorder<'a> {
             }
             self.line.push('\n');
             self.impacts.write_all(self.line.as_bytes())?;
+            self.record.impact_count += 1;
             if self.record.impacts.len() < LISTED_IMPACTS {
                 self.record.impacts.push(ImpactRow {
                     t: step.t_end,

@@ -58,6 +58,8 @@ pub struct Summary {
     pub energy: EnergySummary,
     /// The first 1000 impacts.
     pub impacts: Vec<ImpactRow>,
+    /// All impacts, counted.
+    pub impact_count: u64,
     /// Zero crossings of the angles.
     pub crossings: Vec<CrossingRow>,
     /// Peaks of the angles between crossings.
@@ -235,6 +237,7 @@ impl Summary {
                 },
             },
             impacts: record.impacts.clone(),
+            impact_count: record.impact_count,
             crossings,
             peaks,
             horizon: None,

@@ -1,0 +1,26 @@
+//! The rungs of the ladder, one file each.
+
+mod beam_energy;
+mod beam_frequencies;
+mod beam_statics;
+mod bounce;
+mod energy_identity;
+mod housner_order;
+mod incline;
+mod sliding;
+
+use crate::case::Case;
+
+/// All cases, from the simplest up.
+pub(crate) fn all() -> Vec<Box<dyn Case>> {
+    vec![
+        Box::new(beam_statics::BeamStatics),
+        Box::new(beam_frequencies::BeamFrequencies),
+        Box::new(beam_energy::BeamEnergy),
+        Box::new(sliding::Sliding),
+        Box::new(incline::Incline),
+        Box::new(bounce::Bounce),
+        Box::new(housner_order::HousnerOrder),
+        Box::new(energy_identity::EnergyIdentity),
+    ]
+}

@@ -1,0 +1,64 @@
+//! The validation ladder: cases with known answers, from a beam at rest to a rocking block.
+//!
+//! Every case compares the program with something that isn't the program: a closed form, a quadrature, an identity, a
+//! bound derived on paper. The program prints one table, writes `validation.md` with its figures, and exits with 1 if
+//! any bound is missed. A new case is a file in `cases/` and a line in [`cases::all`].
+
+mod case;
+mod cases;
+mod exact;
+mod figure;
+mod fit;
+mod options;
+mod report;
+mod scene;
+
+use case::{Depth, Findings, Result};
+use options::{Asked, Options};
+use std::io::Write;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let mut out = std::io::stdout().lock();
+    let done = match options::parse(std::env::args().skip(1)) {
+        Ok(Asked::Help) => out.write_all(options::HELP.as_bytes()).map(|()| true).map_err(Into::into),
+        Ok(Asked::Run(options)) => validate(&options, &mut out),
+        Err(wrong) => {
+            let _ = writeln!(std::io::stderr(), "{wrong}\n\n{}", options::HELP);
+            return ExitCode::from(2);
+        }
+    };
+    match done {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            let _ = writeln!(std::io::stderr(), "{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Runs all cases; whether every bound holds.
+fn validate(options: &Options, out: &mut dyn Write) -> Result<bool> {
+    let mut all = Vec::new();
+    let mut broken = 0;
+    report::write_head(out)?;
+    for case in cases::all() {
+        let findings = case.run(options.depth).unwrap_or_else(|error| {
+            broken += 1;
+            Findings::broken(error.as_ref())
+        });
+        report::write_rows(out, case.name(), &findings)?;
+        all.push((case, findings));
+    }
+    let missed = all.iter().map(|(_, findings)| findings.missed()).sum::<usize>();
+    let checks = all.iter().map(|(_, findings)| findings.checks.len()).sum::<usize>();
+    writeln!(out, "{checks} rows, {missed} bounds missed, {broken} cases that could not run")?;
+    if let Some(folder) = &options.out {
+        report::write_page(folder, options.depth, &all)?;
+        writeln!(out, "written to {}", folder.display())?;
+    } else if options.depth == Depth::Short {
+        writeln!(out, "a short run writes no files unless --out says where")?;
+    }
+    Ok(missed + broken == 0)
+}
