@@ -1,7 +1,8 @@
 //! The program `teeter`.
 
-#![allow(clippy::print_stderr, reason = "a program talks to its user")]
-
+mod console;
+mod interrupt;
+mod progress;
 mod run;
 
 use clap::{Parser, Subcommand};
@@ -24,7 +25,7 @@ enum Command {
     Run {
         /// The scene file; `-` reads standard input
         scene: PathBuf,
-        /// Folder for the results [default: runs/<file stem>]
+        /// Folder for the results (default: `runs/` and the name of the scene file)
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
         /// Override a key of the scene, such as beam.table.thickness="2 mm"; may be repeated

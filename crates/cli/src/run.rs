@@ -1,10 +1,16 @@
 //! `teeter run`.
 
+use crate::console::Console;
+use crate::interrupt::{INTERRUPTED, Interrupt};
+use crate::progress::Progress;
+use std::error::Error;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
-use teeter_report::{EndedWord, Recorder, Results, Summary};
+use teeter_integrator::{Ended, RunError};
+use teeter_report::{EndedWord, Recorder, Results, ResultsError, Summary};
+use teeter_scenario::resolve::Resolved;
 use teeter_scenario::simulation::Simulation;
 
 /// How the command ended; the exit code of the program.
@@ -15,6 +21,8 @@ pub(crate) enum Exit {
     Failed,
     /// Bad input or usage: nothing was written.
     BadInput,
+    /// The user ended it.
+    Interrupted,
 }
 
 impl From<Exit> for ExitCode {
@@ -23,6 +31,7 @@ impl From<Exit> for ExitCode {
             Exit::Done => Self::SUCCESS,
             Exit::Failed => Self::from(1),
             Exit::BadInput => Self::from(2),
+            Exit::Interrupted => Self::from(INTERRUPTED),
         }
     }
 }
@@ -37,71 +46,114 @@ pub(crate) struct Options {
 }
 
 pub(crate) fn run(options: &Options) -> Exit {
-    let (name, stem) = if options.scene == Path::new("-") {
-        ("<stdin>".to_owned(), "stdin".to_owned())
-    } else {
-        let stem = options.scene.file_stem().map_or("scene".into(), |stem| stem.to_string_lossy().into_owned());
-        (options.scene.display().to_string(), stem)
-    };
+    let console = Console::new(options.quiet);
+    let (name, stem) = names(&options.scene);
     let bytes = match read(&options.scene) {
         Ok(bytes) => bytes,
-        Err(why) => return bad_input(&format!("error: {name}: {why}")),
+        Err(why) => return bad_input(console, &format!("error: {name}: {why}")),
     };
     let resolved = match teeter_scenario::load(&bytes, &name, &stem, &options.set) {
         Ok(resolved) => resolved,
-        Err(errors) => return bad_input(&errors.to_string()),
+        Err(errors) => return bad_input(console, &errors.to_string()),
     };
-    let scene = &resolved.scene;
-    let mut simulation = match Simulation::new(scene) {
+    let mut simulation = match Simulation::new(&resolved.scene) {
         Ok(simulation) => simulation,
-        Err(error) => return bad_input(&format!("error: {name}: {error}")),
+        Err(error) => return bad_input(console, &format!("error: {name}: {error}")),
     };
     let folder = options.out.clone().unwrap_or_else(|| Path::new("runs").join(&stem));
     let results = match Results::create(&folder, options.force) {
         Ok(results) => results,
-        Err(error) => return bad_input(&format!("error: {error}")),
-    };
-    let tell = |text: &str| {
-        if !options.quiet {
-            eprintln!("{text}");
-        }
+        Err(error) => return bad_input(console, &format!("error: {error}")),
     };
     for warning in &resolved.warnings {
-        tell(&warning.to_string());
+        console.note(&warning.to_string());
     }
-
-    let layout = simulation.layout.clone();
-    let mut tell_warning = |text: &str| tell(&format!("warning: {text}"));
-    let mut recorder = match Recorder::new(&results, scene, &layout, &mut tell_warning) {
-        Ok(recorder) => recorder,
-        Err(error) => return failed(&error),
-    };
-    recorder.note(&resolved.warnings);
-    let clock = Instant::now();
-    let ended = match simulation.run(&mut [&mut recorder]) {
-        Ok(ended) => ended,
-        Err(error) => return failed(&format!("{}: {error}", folder.display())),
-    };
-    let record = match recorder.finish() {
-        Ok(record) => record,
-        Err(error) => return failed(&format!("{}: {error}", folder.display())),
-    };
-    let seconds = clock.elapsed().as_secs_f64();
-    let summary = Summary::new(scene, &layout, &simulation.state, &record, &ended, seconds);
-    let json = match summary.to_json() {
-        Ok(json) => json,
-        Err(error) => return failed(&format!("summary.json: {error}")),
-    };
-    for (file, text) in [("scene.toml", resolved.document.to_toml()), ("summary.json", json)] {
-        if let Err(error) = results.write(file, &text) {
-            return failed(&error);
+    match simulate(console, &resolved, &mut simulation, &results) {
+        Ok(summary) => conclude(console, &summary, &folder),
+        Err(error) => {
+            console.error(&format!("error: {error}"));
+            Exit::Failed
         }
     }
-    if summary.ended != EndedWord::Complete {
-        return failed(&how_it_ended(&summary));
+}
+
+/// The name of a scene in messages, and that of its results.
+fn names(scene: &Path) -> (String, String) {
+    if scene == Path::new("-") {
+        return ("<stdin>".to_owned(), "stdin".to_owned());
     }
-    tell(&told(&summary, &folder));
-    Exit::Done
+    let stem = scene.file_stem().map_or("scene".into(), |stem| stem.to_string_lossy().into_owned());
+    (scene.display().to_string(), stem)
+}
+
+/// Runs and writes. The summary comes last: a folder without one holds a run that didn't end.
+fn simulate(
+    console: Console,
+    resolved: &Resolved,
+    simulation: &mut Simulation,
+    results: &Results,
+) -> Result<Summary, Box<dyn Error>> {
+    let scene = &resolved.scene;
+    let layout = simulation.layout.clone();
+    let mut progress = Progress::new(console, scene.time.steps);
+    let tell = progress.tell();
+    let mut tell_warning = |text: &str| tell(&format!("warning: {text}"));
+    let mut recorder = Recorder::new(results, scene, &layout, &mut tell_warning)?;
+    recorder.note(&resolved.warnings);
+    results.write("scene.toml", &resolved.document.to_toml())?;
+
+    let clock = Instant::now();
+    let mut interrupt = Interrupt::listen();
+    let ran = simulation.run(&mut [&mut recorder, &mut progress, &mut interrupt]);
+    drop(progress);
+    let flushed = recorder.flush();
+    let seconds = clock.elapsed().as_secs_f64();
+
+    let mut record = recorder.into_record();
+    let ended = match ran {
+        Ok(ended) => {
+            flushed?;
+            if let Ended::Failed(error) = &ended {
+                record.warnings.enter("ended", error.t(), || error.to_string());
+            }
+            EndedWord::from(&ended)
+        }
+        Err(RunError::Observer(error)) => {
+            let full = error.downcast_ref::<ResultsError>().is_some_and(ResultsError::is_disk_full);
+            if !full {
+                return Err(error);
+            }
+            record.warnings.enter("ended", Some(simulation.state.t), || error.to_string());
+            EndedWord::DiskFull
+        }
+        Err(error) => return Err(error.into()),
+    };
+    let summary = Summary::new(scene, &layout, &simulation.state, &record, ended, seconds);
+    match results.write("summary.json", &summary.to_json()?) {
+        // No room for this either; the reason is told all the same.
+        Err(error) if error.is_disk_full() && ended == EndedWord::DiskFull => {}
+        written => written?,
+    }
+    Ok(summary)
+}
+
+fn conclude(console: Console, summary: &Summary, folder: &Path) -> Exit {
+    match summary.ended {
+        EndedWord::Complete => {
+            console.note(&told(summary, folder));
+            Exit::Done
+        }
+        EndedWord::Interrupted => {
+            console.note(&how_it_ended(summary, "interrupted"));
+            Exit::Interrupted
+        }
+        _ => {
+            let reason = summary.warnings.iter().find(|w| matches!(w.code, "ended" | "unconverged"));
+            let why = reason.map_or("it could not go on", |warning| warning.text.as_str());
+            console.error(&format!("error: {}", how_it_ended(summary, why)));
+            Exit::Failed
+        }
+    }
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, String> {
@@ -120,21 +172,14 @@ fn read(path: &Path) -> Result<Vec<u8>, String> {
     })
 }
 
-fn bad_input(text: &str) -> Exit {
-    eprintln!("{}", text.trim_end());
+fn bad_input(console: Console, text: &str) -> Exit {
+    console.error(text);
     Exit::BadInput
 }
 
-fn failed(error: &dyn std::fmt::Display) -> Exit {
-    eprintln!("error: {error}");
-    Exit::Failed
-}
-
-fn how_it_ended(summary: &Summary) -> String {
+fn how_it_ended(summary: &Summary, why: &str) -> String {
     let t = summary.steps as f64 * summary.dt;
-    let why = summary.warnings.iter().find(|w| matches!(w.code, "ended" | "unconverged"));
-    let why = why.map_or("", |warning| warning.text.as_str());
-    format!("the run ended at t = {t} s after {} steps: {why}; the rows so far are written", summary.steps)
+    format!("the run ended at t = {t} s after {} steps: {why}; the rows up to there are written", summary.steps)
 }
 
 /// What a user wants to know first.

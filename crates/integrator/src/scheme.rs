@@ -45,6 +45,17 @@ pub enum StepError {
     },
 }
 
+impl StepError {
+    /// The start of the step that can't be taken, s; `None` where it is not about a time.
+    #[must_use]
+    pub fn t(&self) -> Option<f64> {
+        match self {
+            Self::Problem { t, .. } | Self::Diverged { t } => Some(*t),
+            Self::Factor(_) => None,
+        }
+    }
+}
+
 /// A setting of a scheme out of its range.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{what} is {value}, but must be {rule}")]

@@ -9,6 +9,7 @@ mod recorder;
 mod results;
 mod schedule;
 mod summary;
+mod table;
 mod warnings;
 
 pub use recorder::{ImpactRow, Record, Recorder};

@@ -2,10 +2,9 @@
 
 use crate::contacts::{self, Impulses, Names};
 use crate::number::{push, push_next};
+use crate::table::Table;
 use crate::{Results, ResultsError, Schedule, WarningLog, impact_threshold};
 use serde::Serialize;
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
 use std::ops::ControlFlow;
 use teeter_integrator::{Model, Observer, ObserverError, RockingMonitor, State, StepReport};
 use teeter_scenario::diagnostic::Diagnostic;
@@ -48,10 +47,10 @@ pub struct Recorder<'a> {
     layout: &'a Layout,
     schedule: Schedule,
     threshold: f64,
-    trajectory: BufWriter<File>,
-    contacts: BufWriter<File>,
-    impacts: BufWriter<File>,
-    energy: BufWriter<File>,
+    trajectory: Table,
+    contacts: Table,
+    impacts: Table,
+    energy: Table,
     impulses: Impulses,
     line: String,
     record: Record,
@@ -101,18 +100,23 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// Completes the tables, and hands over what was seen.
+    /// Brings all rows to disk.
     ///
     /// # Errors
-    /// If the last rows can't be written.
-    pub fn finish(mut self) -> Result<Record, io::Error> {
-        for table in [&mut self.trajectory, &mut self.contacts, &mut self.impacts, &mut self.energy] {
-            table.flush()?;
-        }
-        Ok(self.record)
+    /// If there is no room for them, or they can't be written for another reason.
+    pub fn flush(&mut self) -> Result<(), ResultsError> {
+        [&mut self.trajectory, &mut self.contacts, &mut self.impacts, &mut self.energy]
+            .into_iter()
+            .try_for_each(Table::flush)
     }
 
-    fn write_row(&mut self, state: &State) -> io::Result<()> {
+    /// What was seen.
+    #[must_use]
+    pub fn into_record(self) -> Record {
+        self.record
+    }
+
+    fn write_row(&mut self, state: &State) -> Result<(), ResultsError> {
         self.line.clear();
         push(&mut self.line, state.t);
         for block in &self.layout.blocks {
@@ -130,7 +134,7 @@ impl<'a> Recorder<'a> {
             }
         }
         self.line.push('\n');
-        self.trajectory.write_all(self.line.as_bytes())?;
+        self.trajectory.rows(&self.line)?;
 
         self.line.clear();
         push(&mut self.line, state.t);
@@ -150,10 +154,10 @@ impl<'a> Recorder<'a> {
             push_next(&mut self.line, x);
         }
         self.line.push('\n');
-        self.energy.write_all(self.line.as_bytes())
+        self.energy.rows(&self.line)
     }
 
-    fn write_impacts(&mut self, step: &StepReport<'_, 2>) -> io::Result<()> {
+    fn write_impacts(&mut self, step: &StepReport<'_, 2>) -> Result<(), ResultsError> {
         for contact in step.contacts {
             if contact.persisting || contact.u_before[0] >= -self.threshold {
                 continue;
@@ -166,7 +170,7 @@ impl<'a> Recorder<'a> {
                 push_next(&mut self.line, x);
             }
             self.line.push('\n');
-            self.impacts.write_all(self.line.as_bytes())?;
+            self.impacts.rows(&self.line)?;
             self.record.impact_count += 1;
             if self.record.impacts.len() < LISTED_IMPACTS {
                 self.record.impacts.push(ImpactRow {
@@ -227,7 +231,7 @@ impl Observer<2> for Recorder<'_> {
             self.write_row(state)?;
             self.line.clear();
             self.impulses.rows(self.layout, model, state, step.contacts, &mut self.line);
-            self.contacts.write_all(self.line.as_bytes())?;
+            self.contacts.rows(&self.line)?;
         }
         Ok(ControlFlow::Continue(()))
     }

@@ -1,7 +1,8 @@
 //! The folder that a run writes.
 
-use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use crate::table::Table;
+use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// The files of a run.
@@ -34,6 +35,15 @@ pub struct Results {
     folder: PathBuf,
 }
 
+impl ResultsError {
+    /// Whether there was no room.
+    #[must_use]
+    pub fn is_disk_full(&self) -> bool {
+        let full = [io::ErrorKind::StorageFull, io::ErrorKind::QuotaExceeded, io::ErrorKind::FileTooLarge];
+        matches!(self, Self::Io { source, .. } if full.contains(&source.kind()))
+    }
+}
+
 impl Results {
     /// Takes a folder for the results of a run. Nothing is replaced without `force`.
     ///
@@ -63,15 +73,8 @@ impl Results {
     }
 
     /// A new table of the folder, with its header row.
-    pub(crate) fn table(&self, name: &str, header: &str) -> Result<BufWriter<File>, ResultsError> {
-        let path = self.folder.join(name);
-        let open = || -> io::Result<_> {
-            let mut writer = BufWriter::with_capacity(1 << 16, File::create(&path)?);
-            writer.write_all(header.as_bytes())?;
-            writer.flush()?;
-            Ok(writer)
-        };
-        open().map_err(|source| ResultsError::Io { path, source })
+    pub(crate) fn table(&self, name: &str, header: &str) -> Result<Table, ResultsError> {
+        Table::create(&self.folder, name, header)
     }
 
     /// Writes a whole file, under a temporary name until it is complete.

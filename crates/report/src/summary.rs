@@ -2,7 +2,7 @@
 
 use crate::{ImpactRow, Record, Warning};
 use serde::Serialize;
-use teeter_integrator::{Ended, State, StepError};
+use teeter_integrator::{Ended, State};
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Layout;
 
@@ -180,7 +180,7 @@ impl Summary {
         layout: &Layout,
         state: &State,
         record: &Record,
-        ended: &Ended,
+        ended: EndedWord,
         wall_seconds: f64,
     ) -> Self {
         let (ledger, tally) = (&state.ledger, &state.tally);
@@ -193,14 +193,6 @@ impl Summary {
             .flat_map(|(block, m)| m.peaks().iter().map(|p| PeakRow { t: p.t, body: block.name.clone(), phi: p.phi }))
             .collect();
         peaks.sort_by(|a, b| a.t.total_cmp(&b.t));
-        let mut warnings = record.warnings.clone();
-        if let Ended::Failed(error) = ended {
-            let t = match error {
-                StepError::Diverged { t } | StepError::Problem { t, .. } => Some(*t),
-                _ => None,
-            };
-            warnings.enter("ended", t, || error.to_string());
-        }
         let gains = &ledger.positive_contact_work;
         Self {
             title: scene.title.clone(),
@@ -241,9 +233,9 @@ impl Summary {
             crossings,
             peaks,
             horizon: None,
-            ended: ended.into(),
+            ended,
             model: ModelSummary::new(scene, layout),
-            warnings: warnings.warnings().to_vec(),
+            warnings: record.warnings.warnings().to_vec(),
         }
     }
 

@@ -1,0 +1,116 @@
+//! A table on disk that holds whole rows, whatever ends the run.
+
+use crate::ResultsError;
+use std::fs::File;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// Rows are kept back until there are so many bytes of them: a run that is killed loses those, and nothing else.
+const BUFFER: usize = 1 << 16;
+
+/// A CSV file that grows row by row. What is on disk ends with a whole row after every write, also after one for which there
+/// was no room.
+#[derive(Debug)]
+pub(crate) struct Table {
+    path: PathBuf,
+    file: File,
+    buffer: Vec<u8>,
+    /// Bytes of whole rows on disk.
+    written: u64,
+}
+
+impl Table {
+    /// A new table with its header row on disk.
+    pub(crate) fn create(folder: &Path, name: &str, header: &str) -> Result<Self, ResultsError> {
+        let path = folder.join(name);
+        let file = File::create(&path).map_err(|source| ResultsError::Io { path: path.clone(), source })?;
+        let mut table = Self { path, file, buffer: Vec::with_capacity(2 * BUFFER), written: 0 };
+        table.rows(header)?;
+        table.flush()?;
+        Ok(table)
+    }
+
+    /// Adds whole rows, each with its line end.
+    pub(crate) fn rows(&mut self, text: &str) -> Result<(), ResultsError> {
+        self.buffer.extend_from_slice(text.as_bytes());
+        if self.buffer.len() >= BUFFER { self.flush() } else { Ok(()) }
+    }
+
+    /// Brings all rows to disk.
+    pub(crate) fn flush(&mut self) -> Result<(), ResultsError> {
+        let (taken, result) = write_counted(&mut self.file, &self.buffer);
+        let whole = match result {
+            Ok(()) => taken,
+            Err(_) => self.buffer[..taken].iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1),
+        };
+        self.written += whole as u64;
+        self.buffer.clear();
+        result.map_err(|source| {
+            // Half a row would read as a wrong number. Where even this fails, the error below is still the one to tell.
+            let _ = self.file.set_len(self.written);
+            ResultsError::Io { path: self.path.clone(), source }
+        })
+    }
+}
+
+/// Writes as much as there is room for; how many bytes that was, and why not more.
+fn write_counted(file: &mut dyn Write, bytes: &[u8]) -> (usize, io::Result<()>) {
+    let mut taken = 0;
+    while taken < bytes.len() {
+        match file.write(&bytes[taken..]) {
+            Ok(0) => return (taken, Err(io::ErrorKind::WriteZero.into())),
+            Ok(n) => taken += n,
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) => return (taken, Err(error)),
+        }
+    }
+    (taken, Ok(()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A disk with room for so many bytes.
+    struct Disk(usize);
+
+    impl Write for Disk {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            if self.0 == 0 {
+                return Err(io::ErrorKind::StorageFull.into());
+            }
+            let taken = bytes.len().min(self.0);
+            self.0 -= taken;
+            Ok(taken)
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn what_was_taken_is_known_when_the_disk_fills_up() {
+        let (taken, result) = write_counted(&mut Disk(5), b"123456789");
+        assert_eq!((taken, result.unwrap_err().kind()), (5, io::ErrorKind::StorageFull));
+        assert!(write_counted(&mut Disk(9), b"123456789").1.is_ok());
+    }
+
+    #[test]
+    fn rows_reach_the_disk_whole() {
+        let folder = std::env::temp_dir().join(format!("teeter-table-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let mut table = Table::create(&folder, "t.csv", "a,b\n").unwrap();
+        let on_disk = || std::fs::read_to_string(folder.join("t.csv")).unwrap();
+        assert_eq!(on_disk(), "a,b\n");
+        for k in 0..20_000 {
+            table.rows(&format!("{k},{k}\n")).unwrap();
+            if k % 5000 == 0 {
+                assert!(on_disk().ends_with('\n'));
+            }
+        }
+        table.flush().unwrap();
+        assert_eq!(on_disk().lines().count(), 20_001);
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+}
