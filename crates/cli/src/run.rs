@@ -106,13 +106,11 @@ fn simulate(
     let mut interrupt = Interrupt::listen();
     let ran = simulation.run(&mut [&mut recorder, &mut progress, &mut interrupt]);
     drop(progress);
-    let flushed = recorder.flush();
     let seconds = clock.elapsed().as_secs_f64();
 
     let mut record = recorder.into_record();
     let ended = match ran {
         Ok(ended) => {
-            flushed?;
             if let Ended::Failed(error) = &ended {
                 record.warnings.enter("ended", error.t(), || error.to_string());
             }
@@ -178,7 +176,7 @@ fn bad_input(console: Console, text: &str) -> Exit {
 }
 
 fn how_it_ended(summary: &Summary, why: &str) -> String {
-    let t = summary.steps as f64 * summary.dt;
+    let t = summary.t;
     format!("the run ended at t = {t} s after {} steps: {why}; the rows up to there are written", summary.steps)
 }
 

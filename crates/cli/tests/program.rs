@@ -215,6 +215,14 @@ fn an_unsolved_step_is_warned_of_and_with_require_convergence_ends_the_run() {
     assert_eq!(summary["ended"], "unconverged");
     let (_, rows) = table(&folder.join("out/trajectory.csv"));
     assert_eq!(rows.len() as u64, summary["steps"].as_u64().unwrap() + 1, "all rows so far");
+
+    // With few rows, the step that was not solved is one all the same.
+    let sparse = [&strict[..], &["--set", "output.every=0.1 s"]].concat();
+    assert_eq!(run(&folder, "sliding", &sparse).status.code(), Some(1));
+    let (_, rows) = table(&folder.join("out/trajectory.csv"));
+    let (_, contacts) = table(&folder.join("out/contacts.csv"));
+    let t = summary["t"].as_f64().unwrap().to_string();
+    assert_eq!((&rows.last().unwrap()[0], &contacts.last().unwrap()[0]), (&t, &t));
 }
 
 #[test]

@@ -28,6 +28,15 @@ pub trait Observer<const D: usize> {
         step: &StepReport<'_, D>,
         state: &State,
     ) -> Result<ControlFlow<()>, ObserverError>;
+
+    /// Called once, after the last step of a run, whatever ended it but an observer's error.
+    ///
+    /// # Errors
+    /// The observer's own.
+    fn finish(&mut self, model: &Model<D>, state: &State) -> Result<(), ObserverError> {
+        let _ = (model, state);
+        Ok(())
+    }
 }
 
 /// How far a run goes.
@@ -77,9 +86,24 @@ pub fn run<const D: usize>(
     for observer in observers.iter_mut() {
         observer.start(model, state).map_err(RunError::Observer)?;
     }
-    if let Err(error) = scheme.start(model, state, work) {
-        return Ok(Ended::Failed(error));
+    let ended = match scheme.start(model, state, work) {
+        Ok(()) => take_steps(model, scheme, state, work, plan, observers)?,
+        Err(error) => Ended::Failed(error),
+    };
+    for observer in observers.iter_mut() {
+        observer.finish(model, state).map_err(RunError::Observer)?;
     }
+    Ok(ended)
+}
+
+fn take_steps<const D: usize>(
+    model: &Model<D>,
+    scheme: &mut dyn Scheme<D>,
+    state: &mut State,
+    work: &mut Workspace<D>,
+    plan: &Plan,
+    observers: &mut [&mut dyn Observer<D>],
+) -> Result<Ended, RunError> {
     while state.step < plan.steps {
         let step = match scheme.advance(model, state, work) {
             Ok(step) => step,

@@ -58,11 +58,19 @@ impl std::ops::AddAssign for Energy {
 /// The Jacobian rows of one point, to be filled: the point's velocity in the contact's frame is
 /// `Σ_k values[k] · v[columns[k]]`.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct Rows<'a, const D: usize> {
     /// Columns, within the subsystem; as long as [`Size::row`].
     pub columns: &'a mut [usize],
     /// Entries, a D-vector (normal first) a column.
     pub values: &'a mut [Vector<D>],
+}
+
+impl<'a, const D: usize> Rows<'a, D> {
+    /// Rows to be filled, as long as [`Size::row`].
+    pub fn new(columns: &'a mut [usize], values: &'a mut [Vector<D>]) -> Self {
+        Self { columns, values }
+    }
 }
 
 /// A model of something with velocities that can be hit: blocks, a beam, a frame of someone else's. It has no state:

@@ -6,7 +6,7 @@ use crate::table::Table;
 use crate::{Results, ResultsError, Schedule, WarningLog, impact_threshold};
 use serde::Serialize;
 use std::ops::ControlFlow;
-use teeter_integrator::{Model, Observer, ObserverError, RockingMonitor, State, StepReport};
+use teeter_integrator::{Contact, Model, Observer, ObserverError, RockingMonitor, State, StepReport};
 use teeter_scenario::diagnostic::Diagnostic;
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Layout;
@@ -52,6 +52,10 @@ pub struct Recorder<'a> {
     impacts: Table,
     energy: Table,
     impulses: Impulses,
+    /// The contacts of the last step, for a row after the run's early end.
+    contacts_now: Vec<Contact<2>>,
+    /// The step of the last row.
+    row_at: u64,
     line: String,
     record: Record,
     tell: &'a mut dyn FnMut(&str),
@@ -86,6 +90,8 @@ impl<'a> Recorder<'a> {
                 "t,kinetic,elastic,gravity,external,contact,friction,viscous,numerical,projection,residual\n",
             )?,
             impulses: Impulses::default(),
+            contacts_now: Vec::new(),
+            row_at: 0,
             line: String::new(),
             record: Record::default(),
             tell,
@@ -101,10 +107,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// Brings all rows to disk.
-    ///
-    /// # Errors
-    /// If there is no room for them, or they can't be written for another reason.
-    pub fn flush(&mut self) -> Result<(), ResultsError> {
+    fn flush(&mut self) -> Result<(), ResultsError> {
         [&mut self.trajectory, &mut self.contacts, &mut self.impacts, &mut self.energy]
             .into_iter()
             .try_for_each(Table::flush)
@@ -155,6 +158,15 @@ impl<'a> Recorder<'a> {
         }
         self.line.push('\n');
         self.energy.rows(&self.line)
+    }
+
+    /// The rows of all tables at the state's time.
+    fn write_rows(&mut self, model: &Model<2>, state: &State) -> Result<(), ResultsError> {
+        self.row_at = state.step;
+        self.write_row(state)?;
+        self.line.clear();
+        self.impulses.rows(self.layout, model, state, &self.contacts_now, &mut self.line);
+        self.contacts.rows(&self.line)
     }
 
     fn write_impacts(&mut self, step: &StepReport<'_, 2>) -> Result<(), ResultsError> {
@@ -227,13 +239,20 @@ impl Observer<2> for Recorder<'_> {
         for (monitor, block) in self.record.rocking.iter_mut().zip(&self.layout.blocks) {
             monitor.enter(state.t, state.q[block.range.start + 2]);
         }
+        self.contacts_now.clear();
+        self.contacts_now.extend_from_slice(step.contacts);
         if self.schedule.takes(state.step, state.t) {
-            self.write_row(state)?;
-            self.line.clear();
-            self.impulses.rows(self.layout, model, state, step.contacts, &mut self.line);
-            self.contacts.rows(&self.line)?;
+            self.write_rows(model, state)?;
         }
         Ok(ControlFlow::Continue(()))
+    }
+
+    /// The last step always is a row, also of a run that ended before its time.
+    fn finish(&mut self, model: &Model<2>, state: &State) -> Result<(), ObserverError> {
+        if state.step != self.row_at {
+            self.write_rows(model, state)?;
+        }
+        Ok(self.flush()?)
     }
 }
 

@@ -53,17 +53,25 @@ impl Results {
         if folder.exists() && !folder.is_dir() {
             return Err(ResultsError::NotFolder(folder.to_owned()));
         }
-        let results = Self { folder: folder.to_owned() };
         let old: Vec<PathBuf> = FILES.iter().map(|file| folder.join(file)).filter(|path| path.exists()).collect();
         if !old.is_empty() && !force {
             return Err(ResultsError::Exists(folder.to_owned()));
         }
         fs::create_dir_all(folder).map_err(|source| ResultsError::Io { path: folder.to_owned(), source })?;
+        let results = Self { folder: folder.to_owned() };
+        // Before anything old goes, it has to be sure that something new can come.
+        let trial = results.temporary("trial");
+        fs::write(&trial, b"").map_err(|source| ResultsError::Io { path: folder.to_owned(), source })?;
         // An old summary beside new tables would look like one run.
-        for path in old {
+        for path in old.into_iter().chain([trial]) {
             fs::remove_file(&path).map_err(|source| ResultsError::Io { path, source })?;
         }
         Ok(results)
+    }
+
+    /// Where a file stands until it is complete.
+    fn temporary(&self, name: &str) -> PathBuf {
+        self.folder.join(format!(".{name}.part"))
     }
 
     /// The folder.
@@ -83,7 +91,7 @@ impl Results {
     /// If it can't be written.
     pub fn write(&self, name: &str, text: &str) -> Result<(), ResultsError> {
         let path = self.folder.join(name);
-        let temporary = self.folder.join(format!(".{name}.part"));
+        let temporary = self.temporary(name);
         let written = fs::write(&temporary, text).and_then(|()| fs::rename(&temporary, &path));
         written.map_err(|source| {
             // The first error is the one to tell; what is left of the file may stay where it can't be removed.

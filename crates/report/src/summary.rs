@@ -46,6 +46,8 @@ pub struct Summary {
     pub dt: f64,
     /// Steps taken.
     pub steps: u64,
+    /// Time reached, s.
+    pub t: f64,
     /// Time that the steps took, output included, s.
     pub wall_seconds: f64,
     /// The same for one step, µs.
@@ -200,6 +202,7 @@ impl Summary {
             scheme: teeter_integrator::MoreauJean::NAME,
             dt: state.dt,
             steps: state.step,
+            t: state.t,
             wall_seconds,
             us_per_step: if state.step > 0 { wall_seconds * 1e6 / state.step as f64 } else { 0.0 },
             contact: ContactSummary {

@@ -138,7 +138,7 @@ impl<'a> Standing<'a> {
             let point = body.surface(0, q, self.kinematics, &at).ok_or_else(|| off_surface(self.block, foot))?;
             let frame = plane_frame(&point.normal);
             let (mut columns, mut values) = ([0; 4], [Vector2::zeros(); 4]);
-            let mut rows = Rows { columns: &mut columns, values: &mut values };
+            let mut rows = Rows::new(&mut columns, &mut values);
             let n = body.rows(0, q, &point.material, &frame, &mut rows);
             let force = frame * Vector2::new(0.0, -self.weight * part);
             for (&c, value) in columns[..n].iter().zip(&values) {

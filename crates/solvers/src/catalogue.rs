@@ -25,7 +25,7 @@ pub const SOLVERS: &[SolverInfo] = &[
         name: Auto::NAME,
         dimensions: &[2],
         law: Law::Exact,
-        summary: "enumeration up to three contacts; pgs above, and where enumeration fails",
+        summary: "contacts that couple together: enumeration up to three, pgs above and where enumeration fails",
         reference: "",
     },
     SolverInfo {
@@ -53,7 +53,7 @@ pub const SOLVERS: &[SolverInfo] = &[
 #[must_use]
 pub fn plane_solver(name: &str) -> Option<Box<dyn ContactSolver<2>>> {
     match name {
-        Auto::NAME => Some(Box::new(Auto)),
+        Auto::NAME => Some(Box::new(Auto::new())),
         Enumeration::NAME => Some(Box::new(Enumeration)),
         Pgs::NAME => Some(Box::new(Pgs)),
         _ => None,

@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | [`Enumeration`] | 2D, up to three contacts, exactly | always, where it fits |
 //! | [`Pgs`] | 2D, any number of contacts | there are more than three contacts |
-//! | [`Auto`] | 2D | you don't want to choose: enumeration where it fits, else (or if that fails) pgs |
+//! | [`Auto`] | 2D | you don't want to choose: contacts that couple are enumerated up to three, else (or if that fails) pgs |
 //!
 //! ```
 //! use nalgebra::{Matrix2, Vector2};

@@ -2,12 +2,17 @@
 
 use nalgebra::{Matrix2, Vector2};
 
+/// Rounding of a closed form here, relative to the terms that it is the sum of.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
 /// The impulse of one contact with Delassus block `h`, constant vector `q` and friction `mu`; of several that obey the
 /// law (H_NN ≤ μ|H_NT| can have them) the smallest. `None` where none of the four states fits.
 ///
 /// - open: `p = 0`, needs `q_N ≥ 0`;
 /// - stick: `H p = −q`, needs `|p_T| ≤ μ p_N`;
 /// - slide to the right (σ = 1) or left (σ = −1): `p_T = −σμ p_N`, `u_N = 0`, needs `σ u_T ≥ 0`.
+///
+/// On the border between sticking and sliding both inequalities hold up to rounding only, so both get that much slack.
 #[inline]
 pub(crate) fn solve(h: &Matrix2<f64>, q: &Vector2<f64>, mu: f64) -> Option<Vector2<f64>> {
     if q[0] >= 0.0 {
@@ -21,12 +26,12 @@ pub(crate) fn solve(h: &Matrix2<f64>, q: &Vector2<f64>, mu: f64) -> Option<Vecto
     };
     let determinant = h[(0, 0)] * h[(1, 1)] - h[(0, 1)] * h[(1, 0)];
     if determinant != 0.0 && mu > 0.0 {
-        let p = Vector2::new(
-            (h[(0, 1)] * q[1] - h[(1, 1)] * q[0]) / determinant,
-            (h[(1, 0)] * q[0] - h[(0, 0)] * q[1]) / determinant,
-        );
-        if p[1].abs() <= mu * p[0] {
-            offer(p);
+        let (normal, tangent) = ([h[(0, 1)] * q[1], h[(1, 1)] * q[0]], [h[(1, 0)] * q[0], h[(0, 0)] * q[1]]);
+        let p = Vector2::new((normal[0] - normal[1]) / determinant, (tangent[0] - tangent[1]) / determinant);
+        let size = tangent[0].abs() + tangent[1].abs() + mu * (normal[0].abs() + normal[1].abs());
+        let limit = mu * p[0];
+        if p[0] >= 0.0 && p[1].abs() <= limit + ROUNDING * size / determinant.abs() {
+            offer(Vector2::new(p[0], p[1].clamp(-limit, limit)));
         }
     }
     for sigma in [1.0, -1.0] {
@@ -34,8 +39,9 @@ pub(crate) fn solve(h: &Matrix2<f64>, q: &Vector2<f64>, mu: f64) -> Option<Vecto
         if compliance > 0.0 {
             let p_n = -q[0] / compliance;
             let p = Vector2::new(p_n, -sigma * mu * p_n);
-            let u_t = h[(1, 0)] * p[0] + h[(1, 1)] * p[1] + q[1];
-            if sigma * u_t >= 0.0 || mu == 0.0 {
+            let terms = [h[(1, 0)] * p[0], h[(1, 1)] * p[1], q[1]];
+            let slack = ROUNDING * terms.iter().map(|term| term.abs()).sum::<f64>();
+            if sigma * terms.iter().sum::<f64>() >= -slack || mu == 0.0 {
                 offer(p);
             }
         }
@@ -51,6 +57,14 @@ mod tests {
     fn without_friction_the_impulse_is_normal() {
         let h = Matrix2::new(2.0, 0.5, 0.5, 1.0);
         assert_eq!(solve(&h, &Vector2::new(-1.0, 3.0), 0.0), Some(Vector2::new(0.5, 0.0)));
+    }
+
+    #[test]
+    fn on_the_border_between_sticking_and_sliding_a_state_fits() {
+        // |p_T| exceeds μ p_N in the last digit, and u_T of the slide has the wrong sign in its last.
+        let h = Matrix2::new(5.150733870361124, 6.94588824968614, 6.94588824968614, 11.535917081603149);
+        let p = solve(&h, &Vector2::new(-0.08123220389856224, -0.11976024561611948), 0.5).unwrap();
+        assert!((p - Vector2::new(0.009419670347586858, 0.004709835173793429)).norm() < 1e-14);
     }
 
     #[test]

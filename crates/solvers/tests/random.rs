@@ -56,6 +56,19 @@ proptest! {
     }
 
     #[test]
+    fn a_contact_on_the_border_of_sticking_and_sliding_is_solved(
+        a in prop::array::uniform4(-3.0..3.0f64), mu in 0.05..2.0f64, p_n in 1e-3..1.0f64, side in prop::bool::ANY,
+    ) {
+        let root = Matrix2::new(a[0], a[1], a[2], a[3]);
+        let h = root * root.transpose() + Matrix2::identity() * 0.01;
+        let p = Vector2::new(p_n, if side { mu * p_n } else { -mu * p_n });
+        let case = Case { name: "border", h: vec![h], q: vec![-(h * p)], mu: vec![mu] };
+        let (status, found) = solve(&mut Enumeration::new(), &case, 1e-12);
+        prop_assert_eq!(status, Status::Converged);
+        prop_assert_eq!(check_law(&case.problem().unwrap(), &found, 1e-9), Ok(()));
+    }
+
+    #[test]
     fn two_solvers_give_the_same_velocity(case in cases()) {
         let problem = case.problem().unwrap();
         let (exact, p) = solve(&mut Enumeration::new(), &case, 1e-11);
