@@ -65,9 +65,18 @@ impl BeamBody {
         &self.beam
     }
 
+    /// The beam's own coordinate of a place in the world. The ends belong to the beam, so a place beyond one by the rounding
+    /// of a difference is at it.
+    fn along(&self, x: f64) -> f64 {
+        let span = self.beam.spec().span;
+        let along = x - self.position.x;
+        let rounding = 4.0 * f64::EPSILON * (self.position.x.abs() + span);
+        if (-rounding..=span + rounding).contains(&along) { along.clamp(0.0, span) } else { along }
+    }
+
     /// The foot point at the beam's own coordinate of `at`: the point of the surface with the same x.
     fn foot(&self, q: &[f64], kinematics: Kinematics, at: &Vector2<f64>) -> Option<SurfacePoint<2>> {
-        let x = at.x - self.position.x;
+        let x = self.along(at.x);
         let offset = self.surface.offset();
         let d = self.beam.deflection_at(q, x)?; // None beyond the ends, which belong to the beam
         if kinematics == Kinematics::Linear {
@@ -214,5 +223,33 @@ impl Compliance<2> for BeamCompliance {
 
     fn solve(&mut self, f: &mut [f64]) {
         self.factor.solve(f);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use teeter_beam::{BeamSpec, Damping, Section, Support};
+
+    #[test]
+    fn the_ends_belong_to_the_beam_in_spite_of_rounding() {
+        let beam = Beam::new(BeamSpec {
+            span: 0.2,
+            elements: 4,
+            section: Section::new(1.0, 1.0).unwrap(),
+            supports: [Support::Pinned, Support::Free],
+            damping: Damping::default(),
+        });
+        let beam = Arc::new(beam.unwrap());
+        let q = vec![0.0; beam.dofs()];
+        for left in [0.0, 0.5, 0.6, -0.7, 1e3] {
+            let body = BeamBody::new(Arc::clone(&beam), Vector2::new(left, 0.0), BeamSurface::Axis);
+            let over = |x| body.surface(0, &q, Kinematics::Deformed, &Vector2::new(x, 0.0)).is_some();
+            // 0.6 + 0.2 is 0.8, but 0.785 + 0.015 is one digit more.
+            for end in [left, left + 0.2, left + 0.185 + 0.015] {
+                assert!(over(end) && over(end.next_up()) && over(end.next_down()), "{left} {end}");
+            }
+            assert!(!over(left - 1e-9) && !over(left + 0.2 + 1e-9), "{left}");
+        }
     }
 }
