@@ -1,9 +1,13 @@
 //! The program `teeter`.
 
+mod check;
 mod console;
 mod interrupt;
 mod progress;
+mod render;
 mod run;
+mod scene_page;
+mod schema;
 
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
@@ -38,6 +42,23 @@ enum Command {
         #[arg(long)]
         force: bool,
     },
+    /// Say what a scene models, costs and writes, and what looks wrong in it; run nothing
+    #[command(after_help = "Examples:\n  teeter check scenarios/free-rocking-on-beam.toml\n  \
+        teeter check scene.toml --set time.step=50us")]
+    Check {
+        /// The scene file; `-` reads standard input
+        scene: PathBuf,
+        /// Override a key of the scene, such as beam.table.thickness="2 mm"; may be repeated
+        #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value)]
+        set: Vec<(String, String)>,
+    },
+    /// Print the JSON Schema of scene files, for editors
+    #[command(after_help = "Examples:\n  teeter schema > scene.schema.json\n  teeter schema --format markdown")]
+    Schema {
+        /// `json`: the schema; `markdown`: the same as a page for people
+        #[arg(long, default_value = "json")]
+        format: schema::Format,
+    },
 }
 
 fn key_value(text: &str) -> Result<(String, String), String> {
@@ -48,6 +69,11 @@ fn key_value(text: &str) -> Result<(String, String), String> {
 }
 
 fn main() -> ExitCode {
-    let Command::Run { scene, out, set, quiet, force } = Arguments::parse().command;
-    run::run(&run::Options { scene, out, set, quiet, force }).into()
+    match Arguments::parse().command {
+        Command::Run { scene, out, set, quiet, force } => {
+            run::run(&run::Options { scene, out, set, quiet, force }).into()
+        }
+        Command::Check { scene, set } => check::check(&check::Options { scene, set }).into(),
+        Command::Schema { format } => schema::print(format).into(),
+    }
 }

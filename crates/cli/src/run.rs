@@ -3,13 +3,15 @@
 use crate::console::Console;
 use crate::interrupt::{INTERRUPTED, Interrupt};
 use crate::progress::Progress;
+use crate::render::Presenter;
 use std::error::Error;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 use teeter_integrator::{Ended, RunError};
-use teeter_report::{EndedWord, Recorder, Results, ResultsError, Summary};
+use teeter_report::{EndedWord, PageRecorder, Recorder, Results, ResultsError, Summary, figures, render};
+use teeter_scenario::decode::LARGEST_FILE;
 use teeter_scenario::resolve::Resolved;
 use teeter_scenario::simulation::Simulation;
 
@@ -47,18 +49,19 @@ pub(crate) struct Options {
 
 pub(crate) fn run(options: &Options) -> Exit {
     let console = Console::new(options.quiet);
-    let (name, stem) = names(&options.scene);
+    let (name, stem) = named(&options.scene);
     let bytes = match read(&options.scene) {
         Ok(bytes) => bytes,
         Err(why) => return bad_input(console, &format!("error: {name}: {why}")),
     };
     let resolved = match teeter_scenario::load(&bytes, &name, &stem, &options.set) {
         Ok(resolved) => resolved,
-        Err(errors) => return bad_input(console, &errors.to_string()),
+        Err(errors) => return bad_input(console, &Presenter::of_bytes(&bytes).all(&errors)),
     };
+    let presenter = Presenter::new(resolved.document.source());
     let mut simulation = match Simulation::new(&resolved.scene) {
         Ok(simulation) => simulation,
-        Err(error) => return bad_input(console, &format!("error: {name}: {error}")),
+        Err(error) => return bad_input(console, &presenter.one(&error.diagnostic(&resolved.document))),
     };
     let folder = options.out.clone().unwrap_or_else(|| Path::new("runs").join(&stem));
     let results = match Results::create(&folder, options.force) {
@@ -66,7 +69,7 @@ pub(crate) fn run(options: &Options) -> Exit {
         Err(error) => return bad_input(console, &format!("error: {error}")),
     };
     for warning in &resolved.warnings {
-        console.note(&warning.to_string());
+        console.note(&presenter.one(warning));
     }
     match simulate(console, &resolved, &mut simulation, &results) {
         Ok(summary) => conclude(console, &summary, &folder),
@@ -78,7 +81,7 @@ pub(crate) fn run(options: &Options) -> Exit {
 }
 
 /// The name of a scene in messages, and that of its results.
-fn names(scene: &Path) -> (String, String) {
+pub(crate) fn named(scene: &Path) -> (String, String) {
     if scene == Path::new("-") {
         return ("<stdin>".to_owned(), "stdin".to_owned());
     }
@@ -100,11 +103,13 @@ fn simulate(
     let mut tell_warning = |text: &str| tell(&format!("warning: {text}"));
     let mut recorder = Recorder::new(results, scene, &layout, &mut tell_warning)?;
     recorder.note(&resolved.warnings);
-    results.write("scene.toml", &resolved.document.to_toml())?;
+    let mut page = PageRecorder::new(scene, &layout);
+    let scene_as_run = resolved.document.to_toml();
+    results.write("scene.toml", &scene_as_run)?;
 
     let clock = Instant::now();
     let mut interrupt = Interrupt::listen();
-    let ran = simulation.run(&mut [&mut recorder, &mut progress, &mut interrupt]);
+    let ran = simulation.run(&mut [&mut recorder, &mut page, &mut progress, &mut interrupt]);
     drop(progress);
     let seconds = clock.elapsed().as_secs_f64();
 
@@ -117,8 +122,7 @@ fn simulate(
             EndedWord::from(&ended)
         }
         Err(RunError::Observer(error)) => {
-            let full = error.downcast_ref::<ResultsError>().is_some_and(ResultsError::is_disk_full);
-            if !full {
+            if !is_disk_full(error.as_ref()) {
                 return Err(error);
             }
             record.warnings.enter("ended", Some(simulation.state.t), || error.to_string());
@@ -127,12 +131,31 @@ fn simulate(
         Err(error) => return Err(error.into()),
     };
     let summary = Summary::new(scene, &layout, &simulation.state, &record, ended, seconds);
-    match results.write("summary.json", &summary.to_json()?) {
-        // No room for this either; the reason is told all the same.
-        Err(error) if error.is_disk_full() && ended == EndedWord::DiskFull => {}
+    let written = write_pages(results, &page, &summary, &scene_as_run);
+    let written = written.and_then(|()| Ok(results.write("summary.json", &summary.to_json()?)?));
+    match written {
+        // No room for these either; the reason is told all the same.
+        Err(error) if ended == EndedWord::DiskFull && is_disk_full(error.as_ref()) => {}
         written => written?,
     }
     Ok(summary)
+}
+
+fn write_pages(
+    results: &Results,
+    page: &PageRecorder,
+    summary: &Summary,
+    scene_as_run: &str,
+) -> Result<(), Box<dyn Error>> {
+    results.write("report.html", &render(page, summary, scene_as_run))?;
+    for (name, svg) in figures(page) {
+        results.write(&format!("figures/{name}"), &svg)?;
+    }
+    Ok(())
+}
+
+fn is_disk_full(error: &(dyn Error + 'static)) -> bool {
+    error.downcast_ref::<ResultsError>().is_some_and(ResultsError::is_disk_full)
 }
 
 fn conclude(console: Console, summary: &Summary, folder: &Path) -> Exit {
@@ -154,16 +177,20 @@ fn conclude(console: Console, summary: &Summary, folder: &Path) -> Exit {
     }
 }
 
-fn read(path: &Path) -> Result<Vec<u8>, String> {
+/// A scene's bytes; of a file too large for one, no more than shows that.
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>, String> {
+    let most = LARGEST_FILE as u64 + 1;
     if path == Path::new("-") {
         let mut bytes = Vec::new();
-        std::io::stdin().read_to_end(&mut bytes).map_err(|error| format!("can't be read: {error}"))?;
+        std::io::stdin().take(most).read_to_end(&mut bytes).map_err(|error| format!("can't be read: {error}"))?;
         return Ok(bytes);
     }
     if path.is_dir() {
         return Err("is a folder, not a scene file".to_owned());
     }
-    std::fs::read(path).map_err(|error| match error.kind() {
+    let mut bytes = Vec::new();
+    let read = std::fs::File::open(path).and_then(|file| file.take(most).read_to_end(&mut bytes));
+    read.map(|_| bytes).map_err(|error| match error.kind() {
         std::io::ErrorKind::NotFound => "no such file".to_owned(),
         std::io::ErrorKind::PermissionDenied => "no permission to read it".to_owned(),
         _ => format!("can't be read: {error}"),
@@ -197,6 +224,6 @@ fn told(summary: &Summary, folder: &Path) -> String {
     if summary.contact.unconverged_steps > 0 {
         text.push_str(&format!("  {} steps not solved to tolerance\n", summary.contact.unconverged_steps));
     }
-    text.push_str(&format!("  results in {}", folder.display()));
+    text.push_str(&format!("  results in {0}, to be looked at in {0}/report.html", folder.display()));
     text
 }

@@ -5,6 +5,7 @@
 
 mod contacts;
 mod number;
+mod page;
 mod recorder;
 mod results;
 mod schedule;
@@ -12,6 +13,7 @@ mod summary;
 mod table;
 mod warnings;
 
+pub use page::{HalfCycle, PageRecorder, figures, half_cycles, render};
 pub use recorder::{ImpactRow, Record, Recorder};
 pub use results::{FILES, Results, ResultsError};
 pub use schedule::Schedule;

@@ -5,9 +5,22 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// The files of a run.
-pub const FILES: [&str; 6] =
-    ["trajectory.csv", "contacts.csv", "impacts.csv", "energy.csv", "summary.json", "scene.toml"];
+/// The files that a run may write; which of the figures, depends on its scene.
+pub const FILES: [&str; 13] = [
+    "trajectory.csv",
+    "contacts.csv",
+    "impacts.csv",
+    "energy.csv",
+    "scene.toml",
+    "summary.json",
+    "report.html",
+    "figures/phi.svg",
+    "figures/omega.svg",
+    "figures/w_mid.svg",
+    "figures/contact_forces.svg",
+    "figures/energy.svg",
+    "figures/phase.svg",
+];
 
 /// Why results can't be written.
 #[derive(Debug, thiserror::Error)]
@@ -71,7 +84,9 @@ impl Results {
 
     /// Where a file stands until it is complete.
     fn temporary(&self, name: &str) -> PathBuf {
-        self.folder.join(format!(".{name}.part"))
+        let path = self.folder.join(name);
+        let file = path.file_name().unwrap_or_default().to_string_lossy();
+        path.with_file_name(format!(".{file}.part"))
     }
 
     /// The folder.
@@ -92,7 +107,11 @@ impl Results {
     pub fn write(&self, name: &str, text: &str) -> Result<(), ResultsError> {
         let path = self.folder.join(name);
         let temporary = self.temporary(name);
-        let written = fs::write(&temporary, text).and_then(|()| fs::rename(&temporary, &path));
+        let written = path
+            .parent()
+            .map_or(Ok(()), fs::create_dir_all)
+            .and_then(|()| fs::write(&temporary, text))
+            .and_then(|()| fs::rename(&temporary, &path));
         written.map_err(|source| {
             // The first error is the one to tell; what is left of the file may stay where it can't be removed.
             let _ = fs::remove_file(&temporary);

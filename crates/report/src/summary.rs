@@ -263,16 +263,6 @@ impl ModelSummary {
                 backend: "sparse Cholesky, factorised once",
             })
             .collect();
-        let mut left_out = Vec::new();
-        if beams.is_empty() {
-            left_out.push("no beam: no beam dofs, no factorisation");
-        } else {
-            left_out.push("axial motion of beams: their supports are free along the axis");
-            left_out.push("self-weight of beams: deflections count from the shape under it");
-        }
-        if scene.blocks.len() > 1 {
-            left_out.push("contact between blocks");
-        }
         Self {
             blocks: layout.blocks.iter().map(|place| place.name.clone()).collect(),
             dofs: 3 * layout.blocks.len() + beams.iter().map(|beam| beam.dofs).sum::<usize>(),
@@ -280,7 +270,7 @@ impl ModelSummary {
             ground: scene.ground,
             contacts: layout.pairs.iter().map(|pair| pair.name.clone()).collect(),
             possible_contacts: 4 * scene.contacts.len(),
-            left_out,
+            left_out: teeter_scenario::left_out(scene),
         }
     }
 }

@@ -8,6 +8,8 @@ use crate::sets::setting;
 use crate::source::{Origin, Source};
 use crate::tree::{Branch, Node, Raw, Twig, lenient_value};
 use crate::wording::expected;
+
+pub use crate::syntax::LARGEST_FILE;
 use crate::{sets, suggest, syntax};
 
 /// Reads a scene. `file` is its name for messages; each of `sets` is a key's path and a value that take precedence over the file.
@@ -34,6 +36,21 @@ use crate::{sets, suggest, syntax};
 /// # Errors
 /// All that is wrong in the file and the settings, in the order of the file (of a hopeless file, the first hundreds).
 pub fn parse(source: &str, file: &str, sets: &[(String, String)]) -> Result<Document, Diagnostics> {
+    let Decoded { document, found, .. } = decode(source, file, sets);
+    if found.has_errors() { Err(found) } else { Ok(document) }
+}
+
+/// A scene as far as it could be read.
+pub(crate) struct Decoded {
+    pub(crate) document: Document,
+    /// What is wrong, in order.
+    pub(crate) found: Diagnostics,
+    /// Whether every table of the file is in the document, so that what takes several keys can be judged as well.
+    pub(crate) whole: bool,
+}
+
+/// Reads a scene, going on after errors.
+pub(crate) fn decode(source: &str, file: &str, sets: &[(String, String)]) -> Decoded {
     let source = Source::new(file, source);
     let syntax::Parsed { mut root, errors, bad_lines, complete } = syntax::read(&source);
     let mut found = Diagnostics(errors);
@@ -41,7 +58,7 @@ pub fn parse(source: &str, file: &str, sets: &[(String, String)]) -> Result<Docu
     if root.twigs.is_empty() && found.0.is_empty() {
         let empty = Diagnostic::error(file, "the file holds no scene: it is empty")
             .with_remedy("a scene has at least a table [time] with end and step");
-        return Err(empty.into());
+        return Decoded { document: Document::new(source), found: empty.into(), whole: false };
     }
     let mut walk = Walk {
         judge: Judge { source: &source, findings: Vec::new() },
@@ -49,6 +66,7 @@ pub fn parse(source: &str, file: &str, sets: &[(String, String)]) -> Result<Docu
         document: Document::new(source.clone()),
     };
     walk.root(&root);
+    let whole = complete && !walk.is_full();
     let Walk { judge, missing, document } = walk;
     // What was recovered from a broken line has its message already; and what seems to be missing may stand in it.
     found.0.extend(judge.findings.into_iter().filter(|finding| {
@@ -56,25 +74,53 @@ pub fn parse(source: &str, file: &str, sets: &[(String, String)]) -> Result<Docu
         place.is_none_or(|line| !bad_lines.contains(&line))
     }));
     if complete {
-        found.0.extend(missing);
+        found.0.extend(missing.into_iter().map(|finding| used_by(finding, &document)));
     }
+    in_order(&mut found, sets);
+    Decoded { document, found, whole }
+}
+
+/// Sorts findings as they are told: by their place in the file, then those about settings in the order of the settings.
+pub(crate) fn in_order(found: &mut Diagnostics, sets: &[(String, String)]) {
     found.0.sort_by_key(|finding| {
-        // Those about settings in the order of the settings; the rest is put in order below.
         let text = finding.set.as_ref()?;
         sets.iter().position(|(path, value)| *text == setting(path, value))
     });
     found.sort();
-    if found.has_errors() { Err(found) } else { Ok(document) }
+}
+
+fn uncapitalised(sentence: &str) -> String {
+    let mut letters = sentence.chars();
+    letters.next().map(|first| first.to_lowercase().chain(letters).collect()).unwrap_or_default()
+}
+
+/// Says of a key missing in a material which bodies need it.
+fn used_by(mut finding: Diagnostic, document: &Document) -> Diagnostic {
+    let material = finding.path.strip_prefix("material.").and_then(|rest| rest.split('.').next()).map(str::to_owned);
+    if let Some(material) = material {
+        let bodies = ["beam", "block"]
+            .into_iter()
+            .flat_map(|group| document.names(group).into_iter().map(move |name| format!("{group}.{name}")));
+        let uses = |body: &String| document.text(&format!("{body}.material")) == Some(&material);
+        let users: Vec<String> = bodies.filter(uses).take(3).collect();
+        if !users.is_empty() {
+            finding.rule.push_str(&format!(", used by {}", users.join(", ")));
+        }
+    }
+    finding
 }
 
 /// The text of a file's bytes.
 ///
 /// # Errors
-/// The bytes are not UTF-8; the message names the first wrong one.
+/// There are too many bytes, or they are not UTF-8; the message names the first wrong one.
 pub fn text<'a>(bytes: &'a [u8], file: &str) -> Result<&'a str, Diagnostics> {
+    if bytes.len() > LARGEST_FILE {
+        return Err(syntax::too_large(file).into());
+    }
     std::str::from_utf8(bytes).map_err(|error| {
         let rule = format!("not a text file in UTF-8: byte {} cannot be read", error.valid_up_to());
-        Diagnostic::error(file, rule).into()
+        Diagnostic::error(file, rule).with_remedy(syntax::A_SCENE_IS).into()
     })
 }
 
@@ -143,6 +189,7 @@ impl Walk<'_> {
                 let rule = format!("the name `{name}` is taken by {first}{line}");
                 let found = self.judge.source.error(&twig_2.key_origin, second, rule);
                 self.judge.push(found).remedy = Some("names are unique over beams and blocks".to_owned());
+                self.document.refuse("block");
             }
         }
         for (_, path, twig) in seen.iter().filter(|(name, ..)| *name == "ground") {
@@ -180,14 +227,17 @@ impl Walk<'_> {
         if key.presence == Presence::NotYet {
             let found = self.judge.blame(&twig.node, path, "known, but not built in yet");
             let allowed = table.allowed();
-            if !allowed.is_empty() {
-                found.remedy = Some(format!("built in: {}", allowed.join(", ")));
-            }
+            found.remedy = Some(match allowed.as_slice() {
+                [] => "leave it out".to_owned(),
+                built_in => format!("leave it out; built in: {}", built_in.join(", ")),
+            });
             return;
         }
         if let Some(value) = self.judge.value(key, path, &twig.node) {
             let entry = Entry { key, value, origin: twig.node.origin.clone(), written: twig.node.written.clone() };
             self.document.add(path, entry);
+        } else {
+            self.document.refuse(path);
         }
     }
 
@@ -205,11 +255,14 @@ impl Walk<'_> {
                 if let Some(rule) = name_rule(&twig.key) {
                     let found = self.judge.source.error(&twig.key_origin, &inner, rule);
                     self.judge.push(found);
+                    self.document.refuse(path);
+                } else {
+                    self.document.add_name(table.name(), &twig.key);
                 }
-                self.document.add_name(table.name(), &twig.key);
                 self.table(table, &inner, branch, &twig.node.origin);
             } else {
                 // `[beam]` with the keys right below it: say so once.
+                self.document.refuse(path);
                 let rule = format!("each {} has a name and a table of its own", table.name());
                 self.judge.blame(&twig.node, &inner, rule).remedy =
                     Some(format!("write its keys under [{}.NAME]", table.name()));
@@ -222,6 +275,7 @@ impl Walk<'_> {
         if let Raw::Branch(branch) = &node.raw {
             return Some(branch);
         }
+        self.document.refuse(path);
         let rule = format!("a table is expected, got {}", node.raw.what());
         let remedy = match table.occurrence {
             Occurrence::Named => format!("write its keys under [{}.NAME]", table.name()),
@@ -240,6 +294,10 @@ impl Walk<'_> {
             "" => "at the top of a scene".to_owned(),
             path => format!("in [{}]", printable(path)),
         };
+        if let Some(meant) = &found.did_you_mean {
+            // What was meant is not missing as well.
+            self.document.refuse(&join(path, meant));
+        }
         let mut remedy = format!("the keys allowed {place} are {}", allowed.join(", "));
         let elsewhere = keys::TABLES.iter().find(|other| other.key(&twig.key).is_some());
         if let Some(other) = elsewhere
@@ -260,6 +318,7 @@ impl Walk<'_> {
         let mut required = Vec::new();
         for key in table.keys.iter().filter(|key| branch.get(key.name).is_none()) {
             match key.presence {
+                Presence::Required if self.document.is_refused(&join(path, key.name)) => {}
                 Presence::Required => required.push(key),
                 Presence::Default(text) => self.default(key, text, path),
                 Presence::DefaultWith { sibling, value } if branch.get(sibling).is_some() => {
@@ -268,7 +327,7 @@ impl Walk<'_> {
                 _ => {}
             }
         }
-        if required.is_empty() {
+        if required.is_empty() || self.document.is_refused(path) {
             return;
         }
         let names: Vec<&str> = required.iter().map(|key| key.name).collect();
@@ -291,9 +350,9 @@ impl Walk<'_> {
             _ => {
                 for key in required {
                     let found = self.judge.source.error(origin, &join(path, key.name), "missing").with_remedy(format!(
-                        "{} ({})",
+                        "{}: {}",
                         expected(key),
-                        key.doc.trim_end_matches('.')
+                        uncapitalised(key.doc.trim_end_matches('.'))
                     ));
                     self.missing.push(found);
                 }

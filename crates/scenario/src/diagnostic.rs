@@ -11,6 +11,8 @@ pub enum Severity {
     Error,
     /// The scene can be run, but probably does not mean what was meant.
     Warning,
+    /// Worth knowing, and nothing wrong.
+    Note,
 }
 
 /// One finding about a scene.
@@ -22,7 +24,7 @@ pub enum Severity {
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// Error or warning.
+    /// Error, warning or note.
     pub severity: Severity,
     /// The file's name as it was given.
     pub file: String,
@@ -81,6 +83,13 @@ impl Diagnostic {
         self.severity = Severity::Warning;
         self
     }
+
+    /// The same finding as a note.
+    #[must_use]
+    pub fn as_note(mut self) -> Self {
+        self.severity = Severity::Note;
+        self
+    }
 }
 
 impl fmt::Display for Diagnostic {
@@ -88,6 +97,7 @@ impl fmt::Display for Diagnostic {
         f.write_str(match self.severity {
             Severity::Error => "error: ",
             Severity::Warning => "warning: ",
+            Severity::Note => "note: ",
         })?;
         match (&self.set, self.position) {
             (Some(set), _) => write!(f, "--set {}: ", printable(set))?,
@@ -117,7 +127,7 @@ impl fmt::Display for Diagnostic {
 pub struct Diagnostics(pub Vec<Diagnostic>);
 
 /// Findings that are printed; the rest is counted.
-const MOST_PRINTED: usize = 50;
+pub const MOST_PRINTED: usize = 50;
 
 impl Diagnostics {
     /// Sorts by place: findings about the whole file, then by position, then those about `--set` in the order given.

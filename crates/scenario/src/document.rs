@@ -1,6 +1,6 @@
 //! A decoded scene: values by path, with defaults and origins, and the way back to TOML.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::diagnostic::Diagnostic;
 use crate::judge::Judge;
@@ -34,6 +34,8 @@ pub struct Document {
     entries: BTreeMap<String, Entry>,
     tables: BTreeMap<String, Origin>,
     names: BTreeMap<&'static str, Vec<String>>,
+    /// Paths that were written, but with something that is no value for them.
+    refused: BTreeSet<String>,
 }
 
 /// Why [`Document::set`] refused a value.
@@ -53,7 +55,13 @@ pub enum SetError {
 
 impl Document {
     pub(crate) fn new(source: Source) -> Self {
-        Self { source, entries: BTreeMap::new(), tables: BTreeMap::new(), names: BTreeMap::new() }
+        Self {
+            source,
+            entries: BTreeMap::new(),
+            tables: BTreeMap::new(),
+            names: BTreeMap::new(),
+            refused: BTreeSet::new(),
+        }
     }
 
     pub(crate) fn add(&mut self, path: &str, entry: Entry) {
@@ -66,6 +74,15 @@ impl Document {
 
     pub(crate) fn add_name(&mut self, group: &'static str, name: &str) {
         self.names.entry(group).or_default().push(name.to_owned());
+    }
+
+    pub(crate) fn refuse(&mut self, path: &str) {
+        self.refused.insert(path.to_owned());
+    }
+
+    /// Whether the path was written with something that is no value for it, so that there is a message about it already.
+    pub(crate) fn is_refused(&self, path: &str) -> bool {
+        self.refused.contains(path)
     }
 
     /// The file's name as given.

@@ -8,7 +8,7 @@ use crate::source::Source;
 use crate::suggest;
 use crate::tree::{Node, Raw};
 use crate::value::Value;
-use crate::wording::{expected, noun, with_unit};
+use crate::wording::{self, expected, noun, with_unit};
 
 /// Findings after which a file is not read on.
 pub(crate) const MOST_FINDINGS: usize = 200;
@@ -31,6 +31,18 @@ pub(crate) fn name_rule(name: &str) -> Option<String> {
         Some(format!("a name has at most {LONGEST_NAME} characters"))
     } else {
         None
+    }
+}
+
+/// What an absurd count would take.
+fn memory(key: &Key, count: Option<i64>) -> String {
+    match (key.bytes_each, count) {
+        (0, _) | (_, None) => String::new(),
+        // For a message: two digits are enough.
+        #[expect(clippy::cast_precision_loss)]
+        (bytes, Some(count)) => {
+            format!("; {count} would take some {} of memory", wording::bytes(count as f64 * bytes as f64))
+        }
     }
 }
 
@@ -189,7 +201,7 @@ impl Judge<'_> {
         let rule = match node.raw {
             Raw::Integer(Some(value)) if (min..=max).contains(&value) => return Some(value),
             Raw::Integer(Some(value)) if value < min => format!("must be at least {min}"),
-            Raw::Integer(_) => format!("must lie in [{min}, {max}]"),
+            Raw::Integer(value) => format!("must lie in [{min}, {max}]{}", memory(key, value)),
             Raw::Float(_) => "a whole number is expected".to_owned(),
             _ => {
                 self.mistyped(key, path, node);
@@ -207,7 +219,7 @@ impl Judge<'_> {
         }
         let known: Vec<String> = known.iter().map(i64::to_string).collect();
         let rule = format!("this program reads version {} of scene files, got {value}", known.join(", "));
-        self.blame(node, path, rule);
+        self.blame(node, path, rule).remedy = Some(format!("write {} = {}", key.name, key.example));
         None
     }
 
@@ -253,6 +265,7 @@ impl Judge<'_> {
                     _ => error.remedy(),
                 };
                 let rule = match &error {
+                    QuantityError::TooLarge | QuantityError::TooSmall => range.sizes_rule(dimension),
                     QuantityError::MissingNumber => {
                         format!("{} with its unit is expected, got a text that starts with no number", dimension.name())
                     }

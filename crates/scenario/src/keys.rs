@@ -1,7 +1,8 @@
 //! The table of keys: what a scene may say.
 //!
 //! One entry per key gives its kind, range, default and meaning. Decoding, the defaults written out, the lists of allowed keys in messages and the
-//! addressing by `--set` all follow from [`TABLES`]; so can a JSON schema and a reference page.
+//! addressing by `--set` all follow from [`TABLES`]; so do the program's JSON schema and
+//! reference page.
 
 use crate::dimension::Dimension;
 
@@ -49,6 +50,8 @@ pub struct Key {
     pub example: &'static str,
     /// One sentence.
     pub doc: &'static str,
+    /// Bytes of memory that each one of a count takes; 0 where it takes none.
+    pub bytes_each: u64,
 }
 
 /// A value that is known but not built in yet.
@@ -194,14 +197,16 @@ impl Range {
         if !(inside_low && inside_high) {
             Some(self.rule(dimension))
         } else if size > self.largest || (size != 0.0 && size < self.smallest) {
-            Some(format!(
-                "outside the range that can be computed with: {} to {} in size",
-                in_unit(self.smallest, dimension),
-                in_unit(self.largest, dimension)
-            ))
+            Some(self.sizes_rule(dimension))
         } else {
             None
         }
+    }
+
+    /// The sizes that can be computed with, in words.
+    pub(crate) fn sizes_rule(&self, dimension: Dimension) -> String {
+        let (smallest, largest) = (in_unit(self.smallest, dimension), in_unit(self.largest, dimension));
+        format!("outside the range that can be computed with: {smallest} to {largest} in size")
     }
 
     /// The range in words: "must lie in [0, 1]".

@@ -36,8 +36,13 @@ pub mod decode;
 pub mod diagnostic;
 pub mod dimension;
 pub mod document;
+mod doubts;
+mod faults;
 mod judge;
 pub mod keys;
+mod left_out;
+pub mod outlook;
+mod overlap;
 mod placement;
 pub mod quantity;
 pub mod resolve;
@@ -53,8 +58,10 @@ mod tree;
 mod unit_expression;
 pub mod units;
 pub mod value;
-mod wording;
+pub mod volume;
+pub mod wording;
 
+pub use left_out::left_out;
 pub use placement::PlacementError;
 
 /// Reads a scene: text, keys, units, references. `file` is its name in messages, `stem` its title if it has none,
@@ -68,5 +75,17 @@ pub fn load(
     stem: &str,
     sets: &[(String, String)],
 ) -> Result<resolve::Resolved, diagnostic::Diagnostics> {
-    resolve::resolve(decode::parse(decode::text(bytes, file)?, file, sets)?, stem)
+    let decode::Decoded { document, mut found, whole } = decode::decode(decode::text(bytes, file)?, file, sets);
+    if !found.has_errors() {
+        return resolve::resolve(document, stem).map_err(|mut found| {
+            decode::in_order(&mut found, sets);
+            found
+        });
+    }
+    // Not where a part could not be read: it may be what the rest refers to.
+    if whole {
+        found.0.extend(resolve::mistakes(&document));
+        decode::in_order(&mut found, sets);
+    }
+    Err(found)
 }

@@ -45,6 +45,9 @@ pub enum PlacementError {
 /// contact on the axis; a top surface or flat blocks take some ten.
 const ROUNDS: usize = 1000;
 
+/// Elements times rounds: with fine meshes fewer rounds are taken, so that a beam without equilibrium is refused within a second.
+const MOST_WORK: usize = 500_000;
+
 /// A round that changes deflections under feet by less than this part of the span ends the fixed point.
 const SETTLED: f64 = 1e-15;
 
@@ -68,6 +71,20 @@ fn feet(block: &BlockScene, at: f64, tilt: f64) -> ([Foot; 2], usize) {
     }
 }
 
+/// Where and how hard (m, N) a block presses on what it stands on, its weight shared evenly between its feet; `None` for a block
+/// that stands on something else or nothing.
+pub(crate) fn weight_of(block: &BlockScene, on: Support, gravity: [f64; 2]) -> Option<Vec<(f64, f64)>> {
+    let Placement::On { support, at, tilt, .. } = block.placement else { return None };
+    let (feet, count) = feet(block, at, tilt);
+    let force = weight(block, gravity) / count as f64;
+    (support == on).then(|| feet[..count].iter().map(|foot| (foot.x, force)).collect())
+}
+
+/// Contact can't pull: gravity that points up leaves the beam alone.
+fn weight(block: &BlockScene, gravity: [f64; 2]) -> f64 {
+    (-block.mass() * gravity[1]).max(0.0)
+}
+
 /// The shape of a beam at the start: straight, or in equilibrium under the blocks that stand on it, held upright or tilted
 /// as placed by couples that are let go at t = 0 (`docs/theory.md` §8).
 pub(crate) fn beam_shape(scene: &Scene, number: usize, body: &BeamBody) -> Result<Vec<f64>, PlacementError> {
@@ -80,7 +97,8 @@ pub(crate) fn beam_shape(scene: &Scene, number: usize, body: &BeamBody) -> Resul
         scene.blocks.iter().filter_map(|block| Standing::new(scene, block, Support::Beam(number))).collect();
     let mut shares: Vec<f64> = weights.iter().map(|w| if w.count == 2 { 0.5 } else { 1.0 }).collect();
     let mut moved = f64::INFINITY;
-    for _ in 0..ROUNDS {
+    let rounds = (MOST_WORK / beam.spec.elements.max(1)).min(ROUNDS);
+    for _ in 0..rounds {
         let mut load = vec![0.0; q.len()];
         for (standing, &share) in weights.iter().zip(&shares) {
             standing.add_load(body, &q, share, &mut load)?;
@@ -101,7 +119,7 @@ pub(crate) fn beam_shape(scene: &Scene, number: usize, body: &BeamBody) -> Resul
             return Ok(q);
         }
     }
-    Err(PlacementError::Unsettled { beam: beam.name.clone(), rounds: ROUNDS, moved })
+    Err(PlacementError::Unsettled { beam: beam.name.clone(), rounds, moved })
 }
 
 /// A block that stands on a beam: its feet and its weight.
@@ -120,10 +138,13 @@ impl<'a> Standing<'a> {
             return None;
         }
         let (feet, count) = feet(block, at, tilt);
-        let mass = block.density * block.width * block.height * block.depth;
-        // Contact can't pull: gravity that points up leaves the beam alone.
-        let weight = (-mass * scene.gravity[1]).max(0.0);
-        Some(Self { block, kinematics: scene.contacts[contact].kinematics, feet, count, weight })
+        Some(Self {
+            block,
+            kinematics: scene.contacts[contact].kinematics,
+            feet,
+            count,
+            weight: weight(block, scene.gravity),
+        })
     }
 
     /// Height of the surface under a foot.

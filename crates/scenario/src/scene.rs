@@ -104,7 +104,7 @@ pub enum Placement {
 }
 
 /// What a block can stand on or touch.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Support {
     /// The ground.
     Ground,
@@ -145,6 +145,12 @@ pub struct SolverScene {
 }
 
 impl BlockScene {
+    /// Mass, kg.
+    #[must_use]
+    pub fn mass(&self) -> f64 {
+        self.density * self.width * self.height * self.depth
+    }
+
     /// The critical angle α = atan(b/H), rad.
     #[must_use]
     pub fn critical_angle(&self) -> f64 {

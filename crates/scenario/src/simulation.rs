@@ -1,5 +1,6 @@
 //! A resolved scene made into a model and its start: ready to run in memory.
 
+use crate::overlap::{Box2, Overlap, deepest_overlap};
 use crate::placement::{PlacementError, beam_shape, block_pose};
 use crate::scene::{Scene, Support};
 use nalgebra::Vector2;
@@ -54,6 +55,18 @@ pub enum BuildError {
         depth: f64,
         /// What is allowed, m.
         tolerance: f64,
+    },
+    /// Two blocks that start in the same place.
+    #[error(
+        "block `{second}`: it overlaps `{first}` by {depth:e} m at the start, and contact between blocks is not modelled"
+    )]
+    Overlap {
+        /// The block that comes first in the file.
+        first: String,
+        /// The other one.
+        second: String,
+        /// How far one must be moved to be clear of the other, m.
+        depth: f64,
     },
 }
 
@@ -123,7 +136,8 @@ impl Simulation {
     /// Makes the model of a scene, and its start.
     ///
     /// # Errors
-    /// If a number doesn't make sense to a layer, a beam has no equilibrium, or a corner starts inside a surface.
+    /// If a number doesn't make sense to a layer, a beam has no equilibrium, a corner starts inside a surface or a block inside
+    /// another.
     pub fn new(scene: &Scene) -> Result<Self, BuildError> {
         let mut parts = ModelBuilder::new();
         let mut layout = Layout::default();
@@ -199,6 +213,7 @@ impl Simulation {
         }
         let model = parts.build(Box::new(PointDetector::new(pairs)))?;
         check_start(scene, &model, &layout, &q)?;
+        check_apart(scene, &q)?;
 
         let state = State::new(&model, &q, &v, scene.time.step)?;
         let solver = teeter_solvers::plane_solver(&scene.solver.method)
@@ -227,6 +242,24 @@ impl Simulation {
 fn beam_body(beam: &Arc<Beam>, scene: &crate::scene::BeamScene) -> BeamBody {
     let surface = if scene.top { BeamSurface::Top { offset: 0.5 * scene.thickness } } else { BeamSurface::Axis };
     BeamBody::new(Arc::clone(beam), Vector2::from(scene.position), surface)
+}
+
+/// Refuses a start with blocks inside each other.
+fn check_apart(scene: &Scene, q: &[f64]) -> Result<(), BuildError> {
+    let boxes: Vec<Box2> = scene
+        .blocks
+        .iter()
+        .zip(q.chunks_exact(3))
+        .map(|(block, q)| Box2::new([q[0], q[1]], q[2], [block.width, block.height]))
+        .collect();
+    match deepest_overlap(&boxes, START_TOLERANCE) {
+        None => Ok(()),
+        Some(Overlap { first, second, depth }) => Err(BuildError::Overlap {
+            first: scene.blocks[first].name.clone(),
+            second: scene.blocks[second].name.clone(),
+            depth,
+        }),
+    }
 }
 
 /// A corner may start below its surface by this part of its block's larger side, for the rounding of places given in

@@ -26,7 +26,7 @@ pub(crate) fn largest_stable_step(spec: &BeamSpec, theta: f64) -> f64 {
 const ROUNDS: usize = 400;
 
 /// ω² of the highest mode of the mesh, by power iteration with M⁻¹K, to some 1 %: the bound that it serves is a guide.
-fn highest_eigenvalue(spec: &BeamSpec) -> Option<f64> {
+pub(crate) fn highest_eigenvalue(spec: &BeamSpec) -> Option<f64> {
     let beam = Beam::new(*spec).ok()?;
     let inverse_mass = beam.factor(MatrixWeights { mass: 1.0, damping: 0.0, stiffness: 0.0 }).ok()?;
     // Fixed, with a part along every mode: signs alternate like the highest mode's, sizes don't repeat.

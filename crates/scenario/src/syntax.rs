@@ -11,7 +11,15 @@ use crate::source::{Origin, Source};
 use crate::tree::{Branch, Planter};
 
 /// Largest scene file, in bytes. A scene of ten thousand blocks takes about 3 MB.
-const LARGEST_FILE: usize = 4 << 20;
+pub const LARGEST_FILE: usize = 4 << 20;
+
+/// For files that are something else.
+pub(crate) const A_SCENE_IS: &str = "a scene is a TOML file; see the scenarios that come with the program";
+
+pub(crate) fn too_large(file: &str) -> Diagnostic {
+    let rule = format!("the file is larger than {} MB, the limit for a scene", LARGEST_FILE >> 20);
+    Diagnostic::error(file, rule).with_remedy(A_SCENE_IS)
+}
 
 /// Syntax errors that are reported; past that the file is probably no scene at all.
 const MOST_ERRORS: usize = 50;
@@ -30,15 +38,13 @@ pub(crate) struct Parsed {
 pub(crate) fn read(source: &Source) -> Parsed {
     let mut parsed =
         Parsed { root: Branch::default(), errors: Vec::new(), bad_lines: BTreeSet::new(), complete: false };
-    let size = source.text.len();
-    if size > LARGEST_FILE {
-        let rule = format!("the file holds {size} bytes; the limit is {LARGEST_FILE}");
-        parsed.errors.push(Diagnostic::error(&source.file, rule));
+    if source.text.len() > LARGEST_FILE {
+        parsed.errors.push(too_large(&source.file));
         return parsed;
     }
     if let Some(at) = source.text.find('\0') {
         let rule = format!("not a text file: byte {at} is zero");
-        parsed.errors.push(Diagnostic::error(&source.file, rule));
+        parsed.errors.push(Diagnostic::error(&source.file, rule).with_remedy(A_SCENE_IS));
         return parsed;
     }
     // The parser gives up the rest of the file at a key without value: blank such lines and read again. After an unclosed
@@ -143,8 +149,14 @@ fn finding(source: &Source, span: &Range<usize>, message: &str) -> Diagnostic {
             return source.error(&origin, &key, rule).with_remedy(remedy);
         }
     }
-    let rule = message.replace("literal string", "a text in quotes");
-    source.error(&origin, "", rule)
+    let rule = message
+        .replace("invalid basic string, expected", "the text in quotes does not end, expected")
+        .replace("invalid literal string, expected", "the text in quotes does not end, expected")
+        .replace("literal string", "a text in quotes");
+    // In a line that assigns, the key before the sign is what is broken.
+    let bare = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.');
+    let is_key = text.contains('=') && !key.is_empty() && key.chars().all(bare);
+    source.error(&origin, if is_key { &key } else { "" }, rule)
 }
 
 fn join(table: &str, key: &str) -> String {

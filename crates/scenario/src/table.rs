@@ -6,12 +6,17 @@ use crate::dimension::Dimension;
 use crate::keys::{Bound, Key, Kind, Occurrence, Presence, Range, Reserved, Table};
 
 const fn key(name: &'static str, kind: Kind, presence: Presence, example: &'static str, doc: &'static str) -> Key {
-    Key { name, kind, presence, reserved: &[], example, doc }
+    Key { name, kind, presence, reserved: &[], example, doc, bytes_each: 0 }
 }
 
 impl Key {
     const fn reserving(mut self, reserved: &'static [Reserved]) -> Self {
         self.reserved = reserved;
+        self
+    }
+
+    const fn taking(mut self, bytes_each: u64) -> Self {
+        self.bytes_each = bytes_each;
         self
     }
 }
@@ -24,6 +29,10 @@ const fn later(value: &'static str) -> Reserved {
 const QUARTER_TURN: Range = Range::new(Bound::Closed(-FRAC_PI_2), Bound::Closed(FRAC_PI_2));
 const DURATION: Range = Range::POSITIVE.sizes(1e-15, 1e12);
 const MODULUS: Range = Range::POSITIVE.sizes(1e-12, 1e18);
+/// More leave no correct digit in double precision.
+const MAX_ELEMENTS: i64 = teeter_beam::MAX_ELEMENTS as i64;
+/// Memory of an element, measured with 10 000 of them: matrices, factors, state.
+const ELEMENT_BYTES: u64 = 1000;
 /// Scales with the blocks, down to 1e-11 of the smallest side allowed.
 const GAP: Range = Range::NOT_NEGATIVE.sizes(1e-30, 1e12);
 
@@ -95,7 +104,7 @@ pub static TABLES: &[Table] = &[
             key("span", SIZE, Required, "\"36 cm\"", "Length between its ends."),
             key("width", SIZE, Required, "\"3 cm\"", "Side of its section out of the plane."),
             key("thickness", SIZE, Required, "\"1.5 mm\"", "Side of its section in the plane."),
-            key("elements", Kind::Integer { min: 1, max: 100_000 }, Required, "20", "Number of finite elements."),
+            key("elements", Kind::Integer { min: 1, max: MAX_ELEMENTS }, Required, "20", "Number of finite elements.").taking(ELEMENT_BYTES),
             key("supports", Kind::ChoicePair(&["pinned", "clamped", "free"]), Default("[\"pinned\", \"pinned\"]"), "[\"pinned\", \"pinned\"]", "How its left and right ends are held.").reserving(&[later("guided"), later("spring"), later("rotational_spring")]),
             key("viscous_damping", Kind::Quantity(Dimension::DAMPING_PER_LENGTH, Range::NOT_NEGATIVE), Optional, "\"0.4 N s/m^2\"", "Coefficient c of the viscous term of the beam equation; one of the three ways to give damping."),
             key("start", Kind::Choice(&["undeformed", "static"]), Default("\"undeformed\""), "\"static\"", "Shape at the start: undeformed, or in equilibrium under the blocks held as placed."),

@@ -139,7 +139,8 @@ pub(crate) fn suggest(symbol: &str) -> Option<String> {
 }
 
 /// The symbols, for a message.
-pub(crate) fn known() -> String {
+#[must_use]
+pub fn known() -> String {
     let symbols: Vec<&str> = UNITS.iter().map(|unit| unit.symbol).collect();
     symbols.join(", ")
 }

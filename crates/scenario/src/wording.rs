@@ -1,4 +1,4 @@
-//! What a key expects, in words.
+//! Words for messages: what a key expects, sizes, durations.
 
 use crate::diagnostic::printable;
 use crate::dimension::Dimension;
@@ -36,7 +36,8 @@ pub(crate) fn noun(key: &Key) -> String {
 }
 
 /// What would be right for a key: for `help:` lines.
-pub(crate) fn expected(key: &Key) -> String {
+#[must_use]
+pub fn expected(key: &Key) -> String {
     match key.kind {
         Kind::Choice(choices) => format!("built in: {}", choices.join(", ")),
         Kind::ChoicePair(choices) => {
@@ -50,5 +51,40 @@ pub(crate) fn expected(key: &Key) -> String {
             let noun = noun(key);
             format!("{}, such as {}", noun.trim_end_matches(','), key.example)
         }
+    }
+}
+
+/// A size of memory or of files, two digits.
+#[must_use]
+pub fn bytes(count: f64) -> String {
+    let units = [(1e12, "TB"), (1e9, "GB"), (1e6, "MB"), (1e3, "kB")];
+    match units.into_iter().find(|(size, _)| count >= *size) {
+        Some((size, unit)) if count < 9.95 * size => format!("{:.1} {unit}", count / size),
+        Some((size, unit)) => format!("{:.0} {unit}", count / size),
+        None => format!("{count:.0} bytes"),
+    }
+}
+
+/// A time that a computation takes.
+#[must_use]
+pub fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 0.095 => "less than 0.1 s".to_owned(),
+        s if s < 9.95 => format!("{s:.1} s"),
+        s if s < 120.0 => format!("{s:.0} s"),
+        s if s < 7200.0 => format!("{:.0} minutes", s / 60.0),
+        s if s < 172_800.0 => format!("{:.0} hours", s / 3600.0),
+        s if s < 6.3e7 => format!("{:.0} days", s / 86_400.0),
+        s => format!("{:.0} years", s / 3.156e7),
+    }
+}
+
+/// "1/68 of its span".
+#[must_use]
+pub fn part_of(sag: f64, span: f64) -> String {
+    match span / sag {
+        ratio if ratio >= 9.5 => format!("1/{ratio:.0} of its span"),
+        ratio if ratio >= 1.0 => format!("1/{ratio:.1} of its span"),
+        _ => format!("{:.1e} times its span", sag / span),
     }
 }

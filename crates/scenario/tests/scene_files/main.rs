@@ -6,6 +6,7 @@ mod refusing;
 mod resolving;
 mod running;
 mod settings;
+mod together;
 mod writing;
 
 use teeter_scenario::decode::parse;

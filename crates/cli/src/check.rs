@@ -1,0 +1,182 @@
+//! `teeter check`: what a run would model, cost and write, and what looks wrong; runs nothing, writes nothing.
+
+use crate::console::Console;
+use crate::render::Presenter;
+use crate::run::{Exit, named, read};
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::PathBuf;
+use teeter_scenario::outlook::{BeamOutlook, BlockOutlook, Outlook};
+use teeter_scenario::resolve::Resolved;
+use teeter_scenario::scene::Scene;
+use teeter_scenario::simulation::Simulation;
+use teeter_scenario::wording;
+
+#[derive(Debug)]
+pub(crate) struct Options {
+    pub(crate) scene: PathBuf,
+    pub(crate) set: Vec<(String, String)>,
+}
+
+pub(crate) fn check(options: &Options) -> Exit {
+    let console = Console::new(false);
+    let (name, stem) = named(&options.scene);
+    let refuse = |text: &str| {
+        console.error(text);
+        Exit::BadInput
+    };
+    let bytes = match read(&options.scene) {
+        Ok(bytes) => bytes,
+        Err(why) => return refuse(&format!("error: {name}: {why}")),
+    };
+    let resolved = match teeter_scenario::load(&bytes, &name, &stem, &options.set) {
+        Ok(resolved) => resolved,
+        Err(errors) => return refuse(&Presenter::of_bytes(&bytes).all(&errors)),
+    };
+    let presenter = Presenter::new(resolved.document.source());
+    let simulation = match Simulation::new(&resolved.scene) {
+        Ok(simulation) => simulation,
+        Err(error) => return refuse(&presenter.one(&error.diagnostic(&resolved.document))),
+    };
+    let text = told(&resolved, &Outlook::new(&resolved, &simulation));
+    // A reader that went away has seen enough.
+    let _ = std::io::stdout().lock().write_all(text.as_bytes());
+    for finding in resolved.warnings.iter().chain(&resolved.notes) {
+        console.note(&format!("\n{}", presenter.one(finding)));
+    }
+    Exit::Done
+}
+
+fn told(resolved: &Resolved, outlook: &Outlook) -> String {
+    let scene = &resolved.scene;
+    let mut text = format!("{}\n", scene.title);
+    section(&mut text, "bodies", &bodies(scene, outlook));
+    section(&mut text, "model", &model(scene, outlook));
+    section(&mut text, "run", &run(scene, outlook));
+    section(&mut text, "left out", &outlook.left_out);
+    text
+}
+
+fn section(text: &mut String, title: &str, lines: &[impl AsRef<str>]) {
+    let _ = writeln!(text, "\n{title}");
+    for line in lines {
+        let _ = writeln!(text, "  {}", line.as_ref());
+    }
+}
+
+/// Bodies of a kind that are listed; the rest is counted.
+const LISTED: usize = 20;
+
+fn bodies(scene: &Scene, outlook: &Outlook) -> Vec<String> {
+    let mut lines: Vec<String> = outlook.blocks.iter().take(LISTED).map(block).collect();
+    lines.extend(more(outlook.blocks.len(), "block"));
+    lines.extend(outlook.beams.iter().take(LISTED).map(beam));
+    lines.extend(more(outlook.beams.len(), "beam"));
+    lines.extend(scene.ground.then(|| "ground: rigid, flat at y = 0".to_owned()));
+    lines
+}
+
+fn more(n: usize, what: &str) -> Option<String> {
+    (n > LISTED).then(|| format!("and {} more", count((n - LISTED) as u64, what)))
+}
+
+fn block(block: &BlockOutlook) -> String {
+    let place = match &block.on {
+        Some(on) => format!("on {on}, tilted by {} deg", degrees(block.angle)),
+        None => format!("placed by its mass centre, at {} deg", degrees(block.angle)),
+    };
+    format!(
+        "block {}: {} kg, {place}; overturns beyond {} deg (critical angle)",
+        block.name,
+        digits(block.mass),
+        degrees(block.critical_angle)
+    )
+}
+
+fn beam(beam: &BeamOutlook) -> String {
+    let mut text = format!(
+        "beam {}: {}, {}, {}",
+        beam.name,
+        count(beam.elements as u64, "element"),
+        count(beam.dofs as u64, "degree of freedom"),
+        beam.backend
+    );
+    if let Some(frequency) = beam.first_frequency {
+        let _ = write!(text, "\n    first frequency {} Hz (period {} s)", digits(frequency), digits(1.0 / frequency));
+    }
+    if let Some(product) = beam.highest_frequency_step {
+        let meaning = if product > 1.0 {
+            "over 1 is usual: such modes stay stable, but are not resolved in time"
+        } else {
+            "all modes are resolved in time"
+        };
+        let _ = write!(text, "\n    highest frequency of the mesh × step = {} ({meaning})", digits(product));
+    }
+    if let Some(sag) = beam.sag.filter(|sag| *sag > 0.0) {
+        let _ = write!(
+            text,
+            "\n    sags by {} m under the blocks at rest, {}",
+            digits(sag),
+            wording::part_of(sag, beam.span)
+        );
+    }
+    text
+}
+
+fn model(scene: &Scene, outlook: &Outlook) -> Vec<String> {
+    let mut lines = vec![
+        format!(
+            "{} at most, {}",
+            count(outlook.possible_contacts as u64, "contact"),
+            count(outlook.dofs as u64, "degree of freedom")
+        ),
+        format!("contact solver {}, to a residual of {:e}", scene.solver.method, scene.solver.tolerance),
+    ];
+    // The default is not worth a line.
+    if scene.time.gap_tolerance != 1e-12 {
+        lines.push(format!(
+            "a gap below {:e} m counts as closed (1e-12 m is usual; it follows the largest block side unless given)",
+            scene.time.gap_tolerance
+        ));
+    }
+    lines
+}
+
+fn run(scene: &Scene, outlook: &Outlook) -> Vec<String> {
+    let (time, volume) = (&scene.time, outlook.volume);
+    vec![
+        format!(
+            "{} of {} s to {} s, theta = {}",
+            count(time.steps, "step"),
+            time.step,
+            time.steps as f64 * time.step,
+            time.theta
+        ),
+        format!(
+            "time: {} (an estimate from times measured on a server, good to a factor of three)",
+            wording::duration(outlook.seconds)
+        ),
+        format!("tables: about {} in {} rows", wording::bytes(volume.bytes), volume.rows),
+    ]
+}
+
+fn count(n: u64, what: &str) -> String {
+    match (n, what.strip_prefix("degree")) {
+        (1, _) => format!("1 {what}"),
+        (_, Some(rest)) => format!("{n} degrees{rest}"),
+        (_, None) => format!("{n} {what}s"),
+    }
+}
+
+fn degrees(radians: f64) -> String {
+    digits(radians.to_degrees())
+}
+
+/// A number to four digits.
+fn digits(x: f64) -> String {
+    if x == 0.0 {
+        return "0".to_owned();
+    }
+    let rounded: f64 = format!("{x:.3e}").parse().unwrap_or(x);
+    if (1e-4..1e6).contains(&rounded.abs()) { format!("{rounded}") } else { format!("{rounded:e}") }
+}

@@ -1,0 +1,158 @@
+//! The reference page of scene files, `docs/scene.md`, from the table of keys.
+
+use std::fmt::Write;
+use teeter_scenario::dimension::Dimension;
+use teeter_scenario::keys::{Key, Kind, Occurrence, Presence, Range, TABLES, Table};
+use teeter_scenario::units;
+
+/// A scene that uses most of what there is.
+const EXAMPLE: &str = include_str!("../../../scenarios/free-rocking-on-beam.toml");
+
+const HEAD: &str = "\
+<!-- Made by `teeter schema --format markdown`; to change it, change the table of keys in crates/scenario/src/table.rs. -->
+
+# The scene file
+
+A scene is a TOML file: a time span, bodies, the contacts between them, and what to write. `teeter check SCENE.toml` says
+what it models and what looks wrong; `teeter run SCENE.toml` simulates it; `--set KEY=VALUE` overrides a key by its path, such as
+`--set beam.table.thickness=\"2 mm\"`. `teeter schema` prints a JSON Schema for editors.
+
+A value with a dimension is a string with its unit: `\"36 cm\"`, `\"69 GPa\"`, `\"9.81 m/s^2\"`, `\"0.4 N s/m^2\"`. A bare number there is an
+error, so that no unit is ever guessed. Numbers are computed with from 1e-12 to 1e12 in SI units unless the table says otherwise.
+Names (of materials, beams, blocks, contacts) hold letters, digits, `_`, `-`, at most 64 of them; no two bodies share one, and
+`ground` is the ground's. A file is at most 4 MB; all that is wrong in it is told at once.
+";
+
+const PLACES: &str = "\
+## Where a block starts
+
+Either on something: `on` names a beam or `\"ground\"`, `at` is the place x of the middle of its base before it is tilted, and `tilt`
+turns it about the corner that it stays on, the left one if positive, the right one if negative. A contact must join the two.
+Or anywhere: `position` is the place of its mass centre and `angle` its turn about it. A corner may not start below a surface that it is
+in contact with, and no block inside another.
+";
+
+const WARNINGS: &str = "\
+## What is warned of
+
+A scene with a warning runs all the same. `teeter check` and `teeter run` warn of
+
+- a `tilt` within 10 % of the critical angle α = atan(width/height), or beyond it: standing still the block overturns;
+- a beam that sags by more than 1/50 of its span under the weight of the blocks on it: linear theory neglects the square of the slope,
+  3/50 at that sag (`check` notes a sag from 1/250 on);
+- a `step` coarser than a tenth of the shortest time scale of a contact: the rocking time √(4R/3g) of a block, R half its diagonal, and
+  for a block on a beam the beam's first period as well;
+- an `end` that is no multiple of the step: the run goes on to the first step past it;
+- `theta` below 0.5, with the largest stable step.
+";
+
+/// The page.
+pub(crate) fn page() -> String {
+    let mut page = HEAD.to_owned();
+    let _ = write!(page, "\n```toml\n{EXAMPLE}```\n");
+    let _ = write!(page, "\nThe units known are {}; `µ` may be written for `u`.\n", units::known());
+    for table in TABLES {
+        section(&mut page, table);
+        if table.pattern == "block.*" {
+            let _ = write!(page, "\n{PLACES}");
+        }
+    }
+    let _ = write!(page, "\n{WARNINGS}");
+    page
+}
+
+fn section(page: &mut String, table: &Table) {
+    let path = table.pattern.replace('*', "NAME");
+    let heading = match table.occurrence {
+        _ if path.is_empty() => "Top of the file".to_owned(),
+        Occurrence::Inline => match path.rsplit_once('.') {
+            Some((above, key)) => format!("`{key} = {{ … }}` in `[{above}]`"),
+            None => path,
+        },
+        _ => format!("`[{path}]`"),
+    };
+    let _ = write!(page, "\n## {heading}\n\n{}", table.doc);
+    page.push_str(match table.occurrence {
+        Occurrence::Named => " As many as wanted, each under a name of its own.\n",
+        Occurrence::Optional | Occurrence::Inline => " May be left out.\n",
+        _ => "\n",
+    });
+    let built: Vec<&Key> = table.keys.iter().filter(|key| key.presence != Presence::NotYet).collect();
+    if !built.is_empty() {
+        page.push_str("\n| key | value | default | meaning |\n|---|---|---|---|\n");
+    }
+    for key in built {
+        let meaning = key.doc.replace('|', "\\|");
+        let _ = writeln!(page, "| `{}` | {} | {} | {meaning} |", key.name, value(key), default(key));
+    }
+    let later = later(table);
+    if !later.is_empty() {
+        let _ = write!(page, "\nKnown, but not built in yet: {}.\n", later.join(", "));
+    }
+}
+
+/// Keys and words that are refused for now.
+fn later(table: &Table) -> Vec<String> {
+    let keys = table.keys.iter().filter(|key| key.presence == Presence::NotYet).map(|key| format!("`{}`", key.name));
+    let words = table.keys.iter().flat_map(|key| {
+        key.reserved.iter().map(|reserved| match key.kind {
+            Kind::Flag => format!("`{} = {}`", key.name, reserved.value),
+            _ => format!("`{} = \"{}\"`", key.name, reserved.value),
+        })
+    });
+    keys.chain(words).collect()
+}
+
+fn default(key: &Key) -> String {
+    match key.presence {
+        Presence::Required => "**required**".to_owned(),
+        Presence::Default(value) => format!("`{value}`"),
+        Presence::DefaultWith { sibling, value } => format!("`{value}`, with `{sibling}`"),
+        _ => "–".to_owned(),
+    }
+}
+
+fn value(key: &Key) -> String {
+    let words = |words: &[&str]| words.iter().map(|word| format!("`\"{word}\"`")).collect::<Vec<_>>().join(", ");
+    let such_as = format!("such as `{}`", key.example);
+    match key.kind {
+        Kind::Text => "text".to_owned(),
+        Kind::Name => format!("name, {such_as}"),
+        Kind::Choice(choices) => words(choices),
+        Kind::Flag => {
+            let built_in = |word: &&str| key.reserved.iter().all(|reserved| reserved.value != *word);
+            let words: Vec<_> =
+                ["true", "false"].into_iter().filter(built_in).map(|word| format!("`{word}`")).collect();
+            words.join(", ")
+        }
+        Kind::Integer { min, max } => format!("whole number, {min} to {max}"),
+        Kind::Version(known) => known.iter().map(|version| format!("`{version}`")).collect::<Vec<_>>().join(", "),
+        Kind::Number(range) => format!("number{}", limits(&range, Dimension::NONE)),
+        Kind::Quantity(dimension, range) => {
+            format!("{}{}, {such_as}", bare(dimension), limits(&range, dimension))
+        }
+        Kind::Pair(dimension, _) => format!("`[x, y]`, each {}, {such_as}", dimension.name()),
+        Kind::List(dimension, range) => {
+            format!("array, each {}{}, {such_as}", dimension.name(), limits(&range, dimension))
+        }
+        Kind::ChoicePair(choices) => format!("two of {}", words(choices)),
+        Kind::NamePair => format!("two names, {such_as}"),
+        Kind::Gravity => format!("acceleration, {such_as}, or `[x, y]`"),
+        _ => such_as,
+    }
+}
+
+/// A dimension without its article.
+fn bare(dimension: Dimension) -> &'static str {
+    let name = dimension.name();
+    name.strip_prefix("a ").or_else(|| name.strip_prefix("an ")).unwrap_or(name)
+}
+
+/// ", greater than 0 m".
+fn limits(range: &Range, dimension: Dimension) -> String {
+    let rule = range.rule(dimension);
+    match rule.strip_prefix("must be ").or_else(|| rule.strip_prefix("must lie ")) {
+        Some(limits) => format!(" {limits}"),
+        None => String::new(),
+    }
+}

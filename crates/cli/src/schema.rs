@@ -1,0 +1,163 @@
+//! `teeter schema`: the JSON Schema of scene files, from the table of keys.
+
+use crate::run::Exit;
+use crate::scene_page;
+use serde_json::{Map, Value, json};
+use std::io::Write;
+use teeter_scenario::dimension::Dimension;
+use teeter_scenario::keys::{Bound, Key, Kind, Occurrence, Presence, Range, TABLES, Table};
+
+/// What the schema is printed as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Format {
+    Json,
+    Markdown,
+}
+
+pub(crate) fn print(format: Format) -> Exit {
+    let text = match format {
+        Format::Json => format!("{:#}\n", schema()),
+        Format::Markdown => scene_page::page(),
+    };
+    // A reader that went away has seen enough.
+    let _ = std::io::stdout().lock().write_all(text.as_bytes());
+    Exit::Done
+}
+
+/// The schema of a scene file read as JSON, draft 2020-12.
+///
+/// It is a little more lenient than the program: units and what takes several keys are checked by the program only.
+fn schema() -> Value {
+    let mut schema = json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "teeter scene",
+        "$defs": { "name": { "type": "string", "pattern": NAME } },
+    });
+    if let (Some(root), Some(schema)) = (TABLES.iter().find(|table| table.pattern.is_empty()), schema.as_object_mut()) {
+        schema.extend(object(root));
+    }
+    schema
+}
+
+/// What the program takes for a name.
+const NAME: &str = "^[A-Za-z0-9_-]{1,64}$";
+
+/// A number and the start of a unit; which units there are and how they combine is more than a pattern can say.
+const QUANTITY: &str = "^\\s*[-+−]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)?(\\s+1/|\\s*[A-Za-zµμ°(]).*$";
+
+fn object(table: &Table) -> Map<String, Value> {
+    let mut properties = Map::new();
+    for key in table.keys {
+        properties.insert(key.name.to_owned(), property(key));
+    }
+    let mut required: Vec<&str> =
+        table.keys.iter().filter(|key| key.presence == Presence::Required).map(|key| key.name).collect();
+    for child in table.children() {
+        let inner = Value::Object(object(child));
+        let value = match child.occurrence {
+            Occurrence::Named => json!({
+                "type": "object",
+                "description": format!("{} Each has a name of its own.", child.doc),
+                "patternProperties": { NAME: inner },
+                "additionalProperties": false,
+            }),
+            _ => inner,
+        };
+        properties.insert(child.name().to_owned(), value);
+        if child.occurrence == Occurrence::Always && child.keys.iter().any(|key| key.presence == Presence::Required) {
+            required.push(child.name());
+        }
+    }
+    let mut object = Map::new();
+    object.insert("type".to_owned(), json!("object"));
+    object.insert("description".to_owned(), json!(table.doc));
+    object.insert("properties".to_owned(), Value::Object(properties));
+    object.insert("additionalProperties".to_owned(), json!(false));
+    if !required.is_empty() {
+        object.insert("required".to_owned(), json!(required));
+    }
+    let siblings: Map<String, Value> = table
+        .keys
+        .iter()
+        .filter_map(|key| match key.presence {
+            Presence::DefaultWith { sibling, .. } => Some((key.name.to_owned(), json!([sibling]))),
+            _ => None,
+        })
+        .collect();
+    if !siblings.is_empty() {
+        object.insert("dependentRequired".to_owned(), Value::Object(siblings));
+    }
+    object
+}
+
+fn property(key: &Key) -> Value {
+    if key.presence == Presence::NotYet {
+        return json!({ "not": {}, "description": format!("{} Known, but not built in yet.", key.doc) });
+    }
+    let mut value = of_kind(key);
+    if let Some(value) = value.as_object_mut() {
+        value.insert("description".to_owned(), json!(format!("{}{}", key.doc, range_of(key))));
+        value.insert("examples".to_owned(), json!([as_json(key.example)]));
+        if let Presence::Default(default) | Presence::DefaultWith { value: default, .. } = key.presence {
+            value.insert("default".to_owned(), as_json(default));
+        }
+    }
+    value
+}
+
+/// A value of the table of keys; all of them read the same in TOML and JSON.
+fn as_json(toml: &str) -> Value {
+    serde_json::from_str(toml).unwrap_or_else(|_| json!(toml))
+}
+
+/// The range of a quantity in words, which a pattern can't hold.
+fn range_of(key: &Key) -> String {
+    let (dimension, range) = match key.kind {
+        Kind::Quantity(dimension, range) | Kind::Pair(dimension, range) | Kind::List(dimension, range) => {
+            (dimension, range)
+        }
+        _ => return String::new(),
+    };
+    format!(" {dimension}; {}.", range.rule(dimension))
+}
+
+fn of_kind(key: &Key) -> Value {
+    let quantity = || json!({ "type": "string", "pattern": QUANTITY });
+    let pair = |item: Value| json!({ "type": "array", "items": item, "minItems": 2, "maxItems": 2 });
+    match key.kind {
+        Kind::Text => json!({ "type": "string" }),
+        Kind::Name => json!({ "$ref": "#/$defs/name" }),
+        Kind::Choice(words) => json!({ "enum": words }),
+        Kind::Flag if key.reserved.is_empty() => json!({ "type": "boolean" }),
+        Kind::Flag => {
+            let refused = |flag: bool| key.reserved.iter().any(|reserved| reserved.value == flag.to_string());
+            let allowed: Vec<bool> = [false, true].into_iter().filter(|flag| !refused(*flag)).collect();
+            json!({ "enum": allowed })
+        }
+        Kind::Integer { min, max } => json!({ "type": "integer", "minimum": min, "maximum": max }),
+        Kind::Version(known) => json!({ "enum": known }),
+        Kind::Number(range) => number(&range),
+        Kind::Quantity(Dimension::NONE, range) => number(&range),
+        Kind::Quantity(..) => quantity(),
+        Kind::Pair(..) => pair(quantity()),
+        Kind::List(..) => json!({ "type": "array", "items": quantity() }),
+        Kind::ChoicePair(words) => pair(json!({ "enum": words })),
+        Kind::NamePair => pair(json!({ "$ref": "#/$defs/name" })),
+        Kind::Gravity => json!({ "anyOf": [quantity(), pair(quantity())] }),
+        // A kind that this page does not know yet: anything goes, the program decides.
+        _ => json!({}),
+    }
+}
+
+fn number(range: &Range) -> Value {
+    let mut number = json!({ "type": "number" });
+    let ends = [(range.low, "minimum", "exclusiveMinimum"), (range.high, "maximum", "exclusiveMaximum")];
+    for (bound, closed, open) in ends {
+        match bound {
+            Bound::Closed(end) => number[closed] = json!(end),
+            Bound::Open(end) => number[open] = json!(end),
+            _ => {}
+        }
+    }
+    number
+}

@@ -1,0 +1,169 @@
+//! The rows: number, input, and what the message must name. Numbers are those of the table that the project was given.
+
+/// How a row's scene is made.
+pub(crate) enum Input {
+    /// The base scene with `--set`.
+    Set(&'static [&'static str]),
+    /// The base scene with pieces replaced.
+    Edit(&'static [(&'static str, &'static str)]),
+    /// A scene of its own.
+    Text(&'static str),
+}
+
+pub(crate) struct Row {
+    pub(crate) number: u32,
+    pub(crate) what: &'static str,
+    pub(crate) input: Input,
+    /// Parts that the message must hold.
+    pub(crate) says: &'static [&'static str],
+    /// Whether it is accepted with a warning.
+    pub(crate) warns: bool,
+}
+
+use Input::{Edit, Set, Text};
+
+const fn refused(number: u32, what: &'static str, input: Input, says: &'static [&'static str]) -> Row {
+    Row { number, what, input, says, warns: false }
+}
+
+const fn warned(number: u32, what: &'static str, input: Input, says: &'static [&'static str]) -> Row {
+    Row { number, what, input, says, warns: true }
+}
+
+const THICKNESS: &str = "thickness     = \"0.15 cm\"";
+const SPAN: &str = "span          = \"36 cm\"";
+const MATERIAL: &str = "[block.rocker]\nmaterial = \"aluminium\"";
+const TILT: &str = "tilt     = \"5 deg\"    # about its bottom left corner, counter-clockwise";
+const PLACE: &str = "on       = \"table\"\nat       = \"18 cm\"    # the middle of its base before it is tilted: midspan\n\
+                     tilt     = \"5 deg\"    # about its bottom left corner, counter-clockwise";
+
+/// Two blocks on the ground that share some space.
+const OVERLAPPING: &str = "\
+[time]
+end = \"1 s\"
+step = \"1 ms\"
+[ground]
+[material.oak]
+density = \"700 kg/m^3\"
+[block.left]
+material = \"oak\"
+width = \"20 cm\"
+height = \"50 cm\"
+depth = \"20 cm\"
+on = \"ground\"
+at = \"0 cm\"
+[block.right]
+material = \"oak\"
+width = \"20 cm\"
+height = \"50 cm\"
+depth = \"20 cm\"
+on = \"ground\"
+at = \"19 cm\"
+[contact.a]
+between = [\"left\", \"ground\"]
+friction = 0.5
+[contact.b]
+between = [\"right\", \"ground\"]
+friction = 0.5
+";
+
+#[rustfmt::skip] // a row a line
+pub(crate) fn rows() -> Vec<Row> {
+    let mut rows = values();
+    rows.extend(geometry());
+    rows.extend(names());
+    rows.extend(limits());
+    rows
+}
+
+#[rustfmt::skip] // a row a line
+fn values() -> Vec<Row> {
+    vec![
+        refused(1, "negative thickness", Edit(&[(THICKNESS, "thickness = \"-0.0015 m\"")]), &["scene.toml:22:13", "beam.table.thickness", "\"-0.0015 m\"", "greater than 0 m"]),
+        refused(2, "no thickness", Edit(&[(THICKNESS, "thickness = \"0 m\"")]), &["beam.table.thickness = \"0 m\"", "greater than 0 m"]),
+        refused(3, "no span", Edit(&[(SPAN, "span = \"0 m\"")]), &["beam.table.span = \"0 m\"", "greater than 0 m"]),
+        refused(4, "modulus not a number", Edit(&[("\"69 GPa\"", "nan")]), &["material.aluminium.youngs_modulus = nan", "not a finite number"]),
+        refused(4, "modulus not a number, quoted", Edit(&[("\"69 GPa\"", "\"nan Pa\"")]), &["material.aluminium.youngs_modulus", "not a finite number"]),
+        refused(5, "infinite density", Edit(&[("\"2700 kg/m^3\"", "\"inf kg/m^3\"")]), &["material.aluminium.density", "not a finite number"]),
+        refused(6, "denormal height", Set(&["block.rocker.height=1e-320 m"]), &["block.rocker.height", "1e-12 m to 1e12 m"]),
+        refused(6, "tiny height", Set(&["block.rocker.height=1e-300 m"]), &["block.rocker.height", "1e-12 m to 1e12 m"]),
+        refused(6, "huge height", Set(&["block.rocker.height=1e200 m"]), &["block.rocker.height", "1e-12 m to 1e12 m"]),
+        refused(7, "negative friction", Edit(&[("friction = 0.5", "friction = -0.1")]), &["contact.feet.friction = -0.1", "at least 0"]),
+        refused(8, "restitution over one", Set(&["contact.feet.restitution=1.2"]), &["contact.feet.restitution = 1.2", "[0, 1]"]),
+        refused(8, "negative restitution", Set(&["contact.feet.restitution=-0.01"]), &["contact.feet.restitution = -0.01", "[0, 1]"]),
+        refused(9, "theta over one", Set(&["time.theta=1.5"]), &["time.theta = 1.5", "[0, 1]"]),
+        refused(9, "negative theta", Set(&["time.theta=-0.2"]), &["time.theta = -0.2", "[0, 1]"]),
+        refused(10, "theta below a half", Set(&["time.theta=0.3"]), &["time.theta = 0.3", "only for steps up to", "on this mesh", "allow_conditional_stability = true"]),
+        refused(10, "theta below a half, undamped", Set(&["time.theta=0.3", "beam.table.damping_ratio.ratio=0"]), &["time.theta = 0.3", "at every step size"]),
+        refused(11, "no step", Edit(&[("step = \"100 us\"", "step = \"0 s\"")]), &["scene.toml:12:8", "time.step = \"0 s\"", "greater than 0 s"]),
+        refused(11, "negative step", Edit(&[("step = \"100 us\"", "step = \"-1e-4 s\"")]), &["time.step = \"-1e-4 s\"", "greater than 0 s"]),
+        refused(12, "step longer than the run", Edit(&[("step = \"100 us\"", "step = \"2 s\"")]), &["time.step = \"2 s\"", "longer than the whole run of 0.5 s"]),
+        refused(13, "negative end", Set(&["time.end=-1 s"]), &["time.end", "greater than 0 s"]),
+        refused(13, "no end", Set(&["time.end=0 s"]), &["time.end", "greater than 0 s"]),
+        refused(14, "too many steps", Set(&["time.end=1e6 s", "time.step=1e-9 s"]), &["1.0e15 steps", "limit of 1e12", "32 years"]),
+        warned(15, "end between two steps", Edit(&[("end  = \"0.5 s\"", "end  = \"0.50005 s\"")]), &["warning: time.end = \"0.50005 s\"", "goes on to 0.5001 s"]),
+        refused(16, "no elements", Edit(&[("elements      = 20", "elements = 0")]), &["beam.table.elements = 0", "at least 1"]),
+        refused(16, "negative elements", Edit(&[("elements      = 20", "elements = -3")]), &["beam.table.elements = -3", "at least 1"]),
+        refused(16, "half an element", Edit(&[("elements      = 20", "elements = 2.5")]), &["beam.table.elements = 2.5", "whole number"]),
+        refused(17, "two billion elements", Edit(&[("elements      = 20", "elements = 2_000_000_000")]), &["beam.table.elements = 2_000_000_000", "[1, 10000]", "2.0 TB of memory"]),
+        refused(17, "elements beyond 64 bits", Edit(&[("elements      = 20", "elements = 99999999999999999999")]), &["beam.table.elements", "[1, 10000]"]),
+        refused(18, "negative damping", Edit(&[("damping_ratio = { mode = 1, ratio = 0.01 }", "viscous_damping = \"-0.1 N s/m^2\"")]), &["beam.table.viscous_damping", "at least 0"]),
+        refused(18, "negative Rayleigh damping", Set(&["beam.table.rayleigh={ a1 = '-1 us' }"]), &["beam.table.rayleigh.a1", "at least 0"]),
+        refused(19, "tilt over a quarter turn", Edit(&[(TILT, "tilt = \"95 deg\"")]), &["block.rocker.tilt = \"95 deg\"", "[-90 deg, 90 deg]"]),
+        refused(19, "tilt without unit", Edit(&[(TILT, "tilt = 5")]), &["block.rocker.tilt = 5", "an angle needs its unit", "5 rad", "deg"]),
+        warned(19, "tilt beyond the critical angle", Edit(&[(TILT, "tilt = \"20 deg\"")]), &["warning: block.rocker.tilt = \"20 deg\"", "12.53 deg", "overturns"]),
+        warned(19, "tilt near the critical angle", Edit(&[(TILT, "tilt = \"-12 deg\"")]), &["warning: block.rocker.tilt = \"-12 deg\"", "within 10 %", "12.53 deg"]),
+        refused(20, "gravity as a word", Edit(&[("[material.aluminium]", "[world]\ngravity = \"down\"\n[material.aluminium]")]), &["world.gravity = \"down\"", "an acceleration", "9.81 m/s^2"]),
+    ]
+}
+
+#[rustfmt::skip] // a row a line
+fn geometry() -> Vec<Row> {
+    vec![
+        refused(21, "block wider than the beam", Set(&["block.rocker.width=50 cm"]), &["block.rocker.width", "0.5 m wide", "0.36 m"]),
+        refused(22, "corner off the beam", Edit(&[("at       = \"18 cm\"", "at = \"35 cm\""), (TILT, "")]), &["block.rocker.at = \"35 cm\"", "bottom-right", "x = 0.365 m", "0.36 m"]),
+        refused(23, "corner below the surface", Edit(&[(PLACE, "position = [\"18 cm\", \"6.65 cm\"]"), ("start         = \"static\"", "")]), &["block.rocker.position", "[\"18 cm\", \"6.65 cm\"]", "1.0e-3 m below", "bottom-left", "`table`", "1.4e-10 m"]),
+        refused(24, "two blocks in one place", Text(OVERLAPPING), &["block.right.at = \"19 cm\"", "`left`", "`right`", "1.0e-2 m", "not modelled"]),
+        refused(25, "static start of a free beam", Edit(&[("\"pinned\", \"pinned\"", "\"free\", \"free\"")]), &["beam.table.start = \"static\"", "rigid body", "both its ends are free", "clamp one end or pin both"]),
+        refused(25, "static start of a beam on one pin", Edit(&[("\"pinned\", \"pinned\"", "\"pinned\", \"free\"")]), &["beam.table.start = \"static\"", "pinned left end", "support the right end"]),
+        refused(27, "probe off the beam", Edit(&[(SPAN, "probes = [\"9 cm\", \"40 cm\"]\nspan = \"36 cm\"")]), &["beam.table.probes", "0.4 m", "[0, 0.36]"]),
+        refused(27, "one element clamped at both ends", Set(&["beam.table.elements=1", "beam.table.supports=['clamped', 'clamped']"]), &["beam.table.elements", "at least 2"]),
+    ]
+}
+
+#[rustfmt::skip] // a row a line
+fn names() -> Vec<Row> {
+    vec![
+        refused(28, "unknown key", Edit(&[(THICKNESS, "thicknes = \"0.15 cm\"")]), &["scene.toml:22:1", "beam.table.thicknes: unknown key", "did you mean `thickness`?", "material, span, width"]),
+        refused(28, "unknown table", Edit(&[("[contact.feet]", "[contacts.feet]")]), &["contacts", "did you mean `contact`?"]),
+        refused(29, "mass in place of a length", Edit(&[(SPAN, "span = \"36 kg\"")]), &["scene.toml:20:8", "beam.table.span = \"36 kg\"", "a length (m) is expected, got a mass (kg)"]),
+        refused(30, "number in quotes", Edit(&[(SPAN, "span = \"36\"")]), &["beam.table.span = \"36\"", "the unit is missing", "cm"]),
+        refused(30, "unknown unit", Edit(&[(SPAN, "span = \"36 furlong\"")]), &["beam.table.span = \"36 furlong\"", "unknown unit `furlong`", "cm, mm"]),
+        refused(30, "bare number", Edit(&[(SPAN, "span = 0.36")]), &["beam.table.span = 0.36", "needs its unit", "0.36 m"]),
+        refused(31, "decimal comma", Edit(&[(THICKNESS, "thickness = \"1,5 mm\"")]), &["beam.table.thickness = \"1,5 mm\"", "`1,5`", "decimal point: \"1.5 mm\""]),
+        refused(32, "two bodies of one name", Edit(&[("[block.rocker]", "[block.table]")]), &["`table`", "beam.table on line 18"]),
+        refused(32, "two tables of one name", Edit(&[("[contact.feet]", "[block.rocker]\n[contact.feet]")]), &["block.rocker", "given twice", "line 28"]),
+        refused(33, "unknown material", Edit(&[(MATERIAL, "[block.rocker]\nmaterial = \"steel\"")]), &["block.rocker.material = \"steel\"", "`steel` is not defined", "aluminium"]),
+        refused(34, "material without density", Edit(&[("density        = \"2700 kg/m^3\"", "")]), &["material.aluminium.density", "missing", "used by beam.table, block.rocker"]),
+        refused(34, "beam of a material without modulus", Edit(&[("youngs_modulus = \"69 GPa\"", "")]), &["material.aluminium.youngs_modulus", "used by beam.table"]),
+        refused(35, "contact with nobody", Edit(&[("[\"rocker\", \"table\"]", "[\"rocker\", \"tabel\"]")]), &["contact.feet.between", "there is no body `tabel`", "did you mean `table`?", "rocker, table"]),
+        refused(35, "contact with itself", Edit(&[("[\"rocker\", \"table\"]", "[\"rocker\", \"rocker\"]")]), &["contact.feet.between", "`rocker` can't touch itself"]),
+        refused(36, "a key twice", Edit(&[(SPAN, "span = \"36 cm\"\nspan = \"40 cm\"")]), &["scene.toml:21:1", "beam.table.span", "given twice, first on line 20"]),
+        refused(37, "unknown solver", Set(&["solver.method=foo"]), &["solver.method", "unknown method", "auto, pgs, enumeration"]),
+        refused(37, "solver not built in", Set(&["solver.method=socp"]), &["solver.method", "known, but not built in yet"]),
+        refused(38, "version of the future", Edit(&[("version = 1", "version = 99")]), &["scene.toml:8:11", "version = 99", "version 1", "got 99"]),
+        refused(38, "motion of the ground", Edit(&[("[contact.feet]", "[ground]\nmotion = \"quake.csv\"\n[contact.feet]")]), &["ground.motion", "known, but not built in yet"]),
+    ]
+}
+
+#[rustfmt::skip] // a row a line
+fn limits() -> Vec<Row> {
+    vec![
+        refused(39, "empty file", Text(""), &["holds no scene", "[time]"]),
+        refused(39, "comments only", Text("# nothing\n\n   # here\n"), &["holds no scene", "[time]"]),
+        refused(42, "cut off file", Text("[time]\nend = \"1 s\"\nstep = \"1 m"), &["scene.toml:3:"]),
+        refused(49, "no time between rows", Set(&["output.every=0 s"]), &["output.every", "greater than 0 s"]),
+        refused(49, "too much output", Set(&["time.end=1e6 s", "time.step=1 ms", "output.every=1 ms"]), &["output.every", "1.0e9 rows", "GB", "10 GB"]),
+        refused(51, "name with a path", Edit(&[("[block.rocker]", "[block.\"../../x\"]")]), &["../../x", "letters (a-z, A-Z), digits, `_`, `-`"]),
+    ]
+}

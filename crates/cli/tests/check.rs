@@ -1,0 +1,109 @@
+//! `teeter check`: what it says of the scenarios, what it leaves untouched.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+fn scenarios() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
+    let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.retain(|file| file.extension().is_some_and(|extension| extension == "toml"));
+    files.sort();
+    assert!(files.len() >= 5);
+    files
+}
+
+fn scenario(name: &str) -> String {
+    let file = scenarios().into_iter().find(|file| file.file_stem().is_some_and(|stem| stem == name));
+    file.unwrap().to_str().unwrap().to_owned()
+}
+
+fn check(arguments: &[&str]) -> (Output, String, String) {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("check");
+    std::fs::create_dir_all(&folder).unwrap();
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_teeter")).current_dir(&folder).arg("check").args(arguments).output().unwrap();
+    assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0, "a check writes nothing");
+    let (stdout, stderr) =
+        (String::from_utf8(output.stdout.clone()).unwrap(), String::from_utf8(output.stderr.clone()).unwrap());
+    (output, stdout, stderr)
+}
+
+#[test]
+fn no_scenario_is_warned_of() {
+    for file in scenarios() {
+        let (output, stdout, stderr) = check(&[file.to_str().unwrap()]);
+        assert!(output.status.success(), "{stderr}");
+        assert!(!stderr.contains("warning"), "{}:\n{stderr}", file.display());
+        assert!(stdout.contains("left out") && stdout.contains("steps of"), "{stdout}");
+    }
+}
+
+#[test]
+fn the_paper_s_beam_is_noted_to_be_soft() {
+    let (_, stdout, stderr) = check(&[&scenario("free-rocking-on-beam")]);
+    assert!(
+        stderr.contains("note: beam.table.thickness = \"0.15 cm\"") && stderr.contains("1/68 of its span"),
+        "{stderr}"
+    );
+    for line in [
+        "Free rocking of a rigid block on an elastic beam",
+        "  block rocker: 0.3281 kg, on table, tilted by 5 deg; overturns beyond 12.53 deg (critical angle)",
+        "  beam table: 20 elements, 40 degrees of freedom, sparse Cholesky, factorised once",
+        "    first frequency 26.53 Hz (period 0.03769 s)",
+        "  4 contacts at most, 43 degrees of freedom",
+        "  5000 steps of 0.0001 s to 0.5 s, theta = 0.5",
+        "  axial motion of beams: their supports are free along the axis",
+    ] {
+        assert!(stdout.lines().any(|told| told == line), "«{line}» is missing in\n{stdout}");
+    }
+    assert!(!stdout.contains("counts as closed"), "the usual gap tolerance is not worth a line");
+}
+
+#[test]
+fn a_doubtful_scene_is_warned_of_and_exits_with_0() {
+    let file = scenario("free-rocking-on-beam");
+    for (set, path, says) in [
+        ("beam.table.thickness=1.3 mm", "beam.table.thickness", "beyond 1/50"),
+        ("time.step=4 ms", "time.step", "a tenth of the first period of `table`"),
+        ("block.rocker.tilt=12 deg", "block.rocker.tilt", "within 10 %"),
+        ("block.rocker.tilt=-13 deg", "block.rocker.tilt", "overturns"),
+        ("time.end=0.12345 s", "time.end", "goes on to 0.1235"),
+    ] {
+        let (output, _, stderr) = check(&[&file, "--set", set]);
+        assert_eq!(output.status.code(), Some(0), "{stderr}");
+        let warned = stderr.lines().any(|line| line.starts_with(&format!("warning: {path}")));
+        assert!(warned && stderr.contains(says), "{set}:\n{stderr}");
+    }
+    let (_, _, stderr) = check(&[&scenario("free-rocking-on-ground"), "--set", "time.step=10 ms"]);
+    assert!(stderr.contains("a tenth of the rocking time sqrt(4R/3g) of `rocker`, 9.694e-2 s"), "{stderr}");
+}
+
+#[test]
+fn an_unusual_gap_tolerance_is_told() {
+    let (_, stdout, _) = check(&[&scenario("free-rocking-on-ground"), "--set", "block.rocker.height=2 m"]);
+    assert!(stdout.contains("a gap below 2e-11 m counts as closed"), "{stdout}");
+}
+
+#[test]
+fn a_bad_scene_exits_with_2_and_says_nothing_on_standard_output() {
+    let (output, stdout, stderr) = check(&[&scenario("drop"), "--set", "time.step=0 s"]);
+    assert_eq!((output.status.code(), stdout.as_str()), (Some(2), ""));
+    assert!(stderr.contains("must be greater than 0 s"), "{stderr}");
+}
+
+#[test]
+fn a_scene_from_standard_input_and_a_reader_that_goes_away() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_teeter"))
+        .args(["check", "-"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    child.stdin.take().unwrap().write_all(&std::fs::read(scenario("sliding")).unwrap()).unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success() && output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+}

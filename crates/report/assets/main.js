@@ -1,0 +1,250 @@
+// What is plotted, and how time passes.
+
+(() => {
+  const several = scenery.blocks.length > 1;
+  const alphas = [...new Set(scenery.blocks.map((block) => block.alpha * degrees))];
+  const ofBlocks = (pick) => scenery.blocks.map((block, index) =>
+    ({ label: several ? block.name : "", index, t: curves.t, y: pick(curves.blocks[index]) }));
+
+  if (scenery.blocks.length) {
+    const series = ofBlocks(({ phi }) => phi.map((x) => x * degrees));
+    const reached = Math.max(...series.map(({ y }) => y.reduce((most, x) => Math.max(most, Math.abs(x)), 0)));
+    // The critical angle is drawn where the motion comes near it; elsewhere it would only squeeze the curve.
+    const guides = alphas.filter((alpha) => reached > 0.8 * alpha).flatMap((alpha) => [-alpha, alpha]);
+    plots.add({ id: "phi", title: "Angle φ", unit: "°", series, guides, least: 2e-3, height: 190 });
+    const speeds = ofBlocks(({ omega }) => omega);
+    plots.add({ id: "omega", title: "Angular velocity φ̇", unit: "rad/s", series: speeds, least: 2e-3, height: 190 });
+  }
+  if (scenery.beams.length) {
+    const series = scenery.beams.map((beam, index) =>
+      ({ label: scenery.beams.length > 1 ? beam.name : "", index, t: curves.t, y: curves.w_mid[index].map((w) => w * 1e3) }));
+    plots.add({ id: "w_mid", title: "Beam deflection at midspan w", unit: "mm", series, least: 1e-6 * Math.max(...scenery.beams.map(({ span }) => span)), height: 150 });
+  }
+
+  /** Where the peaks of impacts would dwarf all else: the size to cut them at. */
+  function cutOf(series, least) {
+    const sizes = series.flatMap(({ y }) => y.map(Math.abs).filter((f) => f > least)).sort((a, b) => a - b);
+    const [usual, largest] = [sizes[Math.floor(0.9 * sizes.length)], sizes[sizes.length - 1]];
+    return largest > 6 * usual ? { limit: 3 * usual, largest } : undefined;
+  }
+
+  const strongest = Math.max(1e-300, ...forces.points.map(({ normal }) => normal.reduce((most, f) => Math.max(most, f), 0)));
+  const active = scenery.contacts.map((_, k) => k).filter((k) => forces.points.some((point) => point.contact === k));
+  const nameOf = ({ block, surface }) => `${scenery.blocks[block].name} on ${surface}`;
+  // So many that one would look for them: one at a time.
+  if (active.length > 3) {
+    const label = htmlElement("label", "", "Forces of ", byId("plots"));
+    label.id = "choice";
+    const choice = htmlElement("select", "", undefined, label);
+    for (const k of active) choice.append(new Option(nameOf(scenery.contacts[k]), k));
+    choice.addEventListener("change", () => plots.choose(Number(choice.value)));
+  }
+
+  scenery.contacts.forEach((contact, k) => {
+    const points = forces.points.filter((point) => point.contact === k);
+    if (!points.length) return;
+    const suffix = scenery.contacts.length > 1 ? `, ${nameOf(contact)}` : "";
+    const series = (key) => points.map((point) =>
+      ({ label: cornerName(point.point), index: point.point, t: forces.borders, y: point[key], stepped: true }));
+    for (const [key, title] of [["normal", "Normal force"], ["tangential", "Tangential force"]]) {
+      const lines = series(key);
+      const least = 1e-6 * strongest;
+      plots.add({
+        id: `${key}-${k}`, contact: k, title: title + suffix, unit: "N", series: lines, cut: cutOf(lines, least), floor: 0, least, height: 150,
+      });
+    }
+    const initials = (point) => scenery.corners[point].split("-").map((word) => word[0].toUpperCase()).join("");
+    plots.add({
+      id: `state-${k}`, contact: k, title: `Contact state${suffix}`, series: [],
+      bands: points.map((point) => ({ short: several ? initials(point.point) : cornerName(point.point).replace("bottom ", ""), state: point.state })),
+      height: plots.margin.top + plots.margin.bottom + plots.rowHeight * points.length,
+    });
+  });
+  if (active.length > 3) plots.choose(active[0]);
+
+  const energy = (name, label, index) =>
+    ({ label, index, t: curves.t, y: curves.energies.find((curve) => curve.name === name).values });
+  const energies = [
+    energy("kinetic", "kinetic", 0), ...(scenery.beams.length ? [energy("elastic", "elastic", 1)] : []),
+    energy("gravity", "gravity, change", 2), energy("total", "total", 6),
+  ];
+  const largestOf = (series) => series.y.reduce((most, x) => Math.max(most, Math.abs(x ?? 0)), 0);
+  const scale = Math.max(...energies.map(largestOf));
+  const joules = plots.scaled(energies, "J");
+  plots.add({ id: "energy", title: "Energy", unit: joules, series: energies, least: 1e-9 * Math.max(...energies.map(largestOf)) || 1, height: 190 });
+  const works = ["contact", "friction", "viscous", "numerical", "external", "projection"].map((name, k) => energy(name, name, k));
+  const idle = works.filter((series) => largestOf(series) <= 1e-9 * scale);
+  const done = works.filter((series) => !idle.includes(series));
+  if (done.length) {
+    const unit = plots.scaled(done, "J");
+    plots.add({ id: "works", title: "Work since t = 0", unit, series: done, least: 1e-6 * Math.max(...done.map(largestOf)), height: 160 });
+  }
+  const note = htmlElement("p", "note", undefined, byId("panel-works") ?? byId("panel-energy"));
+  if (idle.length) note.append(`No work: ${idle.map((series) => series.label).join(", ")}. `);
+  note.append("Of the energy identity, the worst step leaves ");
+  note.append(byId("residual").content.cloneNode(true), " of the scene's energy unexplained.");
+
+  if (scenery.blocks.length) {
+    const series = scenery.blocks.map((block, index) => ({
+      label: several ? block.name : "", index, t: curves.t,
+      x: curves.blocks[index].phi.map((phi) => phi * degrees), y: curves.blocks[index].omega,
+    }));
+    // A scene in which nothing turns has no phase portrait.
+    const turns = series.some((one) => [one.x, one.y].every((values) => largestOf({ y: values }) > 2e-3));
+    if (turns) plots.add({
+      id: "phase", title: "Phase portrait: φ̇ over φ", unit: "rad/s", series, portrait: true, least: 2e-3, height: 300,
+      guides: alphas.flatMap((alpha) => [-alpha, alpha]),
+    });
+  }
+
+  const [slider, play, speed] = ["time-slider", "play", "speed"].map(byId);
+  const exaggeration = byId("exaggeration");
+  const rows = [...document.querySelectorAll("#rocking tbody tr")];
+  const decimals = Math.min(9, Math.max(3, Math.ceil(-Math.log10(data.dt))));
+  let frame = 0;
+  let clock = null;
+
+  slider.max = times.length - 1;
+
+  function show(index) {
+    frame = Math.min(times.length - 1, Math.max(0, index));
+    const t = times[frame];
+    const text = `t = ${t.toFixed(decimals)} s`;
+    slider.value = frame;
+    slider.setAttribute("aria-valuetext", text);
+    byId("time-readout").textContent = text;
+    byId("time-readout").dataset.t = t;
+    byId("scene-readout").textContent = scenery.blocks.slice(0, 4)
+      .map(({ name }, k) => `${several ? `${name}: ` : ""}φ = ${fixed(frames.blocks[k].phi[frame] * degrees, 0.01)}°`)
+      .join(" · ");
+    // In motion an impact is ringed for a moment, at rest only in the frame that it led to.
+    scene.draw(frame, clock ? 0.25 * factor() : 0);
+    plots.showTime(t);
+    for (const block of scenery.blocks) {
+      const past = rows.filter((row) => row.dataset.body === block.name && Number(row.dataset.t) <= t);
+      rows.forEach((row) => row.dataset.body === block.name && row.classList.toggle("now", row === past[past.length - 1]));
+    }
+  }
+
+  // Speeds that show the whole in 2 s to 200 s; at first in about 10 s.
+  const length = end - start;
+  for (const power of [-6, -5, -4, -3, -2, -1, 0, 1, 2, 3, 4, 5]) {
+    for (const digit of [1, 2, 5]) {
+      const value = digit * 10 ** power;
+      if (length / value < 2 || length / value > 200) continue;
+      const name = value < 1 ? `1/${Number((1 / value).toPrecision(3))}` : String(value);
+      speed.append(new Option(`${name} ×`, value));
+    }
+  }
+  if (!speed.options.length) speed.append(new Option("1 ×", 1));
+  speed.value = [...speed.options].map((option) => option.value)
+    .reduce((best, value) => (Math.abs(Math.log(length / value / 10)) < Math.abs(Math.log(length / best / 10)) ? value : best));
+  const factor = () => Number(speed.value);
+
+  function setPlaying(on) {
+    clock = on ? { wall: performance.now(), t: frame >= times.length - 1 ? start : times[frame] } : null;
+    play.textContent = on ? "Pause" : "Play";
+    play.setAttribute("aria-label", play.textContent);
+    if (on) requestAnimationFrame(tick);
+  }
+
+  function tick(wall) {
+    if (!clock) return;
+    clock.t += (Math.max(0, wall - clock.wall) / 1e3) * factor();
+    clock.wall = wall;
+    show(frameAt(clock.t));
+    if (clock.t >= times[times.length - 1]) setPlaying(false);
+    else requestAnimationFrame(tick);
+  }
+
+  function seek(t) {
+    if (clock) clock.t = t;
+    show(frameAt(t));
+  }
+
+  function step(by) {
+    setPlaying(false);
+    show(frame + by);
+  }
+
+  play.addEventListener("click", () => setPlaying(!clock));
+  slider.addEventListener("input", () => {
+    if (clock) clock.t = times[Number(slider.value)];
+    show(Number(slider.value));
+  });
+  exaggeration.addEventListener("input", () => {
+    const value = Number(exaggeration.value);
+    byId("exaggeration-readout").textContent = value === 1 ? "true scale" : `${value} ×`;
+    scene.exaggerate(value);
+    show(frame);
+  });
+  byId("exaggeration-label").hidden = scenery.beams.length === 0;
+  byId("zoom-reset").addEventListener("click", () => plots.zoom(start, end));
+  plots.onSeek(seek);
+  plots.onZoom((zoomed) => {
+    byId("zoom-reset").disabled = !zoomed;
+  });
+
+  const keys = {
+    " ": () => setPlaying(!clock),
+    ArrowLeft: () => step(-1),
+    ArrowRight: () => step(1),
+    Home: () => step(-Infinity),
+    End: () => step(Infinity),
+    "+": () => plots.zoomBy(0.5),
+    "=": () => plots.zoomBy(0.5),
+    "-": () => plots.zoomBy(2),
+    0: () => plots.zoom(start, end),
+  };
+  document.addEventListener("keydown", (event) => {
+    // A control keeps its own keys.
+    const own = event.target.closest?.("input, select, button, summary, pre, .scroll");
+    const mine = !own || (own === slider && event.key === " ");
+    const action = keys[event.key];
+    if (!mine || !action || event.ctrlKey || event.metaKey || event.altKey) return;
+    event.preventDefault();
+    action();
+  });
+
+  const parts = [];
+  if (forces.points.length) parts.push("Green arrows: the contact's force on the block, mean since the sample before.");
+  if (data.impacts.length) parts.push("Rings, and ticks on the plots: impacts.");
+  if (scenery.blocks.length) parts.push("Dotted: the start.");
+  if (data.impact_count > data.impacts.length) parts.push(`The first ${data.impacts.length} of ${data.impact_count} impacts are marked.`);
+  byId("scene-key").textContent = parts.join(" ");
+
+  function relayout() {
+    scene.layout();
+    plots.redraw();
+    show(frame);
+  }
+
+  // `#t=0.3&x=5&zoom=0.1,0.2` opens the page at a time, with an exaggeration, zoomed in.
+  function fromAddress() {
+    const wanted = new URLSearchParams(location.hash.slice(1));
+    if (wanted.has("x")) {
+      exaggeration.value = wanted.get("x");
+      exaggeration.dispatchEvent(new Event("input"));
+    }
+    const span = (wanted.get("zoom") ?? "").split(",").map(Number);
+    if (span.length === 2 && span[0] < span[1]) plots.zoom(span[0], span[1]);
+    if (wanted.has("t") && Number.isFinite(Number(wanted.get("t")))) seek(Number(wanted.get("t")));
+  }
+
+  relayout();
+  fromAddress();
+  window.addEventListener("hashchange", fromAddress);
+  let lastWidth = document.documentElement.clientWidth;
+  new ResizeObserver(() => {
+    // Only a new width asks for a new layout: heights follow from it, and would ask again.
+    if (document.documentElement.clientWidth === lastWidth) return;
+    lastWidth = document.documentElement.clientWidth;
+    requestAnimationFrame(relayout);
+  }).observe(document.documentElement);
+  // Paper has its own width; drawn for that of the screen, the plots' type would come out too small or too large.
+  window.addEventListener("beforeprint", () => {
+    document.querySelectorAll("details").forEach((one) => one.setAttribute("open", ""));
+    plots.drawFor(680);
+  });
+  window.addEventListener("afterprint", () => plots.drawFor(null));
+})();

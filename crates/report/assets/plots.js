@@ -1,0 +1,333 @@
+// The plots: panels over one shared span of time, and the phase portrait.
+
+const plots = (() => {
+  const host = byId("plots");
+  const margin = { left: 58, right: 22, top: 8, bottom: 22 };
+  const panels = [];
+  let view = [start, end];
+  let now = start;
+  let onSeek = () => {};
+  let onZoom = () => {};
+
+  /** Unit and factor that make the largest of some values a handy number. */
+  function scaled(series, unit) {
+    const largest = Math.max(0, ...series.map(({ y }) => y.reduce((most, x) => Math.max(most, Math.abs(x ?? 0)), 0)));
+    const [prefix, factor] = [["k", 1e-3], ["", 1], ["m", 1e3], ["µ", 1e6], ["n", 1e9]]
+      .find(([, f]) => largest * f >= 0.5) ?? ["", 1];
+    for (const one of series) one.y = one.y.map((x) => x * factor);
+    return prefix + unit;
+  }
+
+  function head(panel, parent) {
+    const row = htmlElement("div", "head", undefined, parent);
+    const title = htmlElement("h3", "", `${panel.title} `, row);
+    htmlElement("span", "unit", panel.unit ? `(${panel.unit})` : "", title);
+    const legend = htmlElement("div", "legend", undefined, row);
+    for (const series of panel.portrait && panel.series.length === 1 ? [] : panel.series) {
+      const key = htmlElement("span", series.label ? "key" : "key bare", undefined, legend);
+      const swatch = svgElement("svg", { viewBox: "0 0 18 8", "aria-hidden": "true" }, key);
+      svgElement("path", { d: "M0 4h18", style: stroke(series), "stroke-width": 2 }, swatch);
+      if (series.label) key.append(series.label);
+      series.readout = htmlElement("b", "", "", key);
+    }
+    for (const [className, word] of panel.bands ? [["stick", "stick"], ["slip", "slip"], ["open", "open"]] : []) {
+      const key = htmlElement("span", "key", undefined, legend);
+      htmlElement("i", className, undefined, key);
+      key.append(word);
+    }
+    if (panel.cut) {
+      const toggle = htmlElement("button", "link", "", row);
+      toggle.type = "button";
+      const say = () => {
+        toggle.textContent = panel.whole ? "cut the peaks" : `peaks cut, up to ${number(panel.cut.largest, 3)} ${panel.unit}: show all`;
+      };
+      toggle.addEventListener("click", () => {
+        panel.whole = !panel.whole;
+        say();
+        drawPanel(panel);
+      });
+      say();
+    }
+  }
+
+  const stroke = (series) => `stroke: ${colour(series.index)}; stroke-dasharray: ${dash(series.index)}; fill: none`;
+
+  function add(panel) {
+    panel.element = htmlElement("section", "panel", undefined, host);
+    panel.element.id = `panel-${panel.id}`;
+    head(panel, panel.element);
+    const unit = panel.unit ? ` in ${panel.unit}` : "";
+    panel.svg = svgElement("svg", { class: "plot", role: "img", "aria-label": `${panel.title}${unit}` }, panel.element);
+    panels.push(panel);
+    if (!panel.portrait) listen(panel);
+  }
+
+  let paper = null;
+  const width = () => paper ?? Math.max(200, host.clientWidth);
+  const px = (t) => margin.left + ((t - view[0]) / (view[1] - view[0])) * (width() - margin.left - margin.right);
+  const timeAt = (panel, event) => {
+    const box = panel.svg.getBoundingClientRect();
+    const part = ((event.clientX - box.left) * (width() / box.width) - margin.left) / (width() - margin.left - margin.right);
+    return view[0] + Math.min(1, Math.max(0, part)) * (view[1] - view[0]);
+  };
+
+  /** Lowest and highest of what is in view, with some room. */
+  function range(panel) {
+    let [low, high] = [Infinity, -Infinity];
+    const see = (x) => {
+      if (x === null || !Number.isFinite(x)) return;
+      low = Math.min(low, x);
+      high = Math.max(high, x);
+    };
+    for (const series of panel.series) {
+      const from = indexAt(series.t, view[0]);
+      for (let i = from; i < series.y.length && (i === from || series.t[i] <= view[1]); i++) see(series.y[i]);
+    }
+    if (panel.floor !== undefined) see(panel.floor);
+    if (panel.cut && !panel.whole) [low, high] = [Math.max(low, -panel.cut.limit), Math.min(high, panel.cut.limit)];
+    if (!(low <= high)) return [-1, 1];
+    // What varies by less than that is still: its rounding is not for the eye.
+    const lacking = Math.max(0, panel.least - (high - low)) / 2;
+    const room = 0.07 * (high - low) + lacking;
+    return [low - room, high + room];
+  }
+
+  function path(series, x, y) {
+    let d = "";
+    let pen = "M";
+    const put = (a, b) => {
+      if (!Number.isFinite(b)) {
+        pen = "M";
+        return;
+      }
+      d += `${pen}${a.toFixed(1)} ${Math.min(1e4, Math.max(-1e4, b)).toFixed(1)}`;
+      pen = "L";
+    };
+    const from = Math.max(0, indexAt(series.t, view[0]) - 1);
+    for (let i = from; i < series.y.length; i++) {
+      const value = series.y[i] === null ? NaN : y(series.y[i]);
+      put(x(series.t[i]), value);
+      if (series.stepped) put(x(series.t[i + 1]), value);
+      if (series.t[i] > view[1]) break;
+    }
+    return d;
+  }
+
+  function axes(svg, size, xTicks, yTicks, x, y) {
+    const [right, bottom] = [size.width - margin.right, size.height - margin.bottom];
+    let grid = "";
+    for (const { at, label } of yTicks) {
+      const a = y(at).toFixed(1);
+      grid += `<path class="gridline${at === 0 ? " zero" : ""}" d="M${margin.left} ${a}H${right}"/>`
+        + `<text x="${margin.left - 7}" y="${(+a + 4).toFixed(1)}" text-anchor="end">${label}</text>`;
+    }
+    for (const { at, label } of xTicks) {
+      const a = x(at).toFixed(1);
+      grid += `<path class="axis" d="M${a} ${bottom}v4"/>`
+        + `<text x="${a}" y="${bottom + 16}" text-anchor="middle">${label}</text>`;
+    }
+    return grid + `<path class="axis" d="M${margin.left} ${margin.top}V${bottom}H${right}"/>`;
+  }
+
+  const timeTicks = () => {
+    const found = ticks(view[0], view[1], Math.max(3, Math.floor(width() / 90)));
+    if (found.length) found[found.length - 1].label += " s";
+    return found;
+  };
+
+  function drawPanel(panel) {
+    if (panel.portrait) {
+      drawPortrait(panel);
+      return;
+    }
+    const size = { width: width(), height: panel.height };
+    const bottom = size.height - margin.bottom;
+    const clip = `clip-${panel.id}`;
+    setAll(panel.svg, { viewBox: `0 0 ${size.width} ${size.height}` });
+    const inside = `<clipPath id="${clip}"><rect x="${margin.left}" y="${margin.top}" `
+      + `width="${size.width - margin.left - margin.right}" height="${bottom - margin.top}"/></clipPath>`;
+    const impacts = data.impacts
+      .filter(({ t, contact }) => t >= view[0] && t <= view[1] && (panel.contact ?? contact) === contact)
+      .map(({ t }) => `M${px(t).toFixed(1)} ${margin.top}v7`).join("");
+    let body;
+    if (panel.bands) {
+      body = bands(panel, size, clip);
+    } else {
+      const [low, high] = range(panel);
+      const y = (value) => margin.top + ((high - value) / (high - low)) * (bottom - margin.top);
+      body = axes(panel.svg, size, timeTicks(), ticks(low, high, Math.floor((bottom - margin.top) / 28)), px, y)
+        + `<g clip-path="url(#${clip})">`
+        + (panel.guides ?? []).map((at) => `<path class="guide" d="M${margin.left} ${y(at).toFixed(1)}H${size.width}"/>`).join("")
+        + panel.series.map((series) => `<path class="curve" style="${stroke(series)}" d="${path(series, px, y)}"/>`).join("")
+        + `<path class="impacts" d="${impacts}"/></g>`;
+    }
+    panel.svg.innerHTML = `${inside}${body}<path class="hover"/><path class="cursor"/><rect class="selection"/>`;
+    [panel.hover, panel.cursor, panel.selection] = [".hover", ".cursor", ".selection"].map((s) => panel.svg.querySelector(s));
+    moveCursor(panel);
+  }
+
+  const rowHeight = 17;
+
+  function bands(panel, size, clip) {
+    let body = axes(panel.svg, size, timeTicks(), [], px, () => 0);
+    panel.bands.forEach((band, row) => {
+      const y = margin.top + rowHeight * row;
+      body += `<text x="${margin.left - 7}" y="${y + 10}" text-anchor="end">${band.short}</text><g clip-path="url(#${clip})">`;
+      let from = 0;
+      for (let i = 1; i <= band.state.length; i++) {
+        if (i < band.state.length && band.state[i] === band.state[from]) continue;
+        const [a, b] = [px(forces.borders[from]), px(forces.borders[i])];
+        const name = { k: "stick", l: "slip" }[band.state[from]];
+        if (name && b >= margin.left && a <= size.width) {
+          body += `<rect class="${name}" x="${a.toFixed(2)}" y="${y}" width="${(b - a).toFixed(2)}" height="12"/>`;
+        }
+        from = i;
+      }
+      body += `</g><rect class="band" x="${margin.left}" y="${y}" width="${size.width - margin.left - margin.right}" height="12"/>`;
+    });
+    return body;
+  }
+
+  const portraitBottom = 38;
+
+  function drawPortrait(panel) {
+    const size = { width: width(), height: panel.height };
+    const extent = (values) => {
+      const finite = values.filter(Number.isFinite);
+      const [low, high] = finite.reduce(([a, b], x) => [Math.min(a, x), Math.max(b, x)], [Infinity, -Infinity]);
+      const room = 0.06 * (high - low) + Math.max(0, panel.least - (high - low)) / 2;
+      return low <= high ? [low - room, high + room] : [-1, 1];
+    };
+    const [x0, x1] = extent(panel.series.flatMap((series) => series.x));
+    const [y0, y1] = extent(panel.series.flatMap((series) => series.y));
+    const [right, bottom] = [size.width - margin.right, size.height - portraitBottom];
+    const x = (value) => margin.left + ((value - x0) / (x1 - x0)) * (right - margin.left);
+    const y = (value) => margin.top + ((y1 - value) / (y1 - y0)) * (bottom - margin.top);
+    const curve = (series, from, to) => {
+      let d = "";
+      for (let i = from; i < to; i++) d += `${d ? "L" : "M"}${x(series.x[i]).toFixed(1)} ${y(series.y[i]).toFixed(1)}`;
+      return d;
+    };
+    const whole = view[0] <= start && view[1] >= end;
+    setAll(panel.svg, { viewBox: `0 0 ${size.width} ${size.height}` });
+    const frameless = { width: size.width, height: size.height - portraitBottom + margin.bottom };
+    panel.svg.innerHTML = axes(panel.svg, frameless, ticks(x0, x1, Math.max(4, Math.floor(size.width / 90))), ticks(y0, y1, 6), x, y)
+      + `<text x="${(margin.left + right) / 2}" y="${size.height - 5}" text-anchor="middle">φ (°)</text>`
+      + panel.guides.filter((at) => at > x0 && at < x1)
+        .map((at) => `<path class="guide" d="M${x(at).toFixed(1)} ${margin.top}V${bottom}"/>`).join("")
+      + panel.series.map((series) => {
+        const [from, to] = [indexAt(series.t, view[0]), indexAt(series.t, view[1]) + 1];
+        const faint = whole ? "" : `<path class="curve faint" style="${stroke(series)}" d="${curve(series, 0, series.t.length)}"/>`;
+        return `${faint}<path class="curve" style="${stroke(series)}" d="${curve(series, from, to)}"/>`;
+      }).join("");
+    panel.dots = panel.series.map((series) => svgElement("circle", { r: 4.5, style: `fill: ${colour(series.index)}` }, panel.svg));
+    panel.place = (series, t) => [x(valueAt({ t: series.t, y: series.x }, t)), y(valueAt(series, t))];
+    moveCursor(panel);
+  }
+
+  function moveCursor(panel) {
+    if (panel.portrait) {
+      panel.series.forEach((series, k) => {
+        const [cx, cy] = panel.place(series, now);
+        if (Number.isFinite(cx + cy)) setAll(panel.dots[k], { cx: cx.toFixed(1), cy: cy.toFixed(1) });
+      });
+      return;
+    }
+    const inView = now >= view[0] && now <= view[1];
+    const at = px(now).toFixed(1);
+    panel.cursor.setAttribute("d", inView ? `M${at} ${margin.top}V${panel.height - margin.bottom}` : "M0 0");
+  }
+
+  function readOut(t) {
+    for (const panel of panels.filter((one) => !one.portrait)) {
+      for (const series of panel.series) {
+        const value = valueAt(series, t);
+        series.readout.textContent = number(Math.abs(value) < 1e-2 * panel.least ? 0 : value, 4);
+      }
+    }
+  }
+
+  function hoverAt(t) {
+    for (const panel of panels.filter((one) => !one.portrait)) {
+      const d = t === null ? "M0 0" : `M${px(t).toFixed(1)} ${margin.top}V${panel.height - margin.bottom}`;
+      panel.hover.setAttribute("d", d);
+    }
+    readOut(t ?? now);
+  }
+
+  function listen(panel) {
+    let from = null;
+    const select = (a, b) => {
+      const [left, right] = [px(Math.min(a, b)), px(Math.max(a, b))];
+      setAll(panel.selection, {
+        x: left, y: margin.top, width: Math.max(0, right - left), height: panel.height - margin.top - margin.bottom,
+      });
+    };
+    panel.svg.addEventListener("pointerdown", (event) => {
+      if (event.button !== 0) return;
+      from = { t: timeAt(panel, event), x: event.clientX };
+      panel.svg.setPointerCapture(event.pointerId);
+    });
+    panel.svg.addEventListener("pointermove", (event) => {
+      const t = timeAt(panel, event);
+      hoverAt(t);
+      if (from && Math.abs(event.clientX - from.x) > 4) select(from.t, t);
+    });
+    panel.svg.addEventListener("pointerup", (event) => {
+      if (!from) return;
+      const [a, b] = [from.t, timeAt(panel, event)];
+      const dragged = Math.abs(event.clientX - from.x) > 4;
+      from = null;
+      select(a, a);
+      if (dragged) zoom(Math.min(a, b), Math.max(a, b));
+      else onSeek(b);
+    });
+    panel.svg.addEventListener("pointercancel", () => {
+      from = null;
+      select(view[0], view[0]);
+    });
+    panel.svg.addEventListener("pointerleave", () => hoverAt(null));
+    panel.svg.addEventListener("dblclick", () => zoom(start, end));
+  }
+
+  function zoom(a, b) {
+    // Closer than a few steps there is nothing more to see.
+    const least = Math.min(end - start, 5 * data.dt);
+    const middle = (a + b) / 2;
+    const half = Math.max(b - a, least) / 2;
+    view = [Math.max(start, middle - half), Math.min(end, middle + half)];
+    redraw();
+    onZoom(view[0] > start || view[1] < end);
+  }
+
+  function redraw() {
+    panels.forEach(drawPanel);
+    readOut(now);
+  }
+
+  /** Shows the panels of one contact, hides those of the others. */
+  function choose(contact) {
+    for (const panel of panels) panel.element.hidden = panel.contact !== undefined && panel.contact !== contact;
+  }
+
+  return {
+    drawFor(wanted) {
+      paper = wanted;
+      redraw();
+    },
+    choose, add, scaled, redraw, rowHeight, margin, zoom,
+    zoomBy(factor) {
+      const half = ((view[1] - view[0]) * factor) / 2;
+      const centre = Math.min(end - half, Math.max(start + half, now));
+      if (half * 2 >= end - start) zoom(start, end);
+      else zoom(centre - half, centre + half);
+    },
+    showTime(t) {
+      now = t;
+      panels.forEach(moveCursor);
+      readOut(t);
+    },
+    onSeek(f) { onSeek = f; },
+    onZoom(f) { onZoom = f; },
+  };
+})();

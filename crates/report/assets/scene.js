@@ -1,0 +1,256 @@
+// The moving picture. An exaggerated deflection takes the blocks with it: each bottom corner keeps its true distance from
+// the beam, so that what touches is seen to touch.
+
+const scene = (() => {
+  const root = byId("scene");
+  const padding = { left: 26, right: 26, top: 16, bottom: 78 };
+  const layers = {};
+  let width = 0;
+  let height = 0;
+  let exaggeration = 1;
+  let view = { x: 0, y: 0, scale: 1 };
+  let frame = 0;
+
+  /** The beam that a block may stand on: of several, the one below it. */
+  const beamsOf = scenery.blocks.map((_, block) =>
+    scenery.contacts.filter((contact) => contact.block === block && contact.beam !== null).map((contact) => contact.beam));
+
+  function lift(block, at, x) {
+    const under = beamsOf[block].find((k) => x >= scenery.beams[k].x && x <= scenery.beams[k].x + scenery.beams[k].span);
+    const beam = under ?? beamsOf[block][0];
+    return beam === undefined ? 0 : (exaggeration - 1) * deflection(beam, at, x - scenery.beams[beam].x);
+  }
+
+  function corners(pose, { width: b, height: h }) {
+    const [sin, cos] = [Math.sin(pose.phi), Math.cos(pose.phi)];
+    return [[-b, -h], [b, -h], [b, h], [-b, h]].map(([x, y]) =>
+      [pose.x + (cos * x - sin * y) / 2, pose.y + (sin * x + cos * y) / 2]);
+  }
+
+  function truePose(block, at) {
+    const { x, y, phi } = frames.blocks[block];
+    return { x: x[at], y: y[at], phi: phi[at] };
+  }
+
+  /** Where a block is drawn: the corners of the side that is below ride on the exaggerated beam. */
+  function drawnPose(block, at) {
+    const pose = truePose(block, at);
+    if (exaggeration === 1 || beamsOf[block].length === 0) return pose;
+    const all = corners(pose, scenery.blocks[block]);
+    const below = (((-Math.round(pose.phi / (Math.PI / 2))) % 4) + 4) % 4;
+    const [a, b] = [all[below], all[(below + 1) % 4]];
+    const [up, down] = [lift(block, at, a[0]), lift(block, at, b[0])];
+    const turn = Math.atan2(b[1] + down - a[1] - up, b[0] - a[0]) - Math.atan2(b[1] - a[1], b[0] - a[0]);
+    const middle = [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
+    const [x, y] = [pose.x - middle[0], pose.y - middle[1]];
+    return {
+      x: middle[0] + Math.cos(turn) * x - Math.sin(turn) * y,
+      y: middle[1] + (up + down) / 2 + Math.sin(turn) * x + Math.cos(turn) * y,
+      phi: pose.phi + turn,
+    };
+  }
+
+  /** The box around everything at all times; a body that flies off leaves it. */
+  function bounds() {
+    const around = (points) => points.reduce(
+      (box, [x, y]) => [Math.min(box[0], x), Math.min(box[1], y), Math.max(box[2], x), Math.max(box[3], y)],
+      [Infinity, Infinity, -Infinity, -Infinity]);
+    const fixedPoints = scenery.beams.flatMap(({ x, y, span }) => [[x, y], [x + span, y]]);
+    const moving = (at) => {
+      const points = scenery.blocks.flatMap((block, k) => corners(drawnPose(k, at), block));
+      scenery.beams.forEach((beam, k) => {
+        for (let i = 0; i <= 8; i++) {
+          const x = (i / 8) * beam.span;
+          points.push([beam.x + x, beam.y + exaggeration * deflection(k, at, x)]);
+        }
+      });
+      return points.filter(([x, y]) => Number.isFinite(x) && Number.isFinite(y));
+    };
+    const home = around([...fixedPoints, ...moving(0)]);
+    if (!(home[2] >= home[0])) return [-1, -1, 1, 1];
+    if (scenery.ground) home[1] = Math.min(home[1], 0);
+    const reach = 1.5 * Math.max(home[2] - home[0], home[3] - home[1], 1e-9);
+    const every = Math.max(1, Math.floor(times.length / 250));
+    let box = home;
+    for (let at = 0; at < times.length; at += every) {
+      const now = around(moving(at));
+      box = [
+        Math.max(home[0] - reach, Math.min(box[0], now[0])), Math.max(home[1] - reach, Math.min(box[1], now[1])),
+        Math.min(home[2] + reach, Math.max(box[2], now[2])), Math.min(home[3] + reach, Math.max(box[3], now[3])),
+      ];
+    }
+    return box;
+  }
+
+  const px = (x) => width / 2 + (x - view.x) * view.scale;
+  const py = (y) => height - padding.bottom - (y - view.y) * view.scale;
+  const place = (x, y) => `${px(x).toFixed(2)} ${py(y).toFixed(2)}`;
+
+  function layout() {
+    width = root.parentElement.clientWidth;
+    const box = bounds();
+    const [across, up] = [Math.max(box[2] - box[0], 1e-9), Math.max(box[3] - box[1], 1e-9)];
+    const [inner, tallest] = [width - padding.left - padding.right, Math.min(420, 0.62 * window.innerHeight + 60)];
+    const scale = Math.min(inner / across, (Math.max(260, tallest) - padding.top - padding.bottom) / up);
+    height = Math.max(230, Math.ceil(padding.top + padding.bottom + up * scale));
+    view = { x: (box[0] + box[2]) / 2, y: box[1], scale };
+    setAll(root, { viewBox: `0 0 ${width} ${height}`, width, height });
+    build();
+  }
+
+  function hatch(x, y, length, step, down) {
+    let path = "";
+    for (let k = 0; k <= length / step; k++) path += `M${(x + k * step).toFixed(1)} ${y.toFixed(1)}l-5 ${down}`;
+    return path;
+  }
+
+  function drawSupport(parent, kind, x, y, right) {
+    if (kind === "pinned") {
+      svgElement("path", { d: `M${x} ${y}l-7 12h14z`, class: "support" }, parent);
+      // Axial motion is free: one of the two ends is a roller.
+      if (right) svgElement("path", { d: `M${x - 9} ${y + 16}h18`, class: "support" }, parent);
+      svgElement("path", { d: hatch(x - 6, y + (right ? 16 : 12), 16, 4, 5), class: "hatch" }, parent);
+    } else if (kind === "clamped") {
+      svgElement("path", { d: `M${x} ${y - 16}v32`, class: "support" }, parent);
+      let path = "";
+      for (let k = 0; k < 8; k++) path += `M${x} ${y - 16 + 4 * k}l${right ? 6 : -6} 5`;
+      svgElement("path", { d: path, class: "hatch" }, parent);
+    }
+  }
+
+  function build() {
+    root.replaceChildren();
+    const marker = svgElement("marker", {
+      id: "head", viewBox: "0 0 10 10", refX: 9, refY: 5, markerWidth: 5, markerHeight: 5, orient: "auto",
+    }, svgElement("defs", {}, root));
+    svgElement("path", { d: "M0 0L10 5L0 10z", style: "fill: var(--force)" }, marker);
+    if (scenery.ground) {
+      const y = py(0);
+      svgElement("path", { d: hatch(4, y, width + 8, 8, 7), class: "hatch" }, root);
+      svgElement("path", { d: `M0 ${y.toFixed(2)}H${width}`, class: "ground-line" }, root);
+    }
+    layers.beams = scenery.beams.map((beam) => {
+      const group = svgElement("g", { "data-body": beam.name }, root);
+      svgElement("title", {}, group).textContent = beam.name;
+      svgElement("path", { d: `M${place(beam.x, beam.y)}H${px(beam.x + beam.span)}`, class: "chord" }, group);
+      // Contact is with the axis or the top fibre; the line hangs below it, never thinner than the eye sees.
+      const thickness = Math.max(3, beam.thickness * view.scale);
+      const edge = beam.top ? (beam.thickness / 2) * view.scale : 0;
+      const line = svgElement("path", { class: "beam" }, group);
+      const low = py(beam.y) - edge + thickness;
+      drawSupport(group, beam.supports[0], px(beam.x), low, false);
+      drawSupport(group, beam.supports[1], px(beam.x + beam.span), low, true);
+      return { line, thickness, edge };
+    });
+    layers.blocks = scenery.blocks.map((block, k) => {
+      svgElement("path", { d: outline(k, 0), class: "ghost" }, root);
+      const group = svgElement("g", { "data-body": block.name }, root);
+      svgElement("title", {}, group).textContent = block.name;
+      const body = svgElement("path", { class: "body", style: `stroke: ${colour(k)}; fill: ${colour(k)}` }, group);
+      const centre = svgElement("circle", { r: 2.5, style: `fill: ${colour(k)}` }, group);
+      return { group, body, centre };
+    });
+    layers.arrows = svgElement("g", {}, root);
+    scaleBar();
+    draw(frame);
+  }
+
+  function outline(block, at) {
+    return `M${corners(drawnPose(block, at), scenery.blocks[block]).map(([x, y]) => place(x, y)).join("L")}Z`;
+  }
+
+  function scaleBar() {
+    const most = (0.28 * width) / view.scale;
+    const power = 10 ** Math.floor(Math.log10(most));
+    const length = power * [5, 2, 1].find((factor) => factor * power <= most);
+    const [unit, factor] = length < 0.01 ? ["mm", 1e3] : length < 1 ? ["cm", 100] : ["m", 1];
+    const y = height - 12;
+    svgElement("path", { d: `M12 ${y - 4}v8m0 -4h${(length * view.scale).toFixed(1)}m0 -4v8`, class: "scale" }, root);
+    const label = svgElement("text", { x: 20 + length * view.scale, y: y + 4 }, root);
+    label.textContent = `${Number((length * factor).toPrecision(3))} ${unit}`;
+  }
+
+  // Arrows are as long as forces usually are; a blow ends at a longest one.
+  const usual = (() => {
+    const sizes = forces.points.flatMap((point) => point.normal.filter((f) => f > 0)).sort((a, b) => a - b);
+    return sizes[Math.floor(sizes.length / 2)] || 1;
+  })();
+  const hardest = data.impacts.reduce((most, impact) => Math.max(most, Math.hypot(...impact.impulse)), 1e-300);
+
+  /** A contact point as drawn, with the directions of the contact's frame. */
+  function contactPoint(contact, point, at) {
+    const { block, beam, linear } = scenery.contacts[contact];
+    const [x, y] = corners(drawnPose(block, at), scenery.blocks[block])[point];
+    let slope = 0;
+    if (beam !== null && !linear) {
+      const { span, x: left, points } = scenery.beams[beam];
+      const step = span / (points - 1);
+      const place = corners(truePose(block, at), scenery.blocks[block])[point][0] - left;
+      slope = (deflection(beam, at, place + step) - deflection(beam, at, place - step)) / (2 * step);
+    }
+    const size = Math.hypot(1, slope);
+    return { x: px(x), y: py(y), normal: [-slope / size, 1 / size], tangent: [1 / size, slope / size] };
+  }
+
+  function arrow(at, [normal, tangential], length, className) {
+    const direction = [0, 1].map((k) => normal * at.normal[k] + tangential * at.tangent[k]);
+    const size = Math.hypot(...direction);
+    if (!(size > 0) || length < 3) return;
+    const tail = [at.x - (direction[0] / size) * length, at.y + (direction[1] / size) * length];
+    svgElement("path", {
+      d: `M${tail[0].toFixed(2)} ${tail[1].toFixed(2)}L${at.x.toFixed(2)} ${at.y.toFixed(2)}`,
+      class: className, "marker-end": "url(#head)",
+    }, layers.arrows);
+  }
+
+  /** Shows a frame; impacts within `memory` seconds before it are ringed. */
+  function draw(at, memory = 0) {
+    frame = at;
+    const t = times[at];
+    scenery.beams.forEach((beam, k) => {
+      const { line, thickness, edge } = layers.beams[k];
+      const top = [];
+      const bottom = [];
+      for (let i = 0; i < beam.points; i++) {
+        const x = (i / (beam.points - 1)) * beam.span;
+        const y = py(beam.y + exaggeration * deflection(k, at, x)) - edge;
+        top.push(`${px(beam.x + x).toFixed(2)} ${y.toFixed(2)}`);
+        bottom.unshift(`${px(beam.x + x).toFixed(2)} ${(y + thickness).toFixed(2)}`);
+      }
+      line.setAttribute("d", `M${top.concat(bottom).join("L")}Z`);
+    });
+    scenery.blocks.forEach((_, k) => {
+      const { group, body, centre } = layers.blocks[k];
+      const pose = truePose(k, at);
+      const drawn = drawnPose(k, at);
+      setAll(group, { "data-x": pose.x, "data-y": pose.y, "data-phi": pose.phi });
+      body.setAttribute("d", outline(k, at));
+      setAll(centre, { cx: px(drawn.x).toFixed(2), cy: py(drawn.y).toFixed(2) });
+    });
+    layers.arrows.replaceChildren();
+    if (at > 0) {
+      for (const point of forces.points) {
+        const [n, s] = [point.normal, point.tangential].map((y) => valueAt({ t: forces.borders, y, stepped: true }, t));
+        if (n > 0) {
+          const length = Math.min(padding.bottom - 22, (34 * Math.hypot(n, s)) / usual);
+          arrow(contactPoint(point.contact, point.point, at), [n, s], length, "force");
+        }
+      }
+    }
+    const since = t - Math.max(memory, 1.01 * (t - times[Math.max(0, at - 1)]));
+    for (const impact of data.impacts.filter((one) => one.t > since && one.t <= t * (1 + 1e-12))) {
+      const { x, y } = contactPoint(impact.contact, impact.point, at);
+      const r = 5 + 9 * Math.sqrt(Math.hypot(...impact.impulse) / hardest);
+      svgElement("circle", { cx: x.toFixed(2), cy: y.toFixed(2), r: r.toFixed(1), class: "impact" }, layers.arrows);
+    }
+  }
+
+  return {
+    draw,
+    layout,
+    exaggerate(factor) {
+      exaggeration = factor;
+      layout();
+    },
+  };
+})();

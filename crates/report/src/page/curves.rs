@@ -1,0 +1,242 @@
+//! Curves over time in bounded memory: a run is cut into buckets of equally many steps, of which each keeps the extremes
+//! of every quantity and the sums of every contact's impulses. When there are too many, neighbours join.
+//!
+//! A bucket is drawn as two points, lowest and highest in the order in which they came, at its first and last step: up to
+//! two steps a bucket that is the curve itself, beyond that its envelope, from which no peak is missing.
+
+use teeter_integrator::ContactState;
+
+/// The lowest and the highest value, each with its time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Extremes {
+    low: (f64, f64),
+    high: (f64, f64),
+}
+
+impl Extremes {
+    fn of(t: f64, x: f64) -> Self {
+        Self { low: (t, x), high: (t, x) }
+    }
+
+    fn join(self, later: Self) -> Self {
+        // A NaN loses no comparison, so a curve that stops being finite shows its gap only where nothing else is.
+        let low = if later.low.1 < self.low.1 { later.low } else { self.low };
+        let high = if later.high.1 > self.high.1 { later.high } else { self.high };
+        Self { low, high }
+    }
+
+    fn in_order(self) -> [f64; 2] {
+        if self.low.0 <= self.high.0 { [self.low.1, self.high.1] } else { [self.high.1, self.low.1] }
+    }
+}
+
+/// What a contact did in a bucket.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Work {
+    impulse: [f64; 2],
+    /// Steps with each state; the rest it was open.
+    stick: u64,
+    slip: u64,
+}
+
+impl Work {
+    fn join(self, later: Self) -> Self {
+        let impulse = [self.impulse[0] + later.impulse[0], self.impulse[1] + later.impulse[1]];
+        Self { impulse, stick: self.stick + later.stick, slip: self.slip + later.slip }
+    }
+
+    fn enter(&mut self, impulse: [f64; 2], state: ContactState) {
+        self.impulse[0] += impulse[0];
+        self.impulse[1] += impulse[1];
+        match state {
+            ContactState::Open => {}
+            ContactState::Stick => self.stick += 1,
+            ContactState::Slip => self.slip += 1,
+        }
+    }
+}
+
+/// Steps in a row.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Bucket {
+    /// End of the step before it.
+    begin: f64,
+    /// End of its first step.
+    first: f64,
+    /// End of its last step.
+    last: f64,
+    steps: u64,
+}
+
+/// The curves of a run.
+#[derive(Debug, Clone)]
+pub(crate) struct Curves {
+    capacity: usize,
+    /// Steps of a full bucket.
+    stride: u64,
+    start: (f64, Vec<f64>),
+    buckets: Vec<Bucket>,
+    /// `start.1.len()` a bucket.
+    extremes: Vec<Extremes>,
+    contacts: usize,
+    /// `contacts` a bucket.
+    works: Vec<Work>,
+}
+
+/// A contact point over time, a value a bucket.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ForceCurve {
+    /// Mean normal force, N.
+    pub(crate) normal: Vec<f64>,
+    /// Mean tangential force, N.
+    pub(crate) tangential: Vec<f64>,
+    /// The state in most of the steps.
+    pub(crate) state: Vec<ContactState>,
+}
+
+impl Curves {
+    /// Curves from values at the start on, in at most `capacity` buckets (an even number), with `contacts` contact points.
+    pub(crate) fn new(capacity: usize, t: f64, start: Vec<f64>, contacts: usize) -> Self {
+        Self {
+            capacity,
+            stride: 2,
+            start: (t, start),
+            buckets: Vec::new(),
+            extremes: Vec::new(),
+            contacts,
+            works: Vec::new(),
+        }
+    }
+
+    /// Enters the values at the end of a step.
+    pub(crate) fn enter(&mut self, t: f64, values: &[f64]) {
+        let full = self.buckets.last().is_none_or(|bucket| bucket.steps >= self.stride);
+        if full && self.buckets.len() == self.capacity {
+            self.halve();
+        }
+        let begin = self.buckets.last().map_or(self.start.0, |bucket| bucket.last);
+        match self.buckets.last_mut().filter(|bucket| bucket.steps < self.stride) {
+            Some(bucket) => {
+                (bucket.last, bucket.steps) = (t, bucket.steps + 1);
+                let at = self.extremes.len() - values.len();
+                for (extremes, &x) in self.extremes[at..].iter_mut().zip(values) {
+                    *extremes = extremes.join(Extremes::of(t, x));
+                }
+            }
+            None => {
+                self.buckets.push(Bucket { begin, first: t, last: t, steps: 1 });
+                self.extremes.extend(values.iter().map(|&x| Extremes::of(t, x)));
+                self.works.resize(self.works.len() + self.contacts, Work::default());
+            }
+        }
+    }
+
+    /// Adds what a contact did in the step entered last.
+    pub(crate) fn add(&mut self, contact: usize, impulse: [f64; 2], state: ContactState) {
+        let newest = self.works.len().saturating_sub(self.contacts);
+        if let Some(work) = self.works[newest..].get_mut(contact) {
+            work.enter(impulse, state);
+        }
+    }
+
+    fn halve(&mut self) {
+        let (columns, pairs) = (self.start.1.len(), self.buckets.len() / 2);
+        for i in 0..pairs {
+            let (a, b) = (self.buckets[2 * i], self.buckets[2 * i + 1]);
+            self.buckets[i] = Bucket { begin: a.begin, first: a.first, last: b.last, steps: a.steps + b.steps };
+            for k in 0..columns {
+                let (a, b) = (self.extremes[2 * i * columns + k], self.extremes[(2 * i + 1) * columns + k]);
+                self.extremes[i * columns + k] = a.join(b);
+            }
+            for k in 0..self.contacts {
+                let (a, b) = (self.works[2 * i * self.contacts + k], self.works[(2 * i + 1) * self.contacts + k]);
+                self.works[i * self.contacts + k] = a.join(b);
+            }
+        }
+        self.buckets.truncate(pairs);
+        self.extremes.truncate(pairs * columns);
+        self.works.truncate(pairs * self.contacts);
+        self.stride *= 2;
+    }
+
+    /// Times of the points of [`Curves::curve`], s.
+    pub(crate) fn times(&self) -> Vec<f64> {
+        std::iter::once(self.start.0).chain(self.buckets.iter().flat_map(|b| [b.first, b.last])).collect()
+    }
+
+    /// A quantity over time.
+    pub(crate) fn curve(&self, column: usize) -> Vec<f64> {
+        let columns = self.start.1.len();
+        let points = self.extremes.iter().skip(column).step_by(columns.max(1)).flat_map(|e| e.in_order());
+        std::iter::once(self.start.1[column]).chain(points).collect()
+    }
+
+    /// Borders of the buckets, s: one more than there are buckets.
+    pub(crate) fn borders(&self) -> Vec<f64> {
+        std::iter::once(self.start.0).chain(self.buckets.iter().map(|bucket| bucket.last)).collect()
+    }
+
+    /// A contact over time; `None` if it never carried anything.
+    pub(crate) fn forces(&self, contact: usize) -> Option<ForceCurve> {
+        let works = || self.works.iter().skip(contact).step_by(self.contacts.max(1));
+        if works().all(|work| work.impulse == [0.0; 2]) {
+            return None;
+        }
+        let mean = |k: usize| {
+            works().zip(&self.buckets).map(|(work, bucket)| work.impulse[k] / (bucket.last - bucket.begin)).collect()
+        };
+        let state = works().zip(&self.buckets).map(|(work, bucket)| {
+            let open = bucket.steps.saturating_sub(work.stick + work.slip);
+            if open >= work.stick.max(work.slip).max(1) {
+                ContactState::Open
+            } else if work.stick >= work.slip {
+                ContactState::Stick
+            } else {
+                ContactState::Slip
+            }
+        });
+        Some(ForceCurve { normal: mean(0), tangential: mean(1), state: state.collect() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run(capacity: usize, steps: u32, x: impl Fn(f64) -> f64) -> Curves {
+        let mut curves = Curves::new(capacity, 0.0, vec![x(0.0)], 1);
+        for k in 1..=steps {
+            let t = f64::from(k);
+            curves.enter(t, &[x(t)]);
+            curves.add(0, [2.0, -1.0], if k % 5 == 0 { ContactState::Slip } else { ContactState::Stick });
+        }
+        curves
+    }
+
+    #[test]
+    fn a_short_run_is_kept_exactly() {
+        let curves = run(4, 8, |t| t * t);
+        assert_eq!(curves.times(), [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0]);
+        assert_eq!(curves.curve(0), curves.times().iter().map(|t| t * t).collect::<Vec<_>>());
+        let falling = run(4, 8, |t| -t).curve(0);
+        assert!(falling.windows(2).all(|w| w[1] < w[0]), "in the order in which they came");
+    }
+
+    #[test]
+    fn no_peak_of_a_long_run_is_lost() {
+        let curves = run(10, 1_000_000, |t| if t == 123_457.0 { 7.0 } else { 0.0 });
+        assert!(curves.times().len() <= 21);
+        assert!(curves.curve(0).contains(&7.0));
+    }
+
+    #[test]
+    fn forces_are_means_and_states_majorities() {
+        for steps in [1, 8, 9, 1000] {
+            let forces = run(4, steps, |t| t).forces(0).unwrap();
+            assert!(forces.normal.iter().all(|f| (f - 2.0).abs() < 1e-12));
+            assert!(forces.tangential.iter().all(|f| (f + 1.0).abs() < 1e-12));
+            assert_eq!(forces.state[0], ContactState::Stick);
+        }
+        assert_eq!(Curves::new(4, 0.0, vec![], 2).forces(1), None);
+    }
+}

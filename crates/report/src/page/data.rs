@@ -1,0 +1,178 @@
+//! The data of the page: what its script draws.
+
+use super::recorder::{BLOCK_COLUMNS, BLOCK_FRAME, ENERGIES, PageRecorder};
+use super::scenery::{CORNERS, Scenery};
+use super::{DIGITS, TIME_DIGITS, rounded};
+use crate::Summary;
+use serde::Serialize;
+use teeter_integrator::ContactState;
+
+#[derive(Serialize)]
+struct Data<'a> {
+    dt: f64,
+    scenery: &'a Scenery,
+    frames: FrameData,
+    curves: CurveData,
+    forces: ForceData,
+    impacts: Vec<ImpactData>,
+    impact_count: u64,
+}
+
+/// The pictures: `blocks[k].x[i]` at `t[i]`; `beams[k].w` row by row in units of `beams[k].unit`.
+#[derive(Serialize)]
+struct FrameData {
+    t: Vec<f64>,
+    blocks: Vec<BlockFrames>,
+    beams: Vec<BeamFrames>,
+}
+
+#[derive(Serialize)]
+struct BlockFrames {
+    x: Vec<f64>,
+    y: Vec<f64>,
+    phi: Vec<f64>,
+}
+
+#[derive(Serialize)]
+struct BeamFrames {
+    unit: f64,
+    w: Vec<i64>,
+}
+
+#[derive(Serialize)]
+struct CurveData {
+    t: Vec<f64>,
+    blocks: Vec<BlockCurves>,
+    w_mid: Vec<Vec<f64>>,
+    energies: Vec<EnergyCurve>,
+}
+
+#[derive(Serialize)]
+struct BlockCurves {
+    phi: Vec<f64>,
+    omega: Vec<f64>,
+}
+
+#[derive(Serialize)]
+struct EnergyCurve {
+    name: &'static str,
+    values: Vec<f64>,
+}
+
+/// Means between the times `borders`.
+#[derive(Serialize)]
+struct ForceData {
+    borders: Vec<f64>,
+    points: Vec<PointForces>,
+}
+
+#[derive(Serialize)]
+struct PointForces {
+    contact: usize,
+    point: usize,
+    normal: Vec<f64>,
+    tangential: Vec<f64>,
+    /// A letter a value: `o` open, `k` stick, `l` slip.
+    state: String,
+}
+
+#[derive(Serialize)]
+struct ImpactData {
+    t: f64,
+    contact: usize,
+    block: usize,
+    point: usize,
+    impulse: [f64; 2],
+}
+
+/// A deflection is sent in this part of the span: finer than a picture shows, with few digits.
+const BEAM_UNIT: f64 = 1e-7;
+
+/// The data as JSON that is safe inside a `script` element.
+pub(crate) fn json(recorder: &PageRecorder, summary: &Summary) -> String {
+    let data = Data {
+        dt: summary.dt,
+        scenery: &recorder.scenery,
+        frames: frames(recorder),
+        curves: curves(recorder),
+        forces: forces(recorder),
+        impacts: recorder
+            .impacts
+            .iter()
+            .map(|i| ImpactData {
+                t: time(i.t),
+                contact: i.contact,
+                block: i.block,
+                point: i.point,
+                impulse: i.impulse.map(digits),
+            })
+            .collect(),
+        impact_count: recorder.impact_count,
+    };
+    // Strings, vectors and numbers (null where not finite) always serialise.
+    serde_json::to_string(&data).unwrap_or_default().replace('<', "\\u003c")
+}
+
+fn digits(x: f64) -> f64 {
+    rounded(x, DIGITS)
+}
+
+fn time(t: f64) -> f64 {
+    rounded(t, TIME_DIGITS)
+}
+
+fn frames(recorder: &PageRecorder) -> FrameData {
+    let scenery = &recorder.scenery;
+    let column = |k: usize| recorder.frames.rows().map(|(_, row)| digits(row[k])).collect();
+    let blocks = (0..scenery.blocks.len()).map(|k| BLOCK_FRAME * k);
+    let mut start = BLOCK_FRAME * scenery.blocks.len();
+    let beams = scenery.beams.iter().map(|beam| {
+        let unit = rounded(BEAM_UNIT * beam.span, DIGITS);
+        let points = start..start + beam.points;
+        start = points.end;
+        let w = |row: &[f64]| row[points.clone()].iter().map(|w| (w / unit).round() as i64).collect::<Vec<_>>();
+        BeamFrames { unit, w: recorder.frames.rows().flat_map(|(_, row)| w(row)).collect() }
+    });
+    FrameData {
+        t: recorder.frames.rows().map(|(t, _)| time(t)).collect(),
+        blocks: blocks.map(|k| BlockFrames { x: column(k), y: column(k + 1), phi: column(k + 2) }).collect(),
+        beams: beams.collect(),
+    }
+}
+
+fn curves(recorder: &PageRecorder) -> CurveData {
+    let (blocks, beams) = (recorder.scenery.blocks.len(), recorder.scenery.beams.len());
+    let column = |k: usize| recorder.curves.curve(k).into_iter().map(digits).collect::<Vec<_>>();
+    let beam = BLOCK_COLUMNS * blocks;
+    CurveData {
+        t: recorder.curves.times().into_iter().map(time).collect(),
+        blocks: (0..blocks)
+            .map(|k| BlockCurves { phi: column(BLOCK_COLUMNS * k), omega: column(BLOCK_COLUMNS * k + 1) })
+            .collect(),
+        w_mid: (beam..beam + beams).map(column).collect(),
+        energies: ENERGIES
+            .iter()
+            .enumerate()
+            .map(|(k, name)| EnergyCurve { name, values: column(beam + beams + k) })
+            .collect(),
+    }
+}
+
+fn forces(recorder: &PageRecorder) -> ForceData {
+    let points = (0..CORNERS * recorder.scenery.contacts.len()).filter_map(|k| {
+        let forces = recorder.curves.forces(k)?;
+        let state = forces.state.iter().map(|state| match state {
+            ContactState::Open => 'o',
+            ContactState::Stick => 'k',
+            ContactState::Slip => 'l',
+        });
+        Some(PointForces {
+            contact: k / CORNERS,
+            point: k % CORNERS,
+            normal: forces.normal.into_iter().map(digits).collect(),
+            tangential: forces.tangential.into_iter().map(digits).collect(),
+            state: state.collect(),
+        })
+    });
+    ForceData { borders: recorder.curves.borders().into_iter().map(time).collect(), points: points.collect() }
+}

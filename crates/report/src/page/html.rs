@@ -1,0 +1,306 @@
+//! The page itself: text and numbers as HTML here, pictures by the script from the data.
+
+use super::plot::escaped;
+use super::recorder::PageRecorder;
+use super::rocking::{HalfCycle, half_cycles};
+use super::{data, rounded};
+use crate::Summary;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+const TEMPLATE: &str = include_str!("../../assets/report.html");
+const STYLE: &str = include_str!("../../assets/report.css");
+const SCRIPTS: [&str; 4] = [
+    include_str!("../../assets/model.js"),
+    include_str!("../../assets/scene.js"),
+    include_str!("../../assets/plots.js"),
+    include_str!("../../assets/main.js"),
+];
+
+/// The page of a run, `report.html`: one file that loads nothing. `scene_toml` is the text of the scene as run.
+///
+/// The same run gives the same page: what the clock measured is in `summary.json` only.
+#[must_use]
+pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> String {
+    // A summary always serialises: its numbers are finite, or null.
+    let values = Numbers(serde_json::to_value(summary).unwrap_or_default());
+    let script = format!("(() => {{\n\"use strict\";\n{}}})();\n", SCRIPTS.concat());
+    let parts = BTreeMap::from([
+        ("title", escaped(&summary.title)),
+        ("style", STYLE.to_owned()),
+        ("script", script),
+        ("data", data::json(recorder, summary)),
+        ("subtitle", subtitle(summary)),
+        ("warnings", warnings(summary)),
+        ("tiles", tiles(&values, summary)),
+        ("residual", scientific(summary.energy.largest_residual)),
+        ("rocking", rocking(&half_cycles(recorder, summary))),
+        ("model", model(summary)),
+        ("numbers", numbers(&values)),
+        ("settings", escaped(scene_toml)),
+    ]);
+    filled(TEMPLATE, &parts)
+}
+
+/// The template with every `{{name}}` replaced; what is put in is not looked at again.
+fn filled(template: &str, parts: &BTreeMap<&str, String>) -> String {
+    let mut pieces = template.split("{{");
+    let mut page = pieces.next().unwrap_or_default().to_owned();
+    for piece in pieces {
+        let (name, rest) = piece.split_once("}}").unwrap_or((piece, ""));
+        page.push_str(parts.get(name).map_or("", String::as_str));
+        page.push_str(rest);
+    }
+    page
+}
+
+/// The values of `summary.json` by path, such as `energy.largest_residual`.
+struct Numbers(Value);
+
+/// What the clock measured, which differs from run to run.
+const CLOCKED: [&str; 2] = ["wall_seconds", "us_per_step"];
+
+impl Numbers {
+    /// The text of a value as the file has it, a word without its quotes.
+    fn text(&self, path: &str) -> String {
+        match path.split('.').try_fold(&self.0, |value, key| value.get(key)) {
+            Some(Value::String(word)) => word.clone(),
+            Some(value) => value.to_string(),
+            None => String::new(),
+        }
+    }
+
+    /// The paths of all single values that no tile shows.
+    fn others(&self) -> Vec<String> {
+        fn walk(value: &Value, path: &str, out: &mut Vec<String>) {
+            match value {
+                Value::Object(map) => {
+                    for (key, value) in map {
+                        let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+                        walk(value, &path, out);
+                    }
+                }
+                Value::Array(_) => {}
+                _ => out.push(path.to_owned()),
+            }
+        }
+        let mut paths = Vec::new();
+        walk(&self.0, "", &mut paths);
+        paths.retain(|path| {
+            !TILES.contains(&path.as_str()) && !CLOCKED.contains(&path.as_str()) && !path.starts_with("model.")
+        });
+        paths
+    }
+}
+
+/// What users want to know first.
+const TILES: [&str; 6] = [
+    "impact_count",
+    "max_penetration",
+    "energy.largest_residual",
+    "contact.unconverged_steps",
+    "contact.max_residual",
+    "contact.max_iterations",
+];
+
+fn tiles(values: &Numbers, summary: &Summary) -> String {
+    let mut html = String::new();
+    for path in TILES {
+        let (label, shown) = match path {
+            "impact_count" => ("Impacts", summary.impact_count.to_string()),
+            "max_penetration" => ("Deepest penetration", with_prefix(summary.max_penetration, "m")),
+            "energy.largest_residual" => ("Energy residual", scientific(summary.energy.largest_residual)),
+            "contact.unconverged_steps" => ("Steps not solved", summary.contact.unconverged_steps.to_string()),
+            "contact.max_residual" => ("Contact residual", scientific(summary.contact.max_residual)),
+            _ => ("Most iterations", summary.contact.max_iterations.to_string()),
+        };
+        let bad = path == "contact.unconverged_steps" && summary.contact.unconverged_steps > 0;
+        let _ = writeln!(
+            html,
+            "<div class=\"tile{}\"><dt>{label}</dt><dd data-summary=\"{path}\" data-value=\"{}\">{shown}</dd></div>",
+            if bad { " bad" } else { "" },
+            escaped(&values.text(path))
+        );
+    }
+    html
+}
+
+fn numbers(values: &Numbers) -> String {
+    let mut html = String::new();
+    for path in values.others() {
+        let text = escaped(&values.text(&path));
+        let _ = writeln!(
+            html,
+            "<tr><th scope=\"row\">{path}</th><td data-summary=\"{path}\" data-value=\"{text}\">{text}</td></tr>"
+        );
+    }
+    html
+}
+
+fn subtitle(summary: &Summary) -> String {
+    let ended = serde_json::to_value(summary.ended).unwrap_or_default();
+    let ended = ended.as_str().unwrap_or_default().to_owned();
+    let class = if ended == "complete" { "" } else { " class=\"bad\"" };
+    format!(
+        "{} · {} steps of {} · t = {} s · <span{class}>{ended}</span> · teeter {}",
+        escaped(summary.scheme),
+        summary.steps,
+        with_prefix(summary.dt, "s"),
+        rounded(summary.steps as f64 * summary.dt, 6),
+        escaped(summary.version)
+    )
+}
+
+fn warnings(summary: &Summary) -> String {
+    if summary.warnings.is_empty() {
+        return String::new();
+    }
+    let mut html = "<section id=\"warnings\" aria-labelledby=\"warnings-title\">\n\
+                    <h2 id=\"warnings-title\">Warnings</h2>\n<ul>\n"
+        .to_owned();
+    for warning in &summary.warnings {
+        let count = if warning.count > 1 { format!(" <b>({} times)</b>", warning.count) } else { String::new() };
+        let _ = writeln!(
+            html,
+            "<li data-warning=\"{}\"><span>{}</span>{count}</li>",
+            escaped(warning.code),
+            escaped(&warning.text)
+        );
+    }
+    html.push_str("</ul>\n</section>");
+    html
+}
+
+/// Rows of the table; the rest is in `summary.json`.
+const ROWS: usize = 300;
+
+fn rocking(cycles: &[HalfCycle]) -> String {
+    if cycles.is_empty() {
+        return String::new();
+    }
+    let mut html = "<section id=\"rocking\" class=\"panel\" aria-labelledby=\"rocking-title\">\n\
+        <h3 id=\"rocking-title\">Rocking, half cycle by half cycle</h3>\n<div class=\"scroll\" tabindex=\"0\" \
+        role=\"region\" aria-labelledby=\"rocking-title\"><table>\n<thead><tr>"
+        .to_owned();
+    // With one block its name would be a column of repetitions.
+    let several = cycles.iter().any(|cycle| cycle.body != cycles[0].body);
+    html.push_str(if several { "<th scope=\"col\">Block</th>" } else { "" });
+    html.push_str(
+        "<th scope=\"col\">φ = 0 at<br><small>s</small></th><th scope=\"col\">φ̇⁻<br><small>rad/s</small></th>\
+        <th scope=\"col\">φ̇⁺<br><small>rad/s</small></th><th scope=\"col\">φ̇⁺/φ̇⁻</th>\
+        <th scope=\"col\">Housner</th><th scope=\"col\">Next peak<br><small>°</small></th>\
+        <th scope=\"col\">Peak to peak</th></tr></thead>\n<tbody>\n",
+    );
+    let fixed = |x: Option<f64>, digits: usize| {
+        x.map_or("–".to_owned(), |x| format!("{x:.digits$}").replace('-', "\u{2212}"))
+    };
+    for cycle in cycles.iter().take(ROWS) {
+        let name = escaped(&cycle.body);
+        let head = if several { format!("<th scope=\"row\">{name}</th>") } else { String::new() };
+        let _ = writeln!(
+            html,
+            "<tr data-body=\"{name}\" data-t=\"{}\">{head}<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>\
+             <td>{}</td><td>{}</td></tr>",
+            cycle.t,
+            fixed(Some(cycle.t), 5),
+            fixed(cycle.omega.map(|omega| omega[0]), 4),
+            fixed(cycle.omega.map(|omega| omega[1]), 4),
+            fixed(cycle.ratio(), 4),
+            fixed(Some(cycle.housner), 4),
+            fixed(cycle.peak_after.map(f64::to_degrees), 3),
+            fixed(cycle.decay(), 4),
+        );
+    }
+    html.push_str("</tbody></table></div>\n");
+    if cycles.len() > ROWS {
+        let _ = writeln!(html, "<p>… and {} more; all are in summary.json.</p>", cycles.len() - ROWS);
+    }
+    html.push_str(
+        "<p class=\"note\">φ̇⁻ and φ̇⁺ are the angular velocities right before and right after the step in which the \
+         corner that comes down hits; a step of gravity is in them, too. Housner: 1 − (3/2) sin²α, for rigid ground without slip or bounce. A base that \
+         gives way spreads the loss over the half cycle: the ratio is then nearer to 1, and the decay from peak to peak \
+         tells what is lost.</p>\n</section>",
+    );
+    html
+}
+
+fn model(summary: &Summary) -> String {
+    let model = &summary.model;
+    let list = |words: &[String]| {
+        if words.is_empty() { "none".to_owned() } else { escaped(&words.join(", ")) }
+    };
+    let beams: Vec<String> = model
+        .beams
+        .iter()
+        .map(|beam| format!("{} ({} elements, {} dofs, {})", beam.name, beam.elements, beam.dofs, beam.backend))
+        .collect();
+    let mut html = String::new();
+    let mut row = |name: &str, text: &str| _ = writeln!(html, "<div><dt>{name}</dt><dd>{text}</dd></div>");
+    row("Blocks", &list(&model.blocks));
+    row("Beams", &list(&beams));
+    row("Ground", if model.ground { "rigid" } else { "none" });
+    row("Contacts", &format!("{}; {} points can touch", list(&model.contacts), model.possible_contacts));
+    row("Degrees of freedom", &model.dofs.to_string());
+    if !model.left_out.is_empty() {
+        row("Left out", &model.left_out.iter().map(|text| escaped(text)).collect::<Vec<_>>().join("<br>"));
+    }
+    html
+}
+
+/// A number with three digits and the prefix that suits it, such as `9.04 µm`.
+fn with_prefix(x: f64, unit: &str) -> String {
+    const PREFIXES: [(f64, &str); 6] = [(1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p")];
+    let size = rounded(x.abs(), 3);
+    if size == 0.0 {
+        return format!("0 {unit}");
+    }
+    // Beyond the prefixes' range, powers of ten.
+    match PREFIXES.iter().find(|(factor, _)| size >= *factor && size < 1000.0 * factor) {
+        Some((factor, prefix)) => format!("{} {prefix}{unit}", rounded(x / factor, 3)),
+        None => format!("{} {unit}", scientific(x)),
+    }
+}
+
+/// A number with two digits as a power of ten.
+fn scientific(x: f64) -> String {
+    if x == 0.0 || !x.is_finite() {
+        return x.to_string();
+    }
+    let text = format!("{x:.1e}");
+    match text.split_once('e') {
+        Some((digits, "0")) => digits.to_owned(),
+        Some((digits, power)) => format!("{digits} × 10<sup>{}</sup>", power.replace('-', "\u{2212}")),
+        None => text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_put_in_is_not_filled_again() {
+        let parts = BTreeMap::from([("a", "{{b}}".to_owned()), ("b", "x".to_owned())]);
+        assert_eq!(filled("<{{a}}|{{b}}>", &parts), "<{{b}}|x>");
+    }
+
+    #[test]
+    fn the_template_asks_for_nothing_unknown() {
+        for piece in TEMPLATE.split("{{").skip(1) {
+            let name = piece.split_once("}}").unwrap().0;
+            let known = ["title", "style", "script", "data", "subtitle", "warnings", "tiles", "residual", "rocking"];
+            assert!(known.contains(&name) || ["model", "numbers", "settings"].contains(&name), "{name}");
+        }
+    }
+
+    #[test]
+    fn numbers_are_shown_with_the_prefix_that_suits() {
+        assert_eq!(with_prefix(9.043e-6, "m"), "9.04 µm");
+        assert_eq!(with_prefix(1e-4, "s"), "100 µs");
+        assert_eq!(with_prefix(0.0, "m"), "0 m");
+        assert_eq!(with_prefix(1e-3, "s"), "1 ms");
+        assert_eq!(with_prefix(3e-20, "m"), "3.0 × 10<sup>\u{2212}20</sup> m");
+        assert_eq!(scientific(2.5), "2.5");
+    }
+}

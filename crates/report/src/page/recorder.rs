@@ -1,0 +1,224 @@
+//! The observer that keeps what the page shows.
+
+use super::curves::Curves;
+use super::frames::Frames;
+use super::scenery::{CORNERS, Scenery};
+use crate::impact_threshold;
+use std::ops::ControlFlow;
+use teeter_integrator::{Model, Observer, ObserverError, State, StepReport};
+use teeter_scenario::scene::Scene;
+use teeter_scenario::simulation::Layout;
+
+/// An impact as the page marks it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ImpactMark {
+    /// End of the step, s.
+    pub(crate) t: f64,
+    /// Number of the contact pair.
+    pub(crate) contact: usize,
+    /// Number of the block.
+    pub(crate) block: usize,
+    /// Number of the corner.
+    pub(crate) point: usize,
+    /// Normal and tangential impulse, N·s.
+    pub(crate) impulse: [f64; 2],
+    /// The block's angular velocity before the step and after it, rad/s.
+    pub(crate) omega: [f64; 2],
+}
+
+/// The energies and works of [`Curves`], after the blocks' and the beams' columns.
+pub(crate) const ENERGIES: [&str; 11] = [
+    "kinetic",
+    "elastic",
+    "gravity",
+    "total",
+    "contact",
+    "friction",
+    "viscous",
+    "numerical",
+    "external",
+    "projection",
+    "residual",
+];
+
+/// Columns of a block in [`Curves`]: φ and φ̇.
+pub(crate) const BLOCK_COLUMNS: usize = 2;
+
+/// Numbers of a block in [`Frames`]: x, y and φ.
+pub(crate) const BLOCK_FRAME: usize = 3;
+
+/// Most pictures of the animation.
+const FRAMES: usize = 2000;
+
+/// Most buckets of the curves, each two points.
+const BUCKETS: usize = 2000;
+
+/// Most numbers on the page for pictures, and as many again for curves: at some 10 bytes each the page stays below 5 MB
+/// with as many bodies as one likes.
+const NUMBERS: usize = 180_000;
+
+/// Impacts that the page marks; `impacts.csv` has all.
+const MARKED_IMPACTS: usize = 1000;
+
+/// Watches a run for [`render`](super::render) and [`figures`](super::figures); its memory doesn't grow with the run.
+///
+/// ```
+/// use teeter_report::PageRecorder;
+/// use teeter_scenario::simulation::Simulation;
+/// # let text = r#"
+/// # time = { end = "0.01 s", step = "1 ms" }
+/// # ground = {}
+/// # material.wood.density = "600 kg/m^3"
+/// # block.cube = { material = "wood", width = "10 cm", height = "10 cm", depth = "10 cm", position = ["0 m", "6 cm"] }
+/// # contact.floor = { between = ["cube", "ground"], friction = 0.4 }
+/// # "#;
+/// let resolved = teeter_scenario::load(text.as_bytes(), "cube.toml", "cube", &[])?;
+/// let mut simulation = Simulation::new(&resolved.scene)?;
+/// let mut page = PageRecorder::new(&resolved.scene, &simulation.layout);
+/// simulation.run(&mut [&mut page])?;
+/// assert!(teeter_report::figures(&page).iter().any(|(file, _)| file == "energy.svg"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct PageRecorder {
+    pub(crate) scenery: Scenery,
+    pub(crate) frames: Frames,
+    pub(crate) curves: Curves,
+    pub(crate) impacts: Vec<ImpactMark>,
+    pub(crate) impact_count: u64,
+    layout: Layout,
+    threshold: f64,
+    bucket_capacity: usize,
+    /// Values of the curves at the end of the step.
+    row: Vec<f64>,
+    omega_before: Vec<f64>,
+}
+
+impl PageRecorder {
+    /// A recorder for a run of `scene`.
+    #[must_use]
+    pub fn new(scene: &Scene, layout: &Layout) -> Self {
+        let scenery = Scenery::new(scene, layout);
+        let frame = BLOCK_FRAME * scenery.blocks.len() + scenery.beams.iter().map(|beam| beam.points).sum::<usize>();
+        let columns = BLOCK_COLUMNS * scenery.blocks.len() + scenery.beams.len() + ENERGIES.len();
+        let points = CORNERS * scenery.contacts.len();
+        let even = |n: usize| n - n % 2;
+        let capacity = |most: usize, width: usize| even((NUMBERS / width).clamp(10, most));
+        let bucket_capacity = capacity(BUCKETS, 2 * columns + 2 * points + 3);
+        Self {
+            frames: Frames::new(capacity(FRAMES, frame + 1), frame),
+            curves: Curves::new(bucket_capacity, 0.0, vec![0.0; columns], points),
+            impacts: Vec::new(),
+            impact_count: 0,
+            layout: layout.clone(),
+            threshold: impact_threshold(scene.gravity, scene.time.step),
+            bucket_capacity,
+            row: Vec::with_capacity(columns),
+            omega_before: Vec::new(),
+            scenery,
+        }
+    }
+
+    fn take_frame(&mut self, state: &State) {
+        self.frames.enter(state.t, |row| fill_frame(&self.layout, &self.scenery, state, row));
+    }
+
+    fn take_row(&mut self, state: &State) {
+        self.row.clear();
+        for block in &self.layout.blocks {
+            let phi = block.range.start + 2;
+            self.row.extend([state.q[phi], state.v[phi]]);
+        }
+        for (place, drawn) in self.layout.beams.iter().zip(&self.scenery.beams) {
+            self.row.push(drawn.middle.deflection(&state.q[place.range.clone()]).w);
+        }
+        let (now, initial, sum) = (&state.ledger.current, &state.ledger.initial, &state.ledger.sum);
+        let gravity = now.gravity - initial.gravity;
+        self.row.extend([
+            now.kinetic,
+            now.elastic,
+            gravity,
+            now.kinetic + now.elastic + gravity,
+            sum.contact,
+            sum.friction,
+            sum.viscous,
+            sum.numerical,
+            sum.external,
+            sum.projection,
+            sum.residual,
+        ]);
+    }
+
+    fn take_contacts(&mut self, step: &StepReport<'_, 2>) {
+        for contact in step.contacts {
+            let (pair, point) = (contact.id.pair() as usize, contact.id.point() as usize);
+            let impulse = [contact.p[0], contact.p[1]];
+            self.curves.add(CORNERS * pair + point, impulse, contact.state());
+            if contact.persisting || contact.u_before[0] >= -self.threshold {
+                continue;
+            }
+            self.impact_count += 1;
+            let Some(drawn) = self.scenery.contacts.get(pair) else { continue };
+            if self.impacts.len() < MARKED_IMPACTS {
+                let omega = [self.omega_before[drawn.block], self.row[BLOCK_COLUMNS * drawn.block + 1]];
+                self.impacts.push(ImpactMark {
+                    t: step.t_end,
+                    contact: pair,
+                    block: drawn.block,
+                    point,
+                    impulse,
+                    omega,
+                });
+            }
+        }
+    }
+
+    fn keep_omega(&mut self) {
+        let blocks = self.layout.blocks.len();
+        self.omega_before.clear();
+        self.omega_before.extend((0..blocks).map(|k| self.row[BLOCK_COLUMNS * k + 1]));
+    }
+}
+
+fn fill_frame(layout: &Layout, scenery: &Scenery, state: &State, row: &mut [f64]) {
+    let (blocks, mut beams) = row.split_at_mut(BLOCK_FRAME * layout.blocks.len());
+    for (out, block) in blocks.chunks_exact_mut(BLOCK_FRAME).zip(&layout.blocks) {
+        out.copy_from_slice(&state.q[block.range.clone()]);
+    }
+    for (place, drawn) in layout.beams.iter().zip(&scenery.beams) {
+        let (points, rest) = beams.split_at_mut(drawn.points);
+        let q = &state.q[place.range.clone()];
+        points.iter_mut().zip(&drawn.shapes).for_each(|(w, shape)| *w = shape.deflection(q).w);
+        beams = rest;
+    }
+}
+
+impl Observer<2> for PageRecorder {
+    fn start(&mut self, _model: &Model<2>, state: &State) -> Result<(), ObserverError> {
+        self.take_frame(state);
+        self.take_row(state);
+        self.keep_omega();
+        self.curves =
+            Curves::new(self.bucket_capacity, state.t, self.row.clone(), CORNERS * self.scenery.contacts.len());
+        Ok(())
+    }
+
+    fn observe(
+        &mut self,
+        _model: &Model<2>,
+        step: &StepReport<'_, 2>,
+        state: &State,
+    ) -> Result<ControlFlow<()>, ObserverError> {
+        self.take_frame(state);
+        self.take_row(state);
+        self.curves.enter(state.t, &self.row);
+        self.take_contacts(step);
+        self.keep_omega();
+        Ok(ControlFlow::Continue(()))
+    }
+
+    fn finish(&mut self, _model: &Model<2>, state: &State) -> Result<(), ObserverError> {
+        self.frames.end(state.t, |row| fill_frame(&self.layout, &self.scenery, state, row));
+        Ok(())
+    }
+}

@@ -1,0 +1,75 @@
+//! The numbers of rocking: what each passage through the upright position leaves of a block's swing.
+
+use super::PageRecorder;
+use crate::Summary;
+
+/// A passage of a block through φ = 0, between two peaks of its swing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HalfCycle {
+    /// The block.
+    pub body: String,
+    /// When φ is 0, s.
+    pub t: f64,
+    /// φ̇ right before and right after the impact of the corner that comes down, rad/s; none where no impact is near the
+    /// passage, or there were too many impacts to keep them all.
+    ///
+    /// The two are those at the ends of the step of that impact, wherever the crossing is: a step of gravity is all that
+    /// is between them but for the impact. A beam that gives way spreads the block's loss over the half cycle, so the
+    /// ratio of the two is then near 1, and the peaks tell what is lost.
+    pub omega: Option<[f64; 2]>,
+    /// Housner's ratio for this block on rigid ground, 1 − (3/2) sin²α.
+    pub housner: f64,
+    /// The peak before, rad.
+    pub peak_before: Option<f64>,
+    /// The peak after, rad; none where the run ends before it is complete.
+    pub peak_after: Option<f64>,
+}
+
+impl HalfCycle {
+    /// φ̇ after the impact in parts of φ̇ before.
+    #[must_use]
+    pub fn ratio(&self) -> Option<f64> {
+        self.omega.filter(|omega| omega[0] != 0.0).map(|omega| omega[1] / omega[0])
+    }
+
+    /// The peak after in parts of the peak before.
+    #[must_use]
+    pub fn decay(&self) -> Option<f64> {
+        Some((self.peak_after? / self.peak_before?).abs())
+    }
+}
+
+/// An impact belongs to a passage if it is no further from it than this part of the swing from the peak to the passage.
+const NEAR: f64 = 0.25;
+
+/// Corners that a block stands on while it rocks, to the left (φ > 0) and to the right.
+const LEFT: usize = 0;
+const RIGHT: usize = 1;
+
+/// The half cycles of a run, block by block.
+#[must_use]
+pub fn half_cycles(recorder: &PageRecorder, summary: &Summary) -> Vec<HalfCycle> {
+    let mut cycles = Vec::new();
+    for (number, block) in recorder.scenery.blocks.iter().enumerate() {
+        let mut peaks = summary.peaks.iter().filter(|peak| peak.body == block.name).peekable();
+        for crossing in summary.crossings.iter().filter(|crossing| crossing.body == block.name) {
+            let before = peaks.next();
+            let omega = before.and_then(|peak| {
+                let landing = if peak.phi > 0.0 { RIGHT } else { LEFT };
+                let distance = |t: f64| (t - crossing.t).abs();
+                let impacts = recorder.impacts.iter().filter(|i| i.block == number && i.point == landing);
+                let nearest = impacts.min_by(|a, b| distance(a.t).total_cmp(&distance(b.t)))?;
+                (distance(nearest.t) <= NEAR * (crossing.t - peak.t)).then_some(nearest.omega)
+            });
+            cycles.push(HalfCycle {
+                body: block.name.clone(),
+                t: crossing.t,
+                omega,
+                housner: 1.0 - 1.5 * block.alpha.sin().powi(2),
+                peak_before: before.map(|peak| peak.phi),
+                peak_after: peaks.peek().map(|peak| peak.phi),
+            });
+        }
+    }
+    cycles
+}

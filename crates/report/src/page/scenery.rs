@@ -1,0 +1,125 @@
+//! What stands in the picture: sizes and places that don't change.
+
+use serde::Serialize;
+use teeter_beam::{ShapeAt, Support};
+use teeter_rigid::Rectangle;
+use teeter_scenario::scene::{self, Scene};
+use teeter_scenario::simulation::Layout;
+
+/// A block as drawn.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct BlockDrawn {
+    pub(crate) name: String,
+    pub(crate) width: f64,
+    pub(crate) height: f64,
+    /// Critical angle, rad.
+    pub(crate) alpha: f64,
+}
+
+/// A beam as drawn.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct BeamDrawn {
+    pub(crate) name: String,
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    pub(crate) span: f64,
+    pub(crate) thickness: f64,
+    /// Whether contact is with its top fibre.
+    pub(crate) top: bool,
+    pub(crate) supports: [&'static str; 2],
+    /// Points along the span, evenly spread.
+    pub(crate) points: usize,
+    #[serde(skip)]
+    pub(crate) shapes: Vec<ShapeAt>,
+    #[serde(skip)]
+    pub(crate) middle: ShapeAt,
+}
+
+/// A contact pair as drawn.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct ContactDrawn {
+    pub(crate) name: String,
+    pub(crate) block: usize,
+    /// The name of what the block touches.
+    pub(crate) surface: String,
+    /// The beam's number; none for ground.
+    pub(crate) beam: Option<usize>,
+    /// Whether the normal stays upright.
+    pub(crate) linear: bool,
+}
+
+/// All of it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct Scenery {
+    pub(crate) ground: bool,
+    pub(crate) blocks: Vec<BlockDrawn>,
+    pub(crate) beams: Vec<BeamDrawn>,
+    pub(crate) contacts: Vec<ContactDrawn>,
+    pub(crate) corners: [&'static str; 4],
+}
+
+/// Contact points of a pair.
+pub(crate) const CORNERS: usize = Rectangle::CORNER_NAMES.len();
+
+/// Pieces of a beam's line: enough that the eye sees a curve.
+const PIECES: usize = 40;
+
+/// Most pieces of a beam's line.
+const MOST_PIECES: usize = 80;
+
+impl Scenery {
+    pub(crate) fn new(scene: &Scene, layout: &Layout) -> Self {
+        let blocks = scene.blocks.iter().map(|block| BlockDrawn {
+            name: block.name.clone(),
+            width: block.width,
+            height: block.height,
+            alpha: block.critical_angle(),
+        });
+        let beams = scene.beams.iter().zip(&layout.beams).map(|(drawn, place)| {
+            let (elements, span) = (drawn.spec.elements.max(1), drawn.spec.span);
+            // A multiple of the elements, so that every node is a point, where that is not too many.
+            let pieces = (elements * PIECES.div_ceil(elements)).min(MOST_PIECES);
+            let at = |k: usize| place.beam.shape_clamped(span * (k as f64 / pieces as f64));
+            BeamDrawn {
+                name: drawn.name.clone(),
+                x: drawn.position[0],
+                y: drawn.position[1],
+                span,
+                thickness: drawn.thickness,
+                top: drawn.top,
+                supports: drawn.spec.supports.map(support_word),
+                points: pieces + 1,
+                shapes: (0..=pieces).map(at).collect(),
+                middle: place.beam.shape_clamped(0.5 * span),
+            }
+        });
+        let contacts = scene.contacts.iter().map(|contact| ContactDrawn {
+            name: contact.name.clone(),
+            block: contact.block,
+            surface: match contact.surface {
+                scene::Support::Beam(k) => scene.beams[k].name.clone(),
+                scene::Support::Ground => "ground".to_owned(),
+            },
+            beam: match contact.surface {
+                scene::Support::Beam(k) => Some(k),
+                scene::Support::Ground => None,
+            },
+            linear: contact.kinematics == teeter_detect::Kinematics::Linear,
+        });
+        Self {
+            ground: scene.ground,
+            blocks: blocks.collect(),
+            beams: beams.collect(),
+            contacts: contacts.collect(),
+            corners: Rectangle::CORNER_NAMES,
+        }
+    }
+}
+
+fn support_word(support: Support) -> &'static str {
+    match support {
+        Support::Pinned => "pinned",
+        Support::Clamped => "clamped",
+        _ => "free",
+    }
+}

@@ -1,0 +1,250 @@
+//! The page and the figures of real runs: what they hold, what they must not hold, how large they are.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::sync::LazyLock;
+use teeter_integrator::Observer;
+use teeter_report::{EndedWord, PageRecorder, Recorder, Results, Summary, figures, half_cycles, render};
+use teeter_scenario::simulation::Simulation;
+
+struct Run {
+    page: PageRecorder,
+    summary: Summary,
+    html: String,
+    folder: std::path::PathBuf,
+}
+
+/// Runs a scene, and leaves its page and figures where they can be looked at.
+fn run(name: &str, text: &str) -> Run {
+    let resolved = teeter_scenario::load(text.as_bytes(), name, name, &[]).unwrap();
+    let mut simulation = Simulation::new(&resolved.scene).unwrap();
+    let layout = simulation.layout.clone();
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("page").join(name);
+    let results = Results::create(&folder, true).unwrap();
+    let mut tell = |_: &str| {};
+    let mut recorder = Recorder::new(&results, &resolved.scene, &layout, &mut tell).unwrap();
+    recorder.note(&resolved.warnings);
+    let mut page = PageRecorder::new(&resolved.scene, &layout);
+    let mut observers: [&mut dyn Observer<2>; 2] = [&mut recorder, &mut page];
+    let ended = simulation.run(&mut observers).unwrap();
+    let record = recorder.into_record();
+    let summary = Summary::new(&resolved.scene, &layout, &simulation.state, &record, EndedWord::from(&ended), 0.25);
+    let html = render(&page, &summary, &resolved.document.to_toml());
+    fs::write(folder.join("report.html"), &html).unwrap();
+    for (file, svg) in figures(&page) {
+        fs::write(folder.join(file), svg).unwrap();
+    }
+    Run { page, summary, html, folder }
+}
+
+/// Each scenario runs once, for all tests: they read the same folder.
+static RUNS: LazyLock<BTreeMap<&str, Run>> = LazyLock::new(|| {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
+    let text = |name| fs::read_to_string(folder.join(format!("{name}.toml"))).unwrap();
+    SCENARIOS.into_iter().map(|name| (name, run(name, &text(name)))).collect()
+});
+
+fn scenario(name: &str) -> &'static Run {
+    &RUNS[name]
+}
+
+const SCENARIOS: [&str; 5] =
+    ["free-rocking-on-beam", "free-rocking-on-beam-undeformed-start", "free-rocking-on-ground", "drop", "sliding"];
+
+fn data(html: &str) -> Value {
+    let start = html.find("id=\"data\">").unwrap() + "id=\"data\">".len();
+    let text = &html[start..start + html[start..].find("</script>").unwrap()];
+    serde_json::from_str(text).unwrap()
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+}
+
+/// The value of `[data-summary="path"]`.
+fn shown<'a>(html: &'a str, path: &str) -> &'a str {
+    let mark = format!("data-summary=\"{path}\" data-value=\"");
+    let start = html.find(&mark).unwrap_or_else(|| panic!("{path}")) + mark.len();
+    html[start..].split('"').next().unwrap()
+}
+
+/// Tags that open and close in order, attributes in quotes: all that XML asks of files like ours.
+fn assert_well_formed(name: &str, svg: &str) {
+    let mut open: Vec<&str> = Vec::new();
+    for piece in svg.split('<').skip(1) {
+        let (tag, text) = piece.split_once('>').unwrap_or_else(|| panic!("{name}: no end of <{piece}"));
+        assert!(!text.contains('>'), "{name}: {text}");
+        assert!(text.split('&').skip(1).all(|rest| rest.contains(';')), "{name}: {text}");
+        assert!(tag.matches('"').count() % 2 == 0, "{name}: {tag}");
+        if let Some(end) = tag.strip_prefix('/') {
+            assert_eq!(open.pop(), Some(end), "{name}");
+        } else if !tag.ends_with('/') {
+            open.push(tag.split([' ', '\n']).next().unwrap());
+        }
+    }
+    assert!(open.is_empty(), "{name}: {open:?}");
+    assert!(!svg.contains("NaN") && !svg.contains("inf"), "{name}");
+}
+
+#[test]
+fn pages_are_small_and_load_nothing() {
+    for name in SCENARIOS {
+        let html = &scenario(name).html;
+        assert!(html.len() < 2_000_000, "{name}: {} bytes", html.len());
+        for load in ["src=", "href=", "@import", "fetch(", "XMLHttpRequest", "import("] {
+            assert!(!html.contains(load), "{name}: {load}");
+        }
+        assert_eq!(html.matches("url(").count(), html.matches("url(#").count(), "{name}: only its own marks and clips");
+        let outside = html.matches("http").count();
+        let namespaces = html.matches("http://www.w3.org/2000/svg").count() + html.matches("http-equiv").count();
+        // The scene's own comments are not in `scene.toml`, so no address of a user's is either.
+        assert_eq!(outside, namespaces, "{name}");
+    }
+}
+
+#[test]
+fn the_page_shows_the_numbers_of_the_summary() {
+    for name in SCENARIOS {
+        let run = scenario(name);
+        let json = run.summary.to_json().unwrap();
+        for path in [
+            "impact_count",
+            "max_penetration",
+            "energy.largest_residual",
+            "energy.final",
+            "energy.positive_contact_work.sum",
+            "contact.unconverged_steps",
+            "contact.max_iterations",
+            "steps",
+            "dt",
+        ] {
+            let line = format!("\"{}\": {}", path.rsplit('.').next().unwrap(), shown(&run.html, path));
+            assert!(json.lines().any(|l| l.trim().trim_end_matches(',') == line), "{name}: {line}");
+        }
+        assert_eq!(shown(&run.html, "ended"), "complete");
+        for clocked in ["wall_seconds", "us_per_step"] {
+            assert!(!run.html.contains(clocked), "the same run must give the same page");
+        }
+    }
+}
+
+#[test]
+fn the_picture_is_where_the_trajectory_is() {
+    let run = scenario("free-rocking-on-beam");
+    let frames = &data(&run.html)["frames"];
+    let (t, block) = (numbers(&frames["t"]), &frames["blocks"][0]);
+    let (x, y, phi) = (numbers(&block["x"]), numbers(&block["y"]), numbers(&block["phi"]));
+    assert_eq!((t[0], *t.last().unwrap()), (0.0, 0.5));
+    let mut compared = 0;
+    for line in fs::read_to_string(run.folder.join("trajectory.csv")).unwrap().lines().skip(1) {
+        let row: Vec<f64> = line.split(',').map(|x| x.parse().unwrap()).collect();
+        let Some(i) = t.iter().position(|t| (t - row[0]).abs() < 1e-9) else { continue };
+        for (shown, written) in [x[i], y[i], phi[i]].into_iter().zip(&row[1..4]) {
+            assert!((shown - written).abs() <= 1e-6 * written.abs(), "{shown} {written} at {}", t[i]);
+        }
+        compared += 1;
+    }
+    assert!(compared > 100, "{compared}");
+}
+
+#[test]
+fn the_curves_miss_no_peak_and_the_forces_no_impulse() {
+    let run = scenario("free-rocking-on-ground");
+    let data = data(&run.html);
+    let phi = numbers(&data["curves"]["blocks"][0]["phi"]);
+    for peak in &run.summary.peaks {
+        assert!(phi.iter().any(|phi| (phi - peak.phi).abs() <= 1e-6 * peak.phi.abs()), "{peak:?}");
+    }
+    assert_eq!(data["impacts"].as_array().unwrap().len(), run.summary.impacts.len());
+    // Gravity takes m g t from the momentum, the contacts give it back: at t = 1 s the block is nearly at rest again.
+    let borders = numbers(&data["forces"]["borders"]);
+    let impulse: f64 = data["forces"]["points"].as_array().unwrap().iter().fold(0.0, |sum, point| {
+        let forces = numbers(&point["normal"]);
+        sum + forces.iter().zip(borders.windows(2)).map(|(f, ends)| f * (ends[1] - ends[0])).sum::<f64>()
+    });
+    let weight = 2700.0 * 0.03 * 0.135 * 0.03 * 9.81;
+    assert!((impulse / weight - 1.0).abs() < 0.02, "{impulse} N s against {weight} N for 1 s");
+}
+
+#[test]
+fn on_rigid_ground_the_table_has_housners_ratio() {
+    let run = scenario("free-rocking-on-ground");
+    let cycles = half_cycles(&run.page, &run.summary);
+    assert_eq!(cycles.len(), run.summary.crossings.len());
+    for cycle in &cycles {
+        let ratio = cycle.ratio().unwrap();
+        // The step of the impact holds a step of gravity, too: p² α dt = 23 rad/s² · 1e-4 s of 1.2 to 1.8 rad/s.
+        assert!((ratio - cycle.housner).abs() < 2e-3, "{ratio} against {} at {}", cycle.housner, cycle.t);
+    }
+    assert!(cycles[0].decay().unwrap() < 1.0);
+    assert!(cycles.last().unwrap().decay().is_none(), "the last swing is not complete");
+}
+
+#[test]
+fn figures_are_those_of_the_scene_and_well_formed() {
+    for name in SCENARIOS {
+        let run = scenario(name);
+        let figures = figures(&run.page);
+        let names: Vec<&str> = figures.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names.contains(&"w_mid.svg"), name.contains("beam"), "{name}");
+        for expected in ["phi.svg", "omega.svg", "phase.svg", "contact_forces.svg", "energy.svg"] {
+            assert!(names.contains(&expected), "{name}: {expected}");
+        }
+        for (file, svg) in &figures {
+            assert_well_formed(&format!("{name}/{file}"), svg);
+            assert!(svg.len() < 1_000_000, "{name}/{file}: {} bytes", svg.len());
+        }
+    }
+}
+
+const WOOD: &str =
+    "[time]\nend = \"END\"\nstep = \"1 ms\"\n[material.wood]\ndensity = \"600 kg/m^3\"\nyoungs_modulus = \"10 GPa\"\n";
+
+fn wood(end: &str, rest: &str) -> String {
+    WOOD.replace("END", end) + rest
+}
+
+#[test]
+fn scenes_without_contact_or_with_hostile_names_have_a_page() {
+    let falling = "[block.stone]\nmaterial = \"wood\"\nwidth = \"1 m\"\nheight = \"1 m\"\ndepth = \"1 m\"\n\
+        position = [\"0 m\", \"9 m\"]\nspin = \"2 rad/s\"\n";
+    let title = "title = \"</script><script>alert(1)</script> {{data}} & \\\"co\\\"\"\n";
+    let run = run("no-contact", &format!("{title}{}", wood("1 s", falling)));
+    assert!(!run.html.contains("<script>alert"));
+    assert!(data(&run.html)["forces"]["points"].as_array().unwrap().is_empty());
+    let figures = figures(&run.page);
+    assert!(figures.iter().all(|(file, _)| file != "contact_forces.svg" && file != "w_mid.svg"));
+    figures.iter().for_each(|(file, svg)| assert_well_formed(file, svg));
+}
+
+#[test]
+fn scenes_with_many_blocks_and_long_runs_stay_small() {
+    let mut scene = wood("30 s", "[ground]\n");
+    scene.push_str("[beam.plank]\nmaterial = \"wood\"\nspan = \"2 m\"\nwidth = \"10 cm\"\nthickness = \"2 cm\"\n");
+    scene.push_str("elements = 8\nsupports = [\"clamped\", \"free\"]\nposition = [\"5 m\", \"1 m\"]\n");
+    for k in 0..12 {
+        let (x, y) = (0.4 * f64::from(k), 0.3 + 0.1 * f64::from(k));
+        scene.push_str(&format!(
+            "[block.b{k}]\nmaterial = \"wood\"\nwidth = \"10 cm\"\nheight = \"20 cm\"\ndepth = \"10 cm\"\n\
+             position = [\"{x} m\", \"{y} m\"]\nangle = \"{k} deg\"\n\
+             [contact.c{k}]\nbetween = [\"b{k}\", \"ground\"]\nfriction = 0.4\nrestitution = 0.5\n"
+        ));
+    }
+    let run = run("many-blocks", &scene);
+    assert!(run.html.len() < 5_000_000, "{} bytes", run.html.len());
+    assert_eq!(data(&run.html)["scenery"]["beams"][0]["supports"][0], "clamped");
+    figures(&run.page).iter().for_each(|(file, svg)| assert_well_formed(file, svg));
+}
+
+#[test]
+fn a_scene_without_blocks_has_a_page() {
+    let beam =
+        "[beam.plank]\nmaterial = \"wood\"\nspan = \"2 m\"\nwidth = \"10 cm\"\nthickness = \"2 cm\"\nelements = 3\n";
+    let run = run("no-blocks", &wood("20 ms", beam));
+    assert!(data(&run.html)["scenery"]["blocks"].as_array().unwrap().is_empty());
+    let names: Vec<String> = figures(&run.page).into_iter().map(|(file, _)| file).collect();
+    assert_eq!(names, ["w_mid.svg", "energy.svg"]);
+}

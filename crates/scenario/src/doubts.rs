@@ -1,0 +1,184 @@
+//! What looks wrong in a scene that can be run: blocks that fall over by themselves, beams that sag out of the small-deflection
+//! theory, steps too coarse for the motion.
+
+use crate::diagnostic::Diagnostic;
+use crate::document::Document;
+use crate::placement::weight_of;
+use crate::scene::{BeamScene, BlockScene, Placement, Scene, Support};
+use crate::wording;
+use std::f64::consts::TAU;
+use teeter_beam::Beam;
+
+/// What was found.
+#[derive(Debug, Default)]
+pub(crate) struct Doubts {
+    pub(crate) warnings: Vec<Diagnostic>,
+    pub(crate) notes: Vec<Diagnostic>,
+}
+
+/// A tilt from this part of the critical angle on is a warning.
+const NEAR_CRITICAL: f64 = 0.9;
+
+/// A sag over this part of the span is a warning: slopes reach 3 × 1/50, and what linear theory neglects, their square, 0.4 %.
+const DEEP_SAG: f64 = 1.0 / 50.0;
+
+/// A sag over this part of the span is worth a note: structures are built for less.
+const NOTABLE_SAG: f64 = 1.0 / 250.0;
+
+/// Steps that the shortest motion of contact should get.
+const STEPS_A_MOTION: f64 = 10.0;
+
+pub(crate) fn of(scene: &Scene, document: &Document) -> Doubts {
+    let mut doubts = Doubts::default();
+    let mut touching = vec![false; scene.blocks.len()];
+    scene.contacts.iter().for_each(|contact| touching[contact.block] = true);
+    for (block, touches) in scene.blocks.iter().zip(touching) {
+        doubts.warnings.extend(tilt(block, touches, document));
+    }
+    for (number, beam) in scene.beams.iter().enumerate() {
+        match sag(scene, number) {
+            Some(sag) if sag > DEEP_SAG * beam.spec.span => {
+                let rule = format!("{}: beyond 1/50 small-deflection theory is not to be trusted", sagging(beam, sag));
+                let found = document.error(
+                    &format!("beam.{}.thickness", beam.name),
+                    rule,
+                    "take a thicker or shorter beam, or lighter blocks",
+                );
+                doubts.warnings.push(found.as_warning());
+            }
+            Some(sag) if sag > NOTABLE_SAG * beam.spec.span => {
+                let rule = format!("{}; up to 1/50 linear theory holds well", sagging(beam, sag));
+                let found =
+                    document.error(&format!("beam.{}.thickness", beam.name), rule, "nothing to mend: a soft beam");
+                doubts.notes.push(found.as_note());
+            }
+            _ => {}
+        }
+    }
+    doubts.warnings.extend(step(scene, document));
+    doubts
+}
+
+fn sagging(beam: &BeamScene, sag: f64) -> String {
+    format!("the beam sags by {sag:.2e} m under the blocks' weight, {}", wording::part_of(sag, beam.spec.span))
+}
+
+/// A block tilted so far that it may not come back.
+fn tilt(block: &BlockScene, touches: bool, document: &Document) -> Option<Diagnostic> {
+    let alpha = block.critical_angle();
+    let (key, angle) = match block.placement {
+        Placement::On { tilt, .. } => ("tilt", tilt),
+        // In the air any angle is fine.
+        Placement::Free { angle, .. } if touches && angle.abs() >= alpha => ("angle", angle),
+        Placement::Free { .. } => return None,
+    };
+    let critical = format!("the critical angle atan(width/height) = {:.2} deg of this block", alpha.to_degrees());
+    let rule = if angle.abs() >= alpha {
+        format!("at or beyond {critical}: standing still it overturns")
+    } else if angle.abs() >= NEAR_CRITICAL * alpha {
+        format!("within 10 % of {critical}: a little more and it overturns")
+    } else {
+        return None;
+    };
+    let found = document.error(&format!("block.{}.{key}", block.name), rule, "check the angle and its unit");
+    Some(found.as_warning())
+}
+
+/// The largest static deflection (m) of a beam under the weight of the blocks that stand on it; `None` where nothing stands on
+/// it, or where it has no equilibrium.
+pub(crate) fn sag(scene: &Scene, number: usize) -> Option<f64> {
+    let beam = &scene.beams[number];
+    let mut standing =
+        scene.blocks.iter().filter_map(|block| weight_of(block, Support::Beam(number), scene.gravity)).peekable();
+    standing.peek()?;
+    let model = Beam::new(beam.spec).ok()?;
+    let mut q = vec![0.0; model.dofs()];
+    for feet in standing {
+        for (x, force) in feet {
+            model.add_point_load(x - beam.position[0], -force, &mut q).ok()?;
+        }
+    }
+    model.solve_static(&mut q).ok()?;
+    let nodes = (0..=beam.spec.elements).map(|k| k as f64 / beam.spec.elements as f64 * beam.spec.span);
+    let deflections = nodes.map(|x| model.shape_clamped(x).deflection(&q).w.abs());
+    Some(deflections.fold(0.0, f64::max))
+}
+
+/// A step too coarse for the motion of a contact. The time scales are those of the model itself: a block on its corner moves
+/// as exp(±pt), p = √(3g/4R) (Housner 1963), whatever its angle; a beam under it swings with its first period.
+fn step(scene: &Scene, document: &Document) -> Option<Diagnostic> {
+    let gravity = scene.gravity[0].hypot(scene.gravity[1]);
+    let mut shortest: Option<(f64, String)> = None;
+    let mut enter = |time: f64, what: String| {
+        if time.is_finite() && time > 0.0 && shortest.as_ref().is_none_or(|(least, _)| time < *least) {
+            shortest = Some((time, what));
+        }
+    };
+    for contact in &scene.contacts {
+        let block = &scene.blocks[contact.block];
+        let radius = 0.5 * block.width.hypot(block.height);
+        enter((4.0 * radius / (3.0 * gravity)).sqrt(), format!("the rocking time sqrt(4R/3g) of `{}`", block.name));
+        if let Support::Beam(number) = contact.surface {
+            let beam = &scene.beams[number];
+            let period = beam.spec.circular_frequency(1).map_or(f64::NAN, |omega| TAU / omega);
+            enter(period, format!("the first period of `{}`", beam.name));
+        }
+    }
+    let (time, what) = shortest?;
+    if scene.time.step <= time / STEPS_A_MOTION {
+        return None;
+    }
+    let rule = format!("coarser than a tenth of {what}, {time:.3e} s: the motion in contact is not resolved");
+    let remedy = format!("take a step of at most {:.1e} s", time / STEPS_A_MOTION);
+    Some(document.error("time.step", rule, remedy).as_warning())
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::resolve::Resolved;
+
+    const SCENE: &str = "[time]\nend = '1 s'\nstep = '1 ms'\n[ground]\n\
+        [material.m]\ndensity = '2700 kg/m^3'\nyoungs_modulus = '69 GPa'\n\
+        [beam.b]\nmaterial = 'm'\nspan = '1 m'\nwidth = '3 cm'\nthickness = '5 mm'\nelements = 20\n\
+        [block.k]\nmaterial = 'm'\nwidth = '10 cm'\nheight = '20 cm'\ndepth = '10 cm'\non = 'b'\nat = '50 cm'\n\
+        [contact.c]\nbetween = ['k', 'b']\nfriction = 0.5\n";
+
+    fn resolved(sets: &[(&str, &str)]) -> Resolved {
+        let sets: Vec<_> = sets.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
+        crate::load(SCENE.as_bytes(), "f", "f", &sets).unwrap()
+    }
+
+    #[test]
+    fn the_sag_is_that_of_two_point_loads() {
+        // P = m g / 2 at a = 0.45 m from either end: w = P a (3 L² − 4 a²) / (24 E I) at midspan.
+        let scene = resolved(&[]).scene;
+        let (p, a, ei) = (0.5 * 5.4 * 9.81, 0.45, 69e9 * 0.03 * 0.005_f64.powi(3) / 12.0);
+        let exact = p * a * (3.0 - 4.0 * a * a) / (24.0 * ei);
+        let found = super::sag(&scene, 0).unwrap();
+        assert!((found / exact - 1.0).abs() < 1e-12, "{found} {exact}");
+        assert_eq!(super::sag(&resolved(&[("beam.b.supports", "['free', 'free']")]).scene, 0), None);
+    }
+
+    #[test]
+    fn sags_are_warned_of_noted_or_passed_over_by_their_part_of_the_span() {
+        let count = |thickness| {
+            let found = resolved(&[("beam.b.thickness", thickness)]);
+            (found.warnings.len(), found.notes.len())
+        };
+        assert_eq!(count("4 mm"), (1, 0), "1/14");
+        assert_eq!(count("7 mm"), (0, 1), "1/77");
+        assert_eq!(count("2 cm"), (0, 0), "1/1800");
+    }
+
+    #[test]
+    fn a_block_in_the_air_may_have_any_angle() {
+        let free = |contact: &str| {
+            let text = SCENE
+                .replace("on = 'b'\nat = '50 cm'", "position = ['0.5 m', '2 m']\nangle = '80 deg'")
+                .replace("[contact.c]\nbetween = ['k', 'b']\nfriction = 0.5\n", contact);
+            crate::load(text.as_bytes(), "f", "f", &[]).unwrap().warnings.len()
+        };
+        assert_eq!(free(""), 0);
+        assert_eq!(free("[contact.c]\nbetween = ['k', 'b']\nfriction = 0.5\n"), 1);
+    }
+}

@@ -1,0 +1,117 @@
+//! What building a model refuses, told as a finding about the scene: which key, what it says, what would be right.
+
+use crate::diagnostic::Diagnostic;
+use crate::document::Document;
+use crate::placement::PlacementError;
+use crate::simulation::BuildError;
+use teeter_beam::{BeamError, StaticError};
+use teeter_integrator::ModelError;
+
+impl BuildError {
+    /// The refusal as an error about the scene it came from, at the key that is to blame.
+    ///
+    /// ```
+    /// use teeter_scenario::simulation::Simulation;
+    ///
+    /// let text = "[time]\nend = '1 s'\nstep = '1 ms'\n[ground]\n[material.oak]\ndensity = '700 kg/m^3'\n\
+    ///     [block.cube]\nmaterial = 'oak'\nwidth = '1 m'\nheight = '1 m'\ndepth = '1 m'\nposition = ['0 m', '40 cm']\n\
+    ///     [contact.floor]\nbetween = ['cube', 'ground']\nfriction = 0.5\n";
+    /// let resolved = teeter_scenario::load(text.as_bytes(), "cube.toml", "cube", &[])?;
+    /// let error = Simulation::new(&resolved.scene).unwrap_err();
+    /// let told = error.diagnostic(&resolved.document);
+    /// assert_eq!((told.path.as_str(), told.position), ("block.cube.position", Some((12, 12))));
+    /// assert!(told.rule.contains("1.0e-1 m below the surface of `ground`"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn diagnostic(&self, document: &Document) -> Diagnostic {
+        match self {
+            Self::Block(name, error) => document.error(
+                &format!("block.{name}"),
+                error.to_string(),
+                "check its width, height and depth, and the density of its material",
+            ),
+            Self::Beam(name, error) => beam(name, error, document),
+            Self::Placement(error) => placement(error, document),
+            Self::Model(error) => law(error, document),
+            Self::State(error) => document.error(
+                "",
+                format!("the start can't be computed: {error}"),
+                "check sizes, places and velocities for numbers that are out of proportion",
+            ),
+            Self::Scheme(error) => document.error("time", error.to_string(), "check theta, activation_gamma and gap_tolerance"),
+            Self::Solver(_) => document.error("solver.method", self.to_string(), "name one of the solvers built in"),
+            Self::Penetration { block, corner, surface, depth, tolerance } => {
+                let rule = format!(
+                    "the corner {corner} starts {depth:.1e} m below the surface of `{surface}`; up to {tolerance:.1e} m is \
+                     taken for rounding"
+                );
+                let remedy = if document.has(&format!("block.{block}.position")) {
+                    "move the block up, or give on, at and tilt in place of position: it then stands on the surface"
+                } else {
+                    "move one of the two, so that the corner is clear of the surface"
+                };
+                document.error(&place_of(block, document), rule, remedy)
+            }
+            Self::Overlap { first, second, depth } => document.error(
+                &place_of(second, document),
+                format!("`{second}` overlaps `{first}` by {depth:.1e} m at the start; contact between blocks is not modelled"),
+                "move one of the two",
+            ),
+        }
+    }
+}
+
+/// The key that says where a block is.
+fn place_of(block: &str, document: &Document) -> String {
+    let key = if document.has(&format!("block.{block}.position")) { "position" } else { "at" };
+    format!("block.{block}.{key}")
+}
+
+fn beam(name: &str, error: &BeamError, document: &Document) -> Diagnostic {
+    let path = |key: &str| format!("beam.{name}.{key}");
+    match error {
+        BeamError::Value { field: "span", rule, .. } => document.error(
+            &path("span"),
+            format!("must be {rule}"),
+            "check span, thickness and elements: they are out of proportion",
+        ),
+        BeamError::Count { field: "elements", rule, .. } => {
+            document.error(&path("elements"), format!("must be {rule}"), "20 to 100 elements fit most beams")
+        }
+        _ => document.error(&format!("beam.{name}"), error.to_string(), "check the keys of this beam and its material"),
+    }
+}
+
+fn placement(error: &PlacementError, document: &Document) -> Diagnostic {
+    let start = |beam: &str, rule: String, remedy: &str| document.error(&format!("beam.{beam}.start"), rule, remedy);
+    match error {
+        PlacementError::Static { beam, source: source @ StaticError::RigidMotion { .. } } => {
+            start(beam, format!("no static equilibrium: {source}"), "change supports, or start undeformed")
+        }
+        PlacementError::Static { beam, source } => start(
+            beam,
+            format!("no static equilibrium: {source}"),
+            "take fewer elements or a stiffer beam, or start undeformed",
+        ),
+        PlacementError::Unsettled { beam, rounds, moved } => start(
+            beam,
+            format!("no static equilibrium found in {rounds} rounds (it still moved by {moved:.1e} m)"),
+            "take a stiffer beam or lighter blocks, or start undeformed",
+        ),
+        PlacementError::OffSurface { block, corner, x } => document.error(
+            &format!("block.{block}.at"),
+            format!("the corner {corner} at x = {x} m is not over what the block stands on"),
+            "move the block, such that the corners it stands on are over the surface",
+        ),
+    }
+}
+
+fn law(error: &ModelError, document: &Document) -> Diagnostic {
+    let ModelError::Law { pair, .. } = error else {
+        return document.error("contact", error.to_string(), "check the keys of the contacts");
+    };
+    let names = document.names("contact");
+    let contact = usize::try_from(*pair).ok().and_then(|pair| names.get(pair).copied()).unwrap_or_default();
+    document.error(&format!("contact.{contact}"), error.to_string(), "check friction and restitution")
+}

@@ -1,0 +1,118 @@
+//! What a run of a scene will be like: the numbers to look at before it is started.
+
+use crate::left_out::left_out;
+use crate::resolve::Resolved;
+use crate::scene::{BeamScene, BlockScene, Placement};
+use crate::simulation::Simulation;
+use crate::volume::{Volume, expected_seconds};
+use crate::{doubts, stability};
+use std::f64::consts::TAU;
+
+/// A block, as far as one wants to check it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BlockOutlook {
+    /// Its name.
+    pub name: String,
+    /// Mass, kg.
+    pub mass: f64,
+    /// Critical angle α = atan(b/H), rad.
+    pub critical_angle: f64,
+    /// Angle at the start, rad.
+    pub angle: f64,
+    /// Name of what it stands on; `None` for a block placed by its mass centre.
+    pub on: Option<String>,
+}
+
+/// A beam, as far as one wants to check it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BeamOutlook {
+    /// Its name.
+    pub name: String,
+    /// Its elements.
+    pub elements: usize,
+    /// Its degrees of freedom.
+    pub dofs: usize,
+    /// How its matrix is solved.
+    pub backend: &'static str,
+    /// First frequency of the continuous beam, Hz.
+    pub first_frequency: Option<f64>,
+    /// Circular frequency of the highest mode of the mesh times the step: over 1, the mode is not resolved in time (the scheme is
+    /// stable all the same for θ ≥ ½).
+    pub highest_frequency_step: Option<f64>,
+    /// Span, m.
+    pub span: f64,
+    /// Largest static deflection under the blocks' weight, m.
+    pub sag: Option<f64>,
+}
+
+/// What a run will be like.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outlook {
+    /// The blocks, in the order of the file.
+    pub blocks: Vec<BlockOutlook>,
+    /// The beams, in the order of the file.
+    pub beams: Vec<BeamOutlook>,
+    /// Corners that can touch a surface.
+    pub possible_contacts: usize,
+    /// Velocities of blocks and beams together.
+    pub dofs: usize,
+    /// Time that the run takes, s; a rule of thumb.
+    pub seconds: f64,
+    /// What its tables hold; an estimate.
+    pub volume: Volume,
+    /// What the model leaves out, and why.
+    pub left_out: Vec<&'static str>,
+}
+
+impl Outlook {
+    /// The outlook on a run of a scene; `simulation` is made of it.
+    #[must_use]
+    pub fn new(resolved: &Resolved, simulation: &Simulation) -> Self {
+        let scene = &resolved.scene;
+        let beams: Vec<BeamOutlook> = scene
+            .beams
+            .iter()
+            .zip(&simulation.layout.beams)
+            .enumerate()
+            .map(|(number, (beam, place))| BeamOutlook {
+                sag: doubts::sag(scene, number),
+                ..BeamOutlook::of(beam, place.beam.dofs(), scene.time.step)
+            })
+            .collect();
+        let block = |block: &BlockScene| {
+            let (angle, on) = match block.placement {
+                Placement::Free { angle, .. } => (angle, None),
+                Placement::On { tilt, .. } => {
+                    (tilt, resolved.document.text(&format!("block.{}.on", block.name)).map(str::to_owned))
+                }
+            };
+            let (mass, critical_angle) = (block.mass(), block.critical_angle());
+            BlockOutlook { name: block.name.clone(), mass, critical_angle, angle, on }
+        };
+        Self {
+            blocks: scene.blocks.iter().map(block).collect(),
+            possible_contacts: simulation.model.detector().capacity(),
+            dofs: simulation.model.size().v,
+            seconds: expected_seconds(scene, beams.iter().map(|beam| beam.dofs).sum()),
+            volume: Volume::of(scene),
+            left_out: left_out(scene),
+            beams,
+        }
+    }
+}
+
+impl BeamOutlook {
+    fn of(beam: &BeamScene, dofs: usize, step: f64) -> Self {
+        let spec = &beam.spec;
+        Self {
+            name: beam.name.clone(),
+            elements: spec.elements,
+            dofs,
+            backend: "sparse Cholesky, factorised once",
+            first_frequency: spec.circular_frequency(1).ok().map(|omega| omega / TAU),
+            highest_frequency_step: stability::highest_eigenvalue(spec).map(|squared| squared.sqrt() * step),
+            span: spec.span,
+            sag: None,
+        }
+    }
+}

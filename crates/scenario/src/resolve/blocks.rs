@@ -1,0 +1,117 @@
+//! Blocks: sides, place, and whether they fit on what they stand on.
+
+use super::{Joined, Resolver};
+use crate::scene::{BeamScene, BlockScene, ContactScene, Placement, Support};
+
+impl Resolver<'_> {
+    pub(super) fn block(
+        &mut self,
+        name: &str,
+        beams: &[Option<BeamScene>],
+        contacts: &[Option<ContactScene>],
+        joined: &Joined,
+    ) -> Option<BlockScene> {
+        let path = format!("block.{name}");
+        let at = |key: &str| format!("{path}.{key}");
+        let density = self.material(&path).and_then(|m| self.quantity(&format!("{m}.density")));
+        let width = self.quantity(&at("width"));
+        let height = self.quantity(&at("height"));
+        let depth = self.quantity(&at("depth"));
+        let velocity = self.pair(&at("velocity"));
+        let spin = self.quantity(&at("spin"));
+        let placement = self.placement(name, contacts, joined);
+        if let (Some(width), Some(placement)) = (width, &placement) {
+            self.stands(name, width, placement, beams);
+        }
+        Some(BlockScene {
+            name: name.to_owned(),
+            width: width?,
+            height: height?,
+            depth: depth?,
+            density: density?,
+            placement: placement?,
+            velocity: velocity?,
+            spin: spin?,
+        })
+    }
+
+    fn placement(&mut self, name: &str, contacts: &[Option<ContactScene>], joined: &Joined) -> Option<Placement> {
+        let doc = self.doc;
+        let path = format!("block.{name}");
+        let at = |key: &str| format!("{path}.{key}");
+        let written = |key: &str| doc.is_given(&at(key)) || doc.is_refused(&at(key));
+        if written("position") {
+            if let Some(key) = ["on", "at", "tilt"].into_iter().find(|key| written(key)) {
+                self.error(
+                    &at(key),
+                    "position already says where the block is",
+                    "keep position and angle, or on, at and tilt",
+                );
+                return None;
+            }
+            let (position, angle) = (self.pair(&at("position")), self.quantity(&at("angle")));
+            return Some(Placement::Free { position: position?, angle: angle? });
+        }
+        if written("angle") {
+            self.error(&at("angle"), "angle goes with position", "write tilt, or give position");
+            return None;
+        }
+        if !written("on") {
+            self.error(&path, "the block has no place", "give on and at (and tilt), or position (and angle)");
+            return None;
+        }
+        if !written("at") {
+            self.error(
+                &at("at"),
+                "missing, where on is given",
+                "the place x of the middle of its base, such as \"18 cm\"",
+            );
+        }
+        let on = doc.text(&at("on"))?;
+        let (x, tilt) = (doc.quantity(&at("at")), doc.quantity(&at("tilt")));
+        let Some(support) = self.surface(on) else {
+            if self.blocks.contains_key(on) {
+                self.error(&at("on"), "a block on a block is not available yet", "put it on a beam or on the ground");
+            } else {
+                self.no_body(&at("on"), on);
+            }
+            return None;
+        };
+        let contact = joined.get(&(self.blocks.get(name).copied()?, support)).copied();
+        if contact.is_none() && contacts.iter().all(Option::is_some) && !doc.is_refused("contact") {
+            let rule = format!("the block stands on `{on}`, but no contact joins the two");
+            let remedy = format!("add [contact.NAME] with between = [\"{name}\", \"{on}\"]");
+            self.error(&at("on"), rule, remedy);
+        }
+        Some(Placement::On { support, at: x?, tilt: tilt?, contact: contact? })
+    }
+
+    /// Whether a block fits on the beam it stands on.
+    fn stands(&mut self, name: &str, width: f64, placement: &Placement, beams: &[Option<BeamScene>]) {
+        let Placement::On { support: Support::Beam(number), at, tilt, .. } = *placement else { return };
+        let path = |key: &str| format!("block.{name}.{key}");
+        let Some(Some(beam)) = beams.get(number) else { return };
+        let (left, span) = (beam.position[0], beam.spec.span);
+        if width > span {
+            let rule = format!("the block is {width} m wide, but the span of `{}` is {span} m", beam.name);
+            self.error(&path("width"), rule, "a block on a beam must be narrower than its span");
+            return;
+        }
+        let feet = [("bottom-left", at - 0.5 * width), ("bottom-right", at + 0.5 * width)];
+        // The ends belong to the beam, and places in decimals reach them up to rounding only.
+        let rounding = 4.0 * f64::EPSILON * (left.abs() + span + at.abs());
+        for (corner, x) in feet {
+            // The corner that a tilt lifts may hang over the end.
+            let lifted = if tilt > 0.0 { "bottom-right" } else { "bottom-left" };
+            if (tilt == 0.0 || corner != lifted) && !(left - rounding..=left + span + rounding).contains(&x) {
+                let rule = format!(
+                    "the corner {corner} at x = {x} m lies outside `{}`, which reaches from {left} m to {} m",
+                    beam.name,
+                    left + span
+                );
+                let (low, high) = (left + 0.5 * width, left + span - 0.5 * width);
+                self.error(&path("at"), rule, format!("place the middle of its base between {low} m and {high} m"));
+            }
+        }
+    }
+}

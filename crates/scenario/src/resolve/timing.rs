@@ -1,0 +1,95 @@
+//! Steps, their number and their stability; rows of output.
+
+use super::Resolver;
+use crate::scene::{BeamScene, BlockScene, Scene, Time};
+use crate::volume::Volume;
+use crate::wording;
+
+/// Most steps of a run.
+pub const MAX_STEPS: f64 = 1e12;
+
+/// Most bytes of the tables of a run.
+const MAX_BYTES: f64 = 10e9;
+
+impl Resolver<'_> {
+    pub(super) fn time(&mut self, blocks: &[Option<BlockScene>], beams: &[Option<BeamScene>]) -> Option<Time> {
+        let (end, step) = (self.quantity("time.end"), self.quantity("time.step"));
+        let theta = self.number("time.theta");
+        if let Some(theta) = theta {
+            self.stable(theta, beams);
+        }
+        let activation_gamma = self.number("time.activation_gamma");
+        let gap_tolerance = self.doc.quantity("time.gap_tolerance").unwrap_or_else(|| gap_tolerance(blocks));
+        let (end, step) = (end?, step?);
+        if step > end {
+            self.error(
+                "time.step",
+                format!("longer than the whole run of {end} s"),
+                "give a step far shorter than time.end",
+            );
+            return None;
+        }
+        let steps = end / step;
+        if steps > MAX_STEPS {
+            let rule = format!(
+                "{steps:.1e} steps to {end} s, over the limit of {MAX_STEPS:.0e}; at 1 µs each they would take {}",
+                wording::duration(steps * 1e-6)
+            );
+            self.error("time.step", rule, "take a longer step or an earlier end");
+            return None;
+        }
+        // Up to rounding of the quotient a whole number of steps is one; of very many, a thousandth of a step is more than that.
+        let whole = steps.round();
+        let steps = if (steps - whole).abs() <= (1e-9 * whole).min(1e-3) { whole } else { steps.ceil() };
+        if steps != whole || (steps * step - end).abs() > (1e-9 * end).min(1e-3 * step) {
+            let rule = format!("not a whole number of steps of {step} s: the run goes on to {} s", steps * step);
+            self.warnings
+                .push(self.doc.error("time.end", rule, "choose an end that is a multiple of the step").as_warning());
+        }
+        Some(Time { end, step, steps: steps as u64, theta: theta?, activation_gamma: activation_gamma?, gap_tolerance })
+    }
+
+    /// θ < ½ is allowed only on request; the largest stable step is named either way.
+    fn stable(&mut self, theta: f64, beams: &[Option<BeamScene>]) {
+        if theta >= 0.5 {
+            return;
+        }
+        let limit = beams
+            .iter()
+            .flatten()
+            .map(|beam| crate::stability::largest_stable_step(&beam.spec, theta))
+            .fold(f64::INFINITY, f64::min);
+        let rule = if limit == f64::INFINITY {
+            "below 0.5 the scheme is not unconditionally stable".to_owned()
+        } else if limit > 0.0 {
+            format!("below 0.5 the scheme is stable only for steps up to {limit:.3e} s on this mesh")
+        } else {
+            "below 0.5 the undamped modes of the beam grow at every step size".to_owned()
+        };
+        if self.doc.flag("time.allow_conditional_stability") == Some(true) {
+            self.warnings
+                .push(self.doc.error("time.theta", rule, "0.5 keeps energy and is always stable").as_warning());
+        } else {
+            self.error("time.theta", rule, "take theta of at least 0.5, or set allow_conditional_stability = true");
+        }
+    }
+
+    /// Whether the tables would grow beyond reason.
+    pub(super) fn output(&mut self, scene: &Scene) {
+        let Volume { rows, bytes } = Volume::of(scene);
+        if bytes > MAX_BYTES {
+            let rule = format!(
+                "{rows:.1e} rows would take some {}, over the limit of {}",
+                wording::bytes(bytes),
+                wording::bytes(MAX_BYTES)
+            );
+            self.error("output.every", rule, "write fewer rows, or leave the key out for some 10 000");
+        }
+    }
+}
+
+/// The gap tolerance that a scene without one gets: 1e-12 m, scaled for blocks outside [0.01, 1] m.
+fn gap_tolerance(blocks: &[Option<BlockScene>]) -> f64 {
+    let largest = blocks.iter().flatten().map(|block| block.width.max(block.height)).fold(0.0, f64::max);
+    if largest == 0.0 || (0.01..=1.0).contains(&largest) { 1e-12 } else { 1e-11 * largest }
+}
