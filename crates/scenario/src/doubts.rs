@@ -19,10 +19,11 @@ pub(crate) struct Doubts {
 /// A tilt from this part of the critical angle on is a warning.
 const NEAR_CRITICAL: f64 = 0.9;
 
-/// A sag over this part of the span is a warning: slopes reach 3 × 1/50, and what linear theory neglects, their square, 0.4 %.
+/// A sag over this part of the span is a warning: beyond it small deflections are no longer small.
 const DEEP_SAG: f64 = 1.0 / 50.0;
 
-/// A sag over this part of the span is worth a note: structures are built for less.
+/// A sag over this part of the span is worth a note: at 1/68 the shortening of the axis, left out, is worth 3 % of the angle
+/// (`docs/theory.md` §8).
 const NOTABLE_SAG: f64 = 1.0 / 250.0;
 
 /// Steps that the shortest motion of contact should get.
@@ -47,9 +48,15 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Doubts {
                 doubts.warnings.push(found.as_warning());
             }
             Some(sag) if sag > NOTABLE_SAG * beam.spec.span => {
-                let rule = format!("{}; up to 1/50 linear theory holds well", sagging(beam, sag));
-                let found =
-                    document.error(&format!("beam.{}.thickness", beam.name), rule, "nothing to mend: a soft beam");
+                let rule = format!(
+                    "{}: linear theory, which leaves out the shortening of its axis, is off by some per cent",
+                    sagging(beam, sag)
+                );
+                let found = document.error(
+                    &format!("beam.{}.thickness", beam.name),
+                    rule,
+                    "nothing to mend where that is good enough; else a thicker or shorter beam",
+                );
                 doubts.notes.push(found.as_note());
             }
             _ => {}
