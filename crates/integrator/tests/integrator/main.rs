@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stderr, unsafe_code)]
 
 mod allocations;
+mod beams;
 mod own_parts;
 mod reference;
 mod scenes;
