@@ -38,8 +38,8 @@ const WARNINGS: &str = "\
 A scene with a warning runs all the same. `teeter check` and `teeter run` warn of
 
 - a `tilt` within 10 % of the critical angle α = atan(width/height), or beyond it: standing still the block overturns;
-- a beam that sags by more than 1/50 of its span under the weight of the blocks on it: linear theory neglects the square of the slope,
-  3/50 at that sag (`check` notes a sag from 1/250 on);
+- a beam that sags by more than 1/50 of its span under the weight of the blocks on it: deflections are no longer small (`check` notes a
+  sag from 1/250 on: linear theory leaves out the shortening of the axis, at 1/68 some per cent of the block's angle);
 - a `step` coarser than a tenth of the shortest time scale of a contact: the rocking time √(4R/3g) of a block, R half its diagonal, and
   for a block on a beam the beam's first period as well;
 - an `end` that is no multiple of the step: the run goes on to the first step past it;
