@@ -61,7 +61,7 @@ impl<const D: usize> Delassus<'_, D> {
 }
 
 /// A block-sparse matrix by rows (BSR): the columns of a row ascend, the diagonal block is always present.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct BlockSparse<const D: usize> {
     row_start: Vec<usize>,
     columns: Vec<usize>,
@@ -144,15 +144,119 @@ impl<const D: usize> BlockSparse<D> {
         self.columns[range.clone()].iter().copied().zip(&self.blocks[range])
     }
 
-    pub(crate) fn all_blocks(&self) -> &[Block<D>] {
+    /// All stored blocks, row by row.
+    #[must_use]
+    pub fn blocks(&self) -> &[Block<D>] {
         &self.blocks
     }
 
-    fn diagonal(&self, i: usize) -> Block<D> {
+    /// The column of each block of [`Self::blocks`].
+    #[must_use]
+    pub fn columns(&self) -> &[usize] {
+        &self.columns
+    }
+
+    /// Where the blocks of row `i` lie in [`Self::blocks`] and [`Self::columns`].
+    #[must_use]
+    pub fn range(&self, i: usize) -> std::ops::Range<usize> {
+        self.row_start[i]..self.row_start[i + 1]
+    }
+
+    /// Whether both matrices have their non-zero blocks at the same places, so that an analysis of one serves the other.
+    #[must_use]
+    pub fn same_pattern(&self, other: &Self) -> bool {
+        self.row_start == other.row_start && self.columns == other.columns
+    }
+
+    /// Takes the matrix out of a problem, zero blocks left out, in memory that is kept. Of an operator that is given by
+    /// what it does, each column is the product with a unit vector: D n² row products.
+    pub fn gather(&mut self, problem: &crate::ContactProblem<'_, D>) {
+        let n = problem.contacts();
+        self.row_start.clear();
+        self.columns.clear();
+        self.blocks.clear();
+        self.diagonal.clear();
+        self.row_start.push(0);
+        let mut unit = Vec::new();
+        if matches!(problem.delassus(), Delassus::Operator(_)) {
+            unit.resize(n, Vector::<D>::zeros());
+        }
+        for i in 0..n {
+            let mut offer = |j: usize, block: &Block<D>| {
+                if i == j {
+                    self.diagonal.push(self.blocks.len());
+                }
+                if i == j || block.iter().any(|&c| c != 0.0) {
+                    self.columns.push(j);
+                    self.blocks.push(*block);
+                }
+            };
+            match problem.delassus() {
+                Delassus::Dense(blocks) => {
+                    blocks[i * n..(i + 1) * n].iter().enumerate().for_each(|(j, block)| offer(j, block));
+                }
+                Delassus::Blocks(h) => h.row(i).for_each(|(j, block)| offer(j, block)),
+                Delassus::Operator(h) => {
+                    for j in 0..n {
+                        let mut block = Block::<D>::zeros();
+                        for c in 0..D {
+                            unit[j][c] = 1.0;
+                            block.set_column(c, &h.row_product(i, &unit));
+                            unit[j][c] = 0.0;
+                        }
+                        offer(j, &block);
+                    }
+                }
+            }
+            self.row_start.push(self.blocks.len());
+        }
+    }
+
+    /// Makes room for a matrix of `contacts` rows and `blocks` blocks.
+    pub fn reserve(&mut self, contacts: usize, blocks: usize) {
+        let more = |len: usize, wanted: usize| wanted.saturating_sub(len);
+        self.row_start.reserve(more(self.row_start.len(), contacts + 1));
+        self.diagonal.reserve(more(self.diagonal.len(), contacts));
+        self.columns.reserve(more(self.columns.len(), blocks));
+        self.blocks.reserve(more(self.blocks.len(), blocks));
+    }
+
+    /// `‖H − Hᵀ‖ / ‖H‖` in Frobenius' norm; 0 for a symmetric matrix.
+    #[must_use]
+    pub fn asymmetry(&self) -> f64 {
+        let (mut skew, mut all) = (0.0, 0.0);
+        for i in 0..self.contacts() {
+            for (j, block) in self.row(i) {
+                all += block.norm_squared();
+                match self.block(j, i) {
+                    Some(mirror) => skew += (block - mirror.transpose()).norm_squared(),
+                    // Counted for both places, as the other one isn't stored.
+                    None => skew += 2.0 * block.norm_squared(),
+                }
+            }
+        }
+        if all > 0.0 { (skew / all).sqrt() } else { 0.0 }
+    }
+
+    /// The block (i, j), if it is stored.
+    #[must_use]
+    pub fn block(&self, i: usize, j: usize) -> Option<&Block<D>> {
+        let range = self.range(i);
+        let at = self.columns[range.clone()].binary_search(&j).ok()?;
+        Some(&self.blocks[range.start + at])
+    }
+
+    /// The diagonal block of row `i`.
+    #[inline]
+    #[must_use]
+    pub fn diagonal(&self, i: usize) -> Block<D> {
         self.blocks[self.diagonal[i]]
     }
 
-    fn row_product(&self, i: usize, p: &[Vector<D>]) -> Vector<D> {
+    /// `Σ_j H_ij p_j`.
+    #[inline]
+    #[must_use]
+    pub fn row_product(&self, i: usize, p: &[Vector<D>]) -> Vector<D> {
         self.row(i).fold(Vector::zeros(), |sum, (j, h)| sum + h * p[j])
     }
 }

@@ -28,17 +28,38 @@ const SCALE_FLOOR: f64 = 1e-300;
 #[must_use]
 pub fn judge<const D: usize>(problem: &ContactProblem<'_, D>, p: &[Vector<D>]) -> Residual {
     assert_eq!(p.len(), problem.contacts(), "one impulse a contact");
-    let n = p.len();
+    judge_with(problem, p, |i| problem.velocity(i, p))
+}
+
+/// As [`judge()`], for a caller that has the velocities `u = H p + q` at hand already: it spares the product with H.
+///
+/// # Panics
+/// If `p` or `u` doesn't hold one vector a contact: a mistake of the calling code.
+#[must_use]
+pub fn judge_velocities<const D: usize>(
+    problem: &ContactProblem<'_, D>,
+    p: &[Vector<D>],
+    u: &[Vector<D>],
+) -> Residual {
+    assert!(p.len() == problem.contacts() && u.len() == p.len(), "one impulse and one velocity a contact");
+    judge_with(problem, p, |i| u[i])
+}
+
+#[inline]
+fn judge_with<const D: usize>(
+    problem: &ContactProblem<'_, D>,
+    p: &[Vector<D>],
+    velocity: impl Fn(usize) -> Vector<D>,
+) -> Residual {
     let mut residual = Residual { global: 0.0, worst: 0.0, worst_contact: 0 };
-    if n == 0 {
+    if p.is_empty() {
         return residual;
     }
-    let trace: f64 = (0..n).map(|i| problem.diagonal(i).trace()).sum();
-    let rho = (n * D) as f64 / trace;
+    let rho = problem.scale();
     let (mut p_norm, mut q_norm, mut map_norm) = (0.0, 0.0, 0.0);
-    for i in 0..n {
+    for i in 0..p.len() {
         let (mu, q) = (problem.mu()[i], problem.q()[i]);
-        let u_hat = de_saxce(&problem.velocity(i, p), mu);
+        let u_hat = de_saxce(&velocity(i), mu);
         let map = |rho: f64| p[i] - project(&(p[i] - u_hat * rho), mu);
         p_norm += p[i].norm_squared();
         q_norm += q.norm_squared();

@@ -44,7 +44,7 @@ mod solver;
 
 pub use cone::{de_saxce, project};
 pub use delassus::{BlockSparse, BlockSparseError, Delassus, DelassusOperator};
-pub use judge::{Residual, judge};
+pub use judge::{Residual, judge, judge_velocities};
 pub use problem::{ContactProblem, ProblemError};
 pub use solver::{ContactSolver, Law, Outcome, Status, Stop};
 

@@ -75,7 +75,7 @@ impl<'a, const D: usize> ContactProblem<'a, D> {
             }
             Delassus::Blocks(sparse) => {
                 size("the block-sparse Delassus operator (rows)", sparse.contacts(), contacts)?;
-                check_blocks(sparse.all_blocks(), |k| row_of_block(sparse, k))?;
+                check_blocks(sparse.blocks(), |k| row_of_block(sparse, k))?;
             }
             Delassus::Operator(operator) => size("the Delassus operator", operator.contacts(), contacts)?,
         }
@@ -129,6 +129,25 @@ impl<'a, const D: usize> ContactProblem<'a, D> {
         self.mu
     }
 
+    /// `ρ = 1/mean(diag H)`, the mass that turns a velocity into an impulse of the problem's size; kg. 1 without contacts.
+    #[must_use]
+    pub fn scale(&self) -> f64 {
+        let trace: f64 = (0..self.contacts()).map(|i| self.diagonal(i).trace()).sum();
+        if trace > 0.0 { (self.contacts() * D) as f64 / trace } else { 1.0 }
+    }
+
+    /// `‖H − Hᵀ‖ / ‖H‖` in Frobenius' norm. Asymmetry is reported, never refused: two in five of the published problems
+    /// have some.
+    #[must_use]
+    pub fn asymmetry(&self) -> f64 {
+        if let Delassus::Blocks(h) = self.h {
+            return h.asymmetry();
+        }
+        let mut h = crate::BlockSparse::default();
+        h.gather(self);
+        h.asymmetry()
+    }
+
     /// The diagonal block of contact `i`.
     #[inline]
     #[must_use]
@@ -160,14 +179,7 @@ fn check_blocks<const D: usize>(blocks: &[Block<D>], row: impl Fn(usize) -> usiz
 }
 
 fn row_of_block<const D: usize>(h: &crate::BlockSparse<D>, k: usize) -> usize {
-    let mut before = 0;
-    for i in 0..h.contacts() {
-        before += h.row(i).count();
-        if k < before {
-            return i;
-        }
-    }
-    h.contacts()
+    (0..h.contacts()).find(|&i| h.range(i).contains(&k)).unwrap_or(h.contacts())
 }
 
 #[cfg(test)]

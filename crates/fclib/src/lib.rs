@@ -1,0 +1,1 @@
+//! Reads and writes frictional contact problems in the FCLIB form (HDF5).
