@@ -212,6 +212,11 @@ impl<const D: usize> BlockSparse<D> {
         }
     }
 
+    /// Multiplies the matrix by a number.
+    pub fn scale(&mut self, factor: f64) {
+        self.blocks.iter_mut().for_each(|block| *block *= factor);
+    }
+
     /// Makes room for a matrix of `contacts` rows and `blocks` blocks.
     pub fn reserve(&mut self, contacts: usize, blocks: usize) {
         let more = |len: usize, wanted: usize| wanted.saturating_sub(len);

@@ -21,13 +21,16 @@
 //! ```
 
 mod auto;
+mod block_lu;
 mod catalogue;
 mod enumeration;
 mod least_norm;
+mod newton;
 mod one_contact;
 mod pgs;
 
 pub use auto::Auto;
 pub use catalogue::{SOLVERS, SolverInfo, plane_solver};
 pub use enumeration::Enumeration;
+pub use newton::Newton;
 pub use pgs::Pgs;
