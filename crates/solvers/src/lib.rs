@@ -28,9 +28,11 @@ mod least_norm;
 mod newton;
 mod one_contact;
 mod pgs;
+mod smoothing;
 
 pub use auto::Auto;
 pub use catalogue::{SOLVERS, SolverInfo, plane_solver};
 pub use enumeration::Enumeration;
 pub use newton::Newton;
 pub use pgs::Pgs;
+pub use smoothing::Smoothing;

@@ -19,6 +19,8 @@ pub struct Newton<const D: usize> {
     rows: Vec<Row<D>>,
     best: Vec<Vector<D>>,
     lu: BlockLu<D>,
+    alpha: f64,
+    center: Vec<Vector<D>>,
     /// debugging
     pub log: bool,
 }
@@ -42,9 +44,52 @@ impl<const D: usize> Newton<D> {
         Self::default()
     }
 
+    fn burst(&mut self, p: &mut [Vector<D>], mu: &[f64], q_norm: f64, goal: f64, most: u32) -> (u32, f64) {
+        let n = p.len();
+        self.velocities(p);
+        let mut err = Self::residual(p, &self.u, mu, q_norm);
+        let mut its = 0;
+        while err > goal && its < most {
+            its += 1;
+            let smooth = std::env::var("SMOOTH").ok().and_then(|x| x.parse().ok()).unwrap_or(0);
+            if smooth > 0 {
+                for _ in 0..smooth { self.sweep(p, mu); }
+                self.velocities(p);
+                err = Self::residual(p, &self.u, mu, q_norm);
+                if self.log { println!("        smooth {its}: {err:.3e}"); }
+                if err <= goal { break; }
+            }
+            self.linearise(p, mu);
+            if !self.step(p) { break; }
+            let (mut best_step, mut best) = (0.0, f64::INFINITY);
+            let mut step = 1.0;
+            for _ in 0..6 {
+                for i in 0..n {
+                    self.trial[i] = p[i] + self.change[i] * step;
+                    self.trial_u[i] = self.u[i] + self.change_u[i] * step;
+                }
+                let e = Self::residual(&self.trial, &self.trial_u, mu, q_norm);
+                if e < best {
+                    (best, best_step) = (e, step);
+                }
+                if e < 0.9 * err || std::env::var("FULL").is_ok() { break; }
+                step *= 0.5;
+            }
+            if self.log { println!("        newton {its}: {err:.3e} -> {best:.3e} at {best_step}"); }
+            for i in 0..n {
+                p[i] = project(&(p[i] + self.change[i] * best_step), mu[i]);
+            }
+            self.velocities(p);
+            let before = err;
+            err = Self::residual(p, &self.u, mu, q_norm);
+            if !(err < 3.0 * before) && std::env::var("FULL").is_err() { break; }
+        }
+        (its, err)
+    }
+
     fn velocities(&mut self, p: &[Vector<D>]) {
         for i in 0..p.len() {
-            self.u[i] = self.h.row_product(i, p) + self.q[i];
+            self.u[i] = self.h.row_product(i, p) + self.q[i] + (p[i] - self.center[i]) * self.alpha;
         }
     }
 
@@ -70,7 +115,7 @@ impl<const D: usize> Newton<D> {
     }
 
     /// Newton step.
-    fn step(&mut self, p: &[Vector<D>], epsilon: f64) -> bool {
+    fn step(&mut self, p: &[Vector<D>]) -> bool {
         let n = p.len();
         // Open contacts go to zero at once; the others feel it.
         for i in 0..n {
@@ -87,6 +132,7 @@ impl<const D: usize> Newton<D> {
                 self.trial[i] = self.rows[i].right - self.rows[i].of_u * b;
             }
         }
+        let epsilon = self.alpha;
         let (rows, h) = (&self.rows, &self.h);
         let done = self.lu.factorise(
             h,
@@ -106,15 +152,15 @@ impl<const D: usize> Newton<D> {
         }
         self.lu.solve(&mut self.change);
         for i in 0..n {
-            self.change_u[i] = self.h.row_product(i, &self.change);
+            self.change_u[i] = self.h.row_product(i, &self.change) + self.change[i] * self.alpha;
         }
         self.change.iter().all(|c| c.iter().all(|x| x.is_finite()))
     }
 
     fn sweep(&mut self, p: &mut [Vector<D>], mu: &[f64]) {
         for i in 0..p.len() {
-            let h = self.h.diagonal(i);
-            let u = self.h.row_product(i, p) + self.q[i];
+            let h = self.h.diagonal(i) + Block::identity() * self.alpha;
+            let u = self.h.row_product(i, p) + self.q[i] + (p[i] - self.center[i]) * self.alpha;
             let mut x = p[i];
             let omega = 1.0 / h.symmetric_part().norm();
             let c = u - h * p[i];
@@ -199,61 +245,50 @@ impl<const D: usize> ContactSolver<D> for Newton<D> {
         let t0 = std::time::Instant::now();
         self.lu.analyse(&self.h);
         if self.log { println!("analyse {:?} filled {} of {} products {}", t0.elapsed(), self.lu.filled_blocks(), self.h.blocks().len(), self.lu.block_products()); }
+        self.alpha = 0.0;
+        self.center.clear();
+        self.center.resize(n, Vector::zeros());
+        let env = |k: &str, d: f64| std::env::var(k).ok().and_then(|x| x.parse().ok()).unwrap_or(d);
+        let sweeps = env("SWEEPS", 10.0) as usize;
+        let mut alpha = env("ALPHA", 1e-3);
+        let shrink = env("SHRINK", 0.1);
         self.velocities(p);
         let mut err = Self::residual(p, &self.u, mu, q_norm);
-        let mut epsilon = 1e-6;
         let mut iterations = 0;
-        let mut sweeps = 10;
-        let mut best_err = err;
-        self.best.clear();
-        self.best.extend_from_slice(p);
-        'outer: while err > stop.tolerance && iterations < stop.max_iterations {
-            for _ in 0..sweeps {
-                self.sweep(p, mu);
-            }
+        for _ in 0..sweeps {
+            if err <= stop.tolerance { break; }
+            self.sweep(p, mu);
             self.velocities(p);
             err = Self::residual(p, &self.u, mu, q_norm);
-            if self.log { println!("{:?} sweeps {sweeps}: {err:.3e}", t0.elapsed()); }
-            let mut fails = 0;
-            while err > stop.tolerance && iterations < stop.max_iterations {
-                iterations += 1;
-                let changes = self.linearise(p, mu);
-                let open = self.rows.iter().filter(|r| r.open).count();
-                let solved = self.step(p, epsilon);
-                let (mut best_alpha, mut best) = (0.0, f64::INFINITY);
-                if solved {
-                    let mut alpha = 1.0;
-                    for _ in 0..5 {
-                        for i in 0..n {
-                            self.trial[i] = p[i] + self.change[i] * alpha;
-                            self.trial_u[i] = self.u[i] + self.change_u[i] * alpha;
-                        }
-                        let e = Self::residual(&self.trial, &self.trial_u, mu, q_norm);
-                        if e < best {
-                            (best, best_alpha) = (e, alpha);
-                        }
-                        if e < 0.9 * err { break; }
-                        alpha *= 0.5;
-                    }
-                }
-                if self.log { println!("{:?} newton {iterations} eps {epsilon:.0e} open {open} changes {changes}: {err:.3e} -> {best:.3e} at {best_alpha}", t0.elapsed()); }
-                if best < err {
-                    for i in 0..n {
-                        p[i] = project(&(p[i] + self.change[i] * best_alpha), mu[i]);
-                    }
-                    self.velocities(p);
-                    err = Self::residual(p, &self.u, mu, q_norm);
-                    if self.log && err > best * 1.5 { println!("      projected {err:.3e}"); }
-                    if best_alpha == 1.0 { epsilon = (epsilon * 0.1f64).max(1e-12); } else { fails += 1; }
-                } else {
-                    fails += 1;
-                    epsilon = (epsilon * 10.0f64).min(1.0);
-                }
-                if err < best_err {
-                    best_err = err;
-                    self.best.copy_from_slice(p);
-                }
-                if fails > 4 { sweeps = (sweeps * 2).min(200); continue 'outer; }
+        }
+        if self.log { println!("{:?} sweeps {sweeps}: {err:.3e}", t0.elapsed()); }
+        self.best.clear();
+        self.best.extend_from_slice(p);
+        let mut best_err = err;
+        while best_err > stop.tolerance && iterations < stop.max_iterations {
+            self.alpha = alpha;
+            self.center.copy_from_slice(&self.best);
+            p.copy_from_slice(&self.best);
+            let goal = (env("GOAL", 0.01) * best_err).min(0.3 * best_err.max(stop.tolerance)).max(stop.tolerance * 0.1);
+            let (its, inner) = self.burst(p, mu, q_norm, goal, 12);
+            iterations += its;
+            self.alpha = 0.0;
+            self.velocities(p);
+            err = Self::residual(p, &self.u, mu, q_norm);
+            if self.log { println!("{:?} prox {alpha:.0e} its {its} inner {inner:.2e} goal {goal:.1e}: {best_err:.3e} -> {err:.3e}", t0.elapsed()); }
+            if inner <= goal || err < 0.5 * best_err {
+                alpha = (alpha * shrink).max(1e-13);
+                best_err = err;
+                self.best.copy_from_slice(p);
+            } else {
+                alpha = (alpha * env("GROW", 10.0)).min(10.0);
+                if err < best_err { best_err = err; self.best.copy_from_slice(p); }
+                p.copy_from_slice(&self.best);
+                for _ in 0..sweeps { self.sweep(p, mu); }
+                self.best.copy_from_slice(p);
+                self.velocities(p);
+                best_err = Self::residual(p, &self.u, mu, q_norm);
+                if self.log { println!("{:?} sweeps {sweeps}: {best_err:.3e}", t0.elapsed()); }
             }
         }
         p.copy_from_slice(&self.best);
