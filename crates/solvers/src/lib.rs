@@ -28,6 +28,7 @@ mod local;
 mod one_contact;
 mod one_contact_space;
 mod pgs;
+mod rows;
 
 pub use auto::Auto;
 pub use catalogue::{SOLVERS, SolverInfo, plane_solver, space_solver};

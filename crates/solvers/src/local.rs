@@ -10,6 +10,9 @@ use teeter_contact::{Block, Vector, de_saxce, project};
 /// A determinant below this, relative to the product of the diagonal, is taken for zero.
 const RANK_TOLERANCE: f64 = 1e-12;
 
+/// Above this, it costs its solution two digits at most.
+const WELL_CONDITIONED: f64 = 1e-2;
+
 /// How much `H_NN` must exceed `μ‖H_NT‖` for a block to count as regular: rounding, with room.
 const MARGIN: f64 = 1.0 + 1e-9;
 
@@ -35,6 +38,8 @@ pub(crate) struct Local<const D: usize> {
     /// `1/H_NN`; in 2D without friction, `1/(H_NN ∓ μ H_NT)` for sliding to the right and to the left.
     compliance: [f64; 2],
     kind: Kind,
+    /// Whether the inverse loses so many digits that its product wants a correction.
+    refine: bool,
 }
 
 impl<const D: usize> Local<D> {
@@ -47,6 +52,7 @@ impl<const D: usize> Local<D> {
             mu,
             compliance: [h_nn.recip(); 2],
             kind: if mu == 0.0 || D == 1 { Kind::Frictionless } else { Kind::Difficult },
+            refine: true,
         };
         if local.kind == Kind::Frictionless {
             return local;
@@ -67,6 +73,7 @@ impl<const D: usize> Local<D> {
             let rows = space::rows(h);
             if let Some(inverse) = space::inverse(&rows, RANK_TOLERANCE) {
                 local.inverse = Block::from_fn(|r, c| inverse[r][c]);
+                local.refine = space::inverse(&rows, WELL_CONDITIONED).is_none();
                 if space::positive(&rows) && h_nn > mu * rows[0][1].hypot(rows[0][2]) * MARGIN {
                     local.kind = Kind::Regular;
                 }
@@ -75,9 +82,15 @@ impl<const D: usize> Local<D> {
         local
     }
 
+    /// Its block of H.
+    #[inline]
+    pub(crate) fn block(&self) -> &Block<D> {
+        &self.h
+    }
+
     /// The impulse of the contact whose velocity would be `q` without it. `slip` is what the last visit left there: a
     /// measure of the sliding speed, from which the next one starts. `None` where no state fits.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn solve(&self, q: &Vector<D>, slip: &mut f64) -> Option<Vector<D>> {
         if q[0] >= 0.0 {
             return Some(Vector::zeros());
@@ -92,9 +105,14 @@ impl<const D: usize> Local<D> {
             3 => {
                 let (h, inverse) = (space::rows(&self.h), space::rows(&self.inverse));
                 let q = [q[0], q[1], q[2]];
-                let fast = self.kind == Kind::Regular;
-                let p = if fast { space::regular(&h, &inverse, &q, self.mu, slip) } else { None };
-                let p = p.or_else(|| space::smallest(&h, &inverse, &q, self.mu))?;
+                let regular = match self.kind {
+                    Kind::Regular => space::regular(&h, &inverse, &q, self.mu, self.refine, slip),
+                    _ => None,
+                };
+                let p = match regular {
+                    Some(p) => p,
+                    None => space::smallest(&h, &inverse, &q, self.mu)?,
+                };
                 Some(Vector::from_fn(|i, _| p[i]))
             }
             _ => None,

@@ -11,8 +11,8 @@
 //! which reads like the subproblem of a trust-region method: one unknown, λ. The usual way is the roots of the quartic
 //! `det(A + λI)² = ‖adj(A + λI) g‖²` (Bonnefon and Daviet 2011, INRIA RT-0417, hal-00553859), whose closed form fails
 //! where roots coincide, as they do for `H = c I`. Here, as in Moré and Sorensen's method (1983, doi 10.1137/0904038), Newton's
-//! method runs on `det(A + λI)/‖adj(A + λI) g‖ − 1`, which is nearly linear in λ (for `H = c I` exactly so): one to three
-//! steps. Where that fails or several solutions may exist, all roots of the quartic in the interval that can hold any
+//! method starts from the last visit's λ, or from ‖g‖ − ½ tr A (for `H = c I` the root itself), and takes one to three
+//! steps; the quartic's value and slope come from the 2 × 2 system, without its coefficients. Where that fails or several solutions may exist, all roots of the quartic in the interval that can hold any
 //! are isolated between those of its derivatives, and the smallest impulse that obeys the law is taken.
 
 use teeter_contact::Block;
@@ -24,7 +24,7 @@ type Matrix = [[f64; 3]; 3];
 const STEPS: u32 = 12;
 
 /// The secular equation counts as solved by the next step when it is missed by less: the step squares it.
-const NEARLY: f64 = 1e-7;
+const NEARLY: f64 = 1e-8;
 
 /// How far a candidate of the slow way may miss the law, relative to the terms of its velocity: the square root of
 /// rounding, as two roots that coincide are known to no more. The judge has the last word.
@@ -77,16 +77,19 @@ fn dot(a: &Vector, b: &Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// `p = −H⁻¹ q`, once refined, so that what is left of the velocity is rounding however skewed the block is; where it
-/// lies in the cone.
-#[inline]
-fn stick(h: &Matrix, inverse: &Matrix, q: &Vector, mu: f64) -> Option<Vector> {
+/// `p = −H⁻¹ q` where it lies in the cone; if asked for, refined once, so that what is left of the velocity is rounding
+/// however skewed the block is.
+#[inline(always)]
+fn stick(h: &Matrix, inverse: &Matrix, q: &Vector, mu: f64, refine: bool) -> Option<Vector> {
     let solve = |q: &Vector| [-dot(&inverse[0], q), -dot(&inverse[1], q), -dot(&inverse[2], q)];
     let mut p = solve(q);
     let limit = mu * p[0];
     let inside = p[0] > 0.0 && p[1] * p[1] + p[2] * p[2] <= limit * limit;
     if !inside {
         return None;
+    }
+    if !refine {
+        return Some(p);
     }
     let left = [dot(&h[0], &p) + q[0], dot(&h[1], &p) + q[1], dot(&h[2], &p) + q[2]];
     let correction = solve(&left);
@@ -131,20 +134,28 @@ impl Slide {
             let half_slope = v[0] * self.g[0] + v[1] * self.g[1];
             let determinant = (lambda + self.trace) * lambda + self.determinant;
             let slope = 2.0 * lambda + self.trace;
-            // F = det/‖v‖ − 1;  F/F' = (det − ‖v‖) v² / (det' v² − det v·v').
-            let miss = determinant - square.sqrt();
-            let step = miss * square / (slope * square - determinant * half_slope);
+            // F = det² − v²;  F' = 2 (det det' − v·v').
+            let square_of_det = determinant * determinant;
+            let miss = square_of_det - square;
+            let step = 0.5 * miss / (slope * determinant - half_slope);
             let next = lambda - step;
             if !(determinant > 0.0 && next.is_finite()) {
                 return None;
             }
             // Beyond zero lies sticking: one more try from there, unless it is rounding on the border.
             lambda = next.max(0.0);
-            if miss.abs() <= NEARLY * determinant {
+            if miss.abs() <= NEARLY * square_of_det {
                 return Some(lambda);
             }
         }
         None
+    }
+
+    /// The root next to where it would be if A were half its trace.
+    #[cold]
+    fn from_afar(&self) -> Option<f64> {
+        let size = (self.g[0] * self.g[0] + self.g[1] * self.g[1]).sqrt();
+        self.newton((size - 0.5 * self.trace).max(0.0))
     }
 
     /// The direction for a root.
@@ -164,21 +175,32 @@ fn slide(h: &Matrix, q: &Vector, mu: f64, d: &[f64; 2]) -> Option<Vector> {
     (w > 0.0 && p_n.is_finite()).then(|| [p_n, -mu * p_n * d[0], -mu * p_n * d[1]])
 }
 
-/// The state that fits a regular block: sticking, or else the slide found from `slip`, λ over the diagonal's sizes.
+/// The state that fits a regular block: sticking, or else the slide whose λ is next to `slip`, the last visit's.
 /// `None` if Newton's method doesn't find it.
-#[inline]
-pub(crate) fn regular(h: &Matrix, inverse: &Matrix, q: &Vector, mu: f64, slip: &mut f64) -> Option<Vector> {
-    if let Some(p) = stick(h, inverse, q, mu) {
+#[inline(always)]
+pub(crate) fn regular(
+    h: &Matrix,
+    inverse: &Matrix,
+    q: &Vector,
+    mu: f64,
+    refine: bool,
+    slip: &mut f64,
+) -> Option<Vector> {
+    if let Some(p) = stick(h, inverse, q, mu, refine) {
         return Some(p);
     }
     let equation = Slide::new(h, q, mu);
-    let lambda = if *slip > 0.0 { equation.newton(*slip) } else { None };
-    let lambda = lambda.or_else(|| {
-        let size = (equation.g[0] * equation.g[0] + equation.g[1] * equation.g[1]).sqrt();
-        equation.newton((size - 0.5 * equation.trace).max(0.0))
-    })?;
+    let lambda = match if *slip > 0.0 { equation.newton(*slip) } else { None } {
+        Some(lambda) => lambda,
+        None => equation.from_afar()?,
+    };
     *slip = lambda;
-    slide(h, q, mu, &equation.direction(lambda)).filter(|p| p[1].is_finite() && p[2].is_finite())
+    // At the root ‖v‖ = det, so d = v/det; with det multiplied through, one division is left.
+    let v = [equation.back[0] + lambda * equation.g[0], equation.back[1] + lambda * equation.g[1]];
+    let determinant = (lambda + equation.trace) * lambda + equation.determinant;
+    let size = -q[0] / (h[0][0] * determinant - mu * (h[0][1] * v[0] + h[0][2] * v[1]));
+    let p = [size * determinant, -mu * size * v[0], -mu * size * v[1]];
+    (size > 0.0 && p[0] < f64::INFINITY && p[1].is_finite() && p[2].is_finite()).then_some(p)
 }
 
 /// The smallest impulse of all states that fit a contact with `q_N < 0`, μ > 0.
@@ -192,7 +214,7 @@ pub(crate) fn smallest(h: &Matrix, inverse: &Matrix, q: &Vector, mu: f64) -> Opt
         }
     };
     if inverse[0][0] != 0.0 || inverse[1][1] != 0.0 {
-        if let Some(p) = stick(h, inverse, q, mu) {
+        if let Some(p) = stick(h, inverse, q, mu, true) {
             offer(p);
         }
     }
@@ -313,7 +335,7 @@ mod tests {
 
     fn solve(h: Matrix, q: Vector, mu: f64) -> [Option<Vector>; 2] {
         let inverse = inverse(&h, 1e-12).unwrap();
-        [regular(&h, &inverse, &q, mu, &mut 0.0), smallest(&h, &inverse, &q, mu)]
+        [regular(&h, &inverse, &q, mu, true, &mut 0.0), smallest(&h, &inverse, &q, mu)]
     }
 
     fn assert_obeys(h: &Matrix, q: &Vector, mu: f64, p: &Vector, slack: f64) {

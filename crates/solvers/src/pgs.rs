@@ -9,7 +9,7 @@
 //! **When to take it**: to 1e-4 or so for any number of contacts; further where contacts couple weakly or are few.
 //!
 //! **Cost**: a sweep is one product with H, linear in the number of its blocks; nothing is factorised but the diagonal blocks.
-//! A dense H is gathered into sparse blocks once a solve; an operator that is given by what it does is asked for its
+//! The blocks that aren't zero are copied once a solve, in an order made for sweeps; an operator that is given by what it does is asked for its
 //! row products.
 //!
 //! **How it fails**: convergence is linear, and slow where many contacts share few bodies (stacks, hyperstatic supports)
@@ -26,13 +26,13 @@
 //! - The best impulses judged are kept and returned.
 
 use crate::local::Local;
+use crate::rows::Rows;
 use teeter_contact::{
-    BlockSparse, ContactProblem, ContactSolver, Delassus, Law, Outcome, Residual, Status, Stop, Vector,
-    judge_velocities, project,
+    ContactProblem, ContactSolver, Delassus, Law, Outcome, Residual, Status, Stop, Vector, judge_velocities, project,
 };
 
-/// Most sweeps between two residuals: at first, and as a part of the sweeps done.
-const CHECK: u32 = 8;
+/// Most sweeps between two residuals, unless an eighth of the sweeps done is more.
+const CHECK: u32 = 16;
 
 /// Sweeps without any better residual after which the iteration counts as stalled.
 const STALL: u32 = 1000;
@@ -46,8 +46,7 @@ pub struct Pgs<const D: usize> {
     slips: Vec<f64>,
     velocities: Vec<Vector<D>>,
     best: Vec<Vector<D>>,
-    /// A dense problem's blocks.
-    gathered: BlockSparse<D>,
+    rows: Rows<D>,
 }
 
 impl<const D: usize> Default for Pgs<D> {
@@ -69,7 +68,7 @@ impl<const D: usize> Pgs<D> {
             slips: Vec::new(),
             velocities: Vec::new(),
             best: Vec::new(),
-            gathered: BlockSparse::default(),
+            rows: Rows::default(),
         }
     }
 
@@ -94,12 +93,11 @@ impl<const D: usize> Pgs<D> {
 
     /// One sweep. Returns the square of how far the impulses went.
     #[inline]
-    fn sweep(&mut self, q: &[Vector<D>], mu: &[f64], p: &mut [Vector<D>], row: &impl Row<D>) -> f64 {
+    fn sweep(&mut self, q: &[Vector<D>], mu: &[f64], p: &mut [Vector<D>], rows: &impl Others<D>) -> f64 {
         let mut moved = 0.0;
         for (i, (local, slip)) in self.locals.iter().zip(&mut self.slips).enumerate() {
-            // Without its own impulse the row's product is that of the others.
-            let old = std::mem::replace(&mut p[i], Vector::zeros());
-            let others = q[i] + row.product(i, p);
+            let old = p[i];
+            let others = q[i] + rows.product(i, p);
             let mut new = local.solve(&others, slip).unwrap_or_else(|| local.step(&others, &old));
             if self.relaxation != 1.0 {
                 new = project(&(old + (new - old) * self.relaxation), mu[i]);
@@ -110,9 +108,9 @@ impl<const D: usize> Pgs<D> {
         moved
     }
 
-    fn judged(&mut self, problem: &ContactProblem<'_, D>, p: &[Vector<D>], row: &impl Row<D>) -> Residual {
-        for (i, (u, q)) in self.velocities.iter_mut().zip(problem.q()).enumerate() {
-            *u = q + row.product(i, p);
+    fn judged(&mut self, problem: &ContactProblem<'_, D>, p: &mut [Vector<D>], rows: &impl Others<D>) -> Residual {
+        for (i, (u, local)) in self.velocities.iter_mut().zip(&self.locals).enumerate() {
+            *u = problem.q()[i] + local.block() * p[i] + rows.product(i, p);
         }
         judge_velocities(problem, p, &self.velocities)
     }
@@ -122,7 +120,7 @@ impl<const D: usize> Pgs<D> {
         problem: &ContactProblem<'_, D>,
         stop: &Stop<'_>,
         p: &mut [Vector<D>],
-        row: &impl Row<D>,
+        rows: &impl Others<D>,
     ) -> Outcome {
         let (q, mu) = (problem.q(), problem.mu());
         for x in p.iter_mut() {
@@ -134,7 +132,7 @@ impl<const D: usize> Pgs<D> {
         let start_is_zero = p.iter().all(|x| x.iter().all(|&c| c == 0.0));
         let skip = start_is_zero && stop.max_iterations > 0 && q.iter().any(|q| q[0] < 0.0);
         let unknown = Residual { global: f64::INFINITY, worst: f64::INFINITY, worst_contact: 0 };
-        let mut residual = if skip { unknown } else { self.judged(problem, p, row) };
+        let mut residual = if skip { unknown } else { self.judged(problem, p, rows) };
         let mut best = (residual, 0);
         self.best.extend_from_slice(p);
         let (mut sweep, mut judged_at) = (0, 0);
@@ -157,9 +155,9 @@ impl<const D: usize> Pgs<D> {
             if stop.cancelled() {
                 break Status::Cancelled;
             }
-            let latest = (judged_at + CHECK.max(judged_at / CHECK)).min(stop.max_iterations);
+            let latest = (judged_at + CHECK.max(judged_at / 8)).min(stop.max_iterations);
             loop {
-                moved = self.sweep(q, mu, p, row);
+                moved = self.sweep(q, mu, p, rows);
                 sweep += 1;
                 // Written so that a NaN is judged.
                 if sweep >= latest || moved == 0.0 || !(moved.sqrt() * ratio > stop.tolerance) || sweep == 1 {
@@ -170,7 +168,7 @@ impl<const D: usize> Pgs<D> {
                 }
             }
             judged_at = sweep;
-            residual = self.judged(problem, p, row);
+            residual = self.judged(problem, p, rows);
             ratio = residual.global / moved.sqrt();
             if residual.global < best.0.global {
                 best = (residual, sweep);
@@ -179,40 +177,33 @@ impl<const D: usize> Pgs<D> {
         };
         if !(residual.global <= best.0.global) {
             p.copy_from_slice(&self.best);
-            residual = if best.0.global.is_finite() { best.0 } else { self.judged(problem, p, row) };
+            residual = if best.0.global.is_finite() { best.0 } else { self.judged(problem, p, rows) };
         }
         Outcome::new(status, Self::NAME, sweep, residual)
     }
 }
 
-/// A way to `Σ_j H_ij p_j`.
-trait Row<const D: usize> {
-    fn product(&self, i: usize, p: &[Vector<D>]) -> Vector<D>;
+/// A way to `Σ_{j≠i} H_ij p_j`.
+trait Others<const D: usize> {
+    fn product(&self, i: usize, p: &mut [Vector<D>]) -> Vector<D>;
 }
 
-impl<const D: usize> Row<D> for BlockSparse<D> {
-    #[inline]
-    fn product(&self, i: usize, p: &[Vector<D>]) -> Vector<D> {
-        let range = self.range(i);
-        // A sum for each column of the blocks, so that no addition waits for the one before in its block.
-        let mut sums = [[0.0; D]; D];
-        for (h, &j) in self.blocks()[range.clone()].iter().zip(&self.columns()[range]) {
-            for (sum, (column, &p)) in sums.iter_mut().zip(h.data.0.iter().zip(p[j].data.0[0].iter())) {
-                for (s, h) in sum.iter_mut().zip(column) {
-                    *s += h * p;
-                }
-            }
-        }
-        Vector::from_fn(|r, _| sums.iter().map(|sum| sum[r]).sum())
+impl<const D: usize> Others<D> for Rows<D> {
+    #[inline(always)]
+    fn product(&self, i: usize, p: &mut [Vector<D>]) -> Vector<D> {
+        Rows::product(self, i, p)
     }
 }
 
 /// A product that is never formed.
 struct Unformed<'a, const D: usize>(&'a dyn teeter_contact::DelassusOperator<D>);
 
-impl<const D: usize> Row<D> for Unformed<'_, D> {
-    fn product(&self, i: usize, p: &[Vector<D>]) -> Vector<D> {
-        self.0.row_product(i, p)
+impl<const D: usize> Others<D> for Unformed<'_, D> {
+    fn product(&self, i: usize, p: &mut [Vector<D>]) -> Vector<D> {
+        let own = std::mem::replace(&mut p[i], Vector::zeros());
+        let product = self.0.row_product(i, p);
+        p[i] = own;
+        product
     }
 }
 
@@ -231,22 +222,19 @@ impl<const D: usize> ContactSolver<D> for Pgs<D> {
         self.slips.reserve(more(self.slips.len()));
         self.velocities.reserve(more(self.velocities.len()));
         self.best.reserve(more(self.best.len()));
-        self.gathered.reserve(contacts, blocks);
+        self.rows.reserve(contacts, blocks);
     }
 
     fn solve(&mut self, problem: &ContactProblem<'_, D>, stop: &Stop<'_>, p: &mut [Vector<D>]) -> Outcome {
         self.prepare(problem);
-        match problem.delassus() {
-            Delassus::Blocks(h) => self.iterate(problem, stop, p, h),
-            Delassus::Operator(h) => self.iterate(problem, stop, p, &Unformed(h)),
-            _ => {
-                let mut gathered = std::mem::take(&mut self.gathered);
-                gathered.gather(problem);
-                let outcome = self.iterate(problem, stop, p, &gathered);
-                self.gathered = gathered;
-                outcome
-            }
+        if let Delassus::Operator(h) = problem.delassus() {
+            return self.iterate(problem, stop, p, &Unformed(h));
         }
+        let mut rows = std::mem::take(&mut self.rows);
+        rows.pack(problem);
+        let outcome = self.iterate(problem, stop, p, &rows);
+        self.rows = rows;
+        outcome
     }
 
     fn fork(&self) -> Box<dyn ContactSolver<D>> {
