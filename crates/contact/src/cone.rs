@@ -6,9 +6,13 @@ use crate::Vector;
 #[inline]
 pub(crate) fn tangential_norm<const D: usize>(x: &Vector<D>) -> f64 {
     if D == 2 {
-        x[1].abs()
+        return x[1].abs();
+    }
+    let square: f64 = x.iter().skip(1).map(|c| c * c).sum();
+    if square > 1e-280 && square < 1e280 {
+        square.sqrt()
     } else {
-        // `hypot` neither overflows nor underflows where the plain square does.
+        // `hypot` neither overflows nor underflows where the plain square does; it is slow.
         x.iter().skip(1).fold(0.0, |norm: f64, &c| norm.hypot(c))
     }
 }
