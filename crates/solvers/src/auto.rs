@@ -1,36 +1,32 @@
 //! The choice for those who don't want to choose.
 //!
-//! Contacts that don't feel each other (blocks that stand apart on the ground) are problems of their own: the problem is
-//! split along the zero blocks of H, each part of up to three contacts is enumerated, a larger one goes to Gauss–Seidel.
-//! A part that is still small gets some more sweeps than the tolerance asks for: they cost little there, and the motion of
-//! a few blocks is then as exact as an enumerated one.
+//! Contacts that don't feel each other (blocks that stand apart on the ground) are problems of their own: a dense problem is
+//! split along the zero blocks of H. Up to three plane contacts are enumerated; the rest goes along a [chain](crate::chain)
+//! of methods until the judge is satisfied.
 
-use crate::{Enumeration, Pgs};
-use nalgebra::{Matrix2, Vector2};
-use teeter_contact::{ContactProblem, ContactSolver, Delassus, Law, Outcome, Status, Stop, judge};
+use crate::Enumeration;
+use crate::chain::Chain;
+use teeter_contact::{Block, ContactProblem, ContactSolver, Delassus, Law, Outcome, Status, Stop, Vector, judge};
 
-/// A part of up to so many contacts is polished.
-const SMALL: usize = 12;
+/// An exact method for a few contacts: what it found, if the judge is satisfied.
+type Small<const D: usize> = fn(&ContactProblem<'_, D>, &Stop<'_>, &mut [Vector<D>]) -> Option<Outcome>;
 
-/// Sweeps of the polish, and the residual at which it is good enough: some tens of roundings.
-const POLISH: Stop<'static> = Stop { tolerance: 1e-14, max_iterations: 200, cancel: None };
-
-/// The solver that chooses; see the [crate's table](crate). `iterations` are those of the part that took most.
+/// The solver that chooses; see the [crate's table](crate). `used` of the outcome says which method gave the result;
+/// `iterations` are all that were taken, of the part that took most.
 #[derive(Clone, Debug, Default)]
-pub struct Auto {
+pub struct Auto<const D: usize> {
+    chain: Chain<D>,
     /// The part that each contact belongs to.
     part: Vec<usize>,
     /// The contacts of the part at hand, and its problem.
     members: Vec<usize>,
-    h: Vec<Matrix2<f64>>,
-    q: Vec<Vector2<f64>>,
+    h: Vec<Block<D>>,
+    q: Vec<Vector<D>>,
     mu: Vec<f64>,
-    p: Vec<Vector2<f64>>,
-    best: Vec<Vector2<f64>>,
-    pgs: Pgs<2>,
+    p: Vec<Vector<D>>,
 }
 
-impl Auto {
+impl<const D: usize> Auto<D> {
     /// The name by which users choose it.
     pub const NAME: &'static str = "auto";
 
@@ -42,7 +38,7 @@ impl Auto {
 
     /// Numbers the parts of a dense problem: contacts coupled by a non-zero block, either way, belong together. Returns
     /// how many there are.
-    fn split(&mut self, blocks: &[Matrix2<f64>], n: usize) -> usize {
+    fn split(&mut self, blocks: &[Block<D>], n: usize) -> usize {
         const NONE: usize = usize::MAX;
         self.part.clear();
         self.part.resize(n, NONE);
@@ -56,7 +52,8 @@ impl Auto {
             self.members.push(seed);
             while let Some(i) = self.members.pop() {
                 for j in 0..n {
-                    let coupled = blocks[i * n + j] != Matrix2::zeros() || blocks[j * n + i] != Matrix2::zeros();
+                    let zero = Block::<D>::zeros();
+                    let coupled = blocks[i * n + j] != zero || blocks[j * n + i] != zero;
                     if self.part[j] == NONE && coupled {
                         self.part[j] = parts;
                         self.members.push(j);
@@ -71,11 +68,12 @@ impl Auto {
     /// Solves one part on its own, from and into the impulses of all.
     fn solve_part(
         &mut self,
-        problem: &ContactProblem<'_, 2>,
-        blocks: &[Matrix2<f64>],
+        problem: &ContactProblem<'_, D>,
+        blocks: &[Block<D>],
         part: usize,
+        small: Small<D>,
         stop: &Stop<'_>,
-        all: &mut [Vector2<f64>],
+        all: &mut [Vector<D>],
     ) -> Option<Outcome> {
         let n = all.len();
         self.members.clear();
@@ -91,78 +89,35 @@ impl Auto {
             self.p.push(all[i]);
         }
         let own = ContactProblem::new(Delassus::Dense(&self.h), &self.q, &self.mu).ok()?;
-        let outcome = solve_connected(&own, stop, &mut self.p, &mut self.best, &mut self.pgs);
+        let outcome = match small(&own, stop, &mut self.p) {
+            Some(outcome) => outcome,
+            None => self.chain.solve(&own, stop, &mut self.p),
+        };
         for (&i, p) in self.members.iter().zip(&self.p) {
             all[i] = *p;
         }
         Some(outcome)
     }
-}
 
-/// Solves a problem whose contacts all feel each other.
-fn solve_connected(
-    problem: &ContactProblem<'_, 2>,
-    stop: &Stop<'_>,
-    p: &mut [Vector2<f64>],
-    best: &mut Vec<Vector2<f64>>,
-    pgs: &mut Pgs<2>,
-) -> Outcome {
-    if p.len() <= Enumeration::MAX_CONTACTS {
-        let outcome = Enumeration.solve(problem, stop, p);
-        if outcome.converged() {
+    fn solve_with(
+        &mut self,
+        problem: &ContactProblem<'_, D>,
+        small: Small<D>,
+        stop: &Stop<'_>,
+        p: &mut [Vector<D>],
+    ) -> Outcome {
+        if let Some(outcome) = small(problem, stop, p) {
             return outcome;
         }
-    }
-    let mut outcome = pgs.solve(problem, stop, p);
-    if outcome.converged() && p.len() <= SMALL {
-        best.clear();
-        best.extend_from_slice(p);
-        let polished = pgs.solve(problem, &POLISH, p);
-        outcome.iterations += polished.iterations;
-        if polished.residual.global <= outcome.residual.global {
-            outcome.residual = polished.residual;
-        } else {
-            p.copy_from_slice(best);
-        }
-    }
-    outcome
-}
-
-impl ContactSolver<2> for Auto {
-    fn name(&self) -> &'static str {
-        Self::NAME
-    }
-
-    fn law(&self) -> Law {
-        Law::Exact
-    }
-
-    fn reserve(&mut self, contacts: usize, _blocks: usize) {
-        self.part.reserve(contacts);
-        self.members.reserve(contacts);
-        self.h.reserve(contacts * contacts);
-        self.q.reserve(contacts);
-        self.mu.reserve(contacts);
-        self.p.reserve(contacts);
-        self.best.reserve(contacts);
-        self.pgs.reserve(contacts, contacts * contacts);
-    }
-
-    fn solve(&mut self, problem: &ContactProblem<'_, 2>, stop: &Stop<'_>, p: &mut [Vector2<f64>]) -> Outcome {
         let n = problem.contacts();
-        let Delassus::Dense(blocks) = problem.delassus() else {
-            return solve_connected(problem, stop, p, &mut self.best, &mut self.pgs);
-        };
-        if n <= Enumeration::MAX_CONTACTS {
-            return solve_connected(problem, stop, p, &mut self.best, &mut self.pgs);
-        }
+        let Delassus::Dense(blocks) = problem.delassus() else { return self.chain.solve(problem, stop, p) };
         let parts = self.split(blocks, n);
-        if parts == 1 {
-            return solve_connected(problem, stop, p, &mut self.best, &mut self.pgs);
+        if parts <= 1 {
+            return self.chain.solve(problem, stop, p);
         }
         let (mut used, mut iterations) = (Enumeration::NAME, 0);
         for part in 0..parts {
-            let Some(outcome) = self.solve_part(problem, blocks, part, stop, p) else { continue };
+            let Some(outcome) = self.solve_part(problem, blocks, part, small, stop, p) else { continue };
             iterations = iterations.max(outcome.iterations);
             if outcome.used != Enumeration::NAME {
                 used = outcome.used;
@@ -173,7 +128,39 @@ impl ContactSolver<2> for Auto {
         if residual.global <= stop.tolerance {
             return Outcome::new(Status::Converged, used, iterations, residual);
         }
-        solve_connected(problem, stop, p, &mut self.best, &mut self.pgs)
+        self.chain.solve(problem, stop, p)
+    }
+
+    fn reserve_all(&mut self, contacts: usize, blocks: usize) {
+        self.chain.reserve(contacts, blocks);
+        self.part.reserve(contacts);
+        self.members.reserve(contacts);
+        self.h.reserve(contacts * contacts);
+        self.q.reserve(contacts);
+        self.mu.reserve(contacts);
+        self.p.reserve(contacts);
+    }
+}
+
+impl ContactSolver<2> for Auto<2> {
+    fn name(&self) -> &'static str {
+        Self::NAME
+    }
+
+    fn law(&self) -> Law {
+        Law::Exact
+    }
+
+    fn reserve(&mut self, contacts: usize, blocks: usize) {
+        self.reserve_all(contacts, blocks);
+    }
+
+    fn solve(&mut self, problem: &ContactProblem<'_, 2>, stop: &Stop<'_>, p: &mut [Vector<2>]) -> Outcome {
+        let enumerate: Small<2> = |problem, stop, p| {
+            let few = p.len() <= Enumeration::MAX_CONTACTS;
+            few.then(|| Enumeration.solve(problem, stop, p)).filter(Outcome::converged)
+        };
+        self.solve_with(problem, enumerate, stop, p)
     }
 
     fn fork(&self) -> Box<dyn ContactSolver<2>> {
@@ -181,14 +168,38 @@ impl ContactSolver<2> for Auto {
     }
 }
 
+impl ContactSolver<3> for Auto<3> {
+    fn name(&self) -> &'static str {
+        Self::NAME
+    }
+
+    fn law(&self) -> Law {
+        Law::Exact
+    }
+
+    fn reserve(&mut self, contacts: usize, blocks: usize) {
+        self.reserve_all(contacts, blocks);
+    }
+
+    fn solve(&mut self, problem: &ContactProblem<'_, 3>, stop: &Stop<'_>, p: &mut [Vector<3>]) -> Outcome {
+        self.solve_with(problem, |_, _, _| None, stop, p)
+    }
+
+    fn fork(&self) -> Box<dyn ContactSolver<3>> {
+        Box::new(Self::new())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use teeter_contact::conformance::{Case, body_on_floor, plane_cases, run};
+    use nalgebra::{Matrix2, Vector2};
+    use teeter_contact::conformance::{Case, body_on_floor, plane_cases, run, space_cases};
 
     #[test]
     fn conforms() {
-        run(&mut Auto::new(), &plane_cases(), 1e-12).unwrap();
+        run(&mut Auto::<2>::new(), &plane_cases(), 1e-12).unwrap();
+        run(&mut Auto::<3>::new(), &space_cases(), 1e-12).unwrap();
     }
 
     fn outcome(case: &Case<2>) -> (Outcome, Vec<Vector2<f64>>) {

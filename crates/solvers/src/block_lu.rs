@@ -9,20 +9,26 @@
 //! A general sparse LU that pivots between rows orders by the pattern of AᵀA and fills in two to ten times as much on
 //! these structurally symmetric matrices, and it has no notion of a left-out contact.
 
+use crate::ordering::{NATURAL, Ordering};
 use nalgebra::SMatrix;
 use teeter_contact::{Block, BlockSparse, Vector};
 
 /// The analysis and the factors `A = L U` in the order of elimination; L has unit diagonal blocks.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(crate) struct BlockLu<const D: usize> {
-    /// The pattern analysed.
-    analysed: Option<BlockSparse<D>>,
+    /// The pattern analysed: start of each row, and columns.
+    known_start: Vec<usize>,
+    known_columns: Vec<usize>,
+    ordering: Ordering,
     /// `order[k]` is the contact eliminated at step k, `place` its inverse.
     order: Vec<usize>,
     place: Vec<usize>,
     /// Structure of column k of L below the diagonal (and, mirrored, of row k of U): `below[start[k]..start[k + 1]]`.
     start: Vec<usize>,
     below: Vec<usize>,
+    /// The elimination tree as lists: the first child of each column, and the next of the same parent.
+    first_child: Vec<usize>,
+    sibling: Vec<usize>,
     /// For each step j, the earlier columns k that reach it: (k, index of j in `below`).
     reach_start: Vec<usize>,
     reach: Vec<(usize, usize)>,
@@ -36,29 +42,66 @@ pub(crate) struct BlockLu<const D: usize> {
     rhs: Vec<Vector<D>>,
 }
 
+/// A clone has the memory of its own to build: analysis and factors belong to the problems that were solved.
+impl<const D: usize> Clone for BlockLu<D> {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+const NONE: usize = usize::MAX;
+
+/// Sets a vector to `n` times `value`, in memory that is kept.
+fn refill<T: Clone>(x: &mut Vec<T>, n: usize, value: T) {
+    x.clear();
+    x.resize(n, value);
+}
+
 impl<const D: usize> BlockLu<D> {
+    /// Makes room for `contacts` contacts; how much they fill in is known for few of them only.
+    pub(crate) fn reserve(&mut self, contacts: usize, blocks: usize) {
+        let filled = if contacts <= NATURAL { contacts * contacts / 2 } else { blocks };
+        let more = |len: usize, wanted: usize| wanted.saturating_sub(len);
+        for x in [&mut self.known_start, &mut self.start, &mut self.reach_start] {
+            x.reserve(more(x.len(), contacts + 1));
+        }
+        for x in [&mut self.order, &mut self.place, &mut self.first_child, &mut self.sibling, &mut self.map] {
+            x.reserve(more(x.len(), contacts));
+        }
+        self.known_columns.reserve(more(self.known_columns.len(), blocks));
+        self.below.reserve(more(self.below.len(), filled));
+        self.reach.reserve(more(self.reach.len(), filled));
+        self.lower.reserve(more(self.lower.len(), filled));
+        self.upper.reserve(more(self.upper.len(), filled));
+        self.pivot.reserve(more(self.pivot.len(), contacts));
+        self.pivot_inverse.reserve(more(self.pivot_inverse.len(), contacts));
+        self.active.reserve(more(self.active.len(), contacts));
+        self.rhs.reserve(more(self.rhs.len(), contacts));
+        self.ordering.reserve(contacts, blocks);
+    }
+
     /// Analyses the pattern of `h`, unless it is the one analysed last. Returns whether it had to.
     pub(crate) fn analyse(&mut self, h: &BlockSparse<D>) -> bool {
-        if self.analysed.as_ref().is_some_and(|known| known.same_pattern(h)) {
+        let n = h.contacts();
+        let same_start = self.known_start.len() == n && (0..n).all(|i| h.range(i).end == self.known_start[i]);
+        if same_start && self.known_columns == h.columns() {
             return false;
         }
-        let n = h.contacts();
-        let pattern = symmetric_pattern(h);
-        self.order = fill_reducing_order(&pattern);
-        self.place = vec![0; n];
-        for (k, &i) in self.order.iter().enumerate() {
-            self.place[i] = k;
-        }
-        self.eliminate_symbolically(&pattern);
+        self.known_start.clear();
+        self.known_start.extend((0..n).map(|i| h.range(i).end));
+        self.known_columns.clear();
+        self.known_columns.extend_from_slice(h.columns());
+        self.ordering.neighbours_of(h);
+        self.ordering.order(&mut self.order, &mut self.place);
+        self.eliminate_symbolically();
         let filled = self.below.len();
-        self.lower = vec![Block::zeros(); filled];
-        self.upper = vec![Block::zeros(); filled];
-        self.pivot = vec![Block::zeros(); n];
-        self.pivot_inverse = vec![Block::zeros(); n];
-        self.active = vec![false; n];
-        self.map = vec![0; n];
-        self.rhs = vec![Vector::zeros(); n];
-        self.analysed = Some(h.clone());
+        refill(&mut self.lower, filled, Block::zeros());
+        refill(&mut self.upper, filled, Block::zeros());
+        refill(&mut self.pivot, n, Block::zeros());
+        refill(&mut self.pivot_inverse, n, Block::zeros());
+        refill(&mut self.active, n, false);
+        refill(&mut self.map, n, 0);
+        refill(&mut self.rhs, n, Vector::zeros());
         true
     }
 
@@ -74,51 +117,57 @@ impl<const D: usize> BlockLu<D> {
 
     /// The structure of each column is what the pattern holds below it and what its children in the elimination tree
     /// pass on.
-    fn eliminate_symbolically(&mut self, pattern: &[Vec<usize>]) {
-        let n = pattern.len();
-        let mut children: Vec<Vec<usize>> = vec![Vec::new(); n];
-        let mut mark = vec![usize::MAX; n];
-        self.start = vec![0];
+    fn eliminate_symbolically(&mut self) {
+        let n = self.order.len();
+        refill(&mut self.first_child, n, NONE);
+        refill(&mut self.sibling, n, NONE);
+        // Which column last took a row in.
+        refill(&mut self.map, n, NONE);
+        self.start.clear();
+        self.start.push(0);
         self.below.clear();
         for k in 0..n {
-            mark[k] = k;
             let first = self.below.len();
-            for &j in &pattern[self.order[k]] {
+            for &j in self.ordering.neighbours(self.order[k]) {
                 let j = self.place[j];
-                if j > k && mark[j] != k {
-                    mark[j] = k;
+                if j > k && self.map[j] != k {
+                    self.map[j] = k;
                     self.below.push(j);
                 }
             }
-            for &child in &children[k] {
+            let mut child = self.first_child[k];
+            while child != NONE {
                 for at in self.start[child]..self.start[child + 1] {
                     let j = self.below[at];
-                    if j > k && mark[j] != k {
-                        mark[j] = k;
+                    if j > k && self.map[j] != k {
+                        self.map[j] = k;
                         self.below.push(j);
                     }
                 }
+                child = self.sibling[child];
             }
             self.below[first..].sort_unstable();
             if let Some(&parent) = self.below.get(first) {
-                children[parent].push(k);
+                self.sibling[k] = self.first_child[parent];
+                self.first_child[parent] = k;
             }
             self.start.push(self.below.len());
         }
-        let mut count = vec![0; n + 1];
+        refill(&mut self.reach_start, n + 1, 0);
         for &j in &self.below {
-            count[j + 1] += 1;
+            self.reach_start[j + 1] += 1;
         }
         for j in 0..n {
-            count[j + 1] += count[j];
+            self.reach_start[j + 1] += self.reach_start[j];
         }
-        self.reach_start = count.clone();
-        self.reach = vec![(0, 0); self.below.len()];
+        refill(&mut self.reach, self.below.len(), (0, 0));
+        // `map` counts what has been entered.
+        self.map.copy_from_slice(&self.reach_start[..n]);
         for k in 0..n {
             for at in self.start[k]..self.start[k + 1] {
-                let j = self.below[at];
-                self.reach[count[j]] = (k, at);
-                count[j] += 1;
+                let entered = &mut self.map[self.below[at]];
+                self.reach[*entered] = (k, at);
+                *entered += 1;
             }
         }
     }
@@ -241,44 +290,67 @@ fn invert<const D: usize>(a: &SMatrix<f64, D, D>) -> Option<SMatrix<f64, D, D>> 
     inverse.iter().all(|c| c.is_finite()).then_some(inverse)
 }
 
-/// The neighbours of each contact, either way round, ascending, without itself.
-fn symmetric_pattern<const D: usize>(h: &BlockSparse<D>) -> Vec<Vec<usize>> {
-    let mut pattern: Vec<Vec<usize>> = vec![Vec::new(); h.contacts()];
-    for i in 0..h.contacts() {
-        for (j, _) in h.row(i).filter(|&(j, _)| j != i) {
-            pattern[i].push(j);
-            pattern[j].push(i);
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::DMatrix;
+
+    /// A ring of contacts with some chords, and a few one-way blocks; diagonally heavy.
+    fn matrix(n: usize) -> BlockSparse<3> {
+        let value = |i: usize, j: usize, k: usize| ((i * 31 + j * 17 + k * 7) as f64).sin();
+        let coupled = |i: usize, j: usize| i.abs_diff(j) <= 1 || i.abs_diff(j) == n - 1 || (i * j) % 11 == 5;
+        let block = |i: usize, j: usize| {
+            let b = Block::<3>::from_fn(|r, c| value(i, j, 3 * r + c));
+            if i == j { b + Block::identity() * 12.0 } else { b }
+        };
+        let row = |i: usize| (0..n).filter(|&j| j == i || coupled(i, j)).map(|j| (j, block(i, j))).collect();
+        BlockSparse::from_rows(&(0..n).map(row).collect::<Vec<_>>()).unwrap()
+    }
+
+    #[test]
+    fn solves_what_a_dense_factorisation_solves() {
+        for n in [1, 2, 7, 60] {
+            let h = matrix(n);
+            let mut lu = BlockLu::default();
+            assert!(lu.analyse(&h) && !lu.analyse(&h));
+            // Every third contact is left out.
+            for active in [|_: usize| true, |i: usize| i % 3 != 2] {
+                assert!(lu.factorise(&h, active, |_, t| h.blocks()[t]));
+                let b: Vec<_> = (0..n).map(|i| Vector::<3>::new(1.0, i as f64, -0.5)).collect();
+                let mut x = b.clone();
+                lu.solve(&mut x);
+                let dense = DMatrix::from_fn(3 * n, 3 * n, |r, c| match h.block(r / 3, c / 3) {
+                    Some(block) if active(r / 3) && active(c / 3) => block[(r % 3, c % 3)],
+                    _ => f64::from(u8::from(r == c)),
+                });
+                let right = nalgebra::DVector::from_fn(3 * n, |r, _| b[r / 3][r % 3]);
+                let expected = dense.lu().solve(&right).unwrap();
+                for r in 0..3 * n {
+                    assert!((x[r / 3][r % 3] - expected[r]).abs() < 1e-12 * expected.norm());
+                }
+            }
         }
     }
-    for neighbours in &mut pattern {
-        neighbours.sort_unstable();
-        neighbours.dedup();
-    }
-    pattern
-}
 
-#[cfg(feature = "sparse")]
-fn fill_reducing_order(pattern: &[Vec<usize>]) -> Vec<usize> {
-    use faer::dyn_stack::{MemBuffer, MemStack};
-    use faer::sparse::{SymbolicSparseColMatRef, linalg::amd};
-    let n = pattern.len();
-    let natural: Vec<usize> = (0..n).collect();
-    let mut start = vec![0];
-    let mut rows = Vec::new();
-    for (k, neighbours) in pattern.iter().enumerate() {
-        rows.extend(neighbours.iter().copied().filter(|&j| j <= k));
-        start.push(rows.len());
+    #[test]
+    fn a_singular_pivot_is_reported() {
+        let h = BlockSparse::from_rows(&[vec![(0, Block::<2>::zeros())]]).unwrap();
+        let mut lu = BlockLu::default();
+        lu.analyse(&h);
+        assert!(!lu.factorise(&h, |_| true, |_, t| h.blocks()[t]));
     }
-    let upper = SymbolicSparseColMatRef::new_checked(n, n, &start, None, &rows);
-    let mut memory = MemBuffer::new(amd::order_scratch::<usize>(n, rows.len()));
-    let (mut order, mut place) = (natural.clone(), natural.clone());
-    match amd::order(&mut order, &mut place, upper, amd::Control::default(), MemStack::new(&mut memory)) {
-        Ok(_) => order,
-        Err(_) => natural,
-    }
-}
 
-#[cfg(not(feature = "sparse"))]
-fn fill_reducing_order(pattern: &[Vec<usize>]) -> Vec<usize> {
-    (0..pattern.len()).collect()
+    #[test]
+    fn filling_in_is_what_the_pattern_needs() {
+        // A chain fills nothing in, in whatever order a good ordering takes it.
+        let n = 100;
+        let row = |i: usize| {
+            let near = |j: &usize| j.abs_diff(i) <= 1;
+            (0..n).filter(near).map(|j| (j, Block::<3>::identity())).collect()
+        };
+        let h = BlockSparse::from_rows(&(0..n).map(row).collect::<Vec<_>>()).unwrap();
+        let mut lu = BlockLu::default();
+        lu.analyse(&h);
+        assert_eq!(lu.filled_blocks(), h.blocks().len());
+    }
 }

@@ -1,6 +1,6 @@
 //! The solvers by name, for programs that let their users choose.
 
-use crate::{Auto, Enumeration, Pgs};
+use crate::{Auto, Enumeration, Newton, Pgs, Prox, Smoothing};
 use teeter_contact::{ContactSolver, Law};
 
 /// What a user wants to know of a solver before choosing it.
@@ -22,10 +22,10 @@ pub struct SolverInfo {
 /// All solvers of this crate.
 pub const SOLVERS: &[SolverInfo] = &[
     SolverInfo {
-        name: Auto::NAME,
-        dimensions: &[2],
+        name: Auto::<2>::NAME,
+        dimensions: &[2, 3],
         law: Law::Exact,
-        summary: "contacts that couple together: enumeration up to three, pgs above and where enumeration fails",
+        summary: "chooses: enumeration for few plane contacts, else pgs, newton, smoothing, prox until one succeeds",
         reference: "",
     },
     SolverInfo {
@@ -42,6 +42,27 @@ pub const SOLVERS: &[SolverInfo] = &[
         summary: "Gauss-Seidel over contacts with an exact local solve",
         reference: "Jean 1999, doi 10.1016/S0045-7825(98)00383-1",
     },
+    SolverInfo {
+        name: Newton::<2>::NAME,
+        dimensions: &[2, 3],
+        law: Law::Exact,
+        summary: "semi-smooth Newton with sparse LU, started and helped by sweeps of pgs",
+        reference: "Alart and Curnier 1991, doi 10.1016/0045-7825(91)90022-X",
+    },
+    SolverInfo {
+        name: Smoothing::<2>::NAME,
+        dimensions: &[2, 3],
+        law: Law::Exact,
+        summary: "Newton along the central path of the smoothed law, for degenerate problems",
+        reference: "Hayashi, Yamashita and Fukushima 2005, doi 10.1137/S1052623403421516",
+    },
+    SolverInfo {
+        name: Prox::<2>::NAME,
+        dimensions: &[2, 3],
+        law: Law::Exact,
+        summary: "proximal point around newton, for singular H",
+        reference: "Acary, Bremond and Huber 2018, doi 10.1007/978-3-319-75972-2_10",
+    },
 ];
 
 /// The plane solver of that name; `None` for an unknown one.
@@ -53,7 +74,10 @@ pub const SOLVERS: &[SolverInfo] = &[
 #[must_use]
 pub fn plane_solver(name: &str) -> Option<Box<dyn ContactSolver<2>>> {
     match name {
-        Auto::NAME => Some(Box::new(Auto::new())),
+        Auto::<2>::NAME => Some(Box::new(Auto::<2>::new())),
+        Newton::<2>::NAME => Some(Box::new(Newton::<2>::new())),
+        Smoothing::<2>::NAME => Some(Box::new(Smoothing::<2>::new())),
+        Prox::<2>::NAME => Some(Box::new(Prox::<2>::new())),
         Enumeration::NAME => Some(Box::new(Enumeration)),
         Pgs::<2>::NAME => Some(Box::new(Pgs::<2>::new())),
         _ => None,
@@ -69,6 +93,10 @@ pub fn plane_solver(name: &str) -> Option<Box<dyn ContactSolver<2>>> {
 #[must_use]
 pub fn space_solver(name: &str) -> Option<Box<dyn ContactSolver<3>>> {
     match name {
+        Auto::<3>::NAME => Some(Box::new(Auto::<3>::new())),
+        Newton::<3>::NAME => Some(Box::new(Newton::<3>::new())),
+        Smoothing::<3>::NAME => Some(Box::new(Smoothing::<3>::new())),
+        Prox::<3>::NAME => Some(Box::new(Prox::<3>::new())),
         Pgs::<3>::NAME => Some(Box::new(Pgs::<3>::new())),
         _ => None,
     }

@@ -23,19 +23,26 @@
 mod auto;
 mod block_lu;
 mod catalogue;
+mod chain;
 mod enumeration;
 mod least_norm;
+mod linearised;
 mod newton;
 mod local;
 mod one_contact;
 mod one_contact_space;
+mod ordering;
 mod pgs;
 mod smoothing;
+mod prox;
 mod rows;
+mod scaled;
+mod smooth_map;
 
 pub use auto::Auto;
 pub use catalogue::{SOLVERS, SolverInfo, plane_solver, space_solver};
 pub use enumeration::Enumeration;
 pub use newton::Newton;
 pub use pgs::Pgs;
+pub use prox::Prox;
 pub use smoothing::Smoothing;

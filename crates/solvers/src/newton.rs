@@ -1,37 +1,60 @@
-//! Semi-smooth Newton.
+//! Semi-smooth Newton's method on the law written as equations.
+//!
+//! **What it solves**: exact Signorini–Coulomb in the plane and in space; H may be asymmetric or singular.
+//!
+//! **How**: Alart and Curnier's formulation (1991, doi 10.1016/0045-7825(91)90022-X) in the variables (p, u): each contact is open, sticks or
+//! slides at the iterate, and gives D linear equations of that state; a Newton step solves them for all contacts that
+//! press. Slides are linearised with their direction. The equations of sticking contacts are singular where bodies are held
+//! more than once (hyperstatic): H + εI stands in the place of H, which takes of all corrections nearly the smallest. A
+//! step is shortened until the judge's residual falls.
+//!
+//! **When to take it**: for accuracy, where Gauss–Seidel crawls: from a start that is right about most states it needs three to
+//! ten steps to rounding.
+//!
+//! **Cost**: one sparse LU of the blocks of the pressing contacts a step (`block_lu.rs`); its analysis is kept while the pattern stays.
+//!
+//! **How it fails**: contacts on the border between states can make it cycle or the residual rise along every step. Then it
+//! hands over to a batch of Gauss–Seidel sweeps, each time twice as many, and ends as `stalled` after some of those rounds. Where many contacts
+//! are degenerate, [`Smoothing`](crate::Smoothing) goes through.
+//!
+//! Departures from the paper:
+//! - The equations are Newton's for (p, u), not for (displacement, p) of a mesh: there are no other unknowns here.
+//! - Open contacts leave the linear system altogether.
+//! - The globalisation: regularisation raised while steps fail, lowered while they succeed (Levenberg–Marquardt's rule),
+//!   backtracking on the judge's residual, Gauss–Seidel ([`Pgs`]) before and between. The paper has none.
 
+use crate::Pgs;
 use crate::block_lu::BlockLu;
-use nalgebra::SMatrix;
-use teeter_contact::{
-    Block, BlockSparse, ContactProblem, ContactSolver, Law, Outcome, Status, Stop, Vector, de_saxce, judge, project,
-};
+use crate::linearised::{Row, linearise};
+use crate::scaled::{Scaled, clear, make_finite, reserve};
+use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, Status, Stop, Vector, judge};
 
-/// Newton's method.
+/// Gauss–Seidel sweeps before the first steps; twice as many before the next ones, and so on.
+const SWEEPS: u32 = 20;
+/// Rounds of sweeps and steps after which the iteration counts as stalled.
+const ROUNDS: u32 = 8;
+/// Most steps of a round.
+const STEPS: u32 = 12;
+/// Failed steps in a row that end a round.
+const FAILURES: u32 = 3;
+/// The regularisation ε at the start of a round, its bounds, relative to the mean of H's diagonal; and its factors.
+const EPSILON: f64 = 1e-7;
+const LEAST_EPSILON: f64 = 1e-12;
+const MOST_EPSILON: f64 = 1e-1;
+const RAISED: f64 = 100.0;
+const LOWERED: f64 = 0.1;
+/// A step that leaves more than this of the residual has failed.
+const PROGRESS: f64 = 0.7;
+/// Lengths of a step that are tried: 1, ½, ¼, ⅛.
+const HALVINGS: u32 = 4;
+
+/// The semi-smooth Newton solver; see the [crate's table](crate). `iterations` counts Newton steps and the sweeps between them.
 #[derive(Clone, Debug, Default)]
 pub struct Newton<const D: usize> {
-    h: BlockSparse<D>,
-    q: Vec<Vector<D>>,
-    u: Vec<Vector<D>>,
-    change: Vec<Vector<D>>,
-    change_u: Vec<Vector<D>>,
-    trial: Vec<Vector<D>>,
-    trial_u: Vec<Vector<D>>,
-    rows: Vec<Row<D>>,
+    scaled: Scaled<D>,
+    steps: Steps<D>,
+    pgs: Pgs<D>,
     best: Vec<Vector<D>>,
-    lu: BlockLu<D>,
-    alpha: f64,
-    center: Vec<Vector<D>>,
-    /// debugging
-    pub log: bool,
-}
-
-/// One contact's part of the linearised law: `E δp + D (H δp) = right`.
-#[derive(Clone, Copy, Debug)]
-struct Row<const D: usize> {
-    open: bool,
-    of_p: Block<D>,
-    of_u: Block<D>,
-    right: Vector<D>,
 }
 
 impl<const D: usize> Newton<D> {
@@ -44,176 +67,42 @@ impl<const D: usize> Newton<D> {
         Self::default()
     }
 
-    fn burst(&mut self, p: &mut [Vector<D>], mu: &[f64], q_norm: f64, goal: f64, most: u32) -> (u32, f64) {
-        let n = p.len();
-        self.velocities(p);
-        let mut err = Self::residual(p, &self.u, mu, q_norm);
-        let mut its = 0;
-        while err > goal && its < most {
-            its += 1;
-            let smooth = std::env::var("SMOOTH").ok().and_then(|x| x.parse().ok()).unwrap_or(0);
-            if smooth > 0 {
-                for _ in 0..smooth { self.sweep(p, mu); }
-                self.velocities(p);
-                err = Self::residual(p, &self.u, mu, q_norm);
-                if self.log { println!("        smooth {its}: {err:.3e}"); }
-                if err <= goal { break; }
-            }
-            self.linearise(p, mu);
-            if !self.step(p) { break; }
-            let (mut best_step, mut best) = (0.0, f64::INFINITY);
-            let mut step = 1.0;
-            for _ in 0..6 {
-                for i in 0..n {
-                    self.trial[i] = p[i] + self.change[i] * step;
-                    self.trial_u[i] = self.u[i] + self.change_u[i] * step;
-                }
-                let e = Self::residual(&self.trial, &self.trial_u, mu, q_norm);
-                if e < best {
-                    (best, best_step) = (e, step);
-                }
-                if e < 0.9 * err || std::env::var("FULL").is_ok() { break; }
-                step *= 0.5;
-            }
-            if self.log { println!("        newton {its}: {err:.3e} -> {best:.3e} at {best_step}"); }
-            for i in 0..n {
-                p[i] = project(&(p[i] + self.change[i] * best_step), mu[i]);
-            }
-            self.velocities(p);
-            let before = err;
-            err = Self::residual(p, &self.u, mu, q_norm);
-            if !(err < 3.0 * before) && std::env::var("FULL").is_err() { break; }
-        }
-        (its, err)
+    /// A round of Newton steps alone, for solvers that bring their own globalisation. Leaves the best of its impulses in `p`.
+    pub(crate) fn round(
+        &mut self,
+        problem: &ContactProblem<'_, D>,
+        stop: &Stop<'_>,
+        p: &mut [Vector<D>],
+    ) -> Outcome {
+        self.scaled.load(problem);
+        let most = stop.max_iterations.min(STEPS);
+        let end = self.steps.round(&self.scaled, None, stop.tolerance, most, stop, p);
+        let residual = judge(problem, p);
+        let status = if residual.global <= stop.tolerance { Status::Converged } else { Status::Stalled };
+        Outcome::new(status, Self::NAME, end.steps, residual)
     }
 
-    fn velocities(&mut self, p: &[Vector<D>]) {
-        for i in 0..p.len() {
-            self.u[i] = self.h.row_product(i, p) + self.q[i] + (p[i] - self.center[i]) * self.alpha;
-        }
-    }
-
-    /// Natural map of the scaled problem: (norm of the map, norm of p).
-    fn residual(p: &[Vector<D>], u: &[Vector<D>], mu: &[f64], q_norm: f64) -> f64 {
-        let (mut map, mut size) = (0.0, 0.0);
-        for i in 0..p.len() {
-            map += (p[i] - project(&(p[i] - de_saxce(&u[i], mu[i])), mu[i])).norm_squared();
-            size += p[i].norm_squared();
-        }
-        map.sqrt() / size.sqrt().max(q_norm).max(1e-300)
-    }
-
-    fn linearise(&mut self, p: &[Vector<D>], mu: &[f64]) -> usize {
-        let mut changes = 0;
-        for i in 0..p.len() {
-            let h = self.h.diagonal(i);
-            let row = linearised(&p[i], &self.u[i], mu[i], &h);
-            changes += usize::from(row.open != self.rows[i].open);
-            self.rows[i] = row;
-        }
-        changes
-    }
-
-    /// Newton step.
-    fn step(&mut self, p: &[Vector<D>]) -> bool {
-        let n = p.len();
-        // Open contacts go to zero at once; the others feel it.
-        for i in 0..n {
-            self.change[i] = if self.rows[i].open { -p[i] } else { Vector::zeros() };
-        }
-        for i in 0..n {
-            if !self.rows[i].open {
-                let mut b = Vector::zeros();
-                for (j, h) in self.h.row(i) {
-                    if self.rows[j].open {
-                        b += h * self.change[j];
-                    }
-                }
-                self.trial[i] = self.rows[i].right - self.rows[i].of_u * b;
-            }
-        }
-        let epsilon = self.alpha;
-        let (rows, h) = (&self.rows, &self.h);
-        let done = self.lu.factorise(
-            h,
-            |i| !rows[i].open,
-            |i, t| {
-                let block = rows[i].of_u * h.blocks()[t];
-                if h.columns()[t] == i { block + rows[i].of_u * epsilon + rows[i].of_p } else { block }
-            },
-        );
-        if !done {
-            return false;
-        }
-        for i in 0..n {
-            if !self.rows[i].open {
-                self.change[i] = self.trial[i];
-            } 
-        }
-        self.lu.solve(&mut self.change);
-        for i in 0..n {
-            self.change_u[i] = self.h.row_product(i, &self.change) + self.change[i] * self.alpha;
-        }
-        self.change.iter().all(|c| c.iter().all(|x| x.is_finite()))
-    }
-
-    fn sweep(&mut self, p: &mut [Vector<D>], mu: &[f64]) {
-        for i in 0..p.len() {
-            let h = self.h.diagonal(i) + Block::identity() * self.alpha;
-            let u = self.h.row_product(i, p) + self.q[i] + (p[i] - self.center[i]) * self.alpha;
-            let mut x = p[i];
-            let omega = 1.0 / h.symmetric_part().norm();
-            let c = u - h * p[i];
-            for _ in 0..20 {
-                let y = project(&(x - de_saxce(&(h * x + c), mu[i]) * omega), mu[i]);
-                let d = (y - x).norm();
-                x = y;
-                if d < 1e-3 * x.norm() { break; }
-            }
-            p[i] = x;
+    /// The work of one step on this problem, with all contacts pressing.
+    pub(crate) fn work(&mut self, problem: &ContactProblem<'_, D>) -> Work {
+        self.scaled.load(problem);
+        self.steps.lu.analyse(&self.scaled.h);
+        Work {
+            blocks: self.scaled.h.blocks().len(),
+            filled: self.steps.lu.filled_blocks(),
+            products: self.steps.lu.block_products(),
         }
     }
 }
 
-fn linearised<const D: usize>(p: &Vector<D>, u: &Vector<D>, mu: f64, h: &Block<D>) -> Row<D> {
-    let mut row = Row { open: false, of_p: Block::zeros(), of_u: Block::identity(), right: -u };
-    let rho_n = 1.0 / h[(0, 0)];
-    let rho_t = (D - 1) as f64 / (h.trace() - h[(0, 0)]).max(1e-300);
-    let pressed = p[0] - rho_n * u[0];
-    if pressed <= 0.0 {
-        row.open = true;
-        return row;
-    }
-    let mut y = p - u * rho_t;
-    y[0] = 0.0;
-    let length = y.norm();
-    let bound = mu * pressed;
-    if length <= bound && mu > 0.0 {
-        return row;
-    }
-    // Slides.
-    let d = if length > 0.0 { y / length } else { y };
-    let kappa = if length > 0.0 { bound / length } else { 0.0 };
-    let mut perpendicular = SMatrix::<f64, D, D>::identity() - d * d.transpose();
-    perpendicular[(0, 0)] = 0.0;
-    row.of_u = perpendicular * (kappa * rho_t);
-    row.of_u[(0, 0)] = 1.0;
-    row.of_p = -perpendicular * kappa;
-    for a in 1..D {
-        row.of_p[(a, a)] += 1.0;
-        row.of_p[(a, 0)] -= mu * d[a];
-        row.right[a] = mu * p[0] * d[a] - p[a];
-    }
-    row
-}
-
-trait SymmetricPart<const D: usize> {
-    fn symmetric_part(&self) -> Block<D>;
-}
-impl<const D: usize> SymmetricPart<D> for Block<D> {
-    fn symmetric_part(&self) -> Block<D> {
-        (self + self.transpose()) * 0.5
-    }
+/// What a Newton step costs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Work {
+    /// Blocks of H.
+    pub(crate) blocks: usize,
+    /// Blocks of its factors.
+    pub(crate) filled: usize,
+    /// Products of blocks to factorise it.
+    pub(crate) products: usize,
 }
 
 impl<const D: usize> ContactSolver<D> for Newton<D> {
@@ -225,79 +114,224 @@ impl<const D: usize> ContactSolver<D> for Newton<D> {
         Law::Exact
     }
 
-    fn reserve(&mut self, _contacts: usize, _blocks: usize) {}
+    fn reserve(&mut self, contacts: usize, blocks: usize) {
+        self.scaled.reserve(contacts, blocks);
+        self.pgs.reserve(contacts, blocks);
+        self.steps.reserve(contacts, blocks);
+        reserve(&mut self.best, contacts);
+    }
 
     fn solve(&mut self, problem: &ContactProblem<'_, D>, stop: &Stop<'_>, p: &mut [Vector<D>]) -> Outcome {
-        let n = p.len();
-        let mu = problem.mu();
-        let rho = problem.scale();
-        self.h.gather(problem);
-        self.h.scale(rho);
-        self.q.clear();
-        self.q.extend(problem.q().iter().map(|q| q * rho));
-        let q_norm = self.q.iter().map(Vector::norm_squared).sum::<f64>().sqrt();
-        for v in [&mut self.u, &mut self.change, &mut self.change_u, &mut self.trial, &mut self.trial_u] {
-            v.clear();
-            v.resize(n, Vector::zeros());
-        }
-        self.rows.clear();
-        self.rows.resize(n, Row { open: false, of_p: Block::zeros(), of_u: Block::zeros(), right: Vector::zeros() });
-        let t0 = std::time::Instant::now();
-        self.lu.analyse(&self.h);
-        if self.log { println!("analyse {:?} filled {} of {} products {}", t0.elapsed(), self.lu.filled_blocks(), self.h.blocks().len(), self.lu.block_products()); }
-        self.alpha = 0.0;
-        self.center.clear();
-        self.center.resize(n, Vector::zeros());
-        let env = |k: &str, d: f64| std::env::var(k).ok().and_then(|x| x.parse().ok()).unwrap_or(d);
-        let sweeps = env("SWEEPS", 10.0) as usize;
-        let mut alpha = env("ALPHA", 1e-3);
-        let shrink = env("SHRINK", 0.1);
-        self.velocities(p);
-        let mut err = Self::residual(p, &self.u, mu, q_norm);
-        let mut iterations = 0;
-        for _ in 0..sweeps {
-            if err <= stop.tolerance { break; }
-            self.sweep(p, mu);
-            self.velocities(p);
-            err = Self::residual(p, &self.u, mu, q_norm);
-        }
-        if self.log { println!("{:?} sweeps {sweeps}: {err:.3e}", t0.elapsed()); }
+        make_finite(p);
+        self.scaled.load(problem);
         self.best.clear();
         self.best.extend_from_slice(p);
-        let mut best_err = err;
-        while best_err > stop.tolerance && iterations < stop.max_iterations {
-            self.alpha = alpha;
-            self.center.copy_from_slice(&self.best);
-            p.copy_from_slice(&self.best);
-            let goal = (env("GOAL", 0.01) * best_err).min(0.3 * best_err.max(stop.tolerance)).max(stop.tolerance * 0.1);
-            let (its, inner) = self.burst(p, mu, q_norm, goal, 12);
-            iterations += its;
-            self.alpha = 0.0;
-            self.velocities(p);
-            err = Self::residual(p, &self.u, mu, q_norm);
-            if self.log { println!("{:?} prox {alpha:.0e} its {its} inner {inner:.2e} goal {goal:.1e}: {best_err:.3e} -> {err:.3e}", t0.elapsed()); }
-            if inner <= goal || err < 0.5 * best_err {
-                alpha = (alpha * shrink).max(1e-13);
-                best_err = err;
+        let mut best = f64::INFINITY;
+        let mut iterations = 0;
+        let mut status = Status::Stalled;
+        let mut used = Self::NAME;
+        for round in 0..ROUNDS {
+            let left = stop.max_iterations - iterations;
+            let swept = self.pgs.solve(problem, &Stop { max_iterations: left.min(SWEEPS << round), ..*stop }, p);
+            iterations += swept.iterations;
+            if swept.residual.global < best {
+                best = swept.residual.global;
                 self.best.copy_from_slice(p);
-            } else {
-                alpha = (alpha * env("GROW", 10.0)).min(10.0);
-                if err < best_err { best_err = err; self.best.copy_from_slice(p); }
-                p.copy_from_slice(&self.best);
-                for _ in 0..sweeps { self.sweep(p, mu); }
+                used = swept.used;
+            }
+            if best <= stop.tolerance {
+                break;
+            }
+            let most = (stop.max_iterations - iterations).min(STEPS);
+            let end = self.steps.round(&self.scaled, None, stop.tolerance, most, stop, p);
+            iterations += end.steps;
+            if end.residual < best {
+                best = end.residual;
                 self.best.copy_from_slice(p);
-                self.velocities(p);
-                best_err = Self::residual(p, &self.u, mu, q_norm);
-                if self.log { println!("{:?} sweeps {sweeps}: {best_err:.3e}", t0.elapsed()); }
+                used = Self::NAME;
+            }
+            if best <= stop.tolerance {
+                break;
+            }
+            if stop.cancelled() {
+                status = Status::Cancelled;
+                break;
+            }
+            if iterations >= stop.max_iterations {
+                status = Status::MaxIterations;
+                break;
             }
         }
         p.copy_from_slice(&self.best);
         let residual = judge(problem, p);
-        let status = if residual.global <= stop.tolerance { Status::Converged } else { Status::Stalled };
-        Outcome::new(status, Self::NAME, iterations, residual)
+        if residual.global <= stop.tolerance {
+            status = Status::Converged;
+        } else if !residual.global.is_finite() {
+            status = Status::Breakdown;
+        }
+        Outcome::new(status, used, iterations, residual)
     }
 
     fn fork(&self) -> Box<dyn ContactSolver<D>> {
         Box::new(Self::new())
+    }
+}
+
+/// The shift of a proximal problem: `α (p − center)` is added to the velocities.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Proximal<'a, const D: usize> {
+    pub(crate) alpha: f64,
+    pub(crate) center: &'a [Vector<D>],
+}
+
+/// How a round ended.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RoundEnd {
+    pub(crate) steps: u32,
+    /// Of the (shifted) problem.
+    pub(crate) residual: f64,
+}
+
+/// Newton steps on a scaled problem, with the memory that they need.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Steps<const D: usize> {
+    lu: BlockLu<D>,
+    rows: Vec<Row<D>>,
+    u: Vec<Vector<D>>,
+    change: Vec<Vector<D>>,
+    change_u: Vec<Vector<D>>,
+    right: Vec<Vector<D>>,
+}
+
+impl<const D: usize> Steps<D> {
+    pub(crate) fn reserve(&mut self, contacts: usize, blocks: usize) {
+        self.lu.reserve(contacts, blocks);
+        self.rows.reserve(contacts.saturating_sub(self.rows.len()));
+        for x in [&mut self.u, &mut self.change, &mut self.change_u, &mut self.right] {
+            reserve(x, contacts);
+        }
+    }
+
+    /// Takes steps until the residual is within `goal`, `most` are done, or they fail.
+    pub(crate) fn round(
+        &mut self,
+        scaled: &Scaled<D>,
+        shift: Option<Proximal<'_, D>>,
+        goal: f64,
+        most: u32,
+        stop: &Stop<'_>,
+        p: &mut [Vector<D>],
+    ) -> RoundEnd {
+        let n = scaled.contacts();
+        for x in [&mut self.u, &mut self.change, &mut self.change_u, &mut self.right] {
+            clear(x, n);
+        }
+        self.rows.clear();
+        self.rows.resize(n, Row::default());
+        self.lu.analyse(&scaled.h);
+        let alpha = shift.map_or(0.0, |s| s.alpha);
+        self.shifted_velocities(scaled, shift, p);
+        let mut residual = scaled.residual(p, &self.u);
+        let (mut epsilon, mut failures, mut steps) = (EPSILON, 0, 0);
+        while !(residual <= goal) && steps < most && failures < FAILURES && !stop.cancelled() {
+            steps += 1;
+            for i in 0..n {
+                self.rows[i] = linearise(&p[i], &self.u[i], scaled.mu[i], scaled.h.diagonal(i));
+            }
+            if !self.direction(scaled, alpha, alpha + epsilon, p) {
+                failures += 1;
+                epsilon = (epsilon * RAISED).min(MOST_EPSILON);
+                continue;
+            }
+            let (mut step, mut chosen, mut lowest) = (1.0, 1.0, f64::INFINITY);
+            for _ in 0..HALVINGS {
+                let after = scaled.residual_after(p, &self.u, step, &self.change, &self.change_u);
+                if after < lowest {
+                    (lowest, chosen) = (after, step);
+                }
+                if after < 0.5 * residual {
+                    break;
+                }
+                step *= 0.5;
+            }
+            if lowest < PROGRESS * residual {
+                failures = 0;
+                if chosen == 1.0 {
+                    epsilon = (epsilon * LOWERED).max(LEAST_EPSILON);
+                }
+            } else {
+                failures += 1;
+                epsilon = (epsilon * RAISED).min(MOST_EPSILON);
+            }
+            if lowest < residual {
+                for i in 0..n {
+                    p[i] += self.change[i] * chosen;
+                }
+                self.shifted_velocities(scaled, shift, p);
+                residual = scaled.residual(p, &self.u);
+            }
+        }
+        RoundEnd { steps, residual }
+    }
+
+    fn shifted_velocities(&mut self, scaled: &Scaled<D>, shift: Option<Proximal<'_, D>>, p: &[Vector<D>]) {
+        scaled.velocities(p, &mut self.u);
+        if let Some(Proximal { alpha, center }) = shift {
+            for i in 0..p.len() {
+                self.u[i] += (p[i] - center[i]) * alpha;
+            }
+        }
+    }
+
+    /// The Newton direction and what it does to the velocities; `diagonal` is added to H. `false` where there is none.
+    fn direction(&mut self, scaled: &Scaled<D>, alpha: f64, diagonal: f64, p: &[Vector<D>]) -> bool {
+        let (rows, h) = (&self.rows, &scaled.h);
+        // Open contacts go to zero at once, and the others feel it.
+        let mut opening = false;
+        for i in 0..p.len() {
+            self.change[i] = if rows[i].open { -p[i] } else { Vector::zeros() };
+            opening |= rows[i].open && p[i].iter().any(|&c| c != 0.0);
+        }
+        for i in 0..p.len() {
+            self.right[i] = rows[i].right;
+            if opening && !rows[i].open {
+                self.right[i] -= rows[i].of_u * h.row_product(i, &self.change);
+            }
+        }
+        let block = |i: usize, t: usize| {
+            let block = rows[i].of_u * h.blocks()[t];
+            if h.columns()[t] == i { block + rows[i].of_u * diagonal + rows[i].of_p } else { block }
+        };
+        if !self.lu.factorise(h, |i| !rows[i].open, block) {
+            return false;
+        }
+        self.lu.solve(&mut self.right);
+        for i in 0..p.len() {
+            if !rows[i].open {
+                self.change[i] = self.right[i];
+            }
+        }
+        if !self.change.iter().all(|x| x.iter().all(|c| c.is_finite())) {
+            return false;
+        }
+        scaled.product(&self.change, &mut self.change_u);
+        if alpha != 0.0 {
+            for i in 0..p.len() {
+                self.change_u[i] += self.change[i] * alpha;
+            }
+        }
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use teeter_contact::conformance::{plane_cases, run, space_cases};
+
+    #[test]
+    fn conforms() {
+        run(&mut Newton::<2>::new(), &plane_cases(), 1e-11).unwrap();
+        run(&mut Newton::<3>::new(), &space_cases(), 1e-11).unwrap();
     }
 }

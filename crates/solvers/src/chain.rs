@@ -1,0 +1,161 @@
+//! The methods that `auto` goes through, cheap ones first, until the judge is satisfied.
+//!
+//! 1. **Gauss–Seidel** ([`Pgs`]): some sweeps, and more as long as the rate at which the residual falls says that it arrives before Newton
+//!    would.
+//! 2. **Semi-smooth Newton** ([`Newton`]): a round of steps from there; where they fail, more sweeps for about the same
+//!    work, and another round, a few times.
+//! 3. **The central path** ([`Smoothing`]): for what is degenerate.
+//! 4. **The proximal point** ([`Prox`]), then all of it again with a start of its own, then sweeps until the iterations run out.
+//!
+//! What decides is counted work (blocks, block products), never time: the same problem takes the same way on every machine.
+//!
+//! A problem of a few contacts is solved further than asked, towards 1e-14: it costs little there, and the motion of a
+//! few blocks is then as exact as an enumerated one.
+
+use crate::{Newton, Pgs, Prox, Smoothing};
+use teeter_contact::{ContactProblem, ContactSolver, Outcome, Stop, Vector};
+
+/// Up to so many contacts a solution is polished, to this residual.
+const SMALL: usize = 12;
+const POLISHED: f64 = 1e-14;
+/// Sweeps of the first two batches; the rate comes from the second.
+const FIRST: u32 = 12;
+/// Gauss–Seidel goes on if it is expected to arrive within so many Newton steps' work.
+const WORTH: f64 = 4.0;
+/// Rounds of Newton steps, each after a batch of sweeps.
+const ROUNDS: u32 = 4;
+/// Work of a Newton step and of a sweep in one measure (times a block product): per block of the factors and per contact. Measured
+/// on the published problems; a factor of two either way changes no choice among them that matters.
+const STEP_BLOCK: f64 = 1.3;
+const STEP_CONTACT: f64 = 16.0;
+const SWEEP_BLOCK: f64 = 0.4;
+const SWEEP_CONTACT: f64 = 5.0;
+
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Chain<const D: usize> {
+    pgs: Pgs<D>,
+    newton: Newton<D>,
+    smoothing: Smoothing<D>,
+    prox: Prox<D>,
+    best: Vec<Vector<D>>,
+}
+
+/// The outcome so far: of the best impulses, with the iterations of all.
+struct Progress {
+    best: Outcome,
+    iterations: u32,
+}
+
+impl Progress {
+    /// Counts a stage's iterations and takes its outcome if it is better. The stages return impulses no worse than their start.
+    fn add(&mut self, outcome: Outcome) {
+        self.iterations = self.iterations.saturating_add(outcome.iterations);
+        if outcome.residual.global <= self.best.residual.global || outcome.converged() {
+            self.best = outcome;
+        } else {
+            self.best.status = outcome.status;
+        }
+    }
+
+    fn left(&self, stop: &Stop<'_>) -> u32 {
+        stop.max_iterations.saturating_sub(self.iterations)
+    }
+
+    fn over(&self, stop: &Stop<'_>) -> bool {
+        self.best.residual.global <= stop.tolerance || self.left(stop) == 0 || stop.cancelled()
+    }
+}
+
+impl<const D: usize> Chain<D> {
+    pub(crate) fn reserve(&mut self, contacts: usize, blocks: usize) {
+        self.pgs.reserve(contacts, blocks);
+        self.newton.reserve(contacts, blocks);
+        self.smoothing.reserve(contacts, blocks);
+        self.prox.reserve(contacts, blocks);
+        self.best.reserve(contacts.saturating_sub(self.best.len()));
+    }
+
+    pub(crate) fn solve(&mut self, problem: &ContactProblem<'_, D>, stop: &Stop<'_>, p: &mut [Vector<D>]) -> Outcome {
+        let mut outcome = self.approach(problem, stop, p);
+        if outcome.converged() && p.len() <= SMALL && outcome.residual.global > POLISHED {
+            self.best.clear();
+            self.best.extend_from_slice(p);
+            let polished = self.newton.round(problem, &Stop { tolerance: POLISHED, ..*stop }, p);
+            outcome.iterations = outcome.iterations.saturating_add(polished.iterations);
+            if polished.residual.global <= outcome.residual.global {
+                outcome.residual = polished.residual;
+            } else {
+                p.copy_from_slice(&self.best);
+            }
+        }
+        outcome
+    }
+
+    fn approach(&mut self, problem: &ContactProblem<'_, D>, stop: &Stop<'_>, p: &mut [Vector<D>]) -> Outcome {
+        let within = |left: u32, most: u32| Stop { max_iterations: left.min(most), ..*stop };
+        let first = self.pgs.solve(problem, &within(stop.max_iterations, FIRST), p);
+        let mut progress = Progress { best: first, iterations: first.iterations };
+        if !progress.over(stop) {
+            self.sweeps_and_steps(problem, stop, p, &mut progress);
+        }
+        if !progress.over(stop) {
+            let outcome = self.smoothing.solve(problem, &within(progress.left(stop), u32::MAX), p);
+            progress.add(outcome);
+        }
+        if !progress.over(stop) {
+            let outcome = self.prox.solve(problem, &within(progress.left(stop), u32::MAX), p);
+            progress.add(outcome);
+        }
+        if !progress.over(stop) {
+            let outcome = self.newton.solve(problem, &within(progress.left(stop), u32::MAX), p);
+            progress.add(outcome);
+        }
+        if !progress.over(stop) {
+            let outcome = self.pgs.solve(problem, &within(progress.left(stop), u32::MAX), p);
+            progress.add(outcome);
+        }
+        Outcome::new(progress.best.status, progress.best.used, progress.iterations, progress.best.residual)
+    }
+
+    fn sweeps_and_steps(
+        &mut self,
+        problem: &ContactProblem<'_, D>,
+        stop: &Stop<'_>,
+        p: &mut [Vector<D>],
+        progress: &mut Progress,
+    ) {
+        let within = |left: u32, most: u32| Stop { max_iterations: left.min(most), ..*stop };
+        // Sweeps that cost as much as a Newton step.
+        let mut ratio = None;
+        let mut batch = FIRST;
+        for round in 0..ROUNDS {
+            let before = progress.best.residual.global;
+            let outcome = self.pgs.solve(problem, &within(progress.left(stop), batch), p);
+            progress.add(outcome);
+            if progress.over(stop) {
+                return;
+            }
+            let work = *ratio.get_or_insert_with(|| {
+                let (n, work) = (problem.contacts() as f64, self.newton.work(problem));
+                let step = work.products as f64 + STEP_BLOCK * work.filled as f64 + STEP_CONTACT * n;
+                (step / (SWEEP_BLOCK * work.blocks as f64 + SWEEP_CONTACT * n)).max(1.0)
+            });
+            let after = progress.best.residual.global;
+            let rate = (after / before).ln() / f64::from(batch);
+            let expected = (stop.tolerance / after).ln() / rate;
+            // Written so that a rate that is no number doesn't count.
+            if rate < 0.0 && expected < WORTH * work {
+                let most = (1.5 * expected) as u32 + FIRST;
+                progress.add(self.pgs.solve(problem, &within(progress.left(stop), most), p));
+                if progress.over(stop) {
+                    return;
+                }
+            }
+            progress.add(self.newton.round(problem, &within(progress.left(stop), u32::MAX), p));
+            if progress.over(stop) {
+                return;
+            }
+            batch = (2.0 * work) as u32 * (1 << round) + FIRST;
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! A contact problem in its own scale, for solvers that work on a copy of H.
+//!
+//! With ρ = 1/mean(diag H) the problem (ρH, ρq, μ) has the same impulses and velocities that are impulses too, so numbers
+//! without unit (a regularisation, a step) mean the same in every system of units, and the judge's natural map is `p − Π(p − û)`.
+
+use teeter_contact::{BlockSparse, ContactProblem, Vector, de_saxce, project};
+
+/// The scaled problem, in memory that is kept.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Scaled<const D: usize> {
+    pub(crate) h: BlockSparse<D>,
+    pub(crate) q: Vec<Vector<D>>,
+    pub(crate) mu: Vec<f64>,
+    q_norm: f64,
+}
+
+impl<const D: usize> Scaled<D> {
+    pub(crate) fn reserve(&mut self, contacts: usize, blocks: usize) {
+        self.h.reserve(contacts, blocks);
+        self.q.reserve(contacts.saturating_sub(self.q.len()));
+        self.mu.reserve(contacts.saturating_sub(self.mu.len()));
+    }
+
+    /// Copies the problem, scaled.
+    pub(crate) fn load(&mut self, problem: &ContactProblem<'_, D>) {
+        let rho = problem.scale();
+        self.h.gather(problem);
+        self.h.scale(rho);
+        self.q.clear();
+        self.q.extend(problem.q().iter().map(|q| q * rho));
+        self.mu.clear();
+        self.mu.extend_from_slice(problem.mu());
+        self.q_norm = norm(&self.q);
+    }
+
+    pub(crate) fn contacts(&self) -> usize {
+        self.q.len()
+    }
+
+    /// The size of one contact's impulse: `max(‖p‖, ‖q‖)/√n`.
+    pub(crate) fn size(&self, p: &[Vector<D>]) -> f64 {
+        norm(p).max(self.q_norm).max(1e-300) / (p.len().max(1) as f64).sqrt()
+    }
+
+    /// `u = H p + q`.
+    pub(crate) fn velocities(&self, p: &[Vector<D>], u: &mut [Vector<D>]) {
+        for i in 0..p.len() {
+            u[i] = self.h.row_product(i, p) + self.q[i];
+        }
+    }
+
+    /// `H p`.
+    pub(crate) fn product(&self, p: &[Vector<D>], out: &mut [Vector<D>]) {
+        for i in 0..p.len() {
+            out[i] = self.h.row_product(i, p);
+        }
+    }
+
+    /// The judge's global residual for known velocities.
+    pub(crate) fn residual(&self, p: &[Vector<D>], u: &[Vector<D>]) -> f64 {
+        self.residual_of(p.iter().copied().zip(u.iter().copied()))
+    }
+
+    /// The residual after a step: of `p + s δp` with velocities `u + s δu`.
+    pub(crate) fn residual_after(
+        &self,
+        p: &[Vector<D>],
+        u: &[Vector<D>],
+        step: f64,
+        change: &[Vector<D>],
+        change_u: &[Vector<D>],
+    ) -> f64 {
+        self.residual_of((0..p.len()).map(|i| (p[i] + change[i] * step, u[i] + change_u[i] * step)))
+    }
+
+    #[inline]
+    fn residual_of(&self, points: impl Iterator<Item = (Vector<D>, Vector<D>)>) -> f64 {
+        let (mut map, mut size) = (0.0, 0.0);
+        for ((p, u), &mu) in points.zip(&self.mu) {
+            map += (p - project(&(p - de_saxce(&u, mu)), mu)).norm_squared();
+            size += p.norm_squared();
+        }
+        map.sqrt() / size.sqrt().max(self.q_norm).max(1e-300)
+    }
+}
+
+/// The Euclidean norm over all contacts.
+pub(crate) fn norm<const D: usize>(x: &[Vector<D>]) -> f64 {
+    x.iter().map(Vector::norm_squared).sum::<f64>().sqrt()
+}
+
+/// Resizes to `n` zeros, in memory that is kept.
+pub(crate) fn clear<const D: usize>(x: &mut Vec<Vector<D>>, n: usize) {
+    x.clear();
+    x.resize(n, Vector::zeros());
+}
+
+/// Makes room for `n` contacts.
+pub(crate) fn reserve<const D: usize>(x: &mut Vec<Vector<D>>, n: usize) {
+    x.reserve(n.saturating_sub(x.len()));
+}
+
+/// Replaces a start that is no number by zero.
+pub(crate) fn make_finite<const D: usize>(p: &mut [Vector<D>]) {
+    for x in p {
+        if !x.iter().all(|c| c.is_finite()) {
+            *x = Vector::zeros();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use teeter_contact::conformance::plane_cases;
+    use teeter_contact::judge;
+
+    #[test]
+    fn the_scaled_residual_is_the_judges() {
+        for case in plane_cases() {
+            let problem = case.problem().unwrap();
+            let p: Vec<_> = (0..case.q.len()).map(|i| Vector::<2>::new(1.0 + i as f64, 0.3)).collect();
+            let mut scaled = Scaled::default();
+            scaled.load(&problem);
+            let mut u = p.clone();
+            scaled.velocities(&p, &mut u);
+            let (own, judged) = (scaled.residual(&p, &u), judge(&problem, &p).global);
+            assert!((own - judged).abs() <= 1e-13 * judged, "{}: {own:e} {judged:e}", case.name);
+        }
+    }
+}
