@@ -20,10 +20,9 @@ const SMALL: usize = 12;
 const POLISHED: f64 = 1e-14;
 /// Sweeps of the first two batches; the rate comes from the second.
 const FIRST: u32 = 12;
-/// Gauss–Seidel goes on if it is expected to arrive within so many Newton steps' work.
-const WORTH: f64 = 4.0;
-/// Rounds of Newton steps, each after a batch of sweeps.
-const ROUNDS: u32 = 4;
+/// Rounds of Newton steps, each after a batch of sweeps; and for each, the work in Newton steps within which Gauss–Seidel must
+/// be expected to arrive to go on instead. After the last round comes the central path, which takes tens of steps.
+const WORTH: [f64; 4] = [4.0, 8.0, 16.0, 40.0];
 /// Work of a Newton step and of a sweep in one measure (times a block product): per block of the factors and per contact. Measured
 /// on the published problems; a factor of two either way changes no choice among them that matters.
 const STEP_BLOCK: f64 = 1.3;
@@ -128,7 +127,7 @@ impl<const D: usize> Chain<D> {
         // Sweeps that cost as much as a Newton step.
         let mut ratio = None;
         let mut batch = FIRST;
-        for round in 0..ROUNDS {
+        for (round, worth) in WORTH.into_iter().enumerate() {
             let before = progress.best.residual.global;
             let outcome = self.pgs.solve(problem, &within(progress.left(stop), batch), p);
             progress.add(outcome);
@@ -144,7 +143,7 @@ impl<const D: usize> Chain<D> {
             let rate = (after / before).ln() / f64::from(batch);
             let expected = (stop.tolerance / after).ln() / rate;
             // Written so that a rate that is no number doesn't count.
-            if rate < 0.0 && expected < WORTH * work {
+            if rate < 0.0 && expected < worth * work {
                 let most = (1.5 * expected) as u32 + FIRST;
                 progress.add(self.pgs.solve(problem, &within(progress.left(stop), most), p));
                 if progress.over(stop) {

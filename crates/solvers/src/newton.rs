@@ -68,12 +68,7 @@ impl<const D: usize> Newton<D> {
     }
 
     /// A round of Newton steps alone, for solvers that bring their own globalisation. Leaves the best of its impulses in `p`.
-    pub(crate) fn round(
-        &mut self,
-        problem: &ContactProblem<'_, D>,
-        stop: &Stop<'_>,
-        p: &mut [Vector<D>],
-    ) -> Outcome {
+    pub(crate) fn round(&mut self, problem: &ContactProblem<'_, D>, stop: &Stop<'_>, p: &mut [Vector<D>]) -> Outcome {
         self.scaled.load(problem);
         let most = stop.max_iterations.min(STEPS);
         let end = self.steps.round(&self.scaled, None, stop.tolerance, most, stop, p);

@@ -25,7 +25,10 @@ pub(crate) struct Ordering {
 
 impl std::fmt::Debug for Ordering {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Ordering").field("start", &self.start).field("neighbours", &self.neighbours).finish_non_exhaustive()
+        f.debug_struct("Ordering")
+            .field("start", &self.start)
+            .field("neighbours", &self.neighbours)
+            .finish_non_exhaustive()
     }
 }
 

@@ -49,7 +49,8 @@ impl<const D: usize> Spectrum<D> {
         w_t[0] = 0.0;
         let w_n = x[0] - z_n;
         let length = w_t.norm();
-        let direction = if length > 0.0 { w_t / length } else { Vector::from_fn(|i, _| if i == 1 { 1.0 } else { 0.0 }) };
+        let direction =
+            if length > 0.0 { w_t / length } else { Vector::from_fn(|i, _| if i == 1 { 1.0 } else { 0.0 }) };
         let lambda = [w_n + length, w_n - length];
         let width = lambda.map(|l| (l * l + 4.0 * tau * tau).sqrt());
         Self { root, speed, direction, length, lambda, width, x }

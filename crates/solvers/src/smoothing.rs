@@ -26,9 +26,7 @@
 use crate::block_lu::BlockLu;
 use crate::scaled::{Scaled, clear, make_finite, reserve};
 use crate::smooth_map::{self, Slope};
-use teeter_contact::{
-    Block, ContactProblem, ContactSolver, Law, Outcome, Status, Stop, Vector, judge, project,
-};
+use teeter_contact::{Block, ContactProblem, ContactSolver, Law, Outcome, Status, Stop, Vector, judge, project};
 
 /// τ at the start, relative to the size of one contact's impulse.
 const START: f64 = 0.1;
@@ -49,7 +47,7 @@ const FOLD_STEPS: u32 = 20;
 const SHORTEST: f64 = 0.2;
 const SHORTEST_FOLD: f64 = 0.004;
 /// The regularisations tried, relative to the mean of H's diagonal.
-const EPSILONS: [f64; 3] = [1e-7, 1e-5, 1e-9];
+const EPSILONS: [f64; 4] = [1e-7, 1e-5, 1e-9, 1e-6];
 /// Newton steps after which one of them is given up.
 const PATIENCE: u32 = 250;
 
@@ -103,7 +101,7 @@ impl<const D: usize> Smoothing<D> {
         ]
     }
 
-    /// Follows the path from `p` with one regularisation.
+    /// Follows the path with one regularisation; `p` is where the first correction starts.
     fn follow(&mut self, epsilon: f64, stop: &Stop<'_>, p: &mut [Vector<D>]) -> bool {
         let size = self.scaled.size(p);
         let until = self.iterations.saturating_add(PATIENCE).min(stop.max_iterations);
@@ -282,10 +280,16 @@ impl<const D: usize> ContactSolver<D> for Smoothing<D> {
         if !(self.best_residual <= stop.tolerance) && stop.max_iterations > 0 {
             self.lu.analyse(&self.scaled.h);
             for epsilon in EPSILONS {
+                // The path is the same from everywhere, but nothing at all is nearer to its start than a bad guess, and
+                // the best point so far another way on to it.
+                if epsilon == EPSILONS[0] {
+                    p.fill(Vector::zeros());
+                } else {
+                    p.copy_from_slice(&self.best);
+                }
                 if self.follow(epsilon, stop, p) || self.iterations >= stop.max_iterations {
                     break;
                 }
-                p.copy_from_slice(&self.best);
             }
         }
         p.copy_from_slice(&self.best);
