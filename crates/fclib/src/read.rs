@@ -57,7 +57,7 @@ fn size_of_matrix<const D: usize>(store: &Store) -> Result<usize, FclibError> {
     let (rows, columns) = (store.integer("fclib_local/W/m")?, store.integer("fclib_local/W/n")?);
     match u32::try_from(rows) {
         Ok(size) if rows == columns => {
-            if size as usize % D != 0 {
+            if !(size as usize).is_multiple_of(D) {
                 return Err(FclibError::NotWholeContacts { rows, dimension: D });
             }
             Ok(size as usize)
