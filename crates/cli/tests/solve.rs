@@ -320,3 +320,17 @@ fn a_run_saves_its_contact_problems_and_they_solve_to_what_it_found() {
     assert!(wrong.status.code() == Some(2) && text(&wrong.stderr).contains("hard, or every:N"));
     assert_eq!(run(&["--out", "d", "--export-when", "hard"]).status.code(), Some(2), "needs --export-problems");
 }
+
+#[test]
+fn the_kept_problems_of_our_own_scenes_are_small_and_can_be_solved() {
+    let problems = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../benches/problems");
+    let arguments = ["solve", problems.to_str().unwrap(), "--json", "--tolerance", "1e-4", "--time-limit", "2 s"];
+    let output = teeter(&folder("kept"), &arguments);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let rows = rows(&output);
+    let bytes: u64 = rows.iter().map(|row| std::fs::metadata(row["file"].as_str().unwrap()).unwrap().len()).sum();
+    assert!(rows.len() >= 25 && bytes <= 300_000, "{} files, {bytes} bytes", rows.len());
+    for row in &rows {
+        assert_eq!(row["outcome"], "converged", "{row}");
+    }
+}

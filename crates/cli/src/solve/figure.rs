@@ -75,7 +75,7 @@ fn draw(title: &str, curves: &[Curve]) -> Result<String, Box<dyn Error>> {
                 legend.draw(&PathElement::new([(x, y), ((x + on as i32).min(36), y)], style))?;
                 x += (on + off) as i32;
             }
-            legend.draw(&Text::new(curve.name.clone(), (44, y - 8), ("sans-serif", 14)))?;
+            legend.draw(&Text::new(curve.name.clone(), (44, y - 6), ("sans-serif", 14)))?;
         }
         root.present()?;
     }

@@ -108,8 +108,9 @@ impl<'a> Contest<'a> {
             let _ = writeln!(page, "| {solver} | {solved} / {} | {fastest} | {own} | {common} |", self.files.len());
         }
         let common = self.times.iter().filter(|times| by_all(times)).count();
+        let total = self.files.len();
         let _ =
-            writeln!(page, "\nTimes are geometric means. {common} problems are solved by all solvers that solve any.");
+            writeln!(page, "\nTimes are geometric means. Solved by all solvers that solve any: {common} of {total}.");
         let unsolved: Vec<_> =
             self.files.iter().zip(&self.times).filter(|(_, times)| times.iter().all(Option::is_none)).collect();
         if !unsolved.is_empty() {
