@@ -2,6 +2,7 @@
 
 use crate::store::Store;
 use crate::{FclibError, FclibProblem, Info, LocalProblem, Solution, matrix};
+use std::io::Read;
 use std::path::Path;
 use teeter_contact::Vector;
 
@@ -10,8 +11,18 @@ use teeter_contact::Vector;
 /// # Errors
 /// If it can't be read, is no HDF5 file, or holds no local contact problem that a solver could take; see [`FclibError`].
 pub fn read(path: impl AsRef<Path>) -> Result<FclibProblem, FclibError> {
-    open(std::fs::read(path)?)
+    let mut file = std::fs::File::open(path)?;
+    // What is no HDF5 shows in the beginning: no need to take all of a huge file, or of a device that has no end.
+    let mut bytes = Vec::new();
+    file.by_ref().take(HEAD).read_to_end(&mut bytes)?;
+    if hdf5_pure::is_hdf5_bytes(&bytes) {
+        file.read_to_end(&mut bytes)?;
+    }
+    open(bytes)
 }
+
+/// The signature of an HDF5 file stands within so many bytes, but for files with a larger block of the user's before it.
+const HEAD: u64 = 1 << 20;
 
 /// Reads a file's content.
 ///

@@ -147,6 +147,9 @@ fn what_is_no_local_problem_is_said_to_be_none() {
     assert!(matches!(with_group("fclib_global"), FclibError::GlobalProblem));
     assert!(matches!(with_group("fclib_local"), FclibError::Missing { name } if name == "fclib_local/spacedim"));
     assert!(matches!(teeter_fclib::read("no/such/file"), Err(FclibError::Io(_))));
+    if Path::new("/dev/zero").exists() {
+        assert!(matches!(teeter_fclib::read("/dev/zero"), Err(FclibError::NotHdf5 { .. })), "a file without an end");
+    }
     let mut file = FileBuilder::new();
     let mut group = file.create_group("fclib_local");
     group.create_dataset("spacedim").with_strings(&["two"]).unwrap();

@@ -68,9 +68,12 @@ pub(super) fn measure<const D: usize>(
 
     let mut time = first;
     if first < WORTH && word != "time-limit" {
-        time = median_time(first, || {
-            p.fill(Vector::zeros());
-            let _ = solver.solve(problem, &stop, &mut p);
+        // A solver that is slow the second time is no reason to wait for ever either.
+        time = within(limit + 10 * WORTH, &cancel, || {
+            median_time(first, || {
+                p.fill(Vector::zeros());
+                let _ = solver.solve(problem, &stop, &mut p);
+            })
         });
     }
     Measured {

@@ -94,6 +94,7 @@ fn solve_all(console: Console, options: &Options, inputs: &[Input], choice: &Cho
     let one = [options.tolerance];
     let tolerances: &[f64] = if options.profile.is_some() { &profile::TOLERANCES } else { &one };
     let mut rows = Vec::new();
+    let mut table = options.profile.as_deref().map(profile::Table::create).transpose()?;
     let columns = Columns::new(inputs, tolerances.len() > 1);
     let count: usize = inputs.iter().map(|input| choice.of_dimension(input.problem.dimension()).len()).sum();
     let progress = Solves::new(console, (count * tolerances.len()) as u64);
@@ -112,7 +113,8 @@ fn solve_all(console: Console, options: &Options, inputs: &[Input], choice: &Cho
                     write_solution(folder, &input.stem, &row)?;
                 }
                 progress.step();
-                if options.profile.is_some() {
+                if let Some(table) = &mut table {
+                    table.write(&row.csv())?;
                     rows.push(row);
                 }
             }

@@ -9,7 +9,9 @@ use super::machine;
 use super::rows::{CSV_HEADER, Row, significant};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
-use std::path::Path;
+use std::fs::File;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
 
 /// The tolerances that are compared.
 pub(super) const TOLERANCES: [f64; 3] = [1e-4, 1e-8, 1e-12];
@@ -121,15 +123,32 @@ impl<'a> Contest<'a> {
     }
 }
 
-/// Writes table.csv, profile.md and the figures.
+/// `table.csv`, a row as soon as it is there: a long comparison that is ended early leaves what it found.
+pub(super) struct Table {
+    path: PathBuf,
+    file: File,
+}
+
+impl Table {
+    pub(super) fn create(folder: &Path) -> Result<Self, String> {
+        let path = folder.join("table.csv");
+        let file = File::create(&path).map_err(|error| format!("error: {}: {error}", path.display()))?;
+        let mut table = Self { path, file };
+        table.write(CSV_HEADER)?;
+        Ok(table)
+    }
+
+    pub(super) fn write(&mut self, text: &str) -> Result<(), String> {
+        self.file.write_all(text.as_bytes()).map_err(|error| format!("error: {}: {error}", self.path.display()))
+    }
+}
+
+/// Writes profile.md and the figures.
 pub(super) fn write(folder: &Path, rows: &[Row], limit: std::time::Duration) -> Result<(), String> {
     let put = |name: &str, text: &str| {
         let path = folder.join(name);
         std::fs::write(&path, text).map_err(|error| format!("error: {}: {error}", path.display()))
     };
-    let table: String = rows.iter().map(Row::csv).collect();
-    put("table.csv", &format!("{CSV_HEADER}{table}"))?;
-
     let mut page = heading(rows, limit);
     let dimensions: BTreeSet<usize> = rows.iter().map(|row| row.dimension).collect();
     for dimension in dimensions {
