@@ -125,6 +125,12 @@ pub enum FclibError {
         /// The number.
         value: f64,
     },
+    /// A problem that this format can't hold.
+    #[error("can't be written: {reason}")]
+    Unwritable {
+        /// Why.
+        reason: String,
+    },
     /// A negative number of guesses.
     #[error("/guesses/number_of_guesses is {0}")]
     Guesses(i64),

@@ -37,6 +37,7 @@ mod matrix;
 mod problem;
 mod read;
 mod store;
+mod write;
 
 pub use error::FclibError;
 pub use problem::{FclibProblem, Info, LocalProblem, Solution};

@@ -2,6 +2,8 @@
 
 use crate::FclibError;
 use crate::store::Store;
+use crate::write::{fit, integers, numbers};
+use hdf5_pure::GroupBuilder;
 use teeter_contact::{Block, BlockSparse};
 
 /// Entry (row, column) of the matrix.
@@ -134,4 +136,41 @@ fn index(
 
 fn size(array: &str, found: usize, expected: u64) -> FclibError {
     FclibError::Size { name: format!("fclib_local/W/{array}"), found: found as u64, expected }
+}
+
+/// Writes W by compressed columns, rows ascending, zeros left out.
+pub(crate) fn write<const D: usize>(h: &BlockSparse<D>, group: &mut GroupBuilder) -> Result<(), FclibError> {
+    let size = fit("fclib_local/W/m", D * h.contacts())?;
+    let entries = || {
+        (0..h.contacts()).flat_map(|i| {
+            (0..D).flat_map(move |r| {
+                h.row(i).flat_map(move |(j, block)| (0..D).map(move |c| (D * i + r, D * j + c, block[(r, c)])))
+            })
+        })
+    };
+    let stored = || entries().filter(|(_, _, value)| value.to_bits() != 0);
+    // Counted first, so that each entry has its place; by rows within a column, as the rows come in order.
+    let mut pointers = vec![0_usize; D * h.contacts() + 1];
+    stored().for_each(|(_, column, _)| pointers[column + 1] += 1);
+    for k in 1..pointers.len() {
+        pointers[k] += pointers[k - 1];
+    }
+    let count = pointers.last().copied().unwrap_or(0);
+    let nonzeros = fit("fclib_local/W/x", count)?;
+    let mut next = pointers.clone();
+    let (mut indices, mut values) = (vec![0_i32; count], vec![0.0; count]);
+    for (row, column, value) in stored() {
+        let at = next[column];
+        next[column] += 1;
+        // `size` and `count` fit 32 bits, and so does what is below them.
+        (indices[at], values[at]) = (row as i32, value);
+    }
+    let pointers: Vec<i32> = pointers.iter().map(|&p| p as i32).collect();
+    for (name, value) in [("nzmax", nonzeros), ("m", size), ("n", size), ("nz", -1)] {
+        integers(group, name, &[value]);
+    }
+    integers(group, "p", &pointers);
+    integers(group, "i", &indices);
+    numbers(group, "x", &values);
+    Ok(())
 }

@@ -2,6 +2,7 @@
 
 use crate::store::Store;
 use crate::{FclibError, FclibProblem, Info, LocalProblem, Solution, matrix};
+use std::io::Read;
 use std::path::Path;
 use teeter_contact::Vector;
 
@@ -10,8 +11,18 @@ use teeter_contact::Vector;
 /// # Errors
 /// If it can't be read, is no HDF5 file, or holds no local contact problem that a solver could take; see [`FclibError`].
 pub fn read(path: impl AsRef<Path>) -> Result<FclibProblem, FclibError> {
-    open(std::fs::read(path)?)
+    let mut file = std::fs::File::open(path)?;
+    // What is no HDF5 shows in the beginning: no need to take all of a huge file, or of a device that has no end.
+    let mut bytes = Vec::new();
+    file.by_ref().take(HEAD).read_to_end(&mut bytes)?;
+    if hdf5_pure::is_hdf5_bytes(&bytes) {
+        file.read_to_end(&mut bytes)?;
+    }
+    open(bytes)
 }
+
+/// The signature of an HDF5 file stands within so many bytes, but for files with a larger block of the user's before it.
+const HEAD: u64 = 1 << 20;
 
 /// Reads a file's content.
 ///
@@ -57,7 +68,7 @@ fn size_of_matrix<const D: usize>(store: &Store) -> Result<usize, FclibError> {
     let (rows, columns) = (store.integer("fclib_local/W/m")?, store.integer("fclib_local/W/n")?);
     match u32::try_from(rows) {
         Ok(size) if rows == columns => {
-            if size as usize % D != 0 {
+            if !(size as usize).is_multiple_of(D) {
                 return Err(FclibError::NotWholeContacts { rows, dimension: D });
             }
             Ok(size as usize)

@@ -73,7 +73,9 @@ impl Store {
         }
         self.checked_length(&dataset, name)?;
         let texts = dataset.read_string().map_err(|error| unreadable(name, &error))?;
-        Ok(Some(texts.into_iter().next().unwrap_or_default()))
+        // Up to the first NUL, as C has it.
+        let text = texts.first().and_then(|text| text.split('\0').next()).unwrap_or_default();
+        Ok(Some(text.to_owned()))
     }
 
     fn find(&self, name: &str) -> Result<Option<Dataset>, FclibError> {
@@ -88,18 +90,22 @@ impl Store {
         self.find(name)?.ok_or_else(|| FclibError::Missing { name: name.to_owned() })
     }
 
-    /// Refuses what claims more than the file can plausibly hold.
+    /// Refuses what claims more than the file can plausibly hold: the whole of it, and the pieces that it is stored in, which
+    /// are unpacked whole.
     fn checked_length(&self, dataset: &Dataset, name: &str) -> Result<(), FclibError> {
         let shape = dataset.shape().map_err(|error| unreadable(name, &error))?;
+        let chunk = dataset.chunk_shape().map_err(|error| unreadable(name, &error))?.unwrap_or_default();
         let element = dataset.element_size().map_err(|error| unreadable(name, &error))?;
-        // Numbers are widened to 8 bytes when read.
-        let bytes = shape.iter().try_fold(element.max(8), |bytes, &extent| bytes.checked_mul(extent));
-        match bytes {
-            Some(bytes) if bytes <= ALWAYS.max(self.bytes.saturating_mul(RATIO)) => Ok(()),
-            _ => {
-                Err(FclibError::TooLarge { name: name.to_owned(), bytes: bytes.unwrap_or(u64::MAX), file: self.bytes })
+        let allowed = ALWAYS.max(self.bytes.saturating_mul(RATIO));
+        for extents in [shape, chunk] {
+            // Numbers are widened to 8 bytes when read.
+            let bytes = extents.iter().try_fold(element.max(8), |bytes, &extent| bytes.checked_mul(extent));
+            let bytes = bytes.unwrap_or(u64::MAX);
+            if bytes > allowed {
+                return Err(FclibError::TooLarge { name: name.to_owned(), bytes, file: self.bytes });
             }
         }
+        Ok(())
     }
 }
 
