@@ -24,6 +24,7 @@ mod auto;
 mod catalogue;
 mod enumeration;
 mod least_norm;
+mod likely;
 mod local;
 mod one_contact;
 mod one_contact_space;

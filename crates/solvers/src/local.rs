@@ -13,6 +13,9 @@ const RANK_TOLERANCE: f64 = 1e-12;
 /// Above this, it costs its solution two digits at most.
 const WELL_CONDITIONED: f64 = 1e-2;
 
+/// With more friction than that, the shift μ‖u_T‖ makes rounding of a sticking contact's velocity felt.
+const MUCH: f64 = 10.0;
+
 /// How much `H_NN` must exceed `μ‖H_NT‖` for a block to count as regular: rounding, with room.
 const MARGIN: f64 = 1.0 + 1e-9;
 
@@ -72,7 +75,7 @@ impl<const D: usize> Local<D> {
             let rows = space::rows(h);
             if let Some(inverse) = space::inverse(&rows, RANK_TOLERANCE) {
                 local.inverse = Block::from_fn(|r, c| inverse[r][c]);
-                local.refine = space::inverse(&rows, WELL_CONDITIONED).is_none();
+                local.refine = mu > MUCH || space::inverse(&rows, WELL_CONDITIONED).is_none();
                 local.kind = Kind::Regular;
             }
         }
