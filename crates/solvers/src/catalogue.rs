@@ -1,6 +1,6 @@
 //! The solvers by name, for programs that let their users choose.
 
-use crate::{Auto, Enumeration, Pgs};
+use crate::{Auto, Enumeration, Lemke, Pgs};
 use teeter_contact::{ContactSolver, Law};
 
 /// What a user wants to know of a solver before choosing it.
@@ -42,6 +42,13 @@ pub const SOLVERS: &[SolverInfo] = &[
         summary: "Gauss-Seidel over contacts with an exact local solve",
         reference: "Jean 1999, doi 10.1016/S0045-7825(98)00383-1",
     },
+    SolverInfo {
+        name: Lemke::NAME,
+        dimensions: &[2],
+        law: Law::Exact,
+        summary: "pivoting on the linear complementarity problem; up to 1000 contacts",
+        reference: "Klarbring 1986, doi 10.1016/0045-7825(86)90074-8",
+    },
 ];
 
 /// The plane solver of that name; `None` for an unknown one.
@@ -55,6 +62,7 @@ pub fn plane_solver(name: &str) -> Option<Box<dyn ContactSolver<2>>> {
     match name {
         Auto::NAME => Some(Box::new(Auto::new())),
         Enumeration::NAME => Some(Box::new(Enumeration)),
+        Lemke::NAME => Some(Box::new(Lemke::new())),
         Pgs::<2>::NAME => Some(Box::new(Pgs::<2>::new())),
         _ => None,
     }
