@@ -62,13 +62,16 @@ fn judge_with<const D: usize>(
         map_norm += map(rho).norm_squared();
 
         let rho_i = D as f64 / problem.diagonal(i).trace();
-        let own = map(rho_i).norm() / p[i].norm().max(rho_i * q.norm()).max(SCALE_FLOOR);
+        // Squares, so that a contact costs one division and no root.
+        let scale = p[i].norm_squared().max(rho_i * rho_i * q.norm_squared()).max(SCALE_FLOOR);
+        let own = map(rho_i).norm_squared() / scale;
         // NaN counts as worst: `!(own <= worst)` is true for it.
         if !(own <= residual.worst) {
             residual.worst = own;
             residual.worst_contact = i;
         }
     }
+    residual.worst = residual.worst.sqrt();
     residual.global = map_norm.sqrt() / p_norm.sqrt().max(rho * q_norm.sqrt()).max(SCALE_FLOOR);
     residual
 }

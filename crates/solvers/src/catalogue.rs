@@ -1,6 +1,6 @@
 //! The solvers by name, for programs that let their users choose.
 
-use crate::{Auto, Enumeration, Newton, Pgs, Prox, Smoothing};
+use crate::{Auto, Enumeration, Lemke, Newton, Pgs, Prox, Smoothing};
 use teeter_contact::{ContactSolver, Law};
 
 /// What a user wants to know of a solver before choosing it.
@@ -63,6 +63,13 @@ pub const SOLVERS: &[SolverInfo] = &[
         summary: "proximal point around newton, for singular H",
         reference: "Acary, Bremond and Huber 2018, doi 10.1007/978-3-319-75972-2_10",
     },
+    SolverInfo {
+        name: Lemke::NAME,
+        dimensions: &[2],
+        law: Law::Exact,
+        summary: "pivoting on the linear complementarity problem; up to 1000 contacts",
+        reference: "Klarbring 1986, doi 10.1016/0045-7825(86)90074-8",
+    },
 ];
 
 /// The plane solver of that name; `None` for an unknown one.
@@ -79,6 +86,7 @@ pub fn plane_solver(name: &str) -> Option<Box<dyn ContactSolver<2>>> {
         Smoothing::<2>::NAME => Some(Box::new(Smoothing::<2>::new())),
         Prox::<2>::NAME => Some(Box::new(Prox::<2>::new())),
         Enumeration::NAME => Some(Box::new(Enumeration)),
+        Lemke::NAME => Some(Box::new(Lemke::new())),
         Pgs::<2>::NAME => Some(Box::new(Pgs::<2>::new())),
         _ => None,
     }

@@ -8,22 +8,25 @@
 //! leaf is left with the 2 × 2 problem of the last contact: all leaves share the work above them, and most fail a
 //! sign there.
 //!
+//! Before the walk through the tree the likely states are tried, one by one (`likely.rs`): that is the whole solve wherever they
+//! fit with room to spare. The tree is for the rest: borders between states, and problems where a contact can't choose alone.
+//!
 //! Hyperstatic contacts (two sticking corners of one body) make the system of a state singular: its solution of least
 //! norm is taken. The least-norm point of all impulses that obey the law lies on a face of the cones, and a face is a
 //! state; so of the states that fit, the one of smallest norm is that point.
 //!
 //! The enumeration of states is as old as the linear complementarity form of plane friction (Klarbring 1990,
-//! doi 10.1007/BF00534316); choosing by the norm is ours.
+//! doi 10.1007/BF00534316); choosing by the norm is ours, and so is trying the likely states first.
 
 use crate::least_norm::{MAX, RANK_TOLERANCE, System};
-use crate::one_contact;
+use crate::{likely, one_contact};
 use nalgebra::{Matrix2, Vector2};
-use teeter_contact::{ContactProblem, ContactSolver, Delassus, Law, Outcome, Status, Stop, judge};
+use teeter_contact::{ContactProblem, ContactSolver, Delassus, Law, Outcome, Status, Stop, judge, judge_velocities};
 
 /// Most contacts that are enumerated: 4³ = 64 states.
 pub(crate) const MAX_CONTACTS: usize = 3;
 /// How far an inequality may be missed, relative to the terms that its left side is the sum of: rounding of a 6 × 6 solve.
-const ROUNDING: f64 = 1e-13;
+pub(crate) const ROUNDING: f64 = 1e-13;
 
 /// The exact 2D solver for up to three contacts; see the [crate's table](crate).
 ///
@@ -33,7 +36,7 @@ const ROUNDING: f64 = 1e-13;
 pub struct Enumeration;
 
 #[derive(Clone, Copy, PartialEq)]
-enum State {
+pub(crate) enum State {
     Open,
     Stick,
     /// Slides; the sign of u_T.
@@ -76,7 +79,19 @@ impl ContactSolver<2> for Enumeration {
                 }
                 None => (false, 1),
             },
-            2..=MAX_CONTACTS => Table::new(problem).search(p),
+            2..=MAX_CONTACTS => {
+                let table = Table::new(problem);
+                let (likely, tried) = likely::find(&table, p);
+                if let Some((impulses, velocities)) = likely {
+                    let residual = judge_velocities(problem, &impulses[..n], &velocities[..n]);
+                    if residual.global <= stop.tolerance {
+                        p.copy_from_slice(&impulses[..n]);
+                        return Outcome::new(Status::Converged, Self::NAME, tried, residual);
+                    }
+                }
+                let (found, searched) = table.search(p);
+                (found, tried + searched)
+            }
             _ => (false, 0),
         };
         let residual = judge(problem, p);
@@ -91,15 +106,15 @@ impl ContactSolver<2> for Enumeration {
 }
 
 /// The problem with its blocks at hand.
-struct Table {
-    n: usize,
-    h: [[Matrix2<f64>; MAX_CONTACTS]; MAX_CONTACTS],
-    q: [Vector2<f64>; MAX_CONTACTS],
-    mu: [f64; MAX_CONTACTS],
+pub(crate) struct Table {
+    pub(crate) n: usize,
+    pub(crate) h: [[Matrix2<f64>; MAX_CONTACTS]; MAX_CONTACTS],
+    pub(crate) q: [Vector2<f64>; MAX_CONTACTS],
+    pub(crate) mu: [f64; MAX_CONTACTS],
 }
 
-/// Impulses of all contacts.
-type Impulses = [Vector2<f64>; MAX_CONTACTS];
+/// Impulses, or velocities, of all contacts.
+pub(crate) type Impulses = [Vector2<f64>; MAX_CONTACTS];
 
 impl Table {
     fn new(problem: &ContactProblem<'_, 2>) -> Self {

@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | [`Enumeration`] | 2D, up to three contacts, exactly | always, where it fits |
 //! | [`Pgs`] | 2D and 3D, any number of contacts | there are more than three contacts, and 1e-4 or so is enough or they couple weakly |
+//! | [`Lemke`] | 2D, up to 1000 contacts, by pivoting | some tens of contacts in the plane on which pgs crawls |
 //! | [`Auto`] | 2D | you don't want to choose: contacts that couple are enumerated up to three, else (or if that fails) pgs |
 //!
 //! ```
@@ -27,6 +28,8 @@ mod chain;
 mod enumeration;
 mod least_norm;
 mod linearised;
+mod lemke;
+mod likely;
 mod local;
 mod newton;
 mod one_contact;
@@ -43,6 +46,7 @@ pub use auto::Auto;
 pub use catalogue::{SOLVERS, SolverInfo, plane_solver, space_solver};
 pub use enumeration::Enumeration;
 pub use newton::Newton;
+pub use lemke::Lemke;
 pub use pgs::Pgs;
 pub use prox::Prox;
 pub use smoothing::Smoothing;

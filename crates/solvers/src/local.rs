@@ -13,6 +13,9 @@ const RANK_TOLERANCE: f64 = 1e-12;
 /// Above this, it costs its solution two digits at most.
 const WELL_CONDITIONED: f64 = 1e-2;
 
+/// With more friction than that, the shift μ‖u_T‖ makes rounding of a sticking contact's velocity felt.
+const MUCH: f64 = 10.0;
+
 /// How much `H_NN` must exceed `μ‖H_NT‖` for a block to count as regular: rounding, with room.
 const MARGIN: f64 = 1.0 + 1e-9;
 
@@ -21,8 +24,7 @@ const MARGIN: f64 = 1.0 + 1e-9;
 enum Kind {
     /// μ = 0, or there is no tangent.
     Frictionless,
-    /// Every sliding direction presses harder the more it is pushed, and sticking has one solution: the first state
-    /// that fits is taken.
+    /// The first state that fits is taken: in the plane because there is one only, in space for speed.
     Regular,
     /// All states are tried and the smallest impulse is taken.
     Difficult,
@@ -73,10 +75,8 @@ impl<const D: usize> Local<D> {
             let rows = space::rows(h);
             if let Some(inverse) = space::inverse(&rows, RANK_TOLERANCE) {
                 local.inverse = Block::from_fn(|r, c| inverse[r][c]);
-                local.refine = space::inverse(&rows, WELL_CONDITIONED).is_none();
-                if space::positive(&rows) && h_nn > mu * rows[0][1].hypot(rows[0][2]) * MARGIN {
-                    local.kind = Kind::Regular;
-                }
+                local.refine = mu > MUCH || space::inverse(&rows, WELL_CONDITIONED).is_none();
+                local.kind = Kind::Regular;
             }
         }
         local
@@ -88,11 +88,13 @@ impl<const D: usize> Local<D> {
         &self.h
     }
 
-    /// The impulse of the contact whose velocity would be `q` without it. `slip` is what the last visit left there: a
-    /// measure of the sliding speed, from which the next one starts. `None` where no state fits.
+    /// The impulse of the contact whose velocity would be `q` without it. `slip` is what the last visit left there, from
+    /// which the next one starts: a measure of the sliding speed, 0 for a contact that stuck (and at first), −1 for an open
+    /// one. `None` where no state fits.
     #[inline(always)]
     pub(crate) fn solve(&self, q: &Vector<D>, slip: &mut f64) -> Option<Vector<D>> {
         if q[0] >= 0.0 {
+            *slip = -1.0;
             return Some(Vector::zeros());
         }
         if self.kind == Kind::Frictionless {
@@ -106,7 +108,7 @@ impl<const D: usize> Local<D> {
                 let (h, inverse) = (space::rows(&self.h), space::rows(&self.inverse));
                 let q = [q[0], q[1], q[2]];
                 let regular = match self.kind {
-                    Kind::Regular => space::regular(&h, &inverse, &q, self.mu, self.refine, slip),
+                    Kind::Regular => space::usual(&h, &inverse, &q, self.mu, self.refine, slip),
                     _ => None,
                 };
                 let p = match regular {

@@ -12,8 +12,8 @@
 //! `det(A + λI)² = ‖adj(A + λI) g‖²` (Bonnefon and Daviet 2011, INRIA RT-0417, hal-00553859), whose closed form fails
 //! where roots coincide, as they do for `H = c I`. Here, as in Moré and Sorensen's method (1983, doi 10.1137/0904038), Newton's
 //! method starts from the last visit's λ, or from ‖g‖ − ½ tr A (for `H = c I` the root itself), and takes one to three
-//! steps; the quartic's value and slope come from the 2 × 2 system, without its coefficients. Where that fails or several solutions may exist, all roots of the quartic in the interval that can hold any
-//! are isolated between those of its derivatives, and the smallest impulse that obeys the law is taken.
+//! steps. Where it fails, all roots of the quartic in the interval that can hold any are isolated between those of its
+//! derivatives, and the smallest impulse that obeys the law is taken.
 
 use teeter_contact::Block;
 
@@ -23,8 +23,12 @@ type Matrix = [[f64; 3]; 3];
 /// Most Newton steps before the slow and sure way.
 const STEPS: u32 = 12;
 
-/// The secular equation counts as solved by the next step when it is missed by less: the step squares it.
+/// The equation counts as solved by the next step when it is missed by less: the step squares it.
 const NEARLY: f64 = 1e-8;
+
+/// The same from the last visit's λ, which is the nearer the further the sweeps have come: what one visit misses, the next
+/// makes good. A count of steps that doesn't vary is worth more than digits that the next sweep changes.
+const WARM: f64 = 1e-4;
 
 /// How far a candidate of the slow way may miss the law, relative to the terms of its velocity: the square root of
 /// rounding, as two roots that coincide are known to no more. The judge has the last word.
@@ -61,15 +65,6 @@ pub(crate) fn inverse(h: &Matrix, tolerance: f64) -> Option<Matrix> {
         }
     }
     Some(inverse)
-}
-
-/// Whether the symmetric part is positive definite.
-pub(crate) fn positive(h: &Matrix) -> bool {
-    let s = |r: usize, c: usize| 0.5 * (h[r][c] + h[c][r]);
-    let second = s(0, 0) * s(1, 1) - s(0, 1) * s(0, 1);
-    let third = s(0, 0) * (s(1, 1) * s(2, 2) - s(1, 2) * s(1, 2)) - s(0, 1) * (s(0, 1) * s(2, 2) - s(1, 2) * s(0, 2))
-        + s(0, 2) * (s(0, 1) * s(1, 2) - s(1, 1) * s(0, 2));
-    s(0, 0) > 0.0 && second > 0.0 && third > 0.0
 }
 
 #[inline]
@@ -110,7 +105,7 @@ struct Slide {
 }
 
 impl Slide {
-    #[inline]
+    #[inline(always)]
     fn new(h: &Matrix, q: &Vector, mu: f64) -> Self {
         let entry = |i: usize, j: usize| mu * (q[i] * h[0][j] - q[0] * h[i][j]);
         let a = [[entry(1, 1), entry(1, 2)], [entry(2, 1), entry(2, 2)]];
@@ -125,8 +120,8 @@ impl Slide {
     }
 
     /// The root next to `start`, where the determinant stays positive.
-    #[inline]
-    fn newton(&self, start: f64) -> Option<f64> {
+    #[inline(always)]
+    fn newton(&self, start: f64, nearly: f64) -> Option<f64> {
         let mut lambda = start;
         for _ in 0..STEPS {
             let v = [self.back[0] + lambda * self.g[0], self.back[1] + lambda * self.g[1]];
@@ -144,7 +139,7 @@ impl Slide {
             }
             // Beyond zero lies sticking: one more try from there, unless it is rounding on the border.
             lambda = next.max(0.0);
-            if miss.abs() <= NEARLY * square_of_det {
+            if miss.abs() <= nearly * square_of_det {
                 return Some(lambda);
             }
         }
@@ -152,10 +147,19 @@ impl Slide {
     }
 
     /// The root next to where it would be if A were half its trace.
-    #[cold]
     fn from_afar(&self) -> Option<f64> {
         let size = (self.g[0] * self.g[0] + self.g[1] * self.g[1]).sqrt();
-        self.newton((size - 0.5 * self.trace).max(0.0))
+        self.newton((size - 0.5 * self.trace).max(0.0), NEARLY)
+    }
+
+    /// The impulse for a root. There ‖v‖ = det, so d = v/det; with det multiplied through, one division is left.
+    #[inline(always)]
+    fn impulse(&self, h: &Matrix, q: &Vector, mu: f64, lambda: f64) -> Option<Vector> {
+        let v = [self.back[0] + lambda * self.g[0], self.back[1] + lambda * self.g[1]];
+        let determinant = (lambda + self.trace) * lambda + self.determinant;
+        let size = -q[0] / (h[0][0] * determinant - mu * (h[0][1] * v[0] + h[0][2] * v[1]));
+        let p = [size * determinant, -mu * size * v[0], -mu * size * v[1]];
+        (size > 0.0 && p[0] < f64::INFINITY && p[1].is_finite() && p[2].is_finite()).then_some(p)
     }
 
     /// The direction for a root.
@@ -175,32 +179,30 @@ fn slide(h: &Matrix, q: &Vector, mu: f64, d: &[f64; 2]) -> Option<Vector> {
     (w > 0.0 && p_n.is_finite()).then(|| [p_n, -mu * p_n * d[0], -mu * p_n * d[1]])
 }
 
-/// The state that fits a regular block: sticking, or else the slide whose λ is next to `slip`, the last visit's.
-/// `None` if Newton's method doesn't find it.
+/// The state that fits: the last visit's if it still does, else sticking, else the slide that Newton's method finds from
+/// afar. `slip` is λ of the last visit, 0 for a contact that stuck. `None` if nothing fits, or Newton's method fails.
 #[inline(always)]
-pub(crate) fn regular(
-    h: &Matrix,
-    inverse: &Matrix,
-    q: &Vector,
-    mu: f64,
-    refine: bool,
-    slip: &mut f64,
-) -> Option<Vector> {
+pub(crate) fn usual(h: &Matrix, inverse: &Matrix, q: &Vector, mu: f64, refine: bool, slip: &mut f64) -> Option<Vector> {
+    if *slip > 0.0 {
+        let equation = Slide::new(h, q, mu);
+        if let Some(lambda) = equation.newton(*slip, WARM).filter(|&lambda| lambda > 0.0) {
+            *slip = lambda;
+            return equation.impulse(h, q, mu, lambda);
+        }
+    }
     if let Some(p) = stick(h, inverse, q, mu, refine) {
+        *slip = 0.0;
         return Some(p);
     }
+    begin_to_slide(h, q, mu, slip)
+}
+
+/// The slide of a contact that stuck or was open before.
+#[inline(never)]
+fn begin_to_slide(h: &Matrix, q: &Vector, mu: f64, slip: &mut f64) -> Option<Vector> {
     let equation = Slide::new(h, q, mu);
-    let lambda = match if *slip > 0.0 { equation.newton(*slip) } else { None } {
-        Some(lambda) => lambda,
-        None => equation.from_afar()?,
-    };
-    *slip = lambda;
-    // At the root ‖v‖ = det, so d = v/det; with det multiplied through, one division is left.
-    let v = [equation.back[0] + lambda * equation.g[0], equation.back[1] + lambda * equation.g[1]];
-    let determinant = (lambda + equation.trace) * lambda + equation.determinant;
-    let size = -q[0] / (h[0][0] * determinant - mu * (h[0][1] * v[0] + h[0][2] * v[1]));
-    let p = [size * determinant, -mu * size * v[0], -mu * size * v[1]];
-    (size > 0.0 && p[0] < f64::INFINITY && p[1].is_finite() && p[2].is_finite()).then_some(p)
+    *slip = equation.from_afar()?;
+    equation.impulse(h, q, mu, *slip)
 }
 
 /// The smallest impulse of all states that fit a contact with `q_N < 0`, μ > 0.
@@ -237,7 +239,7 @@ pub(crate) fn smallest(h: &Matrix, inverse: &Matrix, q: &Vector, mu: f64) -> Opt
     candidates.push(0.0);
     for &root in candidates.as_slice() {
         // Both signs of the determinant: the quartic is an equation of squares.
-        for root in [equation.newton(root * unit), Some(root * unit)].into_iter().flatten() {
+        for root in [equation.newton(root * unit, NEARLY), Some(root * unit)].into_iter().flatten() {
             let d = equation.direction(root);
             for d in [d, [-d[0], -d[1]]] {
                 if let Some(p) = slide(h, q, mu, &d).filter(|p| slides(h, q, p, &d)) {
@@ -335,7 +337,7 @@ mod tests {
 
     fn solve(h: Matrix, q: Vector, mu: f64) -> [Option<Vector>; 2] {
         let inverse = inverse(&h, 1e-12).unwrap();
-        [regular(&h, &inverse, &q, mu, true, &mut 0.0), smallest(&h, &inverse, &q, mu)]
+        [usual(&h, &inverse, &q, mu, true, &mut 0.0), smallest(&h, &inverse, &q, mu)]
     }
 
     fn assert_obeys(h: &Matrix, q: &Vector, mu: f64, p: &Vector, slack: f64) {
