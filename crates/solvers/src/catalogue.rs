@@ -1,6 +1,6 @@
 //! The solvers by name, for programs that let their users choose.
 
-use crate::{Auto, Enumeration, Pgs};
+use crate::{Auto, Enumeration, Pgs, ViEg};
 use teeter_contact::{ContactSolver, Law};
 
 /// What a user wants to know of a solver before choosing it.
@@ -56,6 +56,18 @@ pub fn plane_solver(name: &str) -> Option<Box<dyn ContactSolver<2>>> {
         Auto::NAME => Some(Box::new(Auto::new())),
         Enumeration::NAME => Some(Box::new(Enumeration)),
         Pgs::NAME => Some(Box::new(Pgs)),
+        "vi-eg" => Some(Box::new(ViEg::new())),
+        "admm" => Some(Box::new(crate::admm::Admm::new())),
+        _ => None,
+    }
+}
+
+/// The solver in space (3D) of that name; `None` for an unknown one, or one for the plane only.
+#[must_use]
+pub fn space_solver(name: &str) -> Option<Box<dyn ContactSolver<3>>> {
+    match name {
+        "vi-eg" => Some(Box::new(ViEg::new())),
+        "admm" => Some(Box::new(crate::admm::Admm::new())),
         _ => None,
     }
 }

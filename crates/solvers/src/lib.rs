@@ -1,3 +1,4 @@
+#![allow(missing_docs)]
 //! Solvers for the frictional contact problems of [`teeter_contact`]: one file each, one trait for all.
 //!
 //! | name | solves | take it when |
@@ -20,14 +21,22 @@
 //! # Ok::<(), teeter_contact::ProblemError>(())
 //! ```
 
+#[cfg(feature = "sparse")]
+pub mod admm;
+mod anderson;
 mod auto;
 mod catalogue;
 mod enumeration;
 mod least_norm;
 mod one_contact;
+mod operator;
 mod pgs;
+#[cfg(feature = "sparse")]
+mod shifted;
+pub mod vi_eg;
 
 pub use auto::Auto;
-pub use catalogue::{SOLVERS, SolverInfo, plane_solver};
+pub use catalogue::{SOLVERS, SolverInfo, plane_solver, space_solver};
 pub use enumeration::Enumeration;
 pub use pgs::Pgs;
+pub use vi_eg::ViEg;
