@@ -1,6 +1,10 @@
 //! The solvers by name, for programs that let their users choose.
 
-use crate::{Auto, Enumeration, Pgs, ViEg};
+#[cfg(feature = "sparse")]
+use crate::Admm;
+#[cfg(feature = "clarabel")]
+use crate::{AcaryCadoux, Socp};
+use crate::{Apgd, Auto, Enumeration, Pgs, ViEg};
 use teeter_contact::{ContactSolver, Law};
 
 /// What a user wants to know of a solver before choosing it.
@@ -36,11 +40,49 @@ pub const SOLVERS: &[SolverInfo] = &[
         reference: "Klarbring 1990, doi 10.1007/BF00534316",
     },
     SolverInfo {
-        name: Pgs::NAME,
-        dimensions: &[2],
+        name: Pgs::<2>::NAME,
+        dimensions: &[2, 3],
         law: Law::Exact,
         summary: "Gauss-Seidel over contacts with an exact local solve",
         reference: "Jean 1999, doi 10.1016/S0045-7825(98)00383-1",
+    },
+    #[cfg(feature = "clarabel")]
+    SolverInfo {
+        name: AcaryCadoux::<2>::NAME,
+        dimensions: &[2, 3],
+        law: Law::Exact,
+        summary: "a fixed point on the slip over cone programs, polished",
+        reference: "Acary, Cadoux, Lemarechal, Malick 2011, doi 10.1002/zamm.201000073",
+    },
+    #[cfg(feature = "sparse")]
+    SolverInfo {
+        name: Admm::<2>::NAME,
+        dimensions: &[2, 3],
+        law: Law::Exact,
+        summary: "alternating directions with one factorisation, accelerated",
+        reference: "Boyd et al. 2011, doi 10.1561/2200000016",
+    },
+    SolverInfo {
+        name: Apgd::<2>::NAME,
+        dimensions: &[2, 3],
+        law: Law::Exact,
+        summary: "accelerated projected gradients, the slip's shift in an outer loop",
+        reference: "Mazhar, Heyn, Negrut, Tasora 2015, doi 10.1145/2735627",
+    },
+    #[cfg(feature = "clarabel")]
+    SolverInfo {
+        name: Socp::<2>::NAME,
+        dimensions: &[2, 3],
+        law: Law::Convex,
+        summary: "the associated law as a cone program: a sliding contact separates",
+        reference: "Anitescu 2006, doi 10.1007/s10107-005-0590-7",
+    },
+    SolverInfo {
+        name: ViEg::<2>::NAME,
+        dimensions: &[2, 3],
+        law: Law::Exact,
+        summary: "projections with a step that adapts itself",
+        reference: "Khobotov 1987, doi 10.1016/0041-5553(87)90058-9",
     },
 ];
 
@@ -55,19 +97,37 @@ pub fn plane_solver(name: &str) -> Option<Box<dyn ContactSolver<2>>> {
     match name {
         Auto::NAME => Some(Box::new(Auto::new())),
         Enumeration::NAME => Some(Box::new(Enumeration)),
-        Pgs::NAME => Some(Box::new(Pgs)),
-        "vi-eg" => Some(Box::new(ViEg::new())),
-        "admm" => Some(Box::new(crate::admm::Admm::new())),
+        Pgs::<2>::NAME => Some(Box::new(Pgs::<2>::new())),
+        #[cfg(feature = "clarabel")]
+        AcaryCadoux::<2>::NAME => Some(Box::new(AcaryCadoux::<2>::new())),
+        #[cfg(feature = "sparse")]
+        Admm::<2>::NAME => Some(Box::new(Admm::<2>::new())),
+        Apgd::<2>::NAME => Some(Box::new(Apgd::<2>::new())),
+        #[cfg(feature = "clarabel")]
+        Socp::<2>::NAME => Some(Box::new(Socp::<2>::new())),
+        ViEg::<2>::NAME => Some(Box::new(ViEg::<2>::new())),
         _ => None,
     }
 }
 
-/// The solver in space (3D) of that name; `None` for an unknown one, or one for the plane only.
+/// The solver of that name for contacts in space; `None` for an unknown one, and for one that knows the plane only.
+///
+/// ```
+/// assert_eq!(teeter_solvers::space_solver("pgs").unwrap().name(), "pgs");
+/// assert!(teeter_solvers::space_solver("enumeration").is_none());
+/// ```
 #[must_use]
 pub fn space_solver(name: &str) -> Option<Box<dyn ContactSolver<3>>> {
     match name {
-        "vi-eg" => Some(Box::new(ViEg::new())),
-        "admm" => Some(Box::new(crate::admm::Admm::new())),
+        Pgs::<3>::NAME => Some(Box::new(Pgs::<3>::new())),
+        #[cfg(feature = "clarabel")]
+        AcaryCadoux::<3>::NAME => Some(Box::new(AcaryCadoux::<3>::new())),
+        #[cfg(feature = "sparse")]
+        Admm::<3>::NAME => Some(Box::new(Admm::<3>::new())),
+        Apgd::<3>::NAME => Some(Box::new(Apgd::<3>::new())),
+        #[cfg(feature = "clarabel")]
+        Socp::<3>::NAME => Some(Box::new(Socp::<3>::new())),
+        ViEg::<3>::NAME => Some(Box::new(ViEg::<3>::new())),
         _ => None,
     }
 }
@@ -79,9 +139,16 @@ mod tests {
     #[test]
     fn every_listed_solver_can_be_made_and_agrees_with_its_entry() {
         for info in SOLVERS {
-            let solver = plane_solver(info.name).unwrap();
-            assert_eq!((solver.name(), solver.law()), (info.name, info.law));
-            assert_eq!(solver.fork().name(), info.name);
+            assert_eq!(info.dimensions.contains(&2), plane_solver(info.name).is_some());
+            assert_eq!(info.dimensions.contains(&3), space_solver(info.name).is_some());
+            if let Some(solver) = plane_solver(info.name) {
+                assert_eq!((solver.name(), solver.law()), (info.name, info.law));
+                assert_eq!(solver.fork().name(), info.name);
+            }
+            if let Some(solver) = space_solver(info.name) {
+                assert_eq!((solver.name(), solver.law()), (info.name, info.law));
+                assert_eq!(solver.fork().name(), info.name);
+            }
         }
     }
 }

@@ -1,10 +1,9 @@
-#![allow(missing_docs)]
 //! Solvers for the frictional contact problems of [`teeter_contact`]: one file each, one trait for all.
 //!
 //! | name | solves | take it when |
 //! |---|---|---|
 //! | [`Enumeration`] | 2D, up to three contacts, exactly | always, where it fits |
-//! | [`Pgs`] | 2D, any number of contacts | there are more than three contacts |
+//! | [`Pgs`] | 2D and 3D, any number of contacts | there are more than three contacts, and 1e-4 or so is enough or they couple weakly |
 //! | [`Auto`] | 2D | you don't want to choose: contacts that couple are enumerated up to three, else (or if that fails) pgs |
 //!
 //! ```
@@ -21,22 +20,41 @@
 //! # Ok::<(), teeter_contact::ProblemError>(())
 //! ```
 
+#[cfg(feature = "clarabel")]
+pub mod acary_cadoux;
 #[cfg(feature = "sparse")]
 pub mod admm;
+#[cfg(feature = "sparse")]
 mod anderson;
+pub mod apgd;
 mod auto;
 mod catalogue;
+#[cfg(feature = "clarabel")]
+mod cone_program;
 mod enumeration;
 mod least_norm;
+mod local;
 mod one_contact;
+mod one_contact_space;
 mod operator;
 mod pgs;
 #[cfg(feature = "sparse")]
 mod shifted;
+#[cfg(feature = "clarabel")]
+pub mod socp;
+#[cfg(any(feature = "sparse", feature = "clarabel"))]
+mod upper;
 pub mod vi_eg;
 
+#[cfg(feature = "clarabel")]
+pub use acary_cadoux::AcaryCadoux;
+#[cfg(feature = "sparse")]
+pub use admm::Admm;
+pub use apgd::Apgd;
 pub use auto::Auto;
 pub use catalogue::{SOLVERS, SolverInfo, plane_solver, space_solver};
 pub use enumeration::Enumeration;
 pub use pgs::Pgs;
+#[cfg(feature = "clarabel")]
+pub use socp::Socp;
 pub use vi_eg::ViEg;
