@@ -10,7 +10,7 @@
 //! - The interior point floors at some 1e-8 in 3D, and the fixed point converges linearly (a factor of about 0.4 a program). So once
 //!   the residual is below 1e-5, or a program no longer halves it, another solver polishes from there
 //!   (ADMM where the crate has it, else Gauss–Seidel), and the fixed point goes on only if that fails.
-//! - A contact that sticks has no shift, whatever slip the interior point leaves it: a large μ would make much of it.
+//! - With μ above 100 a contact that sticks has no shift, whatever slip the interior point leaves it: μ would make much of it.
 //! - A skew part of H lags like the shift.
 //!
 //! **Take it** where robustness counts more than time: each program is solved whatever the condition of H.

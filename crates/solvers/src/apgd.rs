@@ -8,7 +8,7 @@
 //! - The paper solves the convex law (s = 0) only; the outer loop is Acary and Cadoux's fixed point (2011, doi
 //!   10.1002/zamm.201000073). The shift is renewed as soon as the convex problem's residual is half of the exact
 //!   law's: solving further for a shift that is wrong is work in vain.
-//! - A contact that sticks has no shift, whatever its remaining slip: with a large μ the fixed point could not contract else.
+//! - With μ above 100 a contact that sticks has no shift, whatever its remaining slip: the fixed point could not contract else.
 //! - Restart of the momentum by the sign of gradient times step (O'Donoghue and Candès 2015, doi 10.1007/s10208-013-9150-3), as in
 //!   the paper.
 //! - The step is tested by `dᵀH d ≤ ‖d‖²/τ` rather than by differences of the objective, which cancel near the end; each
@@ -23,7 +23,7 @@
 //! with large μ the outer loop need not contract, and then it ends as `stalled` or out of iterations; a skew part of
 //! H isn't part of any objective: small ones do no harm, large ones may.
 
-use crate::operator::{Operator, disk_map, is_steep, natural_map, own_step, slip_shift};
+use crate::operator::{Operator, STEEP, disk_map, is_steep, natural_map, own_step, slip_shift};
 use teeter_contact::{BlockSparse, ContactProblem, ContactSolver, Law, Outcome, Status, Stop, Vector, judge, project};
 
 /// The exact residual is compared with the convex one every so many iterations.
@@ -90,8 +90,8 @@ impl<const D: usize> Apgd<D> {
             if law == Law::Convex { 0.0 } else { slip_shift(p, u, mu) }
         };
         shift.clear();
-        // Of a contact without impulse nothing is known yet: the convex law first, as in the paper.
-        shift.extend((0..n).map(|i| if p[i][0] > 0.0 { slip(&p[i], &u[i], mu[i]) } else { 0.0 }));
+        // A very large μ on a contact without impulse would hold it open: there the convex law comes first.
+        shift.extend((0..n).map(|i| if mu[i] > STEEP && p[i][0] <= 0.0 { 0.0 } else { slip(&p[i], &u[i], mu[i]) }));
         let q_norm = rho * q.iter().map(Vector::norm_squared).sum::<f64>().sqrt();
         let (mut step, mut theta) = (1.0, 1.0_f64);
         let (mut best_residual, mut best_at, mut iterations) = (f64::INFINITY, 0, 0);

@@ -2,6 +2,9 @@
 
 use teeter_contact::{BlockSparse, ContactProblem, Delassus, Vector, de_saxce, project};
 
+/// A friction coefficient above this is a way to say that a contact doesn't slide.
+pub(crate) const STEEP: f64 = 100.0;
+
 /// What a problem's products are taken from.
 #[derive(Clone, Copy)]
 pub(crate) enum Operator<'a, const D: usize> {
@@ -104,14 +107,14 @@ pub(crate) fn disk_map<const D: usize>(p: &[Vector<D>], u: &[Vector<D>], mu: &[f
 /// Whether some μ is so large that the judge's residual, which holds μ‖u_T‖, can be rounding: then a method asks the judge
 /// itself as soon as [`disk_map`] is small.
 pub(crate) fn is_steep(mu: &[f64]) -> bool {
-    mu.iter().any(|mu| *mu > 100.0)
+    mu.iter().any(|mu| *mu > STEEP)
 }
 
-/// De Saxce's shift μ‖u_T‖ where the contact is open or slides, 0 where it sticks: there it vanishes at the solution, and
-/// until then a large μ would make much of a small slip.
+/// De Saxcé's shift μ‖u_T‖; but 0 for a very large μ where the contact sticks: there it vanishes at the solution, and until
+/// then μ would make much of a small slip. (For a usual μ the jump between the two would let the fixed point cycle.)
 pub(crate) fn slip_shift<const D: usize>(p: &Vector<D>, u: &Vector<D>, mu: f64) -> f64 {
     let tangential = |x: &Vector<D>| x.iter().skip(1).fold(0.0, |s: f64, c| s.hypot(*c));
-    if tangential(p) < (1.0 - 1e-9) * mu * p[0] { 0.0 } else { mu * tangential(u) }
+    if mu > STEEP && tangential(p) < (1.0 - 1e-9) * mu * p[0] { 0.0 } else { mu * tangential(u) }
 }
 
 #[cfg(test)]
