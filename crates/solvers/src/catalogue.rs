@@ -1,6 +1,10 @@
 //! The solvers by name, for programs that let their users choose.
 
-use crate::{Auto, Enumeration, Lemke, Newton, Pgs, Prox, Smoothing};
+#[cfg(feature = "sparse")]
+use crate::Admm;
+#[cfg(feature = "clarabel")]
+use crate::{AcaryCadoux, Socp};
+use crate::{Apgd, Auto, Enumeration, Lemke, Newton, Pgs, Prox, Smoothing, ViEg};
 use teeter_contact::{ContactSolver, Law};
 
 /// What a user wants to know of a solver before choosing it.
@@ -70,6 +74,44 @@ pub const SOLVERS: &[SolverInfo] = &[
         summary: "pivoting on the linear complementarity problem; up to 1000 contacts",
         reference: "Klarbring 1986, doi 10.1016/0045-7825(86)90074-8",
     },
+    #[cfg(feature = "clarabel")]
+    SolverInfo {
+        name: AcaryCadoux::<2>::NAME,
+        dimensions: &[2, 3],
+        law: Law::Exact,
+        summary: "a fixed point on the slip over cone programs, polished",
+        reference: "Acary, Cadoux, Lemarechal, Malick 2011, doi 10.1002/zamm.201000073",
+    },
+    #[cfg(feature = "sparse")]
+    SolverInfo {
+        name: Admm::<2>::NAME,
+        dimensions: &[2, 3],
+        law: Law::Exact,
+        summary: "alternating directions with one factorisation, accelerated",
+        reference: "Boyd et al. 2011, doi 10.1561/2200000016",
+    },
+    SolverInfo {
+        name: Apgd::<2>::NAME,
+        dimensions: &[2, 3],
+        law: Law::Exact,
+        summary: "accelerated projected gradients, the slip's shift in an outer loop",
+        reference: "Mazhar, Heyn, Negrut, Tasora 2015, doi 10.1145/2735627",
+    },
+    #[cfg(feature = "clarabel")]
+    SolverInfo {
+        name: Socp::<2>::NAME,
+        dimensions: &[2, 3],
+        law: Law::Convex,
+        summary: "the associated law as a cone program: a sliding contact separates",
+        reference: "Anitescu 2006, doi 10.1007/s10107-005-0590-7",
+    },
+    SolverInfo {
+        name: ViEg::<2>::NAME,
+        dimensions: &[2, 3],
+        law: Law::Exact,
+        summary: "projections with a step that adapts itself",
+        reference: "Khobotov 1987, doi 10.1016/0041-5553(87)90058-9",
+    },
 ];
 
 /// The plane solver of that name; `None` for an unknown one.
@@ -88,6 +130,14 @@ pub fn plane_solver(name: &str) -> Option<Box<dyn ContactSolver<2>>> {
         Enumeration::NAME => Some(Box::new(Enumeration)),
         Lemke::NAME => Some(Box::new(Lemke::new())),
         Pgs::<2>::NAME => Some(Box::new(Pgs::<2>::new())),
+        #[cfg(feature = "clarabel")]
+        AcaryCadoux::<2>::NAME => Some(Box::new(AcaryCadoux::<2>::new())),
+        #[cfg(feature = "sparse")]
+        Admm::<2>::NAME => Some(Box::new(Admm::<2>::new())),
+        Apgd::<2>::NAME => Some(Box::new(Apgd::<2>::new())),
+        #[cfg(feature = "clarabel")]
+        Socp::<2>::NAME => Some(Box::new(Socp::<2>::new())),
+        ViEg::<2>::NAME => Some(Box::new(ViEg::<2>::new())),
         _ => None,
     }
 }
@@ -106,6 +156,14 @@ pub fn space_solver(name: &str) -> Option<Box<dyn ContactSolver<3>>> {
         Smoothing::<3>::NAME => Some(Box::new(Smoothing::<3>::new())),
         Prox::<3>::NAME => Some(Box::new(Prox::<3>::new())),
         Pgs::<3>::NAME => Some(Box::new(Pgs::<3>::new())),
+        #[cfg(feature = "clarabel")]
+        AcaryCadoux::<3>::NAME => Some(Box::new(AcaryCadoux::<3>::new())),
+        #[cfg(feature = "sparse")]
+        Admm::<3>::NAME => Some(Box::new(Admm::<3>::new())),
+        Apgd::<3>::NAME => Some(Box::new(Apgd::<3>::new())),
+        #[cfg(feature = "clarabel")]
+        Socp::<3>::NAME => Some(Box::new(Socp::<3>::new())),
+        ViEg::<3>::NAME => Some(Box::new(ViEg::<3>::new())),
         _ => None,
     }
 }

@@ -21,32 +21,57 @@
 //! # Ok::<(), teeter_contact::ProblemError>(())
 //! ```
 
-mod auto;
+#[cfg(feature = "clarabel")]
+pub mod acary_cadoux;
+#[cfg(feature = "sparse")]
+pub mod admm;
+#[cfg(feature = "sparse")]
+mod anderson;
+pub mod apgd;
+pub mod auto;
 mod block_lu;
 mod catalogue;
 mod chain;
-mod enumeration;
+#[cfg(feature = "clarabel")]
+mod cone_program;
+pub mod enumeration;
 mod least_norm;
-mod linearised;
-mod lemke;
+pub mod lemke;
 mod likely;
+mod linearised;
 mod local;
-mod newton;
+pub mod newton;
 mod one_contact;
 mod one_contact_space;
+mod operator;
 mod ordering;
-mod pgs;
-mod prox;
+pub mod pgs;
+pub mod prox;
 mod rows;
 mod scaled;
+#[cfg(feature = "sparse")]
+mod shifted;
 mod smooth_map;
-mod smoothing;
+pub mod smoothing;
+#[cfg(feature = "clarabel")]
+pub mod socp;
+#[cfg(any(feature = "sparse", feature = "clarabel"))]
+mod upper;
+pub mod vi_eg;
 
+#[cfg(feature = "clarabel")]
+pub use acary_cadoux::AcaryCadoux;
+#[cfg(feature = "sparse")]
+pub use admm::Admm;
+pub use apgd::Apgd;
 pub use auto::Auto;
 pub use catalogue::{SOLVERS, SolverInfo, plane_solver, space_solver};
 pub use enumeration::Enumeration;
-pub use newton::Newton;
 pub use lemke::Lemke;
+pub use newton::Newton;
 pub use pgs::Pgs;
 pub use prox::Prox;
 pub use smoothing::Smoothing;
+#[cfg(feature = "clarabel")]
+pub use socp::Socp;
+pub use vi_eg::ViEg;

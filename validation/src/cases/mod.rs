@@ -4,6 +4,7 @@ mod beam_energy;
 mod beam_frequencies;
 mod beam_statics;
 mod bounce;
+mod convex_law;
 mod energy_identity;
 mod housner_order;
 mod incline;
@@ -20,6 +21,7 @@ pub(crate) fn all() -> Vec<Box<dyn Case>> {
         Box::new(sliding::Sliding),
         Box::new(incline::Incline),
         Box::new(bounce::Bounce),
+        Box::new(convex_law::ConvexLaw),
         Box::new(housner_order::HousnerOrder),
         Box::new(energy_identity::EnergyIdentity),
     ]
