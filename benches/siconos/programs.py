@@ -1,0 +1,123 @@
+"""How the two programs are run: one process a measurement, pinned to one core, BLAS on one thread."""
+
+import json
+import os
+import shutil
+import subprocess
+from pathlib import Path
+from statistics import median
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+
+ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1")
+
+
+class Crash(Exception):
+    """The process ended otherwise than it should: by a signal, without a result, past every limit."""
+
+
+def target_directory():
+    return Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
+
+
+def pinned(core):
+    return ["taskset", "-c", str(core)] if core is not None and shutil.which("taskset") else []
+
+
+def run(command, core, patience):
+    """Standard output of a command; a crash where it was killed or said nothing."""
+    try:
+        done = subprocess.run(pinned(core) + [str(c) for c in command], env=ENVIRONMENT, timeout=patience,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    except subprocess.TimeoutExpired:
+        raise Crash(f"killed after {patience:.0f} s") from None
+    if done.returncode != 0 or not done.stdout.strip():
+        last = done.stderr.strip().splitlines()[-1:] or ["no output"]
+        raise Crash(f"exit code {done.returncode}: {last[0]}")
+    return done.stdout
+
+
+class Clock:
+    """Which of a solve's times counts, the same for both programs: elapsed, or CPU time of the process."""
+
+    def __init__(self, name):
+        self.name = name
+
+    def of_siconos(self, answer):
+        return answer["wall_ms" if self.name == "wall" else "cpu_ms"]
+
+
+class Driver:
+    """The C++ driver beside this file, which calls Siconos' numerics and judges."""
+
+    def __init__(self, core, clock):
+        self.core, self.clock = core, clock
+        self.path = target_directory() / "siconos" / "driver"
+
+    def build(self):
+        """Compiles it where the source is newer."""
+        source = HERE / "driver.cpp"
+        if self.path.exists() and self.path.stat().st_mtime > source.stat().st_mtime:
+            return
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        flags = subprocess.run(["pkg-config", "--cflags", "--libs", "fclib", "hdf5"], check=True,
+                               stdout=subprocess.PIPE, text=True).stdout.split()
+        include = "/usr/include/siconos"
+        subprocess.run(["g++", "-std=c++17", "-O2", "-Wall", str(source), f"-I{include}", f"-I{include}/numerics",
+                        "-o", str(self.path), "-lsiconos_numerics", *flags], check=True)
+
+    def describe(self, problem):
+        """Dimension and number of contacts."""
+        dimension, contacts = run([self.path, "describe", problem], self.core, 60).split()
+        return int(dimension), int(contacts)
+
+    def judge(self, problem, impulses):
+        return float(run([self.path, "judge", problem, impulses], self.core, 60))
+
+    def solve(self, problem, solver, own_tolerance, cap, runs, budget, limit):
+        """One process: `runs` solves of a problem loaded anew each time, fewer once `budget` seconds are spent."""
+        patience = 60 + 20 * (limit + budget)  # elapsed, on a machine that may be busy; the limit itself is of CPU time
+        line = run([self.path, "solve", problem, solver, repr(own_tolerance), cap, runs, budget, limit], self.core, patience)
+        answer = json.loads(line)
+        answer["times_ms"] = answer["cpu_ms"] if answer["ended"] == "timeout" else self.clock.of_siconos(answer)
+        if answer["residual"] is None:
+            answer["residual"] = float("nan")
+        return answer
+
+
+class Teeter:
+    """`teeter solve --json`, judged by the driver."""
+
+    def __init__(self, core, clock, driver, path=None):
+        self.core, self.clock, self.driver = core, clock, driver
+        self.path = Path(path) if path else target_directory() / "release" / "teeter"
+        self.given = path is not None
+
+    def build(self):
+        if not self.given:
+            subprocess.run(["cargo", "build", "--release", "--quiet", "--locked", "-p", "teeter"], cwd=ROOT, check=True)
+
+    def solvers(self):
+        """The names it knows, so that a pair isn't tried where there is none."""
+        words = run([self.path, "solvers"], self.core, 60).replace("|", " ").replace("`", " ").split()
+        return set(words)
+
+    def solve(self, problem, solver, tolerance, runs, limit, solutions):
+        """One process: the same file `runs` times over, each time read and solved anew. The judge is ours, not its own."""
+        command = [self.path, "solve", *[problem] * runs, "--json", "--solver", solver, "--tolerance", repr(tolerance),
+                   "--time-limit", f"{limit:g} s", "--solutions", solutions]
+        lines = [json.loads(line) for line in run(command, self.core, 60 + 20 * runs * limit).splitlines() if line.strip()]
+        if len(lines) != runs:
+            raise Crash(f"{len(lines)} lines for {runs} solves")
+        impulses = Path(solutions) / f"{Path(problem).stem}.{solver}.csv"
+        answer = dict(lines[-1])
+        answer["times_ms"] = [line["time_ms"] for line in lines]
+        answer["own_residual"] = answer["residual"]
+        answer["residual"] = self.driver.judge(problem, impulses) if impulses.exists() else float("nan")
+        return answer
+
+
+def middle(times):
+    """The median; of two or more the first is left out, for it runs on cold caches and pages."""
+    return median(times[1:] if len(times) > 2 else times)
