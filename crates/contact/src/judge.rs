@@ -36,11 +36,7 @@ pub fn judge<const D: usize>(problem: &ContactProblem<'_, D>, p: &[Vector<D>]) -
 /// # Panics
 /// If `p` or `u` doesn't hold one vector a contact: a mistake of the calling code.
 #[must_use]
-pub fn judge_velocities<const D: usize>(
-    problem: &ContactProblem<'_, D>,
-    p: &[Vector<D>],
-    u: &[Vector<D>],
-) -> Residual {
+pub fn judge_velocities<const D: usize>(problem: &ContactProblem<'_, D>, p: &[Vector<D>], u: &[Vector<D>]) -> Residual {
     assert!(p.len() == problem.contacts() && u.len() == p.len(), "one impulse and one velocity a contact");
     judge_with(problem, p, |i| u[i])
 }

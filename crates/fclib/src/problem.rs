@@ -1,0 +1,92 @@
+//! A local problem in memory.
+
+use teeter_contact::{BlockSparse, ContactProblem, Delassus, ProblemError, Vector};
+
+/// A problem of either dimension.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FclibProblem {
+    /// Contacts in the plane: a normal and a tangent.
+    Plane(LocalProblem<2>),
+    /// Contacts in space: a normal and two tangents.
+    Space(LocalProblem<3>),
+}
+
+impl FclibProblem {
+    /// 2 or 3.
+    #[must_use]
+    pub fn dimension(&self) -> usize {
+        match self {
+            Self::Plane(_) => 2,
+            Self::Space(_) => 3,
+        }
+    }
+
+    /// Number of contacts.
+    #[must_use]
+    pub fn contacts(&self) -> usize {
+        match self {
+            Self::Plane(local) => local.q.len(),
+            Self::Space(local) => local.q.len(),
+        }
+    }
+
+    /// What the file says of the problem.
+    #[must_use]
+    pub fn info(&self) -> &Info {
+        match self {
+            Self::Plane(local) => &local.info,
+            Self::Space(local) => &local.info,
+        }
+    }
+}
+
+/// A contact problem that owns its data, with what FCLIB keeps beside it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LocalProblem<const D: usize> {
+    /// The Delassus operator W, 1/kg (or its inverse stiffness, for a quasi-static problem).
+    pub h: BlockSparse<D>,
+    /// The constant vector, one for each contact, normal component first.
+    pub q: Vec<Vector<D>>,
+    /// The friction coefficient of each contact.
+    pub mu: Vec<f64>,
+    /// What the problem is.
+    pub info: Info,
+    /// Starts for a solver.
+    pub guesses: Vec<Solution<D>>,
+    /// A solution.
+    pub solution: Option<Solution<D>>,
+}
+
+impl<const D: usize> LocalProblem<D> {
+    /// The problem that borrows this data.
+    ///
+    /// # Errors
+    /// As [`ContactProblem::new`]; not for a problem as read.
+    pub fn problem(&self) -> Result<ContactProblem<'_, D>, ProblemError> {
+        ContactProblem::new(Delassus::Blocks(&self.h), &self.q, &self.mu)
+    }
+}
+
+/// What a file says of its problem; `None` where it says nothing.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Info {
+    /// A short title.
+    pub title: Option<String>,
+    /// A description.
+    pub description: Option<String>,
+    /// The mathematics: conventions, properties.
+    pub math_info: Option<String>,
+}
+
+/// A solution of a problem, or a guess of one.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Solution<const D: usize> {
+    /// The relative velocities.
+    pub u: Vec<Vector<D>>,
+    /// The impulses.
+    pub r: Vec<Vector<D>>,
+    /// Global velocities; local problems have none as a rule.
+    pub v: Vec<f64>,
+    /// Multipliers of equality constraints; problems without such constraints have none as a rule.
+    pub l: Vec<f64>,
+}

@@ -1,0 +1,117 @@
+//! Typed access to the parts of an HDF5 file, sizes checked before anything is read.
+
+use crate::FclibError;
+use hdf5_pure::{DType, Dataset, Error, File, FormatError};
+
+/// A part may always take this many bytes …
+const ALWAYS: u64 = 16 << 20;
+/// … and above that no more than this many times the file: compression of numbers doesn't reach it, a bomb does.
+const RATIO: u64 = 100;
+
+/// An open file.
+pub(crate) struct Store {
+    file: File,
+    bytes: u64,
+}
+
+impl Store {
+    pub(crate) fn open(bytes: Vec<u8>) -> Result<Self, FclibError> {
+        let length = bytes.len() as u64;
+        let file = File::from_bytes(bytes).map_err(|error| FclibError::NotHdf5 { reason: error.to_string() })?;
+        Ok(Self { file, bytes: length })
+    }
+
+    /// Whether there is a group of that name.
+    pub(crate) fn has_group(&self, name: &str) -> Result<bool, FclibError> {
+        match self.file.group(name) {
+            Ok(_) => Ok(true),
+            Err(Error::Format(FormatError::PathNotFound(_))) => Ok(false),
+            Err(error) => Err(unreadable(name, &error)),
+        }
+    }
+
+    /// A single whole number, whatever the shape that holds it.
+    pub(crate) fn integer(&self, name: &str) -> Result<i64, FclibError> {
+        let values = self.integers(name)?;
+        match values.as_slice() {
+            [value] => Ok(*value),
+            _ => Err(FclibError::Size { name: name.to_owned(), found: values.len() as u64, expected: 1 }),
+        }
+    }
+
+    pub(crate) fn integers(&self, name: &str) -> Result<Vec<i64>, FclibError> {
+        let dataset = self.required(name)?;
+        let dtype = dataset.dtype().map_err(|error| unreadable(name, &error))?;
+        if !is_integer(&dtype) {
+            return Err(wrong_type(name, &dtype, "integers"));
+        }
+        self.checked_length(&dataset, name)?;
+        dataset.read_i64().map_err(|error| unreadable(name, &error))
+    }
+
+    /// Numbers; `None` if there is no such part.
+    pub(crate) fn numbers_if_any(&self, name: &str) -> Result<Option<Vec<f64>>, FclibError> {
+        let Some(dataset) = self.find(name)? else { return Ok(None) };
+        let dtype = dataset.dtype().map_err(|error| unreadable(name, &error))?;
+        if !(matches!(dtype, DType::F32 | DType::F64) || is_integer(&dtype)) {
+            return Err(wrong_type(name, &dtype, "numbers"));
+        }
+        self.checked_length(&dataset, name)?;
+        dataset.read_f64().map(Some).map_err(|error| unreadable(name, &error))
+    }
+
+    pub(crate) fn numbers(&self, name: &str) -> Result<Vec<f64>, FclibError> {
+        self.numbers_if_any(name)?.ok_or_else(|| FclibError::Missing { name: name.to_owned() })
+    }
+
+    /// A text; `None` if there is no such part.
+    pub(crate) fn text_if_any(&self, name: &str) -> Result<Option<String>, FclibError> {
+        let Some(dataset) = self.find(name)? else { return Ok(None) };
+        let dtype = dataset.dtype().map_err(|error| unreadable(name, &error))?;
+        if !matches!(dtype, DType::String | DType::VariableLengthString) {
+            return Err(wrong_type(name, &dtype, "a string"));
+        }
+        self.checked_length(&dataset, name)?;
+        let texts = dataset.read_string().map_err(|error| unreadable(name, &error))?;
+        Ok(Some(texts.into_iter().next().unwrap_or_default()))
+    }
+
+    fn find(&self, name: &str) -> Result<Option<Dataset>, FclibError> {
+        match self.file.dataset(name) {
+            Ok(dataset) => Ok(Some(dataset)),
+            Err(Error::Format(FormatError::PathNotFound(_))) => Ok(None),
+            Err(error) => Err(unreadable(name, &error)),
+        }
+    }
+
+    fn required(&self, name: &str) -> Result<Dataset, FclibError> {
+        self.find(name)?.ok_or_else(|| FclibError::Missing { name: name.to_owned() })
+    }
+
+    /// Refuses what claims more than the file can plausibly hold.
+    fn checked_length(&self, dataset: &Dataset, name: &str) -> Result<(), FclibError> {
+        let shape = dataset.shape().map_err(|error| unreadable(name, &error))?;
+        let element = dataset.element_size().map_err(|error| unreadable(name, &error))?;
+        // Numbers are widened to 8 bytes when read.
+        let bytes = shape.iter().try_fold(element.max(8), |bytes, &extent| bytes.checked_mul(extent));
+        match bytes {
+            Some(bytes) if bytes <= ALWAYS.max(self.bytes.saturating_mul(RATIO)) => Ok(()),
+            _ => {
+                Err(FclibError::TooLarge { name: name.to_owned(), bytes: bytes.unwrap_or(u64::MAX), file: self.bytes })
+            }
+        }
+    }
+}
+
+fn is_integer(dtype: &DType) -> bool {
+    use DType::{I8, I16, I32, I64, U8, U16, U32, U64};
+    matches!(dtype, I8 | I16 | I32 | I64 | U8 | U16 | U32 | U64)
+}
+
+fn unreadable(name: &str, error: &Error) -> FclibError {
+    FclibError::Unreadable { name: name.to_owned(), reason: error.to_string() }
+}
+
+fn wrong_type(name: &str, found: &DType, expected: &'static str) -> FclibError {
+    FclibError::Type { name: name.to_owned(), found: found.to_string(), expected }
+}
