@@ -5,6 +5,7 @@ import math
 import platform
 import subprocess
 from collections import defaultdict
+from pathlib import Path
 
 
 def solved(row):
@@ -132,7 +133,7 @@ def machine(core, command, teeter, seconds, previous):
     if teeter:
         about.insert(5, ("teeter", f"{said(str(teeter.path), '--version')}, commit {said('git', 'rev-parse', '--short', 'HEAD')}, {said('rustc', '--version')}"))
     if previous:
-        about.append(("Siconos' solvers chosen by", str(previous)))
+        about.append(("Siconos' solvers and settings", f"the fastest by `{Path(previous).name}` only: the counts of single Siconos solvers below say nothing"))
     return about
 
 

@@ -21,14 +21,18 @@ def target_directory():
     return Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
 
 
-def pinned(core):
-    return ["taskset", "-c", str(core)] if core is not None and shutil.which("taskset") else []
+class Place:
+    """Where both programs run: one core, and before the machine's other work if asked."""
+
+    def __init__(self, core, ahead):
+        self.prefix = ["taskset", "-c", str(core)] if shutil.which("taskset") else []
+        self.prefix += ["nice", "-n", "-15"] if ahead else []
 
 
-def run(command, core, patience):
+def run(command, place, patience):
     """Standard output of a command; a crash where it was killed or said nothing."""
     try:
-        done = subprocess.run(pinned(core) + [str(c) for c in command], env=ENVIRONMENT, timeout=patience,
+        done = subprocess.run(place.prefix + [str(c) for c in command], env=ENVIRONMENT, timeout=patience,
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     except subprocess.TimeoutExpired:
         raise Crash(f"killed after {patience:.0f} s") from None
@@ -38,21 +42,11 @@ def run(command, core, patience):
     return done.stdout
 
 
-class Clock:
-    """Which of a solve's times counts, the same for both programs: elapsed, or CPU time of the process."""
-
-    def __init__(self, name):
-        self.name = name
-
-    def of_siconos(self, answer):
-        return answer["wall_ms" if self.name == "wall" else "cpu_ms"]
-
-
 class Driver:
     """The C++ driver beside this file, which calls Siconos' numerics and judges."""
 
-    def __init__(self, core, clock):
-        self.core, self.clock = core, clock
+    def __init__(self, place, clock="wall"):
+        self.place, self.clock = place, clock  # "wall": elapsed, as teeter says it; "cpu": CPU time, where Siconos runs alone
         self.path = target_directory() / "siconos" / "driver"
 
     def build(self):
@@ -69,18 +63,18 @@ class Driver:
 
     def describe(self, problem):
         """Dimension and number of contacts."""
-        dimension, contacts = run([self.path, "describe", problem], self.core, 60).split()
+        dimension, contacts = run([self.path, "describe", problem], self.place, 60).split()
         return int(dimension), int(contacts)
 
     def judge(self, problem, impulses):
-        return float(run([self.path, "judge", problem, impulses], self.core, 60))
+        return float(run([self.path, "judge", problem, impulses], self.place, 60))
 
     def solve(self, problem, solver, own_tolerance, cap, runs, budget, limit):
         """One process: `runs` solves of a problem loaded anew each time, fewer once `budget` seconds are spent."""
         patience = 60 + 20 * (limit + budget)  # elapsed, on a machine that may be busy; the limit itself is of CPU time
-        line = run([self.path, "solve", problem, solver, repr(own_tolerance), cap, runs, budget, limit], self.core, patience)
+        line = run([self.path, "solve", problem, solver, repr(own_tolerance), cap, runs, budget, limit], self.place, patience)
         answer = json.loads(line)
-        answer["times_ms"] = answer["cpu_ms"] if answer["ended"] == "timeout" else self.clock.of_siconos(answer)
+        answer["times_ms"] = answer["cpu_ms"] if answer["ended"] == "timeout" else answer[f"{self.clock}_ms"]
         if answer["residual"] is None:
             answer["residual"] = float("nan")
         return answer
@@ -89,8 +83,8 @@ class Driver:
 class Teeter:
     """`teeter solve --json`, judged by the driver."""
 
-    def __init__(self, core, clock, driver, path=None):
-        self.core, self.clock, self.driver = core, clock, driver
+    def __init__(self, place, driver, path=None):
+        self.place, self.driver = place, driver
         self.path = Path(path) if path else target_directory() / "release" / "teeter"
         self.given = path is not None
 
@@ -100,14 +94,14 @@ class Teeter:
 
     def solvers(self):
         """The names it knows, so that a pair isn't tried where there is none."""
-        words = run([self.path, "solvers"], self.core, 60).replace("|", " ").replace("`", " ").split()
+        words = run([self.path, "solvers"], self.place, 60).replace("|", " ").replace("`", " ").split()
         return set(words)
 
     def solve(self, problem, solver, tolerance, runs, limit, solutions):
         """One process: the same file `runs` times over, each time read and solved anew. The judge is ours, not its own."""
         command = [self.path, "solve", *[problem] * runs, "--json", "--solver", solver, "--tolerance", repr(tolerance),
                    "--time-limit", f"{limit:g} s", "--solutions", solutions]
-        lines = [json.loads(line) for line in run(command, self.core, 60 + 20 * runs * limit).splitlines() if line.strip()]
+        lines = [json.loads(line) for line in run(command, self.place, 60 + 20 * runs * limit).splitlines() if line.strip()]
         if len(lines) != runs:
             raise Crash(f"{len(lines)} lines for {runs} solves")
         impulses = Path(solutions) / f"{Path(problem).stem}.{solver}.csv"
