@@ -15,10 +15,32 @@ import siconos
 from programs import HERE, ROOT, Crash, Driver, Place, Teeter, middle
 
 # The methods of the same name: ours, theirs, and the dimensions in which both have it.
-PAIRS = [("pgs", "NSGS", (2, 3)), ("newton", "NSN_AC", (3,)), ("admm", "ADMM", (3,)), ("prox", "PROX", (3,)),
-         ("vi-eg", "VI_EG", (3,)), ("lemke", "LEMKE", (2,)), ("enumeration", "ENUM", (2,))]
-FIELDS = ["program", "solver", "used", "file", "dimension", "contacts", "tolerance", "outcome", "residual", "iterations",
-          "time_ms", "runs", "solver_tolerance", "cap", "note"]
+PAIRS = [
+    ("pgs", "NSGS", (2, 3)),
+    ("newton", "NSN_AC", (3,)),
+    ("admm", "ADMM", (3,)),
+    ("prox", "PROX", (3,)),
+    ("vi-eg", "VI_EG", (3,)),
+    ("lemke", "LEMKE", (2,)),
+    ("enumeration", "ENUM", (2,)),
+]
+FIELDS = [
+    "program",
+    "solver",
+    "used",
+    "file",
+    "dimension",
+    "contacts",
+    "tolerance",
+    "outcome",
+    "residual",
+    "iterations",
+    "time_ms",
+    "runs",
+    "solver_tolerance",
+    "cap",
+    "note",
+]
 
 
 class SiconosEntry:
@@ -34,7 +56,9 @@ class SiconosEntry:
             # It has solved this one before: a machine that is slower today shall not fail it.
             answer = self.protocol.drive(problem, s.solver, s.own_tolerance, s.cap, limit=3 * self.protocol.limit)
         except Crash as crash:
-            self.settled = siconos.Settled(s.solver, s.tolerance, f"crash ({crash})", own_tolerance=s.own_tolerance, cap=s.cap)
+            self.settled = siconos.Settled(
+                s.solver, s.tolerance, f"crash ({crash})", own_tolerance=s.own_tolerance, cap=s.cap
+            )
             self.over = True
             return
         now = self.protocol.read(s.solver, s.tolerance, s.own_tolerance, s.cap, answer)
@@ -44,16 +68,32 @@ class SiconosEntry:
 
     def row(self):
         s = self.settled
-        return {"program": "siconos", "solver": s.solver, "used": s.solver, "outcome": s.outcome, "residual": s.residual,
-                "iterations": s.iterations, "solver_tolerance": s.own_tolerance, "cap": s.cap, "note": s.note,
-                "time_ms": middle_of_rounds(self.samples, s.time_ms), "runs": sum(n for _, n in self.samples) or s.runs}
+        return {
+            "program": "siconos",
+            "solver": s.solver,
+            "used": s.solver,
+            "outcome": s.outcome,
+            "residual": s.residual,
+            "iterations": s.iterations,
+            "solver_tolerance": s.own_tolerance,
+            "cap": s.cap,
+            "note": s.note,
+            "time_ms": middle_of_rounds(self.samples, s.time_ms),
+            "runs": sum(n for _, n in self.samples) or s.runs,
+        }
 
 
 class TeeterEntry:
     """One of our solvers at its default settings."""
 
     def __init__(self, teeter, solver, tolerance, protocol, scratch):
-        self.teeter, self.solver, self.tolerance, self.protocol, self.scratch = teeter, solver, tolerance, protocol, scratch
+        self.teeter, self.solver, self.tolerance, self.protocol, self.scratch = (
+            teeter,
+            solver,
+            tolerance,
+            protocol,
+            scratch,
+        )
         self.samples, self.over, self.answer, self.crash = [], False, None, ""
 
     def measure(self, problem):
@@ -80,16 +120,33 @@ class TeeterEntry:
 
     def row(self):
         if self.crash:
-            return {"program": "teeter", "solver": self.solver, "used": "", "outcome": f"crash ({self.crash})", "residual": math.nan, "note": "",
-                    "iterations": "", "time_ms": math.nan, "runs": 0}
+            return {
+                "program": "teeter",
+                "solver": self.solver,
+                "used": "",
+                "outcome": f"crash ({self.crash})",
+                "residual": math.nan,
+                "note": "",
+                "iterations": "",
+                "time_ms": math.nan,
+                "runs": 0,
+            }
         a = self.answer
         outcome, note = ("solved", "") if self.solved() else (a["outcome"], "")
         if self.solved() != (a["outcome"] == "converged"):
             note = f"says {a['outcome']}, with {a['own_residual']}"
             outcome = outcome if self.solved() else "says converged, judge not"
-        return {"program": "teeter", "solver": self.solver, "used": a["used"], "outcome": outcome, "residual": a["residual"],
-                "iterations": a["iterations"], "note": note, "time_ms": middle_of_rounds(self.samples, math.nan),
-                "runs": sum(n for _, n in self.samples)}
+        return {
+            "program": "teeter",
+            "solver": self.solver,
+            "used": a["used"],
+            "outcome": outcome,
+            "residual": a["residual"],
+            "iterations": a["iterations"],
+            "note": note,
+            "time_ms": middle_of_rounds(self.samples, math.nan),
+            "runs": sum(n for _, n in self.samples),
+        }
 
 
 def middle_of_rounds(samples, otherwise):
@@ -123,27 +180,46 @@ def previous_settings(path):
 
 
 def wanted(settings, tolerance, pairs_with, best):
-    """The `best` fastest at a tolerance, none of them 4 times slower than the fastest, and those that one of ours is paired with."""
+    """The `best` fastest at a tolerance, none of them 4 times slower than the fastest, and those that we pair with ours."""
     here = sorted((s for s in settings if math.isclose(s.tolerance, tolerance, rel_tol=1e-6)), key=lambda s: s.time_ms)
-    return [s for k, s in enumerate(here)
-            if best is None or s.solver in pairs_with or (k < best and s.time_ms <= 4 * here[0].time_ms)]
+    return [
+        s
+        for k, s in enumerate(here)
+        if best is None or s.solver in pairs_with or (k < best and s.time_ms <= 4 * here[0].time_ms)
+    ]
 
 
 def arguments():
     parse = argparse.ArgumentParser(description=__doc__)
-    parse.add_argument("problems", nargs="*", help="folders or files of FCLIB problems (default: ../shared/problems and benches/problems)")
+    parse.add_argument(
+        "problems",
+        nargs="*",
+        help="folders or files of FCLIB problems (default: ../shared/problems and benches/problems)",
+    )
     parse.add_argument("--tolerances", default="1e-4,1e-8,1e-12")
-    parse.add_argument("--solvers", help="of teeter, with commas (default: auto and those that Siconos has under the same name; auto only with --quick)")
-    parse.add_argument("--quick", action="store_true", help="of Siconos run only the two best by an earlier run, and fewer repetitions")
-    parse.add_argument("--previous", help="that earlier run (default: the newest siconos-*.csv kept, else siconos_baseline.csv beside the problems)")
+    parse.add_argument(
+        "--solvers",
+        help="of teeter, with commas (default: auto, and without --quick those that Siconos has by the same name)",
+    )
+    parse.add_argument(
+        "--quick", action="store_true", help="of Siconos run only the two best by an earlier run, and fewer repetitions"
+    )
+    parse.add_argument(
+        "--previous",
+        help="that earlier run (default: the newest siconos-*.csv kept, else siconos_baseline.csv beside the problems)",
+    )
     parse.add_argument("--siconos-only", action="store_true")
     parse.add_argument("--above", type=int, default=0, help="only problems of more contacts than this")
     parse.add_argument("--out", default=str(HERE.parent / "results"), help="folder for the table and the page")
     parse.add_argument("--name", default=f"siconos-{datetime.date.today()}", help="stem of the two files")
     parse.add_argument("--teeter", help="the program (default: builds this workspace's)")
     parse.add_argument("--core", type=int, default=0, help="the core that everything runs on")
-    parse.add_argument("--ahead", action="store_true", help="run both programs before the machine's other work (root only: nice -15)")
-    parse.add_argument("--limit", type=float, default=10.0, help="CPU seconds a solve may take (half of it for PROX and VI_EG)")
+    parse.add_argument(
+        "--ahead", action="store_true", help="run both programs before the machine's other work (root only: nice -15)"
+    )
+    parse.add_argument(
+        "--limit", type=float, default=10.0, help="CPU seconds a solve may take (half of it for PROX and VI_EG)"
+    )
     parse.add_argument("--rounds", type=int, help="how often the programs take turns on a problem")
     parse.add_argument("--runs", type=int, help="most repetitions within one turn")
     return parse.parse_args()
@@ -178,18 +254,29 @@ def main():
     previous = args.previous or (default_previous(args.out, places) if args.quick else None)
     settings = previous_settings(previous) if previous else {}
 
-    problems = [(name, path, *driver.describe(path)) for name, path in problems_in(places)]
+    problems = []
+    for name, path in problems_in(places):
+        try:
+            problems.append((name, path, *driver.describe(path)))
+        except Crash as crash:
+            print(f"{path}: no local FCLIB problem, left out ({crash})", file=sys.stderr)
     problems = sorted((p for p in problems if p[3] > args.above), key=lambda p: p[3])
     begin, rows = time.time(), []
     with tempfile.TemporaryDirectory() as scratch:
         for number, (name, path, dimension, contacts) in enumerate(problems, 1):
             theirs = settings.get(path.stem)
             if theirs is None:  # every solver, every tolerance: what each needs
-                theirs = [s for solver in siconos.solvers(dimension, contacts) for s in protocol.settle(path, solver, tolerances)]
+                theirs = [
+                    s
+                    for solver in siconos.solvers(dimension, contacts)
+                    for s in protocol.settle(path, solver, tolerances)
+                ]
             for tolerance in tolerances:
                 mine = [o for o in ours if o == "auto" or not any(o == a and dimension not in d for a, _, d in PAIRS)]
                 pairs_with = {b for a, b, _ in PAIRS if a in mine}
-                entries = [SiconosEntry(s, protocol) for s in wanted(theirs, tolerance, pairs_with, 2 if args.quick else None)]
+                entries = [
+                    SiconosEntry(s, protocol) for s in wanted(theirs, tolerance, pairs_with, 2 if args.quick else None)
+                ]
                 entries += [TeeterEntry(teeter, o, tolerance, protocol, scratch) for o in mine]
                 take_turns(entries, path, rounds, enough)
                 shared = {"file": name, "dimension": dimension, "contacts": contacts, "tolerance": tolerance}

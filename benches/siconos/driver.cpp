@@ -1,6 +1,6 @@
-// Runs one of Siconos' solvers on one FCLIB problem and judges the answer; or judges impulses that another program found.
+// Runs one of Siconos' solvers on one FCLIB problem and judges the answer; or judges another program's impulses.
 //
-//   driver solve PROBLEM.hdf5 SOLVER TOLERANCE CAP RUNS BUDGET LIMIT   one line of JSON: how it ended, judged residual, times
+//   driver solve PROBLEM.hdf5 SOLVER TOLERANCE CAP RUNS BUDGET LIMIT   a line of JSON: end, judged residual, times
 //   driver judge PROBLEM.hdf5 IMPULSES.csv                             the judged residual (impulses: a number a line)
 //   driver describe PROBLEM.hdf5                                       dimension and contacts, as libfclib reads them
 //
@@ -94,7 +94,7 @@ void project(double* v, int dimension, double mu) {
   for (int k = 1; k < dimension; ++k) v[k] *= mu * normal / t;
 }
 
-/// ‖r − Π(r − ρ û)‖ / max(‖r‖, ρ‖q‖, 1e-300), û = u + (μ‖u_T‖, 0), u = W r + q, ρ = 1/mean(diag W). NaN where r has one.
+/// ‖r − Π(r − ρ û)‖ / max(‖r‖, ρ‖q‖, 1e-300), û = u + (μ‖u_T‖, 0), u = W r + q, ρ = 1/mean(diag W); NaN for NaN.
 double judge(const Problem& problem, const double* r) {
   const int d = problem.dimension;
   double trace = 0;
@@ -322,6 +322,6 @@ int main(int count, char** arguments) {
     printf("%d %d\n", problem.dimension, problem.contacts);
     return 0;
   }
-  fprintf(stderr, "driver solve PROBLEM.hdf5 SOLVER TOLERANCE CAP RUNS BUDGET LIMIT | driver judge PROBLEM.hdf5 IMPULSES.csv | driver describe PROBLEM.hdf5\n");
+  fprintf(stderr, "usage: the first lines of driver.cpp\n");
   return 2;
 }

@@ -98,12 +98,18 @@ def summary(rows, tolerances):
     for tolerance in tolerances:
         s = AgainstBest(rows, tolerance, 10)
         if s.count:
-            lines.append(f"{tolerance:g}, above 10 contacts: auto faster on {s.faster} of {s.count} ({s.share:.0f} %), "
-                         f"{s.mean:.2f}x in geometric mean; Siconos solves and auto doesn't: {len(s.missed)}")
+            lines.append(
+                f"{tolerance:g}, above 10 contacts: auto faster on {s.faster} of {s.count} ({s.share:.0f} %), "
+                f"{s.mean:.2f}x in geometric mean; Siconos solves and auto doesn't: {len(s.missed)}"
+            )
         for file, _, mine, best, ratio in s.lost:
-            lines.append(f"    loses {file}: {ms(mine)} against {ms(best)} of {best['solver']} (x{ratio:.2f}, used {mine.get('used')})")
+            lines.append(
+                f"    loses {file}: {mine['used']} {ms(mine)} against {best['solver']} {ms(best)} (x{ratio:.2f})"
+            )
         for file, _, mine, best in s.missed:
-            lines.append(f"    misses {file}: {mine['outcome']} at {number(mine['residual'])}; {best['solver']} {ms(best)}")
+            lines.append(
+                f"    misses {file}: {mine['outcome']} at {number(mine['residual'])}; {best['solver']} {ms(best)}"
+            )
     return "\n".join(lines)
 
 
@@ -122,82 +128,193 @@ def machine(core, command, teeter, seconds, previous):
         except OSError:
             return ""
 
-    cpu = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), platform.machine())
+    cpu = next(
+        (line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")),
+        platform.machine(),
+    )
     cores = said("nproc")
     siconos = said("dpkg-query", "-W", "-f", "${Version}", "libsiconos-numerics7") or "unknown"
-    about = [("date", f"{datetime.datetime.now():%Y-%m-%d %H:%M}"), ("machine", f"{cpu}, {cores} cores, {platform.system()} {platform.release()}"),
-             ("load", f"{open('/proc/loadavg').read().split()[0]} (mean of the last minute, when the run ended)"),
-             ("pinned to", f"core {core}; BLAS and OpenMP on one thread"),
-             ("Siconos", f"{siconos} (Debian package libsiconos-numerics7), default options, r = 0"), ("command", " ".join(command)),
-             ("took", f"{seconds:.0f} s")]
+    about = [
+        ("date", f"{datetime.datetime.now():%Y-%m-%d %H:%M}"),
+        ("machine", f"{cpu}, {cores} cores, {platform.system()} {platform.release()}"),
+        ("load", f"{open('/proc/loadavg').read().split()[0]} (mean of the last minute, when the run ended)"),
+        ("pinned to", f"core {core}; BLAS and OpenMP on one thread"),
+        ("Siconos", f"{siconos} (Debian package libsiconos-numerics7), default options, r = 0"),
+        ("command", " ".join(command)),
+        ("took", f"{seconds:.0f} s"),
+    ]
     if teeter:
-        about.insert(5, ("teeter", f"{said(str(teeter.path), '--version')}, commit {said('git', 'rev-parse', '--short', 'HEAD')}, {said('rustc', '--version')}"))
+        about.insert(
+            5,
+            (
+                "teeter",
+                f"{said(str(teeter.path), '--version')}, commit {said('git', 'rev-parse', '--short', 'HEAD')}, "
+                f"{said('rustc', '--version')}",
+            ),
+        )
     if previous:
-        about.append(("Siconos' solvers and settings", f"the fastest by `{Path(previous).name}` only: the counts of single Siconos solvers below say nothing"))
+        about.append(
+            (
+                "Siconos' solvers and settings",
+                f"the fastest by {Path(previous).name} only: the counts of single Siconos solvers below say nothing",
+            )
+        )
     return about
 
 
 def table(head, rows):
     if not rows:
         return ["none", ""]
-    return ["| " + " | ".join(head) + " |", "|" + "---|" * len(head), *("| " + " | ".join(map(str, r)) + " |" for r in rows), ""]
+    return [
+        "| " + " | ".join(head) + " |",
+        "|" + "---|" * len(head),
+        *("| " + " | ".join(map(str, r)) + " |" for r in rows),
+        "",
+    ]
 
 
 def page(rows, tolerances, pairs, about, name):
-    out = ["# teeter and Siconos on the same problems", "",
-           "Both ran in turn on one core, problem by problem; every answer was judged by the same formula, computed apart from both programs.",
-           f"All rows are in `{name}.csv`. How it was measured: `benches/siconos/README.md`. A ratio is Siconos' time over ours: above 1 we are faster.", ""]
+    out = [
+        "# teeter and Siconos on the same problems",
+        "",
+        "Both ran in turn on one core, problem by problem; every answer was judged by the same formula, computed apart",
+        f"from both programs. All rows are in `{name}.csv`. How it was measured: `benches/siconos/README.md`. A ratio is",
+        "Siconos' time over ours: above 1 we are faster.",
+        "",
+    ]
     out += table(["", ""], about)
 
     out += ["## Solved", ""]
-    programs = sorted({(r["program"], r["solver"]) for r in rows}, key=lambda p: (p[0] == "siconos", p[1] != "auto", p[1]))
+    programs = sorted(
+        {(r["program"], r["solver"]) for r in rows}, key=lambda p: (p[0] == "siconos", p[1] != "auto", p[1])
+    )
     counts = []
     for dimension in sorted({r["dimension"] for r in rows}):
         here = [r for r in rows if r["dimension"] == dimension]
         for program, solver in programs:
             own = [r for r in here if (r["program"], r["solver"]) == (program, solver)]
             if own:
-                counts.append([f"{dimension}D", program, solver] + [
-                    f"{sum(solved(r) for r in own if r['tolerance'] == t)} / {sum(r['tolerance'] == t for r in own)}" for t in tolerances])
+                counts.append(
+                    [f"{dimension}D", program, solver]
+                    + [
+                        f"{sum(solved(r) for r in own if r['tolerance'] == t)} / {sum(r['tolerance'] == t for r in own)}"
+                        for t in tolerances
+                    ]
+                )
         union = [by_problem(here, t) for t in tolerances]
-        counts.append([f"{dimension}D", "siconos", "any of them"] + [
-            f"{sum(virtual_best(e) is not None for e in u.values())} / {len(u)}" for u in union])
+        counts.append(
+            [f"{dimension}D", "siconos", "any of them"]
+            + [f"{sum(virtual_best(e) is not None for e in u.values())} / {len(u)}" for u in union]
+        )
     out += table(["", "program", "solver", *(f"{t:g}" for t in tolerances)], counts)
 
-    out += ["## `auto` against the best Siconos solver of each problem", "",
-            "The best one is chosen per problem and tolerance, after the fact. Faster: of all problems that either program solves.", ""]
+    out += [
+        "## `auto` against the best Siconos solver of each problem",
+        "",
+        "The best one is chosen per problem and tolerance, after the fact. Faster: of all problems that either solves.",
+        "",
+    ]
     lines = []
     for above in (10, 0):
         for t in tolerances:
             s = AgainstBest(rows, t, above)
             if s.count:
-                lines.append([f"above {above} contacts" if above else "all", f"{t:g}", f"{s.faster} of {s.count} ({s.share:.0f} %)",
-                              f"{s.mean:.2f}", len(s.missed), len(s.extra), len(s.neither)])
-    out += table(["problems", "tolerance", "faster on", "geometric mean of the ratio", "only Siconos solves", "only auto solves", "nobody solves"], lines)
-    for title, what in (("Slower than Siconos' best", "lost"), ("Solved by a Siconos solver, not by auto", "missed"),
-                        ("Solved by auto, by no Siconos solver", "extra"), ("Solved by nobody", "neither")):
+                lines.append(
+                    [
+                        f"above {above} contacts" if above else "all",
+                        f"{t:g}",
+                        f"{s.faster} of {s.count} ({s.share:.0f} %)",
+                        f"{s.mean:.2f}",
+                        len(s.missed),
+                        len(s.extra),
+                        len(s.neither),
+                    ]
+                )
+    out += table(
+        [
+            "problems",
+            "tolerance",
+            "faster on",
+            "geometric mean of the ratio",
+            "only Siconos solves",
+            "only auto solves",
+            "nobody solves",
+        ],
+        lines,
+    )
+    for title, what in (
+        ("Slower than Siconos' best", "lost"),
+        ("Solved by a Siconos solver, not by auto", "missed"),
+        ("Solved by auto, by no Siconos solver", "extra"),
+        ("Solved by nobody", "neither"),
+    ):
         lines = []
         for t in tolerances:
             for file, contacts, mine, *rest in getattr(AgainstBest(rows, t, 0), what):
                 best = rest[0] if rest else None
-                lines.append([file, contacts, f"{t:g}", mine.get("used") or "", mine["outcome"], number(mine["residual"]), ms(mine),
-                              f"{best['solver']} {ms(best)}" if best else "", f"{rest[1]:.2f}" if len(rest) > 1 else ""])
-        out += [f"### {title}", ""] + table(["problem", "contacts", "tolerance", "auto used", "outcome", "residual", "time", "Siconos' best", "ratio"], lines)
+                lines.append(
+                    [
+                        file,
+                        contacts,
+                        f"{t:g}",
+                        mine.get("used") or "",
+                        mine["outcome"],
+                        number(mine["residual"]),
+                        ms(mine),
+                        f"{best['solver']} {ms(best)}" if best else "",
+                        f"{rest[1]:.2f}" if len(rest) > 1 else "",
+                    ]
+                )
+        out += [f"### {title}", ""] + table(
+            ["problem", "contacts", "tolerance", "auto used", "outcome", "residual", "time", "Siconos' best", "ratio"],
+            lines,
+        )
 
-    out += ["## Methods of the same name", "",
-            "Over the problems that both solve. Slower: by more than 10 %.", ""]
+    out += ["## Methods of the same name", "", "Over the problems that both solve. Slower: by more than 10 %.", ""]
     found = [(t, a, b, Pair(rows, t, a, b)) for a, b, _ in pairs for t in tolerances]
     found = [f for f in found if f[3].ratios or f[3].only_ours or f[3].only_theirs]
-    out += table(["ours", "Siconos", "tolerance", "both solve", "geometric mean of the ratio", "slower on", "only ours solves", "only theirs solves"],
-                 [[a, b, f"{t:g}", len(p.ratios), f"{geometric_mean(p.ratios):.2f}", len(p.slower), len(p.only_ours), len(p.only_theirs)]
-                  for t, a, b, p in found])
+    out += table(
+        [
+            "ours",
+            "Siconos",
+            "tolerance",
+            "both solve",
+            "geometric mean of the ratio",
+            "slower on",
+            "only ours solves",
+            "only theirs solves",
+        ],
+        [
+            [
+                a,
+                b,
+                f"{t:g}",
+                len(p.ratios),
+                f"{geometric_mean(p.ratios):.2f}",
+                len(p.slower),
+                len(p.only_ours),
+                len(p.only_theirs),
+            ]
+            for t, a, b, p in found
+        ],
+    )
     out += ["### Where ours is slower", ""]
-    out += table(["ours", "tolerance", "problem", "contacts", "time", "Siconos", "ratio"],
-                 [[a, f"{t:g}", file, contacts, ms(mine), ms(theirs), f"{ratio:.2f}"]
-                  for t, a, _, p in found for file, contacts, mine, theirs, ratio in p.slower])
+    out += table(
+        ["ours", "tolerance", "problem", "contacts", "time", "Siconos", "ratio"],
+        [
+            [a, f"{t:g}", file, contacts, ms(mine), ms(theirs), f"{ratio:.2f}"]
+            for t, a, _, p in found
+            for file, contacts, mine, theirs, ratio in p.slower
+        ],
+    )
 
     claims = [r for r in rows if r["program"] == "teeter" and r["note"]] if any("note" in r for r in rows) else []
     out += ["## Where the program and the judge disagree", ""]
-    out += table(["solver", "problem", "tolerance", "outcome", "judged", "program"],
-                 [[r["solver"], r["file"], f"{r['tolerance']:g}", r["outcome"], number(r["residual"]), r["note"]] for r in claims])
+    out += table(
+        ["solver", "problem", "tolerance", "outcome", "judged", "program"],
+        [
+            [r["solver"], r["file"], f"{r['tolerance']:g}", r["outcome"], number(r["residual"]), r["note"]]
+            for r in claims
+        ],
+    )
     return "\n".join(out).rstrip() + "\n"

@@ -32,8 +32,14 @@ class Place:
 def run(command, place, patience):
     """Standard output of a command; a crash where it was killed or said nothing."""
     try:
-        done = subprocess.run(place.prefix + [str(c) for c in command], env=ENVIRONMENT, timeout=patience,
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        done = subprocess.run(
+            place.prefix + [str(c) for c in command],
+            env=ENVIRONMENT,
+            timeout=patience,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
     except subprocess.TimeoutExpired:
         raise Crash(f"killed after {patience:.0f} s") from None
     if done.returncode != 0 or not done.stdout.strip():
@@ -46,7 +52,10 @@ class Driver:
     """The C++ driver beside this file, which calls Siconos' numerics and judges."""
 
     def __init__(self, place, clock="wall"):
-        self.place, self.clock = place, clock  # "wall": elapsed, as teeter says it; "cpu": CPU time, where Siconos runs alone
+        self.place, self.clock = (
+            place,
+            clock,
+        )  # "wall": elapsed, as teeter says it; "cpu": CPU time, where Siconos runs alone
         self.path = target_directory() / "siconos" / "driver"
 
     def build(self):
@@ -55,11 +64,26 @@ class Driver:
         if self.path.exists() and self.path.stat().st_mtime > source.stat().st_mtime:
             return
         self.path.parent.mkdir(parents=True, exist_ok=True)
-        flags = subprocess.run(["pkg-config", "--cflags", "--libs", "fclib", "hdf5"], check=True,
-                               stdout=subprocess.PIPE, text=True).stdout.split()
+        flags = subprocess.run(
+            ["pkg-config", "--cflags", "--libs", "fclib", "hdf5"], check=True, stdout=subprocess.PIPE, text=True
+        ).stdout.split()
         include = "/usr/include/siconos"
-        subprocess.run(["g++", "-std=c++17", "-O2", "-Wall", str(source), f"-I{include}", f"-I{include}/numerics",
-                        "-o", str(self.path), "-lsiconos_numerics", *flags], check=True)
+        subprocess.run(
+            [
+                "g++",
+                "-std=c++17",
+                "-O2",
+                "-Wall",
+                str(source),
+                f"-I{include}",
+                f"-I{include}/numerics",
+                "-o",
+                str(self.path),
+                "-lsiconos_numerics",
+                *flags,
+            ],
+            check=True,
+        )
 
     def describe(self, problem):
         """Dimension and number of contacts."""
@@ -72,7 +96,9 @@ class Driver:
     def solve(self, problem, solver, own_tolerance, cap, runs, budget, limit):
         """One process: `runs` solves of a problem loaded anew each time, fewer once `budget` seconds are spent."""
         patience = 60 + 20 * (limit + budget)  # elapsed, on a machine that may be busy; the limit itself is of CPU time
-        line = run([self.path, "solve", problem, solver, repr(own_tolerance), cap, runs, budget, limit], self.place, patience)
+        line = run(
+            [self.path, "solve", problem, solver, repr(own_tolerance), cap, runs, budget, limit], self.place, patience
+        )
         answer = json.loads(line)
         answer["times_ms"] = answer["cpu_ms"] if answer["ended"] == "timeout" else answer[f"{self.clock}_ms"]
         if answer["residual"] is None:
@@ -98,10 +124,24 @@ class Teeter:
         return set(words)
 
     def solve(self, problem, solver, tolerance, runs, limit, solutions):
-        """One process: the same file `runs` times over, each time read and solved anew. The judge is ours, not its own."""
-        command = [self.path, "solve", *[problem] * runs, "--json", "--solver", solver, "--tolerance", repr(tolerance),
-                   "--time-limit", f"{limit:g} s", "--solutions", solutions]
-        lines = [json.loads(line) for line in run(command, self.place, 60 + 20 * runs * limit).splitlines() if line.strip()]
+        """One process: the same file `runs` times over, each time read and solved anew. The judge is the driver."""
+        command = [
+            self.path,
+            "solve",
+            *[problem] * runs,
+            "--json",
+            "--solver",
+            solver,
+            "--tolerance",
+            repr(tolerance),
+            "--time-limit",
+            f"{limit:g} s",
+            "--solutions",
+            solutions,
+        ]
+        lines = [
+            json.loads(line) for line in run(command, self.place, 60 + 20 * runs * limit).splitlines() if line.strip()
+        ]
         if len(lines) != runs:
             raise Crash(f"{len(lines)} lines for {runs} solves")
         impulses = Path(solutions) / f"{Path(problem).stem}.{solver}.csv"

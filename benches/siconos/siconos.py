@@ -1,6 +1,6 @@
 """Siconos' solvers on one problem: which tolerance of its own each needs for the judge, and how long it then takes.
 
-The protocol is that of `../shared/problems/README.md`: default options but for tolerance and iteration cap, r = 0 as the start.
+The protocol is that of `../shared/problems/README.md`: default options but for tolerance and iteration cap, from r = 0.
 """
 
 from dataclasses import dataclass, replace
@@ -54,7 +54,9 @@ class Protocol:
         return self.limit / 2 if solver in SLOW else self.limit
 
     def drive(self, problem, solver, own, cap, runs=None, limit=None):
-        return self.driver.solve(problem, solver, own, cap, runs or self.runs, self.budget, limit or self.limit_of(solver))
+        return self.driver.solve(
+            problem, solver, own, cap, runs or self.runs, self.budget, limit or self.limit_of(solver)
+        )
 
     def settle(self, problem, solver, tolerances):
         """All tolerances, the loosest first. Slow failures aren't repeated at tighter ones."""
@@ -67,10 +69,14 @@ class Protocol:
             results.append(result)
             if not result.solved and not result.time_ms <= 400 * self.limit_of(solver):
                 given_up = result.outcome
-        for k in reversed(range(len(results) - 1)):  # what passes with the run made for a tighter tolerance counts with it
+        for k in reversed(
+            range(len(results) - 1)
+        ):  # what passes with the run made for a tighter tolerance counts with it
             tighter = results[k + 1]
             if not results[k].solved and tighter.solved:
-                results[k] = replace(tighter, tolerance=results[k].tolerance, note=f"by the run made for {tighter.tolerance:g}")
+                results[k] = replace(
+                    tighter, tolerance=results[k].tolerance, note=f"by the run made for {tighter.tolerance:g}"
+                )
         return results
 
     def at(self, problem, solver, tolerance):
@@ -99,11 +105,21 @@ class Protocol:
             outcome = "time limit"
         else:
             outcome = "own criterion met, judge not" if answer["info"] == 0 else "own criterion not met"
-        return Settled(solver, tolerance, outcome, answer["residual"], answer["iterations"], middle(answer["times_ms"]),
-                       len(answer["times_ms"]), own, cap, answer["info"])
+        return Settled(
+            solver,
+            tolerance,
+            outcome,
+            answer["residual"],
+            answer["iterations"],
+            middle(answer["times_ms"]),
+            len(answer["times_ms"]),
+            own,
+            cap,
+            answer["info"],
+        )
 
     def smallest_cap(self, problem, result):
-        """The judge is content though the solver isn't: it gets the time of the smallest cap (ladder of 2) that contents it."""
+        """The judge is content though the solver isn't: the time of the smallest cap (1, 2, 4, …) that contents it."""
         cap = 1
         while cap < NO_CAP:
             try:
@@ -126,5 +142,11 @@ def from_row(row):
         return None
     cap = row.get("cap") or (row["iterations"] if "smallest iteration cap" in row.get("status", "") else "")
     default = 0 if row["solver"] == "ENUM" else NO_CAP
-    return Settled(row["solver"], float(row["tolerance"]), "solved", own_tolerance=float(row["solver_tolerance"]),
-                   cap=int(float(cap)) if cap else default, time_ms=float(row["time_ms"]))
+    return Settled(
+        row["solver"],
+        float(row["tolerance"]),
+        "solved",
+        own_tolerance=float(row["solver_tolerance"]),
+        cap=int(float(cap)) if cap else default,
+        time_ms=float(row["time_ms"]),
+    )

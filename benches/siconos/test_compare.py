@@ -22,8 +22,13 @@ class MadeUp:
         residual = max(self.slack * 10 ** (-steps / 100), self.floor) if steps < 1e6 else self.floor
         ended = "returned" if met or cap < 1e6 else "timeout"
         time = 1000 * limit if ended == "timeout" else float(steps)
-        return {"ended": ended, "info": 0 if met and steps == wanted else 1, "iterations": steps, "residual": residual,
-                "times_ms": [time]}
+        return {
+            "ended": ended,
+            "info": 0 if met and steps == wanted else 1,
+            "iterations": steps,
+            "residual": residual,
+            "times_ms": [time],
+        }
 
 
 def settle(driver, tolerances=(1e-4, 1e-8)):
@@ -54,23 +59,50 @@ class TheProtocol(unittest.TestCase):
         self.assertEqual(len(driver.calls), 2)
 
     def test_settings_come_back_from_a_table(self):
-        row = {"solver": "NSGS", "outcome": "solved", "tolerance": "1e-08", "solver_tolerance": "1e-09", "cap": "512", "time_ms": "3"}
+        row = {
+            "solver": "NSGS",
+            "outcome": "solved",
+            "tolerance": "1e-08",
+            "solver_tolerance": "1e-09",
+            "cap": "512",
+            "time_ms": "3",
+        }
         kept = siconos.from_row(row)
         self.assertEqual((kept.own_tolerance, kept.cap, kept.time_ms), (1e-9, 512, 3.0))
         self.assertIsNone(siconos.from_row({**row, "outcome": "time limit"}))
 
 
 def row(program, solver, file, time, outcome="solved", contacts=20):
-    return {"program": program, "solver": solver, "used": solver, "file": file, "dimension": 3, "contacts": contacts, "tolerance": 1e-8,
-            "outcome": outcome, "residual": 1e-9, "time_ms": time, "note": ""}
+    return {
+        "program": program,
+        "solver": solver,
+        "used": solver,
+        "file": file,
+        "dimension": 3,
+        "contacts": contacts,
+        "tolerance": 1e-8,
+        "outcome": outcome,
+        "residual": 1e-9,
+        "time_ms": time,
+        "note": "",
+    }
 
 
 class TheFigures(unittest.TestCase):
-    rows = [row("siconos", "NSGS", "a", 8.0), row("siconos", "PROX", "a", 4.0), row("teeter", "auto", "a", 1.0),
-            row("siconos", "NSGS", "b", 1.0), row("siconos", "PROX", "b", 0.1, "crash"), row("teeter", "auto", "b", 2.0),
-            row("siconos", "NSGS", "c", 1.0), row("teeter", "auto", "c", 0.1, "stalled"),
-            row("siconos", "NSGS", "d", 1.0, "time limit"), row("teeter", "auto", "d", 5.0),
-            row("siconos", "NSGS", "small", 9.0, contacts=3), row("teeter", "auto", "small", 1.0, contacts=3)]
+    rows = [
+        row("siconos", "NSGS", "a", 8.0),
+        row("siconos", "PROX", "a", 4.0),
+        row("teeter", "auto", "a", 1.0),
+        row("siconos", "NSGS", "b", 1.0),
+        row("siconos", "PROX", "b", 0.1, "crash"),
+        row("teeter", "auto", "b", 2.0),
+        row("siconos", "NSGS", "c", 1.0),
+        row("teeter", "auto", "c", 0.1, "stalled"),
+        row("siconos", "NSGS", "d", 1.0, "time limit"),
+        row("teeter", "auto", "d", 5.0),
+        row("siconos", "NSGS", "small", 9.0, contacts=3),
+        row("teeter", "auto", "small", 1.0, contacts=3),
+    ]
 
     def test_the_best_is_the_fastest_that_solved_and_failures_are_lost(self):
         found = page.AgainstBest(self.rows, 1e-8, 10)
@@ -91,7 +123,10 @@ class TheFigures(unittest.TestCase):
         self.assertIn("| above 10 contacts | 1e-08 | 2 of 4 (50 %) | 1.41 | 1 | 1 | 0 |", text)
 
     def test_the_two_fastest_are_taken_unless_far_behind(self):
-        at = [siconos.Settled(s, 1e-8, "solved", time_ms=t) for s, t in (("NSGS", 1.0), ("PROX", 3.0), ("ADMM", 3.5), ("VI_EG", 50.0))]
+        at = [
+            siconos.Settled(s, 1e-8, "solved", time_ms=t)
+            for s, t in (("NSGS", 1.0), ("PROX", 3.0), ("ADMM", 3.5), ("VI_EG", 50.0))
+        ]
         self.assertEqual([s.solver for s in compare.wanted(at, 1e-8, {"VI_EG"}, 2)], ["NSGS", "PROX", "VI_EG"])
         self.assertEqual(len(compare.wanted(at, 1e-8, set(), None)), 4)
 
