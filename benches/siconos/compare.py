@@ -24,6 +24,8 @@ PAIRS = [
     ("lemke", "LEMKE", (2,)),
     ("enumeration", "ENUM", (2,)),
 ]
+# As `teeter solve` does: a solve is repeated until this time has gone into it, or so often.
+RUNS, BUDGET = 51, 0.1
 FIELDS = [
     "program",
     "solver",
@@ -87,33 +89,18 @@ class TeeterEntry:
     """One of our solvers at its default settings."""
 
     def __init__(self, teeter, solver, tolerance, protocol, scratch):
-        self.teeter, self.solver, self.tolerance, self.protocol, self.scratch = (
-            teeter,
-            solver,
-            tolerance,
-            protocol,
-            scratch,
-        )
+        self.teeter, self.solver, self.tolerance = teeter, solver, tolerance
+        self.limit, self.scratch = protocol.limit, scratch
         self.samples, self.over, self.answer, self.crash = [], False, None, ""
 
     def measure(self, problem):
-        p = self.protocol
         try:
-            if self.answer is None:  # the first tells how often it can be repeated
-                self.call(problem, 1)
-                if not self.solved():
-                    self.samples.append((self.answer["times_ms"][0], 1))
-                    self.over = True
-                    return
-            once = max(middle(self.answer["times_ms"]), 1e-4)
-            self.call(problem, max(1, min(p.runs, math.ceil(1e3 * p.budget / once))))
+            self.answer = self.teeter.solve(problem, self.solver, self.tolerance, self.limit, self.scratch)
         except Crash as crash:
             self.crash, self.over = str(crash), True
             return
-        self.samples.append((middle(self.answer["times_ms"]), len(self.answer["times_ms"])))
-
-    def call(self, problem, runs):
-        self.answer = self.teeter.solve(problem, self.solver, self.tolerance, runs, self.protocol.limit, self.scratch)
+        self.samples.append((self.answer["time_ms"], 1))
+        self.over = not self.solved()
 
     def solved(self):
         return not self.crash and self.answer["residual"] <= self.tolerance
@@ -221,7 +208,6 @@ def arguments():
         "--limit", type=float, default=10.0, help="CPU seconds a solve may take (half of it for PROX and VI_EG)"
     )
     parse.add_argument("--rounds", type=int, help="how often the programs take turns on a problem")
-    parse.add_argument("--runs", type=int, help="most repetitions within one turn")
     return parse.parse_args()
 
 
@@ -235,8 +221,7 @@ def main():
     args = arguments()
     places = args.problems or [p for p in (ROOT.parent / "shared" / "problems", HERE.parent / "problems") if p.is_dir()]
     tolerances = sorted((float(t) for t in args.tolerances.split(",")), reverse=True)
-    rounds, runs, budget, enough = (2, 9, 0.05, 300) if args.quick else (3, 9, 0.3, 4000)
-    rounds, runs = args.rounds or rounds, args.runs or runs
+    rounds, enough = (2, 300) if args.quick else (3, 4000)  # turns, and the ms after which one has had enough of them
 
     place = Place(args.core, args.ahead)
     driver = Driver(place, "cpu" if args.siconos_only else "wall")
@@ -250,7 +235,7 @@ def main():
         for absent in [o for o in ours if o not in known]:
             print(f"teeter has no solver {absent}: left out", file=sys.stderr)
         ours = [o for o in ours if o in known]
-    protocol = siconos.Protocol(driver, runs, budget, args.limit)
+    protocol = siconos.Protocol(driver, RUNS, BUDGET, args.limit)
     previous = args.previous or (default_previous(args.out, places) if args.quick else None)
     settings = previous_settings(previous) if previous else {}
 
@@ -278,7 +263,7 @@ def main():
                     SiconosEntry(s, protocol) for s in wanted(theirs, tolerance, pairs_with, 2 if args.quick else None)
                 ]
                 entries += [TeeterEntry(teeter, o, tolerance, protocol, scratch) for o in mine]
-                take_turns(entries, path, rounds, enough)
+                take_turns(entries, path, args.rounds or rounds, enough)
                 shared = {"file": name, "dimension": dimension, "contacts": contacts, "tolerance": tolerance}
                 rows += [{**shared, **entry.row()} for entry in entries]
             print(f"{number}/{len(problems)} {name}: {time.time() - begin:.0f} s so far", file=sys.stderr)

@@ -120,35 +120,18 @@ class Teeter:
 
     def solvers(self):
         """The names it knows, so that a pair isn't tried where there is none."""
-        words = run([self.path, "solvers"], self.place, 60).replace("|", " ").replace("`", " ").split()
-        return set(words)
+        lines = run([self.path, "solvers"], self.place, 60).splitlines()
+        return {line.split()[0] for line in lines[1:] if line.strip()}
 
-    def solve(self, problem, solver, tolerance, runs, limit, solutions):
-        """One process: the same file `runs` times over, each time read and solved anew. The judge is the driver."""
-        command = [
-            self.path,
-            "solve",
-            *[problem] * runs,
-            "--json",
-            "--solver",
-            solver,
-            "--tolerance",
-            repr(tolerance),
-            "--time-limit",
-            f"{limit:g} s",
-            "--solutions",
-            solutions,
-        ]
-        lines = [
-            json.loads(line) for line in run(command, self.place, 60 + 20 * runs * limit).splitlines() if line.strip()
-        ]
-        if len(lines) != runs:
-            raise Crash(f"{len(lines)} lines for {runs} solves")
+    def solve(self, problem, solver, tolerance, limit, solutions):
+        """One process, which repeats a short solve by itself and says the median. The judge is the driver."""
+        command = [self.path, "solve", problem, "--json", "--solver", solver, "--tolerance", repr(tolerance)]
+        command += ["--time-limit", f"{limit:g} s", "--solutions", solutions]
         impulses = Path(solutions) / f"{Path(problem).stem}.{solver}.csv"
-        answer = dict(lines[-1])
-        answer["times_ms"] = [line["time_ms"] for line in lines]
+        impulses.unlink(missing_ok=True)
+        answer = json.loads(run(command, self.place, 60 + 20 * limit))
         answer["own_residual"] = answer["residual"]
-        answer["residual"] = self.driver.judge(problem, impulses) if impulses.exists() else float("nan")
+        answer["residual"] = self.driver.judge(problem, impulses)
         return answer
 
 
