@@ -169,11 +169,15 @@ def previous_settings(path):
 def wanted(settings, tolerance, pairs_with, best):
     """The `best` fastest at a tolerance, none of them 4 times slower than the fastest, and those that we pair with ours."""
     here = sorted((s for s in settings if math.isclose(s.tolerance, tolerance, rel_tol=1e-6)), key=lambda s: s.time_ms)
-    return [
-        s
-        for k, s in enumerate(here)
-        if best is None or s.solver in pairs_with or (k < best and s.time_ms <= 4 * here[0].time_ms)
-    ]
+    chosen = []
+    for group in (
+        [s for s in here if siconos.by_the_rule(s.solver)],
+        [s for s in here if not siconos.by_the_rule(s.solver)],
+    ):
+        for k, s in enumerate(group):
+            if best is None or s.solver in pairs_with or (k < best and s.time_ms <= 4 * here[0].time_ms):
+                chosen.append(s)
+    return chosen
 
 
 def arguments():
@@ -248,12 +252,12 @@ def main():
     problems = sorted((p for p in problems if p[3] > args.above), key=lambda p: p[3])
     begin, rows = time.time(), []
     with tempfile.TemporaryDirectory() as scratch:
-        for number, (name, path, dimension, contacts) in enumerate(problems, 1):
+        for number, (name, path, dimension, contacts, storage) in enumerate(problems, 1):
             theirs = settings.get(path.stem)
             if theirs is None:  # every solver, every tolerance: what each needs
                 theirs = [
                     s
-                    for solver in siconos.solvers(dimension, contacts)
+                    for solver in siconos.solvers(dimension, contacts, storage)
                     for s in protocol.settle(path, solver, tolerances)
                 ]
             for tolerance in tolerances:

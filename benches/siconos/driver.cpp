@@ -2,10 +2,12 @@
 //
 //   driver solve PROBLEM.hdf5 SOLVER TOLERANCE CAP RUNS BUDGET LIMIT   a line of JSON: end, judged residual, times
 //   driver judge PROBLEM.hdf5 IMPULSES.csv                             the judged residual (impulses: a number a line)
-//   driver describe PROBLEM.hdf5                                       dimension and contacts, as libfclib reads them
+//   driver describe PROBLEM.hdf5                                       dimension, contacts, and how W is given (see below)
 //
 // TOLERANCE is the solver's own, CAP its iteration cap (0: none), RUNS the most repetitions, BUDGET the CPU seconds after
 // which it repeats no more, LIMIT the CPU seconds a single solve may take. Nothing here trusts the solver's own error.
+// W is given dense where at least half of it is filled, else in Siconos' block storage; "SOLVER dense" as the name of a
+// solver gives it dense in any case.
 // Links with siconos_numerics and fclib (both in Debian); see README.md.
 
 #include <signal.h>
@@ -181,6 +183,8 @@ FrictionContactProblem* for_siconos(const Problem& problem, bool as_dense) {
   return frictionContactProblem_new_with_data(problem.dimension, problem.contacts, w, copy(problem.q), copy(problem.mu));
 }
 
+bool half_filled(const Problem& problem) { return 2 * problem.filled >= size_t(problem.size) * problem.size; }
+
 int solver_id(const std::string& name, int dimension) {
   static const std::map<std::string, int> plane = {{"NSGS", SICONOS_FRICTION_2D_NSGS},
                                                    {"LEMKE", SICONOS_FRICTION_2D_LEMKE},
@@ -246,7 +250,7 @@ void out_of_time(int) {
 
 int solve(char** arguments) {
   const Problem problem = read_problem(arguments[0]);
-  const std::string solver = arguments[1];
+  const std::string name = arguments[1], solver = name.substr(0, name.find(' '));
   const double tolerance = atof(arguments[2]), budget = atof(arguments[5]);
   const int cap = atoi(arguments[3]), runs = atoi(arguments[4]);
   limit_seconds = atof(arguments[6]);
@@ -257,9 +261,9 @@ int solve(char** arguments) {
   if (!report || !freopen("/dev/null", "w", stdout)) give_up("no standard output");
   numerics_set_verbose(0);
 
-  // The pivoting solvers and CPG take a dense W only; else dense where at least half of it is filled.
-  const bool needs_dense = solver == "LEMKE" || solver == "CPG" || solver == "ENUM";
-  const bool as_dense = needs_dense || 2 * problem.filled >= size_t(problem.size) * problem.size;
+  // The pivoting solvers and CPG take a dense W only.
+  const bool needs_dense = solver == "LEMKE" || solver == "CPG" || solver == "ENUM" || name == solver + " dense";
+  const bool as_dense = needs_dense || half_filled(problem);
 
   judged_problem = &problem;
   signal(SIGALRM, out_of_time);
@@ -319,7 +323,7 @@ int main(int count, char** arguments) {
   if (count == 4 && !strcmp(arguments[1], "judge")) return judge_file(arguments + 2);
   if (count == 3 && !strcmp(arguments[1], "describe")) {
     const Problem problem = read_problem(arguments[2]);
-    printf("%d %d\n", problem.dimension, problem.contacts);
+    printf("%d %d %s\n", problem.dimension, problem.contacts, half_filled(problem) ? "dense" : "blocks");
     return 0;
   }
   fprintf(stderr, "usage: the first lines of driver.cpp\n");

@@ -86,9 +86,9 @@ class Driver:
         )
 
     def describe(self, problem):
-        """Dimension and number of contacts."""
-        dimension, contacts = run([self.path, "describe", problem], self.place, 60).split()
-        return int(dimension), int(contacts)
+        """Dimension, number of contacts, and how Siconos is given W: "dense" or "blocks"."""
+        dimension, contacts, storage = run([self.path, "describe", problem], self.place, 60).split()
+        return int(dimension), int(contacts), storage
 
     def judge(self, problem, impulses):
         return float(run([self.path, "judge", problem, impulses], self.place, 60))

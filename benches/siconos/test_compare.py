@@ -112,6 +112,15 @@ class TheFigures(unittest.TestCase):
         self.assertEqual([m[0] for m in found.missed], ["c"])
         self.assertEqual([l[0] for l in found.lost], ["b"])
 
+    def test_the_other_storage_counts_only_where_it_is_asked_for(self):
+        rows = self.rows + [row("siconos", "PROX dense", "a", 0.5)]
+        self.assertEqual(page.AgainstBest(rows, 1e-8, 10).ratios, [4.0, 0.5])
+        self.assertEqual(page.AgainstBest(rows, 1e-8, 10, any_storage=True).ratios, [0.5, 0.5])
+        self.assertNotIn("that suits Siconos best", page.page(self.rows, [1e-8], compare.PAIRS, [], "name"))
+        self.assertIn("that suits Siconos best", page.page(rows, [1e-8], compare.PAIRS, [], "name"))
+        self.assertIn("NSGS dense", siconos.solvers(3, 20, "blocks"))
+        self.assertEqual(siconos.solvers(3, 20, "dense"), siconos.SPACE)
+
     def test_a_pair_is_compared_where_both_solve(self):
         rows = [{**r, "solver": "pgs"} if r["program"] == "teeter" else r for r in self.rows]
         pair = page.Pair(rows, 1e-8, "pgs", "NSGS")
