@@ -76,6 +76,87 @@ pub fn plane_cases() -> Vec<Case<2>> {
     ]
 }
 
+/// A body of mass 1 in space with moments of inertia `inertia`, touched at `points` from its mass centre by a floor below
+/// (normal z, tangents x and y): hyperstatic from two contacts on. `velocity` is linear, then angular.
+#[must_use]
+pub fn box_on_floor(
+    name: &'static str,
+    inertia: [f64; 3],
+    points: &[[f64; 3]],
+    velocity: [f64; 6],
+    mu: f64,
+) -> Case<3> {
+    let inverse = |k: usize| if k < 3 { 1.0 } else { inertia[k - 3].recip() };
+    // Row along e: (e, r × e).
+    let row = |r: &[f64; 3], axis: usize| {
+        let mut row = [0.0; 6];
+        row[axis] = 1.0;
+        let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
+        row[3 + next] = r[last];
+        row[3 + last] = -r[next];
+        row
+    };
+    const AXES: [usize; 3] = [2, 0, 1];
+    let mut case = Case { name, h: Vec::new(), q: Vec::new(), mu: vec![mu; points.len()] };
+    for a in points {
+        case.q.push(Vector::<3>::from_fn(|r, _| (0..6).map(|k| row(a, AXES[r])[k] * velocity[k]).sum()));
+        for b in points {
+            case.h.push(Block::<3>::from_fn(|r, c| {
+                (0..6).map(|k| row(a, AXES[r])[k] * inverse(k) * row(b, AXES[c])[k]).sum()
+            }));
+        }
+    }
+    case
+}
+
+/// The problems in space that every exact 3D solver must solve.
+#[must_use]
+pub fn space_cases() -> Vec<Case<3>> {
+    let one = |name, h: [f64; 6], q: [f64; 3], mu| Case {
+        name,
+        h: vec![Block::<3>::new(h[0], h[1], h[2], h[1], h[3], h[4], h[2], h[4], h[5])],
+        q: vec![Vector::<3>::new(q[0], q[1], q[2])],
+        mu: vec![mu],
+    };
+    let skew = [1.0, 0.2, -0.1, 2.0, 0.3, 1.5];
+    let identity = [4.0, 0.0, 0.0, 4.0, 0.0, 4.0];
+    let uneven = [1.0, 1e-6, 1e2, 1e-8, 1e-3, 1e5];
+    let corners = [[-0.5, -0.3, -1.0], [0.5, -0.3, -1.0], [0.5, 0.3, -1.0], [-0.5, 0.3, -1.0]];
+    let inertia = [0.4, 0.5, 0.1];
+    let boxed = |name, velocity, mu| box_on_floor(name, inertia, &corners, velocity, mu);
+    let mut cases = vec![
+        one("one contact in space, open", skew, [0.3, -1.0, 2.0], 0.5),
+        one("one contact in space, grazes", skew, [0.0, 1.0, -1.0], 0.5),
+        one("one contact in space, sticks", skew, [-1.0, 0.1, -0.2], 0.5),
+        one("one contact in space, no friction", skew, [-1.0, -3.0, 1.0], 0.0),
+        one("one contact in space, huge friction", skew, [-1.0, -3.0, 1.0], 1e6),
+        one("one contact in space, multiple of the identity, sticks", identity, [-1.0, 0.1, 0.1], 0.5),
+        one("one contact in space, multiple of the identity, slides", identity, [-1.0, 3.0, -2.0], 0.5),
+        one("one contact in space, multiple of the identity, no friction", identity, [-1.0, 3.0, -2.0], 0.0),
+        one("one contact in space, uneven scales, sticks", uneven, [-1.0, 1e-9, 30.0], 0.5),
+        one("one contact in space, uneven scales, slides", uneven, [-1.0, 1.0, 1e3], 0.5),
+        boxed("four corners, fall flat", [0.0, 0.0, -1.0, 0.0, 0.0, 0.0], 0.5),
+        boxed("four corners, stick", [0.1, -0.05, -1.0, 0.0, 0.0, 0.1], 0.5),
+        boxed("four corners, slide", [2.0, 1.0, -1.0, 0.0, 0.0, 0.0], 0.2),
+        boxed("four corners, slide and turn", [1.0, 0.3, -1.0, 0.0, 0.0, 2.0], 0.2),
+        boxed("four corners, turn on the spot", [0.0, 0.0, -1.0, 0.0, 0.0, 3.0], 0.3),
+        boxed("four corners, two lift", [0.0, 0.0, -0.2, 0.0, 1.5, 0.0], 0.4),
+        boxed("four corners, three lift", [0.1, 0.1, -0.2, 1.0, 1.3, 0.2], 0.4),
+        boxed("four corners, no friction", [1.0, 0.3, -1.0, 0.1, -0.2, 0.5], 0.0),
+        boxed("four corners, leave", [1.0, 0.3, 1.0, 0.1, -0.2, 0.5], 0.5),
+    ];
+    // At odd angles.
+    for (name, angle) in [
+        ("one contact in space, slides along 0.3", 0.3_f64),
+        ("one contact in space, slides along 1.9", 1.9),
+        ("one contact in space, slides along 3.3", 3.3),
+        ("one contact in space, slides along 5.2", 5.2),
+    ] {
+        cases.push(one(name, skew, [-1.0, 3.0 * angle.cos(), 3.0 * angle.sin()], 0.5));
+    }
+    cases
+}
+
 /// Checks Signorini's and Coulomb's law contact by contact, with `slack` relative to the problem's own speed and
 /// impulse scales.
 ///

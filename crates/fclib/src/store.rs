@@ -73,7 +73,9 @@ impl Store {
         }
         self.checked_length(&dataset, name)?;
         let texts = dataset.read_string().map_err(|error| unreadable(name, &error))?;
-        Ok(Some(texts.into_iter().next().unwrap_or_default()))
+        // Up to the first NUL, as C has it.
+        let text = texts.first().and_then(|text| text.split('\0').next()).unwrap_or_default();
+        Ok(Some(text.to_owned()))
     }
 
     fn find(&self, name: &str) -> Result<Option<Dataset>, FclibError> {

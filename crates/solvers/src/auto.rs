@@ -27,6 +27,7 @@ pub struct Auto {
     mu: Vec<f64>,
     p: Vec<Vector2<f64>>,
     best: Vec<Vector2<f64>>,
+    pgs: Pgs<2>,
 }
 
 impl Auto {
@@ -90,7 +91,7 @@ impl Auto {
             self.p.push(all[i]);
         }
         let own = ContactProblem::new(Delassus::Dense(&self.h), &self.q, &self.mu).ok()?;
-        let outcome = solve_connected(&own, stop, &mut self.p, &mut self.best);
+        let outcome = solve_connected(&own, stop, &mut self.p, &mut self.best, &mut self.pgs);
         for (&i, p) in self.members.iter().zip(&self.p) {
             all[i] = *p;
         }
@@ -104,6 +105,7 @@ fn solve_connected(
     stop: &Stop<'_>,
     p: &mut [Vector2<f64>],
     best: &mut Vec<Vector2<f64>>,
+    pgs: &mut Pgs<2>,
 ) -> Outcome {
     if p.len() <= Enumeration::MAX_CONTACTS {
         let outcome = Enumeration.solve(problem, stop, p);
@@ -111,11 +113,11 @@ fn solve_connected(
             return outcome;
         }
     }
-    let mut outcome = Pgs.solve(problem, stop, p);
+    let mut outcome = pgs.solve(problem, stop, p);
     if outcome.converged() && p.len() <= SMALL {
         best.clear();
         best.extend_from_slice(p);
-        let polished = Pgs.solve(problem, &POLISH, p);
+        let polished = pgs.solve(problem, &POLISH, p);
         outcome.iterations += polished.iterations;
         if polished.residual.global <= outcome.residual.global {
             outcome.residual = polished.residual;
@@ -143,19 +145,20 @@ impl ContactSolver<2> for Auto {
         self.mu.reserve(contacts);
         self.p.reserve(contacts);
         self.best.reserve(contacts);
+        self.pgs.reserve(contacts, contacts * contacts);
     }
 
     fn solve(&mut self, problem: &ContactProblem<'_, 2>, stop: &Stop<'_>, p: &mut [Vector2<f64>]) -> Outcome {
         let n = problem.contacts();
         let Delassus::Dense(blocks) = problem.delassus() else {
-            return solve_connected(problem, stop, p, &mut self.best);
+            return solve_connected(problem, stop, p, &mut self.best, &mut self.pgs);
         };
         if n <= Enumeration::MAX_CONTACTS {
-            return solve_connected(problem, stop, p, &mut self.best);
+            return solve_connected(problem, stop, p, &mut self.best, &mut self.pgs);
         }
         let parts = self.split(blocks, n);
         if parts == 1 {
-            return solve_connected(problem, stop, p, &mut self.best);
+            return solve_connected(problem, stop, p, &mut self.best, &mut self.pgs);
         }
         let (mut used, mut iterations) = (Enumeration::NAME, 0);
         for part in 0..parts {
@@ -170,7 +173,7 @@ impl ContactSolver<2> for Auto {
         if residual.global <= stop.tolerance {
             return Outcome::new(Status::Converged, used, iterations, residual);
         }
-        solve_connected(problem, stop, p, &mut self.best)
+        solve_connected(problem, stop, p, &mut self.best, &mut self.pgs)
     }
 
     fn fork(&self) -> Box<dyn ContactSolver<2>> {

@@ -36,8 +36,8 @@ pub const SOLVERS: &[SolverInfo] = &[
         reference: "Klarbring 1990, doi 10.1007/BF00534316",
     },
     SolverInfo {
-        name: Pgs::NAME,
-        dimensions: &[2],
+        name: Pgs::<2>::NAME,
+        dimensions: &[2, 3],
         law: Law::Exact,
         summary: "Gauss-Seidel over contacts with an exact local solve",
         reference: "Jean 1999, doi 10.1016/S0045-7825(98)00383-1",
@@ -55,7 +55,21 @@ pub fn plane_solver(name: &str) -> Option<Box<dyn ContactSolver<2>>> {
     match name {
         Auto::NAME => Some(Box::new(Auto::new())),
         Enumeration::NAME => Some(Box::new(Enumeration)),
-        Pgs::NAME => Some(Box::new(Pgs)),
+        Pgs::<2>::NAME => Some(Box::new(Pgs::<2>::new())),
+        _ => None,
+    }
+}
+
+/// The solver of that name for contacts in space; `None` for an unknown one, and for one that knows the plane only.
+///
+/// ```
+/// assert_eq!(teeter_solvers::space_solver("pgs").unwrap().name(), "pgs");
+/// assert!(teeter_solvers::space_solver("enumeration").is_none());
+/// ```
+#[must_use]
+pub fn space_solver(name: &str) -> Option<Box<dyn ContactSolver<3>>> {
+    match name {
+        Pgs::<3>::NAME => Some(Box::new(Pgs::<3>::new())),
         _ => None,
     }
 }
@@ -67,9 +81,16 @@ mod tests {
     #[test]
     fn every_listed_solver_can_be_made_and_agrees_with_its_entry() {
         for info in SOLVERS {
-            let solver = plane_solver(info.name).unwrap();
-            assert_eq!((solver.name(), solver.law()), (info.name, info.law));
-            assert_eq!(solver.fork().name(), info.name);
+            assert_eq!(info.dimensions.contains(&2), plane_solver(info.name).is_some());
+            assert_eq!(info.dimensions.contains(&3), space_solver(info.name).is_some());
+            if let Some(solver) = plane_solver(info.name) {
+                assert_eq!((solver.name(), solver.law()), (info.name, info.law));
+                assert_eq!(solver.fork().name(), info.name);
+            }
+            if let Some(solver) = space_solver(info.name) {
+                assert_eq!((solver.name(), solver.law()), (info.name, info.law));
+                assert_eq!(solver.fork().name(), info.name);
+            }
         }
     }
 }

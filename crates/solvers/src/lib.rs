@@ -3,7 +3,7 @@
 //! | name | solves | take it when |
 //! |---|---|---|
 //! | [`Enumeration`] | 2D, up to three contacts, exactly | always, where it fits |
-//! | [`Pgs`] | 2D, any number of contacts | there are more than three contacts |
+//! | [`Pgs`] | 2D and 3D, any number of contacts | there are more than three contacts, and 1e-4 or so is enough or they couple weakly |
 //! | [`Auto`] | 2D | you don't want to choose: contacts that couple are enumerated up to three, else (or if that fails) pgs |
 //!
 //! ```
@@ -24,10 +24,12 @@ mod auto;
 mod catalogue;
 mod enumeration;
 mod least_norm;
+mod local;
 mod one_contact;
+mod one_contact_space;
 mod pgs;
 
 pub use auto::Auto;
-pub use catalogue::{SOLVERS, SolverInfo, plane_solver};
+pub use catalogue::{SOLVERS, SolverInfo, plane_solver, space_solver};
 pub use enumeration::Enumeration;
 pub use pgs::Pgs;

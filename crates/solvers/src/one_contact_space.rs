@@ -1,0 +1,379 @@
+//! The law of a single contact in space, exactly.
+//!
+//! A contact with `q_N < 0` sticks, `H p = −q` inside the cone, or slides along a direction d (‖d‖ = 1) with
+//! `p = p_N (1, −μ d)`, `u_N = 0` and `u_T = s d`, s ≥ 0. With `u_N = 0` put in, `w = H_NN − μ H_NT·d` and λ = s w this is
+//!
+//! ```text
+//! (A + λ I) d = g,   ‖d‖ = 1,   λ ≥ 0,   w > 0
+//! A = μ (q_T H_NT − q_N H_TT),   g = H_NN q_T − q_N H_TN
+//! ```
+//!
+//! which reads like the subproblem of a trust-region method: one unknown, λ. The usual way is the roots of the quartic
+//! `det(A + λI)² = ‖adj(A + λI) g‖²` (Bonnefon and Daviet 2011, INRIA RT-0417, hal-00553859), whose closed form fails
+//! where roots coincide, as they do for `H = c I`. Here, as in Moré and Sorensen's method (1983, doi 10.1137/0904038), Newton's
+//! method runs on `det(A + λI)/‖adj(A + λI) g‖ − 1`, which is nearly linear in λ (for `H = c I` exactly so): one to three
+//! steps. Where that fails or several solutions may exist, all roots of the quartic in the interval that can hold any
+//! are isolated between those of its derivatives, and the smallest impulse that obeys the law is taken.
+
+use teeter_contact::Block;
+
+type Vector = [f64; 3];
+type Matrix = [[f64; 3]; 3];
+
+/// Most Newton steps before the slow and sure way.
+const STEPS: u32 = 12;
+
+/// The secular equation counts as solved by the next step when it is missed by less: the step squares it.
+const NEARLY: f64 = 1e-7;
+
+/// How far a candidate of the slow way may miss the law, relative to the terms of its velocity: the square root of
+/// rounding, as two roots that coincide are known to no more. The judge has the last word.
+const MISS: f64 = 1e-8;
+
+/// The rows of a 3 × 3 block; zeros beyond a smaller one.
+#[inline]
+pub(crate) fn rows<const D: usize>(h: &Block<D>) -> Matrix {
+    let mut rows = [[0.0; 3]; 3];
+    for r in 0..D.min(3) {
+        for c in 0..D.min(3) {
+            rows[r][c] = h[(r, c)];
+        }
+    }
+    rows
+}
+
+/// The inverse by cofactors, which no scaling of rows and columns disturbs; `None` for a matrix singular to `tolerance`.
+pub(crate) fn inverse(h: &Matrix, tolerance: f64) -> Option<Matrix> {
+    let cofactor = |r: usize, c: usize| {
+        let ((r1, r2), (c1, c2)) = (((r + 1) % 3, (r + 2) % 3), ((c + 1) % 3, (c + 2) % 3));
+        h[r1][c1] * h[r2][c2] - h[r1][c2] * h[r2][c1]
+    };
+    let determinant = h[0][0] * cofactor(0, 0) + h[0][1] * cofactor(0, 1) + h[0][2] * cofactor(0, 2);
+    let size = (h[0][0] * h[1][1] * h[2][2]).abs();
+    let reciprocal = determinant.recip();
+    if !(determinant.abs() > tolerance * size && reciprocal.is_finite()) {
+        return None;
+    }
+    let mut inverse = [[0.0; 3]; 3];
+    for r in 0..3 {
+        for c in 0..3 {
+            inverse[c][r] = cofactor(r, c) * reciprocal;
+        }
+    }
+    Some(inverse)
+}
+
+/// Whether the symmetric part is positive definite.
+pub(crate) fn positive(h: &Matrix) -> bool {
+    let s = |r: usize, c: usize| 0.5 * (h[r][c] + h[c][r]);
+    let second = s(0, 0) * s(1, 1) - s(0, 1) * s(0, 1);
+    let third = s(0, 0) * (s(1, 1) * s(2, 2) - s(1, 2) * s(1, 2)) - s(0, 1) * (s(0, 1) * s(2, 2) - s(1, 2) * s(0, 2))
+        + s(0, 2) * (s(0, 1) * s(1, 2) - s(1, 1) * s(0, 2));
+    s(0, 0) > 0.0 && second > 0.0 && third > 0.0
+}
+
+#[inline]
+fn dot(a: &Vector, b: &Vector) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// `p = −H⁻¹ q`, once refined, so that what is left of the velocity is rounding however skewed the block is; where it
+/// lies in the cone.
+#[inline]
+fn stick(h: &Matrix, inverse: &Matrix, q: &Vector, mu: f64) -> Option<Vector> {
+    let solve = |q: &Vector| [-dot(&inverse[0], q), -dot(&inverse[1], q), -dot(&inverse[2], q)];
+    let mut p = solve(q);
+    let limit = mu * p[0];
+    let inside = p[0] > 0.0 && p[1] * p[1] + p[2] * p[2] <= limit * limit;
+    if !inside {
+        return None;
+    }
+    let left = [dot(&h[0], &p) + q[0], dot(&h[1], &p) + q[1], dot(&h[2], &p) + q[2]];
+    let correction = solve(&left);
+    for i in 0..3 {
+        p[i] += correction[i];
+    }
+    Some(p)
+}
+
+/// The equation for λ: see the page.
+struct Slide {
+    a: [[f64; 2]; 2],
+    g: [f64; 2],
+    /// adj(A) g, so that adj(A + λI) g = `back` + λ g.
+    back: [f64; 2],
+    trace: f64,
+    determinant: f64,
+}
+
+impl Slide {
+    #[inline]
+    fn new(h: &Matrix, q: &Vector, mu: f64) -> Self {
+        let entry = |i: usize, j: usize| mu * (q[i] * h[0][j] - q[0] * h[i][j]);
+        let a = [[entry(1, 1), entry(1, 2)], [entry(2, 1), entry(2, 2)]];
+        let g = [h[0][0] * q[1] - q[0] * h[1][0], h[0][0] * q[2] - q[0] * h[2][0]];
+        Self {
+            a,
+            g,
+            back: [a[1][1] * g[0] - a[0][1] * g[1], a[0][0] * g[1] - a[1][0] * g[0]],
+            trace: a[0][0] + a[1][1],
+            determinant: a[0][0] * a[1][1] - a[0][1] * a[1][0],
+        }
+    }
+
+    /// The root next to `start`, where the determinant stays positive.
+    #[inline]
+    fn newton(&self, start: f64) -> Option<f64> {
+        let mut lambda = start;
+        for _ in 0..STEPS {
+            let v = [self.back[0] + lambda * self.g[0], self.back[1] + lambda * self.g[1]];
+            let square = v[0] * v[0] + v[1] * v[1];
+            let half_slope = v[0] * self.g[0] + v[1] * self.g[1];
+            let determinant = (lambda + self.trace) * lambda + self.determinant;
+            let slope = 2.0 * lambda + self.trace;
+            // F = det/‖v‖ − 1;  F/F' = (det − ‖v‖) v² / (det' v² − det v·v').
+            let miss = determinant - square.sqrt();
+            let step = miss * square / (slope * square - determinant * half_slope);
+            let next = lambda - step;
+            if !(determinant > 0.0 && next.is_finite()) {
+                return None;
+            }
+            // Beyond zero lies sticking: one more try from there, unless it is rounding on the border.
+            lambda = next.max(0.0);
+            if miss.abs() <= NEARLY * determinant {
+                return Some(lambda);
+            }
+        }
+        None
+    }
+
+    /// The direction for a root.
+    #[inline]
+    fn direction(&self, lambda: f64) -> [f64; 2] {
+        let v = [self.back[0] + lambda * self.g[0], self.back[1] + lambda * self.g[1]];
+        let inverse = 1.0 / (v[0] * v[0] + v[1] * v[1]).sqrt();
+        [v[0] * inverse, v[1] * inverse]
+    }
+}
+
+/// The impulse at the border of the cone against direction `d`, where it presses.
+#[inline]
+fn slide(h: &Matrix, q: &Vector, mu: f64, d: &[f64; 2]) -> Option<Vector> {
+    let w = h[0][0] - mu * (h[0][1] * d[0] + h[0][2] * d[1]);
+    let p_n = -q[0] / w;
+    (w > 0.0 && p_n.is_finite()).then(|| [p_n, -mu * p_n * d[0], -mu * p_n * d[1]])
+}
+
+/// The state that fits a regular block: sticking, or else the slide found from `slip`, λ over the diagonal's sizes.
+/// `None` if Newton's method doesn't find it.
+#[inline]
+pub(crate) fn regular(h: &Matrix, inverse: &Matrix, q: &Vector, mu: f64, slip: &mut f64) -> Option<Vector> {
+    if let Some(p) = stick(h, inverse, q, mu) {
+        return Some(p);
+    }
+    let equation = Slide::new(h, q, mu);
+    let lambda = if *slip > 0.0 { equation.newton(*slip) } else { None };
+    let lambda = lambda.or_else(|| {
+        let size = (equation.g[0] * equation.g[0] + equation.g[1] * equation.g[1]).sqrt();
+        equation.newton((size - 0.5 * equation.trace).max(0.0))
+    })?;
+    *slip = lambda;
+    slide(h, q, mu, &equation.direction(lambda)).filter(|p| p[1].is_finite() && p[2].is_finite())
+}
+
+/// The smallest impulse of all states that fit a contact with `q_N < 0`, μ > 0.
+#[cold]
+pub(crate) fn smallest(h: &Matrix, inverse: &Matrix, q: &Vector, mu: f64) -> Option<Vector> {
+    let mut best: Option<(f64, Vector)> = None;
+    let mut offer = |p: Vector| {
+        let norm = dot(&p, &p);
+        if norm.is_finite() && best.is_none_or(|(least, _)| norm < least) {
+            best = Some((norm, p));
+        }
+    };
+    if inverse[0][0] != 0.0 || inverse[1][1] != 0.0 {
+        if let Some(p) = stick(h, inverse, q, mu) {
+            offer(p);
+        }
+    }
+    let equation = Slide::new(h, q, mu);
+    // ‖(A + λI) d‖ = ‖g‖ bounds λ; all in its unit, so that the coefficients are of size 1.
+    let size = |x: &[f64; 2]| x[0].hypot(x[1]);
+    let unit = size(&equation.g) + size(&equation.a[0]).hypot(size(&equation.a[1]));
+    let (trace, determinant) = (equation.trace / unit, equation.determinant / (unit * unit));
+    let g = equation.g.map(|x| x / unit);
+    let back = equation.back.map(|x| x / (unit * unit));
+    let coefficients = [
+        determinant * determinant - back[0] * back[0] - back[1] * back[1],
+        2.0 * (trace * determinant - back[0] * g[0] - back[1] * g[1]),
+        trace * trace + 2.0 * determinant - g[0] * g[0] - g[1] * g[1],
+        2.0 * trace,
+        1.0,
+    ];
+    let mut candidates = Roots::default();
+    roots(&coefficients, 1.0, &mut candidates);
+    candidates.push(0.0);
+    for &root in candidates.as_slice() {
+        // Both signs of the determinant: the quartic is an equation of squares.
+        for root in [equation.newton(root * unit), Some(root * unit)].into_iter().flatten() {
+            let d = equation.direction(root);
+            for d in [d, [-d[0], -d[1]]] {
+                if let Some(p) = slide(h, q, mu, &d).filter(|p| slides(h, q, p, &d)) {
+                    offer(p);
+                }
+            }
+        }
+    }
+    best.map(|(_, p)| p)
+}
+
+/// Whether the velocity lies along `d`.
+fn slides(h: &Matrix, q: &Vector, p: &Vector, d: &[f64; 2]) -> bool {
+    let u = [dot(&h[1], p) + q[1], dot(&h[2], p) + q[2]];
+    let size = |i: usize| (0..3).map(|j| (h[i][j] * p[j]).abs()).fold(q[i].abs(), f64::max);
+    let slack = MISS * size(1).max(size(2));
+    u[0] * d[0] + u[1] * d[1] >= -slack && (u[0] * d[1] - u[1] * d[0]).abs() <= slack
+}
+
+/// Up to four roots and three turning points.
+#[derive(Default)]
+struct Roots {
+    values: [f64; 8],
+    count: usize,
+}
+
+impl Roots {
+    fn push(&mut self, x: f64) {
+        if self.count < self.values.len() {
+            self.values[self.count] = x;
+            self.count += 1;
+        }
+    }
+
+    fn as_slice(&self) -> &[f64] {
+        &self.values[..self.count]
+    }
+}
+
+fn value(c: &[f64], x: f64) -> f64 {
+    c.iter().rev().fold(0.0, |sum, c| sum * x + c)
+}
+
+/// The roots of a polynomial (ascending coefficients, up to the fourth degree) in [0, end], between the roots of its
+/// derivative; for the quartic these turning points too, as two roots that coincide don't change its sign.
+fn roots(c: &[f64], end: f64, found: &mut Roots) {
+    let degree = c.len() - 1;
+    if degree == 0 {
+        return;
+    }
+    let mut derivative = [0.0; 4];
+    for k in 1..=degree {
+        derivative[k - 1] = k as f64 * c[k];
+    }
+    let mut turning = Roots::default();
+    roots(&derivative[..degree], end, &mut turning);
+    let mut low = 0.0;
+    for &high in turning.as_slice().iter().chain([&end]) {
+        if let Some(root) = bisect(c, low, high) {
+            found.push(root);
+        }
+        low = high;
+    }
+    if degree == 4 {
+        turning.as_slice().iter().for_each(|&x| found.push(x));
+    }
+}
+
+/// The root of a polynomial that is monotone in [low, high], by halving down to the last digit.
+fn bisect(c: &[f64], mut low: f64, mut high: f64) -> Option<f64> {
+    let (at_low, at_high) = (value(c, low), value(c, high));
+    if at_low == 0.0 {
+        return Some(low);
+    }
+    if !(at_low * at_high.signum() < 0.0) {
+        return None;
+    }
+    loop {
+        let middle = 0.5 * (low + high);
+        // Two neighbours, or a NaN.
+        if !(low < middle && middle < high) {
+            return Some(middle);
+        }
+        if value(c, middle) * at_low.signum() > 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn solve(h: Matrix, q: Vector, mu: f64) -> [Option<Vector>; 2] {
+        let inverse = inverse(&h, 1e-12).unwrap();
+        [regular(&h, &inverse, &q, mu, &mut 0.0), smallest(&h, &inverse, &q, mu)]
+    }
+
+    fn assert_obeys(h: &Matrix, q: &Vector, mu: f64, p: &Vector, slack: f64) {
+        let u = [0, 1, 2].map(|i| dot(&h[i], p) + q[i]);
+        let (speed, impulse) = (dot(q, q).sqrt(), dot(p, p).sqrt());
+        assert!(u[0].abs() <= slack * speed && p[0] > 0.0, "u {u:?} p {p:?}");
+        let (u_t, p_t) = (u[1].hypot(u[2]), p[1].hypot(p[2]));
+        assert!(p_t <= mu * p[0] + slack * impulse, "u {u:?} p {p:?}");
+        if u_t > slack * speed {
+            let along = (p[1] * u[1] + p[2] * u[2]) / u_t;
+            assert!((along + mu * p[0]).abs() <= slack * impulse, "u {u:?} p {p:?}");
+        }
+    }
+
+    #[test]
+    fn both_ways_agree_at_every_angle() {
+        let h = [[2.0, 0.3, -0.2], [0.3, 1.5, 0.4], [-0.2, 0.4, 1.0]];
+        for k in 0..48 {
+            let angle = f64::from(k) * 0.1309;
+            for speed in [0.1, 0.6, 3.0, 1e4] {
+                let q = [-1.0, speed * angle.cos(), speed * angle.sin()];
+                let [fast, sure] = solve(h, q, 0.4);
+                let (fast, sure) = (fast.unwrap(), sure.unwrap());
+                assert_obeys(&h, &q, 0.4, &fast, 1e-12);
+                for i in 0..3 {
+                    assert!((fast[i] - sure[i]).abs() < 1e-10 * fast[0], "{fast:?} {sure:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_multiple_of_the_identity_is_as_good_as_any_block() {
+        let c = 3.7;
+        let h = [[c, 0.0, 0.0], [0.0, c, 0.0], [0.0, 0.0, c]];
+        let q = [-1.0, 0.3, -0.4];
+        for p in solve(h, q, 0.2).into_iter().flatten() {
+            // Friction takes μ|q_N| off the sliding speed.
+            assert!((p[0] - 1.0 / c).abs() < 1e-15);
+            assert!((p[1] + 0.2 / c * 0.6).abs() < 1e-15 && (p[2] - 0.2 / c * 0.8).abs() < 1e-15, "{p:?}");
+        }
+        assert!(solve(h, q, 0.2).iter().all(Option::is_some));
+    }
+
+    #[test]
+    fn turning_points_and_roots_of_a_quartic_are_found() {
+        // (x − 0.2)(x − 0.5)²(x − 0.9)
+        let mut c = vec![1.0];
+        for root in [0.2, 0.5, 0.5, 0.9] {
+            let mut next = vec![0.0; c.len() + 1];
+            for (k, x) in c.iter().enumerate() {
+                next[k + 1] += x;
+                next[k] -= root * x;
+            }
+            c = next;
+        }
+        let mut found = Roots::default();
+        roots(&c, 1.0, &mut found);
+        for root in [0.2, 0.5, 0.9] {
+            assert!(found.as_slice().iter().any(|x| (x - root).abs() < 1e-7), "{:?}", found.as_slice());
+        }
+    }
+}
