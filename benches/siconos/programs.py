@@ -44,7 +44,7 @@ def run(command, place, patience):
         raise Crash(f"killed after {patience:.0f} s") from None
     if done.returncode != 0 or not done.stdout.strip():
         last = done.stderr.strip().splitlines()[-1:] or ["no output"]
-        raise Crash(f"exit code {done.returncode}: {last[0]}")
+        raise Crash(f"exit code {done.returncode}: {last[0].split(', but ')[0][:80]}")
     return done.stdout
 
 
