@@ -148,7 +148,10 @@ def from_row(row):
     solved = row.get("outcome", "") == "solved" or row.get("solved") == "1"
     if not solved or not row.get("solver_tolerance"):
         return None
-    cap = row.get("cap") or (row["iterations"] if "smallest iteration cap" in row.get("status", "") else "")
+    # Where its own criterion was never met, the iterations that contented the judge are the cap.
+    status = row.get("status", "")
+    never_met = "smallest iteration cap" in status or "own criterion not met" in status
+    cap = row.get("cap") or (row["iterations"] if never_met and row["iterations"] != "0" else "")
     default = 0 if row["solver"] == "ENUM" else NO_CAP
     return Settled(
         row["solver"],

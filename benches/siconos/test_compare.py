@@ -70,6 +70,9 @@ class TheProtocol(unittest.TestCase):
         kept = siconos.from_row(row)
         self.assertEqual((kept.own_tolerance, kept.cap, kept.time_ms), (1e-9, 512, 3.0))
         self.assertIsNone(siconos.from_row({**row, "outcome": "time limit"}))
+        listed = {**row, "outcome": "", "solved": "1", "cap": "", "iterations": "152716", "status": "solved"}
+        self.assertEqual(siconos.from_row(listed).cap, siconos.NO_CAP)
+        self.assertEqual(siconos.from_row({**listed, "status": "solved (own criterion not met)"}).cap, 152716)
 
 
 def row(program, solver, file, time, outcome="solved", contacts=20):
