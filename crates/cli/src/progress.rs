@@ -1,7 +1,8 @@
-//! The progress bar of a run that takes its time.
+//! The progress bars of what takes its time.
 
 use crate::console::Console;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::Write;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 use teeter_integrator::{Model, Observer, ObserverError, State, StepReport};
@@ -51,5 +52,47 @@ impl Observer<2> for Progress {
             self.bar.set_position(step.step);
         }
         Ok(ControlFlow::Continue(()))
+    }
+}
+
+/// Rows on standard output as they come, above a bar on standard error that counts the solves.
+pub(crate) struct Solves {
+    console: Console,
+    begin: Instant,
+    bar: ProgressBar,
+}
+
+impl Solves {
+    pub(crate) fn new(console: Console, solves: u64) -> Self {
+        let bar = ProgressBar::with_draw_target(Some(solves), ProgressDrawTarget::hidden());
+        if let Ok(style) = ProgressStyle::with_template("{bar:30} {human_pos} of {human_len} solves  {elapsed}") {
+            bar.set_style(style);
+        }
+        Self { console, begin: Instant::now(), bar }
+    }
+
+    /// Writes to standard output; a reader that went away has seen enough.
+    pub(crate) fn print(&self, text: &str) {
+        self.bar.suspend(|| {
+            let mut out = std::io::stdout().lock();
+            let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+        });
+    }
+
+    pub(crate) fn tell(&self, text: &str) {
+        self.bar.suspend(|| self.console.note(text));
+    }
+
+    pub(crate) fn step(&self) {
+        self.bar.inc(1);
+        if self.console.is_watched() && self.bar.is_hidden() && self.begin.elapsed() > PATIENCE {
+            self.bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(10));
+        }
+    }
+}
+
+impl Drop for Solves {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
     }
 }

@@ -9,8 +9,10 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
-use teeter_integrator::{Ended, RunError};
-use teeter_report::{EndedWord, PageRecorder, Recorder, Results, ResultsError, Summary, figures, render};
+use teeter_integrator::{Ended, Observer, RunError};
+use teeter_report::{
+    EndedWord, ExportWhen, Exporter, PageRecorder, Recorder, Results, ResultsError, Summary, Watch, figures, render,
+};
 use teeter_scenario::decode::LARGEST_FILE;
 use teeter_scenario::resolve::Resolved;
 use teeter_scenario::simulation::Simulation;
@@ -45,6 +47,18 @@ pub(crate) struct Options {
     pub(crate) set: Vec<(String, String)>,
     pub(crate) quiet: bool,
     pub(crate) force: bool,
+    /// Where to save contact problems, and which.
+    pub(crate) export: Option<(PathBuf, ExportWhen)>,
+}
+
+/// `hard` or `every:N`.
+pub(crate) fn export_when(text: &str) -> Result<ExportWhen, String> {
+    let every = text.strip_prefix("every:").and_then(|n| n.parse().ok()).filter(|&n: &u64| n > 0);
+    match (text, every) {
+        ("hard", _) => Ok(ExportWhen::Hard),
+        (_, Some(n)) => Ok(ExportWhen::Every(n)),
+        _ => Err("write hard, or every:N with N from 1, such as every:100".to_owned()),
+    }
 }
 
 pub(crate) fn run(options: &Options) -> Exit {
@@ -59,9 +73,15 @@ pub(crate) fn run(options: &Options) -> Exit {
         Err(errors) => return bad_input(console, &Presenter::of_bytes(&bytes).all(&errors)),
     };
     let presenter = Presenter::new(resolved.document.source());
-    let mut simulation = match Simulation::new(&resolved.scene) {
+    let watch = Watch::default();
+    let wrap = |solver| if options.export.is_some() { watch.around(solver) } else { solver };
+    let mut simulation = match Simulation::with_solver(&resolved.scene, wrap) {
         Ok(simulation) => simulation,
         Err(error) => return bad_input(console, &presenter.one(&error.diagnostic(&resolved.document))),
+    };
+    let mut exporter = match exporter(options, &watch, &resolved, &stem) {
+        Ok(exporter) => exporter,
+        Err(error) => return bad_input(console, &format!("error: {error}")),
     };
     let folder = options.out.clone().unwrap_or_else(|| Path::new("runs").join(&stem));
     let results = match Results::create(&folder, options.force) {
@@ -71,13 +91,33 @@ pub(crate) fn run(options: &Options) -> Exit {
     for warning in &resolved.warnings {
         console.note(&presenter.one(warning));
     }
-    match simulate(console, &resolved, &mut simulation, &results) {
-        Ok(summary) => conclude(console, &summary, &folder),
+    match simulate(console, &resolved, &mut simulation, &results, exporter.as_mut()) {
+        Ok(summary) => {
+            let exit = conclude(console, &summary, &folder);
+            if let (Some(exporter), Some((folder, _))) = (&exporter, &options.export) {
+                let count = exporter.written();
+                let problems = if count == 1 { "problem" } else { "problems" };
+                console.note(&format!("  {count} contact {problems} in {}", folder.display()));
+            }
+            exit
+        }
         Err(error) => {
             console.error(&format!("error: {error}"));
             Exit::Failed
         }
     }
+}
+
+fn exporter(
+    options: &Options,
+    watch: &Watch,
+    resolved: &Resolved,
+    stem: &str,
+) -> Result<Option<Exporter>, ResultsError> {
+    let Some((folder, when)) = &options.export else { return Ok(None) };
+    let scene = &resolved.scene;
+    let (steps, tolerance) = (scene.time.steps, scene.solver.tolerance);
+    Exporter::create(watch, folder, stem, &scene.title, steps, *when, tolerance, options.force).map(Some)
 }
 
 /// The name of a scene in messages, and that of its results.
@@ -95,6 +135,7 @@ fn simulate(
     resolved: &Resolved,
     simulation: &mut Simulation,
     results: &Results,
+    exporter: Option<&mut Exporter>,
 ) -> Result<Summary, Box<dyn Error>> {
     let scene = &resolved.scene;
     let layout = simulation.layout.clone();
@@ -109,7 +150,11 @@ fn simulate(
 
     let clock = Instant::now();
     let mut interrupt = Interrupt::listen();
-    let ran = simulation.run(&mut [&mut recorder, &mut page, &mut progress, &mut interrupt]);
+    let mut observers: Vec<&mut dyn Observer<2>> = vec![&mut recorder, &mut page, &mut progress, &mut interrupt];
+    if let Some(exporter) = exporter {
+        observers.push(exporter);
+    }
+    let ran = simulation.run(&mut observers);
     drop(progress);
     let seconds = clock.elapsed().as_secs_f64();
 

@@ -4,6 +4,7 @@
 //! `summary.json` holds. Numbers are written so that they read back to the same double.
 
 mod contacts;
+mod export;
 mod number;
 mod page;
 mod recorder;
@@ -13,6 +14,7 @@ mod summary;
 mod table;
 mod warnings;
 
+pub use export::{ExportWhen, Exporter, HARD, Watch};
 pub use page::{HalfCycle, PageRecorder, figures, half_cycles, render};
 pub use recorder::{ImpactRow, Record, Recorder};
 pub use results::{FILES, Results, ResultsError};

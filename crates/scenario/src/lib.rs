@@ -51,7 +51,7 @@ mod sets;
 pub mod simulation;
 pub mod source;
 mod stability;
-mod suggest;
+pub mod suggest;
 mod syntax;
 mod table;
 mod tree;

@@ -7,6 +7,7 @@ use nalgebra::Vector2;
 use std::ops::Range;
 use std::sync::Arc;
 use teeter_beam::{Beam, BeamError};
+use teeter_contact::ContactSolver;
 use teeter_detect::{BodyId, PointDetector, PointPair};
 use teeter_integrator::{
     BeamBody, BeamSurface, Block, Blocks, Ended, Ground, Model, ModelBuilder, ModelError, MoreauJean,
@@ -139,6 +140,17 @@ impl Simulation {
     /// If a number doesn't make sense to a layer, a beam has no equilibrium, a corner starts inside a surface or a block inside
     /// another.
     pub fn new(scene: &Scene) -> Result<Self, BuildError> {
+        Self::with_solver(scene, |solver| solver)
+    }
+
+    /// As [`Simulation::new`]; `wrap` may put something around the scene's contact solver, such as one that watches it.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`].
+    pub fn with_solver(
+        scene: &Scene,
+        wrap: impl FnOnce(Box<dyn ContactSolver<2>>) -> Box<dyn ContactSolver<2>>,
+    ) -> Result<Self, BuildError> {
         let mut parts = ModelBuilder::new();
         let mut layout = Layout::default();
 
@@ -220,7 +232,7 @@ impl Simulation {
             .ok_or_else(|| BuildError::Solver(scene.solver.method.clone()))?;
         let settings =
             SolverSettings { tolerance: scene.solver.tolerance, max_iterations: scene.solver.max_iterations };
-        let work = Workspace::new(&model, solver, settings);
+        let work = Workspace::new(&model, wrap(solver), settings);
         let scheme = MoreauJean::new(MoreauJeanSettings {
             theta: scene.time.theta,
             activation_gamma: scene.time.activation_gamma,

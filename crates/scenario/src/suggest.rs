@@ -4,7 +4,8 @@
 const LONGEST: usize = 96;
 
 /// The candidate nearest to `word`, if one is near: at most 1 + length/3 edits, capitals and `_` against `-` not counted.
-pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+#[must_use]
+pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     if word.is_empty() || word.len() > LONGEST {
         return None;
     }

@@ -1,0 +1,190 @@
+//! `teeter solve`: solvers on contact problems from files, timed and judged.
+
+mod figure;
+mod inputs;
+mod machine;
+mod measure;
+mod profile;
+mod rows;
+
+use crate::console::Console;
+use crate::progress::Solves;
+use crate::run::Exit;
+use inputs::{Choice, Input};
+use measure::Measured;
+use rows::{Columns, Row};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+use teeter_fclib::FclibProblem;
+use teeter_scenario::dimension::Dimension;
+use teeter_scenario::quantity;
+use teeter_solvers::SolverInfo;
+
+#[derive(Debug)]
+pub(crate) struct Options {
+    pub(crate) paths: Vec<PathBuf>,
+    pub(crate) solvers: Vec<String>,
+    pub(crate) tolerance: f64,
+    pub(crate) time_limit: Duration,
+    pub(crate) json: bool,
+    pub(crate) solutions: Option<PathBuf>,
+    pub(crate) profile: Option<PathBuf>,
+}
+
+/// A tolerance of the command line.
+pub(crate) fn tolerance(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err("write a number greater than 0, such as 1e-10".to_owned()),
+    }
+}
+
+/// A time of the command line, with its unit.
+pub(crate) fn time(text: &str) -> Result<Duration, String> {
+    let seconds = quantity::parse(text, Dimension::TIME).map_err(|error| error.to_string())?;
+    match Duration::try_from_secs_f64(seconds) {
+        Ok(time) if !time.is_zero() => Ok(time),
+        _ => Err("a time greater than 0 is wanted, such as \"10 s\"".to_owned()),
+    }
+}
+
+pub(crate) fn solve(options: &Options) -> Exit {
+    let console = Console::new(false);
+    let (inputs, choice) = match settle(options) {
+        Ok(settled) => settled,
+        Err(text) => {
+            console.error(&text);
+            return Exit::BadInput;
+        }
+    };
+    match solve_all(console, options, &inputs, &choice) {
+        Ok(()) => Exit::Done,
+        Err(text) => {
+            console.error(&text);
+            Exit::Failed
+        }
+    }
+}
+
+/// Everything that can be wrong with what the user asks for is found here: nothing has run, nothing is written.
+fn settle(options: &Options) -> Result<(Vec<Input>, Choice), String> {
+    let mut paths = options.paths.clone();
+    let choice = inputs::choose(&options.solvers, &mut paths)?;
+    if paths.is_empty() {
+        return Err("error: no problem is given; name FCLIB files (*.hdf5) or a folder of them".to_owned());
+    }
+    let inputs = inputs::read(&inputs::files(&paths)?)?;
+    inputs::check_dimensions(&choice, &inputs)?;
+    if let Some(folder) = &options.solutions {
+        inputs::check_stems(&inputs)?;
+        make_folder(folder)?;
+    }
+    if let Some(folder) = &options.profile {
+        make_folder(folder)?;
+    }
+    Ok((inputs, choice))
+}
+
+fn make_folder(folder: &Path) -> Result<(), String> {
+    std::fs::create_dir_all(folder).map_err(|error| format!("error: {}: {error}", folder.display()))
+}
+
+fn solve_all(console: Console, options: &Options, inputs: &[Input], choice: &Choice) -> Result<(), String> {
+    let one = [options.tolerance];
+    let tolerances: &[f64] = if options.profile.is_some() { &profile::TOLERANCES } else { &one };
+    let mut rows = Vec::new();
+    let columns = Columns::new(inputs, tolerances.len() > 1);
+    let count: usize = inputs.iter().map(|input| choice.of_dimension(input.problem.dimension()).len()).sum();
+    let progress = Solves::new(console, (count * tolerances.len()) as u64);
+    if !options.json {
+        progress.print(&columns.header());
+    }
+    for input in inputs {
+        for info in choice.of_dimension(input.problem.dimension()) {
+            for &tolerance in tolerances {
+                let row = row(input, info, tolerance, options.time_limit)?;
+                if let Some(text) = &row.measured.complaint {
+                    progress.tell(&format!("warning: {}: {text}", row.file));
+                }
+                progress.print(&if options.json { row.json() } else { columns.row(&row) });
+                if let Some(folder) = &options.solutions {
+                    write_solution(folder, &input.stem, &row)?;
+                }
+                progress.step();
+                if options.profile.is_some() {
+                    rows.push(row);
+                }
+            }
+        }
+    }
+    drop(progress);
+    if let Some(folder) = &options.profile {
+        profile::write(folder, &rows, options.time_limit)?;
+        console.note(&format!("profile in {}", folder.join("profile.md").display()));
+    }
+    Ok(())
+}
+
+fn row(input: &Input, info: &SolverInfo, tolerance: f64, limit: Duration) -> Result<Row, String> {
+    let measured = match &input.problem {
+        FclibProblem::Plane(local) => {
+            let mut solver = teeter_solvers::plane_solver(info.name).ok_or_else(|| no_solver(info, 2))?;
+            let problem = local.problem().map_err(|error| format!("error: {}: {error}", input.file))?;
+            measure::measure(solver.as_mut(), &problem, tolerance, limit)
+        }
+        FclibProblem::Space(local) => {
+            let mut solver = teeter_solvers::space_solver(info.name).ok_or_else(|| no_solver(info, 3))?;
+            let problem = local.problem().map_err(|error| format!("error: {}: {error}", input.file))?;
+            measure::measure(solver.as_mut(), &problem, tolerance, limit)
+        }
+    };
+    Ok(Row {
+        file: input.file.clone(),
+        solver: info.name,
+        dimension: input.problem.dimension(),
+        contacts: input.problem.contacts(),
+        tolerance,
+        asymmetry: input.asymmetry,
+        measured,
+    })
+}
+
+/// The catalogue lists what this build doesn't have: a solver behind a feature.
+fn no_solver(info: &SolverInfo, dimension: usize) -> String {
+    format!("error: this build has no solver `{}` for {dimension}D problems", info.name)
+}
+
+fn write_solution(folder: &Path, stem: &str, row: &Row) -> Result<(), String> {
+    let Measured { impulses, .. } = &row.measured;
+    // The shortest digits that read back to the same double.
+    let text: String = impulses.iter().map(|p| format!("{p:?}\n")).collect();
+    let path = folder.join(format!("{stem}.{}.csv", row.solver));
+    std::fs::write(&path, text).map_err(|error| format!("error: {}: {error}", path.display()))
+}
+
+/// `teeter solvers`.
+pub(crate) fn list() -> Exit {
+    let width = |of: fn(&SolverInfo) -> usize| teeter_solvers::SOLVERS.iter().map(of).max().unwrap_or(0);
+    let (name, summary) = (width(|info| info.name.len()).max(4), width(|info| info.summary.chars().count()));
+    let mut text = format!("{:name$}  dim    law     {:summary$}  reference\n", "name", "what it does");
+    for info in teeter_solvers::SOLVERS {
+        let dimensions: Vec<_> = info.dimensions.iter().map(|d| format!("{d}D")).collect();
+        let law = match info.law {
+            teeter_contact::Law::Exact => "exact",
+            teeter_contact::Law::Convex => "convex",
+        };
+        let line = format!(
+            "{:name$}  {:5}  {law:6}  {:summary$}  {}",
+            info.name,
+            dimensions.join(" "),
+            info.summary,
+            info.reference
+        );
+        text.push_str(line.trim_end());
+        text.push('\n');
+    }
+    // A reader that went away has seen enough.
+    let _ = std::io::stdout().lock().write_all(text.as_bytes());
+    Exit::Done
+}
