@@ -13,7 +13,7 @@ type Small<const D: usize> = fn(&ContactProblem<'_, D>, &Stop<'_>, &mut [Vector<
 
 /// The solver that chooses; see the [crate's table](crate). `used` of the outcome says which method gave the result;
 /// `iterations` are all that were taken, of the part that took most.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub struct Auto<const D: usize> {
     chain: Chain<D>,
     /// The part that each contact belongs to.
@@ -212,7 +212,7 @@ mod tests {
     fn says_which_method_gave_the_result() {
         let of = |points: &[(f64, f64)]| outcome(&body_on_floor("feet", 0.3, points, [0.3, -1.0, 0.2], 0.5)).0.used;
         assert_eq!(of(&[(-0.5, -1.0), (0.5, -1.0)]), "enumeration");
-        assert_eq!(of(&[(-0.5, -1.0), (-0.1, -1.0), (0.2, -1.0), (0.5, -1.0)]), "pgs");
+        assert_eq!(of(&[(-0.5, -1.0), (-0.1, -1.0), (0.2, -1.0), (0.5, -1.0)]), "newton");
     }
 
     #[test]

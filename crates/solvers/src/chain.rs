@@ -2,18 +2,22 @@
 //!
 //! 1. **Gauss–Seidel** ([`Pgs`]): some sweeps, and more as long as the rate at which the residual falls says that it arrives before Newton
 //!    would.
-//! 2. **Semi-smooth Newton** ([`Newton`]): a round of steps from there; where they fail, more sweeps for about the same
+//! 2. **Alternating directions** ([`Admm`](crate::Admm), feature `sparse`) where rows of H are long: factors fill in there, and this takes
+//!    one or two where Newton takes ten.
+//! 3. **Semi-smooth Newton** ([`Newton`]): a round of steps from there; where they fail, more sweeps for about the same
 //!    work, and another round, a few times.
-//! 3. **The central path** ([`Smoothing`]): for what is degenerate.
-//! 4. **The proximal point** ([`Prox`]), then all of it again with a start of its own, then sweeps until the iterations run out.
+//! 4. **The central path** ([`Smoothing`]): for what is degenerate.
+//! 5. **The proximal point** ([`Prox`]), Newton with more sweeps between its steps, and sweeps until the iterations run out.
 //!
 //! What decides is counted work (blocks, block products), never time: the same problem takes the same way on every machine.
 //!
 //! A problem of a few contacts is solved further than asked, towards 1e-14: it costs little there, and the motion of a
 //! few blocks is then as exact as an enumerated one.
 
+#[cfg(feature = "sparse")]
+use crate::Admm;
 use crate::{Newton, Pgs, Prox, Smoothing};
-use teeter_contact::{ContactProblem, ContactSolver, Outcome, Stop, Vector};
+use teeter_contact::{ContactProblem, ContactSolver, Delassus, Outcome, Stop, Vector};
 
 /// Up to so many contacts a solution is polished, to this residual.
 const SMALL: usize = 12;
@@ -30,9 +34,16 @@ const STEP_CONTACT: f64 = 16.0;
 const SWEEP_BLOCK: f64 = 0.4;
 const SWEEP_CONTACT: f64 = 5.0;
 
-#[derive(Clone, Debug, Default)]
+/// From so many contacts with so many blocks a row on, alternating directions come before Newton; and their iterations.
+const MANY: usize = 64;
+const LONG_ROW: usize = 16;
+const DIRECTIONS: u32 = 300;
+
+#[derive(Debug, Default)]
 pub(crate) struct Chain<const D: usize> {
     pgs: Pgs<D>,
+    #[cfg(feature = "sparse")]
+    admm: Admm<D>,
     newton: Newton<D>,
     smoothing: Smoothing<D>,
     prox: Prox<D>,
@@ -68,6 +79,8 @@ impl Progress {
 impl<const D: usize> Chain<D> {
     pub(crate) fn reserve(&mut self, contacts: usize, blocks: usize) {
         self.pgs.reserve(contacts, blocks);
+        #[cfg(feature = "sparse")]
+        self.admm.reserve(contacts, blocks);
         self.newton.reserve(contacts, blocks);
         self.smoothing.reserve(contacts, blocks);
         self.prox.reserve(contacts, blocks);
@@ -94,6 +107,11 @@ impl<const D: usize> Chain<D> {
         let within = |left: u32, most: u32| Stop { max_iterations: left.min(most), ..*stop };
         let first = self.pgs.solve(problem, &within(stop.max_iterations, FIRST), p);
         let mut progress = Progress { best: first, iterations: first.iterations };
+        #[cfg(feature = "sparse")]
+        if !progress.over(stop) && has_long_rows(problem) {
+            let outcome = self.admm.solve(problem, &within(progress.left(stop), DIRECTIONS), p);
+            progress.add(outcome);
+        }
         if !progress.over(stop) {
             self.sweeps_and_steps(problem, stop, p, &mut progress);
         }
@@ -157,4 +175,16 @@ impl<const D: usize> Chain<D> {
             batch = (2.0 * work) as u32 * (1 << round) + FIRST;
         }
     }
+}
+
+/// Whether the rows of H hold so many blocks that factors of it would fill in.
+#[cfg(feature = "sparse")]
+fn has_long_rows<const D: usize>(problem: &ContactProblem<'_, D>) -> bool {
+    let n = problem.contacts();
+    let blocks = match problem.delassus() {
+        Delassus::Blocks(h) => h.blocks().len(),
+        Delassus::Dense(blocks) => blocks.iter().filter(|block| block.iter().any(|&c| c != 0.0)).count(),
+        _ => 0,
+    };
+    n >= MANY && blocks >= LONG_ROW * n
 }

@@ -122,7 +122,7 @@ pub(super) fn choose(names: &[String], paths: &mut Vec<PathBuf>) -> Result<Choic
         return Ok(Choice::All);
     }
     if chosen.is_empty() {
-        chosen.extend(SOLVERS.iter().find(|info| info.name == teeter_solvers::Auto::NAME));
+        chosen.extend(SOLVERS.iter().find(|info| info.name == teeter_solvers::Auto::<2>::NAME));
     }
     Ok(Choice::Named(chosen))
 }
