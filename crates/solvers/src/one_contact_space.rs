@@ -119,11 +119,11 @@ impl Slide {
         }
     }
 
-    /// The root next to `start`, where the determinant stays positive.
+    /// The root that Newton's method finds from `start`, or 0 where it would be negative: the contact sticks.
     #[inline(always)]
-    fn newton(&self, start: f64, nearly: f64) -> Option<f64> {
+    fn newton(&self, start: f64, nearly: f64, steps: u32) -> Option<f64> {
         let mut lambda = start;
-        for _ in 0..STEPS {
+        for _ in 0..steps {
             let v = [self.back[0] + lambda * self.g[0], self.back[1] + lambda * self.g[1]];
             let square = v[0] * v[0] + v[1] * v[1];
             let half_slope = v[0] * self.g[0] + v[1] * self.g[1];
@@ -133,12 +133,8 @@ impl Slide {
             let square_of_det = determinant * determinant;
             let miss = square_of_det - square;
             let step = 0.5 * miss / (slope * determinant - half_slope);
-            let next = lambda - step;
-            if !(determinant > 0.0 && next.is_finite()) {
-                return None;
-            }
-            // Beyond zero lies sticking: one more try from there, unless it is rounding on the border.
-            lambda = next.max(0.0);
+            // A NaN ends up at 0, and there at its end.
+            lambda = (lambda - step).max(0.0);
             if miss.abs() <= nearly * square_of_det {
                 return Some(lambda);
             }
@@ -146,20 +142,25 @@ impl Slide {
         None
     }
 
-    /// The root next to where it would be if A were half its trace.
-    fn from_afar(&self) -> Option<f64> {
-        let size = (self.g[0] * self.g[0] + self.g[1] * self.g[1]).sqrt();
-        self.newton((size - 0.5 * self.trace).max(0.0), NEARLY)
+    /// The root next to where it would be if A were half its trace times the identity; or else the largest one, from above.
+    fn from_afar(&self, nearly: f64) -> [Option<f64>; 2] {
+        let size = |x: &[f64; 2]| (x[0] * x[0] + x[1] * x[1]).sqrt();
+        let g = size(&self.g);
+        let near = self.newton((g - 0.5 * self.trace).max(0.0), nearly, STEPS);
+        // ‖(A + λI) d‖ = ‖g‖ bounds λ.
+        let above = || self.newton(g + size(&self.a[0]) + size(&self.a[1]), nearly, 4 * STEPS);
+        [near, if near.is_none_or(|lambda| lambda == 0.0) { above() } else { None }]
     }
 
-    /// The impulse for a root. There ‖v‖ = det, so d = v/det; with det multiplied through, one division is left.
+    /// The impulse for a root, where it presses. There ‖v‖ = |det|, so d = v/det; with det multiplied through, one division
+    /// is left.
     #[inline(always)]
     fn impulse(&self, h: &Matrix, q: &Vector, mu: f64, lambda: f64) -> Option<Vector> {
         let v = [self.back[0] + lambda * self.g[0], self.back[1] + lambda * self.g[1]];
         let determinant = (lambda + self.trace) * lambda + self.determinant;
         let size = -q[0] / (h[0][0] * determinant - mu * (h[0][1] * v[0] + h[0][2] * v[1]));
         let p = [size * determinant, -mu * size * v[0], -mu * size * v[1]];
-        (size > 0.0 && p[0] < f64::INFINITY && p[1].is_finite() && p[2].is_finite()).then_some(p)
+        (p[0] > 0.0 && p[0] < f64::INFINITY && p[1].is_finite() && p[2].is_finite()).then_some(p)
     }
 
     /// The direction for a root.
@@ -185,9 +186,11 @@ fn slide(h: &Matrix, q: &Vector, mu: f64, d: &[f64; 2]) -> Option<Vector> {
 pub(crate) fn usual(h: &Matrix, inverse: &Matrix, q: &Vector, mu: f64, refine: bool, slip: &mut f64) -> Option<Vector> {
     if *slip > 0.0 {
         let equation = Slide::new(h, q, mu);
-        if let Some(lambda) = equation.newton(*slip, WARM).filter(|&lambda| lambda > 0.0) {
-            *slip = lambda;
-            return equation.impulse(h, q, mu, lambda);
+        if let Some(lambda) = equation.newton(*slip, WARM, STEPS).filter(|&lambda| lambda > 0.0) {
+            if let Some(p) = equation.impulse(h, q, mu, lambda) {
+                *slip = lambda;
+                return Some(p);
+            }
         }
     }
     if let Some(p) = stick(h, inverse, q, mu, refine) {
@@ -201,8 +204,13 @@ pub(crate) fn usual(h: &Matrix, inverse: &Matrix, q: &Vector, mu: f64, refine: b
 #[inline(never)]
 fn begin_to_slide(h: &Matrix, q: &Vector, mu: f64, slip: &mut f64) -> Option<Vector> {
     let equation = Slide::new(h, q, mu);
-    *slip = equation.from_afar()?;
-    equation.impulse(h, q, mu, *slip)
+    for lambda in equation.from_afar(NEARLY).into_iter().flatten() {
+        if let Some(p) = equation.impulse(h, q, mu, lambda) {
+            *slip = lambda;
+            return Some(p);
+        }
+    }
+    None
 }
 
 /// The smallest impulse of all states that fit a contact with `q_N < 0`, μ > 0.
@@ -239,7 +247,7 @@ pub(crate) fn smallest(h: &Matrix, inverse: &Matrix, q: &Vector, mu: f64) -> Opt
     candidates.push(0.0);
     for &root in candidates.as_slice() {
         // Both signs of the determinant: the quartic is an equation of squares.
-        for root in [equation.newton(root * unit, NEARLY), Some(root * unit)].into_iter().flatten() {
+        for root in [equation.newton(root * unit, NEARLY, STEPS), Some(root * unit)].into_iter().flatten() {
             let d = equation.direction(root);
             for d in [d, [-d[0], -d[1]]] {
                 if let Some(p) = slide(h, q, mu, &d).filter(|p| slides(h, q, p, &d)) {
