@@ -88,8 +88,9 @@ fn check(table: &Table, states: &mut [State; MAX_CONTACTS], p: &Impulses) -> Che
     let mut velocities = [Vector2::zeros(); MAX_CONTACTS];
     let (mut changed, mut tight) = (false, false);
     for i in 0..n {
-        let mut u = table.q[i];
-        let mut size = u.abs();
+        // In the order of `ContactProblem::velocity`, so that the judge finds the same to the last bit.
+        let mut u = Vector2::zeros();
+        let mut size = table.q[i].abs();
         for j in 0..n {
             let (h, p) = (&table.h[i][j], &p[j]);
             for a in 0..2 {
@@ -98,6 +99,7 @@ fn check(table: &Table, states: &mut [State; MAX_CONTACTS], p: &Impulses) -> Che
                 size[a] += x.abs() + y.abs();
             }
         }
+        u += table.q[i];
         velocities[i] = u;
         let (mu, state) = (table.mu[i], states[i]);
         if state == State::Open {
@@ -115,11 +117,9 @@ fn check(table: &Table, states: &mut [State; MAX_CONTACTS], p: &Impulses) -> Che
             continue;
         }
         match state {
-            State::Slide(sigma) if mu > 0.0 => {
-                // Held by another contact of the same body, it doesn't slide, but for rounding.
-                if sigma * u[1] < ROOM * (size[0] + size[1]) {
-                    (states[i], changed) = (State::Stick, true);
-                }
+            // Held by another contact of the same body, it doesn't slide, but for rounding.
+            State::Slide(sigma) if mu > 0.0 && sigma * u[1] < ROOM * (size[0] + size[1]) => {
+                (states[i], changed) = (State::Stick, true);
             }
             State::Stick => {
                 let room = mu * p[i][0] - p[i][1].abs();
@@ -228,8 +228,7 @@ fn solve<const M: usize>(table: &Table, rows: &[(usize, usize); MAX], tangent: &
         let weight: [f64; M] = std::array::from_fn(|k| 1.0 + tangent[k] * tangent[k]);
         let inner = |x: &[f64; M], y: &[f64; M]| (0..M).fold(0.0, |sum, k| sum + weight[k] * x[k] * y[k]);
         let mut basis = [([0.0; M], 0.0); M];
-        let mut count = 0;
-        for free in (0..M).filter(|&k| inverse[k] == 0.0) {
+        for (count, free) in (0..M).filter(|&k| inverse[k] == 0.0).enumerate() {
             let mut null = [0.0; M];
             null[free] = 1.0;
             for k in (0..free).rev() {
@@ -244,7 +243,6 @@ fn solve<const M: usize>(table: &Table, rows: &[(usize, usize); MAX], tangent: &
             let along = inner(&x, &null) * reciprocal;
             (0..M).for_each(|k| x[k] -= along * null[k]);
             basis[count] = (null, reciprocal);
-            count += 1;
         }
     }
     let mut solution = [0.0; MAX];
