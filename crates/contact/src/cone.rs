@@ -47,8 +47,9 @@ pub fn project<const D: usize>(x: &Vector<D>, mu: f64) -> Vector<D> {
         (x_n + mu * x_t) / (1.0 + mu * mu)
     } else {
         let inverse = mu.recip();
-        // Next to the polar cone rounding can make this negative.
-        ((x_n * inverse + x_t) * inverse / (1.0 + inverse * inverse)).max(0.0)
+        let foot = (x_n * inverse + x_t) * inverse / (1.0 + inverse * inverse);
+        // Next to the polar cone rounding can make this negative. Not `max`, which would take a NaN for zero.
+        if foot < 0.0 { 0.0 } else { foot }
     };
     let mut p = *x;
     p[0] = foot;
@@ -111,6 +112,13 @@ mod tests {
         let p = project(&Vector2::new(-1.0, 1.0), 1e200);
         assert!(p.iter().all(|c| c.is_finite()));
         assert!((p[1] - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_no_number_stays_none() {
+        for mu in [0.0, 0.5, 2.0] {
+            assert!(project(&Vector2::new(f64::NAN, 1.0), mu).iter().any(|c| c.is_nan()), "{mu}");
+        }
     }
 
     #[test]

@@ -4,7 +4,7 @@ use crate::{Block, Delassus, Vector};
 
 /// A frictional contact problem of `n` contacts in D dimensions; see the crate's page for the law.
 ///
-/// Sizes, finiteness, `μ ≥ 0` and a positive normal compliance `H_NN` of each contact are checked by
+/// Sizes, finiteness, `μ ≥ 0` and a positive normal and no negative tangential compliance of each contact are checked by
 /// [`ContactProblem::new`], so a solver can rely on them. Symmetry and definiteness of `H` are not required.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactProblem<'a, const D: usize> {
@@ -47,6 +47,14 @@ pub enum ProblemError {
         /// Its coefficient.
         value: f64,
     },
+    /// A contact that a tangential impulse moves against the impulse.
+    #[error("the tangential compliance H_TT of contact {contact} is {value} 1/kg, but must not be negative")]
+    TangentPushesBack {
+        /// The contact.
+        contact: usize,
+        /// Its tangential compliance.
+        value: f64,
+    },
     /// A contact along whose normal nothing can move, or moves against the impulse.
     #[error("the normal compliance H_NN of contact {contact} is {value} 1/kg, but must be greater than 0")]
     NotCompliant {
@@ -61,7 +69,7 @@ impl<'a, const D: usize> ContactProblem<'a, D> {
     /// Poses the problem of `q.len()` contacts: `h` in 1/kg, `q` in m/s, `mu` without unit.
     ///
     /// # Errors
-    /// If sizes differ, a number is not finite, a friction coefficient is negative, or `H_NN ≤ 0` for a contact.
+    /// If sizes differ, a number is not finite, a friction coefficient is negative, `H_NN ≤ 0` for a contact, or `H_TT < 0`.
     pub fn new(h: Delassus<'a, D>, q: &'a [Vector<D>], mu: &'a [f64]) -> Result<Self, ProblemError> {
         let contacts = q.len();
         let size = |what, found, expected| {
@@ -92,10 +100,17 @@ impl<'a, const D: usize> ContactProblem<'a, D> {
             if value < 0.0 {
                 return Err(ProblemError::NegativeFriction { contact, value });
             }
-            let value = h.diagonal(contact, contacts)[(0, 0)];
+            let diagonal = h.diagonal(contact, contacts);
+            let value = diagonal[(0, 0)];
             // Written so that NaN fails too.
             if !(value > 0.0 && value.is_finite()) {
                 return Err(ProblemError::NotCompliant { contact, value });
+            }
+            for k in 1..D {
+                let value = diagonal[(k, k)];
+                if !(value >= 0.0 && value.is_finite()) {
+                    return Err(ProblemError::TangentPushesBack { contact, value });
+                }
             }
         }
         Ok(Self { h, q, mu })
@@ -208,6 +223,9 @@ mod tests {
         let mut rigid = good;
         rigid[3][(0, 0)] = 0.0;
         assert!(error(&rigid, &q, &[0.1, 0.2]).contains("H_NN of contact 1 is 0"));
+        let mut back = good;
+        back[3][(1, 1)] = -2.0;
+        assert!(error(&back, &q, &[0.1, 0.2]).contains("H_TT of contact 1 is -2"));
         rigid[2][(1, 0)] = f64::NAN;
         assert!(error(&rigid, &q, &[0.1, 0.2]).contains("the Delassus operator of contact 1 is NaN"));
     }

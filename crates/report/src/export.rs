@@ -149,7 +149,9 @@ impl Exporter {
         for entry in std::fs::read_dir(folder).map_err(io)? {
             let entry = entry.map_err(io)?;
             let name = entry.file_name().to_string_lossy().into_owned();
-            if name.starts_with(&begin) && name.ends_with(".hdf5") {
+            let number = name.strip_prefix(&begin).and_then(|rest| rest.strip_suffix(".hdf5"));
+            // `beam-stepped-step01.hdf5` is another scene's.
+            if number.is_some_and(|n| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit() || b == b'-')) {
                 old.push(entry.path());
             }
         }

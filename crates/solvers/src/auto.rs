@@ -6,13 +6,15 @@
 
 use crate::Enumeration;
 use crate::chain::Chain;
+use crate::scaled::reserve;
 use teeter_contact::{Block, ContactProblem, ContactSolver, Delassus, Law, Outcome, Status, Stop, Vector, judge};
 
 /// An exact method for a few contacts: what it found, if the judge is satisfied.
 type Small<const D: usize> = fn(&ContactProblem<'_, D>, &Stop<'_>, &mut [Vector<D>]) -> Option<Outcome>;
 
 /// The solver that chooses; see the [crate's table](crate). `used` of the outcome says which method gave the result;
-/// `iterations` are all that were taken, of the part that took most.
+/// `iterations` are those of all methods tried; of a
+/// problem in parts, those of the part that took most.
 #[derive(Debug, Default)]
 pub struct Auto<const D: usize> {
     chain: Chain<D>,
@@ -128,17 +130,23 @@ impl<const D: usize> Auto<D> {
         if residual.global <= stop.tolerance {
             return Outcome::new(Status::Converged, used, iterations, residual);
         }
-        self.chain.solve(problem, stop, p)
+        let rest = Stop { max_iterations: stop.max_iterations.saturating_sub(iterations), ..*stop };
+        let mut outcome = self.chain.solve(problem, &rest, p);
+        outcome.iterations = outcome.iterations.saturating_add(iterations);
+        outcome
     }
 
     fn reserve_all(&mut self, contacts: usize, blocks: usize) {
         self.chain.reserve(contacts, blocks);
-        self.part.reserve(contacts);
-        self.members.reserve(contacts);
-        self.h.reserve(contacts * contacts);
-        self.q.reserve(contacts);
-        self.mu.reserve(contacts);
-        self.p.reserve(contacts);
+        // Parts are copied out of dense problems only, and the largest is no larger than what is there.
+        let dense = contacts.saturating_mul(contacts).min(blocks);
+        let more = |len: usize, wanted: usize| wanted.saturating_sub(len);
+        self.part.reserve(more(self.part.len(), contacts));
+        self.members.reserve(more(self.members.len(), contacts));
+        self.h.reserve(more(self.h.len(), dense));
+        reserve(&mut self.q, contacts);
+        self.mu.reserve(more(self.mu.len(), contacts));
+        reserve(&mut self.p, contacts);
     }
 }
 

@@ -17,7 +17,9 @@
 #[cfg(feature = "sparse")]
 use crate::Admm;
 use crate::{Newton, Pgs, Prox, Smoothing};
-use teeter_contact::{ContactProblem, ContactSolver, Delassus, Outcome, Stop, Vector};
+#[cfg(feature = "sparse")]
+use teeter_contact::Delassus;
+use teeter_contact::{ContactProblem, ContactSolver, Outcome, Status, Stop, Vector, judge};
 
 /// Up to so many contacts a solution is polished, to this residual.
 const SMALL: usize = 12;
@@ -57,14 +59,32 @@ struct Progress {
 }
 
 impl Progress {
-    /// Counts a stage's iterations and takes its outcome if it is better. The stages return impulses no worse than their start.
+    /// Counts a stage's iterations and takes its outcome if it is better.
     fn add(&mut self, outcome: Outcome) {
         self.iterations = self.iterations.saturating_add(outcome.iterations);
-        if outcome.residual.global <= self.best.residual.global || outcome.converged() {
+        if outcome.residual.global < self.best.residual.global || outcome.converged() {
             self.best = outcome;
-        } else {
-            self.best.status = outcome.status;
         }
+    }
+
+    /// The outcome of the whole, for the impulses that are left: how a stage ended within its own limits is not how the solve ended.
+    fn end<const D: usize>(&self, problem: &ContactProblem<'_, D>, stop: &Stop<'_>, p: &[Vector<D>]) -> Outcome {
+        if self.best.converged() {
+            return Outcome::new(Status::Converged, self.best.used, self.iterations, self.best.residual);
+        }
+        let residual = judge(problem, p);
+        let status = if residual.global <= stop.tolerance {
+            Status::Converged
+        } else if !residual.global.is_finite() {
+            Status::Breakdown
+        } else if stop.cancelled() {
+            Status::Cancelled
+        } else if self.left(stop) == 0 {
+            Status::MaxIterations
+        } else {
+            Status::Stalled
+        };
+        Outcome::new(status, self.best.used, self.iterations, residual)
     }
 
     fn left(&self, stop: &Stop<'_>) -> u32 {
@@ -72,7 +92,7 @@ impl Progress {
     }
 
     fn over(&self, stop: &Stop<'_>) -> bool {
-        self.best.residual.global <= stop.tolerance || self.left(stop) == 0 || stop.cancelled()
+        self.best.converged() || self.left(stop) == 0 || stop.cancelled()
     }
 }
 
@@ -92,10 +112,12 @@ impl<const D: usize> Chain<D> {
         if outcome.converged() && p.len() <= SMALL && outcome.residual.global > POLISHED {
             self.best.clear();
             self.best.extend_from_slice(p);
-            let polished = self.newton.round(problem, &Stop { tolerance: POLISHED, ..*stop }, p);
+            let left = stop.max_iterations.saturating_sub(outcome.iterations);
+            let polish = Stop { tolerance: POLISHED, max_iterations: left, ..*stop };
+            let polished = self.newton.round(problem, &polish, p);
             outcome.iterations = outcome.iterations.saturating_add(polished.iterations);
-            if polished.residual.global <= outcome.residual.global {
-                outcome.residual = polished.residual;
+            if polished.residual.global < outcome.residual.global {
+                (outcome.residual, outcome.used) = (polished.residual, polished.used);
             } else {
                 p.copy_from_slice(&self.best);
             }
@@ -131,7 +153,7 @@ impl<const D: usize> Chain<D> {
             let outcome = self.pgs.solve(problem, &within(progress.left(stop), u32::MAX), p);
             progress.add(outcome);
         }
-        Outcome::new(progress.best.status, progress.best.used, progress.iterations, progress.best.residual)
+        progress.end(problem, stop, p)
     }
 
     fn sweeps_and_steps(
@@ -148,6 +170,7 @@ impl<const D: usize> Chain<D> {
         for (round, worth) in WORTH.into_iter().enumerate() {
             let before = progress.best.residual.global;
             let outcome = self.pgs.solve(problem, &within(progress.left(stop), batch), p);
+            let swept = outcome.iterations.max(1);
             progress.add(outcome);
             if progress.over(stop) {
                 return;
@@ -158,11 +181,11 @@ impl<const D: usize> Chain<D> {
                 (step / (SWEEP_BLOCK * work.blocks as f64 + SWEEP_CONTACT * n)).max(1.0)
             });
             let after = progress.best.residual.global;
-            let rate = (after / before).ln() / f64::from(batch);
+            let rate = (after / before).ln() / f64::from(swept);
             let expected = (stop.tolerance / after).ln() / rate;
             // Written so that a rate that is no number doesn't count.
             if rate < 0.0 && expected < worth * work {
-                let most = (1.5 * expected) as u32 + FIRST;
+                let most = ((1.5 * expected) as u32).saturating_add(FIRST);
                 progress.add(self.pgs.solve(problem, &within(progress.left(stop), most), p));
                 if progress.over(stop) {
                     return;
@@ -172,7 +195,7 @@ impl<const D: usize> Chain<D> {
             if progress.over(stop) {
                 return;
             }
-            batch = (2.0 * work) as u32 * (1 << round) + FIRST;
+            batch = ((2.0 * work) as u32).saturating_mul(1 << round).saturating_add(FIRST);
         }
     }
 }

@@ -43,6 +43,8 @@ const LEAST_EPSILON: f64 = 1e-12;
 const MOST_EPSILON: f64 = 1e-1;
 const RAISED: f64 = 100.0;
 const LOWERED: f64 = 0.1;
+/// The part of the tolerance that is aimed at: the judge sums in another order.
+const AIM: f64 = 0.9;
 /// A step that leaves more than this of the residual has failed.
 const PROGRESS: f64 = 0.7;
 /// Lengths of a step that are tried: 1, ½, ¼, ⅛.
@@ -67,13 +69,21 @@ impl<const D: usize> Newton<D> {
         Self::default()
     }
 
-    /// A round of Newton steps alone, for solvers that bring their own globalisation. Leaves the best of its impulses in `p`.
+    /// A round of Newton steps alone, for solvers that bring their own globalisation. Leaves the last of its impulses in `p`: each step lowered the residual, but for rounding.
     pub(crate) fn round(&mut self, problem: &ContactProblem<'_, D>, stop: &Stop<'_>, p: &mut [Vector<D>]) -> Outcome {
         self.scaled.load(problem);
         let most = stop.max_iterations.min(STEPS);
-        let end = self.steps.round(&self.scaled, None, stop.tolerance, most, stop, p);
+        let end = self.steps.round(&self.scaled, None, AIM * stop.tolerance, most, stop, p);
         let residual = judge(problem, p);
-        let status = if residual.global <= stop.tolerance { Status::Converged } else { Status::Stalled };
+        let status = if residual.global <= stop.tolerance {
+            Status::Converged
+        } else if stop.cancelled() {
+            Status::Cancelled
+        } else if end.steps >= stop.max_iterations {
+            Status::MaxIterations
+        } else {
+            Status::Stalled
+        };
         Outcome::new(status, Self::NAME, end.steps, residual)
     }
 
@@ -119,6 +129,7 @@ impl<const D: usize> ContactSolver<D> for Newton<D> {
     fn solve(&mut self, problem: &ContactProblem<'_, D>, stop: &Stop<'_>, p: &mut [Vector<D>]) -> Outcome {
         make_finite(p);
         self.scaled.load(problem);
+        let goal = AIM * stop.tolerance;
         self.best.clear();
         self.best.extend_from_slice(p);
         let mut best = f64::INFINITY;
@@ -138,14 +149,14 @@ impl<const D: usize> ContactSolver<D> for Newton<D> {
                 break;
             }
             let most = (stop.max_iterations - iterations).min(STEPS);
-            let end = self.steps.round(&self.scaled, None, stop.tolerance, most, stop, p);
+            let end = self.steps.round(&self.scaled, None, AIM * stop.tolerance, most, stop, p);
             iterations += end.steps;
             if end.residual < best {
                 best = end.residual;
                 self.best.copy_from_slice(p);
                 used = Self::NAME;
             }
-            if best <= stop.tolerance {
+            if best <= goal {
                 break;
             }
             if stop.cancelled() {

@@ -82,6 +82,7 @@ impl<const D: usize> ContactSolver<D> for Prox<D> {
         for x in [&mut self.center, &mut self.best, &mut self.u] {
             clear(x, n);
         }
+        self.best.copy_from_slice(p);
         let sweeps = |left: u32| Stop { max_iterations: left.min(SWEEPS), ..*stop };
         let swept = self.pgs.solve(problem, &sweeps(stop.max_iterations), p);
         let mut iterations = swept.iterations;

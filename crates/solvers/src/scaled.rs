@@ -100,10 +100,10 @@ pub(crate) fn reserve<const D: usize>(x: &mut Vec<Vector<D>>, n: usize) {
     x.reserve(n.saturating_sub(x.len()));
 }
 
-/// Replaces a start that is no number by zero.
+/// Replaces a start that is no number, or too large to be squared, by zero.
 pub(crate) fn make_finite<const D: usize>(p: &mut [Vector<D>]) {
     for x in p {
-        if !x.iter().all(|c| c.is_finite()) {
+        if !(x.norm_squared() < 1e300) {
             *x = Vector::zeros();
         }
     }

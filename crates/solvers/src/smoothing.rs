@@ -276,6 +276,9 @@ impl<const D: usize> ContactSolver<D> for Smoothing<D> {
         self.best.copy_from_slice(p);
         self.scaled.velocities(p, &mut self.u);
         self.best_residual = self.scaled.residual(p, &self.u);
+        if self.best_residual.is_nan() {
+            self.best_residual = f64::INFINITY;
+        }
         self.iterations = 0;
         if !(self.best_residual <= stop.tolerance) && stop.max_iterations > 0 {
             self.lu.analyse(&self.scaled.h);

@@ -33,6 +33,8 @@ pub(super) fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
             Err(error) => faults.push(format!("error: {}: {error}", path.display())),
         }
     }
+    let mut seen = std::collections::BTreeSet::new();
+    files.retain(|file| seen.insert(file.clone()));
     if faults.is_empty() { Ok(files) } else { Err(faults.join("\n")) }
 }
 

@@ -67,14 +67,18 @@ pub(super) fn measure<const D: usize>(
     };
 
     let mut time = first;
-    if first < WORTH && word != "time-limit" {
+    if first < WORTH && !cancel.load(Ordering::Relaxed) {
         // A solver that is slow the second time is no reason to wait for ever either.
-        time = within(limit + 10 * WORTH, &cancel, || {
+        let median = within(limit + 10 * WORTH, &cancel, || {
             median_time(first, || {
                 p.fill(Vector::zeros());
                 let _ = solver.solve(problem, &stop, &mut p);
             })
         });
+        // Solves that were cut short say nothing.
+        if !cancel.load(Ordering::Relaxed) {
+            time = median;
+        }
     }
     Measured {
         used: outcome.used,
@@ -92,7 +96,7 @@ fn median_time(first: Duration, mut solve: impl FnMut()) -> Duration {
     let mut sample = |times: u32| {
         let clock = Instant::now();
         (0..times).for_each(|_| solve());
-        clock.elapsed() / times
+        clock.elapsed().div_f64(f64::from(times))
     };
     // The first solve of a solver may be slower than the others: how many make a sample is asked of a second one.
     let second = sample(1).min(first).max(Duration::from_nanos(20));
