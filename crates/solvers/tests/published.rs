@@ -235,7 +235,8 @@ fn auto_solves_some_that_none_of_siconos_solvers_does() {
     let mut space = space_solver("auto").unwrap();
     for (name, tolerance) in [
         ("2d/fc2d_granularflowonwall_02020_00213.hdf5", 1e-12),
-        ("3d/RockPile_tob1.hdf5", 1e-8),
+        ("2d/fc2d_granularflowonwall_07002_00801.hdf5", 1e-12),
+        ("3d/RockPile_tob1.hdf5", 1e-12),
         ("3d/spheres-in-a-box-98-i10000-256-10.hdf5", 1e-12),
     ] {
         solve_all(plane.as_mut(), space.as_mut(), tolerance, &[name]);
