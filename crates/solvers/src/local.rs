@@ -30,18 +30,21 @@ enum Kind {
     Difficult,
 }
 
-/// One contact's block, friction coefficient, and what follows from them.
+/// One contact's block, friction coefficient, and what follows from them. In this order, as a sliding contact then doesn't
+/// fetch the inverse, which it doesn't need.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub(crate) struct Local<const D: usize> {
-    h: Block<D>,
-    /// `H⁻¹`; zero where the block is singular to rounding.
-    inverse: Block<D>,
     mu: f64,
-    /// `1/H_NN`; in 2D without friction, `1/(H_NN ∓ μ H_NT)` for sliding to the right and to the left.
-    compliance: [f64; 2],
     kind: Kind,
     /// Whether the inverse loses so many digits that its product wants a correction.
     refine: bool,
+    /// Its block, by rows.
+    h: [[f64; D]; D],
+    /// `1/H_NN`; in 2D with friction, `1/(H_NN ∓ μ H_NT)` for sliding to the right and to the left.
+    compliance: [f64; 2],
+    /// `H⁻¹` by rows; zero where the block is singular to rounding.
+    inverse: [[f64; D]; D],
 }
 
 impl<const D: usize> Local<D> {
@@ -49,8 +52,8 @@ impl<const D: usize> Local<D> {
     pub(crate) fn new(h: &Block<D>, mu: f64) -> Self {
         let h_nn = h[(0, 0)];
         let mut local = Self {
-            h: *h,
-            inverse: Block::zeros(),
+            h: space::rows(h),
+            inverse: [[0.0; D]; D],
             mu,
             compliance: [h_nn.recip(); 2],
             kind: if mu == 0.0 || D == 1 { Kind::Frictionless } else { Kind::Difficult },
@@ -63,29 +66,28 @@ impl<const D: usize> Local<D> {
             let determinant = h_nn * h[(1, 1)] - h[(0, 1)] * h[(1, 0)];
             if determinant > RANK_TOLERANCE * (h_nn * h[(1, 1)]).abs() && h_nn > mu * h[(0, 1)].abs() * MARGIN {
                 let inverse = determinant.recip();
-                local.inverse[(0, 0)] = h[(1, 1)] * inverse;
-                local.inverse[(0, 1)] = -h[(0, 1)] * inverse;
-                local.inverse[(1, 0)] = -h[(1, 0)] * inverse;
-                local.inverse[(1, 1)] = h_nn * inverse;
+                local.inverse[0][0] = h[(1, 1)] * inverse;
+                local.inverse[0][1] = -h[(0, 1)] * inverse;
+                local.inverse[1][0] = -h[(1, 0)] * inverse;
+                local.inverse[1][1] = h_nn * inverse;
                 local.compliance = [1.0, -1.0].map(|sigma| (h_nn - sigma * mu * h[(0, 1)]).recip());
                 local.kind = Kind::Regular;
             }
         }
         if D == 3 {
-            let rows = space::rows(h);
-            if let Some(inverse) = space::inverse(&rows, RANK_TOLERANCE) {
-                local.inverse = Block::from_fn(|r, c| inverse[r][c]);
-                local.refine = mu > MUCH || space::inverse(&rows, WELL_CONDITIONED).is_none();
+            if let Some(inverse) = space::inverse(&local.h, RANK_TOLERANCE) {
+                local.inverse = inverse;
+                local.refine = mu > MUCH || space::inverse(&local.h, WELL_CONDITIONED).is_none();
                 local.kind = Kind::Regular;
             }
         }
         local
     }
 
-    /// Its block of H.
+    /// The velocity that its own impulse gives it.
     #[inline]
-    pub(crate) fn block(&self) -> &Block<D> {
-        &self.h
+    pub(crate) fn velocity(&self, p: &Vector<D>) -> Vector<D> {
+        Vector::from_fn(|r, _| self.h[r].iter().zip(p.iter()).fold(0.0, |sum, (h, p)| sum + h * p))
     }
 
     /// The impulse of the contact whose velocity would be `q` without it. `slip` is what the last visit left there, from
@@ -105,15 +107,14 @@ impl<const D: usize> Local<D> {
         match D {
             2 => self.plane(q),
             3 => {
-                let (h, inverse) = (space::rows(&self.h), space::rows(&self.inverse));
                 let q = [q[0], q[1], q[2]];
-                let regular = match self.kind {
-                    Kind::Regular => space::usual(&h, &inverse, &q, self.mu, self.refine, slip),
+                let usual = match self.kind {
+                    Kind::Regular => space::usual(&self.h, &self.inverse, &q, self.mu, self.refine, slip),
                     _ => None,
                 };
-                let p = match regular {
+                let p = match usual {
                     Some(p) => p,
-                    None => space::smallest(&h, &inverse, &q, self.mu)?,
+                    None => space::smallest(&self.h, &self.inverse, &q, self.mu)?,
                 };
                 Some(Vector::from_fn(|i, _| p[i]))
             }
@@ -126,8 +127,8 @@ impl<const D: usize> Local<D> {
         let (h, mu) = (&self.h, self.mu);
         let of = |n: f64, t: f64| Vector::<D>::from_fn(|i, _| if i == 0 { n } else { t });
         if self.kind == Kind::Regular {
-            let p_n = -(self.inverse[(0, 0)] * q[0] + self.inverse[(0, 1)] * q[1]);
-            let p_t = -(self.inverse[(1, 0)] * q[0] + self.inverse[(1, 1)] * q[1]);
+            let p_n = -(self.inverse[0][0] * q[0] + self.inverse[0][1] * q[1]);
+            let p_t = -(self.inverse[1][0] * q[0] + self.inverse[1][1] * q[1]);
             if p_t.abs() <= mu * p_n {
                 return Some(of(p_n, p_t));
             }
@@ -136,21 +137,21 @@ impl<const D: usize> Local<D> {
             for side in [first, 1 - first] {
                 let p_n = -q[0] * self.compliance[side];
                 let p_t = if side == 0 { -mu * p_n } else { mu * p_n };
-                let u_t = h[(1, 0)] * p_n + h[(1, 1)] * p_t + q[1];
+                let u_t = h[1][0] * p_n + h[1][1] * p_t + q[1];
                 if (if side == 0 { u_t >= 0.0 } else { u_t <= 0.0 }) && p_n.is_finite() {
                     return Some(of(p_n, p_t));
                 }
             }
         }
-        let block = Matrix2::new(h[(0, 0)], h[(0, 1)], h[(1, 0)], h[(1, 1)]);
+        let block = Matrix2::new(h[0][0], h[0][1], h[1][0], h[1][1]);
         one_contact::solve(&block, &Vector2::new(q[0], q[1]), mu).map(|p| of(p[0], p[1]))
     }
 
     /// A step of the natural map from `p` instead, which has the same fixed points: for a contact that no state fits.
     pub(crate) fn step(&self, q: &Vector<D>, p: &Vector<D>) -> Vector<D> {
-        let u = self.h * p + q;
-        let trace = self.h.trace();
-        let rho = if trace > 0.0 { D as f64 / trace } else { self.h[(0, 0)].recip() };
+        let u = self.velocity(p) + q;
+        let trace: f64 = (0..D).map(|i| self.h[i][i]).sum();
+        let rho = if trace > 0.0 { D as f64 / trace } else { self.h[0][0].recip() };
         project(&(p - de_saxce(&u, self.mu) * rho), self.mu)
     }
 }

@@ -18,7 +18,8 @@
 use teeter_contact::Block;
 
 type Vector = [f64; 3];
-type Matrix = [[f64; 3]; 3];
+/// By rows. D is 3: the functions here are generic so that a caller that is can pass its own blocks.
+type Matrix<const D: usize> = [[f64; D]; D];
 
 /// Most Newton steps before the slow and sure way.
 const STEPS: u32 = 12;
@@ -28,26 +29,19 @@ const NEARLY: f64 = 1e-8;
 
 /// The same from the last visit's λ, which is the nearer the further the sweeps have come: what one visit misses, the next
 /// makes good. A count of steps that doesn't vary is worth more than digits that the next sweep changes.
-const WARM: f64 = 1e-4;
+const WARM: f64 = 1e-2;
 
 /// How far a candidate of the slow way may miss the law, relative to the terms of its velocity: the square root of
 /// rounding, as two roots that coincide are known to no more. The judge has the last word.
 const MISS: f64 = 1e-8;
 
-/// The rows of a 3 × 3 block; zeros beyond a smaller one.
-#[inline]
-pub(crate) fn rows<const D: usize>(h: &Block<D>) -> Matrix {
-    let mut rows = [[0.0; 3]; 3];
-    for r in 0..D.min(3) {
-        for c in 0..D.min(3) {
-            rows[r][c] = h[(r, c)];
-        }
-    }
-    rows
+/// The rows of a block.
+pub(crate) fn rows<const D: usize>(h: &Block<D>) -> Matrix<D> {
+    std::array::from_fn(|r| std::array::from_fn(|c| h[(r, c)]))
 }
 
 /// The inverse by cofactors, which no scaling of rows and columns disturbs; `None` for a matrix singular to `tolerance`.
-pub(crate) fn inverse(h: &Matrix, tolerance: f64) -> Option<Matrix> {
+pub(crate) fn inverse<const D: usize>(h: &Matrix<D>, tolerance: f64) -> Option<Matrix<D>> {
     let cofactor = |r: usize, c: usize| {
         let ((r1, r2), (c1, c2)) = (((r + 1) % 3, (r + 2) % 3), ((c + 1) % 3, (c + 2) % 3));
         h[r1][c1] * h[r2][c2] - h[r1][c2] * h[r2][c1]
@@ -58,7 +52,7 @@ pub(crate) fn inverse(h: &Matrix, tolerance: f64) -> Option<Matrix> {
     if !(determinant.abs() > tolerance * size && reciprocal.is_finite()) {
         return None;
     }
-    let mut inverse = [[0.0; 3]; 3];
+    let mut inverse = [[0.0; D]; D];
     for r in 0..3 {
         for c in 0..3 {
             inverse[c][r] = cofactor(r, c) * reciprocal;
@@ -68,14 +62,14 @@ pub(crate) fn inverse(h: &Matrix, tolerance: f64) -> Option<Matrix> {
 }
 
 #[inline]
-fn dot(a: &Vector, b: &Vector) -> f64 {
+fn dot<const D: usize>(a: &[f64; D], b: &Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// `p = −H⁻¹ q` where it lies in the cone; if asked for, refined once, so that what is left of the velocity is rounding
 /// however skewed the block is.
 #[inline(always)]
-fn stick(h: &Matrix, inverse: &Matrix, q: &Vector, mu: f64, refine: bool) -> Option<Vector> {
+fn stick<const D: usize>(h: &Matrix<D>, inverse: &Matrix<D>, q: &Vector, mu: f64, refine: bool) -> Option<Vector> {
     let solve = |q: &Vector| [-dot(&inverse[0], q), -dot(&inverse[1], q), -dot(&inverse[2], q)];
     let mut p = solve(q);
     let limit = mu * p[0];
@@ -106,7 +100,7 @@ struct Slide {
 
 impl Slide {
     #[inline(always)]
-    fn new(h: &Matrix, q: &Vector, mu: f64) -> Self {
+    fn new<const D: usize>(h: &Matrix<D>, q: &Vector, mu: f64) -> Self {
         let entry = |i: usize, j: usize| mu * (q[i] * h[0][j] - q[0] * h[i][j]);
         let a = [[entry(1, 1), entry(1, 2)], [entry(2, 1), entry(2, 2)]];
         let g = [h[0][0] * q[1] - q[0] * h[1][0], h[0][0] * q[2] - q[0] * h[2][0]];
@@ -119,11 +113,41 @@ impl Slide {
         }
     }
 
-    /// The root next to `start`, where the determinant stays positive.
+    /// The impulse one Newton step from `slip`, which takes the step too; or, where that is too far, some steps from it.
     #[inline(always)]
-    fn newton(&self, start: f64, nearly: f64) -> Option<f64> {
+    fn follow<const D: usize>(&self, h: &Matrix<D>, q: &Vector, mu: f64, slip: &mut f64) -> Option<Vector> {
+        let lambda = *slip;
+        let v = [self.back[0] + lambda * self.g[0], self.back[1] + lambda * self.g[1]];
+        let determinant = (lambda + self.trace) * lambda + self.determinant;
+        let slope = 2.0 * lambda + self.trace;
+        let square_of_det = determinant * determinant;
+        let half_miss = 0.5 * (square_of_det - (v[0] * v[0] + v[1] * v[1]));
+        if half_miss.abs() <= WARM * square_of_det {
+            // As `newton` and then `impulse`, the step's denominator multiplied through: one division less to wait for.
+            let denominator = slope * determinant - (v[0] * self.g[0] + v[1] * self.g[1]);
+            let v = [v[0] * denominator - half_miss * self.g[0], v[1] * denominator - half_miss * self.g[1]];
+            let determinant = determinant * denominator - half_miss * slope;
+            let size = -q[0] / (h[0][0] * determinant - mu * (h[0][1] * v[0] + h[0][2] * v[1]));
+            let p = [size * determinant, -mu * size * v[0], -mu * size * v[1]];
+            *slip = lambda - half_miss / denominator;
+            if *slip > 0.0 && p[0] > 0.0 && p[0] < f64::INFINITY {
+                return Some(p);
+            }
+        }
+        self.pursue(h, q, mu, lambda, slip)
+    }
+
+    #[inline(never)]
+    fn pursue<const D: usize>(&self, h: &Matrix<D>, q: &Vector, mu: f64, from: f64, slip: &mut f64) -> Option<Vector> {
+        *slip = self.newton(from, NEARLY, STEPS).filter(|&lambda| lambda > 0.0)?;
+        self.impulse(h, q, mu, *slip)
+    }
+
+    /// The root that Newton's method finds from `start`, or 0 where it would be negative: the contact sticks.
+    #[inline]
+    fn newton(&self, start: f64, nearly: f64, steps: u32) -> Option<f64> {
         let mut lambda = start;
-        for _ in 0..STEPS {
+        for _ in 0..steps {
             let v = [self.back[0] + lambda * self.g[0], self.back[1] + lambda * self.g[1]];
             let square = v[0] * v[0] + v[1] * v[1];
             let half_slope = v[0] * self.g[0] + v[1] * self.g[1];
@@ -133,12 +157,8 @@ impl Slide {
             let square_of_det = determinant * determinant;
             let miss = square_of_det - square;
             let step = 0.5 * miss / (slope * determinant - half_slope);
-            let next = lambda - step;
-            if !(determinant > 0.0 && next.is_finite()) {
-                return None;
-            }
-            // Beyond zero lies sticking: one more try from there, unless it is rounding on the border.
-            lambda = next.max(0.0);
+            // A NaN ends up at 0, and there at its end.
+            lambda = (lambda - step).max(0.0);
             if miss.abs() <= nearly * square_of_det {
                 return Some(lambda);
             }
@@ -146,20 +166,25 @@ impl Slide {
         None
     }
 
-    /// The root next to where it would be if A were half its trace.
-    fn from_afar(&self) -> Option<f64> {
-        let size = (self.g[0] * self.g[0] + self.g[1] * self.g[1]).sqrt();
-        self.newton((size - 0.5 * self.trace).max(0.0), NEARLY)
+    /// The root next to where it would be if A were half its trace times the identity; or else the largest one, from above.
+    fn from_afar(&self, nearly: f64) -> [Option<f64>; 2] {
+        let size = |x: &[f64; 2]| (x[0] * x[0] + x[1] * x[1]).sqrt();
+        let g = size(&self.g);
+        let near = self.newton((g - 0.5 * self.trace).max(0.0), nearly, STEPS);
+        // ‖(A + λI) d‖ = ‖g‖ bounds λ.
+        let above = || self.newton(g + size(&self.a[0]) + size(&self.a[1]), nearly, 4 * STEPS);
+        [near, if near.is_none_or(|lambda| lambda == 0.0) { above() } else { None }]
     }
 
-    /// The impulse for a root. There ‖v‖ = det, so d = v/det; with det multiplied through, one division is left.
-    #[inline(always)]
-    fn impulse(&self, h: &Matrix, q: &Vector, mu: f64, lambda: f64) -> Option<Vector> {
+    /// The impulse for a root, where it presses. There ‖v‖ = |det|, so d = v/det; with det multiplied through, one division
+    /// is left.
+    #[inline]
+    fn impulse<const D: usize>(&self, h: &Matrix<D>, q: &Vector, mu: f64, lambda: f64) -> Option<Vector> {
         let v = [self.back[0] + lambda * self.g[0], self.back[1] + lambda * self.g[1]];
         let determinant = (lambda + self.trace) * lambda + self.determinant;
         let size = -q[0] / (h[0][0] * determinant - mu * (h[0][1] * v[0] + h[0][2] * v[1]));
         let p = [size * determinant, -mu * size * v[0], -mu * size * v[1]];
-        (size > 0.0 && p[0] < f64::INFINITY && p[1].is_finite() && p[2].is_finite()).then_some(p)
+        (p[0] > 0.0 && p[0] < f64::INFINITY && p[1].is_finite() && p[2].is_finite()).then_some(p)
     }
 
     /// The direction for a root.
@@ -173,7 +198,7 @@ impl Slide {
 
 /// The impulse at the border of the cone against direction `d`, where it presses.
 #[inline]
-fn slide(h: &Matrix, q: &Vector, mu: f64, d: &[f64; 2]) -> Option<Vector> {
+fn slide<const D: usize>(h: &Matrix<D>, q: &Vector, mu: f64, d: &[f64; 2]) -> Option<Vector> {
     let w = h[0][0] - mu * (h[0][1] * d[0] + h[0][2] * d[1]);
     let p_n = -q[0] / w;
     (w > 0.0 && p_n.is_finite()).then(|| [p_n, -mu * p_n * d[0], -mu * p_n * d[1]])
@@ -182,12 +207,18 @@ fn slide(h: &Matrix, q: &Vector, mu: f64, d: &[f64; 2]) -> Option<Vector> {
 /// The state that fits: the last visit's if it still does, else sticking, else the slide that Newton's method finds from
 /// afar. `slip` is λ of the last visit, 0 for a contact that stuck. `None` if nothing fits, or Newton's method fails.
 #[inline(always)]
-pub(crate) fn usual(h: &Matrix, inverse: &Matrix, q: &Vector, mu: f64, refine: bool, slip: &mut f64) -> Option<Vector> {
+pub(crate) fn usual<const D: usize>(
+    h: &Matrix<D>,
+    inverse: &Matrix<D>,
+    q: &Vector,
+    mu: f64,
+    refine: bool,
+    slip: &mut f64,
+) -> Option<Vector> {
     if *slip > 0.0 {
         let equation = Slide::new(h, q, mu);
-        if let Some(lambda) = equation.newton(*slip, WARM).filter(|&lambda| lambda > 0.0) {
-            *slip = lambda;
-            return equation.impulse(h, q, mu, lambda);
+        if let Some(p) = equation.follow(h, q, mu, slip) {
+            return Some(p);
         }
     }
     if let Some(p) = stick(h, inverse, q, mu, refine) {
@@ -199,15 +230,20 @@ pub(crate) fn usual(h: &Matrix, inverse: &Matrix, q: &Vector, mu: f64, refine: b
 
 /// The slide of a contact that stuck or was open before.
 #[inline(never)]
-fn begin_to_slide(h: &Matrix, q: &Vector, mu: f64, slip: &mut f64) -> Option<Vector> {
+fn begin_to_slide<const D: usize>(h: &Matrix<D>, q: &Vector, mu: f64, slip: &mut f64) -> Option<Vector> {
     let equation = Slide::new(h, q, mu);
-    *slip = equation.from_afar()?;
-    equation.impulse(h, q, mu, *slip)
+    for lambda in equation.from_afar(NEARLY).into_iter().flatten() {
+        if let Some(p) = equation.impulse(h, q, mu, lambda) {
+            *slip = lambda;
+            return Some(p);
+        }
+    }
+    None
 }
 
 /// The smallest impulse of all states that fit a contact with `q_N < 0`, μ > 0.
 #[cold]
-pub(crate) fn smallest(h: &Matrix, inverse: &Matrix, q: &Vector, mu: f64) -> Option<Vector> {
+pub(crate) fn smallest<const D: usize>(h: &Matrix<D>, inverse: &Matrix<D>, q: &Vector, mu: f64) -> Option<Vector> {
     let mut best: Option<(f64, Vector)> = None;
     let mut offer = |p: Vector| {
         let norm = dot(&p, &p);
@@ -239,7 +275,7 @@ pub(crate) fn smallest(h: &Matrix, inverse: &Matrix, q: &Vector, mu: f64) -> Opt
     candidates.push(0.0);
     for &root in candidates.as_slice() {
         // Both signs of the determinant: the quartic is an equation of squares.
-        for root in [equation.newton(root * unit, NEARLY), Some(root * unit)].into_iter().flatten() {
+        for root in [equation.newton(root * unit, NEARLY, STEPS), Some(root * unit)].into_iter().flatten() {
             let d = equation.direction(root);
             for d in [d, [-d[0], -d[1]]] {
                 if let Some(p) = slide(h, q, mu, &d).filter(|p| slides(h, q, p, &d)) {
@@ -252,7 +288,7 @@ pub(crate) fn smallest(h: &Matrix, inverse: &Matrix, q: &Vector, mu: f64) -> Opt
 }
 
 /// Whether the velocity lies along `d`.
-fn slides(h: &Matrix, q: &Vector, p: &Vector, d: &[f64; 2]) -> bool {
+fn slides<const D: usize>(h: &Matrix<D>, q: &Vector, p: &Vector, d: &[f64; 2]) -> bool {
     let u = [dot(&h[1], p) + q[1], dot(&h[2], p) + q[2]];
     let size = |i: usize| (0..3).map(|j| (h[i][j] * p[j]).abs()).fold(q[i].abs(), f64::max);
     let slack = MISS * size(1).max(size(2));
@@ -335,12 +371,12 @@ fn bisect(c: &[f64], mut low: f64, mut high: f64) -> Option<f64> {
 mod tests {
     use super::*;
 
-    fn solve(h: Matrix, q: Vector, mu: f64) -> [Option<Vector>; 2] {
+    fn solve(h: Matrix<3>, q: Vector, mu: f64) -> [Option<Vector>; 2] {
         let inverse = inverse(&h, 1e-12).unwrap();
         [usual(&h, &inverse, &q, mu, true, &mut 0.0), smallest(&h, &inverse, &q, mu)]
     }
 
-    fn assert_obeys(h: &Matrix, q: &Vector, mu: f64, p: &Vector, slack: f64) {
+    fn assert_obeys(h: &Matrix<3>, q: &Vector, mu: f64, p: &Vector, slack: f64) {
         let u = [0, 1, 2].map(|i| dot(&h[i], p) + q[i]);
         let (speed, impulse) = (dot(q, q).sqrt(), dot(p, p).sqrt());
         assert!(u[0].abs() <= slack * speed && p[0] > 0.0, "u {u:?} p {p:?}");

@@ -113,7 +113,7 @@ impl<const D: usize> Pgs<D> {
 
     fn judged(&mut self, problem: &ContactProblem<'_, D>, p: &mut [Vector<D>], rows: &impl Others<D>) -> Residual {
         for (i, (u, local)) in self.velocities.iter_mut().zip(&self.locals).enumerate() {
-            *u = problem.q()[i] + local.block() * p[i] + rows.product(i, p);
+            *u = problem.q()[i] + local.velocity(&p[i]) + rows.product(i, p);
         }
         judge_velocities(problem, p, &self.velocities)
     }

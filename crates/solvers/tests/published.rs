@@ -7,7 +7,7 @@ use std::path::Path;
 use teeter_contact::conformance::check_law;
 use teeter_contact::{BlockSparse, ContactProblem, ContactSolver, Delassus, Stop, Vector, judge};
 use teeter_fclib::FclibProblem;
-use teeter_solvers::{Apgd, ViEg};
+use teeter_solvers::{Apgd, ViEg, plane_solver, space_solver};
 
 thread_local! {
     // Per thread, so that tests beside this one don't count; const, so that the counter itself allocates nothing.
@@ -183,5 +183,61 @@ fn a_solver_kept_over_steps_allocates_nothing() {
         let outcome = solver.solve(&problem, &stop, &mut p);
         assert_eq!(ALLOCATIONS.with(Cell::get) - before, 0, "{}", solver.name());
         assert!(outcome.converged() && outcome.iterations > 5);
+    }
+}
+
+/// The problems that any of Siconos' solvers solves to a tolerance, by the results that lie with them.
+fn solved_by_siconos(tolerance: &str) -> Vec<String> {
+    let table = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/problems/siconos_baseline.csv");
+    let Ok(text) = std::fs::read_to_string(&table) else {
+        eprintln!("skipped: {} isn't there", table.display());
+        return Vec::new();
+    };
+    let mut lines = text.lines();
+    let header: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
+    let at = |name: &str| header.iter().position(|column| *column == name).unwrap();
+    let (file, of, solved) = (at("file"), at("tolerance"), at("solved"));
+    let rows = lines.map(|line| line.split(',').collect::<Vec<_>>());
+    let mut names: Vec<String> =
+        rows.filter(|row| row[of] == tolerance && row[solved] == "1").map(|row| row[file].to_owned()).collect();
+    names.sort();
+    names.dedup();
+    names
+}
+
+/// With the default iterations, and with the law checked contact by contact on what is solved tightly.
+#[test]
+fn auto_solves_what_any_siconos_solver_solves() {
+    let (mut plane, mut space) = (plane_solver("auto").unwrap(), space_solver("auto").unwrap());
+    for (written, tolerance) in [("1e-04", 1e-4), ("1e-08", 1e-8), ("1e-12", 1e-12)] {
+        for name in solved_by_siconos(written) {
+            let stop = Stop { tolerance, ..Stop::default() };
+            let outcome = match read(&name) {
+                Some(FclibProblem::Plane(local)) => {
+                    let mut p = vec![Vector::zeros(); local.q.len()];
+                    plane.solve(&local.problem().unwrap(), &stop, &mut p)
+                }
+                Some(FclibProblem::Space(local)) => {
+                    let mut p = vec![Vector::zeros(); local.q.len()];
+                    space.solve(&local.problem().unwrap(), &stop, &mut p)
+                }
+                _ => continue,
+            };
+            assert!(outcome.converged(), "{name} at {written}: {outcome:?}");
+        }
+    }
+}
+
+/// Nobody is known to have solved these as tightly.
+#[test]
+fn auto_solves_some_that_none_of_siconos_solvers_does() {
+    let mut plane = plane_solver("auto").unwrap();
+    let mut space = space_solver("auto").unwrap();
+    for (name, tolerance) in [
+        ("2d/fc2d_granularflowonwall_02020_00213.hdf5", 1e-12),
+        ("3d/RockPile_tob1.hdf5", 1e-8),
+        ("3d/spheres-in-a-box-98-i10000-256-10.hdf5", 1e-12),
+    ] {
+        solve_all(plane.as_mut(), space.as_mut(), tolerance, &[name]);
     }
 }
