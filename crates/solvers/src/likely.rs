@@ -88,8 +88,9 @@ fn check(table: &Table, states: &mut [State; MAX_CONTACTS], p: &Impulses) -> Che
     let mut velocities = [Vector2::zeros(); MAX_CONTACTS];
     let (mut changed, mut tight) = (false, false);
     for i in 0..n {
-        let mut u = table.q[i];
-        let mut size = u.abs();
+        // In the order of `ContactProblem::velocity`, so that the judge finds the same to the last bit.
+        let mut u = Vector2::zeros();
+        let mut size = table.q[i].abs();
         for j in 0..n {
             let (h, p) = (&table.h[i][j], &p[j]);
             for a in 0..2 {
@@ -98,6 +99,7 @@ fn check(table: &Table, states: &mut [State; MAX_CONTACTS], p: &Impulses) -> Che
                 size[a] += x.abs() + y.abs();
             }
         }
+        u += table.q[i];
         velocities[i] = u;
         let (mu, state) = (table.mu[i], states[i]);
         if state == State::Open {
@@ -115,11 +117,9 @@ fn check(table: &Table, states: &mut [State; MAX_CONTACTS], p: &Impulses) -> Che
             continue;
         }
         match state {
-            State::Slide(sigma) if mu > 0.0 => {
-                // Held by another contact of the same body, it doesn't slide, but for rounding.
-                if sigma * u[1] < ROOM * (size[0] + size[1]) {
-                    (states[i], changed) = (State::Stick, true);
-                }
+            // Held by another contact of the same body, it doesn't slide, but for rounding.
+            State::Slide(sigma) if mu > 0.0 && sigma * u[1] < ROOM * (size[0] + size[1]) => {
+                (states[i], changed) = (State::Stick, true);
             }
             State::Stick => {
                 let room = mu * p[i][0] - p[i][1].abs();
@@ -218,36 +218,77 @@ fn solve<const M: usize>(table: &Table, rows: &[(usize, usize); MAX], tangent: &
             b[r] -= factor * b[k];
         }
     }
-    let mut x = [0.0; M];
-    for k in (0..M).rev() {
-        let sum = (k + 1..M).fold(b[k], |sum, c| sum - a[k][c] * x[c]);
-        x[k] = sum * inverse[k];
-    }
-    // Out of it what lies in the null space.
-    if inverse.contains(&0.0) {
-        let weight: [f64; M] = std::array::from_fn(|k| 1.0 + tangent[k] * tangent[k]);
-        let inner = |x: &[f64; M], y: &[f64; M]| (0..M).fold(0.0, |sum, k| sum + weight[k] * x[k] * y[k]);
-        let mut basis = [([0.0; M], 0.0); M];
-        let mut count = 0;
-        for free in (0..M).filter(|&k| inverse[k] == 0.0) {
-            let mut null = [0.0; M];
-            null[free] = 1.0;
-            for k in (0..free).rev() {
-                let sum = (k + 1..=free).fold(0.0, |sum, c| sum + a[k][c] * null[c]);
-                null[k] = -sum * inverse[k];
+    let free = inverse.iter().filter(|&&inverse| inverse == 0.0).count();
+    let x = match free {
+        0 => {
+            let mut x = [0.0; M];
+            for k in (0..M).rev() {
+                let sum = (k + 1..M).fold(b[k], |sum, c| sum - a[k][c] * x[c]);
+                x[k] = sum * inverse[k];
             }
-            for (earlier, reciprocal) in &basis[..count] {
-                let along = inner(&null, earlier) * reciprocal;
-                (0..M).for_each(|k| null[k] -= along * earlier[k]);
-            }
-            let reciprocal = inner(&null, &null).recip();
-            let along = inner(&x, &null) * reciprocal;
-            (0..M).for_each(|k| x[k] -= along * null[k]);
-            basis[count] = (null, reciprocal);
-            count += 1;
+            x
         }
-    }
+        1 => nearest_to_zero::<M, 2>(&a, &b, &inverse, tangent),
+        2 => nearest_to_zero::<M, 3>(&a, &b, &inverse, tangent),
+        3 => nearest_to_zero::<M, 4>(&a, &b, &inverse, tangent),
+        _ => return None,
+    };
     let mut solution = [0.0; MAX];
     solution[..M].copy_from_slice(&x);
     x.iter().all(|x| x.is_finite()).then_some(solution)
+}
+
+/// The solution of least norm of a triangular system with `L` − 1 free unknowns (those without an inverse of their pivot).
+#[inline]
+fn nearest_to_zero<const M: usize, const L: usize>(
+    a: &[[f64; M]; M],
+    b: &[f64; M],
+    inverse: &[f64; M],
+    tangent: &[f64; MAX],
+) -> [f64; M] {
+    // Side by side the solution with the free unknowns at zero, and for each of them a vector of the null space.
+    let mut x = [[0.0; L]; M];
+    let mut lane = L - 1;
+    for k in (0..M).rev() {
+        if inverse[k] == 0.0 {
+            x[k][lane] = 1.0;
+            lane = lane.saturating_sub(1);
+            continue;
+        }
+        let mut sum = [0.0; L];
+        sum[0] = b[k];
+        for c in k + 1..M {
+            for l in 0..L {
+                sum[l] -= a[k][c] * x[c][l];
+            }
+        }
+        x[k] = sum.map(|sum| sum * inverse[k]);
+    }
+    // The normal equations of the least norm, where x counts as long as what it stands for: (1, −σμ) has its length.
+    let mut g = [[0.0; L]; L];
+    for k in 0..M {
+        let weight = 1.0 + tangent[k] * tangent[k];
+        for r in 1..L {
+            for c in 0..L {
+                g[r][c] += weight * x[k][r] * x[k][c];
+            }
+        }
+    }
+    let mut reciprocal = [0.0; L];
+    for k in 1..L {
+        reciprocal[k] = g[k][k].recip();
+        for r in k + 1..L {
+            let factor = g[r][k] * reciprocal[k];
+            for c in 0..L {
+                g[r][c] -= factor * g[k][c];
+            }
+        }
+    }
+    let mut along = [0.0; L];
+    along[0] = 1.0;
+    for k in (1..L).rev() {
+        let sum = (k + 1..L).fold(g[k][0], |sum, c| sum + g[k][c] * along[c]);
+        along[k] = -sum * reciprocal[k];
+    }
+    std::array::from_fn(|k| (0..L).fold(0.0, |sum, l| sum + along[l] * x[k][l]))
 }

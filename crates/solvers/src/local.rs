@@ -74,12 +74,12 @@ impl<const D: usize> Local<D> {
                 local.kind = Kind::Regular;
             }
         }
-        if D == 3 {
-            if let Some(inverse) = space::inverse(&local.h, RANK_TOLERANCE) {
-                local.inverse = inverse;
-                local.refine = mu > MUCH || space::inverse(&local.h, WELL_CONDITIONED).is_none();
-                local.kind = Kind::Regular;
-            }
+        if D == 3
+            && let Some(inverse) = space::inverse(&local.h, RANK_TOLERANCE)
+        {
+            local.inverse = inverse;
+            local.refine = mu > MUCH || space::inverse(&local.h, WELL_CONDITIONED).is_none();
+            local.kind = Kind::Regular;
         }
         local
     }

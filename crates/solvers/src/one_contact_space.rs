@@ -167,7 +167,7 @@ impl Slide {
     }
 
     /// The root next to where it would be if A were half its trace times the identity; or else the largest one, from above.
-    fn from_afar(&self, nearly: f64) -> [Option<f64>; 2] {
+    fn find_afar(&self, nearly: f64) -> [Option<f64>; 2] {
         let size = |x: &[f64; 2]| (x[0] * x[0] + x[1] * x[1]).sqrt();
         let g = size(&self.g);
         let near = self.newton((g - 0.5 * self.trace).max(0.0), nearly, STEPS);
@@ -232,7 +232,7 @@ pub(crate) fn usual<const D: usize>(
 #[inline(never)]
 fn begin_to_slide<const D: usize>(h: &Matrix<D>, q: &Vector, mu: f64, slip: &mut f64) -> Option<Vector> {
     let equation = Slide::new(h, q, mu);
-    for lambda in equation.from_afar(NEARLY).into_iter().flatten() {
+    for lambda in equation.find_afar(NEARLY).into_iter().flatten() {
         if let Some(p) = equation.impulse(h, q, mu, lambda) {
             *slip = lambda;
             return Some(p);
@@ -251,10 +251,9 @@ pub(crate) fn smallest<const D: usize>(h: &Matrix<D>, inverse: &Matrix<D>, q: &V
             best = Some((norm, p));
         }
     };
-    if inverse[0][0] != 0.0 || inverse[1][1] != 0.0 {
-        if let Some(p) = stick(h, inverse, q, mu, true) {
-            offer(p);
-        }
+    let regular = inverse[0][0] != 0.0 || inverse[1][1] != 0.0;
+    if let Some(p) = stick(h, inverse, q, mu, true).filter(|_| regular) {
+        offer(p);
     }
     let equation = Slide::new(h, q, mu);
     // ‖(A + λI) d‖ = ‖g‖ bounds λ; all in its unit, so that the coefficients are of size 1.

@@ -38,7 +38,10 @@ impl Drawn {
     }
 }
 
-fn drawn(columns: std::ops::RangeInclusive<usize>, mu: impl Strategy<Value = f64> + Clone) -> impl Strategy<Value = Drawn> {
+fn drawn(
+    columns: std::ops::RangeInclusive<usize>,
+    mu: impl Strategy<Value = f64> + Clone,
+) -> impl Strategy<Value = Drawn> {
     (1usize..=6, columns).prop_flat_map(move |(contacts, columns)| {
         (
             prop::collection::vec(-1.0..1.0f64, 3 * contacts * columns),
@@ -60,7 +63,11 @@ fn solvers<const D: usize>() -> Vec<(Law, Box<dyn ContactSolver<D>>)> {
     SOLVERS.iter().filter_map(|info| Some((info.law, made(info.name)?))).collect()
 }
 
-fn solve<const D: usize>(solver: &mut dyn ContactSolver<D>, case: &Case<D>, tolerance: f64) -> (Outcome, Vec<Vector<D>>) {
+fn solve<const D: usize>(
+    solver: &mut dyn ContactSolver<D>,
+    case: &Case<D>,
+    tolerance: f64,
+) -> (Outcome, Vec<Vector<D>>) {
     let mut p = vec![Vector::zeros(); case.q.len()];
     let stop = Stop { tolerance, max_iterations: 3000, ..Stop::default() };
     let outcome = solver.solve(&case.problem().unwrap(), &stop, &mut p);
@@ -75,7 +82,8 @@ fn violation<const D: usize>(case: &Case<D>, p: &[Vector<D>]) -> f64 {
     let tangential = |x: &Vector<D>| x.iter().skip(1).map(|c| c * c).sum::<f64>().sqrt();
     let mean = (0..n).map(|i| case.h[i * n + i].trace()).sum::<f64>() / (D * n) as f64;
     let norm = |x: &mut dyn Iterator<Item = f64>| x.map(|c| c * c).sum::<f64>().sqrt();
-    let speed = norm(&mut case.q.iter().map(Vector::norm)).max(mean * norm(&mut p.iter().map(Vector::norm))).max(1e-300);
+    let speed =
+        norm(&mut case.q.iter().map(Vector::norm)).max(mean * norm(&mut p.iter().map(Vector::norm))).max(1e-300);
     let mut worst = 0.0f64;
     for i in 0..n {
         let (u, mu) = (velocity(i) / speed, case.mu[i]);
