@@ -16,6 +16,15 @@
 //! which is exact Signorini–Coulomb (De Saxcé and Feng 1998, doi 10.1016/S0895-7177(98)00119-8). Every solution,
 //! whoever found it, is judged by the same scaled natural-map residual: see [`judge()`].
 //!
+//! # Shapes
+//!
+//! A [`Delassus`] operator is dense by blocks, block-sparse ([`BlockSparse`]), or only a product ([`DelassusOperator`]); a problem borrows it.
+//! A solver that wants the blocks, whatever the shape, takes them by [`BlockSparse::gather`] into memory that it keeps. H may be
+//! singular, as with two corners of one body, and asymmetric: [`ContactProblem::asymmetry`] reports it, nothing refuses it.
+//!
+//! A solver implements [`ContactSolver`]. Iterative ones that have the velocities at hand ask [`judge_velocities`], which
+//! spares a product with H. The feature `conformance` brings a harness that any solver can be run through.
+//!
 //! # Example
 //!
 //! A contact that is pressed and pushed sideways, harder than friction can hold:

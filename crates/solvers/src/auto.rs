@@ -1,7 +1,7 @@
 //! The choice for those who don't want to choose.
 //!
 //! Contacts that don't feel each other (blocks that stand apart on the ground) are problems of their own: a dense problem is
-//! split along the zero blocks of H. Up to three plane contacts are enumerated; the rest goes along a [chain](crate::chain)
+//! split along the zero blocks of H. Up to three plane contacts are enumerated; the rest goes along a chain (`chain.rs`)
 //! of methods until the judge is satisfied.
 
 use crate::Enumeration;

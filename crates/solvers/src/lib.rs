@@ -1,11 +1,35 @@
 //! Solvers for the frictional contact problems of [`teeter_contact`]: one file each, one trait for all.
 //!
-//! | name | solves | take it when |
-//! |---|---|---|
-//! | [`Enumeration`] | 2D, up to three contacts, exactly | always, where it fits |
-//! | [`Pgs`] | 2D and 3D, any number of contacts | there are more than three contacts, and 1e-4 or so is enough or they couple weakly |
-//! | [`Lemke`] | 2D, up to 1000 contacts, by pivoting | some tens of contacts in the plane on which pgs crawls |
-//! | [`Auto`] | 2D | you don't want to choose: contacts that couple are enumerated up to three, else (or if that fails) pgs |
+//! Take [`Auto`]. It goes from cheap methods to robust ones until the judge is satisfied, and says which one did it. The
+//! others are for who knows their problems, or compares; each one's page says what it costs and how it fails.
+//!
+//! | name | dim. | law | how | take it when |
+//! |---|---|---|---|---|
+//! | [`Auto`] | 2D, 3D | exact | a chain of the others | you don't want to choose |
+//! | [`Enumeration`] | 2D | exact | all contact states, up to three contacts | always, where it fits |
+//! | [`Pgs`] | 2D, 3D | exact | Gauss–Seidel over contacts | 1e-4 or so is enough, or contacts couple weakly |
+//! | [`Newton`] | 2D, 3D | exact | semi-smooth Newton, sparse LU | the start is good, or pgs crawls |
+//! | [`Smoothing`] | 2D, 3D | exact | Newton along the central path | it is degenerate: packings, hyperstatic contacts by the hundred |
+//! | [`Prox`] | 2D, 3D | exact | proximal point around Newton | H is singular and Newton fails |
+//! | [`Admm`] | 2D, 3D | exact | alternating directions, one Cholesky factorisation | walls, towers, stacks of up to some thousand contacts |
+//! | [`Lemke`] | 2D | exact | pivoting, up to 1000 contacts | some tens of contacts in the plane on which pgs crawls |
+//! | [`AcaryCadoux`] | 2D, 3D | exact | a fixed point over cone programs | robustness counts more than time |
+//! | [`ViEg`] | 2D, 3D | exact | projections with an adaptive step | 1e-4 on many contacts with nothing factorised |
+//! | [`Apgd`] | 2D, 3D | exact | accelerated projected gradients | the same, for loose packings |
+//! | [`Socp`] | 2D, 3D | **convex** | one cone program | you compare with programs that use that law |
+//!
+//! The convex law isn't Coulomb's: a sliding contact separates at μ‖u_T‖ ([`Law`](teeter_contact::Law)). [`SOLVERS`] lists them all with their papers;
+//! [`plane_solver`] and [`space_solver`] make one by its name.
+//!
+//! # Features
+//!
+//! - `sparse` (default): faer. Brings [`Admm`], and the fill-reducing order for the factorisations of [`Newton`], [`Smoothing`], [`Prox`] and
+//!   [`Auto`], which work without it, but slowly on large problems.
+//! - `clarabel` (default): Clarabel. Brings [`Socp`] and [`AcaryCadoux`].
+//!
+//! Without both the crate needs nalgebra only.
+//!
+//! # Example
 //!
 //! ```
 //! use nalgebra::{Matrix2, Vector2};

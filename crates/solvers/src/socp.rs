@@ -13,7 +13,7 @@
 //! **Cost**: a KKT factorisation an interior-point iteration, 10 to 15 of them; `iterations` counts these solves and the
 //! gradients of the polish. Clarabel is set up anew for each problem and allocates in its solve: this solver is the exception
 //! to "kept over steps it allocates nothing".
-//! **Fails**: the interior point reaches some 1e-8 in 3D; accelerated gradients ([`Apgd`](crate::Apgd) with the shift
+//! **Fails**: the interior point reaches some 1e-8 in 3D; accelerated gradients ([`Apgd`] with the shift
 //! held at 0) polish from there, and may run out of iterations on badly conditioned problems. A skew part of H belongs to no
 //! objective: it lags (three programs at most) and the polish settles the rest, if it is small.
 
