@@ -1,34 +1,10 @@
 //! A solver that is kept allocates nothing for problems no larger than those before, or than what was reserved: proved by
 //! a counting allocator.
-#![allow(unsafe_code, clippy::unwrap_used)]
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+use crate::allocations::so_far;
 use teeter_contact::conformance::{Case, body_on_floor, box_on_floor, plane_cases, space_cases};
 use teeter_contact::{ContactSolver, Stop, Vector};
 use teeter_solvers::{Enumeration, Lemke, Pgs};
-
-thread_local! {
-    // Per thread, so that tests beside this one don't count; const, so that the counter itself allocates nothing.
-    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
-}
-
-struct Counting;
-
-// SAFETY: hands everything to the system's allocator; counting touches no memory of its.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        ALLOCATIONS.with(|count| count.set(count.get() + 1));
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 fn allocations<const D: usize>(solver: &mut dyn ContactSolver<D>, cases: &[Case<D>]) -> u64 {
     let mut p: Vec<Vector<D>> = Vec::with_capacity(64);
@@ -37,9 +13,9 @@ fn allocations<const D: usize>(solver: &mut dyn ContactSolver<D>, cases: &[Case<
         let problem = case.problem().unwrap();
         p.clear();
         p.resize(case.q.len(), Vector::zeros());
-        let before = ALLOCATIONS.with(Cell::get);
+        let before = so_far();
         solver.solve(&problem, &Stop::default(), &mut p);
-        count += ALLOCATIONS.with(Cell::get) - before;
+        count += so_far() - before;
     }
     count
 }
@@ -53,9 +29,9 @@ fn many_feet() -> Vec<Case<2>> {
 
 #[test]
 fn the_counter_counts() {
-    let before = ALLOCATIONS.with(Cell::get);
+    let before = so_far();
     drop(std::hint::black_box(Box::new(1)));
-    assert_eq!(ALLOCATIONS.with(Cell::get), before + 1);
+    assert_eq!(so_far(), before + 1);
     assert!(allocations(&mut Pgs::<2>::new(), &many_feet()) > 0, "from nothing, memory has to come from somewhere");
 }
 

@@ -1,6 +1,5 @@
 //! Random problems of several contacts, in the plane and in space: the law contact by contact, units, order, solvers that
 //! agree, starts that are no numbers.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use proptest::prelude::*;
 use teeter_contact::conformance::{Case, check_law};

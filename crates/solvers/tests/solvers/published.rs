@@ -1,35 +1,11 @@
 //! The projection, splitting and cone-program solvers on published problems; skipped where those aren't at hand.
-#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr, unsafe_code)]
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+use crate::allocations::so_far;
 use std::path::Path;
 use teeter_contact::conformance::check_law;
 use teeter_contact::{BlockSparse, ContactProblem, ContactSolver, Delassus, Stop, Vector, judge};
 use teeter_fclib::FclibProblem;
 use teeter_solvers::{Apgd, ViEg, plane_solver, space_solver};
-
-thread_local! {
-    // Per thread, so that tests beside this one don't count; const, so that the counter itself allocates nothing.
-    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
-}
-
-struct Counting;
-
-// SAFETY: hands everything to the system's allocator; counting touches no memory of its.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        ALLOCATIONS.with(|count| count.set(count.get() + 1));
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 /// The problems that lie beside the repository, if they do.
 fn read(name: &str) -> Option<FclibProblem> {
@@ -179,9 +155,9 @@ fn a_solver_kept_over_steps_allocates_nothing() {
         let mut p = vec![Vector::<3>::zeros(); problem.contacts()];
         assert!(solver.solve(&problem, &stop, &mut p).converged());
         p.fill(Vector::zeros());
-        let before = ALLOCATIONS.with(Cell::get);
+        let before = so_far();
         let outcome = solver.solve(&problem, &stop, &mut p);
-        assert_eq!(ALLOCATIONS.with(Cell::get) - before, 0, "{}", solver.name());
+        assert_eq!(so_far() - before, 0, "{}", solver.name());
         assert!(outcome.converged() && outcome.iterations > 5);
     }
 }

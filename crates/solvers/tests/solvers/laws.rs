@@ -1,6 +1,5 @@
 //! Random problems through every solver of the catalogue: the law contact by contact, a change of units, the order of
 //! contacts, and two solvers against each other.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use nalgebra::DMatrix;
 use proptest::prelude::*;

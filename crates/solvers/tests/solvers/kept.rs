@@ -1,33 +1,9 @@
 //! A solver that is kept over steps allocates nothing for a problem of a size that it has met.
-#![allow(clippy::unwrap_used, clippy::panic, unsafe_code)]
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+use crate::allocations::so_far;
 use teeter_contact::conformance::{Case, body_on_floor, box_on_floor};
 use teeter_contact::{ContactSolver, Stop, Vector};
 use teeter_solvers::{SOLVERS, plane_solver, space_solver};
-
-thread_local! {
-    // Per thread, so that tests beside this one don't count; const, so that the counter itself allocates nothing.
-    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
-}
-
-struct Counting;
-
-// SAFETY: hands everything to the system's allocator; counting touches no memory of its.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        ALLOCATIONS.with(|count| count.set(count.get() + 1));
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 /// Clarabel builds its own problem at each update: the exception that those solvers' pages name.
 const ALLOCATING: [&str; 2] = ["socp", "acary-cadoux"];
@@ -52,10 +28,10 @@ fn allocations<const D: usize>(solver: &mut dyn ContactSolver<D>, cases: &[Case<
         let problem = case.problem().unwrap();
         let p = &mut p[..case.q.len()];
         p.fill(Vector::zeros());
-        let before = ALLOCATIONS.with(Cell::get);
+        let before = so_far();
         solver.solve(&problem, &Stop { tolerance: 1e-9, max_iterations: 2000, ..Stop::default() }, p);
         if k > 0 {
-            count += ALLOCATIONS.with(Cell::get) - before;
+            count += so_far() - before;
         }
     }
     count

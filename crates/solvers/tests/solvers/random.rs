@@ -1,5 +1,4 @@
 //! Random plane problems: the law contact by contact, two solvers that agree, independence of order.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use nalgebra::{Matrix2, Vector2};
 use proptest::prelude::*;
