@@ -29,7 +29,7 @@ pub const SOLVERS: &[SolverInfo] = &[
         name: Auto::<2>::NAME,
         dimensions: &[2, 3],
         law: Law::Exact,
-        summary: "chooses: enumeration for few plane contacts, else pgs, newton, smoothing, prox until one succeeds",
+        summary: "chooses: enumeration for few plane contacts, else pgs, admm, newton, smoothing, prox until one succeeds",
         reference: "",
     },
     SolverInfo {

@@ -37,8 +37,11 @@ const SWEEP_BLOCK: f64 = 0.4;
 const SWEEP_CONTACT: f64 = 5.0;
 
 /// From so many contacts with so many blocks a row on, alternating directions come before Newton; and their iterations.
+#[cfg(feature = "sparse")]
 const MANY: usize = 64;
+#[cfg(feature = "sparse")]
 const LONG_ROW: usize = 16;
+#[cfg(feature = "sparse")]
 const DIRECTIONS: u32 = 300;
 
 #[derive(Debug, Default)]
