@@ -146,7 +146,10 @@ prop_compose! {
             let (i, j) = (k / contacts, k % contacts);
             let mut block = Block::<3>::from_row_slice(values);
             if i == j {
-                block[(0, 0)] = block[(0, 0)].abs().max(f64::MIN_POSITIVE);
+                for k in 0..3 {
+                    block[(k, k)] = block[(k, k)].abs();
+                }
+                block[(0, 0)] = block[(0, 0)].max(f64::MIN_POSITIVE);
             }
             if i == j || *stored {
                 rows[i].push((j, block));
