@@ -81,7 +81,7 @@ enum Command {
         /// Print a JSON object on a line for each file and solver
         #[arg(long)]
         json: bool,
-        /// Write the impulses to DIR/<file stem>.<solver>.csv, a number a line
+        /// Write the impulses to `DIR/<file stem>.<solver>.csv`, a number a line
         #[arg(long, value_name = "DIR", conflicts_with = "profile")]
         solutions: Option<PathBuf>,
         /// Solve to 1e-4, 1e-8 and 1e-12; write table.csv, performance profiles (SVG) and profile.md to DIR
