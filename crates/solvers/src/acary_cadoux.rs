@@ -19,7 +19,8 @@
 //! allocates in its solve: an exception to "kept over steps it allocates nothing".
 //! With its polish it takes spheres-in-a-box (256 contacts) to 1e-12 and Capsules-i103 (275) too, where no solver of Siconos
 //! gets within 10 s.
-//! **Fails**: with large μ the fixed point may cycle (μ = 0.9 of FrictionContactProblem00727, 367 contacts in 2D, stalls); then the polish decides. `stalled` says that neither helped.
+//! **Fails**: with large μ the fixed point may cycle (μ = 0.9 of FrictionContactProblem00727, 367 contacts in 2D, stalls);
+//! then the polish decides. `stalled` says that neither helped.
 
 use crate::cone_program::ConeProgram;
 use crate::operator::{row_product, slip_shift};

@@ -30,8 +30,9 @@
 //! fill nothing in. An operator given by its product is formed first.
 //! To 1e-12 OneObject-i1028 (23 contacts) takes 340 iterations, BoxesStack1 (52) 135, LMGC_100_PR_PerioBox (60) 66,
 //! KaplasTower (570) 30, Spheres-i099 (356) 72, Capsules-i100 (276) 810; Siconos' `ADMM` 4475, 2242, never, 17, 363, 70 054.
-//! **Fails**: RockPile (463 contacts, 0.1 % skew) stalls at 9e-4; a strongly skew H need not converge (that of LMGC_Global..46, 27 % skew, does); a block whose diagonal spans many
-//! powers of ten meets the judge's residual with its stiff direction solved only; packings with many contacts at the brink of sliding stall at about 1e-7.
+//! **Fails**: RockPile (463 contacts, 0.1 % skew) stalls at 9e-4; a strongly skew H need not converge (that of
+//! LMGC_Global..46, 27 % skew, does); a block whose diagonal spans many powers of ten meets the judge's residual with its
+//! stiff direction solved only; packings with many contacts at the brink of sliding stall at about 1e-7.
 
 use crate::anderson::Anderson;
 use crate::operator::{disk_map, is_steep, natural_map, onto_disk, own_step, row_product};

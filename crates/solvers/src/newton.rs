@@ -69,7 +69,8 @@ impl<const D: usize> Newton<D> {
         Self::default()
     }
 
-    /// A round of Newton steps alone, for solvers that bring their own globalisation. Leaves the last of its impulses in `p`: each step lowered the residual, but for rounding.
+    /// A round of Newton steps alone, for solvers that bring their own globalisation. Leaves the last of its impulses in
+    /// `p`: each step lowered the residual, but for rounding.
     pub(crate) fn round(&mut self, problem: &ContactProblem<'_, D>, stop: &Stop<'_>, p: &mut [Vector<D>]) -> Outcome {
         self.scaled.load(problem);
         let most = stop.max_iterations.min(STEPS);
