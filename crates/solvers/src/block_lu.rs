@@ -6,8 +6,8 @@
 //! diagonal blocks only. That is safe where the matrix is a regularised one of a contact problem; the caller sees from the
 //! residual of its step whether it was.
 //!
-//! A general sparse LU that pivots between rows orders by the pattern of AᵀA and fills in two to ten times as much on
-//! these structurally symmetric matrices, and it has no notion of a left-out contact.
+//! Written here because a general sparse LU pivots between rows, has to make room for the pattern of AᵀA to do so, where
+//! these matrices are structurally symmetric, and has no notion of a left-out contact: its analysis would be anew in every step.
 
 use crate::ordering::{NATURAL, Ordering};
 use teeter_contact::{Block, BlockSparse, Vector};
