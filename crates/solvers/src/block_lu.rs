@@ -7,7 +7,9 @@
 //! residual of its step whether it was.
 //!
 //! Written here because a general sparse LU pivots between rows, has to make room for the pattern of AᵀA to do so, where
-//! these matrices are structurally symmetric, and has no notion of a left-out contact: its analysis would be anew in every step.
+//! these matrices are structurally symmetric, and has no notion of a left-out contact: its analysis would be anew in every
+//! step. Factorising H + 1e-3 I of published problems (best of several, one run): Capsules-i100 0.047 ms to 0.53 of faer's
+//! sparse LU, spheres-in-a-box 0.15 to 9.1, RockPile 0.17 to 9.7, KaplasTower 3.5 to 18.7.
 
 use crate::ordering::{NATURAL, Ordering};
 use teeter_contact::{Block, BlockSparse, Vector};
