@@ -4,6 +4,7 @@
 //! would be smallest if T were affine (Walker and Ni 2011, doi 10.1137/10078356X). The least squares go by normal equations
 //! with a small multiple of their trace added: a poor combination costs an iteration, and the caller checks it.
 
+use crate::memory::reserve;
 use nalgebra::{SMatrix, SVector};
 use teeter_contact::Vector;
 
@@ -27,10 +28,10 @@ pub(crate) struct Anderson<const D: usize> {
 
 impl<const D: usize> Anderson<D> {
     pub(crate) fn reserve(&mut self, contacts: usize) {
-        self.image.reserve(contacts);
-        self.residual.reserve(contacts);
-        self.image_steps.reserve(contacts * DEPTH);
-        self.residual_steps.reserve(contacts * DEPTH);
+        reserve(&mut self.image, contacts);
+        reserve(&mut self.residual, contacts);
+        reserve(&mut self.image_steps, contacts * DEPTH);
+        reserve(&mut self.residual_steps, contacts * DEPTH);
     }
 
     /// Forgets all, for a new problem or after the map has changed.

@@ -6,7 +6,7 @@
 
 use crate::Enumeration;
 use crate::chain::Chain;
-use crate::scaled::reserve;
+use crate::memory::reserve;
 use teeter_contact::{Block, ContactProblem, ContactSolver, Delassus, Law, Outcome, Status, Stop, Vector, judge};
 
 /// An exact method for a few contacts: what it found, if the judge is satisfied.
@@ -140,12 +140,11 @@ impl<const D: usize> Auto<D> {
         self.chain.reserve(contacts, blocks);
         // Parts are copied out of dense problems only, and the largest is no larger than what is there.
         let dense = contacts.saturating_mul(contacts).min(blocks);
-        let more = |len: usize, wanted: usize| wanted.saturating_sub(len);
-        self.part.reserve(more(self.part.len(), contacts));
-        self.members.reserve(more(self.members.len(), contacts));
-        self.h.reserve(more(self.h.len(), dense));
+        reserve(&mut self.part, contacts);
+        reserve(&mut self.members, contacts);
+        reserve(&mut self.h, dense);
         reserve(&mut self.q, contacts);
-        self.mu.reserve(more(self.mu.len(), contacts));
+        reserve(&mut self.mu, contacts);
         reserve(&mut self.p, contacts);
     }
 }

@@ -11,6 +11,7 @@
 //! step. Factorising H + 1e-3 I of published problems (best of several, one run): Capsules-i100 0.047 ms to 0.53 of faer's
 //! sparse LU, spheres-in-a-box 0.15 to 9.1, RockPile 0.17 to 9.7, KaplasTower 3.5 to 18.7.
 
+use crate::memory::{refill, reserve};
 use crate::ordering::{NATURAL, Ordering};
 use teeter_contact::{Block, BlockSparse, Vector};
 
@@ -52,32 +53,25 @@ impl<const D: usize> Clone for BlockLu<D> {
 
 const NONE: usize = usize::MAX;
 
-/// Sets a vector to `n` times `value`, in memory that is kept.
-fn refill<T: Clone>(x: &mut Vec<T>, n: usize, value: T) {
-    x.clear();
-    x.resize(n, value);
-}
-
 impl<const D: usize> BlockLu<D> {
     /// Makes room for `contacts` contacts; how much they fill in is known for few of them only.
     pub(crate) fn reserve(&mut self, contacts: usize, blocks: usize) {
         let filled = if contacts <= NATURAL { contacts * contacts / 2 } else { blocks };
-        let more = |len: usize, wanted: usize| wanted.saturating_sub(len);
         for x in [&mut self.known_start, &mut self.start, &mut self.reach_start] {
-            x.reserve(more(x.len(), contacts + 1));
+            reserve(x, contacts + 1);
         }
         for x in [&mut self.order, &mut self.place, &mut self.first_child, &mut self.sibling, &mut self.map] {
-            x.reserve(more(x.len(), contacts));
+            reserve(x, contacts);
         }
-        self.known_columns.reserve(more(self.known_columns.len(), blocks));
-        self.below.reserve(more(self.below.len(), filled));
-        self.reach.reserve(more(self.reach.len(), filled));
-        self.lower.reserve(more(self.lower.len(), filled));
-        self.upper.reserve(more(self.upper.len(), filled));
-        self.pivot.reserve(more(self.pivot.len(), contacts));
-        self.pivot_inverse.reserve(more(self.pivot_inverse.len(), contacts));
-        self.active.reserve(more(self.active.len(), contacts));
-        self.rhs.reserve(more(self.rhs.len(), contacts));
+        reserve(&mut self.known_columns, blocks);
+        reserve(&mut self.below, filled);
+        reserve(&mut self.reach, filled);
+        reserve(&mut self.lower, filled);
+        reserve(&mut self.upper, filled);
+        reserve(&mut self.pivot, contacts);
+        reserve(&mut self.pivot_inverse, contacts);
+        reserve(&mut self.active, contacts);
+        reserve(&mut self.rhs, contacts);
         self.ordering.reserve(contacts, blocks);
     }
 

@@ -16,6 +16,8 @@
 
 #[cfg(feature = "sparse")]
 use crate::Admm;
+use crate::ending::ended;
+use crate::memory::reserve;
 use crate::{Newton, Pgs, Prox, Smoothing};
 #[cfg(feature = "sparse")]
 use teeter_contact::Delassus;
@@ -76,17 +78,7 @@ impl Progress {
             return Outcome::new(Status::Converged, self.best.used, self.iterations, self.best.residual);
         }
         let residual = judge(problem, p);
-        let status = if residual.global <= stop.tolerance {
-            Status::Converged
-        } else if !residual.global.is_finite() {
-            Status::Breakdown
-        } else if stop.cancelled() {
-            Status::Cancelled
-        } else if self.left(stop) == 0 {
-            Status::MaxIterations
-        } else {
-            Status::Stalled
-        };
+        let status = ended(stop, self.iterations, &residual);
         Outcome::new(status, self.best.used, self.iterations, residual)
     }
 
@@ -107,7 +99,7 @@ impl<const D: usize> Chain<D> {
         self.newton.reserve(contacts, blocks);
         self.smoothing.reserve(contacts, blocks);
         self.prox.reserve(contacts, blocks);
-        self.best.reserve(contacts.saturating_sub(self.best.len()));
+        reserve(&mut self.best, contacts);
     }
 
     pub(crate) fn solve(&mut self, problem: &ContactProblem<'_, D>, stop: &Stop<'_>, p: &mut [Vector<D>]) -> Outcome {
@@ -117,6 +109,7 @@ impl<const D: usize> Chain<D> {
             self.best.extend_from_slice(p);
             let left = stop.max_iterations.saturating_sub(outcome.iterations);
             let polish = Stop { tolerance: POLISHED, max_iterations: left, ..*stop };
+            self.newton.prepare(problem);
             let polished = self.newton.round(problem, &polish, p);
             outcome.iterations = outcome.iterations.saturating_add(polished.iterations);
             if polished.residual.global < outcome.residual.global {
@@ -179,7 +172,7 @@ impl<const D: usize> Chain<D> {
                 return;
             }
             let work = *ratio.get_or_insert_with(|| {
-                let (n, work) = (problem.contacts() as f64, self.newton.work(problem));
+                let (n, work) = (problem.contacts() as f64, self.newton.prepare(problem));
                 let step = work.products as f64 + STEP_BLOCK * work.filled as f64 + STEP_CONTACT * n;
                 (step / (SWEEP_BLOCK * work.blocks as f64 + SWEEP_CONTACT * n)).max(1.0)
             });

@@ -27,6 +27,7 @@
 //! the final tableau take the pivots' rounding out; the pairs are scaled by ρ and the largest |q|, so that units change
 //! nothing.
 
+use crate::memory::reserve;
 use nalgebra::Vector2;
 use teeter_contact::{BlockSparse, ContactProblem, ContactSolver, Law, Outcome, Status, Stop, judge};
 
@@ -350,7 +351,7 @@ impl ContactSolver<2> for Lemke {
             (&mut self.values, all),
             (&mut self.missing, m),
         ] {
-            vector.reserve(wanted.saturating_sub(vector.len()));
+            reserve(vector, wanted);
         }
         for (vector, wanted) in [
             (&mut self.base, n + 1),
@@ -360,9 +361,9 @@ impl ContactSolver<2> for Lemke {
             (&mut self.nonzero, m + 1),
             (&mut self.tied, m),
         ] {
-            vector.reserve(wanted.saturating_sub(vector.len()));
+            reserve(vector, wanted);
         }
-        self.found.reserve(n.saturating_sub(self.found.len()));
+        reserve(&mut self.found, n);
     }
 
     fn solve(&mut self, problem: &ContactProblem<'_, 2>, stop: &Stop<'_>, p: &mut [Vector2<f64>]) -> Outcome {

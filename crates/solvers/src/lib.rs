@@ -58,12 +58,16 @@ mod catalogue;
 mod chain;
 #[cfg(feature = "clarabel")]
 mod cone_program;
+#[cfg(test)]
+mod conforming;
+mod ending;
 pub mod enumeration;
 mod least_norm;
 pub mod lemke;
 mod likely;
 mod linearised;
 mod local;
+mod memory;
 pub mod newton;
 mod one_contact;
 mod one_contact_space;

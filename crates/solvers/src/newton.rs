@@ -25,9 +25,11 @@
 
 use crate::Pgs;
 use crate::block_lu::BlockLu;
+use crate::ending::ended;
 use crate::linearised::{Row, linearise};
-use crate::scaled::{Scaled, clear, make_finite, reserve};
-use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, Status, Stop, Vector, judge};
+use crate::memory::{refill, reserve};
+use crate::scaled::{Scaled, make_finite};
+use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, Stop, Vector, judge};
 
 /// Gauss–Seidel sweeps before the first steps; twice as many before the next ones, and so on.
 const SWEEPS: u32 = 20;
@@ -69,27 +71,8 @@ impl<const D: usize> Newton<D> {
         Self::default()
     }
 
-    /// A round of Newton steps alone, for solvers that bring their own globalisation. Leaves the last of its impulses in
-    /// `p`: each step lowered the residual, but for rounding.
-    pub(crate) fn round(&mut self, problem: &ContactProblem<'_, D>, stop: &Stop<'_>, p: &mut [Vector<D>]) -> Outcome {
-        self.scaled.load(problem);
-        let most = stop.max_iterations.min(STEPS);
-        let end = self.steps.round(&self.scaled, None, AIM * stop.tolerance, most, stop, p);
-        let residual = judge(problem, p);
-        let status = if residual.global <= stop.tolerance {
-            Status::Converged
-        } else if stop.cancelled() {
-            Status::Cancelled
-        } else if end.steps >= stop.max_iterations {
-            Status::MaxIterations
-        } else {
-            Status::Stalled
-        };
-        Outcome::new(status, Self::NAME, end.steps, residual)
-    }
-
-    /// The work of one step on this problem, with all contacts pressing.
-    pub(crate) fn work(&mut self, problem: &ContactProblem<'_, D>) -> Work {
+    /// Takes a problem in for [`Self::round`], and says what one of its steps takes, with all contacts pressing.
+    pub(crate) fn prepare(&mut self, problem: &ContactProblem<'_, D>) -> Work {
         self.scaled.load(problem);
         self.steps.lu.analyse(&self.scaled.h);
         Work {
@@ -97,6 +80,15 @@ impl<const D: usize> Newton<D> {
             filled: self.steps.lu.filled_blocks(),
             products: self.steps.lu.block_products(),
         }
+    }
+
+    /// A round of Newton steps alone on the problem prepared last, for solvers that bring their own globalisation. Leaves the last of its impulses in
+    /// `p`: each step lowered the residual, but for rounding.
+    pub(crate) fn round(&mut self, problem: &ContactProblem<'_, D>, stop: &Stop<'_>, p: &mut [Vector<D>]) -> Outcome {
+        let most = stop.max_iterations.min(STEPS);
+        let end = self.steps.round(&self.scaled, None, AIM * stop.tolerance, most, stop, p);
+        let residual = judge(problem, p);
+        Outcome::new(ended(stop, end.steps, &residual), Self::NAME, end.steps, residual)
     }
 }
 
@@ -135,7 +127,6 @@ impl<const D: usize> ContactSolver<D> for Newton<D> {
         self.best.extend_from_slice(p);
         let mut best = f64::INFINITY;
         let mut iterations = 0;
-        let mut status = Status::Stalled;
         let mut used = Self::NAME;
         for round in 0..ROUNDS {
             let left = stop.max_iterations - iterations;
@@ -160,23 +151,13 @@ impl<const D: usize> ContactSolver<D> for Newton<D> {
             if best <= goal {
                 break;
             }
-            if stop.cancelled() {
-                status = Status::Cancelled;
-                break;
-            }
-            if iterations >= stop.max_iterations {
-                status = Status::MaxIterations;
+            if stop.cancelled() || iterations >= stop.max_iterations {
                 break;
             }
         }
         p.copy_from_slice(&self.best);
         let residual = judge(problem, p);
-        if residual.global <= stop.tolerance {
-            status = Status::Converged;
-        } else if !residual.global.is_finite() {
-            status = Status::Breakdown;
-        }
-        Outcome::new(status, used, iterations, residual)
+        Outcome::new(ended(stop, iterations, &residual), used, iterations, residual)
     }
 
     fn fork(&self) -> Box<dyn ContactSolver<D>> {
@@ -213,7 +194,7 @@ pub(crate) struct Steps<const D: usize> {
 impl<const D: usize> Steps<D> {
     pub(crate) fn reserve(&mut self, contacts: usize, blocks: usize) {
         self.lu.reserve(contacts, blocks);
-        self.rows.reserve(contacts.saturating_sub(self.rows.len()));
+        reserve(&mut self.rows, contacts);
         for x in [&mut self.u, &mut self.change, &mut self.change_u, &mut self.right] {
             reserve(x, contacts);
         }
@@ -231,10 +212,9 @@ impl<const D: usize> Steps<D> {
     ) -> RoundEnd {
         let n = scaled.contacts();
         for x in [&mut self.u, &mut self.change, &mut self.change_u, &mut self.right] {
-            clear(x, n);
+            refill(x, n, Vector::zeros());
         }
-        self.rows.clear();
-        self.rows.resize(n, Row::default());
+        refill(&mut self.rows, n, Row::default());
         self.lu.analyse(&scaled.h);
         let alpha = shift.map_or(0.0, |s| s.alpha);
         self.shifted_velocities(scaled, shift, p);

@@ -1,5 +1,6 @@
 //! The order in which contacts are eliminated.
 
+use crate::memory::{refill, reserve};
 #[cfg(feature = "sparse")]
 use faer::dyn_stack::MemBuffer;
 use teeter_contact::BlockSparse;
@@ -34,16 +35,15 @@ impl std::fmt::Debug for Ordering {
 
 impl Ordering {
     pub(crate) fn reserve(&mut self, contacts: usize, blocks: usize) {
-        self.start.reserve((contacts + 1).saturating_sub(self.start.len()));
-        self.fill.reserve((contacts + 1).saturating_sub(self.fill.len()));
-        self.neighbours.reserve((2 * blocks).saturating_sub(self.neighbours.len()));
+        reserve(&mut self.start, contacts + 1);
+        reserve(&mut self.fill, contacts + 1);
+        reserve(&mut self.neighbours, 2 * blocks);
     }
 
     /// Takes the pattern of `h`, made symmetric.
     pub(crate) fn neighbours_of<const D: usize>(&mut self, h: &BlockSparse<D>) {
         let n = h.contacts();
-        self.fill.clear();
-        self.fill.resize(n + 1, 0);
+        refill(&mut self.fill, n + 1, 0);
         for i in 0..n {
             for &j in &h.columns()[h.range(i)] {
                 if j != i {
@@ -57,8 +57,7 @@ impl Ordering {
         }
         self.start.clear();
         self.start.extend_from_slice(&self.fill);
-        self.neighbours.clear();
-        self.neighbours.resize(self.fill[n], 0);
+        refill(&mut self.neighbours, self.fill[n], 0);
         for i in 0..n {
             for &j in &h.columns()[h.range(i)] {
                 if j != i {
@@ -91,7 +90,8 @@ impl Ordering {
         &self.neighbours[self.start[i]..self.start[i + 1]]
     }
 
-    /// `order[k]` is the contact eliminated at step k, `place` its inverse.
+    /// `order[k]` is the contact eliminated at step k, `place` its inverse; the order given for few contacts, for which
+    /// ordering costs more than it saves.
     pub(crate) fn order(&mut self, order: &mut Vec<usize>, place: &mut Vec<usize>) {
         let n = self.start.len() - 1;
         order.clear();

@@ -26,6 +26,7 @@
 //! - The best impulses judged are kept and returned.
 
 use crate::local::Local;
+use crate::memory::reserve;
 use crate::rows::Rows;
 use teeter_contact::{
     ContactProblem, ContactSolver, Delassus, Law, Outcome, Residual, Status, Stop, Vector, judge, judge_velocities,
@@ -269,11 +270,10 @@ impl<const D: usize> ContactSolver<D> for Pgs<D> {
     }
 
     fn reserve(&mut self, contacts: usize, blocks: usize) {
-        let more = |len: usize| contacts.saturating_sub(len);
-        self.locals.reserve(more(self.locals.len()));
-        self.slips.reserve(more(self.slips.len()));
-        self.velocities.reserve(more(self.velocities.len()));
-        self.best.reserve(more(self.best.len()));
+        reserve(&mut self.locals, contacts);
+        reserve(&mut self.slips, contacts);
+        reserve(&mut self.velocities, contacts);
+        reserve(&mut self.best, contacts);
         self.rows.reserve(contacts, blocks);
     }
 

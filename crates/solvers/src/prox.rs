@@ -18,9 +18,11 @@
 //! Gauss–Seidel move the start; the stop is the judge's, not the increment.
 
 use crate::Pgs;
+use crate::ending::ended;
+use crate::memory::{refill, reserve};
 use crate::newton::{Proximal, Steps};
-use crate::scaled::{Scaled, clear, make_finite, reserve};
-use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, Status, Stop, Vector, judge};
+use crate::scaled::{Scaled, make_finite};
+use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, Stop, Vector, judge};
 
 /// The proximal parameter α at the start and its bounds, relative to the mean of H's diagonal.
 const ALPHA: f64 = 1e-3;
@@ -80,7 +82,7 @@ impl<const D: usize> ContactSolver<D> for Prox<D> {
         make_finite(p);
         self.scaled.load(problem);
         for x in [&mut self.center, &mut self.best, &mut self.u] {
-            clear(x, n);
+            refill(x, n, Vector::zeros());
         }
         self.best.copy_from_slice(p);
         let sweeps = |left: u32| Stop { max_iterations: left.min(SWEEPS), ..*stop };
@@ -88,7 +90,6 @@ impl<const D: usize> ContactSolver<D> for Prox<D> {
         let mut iterations = swept.iterations;
         let (mut residual, mut best, mut alpha) = (swept.residual.global, f64::INFINITY, ALPHA);
         let mut since_best = 0;
-        let mut status = Status::Stalled;
         while since_best < PATIENCE {
             if residual < best {
                 (best, since_best) = (residual, 0);
@@ -96,15 +97,7 @@ impl<const D: usize> ContactSolver<D> for Prox<D> {
             } else {
                 since_best += 1;
             }
-            if best <= stop.tolerance {
-                break;
-            }
-            if stop.cancelled() {
-                status = Status::Cancelled;
-                break;
-            }
-            if iterations >= stop.max_iterations {
-                status = Status::MaxIterations;
+            if best <= stop.tolerance || stop.cancelled() || iterations >= stop.max_iterations {
                 break;
             }
             self.center.copy_from_slice(p);
@@ -130,12 +123,7 @@ impl<const D: usize> ContactSolver<D> for Prox<D> {
         }
         p.copy_from_slice(&self.best);
         let residual = judge(problem, p);
-        if residual.global <= stop.tolerance {
-            status = Status::Converged;
-        } else if !residual.global.is_finite() {
-            status = Status::Breakdown;
-        }
-        Outcome::new(status, Self::NAME, iterations, residual)
+        Outcome::new(ended(stop, iterations, &residual), Self::NAME, iterations, residual)
     }
 
     fn fork(&self) -> Box<dyn ContactSolver<D>> {

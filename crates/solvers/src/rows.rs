@@ -4,6 +4,7 @@
 //! one instruction (two lanes are what every x86-64 and ARM64 processor has). A row with an odd number of blocks ends with a
 //! zero block.
 
+use crate::memory::reserve;
 use teeter_contact::{Block, ContactProblem, Delassus, Vector};
 
 /// A block and its right neighbour: `[column][row]`, a lane each.
@@ -20,11 +21,10 @@ pub(crate) struct Rows<const D: usize> {
 
 impl<const D: usize> Rows<D> {
     pub(crate) fn reserve(&mut self, contacts: usize, blocks: usize) {
-        let more = |len: usize, wanted: usize| wanted.saturating_sub(len);
         let pairs = blocks / 2 + contacts;
-        self.start.reserve(more(self.start.len(), contacts + 1));
-        self.pairs.reserve(more(self.pairs.len(), pairs));
-        self.columns.reserve(more(self.columns.len(), pairs));
+        reserve(&mut self.start, contacts + 1);
+        reserve(&mut self.pairs, pairs);
+        reserve(&mut self.columns, pairs);
     }
 
     /// Takes the blocks out of a problem, in memory that is kept. False for an operator that is given by what it does.

@@ -3,6 +3,7 @@
 //! With ρ = 1/mean(diag H) the problem (ρH, ρq, μ) has the same impulses and velocities that are impulses too, so numbers
 //! without unit (a regularisation, a step) mean the same in every system of units, and the judge's natural map is `p − Π(p − û)`.
 
+use crate::memory::reserve;
 use teeter_contact::{BlockSparse, ContactProblem, Vector, de_saxce, project};
 
 /// The scaled problem, in memory that is kept.
@@ -17,8 +18,8 @@ pub(crate) struct Scaled<const D: usize> {
 impl<const D: usize> Scaled<D> {
     pub(crate) fn reserve(&mut self, contacts: usize, blocks: usize) {
         self.h.reserve(contacts, blocks);
-        self.q.reserve(contacts.saturating_sub(self.q.len()));
-        self.mu.reserve(contacts.saturating_sub(self.mu.len()));
+        reserve(&mut self.q, contacts);
+        reserve(&mut self.mu, contacts);
     }
 
     /// Copies the problem, scaled.
@@ -87,17 +88,6 @@ impl<const D: usize> Scaled<D> {
 /// The Euclidean norm over all contacts.
 pub(crate) fn norm<const D: usize>(x: &[Vector<D>]) -> f64 {
     x.iter().map(Vector::norm_squared).sum::<f64>().sqrt()
-}
-
-/// Resizes to `n` zeros, in memory that is kept.
-pub(crate) fn clear<const D: usize>(x: &mut Vec<Vector<D>>, n: usize) {
-    x.clear();
-    x.resize(n, Vector::zeros());
-}
-
-/// Makes room for `n` contacts.
-pub(crate) fn reserve<const D: usize>(x: &mut Vec<Vector<D>>, n: usize) {
-    x.reserve(n.saturating_sub(x.len()));
 }
 
 /// Replaces a start that is no number, or too large to be squared, by zero.

@@ -24,9 +24,11 @@
 //! - No predictor: the Newton step from the last centre at the new τ is one to first order.
 
 use crate::block_lu::BlockLu;
-use crate::scaled::{Scaled, clear, make_finite, reserve};
+use crate::ending::ended;
+use crate::memory::{refill, reserve};
+use crate::scaled::{Scaled, make_finite};
 use crate::smooth_map::{self, Slope};
-use teeter_contact::{Block, ContactProblem, ContactSolver, Law, Outcome, Status, Stop, Vector, judge, project};
+use teeter_contact::{Block, ContactProblem, ContactSolver, Law, Outcome, Stop, Vector, judge, project};
 
 /// τ at the start, relative to the size of one contact's impulse.
 const START: f64 = 0.1;
@@ -259,7 +261,7 @@ impl<const D: usize> ContactSolver<D> for Smoothing<D> {
     fn reserve(&mut self, contacts: usize, blocks: usize) {
         self.scaled.reserve(contacts, blocks);
         self.lu.reserve(contacts, blocks);
-        self.slopes.reserve(contacts.saturating_sub(self.slopes.len()));
+        reserve(&mut self.slopes, contacts);
         for x in self.vectors() {
             reserve(x, contacts);
         }
@@ -270,10 +272,9 @@ impl<const D: usize> ContactSolver<D> for Smoothing<D> {
         make_finite(p);
         self.scaled.load(problem);
         for x in self.vectors() {
-            clear(x, n);
+            refill(x, n, Vector::zeros());
         }
-        self.slopes.clear();
-        self.slopes.resize(n, (Block::zeros(), Block::zeros()));
+        refill(&mut self.slopes, n, (Block::zeros(), Block::zeros()));
         self.best.copy_from_slice(p);
         self.scaled.velocities(p, &mut self.u);
         self.best_residual = self.scaled.residual(p, &self.u);
@@ -298,18 +299,7 @@ impl<const D: usize> ContactSolver<D> for Smoothing<D> {
         }
         p.copy_from_slice(&self.best);
         let residual = judge(problem, p);
-        let status = if residual.global <= stop.tolerance {
-            Status::Converged
-        } else if stop.cancelled() {
-            Status::Cancelled
-        } else if self.iterations >= stop.max_iterations {
-            Status::MaxIterations
-        } else if !residual.global.is_finite() {
-            Status::Breakdown
-        } else {
-            Status::Stalled
-        };
-        Outcome::new(status, Self::NAME, self.iterations, residual)
+        Outcome::new(ended(stop, self.iterations, &residual), Self::NAME, self.iterations, residual)
     }
 
     fn fork(&self) -> Box<dyn ContactSolver<D>> {

@@ -1,6 +1,7 @@
 //! Random problems through every solver of the catalogue: the law contact by contact, a change of units, the order of
 //! contacts, and two solvers against each other.
 
+use crate::many::{in_other_units, turned};
 use nalgebra::DMatrix;
 use proptest::prelude::*;
 use teeter_contact::conformance::Case;
@@ -119,9 +120,7 @@ fn obeys<const D: usize>(drawn: &Drawn) -> Result<(), TestCaseError> {
 fn keeps_units<const D: usize>(drawn: &Drawn) -> Result<(), TestCaseError> {
     let case = drawn.case::<D>();
     let (mass, speed) = (1024.0, 1.0 / 4096.0);
-    let mut other = case.clone();
-    other.h.iter_mut().for_each(|h| *h /= mass);
-    other.q.iter_mut().for_each(|q| *q *= speed);
+    let other = in_other_units(&case, mass, speed);
     for (_, mut solver) in solvers::<D>() {
         let (here, p) = solve(solver.as_mut(), &case, 1e-8);
         let (there, r) = solve(solver.fork().as_mut(), &other, 1e-8);
@@ -152,15 +151,7 @@ fn agrees<const D: usize>(drawn: &Drawn) -> Result<(), TestCaseError> {
     prop_assume!(condition > 0.0 && condition <= 1e3);
     case.mu.iter_mut().for_each(|mu| *mu = mu.min(0.9 * bound));
     let n = case.q.len();
-    let turned = |k: usize| (k + 1) % n;
-    let mut other = case.clone();
-    for i in 0..n {
-        other.q[i] = case.q[turned(i)];
-        other.mu[i] = case.mu[turned(i)];
-        for j in 0..n {
-            other.h[i * n + j] = case.h[turned(i) * n + turned(j)];
-        }
-    }
+    let other = turned(&case);
     let velocity = |case: &Case<D>, p: &[Vector<D>]| -> Vec<Vector<D>> {
         let problem = case.problem().unwrap();
         (0..n).map(|i| problem.velocity(i, p)).collect()
@@ -181,7 +172,7 @@ fn agrees<const D: usize>(drawn: &Drawn) -> Result<(), TestCaseError> {
         for i in 0..n {
             let off = (u[i] - reference[i]).norm() / speed;
             prop_assert!(off <= 1e-8, "{} and {}: {off:e}, condition {condition:.0}", solver.name(), name);
-            let off = (u[turned(i)] - turned_u[i]).norm() / speed;
+            let off = (u[(i + 1) % n] - turned_u[i]).norm() / speed;
             prop_assert!(off <= 1e-8, "{} turned: {off:e}, condition {condition:.0}", solver.name());
         }
     }

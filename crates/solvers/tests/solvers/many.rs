@@ -49,7 +49,7 @@ fn solve<const D: usize>(
 
 /// Lengths and masses in other units: H by 1/mass, q by speed. Powers of two, so that rounding is the same and all that
 /// can differ is a threshold that has a unit.
-fn in_other_units<const D: usize>(case: &Case<D>, mass: f64, speed: f64) -> Case<D> {
+pub(crate) fn in_other_units<const D: usize>(case: &Case<D>, mass: f64, speed: f64) -> Case<D> {
     Case {
         name: case.name,
         h: case.h.iter().map(|h| h / mass).collect(),
@@ -58,7 +58,8 @@ fn in_other_units<const D: usize>(case: &Case<D>, mass: f64, speed: f64) -> Case
     }
 }
 
-fn turned<const D: usize>(case: &Case<D>) -> Case<D> {
+/// The contacts in another order: contact k of the result is contact k + 1 of the case.
+pub(crate) fn turned<const D: usize>(case: &Case<D>) -> Case<D> {
     let n = case.q.len();
     let at = |k: usize| (k + 1) % n;
     Case {
