@@ -106,9 +106,9 @@ impl Ordering {
     #[cfg(not(feature = "sparse"))]
     fn minimum_degree(&mut self, _order: &mut [usize], _place: &mut [usize]) {}
 
-    /// By approximate minimum degree (Amestoy, Davis, Duff 1996, doi 10.1137/S0895479894278952).
+    /// By approximate minimum degree, from the order given to the one found (Amestoy, Davis, Duff 1996, doi 10.1137/S0895479894278952).
     #[cfg(feature = "sparse")]
-    fn minimum_degree(&mut self, order: &mut [usize], place: &mut [usize]) {
+    pub(crate) fn minimum_degree(&mut self, order: &mut [usize], place: &mut [usize]) {
         use faer::dyn_stack::MemStack;
         use faer::sparse::{SymbolicSparseColMatRef, linalg::amd};
         let n = order.len();

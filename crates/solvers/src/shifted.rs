@@ -1,10 +1,10 @@
 //! Sparse factorisation of the symmetric part of H with a positive number added to each contact's diagonal.
 
+use crate::ordering::Ordering;
 use crate::upper::Upper;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::perm::Perm;
-use faer::sparse::linalg::amd;
 use faer::sparse::linalg::cholesky::{LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use faer::{Conj, MatMut, Par, Side};
@@ -14,6 +14,7 @@ use teeter_contact::{BlockSparse, Vector};
 #[derive(Default)]
 pub(crate) struct Shifted<const D: usize> {
     symmetric: Upper<D>,
+    ordering: Ordering,
     analysis: Option<Analysis>,
     values: Vec<f64>,
     factor: Vec<f64>,
@@ -37,6 +38,7 @@ impl<const D: usize> Shifted<D> {
     /// fails (it runs out of memory, or of indices).
     pub(crate) fn load(&mut self, h: &BlockSparse<D>) -> bool {
         if self.symmetric.load(h) || self.analysis.is_none() {
+            self.ordering.neighbours_of(h);
             self.analysis = self.analyse();
         }
         self.analysis.is_some()
@@ -44,7 +46,7 @@ impl<const D: usize> Shifted<D> {
 
     fn analyse(&mut self) -> Option<Analysis> {
         let rows = self.symmetric.starts.len() - 1;
-        let order = block_order::<D>(&self.symmetric)?;
+        let order = block_order::<D>(&mut self.ordering, rows / D);
         let upper = SymbolicSparseColMat::new_checked(
             rows,
             rows,
@@ -107,21 +109,11 @@ impl<const D: usize> Shifted<D> {
 }
 
 /// The fill-reducing order of the blocks, spelt out for their rows: D² times less to order, and the blocks stay whole.
-fn block_order<const D: usize>(upper: &Upper<D>) -> Option<Perm<usize>> {
-    let (starts, rows) = upper.block_pattern();
-    let (n, blocks) = (starts.len() - 1, rows.len());
-    let pattern = SymbolicSparseColMat::new_checked(n, n, starts, None, rows);
-    let (mut order, mut inverse) = (vec![0; n], vec![0; n]);
-    let mut buffer = MemBuffer::try_new(amd::order_maybe_unsorted_scratch::<usize>(n, blocks)).ok()?;
-    let stack = MemStack::new(&mut buffer);
-    amd::order_maybe_unsorted(&mut order, &mut inverse, pattern.as_ref(), Default::default(), stack).ok()?;
-    let spelt = |order: &[usize]| order.iter().flat_map(|i| (0..D).map(move |r| i * D + r)).collect::<Vec<_>>();
-    let mut backward = vec![0; n * D];
-    let forward = spelt(&order);
-    for (to, from) in forward.iter().enumerate() {
-        backward[*from] = to;
-    }
-    Some(Perm::new_checked(forward.into(), backward.into(), n * D))
+fn block_order<const D: usize>(ordering: &mut Ordering, n: usize) -> Perm<usize> {
+    let (mut order, mut place): (Vec<_>, Vec<_>) = ((0..n).collect(), (0..n).collect());
+    ordering.minimum_degree(&mut order, &mut place);
+    let spelt = |blocks: &[usize]| blocks.iter().flat_map(|i| (0..D).map(move |r| i * D + r)).collect();
+    Perm::new_checked(spelt(&order), spelt(&place), n * D)
 }
 
 #[cfg(test)]

@@ -98,19 +98,6 @@ impl<const D: usize> Upper<D> {
             }
         }
     }
-
-    /// The pattern of blocks, by columns, as (starts, rows).
-    #[cfg(feature = "sparse")]
-    pub(crate) fn block_pattern(&self) -> (Vec<usize>, Vec<usize>) {
-        let (mut starts, mut rows) = (vec![0], Vec::new());
-        for j in 0..(self.starts.len() - 1) / D {
-            // The first scalar column holds all rows of the blocks above the diagonal, and one of the diagonal's.
-            let column = &self.rows[self.starts[j * D]..self.starts[j * D + 1]];
-            rows.extend(column.iter().step_by(D).map(|row| row / D));
-            starts.push(rows.len());
-        }
-        (starts, rows)
-    }
 }
 
 #[cfg(test)]
