@@ -18,7 +18,7 @@
 //! The enumeration of states is as old as the linear complementarity form of plane friction (Klarbring 1990,
 //! doi 10.1007/BF00534316); choosing by the norm is ours, and so is trying the likely states first.
 
-use crate::least_norm::{MAX, RANK_TOLERANCE, System};
+use crate::least_norm::{MAX, System};
 use crate::{likely, one_contact};
 use nalgebra::{Matrix2, Vector2};
 use teeter_contact::{ContactProblem, ContactSolver, Delassus, Law, Outcome, Status, Stop, judge, judge_velocities};
@@ -362,17 +362,21 @@ fn gain(state: State, h: &Matrix2<f64>, mu: f64, original: &Matrix2<f64>) -> Opt
         State::Slide(sigma) => {
             let compliance = h[(0, 0)] - sigma * mu * h[(0, 1)];
             let size = original[(0, 0)] + mu * original[(0, 1)].abs();
-            (compliance.abs() > RANK_TOLERANCE * size)
+            (compliance.abs() > DOUBTFUL * size)
                 .then(|| Matrix2::new(1.0 / compliance, 0.0, -sigma * mu / compliance, 0.0))
         }
         State::Stick => {
             let determinant = h[(0, 0)] * h[(1, 1)] - h[(0, 1)] * h[(1, 0)];
             let size = original[(0, 0)] * original[(1, 1)];
-            (determinant.abs() > RANK_TOLERANCE * size)
+            (determinant.abs() > DOUBTFUL * size)
                 .then(|| Matrix2::new(h[(1, 1)], -h[(0, 1)], -h[(1, 0)], h[(0, 0)]) / determinant)
         }
     }
 }
+
+/// A pivot below this part of its block is left to the pivoted solve: the one after it would hold the rounding that this one
+/// magnifies, and a vanishing one couldn't be told from that. Two such steps in a row stay far above rounding.
+const DOUBTFUL: f64 = 1e-4;
 
 /// What a sign of the last contact may be missed by, relative to the speeds of the problem, before the exact test is not
 /// worth its cost: far above rounding on the way down.

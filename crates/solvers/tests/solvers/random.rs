@@ -98,3 +98,33 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn the_impulses_of_least_norm_are_found_in_any_order() {
+    // Two frictionless contacts and one that may stick, on three degrees of freedom: one impulse too many. Of the states that
+    // fit, a slide with its friction at the limit lies at the end of the set of impulses, far from the least.
+    let (a, b, c) = (0.2277068178427905, 1.13563331436215, 1.3367919806432091);
+    let (ab, at, ac) = (-0.3362831737571558, -0.48590343038185024, -0.15499256031564718);
+    let (bt, tt, bc, tc) = (1.0431597913182666, 1.2028062130608024, -0.3839208971356568, 0.024969537039786993);
+    let zero = Matrix2::zeros();
+    let normal = |x: f64| Matrix2::new(x, 0.0, 0.0, 0.0);
+    let mut h = vec![zero; 9];
+    (h[0], h[4], h[8]) = (normal(a), Matrix2::new(b, bt, bt, tt), normal(c));
+    (h[1], h[3]) = (Matrix2::new(ab, at, 0.0, 0.0), Matrix2::new(ab, 0.0, at, 0.0));
+    (h[2], h[6]) = (normal(ac), normal(ac));
+    (h[5], h[7]) = (Matrix2::new(bc, 0.0, tc, 0.0), Matrix2::new(bc, tc, 0.0, 0.0));
+    let q = vec![
+        Vector2::new(0.3980625646564045, 0.0),
+        Vector2::new(-0.6057093031523213, -0.8645032931322825),
+        Vector2::new(-0.8508150598168172, 0.0),
+    ];
+    let mut case = Case { name: "least", h, q, mu: vec![0.0, 0.21014269306416894, 0.0] };
+    let mut least = None;
+    for turn in 0..3 {
+        let (status, p) = solve(&mut Enumeration::new(), &case, 1e-11);
+        assert_eq!(status, Status::Converged);
+        let norm = p.iter().map(Vector2::norm_squared).sum::<f64>().sqrt();
+        assert!((norm - *least.get_or_insert(norm)).abs() < 1e-9 * norm, "turn {turn}: {p:?}");
+        case = turned(&case);
+    }
+}
