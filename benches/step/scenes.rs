@@ -57,7 +57,7 @@ fn model(surface: Box<dyn Subsystem<2>>) -> Model<2> {
     let mut parts = ModelBuilder::new();
     let body = parts.add(Box::new(Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -9.81))));
     let surface = parts.add(surface);
-    let pair = parts.pair(PairLaw { friction: 0.5, restitution: 0.0 });
+    let pair = parts.pair(PairLaw::new(0.5, 0.0));
     let (points, kinematics) = (shape.corners().to_vec(), Kinematics::Deformed);
     parts
         .build(Box::new(PointDetector::new(vec![PointPair { pair, points, body, surface, kinematics }])))

@@ -25,7 +25,7 @@
 //! let mut parts = ModelBuilder::new();
 //! let block = parts.add(Box::new(Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -9.81))));
 //! let ground = parts.add(Box::new(Ground::flat(0.0)));
-//! let pair = parts.pair(PairLaw { friction: 0.5, restitution: 0.0 });
+//! let pair = parts.pair(PairLaw::new(0.5, 0.0));
 //! let model = parts.build(Box::new(PointDetector::new(vec![PointPair {
 //!     pair,
 //!     points: shape.corners().to_vec(),
@@ -52,6 +52,7 @@ mod ledger;
 mod model;
 mod monitor;
 mod moreau_jean;
+mod pair_law;
 mod run;
 mod scheme;
 mod state;
@@ -63,9 +64,10 @@ pub use blocks::{Block, Blocks};
 pub use contacts::{Contact, ContactSet, ContactState, tangential};
 pub use ground::Ground;
 pub use ledger::{Ledger, PositiveWork, StepEnergy};
-pub use model::{Model, ModelBuilder, ModelError, PairLaw, Part, Placed};
+pub use model::{Model, ModelBuilder, ModelError, Part, Placed};
 pub use monitor::{Crossing, Peak, RockingMonitor};
 pub use moreau_jean::{MoreauJean, MoreauJeanSettings};
+pub use pair_law::{ImpactLaw, PairLaw};
 pub use run::{Ended, Observer, ObserverError, Plan, RunError, run};
 pub use scheme::{Scheme, SettingError, StepError, StepReport};
 pub use state::{State, StateError, Tally, WarmStart};

@@ -1,18 +1,9 @@
 //! A scene for the integrator: subsystems, who can touch whom by what law, and a detector. Immutable.
 
 use crate::contacts::ContactSet;
-use crate::{Energy, Size, Subsystem, Vector, WarmStart};
+use crate::{Energy, PairLaw, Size, Subsystem, Vector, WarmStart};
 use std::ops::Range;
 use teeter_detect::{BodyId, Candidate, ContactDetector, Geometry, Kinematics, SurfacePoint};
-
-/// The contact law of a pair of bodies.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PairLaw {
-    /// Coulomb's coefficient μ ≥ 0.
-    pub friction: f64,
-    /// Newton's coefficient of restitution e in [0, 1].
-    pub restitution: f64,
-}
 
 /// What is wrong with a model.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -120,12 +111,7 @@ impl<const D: usize> ModelBuilder<D> {
     /// If a coefficient of a pair is out of its range.
     pub fn build(self, detector: Box<dyn ContactDetector<D>>) -> Result<Model<D>, ModelError> {
         for (pair, law) in self.laws.iter().enumerate() {
-            let check = |what, value, good, rule| {
-                if good { Ok(()) } else { Err(ModelError::Law { what, pair: pair as u32, value, rule }) }
-            };
-            let (mu, e) = (law.friction, law.restitution);
-            check("the friction coefficient", mu, mu >= 0.0 && mu.is_finite(), "at least 0 and finite")?;
-            check("the coefficient of restitution", e, (0.0..=1.0).contains(&e), "in [0, 1]")?;
+            law.check().map_err(|(what, value, rule)| ModelError::Law { what, pair: pair as u32, value, rule })?;
         }
         Ok(Model { parts: self.parts, bodies: self.bodies, laws: self.laws, detector, size: self.size })
     }
@@ -154,6 +140,13 @@ impl<const D: usize> Model<D> {
     #[must_use]
     pub fn placed<'a>(&'a self, q: &'a [f64]) -> Placed<'a, D> {
         Placed { model: self, q }
+    }
+
+    /// Writes the prescribed velocities at time `t` into their places in `v`.
+    pub fn drive(&self, t: f64, v: &mut [f64]) {
+        for part in self.parts.iter().filter(|part| !part.system.driven().is_empty()) {
+            part.system.drive(t, &mut v[part.v.clone()]);
+        }
     }
 
     /// The energies at (q, v).

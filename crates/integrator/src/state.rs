@@ -133,7 +133,7 @@ impl Tally {
 }
 
 impl State {
-    /// The state at t = 0, with step size `dt` (s).
+    /// The state at t = 0, with step size `dt` (s). Prescribed velocities are those of t = 0, whatever `v` says.
     ///
     /// # Errors
     /// If a length doesn't fit the model, a number is not finite, or `dt` is not positive.
@@ -153,15 +153,17 @@ impl State {
         if !(dt > 0.0 && dt.is_finite()) {
             return Err(StateError::StepSize(dt));
         }
+        let mut v = v.to_vec();
+        model.drive(0.0, &mut v);
         Ok(Self {
             step: 0,
             t: 0.0,
             dt,
             q: q.to_vec(),
-            v: v.to_vec(),
             memory: Vec::new(),
             warm: WarmStart::default(),
-            ledger: Ledger::new(model.energy(q, v), model.energy_scale()),
+            ledger: Ledger::new(model.energy(q, &v), model.energy_scale()),
+            v,
             tally: Tally::default(),
         })
     }

@@ -94,6 +94,17 @@ pub trait Subsystem<const D: usize>: Send + Sync {
         let _ = (t, f);
     }
 
+    /// The velocities that are prescribed, by number, in rising order: no force changes their motion. The subsystem's
+    /// mass, damping and stiffness couple them to the others as [`Subsystem::apply`] says.
+    fn driven(&self) -> &[usize] {
+        &[]
+    }
+
+    /// Writes the prescribed velocities at time `t` into their places in `v`, and leaves the others alone.
+    fn drive(&self, t: f64, v: &mut [f64]) {
+        let _ = (t, v);
+    }
+
     /// Whether C is other than zero.
     fn is_damped(&self) -> bool {
         false
@@ -131,7 +142,8 @@ pub trait Subsystem<const D: usize>: Send + Sync {
     /// how many columns it took.
     fn rows(&self, body: u32, q: &[f64], point: &Vector<D>, frame: &Frame<D>, out: &mut Rows<'_, D>) -> usize;
 
-    /// Factorises `mass·M + damping·C + stiffness·K`.
+    /// Factorises `mass·M + damping·C + stiffness·K`, without the rows and columns of the [driven](Subsystem::driven)
+    /// velocities.
     ///
     /// # Errors
     /// If the matrix is not positive definite.
@@ -160,7 +172,7 @@ pub trait Compliance<const D: usize>: Send {
     /// If the matrix is not positive definite.
     fn refactor(&mut self, w: Weights, q: &[f64]) -> Result<(), FactorError>;
 
-    /// `f ← W f`.
+    /// `f ← W f`; zero for [driven](Subsystem::driven) velocities, whose rows and columns of W are zero.
     fn solve(&mut self, f: &mut [f64]);
 
     /// Adds `J_i W J_jᵀ` for all pairs of rows to the Delassus operator. `scratch` is as long as the subsystem's

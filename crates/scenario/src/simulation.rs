@@ -206,7 +206,7 @@ impl Simulation {
 
         let mut pairs = Vec::new();
         for contact in &scene.contacts {
-            let law = PairLaw { friction: contact.friction, restitution: contact.restitution };
+            let law = PairLaw::new(contact.friction, contact.restitution);
             let surface = match contact.surface {
                 Support::Beam(k) => beam_bodies[k].0,
                 Support::Ground => match ground_body {

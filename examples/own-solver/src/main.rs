@@ -52,7 +52,7 @@ fn rock(solver: Box<dyn ContactSolver<2>>) -> Result<Motion, Box<dyn Error + Sen
     let mut parts = ModelBuilder::new();
     let body = parts.add(Box::new(Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -9.81))));
     let surface = parts.add(Box::new(Ground::flat(0.0)));
-    let pair = parts.pair(PairLaw { friction: 0.5, restitution: 0.0 });
+    let pair = parts.pair(PairLaw::new(0.5, 0.0));
     let points = shape.corners().to_vec();
     let touching = PointPair { pair, points, body, surface, kinematics: Kinematics::Deformed };
     let model = parts.build(Box::new(PointDetector::new(vec![touching])))?;

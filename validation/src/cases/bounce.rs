@@ -47,7 +47,7 @@ impl Case for Bounce {
 
 /// Heights of the first apexes after the first impact, m.
 fn apexes(dt: f64) -> Result<Vec<f64>> {
-    let law = PairLaw { friction: 0.3, restitution: RESTITUTION };
+    let law = PairLaw::new(0.3, RESTITUTION);
     let model = block_over(&FLAT_BLOCK, Vector2::new(0.0, -GRAVITY), law, Box::new(Ground::flat(0.0)))?;
     let floor = 0.5 * FLAT_BLOCK.height;
     let start = Start { q: vec![0.0, floor + HEIGHT, 0.0], v: vec![0.0; 3], dt, theta: 0.5 };

@@ -58,7 +58,7 @@ fn rock(model: &teeter_integrator::Model<2>, q: Vec<f64>, theta: f64) -> Result<
     simulate(model, &start, (DURATION / DT).round() as u64, |_| ControlFlow::Continue(()))
 }
 
-const LAW: PairLaw = PairLaw { friction: 0.5, restitution: 0.0 };
+const LAW: PairLaw = PairLaw::new(0.5, 0.0);
 
 fn on_ground(theta: f64) -> Result<State> {
     let model = block_over(&PAPER_BLOCK, Vector2::new(0.0, -GRAVITY), LAW, Box::new(Ground::flat(0.0)))?;

@@ -38,7 +38,7 @@ impl Case for HousnerOrder {
     fn run(&self, depth: Depth) -> Result<Findings> {
         let exact = HousnerBlock::new(PAPER_BLOCK.width, PAPER_BLOCK.height, GRAVITY)
             .excursions(TILT_DEGREES.to_radians(), COUNT);
-        let law = PairLaw { friction: 0.5, restitution: 0.0 };
+        let law = PairLaw::new(0.5, 0.0);
         let model = block_over(&PAPER_BLOCK, Vector2::new(0.0, -GRAVITY), law, Box::new(Ground::flat(0.0)))?;
         let decades = if depth == Depth::Full { 3 } else { 2 };
         let (mut times, mut peaks) = (Vec::new(), Vec::new());

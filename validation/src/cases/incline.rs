@@ -42,7 +42,7 @@ impl Case for Incline {
 /// Velocity and way after one second.
 fn after_a_second(beta: f64, theta: f64) -> Result<[f64; 2]> {
     let gravity = Vector2::new(GRAVITY * beta.sin(), -GRAVITY * beta.cos());
-    let law = PairLaw { friction: FRICTION, restitution: 0.0 };
+    let law = PairLaw::new(FRICTION, 0.0);
     let model = block_over(&FLAT_BLOCK, gravity, law, Box::new(Ground::flat(0.0)))?;
     let start = Start { q: vec![0.0, 0.5 * FLAT_BLOCK.height, 0.0], v: vec![0.0; 3], dt: 1e-3, theta };
     let end = simulate(&model, &start, 1000, |_| ControlFlow::Continue(()))?;

@@ -30,7 +30,7 @@ impl Case for Sliding {
         let stop = SPEED / (FRICTION * GRAVITY);
         let way = SPEED * SPEED / (2.0 * FRICTION * GRAVITY);
         let mut findings = Findings::default();
-        let law = PairLaw { friction: FRICTION, restitution: 0.0 };
+        let law = PairLaw::new(FRICTION, 0.0);
         let model = block_over(&FLAT_BLOCK, Vector2::new(0.0, -GRAVITY), law, Box::new(Ground::flat(0.0)))?;
         for dt in [1e-2, 1e-3, 1e-4] {
             let q = vec![0.0, 0.5 * FLAT_BLOCK.height, 0.0];

@@ -33,7 +33,7 @@ static ALLOCATOR: Counting = Counting;
 
 /// Allocations in steps up to 0.3 s, which hold impacts, flight and phases with two contacts.
 fn allocations(surface: Box<dyn Subsystem<2>>, dofs: usize, theta: f64) -> u64 {
-    let law = PairLaw { friction: 0.5, restitution: 0.2 };
+    let law = PairLaw::new(0.5, 0.2);
     let model = model(&PAPER_BLOCK, Vector2::new(0.0, -9.81), law, Kinematics::Deformed, surface);
     let mut q = vec![0.17405990783590924, 0.0685504782624077, 0.08726646259971647];
     q.resize(3 + dofs, 0.0);

@@ -78,7 +78,7 @@ impl Compliance<2> for PlateCompliance {
 
 /// The paper's block upright above a surface.
 fn model(surface: Box<dyn Subsystem<2>>) -> Model<2> {
-    let law = PairLaw { friction: 0.5, restitution: 0.0 };
+    let law = PairLaw::new(0.5, 0.0);
     crate::scenes::model(&PAPER_BLOCK, Vector2::new(0.0, -9.81), law, Kinematics::Deformed, surface)
 }
 
@@ -266,7 +266,7 @@ fn bad_settings_and_states_are_refused_by_name() {
     let mass = MassProperties::rectangle(&shape, 0.1, 1000.0).unwrap();
     let mut parts = ModelBuilder::new();
     let body = parts.add(Box::new(Blocks::new(vec![Block::new(mass, &shape)], Vector2::zeros())));
-    let pair = parts.pair(PairLaw { friction: -0.1, restitution: 0.0 });
+    let pair = parts.pair(PairLaw::new(-0.1, 0.0));
     let points = PointPair { pair, points: vec![], body, surface: body, kinematics: Kinematics::Linear };
     let error = parts.build(Box::new(PointDetector::new(vec![points]))).unwrap_err();
     assert_eq!(error.to_string(), "the friction coefficient of pair 0 is -0.1, but must be at least 0 and finite");

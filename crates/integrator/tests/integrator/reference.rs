@@ -73,7 +73,7 @@ fn compare(name: &str) {
         depth: number(&params["block"]["depth"]),
         density: number(&params["block"]["rho"]),
     };
-    let law = PairLaw { friction: number(&params["contact"]["mu"]), restitution: number(&params["contact"]["e"]) };
+    let law = PairLaw::new(number(&params["contact"]["mu"]), number(&params["contact"]["e"]));
     let gravity = Vector2::from_vec(numbers(&params["gravity"]));
     let mut q = numbers(&case["initial"]["block_q"]);
     let mut v = numbers(&case["initial"]["block_v"]);
