@@ -1,6 +1,7 @@
 //! The active contacts of a step: their rows, their problem, and what became of them.
 
 use crate::model::Model;
+use crate::spring::SpringStep;
 use crate::subsystem::Span;
 use crate::{Compliance, Coupling, PartRows, Rows, Vector, WarmStart};
 use teeter_contact::{Block, ContactProblem, Delassus, ProblemError};
@@ -34,7 +35,7 @@ impl ContactState {
 pub struct Contact<const D: usize> {
     /// Who it is.
     pub id: ContactId,
-    /// Gap where the activation was decided, m.
+    /// Gap where the activation was decided, m; of a contact with duration, the gap of its spring at the start of the step.
     pub gap: f64,
     /// Impulse on side 0, N·s.
     pub p: Vector<D>,
@@ -44,6 +45,8 @@ pub struct Contact<const D: usize> {
     pub u_after: Vector<D>,
     /// Whether it was active in the step before, too.
     pub persisting: bool,
+    /// Of a contact with duration: the gap of its spring at the end of the step, m.
+    pub gap_after: Option<f64>,
     /// Speed below which it counts as zero, m/s: a small part of the fastest of the step's contact problem.
     pub still: f64,
 }
@@ -74,6 +77,19 @@ pub fn tangential<const D: usize>(u: &Vector<D>) -> Vector<D> {
     t
 }
 
+/// How a contact answers, beyond the standard law on its shifted velocity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Rule {
+    /// Signorini and Coulomb on U¹ + s.
+    Shifted,
+    /// In two phases; the coefficients of restitution act in the second.
+    Poisson { e: f64, tangential: f64 },
+    /// As shifted, with the normal shift made smaller where the impact would make energy.
+    Energetic,
+    /// By a force law.
+    Spring(SpringStep),
+}
+
 /// The active contacts of a step with their rows and their problem; kept over steps, so that it allocates only where
 /// there are more than ever before.
 ///
@@ -86,10 +102,13 @@ pub struct ContactSet<const D: usize> {
     spans: Vec<[Span; 2]>,
     columns: Vec<usize>,
     values: Vec<Vector<D>>,
-    blocks: Vec<Block<D>>,
+    pub(crate) blocks: Vec<Block<D>>,
+    pub(crate) u_free: Vec<Vector<D>>,
+    pub(crate) shift: Vec<Vector<D>>,
+    pub(crate) rules: Vec<Rule>,
     q: Vec<Vector<D>>,
-    mu: Vec<f64>,
-    p: Vec<Vector<D>>,
+    pub(crate) mu: Vec<f64>,
+    pub(crate) p: Vec<Vector<D>>,
 }
 
 impl<const D: usize> ContactSet<D> {
@@ -102,6 +121,9 @@ impl<const D: usize> ContactSet<D> {
             columns: Vec::with_capacity(2 * contacts * row),
             values: Vec::with_capacity(2 * contacts * row),
             blocks: Vec::with_capacity(contacts * contacts),
+            u_free: Vec::with_capacity(contacts),
+            shift: Vec::with_capacity(contacts),
+            rules: Vec::with_capacity(contacts),
             q: Vec::with_capacity(contacts),
             mu: Vec::with_capacity(contacts),
             p: Vec::with_capacity(contacts),
@@ -120,6 +142,9 @@ impl<const D: usize> ContactSet<D> {
         self.spans.clear();
         self.columns.clear();
         self.values.clear();
+        self.u_free.clear();
+        self.shift.clear();
+        self.rules.clear();
         self.q.clear();
         self.mu.clear();
         self.p.clear();
@@ -148,6 +173,9 @@ impl<const D: usize> ContactSet<D> {
         self.spans.push(spans);
         let before = warm.impulse::<D>(candidate.id);
         self.p.push(before.unwrap_or_else(Vector::zeros));
+        self.u_free.push(Vector::zeros());
+        self.shift.push(Vector::zeros());
+        self.rules.push(Rule::Shifted);
         self.q.push(Vector::zeros());
         self.mu.push(model.law(candidate.id.pair()).friction);
         self.contacts.push(Contact {
@@ -157,6 +185,7 @@ impl<const D: usize> ContactSet<D> {
             u_before: Vector::zeros(),
             u_after: Vector::zeros(),
             persisting: before.is_some(),
+            gap_after: None,
             still: 0.0,
         });
     }
@@ -174,10 +203,45 @@ impl<const D: usize> ContactSet<D> {
         u
     }
 
-    /// Gives contact `i` its velocity before the step and its constant vector `q` of the problem, m/s.
-    pub fn pose(&mut self, i: usize, u_before: Vector<D>, q: Vector<D>) {
+    /// Gives contact `i` its velocity before the step, its free velocity and the shift s of the law, m/s: the law holds for
+    /// U¹ + s, so the problem's constant vector is q = U_free + s.
+    pub fn pose(&mut self, i: usize, u_before: Vector<D>, u_free: Vector<D>, shift: Vector<D>) {
         self.contacts[i].u_before = u_before;
-        self.q[i] = q;
+        self.u_free[i] = u_free;
+        self.reshift(i, shift);
+    }
+
+    /// Gives contact `i` another shift.
+    pub(crate) fn reshift(&mut self, i: usize, shift: Vector<D>) {
+        self.shift[i] = shift;
+        self.q[i] = self.u_free[i] + shift;
+    }
+
+    /// Makes contact `i` follow a rule of its own.
+    pub(crate) fn follow(&mut self, i: usize, rule: Rule) {
+        self.rules[i] = rule;
+        if let Rule::Spring(spring) = rule {
+            self.contacts[i].gap = spring.gap;
+        }
+    }
+
+    /// Σ |J_i v| of contact `i`, m/s: what rounding of its velocity is measured by.
+    pub(crate) fn speed(&self, model: &Model<D>, i: usize, v: &[f64]) -> f64 {
+        let mut sum = 0.0;
+        for side in self.spans[i].iter().filter(|side| side.len > 0) {
+            let v = &v[model.parts()[side.part].v.clone()];
+            for k in side.start..side.start + side.len {
+                sum += self.values[k].norm() * v[self.columns[k]].abs();
+            }
+        }
+        sum
+    }
+
+    /// U¹ of contact `i` by the impulses, m/s.
+    pub(crate) fn velocity_by_impulses(&self, i: usize) -> Vector<D> {
+        let n = self.contacts.len();
+        let row = &self.blocks[i * n..(i + 1) * n];
+        row.iter().zip(&self.p).fold(self.u_free[i], |u, (block, p)| u + block * p)
     }
 
     /// H = Σ J W Jᵀ over the subsystems; `scratch` is as long as the model's velocities.
@@ -204,6 +268,19 @@ impl<const D: usize> ContactSet<D> {
         Ok((problem, &mut self.p))
     }
 
+    /// Adds Jᵀ p of one part to `f`, as long as its velocities, N·s; whether any contact acts on it.
+    pub(crate) fn add_generalised_impulse(&self, part: usize, f: &mut [f64]) -> bool {
+        let rows = PartRows { part, spans: &self.spans, columns: &self.columns, values: &self.values };
+        let mut touched = false;
+        for (contact, columns, values) in rows.iter() {
+            touched = true;
+            for (&c, value) in columns.iter().zip(values) {
+                f[c] += value.dot(&self.p[contact]);
+            }
+        }
+        touched
+    }
+
     /// Adds W Jᵀ p to `v`; `scratch` is as long as the model's velocities.
     pub fn add_impulses(
         &self,
@@ -213,19 +290,9 @@ impl<const D: usize> ContactSet<D> {
         v: &mut [f64],
     ) {
         for (index, (part, factor)) in model.parts().iter().zip(factors).enumerate() {
-            let rows = PartRows { part: index, spans: &self.spans, columns: &self.columns, values: &self.values };
             let f = &mut scratch[part.v.clone()];
-            let mut touched = false;
-            for (contact, columns, values) in rows.iter() {
-                if !touched {
-                    f.fill(0.0);
-                    touched = true;
-                }
-                for (&c, value) in columns.iter().zip(values) {
-                    f[c] += value.dot(&self.p[contact]);
-                }
-            }
-            if touched {
+            f.fill(0.0);
+            if self.add_generalised_impulse(index, f) {
                 factor.solve(f);
                 v[part.v.clone()].iter_mut().zip(f.iter()).for_each(|(v, dv)| *v += dv);
             }
@@ -239,6 +306,9 @@ impl<const D: usize> ContactSet<D> {
             let u_after = self.velocity(model, i, v);
             let contact = &mut self.contacts[i];
             (contact.p, contact.u_after, contact.still) = (self.p[i], u_after, STILL * fastest);
+            if let Rule::Spring(spring) = self.rules[i] {
+                contact.gap_after = Some(spring.gap_after(u_after[0]));
+            }
         }
     }
 }

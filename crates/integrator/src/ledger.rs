@@ -15,7 +15,7 @@ use crate::Energy;
 pub struct StepEnergy {
     /// Work of external loads.
     pub external: f64,
-    /// Normal contact: Σ U_θ,n p_n.
+    /// Normal contact: Σ U_θ,n p_n; of a contact with duration the loss alone, what its spring takes counted as stored.
     pub contact: f64,
     /// Friction: Σ U_θ,t·p_t.
     pub friction: f64,
@@ -69,6 +69,8 @@ pub struct Ledger {
     pub largest_residual: f64,
     /// The scene's energy scale so far, J: max |T| + |V_elastic| + |ΔV_gravity|, at least Σ m g R.
     pub scale: f64,
+    /// Elastic energy held by contacts with duration, J; part of the current one's.
+    pub stored: f64,
     /// Gains by contact.
     pub positive_contact_work: PositiveWork,
     /// Largest U¹_t·p_t of a contact in a step, J; the law makes it ≤ 0 up to rounding.
@@ -86,6 +88,7 @@ impl Ledger {
             sum: StepEnergy::default(),
             largest_residual: 0.0,
             scale: floor,
+            stored: 0.0,
             positive_contact_work: PositiveWork::default(),
             largest_tangential_work: f64::NEG_INFINITY,
         };

@@ -48,6 +48,7 @@ mod beam;
 mod blocks;
 mod contacts;
 mod ground;
+mod laws;
 mod ledger;
 mod model;
 mod monitor;
@@ -55,8 +56,10 @@ mod moreau_jean;
 mod pair_law;
 mod run;
 mod scheme;
+mod spring;
 mod state;
 mod subsystem;
+mod theta_step;
 mod workspace;
 
 pub use beam::{BeamBody, BeamSurface};

@@ -46,6 +46,7 @@ pub struct Model<const D: usize> {
     /// Part and number within it of each body.
     bodies: Vec<(usize, u32)>,
     laws: Vec<PairLaw>,
+    springs: bool,
     detector: Box<dyn ContactDetector<D>>,
     size: Size,
 }
@@ -113,7 +114,8 @@ impl<const D: usize> ModelBuilder<D> {
         for (pair, law) in self.laws.iter().enumerate() {
             law.check().map_err(|(what, value, rule)| ModelError::Law { what, pair: pair as u32, value, rule })?;
         }
-        Ok(Model { parts: self.parts, bodies: self.bodies, laws: self.laws, detector, size: self.size })
+        let springs = self.laws.iter().any(|law| law.impact.spring().is_some());
+        Ok(Model { parts: self.parts, bodies: self.bodies, laws: self.laws, springs, detector, size: self.size })
     }
 }
 
@@ -128,6 +130,11 @@ impl<const D: usize> Model<D> {
     #[must_use]
     pub fn law(&self, pair: u32) -> PairLaw {
         self.laws.get(pair as usize).copied().unwrap_or_default()
+    }
+
+    /// Whether a pair has a law with duration.
+    pub(crate) fn has_springs(&self) -> bool {
+        self.springs
     }
 
     /// The detector.

@@ -9,9 +9,12 @@
 //! A contact is active when the gap at the predicted position q⁰ + γh v⁰ is at most `gap_tolerance`; J is taken there.
 //! The law is Signorini's at velocity level with Newton's restitution, and Coulomb's.
 
-use crate::contacts::tangential;
+use crate::contacts::{Rule, tangential};
+use crate::laws::is_impact;
+use crate::spring::{SpringStep, Springs};
+use crate::theta_step::{ThetaStep, weights};
 use crate::{
-    Model, Scheme, SettingError, Size, State, StepEnergy, StepError, StepReport, Subsystem, Weights, Workspace,
+    ContactSet, ImpactLaw, Model, PairLaw, Scheme, SettingError, State, StepError, StepReport, Vector, Workspace,
 };
 use teeter_contact::{Outcome, ProblemError};
 
@@ -37,41 +40,8 @@ impl Default for MoreauJeanSettings {
 #[derive(Clone, Debug)]
 pub struct MoreauJean {
     settings: MoreauJeanSettings,
-    buffers: Buffers,
-}
-
-/// Vectors of a step: they carry nothing from one to the next.
-#[derive(Clone, Debug, Default)]
-struct Buffers {
-    /// Coordinates at which forces or gaps are taken; at last q¹.
-    q_at: Vec<f64>,
-    /// v_free; once the impulses are known, v¹.
-    v_free: Vec<f64>,
-    /// v_θ.
-    v_mean: Vec<f64>,
-    dq: Vec<f64>,
-    dv: Vec<f64>,
-    /// P_θ.
-    load: Vec<f64>,
-    product: Vec<f64>,
-}
-
-impl Buffers {
-    /// Takes the sizes of a model; allocates nothing where they are the same.
-    fn resize(&mut self, size: Size) {
-        self.q_at.resize(size.q, 0.0);
-        for v in [&mut self.v_free, &mut self.v_mean, &mut self.dq, &mut self.dv, &mut self.load, &mut self.product] {
-            v.resize(size.v, 0.0);
-        }
-    }
-
-    /// Leaves q ⊕ τ v in `q_at`.
-    fn predict<const D: usize>(&mut self, model: &Model<D>, state: &State, tau: f64) {
-        for (dq, v) in self.dq.iter_mut().zip(&state.v) {
-            *dq = tau * v;
-        }
-        model.retract(&state.q, &self.dq, &mut self.q_at);
-    }
+    step: ThetaStep,
+    springs: Springs,
 }
 
 impl MoreauJean {
@@ -95,18 +65,13 @@ impl MoreauJean {
             "at least 0",
         )?;
         check("gap_tolerance", gap_tolerance, gap_tolerance >= 0.0 && gap_tolerance.is_finite(), "at least 0 m")?;
-        Ok(Self { settings, buffers: Buffers::default() })
+        Ok(Self { settings, step: ThetaStep::default(), springs: Springs::default() })
     }
 
     /// The settings.
     #[must_use]
     pub fn settings(&self) -> &MoreauJeanSettings {
         &self.settings
-    }
-
-    fn weights(&self, h: f64) -> Weights {
-        let ht = h * self.settings.theta;
-        Weights { mass: 1.0, damping: ht, stiffness: ht * ht }
     }
 }
 
@@ -116,9 +81,9 @@ impl<const D: usize> Scheme<D> for MoreauJean {
     }
 
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {
-        self.buffers.resize(model.size());
+        self.step.resize(model.size());
         state.warm.reserve(model.detector().capacity(), D);
-        work.factorise(model, self.weights(state.dt), &state.q)?;
+        work.factorise(model, weights(state.dt, self.settings.theta), &state.q)?;
         Ok(())
     }
 
@@ -131,165 +96,92 @@ impl<const D: usize> Scheme<D> for MoreauJean {
         let MoreauJeanSettings { theta, activation_gamma, gap_tolerance } = self.settings;
         let h = state.dt;
         let t_end = (state.step + 1) as f64 * h;
-        self.buffers.resize(model.size());
-        work.factorise(model, self.weights(h), &state.q)?;
+        self.step.resize(model.size());
+        work.factorise(model, weights(h, theta), &state.q)?;
 
-        self.free_velocity(model, state, work, t_end);
-        self.buffers.predict(model, state, activation_gamma * h);
-        work.detect(model, &self.buffers.q_at, gap_tolerance);
+        self.step.free_velocity(model, state, work, theta, t_end);
+        let margin = if model.has_springs() {
+            self.step.close(model, state, theta)?;
+            self.springs.look(model, &state.q, &self.step.q_at, work);
+            f64::INFINITY
+        } else {
+            gap_tolerance
+        };
+        self.step.predict(model, &state.q, &state.v, activation_gamma * h);
+        work.detect(model, &self.step.q_at, margin);
         let outcome = self.impact(model, state, work).map_err(|source| StepError::Problem { t: state.t, source })?;
-
-        let Buffers { q_at, v_free: v_end, v_mean, dq, .. } = &mut self.buffers;
-        for (((mean, dq), v1), v0) in v_mean.iter_mut().zip(dq.iter_mut()).zip(v_end.iter()).zip(&state.v) {
-            *mean = theta * v1 + (1.0 - theta) * v0;
-            *dq = h * *mean;
-        }
-        model.retract(&state.q, dq, q_at);
-        if !(all_finite(v_end) && all_finite(q_at)) {
-            return Err(StepError::Diverged { t: state.t });
-        }
-
-        let mut energy = self.work_of_forces(model, state);
-        for contact in work.contacts.contacts() {
-            let u_theta = contact.u_after * theta + contact.u_before * (1.0 - theta);
-            energy.contact += u_theta[0] * contact.p[0];
-            energy.friction += tangential(&u_theta).dot(&contact.p);
-            let slip = tangential(&contact.u_after).dot(&contact.p);
-            state.ledger.largest_tangential_work = state.ledger.largest_tangential_work.max(slip);
-        }
-
-        state.q.copy_from_slice(&self.buffers.q_at);
-        state.v.copy_from_slice(&self.buffers.v_free);
-        let t_start = std::mem::replace(&mut state.t, t_end);
-        state.step += 1;
-        state.ledger.enter(model.energy(&state.q, &state.v), &mut energy);
+        self.step.close(model, state, theta)?;
+        let energy = self.step.work_of_forces(model, state, work, theta);
         state.warm.clear();
         for contact in work.contacts.contacts() {
-            state.warm.push(contact.id, &contact.p);
+            state.warm.keep(contact);
         }
-        let penetration = work.penetration(model, &state.q);
-        let contacts = work.contacts.contacts();
-        state.tally.count(outcome.as_ref(), contacts.len(), penetration);
-        Ok(StepReport { step: state.step, t_start, t_end, contacts, outcome, penetration, energy })
+        Ok(self.step.finish(model, state, work, theta, t_end, outcome, energy))
     }
 }
 
 impl MoreauJean {
-    /// Leaves v_free and P_θ in the buffers.
-    fn free_velocity<const D: usize>(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>, t_end: f64) {
-        let theta = self.settings.theta;
-        let h = state.dt;
-        let buffers = &mut self.buffers;
-        buffers.predict(model, state, h * theta);
-        for (part, factor) in model.parts().iter().zip(&mut work.factors) {
-            let (q, v) = (part.q.clone(), part.v.clone());
-            if v.is_empty() {
-                continue;
-            }
-            let dv = &mut buffers.dv[v.clone()];
-            dv.fill(0.0);
-            part.system.internal_force(&buffers.q_at[q], &state.v[v.clone()], dv);
-            if part.system.is_loaded() {
-                let (load, scratch) = (&mut buffers.load[v.clone()], &mut work.scratch[..v.len()]);
-                mean_load(part.system.as_ref(), theta, [state.t, t_end], load, scratch);
-                add(dv, load);
-            }
-            dv.iter_mut().for_each(|f| *f *= h);
-            factor.solve(dv);
-            for ((free, v0), dv) in buffers.v_free[v.clone()].iter_mut().zip(&state.v[v]).zip(dv.iter()) {
-                *free = v0 + dv;
-            }
-        }
-    }
-
-    /// Poses and solves the contact problem of the candidates at the predicted position; turns v_free into v¹.
+    /// Poses and solves the contact problem of the candidates in `work`; turns v_free into v¹.
     fn impact<const D: usize>(
         &mut self,
         model: &Model<D>,
         state: &State,
         work: &mut Workspace<D>,
     ) -> Result<Option<Outcome>, ProblemError> {
-        let Buffers { q_at, v_free, .. } = &mut self.buffers;
+        let ThetaStep { q_at, v_end: v_free, .. } = &mut self.step;
+        let theta = self.settings.theta;
         let Workspace { contacts, candidates, .. } = work;
         contacts.clear();
-        if candidates.is_empty() {
-            return Ok(None);
-        }
-        for (i, candidate) in candidates.iter().enumerate() {
+        for candidate in candidates.iter() {
+            let law = model.law(candidate.id.pair());
+            let spring = law.impact.spring();
+            if !self.springs.admit(spring.is_some(), candidate, &state.warm, self.settings.gap_tolerance) {
+                continue;
+            }
+            let i = contacts.contacts().len();
             contacts.activate(model, q_at, candidate, &state.warm);
             let u_before = contacts.velocity(model, i, &state.v);
-            let mut q = contacts.velocity(model, i, v_free);
-            q[0] += model.law(candidate.id.pair()).restitution * u_before[0].min(0.0);
-            contacts.pose(i, u_before, q);
-        }
-        work.solve_contacts(model, v_free).map(Some)
-    }
-
-    /// The terms of the energy identity that aren't contact: loads, damping, the scheme itself.
-    fn work_of_forces<const D: usize>(&mut self, model: &Model<D>, state: &State) -> StepEnergy {
-        let theta = self.settings.theta;
-        let h = state.dt;
-        let Buffers { v_free: v_end, v_mean, dq, dv, load, product, .. } = &mut self.buffers;
-        let mut energy = StepEnergy::default();
-        if theta != 0.5 {
-            for ((dv, v1), v0) in dv.iter_mut().zip(v_end.iter()).zip(&state.v) {
-                *dv = v1 - v0;
+            let u_free = contacts.velocity(model, i, v_free);
+            let shift = shift(contacts, i, &law, &u_before, &u_free);
+            contacts.pose(i, u_before, u_free, shift);
+            if let Some(spring) = spring {
+                let gap = self.springs.gap(candidate.id, &state.warm);
+                // With θ < ½ the force at the end of the step would count for less than half, or nothing, of the work.
+                let theta = theta.max(0.5);
+                let step = SpringStep { spring, gap, u_before: u_before[0], h: state.dt, theta };
+                contacts.follow(i, Rule::Spring(step));
             }
         }
-        for part in model.parts() {
-            let (q, v) = (&state.q[part.q.clone()], part.v.clone());
-            let product = &mut product[v.clone()];
-            let mut form = |w: Weights, x: &[f64]| {
-                product.fill(0.0);
-                part.system.apply(w, q, x, product);
-                dot(x, product)
-            };
-            if part.system.is_damped() {
-                let c = Weights { damping: 1.0, ..Weights::default() };
-                energy.viscous -= h * form(c, &v_mean[v.clone()]);
-            }
-            if theta != 0.5 {
-                let m = Weights { mass: 1.0, ..Weights::default() };
-                let k = Weights { stiffness: 1.0, ..Weights::default() };
-                energy.numerical -= (theta - 0.5) * (form(m, &dv[v.clone()]) + form(k, &dq[v.clone()]));
-            }
-            if part.system.is_loaded() {
-                energy.external += h * dot(&v_mean[v.clone()], &load[v]);
-            }
+        if contacts.contacts().is_empty() {
+            return Ok(None);
         }
-        energy
+        work.solve_contacts(model, theta, v_free).map(Some)
     }
 }
 
-/// θP¹ + (1−θ)P⁰ into `load`.
-fn mean_load<const D: usize>(
-    system: &dyn Subsystem<D>,
-    theta: f64,
-    t: [f64; 2],
-    load: &mut [f64],
-    scratch: &mut [f64],
-) {
-    load.fill(0.0);
-    for (t, weight) in [(t[0], 1.0 - theta), (t[1], theta)] {
-        scratch.fill(0.0);
-        system.load(t, scratch);
-        for (sum, p) in load.iter_mut().zip(scratch.iter()) {
-            *sum += weight * p;
+/// The shift of a contact by its law (`docs/laws.md`). Newton's restitution acts on every active contact; the other laws
+/// tell impacts from contacts that press.
+fn shift<const D: usize>(
+    contacts: &mut ContactSet<D>,
+    i: usize,
+    law: &PairLaw,
+    u_before: &Vector<D>,
+    u_free: &Vector<D>,
+) -> Vector<D> {
+    let (e, approaches) = (law.restitution, !contacts.contacts()[i].persisting && u_before[0] < 0.0);
+    let tangential_restitution = if approaches { law.tangential_restitution } else { 0.0 };
+    let mut shift = tangential(u_before) * tangential_restitution;
+    match law.impact {
+        ImpactLaw::Newton => shift[0] = e * u_before[0].min(0.0),
+        ImpactLaw::Poisson => {
+            contacts.follow(i, Rule::Poisson { e, tangential: tangential_restitution });
+            shift = Vector::zeros();
         }
+        ImpactLaw::Energetic => {
+            contacts.follow(i, Rule::Energetic);
+            shift[0] = if is_impact(e, u_before, u_free) { e * u_before[0] } else { 0.0 };
+        }
+        ImpactLaw::KelvinVoigt { .. } | ImpactLaw::HuntCrossley { .. } => shift = Vector::zeros(),
     }
-}
-
-fn add(x: &mut [f64], y: &[f64]) {
-    for (x, y) in x.iter_mut().zip(y) {
-        *x += y;
-    }
-}
-
-fn dot(x: &[f64], y: &[f64]) -> f64 {
-    x.iter().zip(y).map(|(x, y)| x * y).sum()
-}
-
-fn all_finite(x: &[f64]) -> bool {
-    // Without an early exit, so that it takes several numbers at once.
-    x.iter().fold(true, |finite, x| finite & x.is_finite())
+    shift
 }

@@ -1,6 +1,6 @@
 //! All that decides the next step, flat: clone it to reject a step, store it for a checkpoint.
 
-use crate::{Ledger, Model, Vector};
+use crate::{Contact, Ledger, Model, Vector};
 use teeter_contact::Outcome;
 use teeter_detect::ContactId;
 
@@ -11,6 +11,8 @@ pub struct WarmStart {
     ids: Vec<ContactId>,
     /// D numbers a contact.
     impulses: Vec<f64>,
+    /// Gaps of the springs of contacts with duration, m; 0 for others.
+    gaps: Vec<f64>,
 }
 
 impl WarmStart {
@@ -18,24 +20,41 @@ impl WarmStart {
     pub fn reserve(&mut self, contacts: usize, dimension: usize) {
         self.ids.reserve(contacts);
         self.impulses.reserve(contacts * dimension);
+        self.gaps.reserve(contacts);
     }
 
     /// Forgets all contacts.
     pub fn clear(&mut self) {
         self.ids.clear();
         self.impulses.clear();
+        self.gaps.clear();
     }
 
     /// Adds a contact with its impulse, N·s. Contacts have to come in order of identity.
     pub fn push<const D: usize>(&mut self, id: ContactId, p: &Vector<D>) {
         self.ids.push(id);
         self.impulses.extend(p.iter());
+        self.gaps.push(0.0);
+    }
+
+    /// Adds a contact of the step with all that has to be remembered of it; in order of identity.
+    pub(crate) fn keep<const D: usize>(&mut self, contact: &Contact<D>) {
+        self.push(contact.id, &contact.p);
+        if let (Some(gap), Some(last)) = (contact.gap_after, self.gaps.last_mut()) {
+            *last = gap.min(0.0);
+        }
     }
 
     /// The contacts of the last step.
     #[must_use]
     pub fn ids(&self) -> &[ContactId] {
         &self.ids
+    }
+
+    /// Gap of the spring of a contact with duration, m; `None` where it was not active.
+    pub(crate) fn gap(&self, id: ContactId) -> Option<f64> {
+        let at = self.ids.binary_search(&id).ok()?;
+        self.gaps.get(at).copied()
     }
 
     /// The impulse of a contact in the last step, N·s; `None` if it was not active.

@@ -1,6 +1,7 @@
 //! The memory and the contact solver of one worker.
 
-use crate::contacts::ContactSet;
+use crate::contacts::{ContactSet, Rule};
+use crate::laws::Laws;
 use crate::{Compliance, FactorError, Model, Weights};
 use teeter_contact::{ContactSolver, Outcome, ProblemError, Stop};
 use teeter_detect::Candidates;
@@ -40,6 +41,7 @@ pub struct Workspace<const D: usize> {
     pub contacts: ContactSet<D>,
     /// As long as the model's velocities.
     pub scratch: Vec<f64>,
+    laws: Laws<D>,
 }
 
 impl<const D: usize> std::fmt::Debug for Workspace<D> {
@@ -61,6 +63,7 @@ impl<const D: usize> Workspace<D> {
             candidates: Vec::with_capacity(contacts),
             contacts: ContactSet::with_capacity(contacts, model.size().row),
             scratch: vec![0.0; model.size().v],
+            laws: Laws::default(),
         }
     }
 
@@ -95,17 +98,37 @@ impl<const D: usize> Workspace<D> {
         self.candidates.iter().map(|candidate| -candidate.gap).fold(0.0, f64::max)
     }
 
-    /// Assembles and solves the problem of `contacts`, and adds W Jᵀ p to `v`, which becomes the velocity after the step.
+    /// Assembles and solves the problem of `contacts`, and adds W Jᵀ p to `v`, which becomes the velocity after the step. θ is
+    /// that of the step's mean velocity: by it a law knows the work of its impulses.
     ///
     /// # Errors
     /// If the contacts don't make a problem: a number is not finite, or a contact can't move.
-    pub fn solve_contacts(&mut self, model: &Model<D>, v: &mut [f64]) -> Result<Outcome, ProblemError> {
+    pub fn solve_contacts(&mut self, model: &Model<D>, theta: f64, v: &mut [f64]) -> Result<Outcome, ProblemError> {
+        self.assemble_contacts(model);
+        let outcome = self.solve_assembled(theta)?;
+        self.apply_impulses(model, v);
+        Ok(outcome)
+    }
+
+    /// H of `contacts`.
+    pub(crate) fn assemble_contacts(&mut self, model: &Model<D>) {
         self.contacts.assemble(model, &mut self.factors, &mut self.scratch);
+    }
+
+    /// Solves the problem of `contacts`, whose H is there, by their rules.
+    pub(crate) fn solve_assembled(&mut self, theta: f64) -> Result<Outcome, ProblemError> {
         let SolverSettings { tolerance, max_iterations } = self.settings;
+        let stop = Stop { tolerance, max_iterations, cancel: None };
+        if self.contacts.rules.iter().any(|rule| *rule != Rule::Shifted) {
+            return self.laws.solve(&mut self.contacts, theta, self.solver.as_mut(), &stop);
+        }
         let (problem, p) = self.contacts.problem()?;
-        let outcome = self.solver.solve(&problem, &Stop { tolerance, max_iterations, cancel: None }, p);
+        Ok(self.solver.solve(&problem, &stop, p))
+    }
+
+    /// Adds W Jᵀ p to `v`, and completes `contacts` with the velocities after the step.
+    pub(crate) fn apply_impulses(&mut self, model: &Model<D>, v: &mut [f64]) {
         self.contacts.add_impulses(model, &mut self.factors, &mut self.scratch, v);
         self.contacts.complete(model, v);
-        Ok(outcome)
     }
 }

@@ -136,13 +136,13 @@ impl Scheme<2> for SemiImplicitEuler {
             work.contacts.activate(model, &state.q, &work.candidates[i], &state.warm);
             let (before, free) =
                 (work.contacts.velocity(model, i, &state.v), work.contacts.velocity(model, i, &self.v));
-            work.contacts.pose(i, before, free);
+            work.contacts.pose(i, before, free, Vector2::zeros());
         }
         let outcome = if work.candidates.is_empty() {
             None
         } else {
             let t = state.t;
-            Some(work.solve_contacts(model, &mut self.v).map_err(|source| StepError::Problem { t, source })?)
+            Some(work.solve_contacts(model, 0.5, &mut self.v).map_err(|source| StepError::Problem { t, source })?)
         };
         let dq: Vec<f64> = self.v.iter().map(|v| h * v).collect();
         model.retract(&state.q.clone(), &dq, &mut state.q);

@@ -1,0 +1,403 @@
+//! Contact laws beyond the standard one, each brought to standard problems, 0 ≤ u_n ⊥ p_n ≥ 0 with Coulomb's friction, so
+//! that any contact solver serves (`docs/laws.md`).
+//!
+//! - **Poisson**: a problem of compression; then one of expansion, in which the normal impulses e p_C of compression
+//!   come back whatever else happens. Friction of an imposed normal impulse N is a contact of its own in the problem: its
+//!   normal part touches nothing and is made to be N, its tangential part is the real one.
+//! - **Energetic**: Newton's law with e scaled, for contacts that feel each other alike, by the largest f ∈ [0, 1] with
+//!   which their work U_θ·p is not positive: bisection.
+//! - **Springs**: Newton's method on the force law p = φ(U¹). Its tangent, U¹ + R p = U_k + R p_k with R = −1/φ', is a standard
+//!   contact whose H_nn is larger by R; scaling its normal direction keeps the problem's size what it was.
+
+use crate::Vector;
+use crate::contacts::{ContactSet, Rule, tangential};
+use crate::spring::SpringStep;
+use teeter_contact::{Block, ContactProblem, ContactSolver, Delassus, Outcome, ProblemError, Status, Stop};
+
+/// Whether a contact's approach is an impact that e sends back, not the approach that its free acceleration makes within a
+/// step: what ends a bounce, so that a resting contact doesn't hop.
+pub(crate) fn is_impact<const D: usize>(e: f64, u_before: &Vector<D>, u_free: &Vector<D>) -> bool {
+    let by_acceleration = (u_before[0] - u_free[0]).max(0.0);
+    -e * u_before[0] > by_acceleration
+}
+
+/// A contact of a problem to be solved on the way.
+#[derive(Clone, Copy, Debug)]
+struct Row<const D: usize> {
+    /// The contact of the set.
+    contact: usize,
+    kind: Kind,
+    /// Its velocity without the impulses of the problem, and shifted, m/s.
+    u: Vector<D>,
+    /// Its impulse, N·s.
+    p: Vector<D>,
+    /// Scale of its normal direction in the problem.
+    scale: f64,
+    /// H_nn in the problem.
+    normal: f64,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Kind {
+    Standard,
+    /// The friction of an imposed normal impulse.
+    Friction(f64),
+    /// A spring, at the velocity of its tangent.
+    Spring(SpringStep, f64),
+}
+
+/// Memory for these laws.
+#[derive(Debug, Default)]
+pub(crate) struct Laws<const D: usize> {
+    rows: Vec<Row<D>>,
+    blocks: Vec<Block<D>>,
+    q: Vec<Vector<D>>,
+    mu: Vec<f64>,
+    p: Vec<Vector<D>>,
+    base: Vec<Vector<D>>,
+    /// For each contact the first contact that it feels, through others or directly.
+    island: Vec<usize>,
+    /// Of each island, by its first contact: a range that holds the largest f.
+    range: Vec<[f64; 2]>,
+    /// The shifts that the scheme asked for.
+    shift: Vec<Vector<D>>,
+}
+
+/// Most tangents of the springs in a solve.
+const TANGENTS: u32 = 100;
+
+/// Springs whose impulses are this part of the largest off their law count as solved; rounding allows less where they are
+/// stiff, so where it no longer falls [`ROUNDED`] is enough.
+const ON_LAW: f64 = 1e-13;
+
+/// See [`ON_LAW`].
+const ROUNDED: f64 = 1e-9;
+
+/// Halvings of the range of f.
+const HALVINGS: u32 = 40;
+
+/// Work below this part of Σ‖U‖‖p‖ is rounding.
+const WORKLESS: f64 = 1e-14;
+
+impl<const D: usize> Laws<D> {
+    /// Solves the problem of the set's contacts by their rules, θ that of the step's mean velocity. The impulses stay in the
+    /// set.
+    pub(crate) fn solve(
+        &mut self,
+        set: &mut ContactSet<D>,
+        theta: f64,
+        solver: &mut dyn ContactSolver<D>,
+        stop: &Stop<'_>,
+    ) -> Result<Outcome, ProblemError> {
+        self.find_islands(set);
+        let mut outcome = self.pass(set, solver, stop)?;
+        let scaled = |set: &ContactSet<D>, i: usize| matches!(set.rules[i], Rule::Energetic) && set.shift[i][0] != 0.0;
+        if !(0..set.rules.len()).any(|i| scaled(set, i)) {
+            return Ok(outcome);
+        }
+        self.shift.clear();
+        self.shift.extend_from_slice(&set.shift);
+        self.range.clear();
+        self.range.resize(set.rules.len(), [0.0, 1.0]);
+        // An island that makes no energy with f = 1 keeps it.
+        let mut gains = false;
+        for first in 0..set.rules.len() {
+            if self.island[first] != first {
+                continue;
+            }
+            if self.makes_energy(set, first, theta)
+                && (0..set.rules.len()).any(|i| self.island[i] == first && scaled(set, i))
+            {
+                gains = true;
+            } else {
+                self.range[first] = [1.0, 1.0];
+            }
+        }
+        if !gains {
+            return Ok(outcome);
+        }
+        for halving in 0..=HALVINGS {
+            for i in 0..set.rules.len() {
+                let [low, high] = self.range[self.island[i]];
+                if matches!(set.rules[i], Rule::Energetic) && low < 1.0 {
+                    // At last the largest f that is known to make none.
+                    let f = if halving < HALVINGS { 0.5 * (low + high) } else { low };
+                    let mut shift = self.shift[i];
+                    shift[0] *= f;
+                    set.reshift(i, shift);
+                }
+            }
+            outcome = join(outcome, self.pass(set, solver, stop)?);
+            for first in (0..set.rules.len()).filter(|&i| self.island[i] == i) {
+                let [low, high] = self.range[first];
+                if low < 1.0 {
+                    let f = 0.5 * (low + high);
+                    self.range[first] = if self.makes_energy(set, first, theta) { [low, f] } else { [f, high] };
+                }
+            }
+        }
+        Ok(outcome)
+    }
+
+    /// Contacts that feel each other through H, directly or by others.
+    fn find_islands(&mut self, set: &ContactSet<D>) {
+        let n = set.rules.len();
+        self.island.clear();
+        self.island.extend(0..n);
+        let mut changed = true;
+        while changed {
+            changed = false;
+            for i in 0..n {
+                for j in 0..n {
+                    let first = self.island[i].min(self.island[j]);
+                    let couples = set.blocks[i * n + j] != Block::<D>::zeros();
+                    if couples && (self.island[i] != first || self.island[j] != first) {
+                        (self.island[i], self.island[j]) = (first, first);
+                        changed = true;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Whether the work U_θ·p of an island's contacts is positive beyond rounding.
+    fn makes_energy(&self, set: &ContactSet<D>, first: usize, theta: f64) -> bool {
+        let (mut work, mut size) = (0.0, 0.0);
+        for i in (0..set.rules.len()).filter(|&i| self.island[i] == first) {
+            let (before, after) = (set.contacts()[i].u_before, set.velocity_by_impulses(i));
+            let mean = after * theta + before * (1.0 - theta);
+            work += mean.dot(&set.p[i]);
+            size += (after.norm() + before.norm()) * set.p[i].norm();
+            if let Rule::Spring(spring) = set.rules[i] {
+                work += spring.spring.potential(spring.gap_after(after[0])) - spring.spring.potential(spring.gap);
+            }
+        }
+        work > WORKLESS * size
+    }
+
+    /// Compression, and expansion where an impact asks for it.
+    fn pass(
+        &mut self,
+        set: &mut ContactSet<D>,
+        solver: &mut dyn ContactSolver<D>,
+        stop: &Stop<'_>,
+    ) -> Result<Outcome, ProblemError> {
+        let n = set.rules.len();
+        self.base.clear();
+        self.base.resize(n, Vector::zeros());
+        self.rows.clear();
+        for i in 0..n {
+            self.rows.push(self.row(set, i, false));
+        }
+        let outcome = self.settle(set, solver, stop)?;
+        self.take(set);
+        if !(0..n).any(|i| self.expands(set, i).is_some()) {
+            return Ok(outcome);
+        }
+        for i in 0..n {
+            self.base[i] = match set.rules[i] {
+                Rule::Spring(_) => Vector::zeros(),
+                _ => set.p[i],
+            };
+            if let Some(e) = self.expands(set, i) {
+                self.base[i][0] += e * set.p[i][0];
+            }
+        }
+        self.rows.clear();
+        for i in 0..n {
+            let mut row = self.row(set, i, true);
+            if !matches!(set.rules[i], Rule::Spring(_)) {
+                row.p = Vector::zeros();
+            }
+            self.rows.push(row);
+        }
+        for i in 0..n {
+            if let Some(e) = self.expands(set, i).filter(|_| set.mu[i] > 0.0) {
+                let mut row = self.row(set, i, true);
+                row.kind = Kind::Friction(e * set.p[i][0]);
+                row.p = Vector::zeros();
+                self.rows.push(row);
+            }
+        }
+        let expansion = self.settle(set, solver, stop)?;
+        self.take(set);
+        Ok(join(outcome, expansion))
+    }
+
+    /// The part e of its impulse of compression that a contact gives back: it obeys Poisson's law, was compressed, and feels
+    /// an impact, its own or another's.
+    fn expands(&self, set: &ContactSet<D>, i: usize) -> Option<f64> {
+        let Rule::Poisson { e, .. } = set.rules[i] else { return None };
+        let impact = |j: usize| is_impact(1.0, &set.contacts()[j].u_before, &set.u_free[j]);
+        let felt = || (0..set.rules.len()).any(|j| self.island[j] == self.island[i] && impact(j));
+        (e > 0.0 && set.p[i][0] > 0.0 && felt()).then_some(e)
+    }
+
+    /// The contact of the problem for contact `i` on top of the base impulses.
+    fn row(&self, set: &ContactSet<D>, i: usize, expansion: bool) -> Row<D> {
+        let n = set.rules.len();
+        let blocks = &set.blocks[i * n..(i + 1) * n];
+        let mut u = blocks.iter().zip(&self.base).fold(set.u_free[i], |u, (block, p)| u + block * p);
+        u += set.shift[i];
+        if let (Rule::Poisson { tangential: e, .. }, true) = (set.rules[i], expansion) {
+            u += tangential(&set.contacts()[i].u_before) * e;
+        }
+        let kind = match set.rules[i] {
+            Rule::Spring(step) => Kind::Spring(step, u[0].min(set.u_free[i][0])),
+            _ => Kind::Standard,
+        };
+        Row { contact: i, kind, u, p: set.p[i], scale: 1.0, normal: blocks[i][(0, 0)] }
+    }
+
+    /// Solves the problem of the rows, springs on their law.
+    fn settle(
+        &mut self,
+        set: &ContactSet<D>,
+        solver: &mut dyn ContactSolver<D>,
+        stop: &Stop<'_>,
+    ) -> Result<Outcome, ProblemError> {
+        let mut sum: Option<Outcome> = None;
+        let mut last = f64::INFINITY;
+        for tangent in 1..=TANGENTS {
+            let outcome = self.solve_rows(set, solver, stop)?;
+            let outcome = sum.map_or(outcome, |sum| with_iterations(outcome, sum.iterations + outcome.iterations));
+            sum = Some(outcome);
+            let off = self.retouch(set);
+            let settled = off <= ON_LAW || (tangent > 3 && off >= last && off <= ROUNDED);
+            if settled || !outcome.converged() {
+                return Ok(outcome);
+            }
+            last = off;
+        }
+        // Every problem was solved, but the springs didn't come to rest.
+        let unsettled = |mut outcome: Outcome| {
+            outcome.status = Status::MaxIterations;
+            outcome
+        };
+        match sum {
+            Some(outcome) => Ok(unsettled(outcome)),
+            None => self.solve_rows(set, solver, stop).map(unsettled),
+        }
+    }
+
+    /// Moves the springs' tangents to where the last problem ended. Returns how far their impulses are off the law, relative
+    /// to the largest impulse.
+    fn retouch(&mut self, set: &ContactSet<D>) -> f64 {
+        let (mut off, mut largest) = (0.0_f64, f64::MIN_POSITIVE);
+        for r in 0..self.rows.len() {
+            largest = largest.max(self.rows[r].p[0]);
+            let Kind::Spring(step, _) = self.rows[r].kind else { continue };
+            let u = self.normal_velocity(set, r);
+            off = off.max((self.rows[r].p[0] - step.impulse(u).0).abs());
+            self.rows[r].kind = Kind::Spring(step, u);
+        }
+        off / largest
+    }
+
+    /// The true normal velocity of a row's contact after the problem.
+    fn normal_velocity(&self, set: &ContactSet<D>, r: usize) -> f64 {
+        let n = set.rules.len();
+        let row = &self.rows[r];
+        let others = self.rows.iter().map(|other| {
+            let mut p = other.p;
+            if matches!(other.kind, Kind::Friction(_)) {
+                p[0] = 0.0; // it is in the base
+            }
+            (set.blocks[row.contact * n + other.contact] * p)[0]
+        });
+        row.u[0] + others.sum::<f64>()
+    }
+
+    /// Poses and solves the standard problem of the rows.
+    fn solve_rows(
+        &mut self,
+        set: &ContactSet<D>,
+        solver: &mut dyn ContactSolver<D>,
+        stop: &Stop<'_>,
+    ) -> Result<Outcome, ProblemError> {
+        let n = set.rules.len();
+        self.q.clear();
+        self.mu.clear();
+        self.p.clear();
+        for row in &mut self.rows {
+            let own = &set.blocks[row.contact * n + row.contact];
+            let (mut q, mut mu) = (row.u, set.mu[row.contact]);
+            match row.kind {
+                Kind::Standard => {}
+                Kind::Friction(normal) => {
+                    // Any positive number does; one of the size of the others keeps the problem's scale.
+                    (row.scale, row.normal) = (0.0, own[(D - 1, D - 1)]);
+                    q[0] = -row.normal * normal;
+                }
+                Kind::Spring(step, at) => {
+                    let (impulse, slope) = step.impulse(at);
+                    // Where it doesn't touch, hardly anything: as soft as it takes to be found if others push it in.
+                    let (softness, impulse, at) = if slope < 0.0 {
+                        (-slope.recip(), impulse, at)
+                    } else {
+                        (UNTOUCHED * own[(0, 0)], 0.0, step.touching())
+                    };
+                    row.scale = (own[(0, 0)] / (own[(0, 0)] + softness)).sqrt();
+                    row.normal = own[(0, 0)];
+                    q[0] = row.scale * (row.u[0] - at - softness * impulse);
+                    mu *= row.scale;
+                }
+            }
+            let mut p = row.p;
+            if row.scale > 0.0 {
+                p[0] /= row.scale;
+            }
+            self.q.push(q);
+            self.mu.push(mu);
+            self.p.push(p);
+        }
+        self.blocks.clear();
+        for (r, row) in self.rows.iter().enumerate() {
+            for (c, column) in self.rows.iter().enumerate() {
+                let mut block = set.blocks[row.contact * n + column.contact];
+                block.row_mut(0).scale_mut(row.scale);
+                block.column_mut(0).scale_mut(column.scale);
+                if r == c {
+                    block[(0, 0)] = row.normal;
+                }
+                self.blocks.push(block);
+            }
+        }
+        let problem = ContactProblem::new(Delassus::Dense(&self.blocks), &self.q, &self.mu)?;
+        let outcome = solver.solve(&problem, stop, &mut self.p);
+        for (row, p) in self.rows.iter_mut().zip(&self.p) {
+            row.p = *p;
+            if row.scale > 0.0 {
+                row.p[0] *= row.scale;
+            }
+        }
+        Ok(outcome)
+    }
+
+    /// Brings base and rows together as the impulses of the set.
+    fn take(&mut self, set: &mut ContactSet<D>) {
+        set.p.copy_from_slice(&self.base);
+        for row in &self.rows {
+            let mut p = row.p;
+            if matches!(row.kind, Kind::Friction(_)) {
+                p[0] = 0.0;
+            }
+            set.p[row.contact] += p;
+        }
+    }
+}
+
+/// A spring that isn't touched is softer than its contact by this factor.
+const UNTOUCHED: f64 = 1e8;
+
+/// The later of two outcomes with the iterations of both; an unsolved one is not forgotten.
+fn join(first: Outcome, second: Outcome) -> Outcome {
+    let iterations = first.iterations + second.iterations;
+    let kept = if first.converged() { second } else { first };
+    with_iterations(kept, iterations)
+}
+
+fn with_iterations(mut outcome: Outcome, iterations: u32) -> Outcome {
+    outcome.iterations = iterations;
+    outcome
+}

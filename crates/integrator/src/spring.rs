@@ -1,0 +1,279 @@
+//! The normal force of a contact with duration over one step, so that its energy account closes at any stiffness.
+//!
+//! The spring's potential is V(g) = k ⟨−g⟩ⁿ⁺¹/(n+1), with n = 1 for Kelvin–Voigt. Over a step that takes the gap from g⁰ to
+//! g¹ = g⁰ + h U_θ the mean force is the discrete gradient
+//!
+//! ```text
+//! F = −(V(g¹) − V(g⁰)) / (g¹ − g⁰)
+//! ```
+//!
+//! so that the spring's part of the work, h F U_θ, is exactly −ΔV (Gonzalez 1996, doi 10.1007/BF02440162). Damping takes from
+//! it, and the sum never pulls:
+//!
+//! ```text
+//! Hunt–Crossley   p = h F ⟨1 − d U_θ⟩
+//! Kelvin–Voigt    p = h ⟨F + c (⟨−g¹⟩ − ⟨−g⁰⟩)/h⟩
+//! ```
+//!
+//! U_θ p + ΔV ≤ 0 in both, whatever h and k. As a function of U¹ the impulse falls, and is convex: Newton's method from the
+//! side of compression converges.
+
+use crate::{ImpactLaw, Model, WarmStart, Workspace};
+use teeter_detect::{Candidate, ContactId};
+
+/// A contact's spring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Spring {
+    stiffness: f64,
+    damping: f64,
+    exponent: f64,
+    /// Whether damping goes with the force of the spring (Hunt–Crossley) or with the rate of penetration (Kelvin–Voigt).
+    proportional: bool,
+}
+
+impl ImpactLaw {
+    /// The spring of a law with duration; `None` for impacts of an instant.
+    pub(crate) fn spring(&self) -> Option<Spring> {
+        match *self {
+            Self::KelvinVoigt { stiffness, damping } => {
+                Some(Spring { stiffness, damping, exponent: 1.0, proportional: false })
+            }
+            Self::HuntCrossley { stiffness, damping, exponent } => {
+                Some(Spring { stiffness, damping, exponent, proportional: true })
+            }
+            Self::Newton | Self::Poisson | Self::Energetic => None,
+        }
+    }
+}
+
+impl Spring {
+    fn force(&self, depth: f64) -> f64 {
+        // powf(x, 1) is not x on every machine, and the linear spring is the usual one.
+        if self.exponent == 1.0 { self.stiffness * depth } else { self.stiffness * depth.powf(self.exponent) }
+    }
+
+    /// The energy stored at a gap, J.
+    pub(crate) fn potential(&self, gap: f64) -> f64 {
+        let depth = -gap;
+        if depth > 0.0 { self.force(depth) * depth / (self.exponent + 1.0) } else { 0.0 }
+    }
+
+    /// The discrete gradient between two depths, N, and its slope in the second.
+    fn mean_force(&self, before: f64, after: f64) -> (f64, f64) {
+        let span = after - before;
+        if before <= 0.0 && after <= 0.0 {
+            return (0.0, 0.0);
+        }
+        if before < 0.0 {
+            let mean = self.potential(-after) / span;
+            return (mean, (self.force(after) - mean) / span);
+        }
+        if after < 0.0 {
+            let mean = self.potential(-before) / -span;
+            return (mean, mean / -span);
+        }
+        let (deep, shallow) = (before.max(after), before.min(after));
+        // The mean of k δⁿ between the two: k aⁿ ((1+r)ⁿ⁺¹ − 1)/((n+1) r), in a form that keeps its digits for all r.
+        let r = (shallow - deep) / deep;
+        let order = self.exponent + 1.0;
+        let ratio = if r == 0.0 { 1.0 } else { (order * r.ln_1p()).exp_m1() / (order * r) };
+        let mean = self.force(deep) * ratio;
+        // Where the two are near each other their quotient would be rounding: its limit is half the tangent's slope.
+        let slope = if r.abs() < 1e-5 {
+            0.5 * self.exponent * self.force(deep) / deep
+        } else {
+            (self.force(after) - mean) / span
+        };
+        (mean, slope)
+    }
+}
+
+/// A spring over a step, with what doesn't depend on the velocity after it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SpringStep {
+    pub(crate) spring: Spring,
+    /// Gap at the start of the step, m.
+    pub(crate) gap: f64,
+    /// Normal velocity at the start of the step, m/s.
+    pub(crate) u_before: f64,
+    /// Step size, s.
+    pub(crate) h: f64,
+    /// θ of the step's mean velocity.
+    pub(crate) theta: f64,
+}
+
+impl SpringStep {
+    fn mean_velocity(&self, u_after: f64) -> f64 {
+        self.theta * u_after + (1.0 - self.theta) * self.u_before
+    }
+
+    /// g¹ for a velocity after the step, m.
+    pub(crate) fn gap_after(&self, u_after: f64) -> f64 {
+        self.gap + self.h * self.mean_velocity(u_after)
+    }
+
+    /// The velocity after the step with which it ends at zero gap, m/s.
+    pub(crate) fn touching(&self) -> f64 {
+        (-self.gap / self.h - (1.0 - self.theta) * self.u_before) / self.theta
+    }
+
+    /// The impulse for a velocity after the step, N·s, and its slope in that velocity, kg; neither is of the wrong sign.
+    pub(crate) fn impulse(&self, u_after: f64) -> (f64, f64) {
+        let Self { spring, gap, h, theta, .. } = *self;
+        let mean = self.mean_velocity(u_after);
+        let (before, after) = (-gap, -self.gap_after(u_after));
+        let (force, slope) = spring.mean_force(before, after);
+        let sink = -h * theta;
+        if spring.proportional {
+            let damped = 1.0 - spring.damping * mean;
+            if damped <= 0.0 {
+                return (0.0, 0.0);
+            }
+            return (h * force * damped, h * (slope * sink * damped - force * spring.damping * theta));
+        }
+        let rate = (after.max(0.0) - before.max(0.0)) / h;
+        let rate_slope = if after > 0.0 { sink / h } else { 0.0 };
+        let sum = force + spring.damping * rate;
+        if sum <= 0.0 || (before <= 0.0 && after <= 0.0) {
+            return (0.0, 0.0);
+        }
+        (h * sum, h * (slope * sink + spring.damping * rate_slope))
+    }
+}
+
+/// The contacts with duration that a step may touch.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Springs {
+    /// Those that the free motion brings into contact, with their gaps at the start of the step, in order of identity.
+    touched: Vec<(ContactId, f64)>,
+}
+
+impl Springs {
+    /// Finds the contacts that the free motion from `q` to `q_free` brings into contact.
+    pub(crate) fn look<const D: usize>(
+        &mut self,
+        model: &Model<D>,
+        q: &[f64],
+        q_free: &[f64],
+        work: &mut Workspace<D>,
+    ) {
+        work.detect(model, q_free, 0.0);
+        let springs = work.candidates.iter().filter(|c| model.law(c.id.pair()).impact.spring().is_some());
+        self.touched.clear();
+        self.touched.extend(springs.map(|candidate| (candidate.id, 0.0)));
+        if self.touched.is_empty() {
+            return;
+        }
+        work.detect(model, q, f64::INFINITY);
+        for (id, gap) in &mut self.touched {
+            if let Ok(at) = work.candidates.binary_search_by_key(id, |candidate| candidate.id) {
+                *gap = work.candidates[at].gap;
+            }
+        }
+    }
+
+    /// Whether a candidate at the predicted position is a contact of the step.
+    pub(crate) fn admit<const D: usize>(
+        &self,
+        spring: bool,
+        candidate: &Candidate<D>,
+        warm: &WarmStart,
+        gap_tolerance: f64,
+    ) -> bool {
+        if spring {
+            warm.gap(candidate.id).is_some_and(|gap| gap < 0.0) || self.touches(candidate.id).is_some()
+        } else {
+            candidate.gap <= gap_tolerance
+        }
+    }
+
+    fn touches(&self, id: ContactId) -> Option<f64> {
+        let at = self.touched.binary_search_by_key(&id, |(id, _)| *id).ok()?;
+        Some(self.touched[at].1)
+    }
+
+    /// The gap that a contact's spring starts the step with. One that was not touched before holds no energy, so it starts
+    /// from zero at the deepest, wherever its point may be.
+    pub(crate) fn gap(&self, id: ContactId, warm: &WarmStart) -> f64 {
+        match warm.gap(id) {
+            Some(gap) if gap < 0.0 => gap,
+            _ => self.touches(id).unwrap_or(0.0).max(0.0),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn laws() -> Vec<Spring> {
+        let mut laws = Vec::new();
+        for stiffness in [1e4, 1e12] {
+            for damping in [0.0, 0.3, 40.0] {
+                laws.extend(ImpactLaw::KelvinVoigt { stiffness, damping }.spring());
+                for exponent in [1.0, 1.5, 2.0] {
+                    laws.extend(ImpactLaw::HuntCrossley { stiffness, damping, exponent }.spring());
+                }
+            }
+        }
+        laws
+    }
+
+    fn steps() -> impl Iterator<Item = (SpringStep, f64)> {
+        let gaps = [-1e-3, -1e-6, -1e-12, 0.0, 1e-9, 1e-4];
+        let speeds = [-2.0, -1e-3, -1e-9, 0.0, 1e-6, 0.5];
+        laws().into_iter().flat_map(move |spring| {
+            gaps.into_iter().flat_map(move |gap| {
+                speeds.into_iter().flat_map(move |u_before| {
+                    speeds.into_iter().flat_map(move |u_after| {
+                        [1e-6, 1e-3].into_iter().flat_map(move |h| {
+                            [0.5, 1.0].map(|theta| (SpringStep { spring, gap, u_before, h, theta }, u_after))
+                        })
+                    })
+                })
+            })
+        })
+    }
+
+    #[test]
+    fn the_work_of_a_step_is_what_leaves_the_spring_less_a_loss() {
+        for (step, u) in steps() {
+            let (p, slope) = step.impulse(u);
+            assert!(p >= 0.0 && slope <= 0.0 && p.is_finite() && slope.is_finite(), "{step:?} {u} {p} {slope}");
+            let (v0, v1) = (step.spring.potential(step.gap), step.spring.potential(step.gap_after(u)));
+            let work = p * step.mean_velocity(u) + v1 - v0;
+            assert!(work <= 1e-11 * (v0 + v1) + 1e-300, "{step:?} {u} {work}");
+            if step.spring.damping == 0.0 {
+                assert!(work.abs() <= 1e-11 * (v0 + v1), "{step:?} {u} {work}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_slope_is_that_of_the_impulse() {
+        for (step, u) in steps().filter(|(_, u)| u.abs() > 1e-3) {
+            let d = 1e-6 * u.abs();
+            let (low, high) = (step.impulse(u - d), step.impulse(u + d));
+            let (p, slope) = step.impulse(u);
+            let difference = (high.0 - low.0) / (2.0 * d);
+            // Away from the ends of contact, where it has a kink.
+            if low.1 != 0.0 && high.1 != 0.0 && (low.1 / high.1 - 1.0).abs() < 1e-4 {
+                assert!(
+                    (difference - slope).abs() <= 1e-4 * slope.abs() + 1e-9 * p / d,
+                    "{step:?} {u}: {difference} {slope}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn the_impulse_is_convex_and_falls() {
+        for (step, _) in steps() {
+            let p = |k: i32| step.impulse(f64::from(k) * 0.01).0;
+            for k in -200..200 {
+                let bend = p(k - 1) - 2.0 * p(k) + p(k + 1);
+                assert!(p(k) <= p(k - 1) && bend >= -1e-9 * p(k - 1), "{step:?} {k} {bend}");
+            }
+        }
+    }
+}

@@ -1,0 +1,242 @@
+//! The θ step that the schemes share: free velocities, the end of the step, the account of its forces.
+
+use crate::contacts::tangential;
+use crate::{Model, Size, State, StepEnergy, StepError, StepReport, Subsystem, Weights, Workspace};
+use teeter_contact::Outcome;
+
+/// Vectors of a step: they carry nothing from one to the next.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ThetaStep {
+    /// Coordinates at which forces or gaps are taken; at last q¹.
+    pub(crate) q_at: Vec<f64>,
+    /// v_free; once the impulses are known, v¹.
+    pub(crate) v_end: Vec<f64>,
+    /// v_θ.
+    v_mean: Vec<f64>,
+    dq: Vec<f64>,
+    dv: Vec<f64>,
+    /// P_θ.
+    load: Vec<f64>,
+    product: Vec<f64>,
+    /// h times the forces at the start of the step, of parts with prescribed velocities.
+    impulse: Vec<f64>,
+}
+
+/// The combination whose inverse is W.
+pub(crate) fn weights(h: f64, theta: f64) -> Weights {
+    let ht = h * theta;
+    Weights { mass: 1.0, damping: ht, stiffness: ht * ht }
+}
+
+impl ThetaStep {
+    /// Takes the sizes of a model; allocates nothing where they are the same.
+    pub(crate) fn resize(&mut self, size: Size) {
+        self.q_at.resize(size.q, 0.0);
+        let Self { v_end, v_mean, dq, dv, load, product, impulse, .. } = self;
+        for v in [v_end, v_mean, dq, dv, load, product, impulse] {
+            v.resize(size.v, 0.0);
+        }
+    }
+
+    /// Leaves q ⊕ τ v in `q_at`.
+    pub(crate) fn predict<const D: usize>(&mut self, model: &Model<D>, q: &[f64], v: &[f64], tau: f64) {
+        for (dq, v) in self.dq.iter_mut().zip(v) {
+            *dq = tau * v;
+        }
+        model.retract(q, &self.dq, &mut self.q_at);
+    }
+
+    /// Leaves v_free and P_θ. Prescribed velocities are those of the end of the step; what their change does to the others
+    /// goes to the right-hand side.
+    pub(crate) fn free_velocity<const D: usize>(
+        &mut self,
+        model: &Model<D>,
+        state: &State,
+        work: &mut Workspace<D>,
+        theta: f64,
+        t_end: f64,
+    ) {
+        let h = state.dt;
+        self.predict(model, &state.q, &state.v, h * theta);
+        for (part, factor) in model.parts().iter().zip(&mut work.factors) {
+            let (q, v) = (part.q.clone(), part.v.clone());
+            if v.is_empty() {
+                continue;
+            }
+            let dv = &mut self.dv[v.clone()];
+            let v_start = &state.v[v.clone()];
+            dv.fill(0.0);
+            part.system.internal_force(&self.q_at[q.clone()], v_start, dv);
+            if part.system.is_loaded() {
+                let (load, scratch) = (&mut self.load[v.clone()], &mut work.scratch[..v.len()]);
+                mean_load(part.system.as_ref(), theta, [state.t, t_end], load, scratch);
+                add(dv, load);
+            }
+            dv.iter_mut().for_each(|f| *f *= h);
+            let v_end = &mut self.v_end[v.clone()];
+            if part.system.driven().is_empty() {
+                factor.solve(dv);
+                for ((free, v0), dv) in v_end.iter_mut().zip(v_start).zip(dv.iter()) {
+                    *free = v0 + dv;
+                }
+                continue;
+            }
+            self.impulse[v.clone()].copy_from_slice(dv);
+            v_end.copy_from_slice(v_start);
+            part.system.drive(t_end, v_end);
+            let (jump, pull) = (&mut work.scratch[..v.len()], &mut self.product[v]);
+            for ((jump, v1), v0) in jump.iter_mut().zip(v_end.iter()).zip(v_start) {
+                *jump = v1 - v0;
+            }
+            pull.fill(0.0);
+            part.system.apply(weights(h, theta), &state.q[q], jump, pull);
+            dv.iter_mut().zip(pull.iter()).for_each(|(dv, pull)| *dv -= pull);
+            factor.solve(dv);
+            add(v_end, dv);
+        }
+    }
+
+    /// Leaves v_θ, and q¹ in `q_at`.
+    pub(crate) fn close<const D: usize>(
+        &mut self,
+        model: &Model<D>,
+        state: &State,
+        theta: f64,
+    ) -> Result<(), StepError> {
+        let h = state.dt;
+        let Self { q_at, v_end, v_mean, dq, .. } = self;
+        for (((mean, dq), v1), v0) in v_mean.iter_mut().zip(dq.iter_mut()).zip(v_end.iter()).zip(&state.v) {
+            *mean = theta * v1 + (1.0 - theta) * v0;
+            *dq = h * *mean;
+        }
+        model.retract(&state.q, dq, q_at);
+        if all_finite(v_end) && all_finite(q_at) { Ok(()) } else { Err(StepError::Diverged { t: state.t }) }
+    }
+
+    /// The terms of the energy identity that aren't contact: loads, drives, damping, the scheme itself. The impulses of the
+    /// step's contacts are in `work`.
+    pub(crate) fn work_of_forces<const D: usize>(
+        &mut self,
+        model: &Model<D>,
+        state: &State,
+        work: &mut Workspace<D>,
+        theta: f64,
+    ) -> StepEnergy {
+        let h = state.dt;
+        let Self { v_end, v_mean, dq, dv, load, product, impulse, .. } = self;
+        let mut energy = StepEnergy::default();
+        let driven = |part: &crate::Part<D>| !part.system.driven().is_empty();
+        if theta != 0.5 || model.parts().iter().any(driven) {
+            for ((dv, v1), v0) in dv.iter_mut().zip(v_end.iter()).zip(&state.v) {
+                *dv = v1 - v0;
+            }
+        }
+        for (index, part) in model.parts().iter().enumerate() {
+            let (q, v) = (&state.q[part.q.clone()], part.v.clone());
+            let product = &mut product[v.clone()];
+            let mut form = |w: Weights, x: &[f64]| {
+                product.fill(0.0);
+                part.system.apply(w, q, x, product);
+                dot(x, product)
+            };
+            if part.system.is_damped() {
+                let c = Weights { damping: 1.0, ..Weights::default() };
+                energy.viscous -= h * form(c, &v_mean[v.clone()]);
+            }
+            if theta != 0.5 {
+                let m = Weights { mass: 1.0, ..Weights::default() };
+                let k = Weights { stiffness: 1.0, ..Weights::default() };
+                energy.numerical -= (theta - 0.5) * (form(m, &dv[v.clone()]) + form(k, &dq[v.clone()]));
+            }
+            if part.system.is_loaded() {
+                energy.external += h * dot(&v_mean[v.clone()], &load[v.clone()]);
+            }
+            if driven(part) {
+                // What the drives give: momentum gained less the impulses of all other forces.
+                product.fill(0.0);
+                part.system.apply(weights(h, theta), q, &dv[v.clone()], product);
+                let pushed = &mut work.scratch[..v.len()];
+                pushed.fill(0.0);
+                work.contacts.add_generalised_impulse(index, pushed);
+                let (impulse, mean) = (&impulse[v.clone()], &v_mean[v]);
+                for &k in part.system.driven() {
+                    energy.external += mean[k] * (product[k] - impulse[k] - pushed[k]);
+                }
+            }
+        }
+        energy
+    }
+
+    /// Enters the work of the contacts in `work`, moves the state to the end of the step and tells what happened. The contacts
+    /// to be remembered are in the state's warm start already.
+    #[allow(clippy::too_many_arguments)] // one call a scheme
+    pub(crate) fn finish<'w, const D: usize>(
+        &self,
+        model: &Model<D>,
+        state: &mut State,
+        work: &'w mut Workspace<D>,
+        theta: f64,
+        t_end: f64,
+        outcome: Option<Outcome>,
+        mut energy: StepEnergy,
+    ) -> StepReport<'w, D> {
+        let penetration = work.penetration(model, &self.q_at);
+        let mut stored = 0.0;
+        for contact in work.contacts.contacts() {
+            let u_theta = contact.u_after * theta + contact.u_before * (1.0 - theta);
+            energy.contact += u_theta[0] * contact.p[0];
+            energy.friction += tangential(&u_theta).dot(&contact.p);
+            let slip = tangential(&contact.u_after).dot(&contact.p);
+            state.ledger.largest_tangential_work = state.ledger.largest_tangential_work.max(slip);
+            if let (Some(gap), Some(spring)) = (contact.gap_after, model.law(contact.id.pair()).impact.spring()) {
+                stored += spring.potential(gap);
+            }
+        }
+        energy.contact += stored - state.ledger.stored;
+        state.ledger.stored = stored;
+
+        state.q.copy_from_slice(&self.q_at);
+        state.v.copy_from_slice(&self.v_end);
+        let t_start = std::mem::replace(&mut state.t, t_end);
+        state.step += 1;
+        let mut now = model.energy(&state.q, &state.v);
+        now.elastic += stored;
+        state.ledger.enter(now, &mut energy);
+        let contacts = work.contacts.contacts();
+        state.tally.count(outcome.as_ref(), contacts.len(), penetration);
+        StepReport { step: state.step, t_start, t_end, contacts, outcome, penetration, energy }
+    }
+}
+
+/// θP¹ + (1−θ)P⁰ into `load`.
+fn mean_load<const D: usize>(
+    system: &dyn Subsystem<D>,
+    theta: f64,
+    t: [f64; 2],
+    load: &mut [f64],
+    scratch: &mut [f64],
+) {
+    load.fill(0.0);
+    for (t, weight) in [(t[0], 1.0 - theta), (t[1], theta)] {
+        scratch.fill(0.0);
+        system.load(t, scratch);
+        for (sum, p) in load.iter_mut().zip(scratch.iter()) {
+            *sum += weight * p;
+        }
+    }
+}
+
+fn add(x: &mut [f64], y: &[f64]) {
+    for (x, y) in x.iter_mut().zip(y) {
+        *x += y;
+    }
+}
+
+fn dot(x: &[f64], y: &[f64]) -> f64 {
+    x.iter().zip(y).map(|(x, y)| x * y).sum()
+}
+
+fn all_finite(x: &[f64]) -> bool {
+    // Without an early exit, so that it takes several numbers at once.
+    x.iter().fold(true, |finite, x| finite & x.is_finite())
+}
