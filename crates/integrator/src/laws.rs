@@ -391,7 +391,7 @@ impl<const D: usize> Laws<D> {
 const UNTOUCHED: f64 = 1e8;
 
 /// The later of two outcomes with the iterations of both; an unsolved one is not forgotten.
-fn join(first: Outcome, second: Outcome) -> Outcome {
+pub(crate) fn join(first: Outcome, second: Outcome) -> Outcome {
     let iterations = first.iterations + second.iterations;
     let kept = if first.converged() { second } else { first };
     with_iterations(kept, iterations)

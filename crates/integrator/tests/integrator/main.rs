@@ -3,6 +3,7 @@
 
 mod allocations;
 mod beams;
+mod closed;
 mod own_parts;
 mod reference;
 mod scenes;
