@@ -1,13 +1,14 @@
 //! Contact laws beyond the standard one, each brought to standard problems, 0 ≤ u_n ⊥ p_n ≥ 0 with Coulomb's friction, so
 //! that any contact solver serves (`docs/laws.md`).
 //!
-//! - **Poisson**: a problem of compression; then one of expansion, in which the normal impulses e p_C of compression
-//!   come back whatever else happens. Friction of an imposed normal impulse N is a contact of its own in the problem: its
-//!   normal part touches nothing and is made to be N, its tangential part is the real one.
+//! - **Poisson**: a problem of compression; then one of expansion, in which a contact parts under the normal impulse e p_C,
+//!   or stays under a larger one. Friction of an imposed normal impulse N is a standard contact too: its normal part touches
+//!   nothing and is made to be N, its tangential part is the real one.
 //! - **Energetic**: Newton's law with e scaled, for contacts that feel each other alike, by the largest f ∈ [0, 1] with
 //!   which their work U_θ·p is not positive: bisection.
 //! - **Springs**: Newton's method on the force law p = φ(U¹). Its tangent, U¹ + R p = U_k + R p_k with R = −1/φ', is a standard
-//!   contact whose H_nn is larger by R; scaling its normal direction keeps the problem's size what it was.
+//!   contact whose H_nn is larger by R; scaling its normal direction keeps the problem's size what it was. Its friction never
+//!   gives energy.
 
 use crate::Vector;
 use crate::contacts::{ContactSet, Rule, tangential};
@@ -55,10 +56,18 @@ pub(crate) struct Laws<const D: usize> {
     mu: Vec<f64>,
     p: Vec<Vector<D>>,
     base: Vec<Vector<D>>,
+    /// Impulses of compression.
+    compression: Vec<Vector<D>>,
+    /// Normal impulses that expansion gives back at the least.
+    given: Vec<f64>,
+    /// Which contacts part in the expansion tried.
+    parts: Vec<bool>,
     /// For each contact the first contact that it feels, through others or directly.
     island: Vec<usize>,
     /// Of each island, by its first contact: a range that holds the largest f.
     range: Vec<[f64; 2]>,
+    /// Which springs' friction can't give energy.
+    guarded: Vec<bool>,
     /// The shifts that the scheme asked for.
     shift: Vec<Vector<D>>,
 }
@@ -79,6 +88,10 @@ const HALVINGS: u32 = 40;
 /// Work below this part of Σ‖U‖‖p‖ is rounding.
 const WORKLESS: f64 = 1e-14;
 
+/// Velocities and impulses of expansion that are wrong by this part of the largest velocity before and of the impulse
+/// itself decide nothing.
+const UNDECIDED: f64 = 1e-11;
+
 impl<const D: usize> Laws<D> {
     /// Solves the problem of the set's contacts by their rules, θ that of the step's mean velocity. The impulses stay in the
     /// set.
@@ -90,7 +103,7 @@ impl<const D: usize> Laws<D> {
         stop: &Stop<'_>,
     ) -> Result<Outcome, ProblemError> {
         self.find_islands(set);
-        let mut outcome = self.pass(set, solver, stop)?;
+        let mut outcome = self.guarded_pass(set, theta, solver, stop)?;
         let scaled = |set: &ContactSet<D>, i: usize| matches!(set.rules[i], Rule::Energetic) && set.shift[i][0] != 0.0;
         if !(0..set.rules.len()).any(|i| scaled(set, i)) {
             return Ok(outcome);
@@ -127,7 +140,7 @@ impl<const D: usize> Laws<D> {
                     set.reshift(i, shift);
                 }
             }
-            outcome = join(outcome, self.pass(set, solver, stop)?);
+            outcome = join(outcome, self.guarded_pass(set, theta, solver, stop)?);
             for first in (0..set.rules.len()).filter(|&i| self.island[i] == i) {
                 let [low, high] = self.range[first];
                 if low < 1.0 {
@@ -175,6 +188,40 @@ impl<const D: usize> Laws<D> {
         work > WORKLESS * size
     }
 
+    /// A pass in which friction of springs doesn't give energy: where U_θ,t·p_t > 0, Coulomb's law is made to hold for U_θ,t.
+    fn guarded_pass(
+        &mut self,
+        set: &mut ContactSet<D>,
+        theta: f64,
+        solver: &mut dyn ContactSolver<D>,
+        stop: &Stop<'_>,
+    ) -> Result<Outcome, ProblemError> {
+        let mut outcome = self.pass(set, solver, stop)?;
+        let n = set.rules.len();
+        self.guarded.clear();
+        self.guarded.resize(n, false);
+        // Each round guards one contact more at least.
+        loop {
+            let mut found = false;
+            for i in 0..n {
+                let Rule::Spring(step) = set.rules[i] else { continue };
+                let (before, after) =
+                    (tangential(&set.contacts()[i].u_before), tangential(&set.velocity_by_impulses(i)));
+                let p = tangential(&set.p[i]);
+                let gain = (after * theta + before * (1.0 - theta)).dot(&p);
+                if !self.guarded[i] && gain > WORKLESS * (after.norm() + before.norm()) * p.norm() {
+                    set.reshift(i, before * ((1.0 - step.theta) / step.theta));
+                    self.guarded[i] = true;
+                    found = true;
+                }
+            }
+            if !found {
+                return Ok(outcome);
+            }
+            outcome = join(outcome, self.pass(set, solver, stop)?);
+        }
+    }
+
     /// Compression, and expansion where an impact asks for it.
     fn pass(
         &mut self,
@@ -191,16 +238,77 @@ impl<const D: usize> Laws<D> {
         }
         let outcome = self.settle(set, solver, stop)?;
         self.take(set);
-        if !(0..n).any(|i| self.expands(set, i).is_some()) {
+        self.given.clear();
+        for i in 0..n {
+            let given = self.expands(set, i).map_or(0.0, |e| e * set.p[i][0]);
+            self.given.push(given);
+        }
+        if self.given.iter().all(|given| *given == 0.0) {
             return Ok(outcome);
         }
+        self.compression.clear();
+        self.compression.extend_from_slice(&set.p);
+        Ok(join(outcome, self.expand(set, solver, stop)?))
+    }
+
+    /// Expansion after the compression kept in `compression`. Either a contact gets the impulse given back and parts, or it
+    /// stays at rest under a larger one: which, is found by trial, from all parting.
+    fn expand(
+        &mut self,
+        set: &mut ContactSet<D>,
+        solver: &mut dyn ContactSolver<D>,
+        stop: &Stop<'_>,
+    ) -> Result<Outcome, ProblemError> {
+        let n = set.rules.len();
+        let fastest = set.contacts().iter().map(|contact| contact.u_before.norm()).fold(0.0, f64::max);
+        self.parts.clear();
+        self.parts.extend(self.given.iter().map(|given| *given > 0.0));
+        let mut sum: Option<Outcome> = None;
+        // A row of contacts takes as many rounds as it is long; with friction none may fit.
+        for _ in 0..2 * n + 10 {
+            let outcome = self.try_expansion(set, solver, stop, false)?;
+            let outcome = sum.map_or(outcome, |sum| join(sum, outcome));
+            sum = Some(outcome);
+            let mut changed = false;
+            for i in (0..n).filter(|&i| self.given[i] > 0.0) {
+                let wrong = if self.parts[i] {
+                    self.normal_velocity(set, i) < -UNDECIDED * fastest
+                } else {
+                    self.rows[i].p[0] < self.given[i] * (1.0 - UNDECIDED)
+                };
+                self.parts[i] ^= wrong;
+                changed |= wrong;
+            }
+            if !changed {
+                self.take(set);
+                return Ok(outcome);
+            }
+        }
+        // The impulse given back, and what it takes beyond it, as two contacts at one point: solvable always, but two that
+        // stick there share their friction in no one way.
+        self.parts.fill(false);
+        let outcome = self.try_expansion(set, solver, stop, true)?;
+        self.take(set);
+        Ok(sum.map_or(outcome, |sum| with_iterations(outcome, sum.iterations + outcome.iterations)))
+    }
+
+    /// Solves an expansion in which the contacts of `parts` get what is given back and no more. `both`: the others get it too,
+    /// beside what they take themselves.
+    fn try_expansion(
+        &mut self,
+        set: &mut ContactSet<D>,
+        solver: &mut dyn ContactSolver<D>,
+        stop: &Stop<'_>,
+        both: bool,
+    ) -> Result<Outcome, ProblemError> {
+        let n = set.rules.len();
         for i in 0..n {
             self.base[i] = match set.rules[i] {
                 Rule::Spring(_) => Vector::zeros(),
-                _ => set.p[i],
+                _ => self.compression[i],
             };
-            if let Some(e) = self.expands(set, i) {
-                self.base[i][0] += e * set.p[i][0];
+            if self.parts[i] || both {
+                self.base[i][0] += self.given[i];
             }
         }
         self.rows.clear();
@@ -209,19 +317,16 @@ impl<const D: usize> Laws<D> {
             if !matches!(set.rules[i], Rule::Spring(_)) {
                 row.p = Vector::zeros();
             }
+            if self.parts[i] {
+                row.kind = Kind::Friction(self.given[i]);
+            }
             self.rows.push(row);
         }
-        for i in 0..n {
-            if let Some(e) = self.expands(set, i).filter(|_| set.mu[i] > 0.0) {
-                let mut row = self.row(set, i, true);
-                row.kind = Kind::Friction(e * set.p[i][0]);
-                row.p = Vector::zeros();
-                self.rows.push(row);
-            }
+        for i in (0..n).filter(|&i| both && self.given[i] > 0.0) {
+            let row = Row { kind: Kind::Friction(self.given[i]), ..self.rows[i] };
+            self.rows.push(row);
         }
-        let expansion = self.settle(set, solver, stop)?;
-        self.take(set);
-        Ok(join(outcome, expansion))
+        self.settle(set, solver, stop)
     }
 
     /// The part e of its impulse of compression that a contact gives back: it obeys Poisson's law, was compressed, and feels
@@ -270,13 +375,9 @@ impl<const D: usize> Laws<D> {
             last = off;
         }
         // Every problem was solved, but the springs didn't come to rest.
-        let unsettled = |mut outcome: Outcome| {
-            outcome.status = Status::MaxIterations;
-            outcome
-        };
         match sum {
-            Some(outcome) => Ok(unsettled(outcome)),
-            None => self.solve_rows(set, solver, stop).map(unsettled),
+            Some(outcome) => Ok(unsolved(outcome)),
+            None => self.solve_rows(set, solver, stop).map(unsolved),
         }
     }
 
@@ -326,7 +427,7 @@ impl<const D: usize> Laws<D> {
                 Kind::Standard => {}
                 Kind::Friction(normal) => {
                     // Any positive number does; one of the size of the others keeps the problem's scale.
-                    (row.scale, row.normal) = (0.0, own[(D - 1, D - 1)]);
+                    (row.scale, row.normal) = (0.0, own.trace());
                     q[0] = -row.normal * normal;
                 }
                 Kind::Spring(step, at) => {
@@ -395,6 +496,11 @@ pub(crate) fn join(first: Outcome, second: Outcome) -> Outcome {
     let iterations = first.iterations + second.iterations;
     let kept = if first.converged() { second } else { first };
     with_iterations(kept, iterations)
+}
+
+fn unsolved(mut outcome: Outcome) -> Outcome {
+    outcome.status = Status::MaxIterations;
+    outcome
 }
 
 fn with_iterations(mut outcome: Outcome, iterations: u32) -> Outcome {

@@ -105,7 +105,7 @@ impl<const D: usize> MoreauJeanClosed<D> {
     }
 }
 
-/// Rounding of a contact's work, as a part of ‖p‖ Σ|J_i v|.
+/// Rounding of a contact's work, as a part of ‖p‖ Σ|J_i v|, the larger of v⁰ and v_free.
 const WORKLESS: f64 = 1e-13;
 
 /// A contact that leaves faster than this part of Σ|J_i v| is open after the step.
@@ -280,25 +280,25 @@ impl<const D: usize> MoreauJeanClosed<D> {
         for i in 0..self.guarded.len() {
             let contacts = &mut work.contacts;
             let (u_before, p) = (contacts.contacts()[i].u_before, contacts.p[i]);
-            if self.guarded[i] || p[0] <= 0.0 {
+            // A spring's law sees to it itself.
+            if self.guarded[i] || p[0] <= 0.0 || matches!(contacts.rules[i], Rule::Spring(_)) {
                 continue;
             }
             let mean = (contacts.velocity_by_impulses(i) + u_before) * 0.5;
-            let spring = matches!(contacts.rules[i], Rule::Spring(_));
-            let gain = if spring { tangential(&mean).dot(&p) } else { mean.dot(&p) };
-            if gain <= WORKLESS * p.norm() * contacts.speed(model, i, &state.v).max(mean.norm()) {
+            let gain = mean.dot(&p);
+            // At rest it is the free velocity whose digits are lost.
+            let speed = contacts.speed(model, i, &state.v).max(contacts.speed(model, i, &self.v_free));
+            if gain <= WORKLESS * p.norm() * speed {
                 continue;
             }
             let mut shift = tangential(&u_before);
-            if !spring {
-                let e = model.law(contacts.contacts()[i].id.pair()).restitution;
-                let back = match contacts.rules[i] {
-                    Rule::Poisson { .. } if is_impact(e, &u_before, &contacts.u_free[i]) => e * u_before[0],
-                    _ => contacts.shift[i][0],
-                };
-                shift[0] = back.max(u_before[0]);
-                contacts.follow(i, Rule::Shifted);
-            }
+            let e = model.law(contacts.contacts()[i].id.pair()).restitution;
+            let back = match contacts.rules[i] {
+                Rule::Poisson { .. } if is_impact(e, &u_before, &contacts.u_free[i]) => e * u_before[0],
+                _ => contacts.shift[i][0],
+            };
+            shift[0] = back.max(u_before[0]);
+            contacts.follow(i, Rule::Shifted);
             contacts.reshift(i, shift);
             self.guarded[i] = true;
             found = true;

@@ -4,6 +4,8 @@
 mod allocations;
 mod beams;
 mod closed;
+mod laws;
 mod own_parts;
 mod reference;
 mod scenes;
+mod springs;

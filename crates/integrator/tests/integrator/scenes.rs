@@ -18,6 +18,9 @@ pub(crate) struct BlockSpec {
 /// The block of the source paper.
 pub(crate) const PAPER_BLOCK: BlockSpec = BlockSpec { width: 0.03, height: 0.135, depth: 0.03, density: 2700.0 };
 
+/// A block that slides rather than tips.
+pub(crate) const FLAT_BLOCK: BlockSpec = BlockSpec { width: 0.1, height: 0.05, depth: 0.1, density: 2700.0 };
+
 /// A block above a surface.
 pub(crate) fn model(
     spec: &BlockSpec,

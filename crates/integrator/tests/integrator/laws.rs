@@ -1,0 +1,222 @@
+//! Impact laws against exact answers: balls in a row, a rod that Newton's law makes energy with, spin, springs.
+
+use crate::scenes::workspace;
+use nalgebra::Vector2;
+use teeter_detect::{
+    Anchor, BodyId, Candidate, Candidates, ContactDetector, ContactId, Frame, Geometry, Kinematics, PointDetector,
+    PointPair, plane_frame,
+};
+use teeter_integrator::*;
+use teeter_rigid::{MassProperties, Rectangle};
+
+/// Touching pairs of blocks, their contact point given in both; frames and gaps as they are at the start.
+#[derive(Clone, Debug)]
+struct Touching(Vec<Candidate<2>>);
+
+impl ContactDetector<2> for Touching {
+    fn detect(&self, _: &dyn Geometry<2>, margin: f64, out: &mut Candidates<2>) {
+        out.clear();
+        out.extend(self.0.iter().filter(|candidate| candidate.gap <= margin));
+    }
+
+    fn capacity(&self) -> usize {
+        self.0.len()
+    }
+}
+
+fn touching(pair: u32, sides: [(u32, Vector2<f64>); 2], normal: Vector2<f64>) -> Candidate<2> {
+    let sides = sides.map(|(body, point)| Anchor { body: BodyId(body), point });
+    let frame: Frame<2> = plane_frame(&normal);
+    Candidate { id: ContactId::new(pair, 0), sides, frame, gap: 0.0 }
+}
+
+/// Equal bodies of mass 1 in a row that touch, without gravity; a law for each contact.
+fn row(laws: &[PairLaw]) -> Model<2> {
+    let shape = Rectangle::new(1.0, 1.0).unwrap();
+    let mass = MassProperties::rectangle(&shape, 1.0, 1.0).unwrap();
+    let mut parts = ModelBuilder::new();
+    parts.add(Box::new(Blocks::new(vec![Block::new(mass, &shape); laws.len() + 1], Vector2::zeros())));
+    let mut candidates = Vec::new();
+    for (k, &law) in laws.iter().enumerate() {
+        let k = k as u32;
+        let pair = parts.pair(law);
+        // Of the right one on the left one: u > 0 parts them.
+        candidates.push(touching(pair, [(k + 1, Vector2::new(-0.5, 0.0)), (k, Vector2::new(0.5, 0.0))], Vector2::x()));
+    }
+    parts.build(Box::new(Touching(candidates))).unwrap()
+}
+
+/// The velocities along the row after one step of `scheme`.
+fn collide(model: &Model<2>, v: &[f64], closed: bool) -> (Vec<f64>, State) {
+    let bodies = v.len();
+    let mut q = vec![0.0; 3 * bodies];
+    (0..bodies).for_each(|k| q[3 * k] = k as f64);
+    let mut start = vec![0.0; 3 * bodies];
+    (0..bodies).for_each(|k| start[3 * k] = v[k]);
+    step(model, &q, &start, closed, |state| state.v.iter().step_by(3).copied().collect())
+}
+
+fn step<T>(model: &Model<2>, q: &[f64], v: &[f64], closed: bool, get: impl Fn(&State) -> T) -> (T, State) {
+    let mut state = State::new(model, q, v, 1e-12).unwrap();
+    let mut work = workspace(model);
+    let mut scheme: Box<dyn Scheme<2>> = if closed {
+        Box::new(MoreauJeanClosed::new(MoreauJeanClosedSettings { gap_tolerance: 0.0 }).unwrap())
+    } else {
+        Box::new(MoreauJean::new(MoreauJeanSettings::default()).unwrap())
+    };
+    scheme.start(model, &mut state, &mut work).unwrap();
+    let report = scheme.advance(model, &mut state, &mut work).unwrap();
+    assert!(report.outcome.is_some_and(|outcome| outcome.converged()), "{:?}", report.outcome);
+    (get(&state), state)
+}
+
+fn near(found: &[f64], wanted: &[f64]) {
+    let off = found.iter().zip(wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(off <= 1e-12, "{found:?}, but must be {wanted:?}");
+}
+
+/// Newton's law looks at each contact's own velocity: the second one has none, so its e is lost. Poisson's looks at the
+/// impulse, which the second one has. With e = 1 both keep the energy, neither is what a row of steel balls does, (0, 0, 1):
+/// that takes impacts one after the other.
+#[test]
+fn three_balls_in_a_row() {
+    let laws = |impact, e: [f64; 2]| row(&e.map(|e| PairLaw::new(0.0, e).with_impact(impact)));
+    let (third, sixth) = (1.0 / 3.0, 1.0 / 6.0);
+    let v = |model: &Model<2>| collide(model, &[1.0, 0.0, 0.0], false).0;
+    near(&v(&laws(ImpactLaw::Newton, [0.0, 1.0])), &[third, third, third]);
+    near(&v(&laws(ImpactLaw::Poisson, [0.0, 1.0])), &[sixth, sixth, 4.0 * sixth]);
+    for impact in [ImpactLaw::Newton, ImpactLaw::Poisson, ImpactLaw::Energetic] {
+        near(&v(&laws(impact, [1.0, 1.0])), &[-third, 2.0 * third, 2.0 * third]);
+        near(&v(&laws(impact, [0.0, 0.0])), &[third, third, third]);
+    }
+    // One after the other: each pair alone swaps its velocities.
+    let pair = row(&[PairLaw::new(0.0, 1.0)]);
+    let first = collide(&pair, &[1.0, 0.0], false).0;
+    let second = collide(&pair, &[first[1], 0.0], false).0;
+    near(&[first[0], second[0], second[1]], &[0.0, 0.0, 1.0]);
+}
+
+#[test]
+fn poissons_law_of_one_contact_is_newtons_without_friction() {
+    for e in [0.0, 0.3, 1.0] {
+        let after = |impact| collide(&row(&[PairLaw::new(0.0, e).with_impact(impact)]), &[1.0, -0.5], false).0;
+        near(&after(ImpactLaw::Poisson), &after(ImpactLaw::Newton));
+        let (v, state) = collide(&row(&[PairLaw::new(0.0, 1.0).with_impact(ImpactLaw::Poisson)]), &[1.0, 0.0], false);
+        near(&v, &[0.0, 1.0]);
+        assert!((state.ledger.current.kinetic - 0.5).abs() < 1e-15, "e = 1 keeps the energy");
+    }
+}
+
+/// A body with its centre `height` above fixed ground that it touches at these places right now; no gravity.
+fn on_ground(law: PairLaw, phi: f64, height: f64, places: &[f64]) -> Model<2> {
+    let shape = Rectangle::new(0.2, 1.0).unwrap();
+    let mass = MassProperties::rectangle(&shape, 1.0, 5.0).unwrap();
+    let mut parts = ModelBuilder::new();
+    let body = parts.add(Box::new(Blocks::new(vec![Block::new(mass, &shape)], Vector2::zeros())));
+    let surface = parts.add(Box::new(Ground::flat(0.0)));
+    let pair = parts.pair(law);
+    let points = places.iter().map(|&x| nalgebra::Rotation2::new(-phi) * Vector2::new(x, -height)).collect();
+    let kinematics = Kinematics::Deformed;
+    parts.build(Box::new(PointDetector::new(vec![PointPair { pair, points, body, surface, kinematics }]))).unwrap()
+}
+
+/// Numbers in [−1, 1], the same in every run.
+struct Dice(u64);
+
+impl Dice {
+    fn roll(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+/// The work of contact in 400 impacts of random blocks with this law, each relative to the kinetic energy; where `keep` is
+/// told, the final velocities too.
+fn works(impact: ImpactLaw, corners: usize, closed: bool, e_t: f64) -> Vec<(f64, State)> {
+    let mut dice = Dice(1);
+    (0..400)
+        .map(|_| {
+            let law = PairLaw::new(0.5 + 0.5 * dice.roll(), 0.5 + 0.5 * dice.roll())
+                .with_impact(impact)
+                .with_tangential_restitution(e_t);
+            let (phi, height) = (dice.roll(), 0.6 + 0.4 * dice.roll());
+            let left = 0.3 * dice.roll();
+            let model = on_ground(law, phi, height, &[left, left + 0.2][..corners]);
+            let mut v = [dice.roll(), dice.roll(), 3.0 * dice.roll()];
+            // Down, faster than any corner rises by spin.
+            v[1] -= 4.0;
+            let (_, state) = step(&model, &[0.0, height, phi], &v, closed, |_| ());
+            let sum = state.ledger.sum;
+            ((sum.contact + sum.friction) / state.ledger.initial.kinetic, state)
+        })
+        .collect()
+}
+
+/// Kane and Levinson (1985): Newton's law with friction makes energy in some impacts. The energetic law makes none, and
+/// where Newton's makes none either, they agree.
+#[test]
+fn the_energetic_law_is_newtons_without_its_gain() {
+    for corners in [1, 2] {
+        let newton = works(ImpactLaw::Newton, corners, false, 0.0);
+        let energetic = works(ImpactLaw::Energetic, corners, false, 0.0);
+        let gains = newton.iter().filter(|(work, _)| *work > 1e-6).count();
+        assert!(gains >= 3, "{corners} corners: Newton's law is known to make energy; it did {gains} times");
+        for ((newton, by_newton), (energetic, by_energy)) in newton.iter().zip(&energetic) {
+            assert!(*energetic <= 1e-13, "{energetic}");
+            if *newton <= 0.0 {
+                near(&by_energy.v, &by_newton.v);
+            } else {
+                assert!(
+                    *energetic >= -1e-9,
+                    "the largest f leaves no loss: {energetic} where Newton's law gives {newton}"
+                );
+            }
+        }
+    }
+}
+
+/// No proof, but in none of these impacts does Poisson's law make energy, where Newton's does in some.
+#[test]
+fn poissons_law_makes_no_energy_where_newtons_does() {
+    for corners in [1, 2] {
+        let poisson = works(ImpactLaw::Poisson, corners, false, 0.0);
+        let largest = poisson.iter().map(|(work, _)| *work).fold(f64::MIN, f64::max);
+        assert!(largest <= 1e-13, "{corners}: {largest}");
+    }
+}
+
+#[test]
+fn with_closed_contacts_no_law_gives_energy() {
+    for corners in [1, 2] {
+        for impact in [ImpactLaw::Newton, ImpactLaw::Poisson, ImpactLaw::Energetic] {
+            for e_t in [0.0, 0.7] {
+                let largest = works(impact, corners, true, e_t).iter().map(|(work, _)| *work).fold(f64::MIN, f64::max);
+                assert!(largest <= 1e-13, "{impact:?} {corners} {e_t}: {largest}");
+            }
+        }
+    }
+}
+
+/// Garwin's superball: with e = e_t = 1 and friction enough, a disc-like body keeps its energy and its spin about the contact
+/// is reversed: here a body hit at a point straight below its centre, so that H is diagonal.
+#[test]
+fn tangential_restitution_reverses_the_velocity_of_an_impact_that_sticks() {
+    for impact in [ImpactLaw::Newton, ImpactLaw::Poisson] {
+        for closed in [false, true] {
+            for (e_t, mu, sticks) in [(1.0, 10.0, true), (0.4, 10.0, true), (1.0, 0.01, false)] {
+                let law = PairLaw::new(mu, 1.0).with_impact(impact).with_tangential_restitution(e_t);
+                let model = on_ground(law, 0.0, 0.5, &[0.0]);
+                let (v, state) = step(&model, &[0.0, 0.5, 0.0], &[0.3, -1.0, 0.5], closed, |state| state.v.clone());
+                let (before, after) = (0.3 + 0.5 * 0.5, v[0] + 0.5 * v[2]);
+                let wanted = if sticks { -e_t * before } else { before - 0.01 * 2.0 * (1.0 + 0.25 * 12.0 / 1.04) };
+                assert!(
+                    (after - wanted).abs() < 1e-11 && (v[1] - 1.0).abs() < 1e-11,
+                    "{impact:?} {e_t} {mu}: {after} {wanted} {v:?}"
+                );
+                if e_t == 1.0 && sticks {
+                    assert!((state.ledger.current.kinetic / state.ledger.initial.kinetic - 1.0).abs() < 1e-14);
+                }
+            }
+        }
+    }
+}
