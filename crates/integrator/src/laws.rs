@@ -93,6 +93,24 @@ const WORKLESS: f64 = 1e-14;
 const UNDECIDED: f64 = 1e-11;
 
 impl<const D: usize> Laws<D> {
+    /// Makes room for so many contacts.
+    pub(crate) fn reserve(&mut self, contacts: usize) {
+        // An expansion can hold two of each.
+        self.rows.reserve(2 * contacts);
+        self.blocks.reserve(4 * contacts * contacts);
+        self.q.reserve(2 * contacts);
+        self.mu.reserve(2 * contacts);
+        self.p.reserve(2 * contacts);
+        self.base.reserve(contacts);
+        self.compression.reserve(contacts);
+        self.given.reserve(contacts);
+        self.parts.reserve(contacts);
+        self.island.reserve(contacts);
+        self.range.reserve(contacts);
+        self.guarded.reserve(contacts);
+        self.shift.reserve(contacts);
+    }
+
     /// Solves the problem of the set's contacts by their rules, θ that of the step's mean velocity. The impulses stay in the
     /// set.
     pub(crate) fn solve(

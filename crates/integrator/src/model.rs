@@ -1,7 +1,7 @@
 //! A scene for the integrator: subsystems, who can touch whom by what law, and a detector. Immutable.
 
 use crate::contacts::ContactSet;
-use crate::{Energy, PairLaw, Size, Subsystem, Vector, WarmStart};
+use crate::{Energy, ImpactLaw, PairLaw, Size, Subsystem, Vector, WarmStart};
 use std::ops::Range;
 use teeter_detect::{BodyId, Candidate, ContactDetector, Geometry, Kinematics, SurfacePoint};
 
@@ -135,6 +135,11 @@ impl<const D: usize> Model<D> {
     /// Whether a pair has a law with duration.
     pub(crate) fn has_springs(&self) -> bool {
         self.springs
+    }
+
+    /// Whether a pair has a law other than Newton's.
+    pub(crate) fn has_laws(&self) -> bool {
+        self.laws.iter().any(|law| law.impact != ImpactLaw::Newton)
     }
 
     /// The detector.

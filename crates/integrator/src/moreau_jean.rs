@@ -82,6 +82,7 @@ impl<const D: usize> Scheme<D> for MoreauJean {
 
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {
         self.step.resize(model.size());
+        self.springs.reserve(model.detector().capacity());
         state.warm.reserve(model.detector().capacity(), D);
         work.factorise(model, weights(state.dt, self.settings.theta), &state.q)?;
         Ok(())

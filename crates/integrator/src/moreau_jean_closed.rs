@@ -120,6 +120,8 @@ impl<const D: usize> Scheme<D> for MoreauJeanClosed<D> {
         let (contacts, row) = (model.detector().capacity(), model.size().row);
         self.step.resize(model.size());
         self.v_free.resize(model.size().v, 0.0);
+        self.q_mid.resize(model.size().q, 0.0);
+        self.q_ahead.resize(model.size().q, 0.0);
         for candidates in [&mut self.middle, &mut self.ahead, &mut self.start, &mut work.candidates] {
             candidates.reserve(contacts);
         }

@@ -149,6 +149,11 @@ pub(crate) struct Springs {
 }
 
 impl Springs {
+    /// Makes room for so many contacts.
+    pub(crate) fn reserve(&mut self, contacts: usize) {
+        self.touched.reserve(contacts);
+    }
+
     /// Finds the contacts that the free motion from `q` to `q_free` brings into contact.
     pub(crate) fn look<const D: usize>(
         &mut self,

@@ -55,7 +55,13 @@ impl<const D: usize> Workspace<D> {
     #[must_use]
     pub fn new(model: &Model<D>, mut solver: Box<dyn ContactSolver<D>>, settings: SolverSettings) -> Self {
         let contacts = model.detector().capacity().min(RESERVED_CONTACTS);
-        solver.reserve(contacts, contacts * contacts);
+        let mut laws = Laws::default();
+        if model.has_laws() {
+            laws.reserve(contacts);
+            solver.reserve(2 * contacts, 4 * contacts * contacts);
+        } else {
+            solver.reserve(contacts, contacts * contacts);
+        }
         Self {
             solver,
             settings,
@@ -63,7 +69,7 @@ impl<const D: usize> Workspace<D> {
             candidates: Vec::with_capacity(contacts),
             contacts: ContactSet::with_capacity(contacts, model.size().row),
             scratch: vec![0.0; model.size().v],
-            laws: Laws::default(),
+            laws,
         }
     }
 
