@@ -64,8 +64,8 @@ mod subsystem;
 mod theta_step;
 mod workspace;
 
-pub use beam::{BeamBody, BeamSurface};
-pub use blocks::{Block, Blocks};
+pub use beam::{BeamBody, BeamSurface, SignalLoad};
+pub use blocks::{Block, BlockLoad, Blocks};
 pub use contacts::{Contact, ContactSet, ContactState, tangential};
 pub use ground::Ground;
 pub use ledger::{Ledger, PositiveWork, StepEnergy};
