@@ -187,7 +187,7 @@ impl Simulation {
             });
         }
         let ground = Ground::flat(0.0);
-        let ground_body = scene.ground.then(|| parts.add(Box::new(ground)));
+        let ground_body = scene.ground.then(|| parts.add(Box::new(ground.clone())));
 
         let (mut q, mut v) = (Vec::with_capacity(dofs), Vec::with_capacity(dofs));
         for block in &scene.blocks {
