@@ -267,7 +267,7 @@ impl ModelSummary {
             blocks: layout.blocks.iter().map(|place| place.name.clone()).collect(),
             dofs: 3 * layout.blocks.len() + beams.iter().map(|beam| beam.dofs).sum::<usize>(),
             beams,
-            ground: scene.ground,
+            ground: scene.ground.is_some(),
             contacts: layout.pairs.iter().map(|pair| pair.name.clone()).collect(),
             possible_contacts: 4 * scene.contacts.len(),
             left_out: teeter_scenario::left_out(scene),

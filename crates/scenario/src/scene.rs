@@ -1,5 +1,9 @@
 //! A scene resolved: plain SI numbers, references checked, nothing left to guess.
 
+mod history;
+
+pub use history::{AxisScene, ForceScene, History, LoadKind, LoadScene, MotionScene, SignalScene};
+
 /// A scene that can be run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
@@ -9,14 +13,20 @@ pub struct Scene {
     pub time: Time,
     /// Acceleration of gravity, m/s².
     pub gravity: [f64; 2],
-    /// Whether there is rigid ground, flat at y = 0.
-    pub ground: bool,
+    /// The rigid ground, if there is any.
+    pub ground: Option<GroundScene>,
     /// The beams, in the order of the file.
     pub beams: Vec<BeamScene>,
     /// The blocks, in the order of the file.
     pub blocks: Vec<BlockScene>,
     /// The contacts, in the order of the file.
     pub contacts: Vec<ContactScene>,
+    /// The signals, in the order of the file.
+    pub signals: Vec<SignalScene>,
+    /// The forces on blocks, in the order of the file.
+    pub forces: Vec<ForceScene>,
+    /// The loads on beams, in the order of the file.
+    pub loads: Vec<LoadScene>,
     /// The contact solver.
     pub solver: SolverScene,
     /// Time between rows, s; `None`: thinned to some 10 000 rows.
@@ -40,6 +50,15 @@ pub struct Time {
     pub gap_tolerance: f64,
 }
 
+/// The rigid ground of a scene.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct GroundScene {
+    /// Its slope at the start, before a given turn, rad.
+    pub incline: f64,
+    /// Its prescribed motion.
+    pub motion: MotionScene,
+}
+
 /// A beam of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BeamScene {
@@ -57,6 +76,8 @@ pub struct BeamScene {
     pub position: [f64; 2],
     /// Places along the span whose deflection is written, m.
     pub probes: Vec<f64>,
+    /// The prescribed motion of its supports; the third axis has none.
+    pub motion: MotionScene,
 }
 
 /// A block of a scene.
@@ -78,6 +99,8 @@ pub struct BlockScene {
     pub velocity: [f64; 2],
     /// Angular velocity, rad/s.
     pub spin: f64,
+    /// What is prescribed of its motion; the rest is free.
+    pub motion: MotionScene,
 }
 
 /// Where a block starts.
@@ -123,10 +146,8 @@ pub struct ContactScene {
     pub block: usize,
     /// What it touches.
     pub surface: Support,
-    /// Coulomb's coefficient.
-    pub friction: f64,
-    /// Newton's coefficient.
-    pub restitution: f64,
+    /// Friction, and what happens along the normal.
+    pub law: teeter_integrator::PairLaw,
     /// How the surface's deflection enters.
     pub kinematics: teeter_detect::Kinematics,
 }

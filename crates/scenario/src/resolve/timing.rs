@@ -11,7 +11,7 @@ pub const MAX_STEPS: f64 = 1e12;
 /// Most bytes of the tables of a run.
 const MAX_BYTES: f64 = 10e9;
 
-impl Resolver<'_> {
+impl Resolver<'_, '_> {
     pub(super) fn time(&mut self, blocks: &[Option<BlockScene>], beams: &[Option<BeamScene>]) -> Option<Time> {
         let (end, step) = (self.quantity("time.end"), self.quantity("time.step"));
         let theta = self.number("time.theta");
