@@ -199,7 +199,7 @@ impl Summary {
         Self {
             title: scene.title.clone(),
             version: env!("CARGO_PKG_VERSION"),
-            scheme: teeter_integrator::MoreauJean::NAME,
+            scheme: scene.time.scheme.word(),
             dt: state.dt,
             steps: state.step,
             t: state.t,

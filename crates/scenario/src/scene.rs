@@ -42,12 +42,36 @@ pub struct Time {
     pub step: f64,
     /// Steps: up to the first time at or past `end`.
     pub steps: u64,
+    /// The scheme.
+    pub scheme: SchemeName,
     /// θ of the scheme.
     pub theta: f64,
     /// γ of the activation.
     pub activation_gamma: f64,
     /// Largest predicted gap of an active contact, m.
     pub gap_tolerance: f64,
+}
+
+/// A time scheme by name.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SchemeName {
+    /// Moreau–Jean's θ scheme.
+    #[default]
+    MoreauJean,
+    /// The same with contacts that stay closed by a flag.
+    MoreauJeanClosed,
+}
+
+impl SchemeName {
+    /// The word for it in scenes and summaries.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::MoreauJean => teeter_integrator::MoreauJean::NAME,
+            Self::MoreauJeanClosed => teeter_integrator::MoreauJeanClosed::<2>::NAME,
+        }
+    }
 }
 
 /// The rigid ground of a scene.

@@ -3,15 +3,16 @@
 use crate::driven;
 use crate::overlap::{Box2, Overlap, deepest_overlap};
 use crate::placement::{PlacementError, Standing, beam_shape, block_pose};
-use crate::scene::{Scene, Support};
+use crate::scene::{Scene, SchemeName, Support, Time};
 use std::ops::Range;
 use std::sync::Arc;
 use teeter_beam::{Beam, BeamError};
 use teeter_contact::ContactSolver;
 use teeter_detect::{BodyId, PointDetector, PointPair};
 use teeter_integrator::{
-    Block, Ended, Model, ModelBuilder, ModelError, MoreauJean, MoreauJeanSettings, Observer, Plan, RunError, Scheme,
-    SettingError, SolverSettings, State, StateError, Subsystem, Workspace, run,
+    Block, Ended, Model, ModelBuilder, ModelError, MoreauJean, MoreauJeanClosed, MoreauJeanClosedSettings,
+    MoreauJeanSettings, Observer, Plan, RunError, Scheme, SettingError, SolverSettings, State, StateError, Subsystem,
+    Workspace, run,
 };
 use teeter_rigid::{MassProperties, Rectangle, RigidError};
 
@@ -245,13 +246,9 @@ impl Simulation {
         let settings =
             SolverSettings { tolerance: scene.solver.tolerance, max_iterations: scene.solver.max_iterations };
         let work = Workspace::new(&model, wrap(solver), settings);
-        let scheme = MoreauJean::new(MoreauJeanSettings {
-            theta: scene.time.theta,
-            activation_gamma: scene.time.activation_gamma,
-            gap_tolerance: scene.time.gap_tolerance,
-        })?;
+        let scheme = scheme(&scene.time)?;
         let plan = Plan { steps: scene.time.steps, require_convergence: scene.solver.require_convergence };
-        Ok(Self { model, state, layout, plan, scheme: Box::new(scheme), work })
+        Ok(Self { model, state, layout, plan, scheme, work })
     }
 
     /// Runs to the plan's end, showing every step to the observers. The state is left at the last step taken.
@@ -261,6 +258,16 @@ impl Simulation {
     pub fn run(&mut self, observers: &mut [&mut dyn Observer<2>]) -> Result<Ended, RunError> {
         run(&self.model, self.scheme.as_mut(), &mut self.state, &mut self.work, &self.plan, observers)
     }
+}
+
+fn scheme(time: &Time) -> Result<Box<dyn Scheme<2>>, SettingError> {
+    let Time { theta, activation_gamma, gap_tolerance, .. } = *time;
+    Ok(match time.scheme {
+        SchemeName::MoreauJean => {
+            Box::new(MoreauJean::new(MoreauJeanSettings { theta, activation_gamma, gap_tolerance })?)
+        }
+        SchemeName::MoreauJeanClosed => Box::new(MoreauJeanClosed::new(MoreauJeanClosedSettings { gap_tolerance })?),
+    })
 }
 
 /// Refuses a start with blocks inside each other.
