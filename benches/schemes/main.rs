@@ -115,7 +115,8 @@ fn run(name: &str, scheme: &str, (h, step): (f64, &str), end: &str, nudge: f64) 
 fn error(name: &str, samples: &[Vec<f64>], reference: &[Vec<f64>]) -> Result<f64> {
     let scene = load(name, SCHEMES[0], "1 ms", "10 ms")?.scene;
     let sides: Vec<f64> = scene.blocks.iter().map(|block| block.width.max(block.height)).collect();
-    let largest = reference.iter().flat_map(|q| q.iter().skip(2).step_by(3)).fold(0.0_f64, |most, phi| most.max(phi.abs()));
+    let largest =
+        reference.iter().flat_map(|q| q.iter().skip(2).step_by(3)).fold(0.0_f64, |most, phi| most.max(phi.abs()));
     let mut worst = 0.0_f64;
     for (q, wanted) in samples.iter().zip(reference) {
         for k in 0..q.len() {
@@ -156,7 +157,8 @@ fn main() -> Result<()> {
             for nudge in [1e-13, -1e-13] {
                 moved = moved.max(error(name, &run(name, scheme, STEPS[1], end, nudge)?.samples, &runs[1].samples)?);
             }
-            let order = if errors[2] > 1e-9 { format!("{:.2}", (errors[1] / errors[2]).log10()) } else { "–".to_owned() };
+            let order =
+                if errors[2] > 1e-9 { format!("{:.2}", (errors[1] / errors[2]).log10()) } else { "–".to_owned() };
             let rise = runs.iter().map(|run| run.rise).fold(0.0, f64::max);
             writeln!(
                 out,

@@ -1,5 +1,6 @@
 //! `teeter check`: what a run would model, cost and write, and what looks wrong; runs nothing, writes nothing.
 
+use crate::companions;
 use crate::console::Console;
 use crate::render::Presenter;
 use crate::run::{Exit, named, read};
@@ -8,7 +9,7 @@ use std::io::Write as _;
 use std::path::PathBuf;
 use teeter_scenario::outlook::{BeamOutlook, BlockOutlook, Outlook};
 use teeter_scenario::resolve::Resolved;
-use teeter_scenario::scene::Scene;
+use teeter_scenario::scene::{GroundScene, Scene};
 use teeter_scenario::simulation::Simulation;
 use teeter_scenario::wording;
 
@@ -29,7 +30,8 @@ pub(crate) fn check(options: &Options) -> Exit {
         Ok(bytes) => bytes,
         Err(why) => return refuse(&format!("error: {name}: {why}")),
     };
-    let resolved = match teeter_scenario::load(&bytes, &name, &stem, &options.set) {
+    let mut companions = companions::reader(&options.scene);
+    let resolved = match teeter_scenario::load_with(&bytes, &name, &stem, &options.set, &mut companions) {
         Ok(resolved) => resolved,
         Err(errors) => return refuse(&Presenter::of_bytes(&bytes).all(&errors)),
     };
@@ -72,7 +74,40 @@ fn bodies(scene: &Scene, outlook: &Outlook) -> Vec<String> {
     lines.extend(more(outlook.blocks.len(), "block"));
     lines.extend(outlook.beams.iter().take(LISTED).map(beam));
     lines.extend(more(outlook.beams.len(), "beam"));
-    lines.extend(scene.ground.then(|| "ground: rigid, flat at y = 0".to_owned()));
+    lines.extend(scene.ground.as_ref().map(ground));
+    lines.extend(driven(scene));
+    lines
+}
+
+fn ground(ground: &GroundScene) -> String {
+    let mut text = "ground: rigid".to_owned();
+    if ground.incline == 0.0 {
+        text.push_str(", flat at y = 0");
+    } else {
+        let _ = write!(text, ", inclined by {} deg through the origin", degrees(ground.incline));
+    }
+    if ground.motion.is_given() {
+        text.push_str(", moving");
+    }
+    text
+}
+
+/// What is prescribed and what is loaded.
+fn driven(scene: &Scene) -> Vec<String> {
+    let beams = scene.beams.iter().filter(|beam| beam.motion.is_given());
+    let mut lines: Vec<String> = beams
+        .take(LISTED)
+        .map(|beam| format!("supports of {}: moving, its deflections are relative to them", beam.name))
+        .collect();
+    for block in scene.blocks.iter().filter(|block| block.motion.is_given()).take(LISTED) {
+        let axes = ["x", "y", "angle"].iter().zip(&block.motion.0);
+        let given: Vec<&str> = axes.filter_map(|(name, axis)| axis.as_ref().map(|_| *name)).collect();
+        lines.push(format!("motion of {}: {} prescribed", block.name, given.join(", ")));
+    }
+    let forces = scene.forces.iter().take(LISTED);
+    lines.extend(forces.map(|force| format!("force {}: on {}", force.name, scene.blocks[force.block].name)));
+    let loads = scene.loads.iter().take(LISTED);
+    lines.extend(loads.map(|load| format!("load {}: on {}", load.name, scene.beams[load.beam].name)));
     lines
 }
 

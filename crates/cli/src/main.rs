@@ -1,6 +1,7 @@
 //! The program `teeter`.
 
 mod check;
+mod companions;
 mod console;
 mod interrupt;
 mod progress;

@@ -1,5 +1,6 @@
 //! `teeter run`.
 
+use crate::companions;
 use crate::console::Console;
 use crate::interrupt::{INTERRUPTED, Interrupt};
 use crate::progress::Progress;
@@ -68,7 +69,8 @@ pub(crate) fn run(options: &Options) -> Exit {
         Ok(bytes) => bytes,
         Err(why) => return bad_input(console, &format!("error: {name}: {why}")),
     };
-    let resolved = match teeter_scenario::load(&bytes, &name, &stem, &options.set) {
+    let mut companions = companions::reader(&options.scene);
+    let resolved = match teeter_scenario::load_with(&bytes, &name, &stem, &options.set, &mut companions) {
         Ok(resolved) => resolved,
         Err(errors) => return bad_input(console, &Presenter::of_bytes(&bytes).all(&errors)),
     };
@@ -91,7 +93,8 @@ pub(crate) fn run(options: &Options) -> Exit {
     for warning in &resolved.warnings {
         console.note(&presenter.one(warning));
     }
-    match simulate(console, &resolved, &mut simulation, &results, exporter.as_mut()) {
+    let scene_as_run = resolved.document.to_toml_elsewhere(|file| companions::seen_from(&folder, &options.scene, file));
+    match simulate(console, &resolved, &mut simulation, &results, &scene_as_run, exporter.as_mut()) {
         Ok(summary) => {
             let exit = conclude(console, &summary, &folder);
             if let (Some(exporter), Some((folder, _))) = (&exporter, &options.export) {
@@ -135,6 +138,7 @@ fn simulate(
     resolved: &Resolved,
     simulation: &mut Simulation,
     results: &Results,
+    scene_as_run: &str,
     exporter: Option<&mut Exporter>,
 ) -> Result<Summary, Box<dyn Error>> {
     let scene = &resolved.scene;
@@ -145,8 +149,7 @@ fn simulate(
     let mut recorder = Recorder::new(results, scene, &layout, &mut tell_warning)?;
     recorder.note(&resolved.warnings);
     let mut page = PageRecorder::new(scene, &layout);
-    let scene_as_run = resolved.document.to_toml();
-    results.write("scene.toml", &scene_as_run)?;
+    results.write("scene.toml", scene_as_run)?;
 
     let clock = Instant::now();
     let mut interrupt = Interrupt::listen();
@@ -176,7 +179,7 @@ fn simulate(
         Err(error) => return Err(error.into()),
     };
     let summary = Summary::new(scene, &layout, &simulation.state, &record, ended, seconds);
-    let written = write_pages(results, &page, &summary, &scene_as_run);
+    let written = write_pages(results, &page, &summary, scene_as_run);
     let written = written.and_then(|()| Ok(results.write("summary.json", &summary.to_json()?)?));
     match written {
         // No room for these either; the reason is told all the same.

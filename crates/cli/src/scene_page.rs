@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 use teeter_scenario::dimension::Dimension;
-use teeter_scenario::keys::{Key, Kind, Occurrence, Presence, Range, TABLES, Table};
+use teeter_scenario::keys::{Key, Kind, Occurrence, OnlyWith, Presence, Range, TABLES, Table};
 use teeter_scenario::units;
 
 /// A scene that uses most of what there is.
@@ -104,6 +104,17 @@ fn later(table: &Table) -> Vec<String> {
 }
 
 fn default(key: &Key) -> String {
+    let default = default_alone(key);
+    match key.only_with {
+        Some(OnlyWith { sibling, words }) => {
+            let words: Vec<String> = words.iter().map(|word| format!("`{word}`")).collect();
+            format!("{default}; only with `{sibling}` {}", words.join(", ")).trim_start_matches("–; ").to_owned()
+        }
+        None => default,
+    }
+}
+
+fn default_alone(key: &Key) -> String {
     match key.presence {
         Presence::Required => "**required**".to_owned(),
         Presence::Default(value) => format!("`{value}`"),
@@ -117,6 +128,11 @@ fn value(key: &Key) -> String {
     let such_as = format!("such as `{}`", key.example);
     match key.kind {
         Kind::Text => "text".to_owned(),
+        Kind::Path => format!("path, {such_as}"),
+        Kind::Measure(units, range) => {
+            let units: Vec<&str> = units.iter().map(|unit| unit.example).collect();
+            format!("quantity in {}{}, {such_as}", units.join(" or "), limits(&range, Dimension::NONE))
+        }
         Kind::Name => format!("name, {such_as}"),
         Kind::Choice(choices) => words(choices),
         Kind::Flag => {

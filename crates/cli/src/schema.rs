@@ -5,7 +5,7 @@ use crate::scene_page;
 use serde_json::{Map, Value, json};
 use std::io::Write;
 use teeter_scenario::dimension::Dimension;
-use teeter_scenario::keys::{Bound, Key, Kind, Occurrence, Presence, Range, TABLES, Table};
+use teeter_scenario::keys::{Bound, Key, Kind, Occurrence, OnlyWith, Presence, Range, TABLES, Table};
 
 /// What the schema is printed as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -50,8 +50,7 @@ fn object(table: &Table) -> Map<String, Value> {
     for key in table.keys {
         properties.insert(key.name.to_owned(), property(key));
     }
-    let mut required: Vec<&str> =
-        table.keys.iter().filter(|key| key.presence == Presence::Required).map(|key| key.name).collect();
+    let mut required: Vec<&str> = table.keys.iter().filter(|key| is_required(key)).map(|key| key.name).collect();
     for child in table.children() {
         let inner = Value::Object(object(child));
         let value = match child.occurrence {
@@ -64,7 +63,7 @@ fn object(table: &Table) -> Map<String, Value> {
             _ => inner,
         };
         properties.insert(child.name().to_owned(), value);
-        if child.occurrence == Occurrence::Always && child.keys.iter().any(|key| key.presence == Presence::Required) {
+        if child.occurrence == Occurrence::Always && child.keys.iter().any(is_required) {
             required.push(child.name());
         }
     }
@@ -90,13 +89,25 @@ fn object(table: &Table) -> Map<String, Value> {
     object
 }
 
+/// Whether a key is required whatever the others say.
+fn is_required(key: &Key) -> bool {
+    key.presence == Presence::Required && key.only_with.is_none()
+}
+
+/// With which words of another key alone a key has a meaning.
+fn only_with(key: &Key) -> String {
+    let Some(OnlyWith { sibling, words }) = key.only_with else { return String::new() };
+    let required = if key.presence == Presence::Required { " Required there." } else { "" };
+    format!(" Only with {sibling} = {}.{required}", words.join(", "))
+}
+
 fn property(key: &Key) -> Value {
     if key.presence == Presence::NotYet {
         return json!({ "not": {}, "description": format!("{} Known, but not built in yet.", key.doc) });
     }
     let mut value = of_kind(key);
     if let Some(value) = value.as_object_mut() {
-        value.insert("description".to_owned(), json!(format!("{}{}", key.doc, range_of(key))));
+        value.insert("description".to_owned(), json!(format!("{}{}{}", key.doc, range_of(key), only_with(key))));
         value.insert("examples".to_owned(), json!([as_json(key.example)]));
         if let Presence::Default(default) | Presence::DefaultWith { value: default, .. } = key.presence {
             value.insert("default".to_owned(), as_json(default));
@@ -126,6 +137,8 @@ fn of_kind(key: &Key) -> Value {
     let pair = |item: Value| json!({ "type": "array", "items": item, "minItems": 2, "maxItems": 2 });
     match key.kind {
         Kind::Text => json!({ "type": "string" }),
+        Kind::Path => json!({ "type": "string", "minLength": 1 }),
+        Kind::Measure(..) => quantity(),
         Kind::Name => json!({ "$ref": "#/$defs/name" }),
         Kind::Choice(words) => json!({ "enum": words }),
         Kind::Flag if key.reserved.is_empty() => json!({ "type": "boolean" }),

@@ -1,6 +1,9 @@
 //! A beam as a subsystem: the adapter above `teeter-beam`, with the contact kinematics of `docs/theory.md` §3.
 
-use crate::{Compliance, Energy, FactorError, Rows, Size, Subsystem, Weights};
+mod motion;
+
+use crate::{Compliance, Energy, FactorError, Motion, Rows, Signal, Size, Subsystem, Weights};
+use motion::MovingSupports;
 use nalgebra::Vector2;
 use std::sync::Arc;
 use teeter_beam::{Beam, Factor, Load, MatrixWeights};
@@ -27,12 +30,40 @@ impl BeamSurface {
     }
 }
 
+/// A load on a beam that keeps its shape: a vector of nodal loads times a signal.
+#[derive(Clone, Debug)]
+pub struct SignalLoad {
+    pattern: Vec<f64>,
+    signal: Arc<dyn Signal>,
+}
+
+impl SignalLoad {
+    /// The nodal loads `pattern` of a beam, as its `add_…_load` methods add them, times `signal`.
+    #[must_use]
+    pub fn new(pattern: Vec<f64>, signal: Arc<dyn Signal>) -> Self {
+        Self { pattern, signal }
+    }
+}
+
+impl Load for SignalLoad {
+    fn add(&self, _beam: &Beam, t: f64, f: &mut [f64]) {
+        let factor = self.signal.value(t);
+        for (f, p) in f.iter_mut().zip(&self.pattern) {
+            *f += factor * p;
+        }
+    }
+}
+
 /// A straight level beam in the world.
+///
+/// Its coordinates are those of [`Beam`]; where its supports [move](Self::with_motion), deflections are relative to
+/// them, and the displacements x and y of the supports follow as two more, prescribed ones.
 pub struct BeamBody {
     beam: Arc<Beam>,
     position: Vector2<f64>,
     surface: BeamSurface,
     loads: Vec<Box<dyn Load>>,
+    supports: Option<MovingSupports>,
 }
 
 impl std::fmt::Debug for BeamBody {
@@ -49,7 +80,7 @@ impl BeamBody {
     /// A beam with its left end at `position` (m).
     #[must_use]
     pub fn new(beam: Arc<Beam>, position: Vector2<f64>, surface: BeamSurface) -> Self {
-        Self { beam, position, surface, loads: Vec::new() }
+        Self { beam, position, surface, loads: Vec::new(), supports: None }
     }
 
     /// The same beam under one more load.
@@ -59,28 +90,53 @@ impl BeamBody {
         self
     }
 
+    /// The same beam on supports that move together, by these displacements in x and y. Its damping acts on the motion
+    /// relative to them, and the force that moves them carries their share of all loads on the beam.
+    #[must_use]
+    pub fn with_motion(mut self, motion: [Motion; 2]) -> Self {
+        self.supports = Some(MovingSupports::new(&self.beam, motion));
+        self
+    }
+
+    /// The displacements of its supports at time `t` (s) in closed form, m; at t = 0 those to start from. None for supports
+    /// that stand still.
+    #[must_use]
+    pub fn displacements(&self, t: f64) -> Vec<f64> {
+        self.supports.as_ref().map_or_else(Vec::new, |supports| supports.displacements(t).to_vec())
+    }
+
+    /// The coordinates (or velocities) of the beam alone, and the place of its left end.
+    fn split<'q>(&self, q: &'q [f64]) -> (&'q [f64], Vector2<f64>) {
+        let (q, displaced) = q.split_at(self.beam.dofs());
+        match *displaced {
+            [x, y] => (q, self.position + Vector2::new(x, y)),
+            _ => (q, self.position),
+        }
+    }
+
     /// The beam.
     #[must_use]
     pub fn beam(&self) -> &Arc<Beam> {
         &self.beam
     }
 
-    /// The beam's own coordinate of a place in the world. The ends belong to the beam, so a place beyond one by the rounding
+    /// The beam's own coordinate of a place in the world, with its left end at x = `left`. The ends belong to the beam, so a place beyond one by the rounding
     /// of a difference is at it.
-    fn along(&self, x: f64) -> f64 {
+    fn along(&self, x: f64, left: f64) -> f64 {
         let span = self.beam.spec().span;
-        let along = x - self.position.x;
-        let rounding = 4.0 * f64::EPSILON * (self.position.x.abs() + span);
+        let along = x - left;
+        let rounding = 4.0 * f64::EPSILON * (left.abs() + span);
         if (-rounding..=span + rounding).contains(&along) { along.clamp(0.0, span) } else { along }
     }
 
     /// The foot point at the beam's own coordinate of `at`: the point of the surface with the same x.
     fn foot(&self, q: &[f64], kinematics: Kinematics, at: &Vector2<f64>) -> Option<SurfacePoint<2>> {
-        let x = self.along(at.x);
+        let (q, position) = self.split(q);
+        let x = self.along(at.x, position.x);
         let offset = self.surface.offset();
         let d = self.beam.deflection_at(q, x)?; // None beyond the ends, which belong to the beam
         if kinematics == Kinematics::Linear {
-            let place = Vector2::new(at.x, self.position.y + d.w + offset);
+            let place = Vector2::new(at.x, position.y + d.w + offset);
             return Some(SurfacePoint { place, normal: Vector2::y(), material: Vector2::new(x, offset) });
         }
         let normal_of = |slope: f64| {
@@ -101,7 +157,7 @@ impl BeamBody {
                 }
             }
         }
-        let place = Vector2::new(at.x, self.position.y + w + offset * normal.y);
+        let place = Vector2::new(at.x, position.y + w + offset * normal.y);
         Some(SurfacePoint { place, normal, material: Vector2::new(foot, offset) })
     }
 }
@@ -111,13 +167,16 @@ const FOOT_ROUNDS: usize = 20;
 
 impl Subsystem<2> for BeamBody {
     fn size(&self) -> Size {
-        Size { q: self.beam.dofs(), v: self.beam.dofs(), bodies: 1, row: 4 }
+        let driven = self.driven().len();
+        let dofs = self.beam.dofs() + driven;
+        Size { q: dofs, v: dofs, bodies: 1, row: 4 + driven }
     }
 
     fn internal_force(&self, q: &[f64], v: &[f64], f: &mut [f64]) {
-        self.beam.add_stiffness_product(-1.0, q, f);
+        let n = self.beam.dofs();
+        self.beam.add_stiffness_product(-1.0, &q[..n], &mut f[..n]);
         if self.beam.is_damped() {
-            self.beam.add_damping_product(-1.0, v, f);
+            self.beam.add_damping_product(-1.0, &v[..n], &mut f[..n]);
         }
     }
 
@@ -127,7 +186,17 @@ impl Subsystem<2> for BeamBody {
 
     fn load(&self, t: f64, f: &mut [f64]) {
         for load in &self.loads {
-            load.add(&self.beam, t, f);
+            load.add(&self.beam, t, &mut f[..self.beam.dofs()]);
+        }
+    }
+
+    fn driven(&self) -> &[usize] {
+        self.supports.as_ref().map_or(&[], |supports| &supports.driven)
+    }
+
+    fn drive(&self, t: f64, v: &mut [f64]) {
+        if let Some(supports) = &self.supports {
+            v[self.beam.dofs()..].copy_from_slice(&supports.velocities(t));
         }
     }
 
@@ -136,29 +205,37 @@ impl Subsystem<2> for BeamBody {
     }
 
     fn apply(&self, w: Weights, _q: &[f64], x: &[f64], y: &mut [f64]) {
+        let n = self.beam.dofs();
         if w.mass != 0.0 {
-            self.beam.add_mass_product(w.mass, x, y);
+            if let Some(supports) = &self.supports {
+                supports.add_mass_product(w.mass, x, y);
+            }
+            self.beam.add_mass_product(w.mass, &x[..n], &mut y[..n]);
         }
         if w.damping != 0.0 {
-            self.beam.add_damping_product(w.damping, x, y);
+            self.beam.add_damping_product(w.damping, &x[..n], &mut y[..n]);
         }
         if w.stiffness != 0.0 {
-            self.beam.add_stiffness_product(w.stiffness, x, y);
+            self.beam.add_stiffness_product(w.stiffness, &x[..n], &mut y[..n]);
         }
     }
 
     fn energy(&self, q: &[f64], v: &[f64]) -> Energy {
-        Energy { kinetic: self.beam.kinetic_energy(v), elastic: self.beam.elastic_energy(q), gravity: 0.0 }
+        let n = self.beam.dofs();
+        let relative = self.beam.kinetic_energy(&v[..n]);
+        let kinetic = self.supports.as_ref().map_or(relative, |supports| relative + supports.kinetic_energy(v));
+        Energy { kinetic, elastic: self.beam.elastic_energy(&q[..n]), gravity: 0.0 }
     }
 
     fn place(&self, _body: u32, q: &[f64], local: &[Vector2<f64>], out: &mut [Vector2<f64>]) {
+        let (q, position) = self.split(q);
         for (place, point) in out.iter_mut().zip(local) {
             let (w, slope) = self
                 .beam
                 .deflection_at(q, point.x.clamp(0.0, self.beam.spec().span))
                 .map_or((0.0, 0.0), |d| (d.w, d.slope));
             let cos = (1.0 + slope * slope).sqrt().recip();
-            *place = self.position + Vector2::new(point.x - point.y * slope * cos, w + point.y * cos);
+            *place = position + Vector2::new(point.x - point.y * slope * cos, w + point.y * cos);
         }
     }
 
@@ -184,7 +261,11 @@ impl Subsystem<2> for BeamBody {
                 out.values[k] = up * shape.n[k] + turn * shape.dn[k];
             }
         }
-        shape.len
+        for (direction, column) in self.driven().iter().enumerate() {
+            out.columns[shape.len + direction] = *column;
+            out.values[shape.len + direction] = frame.column(direction).into();
+        }
+        shape.len + self.driven().len()
     }
 
     fn factor(&self, w: Weights, _q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
@@ -222,7 +303,9 @@ impl Compliance<2> for BeamCompliance {
     }
 
     fn solve(&mut self, f: &mut [f64]) {
-        self.factor.solve(f);
+        let (free, driven) = f.split_at_mut(self.beam.dofs());
+        self.factor.solve(free);
+        driven.fill(0.0);
     }
 }
 

@@ -1,7 +1,8 @@
 //! Rigid blocks as a subsystem: the adapter above `teeter-rigid`.
 
-use crate::{Compliance, Coupling, Energy, FactorError, PartRows, Rows, Size, Subsystem, Weights};
+use crate::{Compliance, Coupling, Energy, FactorError, Motion, PartRows, Rows, Signal, Size, Subsystem, Weights};
 use nalgebra::{Matrix2, Vector2, Vector3};
+use std::sync::Arc;
 use teeter_detect::Frame;
 use teeter_rigid::{MassProperties, Pose, Rectangle};
 
@@ -20,18 +21,63 @@ impl Block {
     }
 }
 
-/// All blocks of a scene: three coordinates each, (X, Y, φ), under their weight.
-#[derive(Clone, Debug, PartialEq)]
+/// A load on a block: a force through its mass centre, in world axes, and a couple. (A force through another point of the
+/// block is this force and a couple that depends on the block's angle, so no load P(t).)
+#[derive(Clone, Debug)]
+pub struct BlockLoad {
+    /// Number of the block.
+    pub block: usize,
+    /// The force, N.
+    pub force: Vector2<f64>,
+    /// The couple, N·m, counter-clockwise positive.
+    pub couple: f64,
+    /// What both are multiplied by.
+    pub signal: Arc<dyn Signal>,
+}
+
+/// All blocks of a scene: three coordinates each, (X, Y, φ), under their weight, loads, and prescribed motion.
+#[derive(Clone, Debug)]
 pub struct Blocks {
     blocks: Vec<Block>,
     gravity: Vector2<f64>,
+    loads: Vec<BlockLoad>,
+    /// The prescribed velocities in rising order, and how they move.
+    driven: Vec<usize>,
+    motions: Vec<Motion>,
 }
 
 impl Blocks {
     /// Blocks under gravity `gravity`, m/s².
     #[must_use]
     pub fn new(blocks: Vec<Block>, gravity: Vector2<f64>) -> Self {
-        Self { blocks, gravity }
+        Self { blocks, gravity, loads: Vec::new(), driven: Vec::new(), motions: Vec::new() }
+    }
+
+    /// The same with one more load; none on a block that isn't there.
+    #[must_use]
+    pub fn with_load(mut self, load: BlockLoad) -> Self {
+        if load.block < self.blocks.len() {
+            self.loads.push(load);
+        }
+        self
+    }
+
+    /// The same with one coordinate of a block (0: X, 1: Y, 2: φ) prescribed; its others stay free. It starts from where
+    /// the state has it, so of a given displacement only the changes count. A later motion of the same coordinate takes the place of the
+    /// earlier; a block or coordinate that isn't there has none.
+    #[must_use]
+    pub fn with_motion(mut self, block: usize, coordinate: usize, motion: Motion) -> Self {
+        if block < self.blocks.len() && coordinate < 3 {
+            let velocity = 3 * block + coordinate;
+            match self.driven.binary_search(&velocity) {
+                Ok(at) => self.motions[at] = motion,
+                Err(at) => {
+                    self.driven.insert(at, velocity);
+                    self.motions.insert(at, motion);
+                }
+            }
+        }
+        self
     }
 }
 
@@ -49,6 +95,29 @@ impl Subsystem<2> for Blocks {
         for (f, block) in f.chunks_exact_mut(3).zip(&self.blocks) {
             f[0] += block.mass.mass * self.gravity.x;
             f[1] += block.mass.mass * self.gravity.y;
+        }
+    }
+
+    fn is_loaded(&self) -> bool {
+        !self.loads.is_empty()
+    }
+
+    fn load(&self, t: f64, f: &mut [f64]) {
+        for load in &self.loads {
+            let (factor, first) = (load.signal.value(t), 3 * load.block);
+            f[first] += factor * load.force.x;
+            f[first + 1] += factor * load.force.y;
+            f[first + 2] += factor * load.couple;
+        }
+    }
+
+    fn driven(&self) -> &[usize] {
+        &self.driven
+    }
+
+    fn drive(&self, t: f64, v: &mut [f64]) {
+        for (velocity, motion) in self.driven.iter().zip(&self.motions) {
+            v[*velocity] = motion.velocity(t);
         }
     }
 
@@ -95,17 +164,19 @@ impl Subsystem<2> for Blocks {
 
     fn factor(&self, w: Weights, _q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
         let mass = self.blocks.iter().flat_map(|block| block.mass.diagonal().data.0[0]).collect();
-        let mut compliance = BlockCompliance { weights: w, mass, inverse: vec![0.0; 3 * self.blocks.len()] };
+        let (inverse, driven) = (vec![0.0; 3 * self.blocks.len()], self.driven.clone());
+        let mut compliance = BlockCompliance { weights: w, mass, inverse, driven };
         compliance.refactor(w, &[])?;
         Ok(Box::new(compliance))
     }
 }
 
-/// diag(1/m, 1/m, 1/I) of every block.
+/// diag(1/m, 1/m, 1/I) of every block, 0 where the velocity is prescribed.
 struct BlockCompliance {
     weights: Weights,
     mass: Vec<f64>,
     inverse: Vec<f64>,
+    driven: Vec<usize>,
 }
 
 impl Compliance<2> for BlockCompliance {
@@ -120,6 +191,9 @@ impl Compliance<2> for BlockCompliance {
         }
         for (inverse, mass) in self.inverse.iter_mut().zip(&self.mass) {
             *inverse = (w.mass * mass).recip();
+        }
+        for velocity in &self.driven {
+            self.inverse[*velocity] = 0.0;
         }
         self.weights = w;
         Ok(())

@@ -1,29 +1,87 @@
-//! Fixed flat ground: a subsystem without velocities.
+//! Rigid ground: a half plane that stands still, and has no velocities, or moves as prescribed, and has three.
 
-use crate::{Compliance, Energy, FactorError, Rows, Size, Subsystem, Weights};
-use nalgebra::Vector2;
+use crate::{Compliance, Coupling, Energy, FactorError, Motion, PartRows, Rows, Size, Subsystem, Weights};
+use nalgebra::{Vector2, Vector3};
 use teeter_detect::{Frame, Kinematics, SurfacePoint};
+use teeter_rigid::Pose;
 
-/// The half plane below a level.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ground {
-    level: f64,
+/// The half plane below a straight line.
+///
+/// Its distance from a point is the perpendicular one, and the foot the orthogonal projection. Moving ground has the
+/// coordinates (x, y, β): the place of the point that is the origin when nothing is displaced, and its slope. Their
+/// velocities are prescribed; they have no mass, so all that moves the ground is what its contacts ask for.
+#[derive(Clone, Debug)]
+pub struct Ground(Form);
+
+#[derive(Clone, Debug)]
+enum Form {
+    Level(f64),
+    Inclined(Pose),
+    Moving { incline: f64, motion: [Motion; 3] },
 }
 
 impl Ground {
     /// Flat ground at y = `level`, m.
     #[must_use]
     pub fn flat(level: f64) -> Self {
-        Self { level }
+        Self(Form::Level(level))
+    }
+
+    /// Ground through the origin with slope `incline` (rad, counter-clockwise positive): y = x tan β.
+    #[must_use]
+    pub fn inclined(incline: f64) -> Self {
+        Self(Form::Inclined(Pose::new(&Vector3::new(0.0, 0.0, incline))))
+    }
+
+    /// Ground with slope `incline` (rad) through the origin that moves: displacements x and y (m), and a turn about that
+    /// point (rad, counter-clockwise positive) on top of the incline.
+    #[must_use]
+    pub fn moving(incline: f64, motion: [Motion; 3]) -> Self {
+        Self(Form::Moving { incline, motion })
+    }
+
+    /// Its coordinates at time `t` (s) by the given displacements in closed form; at t = 0 those to start from. None for
+    /// ground that stands still.
+    #[must_use]
+    pub fn coordinates(&self, t: f64) -> Vec<f64> {
+        let Form::Moving { incline, motion } = &self.0 else { return Vec::new() };
+        let [x, y, turn] = motion.each_ref().map(|motion| motion.displacement(t));
+        vec![x, y, incline + turn]
+    }
+
+    /// Where the body frame of its surface is: along the surface, and out of it.
+    fn pose(&self, q: &[f64]) -> Pose {
+        match (&self.0, q) {
+            (Form::Inclined(pose), _) => *pose,
+            (Form::Moving { .. }, &[x, y, slope]) => Pose::new(&Vector3::new(x, y, slope)),
+            (Form::Level(level), _) => Pose::new(&Vector3::new(0.0, *level, 0.0)),
+            (Form::Moving { incline, .. }, _) => Pose::new(&Vector3::new(0.0, 0.0, *incline)),
+        }
     }
 }
 
 impl Subsystem<2> for Ground {
     fn size(&self) -> Size {
-        Size { q: 0, v: 0, bodies: 1, row: 0 }
+        let n = self.driven().len();
+        Size { q: n, v: n, bodies: 1, row: n }
     }
 
     fn internal_force(&self, _q: &[f64], _v: &[f64], _f: &mut [f64]) {}
+
+    fn driven(&self) -> &[usize] {
+        match self.0 {
+            Form::Moving { .. } => &[0, 1, 2],
+            _ => &[],
+        }
+    }
+
+    fn drive(&self, t: f64, v: &mut [f64]) {
+        if let Form::Moving { motion, .. } = &self.0 {
+            for (v, motion) in v.iter_mut().zip(motion) {
+                *v = motion.velocity(t);
+            }
+        }
+    }
 
     fn apply(&self, _w: Weights, _q: &[f64], _x: &[f64], _y: &mut [f64]) {}
 
@@ -31,17 +89,38 @@ impl Subsystem<2> for Ground {
         Energy::default()
     }
 
-    fn place(&self, _body: u32, _q: &[f64], local: &[Vector2<f64>], out: &mut [Vector2<f64>]) {
-        out.copy_from_slice(local);
+    fn place(&self, _body: u32, q: &[f64], local: &[Vector2<f64>], out: &mut [Vector2<f64>]) {
+        if let Form::Level(_) = self.0 {
+            out.copy_from_slice(local);
+            return;
+        }
+        let pose = self.pose(q);
+        for (place, local) in out.iter_mut().zip(local) {
+            *place = pose.point(local);
+        }
     }
 
-    fn surface(&self, _body: u32, _q: &[f64], _: Kinematics, at: &Vector2<f64>) -> Option<SurfacePoint<2>> {
-        let foot = Vector2::new(at.x, self.level);
-        Some(SurfacePoint { place: foot, normal: Vector2::y(), material: foot })
+    fn surface(&self, _body: u32, q: &[f64], _: Kinematics, at: &Vector2<f64>) -> Option<SurfacePoint<2>> {
+        if let Form::Level(level) = self.0 {
+            let foot = Vector2::new(at.x, level);
+            return Some(SurfacePoint { place: foot, normal: Vector2::y(), material: foot });
+        }
+        let pose = self.pose(q);
+        let (along, normal) = (pose.rotate(&Vector2::x()), pose.rotate(&Vector2::y()));
+        let material = Vector2::new(along.dot(&(at - pose.point(&Vector2::zeros()))), 0.0);
+        Some(SurfacePoint { place: pose.point(&material), normal, material })
     }
 
-    fn rows(&self, _: u32, _: &[f64], _: &Vector2<f64>, _: &Frame<2>, _: &mut Rows<'_, 2>) -> usize {
-        0
+    fn rows(&self, _: u32, q: &[f64], point: &Vector2<f64>, frame: &Frame<2>, out: &mut Rows<'_, 2>) -> usize {
+        if self.driven().is_empty() {
+            return 0;
+        }
+        let jacobian = frame * self.pose(q).jacobian(point);
+        for k in 0..3 {
+            out.columns[k] = k;
+            out.values[k] = jacobian.column(k).into();
+        }
+        3
     }
 
     fn factor(&self, w: Weights, _q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
@@ -49,10 +128,10 @@ impl Subsystem<2> for Ground {
     }
 }
 
-/// The compliance of what has no velocities.
+/// The compliance of what no force moves.
 struct Immovable(Weights);
 
-impl Compliance<2> for Immovable {
+impl<const D: usize> Compliance<D> for Immovable {
     fn weights(&self) -> Weights {
         self.0
     }
@@ -62,5 +141,9 @@ impl Compliance<2> for Immovable {
         Ok(())
     }
 
-    fn solve(&mut self, _f: &mut [f64]) {}
+    fn solve(&mut self, f: &mut [f64]) {
+        f.fill(0.0);
+    }
+
+    fn couple(&mut self, _: &PartRows<'_, D>, _: &mut [f64], _: &mut Coupling<'_, D>) {}
 }

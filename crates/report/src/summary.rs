@@ -199,7 +199,7 @@ impl Summary {
         Self {
             title: scene.title.clone(),
             version: env!("CARGO_PKG_VERSION"),
-            scheme: teeter_integrator::MoreauJean::NAME,
+            scheme: scene.time.scheme.word(),
             dt: state.dt,
             steps: state.step,
             t: state.t,
@@ -267,7 +267,7 @@ impl ModelSummary {
             blocks: layout.blocks.iter().map(|place| place.name.clone()).collect(),
             dofs: 3 * layout.blocks.len() + beams.iter().map(|beam| beam.dofs).sum::<usize>(),
             beams,
-            ground: scene.ground,
+            ground: scene.ground.is_some(),
             contacts: layout.pairs.iter().map(|pair| pair.name.clone()).collect(),
             possible_contacts: 4 * scene.contacts.len(),
             left_out: teeter_scenario::left_out(scene),

@@ -3,7 +3,7 @@
 use crate::diagnostic::{Diagnostic, Diagnostics, printable};
 use crate::document::{Document, Entry};
 use crate::judge::{Judge, MOST_FINDINGS, name_rule};
-use crate::keys::{self, Key, Occurrence, Presence, Table};
+use crate::keys::{self, Key, Occurrence, OnlyWith, Presence, Table};
 use crate::sets::setting;
 use crate::source::{Origin, Source};
 use crate::tree::{Branch, Node, Raw, Twig, lenient_value};
@@ -316,7 +316,19 @@ impl Walk<'_> {
     /// Defaults of the keys that are not there, and messages for those that must be.
     fn absent(&mut self, table: &'static Table, path: &str, branch: &Branch, origin: &Origin) {
         let mut required = Vec::new();
-        for key in table.keys.iter().filter(|key| branch.get(key.name).is_none()) {
+        // First those that others depend on.
+        let (free, bound): (Vec<&Key>, Vec<&Key>) = table.keys.iter().partition(|key| key.only_with.is_none());
+        for key in free.into_iter().chain(bound) {
+            let meant = self.has_meaning(key, path);
+            if let Some(node) = branch.get(key.name) {
+                if meant == Some(false) {
+                    self.without_meaning(key, path, node);
+                }
+                continue;
+            }
+            if meant != Some(true) {
+                continue;
+            }
             match key.presence {
                 Presence::Required if self.document.is_refused(&join(path, key.name)) => {}
                 Presence::Required => required.push(key),
@@ -358,6 +370,22 @@ impl Walk<'_> {
                 }
             }
         }
+    }
+
+    /// Whether a key has a meaning beside the others of its table; `None` where that can't be said.
+    fn has_meaning(&self, key: &Key, path: &str) -> Option<bool> {
+        let Some(OnlyWith { sibling, words }) = key.only_with else { return Some(true) };
+        self.document.text(&join(path, sibling)).map(|word| words.contains(&word))
+    }
+
+    fn without_meaning(&mut self, key: &Key, path: &str, node: &Node) {
+        let Some(OnlyWith { sibling, words }) = key.only_with else { return };
+        let word = self.document.text(&join(path, sibling)).unwrap_or_default();
+        let rule = format!("{} has no meaning with {sibling} = {word}", key.name);
+        let path = join(path, key.name);
+        self.judge.blame(node, &path, rule).remedy =
+            Some(format!("leave it out; it goes with {sibling} = {}", words.join(", ")));
+        self.document.refuse(&path);
     }
 
     fn default(&mut self, key: &'static Key, text: &str, path: &str) {

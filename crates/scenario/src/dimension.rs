@@ -44,6 +44,8 @@ impl Dimension {
     pub const ACCELERATION: Self = Self::new(0, 1, -2, 0, 0);
     /// Angular velocity, rad/s.
     pub const ANGULAR_VELOCITY: Self = Self::new(0, 0, -1, 1, 0);
+    /// Angular acceleration, rad/s².
+    pub const ANGULAR_ACCELERATION: Self = Self::new(0, 0, -2, 1, 0);
     /// Rate or frequency, 1/s. A hertz is 1/s here; it is not multiplied by 2π.
     pub const RATE: Self = Self::new(0, 0, -1, 0, 0);
     /// Density, kg/m³.
@@ -150,6 +152,7 @@ static NAMED: &[Named] = &[
     named(Dimension::VELOCITY, "a velocity", "m/s", &["m/s", "mm/s", "km/h"]),
     named(Dimension::ACCELERATION, "an acceleration", "m/s^2", &["m/s^2", "mm/s^2"]),
     named(Dimension::ANGULAR_VELOCITY, "an angular velocity", "rad/s", &["rad/s", "deg/s", "rpm"]),
+    named(Dimension::ANGULAR_ACCELERATION, "an angular acceleration", "rad/s^2", &["rad/s^2", "deg/s^2"]),
     named(Dimension::RATE, "a rate", "1/s", &["1/s", "Hz", "kHz"]),
     named(Dimension::DENSITY, "a density", "kg/m^3", &["kg/m^3", "g/cm^3", "t/m^3"]),
     named(Dimension::PRESSURE, "a pressure or elastic modulus", "Pa", &["Pa", "kPa", "MPa", "GPa", "N/mm^2"]),
@@ -158,7 +161,7 @@ static NAMED: &[Named] = &[
     named(Dimension::POWER, "a power", "W", &["W", "kW"]),
     named(Dimension::IMPULSE, "an impulse", "N s", &["N s"]),
     named(Dimension::DAMPING_PER_LENGTH, "a viscous damping per length", "N s/m^2", &["N s/m^2", "kg/m/s"]),
-    named(Dimension::STIFFNESS, "a stiffness", "N/m", &["N/m", "kN/m", "N/mm"]),
+    named(Dimension::STIFFNESS, "a stiffness or force per length", "N/m", &["N/m", "kN/m", "N/mm"]),
     named(Dimension::DAMPING, "a viscous damping", "N s/m", &["N s/m", "kg/s"]),
     named(Dimension::new(0, 2, 0, 0, 0), "an area", "m^2", &["m^2", "cm^2", "mm^2"]),
     named(Dimension::new(0, 3, 0, 0, 0), "a volume", "m^3", &["m^3", "cm^3", "mm^3"]),

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::diagnostic::Diagnostic;
 use crate::judge::Judge;
 use crate::keys::{self, Found, Key, Kind, Occurrence, TABLES, Table};
+use crate::measure::Measure;
 use crate::source::{Origin, Source};
 use crate::tree::lenient_value;
 use crate::value::Value;
@@ -192,6 +193,14 @@ impl Document {
         }
     }
 
+    /// A quantity by one of several units.
+    pub fn measure(&self, path: &str) -> Option<Measure> {
+        match self.entries.get(path)?.value {
+            Value::Measure(measure) => Some(measure),
+            _ => None,
+        }
+    }
+
     /// Where the value at a path came from; for a path without a value, where its table came from.
     pub fn origin(&self, path: &str) -> Origin {
         if let Some(entry) = self.entries.get(path) {
@@ -277,6 +286,18 @@ impl Document {
             }
         }
         out
+    }
+
+    /// The scene as it stands, as [`Document::to_toml`], with the files that it names rewritten by `path`: for a scene that is
+    /// written to another folder.
+    pub fn to_toml_elsewhere(&self, path: impl Fn(&str) -> String) -> String {
+        let mut moved = self.clone();
+        for entry in moved.entries.values_mut().filter(|entry| entry.key.kind == Kind::Path) {
+            if let Value::Text(file) = &mut entry.value {
+                *file = path(file);
+            }
+        }
+        moved.to_toml()
     }
 
     fn write_table(&self, table: &Table, path: &str, out: &mut String) {

@@ -113,5 +113,5 @@ fn law(error: &ModelError, document: &Document) -> Diagnostic {
     };
     let names = document.names("contact");
     let contact = usize::try_from(*pair).ok().and_then(|pair| names.get(pair).copied()).unwrap_or_default();
-    document.error(&format!("contact.{contact}"), error.to_string(), "check friction and restitution")
+    document.error(&format!("contact.{contact}"), error.to_string(), "check the numbers of its law")
 }

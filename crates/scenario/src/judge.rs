@@ -3,6 +3,7 @@
 use crate::diagnostic::Diagnostic;
 use crate::dimension::Dimension;
 use crate::keys::{Key, Kind, Range};
+use crate::measure::{Measure, Unit};
 use crate::quantity::{self, QuantityError};
 use crate::source::Source;
 use crate::suggest;
@@ -73,6 +74,8 @@ impl Judge<'_> {
         }
         match key.kind {
             Kind::Text => self.text(key, path, node).map(Value::Text),
+            Kind::Path => self.file(key, path, node).map(Value::Text),
+            Kind::Measure(units, range) => self.measure(key, units, &range, path, node).map(Value::Measure),
             Kind::Name => self.name(key, path, node).map(Value::Text),
             Kind::Choice(choices) => self.choice(key, choices, path, node).map(Value::Text),
             Kind::Flag => self.flag(key, path, node).map(Value::Flag),
@@ -164,6 +167,39 @@ impl Judge<'_> {
         }
         self.mistyped(key, path, node);
         None
+    }
+
+    fn file(&mut self, key: &Key, path: &str, node: &Node) -> Option<String> {
+        let text = self.text(key, path, node)?;
+        if text.is_empty() || text.contains('\0') {
+            self.blame(node, path, "this is no name of a file").remedy = Some(expected(key));
+            return None;
+        }
+        Some(text)
+    }
+
+    fn measure(&mut self, key: &Key, units: &[Unit], range: &Range, path: &str, node: &Node) -> Option<Measure> {
+        let Raw::Text(text) = &node.raw else {
+            self.mistyped(key, path, node);
+            return None;
+        };
+        match Measure::read(text, units) {
+            // Its range is one of the number alone.
+            Ok(measure) => self.within(range, measure.value, Dimension::NONE, key, path, node).map(|_| measure),
+            Err(error) => {
+                let rule = match &error {
+                    QuantityError::WrongDimension { got, unit, .. } => match got.name() {
+                        "a quantity" => format!("`{unit}` is no unit for it"),
+                        name => format!("{name} ({unit}) is not what is expected"),
+                    },
+                    _ => error.to_string(),
+                };
+                let found = self.blame(node, path, rule);
+                found.did_you_mean = error.did_you_mean().map(str::to_owned);
+                found.remedy = Some(expected(key));
+                None
+            }
+        }
     }
 
     fn name(&mut self, key: &Key, path: &str, node: &Node) -> Option<String> {

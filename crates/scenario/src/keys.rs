@@ -52,6 +52,18 @@ pub struct Key {
     pub doc: &'static str,
     /// Bytes of memory that each one of a count takes; 0 where it takes none.
     pub bytes_each: u64,
+    /// Where the key has a meaning; `None`: wherever its table is.
+    pub only_with: Option<OnlyWith>,
+}
+
+/// Words of another key of the same table with which alone a key has a meaning: with others it is refused, and neither
+/// required nor filled in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct OnlyWith {
+    /// The other key.
+    pub sibling: &'static str,
+    /// Its words.
+    pub words: &'static [&'static str],
 }
 
 /// A value that is known but not built in yet.
@@ -90,6 +102,8 @@ pub enum Presence {
 pub enum Kind {
     /// Any text.
     Text,
+    /// A file, relative to the scene's own.
+    Path,
     /// A name of something in the scene: letters, digits, `_`, `-`.
     Name,
     /// One of some words.
@@ -117,6 +131,8 @@ pub enum Kind {
     ChoicePair(&'static [&'static str]),
     /// An array of two names.
     NamePair,
+    /// A quantity that may have one of several units, by which it is understood.
+    Measure(&'static [crate::measure::Unit], Range),
     /// An acceleration: a quantity that is not negative (downwards) or an array of two (a vector x, y).
     Gravity,
 }

@@ -37,14 +37,17 @@ pub mod diagnostic;
 pub mod dimension;
 pub mod document;
 mod doubts;
+mod driven;
 mod faults;
 mod judge;
 pub mod keys;
 mod left_out;
+pub mod measure;
 pub mod outlook;
 mod overlap;
 mod placement;
 pub mod quantity;
+pub mod record;
 pub mod resolve;
 pub mod scene;
 mod sets;
@@ -65,7 +68,7 @@ pub use left_out::left_out;
 pub use placement::PlacementError;
 
 /// Reads a scene: text, keys, units, references. `file` is its name in messages, `stem` its title if it has none,
-/// `sets` are overrides by path.
+/// `sets` are overrides by path. A scene that names other files is refused: see [`load_with`].
 ///
 /// # Errors
 /// All that is wrong with it, at once.
@@ -75,16 +78,30 @@ pub fn load(
     stem: &str,
     sets: &[(String, String)],
 ) -> Result<resolve::Resolved, diagnostic::Diagnostics> {
+    load_with(bytes, file, stem, sets, &mut |_| Err("no other file can be read here".to_owned()))
+}
+
+/// As [`load`]; `read` reads the files that the scene names.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with(
+    bytes: &[u8],
+    file: &str,
+    stem: &str,
+    sets: &[(String, String)],
+    read: &mut resolve::ReadFile<'_>,
+) -> Result<resolve::Resolved, diagnostic::Diagnostics> {
     let decode::Decoded { document, mut found, whole } = decode::decode(decode::text(bytes, file)?, file, sets);
     if !found.has_errors() {
-        return resolve::resolve(document, stem).map_err(|mut found| {
+        return resolve::resolve(document, stem, read).map_err(|mut found| {
             decode::in_order(&mut found, sets);
             found
         });
     }
     // Not where a part could not be read: it may be what the rest refers to.
     if whole {
-        found.0.extend(resolve::mistakes(&document));
+        found.0.extend(resolve::mistakes(&document, read));
         decode::in_order(&mut found, sets);
     }
     Err(found)

@@ -93,8 +93,8 @@ pub(crate) fn beam_shape(scene: &Scene, number: usize, body: &BeamBody) -> Resul
     if !beam.static_start {
         return Ok(q);
     }
-    let weights: Vec<Standing<'_>> =
-        scene.blocks.iter().filter_map(|block| Standing::new(scene, block, Support::Beam(number))).collect();
+    let weights: Vec<Weight<'_>> =
+        scene.blocks.iter().filter_map(|block| Weight::new(scene, block, Support::Beam(number))).collect();
     let mut shares: Vec<f64> = weights.iter().map(|w| if w.count == 2 { 0.5 } else { 1.0 }).collect();
     let mut moved = f64::INFINITY;
     let rounds = (MOST_WORK / beam.spec.elements.max(1)).min(ROUNDS);
@@ -123,7 +123,7 @@ pub(crate) fn beam_shape(scene: &Scene, number: usize, body: &BeamBody) -> Resul
 }
 
 /// A block that stands on a beam: its feet and its weight.
-struct Standing<'a> {
+struct Weight<'a> {
     block: &'a BlockScene,
     kinematics: Kinematics,
     feet: [Foot; 2],
@@ -131,7 +131,7 @@ struct Standing<'a> {
     weight: f64,
 }
 
-impl<'a> Standing<'a> {
+impl<'a> Weight<'a> {
     fn new(scene: &Scene, block: &'a BlockScene, on: Support) -> Option<Self> {
         let Placement::On { support, at, tilt, contact } = block.placement else { return None };
         if support != on {
@@ -208,30 +208,50 @@ fn surface_height(
     surface.surface(0, q, kinematics, &at).map(|point| point.place.y).ok_or_else(|| off_surface(block, foot))
 }
 
-/// The configuration (X, Y, φ) of a block on its surface, whose coordinates are `q`; `surface` is `None` for a block
-/// placed by its mass centre.
-pub(crate) fn block_pose(
-    scene: &Scene,
-    block: &BlockScene,
-    surface: Option<(&dyn Subsystem<2>, &[f64])>,
-) -> Result<Vector3<f64>, PlacementError> {
+/// What a block can stand on.
+pub(crate) enum Standing<'a> {
+    /// A surface at its coordinates.
+    Surface(&'a dyn Subsystem<2>, &'a [f64]),
+    /// A straight line through a point x, y with a slope (rad): the ground.
+    Line([f64; 3]),
+}
+
+/// The configuration (X, Y, φ) of a block at the start: as placed by its mass centre, or on what it stands on.
+pub(crate) fn block_pose(scene: &Scene, block: &BlockScene, on: &Standing<'_>) -> Result<Vector3<f64>, PlacementError> {
     let (at, tilt, contact) = match block.placement {
         Placement::Free { position, angle } => return Ok(Vector3::new(position[0], position[1], angle)),
         Placement::On { at, tilt, contact, .. } => (at, tilt, contact),
     };
+    let (surface, q) = match on {
+        Standing::Surface(surface, q) => (*surface, *q),
+        Standing::Line(line) => return Ok(pose_on_line(block, at, tilt, line)),
+    };
     let kinematics = scene.contacts[contact].kinematics;
     let (feet, count) = feet(block, at, tilt);
-    let height_at = |foot: &Foot| match surface {
-        Some((surface, q)) => surface_height(block, surface, q, kinematics, foot),
-        None => Ok(0.0),
-    };
+    let height_at = |foot: &Foot| surface_height(block, surface, q, kinematics, foot);
     // Upright it stands on the higher of its feet (equal ones, where it is held so by a static start).
     let mut height = height_at(&feet[0])?;
     if count == 2 {
         height = height.max(height_at(&feet[1])?);
         return Ok(Vector3::new(at, height + 0.5 * block.height, 0.0));
     }
-    let corner = Vector2::new(if feet[0].corner == 0 { -0.5 } else { 0.5 } * block.width, -0.5 * block.height);
-    let turned = Pose::new(&Vector3::new(0.0, 0.0, tilt)).rotate(&corner);
-    Ok(Vector3::new(feet[0].x - turned.x, height - turned.y, tilt))
+    Ok(turned_about(block, &feet[0], Vector2::new(feet[0].x, height), tilt))
+}
+
+/// On a line the middle of the base is at x = `at`, the base lies along it, and the tilt is counted from it.
+fn pose_on_line(block: &BlockScene, at: f64, tilt: f64, &[x, y, slope]: &[f64; 3]) -> Vector3<f64> {
+    let line = Pose::new(&Vector3::new(at, y + (at - x) * slope.tan(), slope));
+    let (feet, count) = feet(block, 0.0, tilt);
+    if count == 2 {
+        let centre = line.point(&Vector2::new(0.0, 0.5 * block.height));
+        return Vector3::new(centre.x, centre.y, slope);
+    }
+    turned_about(block, &feet[0], line.point(&Vector2::new(feet[0].x, 0.0)), slope + tilt)
+}
+
+/// A block with the corner of `foot` at `place`, turned by `angle`.
+fn turned_about(block: &BlockScene, foot: &Foot, place: Vector2<f64>, angle: f64) -> Vector3<f64> {
+    let corner = Vector2::new(if foot.corner == 0 { -0.5 } else { 0.5 } * block.width, -0.5 * block.height);
+    let centre = place - Pose::new(&Vector3::new(0.0, 0.0, angle)).rotate(&corner);
+    Vector3::new(centre.x, centre.y, angle)
 }

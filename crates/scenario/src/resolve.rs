@@ -3,6 +3,8 @@
 mod beams;
 mod blocks;
 mod contacts;
+mod motions;
+mod signals;
 mod timing;
 
 use std::collections::BTreeMap;
@@ -10,7 +12,7 @@ use std::collections::BTreeMap;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::document::Document;
 use crate::doubts;
-use crate::scene::{ContactScene, Scene, SolverScene, Support};
+use crate::scene::{ContactScene, GroundScene, Scene, SignalScene, SolverScene, Support};
 use crate::value::Value;
 
 pub use timing::MAX_STEPS;
@@ -26,16 +28,21 @@ pub struct Resolved {
     pub warnings: Vec<Diagnostic>,
     /// What is worth knowing, with nothing wrong.
     pub notes: Vec<Diagnostic>,
+    /// The files that the scene names, by the path in the scene, with their bytes as they were read.
+    pub files: Vec<(String, Vec<u8>)>,
 }
+
+/// Reads a file that a scene names, by the path in the scene; or says why it can't be read, in words that end an error message.
+pub type ReadFile<'a> = dyn FnMut(&str) -> Result<Vec<u8>, String> + 'a;
 
 /// Resolves a document; `stem` is the title of a scene that has none.
 ///
 /// # Errors
 /// All that is wrong, at once.
-pub fn resolve(mut document: Document, stem: &str) -> Result<Resolved, Diagnostics> {
-    let mut resolver = Resolver::new(&document, false);
+pub fn resolve(mut document: Document, stem: &str, read: &mut ReadFile<'_>) -> Result<Resolved, Diagnostics> {
+    let mut resolver = Resolver::new(&document, false, read);
     let scene = resolver.scene(stem);
-    let (mut errors, mut warnings) = (resolver.errors, resolver.warnings);
+    let (mut errors, mut warnings, files) = (resolver.errors, resolver.warnings, resolver.files);
     match scene {
         Some(scene) if errors.is_empty() => {
             let derived = [
@@ -52,7 +59,7 @@ pub fn resolve(mut document: Document, stem: &str) -> Result<Resolved, Diagnosti
             if errors.is_empty() {
                 let doubts = doubts::of(&scene, &document);
                 warnings.extend(doubts.warnings);
-                return Ok(Resolved { scene, document, warnings, notes: doubts.notes });
+                return Ok(Resolved { scene, document, warnings, notes: doubts.notes, files });
             }
         }
         _ => {}
@@ -63,30 +70,37 @@ pub fn resolve(mut document: Document, stem: &str) -> Result<Resolved, Diagnosti
 }
 
 /// What is wrong over several keys in a document some of whose values were refused already: of those nothing is said again.
-pub(crate) fn mistakes(document: &Document) -> Vec<Diagnostic> {
-    let mut resolver = Resolver::new(document, true);
+pub(crate) fn mistakes(document: &Document, read: &mut ReadFile<'_>) -> Vec<Diagnostic> {
+    let mut resolver = Resolver::new(document, true, read);
     let _ = resolver.scene("");
     resolver.errors
 }
 
-struct Resolver<'a> {
+struct Resolver<'a, 'f> {
+    read: &'f mut ReadFile<'f>,
+    /// What was read.
+    files: Vec<(String, Vec<u8>)>,
     doc: &'a Document,
     /// Whether values are missing that have their message already.
     partial: bool,
     beams: BTreeMap<&'a str, usize>,
     blocks: BTreeMap<&'a str, usize>,
+    signals: BTreeMap<&'a str, usize>,
     errors: Vec<Diagnostic>,
     warnings: Vec<Diagnostic>,
 }
 
-impl<'a> Resolver<'a> {
-    fn new(doc: &'a Document, partial: bool) -> Self {
+impl<'a, 'f> Resolver<'a, 'f> {
+    fn new(doc: &'a Document, partial: bool, read: &'f mut ReadFile<'f>) -> Self {
         let numbered = |group| doc.names(group).into_iter().zip(0..).collect();
         Self {
+            read,
+            files: Vec::new(),
             doc,
             partial,
             beams: numbered("beam"),
             blocks: numbered("block"),
+            signals: numbered("signal"),
             errors: Vec::new(),
             warnings: Vec::new(),
         }
@@ -130,31 +144,61 @@ impl<'a> Resolver<'a> {
         let title = doc.text("title").unwrap_or(stem).to_owned();
         let gravity = self.pair("world.gravity");
         // Each part is resolved whatever became of the others, so that all errors are found.
-        let beams: Vec<_> = doc.names("beam").into_iter().map(|name| self.beam(name)).collect();
+        let signals: Vec<_> = doc.names("signal").into_iter().map(|name| self.signal(name)).collect();
+        let ground = self.ground(&signals);
+        let beams: Vec<_> = doc.names("beam").into_iter().map(|name| self.beam(name, &signals)).collect();
         self.mesh_sizes(&beams);
         let contacts: Vec<_> = doc.names("contact").into_iter().map(|name| self.contact(name)).collect();
         let joined = self.joined(&contacts);
         let blocks: Vec<_> =
-            doc.names("block").into_iter().map(|name| self.block(name, &beams, &contacts, &joined)).collect();
+            doc.names("block").into_iter().map(|name| self.block(name, &beams, &contacts, &joined, &signals)).collect();
+        self.gives_way(&blocks, &contacts);
+        let forces: Vec<_> = doc.names("force").into_iter().map(|name| self.force(name, &signals)).collect();
+        let loads: Vec<_> = doc.names("load").into_iter().map(|name| self.load(name, &beams, &signals)).collect();
         if self.blocks.is_empty() && self.beams.is_empty() && !self.partial {
             self.error("block", "the scene holds no body", "add a [block.NAME] or a [beam.NAME]");
         }
         let time = self.time(&blocks, &beams);
+        if let Some(time) = &time {
+            self.covered(&signals, time.steps as f64 * time.step);
+        }
         let solver = self.solver();
         let every = doc.quantity("output.every");
         let scene = Scene {
             title,
             time: time?,
             gravity: gravity?,
-            ground: doc.has_table("ground"),
+            ground: ground?,
             beams: beams.into_iter().collect::<Option<_>>()?,
             blocks: blocks.into_iter().collect::<Option<_>>()?,
             contacts: contacts.into_iter().collect::<Option<_>>()?,
+            signals: signals.into_iter().collect::<Option<_>>()?,
+            forces: forces.into_iter().collect::<Option<_>>()?,
+            loads: loads.into_iter().collect::<Option<_>>()?,
             solver: solver?,
             every,
         };
         self.output(&scene);
         Some(scene)
+    }
+
+    /// The ground, if there is any; `None` where something is wrong with it.
+    fn ground(&mut self, signals: &[Option<SignalScene>]) -> Option<Option<GroundScene>> {
+        if !self.doc.has_table("ground") {
+            return Some(None);
+        }
+        let (incline, motion) = (self.quantity("ground.incline"), self.motion("ground", signals));
+        Some(Some(GroundScene { incline: incline?, motion: motion? }))
+    }
+
+    /// The bytes of a file that the scene names; each is read once.
+    fn file(&mut self, path: &str) -> Result<Vec<u8>, String> {
+        if let Some((_, bytes)) = self.files.iter().find(|(read, _)| read == path) {
+            return Ok(bytes.clone());
+        }
+        let bytes = (self.read)(path)?;
+        self.files.push((path.to_owned(), bytes.clone()));
+        Ok(bytes)
     }
 
     /// The table of a body's material.
@@ -242,7 +286,7 @@ impl<'a> Resolver<'a> {
 /// The contact that joins a block and a surface.
 type Joined = BTreeMap<(usize, Support), usize>;
 
-impl Resolver<'_> {
+impl Resolver<'_, '_> {
     /// Which contact joins which two; a pair joined twice is an error.
     fn joined(&mut self, contacts: &[Option<ContactScene>]) -> Joined {
         let mut joined = Joined::new();

@@ -1,5 +1,9 @@
 //! A scene resolved: plain SI numbers, references checked, nothing left to guess.
 
+mod history;
+
+pub use history::{AxisScene, ForceScene, History, LoadKind, LoadScene, MotionScene, SignalScene};
+
 /// A scene that can be run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
@@ -9,14 +13,20 @@ pub struct Scene {
     pub time: Time,
     /// Acceleration of gravity, m/s².
     pub gravity: [f64; 2],
-    /// Whether there is rigid ground, flat at y = 0.
-    pub ground: bool,
+    /// The rigid ground, if there is any.
+    pub ground: Option<GroundScene>,
     /// The beams, in the order of the file.
     pub beams: Vec<BeamScene>,
     /// The blocks, in the order of the file.
     pub blocks: Vec<BlockScene>,
     /// The contacts, in the order of the file.
     pub contacts: Vec<ContactScene>,
+    /// The signals, in the order of the file.
+    pub signals: Vec<SignalScene>,
+    /// The forces on blocks, in the order of the file.
+    pub forces: Vec<ForceScene>,
+    /// The loads on beams, in the order of the file.
+    pub loads: Vec<LoadScene>,
     /// The contact solver.
     pub solver: SolverScene,
     /// Time between rows, s; `None`: thinned to some 10 000 rows.
@@ -32,12 +42,45 @@ pub struct Time {
     pub step: f64,
     /// Steps: up to the first time at or past `end`.
     pub steps: u64,
+    /// The scheme.
+    pub scheme: SchemeName,
     /// θ of the scheme.
     pub theta: f64,
     /// γ of the activation.
     pub activation_gamma: f64,
     /// Largest predicted gap of an active contact, m.
     pub gap_tolerance: f64,
+}
+
+/// A time scheme by name.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SchemeName {
+    /// Moreau–Jean's θ scheme.
+    #[default]
+    MoreauJean,
+    /// The same with contacts that stay closed by a flag.
+    MoreauJeanClosed,
+}
+
+impl SchemeName {
+    /// The word for it in scenes and summaries.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::MoreauJean => teeter_integrator::MoreauJean::NAME,
+            Self::MoreauJeanClosed => teeter_integrator::MoreauJeanClosed::<2>::NAME,
+        }
+    }
+}
+
+/// The rigid ground of a scene.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct GroundScene {
+    /// Its slope at the start, before a given turn, rad.
+    pub incline: f64,
+    /// Its prescribed motion.
+    pub motion: MotionScene,
 }
 
 /// A beam of a scene.
@@ -57,6 +100,8 @@ pub struct BeamScene {
     pub position: [f64; 2],
     /// Places along the span whose deflection is written, m.
     pub probes: Vec<f64>,
+    /// The prescribed motion of its supports; the third axis has none.
+    pub motion: MotionScene,
 }
 
 /// A block of a scene.
@@ -78,6 +123,8 @@ pub struct BlockScene {
     pub velocity: [f64; 2],
     /// Angular velocity, rad/s.
     pub spin: f64,
+    /// What is prescribed of its motion; the rest is free.
+    pub motion: MotionScene,
 }
 
 /// Where a block starts.
@@ -123,10 +170,8 @@ pub struct ContactScene {
     pub block: usize,
     /// What it touches.
     pub surface: Support,
-    /// Coulomb's coefficient.
-    pub friction: f64,
-    /// Newton's coefficient.
-    pub restitution: f64,
+    /// Friction, and what happens along the normal.
+    pub law: teeter_integrator::PairLaw,
     /// How the surface's deflection enters.
     pub kinematics: teeter_detect::Kinematics,
 }

@@ -45,7 +45,7 @@ fn node(path: &str, value: &str, origin: &Origin) -> Result<Node, Wrong> {
     match keys::find(path).ok_or(Wrong::Unknown)? {
         Found::Key(_, key) => {
             // A title of digits, a material called true: a text needs no quotes here.
-            let textual = matches!(key.kind, Kind::Text | Kind::Name | Kind::Choice(_));
+            let textual = matches!(key.kind, Kind::Text | Kind::Path | Kind::Name | Kind::Choice(_));
             if textual && !matches!(node.raw, Raw::Text(_)) {
                 node.raw = Raw::Text(value.trim().to_owned());
             }

@@ -1,18 +1,18 @@
 //! A resolved scene made into a model and its start: ready to run in memory.
 
+use crate::driven;
 use crate::overlap::{Box2, Overlap, deepest_overlap};
-use crate::placement::{PlacementError, beam_shape, block_pose};
-use crate::scene::{Scene, Support};
-use nalgebra::Vector2;
+use crate::placement::{PlacementError, Standing, beam_shape, block_pose};
+use crate::scene::{Scene, SchemeName, Support, Time};
 use std::ops::Range;
 use std::sync::Arc;
 use teeter_beam::{Beam, BeamError};
 use teeter_contact::ContactSolver;
 use teeter_detect::{BodyId, PointDetector, PointPair};
 use teeter_integrator::{
-    BeamBody, BeamSurface, Block, Blocks, Ended, Ground, Model, ModelBuilder, ModelError, MoreauJean,
-    MoreauJeanSettings, Observer, PairLaw, Plan, RunError, Scheme, SettingError, SolverSettings, State, StateError,
-    Subsystem, Workspace, run,
+    Block, Ended, Model, ModelBuilder, ModelError, MoreauJean, MoreauJeanClosed, MoreauJeanClosedSettings,
+    MoreauJeanSettings, Observer, Plan, RunError, Scheme, SettingError, SolverSettings, State, StateError, Subsystem,
+    Workspace, run,
 };
 use teeter_rigid::{MassProperties, Rectangle, RigidError};
 
@@ -89,6 +89,8 @@ pub struct BeamPlace {
     pub beam: Arc<Beam>,
     /// Its coordinates; its velocities have the same places.
     pub range: Range<usize>,
+    /// The displacements x and y of its supports, where they move; deflections are relative to them.
+    pub supports: Option<Range<usize>>,
     /// Places whose deflection is written, m from its left end.
     pub probes: Vec<f64>,
 }
@@ -111,6 +113,8 @@ pub struct Layout {
     pub beams: Vec<BeamPlace>,
     /// The pairs, by their number in the model.
     pub pairs: Vec<PairPlace>,
+    /// The coordinates of ground that moves: the place of its origin, x and y, and its slope.
+    pub ground: Option<Range<usize>>,
 }
 
 /// A scene ready to run.
@@ -165,48 +169,57 @@ impl Simulation {
             layout.blocks.push(BlockPlace { name: block.name.clone(), range: start..start + 3 });
             shapes.push(shape);
         }
-        let gravity = Vector2::from(scene.gravity);
-        let first_block = parts.add(Box::new(Blocks::new(blocks, gravity)));
+        let first_block = parts.add(Box::new(driven::blocks(scene, blocks)));
 
         let mut beam_bodies = Vec::new();
         let mut beam_coordinates = Vec::new();
         let mut dofs = 3 * shapes.len();
         for (number, scene_beam) in scene.beams.iter().enumerate() {
-            let beam = Beam::new(scene_beam.spec).map_err(|error| BuildError::Beam(scene_beam.name.clone(), error))?;
-            let beam = Arc::new(beam);
-            let body = || beam_body(&beam, scene_beam);
-            beam_coordinates.push(beam_shape(scene, number, &body())?);
+            let named = |error| BuildError::Beam(scene_beam.name.clone(), error);
+            let beam = Arc::new(Beam::new(scene_beam.spec).map_err(named)?);
+            let body = driven::beam(scene, number, &beam).map_err(named)?;
+            let displaced = body.displacements(0.0);
+            // Where the supports start, the beam and what stands on it are placed as if they stood still.
+            let still = driven::still_beam(scene_beam, &beam, &displaced);
+            beam_coordinates.push(beam_shape(scene, number, &still)?);
             let range = dofs..dofs + beam.dofs();
-            dofs = range.end;
-            beam_bodies.push((parts.add(Box::new(body())), body()));
+            dofs = range.end + displaced.len();
             layout.beams.push(BeamPlace {
                 name: scene_beam.name.clone(),
                 beam: Arc::clone(&beam),
+                supports: (!displaced.is_empty()).then_some(range.end..dofs),
                 range,
                 probes: scene_beam.probes.clone(),
             });
+            beam_bodies.push((parts.add(Box::new(body)), still, displaced));
         }
-        let ground = Ground::flat(0.0);
-        let ground_body = scene.ground.then(|| parts.add(Box::new(ground)));
+        let ground = scene.ground.as_ref().map(driven::ground);
+        let ground_start = ground.as_ref().map(|ground| ground.coordinates(0.0)).unwrap_or_default();
+        layout.ground = (!ground_start.is_empty()).then_some(dofs..dofs + ground_start.len());
+        dofs += ground_start.len();
+        let ground_body = ground.map(|ground| parts.add(Box::new(ground)));
+        let incline = scene.ground.as_ref().map_or(0.0, |ground| ground.incline);
+        let line = if let [x, y, slope] = *ground_start { [x, y, slope] } else { [0.0, 0.0, incline] };
 
         let (mut q, mut v) = (Vec::with_capacity(dofs), Vec::with_capacity(dofs));
         for block in &scene.blocks {
-            let surface: Option<(&dyn Subsystem<2>, &[f64])> = match block.placement {
+            let standing = match block.placement {
                 crate::scene::Placement::On { support: Support::Beam(k), .. } => {
-                    Some((&beam_bodies[k].1, &beam_coordinates[k]))
+                    Standing::Surface(&beam_bodies[k].1 as &dyn Subsystem<2>, &beam_coordinates[k])
                 }
-                crate::scene::Placement::On { support: Support::Ground, .. } => Some((&ground, &[])),
-                crate::scene::Placement::Free { .. } => None,
+                _ => Standing::Line(line),
             };
-            q.extend(block_pose(scene, block, surface)?.iter());
+            q.extend(block_pose(scene, block, &standing)?.iter());
             v.extend([block.velocity[0], block.velocity[1], block.spin]);
         }
-        beam_coordinates.iter().for_each(|coordinates| q.extend(coordinates));
+        for (coordinates, (.., displaced)) in beam_coordinates.iter().zip(&beam_bodies) {
+            q.extend(coordinates.iter().chain(displaced));
+        }
+        q.extend(ground_start);
         v.resize(dofs, 0.0);
 
         let mut pairs = Vec::new();
         for contact in &scene.contacts {
-            let law = PairLaw::new(contact.friction, contact.restitution);
             let surface = match contact.surface {
                 Support::Beam(k) => beam_bodies[k].0,
                 Support::Ground => match ground_body {
@@ -215,7 +228,7 @@ impl Simulation {
                 },
             };
             pairs.push(PointPair {
-                pair: parts.pair(law),
+                pair: parts.pair(contact.law),
                 points: shapes[contact.block].corners().to_vec(),
                 body: BodyId(first_block.0 + contact.block as u32),
                 surface,
@@ -233,13 +246,9 @@ impl Simulation {
         let settings =
             SolverSettings { tolerance: scene.solver.tolerance, max_iterations: scene.solver.max_iterations };
         let work = Workspace::new(&model, wrap(solver), settings);
-        let scheme = MoreauJean::new(MoreauJeanSettings {
-            theta: scene.time.theta,
-            activation_gamma: scene.time.activation_gamma,
-            gap_tolerance: scene.time.gap_tolerance,
-        })?;
+        let scheme = scheme(&scene.time)?;
         let plan = Plan { steps: scene.time.steps, require_convergence: scene.solver.require_convergence };
-        Ok(Self { model, state, layout, plan, scheme: Box::new(scheme), work })
+        Ok(Self { model, state, layout, plan, scheme, work })
     }
 
     /// Runs to the plan's end, showing every step to the observers. The state is left at the last step taken.
@@ -251,9 +260,14 @@ impl Simulation {
     }
 }
 
-fn beam_body(beam: &Arc<Beam>, scene: &crate::scene::BeamScene) -> BeamBody {
-    let surface = if scene.top { BeamSurface::Top { offset: 0.5 * scene.thickness } } else { BeamSurface::Axis };
-    BeamBody::new(Arc::clone(beam), Vector2::from(scene.position), surface)
+fn scheme(time: &Time) -> Result<Box<dyn Scheme<2>>, SettingError> {
+    let Time { theta, activation_gamma, gap_tolerance, .. } = *time;
+    Ok(match time.scheme {
+        SchemeName::MoreauJean => {
+            Box::new(MoreauJean::new(MoreauJeanSettings { theta, activation_gamma, gap_tolerance })?)
+        }
+        SchemeName::MoreauJeanClosed => Box::new(MoreauJeanClosed::new(MoreauJeanClosedSettings { gap_tolerance })?),
+    })
 }
 
 /// Refuses a start with blocks inside each other.

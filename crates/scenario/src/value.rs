@@ -2,6 +2,7 @@
 
 use crate::dimension::Dimension;
 use crate::keys::Kind;
+use crate::measure::Measure;
 use crate::quantity;
 
 /// A value of a scene; all quantities in SI units.
@@ -22,13 +23,15 @@ pub enum Value {
     List(Vec<f64>),
     /// Two texts, names or choices.
     TextPair([String; 2]),
+    /// A quantity by one of the units that its key takes.
+    Measure(Measure),
 }
 
 impl Value {
     /// Whether it is of the type that a kind of key holds.
     pub(crate) fn fits(&self, kind: Kind) -> bool {
         match self {
-            Self::Text(_) => matches!(kind, Kind::Text | Kind::Name | Kind::Choice(_)),
+            Self::Text(_) => matches!(kind, Kind::Text | Kind::Path | Kind::Name | Kind::Choice(_)),
             Self::Flag(_) => kind == Kind::Flag,
             Self::Integer(_) => matches!(kind, Kind::Integer { .. } | Kind::Version(_)),
             Self::Number(_) => {
@@ -37,6 +40,7 @@ impl Value {
             Self::Pair(_) => matches!(kind, Kind::Pair(..) | Kind::Gravity),
             Self::List(_) => matches!(kind, Kind::List(..)),
             Self::TextPair(_) => matches!(kind, Kind::ChoicePair(_) | Kind::NamePair),
+            Self::Measure(_) => matches!(kind, Kind::Measure(..)),
         }
     }
 
@@ -55,6 +59,7 @@ impl Value {
                 format!("[{}]", items.join(", "))
             }
             Self::TextPair([a, b]) => format!("[{}, {}]", quote(a), quote(b)),
+            Self::Measure(measure) => quote(&measure.to_string()),
         }
     }
 }

@@ -18,6 +18,11 @@ pub(crate) fn with_unit(number: &str, dimension: Dimension) -> String {
 pub(crate) fn noun(key: &Key) -> String {
     match key.kind {
         Kind::Text => "a text in quotes".to_owned(),
+        Kind::Path => "the name of a file in quotes".to_owned(),
+        Kind::Measure(units, _) => {
+            let units: Vec<&str> = units.iter().map(|unit| unit.example).collect();
+            format!("a quantity in {}", units.join(" or "))
+        }
         Kind::Name => "a name in quotes".to_owned(),
         Kind::Choice(_) => "a word in quotes".to_owned(),
         Kind::Flag => "true or false".to_owned(),

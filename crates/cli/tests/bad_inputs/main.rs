@@ -51,6 +51,16 @@ fn files(folder: &Path) -> Vec<String> {
     names
 }
 
+/// Ground that is shaken by a record.
+const SHAKEN: &str = "
+[ground]
+motion = { acceleration = [\"1 m/s^2\", \"0 m/s^2\"], signal = \"quake\" }
+
+[signal.quake]
+shape = \"table\"
+file  = \"quake.csv\"
+";
+
 /// What every refusal has to be, whatever its words.
 fn check_refusal(what: &str, folder: &Path, output: &Output, took: Duration) -> String {
     let message = stderr(output);
@@ -59,7 +69,7 @@ fn check_refusal(what: &str, folder: &Path, output: &Output, took: Duration) -> 
     assert!(!message.contains("panicked") && !message.contains("stack backtrace"), "{what}: {message}");
     assert!(!message.contains(|c: char| c.is_control() && c != '\n'), "{what}: {message:?}");
     assert!(message.len() < 20_000, "{what}: {} bytes flood the terminal", message.len());
-    let left: Vec<_> = files(folder).into_iter().filter(|name| name != "scene.toml").collect();
+    let left: Vec<_> = files(folder).into_iter().filter(|name| name != "scene.toml" && name != "quake.csv").collect();
     assert!(left.is_empty(), "{what} left {left:?}");
     message
 }
@@ -79,6 +89,12 @@ fn run_row(row: &Row, missing: &mut String) -> String {
             (text, &[])
         }
         Input::Text(text) => ((*text).to_owned(), &[]),
+        Input::Record(record) => {
+            if let Some(record) = record {
+                std::fs::write(folder.join("quake.csv"), record).unwrap();
+            }
+            (base() + SHAKEN, &[])
+        }
     };
     std::fs::write(folder.join("scene.toml"), text).unwrap();
     let mut arguments = vec![if row.warns { "check" } else { "run" }, "scene.toml"];

@@ -8,6 +8,8 @@ pub(crate) enum Input {
     Edit(&'static [(&'static str, &'static str)]),
     /// A scene of its own.
     Text(&'static str),
+    /// The base scene on ground that is shaken by this record; what is absent is a file that isn't there.
+    Record(Option<&'static str>),
 }
 
 pub(crate) struct Row {
@@ -20,7 +22,7 @@ pub(crate) struct Row {
     pub(crate) warns: bool,
 }
 
-use Input::{Edit, Set, Text};
+use Input::{Edit, Record, Set, Text};
 
 const fn refused(number: u32, what: &'static str, input: Input, says: &'static [&'static str]) -> Row {
     Row { number, what, input, says, warns: false }
@@ -73,6 +75,8 @@ pub(crate) fn rows() -> Vec<Row> {
     rows.extend(geometry());
     rows.extend(names());
     rows.extend(limits());
+    rows.extend(histories());
+    rows.extend(laws());
     rows
 }
 
@@ -152,7 +156,7 @@ fn names() -> Vec<Row> {
         refused(37, "unknown solver", Set(&["solver.method=foo"]), &["solver.method", "unknown method", "auto, pgs, enumeration"]),
         refused(37, "solver not built in", Set(&["solver.method=socp"]), &["solver.method", "known, but not built in yet"]),
         refused(38, "version of the future", Edit(&[("version = 1", "version = 99")]), &["scene.toml:8:11", "version = 99", "version 1", "got 99"]),
-        refused(38, "motion of the ground", Edit(&[("[contact.feet]", "[ground]\nmotion = \"quake.csv\"\n[contact.feet]")]), &["ground.motion", "known, but not built in yet"]),
+        refused(38, "profile of the ground", Edit(&[("[contact.feet]", "[ground]\nprofile = \"hills.csv\"\n[contact.feet]")]), &["ground.profile", "known, but not built in yet"]),
     ]
 }
 
@@ -165,5 +169,44 @@ fn limits() -> Vec<Row> {
         refused(49, "no time between rows", Set(&["output.every=0 s"]), &["output.every", "greater than 0 s"]),
         refused(49, "too much output", Set(&["time.end=1e6 s", "time.step=1 ms", "output.every=1 ms"]), &["output.every", "1.0e9 rows", "GB", "10 GB"]),
         refused(51, "name with a path", Edit(&[("[block.rocker]", "[block.\"../../x\"]")]), &["../../x", "letters (a-z, A-Z), digits, `_`, `-`"]),
+    ]
+}
+
+#[rustfmt::skip] // a row a line
+fn histories() -> Vec<Row> {
+    vec![
+        refused(43, "record that is not there", Record(None), &["signal.quake.file = \"quake.csv\"", "there is no such file", "relative to the scene's file"]),
+        refused(44, "samples declared, but not there", Record(Some("samples 1300000000\n0,0\n")), &["signal.quake.file", "1 row of numbers", "two or more"]),
+        refused(45, "record with NaN", Record(Some("t,a\n0,0\n0.1,1\n0.2,1\n0.3,1\n0.4,1\n0.5,nan\n")), &["signal.quake.file", "line 7", "the value is NaN", "finite"]),
+        refused(45, "record whose times go back", Record(Some("t,a\n0,0\n0.2,1\n0.1,1\n0.5,0\n")), &["signal.quake.file", "line 4", "0.1 s is not later than 0.2 s"]),
+        refused(45, "record with one row", Record(Some("0,1\n")), &["signal.quake.file", "1 row of numbers", "two or more"]),
+        refused(45, "record with a word", Record(Some("0,1\n1,high\n")), &["line 2", "`high` is no number"]),
+        refused(45, "record by semicolons", Record(Some("t;a\n0;1\n1;2\n")), &["line 2", "1 column", "separated by a comma"]),
+        warned(46, "record shorter than the run", Record(Some("0,0\n0.1,2\n")), &["warning: signal.quake.file", "ends at 0.1 s", "lasts 0.5 s", "last value, 2, is kept"]),
+        refused(38, "signal that is not defined", Edit(&[("[contact.feet]", "[ground]\nmotion = { velocity = [\"1 m/s\", \"0 m/s\"], signal = \"quake\" }\n[contact.feet]")]), &["ground.motion.signal = \"quake\"", "not defined", "[signal.quake]"]),
+        refused(38, "two motions in one", Edit(&[("[contact.feet]", "[ground]\nmotion = { velocity = [\"1 m/s\", \"0 m/s\"], displacement = [\"1 m\", \"0 m\"] }\n[contact.feet]")]), &["ground.motion", "both prescribe the same motion"]),
+        refused(38, "a displacement that jumps", Edit(&[("[contact.feet]", "[signal.late]\nshape = \"constant\"\nstart = \"0.1 s\"\n[ground]\nmotion = { displacement = [\"1 m\", \"0 m\"], signal = \"late\" }\n[contact.feet]")]), &["ground.motion.displacement", "jumps at 0.1 s"]),
+        refused(38, "motion without amount", Edit(&[("[contact.feet]", "[ground]\nmotion = {}\n[contact.feet]")]), &["ground.motion", "doesn't say what moves"]),
+        refused(38, "supports of a free beam that move", Edit(&[("[\"pinned\", \"pinned\"]", "[\"free\", \"free\"]\nmotion = { velocity = [\"1 m/s\", \"0 m/s\"] }"), ("start         = \"static\"", "")]), &["beam.table.motion", "the beam has none"]),
+        refused(38, "phase of a ramp", Edit(&[("[contact.feet]", "[signal.s]\nshape = \"ramp\"\nduration = \"1 s\"\nphase = \"5 deg\"\n[contact.feet]")]), &["signal.s.phase", "has no meaning with shape = ramp", "harmonic, one-sine"]),
+        refused(38, "sine without frequency", Edit(&[("[contact.feet]", "[signal.s]\nshape = \"harmonic\"\n[contact.feet]")]), &["signal.s", "neither frequency nor period"]),
+        refused(38, "ramp without duration", Edit(&[("[contact.feet]", "[signal.s]\nshape = \"ramp\"\n[contact.feet]")]), &["signal.s.duration", "missing"]),
+        refused(38, "force on a beam", Edit(&[("[contact.feet]", "[force.f]\non = \"table\"\nforce = [\"1 N\", \"0 N\"]\n[contact.feet]")]), &["force.f.on = \"table\"", "is no block", "[load.NAME]"]),
+        refused(38, "load off the beam", Edit(&[("[contact.feet]", "[load.f]\non = \"table\"\nat = \"40 cm\"\nforce = \"1 N\"\n[contact.feet]")]), &["load.f.at = \"40 cm\"", "[0, 0.36] m"]),
+        refused(38, "load at a point and all along", Edit(&[("[contact.feet]", "[load.f]\non = \"table\"\nat = \"4 cm\"\ndistributed = \"1 N/m\"\n[contact.feet]")]), &["load.f.at", "distributed all along"]),
+        refused(38, "a wall for ground", Edit(&[("[contact.feet]", "[ground]\nincline = \"85 deg\"\n[contact.feet]")]), &["ground.incline = \"85 deg\"", "[-80 deg, 80 deg]"]),
+    ]
+}
+
+#[rustfmt::skip] // a row a line
+fn laws() -> Vec<Row> {
+    vec![
+        refused(8, "restitution of a contact with duration", Edit(&[("friction = 0.5", "friction = 0.5\nrestitution = 0.3\nlaw = \"hunt-crossley\"\nstiffness = \"1e8 N/m^1.5\"\ndamping = \"0.2 s/m\"")]), &["contact.feet.restitution", "has no meaning with law = hunt-crossley", "newton, poisson, energetic"]),
+        refused(8, "contact with duration without stiffness", Edit(&[("friction = 0.5", "friction = 0.5\nlaw = \"kelvin-voigt\"")]), &["contact.feet.stiffness", "contact.feet.damping", "missing"]),
+        refused(8, "stiffness of an impact", Edit(&[("friction = 0.5", "friction = 0.5\nstiffness = \"1e6 N/m\"")]), &["contact.feet.stiffness", "has no meaning with law = newton", "kelvin-voigt, hunt-crossley"]),
+        refused(8, "stiffness in another unit", Edit(&[("friction = 0.5", "friction = 0.5\nlaw = \"kelvin-voigt\"\nstiffness = \"1e6 Pa\"\ndamping = \"1 N s/m\"")]), &["contact.feet.stiffness = \"1e6 Pa\"", "N/m"]),
+        refused(8, "stiffness of another exponent", Edit(&[("friction = 0.5", "friction = 0.5\nlaw = \"hunt-crossley\"\nstiffness = \"1e6 N/m^2\"\ndamping = \"1 s/m\"")]), &["contact.feet.stiffness", "exponent 1.5", "N/m^1.5"]),
+        refused(8, "linear damping by the exponent", Edit(&[("friction = 0.5", "friction = 0.5\nlaw = \"kelvin-voigt\"\nstiffness = \"1e6 N/m\"\ndamping = \"1 s/m\"")]), &["contact.feet.damping", "N s/m"]),
+        refused(9, "theta of moreau-jean-closed", Set(&["time.scheme=moreau-jean-closed", "time.theta=0.6"]), &["time.theta = 0.6", "moreau-jean-closed", "0.5"]),
     ]
 }

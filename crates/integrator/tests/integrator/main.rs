@@ -4,6 +4,7 @@
 mod allocations;
 mod beams;
 mod closed;
+mod driven;
 mod laws;
 mod own_parts;
 mod reference;

@@ -107,7 +107,7 @@ impl Scenery {
             linear: contact.kinematics == teeter_detect::Kinematics::Linear,
         });
         Self {
-            ground: scene.ground,
+            ground: scene.ground.is_some(),
             blocks: blocks.collect(),
             beams: beams.collect(),
             contacts: contacts.collect(),

@@ -3,14 +3,14 @@
 use teeter_beam::{BeamSpec, Damping, MAX_ELEMENTS, Section, Support};
 
 use super::Resolver;
-use crate::scene::BeamScene;
+use crate::scene::{BeamScene, SignalScene};
 
 /// Most elements of all beams together: their memory and the time to factorise them stay within what a scene's check may
 /// take.
 const MOST_ELEMENTS: usize = 2 * MAX_ELEMENTS;
 
-impl Resolver<'_> {
-    pub(super) fn beam(&mut self, name: &str) -> Option<BeamScene> {
+impl Resolver<'_, '_> {
+    pub(super) fn beam(&mut self, name: &str, signals: &[Option<SignalScene>]) -> Option<BeamScene> {
         let path = format!("beam.{name}");
         let at = |key: &str| format!("{path}.{key}");
         let material = self.material(&path);
@@ -55,6 +55,7 @@ impl Resolver<'_> {
             self.holds_still(&at("start"), supports);
         }
         let top = self.word(&at("surface")).map(|surface| surface == "top");
+        let motion = self.motion(&path, signals);
         let (span, thickness, elements, supports) = (span?, thickness?, elements?, supports?);
         let section = match Section::rectangle(width?, thickness, modulus?, density?) {
             Ok(section) => section,
@@ -65,7 +66,7 @@ impl Resolver<'_> {
         };
         let mut spec = BeamSpec { span, elements, section, supports, damping: Damping::default() };
         spec.damping = self.damping(&path, &spec)?;
-        Some(BeamScene {
+        let beam = BeamScene {
             name: name.to_owned(),
             spec,
             thickness,
@@ -73,7 +74,10 @@ impl Resolver<'_> {
             static_start: static_start?,
             position: position?,
             probes,
-        })
+            motion: motion?,
+        };
+        self.supported(&beam);
+        Some(beam)
     }
 
     fn elements(&mut self, path: &str) -> Option<usize> {

@@ -1,15 +1,16 @@
 //! Blocks: sides, place, and whether they fit on what they stand on.
 
 use super::{Joined, Resolver};
-use crate::scene::{BeamScene, BlockScene, ContactScene, Placement, Support};
+use crate::scene::{BeamScene, BlockScene, ContactScene, Placement, SignalScene, Support};
 
-impl Resolver<'_> {
+impl Resolver<'_, '_> {
     pub(super) fn block(
         &mut self,
         name: &str,
         beams: &[Option<BeamScene>],
         contacts: &[Option<ContactScene>],
         joined: &Joined,
+        signals: &[Option<SignalScene>],
     ) -> Option<BlockScene> {
         let path = format!("block.{name}");
         let at = |key: &str| format!("{path}.{key}");
@@ -19,6 +20,7 @@ impl Resolver<'_> {
         let depth = self.quantity(&at("depth"));
         let velocity = self.pair(&at("velocity"));
         let spin = self.quantity(&at("spin"));
+        let motion = self.motion(&path, signals);
         let placement = self.placement(name, contacts, joined);
         if let (Some(width), Some(placement)) = (width, &placement) {
             self.stands(name, width, placement, beams);
@@ -32,6 +34,7 @@ impl Resolver<'_> {
             placement: placement?,
             velocity: velocity?,
             spin: spin?,
+            motion: motion?,
         })
     }
 

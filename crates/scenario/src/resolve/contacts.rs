@@ -1,31 +1,89 @@
 //! Contacts: who touches whom.
 
 use teeter_detect::Kinematics;
+use teeter_integrator::{ImpactLaw, PairLaw};
 
 use super::Resolver;
+use crate::measure::Measure;
 use crate::scene::{ContactScene, Support};
 
-impl Resolver<'_> {
+impl Resolver<'_, '_> {
     pub(super) fn contact(&mut self, name: &str) -> Option<ContactScene> {
         let path = format!("contact.{name}");
         let at = |key: &str| format!("{path}.{key}");
         let between = self.doc.text_pair(&at("between")).map(|pair| pair.map(str::to_owned));
         let between = self.need(&at("between"), between);
-        let friction = self.number(&at("friction"));
-        let restitution = self.number(&at("restitution"));
+        let law = self.pair_law(&path);
         let kinematics = self.word(&at("kinematics"));
         let between = between?;
         let (block, surface) = self.sides(&at("between"), &between)?;
         let kinematics = if kinematics? == "linear" { Kinematics::Linear } else { Kinematics::Deformed };
-        Some(ContactScene {
-            name: name.to_owned(),
-            between,
-            block,
-            surface,
-            friction: friction?,
-            restitution: restitution?,
-            kinematics,
-        })
+        Some(ContactScene { name: name.to_owned(), between, block, surface, law: law?, kinematics })
+    }
+
+    fn pair_law(&mut self, path: &str) -> Option<PairLaw> {
+        let at = |key: &str| format!("{path}.{key}");
+        let friction = self.number(&at("friction"));
+        let law = self.word(&at("law"))?;
+        let impact = match law.as_str() {
+            "kelvin-voigt" => self.kelvin_voigt(path)?,
+            "hunt-crossley" => self.hunt_crossley(path)?,
+            instant => {
+                let (e, tangential) = (self.number(&at("restitution")), self.number(&at("tangential_restitution")));
+                let impact = match instant {
+                    "poisson" => ImpactLaw::Poisson,
+                    "energetic" => ImpactLaw::Energetic,
+                    _ => ImpactLaw::Newton,
+                };
+                return Some(PairLaw::new(friction?, e?).with_impact(impact).with_tangential_restitution(tangential?));
+            }
+        };
+        Some(PairLaw::new(friction?, 0.0).with_impact(impact))
+    }
+
+    fn kelvin_voigt(&mut self, path: &str) -> Option<ImpactLaw> {
+        let (stiffness, damping) = (self.measure(path, "stiffness"), self.measure(path, "damping"));
+        let (stiffness, damping) = (stiffness?, damping?);
+        if stiffness.power.is_some_and(|power| power != 1.0) {
+            self.error(
+                &format!("{path}.stiffness"),
+                "the force of kelvin-voigt is linear: k is in N/m",
+                "such as \"1e6 N/m\"",
+            );
+            return None;
+        }
+        if damping.is_inverse_velocity() || damping.power.is_some_and(|power| power != 1.0) {
+            self.error(&format!("{path}.damping"), "the damping c of kelvin-voigt is in N s/m", "such as \"10 N s/m\"");
+            return None;
+        }
+        Some(ImpactLaw::KelvinVoigt { stiffness: stiffness.value, damping: damping.value })
+    }
+
+    /// F = k dⁿ (1 + D v): the unit of the damping tells whether it is D or c = k D.
+    fn hunt_crossley(&mut self, path: &str) -> Option<ImpactLaw> {
+        let (stiffness, damping) = (self.measure(path, "stiffness"), self.measure(path, "damping"));
+        let exponent = self.number(&format!("{path}.exponent"));
+        let (stiffness, damping, exponent) = (stiffness?, damping?, exponent?);
+        let wrong = |measure: &Measure, power: f64| measure.power.is_some_and(|given| (given - power).abs() > 1e-12);
+        if wrong(&stiffness, exponent) {
+            let rule = format!("with the exponent {exponent} the stiffness is in N/m^{exponent}");
+            self.error(&format!("{path}.stiffness"), rule, "the power in its unit is the exponent of the force");
+            return None;
+        }
+        if wrong(&damping, exponent + 1.0) {
+            let rule = format!("with the exponent {exponent} the damping c is in N s/m^{}", exponent + 1.0);
+            self.error(&format!("{path}.damping"), rule, "or give D = c/k in s/m");
+            return None;
+        }
+        let k = stiffness.value;
+        let damping = if damping.is_inverse_velocity() { damping.value } else { damping.value / k };
+        Some(ImpactLaw::HuntCrossley { stiffness: k, damping, exponent })
+    }
+
+    fn measure(&mut self, path: &str, key: &str) -> Option<Measure> {
+        let path = format!("{path}.{key}");
+        let value = self.doc.measure(&path);
+        self.need(&path, value)
     }
 
     fn sides(&mut self, path: &str, between: &[String; 2]) -> Option<(usize, Support)> {

@@ -1,7 +1,7 @@
 //! Steps, their number and their stability; rows of output.
 
 use super::Resolver;
-use crate::scene::{BeamScene, BlockScene, Scene, Time};
+use crate::scene::{BeamScene, BlockScene, Scene, SchemeName, Time};
 use crate::volume::Volume;
 use crate::wording;
 
@@ -11,12 +11,22 @@ pub const MAX_STEPS: f64 = 1e12;
 /// Most bytes of the tables of a run.
 const MAX_BYTES: f64 = 10e9;
 
-impl Resolver<'_> {
+impl Resolver<'_, '_> {
     pub(super) fn time(&mut self, blocks: &[Option<BlockScene>], beams: &[Option<BeamScene>]) -> Option<Time> {
         let (end, step) = (self.quantity("time.end"), self.quantity("time.step"));
         let theta = self.number("time.theta");
         if let Some(theta) = theta {
             self.stable(theta, beams);
+        }
+        let scheme = self.word("time.scheme").map(|name| match name.as_str() {
+            "moreau-jean-closed" => SchemeName::MoreauJeanClosed,
+            _ => SchemeName::MoreauJean,
+        });
+        if let (Some(SchemeName::MoreauJeanClosed), Some(theta)) = (scheme, theta)
+            && theta != 0.5
+        {
+            let rule = "moreau-jean-closed is a scheme of theta = 0.5: another one is refused";
+            self.error("time.theta", rule, "leave theta out, or take scheme = \"moreau-jean\"");
         }
         let activation_gamma = self.number("time.activation_gamma");
         let gap_tolerance = self.doc.quantity("time.gap_tolerance").unwrap_or_else(|| gap_tolerance(blocks));
@@ -46,7 +56,15 @@ impl Resolver<'_> {
             self.warnings
                 .push(self.doc.error("time.end", rule, "choose an end that is a multiple of the step").as_warning());
         }
-        Some(Time { end, step, steps: steps as u64, theta: theta?, activation_gamma: activation_gamma?, gap_tolerance })
+        Some(Time {
+            end,
+            step,
+            steps: steps as u64,
+            scheme: scheme?,
+            theta: theta?,
+            activation_gamma: activation_gamma?,
+            gap_tolerance,
+        })
     }
 
     /// θ < ½ is allowed only on request; the largest stable step is named either way.

@@ -1,0 +1,64 @@
+//! What moving supports add to a beam: two prescribed coordinates, and the inertia of the motion that they share.
+//!
+//! With v_y the supports' velocity and v the rates of the deflection relative to them, every point moves at v_y + N v:
+//!
+//! ```text
+//! M_aug = ⎡ M   0   s ⎤     s = ρA ∫ Nᵀ dx,  m = ρA L         T = ½ vᵀM v + v_y sᵀv + ½ m (v_x² + v_y²)
+//!         ⎢ 0   m   0 ⎥
+//!         ⎣ sᵀ  0   m ⎦
+//! ```
+//!
+//! Stiffness and damping know the relative motion only.
+
+use crate::Motion;
+use teeter_beam::Beam;
+
+#[derive(Clone, Debug)]
+pub(super) struct MovingSupports {
+    motion: [Motion; 2],
+    /// Numbers of the two prescribed velocities.
+    pub(super) driven: [usize; 2],
+    /// s, one entry per dof of the beam.
+    coupling: Vec<f64>,
+    /// m, kg.
+    mass: f64,
+}
+
+impl MovingSupports {
+    pub(super) fn new(beam: &Beam, motion: [Motion; 2]) -> Self {
+        let (n, spec) = (beam.dofs(), beam.spec());
+        let mut coupling = vec![0.0; n];
+        // The load per length is finite and the vector as long as it must be, so there is no error to pass on.
+        let _ = beam.add_uniform_load(spec.section.mass_per_length, &mut coupling);
+        Self { motion, driven: [n, n + 1], coupling, mass: spec.section.mass_per_length * spec.span }
+    }
+
+    pub(super) fn displacements(&self, t: f64) -> [f64; 2] {
+        self.motion.each_ref().map(|motion| motion.displacement(t))
+    }
+
+    pub(super) fn velocities(&self, t: f64) -> [f64; 2] {
+        self.motion.each_ref().map(|motion| motion.velocity(t))
+    }
+
+    /// y += a (M_aug − M) x.
+    pub(super) fn add_mass_product(&self, a: f64, x: &[f64], y: &mut [f64]) {
+        let [across, up] = self.driven;
+        y[across] += a * self.mass * x[across];
+        y[up] += a * (self.mass * x[up] + self.momentum(x));
+        for (y, s) in y.iter_mut().zip(&self.coupling) {
+            *y += a * x[up] * s;
+        }
+    }
+
+    /// T − ½ vᵀM v, J.
+    pub(super) fn kinetic_energy(&self, v: &[f64]) -> f64 {
+        let [across, up] = self.driven.map(|k| v[k]);
+        0.5 * self.mass * (across * across + up * up) + up * self.momentum(v)
+    }
+
+    /// sᵀv.
+    fn momentum(&self, v: &[f64]) -> f64 {
+        self.coupling.iter().zip(v).map(|(s, v)| s * v).sum()
+    }
+}

@@ -1,0 +1,133 @@
+//! Time histories: of loads and of prescribed motion (`docs/signals.md`).
+//!
+//! A [`Signal`] is a number without unit that depends on time, with its rate and its first two integrals, each in closed
+//! form: from whichever of displacement, velocity and acceleration is given, a [`Motion`] has the other two without adding up
+//! steps.
+
+mod formula;
+mod motion;
+mod table;
+
+pub use formula::Formula;
+pub use motion::{Given, Motion};
+pub use table::Table;
+
+/// A time history without unit; the amplitude that multiplies it has one.
+///
+/// At a jump it has the value after the jump, and no rate of its own.
+///
+/// ```
+/// use teeter_integrator::{Formula, Signal};
+///
+/// let pulse = Formula::half_sine(1.0, 0.5)?; // from 1 s to 1.5 s
+/// assert_eq!((pulse.value(1.25), pulse.value(1.6)), (1.0, 0.0));
+/// let area = pulse.integral(2.0);
+/// assert!((area - 2.0 * 0.5 / std::f64::consts::PI).abs() < 1e-15);
+/// # Ok::<(), teeter_integrator::SignalError>(())
+/// ```
+pub trait Signal: std::fmt::Debug + Send + Sync {
+    /// Its value at time `t` (s).
+    fn value(&self, t: f64) -> f64;
+
+    /// Its derivative at `t`, 1/s; from the right at a kink.
+    fn rate(&self, t: f64) -> f64;
+
+    /// Its integral from 0 to `t`, s.
+    fn integral(&self, t: f64) -> f64;
+
+    /// The integral of [`Signal::integral`] from 0 to `t`, s².
+    fn double_integral(&self, t: f64) -> f64;
+
+    /// The first time after 0 at which it jumps, s: what can't be prescribed as a displacement.
+    fn jump(&self) -> Option<f64> {
+        None
+    }
+}
+
+/// What is wrong with a signal.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SignalError {
+    /// A number out of its range.
+    #[error("{what} is {value}, but must be {rule}")]
+    Value {
+        /// Which number.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// The range.
+        rule: &'static str,
+    },
+    /// Fewer rows than make a history.
+    #[error("{0} rows, but a table needs two or more")]
+    Rows(usize),
+    /// Not as many values as times.
+    #[error("{times} times, but {values} values")]
+    Lengths {
+        /// Times.
+        times: usize,
+        /// Values.
+        values: usize,
+    },
+    /// A row with a number that is not finite, or a time that is not later than the one before.
+    #[error("row {row}: {what}")]
+    Row {
+        /// Which row, from 1.
+        row: usize,
+        /// What is wrong with it.
+        what: String,
+    },
+}
+
+/// From antiderivatives F₁ of f and F₂ of F₁: the integrals of f that start at 0.
+///
+/// `at(t)` returns (F₁, F₂).
+fn from_zero(t: f64, at: impl Fn(f64) -> (f64, f64)) -> (f64, f64) {
+    let ((f1, f2), (f1_0, f2_0)) = (at(t), at(0.0));
+    (f1 - f1_0, f2 - f2_0 - t * f1_0)
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// Five-point Gauss–Legendre over `pieces` equal parts of [a, b].
+    pub(crate) fn quadrature(f: impl Fn(f64) -> f64, a: f64, b: f64, pieces: usize) -> f64 {
+        let (p, q) = (0.906_179_845_938_664, 0.538_469_310_105_683_1);
+        let (wp, wq, w0) = (0.236_926_885_056_189_08, 0.478_628_670_499_366_47, 0.568_888_888_888_888_9);
+        let half = 0.5 * (b - a) / pieces as f64;
+        let piece = |i: usize| {
+            let middle = a + (2 * i + 1) as f64 * half;
+            [(-p, wp), (-q, wq), (0.0, w0), (q, wq), (p, wp)]
+                .iter()
+                .map(|(s, w)| half * w * f(middle + s * half))
+                .sum::<f64>()
+        };
+        (0..pieces).map(piece).sum()
+    }
+
+    /// Compares a signal with quadrature and differences, between and across its kinks.
+    pub(crate) fn check(signal: &dyn Signal, kinks: &[f64], until: f64) {
+        let mut ends = vec![0.0];
+        ends.extend(kinks.iter().copied().filter(|k| *k > 0.0 && *k < until));
+        ends.push(until);
+        let (mut once, mut twice) = (0.0, 0.0);
+        for piece in ends.windows(2) {
+            let (a, b) = (piece[0], piece[1]);
+            let inner = |t: f64| once + quadrature(|s| signal.value(s), a, t, 200);
+            for t in [a + 0.3 * (b - a), b] {
+                let (first, second) = (inner(t), twice + quadrature(inner, a, t, 200));
+                let (i, d) = (signal.integral(t), signal.double_integral(t));
+                assert!((i - first).abs() < 1e-12 * (1.0 + first.abs()), "{signal:?} integral to {t}: {i} {first}");
+                assert!((d - second).abs() < 1e-12 * (1.0 + second.abs()), "{signal:?} double to {t}: {d} {second}");
+            }
+            let (t, h) = (0.5 * (a + b), 1e-4 * (b - a));
+            // Fourth order: the error is some 1e-16 of the fifth derivative, and rounding over h.
+            let f = |k: f64| signal.value(t + k * h);
+            let rate = (8.0 * (f(1.0) - f(-1.0)) - (f(2.0) - f(-2.0))) / (12.0 * h);
+            assert!((signal.rate(t) - rate).abs() < 1e-9 * (1.0 + rate.abs()), "{signal:?} rate at {t}");
+            (once, twice) = (inner(b), twice + quadrature(inner, a, b, 200));
+        }
+        assert_eq!((signal.integral(0.0), signal.double_integral(0.0)), (0.0, 0.0));
+    }
+}

@@ -1,0 +1,144 @@
+//! Signals from a table: linear between its rows.
+
+use super::{Signal, SignalError, from_zero};
+
+/// A time history by rows (time, value): linear between them, the first value before and the last value after.
+///
+/// ```
+/// use teeter_integrator::{Signal, Table};
+///
+/// let table = Table::new(vec![0.0, 1.0, 3.0], vec![0.0, 2.0, 2.0])?;
+/// assert_eq!([0.5, 2.0, 9.0].map(|t| table.value(t)), [1.0, 2.0, 2.0]);
+/// assert_eq!(table.integral(2.0), 3.0);
+/// assert!(Table::new(vec![0.0, 0.0], vec![1.0, 2.0]).is_err());
+/// # Ok::<(), teeter_integrator::SignalError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    times: Vec<f64>,
+    values: Vec<f64>,
+    /// The integral from the first row to each, and the integral of that.
+    once: Vec<f64>,
+    twice: Vec<f64>,
+}
+
+impl Table {
+    /// A history of these rows; times in s.
+    ///
+    /// # Errors
+    /// If there are fewer than two rows, if a number is not finite, or if a time is not later than the one before.
+    pub fn new(times: Vec<f64>, values: Vec<f64>) -> Result<Self, SignalError> {
+        if times.len() != values.len() {
+            return Err(SignalError::Lengths { times: times.len(), values: values.len() });
+        }
+        if times.len() < 2 {
+            return Err(SignalError::Rows(times.len()));
+        }
+        let mut before = None;
+        for (index, (t, value)) in times.iter().zip(&values).enumerate() {
+            let row = |what| Err(SignalError::Row { row: index + 1, what });
+            if !t.is_finite() {
+                return row(format!("the time is {t}, but must be finite"));
+            }
+            if !value.is_finite() {
+                return row(format!("the value is {value}, but must be finite"));
+            }
+            if let Some(before) = before.filter(|before| before >= t) {
+                return row(format!("the time {t} s is not later than {before} s of the row before"));
+            }
+            before = Some(*t);
+        }
+        let (mut once, mut twice) = (vec![0.0], vec![0.0]);
+        let (mut first, mut second) = (0.0, 0.0);
+        for (t, y) in times.windows(2).zip(values.windows(2)) {
+            let h = t[1] - t[0];
+            second += h * first + h * h * (2.0 * y[0] + y[1]) / 6.0;
+            first += 0.5 * h * (y[0] + y[1]);
+            once.push(first);
+            twice.push(second);
+        }
+        Ok(Self { times, values, once, twice })
+    }
+
+    /// Its first and last row, (time, value).
+    #[must_use]
+    pub fn ends(&self) -> [(f64, f64); 2] {
+        // There are two rows or more.
+        let row = |k: usize| (self.times[k], self.values[k]);
+        [row(0), row(self.times.len() - 1)]
+    }
+
+    /// The row that starts the piece which `t` is in, the time since it, and the slope of the piece.
+    fn piece(&self, t: f64) -> (usize, f64, f64) {
+        let after = self.times.partition_point(|row| *row <= t);
+        let row = after.saturating_sub(1);
+        let slope = if after == 0 || after == self.times.len() {
+            0.0
+        } else {
+            (self.values[after] - self.values[row]) / (self.times[after] - self.times[row])
+        };
+        (row, t - self.times[row], slope)
+    }
+
+    fn antiderivatives(&self, t: f64) -> (f64, f64) {
+        let (row, tau, slope) = self.piece(t);
+        let (y, once) = (self.values[row], self.once[row]);
+        (once + tau * (y + 0.5 * slope * tau), self.twice[row] + tau * (once + tau * (0.5 * y + slope * tau / 6.0)))
+    }
+}
+
+impl Signal for Table {
+    fn value(&self, t: f64) -> f64 {
+        let (row, tau, slope) = self.piece(t);
+        self.values[row] + slope * tau
+    }
+
+    fn rate(&self, t: f64) -> f64 {
+        self.piece(t).2
+    }
+
+    fn integral(&self, t: f64) -> f64 {
+        from_zero(t, |t| self.antiderivatives(t)).0
+    }
+
+    fn double_integral(&self, t: f64) -> f64 {
+        from_zero(t, |t| self.antiderivatives(t)).1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::check;
+    use super::*;
+
+    #[test]
+    fn integrals_and_rates_are_those_of_the_value() {
+        for start in [-1.0, 0.0, 0.4] {
+            let times = vec![start, start + 0.3, start + 0.35, start + 1.3];
+            check(&Table::new(times.clone(), vec![0.2, -1.0, 3.0, 0.5]).unwrap(), &times, 3.0);
+        }
+    }
+
+    #[test]
+    fn a_fine_table_is_the_formula() {
+        let sine = crate::Formula::one_sine(0.0, 2.0, 0.0).unwrap();
+        let times: Vec<f64> = (0..=2000).map(|k| f64::from(k) * 2.5e-4).collect();
+        let table = Table::new(times.clone(), times.iter().map(|t| sine.value(*t)).collect()).unwrap();
+        // Between its rows it is low by ω²h²/8 at the most; its integral by the part ω²h²/12.
+        let low = (4.0 * std::f64::consts::PI * 2.5e-4_f64).powi(2);
+        for t in [0.1, 0.3, 0.45] {
+            assert!((table.value(t + 1e-4) - sine.value(t + 1e-4)).abs() < low / 8.0);
+            assert!((table.integral(t) / sine.integral(t) - 1.0 + low / 12.0).abs() < 1e-11);
+            assert!((table.double_integral(t) / sine.double_integral(t) - 1.0 + low / 12.0).abs() < 1e-8);
+        }
+    }
+
+    #[test]
+    fn bad_rows_are_named() {
+        let text = |times: &[f64], values: &[f64]| Table::new(times.to_vec(), values.to_vec()).unwrap_err().to_string();
+        assert_eq!(text(&[0.0], &[1.0]), "1 rows, but a table needs two or more");
+        assert_eq!(text(&[0.0, 1.0], &[1.0]), "2 times, but 1 values");
+        assert_eq!(text(&[0.0, 1.0], &[1.0, f64::NAN]), "row 2: the value is NaN, but must be finite");
+        assert_eq!(text(&[0.0, 1.0, 0.5], &[0.0; 3]), "row 3: the time 0.5 s is not later than 1 s of the row before");
+    }
+}

@@ -1,0 +1,206 @@
+//! Subsystems with prescribed velocities, by themselves: places, rows, masses, inverses belong together.
+
+use nalgebra::Vector2;
+use std::sync::Arc;
+use teeter_beam::{Beam, BeamSpec, Damping, Section, Support};
+use teeter_detect::{Kinematics, plane_frame};
+use teeter_integrator::*;
+use teeter_rigid::{MassProperties, Rectangle};
+
+fn sine(given: Given, amplitude: f64) -> Motion {
+    Motion::still().with(given, amplitude, Arc::new(Formula::harmonic(0.0, 2.0, 0.3).unwrap()))
+}
+
+fn moving_ground() -> Ground {
+    Ground::moving(0.2, [Given::Displacement, Given::Velocity, Given::Acceleration].map(|given| sine(given, 0.4)))
+}
+
+fn beam(supports: [Support; 2]) -> Arc<Beam> {
+    let damping = Damping { viscous: 0.7, rayleigh_mass: 0.3, rayleigh_stiffness: 0.01 };
+    let section = Section::new(2.0, 3.0).unwrap();
+    Arc::new(Beam::new(BeamSpec { span: 1.0, elements: 4, section, supports, damping }).unwrap())
+}
+
+fn moving_beam(supports: [Support; 2], surface: BeamSurface) -> BeamBody {
+    BeamBody::new(beam(supports), Vector2::new(0.1, -0.2), surface)
+        .with_motion([sine(Given::Velocity, 0.5), sine(Given::Acceleration, 3.0)])
+}
+
+fn driven_blocks() -> Blocks {
+    let shape = Rectangle::new(0.2, 0.3).unwrap();
+    let mass = MassProperties::rectangle(&shape, 0.1, 900.0).unwrap();
+    Blocks::new(vec![Block::new(mass, &shape); 2], Vector2::new(0.0, -9.81))
+        .with_motion(1, 2, sine(Given::Velocity, 0.1))
+        .with_motion(0, 1, sine(Given::Displacement, 0.2))
+}
+
+fn all() -> Vec<Box<dyn Subsystem<2>>> {
+    vec![
+        Box::new(moving_ground()),
+        Box::new(moving_beam([Support::Pinned; 2], BeamSurface::Axis)),
+        Box::new(moving_beam([Support::Clamped, Support::Free], BeamSurface::Top { offset: 0.02 })),
+        Box::new(driven_blocks()),
+    ]
+}
+
+/// Small values without a pattern.
+fn wave(len: usize, phase: f64) -> Vec<f64> {
+    (0..len).map(|i| 0.05 * (1.3 * i as f64 + phase).sin()).collect()
+}
+
+#[test]
+fn rows_are_the_velocity_of_the_point_that_they_are_asked_for() {
+    for system in all() {
+        let size = system.size();
+        let q = wave(size.q, 0.4);
+        // A point of the surface where there is one, else of the body.
+        let found = system.surface(0, &q, Kinematics::Deformed, &Vector2::new(0.43, 0.1));
+        let (point, frame) = match &found {
+            Some(foot) => (foot.material, plane_frame(&foot.normal)),
+            None => (Vector2::new(0.1, -0.15), plane_frame(&Vector2::new(-0.6, 0.8))),
+        };
+        let place = |q: &[f64]| {
+            let mut at = [Vector2::zeros()];
+            system.place(0, q, &[point], &mut at);
+            at[0]
+        };
+        let (mut columns, mut values) = (vec![0; size.row], vec![Vector2::zeros(); size.row]);
+        let count = system.rows(0, &q, &point, &frame, &mut Rows::new(&mut columns, &mut values));
+        for k in 0..size.v {
+            let row: Vector2<f64> =
+                (0..count).filter(|i| columns[*i] == k).map(|i| values[i]).fold(Vector2::zeros(), |a, b| a + b);
+            let h = 1e-6;
+            let shifted = |h: f64| {
+                let mut q = q.clone();
+                q[k] += h;
+                place(&q)
+            };
+            let difference = frame * (shifted(h) - shifted(-h)) / (2.0 * h);
+            assert!((row - difference).norm() < 1e-9, "column {k}: {row:?} {difference:?}");
+        }
+    }
+}
+
+#[test]
+fn mass_damping_and_stiffness_are_symmetric_and_the_kinetic_energy_is_that_of_the_mass() {
+    for system in all() {
+        let n = system.size().v;
+        let (q, a, b) = (wave(n, 0.1), wave(n, 0.7), wave(n, 2.0));
+        let product = |w: Weights, x: &[f64]| {
+            let mut y = vec![0.0; n];
+            system.apply(w, &q, x, &mut y);
+            y
+        };
+        let dot = |x: &[f64], y: &[f64]| -> f64 { x.iter().zip(y).map(|(x, y)| x * y).sum() };
+        for (mass, damping, stiffness) in [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.3, 0.2, 0.1)] {
+            let w = Weights { mass, damping, stiffness };
+            let (ab, ba) = (dot(&a, &product(w, &b)), dot(&b, &product(w, &a)));
+            assert!((ab - ba).abs() <= 1e-14 * (dot(&a, &a) + dot(&b, &b)), "{ab} {ba}");
+        }
+        let mass = Weights { mass: 1.0, damping: 0.0, stiffness: 0.0 };
+        let (kinetic, twice) = (system.energy(&q, &a).kinetic, dot(&a, &product(mass, &a)));
+        assert!((kinetic - 0.5 * twice).abs() <= 1e-15 * twice.max(1.0), "{kinetic} {twice}");
+    }
+}
+
+#[test]
+fn a_beam_that_only_follows_its_supports_has_all_its_mass() {
+    for supports in [[Support::Pinned; 2], [Support::Clamped; 2], [Support::Free, Support::Clamped]] {
+        let body = moving_beam(supports, BeamSurface::Axis);
+        let n = body.size().v;
+        let mut v = vec![0.0; n];
+        (v[n - 2], v[n - 1]) = (2.0, -3.0);
+        assert_eq!(body.energy(&vec![0.0; n], &v).kinetic, 0.5 * 3.0 * (4.0 + 9.0));
+        // Damping and stiffness don't know the common motion.
+        let mut f = vec![0.0; n];
+        body.internal_force(&v, &v, &mut f);
+        body.apply(Weights { mass: 0.0, damping: 1.0, stiffness: 1.0 }, &v, &v, &mut f);
+        assert!(f.iter().all(|f| *f == 0.0));
+    }
+    // Free ends alone reach the motion of the whole by their own dofs: the same energy either way.
+    let free = moving_beam([Support::Free, Support::Clamped], BeamSurface::Axis);
+    let clamped = beam([Support::Free, Support::Clamped]);
+    let shape: Vec<[f64; 2]> = (0..5).map(|i| [0.3 * f64::from(4 - i).powi(2), 0.0]).collect();
+    let mut v = clamped.from_nodes(&shape).unwrap();
+    let alone = clamped.kinetic_energy(&v);
+    v.extend([0.0, 0.0]);
+    assert_eq!(free.energy(&vec![0.0; v.len()], &v).kinetic, alone);
+}
+
+#[test]
+fn the_compliance_is_the_inverse_for_the_free_velocities_and_zero_for_the_others() {
+    for system in all() {
+        let n = system.size().v;
+        let q = wave(n, 0.1);
+        let w = Weights { mass: 1.0, damping: 1e-3, stiffness: 1e-6 };
+        let mut factor = system.factor(w, &q).unwrap();
+        let f = wave(n, 0.9);
+        let mut x = f.clone();
+        factor.solve(&mut x);
+        let mut back = vec![0.0; n];
+        system.apply(w, &q, &x, &mut back);
+        for k in 0..n {
+            if system.driven().contains(&k) {
+                assert_eq!(x[k], 0.0);
+            } else {
+                assert!((back[k] - f[k]).abs() < 1e-14, "{k}: {} {}", back[k], f[k]);
+            }
+        }
+    }
+}
+
+#[test]
+fn only_driven_velocities_are_written_and_they_are_those_of_the_motion() {
+    for system in all() {
+        assert!(system.driven().is_sorted() && !system.driven().is_empty());
+        let mut v = vec![f64::NAN; system.size().v];
+        system.drive(0.3, &mut v);
+        for (k, v) in v.iter().enumerate() {
+            assert_eq!(v.is_finite(), system.driven().contains(&k));
+        }
+    }
+    let mut v = [0.0; 6];
+    driven_blocks().drive(0.3, &mut v);
+    assert_eq!([v[1], v[5]], [sine(Given::Displacement, 0.2), sine(Given::Velocity, 0.1)].map(|m| m.velocity(0.3)));
+}
+
+#[test]
+fn ground_slopes_through_the_origin_and_its_gap_is_perpendicular() {
+    let slope = 0.3_f64;
+    let at = Vector2::new(0.7, 1.9);
+    let (still, moving) = (Ground::inclined(slope), Ground::moving(slope, [(); 3].map(|()| Motion::still())));
+    let q = moving.coordinates(0.0);
+    assert_eq!(q, [0.0, 0.0, slope]);
+    assert!(still.coordinates(0.0).is_empty() && still.size() == Size { q: 0, v: 0, bodies: 1, row: 0 });
+    for (ground, q) in [(&still, &[][..]), (&moving, &q[..])] {
+        let foot = ground.surface(0, q, Kinematics::Deformed, &at).unwrap();
+        assert!((foot.normal - Vector2::new(-slope.sin(), slope.cos())).norm() < 1e-16);
+        assert!((foot.place.y - foot.place.x * slope.tan()).abs() < 1e-15, "on the line");
+        let across = at - foot.place;
+        assert!((across - foot.normal * across.norm()).norm() < 1e-15, "along the normal");
+        let mut back = [Vector2::zeros()];
+        ground.place(0, q, &[foot.material], &mut back);
+        assert!((back[0] - foot.place).norm() < 1e-15);
+    }
+}
+
+#[test]
+fn loads_on_blocks_and_beams_follow_their_signal() {
+    let pulse: Arc<dyn Signal> = Arc::new(Formula::half_sine(0.0, 1.0).unwrap());
+    let load = BlockLoad { block: 1, force: Vector2::new(2.0, -3.0), couple: 0.5, signal: Arc::clone(&pulse) };
+    let blocks = driven_blocks().with_load(load);
+    let mut f = [0.0; 6];
+    blocks.load(0.5, &mut f);
+    blocks.load(2.0, &mut f);
+    assert!(blocks.is_loaded() && f == [0.0, 0.0, 0.0, 2.0, -3.0, 0.5]);
+
+    let beam = beam([Support::Pinned; 2]);
+    let mut pattern = vec![0.0; beam.dofs()];
+    beam.add_point_couple(0.3, 2.0, &mut pattern).unwrap();
+    let body = moving_beam([Support::Pinned; 2], BeamSurface::Axis)
+        .with_load(Box::new(SignalLoad::new(pattern.clone(), pulse)));
+    let mut f = vec![0.0; body.size().v];
+    body.load(0.5, &mut f);
+    pattern.extend([0.0, 0.0]);
+    assert_eq!(f, pattern);
+}

@@ -1,0 +1,71 @@
+//! The bodies of a scene with what drives them: loads, and prescribed motion.
+
+use crate::scene::{BeamScene, GroundScene, LoadKind, Scene};
+use nalgebra::Vector2;
+use std::sync::Arc;
+use teeter_beam::{Beam, BeamError};
+use teeter_integrator::{BeamBody, BeamSurface, Block, BlockLoad, Blocks, Ground, SignalLoad};
+
+/// The blocks under their weight and forces, with what is prescribed of their motion.
+pub(crate) fn blocks(scene: &Scene, blocks: Vec<Block>) -> Blocks {
+    let mut system = Blocks::new(blocks, Vector2::from(scene.gravity));
+    for force in &scene.forces {
+        system = system.with_load(BlockLoad {
+            block: force.block,
+            force: Vector2::from(force.force),
+            couple: force.couple,
+            signal: force.history.signal(),
+        });
+    }
+    for (number, block) in scene.blocks.iter().enumerate() {
+        for (coordinate, axis) in block.motion.0.iter().enumerate() {
+            if let Some(axis) = axis {
+                system = system.with_motion(number, coordinate, axis.motion());
+            }
+        }
+    }
+    system
+}
+
+/// A beam under its loads, on supports that may move.
+pub(crate) fn beam(scene: &Scene, number: usize, beam: &Arc<Beam>) -> Result<BeamBody, BeamError> {
+    let of = &scene.beams[number];
+    let mut body = still_beam(of, beam, &[]);
+    for load in scene.loads.iter().filter(|load| load.beam == number) {
+        let mut pattern = vec![0.0; beam.dofs()];
+        match load.kind {
+            LoadKind::Point { at, force, couple } => {
+                beam.add_point_load(at, force, &mut pattern)?;
+                beam.add_point_couple(at, couple, &mut pattern)?;
+            }
+            LoadKind::Distributed(force) => beam.add_uniform_load(force, &mut pattern)?,
+        }
+        body = body.with_load(Box::new(SignalLoad::new(pattern, load.history.signal())));
+    }
+    if of.motion.is_given() {
+        let [x, y, _] = of.motion.motions();
+        body = body.with_motion([x, y]);
+    }
+    Ok(body)
+}
+
+/// A beam without loads, its supports at rest in the place `displaced` (x, y; or nothing) from where the scene has them.
+pub(crate) fn still_beam(of: &BeamScene, beam: &Arc<Beam>, displaced: &[f64]) -> BeamBody {
+    let surface = if of.top { BeamSurface::Top { offset: 0.5 * of.thickness } } else { BeamSurface::Axis };
+    let mut position = Vector2::from(of.position);
+    if let [x, y] = *displaced {
+        position += Vector2::new(x, y);
+    }
+    BeamBody::new(Arc::clone(beam), position, surface)
+}
+
+/// The ground: flat and fixed, inclined, or moving.
+pub(crate) fn ground(of: &GroundScene) -> Ground {
+    if of.motion.is_given() {
+        Ground::moving(of.incline, of.motion.motions())
+    } else if of.incline != 0.0 {
+        Ground::inclined(of.incline)
+    } else {
+        Ground::flat(0.0)
+    }
+}

@@ -1,0 +1,236 @@
+//! What signals drive: prescribed motion of the ground, of supports and of blocks, forces on blocks, loads on beams.
+
+use super::Resolver;
+use crate::scene::{
+    AxisScene, BeamScene, BlockScene, ContactScene, ForceScene, History, LoadKind, LoadScene, MotionScene, SignalScene,
+    Support,
+};
+use teeter_integrator::{Formula, Given};
+
+/// The keys of a motion: of the displacement x, y, and of the turn.
+const SHIFTS: [(&str, Given); 3] =
+    [("displacement", Given::Displacement), ("velocity", Given::Velocity), ("acceleration", Given::Acceleration)];
+const TURNS: [(&str, Given); 3] = [
+    ("angle", Given::Displacement),
+    ("angular_velocity", Given::Velocity),
+    ("angular_acceleration", Given::Acceleration),
+];
+
+impl Resolver<'_, '_> {
+    /// The motion `owner.motion`; none where there is no such table.
+    pub(super) fn motion(&mut self, owner: &str, signals: &[Option<SignalScene>]) -> Option<MotionScene> {
+        let path = format!("{owner}.motion");
+        if !self.doc.has_table(&path) {
+            return Some(MotionScene::default());
+        }
+        let at = |key: &str| format!("{path}.{key}");
+        let (shift, turn) = (self.one_of(&path, &SHIFTS)?, self.one_of(&path, &TURNS)?);
+        if shift.is_none() && turn.is_none() {
+            let remedy = if owner.starts_with("beam") {
+                "give one of displacement, velocity, acceleration, such as acceleration = [\"3 m/s^2\", \"0 m/s^2\"]"
+            } else {
+                "give one of displacement, velocity, acceleration, or one of angle, angular_velocity, \
+                 angular_acceleration, or one of each"
+            };
+            self.error(&path, "it doesn't say what moves", remedy);
+            return None;
+        }
+        let [across, up] = self.pair_of_signals(&path, turn.is_some(), signals)?;
+        let mut axes: [Option<AxisScene>; 3] = [None, None, None];
+        if let Some((key, given)) = shift {
+            let [x, y] = self.pair(&at(key))?;
+            let only = self.doc.text(&at("only"));
+            for (k, amplitude, history, name) in [(0, x, across.clone(), "x"), (1, y, up, "y")] {
+                if only.is_none_or(|only| only == name) {
+                    axes[k] = Some(self.axis(&at(key), given, amplitude, history)?);
+                }
+            }
+        } else if self.doc.has(&at("only")) {
+            self.error(&at("only"), "it goes with displacement, velocity or acceleration", "leave it out");
+        }
+        if let Some((key, given)) = turn {
+            let amplitude = self.quantity(&at(key))?;
+            let history = self.history(&at("signal"), signals)?;
+            axes[2] = Some(self.axis(&at(key), given, amplitude, history)?);
+        }
+        Some(MotionScene(axes))
+    }
+
+    /// Which one of three keys is given.
+    fn one_of(&mut self, path: &str, keys: &[(&'static str, Given)]) -> Option<Option<(&'static str, Given)>> {
+        let doc = self.doc;
+        let at = |key: &str| format!("{path}.{key}");
+        let mut given = keys.iter().filter(|(key, _)| doc.has(&at(key)) || doc.is_refused(&at(key)));
+        match (given.next(), given.next()) {
+            (Some((first, _)), Some((second, _))) => {
+                let rule = format!("{first} and {second} both prescribe the same motion");
+                self.error(&at(second), rule, "keep one of them");
+                None
+            }
+            (Some((key, _)), None) if doc.is_refused(&at(key)) => None,
+            (first, _) => Some(first.copied()),
+        }
+    }
+
+    /// The histories of x and y: `signals`, or `signal` for both.
+    fn pair_of_signals(&mut self, path: &str, turns: bool, signals: &[Option<SignalScene>]) -> Option<[History; 2]> {
+        let (one, two) = (format!("{path}.signal"), format!("{path}.signals"));
+        let Some(names) = self.doc.text_pair(&two).map(|pair| pair.map(str::to_owned)) else {
+            let history = self.history(&one, signals)?;
+            return Some([history.clone(), history]);
+        };
+        if self.doc.has(&one) && !turns {
+            self.error(&two, "signal and signals both multiply the same motion", "keep one of them");
+            return None;
+        }
+        let [x, y] = names.map(|name| self.named(&two, &name, signals));
+        Some([x?, y?])
+    }
+
+    /// The history by the name at a path; constant where none is given.
+    fn history(&mut self, path: &str, signals: &[Option<SignalScene>]) -> Option<History> {
+        match self.doc.text(path).map(str::to_owned) {
+            Some(name) => self.named(path, &name, signals),
+            None if self.doc.is_refused(path) => None,
+            None => Formula::constant(0.0).ok().map(History::Formula),
+        }
+    }
+
+    fn named(&mut self, path: &str, name: &str, signals: &[Option<SignalScene>]) -> Option<History> {
+        if let Some(number) = self.signals.get(name) {
+            return signals.get(*number)?.as_ref().map(|signal| signal.history.clone());
+        }
+        if !self.doc.is_refused("signal") {
+            let known = self.doc.names("signal");
+            let remedy = if known.is_empty() {
+                format!("define it: [signal.{name}]")
+            } else {
+                format!("signals defined: {}", super::listed(&known))
+            };
+            let near = crate::suggest::nearest(name, known).map(str::to_owned);
+            self.error(path, format!("the signal `{name}` is not defined"), remedy);
+            self.suggest(near);
+        }
+        None
+    }
+
+    fn axis(&mut self, path: &str, given: Given, amplitude: f64, history: History) -> Option<AxisScene> {
+        let jump = history.signal().jump().filter(|_| given == Given::Displacement && amplitude != 0.0);
+        let end = self.doc.quantity("time.end").unwrap_or(f64::INFINITY);
+        if let Some(t) = jump.filter(|t| *t <= end) {
+            let rule = format!("the displacement jumps at {t} s, and nothing can follow that");
+            self.error(
+                path,
+                rule,
+                "let the signal start at 0 s or without a jump, or give a velocity or an acceleration",
+            );
+            return None;
+        }
+        Some(AxisScene { given, amplitude, history })
+    }
+
+    /// Supports have to be there to be moved.
+    pub(super) fn supported(&mut self, beam: &BeamScene) {
+        if beam.motion.is_given() && beam.spec.supports == [teeter_beam::Support::Free; 2] {
+            let rule = "the supports move, but the beam has none";
+            self.error(&format!("beam.{}.motion", beam.name), rule, "support an end (supports), or leave motion out");
+        }
+    }
+
+    /// A block none of whose coordinates is free can't give way to ground that no force moves either.
+    pub(super) fn gives_way(&mut self, blocks: &[Option<BlockScene>], contacts: &[Option<ContactScene>]) {
+        for contact in contacts.iter().flatten().filter(|contact| contact.surface == Support::Ground) {
+            let Some(Some(block)) = blocks.get(contact.block) else { continue };
+            if block.motion.0.iter().all(Option::is_some) {
+                let rule = format!("all of `{}` is prescribed, and the ground can't give way to it", block.name);
+                let remedy = "leave a direction or the angle free, or leave the contact out";
+                self.error(&format!("contact.{}.between", contact.name), rule, remedy);
+            }
+        }
+    }
+
+    pub(super) fn force(&mut self, name: &str, signals: &[Option<SignalScene>]) -> Option<ForceScene> {
+        let path = format!("force.{name}");
+        let at = |key: &str| format!("{path}.{key}");
+        let on = self.word(&at("on"));
+        let history = self.history(&at("signal"), signals);
+        let doc = self.doc;
+        let (force, couple) = (doc.pair(&at("force")), doc.quantity(&at("couple")));
+        if force.is_none() && couple.is_none() && !["force", "couple"].iter().any(|key| doc.is_refused(&at(key))) {
+            self.error(&path, "neither force nor couple is given", "add one, such as force = [\"5 N\", \"0 N\"]");
+            return None;
+        }
+        let on = on?;
+        let Some(block) = self.blocks.get(on.as_str()).copied() else {
+            if self.surface(&on).is_some() {
+                let remedy = "put loads on beams under [load.NAME]; ground takes none";
+                self.error(&at("on"), format!("`{on}` is no block"), remedy);
+            } else {
+                self.no_body(&at("on"), &on);
+            }
+            return None;
+        };
+        let (force, couple) = (force.unwrap_or_default(), couple.unwrap_or_default());
+        Some(ForceScene { name: name.to_owned(), block, force, couple, history: history? })
+    }
+
+    pub(super) fn load(
+        &mut self,
+        name: &str,
+        beams: &[Option<BeamScene>],
+        signals: &[Option<SignalScene>],
+    ) -> Option<LoadScene> {
+        let path = format!("load.{name}");
+        let at = |key: &str| format!("{path}.{key}");
+        let on = self.word(&at("on"));
+        let history = self.history(&at("signal"), signals);
+        let kind = self.load_kind(&path);
+        let on = on?;
+        let Some(beam) = self.beams.get(on.as_str()).copied() else {
+            if self.blocks.contains_key(on.as_str()) || on == "ground" {
+                self.error(&at("on"), format!("`{on}` is no beam"), "put forces on blocks under [force.NAME]");
+            } else {
+                self.no_body(&at("on"), &on);
+            }
+            return None;
+        };
+        let kind = kind?;
+        if let (LoadKind::Point { at: x, .. }, Some(Some(beam))) = (kind, beams.get(beam))
+            && x > beam.spec.span
+        {
+            let rule = format!("the load at {x} m lies outside the span [0, {}] m", beam.spec.span);
+            self.error(&at("at"), rule, "give a place along the beam, from its left end");
+            return None;
+        }
+        Some(LoadScene { name: name.to_owned(), beam, kind, history: history? })
+    }
+
+    fn load_kind(&mut self, path: &str) -> Option<LoadKind> {
+        let at = |key: &str| format!("{path}.{key}");
+        let doc = self.doc;
+        let written = |key: &str| doc.has(&at(key)) || doc.is_refused(&at(key));
+        if written("distributed") {
+            if let Some(key) = ["at", "force", "couple"].into_iter().find(|key| written(key)) {
+                let remedy = "keep distributed, or at with force and couple; a second load takes a table of its own";
+                self.error(&at(key), "the load is distributed all along the beam", remedy);
+                return None;
+            }
+            return doc.quantity(&at("distributed")).map(LoadKind::Distributed);
+        }
+        if !(written("force") || written("couple")) {
+            let remedy = "add distributed = \"-10 N/m\", or at with force or couple";
+            self.error(path, "it doesn't say how much", remedy);
+            return None;
+        }
+        if !written("at") {
+            self.error(
+                &at("at"),
+                "missing, where force or couple is given",
+                "a place along the beam, such as \"9 cm\"",
+            );
+            return None;
+        }
+        let of = |key: &str| if written(key) { doc.quantity(&at(key)) } else { Some(0.0) };
+        Some(LoadKind::Point { at: doc.quantity(&at("at"))?, force: of("force")?, couple: of("couple")? })
+    }
+}

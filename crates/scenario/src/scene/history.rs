@@ -1,0 +1,115 @@
+//! Time histories in a resolved scene: signals, and what they drive.
+
+use std::sync::Arc;
+
+use teeter_integrator::{Formula, Given, Motion, Signal, Table};
+
+/// A time history.
+#[derive(Debug, Clone, PartialEq)]
+pub enum History {
+    /// By formula.
+    Formula(Formula),
+    /// By rows.
+    Table(Arc<Table>),
+}
+
+impl History {
+    /// The history as the integrator takes it.
+    #[must_use]
+    pub fn signal(&self) -> Arc<dyn Signal> {
+        match self {
+            Self::Formula(formula) => Arc::new(*formula),
+            Self::Table(table) => Arc::clone(table) as Arc<dyn Signal>,
+        }
+    }
+}
+
+/// A signal of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SignalScene {
+    /// Its name.
+    pub name: String,
+    /// What it is.
+    pub history: History,
+}
+
+/// The prescribed motion of one coordinate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AxisScene {
+    /// What is given.
+    pub given: Given,
+    /// By how much: m, m/s, m/s², or the same with rad.
+    pub amplitude: f64,
+    /// Times what.
+    pub history: History,
+}
+
+/// What is prescribed of a motion: x, y and turn; what is not has `None`.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct MotionScene(pub [Option<AxisScene>; 3]);
+
+impl MotionScene {
+    /// Whether anything is prescribed.
+    #[must_use]
+    pub fn is_given(&self) -> bool {
+        self.0.iter().any(Option::is_some)
+    }
+
+    /// The motions of x, y and turn; what is not prescribed stands still.
+    #[must_use]
+    pub fn motions(&self) -> [Motion; 3] {
+        self.0.each_ref().map(|axis| axis.as_ref().map_or_else(Motion::still, AxisScene::motion))
+    }
+}
+
+impl AxisScene {
+    /// The motion as the integrator takes it.
+    #[must_use]
+    pub fn motion(&self) -> Motion {
+        Motion::still().with(self.given, self.amplitude, self.history.signal())
+    }
+}
+
+/// A force and a couple on a block.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ForceScene {
+    /// Its name.
+    pub name: String,
+    /// The block, by its number in the scene.
+    pub block: usize,
+    /// Force through the mass centre, N.
+    pub force: [f64; 2],
+    /// Couple, N·m.
+    pub couple: f64,
+    /// Times what.
+    pub history: History,
+}
+
+/// A load on a beam.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadScene {
+    /// Its name.
+    pub name: String,
+    /// The beam, by its number in the scene.
+    pub beam: usize,
+    /// Where and how much.
+    pub kind: LoadKind,
+    /// Times what.
+    pub history: History,
+}
+
+/// Where a load acts on a beam.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LoadKind {
+    /// At a point.
+    Point {
+        /// Place along the beam, m.
+        at: f64,
+        /// N, upwards.
+        force: f64,
+        /// N·m, counter-clockwise.
+        couple: f64,
+    },
+    /// The same all along, N/m, upwards.
+    Distributed(f64),
+}
