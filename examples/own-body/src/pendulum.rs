@@ -158,6 +158,16 @@ mod tests {
     }
 
     #[test]
+    fn the_factor_inverts_the_product() {
+        let w = Weights { mass: 1.0, damping: 0.0, stiffness: 2.5e-3 };
+        let mut x = [0.0];
+        ROD.apply(w, &[0.4], &[3.0], &mut x);
+        ROD.factor(w, &[0.4]).unwrap().solve(&mut x);
+        assert!((x[0] - 3.0).abs() < 1e-15);
+        assert!(ROD.factor(Weights::default(), &[0.4]).is_err());
+    }
+
+    #[test]
     fn the_foot_is_on_the_nearer_face_and_within_the_rod() {
         let q = [0.5];
         for (side, along) in [(1.0, 0.2), (-1.0, 0.29)] {

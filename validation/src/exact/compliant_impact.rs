@@ -206,6 +206,18 @@ mod tests {
         }
     }
 
+    /// The slowest mass that comes off does so where the force only touches zero: k δ̇ + c δ̈ = 0 with δ̈ = g.
+    #[test]
+    fn a_mass_just_comes_off_at_the_speed_that_the_equation_says() {
+        for (damping, gravity) in [(0.1, 0.3), (0.8, 0.2), (1.6, 0.1)] {
+            let law = KelvinVoigt { mass: 1.0, stiffness: 1.0, damping, gravity };
+            let limit = boundary(1e-3, 1e3, |speed| law.release(speed).is_some());
+            let found = law.release(limit).unwrap();
+            // A double root: found to the square root of rounding.
+            assert!((found.speed - damping * gravity).abs() < 1e-7, "{limit} {found:?}");
+        }
+    }
+
     #[test]
     fn a_slow_mass_stays_on_its_spring() {
         let law = KelvinVoigt { mass: 1.0, stiffness: 1.0, damping: 0.4, gravity: 1.0 };
