@@ -117,7 +117,8 @@ impl<const D: usize> Scheme<D> for MoreauJean {
         for contact in work.contacts.contacts() {
             state.warm.keep(contact);
         }
-        Ok(self.step.finish(model, state, work, theta, t_end, outcome, energy))
+        let penetration = work.penetration(model, &self.step.q_at);
+        Ok(self.step.finish(model, state, work, theta, t_end, outcome, penetration, energy))
     }
 }
 

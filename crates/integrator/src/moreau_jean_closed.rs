@@ -147,15 +147,22 @@ impl<const D: usize> Scheme<D> for MoreauJeanClosed<D> {
         self.step.free_velocity(model, state, work, THETA, t_end);
         self.v_free.clear();
         self.v_free.extend_from_slice(&self.step.v_end);
-        self.look_ahead(model, state, work);
         self.closed.clear();
         self.closed.extend_from_slice(state.warm.ids());
-        let outcome = loop {
+        self.start.clear();
+        let mut looked = false;
+        let (outcome, penetration) = loop {
+            // In flight there is nothing to look at.
+            if !(looked || self.closed.is_empty()) {
+                self.look_ahead(model, state, work);
+                looked = true;
+            }
             let outcome =
                 self.attempt(model, state, work).map_err(|source| StepError::Problem { t: state.t, source })?;
             self.step.close(model, state, THETA)?;
+            let penetration = work.penetration(model, &self.step.q_at);
             if !self.close_what_sinks(model, state, work) {
-                break outcome;
+                break (outcome, penetration);
             }
         };
         let energy = self.step.work_of_forces(model, state, work, THETA);
@@ -164,15 +171,16 @@ impl<const D: usize> Scheme<D> for MoreauJeanClosed<D> {
             let stays = match contact.gap_after {
                 Some(gap) => gap < 0.0,
                 None => {
-                    let rounding = LEAVING * work.contacts.speed(model, i, &self.step.v_end);
-                    contact.p[0] > 0.0 && contact.u_after[0] + self.resting_shift[i] <= rounding
+                    let leaves = contact.u_after[0] + self.resting_shift[i];
+                    contact.p[0] > 0.0
+                        && (leaves <= 0.0 || leaves <= LEAVING * work.contacts.speed(model, i, &self.step.v_end))
                 }
             };
             if stays {
                 state.warm.keep(contact);
             }
         }
-        Ok(self.step.finish(model, state, work, THETA, t_end, outcome, energy))
+        Ok(self.step.finish(model, state, work, THETA, t_end, outcome, penetration, energy))
     }
 }
 
@@ -181,7 +189,7 @@ impl<const D: usize> MoreauJeanClosed<D> {
     fn look_ahead(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>) {
         // ½(v⁰ + v_free), the mean velocity of the free motion.
         let mean = &mut self.step.v_end;
-        mean.iter_mut().zip(&state.v).for_each(|(v, v0)| *v = 0.5 * (*v + v0));
+        mean.iter_mut().zip(&self.v_free).zip(&state.v).for_each(|((v, free), v0)| *v = 0.5 * (free + v0));
         let mut at = |step: &mut ThetaStep, tau: f64, q: &mut Vec<f64>, candidates: &mut Candidates<D>| {
             let mean = std::mem::take(&mut step.v_end);
             step.predict(model, &state.q, &mean, tau);
@@ -194,7 +202,6 @@ impl<const D: usize> MoreauJeanClosed<D> {
         };
         at(&mut self.step, 0.5 * state.dt, &mut self.q_mid, &mut self.middle);
         at(&mut self.step, state.dt, &mut self.q_ahead, &mut self.ahead);
-        self.start.clear();
     }
 
     /// Takes the step with the closed contacts: leaves v¹ in the step.
@@ -207,6 +214,9 @@ impl<const D: usize> MoreauJeanClosed<D> {
         self.step.v_end.copy_from_slice(&self.v_free);
         work.contacts.clear();
         self.resting_shift.clear();
+        if self.closed.is_empty() {
+            return Ok(None);
+        }
         for k in 0..self.middle.len() {
             let candidate = self.middle[k];
             if self.closed.binary_search(&candidate.id).is_ok() {
@@ -288,6 +298,9 @@ impl<const D: usize> MoreauJeanClosed<D> {
             }
             let mean = (contacts.velocity_by_impulses(i) + u_before) * 0.5;
             let gain = mean.dot(&p);
+            if gain <= 0.0 {
+                continue;
+            }
             // At rest it is the free velocity whose digits are lost.
             let speed = contacts.speed(model, i, &state.v).max(contacts.speed(model, i, &self.v_free));
             if gain <= WORKLESS * p.norm() * speed {
@@ -308,9 +321,9 @@ impl<const D: usize> MoreauJeanClosed<D> {
         found
     }
 
-    /// Closes the open contacts that the attempt ends with in their surface, deeper than they began; whether there are any.
+    /// Closes the open contacts that the attempt ends with in their surface (they are the workspace's candidates), deeper
+    /// than they began; whether there are any.
     fn close_what_sinks(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>) -> bool {
-        work.penetration(model, &self.step.q_at);
         let before = self.closed.len();
         for k in 0..work.candidates.len() {
             let Candidate { id, gap, .. } = work.candidates[k];

@@ -178,9 +178,9 @@ impl ThetaStep {
         theta: f64,
         t_end: f64,
         outcome: Option<Outcome>,
+        penetration: f64,
         mut energy: StepEnergy,
     ) -> StepReport<'w, D> {
-        let penetration = work.penetration(model, &self.q_at);
         let mut stored = 0.0;
         for contact in work.contacts.contacts() {
             let u_theta = contact.u_after * theta + contact.u_before * (1.0 - theta);
