@@ -43,6 +43,8 @@ pub struct Contact<const D: usize> {
     pub u_before: Vector<D>,
     /// Relative velocity after the step, m/s.
     pub u_after: Vector<D>,
+    /// The velocity that the law holds for, U¹ + s, m/s: after the step where the law has no shift.
+    pub u_law: Vector<D>,
     /// Whether it was active in the step before, too.
     pub persisting: bool,
     /// Of a contact with duration: the gap of its spring at the end of the step, m.
@@ -61,7 +63,7 @@ impl<const D: usize> Contact<D> {
     pub fn state(&self) -> ContactState {
         if self.p[0] <= 0.0 {
             ContactState::Open
-        } else if tangential(&self.u_after).norm() <= self.still {
+        } else if tangential(&self.u_law).norm() <= self.still {
             ContactState::Stick
         } else {
             ContactState::Slip
@@ -184,6 +186,7 @@ impl<const D: usize> ContactSet<D> {
             p: Vector::zeros(),
             u_before: Vector::zeros(),
             u_after: Vector::zeros(),
+            u_law: Vector::zeros(),
             persisting: before.is_some(),
             gap_after: None,
             still: 0.0,
@@ -306,8 +309,11 @@ impl<const D: usize> ContactSet<D> {
             let u_after = self.velocity(model, i, v);
             let contact = &mut self.contacts[i];
             (contact.p, contact.u_after, contact.still) = (self.p[i], u_after, STILL * fastest);
-            if let Rule::Spring(spring) = self.rules[i] {
-                contact.gap_after = Some(spring.gap_after(u_after[0]));
+            contact.u_law = u_after + self.shift[i];
+            match self.rules[i] {
+                Rule::Spring(spring) => contact.gap_after = Some(spring.gap_after(u_after[0])),
+                Rule::Poisson { tangential: e, .. } => contact.u_law += tangential(&contact.u_before) * e,
+                Rule::Shifted | Rule::Energetic => {}
             }
         }
     }

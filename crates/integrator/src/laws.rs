@@ -120,7 +120,10 @@ impl<const D: usize> Laws<D> {
         solver: &mut dyn ContactSolver<D>,
         stop: &Stop<'_>,
     ) -> Result<Outcome, ProblemError> {
-        self.find_islands(set);
+        // Springs alone have no use for them.
+        if set.rules.iter().any(|rule| matches!(rule, Rule::Poisson { .. } | Rule::Energetic)) {
+            self.find_islands(set);
+        }
         let mut outcome = self.guarded_pass(set, theta, solver, stop)?;
         let scaled = |set: &ContactSet<D>, i: usize| matches!(set.rules[i], Rule::Energetic) && set.shift[i][0] != 0.0;
         if !(0..set.rules.len()).any(|i| scaled(set, i)) {

@@ -73,7 +73,7 @@ pub struct Ledger {
     pub stored: f64,
     /// Gains by contact.
     pub positive_contact_work: PositiveWork,
-    /// Largest U¹_t·p_t of a contact in a step, J; the law makes it ≤ 0 up to rounding.
+    /// Largest (U¹ + s)_t·p_t of a contact in a step, J, s the shift of its law; the law makes it ≤ 0 up to rounding.
     pub largest_tangential_work: f64,
 }
 

@@ -186,7 +186,7 @@ impl ThetaStep {
             let u_theta = contact.u_after * theta + contact.u_before * (1.0 - theta);
             energy.contact += u_theta[0] * contact.p[0];
             energy.friction += tangential(&u_theta).dot(&contact.p);
-            let slip = tangential(&contact.u_after).dot(&contact.p);
+            let slip = tangential(&contact.u_law).dot(&contact.p);
             state.ledger.largest_tangential_work = state.ledger.largest_tangential_work.max(slip);
             if let (Some(gap), Some(spring)) = (contact.gap_after, model.law(contact.id.pair()).impact.spring()) {
                 stored += spring.potential(gap);

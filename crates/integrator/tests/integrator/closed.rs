@@ -15,6 +15,8 @@ struct Seen {
     drop_outs: u32,
     /// Largest work U_θ·p of a single contact, relative to ‖p‖ times its speeds.
     largest_work: f64,
+    /// Contacts that slid.
+    slips: u32,
     without: u32,
     had: bool,
 }
@@ -28,6 +30,7 @@ impl Observer<2> for Seen {
                 self.largest_work = self.largest_work.max(mean.dot(&contact.p) / size);
             }
         }
+        self.slips += step.contacts.iter().filter(|contact| contact.state() == ContactState::Slip).count() as u32;
         if step.contacts.iter().any(|contact| contact.p[0] > 0.0) {
             if self.had && (1..=3).contains(&self.without) {
                 self.drop_outs += 1;
@@ -77,6 +80,7 @@ fn a_rocking_block_keeps_its_contact_and_gets_no_energy_from_it() {
         assert!(of_page.drop_outs > 0 && page.ledger.positive_contact_work.steps > steps / 2, "{h}: {of_page:?}");
         assert_eq!((seen.drop_outs, closed.ledger.positive_contact_work.steps), (0, 0), "{h}");
         assert!(seen.largest_work <= 1e-11, "{h}: {seen:?}");
+        assert_eq!((seen.slips, of_page.slips), (0, 0), "{h}: with this friction it sticks");
         assert!(closed.tally.max_penetration < page.tally.max_penetration, "{h}");
         assert!(closed.ledger.relative_residual() <= 1e-15, "{h}");
         // First order both: they agree as well as the page's does with the exact motion.
