@@ -4,10 +4,11 @@
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;
 use crate::placement::weight_of;
-use crate::scene::{BeamScene, BlockScene, Placement, Scene, Support};
+use crate::scene::{BeamScene, BlockScene, ContactScene, Placement, Scene, Support};
 use crate::wording;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use teeter_beam::Beam;
+use teeter_integrator::ImpactLaw;
 
 /// What was found.
 #[derive(Debug, Default)]
@@ -63,6 +64,7 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Doubts {
         }
     }
     doubts.warnings.extend(step(scene, document));
+    doubts.warnings.extend(scene.contacts.iter().filter_map(|contact| resolved_in_time(contact, scene, document)));
     doubts
 }
 
@@ -109,6 +111,33 @@ pub(crate) fn sag(scene: &Scene, number: usize) -> Option<f64> {
     let nodes = (0..=beam.spec.elements).map(|k| k as f64 / beam.spec.elements as f64 * beam.spec.span);
     let deflections = nodes.map(|x| model.shape_clamped(x).deflection(&q).w.abs());
     Some(deflections.fold(0.0, f64::max))
+}
+
+/// Steps that a contact with duration should get from touch to release.
+const STEPS_A_CONTACT: f64 = 20.0;
+
+/// A contact with duration that the step doesn't resolve. On a spring k a mass m stays for half a period, π√(m/k); for a force
+/// k δⁿ the spring is that of the depth at which the contact carries the block.
+fn resolved_in_time(contact: &ContactScene, scene: &Scene, document: &Document) -> Option<Diagnostic> {
+    let mass = scene.blocks[contact.block].mass();
+    let spring = match contact.law.impact {
+        ImpactLaw::KelvinVoigt { stiffness, .. } => stiffness,
+        ImpactLaw::HuntCrossley { stiffness, exponent, .. } => {
+            let weight = mass * scene.gravity[0].hypot(scene.gravity[1]);
+            exponent * stiffness.powf(exponent.recip()) * weight.powf(1.0 - exponent.recip())
+        }
+        _ => return None,
+    };
+    let half_period = PI * (mass / spring).sqrt();
+    if !half_period.is_finite() || scene.time.step <= half_period / STEPS_A_CONTACT {
+        return None;
+    }
+    let rule = format!(
+        "a block of {mass:.3} kg on it touches for some {half_period:.1e} s, less than {STEPS_A_CONTACT} steps: the contact is \
+         not resolved"
+    );
+    let remedy = format!("take a step of at most {:.0e} s, or a softer contact", half_period / STEPS_A_CONTACT);
+    Some(document.error(&format!("contact.{}.stiffness", contact.name), rule, remedy).as_warning())
 }
 
 /// A step too coarse for the motion of a contact. The time scales are those of the model itself: a block on its corner moves
@@ -175,6 +204,20 @@ mod tests {
         assert_eq!(count("4 mm"), (1, 0), "1/14");
         assert_eq!(count("7 mm"), (0, 1), "1/77");
         assert_eq!(count("2 cm"), (0, 0), "1/1800");
+    }
+
+    #[test]
+    fn a_contact_too_stiff_for_the_step_is_warned_of() {
+        let count = |law: &str, stiffness: &str| {
+            let text = SCENE.replace("friction = 0.5\n", &format!("friction = 0.5\nlaw = '{law}'\n{stiffness}\n"));
+            let found = crate::load(text.as_bytes(), "f", "f", &[("beam.b.thickness".to_owned(), "2 cm".to_owned())]);
+            found.unwrap().warnings.len()
+        };
+        // 5.4 kg: π√(m/k) is 20 ms at 133 kN/m.
+        assert_eq!(count("kelvin-voigt", "stiffness = '130 kN/m'\ndamping = '0 N s/m'"), 0);
+        assert_eq!(count("kelvin-voigt", "stiffness = '140 kN/m'\ndamping = '0 N s/m'"), 1);
+        assert_eq!(count("hunt-crossley", "stiffness = '1e5 N/m^1.5'\ndamping = '0 s/m'"), 0);
+        assert_eq!(count("hunt-crossley", "stiffness = '1e9 N/m^1.5'\ndamping = '0 s/m'"), 1);
     }
 
     #[test]
