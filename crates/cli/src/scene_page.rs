@@ -39,9 +39,10 @@ const WARNINGS: &str = "\
 
 A scene with a warning runs all the same. `teeter check` and `teeter run` warn of
 
-- a `tilt` within 10 % of the critical angle α = atan(width/height), or beyond it: standing still the block overturns;
+- a `tilt`, with the incline of the ground, within 10 % of the critical angle α = atan(width/height), or beyond it: standing still the block overturns;
 - a beam that sags by more than 1/50 of its span under the weight of the blocks on it: deflections are no longer small (`check` notes a
   sag from 1/250 on: linear theory leaves out the shortening of the axis, at 1/68 some per cent of the block's angle);
+- a signal that nothing uses (`check` notes as well an incline that is steeper than the friction of a block on it holds);
 - a contact with duration that a block of its mass on its stiffness leaves again in less than 20 steps;
 - the table of a signal that ends before the run or begins after 0 s with a value other than 0: that value is kept;
 - a `step` coarser than a tenth of the shortest time scale of a contact: the rocking time √(4R/3g) of a block, R half its diagonal, and
