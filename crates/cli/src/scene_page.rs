@@ -19,8 +19,9 @@ what it models and what looks wrong; `teeter run SCENE.toml` simulates it; `--se
 
 A value with a dimension is a string with its unit: `\"36 cm\"`, `\"69 GPa\"`, `\"9.81 m/s^2\"`, `\"0.4 N s/m^2\"`. A bare number there is an
 error, so that no unit is ever guessed. Numbers are computed with from 1e-12 to 1e12 in SI units unless the table says otherwise.
-Names (of materials, beams, blocks, contacts) hold letters, digits, `_`, `-`, at most 64 of them; no two bodies share one, and
-`ground` is the ground's. A file is at most 4 MB; all that is wrong in it is told at once.
+Names (of materials, beams, blocks, contacts, signals, loads) hold letters, digits, `_`, `-`, at most 64 of them; no two bodies share one, and
+`ground` is the ground's. A file is at most 4 MB; all that is wrong in it is told at once. Files that a scene names (tables of signals, at
+most 64 MB and 2 million rows) are found from its folder.
 ";
 
 const PLACES: &str = "\
@@ -28,7 +29,8 @@ const PLACES: &str = "\
 
 Either on something: `on` names a beam or `\"ground\"`, `at` is the place x of the middle of its base before it is tilted, and `tilt`
 turns it about the corner that it stays on, the left one if positive, the right one if negative. A contact must join the two.
-Or anywhere: `position` is the place of its mass centre and `angle` its turn about it. A corner may not start below a surface that it is
+On inclined ground its base lies along the incline, and `tilt` counts from there; ground and supports that start displaced are where the
+block is put. Or anywhere: `position` is the place of its mass centre and `angle` its turn about it. A corner may not start below a surface that it is
 in contact with, and no block inside another.
 ";
 
@@ -37,9 +39,12 @@ const WARNINGS: &str = "\
 
 A scene with a warning runs all the same. `teeter check` and `teeter run` warn of
 
-- a `tilt` within 10 % of the critical angle α = atan(width/height), or beyond it: standing still the block overturns;
+- a `tilt`, with the incline of the ground, within 10 % of the critical angle α = atan(width/height), or beyond it: standing still the block overturns;
 - a beam that sags by more than 1/50 of its span under the weight of the blocks on it: deflections are no longer small (`check` notes a
   sag from 1/250 on: linear theory leaves out the shortening of the axis, at 1/68 some per cent of the block's angle);
+- a signal that nothing uses (`check` notes as well an incline that is steeper than the friction of a block on it holds);
+- a contact with duration that a block of its mass on its stiffness leaves again in less than 20 steps;
+- the table of a signal that ends before the run or begins after 0 s with a value other than 0: that value is kept;
 - a `step` coarser than a tenth of the shortest time scale of a contact: the rocking time √(4R/3g) of a block, R half its diagonal, and
   for a block on a beam the beam's first period as well;
 - an `end` that is no multiple of the step: the run goes on to the first step past it;

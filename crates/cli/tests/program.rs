@@ -249,3 +249,27 @@ fn a_scene_from_standard_input() {
     assert!(output.status.success(), "{}", stderr(&output));
     assert_eq!(files(&folder.join("runs/stdin")), FILES);
 }
+
+#[test]
+fn a_scene_that_names_a_file_runs_again_from_its_results_to_the_same_bytes() {
+    let folder = folder("record");
+    std::fs::create_dir_all(folder.join("scenes/records")).unwrap();
+    std::fs::write(folder.join("scenes/records/quake.csv"), "t,a\n0,0\n0.05,2\n0.1,-2\n0.2,0\n").unwrap();
+    let shaken = "[ground]\nmotion = { acceleration = [\"1 m/s^2\", \"0 m/s^2\"], signal = \"quake\" }\n\
+                  [signal.quake]\nshape = \"table\"\nfile = \"records/quake.csv\"\n";
+    let text = std::fs::read_to_string(scenario("free-rocking-on-ground")).unwrap().replacen("[ground]\n", shaken, 1);
+    std::fs::write(folder.join("scenes/scene.toml"), text).unwrap();
+    let output = teeter(&folder, &["run", "scenes/scene.toml", "--out", "deep/down/first", "--set", "time.end=0.3 s"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let written = std::fs::read_to_string(folder.join("deep/down/first/scene.toml")).unwrap();
+    assert!(written.contains("file = \"../../../scenes/records/quake.csv\""), "{written}");
+    let output = teeter(&folder, &["run", "deep/down/first/scene.toml", "--out", "deep/down/second"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    for file in ["scene.toml", "trajectory.csv", "energy.csv", "contacts.csv", "impacts.csv"] {
+        let read = |run: &str| std::fs::read(folder.join("deep/down").join(run).join(file)).unwrap();
+        assert!(read("first") == read("second"), "{file}");
+    }
+    let (header, rows) = table(&folder.join("deep/down/first/energy.csv"));
+    let external = header.iter().position(|name| name == "external").unwrap();
+    assert_ne!(rows.last().unwrap()[external], "0.0", "the ground works");
+}

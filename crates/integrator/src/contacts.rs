@@ -193,6 +193,31 @@ impl<const D: usize> ContactSet<D> {
         });
     }
 
+    /// Takes the last contact out again if all that it could move is prescribed: no impulse changes its velocity, so there is
+    /// none to be found. Returns whether it did.
+    pub fn withdraw_if_prescribed(&mut self, model: &Model<D>) -> bool {
+        let Some(sides) = self.spans.last() else { return false };
+        let prescribed = sides.iter().filter(|side| side.len > 0).all(|side| {
+            let driven = model.parts()[side.part].system.driven();
+            // Most scenes have no drives: nothing to search then.
+            !driven.is_empty() && self.columns[side.start..side.start + side.len].iter().all(|c| driven.contains(c))
+        });
+        if prescribed {
+            let start = sides.iter().filter(|side| side.len > 0).map(|side| side.start).min();
+            self.columns.truncate(start.unwrap_or(self.columns.len()));
+            self.values.truncate(start.unwrap_or(self.values.len()));
+            self.spans.pop();
+            self.p.pop();
+            self.u_free.pop();
+            self.shift.pop();
+            self.rules.pop();
+            self.q.pop();
+            self.mu.pop();
+            self.contacts.pop();
+        }
+        prescribed
+    }
+
     /// The relative velocity J_i v of contact `i`.
     #[must_use]
     pub fn velocity(&self, model: &Model<D>, i: usize, v: &[f64]) -> Vector<D> {

@@ -142,6 +142,9 @@ impl MoreauJean {
             }
             let i = contacts.contacts().len();
             contacts.activate(model, q_at, candidate, &state.warm);
+            if contacts.withdraw_if_prescribed(model) {
+                continue;
+            }
             let u_before = contacts.velocity(model, i, &state.v);
             let u_free = contacts.velocity(model, i, v_free);
             let shift = shift(contacts, i, &law, &u_before, &u_free);

@@ -244,6 +244,9 @@ impl<const D: usize> MoreauJeanClosed<D> {
         let contacts = &mut work.contacts;
         let i = contacts.contacts().len();
         contacts.activate(model, &self.q_mid, candidate, &state.warm);
+        if contacts.withdraw_if_prescribed(model) {
+            return;
+        }
         let u_before = contacts.velocity(model, i, &state.v);
         let u_free = contacts.velocity(model, i, &self.v_free);
         // Off the end of its surface by then, it has no frame there.

@@ -15,10 +15,25 @@ const scene = (() => {
   const beamsOf = scenery.blocks.map((_, block) =>
     scenery.contacts.filter((contact) => contact.block === block && contact.beam !== null).map((contact) => contact.beam));
 
+  /** How far the supports of a beam have moved. */
+  function moved(beam, at) {
+    const { supports } = frames.beams[beam];
+    return supports ? [supports[0][at], supports[1][at]] : [0, 0];
+  }
+
+  /** The left end of a beam. */
+  const leftOf = (beam, at) => scenery.beams[beam].x + moved(beam, at)[0];
+
+  /** The ground: a point of it, and its slope. */
+  function groundAt(at) {
+    const { ground } = frames;
+    return ground ? { x: ground.x[at], y: ground.y[at], slope: ground.slope[at] } : { x: 0, y: 0, slope: scenery.incline };
+  }
+
   function lift(block, at, x) {
-    const under = beamsOf[block].find((k) => x >= scenery.beams[k].x && x <= scenery.beams[k].x + scenery.beams[k].span);
+    const under = beamsOf[block].find((k) => x >= leftOf(k, at) && x <= leftOf(k, at) + scenery.beams[k].span);
     const beam = under ?? beamsOf[block][0];
-    return beam === undefined ? 0 : (exaggeration - 1) * deflection(beam, at, x - scenery.beams[beam].x);
+    return beam === undefined ? 0 : (exaggeration - 1) * deflection(beam, at, x - leftOf(beam, at));
   }
 
   function corners(pose, { width: b, height: h }) {
@@ -59,16 +74,21 @@ const scene = (() => {
     const moving = (at) => {
       const points = scenery.blocks.flatMap((block, k) => corners(drawnPose(k, at), block));
       scenery.beams.forEach((beam, k) => {
+        const [across, up] = moved(k, at);
         for (let i = 0; i <= 8; i++) {
           const x = (i / 8) * beam.span;
-          points.push([beam.x + x, beam.y + exaggeration * deflection(k, at, x)]);
+          points.push([beam.x + across + x, beam.y + up + exaggeration * deflection(k, at, x)]);
         }
       });
       return points.filter(([x, y]) => Number.isFinite(x) && Number.isFinite(y));
     };
     const home = around([...fixedPoints, ...moving(0)]);
     if (!(home[2] >= home[0])) return [-1, -1, 1, 1];
-    if (scenery.ground) home[1] = Math.min(home[1], 0);
+    if (scenery.ground) {
+      const { x, y, slope } = groundAt(0);
+      const at = (place) => y + (place - x) * Math.tan(slope);
+      home[1] = Math.min(home[1], at(home[0]), at(home[2]));
+    }
     const reach = 1.5 * Math.max(home[2] - home[0], home[3] - home[1], 1e-9);
     const every = Math.max(1, Math.floor(times.length / 250));
     let box = home;
@@ -125,9 +145,11 @@ const scene = (() => {
     }, svgElement("defs", {}, root));
     svgElement("path", { d: "M0 0L10 5L0 10z", style: "fill: var(--force)" }, marker);
     if (scenery.ground) {
-      const y = py(0);
-      svgElement("path", { d: hatch(4, y, width + 8, 8, 7), class: "hatch" }, root);
-      svgElement("path", { d: `M0 ${y.toFixed(2)}H${width}`, class: "ground-line" }, root);
+      // Long enough to cross the picture wherever it moves and turns.
+      const reach = 8 * Math.ceil((width + height) / 4);
+      layers.ground = svgElement("g", { "data-body": "ground" }, root);
+      svgElement("path", { d: hatch(4 - reach, 0, 2 * reach, 8, 7), class: "hatch" }, layers.ground);
+      svgElement("path", { d: `M${-reach} 0H${reach}`, class: "ground-line" }, layers.ground);
     }
     layers.beams = scenery.beams.map((beam) => {
       const group = svgElement("g", { "data-body": beam.name }, root);
@@ -140,7 +162,7 @@ const scene = (() => {
       const low = py(beam.y) - edge + thickness;
       drawSupport(group, beam.supports[0], px(beam.x), low, false);
       drawSupport(group, beam.supports[1], px(beam.x + beam.span), low, true);
-      return { line, thickness, edge };
+      return { group, line, thickness, edge };
     });
     layers.blocks = scenery.blocks.map((block, k) => {
       svgElement("path", { d: outline(k, 0), class: "ghost" }, root);
@@ -181,9 +203,10 @@ const scene = (() => {
   function contactPoint(contact, point, at) {
     const { block, beam, linear } = scenery.contacts[contact];
     const [x, y] = corners(drawnPose(block, at), scenery.blocks[block])[point];
-    let slope = 0;
+    let slope = beam === null ? Math.tan(groundAt(at).slope) : 0;
     if (beam !== null && !linear) {
-      const { span, x: left, points } = scenery.beams[beam];
+      const { span, points } = scenery.beams[beam];
+      const left = leftOf(beam, at);
       const step = span / (points - 1);
       const place = corners(truePose(block, at), scenery.blocks[block])[point][0] - left;
       slope = (deflection(beam, at, place + step) - deflection(beam, at, place - step)) / (2 * step);
@@ -207,8 +230,19 @@ const scene = (() => {
   function draw(at, memory = 0) {
     frame = at;
     const t = times[at];
+    if (scenery.ground) {
+      const { x, y, slope } = groundAt(at);
+      // Drawn around what is nearest to the middle of the picture, by whole hatches from the point that moves.
+      const [cos, sin] = [Math.cos(slope), Math.sin(slope)];
+      const along = (view.x - x) * cos + (view.y - y) * sin;
+      const shift = (8 * Math.round((along * view.scale) / 8)) / view.scale;
+      const at0 = place(x + shift * cos, y + shift * sin);
+      layers.ground.setAttribute("transform", `translate(${at0}) rotate(${(-slope * degrees).toFixed(4)})`);
+    }
     scenery.beams.forEach((beam, k) => {
-      const { line, thickness, edge } = layers.beams[k];
+      const { group, line, thickness, edge } = layers.beams[k];
+      const [across, up] = moved(k, at);
+      group.setAttribute("transform", `translate(${(across * view.scale).toFixed(2)} ${(-up * view.scale).toFixed(2)})`);
       const top = [];
       const bottom = [];
       for (let i = 0; i < beam.points; i++) {

@@ -248,3 +248,26 @@ fn a_scene_without_blocks_has_a_page() {
     let names: Vec<String> = figures(&run.page).into_iter().map(|(file, _)| file).collect();
     assert_eq!(names, ["w_mid.svg", "energy.svg"]);
 }
+
+#[test]
+fn what_moves_is_drawn_where_it_is() {
+    let scene = "[time]\nend = '0.2 s'\nstep = '1 ms'\n\
+        [ground]\nincline = '5 deg'\nmotion = { velocity = ['1 m/s', '0 m/s'], angular_velocity = '0.5 rad/s' }\n\
+        [material.m]\ndensity = '600 kg/m^3'\nyoungs_modulus = '10 GPa'\n\
+        [beam.still]\nmaterial = 'm'\nspan = '1 m'\nwidth = '5 cm'\nthickness = '2 cm'\nelements = 4\n\
+        [beam.shaken]\nmaterial = 'm'\nspan = '1 m'\nwidth = '5 cm'\nthickness = '2 cm'\nelements = 4\n\
+        motion = { displacement = ['0.3 m', '0.2 m'], signal = 'slow' }\n\
+        [signal.slow]\nshape = 'ramp'\nduration = '0.1 s'\n";
+    let run = run("moving", scene);
+    let page = data(&run.html);
+    let last = |value: &Value| *numbers(value).last().unwrap();
+    assert!(page["frames"]["beams"][0].get("supports").is_none());
+    let supports = &page["frames"]["beams"][1]["supports"];
+    // The velocity of the ramp jumps twice: half a step of it is lost.
+    assert!((last(&supports[0]) - 0.3).abs() < 2e-3 && (last(&supports[1]) - 0.2).abs() < 2e-3, "{supports}");
+    let ground = &page["frames"]["ground"];
+    assert!((last(&ground["x"]) - 0.2).abs() < 1e-6 && last(&ground["y"]) == 0.0);
+    assert!((last(&ground["slope"]) - 5_f64.to_radians() - 0.1).abs() < 1e-6);
+    let still = data(&scenario("sliding").html);
+    assert!(still["frames"]["ground"].is_null() && still["scenery"]["incline"] == 0.0);
+}

@@ -4,10 +4,11 @@
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;
 use crate::placement::weight_of;
-use crate::scene::{BeamScene, BlockScene, Placement, Scene, Support};
+use crate::scene::{BeamScene, BlockScene, ContactScene, Placement, Scene, Support};
 use crate::wording;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use teeter_beam::Beam;
+use teeter_integrator::ImpactLaw;
 
 /// What was found.
 #[derive(Debug, Default)]
@@ -34,7 +35,9 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Doubts {
     let mut touching = vec![false; scene.blocks.len()];
     scene.contacts.iter().for_each(|contact| touching[contact.block] = true);
     for (block, touches) in scene.blocks.iter().zip(touching) {
-        doubts.warnings.extend(tilt(block, touches, document));
+        let incline = incline_under(block, scene);
+        doubts.warnings.extend(tilt(block, incline, touches, document));
+        doubts.notes.extend(slides(block, incline, scene, document));
     }
     for (number, beam) in scene.beams.iter().enumerate() {
         match sag(scene, number) {
@@ -62,7 +65,9 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Doubts {
             _ => {}
         }
     }
+    doubts.warnings.extend(scene.signals.iter().filter_map(|signal| unused(&signal.name, document)));
     doubts.warnings.extend(step(scene, document));
+    doubts.warnings.extend(scene.contacts.iter().filter_map(|contact| resolved_in_time(contact, scene, document)));
     doubts
 }
 
@@ -70,11 +75,45 @@ fn sagging(beam: &BeamScene, sag: f64) -> String {
     format!("the beam sags by {sag:.2e} m under the blocks' weight, {}", wording::part_of(sag, beam.spec.span))
 }
 
+/// A signal that drives nothing.
+fn unused(name: &str, document: &Document) -> Option<Diagnostic> {
+    let uses = |path: &str| match path.rsplit('.').next() {
+        Some("signal") => document.text(path) == Some(name),
+        Some("signals") => document.text_pair(path).is_some_and(|pair| pair.contains(&name)),
+        _ => false,
+    };
+    if document.entries().any(|(path, _)| uses(path)) {
+        return None;
+    }
+    let remedy = format!("write signal = \"{name}\" where it is meant to act, or leave it out");
+    Some(document.error(&format!("signal.{name}"), "nothing uses this signal", remedy).as_warning())
+}
+
+/// The slope of the ground that a block stands on; 0 on anything else.
+fn incline_under(block: &BlockScene, scene: &Scene) -> f64 {
+    match block.placement {
+        Placement::On { support: Support::Ground, .. } => scene.ground.as_ref().map_or(0.0, |ground| ground.incline),
+        _ => 0.0,
+    }
+}
+
+/// A block on an incline that friction doesn't hold.
+fn slides(block: &BlockScene, incline: f64, scene: &Scene, document: &Document) -> Option<Diagnostic> {
+    let Placement::On { contact, .. } = block.placement else { return None };
+    let (slope, friction) = (incline.tan().abs(), scene.contacts[contact].law.friction);
+    if slope <= friction {
+        return None;
+    }
+    let rule =
+        format!("steeper than friction holds: its tangent, {slope:.3}, is over {friction}, so `{}` slides", block.name);
+    Some(document.error("ground.incline", rule, "nothing to mend where that is meant").as_note())
+}
+
 /// A block tilted so far that it may not come back.
-fn tilt(block: &BlockScene, touches: bool, document: &Document) -> Option<Diagnostic> {
+fn tilt(block: &BlockScene, incline: f64, touches: bool, document: &Document) -> Option<Diagnostic> {
     let alpha = block.critical_angle();
     let (key, angle) = match block.placement {
-        Placement::On { tilt, .. } => ("tilt", tilt),
+        Placement::On { tilt, .. } => ("tilt", incline + tilt),
         // In the air any angle is fine.
         Placement::Free { angle, .. } if touches && angle.abs() >= alpha => ("angle", angle),
         Placement::Free { .. } => return None,
@@ -109,6 +148,33 @@ pub(crate) fn sag(scene: &Scene, number: usize) -> Option<f64> {
     let nodes = (0..=beam.spec.elements).map(|k| k as f64 / beam.spec.elements as f64 * beam.spec.span);
     let deflections = nodes.map(|x| model.shape_clamped(x).deflection(&q).w.abs());
     Some(deflections.fold(0.0, f64::max))
+}
+
+/// Steps that a contact with duration should get from touch to release.
+const STEPS_A_CONTACT: f64 = 20.0;
+
+/// A contact with duration that the step doesn't resolve. On a spring k a mass m stays for half a period, π√(m/k); for a force
+/// k δⁿ the spring is that of the depth at which the contact carries the block.
+fn resolved_in_time(contact: &ContactScene, scene: &Scene, document: &Document) -> Option<Diagnostic> {
+    let mass = scene.blocks[contact.block].mass();
+    let spring = match contact.law.impact {
+        ImpactLaw::KelvinVoigt { stiffness, .. } => stiffness,
+        ImpactLaw::HuntCrossley { stiffness, exponent, .. } => {
+            let weight = mass * scene.gravity[0].hypot(scene.gravity[1]);
+            exponent * stiffness.powf(exponent.recip()) * weight.powf(1.0 - exponent.recip())
+        }
+        _ => return None,
+    };
+    let half_period = PI * (mass / spring).sqrt();
+    if !half_period.is_finite() || scene.time.step <= half_period / STEPS_A_CONTACT {
+        return None;
+    }
+    let rule = format!(
+        "a block of {mass:.3} kg on it touches for some {half_period:.1e} s, less than {STEPS_A_CONTACT} steps: the contact is \
+         not resolved"
+    );
+    let remedy = format!("take a step of at most {:.0e} s, or a softer contact", half_period / STEPS_A_CONTACT);
+    Some(document.error(&format!("contact.{}.stiffness", contact.name), rule, remedy).as_warning())
 }
 
 /// A step too coarse for the motion of a contact. The time scales are those of the model itself: a block on its corner moves
@@ -175,6 +241,49 @@ mod tests {
         assert_eq!(count("4 mm"), (1, 0), "1/14");
         assert_eq!(count("7 mm"), (0, 1), "1/77");
         assert_eq!(count("2 cm"), (0, 0), "1/1800");
+    }
+
+    #[test]
+    fn an_incline_counts_with_the_tilt_and_against_friction() {
+        let found = |incline: &str, tilt: &str| {
+            let text = SCENE
+                .replace("[ground]\n", &format!("[ground]\nincline = '{incline}'\n"))
+                .replace("on = 'b'", &format!("on = 'ground'\ntilt = '{tilt}'"))
+                .replace("['k', 'b']", "['k', 'ground']");
+            let found = crate::load(text.as_bytes(), "f", "f", &[]).unwrap();
+            (found.warnings.len(), found.notes.len())
+        };
+        // Critical angle 26.6 degrees, as is that of the friction of 0.5.
+        assert_eq!(found("20 deg", "0 deg"), (0, 0));
+        assert_eq!(found("20 deg", "10 deg"), (1, 0));
+        assert_eq!(found("28 deg", "0 deg"), (1, 1));
+        assert_eq!(found("28 deg", "-10 deg"), (0, 1));
+    }
+
+    #[test]
+    fn a_signal_that_nothing_uses_is_warned_of() {
+        let count = |more: &str| {
+            let text = format!("{SCENE}[signal.s]\nshape = 'ramp'\nduration = '1 s'\n{more}");
+            let sets = [("beam.b.thickness".to_owned(), "2 cm".to_owned())];
+            crate::load(text.as_bytes(), "f", "f", &sets).unwrap().warnings.len()
+        };
+        assert_eq!(count(""), 1);
+        assert_eq!(count("[force.f]\non = 'k'\ncouple = '1 N m'\nsignal = 's'\n"), 0);
+        assert_eq!(count("[beam.b.motion]\nvelocity = ['1 m/s', '0 m/s']\nsignals = ['s', 's']\n"), 0);
+    }
+
+    #[test]
+    fn a_contact_too_stiff_for_the_step_is_warned_of() {
+        let count = |law: &str, stiffness: &str| {
+            let text = SCENE.replace("friction = 0.5\n", &format!("friction = 0.5\nlaw = '{law}'\n{stiffness}\n"));
+            let found = crate::load(text.as_bytes(), "f", "f", &[("beam.b.thickness".to_owned(), "2 cm".to_owned())]);
+            found.unwrap().warnings.len()
+        };
+        // 5.4 kg: π√(m/k) is 20 ms at 133 kN/m.
+        assert_eq!(count("kelvin-voigt", "stiffness = '130 kN/m'\ndamping = '0 N s/m'"), 0);
+        assert_eq!(count("kelvin-voigt", "stiffness = '140 kN/m'\ndamping = '0 N s/m'"), 1);
+        assert_eq!(count("hunt-crossley", "stiffness = '1e5 N/m^1.5'\ndamping = '0 s/m'"), 0);
+        assert_eq!(count("hunt-crossley", "stiffness = '1e9 N/m^1.5'\ndamping = '0 s/m'"), 1);
     }
 
     #[test]

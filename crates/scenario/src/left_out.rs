@@ -9,7 +9,12 @@ pub fn left_out(scene: &Scene) -> Vec<&'static str> {
     if scene.beams.is_empty() {
         left_out.push("no beam: no beam dofs, no factorisation");
     } else {
-        left_out.push("axial motion of beams: their supports are free along the axis");
+        let moving = scene.beams.iter().any(|beam| beam.motion.is_given());
+        left_out.push(if moving {
+            "axial motion of beams relative to their supports: these are free along the axis"
+        } else {
+            "axial motion of beams: their supports are free along the axis"
+        });
         left_out.push("self-weight of beams: deflections count from the shape under it");
     }
     if scene.blocks.len() > 1 {

@@ -26,6 +26,7 @@ pub(crate) fn read(bytes: &[u8], start: f64) -> Result<Table, String> {
         .from_reader(bytes);
     // No memory is taken before there is a row for it.
     let (mut times, mut values, mut lines) = (Vec::new(), Vec::new(), Vec::new());
+    let mut count = Count { bytes, at: 0, line: 1 };
     let mut row = csv::ByteRecord::new();
     let mut first = true;
     loop {
@@ -34,7 +35,7 @@ pub(crate) fn read(bytes: &[u8], start: f64) -> Result<Table, String> {
             Ok(false) => break,
             Err(error) => return Err(format!("can't be read: {error}")),
         }
-        let line = row.position().map_or(0, csv::Position::line);
+        let line = count.line_of(row.position().map_or(0, csv::Position::byte));
         let heading = std::mem::take(&mut first) && row.iter().all(|cell| number(cell).is_none());
         if heading {
             continue;
@@ -73,6 +74,36 @@ pub(crate) fn read(bytes: &[u8], start: f64) -> Result<Table, String> {
     })
 }
 
+/// Counts lines. (The reader's own count stands at the end of the row before: ahead of blank lines and comments.)
+struct Count<'a> {
+    bytes: &'a [u8],
+    /// Up to here the lines are counted.
+    at: usize,
+    line: u64,
+}
+
+impl Count<'_> {
+    /// The line of the row that the reader found from a byte on, which is not before that of the last call.
+    fn line_of(&mut self, byte: u64) -> u64 {
+        let byte = usize::try_from(byte).unwrap_or(usize::MAX);
+        let mut in_comment = false;
+        while let Some(c) = self.bytes.get(self.at) {
+            match c {
+                b'\n' => {
+                    self.line += 1;
+                    in_comment = false;
+                }
+                b'#' => in_comment = true,
+                b'\r' => {}
+                _ if self.at >= byte && !in_comment => break,
+                _ => {}
+            }
+            self.at += 1;
+        }
+        self.line
+    }
+}
+
 /// NaN and infinities are numbers here, so that they are named as what they are.
 fn number(cell: &[u8]) -> Option<f64> {
     std::str::from_utf8(cell).ok()?.parse().ok()
@@ -95,7 +126,10 @@ mod tests {
     fn what_is_wrong_is_told_with_its_line() {
         let told = |text: &str| read(text.as_bytes(), 0.0).unwrap_err();
         assert_eq!(told("t,a\n0,1\n1,nan\n"), "line 3: the value is NaN, but must be finite");
-        assert_eq!(told("0,1\n1,2\n\n0.5,2\n"), "line 4: the time 0.5 s is not later than 1 s of the row before");
+        assert_eq!(
+            told("# c\r\n0,1\r\n1,2\r\n\r\n# 9\r\n0.5,2\r\n"),
+            "line 6: the time 0.5 s is not later than 1 s of the row before"
+        );
         assert_eq!(told("t,a\n0,1\n"), "it has 1 row of numbers, but a table needs two or more");
         assert_eq!(told(""), "it has 0 rows of numbers, but a table needs two or more");
         assert!(told("t;a\n0;1\n").starts_with("line 2: 1 column, but a table has two"));

@@ -226,7 +226,7 @@ pub static TABLES: &[Table] = &[
     Table {
         pattern: "block.*.motion",
         occurrence: Occurrence::Inline,
-        doc: "Prescribed motion of the block: of its mass centre, of its angle, or both; what is not named stays free.",
+        doc: "Prescribed motion of the block: of its mass centre, of its angle, or both; what is not named stays free. It starts where the block is placed.",
         keys: &[
             DISPLACEMENT, VELOCITY, ACCELERATION,
             key("only", Kind::Choice(&["x", "y"]), Optional, "\"x\"", "The one direction of the mass centre that is prescribed; the other stays free. When left out, both are prescribed."),

@@ -194,6 +194,7 @@ fn histories() -> Vec<Row> {
         refused(38, "force on a beam", Edit(&[("[contact.feet]", "[force.f]\non = \"table\"\nforce = [\"1 N\", \"0 N\"]\n[contact.feet]")]), &["force.f.on = \"table\"", "is no block", "[load.NAME]"]),
         refused(38, "load off the beam", Edit(&[("[contact.feet]", "[load.f]\non = \"table\"\nat = \"40 cm\"\nforce = \"1 N\"\n[contact.feet]")]), &["load.f.at = \"40 cm\"", "[0, 0.36] m"]),
         refused(38, "load at a point and all along", Edit(&[("[contact.feet]", "[load.f]\non = \"table\"\nat = \"4 cm\"\ndistributed = \"1 N/m\"\n[contact.feet]")]), &["load.f.at", "distributed all along"]),
+        refused(38, "a velocity given twice", Edit(&[("[contact.feet]", "velocity = [\"1 m/s\", \"0 m/s\"]\nmotion = { velocity = [\"1 m/s\", \"0 m/s\"], only = \"x\" }\n[contact.feet]")]), &["block.rocker.velocity", "the motion of the block prescribes"]),
         refused(38, "a wall for ground", Edit(&[("[contact.feet]", "[ground]\nincline = \"85 deg\"\n[contact.feet]")]), &["ground.incline = \"85 deg\"", "[-80 deg, 80 deg]"]),
     ]
 }

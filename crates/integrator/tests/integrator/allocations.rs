@@ -66,6 +66,16 @@ fn a_step_on_rigid_ground_allocates_nothing() {
     assert_eq!(allocations(Box::new(Ground::flat(0.0)), 0, 1.0), 0);
 }
 
+/// A small motion that does not disturb the contacts.
+fn tremor() -> Motion {
+    Motion::still().with(Given::Velocity, 1e-3, Arc::new(Formula::harmonic(0.0, 20.0, 0.0).unwrap()))
+}
+
+#[test]
+fn a_step_on_moving_ground_allocates_nothing() {
+    assert_eq!(allocations(Box::new(Ground::moving(0.0, [tremor(), tremor(), Motion::still()])), 3, 0.5), 0);
+}
+
 #[test]
 fn a_step_with_closed_contacts_or_another_law_allocates_nothing() {
     let laws = [
@@ -120,4 +130,9 @@ fn a_step_on_a_beam_allocates_nothing() {
     assert_eq!(allocations(surface(None), beam.dofs(), 0.5), 0);
     assert_eq!(allocations(surface(None), beam.dofs(), 0.75), 0);
     assert_eq!(allocations(surface(Some(0.00075)), beam.dofs(), 0.5), 0);
+    let signal: Arc<dyn Signal> = Arc::new(Table::new(vec![0.0, 0.1, 0.2], vec![0.0, 1.0, 0.0]).unwrap());
+    let moving = beam_body(&beam)
+        .with_motion([tremor(), tremor()])
+        .with_load(Box::new(SignalLoad::new(vec![1e-3; beam.dofs()], signal)));
+    assert_eq!(allocations(Box::new(moving), beam.dofs() + 2, 0.5), 0);
 }

@@ -204,3 +204,96 @@ fn loads_on_blocks_and_beams_follow_their_signal() {
     pattern.extend([0.0, 0.0]);
     assert_eq!(f, pattern);
 }
+
+fn schemes() -> Vec<Box<dyn Scheme<2>>> {
+    let mut schemes: Vec<Box<dyn Scheme<2>>> = Vec::new();
+    for theta in [0.5, 0.75, 1.0] {
+        let settings = MoreauJeanSettings { theta, ..MoreauJeanSettings::default() };
+        schemes.push(Box::new(MoreauJean::new(settings).unwrap()));
+    }
+    schemes.push(Box::new(MoreauJeanClosed::new(MoreauJeanClosedSettings::default()).unwrap()));
+    schemes
+}
+
+/// The work of drives is what closes the account, for every θ: of ground that shakes and turns under a rocking block, of a beam's
+/// supports, of a block that is moved while another one's ground stands still.
+#[test]
+fn the_energy_account_holds_the_work_of_the_drives() {
+    let block = crate::scenes::PAPER_BLOCK;
+    let gravity = Vector2::new(0.0, -9.81);
+    let surfaces: [fn() -> Box<dyn Subsystem<2>>; 3] = [
+        || Box::new(Ground::moving(0.0, [0.05, 0.02, 0.05].map(|a| sine(Given::Velocity, a)))),
+        || {
+            let spec = BeamSpec {
+                span: 0.36,
+                elements: 20,
+                section: Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap(),
+                supports: [Support::Pinned; 2],
+                damping: Damping { viscous: 0.4, rayleigh_mass: 0.1, rayleigh_stiffness: 1e-6 },
+            };
+            let beam = BeamBody::new(Arc::new(Beam::new(spec).unwrap()), Vector2::new(-0.18, 0.0), BeamSurface::Axis);
+            Box::new(beam.with_motion([sine(Given::Velocity, 0.05), sine(Given::Acceleration, 2.0)]))
+        },
+        || Box::new(Ground::flat(0.0)),
+    ];
+    for (k, surface) in surfaces.iter().enumerate() {
+        let law = PairLaw::new(0.5, 0.0);
+        let model = if k < 2 {
+            crate::scenes::model(&block, gravity, law, Kinematics::Deformed, surface())
+        } else {
+            // Pulled to the right and let down by its own weight.
+            let shape = Rectangle::new(block.width, block.height).unwrap();
+            let mass = MassProperties::rectangle(&shape, block.depth, block.density).unwrap();
+            let mut parts = ModelBuilder::new();
+            let pulled = Blocks::new(vec![Block::new(mass, &shape)], gravity);
+            let body = parts.add(Box::new(pulled.with_motion(0, 0, sine(Given::Velocity, 0.3))));
+            let surface = parts.add(surface());
+            let pair = parts.pair(law);
+            let (points, kinematics) = (shape.corners().to_vec(), Kinematics::Deformed);
+            let pairs = vec![teeter_detect::PointPair { pair, points, body, surface, kinematics }];
+            parts.build(Box::new(teeter_detect::PointDetector::new(pairs))).unwrap()
+        };
+        for mut scheme in schemes() {
+            let mut q = vec![0.0, 0.0675 * 0.05_f64.cos() + 0.015 * 0.05_f64.sin(), 0.05];
+            q.resize(model.size().q, 0.0);
+            let mut state = State::new(&model, &q, &vec![0.0; model.size().v], 1e-4).unwrap();
+            let mut work = crate::scenes::workspace(&model);
+            let plan = Plan { steps: 5000, require_convergence: true };
+            let ended = run(&model, scheme.as_mut(), &mut state, &mut work, &plan, &mut []).unwrap();
+            assert_eq!(ended, Ended::Complete);
+            let (residual, external) = (state.ledger.relative_residual(), state.ledger.sum.external);
+            assert!(state.tally.contact_steps > 100 && external.abs() > 1e-6, "{k}: it is hit and driven: {external}");
+            assert!(residual <= 1e-14, "surface {k}, {}: {residual:e}", scheme.name());
+        }
+    }
+}
+
+/// Where everything that a contact could move is prescribed there is no impulse to be found, and no step fails for it.
+#[test]
+fn a_block_on_rails_goes_through_the_ground() {
+    let block = crate::scenes::PAPER_BLOCK;
+    let shape = Rectangle::new(block.width, block.height).unwrap();
+    let mass = MassProperties::rectangle(&shape, block.depth, block.density).unwrap();
+    let blocks = (0..3).fold(Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -9.81)), |blocks, axis| {
+        blocks.with_motion(0, axis, sine(Given::Velocity, 0.1))
+    });
+    for ground in [Ground::flat(0.0), moving_ground()] {
+        let mut parts = ModelBuilder::new();
+        let body = parts.add(Box::new(blocks.clone()));
+        let surface = parts.add(Box::new(ground));
+        let pair = parts.pair(PairLaw::new(0.5, 0.0));
+        let (points, kinematics) = (shape.corners().to_vec(), Kinematics::Deformed);
+        let pairs = vec![teeter_detect::PointPair { pair, points, body, surface, kinematics }];
+        let model = parts.build(Box::new(teeter_detect::PointDetector::new(pairs))).unwrap();
+        for mut scheme in schemes() {
+            let mut q = vec![0.0, 0.0675, 0.0];
+            q.resize(model.size().q, 0.0);
+            let mut state = State::new(&model, &q, &vec![0.0; model.size().v], 1e-3).unwrap();
+            let mut work = crate::scenes::workspace(&model);
+            let plan = Plan { steps: 500, require_convergence: true };
+            let ended = run(&model, scheme.as_mut(), &mut state, &mut work, &plan, &mut []).unwrap();
+            assert_eq!((ended, state.tally.contact_steps), (Ended::Complete, 0), "{}", scheme.name());
+            assert!(state.ledger.relative_residual() <= 1e-14);
+        }
+    }
+}

@@ -18,12 +18,21 @@ struct Data<'a> {
     impact_count: u64,
 }
 
-/// The pictures: `blocks[k].x[i]` at `t[i]`; `beams[k].w` row by row in units of `beams[k].unit`.
+/// The pictures: `blocks[k].x[i]` at `t[i]`; `beams[k].w` row by row in units of `beams[k].unit`. Displacements of supports
+/// and ground where they move.
 #[derive(Serialize)]
 struct FrameData {
     t: Vec<f64>,
     blocks: Vec<BlockFrames>,
     beams: Vec<BeamFrames>,
+    ground: Option<GroundFrames>,
+}
+
+#[derive(Serialize)]
+struct GroundFrames {
+    x: Vec<f64>,
+    y: Vec<f64>,
+    slope: Vec<f64>,
 }
 
 #[derive(Serialize)]
@@ -37,6 +46,8 @@ struct BlockFrames {
 struct BeamFrames {
     unit: f64,
     w: Vec<i64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    supports: Option<[Vec<f64>; 2]>,
 }
 
 #[derive(Serialize)]
@@ -126,17 +137,30 @@ fn frames(recorder: &PageRecorder) -> FrameData {
     let column = |k: usize| recorder.frames.rows().map(|(_, row)| digits(row[k])).collect();
     let blocks = (0..scenery.blocks.len()).map(|k| BLOCK_FRAME * k);
     let mut start = BLOCK_FRAME * scenery.blocks.len();
-    let beams = scenery.beams.iter().map(|beam| {
+    let mut moved = start + scenery.beams.iter().map(|beam| beam.points).sum::<usize>();
+    let beams = scenery.beams.iter().zip(&recorder.layout.beams).map(|(beam, place)| {
         let unit = rounded(BEAM_UNIT * beam.span, DIGITS);
         let points = start..start + beam.points;
         start = points.end;
         let w = |row: &[f64]| row[points.clone()].iter().map(|w| (w / unit).round() as i64).collect::<Vec<_>>();
-        BeamFrames { unit, w: recorder.frames.rows().flat_map(|(_, row)| w(row)).collect() }
+        let supports = place.supports.as_ref().map(|range| {
+            let first = moved;
+            moved += range.len();
+            [column(first), column(first + 1)]
+        });
+        BeamFrames { unit, w: recorder.frames.rows().flat_map(|(_, row)| w(row)).collect(), supports }
+    });
+    let beams: Vec<BeamFrames> = beams.collect();
+    let ground = recorder.layout.ground.as_ref().map(|_| GroundFrames {
+        x: column(moved),
+        y: column(moved + 1),
+        slope: column(moved + 2),
     });
     FrameData {
         t: recorder.frames.rows().map(|(t, _)| time(t)).collect(),
         blocks: blocks.map(|k| BlockFrames { x: column(k), y: column(k + 1), phi: column(k + 2) }).collect(),
-        beams: beams.collect(),
+        beams,
+        ground,
     }
 }
 

@@ -4,7 +4,7 @@ use super::curves::Curves;
 use super::frames::Frames;
 use super::scenery::{CORNERS, Scenery};
 use crate::impact_threshold;
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 use teeter_integrator::{Model, Observer, ObserverError, State, StepReport};
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Layout;
@@ -86,7 +86,7 @@ pub struct PageRecorder {
     pub(crate) curves: Curves,
     pub(crate) impacts: Vec<ImpactMark>,
     pub(crate) impact_count: u64,
-    layout: Layout,
+    pub(crate) layout: Layout,
     threshold: f64,
     bucket_capacity: usize,
     /// Values of the curves at the end of the step.
@@ -99,7 +99,9 @@ impl PageRecorder {
     #[must_use]
     pub fn new(scene: &Scene, layout: &Layout) -> Self {
         let scenery = Scenery::new(scene, layout);
-        let frame = BLOCK_FRAME * scenery.blocks.len() + scenery.beams.iter().map(|beam| beam.points).sum::<usize>();
+        let frame = BLOCK_FRAME * scenery.blocks.len()
+            + scenery.beams.iter().map(|beam| beam.points).sum::<usize>()
+            + moved(layout).map(|range| range.len()).sum::<usize>();
         let columns = BLOCK_COLUMNS * scenery.blocks.len() + scenery.beams.len() + ENERGIES.len();
         let points = CORNERS * scenery.contacts.len();
         let even = |n: usize| n - n % 2;
@@ -191,6 +193,17 @@ fn fill_frame(layout: &Layout, scenery: &Scenery, state: &State, row: &mut [f64]
         points.iter_mut().zip(&drawn.shapes).for_each(|(w, shape)| *w = shape.deflection(q).w);
         beams = rest;
     }
+    for range in moved(layout) {
+        let (out, rest) = beams.split_at_mut(range.len());
+        out.copy_from_slice(&state.q[range]);
+        beams = rest;
+    }
+}
+
+/// The coordinates by which supports and ground move, at the end of a row of [`Frames`]: of each beam on moving supports x
+/// and y, of moving ground x, y and slope.
+pub(crate) fn moved(layout: &Layout) -> impl Iterator<Item = Range<usize>> {
+    layout.beams.iter().filter_map(|beam| beam.supports.clone()).chain(layout.ground.clone())
 }
 
 impl Observer<2> for PageRecorder {

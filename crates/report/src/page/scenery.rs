@@ -52,6 +52,8 @@ pub(crate) struct ContactDrawn {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct Scenery {
     pub(crate) ground: bool,
+    /// Slope of ground that stands still, rad.
+    pub(crate) incline: f64,
     pub(crate) blocks: Vec<BlockDrawn>,
     pub(crate) beams: Vec<BeamDrawn>,
     pub(crate) contacts: Vec<ContactDrawn>,
@@ -108,6 +110,7 @@ impl Scenery {
         });
         Self {
             ground: scene.ground.is_some(),
+            incline: scene.ground.as_ref().map_or(0.0, |ground| ground.incline),
             blocks: blocks.collect(),
             beams: beams.collect(),
             contacts: contacts.collect(),

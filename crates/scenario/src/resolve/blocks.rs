@@ -21,6 +21,14 @@ impl Resolver<'_, '_> {
         let velocity = self.pair(&at("velocity"));
         let spin = self.quantity(&at("spin"));
         let motion = self.motion(&path, signals);
+        if let (Some(motion), Some([x, y]), Some(spin)) = (&motion, velocity, spin) {
+            for (key, value, axis) in [("velocity", x, 0), ("velocity", y, 1), ("spin", spin, 2)] {
+                if value != 0.0 && motion.0[axis].is_some() {
+                    let remedy = "leave it out, or 0 where the motion is prescribed: the motion has a velocity at 0 s";
+                    self.error(&at(key), "the motion of the block prescribes this velocity", remedy);
+                }
+            }
+        }
         let placement = self.placement(name, contacts, joined);
         if let (Some(width), Some(placement)) = (width, &placement) {
             self.stands(name, width, placement, beams);

@@ -1,6 +1,7 @@
 //! What a scene means.
 
-use teeter_scenario::keys::{Kind, Presence, TABLES};
+use teeter_scenario::document::Document;
+use teeter_scenario::keys::{Key, Kind, OnlyWith, Presence, TABLES, Table};
 use teeter_scenario::source::Origin;
 
 use crate::{ROCKING, findings, read};
@@ -66,50 +67,82 @@ fn byte_order_mark_and_windows_line_ends_are_no_mistake() {
     assert_eq!(findings("\u{feff}titel = 'x'\r\n", &[])[1], "1:1 titel: unknown key");
 }
 
+/// A table by its path; where keys have a meaning with some words of another key only, once for each of its words.
+struct Variant {
+    path: String,
+    word: Option<(&'static str, &'static str)>,
+}
+
+impl Variant {
+    fn all(table: &'static Table) -> Vec<Self> {
+        let name = if table.pattern.starts_with("block") { "b" } else { "a" };
+        let sibling = table.keys.iter().find_map(|key| key.only_with).map(|only| only.sibling);
+        let Some(Key { name: sibling, kind: Kind::Choice(words), .. }) = sibling.and_then(|name| table.key(name))
+        else {
+            return vec![Self { path: table.pattern.replace('*', name), word: None }];
+        };
+        let path = |word: &str| table.pattern.replace('*', &format!("{name}-{word}"));
+        words.iter().map(|word| Self { path: path(word), word: Some((sibling, word)) }).collect()
+    }
+
+    fn has(&self, key: &Key) -> bool {
+        let word = |only: OnlyWith| self.word.is_some_and(|(_, word)| only.words.contains(&word));
+        key.only_with.is_none_or(word)
+    }
+
+    fn write(&self, key: &Key, source: &mut String) {
+        match self.word {
+            Some((sibling, word)) if sibling == key.name => source.push_str(&format!("{sibling} = '{word}'\n")),
+            _ => source.push_str(&format!("{} = {}\n", key.name, key.example)),
+        }
+    }
+}
+
+/// A scene of the keys of all tables that are `wanted`.
+fn scene_of(wanted: impl Fn(&Table, &Key) -> bool) -> Document {
+    let mut source = String::new();
+    for table in TABLES {
+        for variant in Variant::all(table) {
+            if !table.pattern.is_empty() {
+                source.push_str(&format!("[{}]\n", variant.path));
+            }
+            for key in table.keys.iter().filter(|key| variant.has(key) && wanted(table, key)) {
+                variant.write(key, &mut source);
+            }
+        }
+    }
+    read(&source, &[]).unwrap()
+}
+
 #[test]
 fn the_examples_and_defaults_of_the_table_are_valid() {
     // A scene in which every key that is built in stands with its example.
-    let mut source = String::new();
-    for table in TABLES {
-        let name = if table.pattern.starts_with("block") { "b" } else { "a" };
-        if !table.pattern.is_empty() {
-            source.push_str(&format!("[{}]\n", table.pattern.replace('*', name)));
+    let scene = scene_of(|_, key| {
+        if let Kind::Choice(words) | Kind::ChoicePair(words) = key.kind {
+            assert!(key.reserved.iter().all(|later| !words.contains(&later.value)), "{}", key.name);
         }
-        for key in table.keys.iter().filter(|key| key.presence != Presence::NotYet) {
-            source.push_str(&format!("{} = {}\n", key.name, key.example));
-            if let Kind::Choice(words) | Kind::ChoicePair(words) = key.kind {
-                assert!(key.reserved.iter().all(|later| !words.contains(&later.value)), "{}", key.name);
-            }
-        }
-    }
-    let scene = read(&source, &[]).unwrap();
+        key.presence != Presence::NotYet
+    });
     assert_eq!(scene.quantity("beam.a.rayleigh.a1"), Some(1e-5));
     // And one with nothing but what is required, so that every default is decoded.
-    let mut source = String::new();
+    let scene = scene_of(|table, key| {
+        let is_sibling = |other: &Key| {
+            matches!(other.presence, Presence::DefaultWith { sibling, .. } if sibling == key.name)
+                || other.only_with.is_some_and(|only| only.sibling == key.name)
+        };
+        key.presence == Presence::Required || table.keys.iter().any(is_sibling)
+    });
     for table in TABLES {
-        let name = if table.pattern.starts_with("block") { "b" } else { "a" };
-        if !table.pattern.is_empty() {
-            source.push_str(&format!("[{}]\n", table.pattern.replace('*', name)));
-        }
-        for key in table.keys {
-            let sibling = table
-                .keys
-                .iter()
-                .any(|other| matches!(other.presence, Presence::DefaultWith { sibling, .. } if sibling == key.name));
-            if key.presence == Presence::Required || sibling {
-                source.push_str(&format!("{} = {}\n", key.name, key.example));
-            }
-        }
-    }
-    let scene = read(&source, &[]).unwrap();
-    for table in TABLES {
-        let name = if table.pattern.starts_with("block") { "b" } else { "a" };
-        for key in table.keys {
-            let path = format!("{}.{}", table.pattern.replace('*', name), key.name);
-            let path = path.trim_start_matches('.');
-            if matches!(key.presence, Presence::Default(_) | Presence::DefaultWith { .. }) {
-                assert_eq!(scene.origin(path), Origin::Default, "{path}");
-                assert!(scene.has(path), "{path}");
+        for variant in Variant::all(table) {
+            for key in table.keys.iter().filter(|key| variant.word.is_none_or(|(sibling, _)| sibling != key.name)) {
+                let path = format!("{}.{}", variant.path, key.name);
+                let path = path.trim_start_matches('.');
+                if !variant.has(key) {
+                    assert!(!scene.has(path), "{path}");
+                } else if matches!(key.presence, Presence::Default(_) | Presence::DefaultWith { .. }) {
+                    assert_eq!(scene.origin(path), Origin::Default, "{path}");
+                    assert!(scene.has(path), "{path}");
+                }
             }
         }
     }

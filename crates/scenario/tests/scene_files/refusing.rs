@@ -92,10 +92,9 @@ fn what_is_known_but_not_built_in_says_so() {
         ("time.step", "auto"),
         ("time.scheme", "event-driven"),
         ("time.accuracy", "1e-3"),
-        ("contact.feet.law", "poisson"),
         ("beam.table.self_weight", "true"),
         ("beam.table.supports", "[{ spring = '1 N/m' }, 'free']"),
-        ("ground.incline", "3 deg"),
+        ("ground.profile", "hills.csv"),
         ("solver.method", "socp"),
     ] {
         let found = findings(ROCKING, &[(key, value)]);
