@@ -135,6 +135,7 @@ mod tests {
         assert!(told("t;a\n0;1\n").starts_with("line 2: 1 column, but a table has two"));
         assert_eq!(told("0,1\n1,2,3\n"), "line 2: 3 columns, but a table has two, t and value, separated by a comma");
         assert_eq!(told("0,1\n1,high\n"), "line 2: `high` is no number");
+        assert!(told(&"0,1\n".repeat(MOST_ROWS + 1)).starts_with("line 2000001: more than 2000000 rows"));
         assert!(read(&vec![b'1'; LARGEST_RECORD + 1], 0.0).unwrap_err().contains("64 MB"));
     }
 }
