@@ -2,6 +2,7 @@
 
 /// A zero crossing of an angle: on a rigid base, the impact of a rocking block.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Crossing {
     /// Time, s, linear between steps.
     pub t: f64,
@@ -9,6 +10,7 @@ pub struct Crossing {
 
 /// The largest |φ| of a step between two crossings.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Peak {
     /// Time of the step, s.
     pub t: f64,
@@ -34,6 +36,7 @@ const STILL: f64 = 1e-12;
 /// assert_eq!(peaks, [0.2, -0.3]); // the unfinished one at the end is none
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RockingMonitor {
     last: (f64, f64),
     /// Where the sign last changed, until the excursion beyond it shows that it was more than rounding.

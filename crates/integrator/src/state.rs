@@ -7,6 +7,7 @@ use teeter_detect::ContactId;
 /// The contacts of the last step with their impulses, in order of identity: where a solver starts from, and who was
 /// active.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WarmStart {
     ids: Vec<ContactId>,
     /// D numbers a contact.
@@ -67,6 +68,7 @@ impl WarmStart {
 
 /// Counts and extremes over the steps so far.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tally {
     /// Deepest penetration at the end of a step, m; 0 if there was none.
     pub max_penetration: f64,
@@ -86,6 +88,7 @@ pub struct Tally {
 
 /// The state of a run.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
     /// Steps taken.
     pub step: u64,
