@@ -376,7 +376,10 @@ fn a_run_from_a_checkpoint_moves_as_the_one_that_went_on() {
 
     let from = ["--from", "state.bin", "--force"];
     let with = |set: &'static str| [LONG[0], LONG[2], set];
-    place.done(&with("time.step=1us"), &[&from[..], &["--set", "time.end=10 ms", "--set", "solver.method=pgs"]].concat());
+    place.done(
+        &with("time.step=1us"),
+        &[&from[..], &["--set", "time.end=10 ms", "--set", "solver.method=pgs"]].concat(),
+    );
     assert!(place.refused(2, &["sliding"], &from).contains("is a state of `rocker` (3 coordinates), `table`"));
     assert!(place.refused(2, &with("beam.table.elements=10"), &from).contains("but the scene has `rocker` (3"));
     let message = place.refused(2, &with("time.step=7.77 us"), &from);
