@@ -6,15 +6,15 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// The files that a run may write; which of the figures, depends on its scene. They are removed in this order: while there
-/// is anything, `scene.toml` says of what.
+/// The files that a run may write; which of the figures, depends on its scene. They are removed in this order: no summary
+/// outlives a table, and while there is anything, `scene.toml` says of what.
 pub const FILES: [&str; 14] = [
     CHECKPOINT,
+    "summary.json",
     "trajectory.csv",
     "contacts.csv",
     "impacts.csv",
     "energy.csv",
-    "summary.json",
     "report.html",
     "figures/phi.svg",
     "figures/omega.svg",
