@@ -318,7 +318,7 @@ fn a_checkpoint_that_is_not_whole_is_refused() {
     place.killed_with_checkpoint(&LONG, &EVERY);
     let path = place.out().join("checkpoint.bin");
     let whole = std::fs::read(&path).unwrap();
-    let mut refused = |bytes: &[u8], part: &str| {
+    let refused = |bytes: &[u8], part: &str| {
         std::fs::write(&path, bytes).unwrap();
         let message = place.refused(2, &LONG, &AGAIN);
         assert!(message.contains(part) && message.contains("--force"), "{message}");
