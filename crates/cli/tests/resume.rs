@@ -28,10 +28,12 @@ impl Place {
         self.command_of(Path::new(env!("CARGO_BIN_EXE_teeter")), scene, more)
     }
 
-    /// `scene`: a scenario's name and what is set in it.
+    /// `scene`: a scenario's name, or the name of a file in the folder, and what is set in it.
     fn command_of(&self, program: &Path, scene: &[&str], more: &[&str]) -> Command {
         let mut command = Command::new(program);
-        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../scenarios/{}.toml", scene[0]));
+        let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
+        let own = scene[0].ends_with(".toml");
+        let file = if own { scene[0].into() } else { scenarios.join(format!("{}.toml", scene[0])) };
         command.current_dir(&self.at).arg("run").arg(file).args(["--out", "out"]);
         for set in &scene[1..] {
             command.args(["--set", set]);
@@ -135,6 +137,10 @@ const ROCKING: [&str; 3] = ["free-rocking-on-beam", "time.step=25us", "output.ev
 const SLIDING: [&str; 5] =
     ["sliding", "time.step=40us", "solver.method=pgs", "solver.max_iterations=1", "solver.tolerance=1e-14"];
 
+/// Springs that remember how deep they are, and ground that moves.
+const COMPLIANT: [&str; 3] = ["compliant-drop", "time.step=10us", "output.every=0.3 ms"];
+const SHAKEN: [&str; 3] = ["shaken-ground", "time.step=40us", "output.every=1 ms"];
+
 /// A run of a second or more.
 const LONG: [&str; 3] = ["free-rocking-on-beam", "time.step=2us", "output.every=0.3 ms"];
 
@@ -161,10 +167,11 @@ fn killed_after(mut child: Child, time: Duration) {
 #[test]
 fn a_run_killed_at_twenty_random_moments_ends_with_the_same_bytes() {
     let mut random = Random(20);
-    for (name, scene) in [("rocking", &ROCKING[..]), ("sliding", &SLIDING[..])] {
+    for scene in [&ROCKING[..], &SLIDING, &COMPLIANT, &SHAKEN] {
+        let name = scene[0];
         let place = Place::new(&format!("kill-{name}"));
         let (wanted, took) = alone(&place, scene, &[]);
-        for k in 0..10 {
+        for k in 0..5 {
             let moment = took.mul_f64(random.next());
             killed_after(place.command(scene, &EVERY).spawn().unwrap(), moment);
             place.done(scene, &AGAIN);
@@ -310,6 +317,32 @@ fn what_does_not_fit_is_refused_and_nothing_changed() {
     std::fs::write(&table, &rows).unwrap();
 
     place.done(&LONG, &AGAIN);
+}
+
+#[test]
+fn a_file_that_the_scene_refers_to_is_part_of_it() {
+    let place = Place::new("signal");
+    let scene = "
+time = { end = \"1 s\", step = \"5 us\" }
+output.every = \"1 ms\"
+ground.motion = { acceleration = [\"1 m/s^2\", \"0 m/s^2\"], signal = \"quake\" }
+signal.quake = { shape = \"table\", file = \"quake.csv\" }
+material.wood.density = \"600 kg/m^3\"
+block.box = { material = \"wood\", width = \"10 cm\", height = \"10 cm\", depth = \"10 cm\", on = \"ground\", at = \"0 m\" }
+contact.base = { between = [\"box\", \"ground\"], friction = 0.05 }
+";
+    let quake = "t,a\n0,0\n0.1,1\n0.3,-1\n0.5,0\n";
+    std::fs::write(place.at.join("scene.toml"), scene).unwrap();
+    std::fs::write(place.at.join("quake.csv"), quake).unwrap();
+    let (wanted, _) = alone(&place, &["scene.toml"], &[]);
+    place.killed_with_checkpoint(&["scene.toml"], &EVERY);
+    std::fs::write(place.at.join("quake.csv"), quake.replace("-1", "-2")).unwrap();
+    let message = place.refused(2, &["scene.toml"], &AGAIN);
+    assert!(message.contains("a file that it refers to has changed"), "{message}");
+    std::fs::write(place.at.join("quake.csv"), quake).unwrap();
+    place.done(&["scene.toml"], &AGAIN);
+    assert_same(&wanted, &place.out(), "with a table");
+    assert!(place.refused(0, &["scene.toml"], &AGAIN).contains("nothing to resume"));
 }
 
 #[test]
