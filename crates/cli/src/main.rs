@@ -10,6 +10,7 @@ mod run;
 mod scene_page;
 mod schema;
 mod solve;
+mod start;
 
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
@@ -28,7 +29,9 @@ struct Arguments {
 enum Command {
     /// Simulate a scene and write its motion, contacts, energy and summary
     #[command(after_help = "Examples:\n  teeter run scenarios/free-rocking-on-beam.toml\n  \
-        teeter run scene.toml --out results --set time.step=50us --set contact.feet.friction=0.3")]
+        teeter run scene.toml --out results --set time.step=50us --set contact.feet.friction=0.3\n  \
+        teeter run scene.toml --checkpoint-every \"0.1 s\"            # survives a kill:\n  \
+        teeter run scene.toml --checkpoint-every \"0.1 s\" --resume   # goes on, to the same bytes")]
     Run {
         /// The scene file; `-` reads standard input
         scene: PathBuf,
@@ -51,6 +54,18 @@ enum Command {
         #[arg(long, value_name = "hard|every:N", default_value = "hard", value_parser = run::export_when)]
         #[arg(requires = "export_problems")]
         export_when: teeter_report::ExportWhen,
+        /// Write a checkpoint each time that so much simulated time has passed, with its unit; and one at Ctrl-C
+        #[arg(long, value_name = "T", value_parser = start::interval)]
+        checkpoint_every: Option<f64>,
+        /// Go on from the checkpoint in the folder for results; without one, start at the beginning
+        #[arg(long, conflicts_with = "force")]
+        resume: bool,
+        /// Start from a state or checkpoint of a run with the same bodies; its clock goes on, up to time.end
+        #[arg(long, value_name = "FILE")]
+        from: Option<PathBuf>,
+        /// Write the state before the first step whose contact problem is not solved to FILE, for --from
+        #[arg(long, value_name = "FILE")]
+        dump_unconverged: Option<PathBuf>,
     },
     /// Say what a scene models, costs and writes, and what looks wrong in it; run nothing
     #[command(after_help = "Examples:\n  teeter check scenarios/free-rocking-on-beam.toml\n  \
@@ -117,9 +132,33 @@ fn key_value(text: &str) -> Result<(String, String), String> {
 
 fn main() -> ExitCode {
     match Arguments::parse().command {
-        Command::Run { scene, out, set, quiet, force, export_problems, export_when } => {
+        Command::Run {
+            scene,
+            out,
+            set,
+            quiet,
+            force,
+            export_problems,
+            export_when,
+            checkpoint_every,
+            resume,
+            from,
+            dump_unconverged,
+        } => {
             let export = export_problems.map(|folder| (folder, export_when));
-            run::run(&run::Options { scene, out, set, quiet, force, export }).into()
+            let options = run::Options {
+                scene,
+                out,
+                set,
+                quiet,
+                force,
+                export,
+                checkpoint_every,
+                resume,
+                from,
+                dump_unconverged,
+            };
+            run::run(&options).into()
         }
         Command::Check { scene, set } => check::check(&check::Options { scene, set }).into(),
         Command::Solvers => solve::list().into(),

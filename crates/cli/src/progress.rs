@@ -21,8 +21,11 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    pub(crate) fn new(console: Console, steps: u64) -> Self {
+    /// Of steps from `first` to `steps`.
+    pub(crate) fn new(console: Console, first: u64, steps: u64) -> Self {
         let bar = ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::hidden());
+        bar.set_position(first);
+        bar.reset_eta();
         let template = "{bar:30} {percent:>3} %  {human_pos} of {human_len} steps  {per_sec}  {eta} left";
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style);

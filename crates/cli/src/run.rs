@@ -2,17 +2,18 @@
 
 use crate::companions;
 use crate::console::Console;
-use crate::interrupt::{INTERRUPTED, Interrupt};
+use crate::interrupt::{self, INTERRUPTED};
 use crate::progress::Progress;
 use crate::render::Presenter;
+use crate::start::{self, Start};
 use std::error::Error;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::time::Instant;
-use teeter_integrator::{Ended, Observer, RunError};
+use teeter_integrator::{Ended, RunError};
 use teeter_report::{
-    EndedWord, ExportWhen, Exporter, PageRecorder, Recorder, Results, ResultsError, Summary, Watch, figures, render,
+    CHECKPOINT, Checkpoint, EndedWord, ExportWhen, Exporter, Former, Identity, Origin, PageRecorder, Results,
+    ResultsError, RunRecorder, Summary, Watch, figures, render,
 };
 use teeter_scenario::decode::LARGEST_FILE;
 use teeter_scenario::resolve::Resolved;
@@ -50,6 +51,13 @@ pub(crate) struct Options {
     pub(crate) force: bool,
     /// Where to save contact problems, and which.
     pub(crate) export: Option<(PathBuf, ExportWhen)>,
+    /// Simulated time between checkpoints, s.
+    pub(crate) checkpoint_every: Option<f64>,
+    pub(crate) resume: bool,
+    /// A state to start from.
+    pub(crate) from: Option<PathBuf>,
+    /// Where to write the state before the first step that is not solved.
+    pub(crate) dump_unconverged: Option<PathBuf>,
 }
 
 /// `hard` or `every:N`.
@@ -69,8 +77,14 @@ pub(crate) fn run(options: &Options) -> Exit {
         Ok(bytes) => bytes,
         Err(why) => return bad_input(console, &format!("error: {name}: {why}")),
     };
+    let mut files = Vec::new();
     let mut companions = companions::reader(&options.scene);
-    let resolved = match teeter_scenario::load_with(&bytes, &name, &stem, &options.set, &mut companions) {
+    let mut read_file = |file: &str| {
+        let bytes = companions(file)?;
+        files.extend(start::is_identified(options).then(|| bytes.clone()));
+        Ok(bytes)
+    };
+    let resolved = match teeter_scenario::load_with(&bytes, &name, &stem, &options.set, &mut read_file) {
         Ok(resolved) => resolved,
         Err(errors) => return bad_input(console, &Presenter::of_bytes(&bytes).all(&errors)),
     };
@@ -81,34 +95,78 @@ pub(crate) fn run(options: &Options) -> Exit {
         Ok(simulation) => simulation,
         Err(error) => return bad_input(console, &presenter.one(&error.diagnostic(&resolved.document))),
     };
-    let mut exporter = match exporter(options, &watch, &resolved, &stem) {
-        Ok(exporter) => exporter,
-        Err(error) => return bad_input(console, &format!("error: {error}")),
-    };
     let folder = options.out.clone().unwrap_or_else(|| Path::new("runs").join(&stem));
-    let results = match Results::create(&folder, options.force) {
-        Ok(results) => results,
-        Err(error) => return bad_input(console, &format!("error: {error}")),
-    };
-    for warning in &resolved.warnings {
-        console.note(&presenter.one(warning));
-    }
-    let scene_as_run = resolved.document.to_toml_elsewhere(|file| companions::seen_from(&folder, &options.scene, file));
-    match simulate(console, &resolved, &mut simulation, &results, &scene_as_run, exporter.as_mut()) {
-        Ok(summary) => {
-            let exit = conclude(console, &summary, &folder);
-            if let (Some(exporter), Some((folder, _))) = (&exporter, &options.export) {
-                let count = exporter.written();
-                let problems = if count == 1 { "problem" } else { "problems" };
-                console.note(&format!("  {count} contact {problems} in {}", folder.display()));
+    match begin(options, console, &resolved, &files, &stem, &folder, &watch, &mut simulation) {
+        Ok(Begun::Ready(job)) => {
+            for warning in &resolved.warnings {
+                console.note(&presenter.one(warning));
             }
-            exit
+            job.carry_out(console, options, &folder, &resolved, &mut simulation)
         }
-        Err(error) => {
-            console.error(&format!("error: {error}"));
-            Exit::Failed
-        }
+        Ok(Begun::Ended(exit)) => exit,
+        Err(error) => bad_input(console, &format!("error: {error}")),
     }
+}
+
+/// What is settled before anything is simulated.
+struct Job {
+    scene_as_run: String,
+    identity: Option<Identity>,
+    results: Results,
+    exporter: Option<Exporter>,
+    checkpoint: Option<Checkpoint>,
+}
+
+enum Begun {
+    Ready(Job),
+    /// There was nothing to do.
+    Ended(Exit),
+}
+
+/// Finds where to start, and takes the folders: until then, nothing is changed.
+fn begin(
+    options: &Options,
+    console: Console,
+    resolved: &Resolved,
+    files: &[Vec<u8>],
+    stem: &str,
+    folder: &Path,
+    watch: &Watch,
+    simulation: &mut Simulation,
+) -> Result<Begun, Box<dyn Error>> {
+    let identity = start::identity(options, stem, &resolved.document.to_toml(), files)?;
+    start::check_dump(options)?;
+    if let Some(path) = &options.from {
+        simulation.state = start::state_from(path, &resolved.scene, simulation)?;
+    }
+    // Paths in it hold from the folder, which is to be there.
+    let scene_as_run =
+        || resolved.document.to_toml_elsewhere(|file| companions::seen_from(folder, &options.scene, file));
+    let start = Start::find(options, folder, identity.as_ref(), &scene_as_run())?;
+    if let Start::Ended { word } = &start {
+        let text = start::told_of_ended(word, folder);
+        if word == "complete" {
+            console.note(&text);
+            return Ok(Begun::Ended(Exit::Done));
+        }
+        console.error(&format!("error: {text}"));
+        return Ok(Begun::Ended(Exit::Failed));
+    }
+    let exporter = exporter(options, watch, resolved, stem, start.former())?;
+    let results = start.take(folder)?;
+    let checkpoint = match start {
+        Start::Checkpoint(checkpoint) => {
+            simulation.state = checkpoint.state().clone();
+            console.note(&format!("going on from t = {} s", simulation.state.t));
+            Some(*checkpoint)
+        }
+        Start::Beginning { note: Some(note), .. } => {
+            console.note(&note);
+            None
+        }
+        _ => None,
+    };
+    Ok(Begun::Ready(Job { scene_as_run: scene_as_run(), identity, results, exporter, checkpoint }))
 }
 
 fn exporter(
@@ -116,11 +174,12 @@ fn exporter(
     watch: &Watch,
     resolved: &Resolved,
     stem: &str,
+    former: Former,
 ) -> Result<Option<Exporter>, ResultsError> {
     let Some((folder, when)) = &options.export else { return Ok(None) };
     let scene = &resolved.scene;
     let (steps, tolerance) = (scene.time.steps, scene.solver.tolerance);
-    Exporter::create(watch, folder, stem, &scene.title, steps, *when, tolerance, options.force).map(Some)
+    Exporter::create(watch, folder, stem, &scene.title, steps, *when, tolerance, former).map(Some)
 }
 
 /// The name of a scene in messages, and that of its results.
@@ -132,61 +191,108 @@ pub(crate) fn named(scene: &Path) -> (String, String) {
     (scene.display().to_string(), stem)
 }
 
-/// Runs and writes. The summary comes last: a folder without one holds a run that didn't end.
-fn simulate(
-    console: Console,
-    resolved: &Resolved,
-    simulation: &mut Simulation,
-    results: &Results,
-    scene_as_run: &str,
-    exporter: Option<&mut Exporter>,
-) -> Result<Summary, Box<dyn Error>> {
-    let scene = &resolved.scene;
-    let layout = simulation.layout.clone();
-    let mut progress = Progress::new(console, scene.time.steps);
-    let tell = progress.tell();
-    let mut tell_warning = |text: &str| tell(&format!("warning: {text}"));
-    let mut recorder = Recorder::new(results, scene, &layout, &mut tell_warning)?;
-    recorder.note(&resolved.warnings);
-    let mut page = PageRecorder::new(scene, &layout);
-    results.write("scene.toml", scene_as_run)?;
-
-    let clock = Instant::now();
-    let mut interrupt = Interrupt::listen();
-    let mut observers: Vec<&mut dyn Observer<2>> = vec![&mut recorder, &mut page, &mut progress, &mut interrupt];
-    if let Some(exporter) = exporter {
-        observers.push(exporter);
-    }
-    let ran = simulation.run(&mut observers);
-    drop(progress);
-    let seconds = clock.elapsed().as_secs_f64();
-
-    let mut record = recorder.into_record();
-    let ended = match ran {
-        Ok(ended) => {
-            if let Ended::Failed(error) = &ended {
-                record.warnings.enter("ended", error.t(), || error.to_string());
+impl Job {
+    fn carry_out(
+        self,
+        console: Console,
+        options: &Options,
+        folder: &Path,
+        resolved: &Resolved,
+        simulation: &mut Simulation,
+    ) -> Exit {
+        match self.simulate(console, options, resolved, simulation) {
+            Ok(done) => {
+                let exit = conclude(console, &done.summary, folder, options.checkpoint_every.is_some());
+                if let (Some(exporter), Some((folder, _))) = (&done.exporter, &options.export) {
+                    let count = exporter.written();
+                    let problems = if count == 1 { "problem" } else { "problems" };
+                    console.note(&format!("  {count} contact {problems} in {}", folder.display()));
+                }
+                if let Some(path) = &options.dump_unconverged {
+                    let unsolved = done.summary.contact.unconverged_steps > 0;
+                    let path = path.display();
+                    console.note(&if unsolved {
+                        format!("  the state before the first step not solved is in {path}; --from {path} starts there")
+                    } else {
+                        format!("  every step was solved: {path} is not written")
+                    });
+                }
+                exit
             }
-            EndedWord::from(&ended)
-        }
-        Err(RunError::Observer(error)) => {
-            if !is_disk_full(error.as_ref()) {
-                return Err(error);
+            Err(error) => {
+                console.error(&format!("error: {error}"));
+                Exit::Failed
             }
-            record.warnings.enter("ended", Some(simulation.state.t), || error.to_string());
-            EndedWord::DiskFull
         }
-        Err(error) => return Err(error.into()),
-    };
-    let summary = Summary::new(scene, &layout, &simulation.state, &record, ended, seconds);
-    let written = write_pages(results, &page, &summary, scene_as_run);
-    let written = written.and_then(|()| Ok(results.write("summary.json", &summary.to_json()?)?));
-    match written {
-        // No room for these either; the reason is told all the same.
-        Err(error) if ended == EndedWord::DiskFull && is_disk_full(error.as_ref()) => {}
-        written => written?,
     }
-    Ok(summary)
+
+    /// Runs and writes. The summary comes last: a folder without one holds a run that didn't end.
+    fn simulate(
+        self,
+        console: Console,
+        options: &Options,
+        resolved: &Resolved,
+        simulation: &mut Simulation,
+    ) -> Result<Done, Box<dyn Error>> {
+        let Self { scene_as_run, identity, results, exporter, checkpoint } = self;
+        let scene = &resolved.scene;
+        let layout = simulation.layout.clone();
+        let mut progress = Progress::new(console, simulation.state.step, scene.time.steps);
+        let tell = progress.tell();
+        let mut tell_warning = |text: &str| tell(&format!("warning: {text}"));
+        // Before the tables: it says whose they are.
+        results.write("scene.toml", &scene_as_run)?;
+        let mut recorder = RunRecorder::new(&results, scene, &layout, exporter, checkpoint, &mut tell_warning)?;
+        recorder.note(&resolved.warnings);
+        if let Some(identity) = &identity {
+            let origin = Origin { identity, scheme: simulation.scheme() };
+            if let Some(every) = options.checkpoint_every {
+                recorder = recorder.with_checkpoints(&results, origin, every);
+            }
+            if let Some(path) = &options.dump_unconverged {
+                recorder = recorder.with_dump(path, origin);
+            }
+        }
+        let mut recorder = recorder.until(interrupt::listen());
+        let ran = simulation.run(&mut [&mut recorder, &mut progress]);
+        drop(progress);
+        let seconds = recorder.seconds();
+
+        let (mut record, page, exporter) = recorder.into_parts();
+        let ended = match ran {
+            Ok(ended) => {
+                if let Ended::Failed(error) = &ended {
+                    record.warnings.enter("ended", error.t(), || error.to_string());
+                }
+                EndedWord::from(&ended)
+            }
+            Err(RunError::Observer(error)) => {
+                if !is_disk_full(error.as_ref()) {
+                    return Err(error);
+                }
+                record.warnings.enter("ended", Some(simulation.state.t), || error.to_string());
+                EndedWord::DiskFull
+            }
+            Err(error) => return Err(error.into()),
+        };
+        let summary = Summary::new(scene, &layout, &simulation.state, &record, ended, seconds);
+        let written = write_pages(&results, &page, &summary, &scene_as_run);
+        let written = written.and_then(|()| Ok(results.write("summary.json", summary.to_json()?)?));
+        match written {
+            // No room for these either; the reason is told all the same.
+            Err(error) if ended == EndedWord::DiskFull && is_disk_full(error.as_ref()) => {}
+            written => written?,
+        }
+        if !matches!(ended, EndedWord::Interrupted | EndedWord::DiskFull) {
+            results.remove(CHECKPOINT)?;
+        }
+        Ok(Done { summary, exporter })
+    }
+}
+
+struct Done {
+    summary: Summary,
+    exporter: Option<Exporter>,
 }
 
 fn write_pages(
@@ -206,18 +312,20 @@ fn is_disk_full(error: &(dyn Error + 'static)) -> bool {
     error.downcast_ref::<ResultsError>().is_some_and(ResultsError::is_disk_full)
 }
 
-fn conclude(console: Console, summary: &Summary, folder: &Path) -> Exit {
+fn conclude(console: Console, summary: &Summary, folder: &Path, resumable: bool) -> Exit {
     match summary.ended {
         EndedWord::Complete => {
             console.note(&told(summary, folder));
             Exit::Done
         }
         EndedWord::Interrupted => {
-            console.note(&how_it_ended(summary, "interrupted"));
+            let mut text = how_it_ended(summary, "interrupted");
+            text.push_str(if resumable { "; --resume goes on from there" } else { "" });
+            console.note(&text);
             Exit::Interrupted
         }
         _ => {
-            let reason = summary.warnings.iter().find(|w| matches!(w.code, "ended" | "unconverged"));
+            let reason = summary.warnings.iter().find(|w| matches!(w.code.as_ref(), "ended" | "unconverged"));
             let why = reason.map_or("it could not go on", |warning| warning.text.as_str());
             console.error(&format!("error: {}", how_it_ended(summary, why)));
             Exit::Failed

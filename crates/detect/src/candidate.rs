@@ -8,6 +8,7 @@ pub struct BodyId(pub u32);
 
 /// Who a contact is, the same from step to step: the pair, and the point of its first side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactId(u64);
 
 impl ContactId {

@@ -32,6 +32,7 @@ impl ContactState {
 
 /// A contact that was active in a step, in its frame (normal first), with the step's Jacobian.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Contact<const D: usize> {
     /// Who it is.
     pub id: ContactId,

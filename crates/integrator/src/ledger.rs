@@ -12,6 +12,7 @@ use crate::Energy;
 
 /// The terms of one step, J, signed as in the identity: a loss is negative.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StepEnergy {
     /// Work of external loads.
     pub external: f64,
@@ -47,6 +48,7 @@ impl StepEnergy {
 
 /// Steps in which contact and friction together gave energy to the bodies.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PositiveWork {
     /// How many.
     pub steps: u64,
@@ -58,6 +60,7 @@ pub struct PositiveWork {
 
 /// The account of a run.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ledger {
     /// At the start.
     pub initial: Energy,

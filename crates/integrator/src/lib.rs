@@ -70,7 +70,7 @@ pub use contacts::{Contact, ContactSet, ContactState, tangential};
 pub use ground::Ground;
 pub use ledger::{Ledger, PositiveWork, StepEnergy};
 pub use model::{Model, ModelBuilder, ModelError, Part, Placed};
-pub use monitor::{Crossing, Peak, RockingMonitor};
+pub use monitor::{Crossing, LISTED_CROSSINGS, Peak, RockingMonitor};
 pub use moreau_jean::{MoreauJean, MoreauJeanSettings};
 pub use moreau_jean_closed::{MoreauJeanClosed, MoreauJeanClosedSettings};
 pub use pair_law::{ImpactLaw, PairLaw};

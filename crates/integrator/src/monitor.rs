@@ -2,6 +2,7 @@
 
 /// A zero crossing of an angle: on a rigid base, the impact of a rocking block.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Crossing {
     /// Time, s, linear between steps.
     pub t: f64,
@@ -9,6 +10,7 @@ pub struct Crossing {
 
 /// The largest |φ| of a step between two crossings.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Peak {
     /// Time of the step, s.
     pub t: f64,
@@ -19,7 +21,10 @@ pub struct Peak {
 /// An excursion smaller than this is rounding, not rocking; rad.
 const STILL: f64 = 1e-12;
 
-/// Finds the crossings and peaks of one angle, step by step.
+/// Crossings that a monitor lists, and as many peaks: some 2 MB for a block that never stops, however long the run is.
+pub const LISTED_CROSSINGS: usize = 100_000;
+
+/// Finds the crossings and peaks of one angle, step by step. It lists the first [`LISTED_CROSSINGS`] and counts all.
 ///
 /// ```
 /// use teeter_integrator::RockingMonitor;
@@ -34,6 +39,7 @@ const STILL: f64 = 1e-12;
 /// assert_eq!(peaks, [0.2, -0.3]); // the unfinished one at the end is none
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RockingMonitor {
     last: (f64, f64),
     /// Where the sign last changed, until the excursion beyond it shows that it was more than rounding.
@@ -41,13 +47,16 @@ pub struct RockingMonitor {
     extreme: Peak,
     crossings: Vec<Crossing>,
     peaks: Vec<Peak>,
+    /// All crossings, listed or not.
+    count: u64,
 }
 
 impl RockingMonitor {
     /// Starts at time `t` with angle `phi`.
     #[must_use]
     pub fn new(t: f64, phi: f64) -> Self {
-        Self { last: (t, phi), pending: None, extreme: Peak { t, phi }, crossings: Vec::new(), peaks: Vec::new() }
+        let extreme = Peak { t, phi };
+        Self { last: (t, phi), pending: None, extreme, crossings: Vec::new(), peaks: Vec::new(), count: 0 }
     }
 
     /// Enters the end of a step.
@@ -75,19 +84,28 @@ impl RockingMonitor {
         if phi.abs() > STILL
             && let Some(t_zero) = self.pending.take()
         {
-            self.crossings.push(Crossing { t: t_zero });
-            self.peaks.push(self.extreme);
+            self.count += 1;
+            if self.crossings.len() < LISTED_CROSSINGS {
+                self.crossings.push(Crossing { t: t_zero });
+                self.peaks.push(self.extreme);
+            }
             self.extreme = Peak { t, phi };
         }
     }
 
-    /// The crossings so far.
+    /// How many crossings there were so far.
+    #[must_use]
+    pub fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// The crossings so far, the first [`LISTED_CROSSINGS`] of them.
     #[must_use]
     pub fn crossings(&self) -> &[Crossing] {
         &self.crossings
     }
 
-    /// The peaks so far, the release being the first.
+    /// The peaks so far, the release being the first; each crossing of the list has one.
     #[must_use]
     pub fn peaks(&self) -> &[Peak] {
         &self.peaks
@@ -115,6 +133,18 @@ mod tests {
     #[test]
     fn a_crossing_that_pauses_at_zero_counts_once_where_it_began() {
         assert_eq!(crossings(&[0.1, 0.0, -1e-17, -0.1]), [1.0]);
+    }
+
+    #[test]
+    fn a_body_that_never_stops_is_counted_on_in_bounded_memory() {
+        let mut monitor = RockingMonitor::new(0.0, 0.1);
+        let steps = LISTED_CROSSINGS + 50;
+        for k in 1..=steps {
+            monitor.enter(k as f64, if k % 2 == 0 { 0.1 } else { -0.1 });
+        }
+        assert_eq!(monitor.count(), steps as u64);
+        assert_eq!((monitor.crossings().len(), monitor.peaks().len()), (LISTED_CROSSINGS, LISTED_CROSSINGS));
+        assert_eq!(monitor.crossings().last(), Some(&Crossing { t: LISTED_CROSSINGS as f64 - 0.5 }));
     }
 
     #[test]

@@ -7,6 +7,7 @@ use teeter_detect::ContactId;
 /// The contacts of the last step with their impulses, in order of identity: where a solver starts from, and who was
 /// active.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WarmStart {
     ids: Vec<ContactId>,
     /// D numbers a contact.
@@ -45,6 +46,14 @@ impl WarmStart {
         }
     }
 
+    /// Becomes equal to `other`; allocates only where that holds more than ever before.
+    pub fn copy_from(&mut self, other: &Self) {
+        let Self { ids, impulses, gaps } = other;
+        self.ids.clone_from(ids);
+        self.impulses.clone_from(impulses);
+        self.gaps.clone_from(gaps);
+    }
+
     /// The contacts of the last step.
     #[must_use]
     pub fn ids(&self) -> &[ContactId] {
@@ -67,6 +76,7 @@ impl WarmStart {
 
 /// Counts and extremes over the steps so far.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tally {
     /// Deepest penetration at the end of a step, m; 0 if there was none.
     pub max_penetration: f64,
@@ -86,6 +96,7 @@ pub struct Tally {
 
 /// The state of a run.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
     /// Steps taken.
     pub step: u64,
@@ -157,6 +168,16 @@ impl State {
     /// # Errors
     /// If a length doesn't fit the model, a number is not finite, or `dt` is not positive.
     pub fn new<const D: usize>(model: &Model<D>, q: &[f64], v: &[f64], dt: f64) -> Result<Self, StateError> {
+        Self::at(model, 0, q, v, dt)
+    }
+
+    /// The state after `step` steps of size `dt` (s), so at t = step · dt, of a run that is not known before: its energy
+    /// account and its counts begin here, no contact was active, and a scheme remembers nothing. Prescribed velocities are
+    /// those of that time, whatever `v` says.
+    ///
+    /// # Errors
+    /// As [`State::new`].
+    pub fn at<const D: usize>(model: &Model<D>, step: u64, q: &[f64], v: &[f64], dt: f64) -> Result<Self, StateError> {
         let check = |what, x: &[f64], expected| {
             if x.len() != expected {
                 return Err(StateError::Length { what, found: x.len(), expected });
@@ -173,10 +194,11 @@ impl State {
             return Err(StateError::StepSize(dt));
         }
         let mut v = v.to_vec();
-        model.drive(0.0, &mut v);
+        let t = step as f64 * dt;
+        model.drive(t, &mut v);
         Ok(Self {
-            step: 0,
-            t: 0.0,
+            step,
+            t,
             dt,
             q: q.to_vec(),
             memory: Vec::new(),
@@ -185,6 +207,18 @@ impl State {
             v,
             tally: Tally::default(),
         })
+    }
+
+    /// Becomes equal to `other`; allocates only where that holds more than ever before.
+    pub fn copy_from(&mut self, other: &Self) {
+        let Self { step, t, dt, q, v, memory, warm, ledger, tally } = other;
+        (self.step, self.t, self.dt) = (*step, *t, *dt);
+        for (mine, other) in [(&mut self.q, q), (&mut self.v, v), (&mut self.memory, memory)] {
+            mine.clone_from(other);
+        }
+        self.warm.copy_from(warm);
+        self.ledger.clone_from(ledger);
+        self.tally.clone_from(tally);
     }
 }
 

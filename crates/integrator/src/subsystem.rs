@@ -30,6 +30,7 @@ pub struct Weights {
 
 /// The energies of a subsystem or of a model, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Energy {
     /// ½ vᵀM v.
     pub kinetic: f64,

@@ -1,6 +1,7 @@
 //! The rows of `contacts.csv`: impulses of each contact added up since the last written row.
 
 use crate::number::{push, push_next};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use teeter_detect::{Candidate, ContactId};
 use teeter_integrator::{Contact, Model, State, Vector};
@@ -10,9 +11,11 @@ use teeter_scenario::simulation::Layout;
 pub(crate) const HEADER: &str = "t,contact,a,b,point,gap,p_n,p_t,u_n,u_t,state\n";
 
 /// Impulses since the last row, by contact.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Impulses {
     sums: BTreeMap<ContactId, Vector<2>>,
+    /// Memory of a row.
+    #[serde(skip)]
     candidates: Vec<Candidate<2>>,
 }
 

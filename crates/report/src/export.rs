@@ -4,6 +4,8 @@
 //! observer, who knows the step, takes it off and writes it if it is wanted. The integrator knows nothing of it.
 
 use crate::ResultsError;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -113,8 +115,25 @@ pub struct Exporter {
     digits: usize,
     when: ExportWhen,
     tolerance: f64,
+    kept: Kept,
+}
+
+/// What an exporter knows of the run so far.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Kept {
     seen: Seen,
     written: u64,
+}
+
+/// What becomes of problems that a folder holds already, of a run of the same name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Former {
+    /// They are in the way.
+    Refuse,
+    /// They go.
+    Remove,
+    /// They stay: the run goes on from a checkpoint.
+    Keep,
 }
 
 impl std::fmt::Debug for Exporter {
@@ -124,11 +143,11 @@ impl std::fmt::Debug for Exporter {
 }
 
 impl Exporter {
-    /// Takes a folder for the problems that `watch` sees in a run of `steps` steps; their files are named after `stem` and the step. Without
-    /// `force` the folder must hold no problems of that stem; with it they go.
+    /// Takes a folder for the problems that `watch` sees in a run of `steps` steps; their files are named after `stem` and the
+    /// step. `former` says what becomes of problems of that stem in the folder.
     ///
     /// # Errors
-    /// If there are problems and `force` is not given, or the folder can't be made or written.
+    /// If there are problems that are refused, or the folder can't be made or written.
     pub fn create(
         watch: &Watch,
         folder: &Path,
@@ -137,7 +156,7 @@ impl Exporter {
         steps: u64,
         when: ExportWhen,
         tolerance: f64,
-        force: bool,
+        former: Former,
     ) -> Result<Self, ResultsError> {
         let io = |source| ResultsError::Io { path: folder.to_owned(), source };
         if folder.exists() && !folder.is_dir() {
@@ -155,7 +174,10 @@ impl Exporter {
                 old.push(entry.path());
             }
         }
-        if !old.is_empty() && !force {
+        if former == Former::Keep {
+            old.clear();
+        }
+        if !old.is_empty() && former == Former::Refuse {
             return Err(ResultsError::Exists(folder.to_owned()));
         }
         for path in old {
@@ -169,15 +191,22 @@ impl Exporter {
             digits: steps.to_string().len(),
             when,
             tolerance,
-            seen: Seen::default(),
-            written: 0,
+            kept: Kept::default(),
         })
+    }
+
+    pub(crate) fn keep(&self) -> &Kept {
+        &self.kept
+    }
+
+    pub(crate) fn restore(&mut self, kept: Kept) {
+        self.kept = kept;
     }
 
     /// Problems written so far.
     #[must_use]
     pub fn written(&self) -> u64 {
-        self.written
+        self.kept.written
     }
 
     fn write(&mut self, posed: Posed, nth: usize, step: &StepReport<'_, 2>) -> Result<(), ResultsError> {
@@ -215,7 +244,7 @@ impl Exporter {
             };
             ResultsError::Io { path, source }
         })?;
-        self.written += 1;
+        self.kept.written += 1;
         Ok(())
     }
 }
@@ -224,8 +253,8 @@ impl Observer<2> for Exporter {
     fn observe(&mut self, _: &Model<2>, step: &StepReport<'_, 2>, _: &State) -> Result<ControlFlow<()>, ObserverError> {
         let posed = std::mem::take(&mut *locked(&self.shelf));
         for (nth, posed) in posed.into_iter().enumerate() {
-            let hard = self.seen.is_hard(&posed.outcome, posed.mu.len());
-            self.seen.enter(&posed.outcome, posed.mu.len());
+            let hard = self.kept.seen.is_hard(&posed.outcome, posed.mu.len());
+            self.kept.seen.enter(&posed.outcome, posed.mu.len());
             let wanted = match self.when {
                 ExportWhen::Hard => hard,
                 ExportWhen::Every(n) => step.step.is_multiple_of(n.max(1)),
@@ -239,13 +268,13 @@ impl Observer<2> for Exporter {
 }
 
 /// What the run's problems took so far.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct Seen {
     /// How many took how many iterations.
     iterations: BTreeMap<u32, u64>,
     count: u64,
     /// How often which method solved problems of which number of contacts.
-    used: BTreeMap<usize, BTreeMap<&'static str, u64>>,
+    used: BTreeMap<usize, BTreeMap<Cow<'static, str>, u64>>,
 }
 
 impl Seen {
@@ -259,9 +288,9 @@ impl Seen {
         })
     }
 
-    fn usual(&self, contacts: usize) -> Option<&'static str> {
+    fn usual(&self, contacts: usize) -> Option<&str> {
         let used = self.used.get(&contacts)?;
-        used.iter().max_by_key(|(_, count)| **count).map(|(used, _)| *used)
+        used.iter().max_by_key(|(_, count)| **count).map(|(used, _)| used.as_ref())
     }
 
     fn is_hard(&self, outcome: &Outcome, contacts: usize) -> bool {
@@ -273,7 +302,7 @@ impl Seen {
     fn enter(&mut self, outcome: &Outcome, contacts: usize) {
         *self.iterations.entry(outcome.iterations).or_default() += 1;
         self.count += 1;
-        *self.used.entry(contacts).or_default().entry(outcome.used).or_default() += 1;
+        *self.used.entry(contacts).or_default().entry(outcome.used.into()).or_default() += 1;
     }
 }
 

@@ -1,23 +1,30 @@
 //! What a run of teeter writes: CSV tables, the summary, the scene as run.
 //!
 //! [`Results`] is a folder; [`Recorder`] is the observer that fills its tables step by step; [`Summary`] is what
-//! `summary.json` holds. Numbers are written so that they read back to the same double.
+//! `summary.json` holds. [`RunRecorder`] has all that a run of the program writes, and checkpoints from which it goes on to
+//! the same bytes. Numbers are written so that they read back to the same double.
 
+mod checkpoint;
 mod contacts;
 mod export;
 mod number;
 mod page;
 mod recorder;
 mod results;
+mod run_recorder;
 mod schedule;
 mod summary;
 mod table;
 mod warnings;
 
-pub use export::{ExportWhen, Exporter, HARD, Watch};
+pub use checkpoint::{
+    CHECKPOINT, Checkpoint, CheckpointError, Found, Identity, Moment, VERSION as CHECKPOINT_VERSION, program_hash,
+};
+pub use export::{ExportWhen, Exporter, Former, HARD, Watch};
 pub use page::{HalfCycle, PageRecorder, figures, half_cycles, render};
 pub use recorder::{ImpactRow, Record, Recorder};
 pub use results::{FILES, Results, ResultsError};
+pub use run_recorder::{Origin, RunRecorder};
 pub use schedule::Schedule;
 pub use summary::{EndedWord, Summary};
 pub use warnings::{Warning, WarningLog};

@@ -15,6 +15,7 @@ mod scenery;
 
 pub use figures::figures;
 pub use html::render;
+pub(crate) use recorder::Kept;
 pub use recorder::PageRecorder;
 pub use rocking::{HalfCycle, half_cycles};
 

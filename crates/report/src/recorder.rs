@@ -4,7 +4,8 @@ use crate::contacts::{self, Impulses, Names};
 use crate::number::{push, push_next};
 use crate::table::Table;
 use crate::{Results, ResultsError, Schedule, WarningLog, impact_threshold};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::ops::ControlFlow;
 use teeter_integrator::{Contact, Model, Observer, ObserverError, RockingMonitor, State, StepReport};
 use teeter_scenario::diagnostic::Diagnostic;
@@ -12,14 +13,14 @@ use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Layout;
 
 /// An impact as the summary lists it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ImpactRow {
     /// End of the step, s.
     pub t: f64,
     /// The contact's name.
     pub contact: String,
     /// The corner.
-    pub point: &'static str,
+    pub point: Cow<'static, str>,
     /// Normal impulse, N·s.
     pub impulse_n: f64,
     /// Normal velocity before, m/s.
@@ -30,8 +31,10 @@ pub struct ImpactRow {
 const LISTED_IMPACTS: usize = 1000;
 
 /// What a run showed, beside its tables.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Record {
+    /// The step before the first one: 0, but for a run that starts from the state of another one.
+    pub first_step: u64,
     /// The first impacts.
     pub impacts: Vec<ImpactRow>,
     /// All impacts, counted.
@@ -42,28 +45,42 @@ pub struct Record {
     pub warnings: WarningLog,
 }
 
-/// Writes the tables of a run as it goes.
-pub struct Recorder<'a> {
-    layout: &'a Layout,
+/// The tables, in the order in which a checkpoint has their lengths.
+pub(crate) const TABLES: [&str; 4] = ["trajectory.csv", "contacts.csv", "impacts.csv", "energy.csv"];
+
+const IMPACTS_HEADER: &str = "t,contact,a,b,point,impulse_n,impulse_t,u_n_before,u_n_after\n";
+
+const ENERGY_HEADER: &str =
+    "t,kinetic,elastic,gravity,external,contact,friction,viscous,numerical,projection,residual\n";
+
+/// What a recorder knows of the run so far, beside the lengths of its tables.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Kept {
     schedule: Schedule,
-    threshold: f64,
-    trajectory: Table,
-    contacts: Table,
-    impacts: Table,
-    energy: Table,
     impulses: Impulses,
     /// The contacts of the last step, for a row after the run's early end.
     contacts_now: Vec<Contact<2>>,
     /// The step of the last row.
     row_at: u64,
-    line: String,
     record: Record,
+}
+
+/// Writes the tables of a run as it goes.
+pub struct Recorder<'a> {
+    layout: &'a Layout,
+    threshold: f64,
+    trajectory: Table,
+    contacts: Table,
+    impacts: Table,
+    energy: Table,
+    line: String,
+    kept: Kept,
     tell: &'a mut dyn FnMut(&str),
 }
 
 impl std::fmt::Debug for Recorder<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Recorder").field("record", &self.record).finish_non_exhaustive()
+        f.debug_struct("Recorder").field("record", &self.kept.record).finish_non_exhaustive()
     }
 }
 
@@ -78,31 +95,60 @@ impl<'a> Recorder<'a> {
         layout: &'a Layout,
         tell: &'a mut dyn FnMut(&str),
     ) -> Result<Self, ResultsError> {
-        Ok(Self {
-            layout,
+        let headers = [&trajectory_header(layout), contacts::HEADER, IMPACTS_HEADER, ENERGY_HEADER].map(str::to_owned);
+        let kept = Kept {
             schedule: Schedule::new(scene.every, scene.time.steps, scene.time.step),
-            threshold: impact_threshold(scene.gravity, scene.time.step),
-            trajectory: results.table("trajectory.csv", &trajectory_header(layout))?,
-            contacts: results.table("contacts.csv", contacts::HEADER)?,
-            impacts: results.table("impacts.csv", "t,contact,a,b,point,impulse_n,impulse_t,u_n_before,u_n_after\n")?,
-            energy: results.table(
-                "energy.csv",
-                "t,kinetic,elastic,gravity,external,contact,friction,viscous,numerical,projection,residual\n",
-            )?,
             impulses: Impulses::default(),
             contacts_now: Vec::new(),
             row_at: 0,
-            line: String::new(),
             record: Record::default(),
+        };
+        Self::with(|k| results.table(TABLES[k], &headers[k]), kept, scene, layout, tell)
+    }
+
+    /// Opens the tables of a run of `scene` again where a checkpoint left them; what was written past that goes.
+    pub(crate) fn resume(
+        results: &Results,
+        (kept, lengths): (Kept, [u64; TABLES.len()]),
+        scene: &Scene,
+        layout: &'a Layout,
+        tell: &'a mut dyn FnMut(&str),
+    ) -> Result<Self, ResultsError> {
+        Self::with(|k| results.reopened_table(TABLES[k], lengths[k]), kept, scene, layout, tell)
+    }
+
+    fn with(
+        table: impl Fn(usize) -> Result<Table, ResultsError>,
+        kept: Kept,
+        scene: &Scene,
+        layout: &'a Layout,
+        tell: &'a mut dyn FnMut(&str),
+    ) -> Result<Self, ResultsError> {
+        Ok(Self {
+            layout,
+            threshold: impact_threshold(scene.gravity, scene.time.step),
+            trajectory: table(0)?,
+            contacts: table(1)?,
+            impacts: table(2)?,
+            energy: table(3)?,
+            line: String::new(),
+            kept,
             tell,
         })
+    }
+
+    /// What a checkpoint keeps: all rows are on disk then, in tables of these lengths.
+    pub(crate) fn keep(&mut self) -> Result<(&Kept, [u64; TABLES.len()]), ResultsError> {
+        self.flush()?;
+        let lengths = [&self.trajectory, &self.contacts, &self.impacts, &self.energy].map(Table::written);
+        Ok((&self.kept, lengths))
     }
 
     /// Notes what looked wrong before the run.
     pub fn note(&mut self, findings: &[Diagnostic]) {
         for finding in findings {
             // The recorder hears of them late: they have been told.
-            let _ = self.record.warnings.enter("scene", None, || finding.to_string());
+            let _ = self.kept.record.warnings.enter("scene", None, || finding.to_string());
         }
     }
 
@@ -116,7 +162,7 @@ impl<'a> Recorder<'a> {
     /// What was seen.
     #[must_use]
     pub fn into_record(self) -> Record {
-        self.record
+        self.kept.record
     }
 
     fn write_row(&mut self, state: &State) -> Result<(), ResultsError> {
@@ -162,10 +208,10 @@ impl<'a> Recorder<'a> {
 
     /// The rows of all tables at the state's time.
     fn write_rows(&mut self, model: &Model<2>, state: &State) -> Result<(), ResultsError> {
-        self.row_at = state.step;
+        self.kept.row_at = state.step;
         self.write_row(state)?;
         self.line.clear();
-        self.impulses.rows(self.layout, model, state, &self.contacts_now, &mut self.line);
+        self.kept.impulses.rows(self.layout, model, state, &self.kept.contacts_now, &mut self.line);
         self.contacts.rows(&self.line)
     }
 
@@ -183,12 +229,12 @@ impl<'a> Recorder<'a> {
             }
             self.line.push('\n');
             self.impacts.rows(&self.line)?;
-            self.record.impact_count += 1;
-            if self.record.impacts.len() < LISTED_IMPACTS {
-                self.record.impacts.push(ImpactRow {
+            self.kept.record.impact_count += 1;
+            if self.kept.record.impacts.len() < LISTED_IMPACTS {
+                self.kept.record.impacts.push(ImpactRow {
                     t: step.t_end,
                     contact: names.contact.to_owned(),
-                    point: names.point,
+                    point: names.point.into(),
                     impulse_n: contact.p[0],
                     u_n_before: contact.u_before[0],
                 });
@@ -199,7 +245,7 @@ impl<'a> Recorder<'a> {
 
     fn warn_of(&mut self, step: &StepReport<'_, 2>) {
         let Some(outcome) = step.outcome.filter(|outcome| !outcome.converged()) else { return };
-        let told = self.record.warnings.enter("unconverged", Some(step.t_end), || {
+        let told = self.kept.record.warnings.enter("unconverged", Some(step.t_end), || {
             format!(
                 "the contact problem of the step to t = {} s ({} contacts) was not solved: {} after {} iterations of {}, residual {:.1e}",
                 step.t_end,
@@ -218,7 +264,10 @@ impl<'a> Recorder<'a> {
 
 impl Observer<2> for Recorder<'_> {
     fn start(&mut self, _model: &Model<2>, state: &State) -> Result<(), ObserverError> {
-        self.record.rocking = self
+        // A run that starts from the state of another one has its rows from there on.
+        self.kept.schedule = self.kept.schedule.clone().starting_at(state.step);
+        (self.kept.row_at, self.kept.record.first_step) = (state.step, state.step);
+        self.kept.record.rocking = self
             .layout
             .blocks
             .iter()
@@ -233,15 +282,15 @@ impl Observer<2> for Recorder<'_> {
         step: &StepReport<'_, 2>,
         state: &State,
     ) -> Result<ControlFlow<()>, ObserverError> {
-        self.impulses.add(step.contacts);
+        self.kept.impulses.add(step.contacts);
         self.write_impacts(step)?;
         self.warn_of(step);
-        for (monitor, block) in self.record.rocking.iter_mut().zip(&self.layout.blocks) {
+        for (monitor, block) in self.kept.record.rocking.iter_mut().zip(&self.layout.blocks) {
             monitor.enter(state.t, state.q[block.range.start + 2]);
         }
-        self.contacts_now.clear();
-        self.contacts_now.extend_from_slice(step.contacts);
-        if self.schedule.takes(state.step, state.t) {
+        self.kept.contacts_now.clear();
+        self.kept.contacts_now.extend_from_slice(step.contacts);
+        if self.kept.schedule.takes(state.step, state.t) {
             self.write_rows(model, state)?;
         }
         Ok(ControlFlow::Continue(()))
@@ -249,7 +298,7 @@ impl Observer<2> for Recorder<'_> {
 
     /// The last step always is a row, also of a run that ended before its time.
     fn finish(&mut self, model: &Model<2>, state: &State) -> Result<(), ObserverError> {
-        if state.step != self.row_at {
+        if state.step != self.kept.row_at {
             self.write_rows(model, state)?;
         }
         Ok(self.flush()?)

@@ -1,18 +1,20 @@
 //! The folder that a run writes.
 
+use crate::checkpoint::CHECKPOINT;
 use crate::table::Table;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// The files that a run may write; which of the figures, depends on its scene.
-pub const FILES: [&str; 13] = [
+/// The files that a run may write; which of the figures, depends on its scene. They are removed in this order: no summary
+/// outlives a table, and while there is anything, `scene.toml` says of what.
+pub const FILES: [&str; 14] = [
+    CHECKPOINT,
+    "summary.json",
     "trajectory.csv",
     "contacts.csv",
     "impacts.csv",
     "energy.csv",
-    "scene.toml",
-    "summary.json",
     "report.html",
     "figures/phi.svg",
     "figures/omega.svg",
@@ -20,6 +22,7 @@ pub const FILES: [&str; 13] = [
     "figures/contact_forces.svg",
     "figures/energy.svg",
     "figures/phase.svg",
+    "scene.toml",
 ];
 
 /// Why results can't be written.
@@ -75,6 +78,8 @@ impl Results {
         // Before anything old goes, it has to be sure that something new can come.
         let trial = results.temporary("trial");
         fs::write(&trial, b"").map_err(|source| ResultsError::Io { path: folder.to_owned(), source })?;
+        let parts = FILES.iter().map(|file| results.temporary(file)).filter(|path| path.exists());
+        let old: Vec<PathBuf> = parts.chain(old).collect();
         // An old summary beside new tables would look like one run.
         for path in old.into_iter().chain([trial]) {
             fs::remove_file(&path).map_err(|source| ResultsError::Io { path, source })?;
@@ -82,11 +87,24 @@ impl Results {
         Ok(results)
     }
 
+    /// Takes the folder of a run that goes on from a checkpoint: what it wrote at an earlier end goes, tables and checkpoint stay.
+    ///
+    /// # Errors
+    /// If a file can't be removed.
+    pub fn reopen(folder: &Path) -> Result<Self, ResultsError> {
+        let results = Self { folder: folder.to_owned() };
+        // While the summary stands, the folder looks like one of a run that has ended.
+        let (summary, trial) = (folder.join("summary.json"), results.temporary("trial"));
+        let parts = FILES.iter().map(|file| results.temporary(file));
+        for path in [summary, trial].into_iter().chain(parts).filter(|path| path.exists()) {
+            fs::remove_file(&path).map_err(|source| ResultsError::Io { path, source })?;
+        }
+        Ok(results)
+    }
+
     /// Where a file stands until it is complete.
     fn temporary(&self, name: &str) -> PathBuf {
-        let path = self.folder.join(name);
-        let file = path.file_name().unwrap_or_default().to_string_lossy();
-        path.with_file_name(format!(".{file}.part"))
+        temporary(&self.folder.join(name))
     }
 
     /// The folder.
@@ -100,22 +118,49 @@ impl Results {
         Table::create(&self.folder, name, header)
     }
 
+    /// A table of the folder, cut to so many bytes.
+    pub(crate) fn reopened_table(&self, name: &str, length: u64) -> Result<Table, ResultsError> {
+        Table::reopen(&self.folder, name, length)
+    }
+
+    /// Removes a file, if it is there.
+    ///
+    /// # Errors
+    /// If it is there to stay.
+    pub fn remove(&self, name: &str) -> Result<(), ResultsError> {
+        let path = self.folder.join(name);
+        match fs::remove_file(&path) {
+            Err(source) if source.kind() != io::ErrorKind::NotFound => Err(ResultsError::Io { path, source }),
+            _ => Ok(()),
+        }
+    }
+
     /// Writes a whole file, under a temporary name until it is complete.
     ///
     /// # Errors
     /// If it can't be written.
-    pub fn write(&self, name: &str, text: &str) -> Result<(), ResultsError> {
-        let path = self.folder.join(name);
-        let temporary = self.temporary(name);
-        let written = path
-            .parent()
-            .map_or(Ok(()), fs::create_dir_all)
-            .and_then(|()| fs::write(&temporary, text))
-            .and_then(|()| fs::rename(&temporary, &path));
-        written.map_err(|source| {
-            // The first error is the one to tell; what is left of the file may stay where it can't be removed.
-            let _ = fs::remove_file(&temporary);
-            ResultsError::Io { path, source }
-        })
+    pub fn write(&self, name: &str, content: impl AsRef<[u8]>) -> Result<(), ResultsError> {
+        write_whole(&self.folder.join(name), content.as_ref())
     }
+}
+
+/// Writes a file and the folder that it is in, under a temporary name until it is complete.
+pub(crate) fn write_whole(path: &Path, content: &[u8]) -> Result<(), ResultsError> {
+    let temporary = temporary(path);
+    let written = path
+        .parent()
+        .map_or(Ok(()), fs::create_dir_all)
+        .and_then(|()| fs::write(&temporary, content))
+        .and_then(|()| fs::rename(&temporary, path));
+    written.map_err(|source| {
+        // The first error is the one to tell; what is left of the file may stay where it can't be removed.
+        let _ = fs::remove_file(&temporary);
+        ResultsError::Io { path: path.to_owned(), source }
+    })
+}
+
+/// Where a file stands until it is complete.
+fn temporary(path: &Path) -> PathBuf {
+    let file = path.file_name().unwrap_or_default().to_string_lossy();
+    path.with_file_name(format!(".{file}.part"))
 }

@@ -2,7 +2,7 @@
 
 use crate::{ImpactRow, Record, Warning};
 use serde::Serialize;
-use teeter_integrator::{Ended, State};
+use teeter_integrator::{Ended, RockingMonitor, State};
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Layout;
 
@@ -64,6 +64,9 @@ pub struct Summary {
     pub impact_count: u64,
     /// Zero crossings of the angles.
     pub crossings: Vec<CrossingRow>,
+    /// All crossings, counted; only where the list holds no more than the first of them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub crossing_count: Option<u64>,
     /// Peaks of the angles between crossings.
     pub peaks: Vec<PeakRow>,
     /// Until when the motion can be trusted, s; not measured yet.
@@ -190,6 +193,7 @@ impl Summary {
         let mut crossings: Vec<CrossingRow> = monitored()
             .flat_map(|(block, m)| m.crossings().iter().map(|c| CrossingRow { t: c.t, body: block.name.clone() }))
             .collect();
+        let counted = record.rocking.iter().map(RockingMonitor::count).sum::<u64>();
         crossings.sort_by(|a, b| a.t.total_cmp(&b.t));
         let mut peaks: Vec<PeakRow> = monitored()
             .flat_map(|(block, m)| m.peaks().iter().map(|p| PeakRow { t: p.t, body: block.name.clone(), phi: p.phi }))
@@ -204,7 +208,7 @@ impl Summary {
             steps: state.step,
             t: state.t,
             wall_seconds,
-            us_per_step: if state.step > 0 { wall_seconds * 1e6 / state.step as f64 } else { 0.0 },
+            us_per_step: wall_seconds * 1e6 / state.step.saturating_sub(record.first_step).max(1) as f64,
             contact: ContactSummary {
                 solver: scene.solver.method.clone(),
                 max_residual: tally.max_residual,
@@ -233,6 +237,7 @@ impl Summary {
             },
             impacts: record.impacts.clone(),
             impact_count: record.impact_count,
+            crossing_count: (counted > crossings.len() as u64).then_some(counted),
             crossings,
             peaks,
             horizon: None,

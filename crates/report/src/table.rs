@@ -2,7 +2,7 @@
 
 use crate::ResultsError;
 use std::fs::File;
-use std::io::{self, Write};
+use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// Rows are kept back until there are so many bytes of them: a run that is killed loses those, and nothing else.
@@ -28,6 +28,26 @@ impl Table {
         table.rows(header)?;
         table.flush()?;
         Ok(table)
+    }
+
+    /// A table that is there, cut to so many bytes of whole rows, to be added to.
+    pub(crate) fn reopen(folder: &Path, name: &str, length: u64) -> Result<Self, ResultsError> {
+        let path = folder.join(name);
+        let open = || {
+            let mut file = File::options().write(true).open(&path)?;
+            file.set_len(length)?;
+            file.seek(SeekFrom::Start(length))?;
+            Ok(file)
+        };
+        match open() {
+            Ok(file) => Ok(Self { path, file, buffer: Vec::with_capacity(2 * BUFFER), written: length }),
+            Err(source) => Err(ResultsError::Io { path, source }),
+        }
+    }
+
+    /// Bytes of whole rows on disk.
+    pub(crate) fn written(&self) -> u64 {
+        self.written
     }
 
     /// Adds whole rows, each with its line end.
@@ -94,6 +114,24 @@ mod tests {
         let (taken, result) = write_counted(&mut Disk(5), b"123456789");
         assert_eq!((taken, result.unwrap_err().kind()), (5, io::ErrorKind::StorageFull));
         assert!(write_counted(&mut Disk(9), b"123456789").1.is_ok());
+    }
+
+    #[test]
+    fn a_table_goes_on_where_it_was_cut() {
+        let folder = std::env::temp_dir().join(format!("teeter-table-again-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let mut table = Table::create(&folder, "t.csv", "a,b\n").unwrap();
+        table.rows("1,1\n").unwrap();
+        table.flush().unwrap();
+        let length = table.written();
+        table.rows("2,2\n3,3\n").unwrap();
+        table.flush().unwrap();
+        let mut again = Table::reopen(&folder, "t.csv", length).unwrap();
+        again.rows("2,3\n").unwrap();
+        again.flush().unwrap();
+        assert_eq!(std::fs::read_to_string(folder.join("t.csv")).unwrap(), "a,b\n1,1\n2,3\n");
+        assert_eq!(again.written(), length + 4);
+        std::fs::remove_dir_all(&folder).unwrap();
     }
 
     #[test]

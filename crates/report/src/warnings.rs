@@ -1,12 +1,13 @@
 //! Warnings of a run: counted, the first of each kind kept, told as they come but not without end.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// A kind of warning that a run met.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Warning {
     /// Its kind, for programs.
-    pub code: &'static str,
+    pub code: Cow<'static, str>,
     /// How often.
     pub count: u64,
     /// When first, s; `null` if it isn't about a time.
@@ -16,7 +17,7 @@ pub struct Warning {
 }
 
 /// The warnings of a run.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WarningLog {
     warnings: Vec<Warning>,
 }
@@ -29,7 +30,7 @@ impl WarningLog {
     pub fn enter(&mut self, code: &'static str, t: Option<f64>, text: impl FnOnce() -> String) -> Option<String> {
         let Some(known) = self.warnings.iter_mut().find(|warning| warning.code == code) else {
             let text = text();
-            self.warnings.push(Warning { code, count: 1, first_t: t, text: text.clone() });
+            self.warnings.push(Warning { code: code.into(), count: 1, first_t: t, text: text.clone() });
             return Some(text);
         };
         known.count += 1;
@@ -56,6 +57,9 @@ mod tests {
         let mut log = WarningLog::default();
         let told = (0..1000).filter(|k| log.enter("flood", Some(f64::from(*k)), || "wet".into()).is_some()).count();
         assert_eq!(told, 3 + 3, "the first three, then at 10, 100, 1000");
-        assert_eq!(log.warnings(), [Warning { code: "flood", count: 1000, first_t: Some(0.0), text: "wet".into() }]);
+        assert_eq!(
+            log.warnings(),
+            [Warning { code: "flood".into(), count: 1000, first_t: Some(0.0), text: "wet".into() }]
+        );
     }
 }

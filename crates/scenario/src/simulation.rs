@@ -251,6 +251,12 @@ impl Simulation {
         Ok(Self { model, state, layout, plan, scheme, work })
     }
 
+    /// The name of the time scheme.
+    #[must_use]
+    pub fn scheme(&self) -> &'static str {
+        self.scheme.name()
+    }
+
     /// Runs to the plan's end, showing every step to the observers. The state is left at the last step taken.
     ///
     /// # Errors

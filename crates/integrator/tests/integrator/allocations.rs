@@ -136,3 +136,28 @@ fn a_step_on_a_beam_allocates_nothing() {
         .with_load(Box::new(SignalLoad::new(vec![1e-3; beam.dofs()], signal)));
     assert_eq!(allocations(Box::new(moving), beam.dofs() + 2, 0.5), 0);
 }
+
+#[test]
+fn a_copy_of_the_state_allocates_where_there_are_more_contacts_than_ever_before() {
+    let ground = Box::new(Ground::flat(0.0));
+    let law = PairLaw::new(0.5, 0.2);
+    let model = model(&PAPER_BLOCK, Vector2::new(0.0, -9.81), law, Kinematics::Deformed, ground);
+    let q = [0.17405990783590924, 0.0685504782624077, 0.08726646259971647];
+    let mut state = State::new(&model, &q, &[0.0; 3], 1e-4).unwrap();
+    let mut work = workspace(&model);
+    let mut scheme = MoreauJean::new(MoreauJeanSettings::default()).unwrap();
+    Scheme::<2>::start(&mut scheme, &model, &mut state, &mut work).unwrap();
+    let mut copy = state.clone();
+    let (mut before, mut most) = (ALLOCATIONS.with(Cell::get), 0);
+    for _ in 0..3000 {
+        let contacts = scheme.advance(&model, &mut state, &mut work).unwrap().contacts.len();
+        copy.copy_from(&state);
+        if contacts > most {
+            most = contacts;
+            before = ALLOCATIONS.with(Cell::get);
+        }
+        assert_eq!(ALLOCATIONS.with(Cell::get), before, "in step {}", state.step);
+    }
+    assert_eq!(most, 2);
+    assert_eq!(copy, state);
+}

@@ -4,10 +4,11 @@
 //! A bucket is drawn as two points, lowest and highest in the order in which they came, at its first and last step: up to
 //! two steps a bucket that is the curve itself, beyond that its envelope, from which no peak is missing.
 
+use serde::{Deserialize, Serialize};
 use teeter_integrator::ContactState;
 
 /// The lowest and the highest value, each with its time.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Extremes {
     low: (f64, f64),
     high: (f64, f64),
@@ -31,7 +32,7 @@ impl Extremes {
 }
 
 /// What a contact did in a bucket.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 struct Work {
     impulse: [f64; 2],
     /// Steps with each state; the rest it was open.
@@ -57,7 +58,7 @@ impl Work {
 }
 
 /// Steps in a row.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Bucket {
     /// End of the step before it.
     begin: f64,
@@ -69,7 +70,7 @@ struct Bucket {
 }
 
 /// The curves of a run.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct Curves {
     capacity: usize,
     /// Steps of a full bucket.

@@ -108,6 +108,7 @@ pub(crate) fn json(recorder: &PageRecorder, summary: &Summary) -> String {
         curves: curves(recorder),
         forces: forces(recorder),
         impacts: recorder
+            .kept
             .impacts
             .iter()
             .map(|i| ImpactData {
@@ -118,7 +119,7 @@ pub(crate) fn json(recorder: &PageRecorder, summary: &Summary) -> String {
                 impulse: i.impulse.map(digits),
             })
             .collect(),
-        impact_count: recorder.impact_count,
+        impact_count: recorder.kept.impact_count,
     };
     // Strings, vectors and numbers (null where not finite) always serialise.
     serde_json::to_string(&data).unwrap_or_default().replace('<', "\\u003c")
@@ -134,7 +135,7 @@ fn time(t: f64) -> f64 {
 
 fn frames(recorder: &PageRecorder) -> FrameData {
     let scenery = &recorder.scenery;
-    let column = |k: usize| recorder.frames.rows().map(|(_, row)| digits(row[k])).collect();
+    let column = |k: usize| recorder.kept.frames.rows().map(|(_, row)| digits(row[k])).collect();
     let blocks = (0..scenery.blocks.len()).map(|k| BLOCK_FRAME * k);
     let mut start = BLOCK_FRAME * scenery.blocks.len();
     let mut moved = start + scenery.beams.iter().map(|beam| beam.points).sum::<usize>();
@@ -148,7 +149,7 @@ fn frames(recorder: &PageRecorder) -> FrameData {
             moved += range.len();
             [column(first), column(first + 1)]
         });
-        BeamFrames { unit, w: recorder.frames.rows().flat_map(|(_, row)| w(row)).collect(), supports }
+        BeamFrames { unit, w: recorder.kept.frames.rows().flat_map(|(_, row)| w(row)).collect(), supports }
     });
     let beams: Vec<BeamFrames> = beams.collect();
     let ground = recorder.layout.ground.as_ref().map(|_| GroundFrames {
@@ -157,7 +158,7 @@ fn frames(recorder: &PageRecorder) -> FrameData {
         slope: column(moved + 2),
     });
     FrameData {
-        t: recorder.frames.rows().map(|(t, _)| time(t)).collect(),
+        t: recorder.kept.frames.rows().map(|(t, _)| time(t)).collect(),
         blocks: blocks.map(|k| BlockFrames { x: column(k), y: column(k + 1), phi: column(k + 2) }).collect(),
         beams,
         ground,
@@ -166,10 +167,10 @@ fn frames(recorder: &PageRecorder) -> FrameData {
 
 fn curves(recorder: &PageRecorder) -> CurveData {
     let (blocks, beams) = (recorder.scenery.blocks.len(), recorder.scenery.beams.len());
-    let column = |k: usize| recorder.curves.curve(k).into_iter().map(digits).collect::<Vec<_>>();
+    let column = |k: usize| recorder.kept.curves.curve(k).into_iter().map(digits).collect::<Vec<_>>();
     let beam = BLOCK_COLUMNS * blocks;
     CurveData {
-        t: recorder.curves.times().into_iter().map(time).collect(),
+        t: recorder.kept.curves.times().into_iter().map(time).collect(),
         blocks: (0..blocks)
             .map(|k| BlockCurves { phi: column(BLOCK_COLUMNS * k), omega: column(BLOCK_COLUMNS * k + 1) })
             .collect(),
@@ -184,7 +185,7 @@ fn curves(recorder: &PageRecorder) -> CurveData {
 
 fn forces(recorder: &PageRecorder) -> ForceData {
     let points = (0..CORNERS * recorder.scenery.contacts.len()).filter_map(|k| {
-        let forces = recorder.curves.forces(k)?;
+        let forces = recorder.kept.curves.forces(k)?;
         let state = forces.state.iter().map(|state| match state {
             ContactState::Open => 'o',
             ContactState::Stick => 'k',
@@ -198,5 +199,5 @@ fn forces(recorder: &PageRecorder) -> ForceData {
             state: state.collect(),
         })
     });
-    ForceData { borders: recorder.curves.borders().into_iter().map(time).collect(), points: points.collect() }
+    ForceData { borders: recorder.kept.curves.borders().into_iter().map(time).collect(), points: points.collect() }
 }

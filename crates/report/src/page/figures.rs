@@ -10,7 +10,7 @@ use teeter_integrator::ContactState;
 /// `w_mid.svg` with beams, `contact_forces.svg` where contacts carried something, `energy.svg` always.
 #[must_use]
 pub fn figures(recorder: &PageRecorder) -> Vec<(String, String)> {
-    let plots = Plots { recorder, t: recorder.curves.times() };
+    let plots = Plots { recorder, t: recorder.kept.curves.times() };
     let scenery = &recorder.scenery;
     let mut figures = Vec::new();
     let mut add = |name: &str, figure: Figure| figures.push((name.to_owned(), figure.to_svg()));
@@ -50,12 +50,12 @@ impl<'a> Plots<'a> {
             x_label: "Time t (s)".to_owned(),
             x_range: (start, if end > start { end } else { start + 1.0 }),
             panels,
-            marks: self.recorder.impacts.iter().map(|impact| impact.t).collect(),
+            marks: self.recorder.kept.impacts.iter().map(|impact| impact.t).collect(),
         }
     }
 
     fn line(&self, label: &str, number: usize, column: usize, factor: f64) -> Line {
-        let y = self.recorder.curves.curve(column).into_iter().map(|y| factor * y).collect();
+        let y = self.recorder.kept.curves.curve(column).into_iter().map(|y| factor * y).collect();
         Line { label: label.to_owned(), number, x: self.t.clone(), y }
     }
 
@@ -119,9 +119,9 @@ impl<'a> Plots<'a> {
 
     fn contact_forces(&self) -> Option<Figure> {
         let scenery = &self.recorder.scenery;
-        let borders = self.recorder.curves.borders();
+        let borders = self.recorder.kept.curves.borders();
         let points = 0..CORNERS * scenery.contacts.len();
-        let curves: Vec<_> = points.map(|point| self.recorder.curves.forces(point)).collect();
+        let curves: Vec<_> = points.map(|point| self.recorder.kept.curves.forces(point)).collect();
         let strongest = curves.iter().flatten().flat_map(|forces| &forces.normal).fold(0.0, |most: f64, f| f.max(most));
         let least = 1e-6 * strongest;
         let mut panels = Vec::new();
@@ -142,7 +142,7 @@ impl<'a> Plots<'a> {
                 continue;
             }
             let mine = |impact: &&ImpactMark| impact.contact == pair;
-            let marks: Vec<f64> = self.recorder.impacts.iter().filter(mine).map(|impact| impact.t).collect();
+            let marks: Vec<f64> = self.recorder.kept.impacts.iter().filter(mine).map(|impact| impact.t).collect();
             for (what, lines) in [("Normal", normal), ("Tangential", tangential)] {
                 let (range, cut) = cut(&lines, least);
                 let name = (scenery.contacts.len() > 1).then(|| contact.name.clone());

@@ -1,7 +1,9 @@
 //! The pictures of the animation: a bounded number of states, evenly spread over a run of any length.
 
+use serde::{Deserialize, Serialize};
+
 /// States at every `stride`-th step; when full, every second goes and the stride doubles.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct Frames {
     capacity: usize,
     stride: u64,

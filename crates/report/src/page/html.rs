@@ -164,7 +164,7 @@ fn warnings(summary: &Summary) -> String {
         let _ = writeln!(
             html,
             "<li data-warning=\"{}\"><span>{}</span>{count}</li>",
-            escaped(warning.code),
+            escaped(&warning.code),
             escaped(&warning.text)
         );
     }

@@ -4,13 +4,14 @@ use super::curves::Curves;
 use super::frames::Frames;
 use super::scenery::{CORNERS, Scenery};
 use crate::impact_threshold;
+use serde::{Deserialize, Serialize};
 use std::ops::{ControlFlow, Range};
 use teeter_integrator::{Model, Observer, ObserverError, State, StepReport};
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Layout;
 
 /// An impact as the page marks it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ImpactMark {
     /// End of the step, s.
     pub(crate) t: f64,
@@ -60,6 +61,16 @@ const NUMBERS: usize = 180_000;
 /// Impacts that the page marks; `impacts.csv` has all.
 const MARKED_IMPACTS: usize = 1000;
 
+/// What a page recorder knows of the run so far.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct Kept {
+    pub(crate) frames: Frames,
+    pub(crate) curves: Curves,
+    pub(crate) impacts: Vec<ImpactMark>,
+    pub(crate) impact_count: u64,
+    omega_before: Vec<f64>,
+}
+
 /// Watches a run for [`render`](super::render) and [`figures`](super::figures); its memory doesn't grow with the run.
 ///
 /// ```
@@ -82,16 +93,12 @@ const MARKED_IMPACTS: usize = 1000;
 #[derive(Debug, Clone)]
 pub struct PageRecorder {
     pub(crate) scenery: Scenery,
-    pub(crate) frames: Frames,
-    pub(crate) curves: Curves,
-    pub(crate) impacts: Vec<ImpactMark>,
-    pub(crate) impact_count: u64,
+    pub(crate) kept: Kept,
     pub(crate) layout: Layout,
     threshold: f64,
     bucket_capacity: usize,
     /// Values of the curves at the end of the step.
     row: Vec<f64>,
-    omega_before: Vec<f64>,
 }
 
 impl PageRecorder {
@@ -108,21 +115,31 @@ impl PageRecorder {
         let capacity = |most: usize, width: usize| even((NUMBERS / width).clamp(10, most));
         let bucket_capacity = capacity(BUCKETS, 2 * columns + 2 * points + 3);
         Self {
-            frames: Frames::new(capacity(FRAMES, frame + 1), frame),
-            curves: Curves::new(bucket_capacity, 0.0, vec![0.0; columns], points),
-            impacts: Vec::new(),
-            impact_count: 0,
+            kept: Kept {
+                frames: Frames::new(capacity(FRAMES, frame + 1), frame),
+                curves: Curves::new(bucket_capacity, 0.0, vec![0.0; columns], points),
+                impacts: Vec::new(),
+                impact_count: 0,
+                omega_before: Vec::new(),
+            },
             layout: layout.clone(),
             threshold: impact_threshold(scene.gravity, scene.time.step),
             bucket_capacity,
             row: Vec::with_capacity(columns),
-            omega_before: Vec::new(),
             scenery,
         }
     }
 
+    pub(crate) fn keep(&self) -> &Kept {
+        &self.kept
+    }
+
+    pub(crate) fn restore(&mut self, kept: Kept) {
+        self.kept = kept;
+    }
+
     fn take_frame(&mut self, state: &State) {
-        self.frames.enter(state.t, |row| fill_frame(&self.layout, &self.scenery, state, row));
+        self.kept.frames.enter(state.t, |row| fill_frame(&self.layout, &self.scenery, state, row));
     }
 
     fn take_row(&mut self, state: &State) {
@@ -155,15 +172,15 @@ impl PageRecorder {
         for contact in step.contacts {
             let (pair, point) = (contact.id.pair() as usize, contact.id.point() as usize);
             let impulse = [contact.p[0], contact.p[1]];
-            self.curves.add(CORNERS * pair + point, impulse, contact.state());
+            self.kept.curves.add(CORNERS * pair + point, impulse, contact.state());
             if contact.persisting || contact.u_before[0] >= -self.threshold {
                 continue;
             }
-            self.impact_count += 1;
+            self.kept.impact_count += 1;
             let Some(drawn) = self.scenery.contacts.get(pair) else { continue };
-            if self.impacts.len() < MARKED_IMPACTS {
-                let omega = [self.omega_before[drawn.block], self.row[BLOCK_COLUMNS * drawn.block + 1]];
-                self.impacts.push(ImpactMark {
+            if self.kept.impacts.len() < MARKED_IMPACTS {
+                let omega = [self.kept.omega_before[drawn.block], self.row[BLOCK_COLUMNS * drawn.block + 1]];
+                self.kept.impacts.push(ImpactMark {
                     t: step.t_end,
                     contact: pair,
                     block: drawn.block,
@@ -177,8 +194,8 @@ impl PageRecorder {
 
     fn keep_omega(&mut self) {
         let blocks = self.layout.blocks.len();
-        self.omega_before.clear();
-        self.omega_before.extend((0..blocks).map(|k| self.row[BLOCK_COLUMNS * k + 1]));
+        self.kept.omega_before.clear();
+        self.kept.omega_before.extend((0..blocks).map(|k| self.row[BLOCK_COLUMNS * k + 1]));
     }
 }
 
@@ -211,7 +228,7 @@ impl Observer<2> for PageRecorder {
         self.take_frame(state);
         self.take_row(state);
         self.keep_omega();
-        self.curves =
+        self.kept.curves =
             Curves::new(self.bucket_capacity, state.t, self.row.clone(), CORNERS * self.scenery.contacts.len());
         Ok(())
     }
@@ -224,14 +241,14 @@ impl Observer<2> for PageRecorder {
     ) -> Result<ControlFlow<()>, ObserverError> {
         self.take_frame(state);
         self.take_row(state);
-        self.curves.enter(state.t, &self.row);
+        self.kept.curves.enter(state.t, &self.row);
         self.take_contacts(step);
         self.keep_omega();
         Ok(ControlFlow::Continue(()))
     }
 
     fn finish(&mut self, _model: &Model<2>, state: &State) -> Result<(), ObserverError> {
-        self.frames.end(state.t, |row| fill_frame(&self.layout, &self.scenery, state, row));
+        self.kept.frames.end(state.t, |row| fill_frame(&self.layout, &self.scenery, state, row));
         Ok(())
     }
 }

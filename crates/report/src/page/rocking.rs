@@ -57,7 +57,7 @@ pub fn half_cycles(recorder: &PageRecorder, summary: &Summary) -> Vec<HalfCycle>
             let omega = before.and_then(|peak| {
                 let landing = if peak.phi > 0.0 { RIGHT } else { LEFT };
                 let distance = |t: f64| (t - crossing.t).abs();
-                let impacts = recorder.impacts.iter().filter(|i| i.block == number && i.point == landing);
+                let impacts = recorder.kept.impacts.iter().filter(|i| i.block == number && i.point == landing);
                 let nearest = impacts.min_by(|a, b| distance(a.t).total_cmp(&distance(b.t)))?;
                 (distance(nearest.t) <= NEAR * (crossing.t - peak.t)).then_some(nearest.omega)
             });

@@ -1,5 +1,4 @@
 //! The page and the figures of real runs: what they hold, what they must not hold, how large they are.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use serde_json::Value;
 use std::collections::BTreeMap;
