@@ -118,7 +118,7 @@ struct Job {
 }
 
 enum Begun {
-    Ready(Job),
+    Ready(Box<Job>),
     /// There was nothing to do.
     Ended(Exit),
 }
@@ -166,7 +166,8 @@ fn begin(
         }
         _ => None,
     };
-    Ok(Begun::Ready(Job { scene_as_run: scene_as_run(), identity, results, exporter, checkpoint }))
+    let job = Job { scene_as_run: scene_as_run(), identity, results, exporter, checkpoint };
+    Ok(Begun::Ready(Box::new(job)))
 }
 
 fn exporter(
@@ -301,7 +302,7 @@ fn write_pages(
     summary: &Summary,
     scene_as_run: &str,
 ) -> Result<(), Box<dyn Error>> {
-    results.write("report.html", &render(page, summary, scene_as_run))?;
+    results.write("report.html", render(page, summary, scene_as_run))?;
     for (name, svg) in figures(page) {
         results.write(&format!("figures/{name}"), &svg)?;
     }

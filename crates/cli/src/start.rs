@@ -2,7 +2,7 @@
 
 use crate::run::Options;
 use std::error::Error;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use teeter_integrator::State;
 use teeter_report::{CHECKPOINT, Checkpoint, ExportWhen, Former, Found, Identity, Moment, Results, program_hash};
 use teeter_scenario::dimension::Dimension;
@@ -113,7 +113,7 @@ pub(crate) fn identity(
 
 /// The state that `--from` asks for.
 pub(crate) fn state_from(
-    path: &PathBuf,
+    path: &Path,
     scene: &Scene,
     simulation: &Simulation,
 ) -> Result<State, teeter_report::CheckpointError> {
