@@ -71,7 +71,7 @@ impl Observer<2> for Sampler {
         } else {
             self.without = self.without.saturating_add(1);
         }
-        if state.step % self.every == 0 {
+        if state.step.is_multiple_of(self.every) {
             self.samples.push(state.q[..3 * self.blocks].to_vec());
         }
         Ok(ControlFlow::Continue(()))
