@@ -254,6 +254,20 @@ impl<const D: usize> ContactSet<D> {
         }
     }
 
+    /// Whether one of the bodies of contact `i` moves as prescribed, in full or in part.
+    pub(crate) fn feels_drive(&self, model: &Model<D>, i: usize) -> bool {
+        self.spans[i].iter().filter(|side| side.len > 0).any(|side| {
+            let driven = model.parts()[side.part].system.driven();
+            !driven.is_empty() && self.columns[side.start..side.start + side.len].iter().any(|c| driven.contains(c))
+        })
+    }
+
+    /// U_t¹ of contact `i` had it no friction of its own, m/s; the others' impulses as they are.
+    pub(crate) fn without_own_friction(&self, i: usize) -> Vector<D> {
+        let own = &self.blocks[i * self.contacts.len() + i];
+        tangential(&(self.velocity_by_impulses(i) - own * tangential(&self.p[i])))
+    }
+
     /// Σ |J_i v| of contact `i`, m/s: what rounding of its velocity is measured by.
     pub(crate) fn speed(&self, model: &Model<D>, i: usize, v: &[f64]) -> f64 {
         let mut sum = 0.0;

@@ -17,8 +17,9 @@
 //! with the velocity that the surface has there, so its gap doesn't drift apart as that of the page's scheme does.
 //!
 //! **Work**: U_n¹ = −s_n where p_n > 0, so Ū_n p_n = ½(U_n⁰ − s_n) p_n ≤ 0, as s_n ≥ U_n⁰. Friction obeys (U_t¹ + s_t)·p_t ≤ 0; where
-//! that leaves a contact with Ū·p > 0 all the same, its shift becomes s_t = U_t⁰, s_n = max(s_n, U_n⁰), with which Ū·p ≤ 0, and
-//! the problem is solved once more. So no contact gives energy in any step.
+//! that leaves a contact with Ū·p > 0 all the same, as where a slide turns within the step, its shift becomes s_n = max(s_n, U_n⁰), and
+//! s_t = U_t⁰ or no friction at all, whichever ends nearer to rest; with both Ū·p ≤ 0. The problem is solved once more. So no contact
+//! gives energy in any step. (But for closed contacts with what moves as prescribed: there Ū is relative, and they are left as they are.)
 
 use crate::contacts::{Rule, tangential};
 use crate::laws::is_impact;
@@ -289,7 +290,10 @@ impl<const D: usize> MoreauJeanClosed<D> {
         find(&self.start, id).map_or(0.0, |candidate| candidate.gap)
     }
 
-    /// Gives contacts whose work is positive a shift with which it can't be; whether there are any.
+    /// Changes what holds for contacts whose work is positive, so that it can't be; whether there are any.
+    ///
+    /// The usual case is a slide that turns within the step: sticking at its end would take an impulse along the slide that
+    /// was. Then either no friction, or the velocity turned about, whichever ends nearer to rest; it sticks in the next step.
     fn guard(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>) -> bool {
         let mut found = false;
         for i in 0..self.guarded.len() {
@@ -297,6 +301,10 @@ impl<const D: usize> MoreauJeanClosed<D> {
             let (u_before, p) = (contacts.contacts()[i].u_before, contacts.p[i]);
             // A spring's law sees to it itself.
             if self.guarded[i] || p[0] <= 0.0 || matches!(contacts.rules[i], Rule::Spring(_)) {
+                continue;
+            }
+            // What moves as prescribed gives energy anyway, and a slide that ends there is better stopped where it ends.
+            if contacts.contacts()[i].persisting && contacts.feels_drive(model, i) {
                 continue;
             }
             let mean = (contacts.velocity_by_impulses(i) + u_before) * 0.5;
@@ -309,7 +317,11 @@ impl<const D: usize> MoreauJeanClosed<D> {
             if gain <= WORKLESS * p.norm() * speed {
                 continue;
             }
+            let without = contacts.without_own_friction(i);
             let mut shift = tangential(&u_before);
+            if without.norm() < shift.norm() {
+                contacts.mu[i] = 0.0;
+            }
             let e = model.law(contacts.contacts()[i].id.pair()).restitution;
             let back = match contacts.rules[i] {
                 Rule::Poisson { .. } if is_impact(e, &u_before, &contacts.u_free[i]) => e * u_before[0],

@@ -137,3 +137,27 @@ fn a_block_on_an_incline_doesn_t_creep() {
         }
     }
 }
+
+/// Thrown up an incline, a block stops after v²/(2g(sin β + μ cos β)). In the step in which it stops, sticking would take an
+/// impulse along the slide that was: it sticks one step later, and no step gets energy from contact.
+#[test]
+fn a_slide_that_turns_within_a_step_ends_where_it_must() {
+    let (sin, cos) = 10.0_f64.to_radians().sin_cos();
+    let gravity = Vector2::new(-9.81 * sin, -9.81 * cos);
+    let law = PairLaw::new(0.5, 0.0);
+    let model = model(&FLAT_BLOCK, gravity, law, Kinematics::Deformed, Box::new(Ground::flat(0.0)));
+    let way = 1.0 / (2.0 * 9.81 * (sin + 0.5 * cos));
+    let mut guarded = 0;
+    for h in [1e-3, 0.93e-3, 0.87e-3, 1e-4] {
+        let start = [0.0, 0.5 * FLAT_BLOCK.height, 0.0];
+        let (state, seen) = take(&model, &start, &[1.0, 0.0, 0.0], h, (1.0 / h) as u64, true);
+        let (off, speed) = ((state.q[0] - way).abs(), state.v.iter().fold(0.0_f64, |most, v| most.max(v.abs())));
+        // Off by the velocity that is left of the last step of the slide, times the step.
+        assert!(off <= 9.81 * h * h, "{h}: {off:e}");
+        assert!(speed <= 1e-15, "{h}: {speed:e}");
+        assert_eq!(state.ledger.positive_contact_work.steps, 0, "{h}");
+        assert!(seen.largest_work <= 1e-11, "{h}");
+        guarded += u32::from(off > 1e-12);
+    }
+    assert!(guarded > 0, "some stop falls within a step");
+}
