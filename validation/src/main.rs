@@ -43,7 +43,13 @@ fn validate(options: &Options, out: &mut dyn Write) -> Result<bool> {
     let mut all = Vec::new();
     let mut broken = 0;
     report::write_head(out)?;
-    for case in cases::all() {
+    let wanted = |name: &str| options.only.as_deref().is_none_or(|only| only == name);
+    let cases: Vec<_> = cases::all().into_iter().filter(|case| wanted(case.name())).collect();
+    if cases.is_empty() {
+        let names: Vec<_> = cases::all().iter().map(|case| case.name()).collect();
+        return Err(format!("no such case; there are {}", names.join(", ")).into());
+    }
+    for case in cases {
         let findings = case.run(options.depth).unwrap_or_else(|error| {
             broken += 1;
             Findings::broken(error.as_ref())
@@ -57,8 +63,8 @@ fn validate(options: &Options, out: &mut dyn Write) -> Result<bool> {
     if let Some(folder) = &options.out {
         report::write_page(folder, options.depth, &all)?;
         writeln!(out, "written to {}", folder.display())?;
-    } else if options.depth == Depth::Short {
-        writeln!(out, "a short run writes no files unless --out says where")?;
+    } else {
+        writeln!(out, "a short run, or one of a single case, writes no files unless --out says where")?;
     }
     Ok(missed + broken == 0)
 }

@@ -1,14 +1,15 @@
 //! The bodies of the cases, and runs of them.
 
-use crate::case::Result;
+use crate::case::{Check, Result};
 use nalgebra::Vector2;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use teeter_beam::{Beam, BeamSpec, Damping, Section, Support};
 use teeter_detect::{Kinematics, PointDetector, PointPair};
 use teeter_integrator::{
-    BeamBody, BeamSurface, Block, Blocks, Ended, Model, ModelBuilder, MoreauJean, MoreauJeanSettings, Observer,
-    ObserverError, PairLaw, Plan, SolverSettings, State, StepReport, Subsystem, Workspace, run,
+    BeamBody, BeamSurface, Block, Blocks, Ended, Model, ModelBuilder, MoreauJean, MoreauJeanClosed,
+    MoreauJeanClosedSettings, MoreauJeanSettings, Observer, ObserverError, PairLaw, Plan, Scheme, SolverSettings, State,
+    StepReport, Subsystem, Workspace, run,
 };
 use teeter_rigid::{MassProperties, Rectangle};
 
@@ -89,33 +90,136 @@ pub(crate) struct Start {
     pub(crate) theta: f64,
 }
 
-struct EachStep<F>(F);
+/// Which scheme takes the steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Stepping {
+    MoreauJean,
+    MoreauJeanClosed,
+}
 
-impl<F: FnMut(&State) -> ControlFlow<()>> Observer<2> for EachStep<F> {
-    fn observe(
-        &mut self,
-        _: &Model<2>,
-        _: &StepReport<'_, 2>,
-        state: &State,
-    ) -> std::result::Result<ControlFlow<()>, ObserverError> {
-        Ok((self.0)(state))
+impl Stepping {
+    /// Both, the one of `docs/theory.md` first.
+    pub(crate) const ALL: [Self; 2] = [Self::MoreauJean, Self::MoreauJeanClosed];
+
+    /// The name by which users choose it.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::MoreauJean => MoreauJean::NAME,
+            Self::MoreauJeanClosed => MoreauJeanClosed::<2>::NAME,
+        }
+    }
+
+    fn scheme(self, theta: f64) -> Result<Box<dyn Scheme<2>>> {
+        Ok(match self {
+            Self::MoreauJean => {
+                Box::new(MoreauJean::new(MoreauJeanSettings { theta, ..MoreauJeanSettings::default() })?)
+            }
+            Self::MoreauJeanClosed if theta == 0.5 => {
+                Box::new(MoreauJeanClosed::new(MoreauJeanClosedSettings::default())?)
+            }
+            Self::MoreauJeanClosed => return Err(format!("{} knows no θ but 1/2", self.name()).into()),
+        })
     }
 }
 
-/// Takes up to `steps` steps of Moreau–Jean, shows the state after each, and returns the last. An unsolved contact
-/// problem or a failed step is an error: no case is meant to meet one.
+/// Runs of one scheme, and what their energy accounts have in common.
+#[derive(Clone, Debug)]
+pub(crate) struct Runner {
+    stepping: Stepping,
+    /// Largest residual of a step, relative to the energy scale of its run.
+    residual: f64,
+    /// Largest gain of a step, Δ(T+V) without the work of loads and drives, relative to the same.
+    gain: f64,
+    steps: u64,
+}
+
+/// Largest residual of a step's energy account, relative to the energy scale.
+const RESIDUAL: f64 = 1e-12;
+
+/// What a step may gain by rounding, relative to the energy scale: the energies of start and end differ by some 1e-16 of it.
+const GAIN: f64 = 1e-13;
+
+impl Runner {
+    /// No runs yet.
+    pub(crate) fn new(stepping: Stepping) -> Self {
+        Self { stepping, residual: 0.0, gain: 0.0, steps: 0 }
+    }
+
+    /// The scheme's name.
+    pub(crate) fn name(&self) -> &'static str {
+        self.stepping.name()
+    }
+
+    /// Steps of all runs.
+    pub(crate) fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// Takes up to `steps` steps, shows each with the state after it, and returns the last state. An unsolved contact problem
+    /// or a failed step is an error: no case is meant to meet one.
+    pub(crate) fn run(
+        &mut self,
+        model: &Model<2>,
+        start: &Start,
+        steps: u64,
+        each: impl FnMut(&StepReport<'_, 2>, &State) -> ControlFlow<()>,
+    ) -> Result<State> {
+        let mut state = State::new(model, &start.q, &start.v, start.dt)?;
+        let mut work = Workspace::new(model, Box::new(teeter_solvers::Auto::new()), SolverSettings::default());
+        let mut scheme = self.stepping.scheme(start.theta)?;
+        let plan = Plan { steps, require_convergence: true };
+        let mut observer = EachStep { each, gain: 0.0 };
+        let ended = run(model, scheme.as_mut(), &mut state, &mut work, &plan, &mut [&mut observer])?;
+        // Without an energy scale nothing moves.
+        let scale = state.ledger.scale.max(f64::MIN_POSITIVE);
+        self.residual = self.residual.max(state.ledger.relative_residual());
+        self.gain = self.gain.max(observer.gain / scale);
+        self.steps += state.step;
+        match ended {
+            Ended::Complete | Ended::Interrupted => Ok(state),
+            other => Err(format!("{}: the run ended at t = {} s: {other:?}", self.name(), state.t).into()),
+        }
+    }
+
+    /// The rows that every run of a scheme owes: its energy account closes, and, where the scheme promises it, no step gains.
+    pub(crate) fn account(&self) -> Vec<Check> {
+        let name = self.name();
+        let residual = format!("{name}: largest residual of a step's energy, relative");
+        let gain = format!("{name}: largest gain of energy in a step, relative");
+        vec![
+            Check::worst(residual, self.residual, RESIDUAL),
+            match self.stepping {
+                Stepping::MoreauJean => Check::reported(gain, self.gain),
+                Stepping::MoreauJeanClosed => Check::worst(gain, self.gain, GAIN),
+            },
+        ]
+    }
+}
+
+struct EachStep<F> {
+    each: F,
+    gain: f64,
+}
+
+impl<F: FnMut(&StepReport<'_, 2>, &State) -> ControlFlow<()>> Observer<2> for EachStep<F> {
+    fn observe(
+        &mut self,
+        _: &Model<2>,
+        step: &StepReport<'_, 2>,
+        state: &State,
+    ) -> std::result::Result<ControlFlow<()>, ObserverError> {
+        let e = &step.energy;
+        self.gain = self.gain.max(e.contact + e.friction + e.viscous + e.numerical + e.residual);
+        Ok((self.each)(step, state))
+    }
+}
+
+/// [`Runner::run`] by Moreau–Jean where its account is not asked for.
 pub(crate) fn simulate(
     model: &Model<2>,
     start: &Start,
     steps: u64,
-    each: impl FnMut(&State) -> ControlFlow<()>,
+    mut each: impl FnMut(&State) -> ControlFlow<()>,
 ) -> Result<State> {
-    let mut state = State::new(model, &start.q, &start.v, start.dt)?;
-    let mut work = Workspace::new(model, Box::new(teeter_solvers::Auto::new()), SolverSettings::default());
-    let mut scheme = MoreauJean::new(MoreauJeanSettings { theta: start.theta, ..MoreauJeanSettings::default() })?;
-    let plan = Plan { steps, require_convergence: true };
-    match run(model, &mut scheme, &mut state, &mut work, &plan, &mut [&mut EachStep(each)])? {
-        Ended::Complete | Ended::Interrupted => Ok(state),
-        other => Err(format!("the run ended at t = {} s: {other:?}", state.t).into()),
-    }
+    Runner::new(Stepping::MoreauJean).run(model, start, steps, |_, state| each(state))
 }

@@ -2,7 +2,7 @@
 
 use crate::case::{Case, Check, Depth, Findings, Result};
 use crate::exact::beam::{SUPPORTS, wave_numbers};
-use crate::figure::{Figure, Series};
+use crate::figure::{Axes, Figure, Series};
 use crate::fit::power_law;
 use crate::scene::paper_beam;
 use teeter_beam::{Beam, BeamSpec, Damping, Section};
@@ -69,6 +69,7 @@ impl Case for BeamFrequencies {
             file: "beam_frequencies.svg",
             title: "Frequencies of the finite elements",
             x: "element length / span",
+            axes: Axes::Logarithmic,
             y: "relative error of the frequency",
             caption: "Relative error of the first three frequencies against the element length, with fitted lines.",
             series,

@@ -2,7 +2,7 @@
 
 use crate::case::{Case, Check, Depth, Findings, Result};
 use crate::exact::housner::{Excursion, HousnerBlock};
-use crate::figure::{Figure, Series};
+use crate::figure::{Axes, Figure, Series};
 use crate::fit::power_law;
 use crate::scene::{GRAVITY, PAPER_BLOCK, Start, block_over, simulate};
 use nalgebra::Vector2;
@@ -73,6 +73,7 @@ impl Case for HousnerOrder {
             file: "housner_order.svg",
             title: "Housner's block: error against step size",
             x: "step size h / s",
+            axes: Axes::Logarithmic,
             y: "error: time / s, peak relative",
             caption: "Worst error of the first six impact times and of the first six peaks, with their fitted lines.",
             series: vec![

@@ -4,6 +4,7 @@ mod beam_energy;
 mod beam_frequencies;
 mod beam_statics;
 mod bounce;
+mod bouncing;
 mod convex_law;
 mod energy_identity;
 mod housner_order;
@@ -21,6 +22,7 @@ pub(crate) fn all() -> Vec<Box<dyn Case>> {
         Box::new(sliding::Sliding),
         Box::new(incline::Incline),
         Box::new(bounce::Bounce),
+        Box::new(bouncing::Bouncing),
         Box::new(convex_law::ConvexLaw),
         Box::new(housner_order::HousnerOrder),
         Box::new(energy_identity::EnergyIdentity),

@@ -4,7 +4,6 @@ pub(crate) mod beam;
 pub(crate) mod housner;
 
 // References whose cases come with the laws and drives that they judge.
-#[cfg_attr(not(test), expect(dead_code, reason = "its case comes with the new laws"))]
 pub(crate) mod bouncing_point;
 #[cfg_attr(not(test), expect(dead_code, reason = "its case comes with the new laws"))]
 pub(crate) mod compliant_impact;

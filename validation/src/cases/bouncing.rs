@@ -1,0 +1,195 @@
+//! A block that bounces to rest, and one that bounces for ever: impact times, the Zeno limit, a thousand apexes.
+
+use crate::case::{Case, Check, Depth, Findings, Result};
+use crate::exact::bouncing_point::BouncingPoint;
+use crate::figure::{Axes, Figure, Series};
+use crate::fit::power_law;
+use crate::scene::{FLAT_BLOCK, GRAVITY, Runner, Start, Stepping, block_over};
+use nalgebra::Vector2;
+use std::ops::ControlFlow;
+use teeter_integrator::{Ground, Model, PairLaw};
+
+pub(crate) struct Bouncing;
+
+/// e = 0.8, dropped from 0.1 m: lies after 1.285 s.
+const POINT: BouncingPoint = BouncingPoint { height: 0.1, gravity: GRAVITY, restitution: 0.8 };
+const IMPACTS: i32 = 10;
+
+/// Step sizes a decade, as many as the scatter of the errors needs.
+const PER_DECADE: u32 = 12;
+
+/// The drop whose bounces never end, m: 1000 of them in 90 s.
+const LOW: f64 = 0.01;
+const BOUNCES: usize = 1000;
+
+impl Case for Bouncing {
+    fn name(&self) -> &'static str {
+        "bouncing"
+    }
+
+    fn about(&self) -> &'static str {
+        "The block of `bounce` with both schemes. **e = 0.8**, dropped from 0.1 m: ten impact times (the middles of their steps) \
+         and the Zeno time t₁(1 + e)/(1 − e). Let the step of an impact start σhv above the floor, v the speed there: \
+         `moreau-jean` looks half a step ahead, so σ lies in ±½, `moreau-jean-closed` closes what the whole step would sink, so σ \
+         lies in 0 … 1. To leading order in h the bounce leaves the floor late by h(1 + e)(1 − 2σ)/(2e), too fast by \
+         gh(1 − e)(2σ(1 + e) − 1)/(2e), and a speed's error makes the flight longer by 2/g of it: the worst σ of every impact make the \
+         bounds (a tenth on top for the next order). Then it rests: in `moreau-jean` a resting block with e > 0 may hop, by |v| ≤ \
+         gh; in `moreau-jean-closed` an approach slower than what gravity makes in a step is no impact, so that it lies still. \
+         **e = 1**, from 0.01 m: an impact turns the velocity round in place, so that the apex after 1000 bounces (y + v²/(2g) at the \
+         step next to it) is the release to rounding, with both schemes. What drifts is time, by (1 − 2σ)h a bounce: on average by h \
+         with `moreau-jean`, by nothing with `moreau-jean-closed`; its bound is 1000 times the worst."
+    }
+
+    fn run(&self, depth: Depth) -> Result<Findings> {
+        let mut findings = Findings::default();
+        let mut series = Vec::new();
+        let decades = if depth == Depth::Full { 2 } else { 1 };
+        for stepping in Stepping::ALL {
+            let mut runner = Runner::new(stepping);
+            let points = times(&mut runner, decades, &mut findings)?;
+            let fit = power_law(&points);
+            let order = format!("{}, e = 0.8: order of the worst of ten impact times", runner.name());
+            findings.checks.push(match depth {
+                Depth::Full => Check::between(order, 1.0, fit.order, 0.9, 1.1),
+                Depth::Short => Check::reported(order + ", one decade only", fit.order),
+            });
+            let ends = [points[0].0, points[points.len() - 1].0];
+            series.push(Series::marks(runner.name(), points));
+            series.push(Series::line(format!("order {:.3}", fit.order), ends.map(|dt| (dt, fit.at(dt))).to_vec()));
+            for dt in [1e-3, 1e-4] {
+                settle(&mut runner, dt, &mut findings)?;
+            }
+            for dt in if depth == Depth::Full { &[1e-3, 1e-4, 1e-5][..] } else { &[1e-3, 1e-4][..] } {
+                thousand(&mut runner, *dt, &mut findings)?;
+            }
+            findings.checks.extend(runner.account());
+        }
+        findings.figures.push(Figure {
+            file: "bouncing.svg",
+            title: "Bouncing block, e = 0.8: error against step size",
+            x: "step size h / s",
+            y: "error of the impact times / s",
+            axes: Axes::Logarithmic,
+            caption: "Worst error of the first ten impact times, with fitted lines.",
+            series,
+        });
+        Ok(findings)
+    }
+}
+
+fn dropped(restitution: f64, height: f64, dt: f64) -> Result<(Model<2>, Start)> {
+    let law = PairLaw::new(0.3, restitution);
+    let model = block_over(&FLAT_BLOCK, Vector2::new(0.0, -GRAVITY), law, Box::new(Ground::flat(0.0)))?;
+    let q = vec![0.0, 0.5 * FLAT_BLOCK.height + height, 0.0];
+    Ok((model, Start { q, v: vec![0.0; 3], dt, theta: 0.5 }))
+}
+
+/// Errors of impact times over step sizes; judges those at 1e-3 and 1e-4 s.
+fn times(runner: &mut Runner, decades: u32, findings: &mut Findings) -> Result<Vec<(f64, f64)>> {
+    let mut points = Vec::new();
+    for k in 0..=decades * PER_DECADE {
+        let dt = 10_f64.powf(-3.0 - f64::from(k) / f64::from(PER_DECADE));
+        let (model, start) = dropped(POINT.restitution, POINT.height, dt)?;
+        let (mut found, mut before) = (Vec::new(), 0.0);
+        runner.run(&model, &start, (POINT.rest() / dt) as u64, |_, state| {
+            if before < 0.0 && state.v[1] > 0.0 {
+                found.push(state.t - 0.5 * dt);
+            }
+            before = state.v[1];
+            if found.len() == IMPACTS as usize { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        })?;
+        if found.len() < IMPACTS as usize {
+            return Err(format!("only {} impacts with a step of {dt:e} s", found.len()).into());
+        }
+        let error = found.iter().zip(1..).map(|(t, n)| (t - POINT.impact(n)).abs()).fold(0.0, f64::max);
+        if k % PER_DECADE == 0 && k / PER_DECADE <= 1 {
+            let quantity = format!("{}, e = 0.8, h = {dt:.0e} s: worst of ten impact times, s", runner.name());
+            findings.checks.push(Check::worst(quantity, error, 1.1 * worst_times(runner.name()) * dt));
+        }
+        points.push((dt, error));
+    }
+    Ok(points)
+}
+
+/// The bound of the error of ten impact times, in steps.
+fn worst_times(scheme: &str) -> f64 {
+    let e = POINT.restitution;
+    let sigmas = if scheme == Stepping::MoreauJean.name() { [-0.5, 0.5] } else { [0.0, 1.0] };
+    let most = |f: &dyn Fn(f64) -> f64| sigmas.iter().map(|s| f(*s).abs()).fold(0.0, f64::max);
+    let late = most(&|s| (1.0 + e) * (1.0 - 2.0 * s) / (2.0 * e));
+    let fast = most(&|s| (1.0 - e) * (2.0 * s * (1.0 + e) - 1.0) / (2.0 * e));
+    // The step's middle is ½ − σ steps after the impact; the speed's error is in units of gh.
+    let (mut time, mut speed) = (most(&|s| 0.5 - s), 0.0);
+    for _ in 1..IMPACTS {
+        speed = e * speed + fast;
+        time += late + 2.0 * speed;
+    }
+    time
+}
+
+/// When the bounces end, and what is left of them.
+fn settle(runner: &mut Runner, dt: f64, findings: &mut Findings) -> Result<()> {
+    let (model, start) = dropped(POINT.restitution, POINT.height, dt)?;
+    let (mut last, mut before, mut fastest) = (0.0, 0.0, 0.0_f64);
+    let until = POINT.rest() + 1.0;
+    let end = runner.run(&model, &start, (until / dt).round() as u64, |_, state| {
+        let v = state.v[1];
+        // What is above gravity's work in two steps is a bounce, not a hop at rest.
+        if before < 0.0 && v > 2.0 * GRAVITY * dt {
+            last = state.t;
+        }
+        before = v;
+        if state.t > until - 0.5 {
+            fastest = fastest.max(state.v.iter().fold(0.0, |most, v| most.max(v.abs())));
+        }
+        ControlFlow::Continue(())
+    })?;
+    let what = |what: &str| format!("{}, e = 0.8, h = {dt:e} s: {what}", runner.name());
+    findings.checks.push(Check::absolute(what("last bounce faster than 2gh, s"), POINT.rest(), last, settled_within(runner.name(), dt)));
+    let rest = what("largest velocity in the last half second, m/s");
+    findings.checks.push(match runner.name() == Stepping::MoreauJean.name() {
+        true => Check::worst(rest, fastest, GRAVITY * dt),
+        false => Check::worst(rest, fastest, 1e-15),
+    });
+    // It rests as deep as its last step went.
+    let depth = end.q[1] - 0.5 * FLAT_BLOCK.height;
+    findings.checks.push(Check::absolute(what("height at the end, m"), 0.0, depth, 2.0 * GRAVITY * dt * dt));
+    Ok(())
+}
+
+/// How far the last bounce may be from the Zeno time, s: what is left after it, 2v/(g(1 − e)) for v = 2gh, and the lateness of all bounces
+/// before.
+fn settled_within(scheme: &str, dt: f64) -> f64 {
+    let e = POINT.restitution;
+    let bounces = (2.0 * GRAVITY * dt / (2.0 * GRAVITY * POINT.height).sqrt()).ln() / e.ln();
+    dt * (4.0 / (1.0 - e) + bounces * worst_times(scheme) / f64::from(IMPACTS))
+}
+
+/// e = 1: height and time of the apex after a thousand bounces.
+fn thousand(runner: &mut Runner, dt: f64, findings: &mut Findings) -> Result<()> {
+    let (model, start) = dropped(1.0, LOW, dt)?;
+    let floor = 0.5 * FLAT_BLOCK.height;
+    let flight = 2.0 * (2.0 * LOW / GRAVITY).sqrt();
+    let (mut before, mut bounces, mut apex) = (0.0, 0, None);
+    runner.run(&model, &start, (1.1 * flight * BOUNCES as f64 / dt) as u64, |_, state| {
+        let v = state.v[1];
+        if before < 0.0 && v > 0.0 {
+            bounces += 1;
+        }
+        if bounces == BOUNCES && v <= 0.0 {
+            apex = Some((state.t + v / GRAVITY, state.q[1] - floor + 0.5 * v * v / GRAVITY));
+        }
+        before = v;
+        if apex.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    })?;
+    let (t, height) = apex.ok_or_else(|| format!("{bounces} bounces only with a step of {dt:e} s"))?;
+    let exact = flight * BOUNCES as f64;
+    let what = |what: &str| format!("{}, e = 1, h = {dt:e} s: {what}", runner.name());
+    let worst = if runner.name() == Stepping::MoreauJean.name() { 2.0 } else { 1.0 };
+    findings.checks.extend([
+        Check::relative(what("apex after 1000 bounces, m, relative"), LOW, height, 1e-6),
+        Check::absolute(what("its time, s"), exact, t, 1.01 * worst * BOUNCES as f64 * dt),
+        Check::reported(what("its lateness, steps a bounce"), (t - exact) / (dt * BOUNCES as f64)),
+    ]);
+    Ok(())
+}
