@@ -13,7 +13,7 @@ mod options;
 mod report;
 mod scene;
 
-use case::{Depth, Findings, Result};
+use case::{Findings, Result};
 use options::{Asked, Options};
 use std::io::Write;
 use std::process::ExitCode;

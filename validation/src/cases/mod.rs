@@ -5,10 +5,15 @@ mod beam_frequencies;
 mod beam_statics;
 mod bounce;
 mod bouncing;
+mod compliant;
 mod convex_law;
 mod energy_identity;
 mod housner_order;
+mod impact_laws;
 mod incline;
+mod moving_ground;
+mod overturning;
+mod resting;
 mod sliding;
 
 use crate::case::Case;
@@ -23,8 +28,13 @@ pub(crate) fn all() -> Vec<Box<dyn Case>> {
         Box::new(incline::Incline),
         Box::new(bounce::Bounce),
         Box::new(bouncing::Bouncing),
+        Box::new(compliant::Compliant),
+        Box::new(impact_laws::ImpactLaws),
         Box::new(convex_law::ConvexLaw),
         Box::new(housner_order::HousnerOrder),
         Box::new(energy_identity::EnergyIdentity),
+        Box::new(resting::Resting),
+        Box::new(moving_ground::MovingGround),
+        Box::new(overturning::Overturning),
     ]
 }

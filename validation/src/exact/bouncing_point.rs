@@ -30,11 +30,13 @@ impl BouncingPoint {
         self.speed() / self.gravity * (1.0 + e) / (1.0 - e)
     }
 
+    #[cfg_attr(not(test), expect(dead_code, reason = "the case looks at times"))]
     /// Height of the apex after impact `n`, m; the release for 0. The energy after n impacts is m g times this.
     pub(crate) fn apex(&self, n: i32) -> f64 {
         self.height * self.restitution.powi(2 * n)
     }
 
+    #[cfg_attr(not(test), expect(dead_code, reason = "the case looks at times"))]
     /// Height and velocity at time `t` ≥ 0; at an impact, after it.
     pub(crate) fn at(&self, t: f64) -> [f64; 2] {
         if t >= self.rest() {

@@ -90,31 +90,31 @@ impl PulsedBlock {
     }
 }
 
+/// For α = 0.25: ω_p/p; from which amplitude to which it overturns, and after how many impacts. Up to ω_p/p = 3 as in `docs/theory.md` §9; beyond,
+/// confirmed by a Runge–Kutta integration elsewhere that falls on the right side 2e-6 from each limit.
+pub(crate) const RANGES: [(f64, f64, f64, u32); 17] = [
+    (1.0, 1.1066, 1.1130, 3),
+    (1.0, 1.1310, 1.4159, 1),
+    (1.0, 1.4175, f64::INFINITY, 0),
+    (2.0, 1.2237, 2.3277, 1),
+    (2.0, 2.3577, f64::INFINITY, 0),
+    (3.0, 1.4019, 3.5428, 1),
+    (3.0, 3.6645, f64::INFINITY, 0),
+    (4.0, 1.7886, 5.0093, 1),
+    (4.0, 5.3230, f64::INFINITY, 0),
+    (5.0, 2.8832, 6.6836, 1),
+    (5.0, 7.3362, f64::INFINITY, 0),
+    (6.0, 4.6379, 8.5039, 1),
+    (6.0, 9.7105, f64::INFINITY, 0),
+    (7.0, 7.0320, 10.3429, 1),
+    (7.0, 12.4532, f64::INFINITY, 0),
+    (8.0, 10.8592, 11.4102, 1),
+    (8.0, 15.5722, f64::INFINITY, 0),
+];
+
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// ω_p/p; from which amplitude to which it overturns, and after how many impacts. Up to ω_p/p = 3 as in `docs/theory.md` §9; beyond,
-    /// confirmed by a Runge–Kutta integration elsewhere that falls on the right side 2e-6 from each limit.
-    const RANGES: [(f64, f64, f64, u32); 17] = [
-        (1.0, 1.1066, 1.1130, 3),
-        (1.0, 1.1310, 1.4159, 1),
-        (1.0, 1.4175, f64::INFINITY, 0),
-        (2.0, 1.2237, 2.3277, 1),
-        (2.0, 2.3577, f64::INFINITY, 0),
-        (3.0, 1.4019, 3.5428, 1),
-        (3.0, 3.6645, f64::INFINITY, 0),
-        (4.0, 1.7886, 5.0093, 1),
-        (4.0, 5.3230, f64::INFINITY, 0),
-        (5.0, 2.8832, 6.6836, 1),
-        (5.0, 7.3362, f64::INFINITY, 0),
-        (6.0, 4.6379, 8.5039, 1),
-        (6.0, 9.7105, f64::INFINITY, 0),
-        (7.0, 7.0320, 10.3429, 1),
-        (7.0, 12.4532, f64::INFINITY, 0),
-        (8.0, 10.8592, 11.4102, 1),
-        (8.0, 15.5722, f64::INFINITY, 0),
-    ];
 
     #[test]
     fn the_limits_are_those_found_elsewhere() {
