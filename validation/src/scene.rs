@@ -235,13 +235,3 @@ impl<F: FnMut(&StepReport<'_, 2>, &State) -> ControlFlow<()>> Observer<2> for Ea
         Ok((self.each)(step, state))
     }
 }
-
-/// [`Runner::run`] by Moreau–Jean where its account is not asked for.
-pub(crate) fn simulate(
-    model: &Model<2>,
-    start: &Start,
-    steps: u64,
-    mut each: impl FnMut(&State) -> ControlFlow<()>,
-) -> Result<State> {
-    Runner::new(Stepping::MoreauJean).run(model, start, steps, |_, state| each(state))
-}

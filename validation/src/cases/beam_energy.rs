@@ -1,7 +1,7 @@
 //! Free vibration of an undamped beam: its energy is kept with θ = 1/2, and lost at the known rate above.
 
 use crate::case::{Case, Check, Depth, Findings, Result};
-use crate::scene::{Start, beam_body, paper_beam, simulate};
+use crate::scene::{Runner, Start, Stepping, beam_body, paper_beam};
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -38,10 +38,11 @@ impl Case for BeamEnergy {
 
     fn run(&self, _: Depth) -> Result<Findings> {
         let beam = paper_beam(20, 0.0)?;
+        let mut runner = Runner::new(Stepping::MoreauJean);
         let mut q = vec![0.0; beam.dofs()];
         beam.add_point_load(0.3 * beam.spec().span, -3.0, &mut q)?;
         beam.solve_static(&mut q)?;
-        let [drift, _] = energies(&beam, q, 0.5, STEPS)?;
+        let [drift, _] = energies(&mut runner, &beam, q, 0.5, STEPS)?;
         let quantity = "θ = 1/2: largest drift of the energy in 1e5 steps, relative";
         let mut checks = vec![Check::worst(quantity, drift, DRIFT)];
 
@@ -51,26 +52,27 @@ impl Case for BeamEnergy {
             .map(|x| [0.005 * x.sin(), 0.005 * PI / span * x.cos()])
             .collect();
         for theta in [0.75, 1.0] {
-            let [_, left] = energies(&beam, beam.from_nodes(&nodes)?, theta, DISSIPATING)?;
+            let [_, left] = energies(&mut runner, &beam, beam.from_nodes(&nodes)?, theta, DISSIPATING)?;
             let turn = (OMEGA * DT).powi(2);
             let step = (1.0 + (1.0 - theta).powi(2) * turn) / (1.0 + theta * theta * turn);
             let exact = step.powf(DISSIPATING as f64);
             let quantity = format!("θ = {theta}: energy of mode 1 left after 1000 steps, relative");
             checks.push(Check::relative(quantity, exact, left, LOSS));
         }
+        checks.extend(runner.account());
         Ok(Findings { checks, ..Findings::default() })
     }
 }
 
 /// The largest drift of the energy, and what is left of it at the end, relative to the start.
-fn energies(beam: &Arc<Beam>, q: Vec<f64>, theta: f64, steps: u64) -> Result<[f64; 2]> {
+fn energies(runner: &mut Runner, beam: &Arc<Beam>, q: Vec<f64>, theta: f64, steps: u64) -> Result<[f64; 2]> {
     let mut parts = ModelBuilder::new();
     parts.add(Box::new(beam_body(beam)));
     let model = parts.build(Box::new(PointDetector::new(Vec::new())))?;
     let start = Start { v: vec![0.0; beam.dofs()], q, dt: DT, theta };
     let initial = model.energy(&start.q, &start.v).total();
     let mut drift = 0.0_f64;
-    let end = simulate(&model, &start, steps, |state| {
+    let end = runner.run(&model, &start, steps, |_, state| {
         drift = drift.max((state.ledger.current.total() - initial).abs());
         ControlFlow::Continue(())
     })?;

@@ -1,7 +1,7 @@
 //! A block that falls flat bounces to e² of its height, each time.
 
 use crate::case::{Case, Check, Depth, Findings, Result};
-use crate::scene::{FLAT_BLOCK, GRAVITY, Start, block_over, simulate};
+use crate::scene::{FLAT_BLOCK, GRAVITY, Runner, Start, Stepping, block_over};
 use nalgebra::Vector2;
 use std::ops::ControlFlow;
 use teeter_integrator::{Ground, PairLaw};
@@ -27,8 +27,9 @@ impl Case for Bounce {
 
     fn run(&self, _: Depth) -> Result<Findings> {
         let mut findings = Findings::default();
+        let mut runner = Runner::new(Stepping::MoreauJean);
         for dt in [1e-4, 1e-5] {
-            let found = apexes(dt)?;
+            let found = apexes(&mut runner, dt)?;
             let (mut exact, mut shift) = (HEIGHT, 0.0);
             for (n, found) in found.iter().enumerate() {
                 // The fastest that the impact before this apex can be: from the highest, reached half a step too low.
@@ -41,19 +42,20 @@ impl Case for Bounce {
                 findings.checks.push(Check::absolute(quantity, exact, *found, bound));
             }
         }
+        findings.checks.extend(runner.account());
         Ok(findings)
     }
 }
 
 /// Heights of the first apexes after the first impact, m.
-fn apexes(dt: f64) -> Result<Vec<f64>> {
+fn apexes(runner: &mut Runner, dt: f64) -> Result<Vec<f64>> {
     let law = PairLaw::new(0.3, RESTITUTION);
     let model = block_over(&FLAT_BLOCK, Vector2::new(0.0, -GRAVITY), law, Box::new(Ground::flat(0.0)))?;
     let floor = 0.5 * FLAT_BLOCK.height;
     let start = Start { q: vec![0.0, floor + HEIGHT, 0.0], v: vec![0.0; 3], dt, theta: 0.5 };
     let mut found = Vec::new();
     let (mut highest, mut rising) = (f64::NEG_INFINITY, false);
-    simulate(&model, &start, (2.0 / dt).round() as u64, |state| {
+    runner.run(&model, &start, (2.0 / dt).round() as u64, |_, state| {
         let goes_up = state.v[1] > 0.0;
         if goes_up {
             rising = true;

@@ -177,7 +177,7 @@ fn loops() -> Result<Figure> {
     for (name, impact) in drops {
         let (model, start) = dropped(impact, 0.0, 0.0, SPEED, 1e-5)?;
         let mut points = vec![(0.0, 0.0)];
-        Runner::new(Stepping::MoreauJean).run(&model, &start, 400, |step, _| {
+        Runner::lenient(Stepping::MoreauJean).run(&model, &start, 400, |step, _| {
             let Some(after) = step.contacts.first().and_then(|contact| contact.gap_after) else {
                 return ControlFlow::Break(());
             };

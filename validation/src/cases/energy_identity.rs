@@ -1,7 +1,7 @@
 //! The energy identity of every step, and the sign of friction's work.
 
 use crate::case::{Case, Check, Depth, Findings, Result};
-use crate::scene::{GRAVITY, PAPER_BLOCK, Start, beam_body, block_over, paper_beam, simulate};
+use crate::scene::{GRAVITY, PAPER_BLOCK, Runner, Start, Stepping, beam_body, block_over, paper_beam};
 use nalgebra::Vector2;
 use std::ops::ControlFlow;
 use teeter_integrator::{Ground, PairLaw, State};
@@ -55,7 +55,8 @@ impl Case for EnergyIdentity {
 
 fn rock(model: &teeter_integrator::Model<2>, q: Vec<f64>, theta: f64) -> Result<State> {
     let start = Start { v: vec![0.0; q.len()], q, dt: DT, theta };
-    simulate(model, &start, (DURATION / DT).round() as u64, |_| ControlFlow::Continue(()))
+    Runner::new(Stepping::MoreauJean)
+        .run(model, &start, (DURATION / DT).round() as u64, |_, _| ControlFlow::Continue(()))
 }
 
 const LAW: PairLaw = PairLaw::new(0.5, 0.0);

@@ -4,7 +4,7 @@ use crate::case::{Case, Check, Depth, Findings, Result};
 use crate::exact::housner::{Excursion, HousnerBlock};
 use crate::figure::{Axes, Figure, Series};
 use crate::fit::power_law;
-use crate::scene::{GRAVITY, PAPER_BLOCK, Start, block_over, simulate};
+use crate::scene::{GRAVITY, PAPER_BLOCK, Runner, Start, Stepping, block_over};
 use nalgebra::Vector2;
 use std::ops::ControlFlow;
 use teeter_integrator::{Ground, Model, PairLaw, RockingMonitor};
@@ -41,10 +41,11 @@ impl Case for HousnerOrder {
         let law = PairLaw::new(0.5, 0.0);
         let model = block_over(&PAPER_BLOCK, Vector2::new(0.0, -GRAVITY), law, Box::new(Ground::flat(0.0)))?;
         let decades = if depth == Depth::Full { 3 } else { 2 };
+        let mut runner = Runner::new(Stepping::MoreauJean);
         let (mut times, mut peaks) = (Vec::new(), Vec::new());
         for k in 0..=decades * PER_DECADE {
             let dt = 10_f64.powf(-3.0 - f64::from(k) / f64::from(PER_DECADE));
-            let found = excursions(&model, dt)?;
+            let found = excursions(&mut runner, &model, dt)?;
             times.push((dt, worst(&found, &exact, |found, exact| (found.impact - exact.impact).abs())));
             peaks.push((dt, worst(&found, &exact, |found, exact| (found.peak / exact.peak - 1.0).abs())));
         }
@@ -58,7 +59,7 @@ impl Case for HousnerOrder {
                 Depth::Short => Check::reported(quantity + ", two decades only", fit.order),
             });
         }
-        let at = excursions(&model, 1e-5)?;
+        let at = excursions(&mut runner, &model, 1e-5)?;
         findings.checks.extend([
             Check::absolute("h = 1e-5 s: first impact, s", exact[0].impact, at[0].impact, 2e-7),
             Check::worst(
@@ -83,16 +84,17 @@ impl Case for HousnerOrder {
                 Series::line(format!("order {:.3}", fits[0].order), line(0)),
             ],
         });
+        findings.checks.extend(runner.account());
         Ok(findings)
     }
 }
 
 /// The first excursions with step `dt`.
-fn excursions(model: &Model<2>, dt: f64) -> Result<Vec<Excursion>> {
+fn excursions(runner: &mut Runner, model: &Model<2>, dt: f64) -> Result<Vec<Excursion>> {
     let q = PAPER_BLOCK.on_left_corner(Vector2::zeros(), TILT_DEGREES.to_radians());
     let start = Start { q: q.to_vec(), v: vec![0.0; 3], dt, theta: 0.5 };
     let mut monitor = RockingMonitor::new(0.0, q[2]);
-    simulate(model, &start, (DURATION / dt).ceil() as u64, |state| {
+    runner.run(model, &start, (DURATION / dt).ceil() as u64, |_, state| {
         monitor.enter(state.t, state.q[2]);
         if monitor.crossings().len() == COUNT { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     })?;

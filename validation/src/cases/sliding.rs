@@ -1,7 +1,7 @@
 //! A block thrown along a floor slides to a stop.
 
 use crate::case::{Case, Check, Depth, Findings, Result};
-use crate::scene::{FLAT_BLOCK, GRAVITY, Start, block_over, simulate};
+use crate::scene::{FLAT_BLOCK, GRAVITY, Runner, Start, Stepping, block_over};
 use nalgebra::Vector2;
 use std::ops::ControlFlow;
 use teeter_integrator::{Ground, PairLaw};
@@ -32,11 +32,12 @@ impl Case for Sliding {
         let mut findings = Findings::default();
         let law = PairLaw::new(FRICTION, 0.0);
         let model = block_over(&FLAT_BLOCK, Vector2::new(0.0, -GRAVITY), law, Box::new(Ground::flat(0.0)))?;
+        let mut runner = Runner::new(Stepping::MoreauJean);
         for dt in [1e-2, 1e-3, 1e-4] {
             let q = vec![0.0, 0.5 * FLAT_BLOCK.height, 0.0];
             let start = Start { q, v: vec![SPEED, 0.0, 0.0], dt, theta: 0.5 };
             let (mut stopped, mut angle) = (f64::NAN, 0.0_f64);
-            let end = simulate(&model, &start, (0.5 / dt).round() as u64, |state| {
+            let end = runner.run(&model, &start, (0.5 / dt).round() as u64, |_, state| {
                 if stopped.is_nan() && state.v[0].abs() <= AT_REST * SPEED {
                     stopped = state.t;
                 }
@@ -55,6 +56,7 @@ impl Case for Sliding {
                 Check::worst(format!("h = {dt:e} s: largest angle, rad"), angle, 1e-12),
             ]);
         }
+        findings.checks.extend(runner.account());
         Ok(findings)
     }
 }
