@@ -18,6 +18,8 @@ pub(crate) struct Figure {
     pub(crate) y: &'static str,
     /// How both axes go.
     pub(crate) axes: Axes,
+    /// Where nothing is drawn.
+    pub(crate) legend: Corner,
     /// The sentence below it on the page.
     pub(crate) caption: &'static str,
     /// What it shows; a line takes the colour of the marks before it.
@@ -31,6 +33,14 @@ pub(crate) enum Axes {
     Logarithmic,
     /// Both evenly, with zero where it is near.
     Linear,
+}
+
+/// The corner that the legend takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Corner {
+    LowerLeft,
+    LowerRight,
+    UpperLeft,
 }
 
 /// Points of one kind.
@@ -147,9 +157,10 @@ where
         }
         chart
             .configure_series_labels()
-            .position(match figure.axes {
-                Axes::Logarithmic => SeriesLabelPosition::LowerRight,
-                Axes::Linear => SeriesLabelPosition::UpperRight,
+            .position(match figure.legend {
+                Corner::LowerLeft => SeriesLabelPosition::LowerLeft,
+                Corner::LowerRight => SeriesLabelPosition::LowerRight,
+                Corner::UpperLeft => SeriesLabelPosition::UpperLeft,
             })
             .background_style(WHITE.mix(0.85))
             .border_style(BLACK.mix(0.3))
@@ -215,6 +226,7 @@ mod tests {
     fn a_figure_is_drawn_the_same_twice_and_refuses_what_has_no_logarithm() {
         let figure = |axes: Axes, y: f64| Figure {
             axes,
+            legend: Corner::LowerRight,
             file: "f.svg",
             title: "t",
             x: "x / m",
