@@ -46,7 +46,7 @@ impl Case for Resting {
         let mut findings = Findings::default();
         for stepping in Stepping::ALL {
             let mut runner = Runner::new(stepping);
-            if depth == Depth::Full {
+            if depth == Depth::Full || stepping == Stepping::MoreauJean {
                 on_beam(&mut runner, &mut findings)?;
             }
             for (what, turned) in [("gravity turned", true), ("ground inclined", false)] {
