@@ -211,7 +211,7 @@ fn gain([page, closed]: &mut [Runner; 2], findings: &mut Findings) -> Result<()>
         axes: Axes::Linear,
         legend: Corner::LowerLeft,
         caption: "The slender block, tilted by 20°, hits the ground with a corner at 1 m/s, e = 1, μ = 0.5: Newton's law makes energy where the \
-                  curve is above 1.",
+                  curve is above 1. There the energetic law and `moreau-jean-closed` keep it: their marks coincide.",
         series: vec![
             Series::marks("moreau-jean, Newton", newton_points),
             Series::line("Newton's law on paper", curve),
