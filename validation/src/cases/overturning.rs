@@ -82,7 +82,7 @@ impl Case for Overturning {
                 findings.checks.push(Check::reported(quantity, change));
             }
             series.push(Series::marks(runner.name(), points));
-            findings.checks.extend(runner.account());
+            findings.checks.extend(runner.account_of_drives());
         }
         findings.figures.push(Figure {
             file: "overturning.svg",
