@@ -194,14 +194,19 @@ impl<const D: usize> ContactSet<D> {
         });
     }
 
-    /// Takes the last contact out again if all that it could move is prescribed: no impulse changes its velocity, so there is
-    /// none to be found. Returns whether it did.
+    /// Takes the last contact out again if all that could part its sides is prescribed: no impulse changes its normal velocity,
+    /// so there is none to be found. Returns whether it did.
     pub fn withdraw_if_prescribed(&mut self, model: &Model<D>) -> bool {
         let Some(sides) = self.spans.last() else { return false };
         let prescribed = sides.iter().filter(|side| side.len > 0).all(|side| {
             let driven = model.parts()[side.part].system.driven();
+            let range = side.start..side.start + side.len;
             // Most scenes have no drives: nothing to search then.
-            !driven.is_empty() && self.columns[side.start..side.start + side.len].iter().all(|c| driven.contains(c))
+            !driven.is_empty()
+                && self.columns[range.clone()]
+                    .iter()
+                    .zip(&self.values[range])
+                    .all(|(c, value)| value[0] == 0.0 || driven.contains(c))
         });
         if prescribed {
             let start = sides.iter().filter(|side| side.len > 0).map(|side| side.start).min();
@@ -254,11 +259,13 @@ impl<const D: usize> ContactSet<D> {
         }
     }
 
-    /// Whether one of the bodies of contact `i` moves as prescribed, in full or in part.
-    pub(crate) fn feels_drive(&self, model: &Model<D>, i: usize) -> bool {
+    /// Whether one of the bodies of contact `i` is accelerated as prescribed, in full or in part, between velocities `v0` and `v1`: a frame
+    /// that only travels must change nothing.
+    pub(crate) fn feels_drive(&self, model: &Model<D>, i: usize, v0: &[f64], v1: &[f64]) -> bool {
         self.spans[i].iter().filter(|side| side.len > 0).any(|side| {
-            let driven = model.parts()[side.part].system.driven();
-            !driven.is_empty() && self.columns[side.start..side.start + side.len].iter().any(|c| driven.contains(c))
+            let part = &model.parts()[side.part];
+            let (v0, v1) = (&v0[part.v.clone()], &v1[part.v.clone()]);
+            part.system.driven().iter().any(|&k| v0[k] != v1[k])
         })
     }
 

@@ -5,7 +5,7 @@
 //!   or stays under a larger one. Friction of an imposed normal impulse N is a standard contact too: its normal part touches
 //!   nothing and is made to be N, its tangential part is the real one.
 //! - **Energetic**: Newton's law with e scaled, for contacts that feel each other alike, by the largest f ∈ [0, 1] with
-//!   which their work U_θ·p is not positive: bisection.
+//!   which their work Ū·p is not positive: bisection.
 //! - **Springs**: Newton's method on the force law p = φ(U¹). Its tangent, U¹ + R p = U_k + R p_k with R = −1/φ', is a standard
 //!   contact whose H_nn is larger by R; scaling its normal direction keeps the problem's size what it was. Its friction never
 //!   gives energy.
@@ -68,6 +68,8 @@ pub(crate) struct Laws<const D: usize> {
     range: Vec<[f64; 2]>,
     /// Which springs' friction can't give energy.
     guarded: Vec<bool>,
+    /// Work of each island with f = 0, if positive.
+    floor: Vec<f64>,
     /// The shifts that the scheme asked for.
     shift: Vec<Vector<D>>,
 }
@@ -81,6 +83,9 @@ const ON_LAW: f64 = 1e-13;
 
 /// See [`ON_LAW`].
 const ROUNDED: f64 = 1e-9;
+
+/// Units in the last place that a spring's velocity may be off.
+const ROUNDING: f64 = 8.0;
 
 /// Halvings of the range of f.
 const HALVINGS: u32 = 40;
@@ -107,6 +112,7 @@ impl<const D: usize> Laws<D> {
         self.parts.reserve(contacts);
         self.island.reserve(contacts);
         self.range.reserve(contacts);
+        self.floor.reserve(contacts);
         self.guarded.reserve(contacts);
         self.shift.reserve(contacts);
     }
@@ -124,53 +130,71 @@ impl<const D: usize> Laws<D> {
         if set.rules.iter().any(|rule| matches!(rule, Rule::Poisson { .. } | Rule::Energetic)) {
             self.find_islands(set);
         }
-        let mut outcome = self.guarded_pass(set, theta, solver, stop)?;
-        let scaled = |set: &ContactSet<D>, i: usize| matches!(set.rules[i], Rule::Energetic) && set.shift[i][0] != 0.0;
-        if !(0..set.rules.len()).any(|i| scaled(set, i)) {
+        let outcome = self.guarded_pass(set, theta, solver, stop)?;
+        let n = set.rules.len();
+        self.range.clear();
+        self.range.resize(n, [1.0, 1.0]);
+        for i in (0..n).filter(|&i| matches!(set.rules[i], Rule::Energetic) && set.shift[i][0] != 0.0) {
+            let first = self.island[i];
+            let (work, rounding) = self.work(set, first);
+            if work > rounding {
+                self.range[first] = [0.0, 1.0];
+            }
+        }
+        if self.range.iter().all(|range| range[0] == 1.0) {
             return Ok(outcome);
         }
         self.shift.clear();
         self.shift.extend_from_slice(&set.shift);
-        self.range.clear();
-        self.range.resize(set.rules.len(), [0.0, 1.0]);
-        // An island that makes no energy with f = 1 keeps it.
-        let mut gains = false;
-        for first in 0..set.rules.len() {
-            if self.island[first] != first {
-                continue;
-            }
-            if self.makes_energy(set, first, theta)
-                && (0..set.rules.len()).any(|i| self.island[i] == first && scaled(set, i))
-            {
-                gains = true;
-            } else {
-                self.range[first] = [1.0, 1.0];
-            }
-        }
-        if !gains {
-            return Ok(outcome);
+        Ok(join(outcome, self.scale_restitution(set, theta, solver, stop)?))
+    }
+
+    /// Finds the largest part f of restitution that makes no energy, for each island whose range says that f = 1 does.
+    ///
+    /// Beside an impact there can be contacts that give energy by themselves, as one that has sunk in and is on its way out; that
+    /// is not restitution's to pay for, so what there is with f = 0 is allowed.
+    fn scale_restitution(
+        &mut self,
+        set: &mut ContactSet<D>,
+        theta: f64,
+        solver: &mut dyn ContactSolver<D>,
+        stop: &Stop<'_>,
+    ) -> Result<Outcome, ProblemError> {
+        let n = set.rules.len();
+        self.scale_shifts(set, |_| 0.0);
+        let mut outcome = self.guarded_pass(set, theta, solver, stop)?;
+        self.floor.clear();
+        for first in 0..n {
+            let own = if self.island[first] == first { self.work(set, first).0 } else { 0.0 };
+            self.floor.push(own.max(0.0));
         }
         for halving in 0..=HALVINGS {
-            for i in 0..set.rules.len() {
-                let [low, high] = self.range[self.island[i]];
-                if matches!(set.rules[i], Rule::Energetic) && low < 1.0 {
-                    // At last the largest f that is known to make none.
-                    let f = if halving < HALVINGS { 0.5 * (low + high) } else { low };
-                    let mut shift = self.shift[i];
-                    shift[0] *= f;
-                    set.reshift(i, shift);
-                }
-            }
+            // At last the largest f that is known to make none.
+            let at = move |[low, high]: [f64; 2]| if halving < HALVINGS { 0.5 * (low + high) } else { low };
+            self.scale_shifts(set, at);
             outcome = join(outcome, self.guarded_pass(set, theta, solver, stop)?);
-            for first in (0..set.rules.len()).filter(|&i| self.island[i] == i) {
+            for first in (0..n).filter(|&i| self.island[i] == i) {
                 let [low, high] = self.range[first];
                 if low < 1.0 {
-                    let f = 0.5 * (low + high);
-                    self.range[first] = if self.makes_energy(set, first, theta) { [low, f] } else { [f, high] };
+                    let f = at(self.range[first]);
+                    let (work, rounding) = self.work(set, first);
+                    self.range[first] = if work > self.floor[first] + rounding { [low, f] } else { [f, high] };
                 }
             }
         }
         Ok(outcome)
+    }
+
+    /// Scales the normal shifts of energetic contacts by f of their island's range; f = 1 where the range is one point.
+    fn scale_shifts(&self, set: &mut ContactSet<D>, f: impl Fn([f64; 2]) -> f64) {
+        for i in 0..set.rules.len() {
+            let range = self.range[self.island[i]];
+            if matches!(set.rules[i], Rule::Energetic) && range[0] < 1.0 {
+                let mut shift = self.shift[i];
+                shift[0] *= f(range);
+                set.reshift(i, shift);
+            }
+        }
     }
 
     /// Contacts that feel each other through H, directly or by others.
@@ -194,19 +218,19 @@ impl<const D: usize> Laws<D> {
         }
     }
 
-    /// Whether the work U_θ·p of an island's contacts is positive beyond rounding.
-    fn makes_energy(&self, set: &ContactSet<D>, first: usize, theta: f64) -> bool {
+    /// The work Ū·p of an island's contacts, Ū the mean of U⁰ and U¹ whatever θ is: that is what an impact changes of the kinetic
+    /// energy. And how much of it is rounding. Both in J.
+    fn work(&self, set: &ContactSet<D>, first: usize) -> (f64, f64) {
         let (mut work, mut size) = (0.0, 0.0);
         for i in (0..set.rules.len()).filter(|&i| self.island[i] == first) {
             let (before, after) = (set.contacts()[i].u_before, set.velocity_by_impulses(i));
-            let mean = after * theta + before * (1.0 - theta);
-            work += mean.dot(&set.p[i]);
+            work += ((after + before) * 0.5).dot(&set.p[i]);
             size += (after.norm() + before.norm()) * set.p[i].norm();
             if let Rule::Spring(spring) = set.rules[i] {
                 work += spring.spring.potential(spring.gap_after(after[0])) - spring.spring.potential(spring.gap);
             }
         }
-        work > WORKLESS * size
+        (work, WORKLESS * size)
     }
 
     /// A pass in which friction of springs doesn't give energy: where U_θ,t·p_t > 0, Coulomb's law is made to hold for U_θ,t.
@@ -269,6 +293,21 @@ impl<const D: usize> Laws<D> {
         }
         self.compression.clear();
         self.compression.extend_from_slice(&set.p);
+        // What comes back is of the blow alone, not of the weight that acts in the step: with it a bounce with e = 1 would rise.
+        self.base.fill(Vector::zeros());
+        self.rows.clear();
+        for i in 0..n {
+            let mut row = self.row(set, i, false);
+            row.u += set.contacts()[i].u_before - set.u_free[i];
+            self.rows.push(row);
+        }
+        let blow = self.settle(set, solver, stop)?;
+        let outcome = join(outcome, blow);
+        for i in 0..n {
+            if let (Rule::Poisson { e, .. }, true) = (set.rules[i], self.given[i] > 0.0) {
+                self.given[i] = e * self.rows[i].p[0];
+            }
+        }
         Ok(join(outcome, self.expand(set, solver, stop)?))
     }
 
@@ -388,8 +427,8 @@ impl<const D: usize> Laws<D> {
             let outcome = self.solve_rows(set, solver, stop)?;
             let outcome = sum.map_or(outcome, |sum| with_iterations(outcome, sum.iterations + outcome.iterations));
             sum = Some(outcome);
-            let off = self.retouch(set);
-            let settled = off <= ON_LAW || (tangent > 3 && off >= last && off <= ROUNDED);
+            let (off, noise) = self.retouch(set);
+            let settled = off <= ON_LAW || (tangent > 3 && off >= last && off <= noise.max(ROUNDED));
             if settled || !outcome.converged() {
                 return Ok(outcome);
             }
@@ -402,18 +441,22 @@ impl<const D: usize> Laws<D> {
         }
     }
 
-    /// Moves the springs' tangents to where the last problem ended. Returns how far their impulses are off the law, relative
-    /// to the largest impulse.
-    fn retouch(&mut self, set: &ContactSet<D>) -> f64 {
-        let (mut off, mut largest) = (0.0_f64, f64::MIN_POSITIVE);
+    /// Moves the springs' tangents to where the last problem ended. Returns how far their impulses are off the law, and how
+    /// far rounding can put them, both relative to the largest impulse.
+    fn retouch(&mut self, set: &ContactSet<D>) -> (f64, f64) {
+        let (mut off, mut noise, mut largest) = (0.0_f64, 0.0_f64, f64::MIN_POSITIVE);
         for r in 0..self.rows.len() {
             largest = largest.max(self.rows[r].p[0]);
             let Kind::Spring(step, _) = self.rows[r].kind else { continue };
             let u = self.normal_velocity(set, r);
-            off = off.max((self.rows[r].p[0] - step.impulse(u).0).abs());
+            let (impulse, slope) = step.impulse(u);
+            // A stiff spring makes much of the last digits of its velocity.
+            let rounding = ROUNDING * f64::EPSILON * slope.abs() * self.size_of_velocity(set, r);
+            off = off.max((self.rows[r].p[0] - impulse).abs());
+            noise = noise.max(rounding);
             self.rows[r].kind = Kind::Spring(step, u);
         }
-        off / largest
+        (off / largest, noise / largest)
     }
 
     /// The true normal velocity of a row's contact after the problem.
@@ -428,6 +471,17 @@ impl<const D: usize> Laws<D> {
             (set.blocks[row.contact * n + other.contact] * p)[0]
         });
         row.u[0] + others.sum::<f64>()
+    }
+
+    /// The sum of the sizes of what [`Laws::normal_velocity`] adds up, m/s.
+    fn size_of_velocity(&self, set: &ContactSet<D>, r: usize) -> f64 {
+        let n = set.rules.len();
+        let row = &self.rows[r];
+        let others = self.rows.iter().map(|other| {
+            let h = &set.blocks[row.contact * n + other.contact];
+            (0..D).map(|d| (h[(0, d)] * other.p[d]).abs()).sum::<f64>()
+        });
+        row.u[0].abs() + others.sum::<f64>()
     }
 
     /// Poses and solves the standard problem of the rows.
@@ -457,7 +511,7 @@ impl<const D: usize> Laws<D> {
                     let (softness, impulse, at) = if slope < 0.0 {
                         (-slope.recip(), impulse, at)
                     } else {
-                        (UNTOUCHED * own[(0, 0)], 0.0, step.touching())
+                        (UNTOUCHED * own[(0, 0)], 0.0, at.min(step.touching()))
                     };
                     row.scale = (own[(0, 0)] / (own[(0, 0)] + softness)).sqrt();
                     row.normal = own[(0, 0)];

@@ -137,9 +137,9 @@ impl<const D: usize> Model<D> {
         self.springs
     }
 
-    /// Whether a pair has a law other than Newton's.
+    /// Whether a pair has a law that can take more than one problem a step.
     pub(crate) fn has_laws(&self) -> bool {
-        self.laws.iter().any(|law| law.impact != ImpactLaw::Newton)
+        self.laws.iter().any(|law| law.impact != ImpactLaw::Newton || law.restitution > 0.0)
     }
 
     /// The detector.

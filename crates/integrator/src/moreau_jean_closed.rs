@@ -109,6 +109,10 @@ impl<const D: usize> MoreauJeanClosed<D> {
 /// Rounding of a contact's work, as a part of ‖p‖ Σ|J_i v|, the larger of v⁰ and v_free.
 const WORKLESS: f64 = 1e-13;
 
+/// Where a contact is in the surface already, it closes when it sinks by this part of the gap tolerance within a step: more than
+/// rounding, and so little that no approach is too slow to be seen.
+const SINKING: f64 = 1e-3;
+
 /// A contact that leaves faster than this part of Σ|J_i v| is open after the step.
 const LEAVING: f64 = 1e-10;
 
@@ -296,6 +300,10 @@ impl<const D: usize> MoreauJeanClosed<D> {
     /// was. Then either no friction, or the velocity turned about, whichever ends nearer to rest; it sticks in the next step.
     fn guard(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>) -> bool {
         let mut found = false;
+        // Poisson's law hands a blow on: what one contact gains another has lost, so it is their sum that counts.
+        let contacts = &work.contacts;
+        let instant = |i: &usize| !matches!(contacts.rules[*i], Rule::Spring(_));
+        let sum: f64 = (0..self.guarded.len()).filter(instant).map(|i| gain(contacts, i)).sum();
         for i in 0..self.guarded.len() {
             let contacts = &mut work.contacts;
             let (u_before, p) = (contacts.contacts()[i].u_before, contacts.p[i]);
@@ -304,11 +312,11 @@ impl<const D: usize> MoreauJeanClosed<D> {
                 continue;
             }
             // What moves as prescribed gives energy anyway, and a slide that ends there is better stopped where it ends.
-            if contacts.contacts()[i].persisting && contacts.feels_drive(model, i) {
+            if contacts.contacts()[i].persisting && contacts.feels_drive(model, i, &state.v, &self.v_free) {
                 continue;
             }
-            let mean = (contacts.velocity_by_impulses(i) + u_before) * 0.5;
-            let gain = mean.dot(&p);
+            let own = gain(contacts, i);
+            let gain = if matches!(contacts.rules[i], Rule::Poisson { .. }) { own.min(sum) } else { own };
             if gain <= 0.0 {
                 continue;
             }
@@ -351,7 +359,7 @@ impl<const D: usize> MoreauJeanClosed<D> {
                 self.start.sort_unstable_by_key(|candidate| candidate.id);
             }
             let level = find(&self.start, id).map_or(0.0, |candidate| candidate.gap).min(0.0);
-            if gap < level - self.settings.gap_tolerance {
+            if gap < level - SINKING * self.settings.gap_tolerance {
                 self.closed.push(id);
             }
         }
@@ -359,6 +367,12 @@ impl<const D: usize> MoreauJeanClosed<D> {
         self.closed.sort_unstable();
         found
     }
+}
+
+/// The work Ū·p of a contact, J.
+fn gain<const D: usize>(contacts: &ContactSet<D>, i: usize) -> f64 {
+    let mean = (contacts.velocity_by_impulses(i) + contacts.contacts()[i].u_before) * 0.5;
+    mean.dot(&contacts.p[i])
 }
 
 /// Puts restitution into the shift of a contact that closes with an impact.
@@ -378,10 +392,9 @@ fn restitute<const D: usize>(
         contacts.follow(i, Rule::Poisson { e, tangential: tangential_restitution });
         return;
     }
-    if law.impact == ImpactLaw::Energetic {
-        contacts.follow(i, Rule::Energetic);
-    }
     if closing && is_impact(e, u_before, u_free) {
+        // Newton's law too: where it would make energy, less of it, before the guard has to bend friction.
+        contacts.follow(i, Rule::Energetic);
         shift[0] = e * u_before[0];
     }
     if tangential_restitution > 0.0 {

@@ -167,7 +167,8 @@ impl Signal for Formula {
     fn jump(&self) -> Option<f64> {
         let jumps = match self.shape {
             Shape::Constant => true,
-            Shape::Sine { phase, .. } => phase.sin() != 0.0,
+            // π is no double, so neither is its sine zero.
+            Shape::Sine { phase, .. } => phase.sin().abs() > 1e-12,
             Shape::Ramp { .. } | Shape::Ricker { .. } => false,
         };
         (jumps && self.start > 0.0).then_some(self.start)
@@ -230,6 +231,7 @@ mod tests {
         assert_eq!(Formula::constant(0.0).unwrap().jump(), None);
         assert_eq!(Formula::one_sine(0.2, 1.0, 0.5).unwrap().jump(), Some(0.2));
         assert_eq!(Formula::one_sine(0.2, 1.0, 0.0).unwrap().jump(), None);
+        assert_eq!(Formula::harmonic(0.2, 1.0, std::f64::consts::PI).unwrap().jump(), None);
         assert_eq!(Formula::ramp(0.2, 1.0).unwrap().jump(), None);
     }
 

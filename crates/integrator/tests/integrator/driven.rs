@@ -274,26 +274,31 @@ fn a_block_on_rails_goes_through_the_ground() {
     let block = crate::scenes::PAPER_BLOCK;
     let shape = Rectangle::new(block.width, block.height).unwrap();
     let mass = MassProperties::rectangle(&shape, block.depth, block.density).unwrap();
-    let blocks = (0..3).fold(Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -9.81)), |blocks, axis| {
-        blocks.with_motion(0, axis, sine(Given::Velocity, 0.1))
-    });
-    for ground in [Ground::flat(0.0), moving_ground()] {
-        let mut parts = ModelBuilder::new();
-        let body = parts.add(Box::new(blocks.clone()));
-        let surface = parts.add(Box::new(ground));
-        let pair = parts.pair(PairLaw::new(0.5, 0.0));
-        let (points, kinematics) = (shape.corners().to_vec(), Kinematics::Deformed);
-        let pairs = vec![teeter_detect::PointPair { pair, points, body, surface, kinematics }];
-        let model = parts.build(Box::new(teeter_detect::PointDetector::new(pairs))).unwrap();
-        for mut scheme in schemes() {
-            let mut q = vec![0.0, 0.0675, 0.0];
-            q.resize(model.size().q, 0.0);
-            let mut state = State::new(&model, &q, &vec![0.0; model.size().v], 1e-3).unwrap();
-            let mut work = crate::scenes::workspace(&model);
-            let plan = Plan { steps: 500, require_convergence: true };
-            let ended = run(&model, scheme.as_mut(), &mut state, &mut work, &plan, &mut []).unwrap();
-            assert_eq!((ended, state.tally.contact_steps), (Ended::Complete, 0), "{}", scheme.name());
-            assert!(state.ledger.relative_residual() <= 1e-14);
+    for first in [0, 1] {
+        // With x left free nothing but the normal velocity is prescribed.
+        let blocks = (first..3)
+            .fold(Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -9.81)), |blocks, axis| {
+                blocks.with_motion(0, axis, sine(Given::Velocity, 0.1))
+            });
+        let level = Ground::moving(0.0, [0.4, 0.2, 0.0].map(|a| sine(Given::Velocity, a)));
+        for ground in [Ground::flat(0.0), level] {
+            let mut parts = ModelBuilder::new();
+            let body = parts.add(Box::new(blocks.clone()));
+            let surface = parts.add(Box::new(ground));
+            let pair = parts.pair(PairLaw::new(0.5, 0.0));
+            let (points, kinematics) = (shape.corners().to_vec(), Kinematics::Deformed);
+            let pairs = vec![teeter_detect::PointPair { pair, points, body, surface, kinematics }];
+            let model = parts.build(Box::new(teeter_detect::PointDetector::new(pairs))).unwrap();
+            for mut scheme in schemes() {
+                let mut q = vec![0.0, 0.0675, 0.0];
+                q.resize(model.size().q, 0.0);
+                let mut state = State::new(&model, &q, &vec![0.0; model.size().v], 1e-3).unwrap();
+                let mut work = crate::scenes::workspace(&model);
+                let plan = Plan { steps: 500, require_convergence: true };
+                let ended = run(&model, scheme.as_mut(), &mut state, &mut work, &plan, &mut []).unwrap();
+                assert_eq!((ended, state.tally.contact_steps), (Ended::Complete, 0), "{}", scheme.name());
+                assert!(state.ledger.relative_residual() <= 1e-14);
+            }
         }
     }
 }

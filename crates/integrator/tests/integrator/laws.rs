@@ -220,3 +220,62 @@ fn tangential_restitution_reverses_the_velocity_of_an_impact_that_sticks() {
         }
     }
 }
+
+/// The energy above that of rest after so many seconds of flat bounces with e, as a part of that at the start.
+fn bouncing(impact: ImpactLaw, e: f64, theta: f64, closed: bool, seconds: f64) -> f64 {
+    let law = PairLaw::new(0.0, e).with_impact(impact);
+    let gravity = Vector2::new(0.0, -9.81);
+    let surface = Box::new(Ground::flat(0.0));
+    let model = crate::scenes::model(&crate::scenes::PAPER_BLOCK, gravity, law, Kinematics::Deformed, surface);
+    let h = 1e-3;
+    let mut state = State::new(&model, &[0.0, 0.0675 + 0.0125, 0.0], &[0.0; 3], h).unwrap();
+    let mut work = workspace(&model);
+    let mut scheme: Box<dyn Scheme<2>> = if closed {
+        Box::new(MoreauJeanClosed::new(MoreauJeanClosedSettings::default()).unwrap())
+    } else {
+        Box::new(MoreauJean::new(MoreauJeanSettings { theta, ..MoreauJeanSettings::default() }).unwrap())
+    };
+    let plan = Plan { steps: (seconds / h) as u64, require_convergence: true };
+    let ended = run(&model, scheme.as_mut(), &mut state, &mut work, &plan, &mut []).unwrap();
+    assert_eq!(ended, Ended::Complete);
+    let weight = 2700.0 * 0.03 * 0.135 * 0.03 * 9.81;
+    (state.ledger.current.total() - weight * 0.0675) / (weight * 0.0125)
+}
+
+/// What comes back is of the blow, not of the weight that acts in the step of the blow.
+#[test]
+fn bounces_with_e_one_keep_the_energy_by_every_law() {
+    for impact in [ImpactLaw::Newton, ImpactLaw::Poisson, ImpactLaw::Energetic] {
+        for closed in [false, true] {
+            let kept = bouncing(impact, 1.0, 0.5, closed, 60.0);
+            assert!((kept - 1.0).abs() < 1e-9, "{impact:?}, closed {closed}: {kept}");
+            let left = bouncing(impact, 0.9, 0.5, closed, 60.0);
+            assert!((-0.1..1e-3).contains(&left), "{impact:?}, closed {closed}: {left}");
+        }
+    }
+}
+
+/// What θ > ½ takes is numerical: the law's work is judged without it, so restitution is what it was.
+#[test]
+fn restitution_is_the_same_for_every_theta() {
+    for theta in [0.5, 0.7, 1.0] {
+        let left = [ImpactLaw::Newton, ImpactLaw::Energetic].map(|impact| bouncing(impact, 0.8, theta, false, 0.2));
+        assert!((left[0] - left[1]).abs() < 1e-12, "{theta}: {left:?}");
+    }
+}
+
+/// Kane and Levinson's impact that sticks: closed contacts give less back, but friction stays friction.
+#[test]
+fn an_impact_that_sticks_is_not_turned_into_a_superball() {
+    for impact in [ImpactLaw::Newton, ImpactLaw::Energetic] {
+        let law = PairLaw::new(10.0, 1.0).with_impact(impact);
+        let (phi, height) = (0.35_f64, 0.5);
+        let model = on_ground(law, phi, height, &[-0.1]);
+        let (v, state) = step(&model, &[0.0, height, phi], &[-0.1, -1.0, -0.6], true, |state| state.v.clone());
+        // At (−0.1, −0.5) from the centre.
+        let (before, after) = ([-0.1 - 0.6 * 0.5, -1.0 + 0.6 * 0.1], [v[0] + v[2] * 0.5, v[1] - v[2] * 0.1]);
+        let sum = state.ledger.sum;
+        assert!(sum.contact + sum.friction <= 1e-13, "{impact:?}");
+        assert!(before[0] < -0.3 && after[0].abs() < 1e-9 && after[1] > 0.5, "{impact:?}: {before:?} {after:?}");
+    }
+}

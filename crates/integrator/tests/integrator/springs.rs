@@ -108,6 +108,10 @@ fn any_stiffness_is_stable_at_any_step() {
                     let laws = [
                         ImpactLaw::KelvinVoigt { stiffness, damping: 0.0 },
                         ImpactLaw::KelvinVoigt { stiffness, damping: 1e-3 * stiffness.sqrt() },
+                        // These let go while they still penetrate.
+                        ImpactLaw::KelvinVoigt { stiffness, damping: 100.0 },
+                        ImpactLaw::KelvinVoigt { stiffness, damping: 1e4 },
+                        ImpactLaw::HuntCrossley { stiffness, damping: 100.0, exponent: 1.5 },
                         ImpactLaw::HuntCrossley { stiffness, damping: 0.3, exponent: 1.5 },
                     ];
                     for impact in laws {
