@@ -12,7 +12,7 @@
 //! ```
 //!
 //! A contact that pressed in a step is *closed* in the next, whatever its gap. An open contact becomes closed where the step
-//! would end with a gap below min(0, g⁰): the step is then tried again. If it approaches, s_n = e U_n⁰ for an impact, and 0 for
+//! would end in the surface, and deeper than it began: the step is then tried again. If it approaches, s_n = e U_n⁰ for an impact, and 0 for
 //! an approach that its free acceleration makes within the step. J at mid-step and b make the closed contact end the step
 //! with the velocity that the surface has there, so its gap doesn't drift apart as that of the page's scheme does.
 //!
@@ -37,7 +37,7 @@ const THETA: f64 = 0.5;
 /// The settings of [`MoreauJeanClosed`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MoreauJeanClosedSettings {
-    /// An open contact closes where the step would end so much deeper than it began, m.
+    /// An open contact closes where the step would end so deep in the surface, and sinking, m.
     pub gap_tolerance: f64,
 }
 

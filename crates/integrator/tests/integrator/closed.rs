@@ -161,3 +161,15 @@ fn a_slide_that_turns_within_a_step_ends_where_it_must() {
     }
     assert!(guarded > 0, "some stop falls within a step");
 }
+
+/// An approach by less than the gap tolerance a step is an approach all the same.
+#[test]
+fn no_approach_is_too_slow_to_be_seen() {
+    for e in [0.0, 1.0] {
+        let surface = Box::new(Ground::flat(0.0));
+        let model = model(&FLAT_BLOCK, Vector2::zeros(), PairLaw::new(0.5, e), Kinematics::Deformed, surface);
+        let start = [0.0, 0.5 * FLAT_BLOCK.height, 0.0];
+        let (state, _) = take(&model, &start, &[0.0, -1e-7, 0.0], 1e-6, 1000, true);
+        assert!((state.v[1] - e * 1e-7).abs() < 1e-18 && state.tally.max_penetration < 2e-12, "{e}: {state:?}");
+    }
+}
