@@ -9,7 +9,7 @@ use std::io::Write as _;
 use std::path::PathBuf;
 use teeter_scenario::outlook::{BeamOutlook, BlockOutlook, Outlook};
 use teeter_scenario::resolve::Resolved;
-use teeter_scenario::scene::{GroundScene, Scene};
+use teeter_scenario::scene::{GroundScene, Scene, SchemeName};
 use teeter_scenario::simulation::Simulation;
 use teeter_scenario::wording;
 
@@ -181,11 +181,13 @@ fn run(scene: &Scene, outlook: &Outlook) -> Vec<String> {
     let (time, volume) = (&scene.time, outlook.volume);
     vec![
         format!(
-            "{} of {} s to {} s, theta = {}",
+            "{} of {} s to {} s, theta = {}{}",
             count(time.steps, "step"),
             time.step,
             time.steps as f64 * time.step,
-            time.theta
+            time.theta,
+            // The default is not worth a word.
+            if time.scheme == SchemeName::MoreauJeanClosed { ", by moreau-jean-closed" } else { "" }
         ),
         format!(
             "time: {} (an estimate from times measured on a server, good to a factor of three)",

@@ -10,41 +10,19 @@
 //!   contact whose H_nn is larger by R; scaling its normal direction keeps the problem's size what it was. Its friction never
 //!   gives energy.
 
+mod phases;
+mod rows;
+
 use crate::Vector;
 use crate::contacts::{ContactSet, Rule, tangential};
-use crate::spring::SpringStep;
-use teeter_contact::{Block, ContactProblem, ContactSolver, Delassus, Outcome, ProblemError, Status, Stop};
+use rows::Row;
+use teeter_contact::{Block, ContactSolver, Outcome, ProblemError, Status, Stop};
 
 /// Whether a contact's approach is an impact that e sends back, not the approach that its free acceleration makes within a
 /// step: what ends a bounce, so that a resting contact doesn't hop.
 pub(crate) fn is_impact<const D: usize>(e: f64, u_before: &Vector<D>, u_free: &Vector<D>) -> bool {
     let by_acceleration = (u_before[0] - u_free[0]).max(0.0);
     -e * u_before[0] > by_acceleration
-}
-
-/// A contact of a problem to be solved on the way.
-#[derive(Clone, Copy, Debug)]
-struct Row<const D: usize> {
-    /// The contact of the set.
-    contact: usize,
-    kind: Kind,
-    /// Its velocity without the impulses of the problem, and shifted, m/s.
-    u: Vector<D>,
-    /// Its impulse, N·s.
-    p: Vector<D>,
-    /// Scale of its normal direction in the problem.
-    scale: f64,
-    /// H_nn in the problem.
-    normal: f64,
-}
-
-#[derive(Clone, Copy, Debug)]
-enum Kind {
-    Standard,
-    /// The friction of an imposed normal impulse.
-    Friction(f64),
-    /// A spring, at the velocity of its tangent.
-    Spring(SpringStep, f64),
 }
 
 /// Memory for these laws.
@@ -74,28 +52,11 @@ pub(crate) struct Laws<const D: usize> {
     shift: Vec<Vector<D>>,
 }
 
-/// Most tangents of the springs in a solve.
-const TANGENTS: u32 = 100;
-
-/// Springs whose impulses are this part of the largest off their law count as solved; rounding allows less where they are
-/// stiff, so where it no longer falls [`ROUNDED`] is enough.
-const ON_LAW: f64 = 1e-13;
-
-/// See [`ON_LAW`].
-const ROUNDED: f64 = 1e-9;
-
-/// Units in the last place that a spring's velocity may be off.
-const ROUNDING: f64 = 8.0;
-
 /// Halvings of the range of f.
 const HALVINGS: u32 = 40;
 
 /// Work below this part of Σ‖U‖‖p‖ is rounding.
 const WORKLESS: f64 = 1e-14;
-
-/// Velocities and impulses of expansion that are wrong by this part of the largest velocity before and of the impulse
-/// itself decide nothing.
-const UNDECIDED: f64 = 1e-11;
 
 impl<const D: usize> Laws<D> {
     /// Makes room for so many contacts.
@@ -266,305 +227,7 @@ impl<const D: usize> Laws<D> {
             outcome = join(outcome, self.pass(set, solver, stop)?);
         }
     }
-
-    /// Compression, and expansion where an impact asks for it.
-    fn pass(
-        &mut self,
-        set: &mut ContactSet<D>,
-        solver: &mut dyn ContactSolver<D>,
-        stop: &Stop<'_>,
-    ) -> Result<Outcome, ProblemError> {
-        let n = set.rules.len();
-        self.base.clear();
-        self.base.resize(n, Vector::zeros());
-        self.rows.clear();
-        for i in 0..n {
-            self.rows.push(self.row(set, i, false));
-        }
-        let outcome = self.settle(set, solver, stop)?;
-        self.take(set);
-        self.given.clear();
-        for i in 0..n {
-            let given = self.expands(set, i).map_or(0.0, |e| e * set.p[i][0]);
-            self.given.push(given);
-        }
-        if self.given.iter().all(|given| *given == 0.0) {
-            return Ok(outcome);
-        }
-        self.compression.clear();
-        self.compression.extend_from_slice(&set.p);
-        // What comes back is of the blow alone, not of the weight that acts in the step: with it a bounce with e = 1 would rise.
-        self.base.fill(Vector::zeros());
-        self.rows.clear();
-        for i in 0..n {
-            let mut row = self.row(set, i, false);
-            row.u += set.contacts()[i].u_before - set.u_free[i];
-            self.rows.push(row);
-        }
-        let blow = self.settle(set, solver, stop)?;
-        let outcome = join(outcome, blow);
-        for i in 0..n {
-            if let (Rule::Poisson { e, .. }, true) = (set.rules[i], self.given[i] > 0.0) {
-                self.given[i] = e * self.rows[i].p[0];
-            }
-        }
-        Ok(join(outcome, self.expand(set, solver, stop)?))
-    }
-
-    /// Expansion after the compression kept in `compression`. Either a contact gets the impulse given back and parts, or it
-    /// stays at rest under a larger one: which, is found by trial, from all parting.
-    fn expand(
-        &mut self,
-        set: &mut ContactSet<D>,
-        solver: &mut dyn ContactSolver<D>,
-        stop: &Stop<'_>,
-    ) -> Result<Outcome, ProblemError> {
-        let n = set.rules.len();
-        let fastest = set.contacts().iter().map(|contact| contact.u_before.norm()).fold(0.0, f64::max);
-        self.parts.clear();
-        self.parts.extend(self.given.iter().map(|given| *given > 0.0));
-        let mut sum: Option<Outcome> = None;
-        // A row of contacts takes as many rounds as it is long; with friction none may fit.
-        for _ in 0..2 * n + 10 {
-            let outcome = self.try_expansion(set, solver, stop, false)?;
-            let outcome = sum.map_or(outcome, |sum| join(sum, outcome));
-            sum = Some(outcome);
-            let mut changed = false;
-            for i in (0..n).filter(|&i| self.given[i] > 0.0) {
-                let wrong = if self.parts[i] {
-                    self.normal_velocity(set, i) < -UNDECIDED * fastest
-                } else {
-                    self.rows[i].p[0] < self.given[i] * (1.0 - UNDECIDED)
-                };
-                self.parts[i] ^= wrong;
-                changed |= wrong;
-            }
-            if !changed {
-                self.take(set);
-                return Ok(outcome);
-            }
-        }
-        // The impulse given back, and what it takes beyond it, as two contacts at one point: solvable always, but two that
-        // stick there share their friction in no one way.
-        self.parts.fill(false);
-        let outcome = self.try_expansion(set, solver, stop, true)?;
-        self.take(set);
-        Ok(sum.map_or(outcome, |sum| with_iterations(outcome, sum.iterations + outcome.iterations)))
-    }
-
-    /// Solves an expansion in which the contacts of `parts` get what is given back and no more. `both`: the others get it too,
-    /// beside what they take themselves.
-    fn try_expansion(
-        &mut self,
-        set: &mut ContactSet<D>,
-        solver: &mut dyn ContactSolver<D>,
-        stop: &Stop<'_>,
-        both: bool,
-    ) -> Result<Outcome, ProblemError> {
-        let n = set.rules.len();
-        for i in 0..n {
-            self.base[i] = match set.rules[i] {
-                Rule::Spring(_) => Vector::zeros(),
-                _ => self.compression[i],
-            };
-            if self.parts[i] || both {
-                self.base[i][0] += self.given[i];
-            }
-        }
-        self.rows.clear();
-        for i in 0..n {
-            let mut row = self.row(set, i, true);
-            if !matches!(set.rules[i], Rule::Spring(_)) {
-                row.p = Vector::zeros();
-            }
-            if self.parts[i] {
-                row.kind = Kind::Friction(self.given[i]);
-            }
-            self.rows.push(row);
-        }
-        for i in (0..n).filter(|&i| both && self.given[i] > 0.0) {
-            let row = Row { kind: Kind::Friction(self.given[i]), ..self.rows[i] };
-            self.rows.push(row);
-        }
-        self.settle(set, solver, stop)
-    }
-
-    /// The part e of its impulse of compression that a contact gives back: it obeys Poisson's law, was compressed, and feels
-    /// an impact, its own or another's.
-    fn expands(&self, set: &ContactSet<D>, i: usize) -> Option<f64> {
-        let Rule::Poisson { e, .. } = set.rules[i] else { return None };
-        let impact = |j: usize| is_impact(1.0, &set.contacts()[j].u_before, &set.u_free[j]);
-        let felt = || (0..set.rules.len()).any(|j| self.island[j] == self.island[i] && impact(j));
-        (e > 0.0 && set.p[i][0] > 0.0 && felt()).then_some(e)
-    }
-
-    /// The contact of the problem for contact `i` on top of the base impulses.
-    fn row(&self, set: &ContactSet<D>, i: usize, expansion: bool) -> Row<D> {
-        let n = set.rules.len();
-        let blocks = &set.blocks[i * n..(i + 1) * n];
-        let mut u = blocks.iter().zip(&self.base).fold(set.u_free[i], |u, (block, p)| u + block * p);
-        u += set.shift[i];
-        if let (Rule::Poisson { tangential: e, .. }, true) = (set.rules[i], expansion) {
-            u += tangential(&set.contacts()[i].u_before) * e;
-        }
-        let kind = match set.rules[i] {
-            Rule::Spring(step) => Kind::Spring(step, u[0].min(set.u_free[i][0])),
-            _ => Kind::Standard,
-        };
-        Row { contact: i, kind, u, p: set.p[i], scale: 1.0, normal: blocks[i][(0, 0)] }
-    }
-
-    /// Solves the problem of the rows, springs on their law.
-    fn settle(
-        &mut self,
-        set: &ContactSet<D>,
-        solver: &mut dyn ContactSolver<D>,
-        stop: &Stop<'_>,
-    ) -> Result<Outcome, ProblemError> {
-        let mut sum: Option<Outcome> = None;
-        let mut last = f64::INFINITY;
-        for tangent in 1..=TANGENTS {
-            let outcome = self.solve_rows(set, solver, stop)?;
-            let outcome = sum.map_or(outcome, |sum| with_iterations(outcome, sum.iterations + outcome.iterations));
-            sum = Some(outcome);
-            let (off, noise) = self.retouch(set);
-            let settled = off <= ON_LAW || (tangent > 3 && off >= last && off <= noise.max(ROUNDED));
-            if settled || !outcome.converged() {
-                return Ok(outcome);
-            }
-            last = off;
-        }
-        // Every problem was solved, but the springs didn't come to rest.
-        match sum {
-            Some(outcome) => Ok(unsolved(outcome)),
-            None => self.solve_rows(set, solver, stop).map(unsolved),
-        }
-    }
-
-    /// Moves the springs' tangents to where the last problem ended. Returns how far their impulses are off the law, and how
-    /// far rounding can put them, both relative to the largest impulse.
-    fn retouch(&mut self, set: &ContactSet<D>) -> (f64, f64) {
-        let (mut off, mut noise, mut largest) = (0.0_f64, 0.0_f64, f64::MIN_POSITIVE);
-        for r in 0..self.rows.len() {
-            largest = largest.max(self.rows[r].p[0]);
-            let Kind::Spring(step, _) = self.rows[r].kind else { continue };
-            let u = self.normal_velocity(set, r);
-            let (impulse, slope) = step.impulse(u);
-            // A stiff spring makes much of the last digits of its velocity.
-            let rounding = ROUNDING * f64::EPSILON * slope.abs() * self.size_of_velocity(set, r);
-            off = off.max((self.rows[r].p[0] - impulse).abs());
-            noise = noise.max(rounding);
-            self.rows[r].kind = Kind::Spring(step, u);
-        }
-        (off / largest, noise / largest)
-    }
-
-    /// The true normal velocity of a row's contact after the problem.
-    fn normal_velocity(&self, set: &ContactSet<D>, r: usize) -> f64 {
-        let n = set.rules.len();
-        let row = &self.rows[r];
-        let others = self.rows.iter().map(|other| {
-            let mut p = other.p;
-            if matches!(other.kind, Kind::Friction(_)) {
-                p[0] = 0.0; // it is in the base
-            }
-            (set.blocks[row.contact * n + other.contact] * p)[0]
-        });
-        row.u[0] + others.sum::<f64>()
-    }
-
-    /// The sum of the sizes of what [`Laws::normal_velocity`] adds up, m/s.
-    fn size_of_velocity(&self, set: &ContactSet<D>, r: usize) -> f64 {
-        let n = set.rules.len();
-        let row = &self.rows[r];
-        let others = self.rows.iter().map(|other| {
-            let h = &set.blocks[row.contact * n + other.contact];
-            (0..D).map(|d| (h[(0, d)] * other.p[d]).abs()).sum::<f64>()
-        });
-        row.u[0].abs() + others.sum::<f64>()
-    }
-
-    /// Poses and solves the standard problem of the rows.
-    fn solve_rows(
-        &mut self,
-        set: &ContactSet<D>,
-        solver: &mut dyn ContactSolver<D>,
-        stop: &Stop<'_>,
-    ) -> Result<Outcome, ProblemError> {
-        let n = set.rules.len();
-        self.q.clear();
-        self.mu.clear();
-        self.p.clear();
-        for row in &mut self.rows {
-            let own = &set.blocks[row.contact * n + row.contact];
-            let (mut q, mut mu) = (row.u, set.mu[row.contact]);
-            match row.kind {
-                Kind::Standard => {}
-                Kind::Friction(normal) => {
-                    // Any positive number does; one of the size of the others keeps the problem's scale.
-                    (row.scale, row.normal) = (0.0, own.trace());
-                    q[0] = -row.normal * normal;
-                }
-                Kind::Spring(step, at) => {
-                    let (impulse, slope) = step.impulse(at);
-                    // Where it doesn't touch, hardly anything: as soft as it takes to be found if others push it in.
-                    let (softness, impulse, at) = if slope < 0.0 {
-                        (-slope.recip(), impulse, at)
-                    } else {
-                        (UNTOUCHED * own[(0, 0)], 0.0, at.min(step.touching()))
-                    };
-                    row.scale = (own[(0, 0)] / (own[(0, 0)] + softness)).sqrt();
-                    row.normal = own[(0, 0)];
-                    q[0] = row.scale * (row.u[0] - at - softness * impulse);
-                    mu *= row.scale;
-                }
-            }
-            let mut p = row.p;
-            if row.scale > 0.0 {
-                p[0] /= row.scale;
-            }
-            self.q.push(q);
-            self.mu.push(mu);
-            self.p.push(p);
-        }
-        self.blocks.clear();
-        for (r, row) in self.rows.iter().enumerate() {
-            for (c, column) in self.rows.iter().enumerate() {
-                let mut block = set.blocks[row.contact * n + column.contact];
-                block.row_mut(0).scale_mut(row.scale);
-                block.column_mut(0).scale_mut(column.scale);
-                if r == c {
-                    block[(0, 0)] = row.normal;
-                }
-                self.blocks.push(block);
-            }
-        }
-        let problem = ContactProblem::new(Delassus::Dense(&self.blocks), &self.q, &self.mu)?;
-        let outcome = solver.solve(&problem, stop, &mut self.p);
-        for (row, p) in self.rows.iter_mut().zip(&self.p) {
-            row.p = *p;
-            if row.scale > 0.0 {
-                row.p[0] *= row.scale;
-            }
-        }
-        Ok(outcome)
-    }
-
-    /// Brings base and rows together as the impulses of the set.
-    fn take(&mut self, set: &mut ContactSet<D>) {
-        set.p.copy_from_slice(&self.base);
-        for row in &self.rows {
-            let mut p = row.p;
-            if matches!(row.kind, Kind::Friction(_)) {
-                p[0] = 0.0;
-            }
-            set.p[row.contact] += p;
-        }
-    }
 }
-
-/// A spring that isn't touched is softer than its contact by this factor.
-const UNTOUCHED: f64 = 1e8;
 
 /// The later of two outcomes with the iterations of both; an unsolved one is not forgotten.
 pub(crate) fn join(first: Outcome, second: Outcome) -> Outcome {

@@ -1,0 +1,144 @@
+//! Compression and expansion: Poisson's law, and for the others one problem.
+
+use super::rows::{Kind, Row};
+use super::{Laws, is_impact, join, with_iterations};
+use crate::Vector;
+use crate::contacts::{ContactSet, Rule};
+use teeter_contact::{ContactSolver, Outcome, ProblemError, Stop};
+
+/// Velocities and impulses of expansion that are wrong by this part of the largest velocity before and of the impulse
+/// itself decide nothing.
+const UNDECIDED: f64 = 1e-11;
+
+impl<const D: usize> Laws<D> {
+    /// Compression, and expansion where an impact asks for it.
+    pub(super) fn pass(
+        &mut self,
+        set: &mut ContactSet<D>,
+        solver: &mut dyn ContactSolver<D>,
+        stop: &Stop<'_>,
+    ) -> Result<Outcome, ProblemError> {
+        let n = set.rules.len();
+        self.base.clear();
+        self.base.resize(n, Vector::zeros());
+        self.rows.clear();
+        for i in 0..n {
+            self.rows.push(self.row(set, i, false));
+        }
+        let outcome = self.settle(set, solver, stop)?;
+        self.take(set);
+        self.given.clear();
+        for i in 0..n {
+            let given = self.expands(set, i).map_or(0.0, |e| e * set.p[i][0]);
+            self.given.push(given);
+        }
+        if self.given.iter().all(|given| *given == 0.0) {
+            return Ok(outcome);
+        }
+        self.compression.clear();
+        self.compression.extend_from_slice(&set.p);
+        // What comes back is of the blow alone, not of the weight that acts in the step: with it a bounce with e = 1 would rise.
+        self.base.fill(Vector::zeros());
+        self.rows.clear();
+        for i in 0..n {
+            let mut row = self.row(set, i, false);
+            row.u += set.contacts()[i].u_before - set.u_free[i];
+            self.rows.push(row);
+        }
+        let blow = self.settle(set, solver, stop)?;
+        let outcome = join(outcome, blow);
+        for i in 0..n {
+            if let (Rule::Poisson { e, .. }, true) = (set.rules[i], self.given[i] > 0.0) {
+                self.given[i] = e * self.rows[i].p[0];
+            }
+        }
+        Ok(join(outcome, self.expand(set, solver, stop)?))
+    }
+
+    /// Expansion after the compression kept in `compression`. Either a contact gets the impulse given back and parts, or it
+    /// stays at rest under a larger one: which, is found by trial, from all parting.
+    fn expand(
+        &mut self,
+        set: &mut ContactSet<D>,
+        solver: &mut dyn ContactSolver<D>,
+        stop: &Stop<'_>,
+    ) -> Result<Outcome, ProblemError> {
+        let n = set.rules.len();
+        let fastest = set.contacts().iter().map(|contact| contact.u_before.norm()).fold(0.0, f64::max);
+        self.parts.clear();
+        self.parts.extend(self.given.iter().map(|given| *given > 0.0));
+        let mut sum: Option<Outcome> = None;
+        // A row of contacts takes as many rounds as it is long; with friction none may fit.
+        for _ in 0..2 * n + 10 {
+            let outcome = self.try_expansion(set, solver, stop, false)?;
+            let outcome = sum.map_or(outcome, |sum| join(sum, outcome));
+            sum = Some(outcome);
+            let mut changed = false;
+            for i in (0..n).filter(|&i| self.given[i] > 0.0) {
+                let wrong = if self.parts[i] {
+                    self.normal_velocity(set, i) < -UNDECIDED * fastest
+                } else {
+                    self.rows[i].p[0] < self.given[i] * (1.0 - UNDECIDED)
+                };
+                self.parts[i] ^= wrong;
+                changed |= wrong;
+            }
+            if !changed {
+                self.take(set);
+                return Ok(outcome);
+            }
+        }
+        // The impulse given back, and what it takes beyond it, as two contacts at one point: solvable always, but two that
+        // stick there share their friction in no one way.
+        self.parts.fill(false);
+        let outcome = self.try_expansion(set, solver, stop, true)?;
+        self.take(set);
+        Ok(sum.map_or(outcome, |sum| with_iterations(outcome, sum.iterations + outcome.iterations)))
+    }
+
+    /// Solves an expansion in which the contacts of `parts` get what is given back and no more. `both`: the others get it too,
+    /// beside what they take themselves.
+    fn try_expansion(
+        &mut self,
+        set: &mut ContactSet<D>,
+        solver: &mut dyn ContactSolver<D>,
+        stop: &Stop<'_>,
+        both: bool,
+    ) -> Result<Outcome, ProblemError> {
+        let n = set.rules.len();
+        for i in 0..n {
+            self.base[i] = match set.rules[i] {
+                Rule::Spring(_) => Vector::zeros(),
+                _ => self.compression[i],
+            };
+            if self.parts[i] || both {
+                self.base[i][0] += self.given[i];
+            }
+        }
+        self.rows.clear();
+        for i in 0..n {
+            let mut row = self.row(set, i, true);
+            if !matches!(set.rules[i], Rule::Spring(_)) {
+                row.p = Vector::zeros();
+            }
+            if self.parts[i] {
+                row.kind = Kind::Friction(self.given[i]);
+            }
+            self.rows.push(row);
+        }
+        for i in (0..n).filter(|&i| both && self.given[i] > 0.0) {
+            let row = Row { kind: Kind::Friction(self.given[i]), ..self.rows[i] };
+            self.rows.push(row);
+        }
+        self.settle(set, solver, stop)
+    }
+
+    /// The part e of its impulse of compression that a contact gives back: it obeys Poisson's law, was compressed, and feels
+    /// an impact, its own or another's.
+    fn expands(&self, set: &ContactSet<D>, i: usize) -> Option<f64> {
+        let Rule::Poisson { e, .. } = set.rules[i] else { return None };
+        let impact = |j: usize| is_impact(1.0, &set.contacts()[j].u_before, &set.u_free[j]);
+        let felt = || (0..set.rules.len()).any(|j| self.island[j] == self.island[i] && impact(j));
+        (e > 0.0 && set.p[i][0] > 0.0 && felt()).then_some(e)
+    }
+}
