@@ -20,6 +20,9 @@ const TRIES: u32 = 6;
 /// that no neighbouring state fits as well.
 const ROOM: f64 = 1e-9;
 
+/// Rounding of a pivot, relative to its size, times the smallest pivot before it.
+const MAGNIFIED: f64 = 64.0 * f64::EPSILON;
+
 /// A friction impulse this near its limit is at it: the start's impulses are known to rounding.
 const AT_LIMIT: f64 = 1.0 - 1e-9;
 
@@ -197,8 +200,14 @@ fn solve<const M: usize>(table: &Table, rows: &[(usize, usize); MAX], tangent: &
         size[r] = table.h[i][i][(row, row)];
     }
     let mut inverse = [0.0; M];
+    let mut smallest = 1.0_f64;
     for k in 0..M {
         let pivot = a[k][k];
+        let part = pivot.abs() / size[k];
+        // A small pivot magnifies rounding, and a vanishing one after it can't be told from that.
+        if part > RANK_TOLERANCE && part * smallest <= MAGNIFIED {
+            return None;
+        }
         if !(pivot.abs() > RANK_TOLERANCE * size[k]) {
             // A free unknown, if it answers to none of those to come.
             for c in k + 1..M {
@@ -210,6 +219,7 @@ fn solve<const M: usize>(table: &Table, rows: &[(usize, usize); MAX], tangent: &
             continue;
         }
         inverse[k] = pivot.recip();
+        smallest = smallest.min(part);
         for r in k + 1..M {
             let factor = a[r][k] * inverse[k];
             for c in k + 1..M {

@@ -83,6 +83,8 @@ proptest! {
         }
     }
 
+    /// Much friction can leave a problem several velocities, and then the order may decide which is found; each obeys the law.
+    /// Where the velocities agree the impulses do: they are those of least norm.
     #[test]
     fn the_order_of_contacts_does_not_matter(case in cases()) {
         let n = case.q.len();
@@ -91,9 +93,18 @@ proptest! {
         let (again, r) = solve(&mut Enumeration::new(), &other, 1e-11);
         prop_assert_eq!(status, again);
         if status == Status::Converged {
+            let (problem, turned) = (case.problem().unwrap(), other.problem().unwrap());
+            let off = |a: &dyn Fn(usize) -> Vector2<f64>, b: &dyn Fn(usize) -> Vector2<f64>| {
+                (0..n).map(|i| (a((i + 1) % n) - b(i)).norm()).fold(0.0, f64::max)
+            };
+            let fastest = case.q.iter().map(Vector2::norm).fold(1e-300, f64::max);
             let size = p.iter().map(Vector2::norm).fold(1e-300, f64::max);
-            for i in 0..n {
-                prop_assert!((p[(i + 1) % n] - r[i]).norm() <= 1e-6 * size, "{:?} {:?}", p, r);
+            if off(&|i| problem.velocity(i, &p), &|i| turned.velocity(i, &r)) <= 1e-8 * fastest {
+                prop_assert!(off(&|i| p[i], &|i| r[i]) <= 1e-6 * size, "{:?} {:?}", p, r);
+            } else {
+                prop_assert!(case.mu.iter().any(|mu| *mu >= 0.1), "two velocities in spite of little friction: {:?} {:?}", p, r);
+                prop_assert_eq!(check_law(&problem, &p, 1e-9), Ok(()));
+                prop_assert_eq!(check_law(&turned, &r, 1e-9), Ok(()));
             }
         }
     }
