@@ -1,4 +1,4 @@
-//! A table on disk that holds whole rows, whatever ends the run.
+//! A table on disk that holds whole rows, whatever ends the run; but a kill may cut the row that is being written.
 
 use crate::ResultsError;
 use std::fs::File;
