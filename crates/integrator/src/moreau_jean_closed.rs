@@ -273,7 +273,7 @@ impl<const D: usize> MoreauJeanClosed<D> {
         if let Some(spring) = law.impact.spring() {
             let gap = match state.warm.gap(candidate.id) {
                 Some(gap) if gap < 0.0 => gap,
-                _ => self.gap_at_start(model, state, work, candidate.id).max(0.0),
+                _ => self.gap_at_start(model, state, candidate.id).max(0.0),
             };
             shift[0] = 0.0;
             work.contacts.pose(i, u_before, u_free, shift);
@@ -285,11 +285,11 @@ impl<const D: usize> MoreauJeanClosed<D> {
         }
     }
 
-    /// The gap of a contact at q⁰, m; 0 where it has none.
-    fn gap_at_start(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>, id: ContactId) -> f64 {
+    /// The gap of a contact at q⁰, m; 0 where it has none. Only a step with a new contact pays for looking there.
+    fn gap_at_start(&mut self, model: &Model<D>, state: &State, id: ContactId) -> f64 {
         if self.start.is_empty() {
-            work.detect(model, &state.q, f64::INFINITY);
-            self.start.extend_from_slice(&work.candidates);
+            model.detector().detect(&model.placed(&state.q), f64::INFINITY, &mut self.start);
+            self.start.sort_unstable_by_key(|candidate| candidate.id);
         }
         find(&self.start, id).map_or(0.0, |candidate| candidate.gap)
     }
@@ -346,19 +346,14 @@ impl<const D: usize> MoreauJeanClosed<D> {
 
     /// Closes the open contacts that the attempt ends with in their surface (they are the workspace's candidates), deeper
     /// than they began; whether there are any.
-    fn close_what_sinks(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>) -> bool {
+    fn close_what_sinks(&mut self, model: &Model<D>, state: &State, work: &Workspace<D>) -> bool {
         let before = self.closed.len();
         for k in 0..work.candidates.len() {
             let Candidate { id, gap, .. } = work.candidates[k];
             if gap >= -self.settings.gap_tolerance || self.closed[..before].binary_search(&id).is_ok() {
                 continue;
             }
-            // Only a step with a new contact pays for the gaps at its start.
-            if self.start.is_empty() {
-                model.detector().detect(&model.placed(&state.q), f64::INFINITY, &mut self.start);
-                self.start.sort_unstable_by_key(|candidate| candidate.id);
-            }
-            let level = find(&self.start, id).map_or(0.0, |candidate| candidate.gap).min(0.0);
+            let level = self.gap_at_start(model, state, id).min(0.0);
             if gap < level - SINKING * self.settings.gap_tolerance {
                 self.closed.push(id);
             }

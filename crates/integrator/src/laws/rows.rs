@@ -93,7 +93,7 @@ impl<const D: usize> Laws<D> {
 
     /// Moves the springs' tangents to where the last problem ended. Returns how far their impulses are off the law, and how
     /// far rounding can put them, both relative to the largest impulse.
-    pub(super) fn retouch(&mut self, set: &ContactSet<D>) -> (f64, f64) {
+    fn retouch(&mut self, set: &ContactSet<D>) -> (f64, f64) {
         let (mut off, mut noise, mut largest) = (0.0_f64, 0.0_f64, f64::MIN_POSITIVE);
         for r in 0..self.rows.len() {
             largest = largest.max(self.rows[r].p[0]);
@@ -124,7 +124,7 @@ impl<const D: usize> Laws<D> {
     }
 
     /// The sum of the sizes of what [`Laws::normal_velocity`] adds up, m/s.
-    pub(super) fn size_of_velocity(&self, set: &ContactSet<D>, r: usize) -> f64 {
+    fn size_of_velocity(&self, set: &ContactSet<D>, r: usize) -> f64 {
         let n = set.rules.len();
         let row = &self.rows[r];
         let others = self.rows.iter().map(|other| {
@@ -135,7 +135,7 @@ impl<const D: usize> Laws<D> {
     }
 
     /// Poses and solves the standard problem of the rows.
-    pub(super) fn solve_rows(
+    fn solve_rows(
         &mut self,
         set: &ContactSet<D>,
         solver: &mut dyn ContactSolver<D>,
