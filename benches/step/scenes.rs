@@ -4,7 +4,7 @@
 use criterion::{BatchSize, Criterion, Throughput};
 use nalgebra::Vector2;
 use std::sync::Arc;
-use teeter_beam::{Beam, BeamSpec, Damping, Section, Support};
+use teeter_beam::{Beam, BeamSpec, Section};
 use teeter_detect::{Kinematics, PointDetector, PointPair};
 use teeter_integrator::{
     BeamBody, BeamSurface, Block, Blocks, Ground, Model, ModelBuilder, MoreauJean, MoreauJeanSettings, PairLaw, Scheme,
@@ -66,13 +66,7 @@ fn model(surface: Box<dyn Subsystem<2>>) -> Model<2> {
 
 /// The beam of the source paper, 1 % damping of its first mode.
 pub(crate) fn paper_beam(elements: usize) -> Beam {
-    let mut spec = BeamSpec {
-        span: 0.36,
-        elements,
-        section: Section::rectangle(0.03, 0.0015, 69e9, 2700.0).expect("a section"),
-        supports: [Support::Pinned, Support::Pinned],
-        damping: Damping::default(),
-    };
+    let mut spec = BeamSpec::new(0.36, elements, Section::rectangle(0.03, 0.0015, 69e9, 2700.0).expect("a section"));
     spec.damping.viscous = spec.viscous_for_ratio(1, 0.01).expect("a first mode");
     Beam::new(spec).expect("a beam")
 }

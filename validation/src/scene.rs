@@ -4,7 +4,7 @@ use crate::case::{Check, Result};
 use nalgebra::Vector2;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use teeter_beam::{Beam, BeamSpec, Damping, Section, Support};
+use teeter_beam::{Beam, BeamSpec, Damping, Section};
 use teeter_detect::{Kinematics, PointDetector, PointPair};
 use teeter_integrator::{
     BeamBody, BeamSurface, Block, Blocks, Ended, Model, ModelBuilder, MoreauJean, MoreauJeanClosed,
@@ -70,13 +70,8 @@ pub(crate) fn paper_beam(elements: usize, ratio: f64) -> Result<Arc<Beam>> {
 
 /// The same with Rayleigh's a₁ (s) besides, which damps the high modes.
 pub(crate) fn damped_paper_beam(elements: usize, ratio: f64, rayleigh_stiffness: f64) -> Result<Arc<Beam>> {
-    let mut spec = BeamSpec {
-        span: 0.36,
-        elements,
-        section: Section::rectangle(0.03, 0.0015, 69e9, 2700.0)?,
-        supports: [Support::Pinned, Support::Pinned],
-        damping: Damping { rayleigh_stiffness, ..Damping::default() },
-    };
+    let mut spec = BeamSpec::new(0.36, elements, Section::rectangle(0.03, 0.0015, 69e9, 2700.0)?)
+        .damped(Damping { rayleigh_stiffness, ..Damping::default() });
     spec.damping.viscous = spec.viscous_for_ratio(1, ratio)?;
     Ok(Arc::new(Beam::new(spec)?))
 }

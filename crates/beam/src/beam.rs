@@ -1,35 +1,59 @@
 //! The beam: an immutable model, and the map between its dofs and its nodes.
 
-use std::sync::Arc;
-
-use faer::sparse::SparseColMat;
-use faer::sparse::linalg::cholesky::simplicial::SymbolicSimplicialCholesky;
-
-use crate::assembly::{assemble, pattern};
-use crate::element::Element;
+use crate::bar::Bar;
+use crate::blocks::Blocks;
+use crate::element::{Element, Matrix4};
 use crate::error::{BeamError, check_len};
-use crate::factor::analyse;
-use crate::layout::{Dof, Layout};
-use crate::spec::{BeamSpec, Support};
+use crate::field::{Field, Natural};
+use crate::membrane::Membrane;
+use crate::mesh::Mesh;
+use crate::spec::{Axial, BeamSpec, Foundation};
+use crate::support::{Hold, Support};
 
 /// What a support lets pass as "zero" in a nodal shape, relative to the largest such value of the shape: nine digits, so
 /// that sin(π) = 1.2e-16 or a value from a text file is one.
 const SUPPORT_TOLERANCE: f64 = 1e-9;
 
-/// A straight, uniform beam by finite elements. Immutable: all that moves is in the caller's vectors of [`Beam::dofs`]
-/// entries.
+/// One of the two degrees of freedom of a node that bend the beam.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Dof {
+    /// w, m.
+    Deflection,
+    /// The rotation of the section, rad: w' for Euler–Bernoulli.
+    Slope,
+}
+
+/// A straight beam by finite elements. Immutable: all that moves is in the caller's vectors of [`Beam::dofs`] entries.
+///
+/// Every node has its two dofs in every vector, w and the rotation, node by node; axial dofs follow after them all. What a
+/// support holds is there too and stays 0: [`Factor::solve`](crate::Factor::solve) returns 0 there, products write there what the
+/// support has to bear.
 #[derive(Debug, Clone)]
 pub struct Beam {
     pub(crate) spec: BeamSpec,
-    pub(crate) layout: Layout,
-    pub(crate) element: Element,
-    /// c/ρA + a₀: the part of C that is a multiple of M.
+    pub(crate) mesh: Mesh,
+    pub(crate) elements: Vec<Element>,
+    pub(crate) held: Vec<[bool; 2]>,
+    /// Bending, shear and N₀.
+    pub(crate) bending: Natural,
+    /// Winkler's foundation.
+    pub(crate) bed: Option<Field>,
+    /// Springs and dashpots of supports, by dof.
+    pub(crate) springs: Vec<(usize, f64)>,
+    pub(crate) dashpots: Vec<(usize, f64)>,
+    pub(crate) mass: Field,
+    /// Masses and inertias of nodes, by dof.
+    pub(crate) lumps: Vec<(usize, f64)>,
+    /// The part of C in bending that is a multiple of M.
     pub(crate) damping_of_mass: f64,
-    pub(crate) elements_per_length: f64,
-    mass: SparseColMat<usize, f64>,
-    damping: SparseColMat<usize, f64>,
-    stiffness: SparseColMat<usize, f64>,
-    pub(crate) symbolic: Arc<SymbolicSimplicialCholesky<usize>>,
+    /// What of C is no multiple of M or K, by elements.
+    pub(crate) bath: Option<Field>,
+    pub(crate) bar: Option<Bar>,
+    pub(crate) membrane: Option<Membrane>,
+    /// M, K and what of C is no multiple of them, in bending.
+    pub(crate) m: Blocks,
+    pub(crate) k: Blocks,
+    pub(crate) c: Option<Blocks>,
 }
 
 impl Beam {
@@ -39,47 +63,107 @@ impl Beam {
     /// [`BeamError`] that names the field, its value and the rule.
     ///
     /// ```
-    /// use teeter_beam::{Beam, BeamSpec, Damping, Section, Support};
-    /// let spec = BeamSpec {
-    ///     span: 0.36,
-    ///     elements: 20,
-    ///     section: Section::rectangle(0.03, 0.0015, 69e9, 2700.0)?,
-    ///     supports: [Support::Pinned, Support::Pinned],
-    ///     damping: Damping::default(),
-    /// };
-    /// assert_eq!(Beam::new(spec)?.dofs(), 40);
+    /// use teeter_beam::{Beam, BeamSpec, Section};
+    /// let spec = BeamSpec::new(0.36, 20, Section::rectangle(0.03, 0.0015, 69e9, 2700.0)?);
+    /// let beam = Beam::new(spec.clone())?;
+    /// assert_eq!((beam.dofs(), beam.free_dofs()), (42, 40));
     ///
-    /// let error = Beam::new(BeamSpec { span: -1.0, ..spec }).unwrap_err();
-    /// assert_eq!(error.to_string(), "span = -1: must be finite and > 0");
+    /// let mut wrong = spec;
+    /// wrong.span = -1.0;
+    /// assert_eq!(Beam::new(wrong).unwrap_err().to_string(), "span = -1: must be finite and > 0");
     /// # Ok::<(), teeter_beam::BeamError>(())
     /// ```
     pub fn new(spec: BeamSpec) -> Result<Self, BeamError> {
         spec.validate()?;
-        let layout = Layout::new(spec.elements, spec.supports);
-        let length = spec.span / spec.elements as f64;
-        let element = Element::new(length, spec.section.bending_stiffness, spec.section.mass_per_length);
-        let damping_of_mass = spec.damping.viscous / spec.section.mass_per_length + spec.damping.rayleigh_mass;
-        let (m, k) = (element.mass_matrix(), element.stiffness());
-        let c = std::array::from_fn(|i| {
-            std::array::from_fn(|j| damping_of_mass * m[i][j] + spec.damping.rayleigh_stiffness * k[i][j])
+        let mesh = Mesh::new(&spec)?;
+        let nodes = mesh.x.len();
+        let elements: Vec<Element> = (0..mesh.elements())
+            .map(|k| Element::new(mesh.length(k), section_at(&spec, 0.5 * (mesh.x[k] + mesh.x[k + 1]))))
+            .collect();
+
+        let supports = supports(&spec, &mesh);
+        let mut held = vec![[false; 2]; nodes];
+        let (mut springs, mut dashpots) = (Vec::new(), Vec::new());
+        for (node, support) in supports {
+            for (i, hold) in support.holds().into_iter().enumerate() {
+                match hold {
+                    Hold::Free => {}
+                    Hold::Fixed => held[node][i] = true,
+                    Hold::Spring { stiffness, damping } => {
+                        springs.extend((stiffness > 0.0).then_some((2 * node + i, stiffness)));
+                        dashpots.extend((damping > 0.0).then_some((2 * node + i, damping)));
+                    }
+                }
+            }
+        }
+        if held.iter().all(|node| *node == [true; 2]) {
+            let rule = "at least 2 between two clamped ends, else nothing can move";
+            return Err(BeamError::Count { field: "elements", value: spec.elements, rule });
+        }
+
+        let masses: Vec<Matrix4> = elements.iter().map(Element::mass).collect();
+        let mut m = Blocks::assemble(nodes, masses.iter().copied());
+        let mut lumps = Vec::new();
+        for lump in &spec.lumps {
+            let node = mesh.node(lump.x).ok_or(BeamError::OutsideSpan { x: lump.x, span: spec.span })?;
+            m.add_own(node, [lump.mass, 0.0, lump.inertia]);
+            lumps.extend([(2 * node, lump.mass), (2 * node + 1, lump.inertia)]);
+        }
+
+        let mut bending = Natural::bending(&elements);
+        let slopes = Natural::geometric(&elements);
+        if spec.axial_force != 0.0 {
+            bending.add_scaled(spec.axial_force, &slopes);
+        }
+        let (bed_matrices, bed) = layer(&spec, &mesh, &elements, |foundation| foundation.stiffness, 0.0);
+        let mut k = Blocks::assemble(nodes, bending.matrices());
+        if bed.is_some() {
+            let sum = [(1.0, &k.clone()), (1.0, &Blocks::assemble(nodes, bed_matrices.iter().copied()))];
+            k.combine(&sum);
+        }
+        add_by_dof(&mut k, &springs);
+
+        // c ∫NᵀN dx is a multiple of M where M is ρA ∫NᵀN dx with one ρA and nothing else.
+        let rho_a = elements[0].section.mass_per_length;
+        let plain = |e: &Element| e.section.mass_per_length == rho_a && e.section.rotatory_inertia == 0.0;
+        let proportional = elements.iter().all(plain) && spec.lumps.is_empty();
+        let viscous = spec.damping.viscous;
+        let (of_mass, beside) = if proportional { (viscous / rho_a, 0.0) } else { (0.0, viscous) };
+        let (bath_matrices, bath) = layer(&spec, &mesh, &elements, |foundation| foundation.damping, beside);
+        let c = (bath.is_some() || !dashpots.is_empty()).then(|| {
+            let mut c = Blocks::assemble(nodes, bath_matrices.iter().copied());
+            add_by_dof(&mut c, &dashpots);
+            c
         });
-        let pattern = pattern(&layout);
-        // The analysis of a valid band can only fail for want of memory.
-        let symbolic = analyse(&pattern).ok_or(BeamError::Count {
-            field: "elements",
-            value: spec.elements,
-            rule: "few enough for the memory at hand",
-        })?;
+
+        let flexibility: f64 = elements.iter().map(|e| e.length / e.section.axial_stiffness).sum();
+        let membrane = (spec.axial == Axial::Held).then(|| Membrane { slopes, stiffness: 1.0 / flexibility });
+        let bar = if let Axial::Elastic { held } = spec.axial {
+            let parts: Vec<_> =
+                elements.iter().map(|e| (e.section.axial_stiffness, e.section.mass_per_length, e.length)).collect();
+            let masses = lumps.iter().step_by(2).map(|(dof, mass)| (dof / 2, *mass)).collect();
+            Some(Bar::new(&parts, masses, held))
+        } else {
+            None
+        };
         Ok(Self {
+            damping_of_mass: of_mass + spec.damping.rayleigh_mass,
+            mass: Field::new(masses.iter()),
             spec,
-            layout,
-            element,
-            damping_of_mass,
-            elements_per_length: spec.elements as f64 / spec.span,
-            mass: assemble(&layout, &pattern, &m),
-            damping: assemble(&layout, &pattern, &c),
-            stiffness: assemble(&layout, &pattern, &k),
-            symbolic: Arc::new(symbolic),
+            mesh,
+            elements,
+            held,
+            bending,
+            bed,
+            springs,
+            dashpots,
+            lumps,
+            bath,
+            bar,
+            membrane,
+            m,
+            k,
+            c,
         })
     }
 
@@ -88,67 +172,82 @@ impl Beam {
         &self.spec
     }
 
-    /// Free degrees of freedom: the length of every vector.
+    /// Length of every vector: two entries a node, and one more with axial dofs.
     pub fn dofs(&self) -> usize {
-        self.layout.dofs()
+        let nodes = self.nodes();
+        2 * nodes + if self.bar.is_some() { nodes } else { 0 }
+    }
+
+    /// Unknowns: dofs that no support holds.
+    pub fn free_dofs(&self) -> usize {
+        (0..self.dofs()).filter(|dof| !self.is_held(*dof)).count()
+    }
+
+    /// Whether a support holds this dof; false where there is none.
+    pub fn is_held(&self, dof: usize) -> bool {
+        let bending = 2 * self.nodes();
+        if dof < bending {
+            return self.held[dof / 2][dof % 2];
+        }
+        self.bar.as_ref().and_then(|bar| bar.held.get(dof - bending)).copied().unwrap_or(false)
     }
 
     /// Nodes, one more than elements.
     pub fn nodes(&self) -> usize {
-        self.layout.elements + 1
+        self.mesh.x.len()
     }
 
-    /// Length of an element, m.
-    pub fn element_length(&self) -> f64 {
-        self.element.length
+    /// Elements.
+    pub fn elements(&self) -> usize {
+        self.elements.len()
+    }
+
+    /// Where the nodes are, m, rising from 0 to the span.
+    pub fn node_positions(&self) -> &[f64] {
+        &self.mesh.x
+    }
+
+    /// Its mass with all that it carries, kg.
+    pub fn total_mass(&self) -> f64 {
+        let own: f64 = self.elements.iter().map(|e| e.section.mass_per_length * e.length).sum();
+        own + self.spec.lumps.iter().map(|lump| lump.mass).sum::<f64>()
     }
 
     /// Whether C is not zero.
     pub fn is_damped(&self) -> bool {
-        self.damping_of_mass != 0.0 || self.spec.damping.rayleigh_stiffness != 0.0
+        self.damping_of_mass != 0.0 || self.spec.damping.rayleigh_stiffness != 0.0 || self.c.is_some()
     }
 
-    /// Index of a dof in the vectors; `None` where the support fixes it, or where there is no such node.
+    /// Whether a deflection stretches it, so that its elastic force is not linear.
+    pub fn is_stretched(&self) -> bool {
+        self.membrane.is_some()
+    }
+
+    /// Index of a dof in the vectors; `None` where the support holds it, or where there is no such node.
     ///
     /// ```
-    /// # use teeter_beam::{Beam, BeamSpec, Damping, Dof, Section, Support};
-    /// # let beam = Beam::new(BeamSpec { span: 1.0, elements: 4, section: Section::new(1.0, 1.0)?,
-    /// #     supports: [Support::Pinned; 2], damping: Damping::default() })?;
+    /// # use teeter_beam::{Beam, BeamSpec, Dof, Section};
+    /// # let beam = Beam::new(BeamSpec::new(1.0, 4, Section::new(1.0, 1.0)?))?;
     /// assert_eq!(beam.dof(0, Dof::Deflection), None);
-    /// assert_eq!(beam.dof(1, Dof::Deflection), Some(1));
+    /// assert_eq!(beam.dof(1, Dof::Deflection), Some(2));
     /// # Ok::<(), teeter_beam::BeamError>(())
     /// ```
     pub fn dof(&self, node: usize, kind: Dof) -> Option<usize> {
-        self.layout.dof(node, kind)
+        let component = usize::from(kind == Dof::Slope);
+        (!self.held.get(node)?[component]).then_some(2 * node + component)
     }
 
-    /// The consistent mass matrix, upper triangle. M, C and K have one pattern; entries that cancel to 0 are kept.
-    pub fn mass(&self) -> &SparseColMat<usize, f64> {
-        &self.mass
-    }
-
-    /// The damping matrix, upper triangle, on the pattern of [`Beam::mass`].
-    pub fn damping(&self) -> &SparseColMat<usize, f64> {
-        &self.damping
-    }
-
-    /// The stiffness matrix, upper triangle, on the pattern of [`Beam::mass`].
-    pub fn stiffness(&self) -> &SparseColMat<usize, f64> {
-        &self.stiffness
-    }
-
-    /// The vector of a nodal shape: `[w, w']` (m, rad; or their rates) for every node.
+    /// The vector of a nodal shape: w (m) and rotation (rad) of every node, or their rates. Axial dofs are 0.
     ///
     /// # Errors
     /// [`BeamError::Length`]; [`BeamError::Value`] for an entry that is not finite; [`BeamError::BrokenSupport`] for one
     /// that is not zero where a support holds it (to 1e-9 of the largest such value of the shape).
     ///
     /// ```
-    /// # use teeter_beam::{Beam, BeamSpec, Damping, Section, Support};
-    /// # let beam = Beam::new(BeamSpec { span: 1.0, elements: 2, section: Section::new(1.0, 1.0)?,
-    /// #     supports: [Support::Clamped, Support::Pinned], damping: Damping::default() })?;
+    /// # use teeter_beam::{Beam, BeamSpec, Section, Support};
+    /// # let spec = BeamSpec::new(1.0, 2, Section::new(1.0, 1.0)?);
+    /// let beam = Beam::new(spec.supported([Support::Clamped, Support::Pinned]))?;
     /// let q = beam.from_nodes(&[[0.0, 0.0], [0.1, 0.2], [0.0, -0.3]])?;
-    /// assert_eq!(q, [0.1, 0.2, -0.3]);
     /// assert_eq!(beam.to_nodes(&q)[2], [0.0, -0.3]);
     /// assert!(beam.from_nodes(&[[0.0, 0.1], [0.1, 0.2], [0.0, -0.3]]).is_err());
     /// # Ok::<(), teeter_beam::BeamError>(())
@@ -161,35 +260,49 @@ impl Beam {
         let largest = |k: usize| nodal.iter().fold(0.0_f64, |m, pair| m.max(pair[k].abs()));
         let zero = [largest(0), largest(1)].map(|size| SUPPORT_TOLERANCE * size);
         let mut q = Vec::with_capacity(self.dofs());
-        for (node, pair) in nodal.iter().enumerate() {
-            let fixed = 2 - self.layout.free(node);
-            for component in 0..fixed {
+        for (node, (pair, held)) in nodal.iter().zip(&self.held).enumerate() {
+            for component in 0..2 {
                 let value = pair[component];
-                if value.abs() > zero[component] {
+                if held[component] && value.abs() > zero[component] {
                     let support = self.support_of(node);
                     return Err(BeamError::BrokenSupport { node, component, value, support });
                 }
+                q.push(if held[component] { 0.0 } else { value });
             }
-            q.extend(&pair[fixed..]);
         }
+        q.resize(self.dofs(), 0.0);
         Ok(q)
     }
 
     fn support_of(&self, node: usize) -> Support {
-        self.spec.supports[usize::from(node > 0)]
+        let last = |support: Support, (at, found)| if at == node { found } else { support };
+        supports(&self.spec, &self.mesh).fold(Support::Free, last)
     }
 
-    /// `[w, w']` of every node, zero where a support holds it.
+    /// w and rotation of every node.
     ///
     /// # Panics
     /// If `q` has not [`Beam::dofs`] entries.
     pub fn to_nodes(&self, q: &[f64]) -> Vec<[f64; 2]> {
-        let (head, inner, tail) = self.layout.split(q);
-        let mut nodal = Vec::with_capacity(self.nodes());
-        nodal.push(head);
-        nodal.extend(inner);
-        nodal.push(tail);
-        nodal
+        self.bend(q).to_vec()
+    }
+
+    /// The part of a vector that bends, node by node.
+    ///
+    /// # Panics
+    /// If `q` has not [`Beam::dofs`] entries.
+    #[inline]
+    pub(crate) fn bend<'a>(&self, q: &'a [f64]) -> &'a [[f64; 2]] {
+        assert_eq!(q.len(), self.dofs(), "a vector must have one entry per degree of freedom");
+        q[..2 * self.nodes()].as_chunks().0
+    }
+
+    /// As [`Beam::bend`], with the axial part.
+    #[inline]
+    pub(crate) fn split_mut<'a>(&self, f: &'a mut [f64]) -> (&'a mut [[f64; 2]], &'a mut [f64]) {
+        assert_eq!(f.len(), self.dofs(), "a vector must have one entry per degree of freedom");
+        let (bend, axial) = f.split_at_mut(2 * self.nodes());
+        (bend.as_chunks_mut().0, axial)
     }
 
     /// [`BeamSpec::circular_frequency`] of this beam.
@@ -209,73 +322,101 @@ impl Beam {
     }
 }
 
+/// The supports by their nodes, the ends first.
+fn supports<'a>(spec: &'a BeamSpec, mesh: &'a Mesh) -> impl Iterator<Item = (usize, Support)> + use<'a> {
+    let ends = [(0, spec.supports[0]), (mesh.elements(), spec.supports[1])];
+    let inner = spec.inner_supports.iter().filter_map(|(x, support)| Some((mesh.node(*x)?, *support)));
+    ends.into_iter().chain(inner)
+}
+
+/// The section at a place that is no end of a segment.
+fn section_at(spec: &BeamSpec, x: f64) -> crate::Section {
+    let own = spec.segments.iter().rev().find(|segment| segment.from < x && x < segment.to);
+    own.map_or(spec.section, |segment| segment.section)
+}
+
+/// What all foundations and `everywhere` give to each element, as matrices and as a field; none where it is zero.
+fn layer(
+    spec: &BeamSpec,
+    mesh: &Mesh,
+    elements: &[Element],
+    of: impl Fn(&Foundation) -> f64,
+    everywhere: f64,
+) -> (Vec<Matrix4>, Option<Field>) {
+    let under = |k: usize| {
+        let x = 0.5 * (mesh.x[k] + mesh.x[k + 1]);
+        let covering = spec.foundations.iter().filter(|f| f.from < x && x < f.to);
+        everywhere + covering.map(&of).sum::<f64>()
+    };
+    let values: Vec<f64> = (0..elements.len()).map(under).collect();
+    let matrices: Vec<Matrix4> = elements.iter().zip(&values).map(|(e, value)| e.foundation(*value)).collect();
+    let field = values.iter().any(|value| *value != 0.0).then(|| Field::new(matrices.iter()));
+    (matrices, field)
+}
+
+fn add_by_dof(blocks: &mut Blocks, values: &[(usize, f64)]) {
+    for &(dof, value) in values {
+        blocks.add_own(dof / 2, if dof % 2 == 0 { [value, 0.0, 0.0] } else { [0.0, 0.0, value] });
+    }
+}
+
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::spec::{Damping, Section};
+    use crate::spec::Damping;
+    use crate::{MatrixWeights, Section};
 
     pub(crate) fn all_supports() -> Vec<[Support; 2]> {
-        let kinds = [Support::Free, Support::Pinned, Support::Clamped];
+        let kinds = [Support::Free, Support::Pinned, Support::Clamped, Support::Guided];
         kinds.iter().flat_map(|a| kinds.map(|b| [*a, b])).collect()
     }
 
-    fn build(elements: usize, supports: [Support; 2], damping: Damping) -> Beam {
-        let section = Section::new(2.0, 3.0).unwrap();
-        Beam::new(BeamSpec { span: 1.0, elements, section, supports, damping }).unwrap()
+    pub(crate) fn spec(elements: usize, supports: [Support; 2]) -> BeamSpec {
+        BeamSpec::new(1.0, elements, Section::new(2.0, 3.0).unwrap()).supported(supports)
     }
 
     pub(crate) fn beam(elements: usize, supports: [Support; 2]) -> Beam {
-        build(elements, supports, Damping::default())
+        Beam::new(spec(elements, supports)).unwrap()
     }
 
     pub(crate) fn damped(elements: usize, supports: [Support; 2]) -> Beam {
-        build(elements, supports, Damping { viscous: 0.7, rayleigh_mass: 0.3, rayleigh_stiffness: 0.01 })
+        let damping = Damping { viscous: 0.7, rayleigh_mass: 0.3, rayleigh_stiffness: 0.01, modal: Vec::new() };
+        Beam::new(spec(elements, supports).damped(damping)).unwrap()
     }
 
-    /// Values without a pattern that a support or a symmetry could hide.
-    pub(crate) fn wave(len: usize) -> Vec<f64> {
-        (0..len).map(|i| (1.3 * i as f64 + 0.4).sin()).collect()
+    /// A beam with everything: shear, segments, an inner support, springs, a lump, a foundation, axial dofs under tension.
+    pub(crate) fn furnished() -> Beam {
+        let plain = Section::new(2.0, 3.0).unwrap().with_axial_stiffness(50.0).unwrap();
+        let thick = Section::new(5.0, 4.0).unwrap().with_shear(40.0, 0.02).unwrap().with_axial_stiffness(70.0).unwrap();
+        let spring = |stiffness, damping| Hold::Spring { stiffness, damping };
+        let end = Support::Elastic { deflection: spring(30.0, 0.4), rotation: spring(1.5, 0.0) };
+        let foundation = Foundation { from: 0.1, to: 0.65, stiffness: 80.0, damping: 0.3 };
+        let spec = spec(7, [Support::Clamped, end])
+            .segment(0.3, 0.5, thick)
+            .support_at(0.75, Support::Pinned)
+            .lump(0.4, 0.5, 0.01)
+            .foundation(foundation)
+            .axial(Axial::Elastic { held: [true, false] })
+            .axial_force(3.0)
+            .damped(Damping { viscous: 0.7, rayleigh_mass: 0.3, rayleigh_stiffness: 0.01, modal: Vec::new() });
+        Beam::new(BeamSpec { section: plain, ..spec }).unwrap()
     }
 
-    pub(crate) fn dense(upper: &SparseColMat<usize, f64>) -> Vec<Vec<f64>> {
-        let n = upper.ncols();
-        let mut full = vec![vec![0.0; n]; n];
-        for entry in upper.triplet_iter() {
-            assert!(entry.row <= entry.col);
-            full[entry.row][entry.col] = *entry.val;
-            full[entry.col][entry.row] = *entry.val;
-        }
-        full
-    }
-
-    #[test]
-    fn the_three_matrices_have_one_pattern_with_its_structural_zeros() {
-        for supports in all_supports() {
-            let beam = beam(3, supports);
-            for matrix in [beam.damping(), beam.stiffness()] {
-                assert_eq!(matrix.symbolic().col_ptr(), beam.mass().symbolic().col_ptr());
-                assert_eq!(matrix.symbolic().row_idx(), beam.mass().symbolic().row_idx());
-            }
-            let (w, slope) = (beam.dof(1, Dof::Deflection).unwrap(), beam.dof(1, Dof::Slope).unwrap());
-            for matrix in [beam.mass(), beam.damping(), beam.stiffness()] {
-                assert_eq!(matrix.get(w, slope), Some(&0.0), "{supports:?}");
-            }
-        }
+    /// Values without a pattern that a support or a symmetry could hide; 0 where the beam is held.
+    pub(crate) fn wave(beam: &Beam) -> Vec<f64> {
+        let value = |i: usize| if beam.is_held(i) { 0.0 } else { (1.3 * i as f64 + 0.4).sin() };
+        (0..beam.dofs()).map(value).collect()
     }
 
     #[test]
     fn rigid_motions_of_a_free_beam_cost_no_force() {
-        let beam = beam(7, [Support::Free; 2]);
-        let l = beam.element_length();
-        let matrix = dense(beam.stiffness());
-        let size = matrix.iter().flatten().fold(0.0_f64, |m, a| m.max(a.abs()));
-        let rotation: Vec<[f64; 2]> = (0..8).map(|i| [f64::from(i) * l, 1.0]).collect();
-        for nodes in [vec![[1.0, 0.0]; 8], rotation] {
+        let beam = beam(8, [Support::Free; 2]);
+        let rotation: Vec<[f64; 2]> = beam.node_positions().iter().map(|x| [*x, 1.0]).collect();
+        for nodes in [vec![[1.0, 0.0]; 9], rotation] {
             let q = beam.from_nodes(&nodes).unwrap();
-            for row in &matrix {
-                let force: f64 = row.iter().zip(&q).map(|(a, x)| a * x).sum();
-                assert!(force.abs() < 1e-15 * size);
-            }
+            let mut force = vec![0.0; beam.dofs()];
+            beam.add_stiffness_product(1.0, &q, &mut force);
+            assert!(force.iter().all(|f| *f == 0.0));
         }
     }
 
@@ -283,9 +424,21 @@ pub(crate) mod tests {
     fn nodes_and_dofs_are_two_views_of_one_shape() {
         for supports in all_supports() {
             let beam = beam(4, supports);
-            let q = wave(beam.dofs());
+            let q = wave(&beam);
             assert_eq!(beam.from_nodes(&beam.to_nodes(&q)).unwrap(), q, "{supports:?}");
         }
+    }
+
+    #[test]
+    fn what_a_support_holds_stays_where_it_is() {
+        let beam = furnished();
+        let held: Vec<usize> = (0..beam.dofs()).filter(|dof| beam.is_held(*dof)).collect();
+        let inner = beam.mesh.node(0.75).unwrap();
+        assert_eq!(held, [0, 1, 2 * inner, 2 * beam.nodes()]);
+        assert_eq!(beam.free_dofs(), beam.dofs() - 4);
+        let mut x = vec![1.0; beam.dofs()];
+        beam.factor(MatrixWeights { mass: 1.0, damping: 0.1, stiffness: 0.01 }).unwrap().solve(&mut x);
+        assert!(held.iter().all(|dof| x[*dof] == 0.0));
     }
 
     #[test]

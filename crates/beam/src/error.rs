@@ -1,7 +1,7 @@
 //! What can be wrong with a beam, a factorisation, a static solve.
 
 use crate::factor::MatrixWeights;
-use crate::spec::Support;
+use crate::support::Support;
 
 /// A value that a beam cannot be built from, or cannot be asked.
 ///
@@ -40,17 +40,22 @@ pub enum BeamError {
         found: usize,
     },
     /// A nodal shape that moves where the support holds it.
-    #[error("nodal[{node}][{component}] = {value}: must be 0, the end is {support:?}")]
+    #[error("nodal[{node}][{component}] = {value}: must be 0, the support there is {support:?}")]
     BrokenSupport {
-        /// The node, 0 or the last.
+        /// The node.
         node: usize,
-        /// 0 for the deflection w, 1 for the slope w'.
+        /// 0 for the deflection w, 1 for the rotation.
         component: usize,
         /// The value found there, m or rad.
         value: f64,
-        /// The support of that end.
+        /// The support there.
         support: Support,
     },
+    /// A beam whose frequencies no simple equation gives.
+    #[error(
+        "the frequency equations are for a uniform Euler-Bernoulli beam between free, pinned, clamped or guided ends and nothing else on it; take the modes of the finite elements"
+    )]
+    NoFrequencyEquation,
     /// A position that is not on the beam.
     #[error("x = {x}: must be on the beam, in [0, {span}]")]
     OutsideSpan {
@@ -74,13 +79,16 @@ pub enum FactorError {
         value: f64,
     },
     /// The weighted sum is not positive definite, at least not to rounding.
-    #[error("{weights:?}: the weighted sum of M, C and K is not positive definite (found at pivot {pivot})")]
+    #[error("{weights:?}: the weighted sum of M, C and K is not positive definite (found at dof {dof})")]
     NotPositiveDefinite {
         /// The weights asked for.
         weights: MatrixWeights,
-        /// The pivot, counted from 1, at which the factorisation stopped.
-        pivot: usize,
+        /// The degree of freedom at which the elimination, from both ends to the middle, stopped.
+        dof: usize,
     },
+    /// Too little memory for the analysis of the pattern.
+    #[error("too little memory to analyse the pattern of the matrices")]
+    Memory,
     /// The factor to be renewed is one of a beam whose matrices have another pattern.
     #[error(
         "the factor is one of another beam ({found} dofs, this beam has {expected}): make it with this beam's `factor`"
@@ -104,6 +112,14 @@ pub enum StaticError {
         supports: [Support; 2],
         /// The motion that is left, and the support that would take it.
         missing: &'static str,
+    },
+    /// A compressive axial force at or beyond the buckling load.
+    #[error(
+        "axial_force = {axial_force}: the beam buckles under it (the stiffness is not positive definite); a smaller compression or more supports would hold it"
+    )]
+    Buckled {
+        /// The given axial force, N.
+        axial_force: f64,
     },
     /// The load vector has the wrong length.
     #[error("load: has {found} entries, must have {expected}")]

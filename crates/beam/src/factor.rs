@@ -1,17 +1,11 @@
-//! Cholesky factors of weighted sums of the three matrices: the effective inverse mass of a time step.
+//! Factors of weighted sums of the three matrices: the effective inverse mass of a time step.
 
-use std::sync::Arc;
-
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
-use faer::sparse::linalg::cholesky::simplicial::{
-    self, SymbolicSimplicialCholesky, factorize_simplicial_numeric_llt, factorize_simplicial_numeric_llt_scratch,
-};
-use faer::sparse::{SparseColMat, SymbolicSparseColMat};
-
-use crate::band::Band;
+use crate::band::Twisted;
+use crate::bar::BarFactor;
 use crate::beam::Beam;
+use crate::blocks::Blocks;
 use crate::error::FactorError;
+use crate::sparse::SparseFactor;
 
 /// The weights of `mass M + damping C + stiffness K`.
 ///
@@ -38,21 +32,49 @@ impl MatrixWeights {
     }
 }
 
-/// The Cholesky factor of a weighted sum of M, C and K, made by [`Beam::factor`].
+/// How a matrix is factorised. Both need the same memory up to a factor and give the same solutions up to rounding.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Backend {
+    /// In blocks of a node, from both ends to the middle: what suits a chain of elements best, two to four times faster than
+    /// the general way at every size.
+    #[default]
+    Banded,
+    /// A general sparse Cholesky factorisation (faer), symbolic once.
+    Sparse,
+}
+
+#[derive(Debug)]
+enum Kind {
+    Banded { bend: Twisted, bar: Option<BarFactor>, sum: Blocks },
+    Sparse(SparseFactor),
+}
+
+/// What the stretching of a beam held along its axis adds to the matrix: `weight` g gᵀ.
+#[derive(Debug, Clone)]
+struct RankOne {
+    /// g = G q.
+    g: Vec<f64>,
+    /// A⁻¹g.
+    u: Vec<f64>,
+    /// weight/(1 + weight gᵀA⁻¹g); 0 until [`Beam::follow`] was called.
+    scale: f64,
+}
+
+/// The factor of a weighted sum of M, C and K, made by [`Beam::factor`].
 ///
 /// Solving needs no scratch and no `mut`: one factor may serve several threads.
 pub struct Factor {
     weights: MatrixWeights,
-    symbolic: Arc<SymbolicSimplicialCholesky<usize>>,
-    matrix: SparseColMat<usize, f64>,
-    values: Vec<f64>,
-    band: Band,
-    scratch: MemBuffer,
+    kind: Kind,
+    stretch: Option<RankOne>,
+    held: Vec<[bool; 2]>,
+    dofs: usize,
 }
 
 impl std::fmt::Debug for Factor {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Factor").field("dofs", &self.dofs()).field("weights", &self.weights).finish_non_exhaustive()
+        f.debug_struct("Factor").field("dofs", &self.dofs).field("weights", &self.weights).finish_non_exhaustive()
     }
 }
 
@@ -62,74 +84,100 @@ impl Factor {
         self.weights
     }
 
-    /// Length of the vectors that it solves for.
-    pub fn dofs(&self) -> usize {
-        self.band.dofs()
+    /// How it was factorised.
+    pub fn backend(&self) -> Backend {
+        match self.kind {
+            Kind::Banded { .. } => Backend::Banded,
+            Kind::Sparse(_) => Backend::Sparse,
+        }
     }
 
-    /// f ← (mass M + damping C + stiffness K)⁻¹ f, in place, without allocation.
+    /// Length of the vectors that it solves for.
+    pub fn dofs(&self) -> usize {
+        self.dofs
+    }
+
+    /// f ← (mass M + damping C + stiffness K)⁻¹ f, in place, without allocation; 0 for what supports hold.
     ///
     /// # Panics
     /// If `f` has not [`Factor::dofs`] entries.
     pub fn solve(&self, f: &mut [f64]) {
-        assert_eq!(f.len(), self.dofs(), "a right-hand side must have one entry per degree of freedom");
-        self.band.solve(f);
+        assert_eq!(f.len(), self.dofs, "a right-hand side must have one entry per degree of freedom");
+        self.solve_linear(f);
+        if let Some(RankOne { g, u, scale }) = &self.stretch
+            && *scale != 0.0
+        {
+            // Sherman–Morrison.
+            let along = scale * g.iter().zip(f.iter()).map(|(g, f)| g * f).sum::<f64>();
+            f.iter_mut().zip(u).for_each(|(f, u)| *f -= along * u);
+        }
+    }
+
+    fn solve_linear(&self, f: &mut [f64]) {
+        match &self.kind {
+            Kind::Banded { bend, bar, .. } => {
+                let (f_bend, f_bar) = f.split_at_mut(2 * self.held.len());
+                bend.solve(f_bend.as_chunks_mut().0);
+                if let Some(bar) = bar {
+                    bar.solve(f_bar);
+                }
+            }
+            Kind::Sparse(sparse) => sparse.solve(f),
+        }
     }
 
     /// Fills in the numbers of a factor whose memory is there.
     fn update(&mut self, beam: &Beam, weights: MatrixWeights) -> Result<(), FactorError> {
         weights.validate()?;
         self.weights = weights;
-        let MatrixWeights { mass, damping, stiffness } = weights;
-        let parts = beam.mass().val().iter().zip(beam.damping().val()).zip(beam.stiffness().val());
-        for (a, ((m, c), k)) in self.matrix.val_mut().iter_mut().zip(parts) {
-            *a = mass * m + damping * c + stiffness * k;
+        if let Some(stretch) = &mut self.stretch {
+            stretch.scale = 0.0;
         }
-        let outcome = factorize_simplicial_numeric_llt(
-            &mut self.values,
-            self.matrix.as_ref(),
-            LltRegularization::default(),
-            &self.symbolic,
-            MemStack::new(&mut self.scratch),
-        );
-        match outcome {
-            Ok(_) => {
-                self.band.fill(self.symbolic.col_ptr(), &self.values);
+        let not_definite = |dof| FactorError::NotPositiveDefinite { weights, dof };
+        match &mut self.kind {
+            Kind::Banded { bend, bar, sum } => {
+                beam.combine(weights, sum);
+                bend.factorise(sum, &beam.held).map_err(not_definite)?;
+                if let (Some(factor), Some(bar)) = (bar, &beam.bar) {
+                    let (mass, stiffness) = beam.axial_weights(weights);
+                    let nodes = beam.nodes();
+                    factor.factorise(bar, mass, stiffness).map_err(|node| not_definite(2 * nodes + node))?;
+                }
                 Ok(())
             }
-            Err(LltError::NonPositivePivot { index }) => {
-                // Half a factor must not pass for one.
-                self.band.invalidate();
-                Err(FactorError::NotPositiveDefinite { weights, pivot: index })
-            }
+            Kind::Sparse(sparse) => sparse.update(beam, weights).map_err(not_definite),
         }
     }
 }
 
-/// The symbolic factorisation of a banded pattern in its own order (nothing fills in outside the band).
-pub(crate) fn analyse(pattern: &SymbolicSparseColMat<usize>) -> Option<SymbolicSimplicialCholesky<usize>> {
-    let n = pattern.ncols();
-    let mut tree = vec![0_isize; n];
-    let mut counts = vec![0_usize; n];
-    let request = simplicial::prefactorize_symbolic_cholesky_scratch::<usize>(n, pattern.row_idx().len())
-        .or(simplicial::factorize_simplicial_symbolic_cholesky_scratch::<usize>(n));
-    let mut buffer = MemBuffer::new(request);
-    let stack = MemStack::new(&mut buffer);
-    let tree = simplicial::prefactorize_symbolic_cholesky(&mut tree, &mut counts, pattern.as_ref(), stack);
-    simplicial::factorize_simplicial_symbolic_cholesky(pattern.as_ref(), tree, &counts, stack).ok()
-}
-
 impl Beam {
-    /// The Cholesky factor of `mass M + damping C + stiffness K`.
+    /// Weights of M, K and the rest of C in bending.
+    fn bending_weights(&self, w: MatrixWeights) -> [f64; 3] {
+        let a1 = self.spec.damping.rayleigh_stiffness;
+        [w.mass + w.damping * self.damping_of_mass, w.stiffness + w.damping * a1, w.damping]
+    }
+
+    pub(crate) fn axial_weights(&self, w: MatrixWeights) -> (f64, f64) {
+        let damping = &self.spec.damping;
+        (w.mass + w.damping * damping.rayleigh_mass, w.stiffness + w.damping * damping.rayleigh_stiffness)
+    }
+
+    pub(crate) fn combine(&self, weights: MatrixWeights, sum: &mut Blocks) {
+        let [m, k, c] = self.bending_weights(weights);
+        match &self.c {
+            Some(rest) => sum.combine(&[(m, &self.m), (k, &self.k), (c, rest)]),
+            None => sum.combine(&[(m, &self.m), (k, &self.k)]),
+        }
+    }
+
+    /// The factor of `mass M + damping C + stiffness K`, in blocks from both ends ([`Backend::Banded`]).
     ///
     /// # Errors
     /// [`FactorError`] for weights that are not finite, or whose sum is not positive definite.
     ///
     /// ```
-    /// # use teeter_beam::{Beam, BeamSpec, Damping, MatrixWeights, Section, Support};
-    /// # let beam = Beam::new(BeamSpec {
-    /// #     span: 0.36, elements: 20, section: Section::rectangle(0.03, 0.0015, 69e9, 2700.0)?,
-    /// #     supports: [Support::Pinned; 2], damping: Damping::default() })?;
+    /// # use teeter_beam::{Beam, BeamSpec, MatrixWeights, Section};
+    /// # let beam = Beam::new(BeamSpec::new(0.36, 20, Section::rectangle(0.03, 0.0015, 69e9, 2700.0)?))?;
     /// let h = 1e-4;
     /// let w = beam.factor(MatrixWeights { mass: 1.0, damping: 0.5 * h, stiffness: 0.25 * h * h })?;
     /// let mut jump = vec![0.0; beam.dofs()];
@@ -139,17 +187,26 @@ impl Beam {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn factor(&self, weights: MatrixWeights) -> Result<Factor, FactorError> {
-        let symbolic = Arc::clone(&self.symbolic);
-        let scratch = MemBuffer::new(factorize_simplicial_numeric_llt_scratch::<usize, f64>(self.dofs()));
-        let values = vec![0.0; symbolic.len_val()];
-        let mut factor = Factor {
-            weights,
-            symbolic,
-            matrix: self.stiffness().clone(),
-            values,
-            band: Band::new(self.dofs()),
-            scratch,
+        self.factor_with(weights, Backend::default())
+    }
+
+    /// As [`Beam::factor`], factorised as one chooses.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn factor_with(&self, weights: MatrixWeights, backend: Backend) -> Result<Factor, FactorError> {
+        let nodes = self.nodes();
+        let kind = match backend {
+            Backend::Banded => Kind::Banded {
+                bend: Twisted::new(nodes),
+                bar: self.bar.as_ref().map(|_| BarFactor::new(nodes)),
+                sum: Blocks::zero(nodes),
+            },
+            Backend::Sparse => Kind::Sparse(SparseFactor::new(self)?),
         };
+        let zero = vec![0.0; self.dofs()];
+        let stretch = self.membrane.is_some().then(|| RankOne { g: zero.clone(), u: zero, scale: 0.0 });
+        let mut factor = Factor { weights, kind, stretch, held: self.held.clone(), dofs: self.dofs() };
         factor.update(self, weights)?;
         Ok(factor)
     }
@@ -157,26 +214,41 @@ impl Beam {
     /// Makes `factor` that of other weights, in its own memory: no symbolic work, no allocation.
     ///
     /// # Errors
-    /// As [`Beam::factor`], and [`FactorError::OtherBeam`] for the factor of a beam whose matrices have another pattern.
+    /// As [`Beam::factor`], and [`FactorError::OtherBeam`] for the factor of a beam with other dofs.
     /// After [`FactorError::NotPositiveDefinite`] the factor's solutions are NaN until it is renewed with success.
     ///
     /// ```
-    /// # use teeter_beam::{Beam, BeamSpec, Damping, MatrixWeights, Section, Support};
-    /// # let beam = Beam::new(BeamSpec {
-    /// #     span: 0.36, elements: 20, section: Section::rectangle(0.03, 0.0015, 69e9, 2700.0)?,
-    /// #     supports: [Support::Pinned; 2], damping: Damping::default() })?;
+    /// # use teeter_beam::{Beam, BeamSpec, MatrixWeights, Section};
+    /// # let beam = Beam::new(BeamSpec::new(0.36, 20, Section::rectangle(0.03, 0.0015, 69e9, 2700.0)?))?;
     /// let mut w = beam.factor(MatrixWeights { mass: 1.0, damping: 0.0, stiffness: 0.0 })?;
     /// beam.refactor(MatrixWeights { mass: 1.0, damping: 0.0, stiffness: 2.5e-9 }, &mut w)?;
     /// assert_eq!(w.weights().stiffness, 2.5e-9);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn refactor(&self, weights: MatrixWeights, factor: &mut Factor) -> Result<(), FactorError> {
-        // By pattern, not by identity: a beam of another section or span may take over the memory.
-        let (ours, theirs) = (self.stiffness().symbolic(), factor.matrix.symbolic());
-        if ours.col_ptr() != theirs.col_ptr() {
-            return Err(FactorError::OtherBeam { expected: self.dofs(), found: factor.dofs() });
+        // By what is held, not by identity: a beam of another section or span may take over the memory.
+        if self.dofs() != factor.dofs || self.held != factor.held || self.membrane.is_some() != factor.stretch.is_some()
+        {
+            return Err(FactorError::OtherBeam { expected: self.dofs(), found: factor.dofs });
         }
         factor.update(self, weights)
+    }
+
+    /// Takes the stretching at `q` into the factor of a beam that is held along its axis: K + EA/L (Gq)(Gq)ᵀ in place of K,
+    /// which makes a θ step with θ = ½ keep its energy (see `membrane.rs`). Nothing for other beams. One solve, no allocation.
+    ///
+    /// # Panics
+    /// If `q` has not [`Beam::dofs`] entries.
+    pub fn follow(&self, q: &[f64], factor: &mut Factor) {
+        let (Some(membrane), Some(mut stretch)) = (&self.membrane, factor.stretch.take()) else { return };
+        stretch.g.fill(0.0);
+        membrane.slopes.add_product(1.0, self.bend(q), self.split_mut(&mut stretch.g).0);
+        stretch.u.copy_from_slice(&stretch.g);
+        factor.solve_linear(&mut stretch.u);
+        let along: f64 = stretch.g.iter().zip(&stretch.u).map(|(g, u)| g * u).sum();
+        let weight = factor.weights.stiffness * membrane.stiffness;
+        stretch.scale = weight / (1.0 + weight * along);
+        factor.stretch = Some(stretch);
     }
 }
 
@@ -184,23 +256,27 @@ impl Beam {
 mod tests {
     use super::*;
     use crate::Support::{Clamped, Free, Pinned};
-    use crate::beam::tests::{all_supports, beam, damped, wave};
+    use crate::beam::tests::{all_supports, beam, damped, furnished, spec, wave};
+    use crate::{Axial, Section};
 
     const STEP: MatrixWeights = MatrixWeights { mass: 1.0, damping: 5e-3, stiffness: 2.5e-5 };
 
     #[test]
-    fn solving_undoes_the_products_for_all_supports() {
-        for supports in all_supports() {
-            for elements in [2, 3, 20] {
-                let beam = damped(elements, supports);
-                let x = wave(beam.dofs());
-                let mut f = vec![0.0; beam.dofs()];
-                beam.add_mass_product(STEP.mass, &x, &mut f);
-                beam.add_damping_product(STEP.damping, &x, &mut f);
-                beam.add_stiffness_product(STEP.stiffness, &x, &mut f);
-                beam.factor(STEP).unwrap().solve(&mut f);
+    fn solving_undoes_the_products_in_both_ways() {
+        let plain = all_supports().into_iter().flat_map(|supports| [2, 3, 20].map(|n| damped(n, supports)));
+        for beam in plain.chain([furnished()]) {
+            let x = wave(&beam);
+            let mut f = vec![0.0; beam.dofs()];
+            beam.add_mass_product(STEP.mass, &x, &mut f);
+            beam.add_damping_product(STEP.damping, &x, &mut f);
+            beam.add_stiffness_product(STEP.stiffness, &x, &mut f);
+            for backend in [Backend::Banded, Backend::Sparse] {
+                let mut f = f.clone();
+                let factor = beam.factor_with(STEP, backend).unwrap();
+                assert_eq!(factor.backend(), backend);
+                factor.solve(&mut f);
                 for (f, x) in f.iter().zip(&x) {
-                    assert!((f - x).abs() < 1e-9, "{supports:?} {elements}: {f} {x}");
+                    assert!((f - x).abs() < 1e-9, "{backend:?} {:?}: {f} {x}", beam.spec());
                 }
             }
         }
@@ -208,37 +284,43 @@ mod tests {
 
     #[test]
     fn a_renewed_factor_is_bitwise_a_new_one() {
-        let beam = damped(12, [Pinned, Pinned]);
-        let mut renewed = beam.factor(MatrixWeights { mass: 1.0, damping: 0.0, stiffness: 0.0 }).unwrap();
-        beam.refactor(STEP, &mut renewed).unwrap();
-        let fresh = beam.factor(STEP).unwrap();
-        let (mut a, mut b) = (wave(beam.dofs()), wave(beam.dofs()));
-        renewed.solve(&mut a);
-        fresh.solve(&mut b);
-        assert_eq!(a, b);
-        assert_eq!(renewed.weights(), STEP);
+        for backend in [Backend::Banded, Backend::Sparse] {
+            let beam = furnished();
+            let rigid = MatrixWeights { mass: 1.0, damping: 0.0, stiffness: 0.0 };
+            let mut renewed = beam.factor_with(rigid, backend).unwrap();
+            beam.refactor(STEP, &mut renewed).unwrap();
+            let fresh = beam.factor_with(STEP, backend).unwrap();
+            let (mut a, mut b) = (wave(&beam), wave(&beam));
+            renewed.solve(&mut a);
+            fresh.solve(&mut b);
+            assert_eq!(a, b);
+            assert_eq!(renewed.weights(), STEP);
+        }
     }
 
     #[test]
     fn bad_weights_are_refused_and_leave_no_half_factor() {
-        let beam = beam(6, [Clamped, Free]);
-        let mut factor = beam.factor(STEP).unwrap();
-        let negative = MatrixWeights { mass: -1.0, ..STEP };
-        assert!(matches!(beam.refactor(negative, &mut factor), Err(FactorError::NotPositiveDefinite { pivot: 1, .. })));
-        let mut x = vec![1.0; beam.dofs()];
-        factor.solve(&mut x);
-        assert!(x.iter().all(|x| x.is_nan()));
-        beam.refactor(STEP, &mut factor).unwrap();
-        let mut x = vec![1.0; beam.dofs()];
-        factor.solve(&mut x);
-        assert!(x.iter().all(|x| x.is_finite()));
-        for (field, weights) in [
-            ("mass", MatrixWeights { mass: f64::NAN, ..STEP }),
-            ("damping", MatrixWeights { damping: f64::INFINITY, ..STEP }),
-            ("stiffness", MatrixWeights { stiffness: f64::NEG_INFINITY, ..STEP }),
-        ] {
-            let text = beam.factor(weights).unwrap_err().to_string();
-            assert!(text.contains(field), "{text}");
+        for backend in [Backend::Banded, Backend::Sparse] {
+            let beam = beam(6, [Clamped, Free]);
+            let mut factor = beam.factor_with(STEP, backend).unwrap();
+            let negative = MatrixWeights { mass: -1.0, ..STEP };
+            let error = beam.refactor(negative, &mut factor);
+            assert!(matches!(error, Err(FactorError::NotPositiveDefinite { dof: 2, .. })), "{error:?}");
+            let mut x = vec![1.0; beam.dofs()];
+            factor.solve(&mut x);
+            assert!(x[2..].iter().all(|x| x.is_nan()));
+            beam.refactor(STEP, &mut factor).unwrap();
+            let mut x = vec![1.0; beam.dofs()];
+            factor.solve(&mut x);
+            assert!(x.iter().all(|x| x.is_finite()));
+            for (field, weights) in [
+                ("mass", MatrixWeights { mass: f64::NAN, ..STEP }),
+                ("damping", MatrixWeights { damping: f64::INFINITY, ..STEP }),
+                ("stiffness", MatrixWeights { stiffness: f64::NEG_INFINITY, ..STEP }),
+            ] {
+                let text = beam.factor_with(weights, backend).unwrap_err().to_string();
+                assert!(text.contains(field), "{text}");
+            }
         }
     }
 
@@ -247,6 +329,32 @@ mod tests {
         let mut factor = beam(6, [Clamped, Free]).factor(STEP).unwrap();
         for other in [beam(7, [Clamped, Free]), beam(6, [Pinned, Pinned]), beam(6, [Free, Free])] {
             assert!(matches!(other.refactor(STEP, &mut factor), Err(FactorError::OtherBeam { .. })));
+        }
+    }
+
+    #[test]
+    fn a_factor_that_follows_has_the_stretching_in_it() {
+        let section = Section::new(2.0, 3.0).unwrap().with_axial_stiffness(500.0).unwrap();
+        let spec = crate::BeamSpec { section, ..spec(6, [Pinned, Clamped]) };
+        let beam = Beam::new(spec.axial(Axial::Held)).unwrap();
+        let q: Vec<f64> = wave(&beam).iter().map(|q| 0.1 * q).collect();
+        for backend in [Backend::Banded, Backend::Sparse] {
+            let mut factor = beam.factor_with(STEP, backend).unwrap();
+            beam.follow(&q, &mut factor);
+            let x = wave(&beam);
+            let mut f = vec![0.0; beam.dofs()];
+            beam.add_mass_product(STEP.mass, &x, &mut f);
+            beam.add_stiffness_product(STEP.stiffness, &x, &mut f);
+            // EA/L (Gq)(Gq)ᵀ, with G q by the derivative of s = ∫w'² dx: force − linear force = −½ EA/L s G q.
+            let (mut force, mut linear) = (vec![0.0; beam.dofs()], vec![0.0; beam.dofs()]);
+            beam.add_elastic_force(&q, &mut force);
+            beam.add_stiffness_product(-1.0, &q, &mut linear);
+            let n = beam.axial_force(&q);
+            let g: Vec<f64> = force.iter().zip(&linear).map(|(f, l)| (l - f) / n).collect();
+            let along: f64 = g.iter().zip(&x).map(|(g, x)| g * x).sum();
+            f.iter_mut().zip(&g).for_each(|(f, g)| *f += STEP.stiffness * 500.0 * along * g);
+            factor.solve(&mut f);
+            assert!(f.iter().zip(&x).all(|(f, x)| (f - x).abs() < 1e-11), "{backend:?}");
         }
     }
 }

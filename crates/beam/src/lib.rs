@@ -1,5 +1,4 @@
-//! Plane Euler–Bernoulli beams by finite elements: assembly, damping, statics, loads, frequencies, and the effective
-//! inverse mass of a time step.
+//! Plane beams by finite elements: statics, dynamics, modes, and the effective inverse mass of a time step.
 //!
 //! The model (`docs/theory.md` §1), with w the deflection, positive upwards:
 //!
@@ -7,10 +6,14 @@
 //! EI w'''' + c ẇ + ρA ẅ = f(x, t)        semi-discrete:  M q̈ + C q̇ + K q = P(t) + r(t)
 //! ```
 //!
-//! Cubic Hermite elements of one length, consistent mass, two dofs per node: w in m and w' in rad. The dofs that a
-//! support fixes are left out, the others numbered node by node; every vector has [`Beam::dofs`] entries, and all
-//! matrices a half bandwidth of three. x runs from 0 to the span along the beam's own axis: where the beam stands in the
-//! world is not its business, nor is contact. SI units throughout.
+//! Two-node elements with two dofs a node: w in m, and the rotation of the section in rad, which is w' for Euler–Bernoulli beams
+//! (cubic Hermite elements, consistent mass) and a motion of its own for Timoshenko's (exact at the nodes in statics, so without
+//! locking). Sections, supports, springs, lumped masses and Winkler foundations anywhere along the span; axial dofs, a given axial force,
+//! or ends held along the axis where asked for. x runs from 0 to the span along the beam's own axis: where the beam stands in
+//! the world is not its business, nor is contact. SI units throughout.
+//!
+//! Every vector has [`Beam::dofs`] entries: w and rotation of each node, node by node, then axial dofs if there are any. What a
+//! support holds is among them and stays 0.
 //!
 //! A [`Beam`] is immutable and can be shared by threads. The calls of a time step (products, energies, shape functions,
 //! [`Factor::solve`], [`Beam::refactor`]) allocate nothing.
@@ -20,15 +23,9 @@
 //! One step of the θ scheme (`docs/theory.md` §5, θ = ½) under a moving force:
 //!
 //! ```
-//! use teeter_beam::{Beam, BeamSpec, Damping, Load, MatrixWeights, MovingLoad, Section, Support};
+//! use teeter_beam::{Beam, BeamSpec, Load, MatrixWeights, MovingLoad, Section};
 //!
-//! let mut spec = BeamSpec {
-//!     span: 0.36,
-//!     elements: 20,
-//!     section: Section::rectangle(0.03, 0.0015, 69e9, 2700.0)?,
-//!     supports: [Support::Pinned, Support::Pinned],
-//!     damping: Damping::default(),
-//! };
+//! let mut spec = BeamSpec::new(0.36, 20, Section::rectangle(0.03, 0.0015, 69e9, 2700.0)?);
 //! spec.damping.viscous = spec.viscous_for_ratio(1, 0.01)?;
 //! let beam = Beam::new(spec)?;
 //! let load = MovingLoad::new(-10.0, 2.0, 0.0)?;
@@ -62,31 +59,36 @@
 //!
 //! # Limits
 //!
-//! - Small deflections of a slender beam: no shear, no rotatory inertia, no axial force or stretching. The deflection
-//!   should stay below a few hundredths of the span.
-//! - One section and one element length all along; supports at the ends only.
+//! - Small deflections: the slope should stay below a few hundredths. Stretching is left out but for [`Axial::Held`].
 //! - The error of the assembled matrices grows with the mesh: cond(K) ~ n⁴. [`Beam::solve_static`] and the products are
 //!   built to lose less than that; [`Factor::solve`] with little mass in its weights is not. See [`MAX_ELEMENTS`].
 //! - A vector of the wrong length is the caller's error: functions that return no `Result` panic on it, and say so.
 
-mod assembly;
 mod band;
+mod bar;
 mod beam;
+mod blocks;
 mod element;
 mod error;
 mod factor;
-mod layout;
+mod field;
 mod load;
+mod membrane;
+mod mesh;
 mod modes;
 mod product;
+mod section;
 mod shape;
+mod sparse;
 mod spec;
 mod statics;
+mod support;
 
-pub use beam::Beam;
+pub use beam::{Beam, Dof};
 pub use error::{BeamError, FactorError, StaticError};
-pub use factor::{Factor, MatrixWeights};
-pub use layout::Dof;
+pub use factor::{Backend, Factor, MatrixWeights};
 pub use load::{DistributedLoad, Load, MovingLoad, NodalLoad};
+pub use section::{Profile, Section};
 pub use shape::{Deflection, ShapeAt};
-pub use spec::{BeamSpec, Damping, MAX_ELEMENTS, Section, Support};
+pub use spec::{Axial, BeamSpec, Damping, Foundation, Lump, MAX_ELEMENTS, Segment};
+pub use support::{Hold, Support};

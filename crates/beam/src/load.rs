@@ -3,17 +3,9 @@
 use std::fmt;
 
 use crate::beam::Beam;
+use crate::element::GAUSS;
 use crate::error::{BeamError, check, check_len};
-use crate::layout::add_to_end;
 use crate::shape::ShapeAt;
-
-/// Four-point Gauss–Legendre on [−1, 1]: exact to degree 7, so for loads up to degree 4 against the cubic N.
-const GAUSS: [(f64, f64); 4] = [
-    (-0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
-    (-0.339_981_043_584_856_26, 0.652_145_154_862_546_1),
-    (0.339_981_043_584_856_26, 0.652_145_154_862_546_1),
-    (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
-];
 
 impl Beam {
     /// f += N(x)ᵀ force: a force (N, upwards) at x.
@@ -22,12 +14,11 @@ impl Beam {
     /// [`BeamError::OutsideSpan`], [`BeamError::Value`] for a force that is not finite, [`BeamError::Length`].
     ///
     /// ```
-    /// # use teeter_beam::{Beam, BeamSpec, Damping, Section, Support};
-    /// # let beam = Beam::new(BeamSpec { span: 1.0, elements: 2, section: Section::new(1.0, 1.0)?,
-    /// #     supports: [Support::Pinned; 2], damping: Damping::default() })?;
+    /// # use teeter_beam::{Beam, BeamSpec, Section, Support};
+    /// # let beam = Beam::new(BeamSpec::new(1.0, 2, Section::new(1.0, 1.0)?))?;
     /// let mut f = vec![0.0; beam.dofs()];
     /// beam.add_point_load(0.5, -2.0, &mut f)?;
-    /// assert_eq!(f, [0.0, -2.0, 0.0, 0.0]);
+    /// assert_eq!(f, [0.0, 0.0, -2.0, 0.0, 0.0, 0.0]);
     /// assert!(beam.add_point_load(1.5, -2.0, &mut f).is_err());
     /// # Ok::<(), teeter_beam::BeamError>(())
     /// ```
@@ -43,12 +34,11 @@ impl Beam {
     /// As [`Beam::add_point_load`].
     ///
     /// ```
-    /// # use teeter_beam::{Beam, BeamSpec, Damping, Section, Support};
-    /// # let beam = Beam::new(BeamSpec { span: 1.0, elements: 2, section: Section::new(1.0, 1.0)?,
-    /// #     supports: [Support::Pinned; 2], damping: Damping::default() })?;
+    /// # use teeter_beam::{Beam, BeamSpec, Section, Support};
+    /// # let beam = Beam::new(BeamSpec::new(1.0, 2, Section::new(1.0, 1.0)?))?;
     /// let mut f = vec![0.0; beam.dofs()];
     /// beam.add_point_couple(0.5, 3.0, &mut f)?;
-    /// assert_eq!(f, [0.0, 0.0, 3.0, 0.0]);
+    /// assert_eq!(f, [0.0, 0.0, 0.0, 3.0, 0.0, 0.0]);
     /// # Ok::<(), teeter_beam::BeamError>(())
     /// ```
     pub fn add_point_couple(&self, x: f64, couple: f64, f: &mut [f64]) -> Result<(), BeamError> {
@@ -59,7 +49,15 @@ impl Beam {
 
     fn shape_for_load(&self, x: f64, f: &[f64]) -> Result<ShapeAt, BeamError> {
         check_len("f", self.dofs(), f.len())?;
-        self.shape_at(x).ok_or(BeamError::OutsideSpan { x, span: self.spec.span })
+        self.loaded_shape(x).ok_or(BeamError::OutsideSpan { x, span: self.spec.span })
+    }
+
+    /// The shape functions at x that a load there goes by; `None` off the beam.
+    fn loaded_shape(&self, x: f64) -> Option<ShapeAt> {
+        (x >= 0.0 && x <= self.spec.span).then(|| {
+            let (element, xi) = self.mesh.locate(x);
+            self.whole_shape(element, xi)
+        })
     }
 
     /// f += ∫ Nᵀ p dx for a distributed load p(x), N/m, upwards: four Gauss points an element, exact where p is a
@@ -69,9 +67,8 @@ impl Beam {
     /// [`BeamError::Length`]; [`BeamError::Value`] for a load that is not finite (f then holds part of the load).
     ///
     /// ```
-    /// # use teeter_beam::{Beam, BeamSpec, Damping, Section, Support};
-    /// # let beam = Beam::new(BeamSpec { span: 1.0, elements: 2, section: Section::new(1.0, 1.0)?,
-    /// #     supports: [Support::Free; 2], damping: Damping::default() })?;
+    /// # use teeter_beam::{Beam, BeamSpec, Section, Support};
+    /// # let beam = Beam::new(BeamSpec::new(1.0, 2, Section::new(1.0, 1.0)?).supported([Support::Free; 2]))?;
     /// let mut f = vec![0.0; beam.dofs()];
     /// beam.add_distributed_load(&|x| 2.0 * x, &mut f)?;
     /// let total: f64 = f.iter().step_by(2).sum();
@@ -80,14 +77,13 @@ impl Beam {
     /// ```
     pub fn add_distributed_load(&self, load: &dyn Fn(f64) -> f64, f: &mut [f64]) -> Result<(), BeamError> {
         check_len("f", self.dofs(), f.len())?;
-        let half = 0.5 * self.element_length();
-        for element in 0..self.layout.elements {
-            let middle = (2 * element + 1) as f64 * half;
+        for (element, e) in self.elements.iter().enumerate() {
+            let half = 0.5 * e.length;
+            let middle = self.mesh.x[element] + half;
             for (s, weight) in GAUSS {
-                let x = middle + s * half;
-                let p = load(x);
+                let p = load(middle + s * half);
                 check("load", p, true, "finite")?;
-                self.shape_clamped(x).add_load(p * weight * half, 0.0, f);
+                self.whole_shape(element, 0.5 * (1.0 + s)).add_load(p * weight * half, 0.0, f);
             }
         }
         Ok(())
@@ -99,9 +95,8 @@ impl Beam {
     /// [`BeamError::Length`]; [`BeamError::Value`] for a load that is not finite.
     ///
     /// ```
-    /// # use teeter_beam::{Beam, BeamSpec, Damping, Section, Support};
-    /// # let beam = Beam::new(BeamSpec { span: 1.0, elements: 2, section: Section::new(1.0, 1.0)?,
-    /// #     supports: [Support::Free; 2], damping: Damping::default() })?;
+    /// # use teeter_beam::{Beam, BeamSpec, Section, Support};
+    /// # let beam = Beam::new(BeamSpec::new(1.0, 2, Section::new(1.0, 1.0)?).supported([Support::Free; 2]))?;
     /// let mut f = vec![0.0; beam.dofs()];
     /// beam.add_uniform_load(4.0, &mut f)?;
     /// assert_eq!(f[..4], [1.0, 4.0 * 0.25 / 12.0, 2.0, 0.0]);
@@ -115,14 +110,33 @@ impl Beam {
     }
 
     fn add_uniform(&self, load: f64, f: &mut [f64]) {
-        let l = self.element.length;
-        let (head, inner, tail) = self.layout.split_mut(f);
-        let (force, couple) = (0.5 * load * l, load * l * l / 12.0);
-        add_to_end(head, [force, couple]);
-        add_to_end(tail, [force, -couple]);
-        for pair in inner {
-            pair[0] += 2.0 * force;
+        let (bend, _) = self.split_mut(f);
+        for (element, e) in self.elements.iter().enumerate() {
+            for (i, share) in e.uniform_load().into_iter().enumerate() {
+                bend[element + i / 2][i % 2] += load * share;
+            }
         }
+    }
+
+    /// f += g M 1: the beam's own weight and that of the masses that it carries, by the acceleration of gravity in the
+    /// direction of w (m/s², upwards positive), section by section.
+    ///
+    /// # Errors
+    /// [`BeamError::Length`]; [`BeamError::Value`] for an acceleration that is not finite.
+    pub fn add_self_weight(&self, gravity: f64, f: &mut [f64]) -> Result<(), BeamError> {
+        check_len("f", self.dofs(), f.len())?;
+        check("gravity", gravity, true, "finite")?;
+        let (bend, _) = self.split_mut(f);
+        for (element, e) in self.elements.iter().enumerate() {
+            let load = gravity * e.section.mass_per_length;
+            for (i, share) in e.uniform_load().into_iter().enumerate() {
+                bend[element + i / 2][i % 2] += load * share;
+            }
+        }
+        for (dof, mass) in self.lumps.iter().step_by(2) {
+            bend[dof / 2][0] += gravity * mass;
+        }
+        Ok(())
     }
 }
 
@@ -151,13 +165,12 @@ impl NodalLoad {
     /// [`BeamError::OutsideSpan`].
     ///
     /// ```
-    /// # use teeter_beam::{Beam, BeamSpec, Damping, Load, NodalLoad, Section, Support};
-    /// # let beam = Beam::new(BeamSpec { span: 1.0, elements: 2, section: Section::new(1.0, 1.0)?,
-    /// #     supports: [Support::Pinned; 2], damping: Damping::default() })?;
+    /// # use teeter_beam::{Beam, BeamSpec, Load, NodalLoad, Section, Support};
+    /// # let beam = Beam::new(BeamSpec::new(1.0, 2, Section::new(1.0, 1.0)?))?;
     /// let load = NodalLoad::new(&beam, 0.5, |t| -10.0 * t)?;
     /// let mut f = vec![0.0; beam.dofs()];
     /// load.add(&beam, 0.2, &mut f);
-    /// assert_eq!(f, [0.0, -2.0, 0.0, 0.0]);
+    /// assert_eq!(f, [0.0, 0.0, -2.0, 0.0, 0.0, 0.0]);
     /// # Ok::<(), teeter_beam::BeamError>(())
     /// ```
     pub fn new(beam: &Beam, x: f64, history: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Result<Self, BeamError> {
@@ -174,7 +187,7 @@ impl fmt::Debug for NodalLoad {
 
 impl Load for NodalLoad {
     fn add(&self, beam: &Beam, t: f64, f: &mut [f64]) {
-        if let Some(shape) = beam.shape_at(self.x) {
+        if let Some(shape) = beam.loaded_shape(self.x) {
             shape.add_load((self.history)(t), 0.0, f);
         }
     }
@@ -189,9 +202,8 @@ impl DistributedLoad {
     /// A load `history(t)`, N/m, upwards. The history must return finite values.
     ///
     /// ```
-    /// # use teeter_beam::{Beam, BeamSpec, Damping, DistributedLoad, Load, Section, Support};
-    /// # let beam = Beam::new(BeamSpec { span: 1.0, elements: 2, section: Section::new(1.0, 1.0)?,
-    /// #     supports: [Support::Free; 2], damping: Damping::default() })?;
+    /// # use teeter_beam::{Beam, BeamSpec, DistributedLoad, Load, Section, Support};
+    /// # let beam = Beam::new(BeamSpec::new(1.0, 2, Section::new(1.0, 1.0)?).supported([Support::Free; 2]))?;
     /// let weight = DistributedLoad::new(|_| -9.81);
     /// let mut f = vec![0.0; beam.dofs()];
     /// weight.add(&beam, 0.0, &mut f);
@@ -230,14 +242,13 @@ impl MovingLoad {
     /// [`BeamError::Value`] for a number that is not finite.
     ///
     /// ```
-    /// # use teeter_beam::{Beam, BeamSpec, Damping, Load, MovingLoad, Section, Support};
-    /// # let beam = Beam::new(BeamSpec { span: 1.0, elements: 2, section: Section::new(1.0, 1.0)?,
-    /// #     supports: [Support::Pinned; 2], damping: Damping::default() })?;
+    /// # use teeter_beam::{Beam, BeamSpec, Load, MovingLoad, Section, Support};
+    /// # let beam = Beam::new(BeamSpec::new(1.0, 2, Section::new(1.0, 1.0)?))?;
     /// let load = MovingLoad::new(-10.0, 2.0, 0.0)?;
     /// let mut f = vec![0.0; beam.dofs()];
     /// load.add(&beam, 0.25, &mut f); // at x = 0.5
     /// load.add(&beam, 0.75, &mut f); // gone
-    /// assert_eq!(f, [0.0, -10.0, 0.0, 0.0]);
+    /// assert_eq!(f, [0.0, 0.0, -10.0, 0.0, 0.0, 0.0]);
     /// # Ok::<(), teeter_beam::BeamError>(())
     /// ```
     pub fn new(force: f64, speed: f64, start: f64) -> Result<Self, BeamError> {
@@ -255,7 +266,7 @@ impl MovingLoad {
 
 impl Load for MovingLoad {
     fn add(&self, beam: &Beam, t: f64, f: &mut [f64]) {
-        if let Some(shape) = beam.shape_at(self.position(t)) {
+        if let Some(shape) = beam.loaded_shape(self.position(t)) {
             shape.add_load(self.force, 0.0, f);
         }
     }
@@ -307,7 +318,7 @@ mod tests {
         named(beam.add_point_load(0.5, f64::NAN, &mut f), &["force", "NaN", "finite"]);
         named(beam.add_point_load(1.5, 1.0, &mut f), &["x = 1.5", "[0, 1]"]);
         named(beam.add_point_couple(-0.5, 1.0, &mut f), &["x = -0.5", "[0, 1]"]);
-        named(beam.add_point_load(0.5, 1.0, &mut [0.0]), &["f:", "1 entries", "8"]);
+        named(beam.add_point_load(0.5, 1.0, &mut [0.0]), &["f:", "1 entries", "10"]);
         named(beam.add_uniform_load(f64::INFINITY, &mut f), &["load", "inf"]);
         named(beam.add_distributed_load(&|_| f64::NAN, &mut f), &["load", "NaN"]);
         named(NodalLoad::new(&beam, 2.0, |_| 0.0).map(drop), &["x = 2"]);

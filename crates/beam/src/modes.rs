@@ -8,11 +8,14 @@
 //! | clamped–clamped, free–free | cos β − 1/cosh β = 0 | (2i + 1) π/2 |
 //! | clamped–free | cos β + 1/cosh β = 0 | (2i − 1) π/2 |
 //! | clamped–pinned, pinned–free | sin β − cos β tanh β = 0 | (4i + 1) π/4 |
+//! | guided–guided | sin β = 0 | iπ, exactly |
+//! | guided–pinned | cos β = 0 | (2i − 1) π/2, exactly |
+//! | guided–clamped, guided–free | sin β + cos β tanh β = 0 | (4i − 1) π/4 |
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use crate::error::BeamError;
-use crate::spec::Support::{self, Clamped, Free, Pinned};
+use crate::support::Support::{self, Clamped, Free, Guided, Pinned};
 
 /// Where β still has twelve digits and sits alone in its bracket of width π/2.
 const MAX_MODE: usize = 1_000_000;
@@ -27,12 +30,15 @@ pub(crate) fn beta(supports: [Support; 2], mode: usize) -> Result<f64, BeamError
     }
     let i = mode as f64;
     let (equation, near): (Equation, f64) = match supports {
-        [Pinned, Pinned] => return Ok(i * PI),
+        [Pinned, Pinned] | [Guided, Guided] => return Ok(i * PI),
+        [Pinned, Guided] | [Guided, Pinned] => return Ok((2.0 * i - 1.0) * FRAC_PI_2),
+        [Guided, Clamped | Free] | [Clamped | Free, Guided] => (tan_is_minus_tanh, (4.0 * i - 1.0) * FRAC_PI_4),
         [Clamped, Clamped] | [Free, Free] => (cos_minus_sech, (2.0 * i + 1.0) * FRAC_PI_2),
         [Clamped, Free] | [Free, Clamped] => (cos_plus_sech, (2.0 * i - 1.0) * FRAC_PI_2),
         [Clamped, Pinned] | [Pinned, Clamped] | [Pinned, Free] | [Free, Pinned] => {
             (tan_is_tanh, (4.0 * i + 1.0) * FRAC_PI_4)
         }
+        _ => return Err(BeamError::NoFrequencyEquation),
     };
     Ok(root(equation, near))
 }
@@ -73,6 +79,11 @@ fn cos_plus_sech(b: f64) -> (f64, f64) {
 fn tan_is_tanh(b: f64) -> (f64, f64) {
     let (sech, tanh) = (1.0 / b.cosh(), b.tanh());
     (b.sin() - b.cos() * tanh, b.cos() + b.sin() * tanh - b.cos() * sech * sech)
+}
+
+fn tan_is_minus_tanh(b: f64) -> (f64, f64) {
+    let (sech, tanh) = (1.0 / b.cosh(), b.tanh());
+    (b.sin() + b.cos() * tanh, b.cos() - b.sin() * tanh + b.cos() * sech * sech)
 }
 
 #[cfg(test)]

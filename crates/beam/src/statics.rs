@@ -1,15 +1,23 @@
 //! Static equilibrium, K q = f.
 
 use crate::beam::Beam;
-use crate::error::StaticError;
+use crate::blocks::Blocks;
+use crate::error::{FactorError, StaticError};
 use crate::factor::MatrixWeights;
-use crate::spec::Support::{self, Free, Pinned};
+use crate::membrane::Membrane;
+use crate::support::Hold;
 
 /// Steps of iterative refinement at most.
 const MAX_REFINEMENTS: usize = 20;
 
 /// A last correction above this, relative to the largest deflection, is no solution: the refinement has not settled.
 const SETTLED: f64 = 1e-10;
+
+/// Rounds at most for the axial force of a beam held along its axis; bisection every third one makes 53 digits of them.
+const MAX_ROUNDS: usize = 200;
+
+/// The axial force is found where it changes, or is out of balance, by no more than this part.
+const ROUNDED: f64 = 4.0 * f64::EPSILON;
 
 impl Beam {
     /// Turns a load (N and N m per dof) into the deflection under it: f ← K⁻¹ f.
@@ -26,9 +34,8 @@ impl Beam {
     /// cantilever of 10 000 elements). After an error `load` is as it was.
     ///
     /// ```
-    /// # use teeter_beam::{Beam, BeamSpec, Damping, Section, Support};
-    /// # let beam = Beam::new(BeamSpec { span: 2.0, elements: 10, section: Section::new(5.0, 1.0)?,
-    /// #     supports: [Support::Pinned; 2], damping: Damping::default() })?;
+    /// # use teeter_beam::{Beam, BeamSpec, Section};
+    /// # let beam = Beam::new(BeamSpec::new(2.0, 10, Section::new(5.0, 1.0)?))?;
     /// let mut q = vec![0.0; beam.dofs()];
     /// beam.add_point_load(1.0, -3.0, &mut q)?;
     /// beam.solve_static(&mut q)?;
@@ -37,7 +44,7 @@ impl Beam {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn solve_static(&self, load: &mut [f64]) -> Result<(), StaticError> {
-        if let Some(missing) = rigid_motion(self.spec.supports) {
+        if let Some(missing) = self.rigid_motion() {
             return Err(StaticError::RigidMotion { supports: self.spec.supports, missing });
         }
         if load.len() != self.dofs() {
@@ -46,7 +53,34 @@ impl Beam {
         if let Some((index, &value)) = load.iter().enumerate().find(|(_, value)| !value.is_finite()) {
             return Err(StaticError::Load { index, value });
         }
-        let factor = self.factor(MatrixWeights { mass: 0.0, damping: 0.0, stiffness: 1.0 })?;
+        let q = match &self.membrane {
+            Some(membrane) => self.solve_stretched(membrane, load)?,
+            None => self.solve_refined(load, 0.0)?,
+        };
+        load.copy_from_slice(&q);
+        Ok(())
+    }
+
+    /// (K + N G)⁻¹ f, N an axial force beside that of the beam, by refinement to rounding.
+    fn solve_refined(&self, load: &[f64], n: f64) -> Result<Vec<f64>, StaticError> {
+        let (stiffness, slopes) = (MatrixWeights { mass: 0.0, damping: 0.0, stiffness: 1.0 }, self.membrane.as_ref());
+        let stretched;
+        let factor = if let (Some(membrane), true) = (slopes, n != 0.0) {
+            // A beam of the same numbers with the force among them.
+            let mut k = self.k.clone();
+            let geometric = Blocks::assemble(self.nodes(), membrane.slopes.matrices());
+            k.combine(&[(1.0, &self.k), (n, &geometric)]);
+            stretched = Self { k, ..self.clone() };
+            stretched.factor(stiffness)
+        } else {
+            self.factor(stiffness)
+        };
+        let factor = factor.map_err(|error| match error {
+            FactorError::NotPositiveDefinite { .. } if self.spec.axial_force < 0.0 => {
+                StaticError::Buckled { axial_force: self.spec.axial_force }
+            }
+            other => StaticError::Factor(other),
+        })?;
         let mut residual = load.to_vec();
         let mut q = vec![0.0; load.len()];
         let mut last = f64::INFINITY;
@@ -65,37 +99,105 @@ impl Beam {
             last = correction;
             residual.copy_from_slice(load);
             self.add_stiffness_product(-1.0, &q, &mut residual);
+            if let (Some(membrane), true) = (slopes, n != 0.0) {
+                membrane.slopes.add_product(-n, self.bend(&q), self.split_mut(&mut residual).0);
+            }
         }
         // Also false for NaN.
         if last <= SETTLED {
-            load.copy_from_slice(&q);
-            Ok(())
+            Ok(q)
         } else {
-            Err(StaticError::NotSettled { elements: self.layout.elements, correction: last })
+            Err(StaticError::NotSettled { elements: self.elements(), correction: last })
         }
     }
 
-    /// Largest deflection, a slope counted over the span.
-    fn size(&self, q: &[f64]) -> f64 {
-        let (head, inner, tail) = self.layout.split(q);
-        let of = |pair: &[f64; 2]| pair[0].abs().max(self.spec.span * pair[1].abs());
-        inner.iter().map(of).fold(of(&head).max(of(&tail)), f64::max)
+    /// The deflection whose stretching makes the axial force that it is in equilibrium with. That force is the root of
+    /// r(N) = EA/(2L) s(q(N)) − N, q(N) = (K + N G)⁻¹ f, which falls with N: one root, between 0 and r(0).
+    fn solve_stretched(&self, membrane: &Membrane, load: &[f64]) -> Result<Vec<f64>, StaticError> {
+        let mut q = self.solve_refined(load, 0.0)?;
+        let (mut low, mut high) = (0.0, membrane.force(self.bend(&q)));
+        let (mut at_low, mut at_high) = (high, f64::NEG_INFINITY);
+        // Newton from below in the variable that makes r nearly straight: s falls like 1/(N_c + N)², so the next N is that of
+        // √(EA/2L s) by secant, kept inside the bracket by bisection.
+        let mut n = 0.0;
+        let mut correction = f64::INFINITY;
+        for round in 0..MAX_ROUNDS {
+            let secant = if at_high.is_finite() { low + (high - low) * at_low / (at_low - at_high) } else { high };
+            // Every third round halves the bracket, so that a bad secant can't hold on.
+            let next = if round % 3 == 2 || !(secant > low && secant < high) { 0.5 * (low + high) } else { secant };
+            correction = (next - n).abs() / next;
+            n = next;
+            q = self.solve_refined(load, n)?;
+            let residual = membrane.force(self.bend(&q)) - n;
+            if correction <= ROUNDED || residual.abs() <= ROUNDED * n {
+                return Ok(q);
+            }
+            if residual > 0.0 {
+                (low, at_low) = (n, residual);
+            } else {
+                (high, at_high) = (n, residual);
+            }
+        }
+        if correction <= SETTLED {
+            Ok(q)
+        } else {
+            Err(StaticError::NotSettled { elements: self.elements(), correction })
+        }
     }
-}
 
-fn rigid_motion(supports: [Support; 2]) -> Option<&'static str> {
-    match supports {
-        [Free, Free] => Some("both ends are free, the beam can move and turn as a whole; clamp one end or pin both"),
-        [Pinned, Free] => Some("the beam can turn about its pinned left end; support the right end or clamp the left"),
-        [Free, Pinned] => Some("the beam can turn about its pinned right end; support the left end or clamp the right"),
-        _ => None,
+    /// Largest deflection, a rotation counted over the span; axial dofs as they are.
+    fn size(&self, q: &[f64]) -> f64 {
+        let of = |pair: &[f64; 2]| pair[0].abs().max(self.spec.span * pair[1].abs());
+        let bend = self.bend(q).iter().map(of).fold(0.0, f64::max);
+        q[2 * self.nodes()..].iter().fold(bend, |size, u| size.max(u.abs()))
+    }
+
+    /// The rigid motion that supports, springs and foundations leave, with what would take it.
+    pub fn rigid_motion(&self) -> Option<&'static str> {
+        let mut places: Vec<f64> = Vec::new();
+        let mut turned = false;
+        let supports = self.mesh.x.iter().zip(&self.held);
+        for (x, held) in supports {
+            places.extend(held[0].then_some(*x));
+            turned |= held[1];
+        }
+        for (dof, _) in &self.springs {
+            if dof % 2 == 0 {
+                places.push(self.mesh.x[dof / 2]);
+            }
+            turned |= dof % 2 == 1;
+        }
+        if self.bed.is_some() {
+            places.extend([0.0, self.spec.span]);
+        }
+        if self.bar.as_ref().is_some_and(|bar| !bar.held.iter().any(|held| *held)) {
+            return Some("neither end is held along the axis, along which the beam can move as a whole; hold one");
+        }
+        let two = places.iter().any(|x| (x - places[0]).abs() > 0.0);
+        let free = |k: usize| self.spec.supports[k].holds() == [Hold::Free; 2];
+        match (places.is_empty(), two || turned) {
+            (false, true) => None,
+            (true, true) => {
+                Some("nothing holds the beam across its axis, it can move up and down as a whole; pin it somewhere")
+            }
+            (true, false) => {
+                Some("both ends are free, the beam can move and turn as a whole; clamp one end or pin both")
+            }
+            (false, false) if free(1) => {
+                Some("the beam can turn about its pinned left end; support the right end or clamp the left")
+            }
+            (false, false) if free(0) => {
+                Some("the beam can turn about its pinned right end; support the left end or clamp the right")
+            }
+            (false, false) => Some("the beam can turn about its one support; support it elsewhere or clamp it"),
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Support::Clamped;
+    use crate::Support::{Clamped, Free, Pinned};
     use crate::beam::tests::beam;
 
     #[test]
@@ -110,8 +212,8 @@ mod tests {
     #[test]
     fn a_bad_load_is_named() {
         let beam = beam(4, [Clamped, Free]);
-        assert!(matches!(beam.solve_static(&mut [1.0]), Err(StaticError::Length { expected: 8, found: 1 })));
-        let mut load = vec![0.0; 8];
+        assert!(matches!(beam.solve_static(&mut [1.0]), Err(StaticError::Length { expected: 10, found: 1 })));
+        let mut load = vec![0.0; 10];
         load[3] = f64::NAN;
         assert!(matches!(beam.solve_static(&mut load), Err(StaticError::Load { index: 3, .. })));
     }
@@ -119,8 +221,8 @@ mod tests {
     #[test]
     fn no_load_no_deflection() {
         let beam = beam(4, [Clamped, Free]);
-        let mut load = vec![0.0; 8];
+        let mut load = vec![0.0; 10];
         beam.solve_static(&mut load).unwrap();
-        assert_eq!(load, [0.0; 8]);
+        assert_eq!(load, [0.0; 10]);
     }
 }

@@ -64,6 +64,7 @@ pub struct BeamBody {
     surface: BeamSurface,
     loads: Vec<Box<dyn Load>>,
     supports: Option<MovingSupports>,
+    held: Vec<usize>,
 }
 
 impl std::fmt::Debug for BeamBody {
@@ -80,7 +81,8 @@ impl BeamBody {
     /// A beam with its left end at `position` (m).
     #[must_use]
     pub fn new(beam: Arc<Beam>, position: Vector2<f64>, surface: BeamSurface) -> Self {
-        Self { beam, position, surface, loads: Vec::new(), supports: None }
+        let held = (0..beam.dofs()).filter(|dof| beam.is_held(*dof)).collect();
+        Self { beam, position, surface, loads: Vec::new(), supports: None, held }
     }
 
     /// The same beam under one more load.
@@ -174,7 +176,7 @@ impl Subsystem<2> for BeamBody {
 
     fn internal_force(&self, q: &[f64], v: &[f64], f: &mut [f64]) {
         let n = self.beam.dofs();
-        self.beam.add_stiffness_product(-1.0, &q[..n], &mut f[..n]);
+        self.beam.add_elastic_force(&q[..n], &mut f[..n]);
         if self.beam.is_damped() {
             self.beam.add_damping_product(-1.0, &v[..n], &mut f[..n]);
         }
@@ -192,6 +194,10 @@ impl Subsystem<2> for BeamBody {
 
     fn driven(&self) -> &[usize] {
         self.supports.as_ref().map_or(&[], |supports| &supports.driven)
+    }
+
+    fn held(&self) -> &[usize] {
+        &self.held
     }
 
     fn drive(&self, t: f64, v: &mut [f64]) {
@@ -312,17 +318,13 @@ impl Compliance<2> for BeamCompliance {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use teeter_beam::{BeamSpec, Damping, Section, Support};
+    use teeter_beam::{BeamSpec, Section, Support};
 
     #[test]
     fn the_ends_belong_to_the_beam_in_spite_of_rounding() {
-        let beam = Beam::new(BeamSpec {
-            span: 0.2,
-            elements: 4,
-            section: Section::new(1.0, 1.0).unwrap(),
-            supports: [Support::Pinned, Support::Free],
-            damping: Damping::default(),
-        });
+        let beam = Beam::new(
+            BeamSpec::new(0.2, 4, Section::new(1.0, 1.0).unwrap()).supported([Support::Pinned, Support::Free]),
+        );
         let beam = Arc::new(beam.unwrap());
         let q = vec![0.0; beam.dofs()];
         for left in [0.0, 0.5, 0.6, -0.7, 1e3] {

@@ -101,6 +101,12 @@ pub trait Subsystem<const D: usize>: Send + Sync {
         &[]
     }
 
+    /// The velocities that are always 0, by number, in rising order: of what a support holds, say. Rows and columns of W are 0 there,
+    /// whatever [`Subsystem::apply`] gives.
+    fn held(&self) -> &[usize] {
+        &[]
+    }
+
     /// Writes the prescribed velocities at time `t` into their places in `v`, and leaves the others alone.
     fn drive(&self, t: f64, v: &mut [f64]) {
         let _ = (t, v);
@@ -143,8 +149,8 @@ pub trait Subsystem<const D: usize>: Send + Sync {
     /// how many columns it took.
     fn rows(&self, body: u32, q: &[f64], point: &Vector<D>, frame: &Frame<D>, out: &mut Rows<'_, D>) -> usize;
 
-    /// Factorises `mass·M + damping·C + stiffness·K`, without the rows and columns of the [driven](Subsystem::driven)
-    /// velocities.
+    /// Factorises `mass·M + damping·C + stiffness·K`, without the rows and columns of the [driven](Subsystem::driven) and
+    /// [held](Subsystem::held) velocities.
     ///
     /// # Errors
     /// If the matrix is not positive definite.
@@ -173,7 +179,8 @@ pub trait Compliance<const D: usize>: Send {
     /// If the matrix is not positive definite.
     fn refactor(&mut self, w: Weights, q: &[f64]) -> Result<(), FactorError>;
 
-    /// `f ← W f`; zero for [driven](Subsystem::driven) velocities, whose rows and columns of W are zero.
+    /// `f ← W f`; zero for [driven](Subsystem::driven) and [held](Subsystem::held) velocities, whose rows and columns of W are
+    /// zero.
     fn solve(&mut self, f: &mut [f64]);
 
     /// Adds `J_i W J_jᵀ` for all pairs of rows to the Delassus operator. `scratch` is as long as the subsystem's

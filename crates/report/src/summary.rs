@@ -263,9 +263,9 @@ impl ModelSummary {
             .iter()
             .map(|place| BeamSummary {
                 name: place.name.clone(),
-                elements: place.beam.spec().elements,
-                dofs: place.beam.dofs(),
-                backend: "sparse Cholesky, factorised once",
+                elements: place.beam.elements(),
+                dofs: place.beam.free_dofs(),
+                backend: "banded Cholesky, factorised once",
             })
             .collect();
         Self {

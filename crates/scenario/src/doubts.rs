@@ -137,7 +137,7 @@ pub(crate) fn sag(scene: &Scene, number: usize) -> Option<f64> {
     let mut standing =
         scene.blocks.iter().filter_map(|block| weight_of(block, Support::Beam(number), scene.gravity)).peekable();
     standing.peek()?;
-    let model = Beam::new(beam.spec).ok()?;
+    let model = Beam::new(beam.spec.clone()).ok()?;
     let mut q = vec![0.0; model.dofs()];
     for feet in standing {
         for (x, force) in feet {
@@ -145,9 +145,7 @@ pub(crate) fn sag(scene: &Scene, number: usize) -> Option<f64> {
         }
     }
     model.solve_static(&mut q).ok()?;
-    let nodes = (0..=beam.spec.elements).map(|k| k as f64 / beam.spec.elements as f64 * beam.spec.span);
-    let deflections = nodes.map(|x| model.shape_clamped(x).deflection(&q).w.abs());
-    Some(deflections.fold(0.0, f64::max))
+    Some(model.to_nodes(&q).iter().map(|[w, _]| w.abs()).fold(0.0, f64::max))
 }
 
 /// Steps that a contact with duration should get from touch to release.

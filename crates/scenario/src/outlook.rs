@@ -7,6 +7,7 @@ use crate::simulation::Simulation;
 use crate::volume::{Volume, expected_seconds};
 use crate::{doubts, stability};
 use std::f64::consts::TAU;
+use teeter_beam::Beam;
 
 /// A block, as far as one wants to check it.
 #[derive(Debug, Clone, PartialEq)]
@@ -76,7 +77,7 @@ impl Outlook {
             .enumerate()
             .map(|(number, (beam, place))| BeamOutlook {
                 sag: doubts::sag(scene, number),
-                ..BeamOutlook::of(beam, place.beam.dofs(), scene.time.step)
+                ..BeamOutlook::of(beam, &place.beam, scene.time.step)
             })
             .collect();
         let block = |block: &BlockScene| {
@@ -89,10 +90,12 @@ impl Outlook {
             let (mass, critical_angle) = (block.mass(), block.critical_angle());
             BlockOutlook { name: block.name.clone(), mass, critical_angle, angle, on }
         };
+        // What supports hold has a place in the state, and no motion.
+        let held: usize = simulation.layout.beams.iter().map(|place| place.beam.dofs() - place.beam.free_dofs()).sum();
         Self {
             blocks: scene.blocks.iter().map(block).collect(),
             possible_contacts: simulation.model.detector().capacity(),
-            dofs: simulation.model.size().v,
+            dofs: simulation.model.size().v - held,
             seconds: expected_seconds(scene, beams.iter().map(|beam| beam.dofs).sum()),
             volume: Volume::of(scene),
             left_out: left_out(scene),
@@ -102,13 +105,13 @@ impl Outlook {
 }
 
 impl BeamOutlook {
-    fn of(beam: &BeamScene, dofs: usize, step: f64) -> Self {
+    fn of(beam: &BeamScene, model: &Beam, step: f64) -> Self {
         let spec = &beam.spec;
         Self {
             name: beam.name.clone(),
-            elements: spec.elements,
-            dofs,
-            backend: "sparse Cholesky, factorised once",
+            elements: model.elements(),
+            dofs: model.free_dofs(),
+            backend: "banded Cholesky, factorised once",
             first_frequency: spec.circular_frequency(1).ok().map(|omega| omega / TAU),
             highest_frequency_step: stability::highest_eigenvalue(spec).map(|squared| squared.sqrt() * step),
             span: spec.span,

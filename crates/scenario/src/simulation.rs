@@ -176,7 +176,7 @@ impl Simulation {
         let mut dofs = 3 * shapes.len();
         for (number, scene_beam) in scene.beams.iter().enumerate() {
             let named = |error| BuildError::Beam(scene_beam.name.clone(), error);
-            let beam = Arc::new(Beam::new(scene_beam.spec).map_err(named)?);
+            let beam = Arc::new(Beam::new(scene_beam.spec.clone()).map_err(named)?);
             let body = driven::beam(scene, number, &beam).map_err(named)?;
             let displaced = body.displacements(0.0);
             // Where the supports start, the beam and what stands on it are placed as if they stood still.

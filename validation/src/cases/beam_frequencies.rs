@@ -5,7 +5,7 @@ use crate::exact::beam::{SUPPORTS, wave_numbers};
 use crate::figure::{Axes, Corner, Figure, Series};
 use crate::fit::power_law;
 use crate::scene::paper_beam;
-use teeter_beam::{Beam, BeamSpec, Damping, Section};
+use teeter_beam::{Beam, BeamSpec, Section};
 
 pub(crate) struct BeamFrequencies;
 
@@ -37,7 +37,7 @@ impl Case for BeamFrequencies {
             let mut points = [const { Vec::new() }; 3];
             for elements in MESHES {
                 let section = Section::new(stiffness, mass)?;
-                let beam = Beam::new(BeamSpec { span, elements, section, supports, damping: Damping::default() })?;
+                let beam = Beam::new(BeamSpec::new(span, elements, section).supported(supports))?;
                 let found = lowest_frequencies(&beam)?;
                 for (mode, (found, beta)) in found.iter().zip(betas).enumerate() {
                     let exact = (beta / span).powi(2) * (stiffness / mass).sqrt();

@@ -2,7 +2,7 @@
 
 use crate::case::{Case, Check, Depth, Findings, Result};
 use crate::exact::beam::{SUPPORTS, under_force, under_uniform_load};
-use teeter_beam::{Beam, BeamSpec, Damping, Section, Support};
+use teeter_beam::{Beam, BeamSpec, Section, Support};
 
 pub(crate) struct BeamStatics;
 
@@ -45,8 +45,7 @@ impl Case for BeamStatics {
 fn errors(supports: [Support; 2], elements: usize) -> Result<[f64; 2]> {
     // No round numbers: nothing is exact by luck.
     let (span, stiffness) = (0.37, 0.58);
-    let spec =
-        BeamSpec { span, elements, section: Section::new(stiffness, 0.12)?, supports, damping: Damping::default() };
+    let spec = BeamSpec::new(span, elements, Section::new(stiffness, 0.12)?).supported(supports);
     let beam = Beam::new(spec)?;
     let (force, load) = (-3.3, -21.0);
     let mut q = vec![0.0; beam.dofs()];

@@ -33,8 +33,8 @@ fn a_bad_spec_is_refused_by_field_and_value() {
 
 #[test]
 fn the_smallest_and_the_finest_mesh_are_taken() {
-    assert_eq!(super::beam(1, PINNED).dofs(), 2);
-    assert_eq!(super::beam(MAX_ELEMENTS, PINNED).dofs(), 2 * MAX_ELEMENTS);
+    assert_eq!(super::beam(1, PINNED).free_dofs(), 2);
+    assert_eq!(super::beam(MAX_ELEMENTS, PINNED).free_dofs(), 2 * MAX_ELEMENTS);
 }
 
 #[test]
@@ -55,12 +55,11 @@ fn a_bad_section_is_refused_by_argument_and_value() {
 
 #[test]
 fn a_bad_frequency_is_refused_before_a_beam_is_made() {
-    let spec = super::spec(20, PINNED);
+    let mut spec = super::spec(20, PINNED);
     assert!(spec.circular_frequency(0).unwrap_err().to_string().starts_with("mode = 0"));
     assert!(spec.viscous_for_ratio(1, -0.1).unwrap_err().to_string().starts_with("ratio = -0.1"));
-    assert!(
-        BeamSpec { span: f64::NAN, ..spec }.circular_frequency(1).unwrap_err().to_string().starts_with("span = NaN")
-    );
+    spec.span = f64::NAN;
+    assert!(spec.circular_frequency(1).unwrap_err().to_string().starts_with("span = NaN"));
 }
 
 #[test]
@@ -68,9 +67,9 @@ fn a_shape_that_breaks_a_support_is_refused_by_node_and_component() {
     let beam = super::beam(2, [Support::Clamped, Support::Pinned]);
     let good = [[0.0, 0.0], [1e-3, 0.1], [0.0, -0.2]];
     let table = [
-        (0, 0, 1e-4, "nodal[0][0] = 0.0001: must be 0, the end is Clamped"),
-        (0, 1, 0.1, "nodal[0][1] = 0.1: must be 0, the end is Clamped"),
-        (2, 0, -1e-4, "nodal[2][0] = -0.0001: must be 0, the end is Pinned"),
+        (0, 0, 1e-4, "nodal[0][0] = 0.0001: must be 0, the support there is Clamped"),
+        (0, 1, 0.1, "nodal[0][1] = 0.1: must be 0, the support there is Clamped"),
+        (2, 0, -1e-4, "nodal[2][0] = -0.0001: must be 0, the support there is Pinned"),
         (1, 0, f64::NAN, "nodal = NaN: must be finite"),
     ];
     for (node, component, value, expected) in table {

@@ -15,9 +15,9 @@ fn dense(upper: &SparseColMat<usize, f64>) -> Mat<f64> {
 
 /// Circular frequencies of the finite elements, ascending: the square roots of the eigenvalues of L⁻¹K L⁻ᵀ, M = L Lᵀ.
 pub(crate) fn circular_frequencies(beam: &Beam) -> Vec<f64> {
-    let factor = dense(beam.mass()).llt(Side::Lower).unwrap();
+    let factor = dense(&beam.mass_matrix()).llt(Side::Lower).unwrap();
     let lower = factor.L();
-    let mut a = dense(beam.stiffness());
+    let mut a = dense(&beam.stiffness_matrix());
     for _ in 0..2 {
         lower.solve_lower_triangular_in_place(a.as_mut());
         a = a.transpose().to_owned();

@@ -12,12 +12,12 @@ mod reference;
 mod statics;
 mod stepping;
 
-use teeter_beam::{Beam, BeamSpec, Damping, Section, Support};
+use teeter_beam::{Beam, BeamSpec, Section, Support};
 
 /// The beam of `docs/theory.md` §8, undamped.
 fn spec(elements: usize, supports: [Support; 2]) -> BeamSpec {
     let section = Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap();
-    BeamSpec { span: 0.36, elements, section, supports, damping: Damping::default() }
+    BeamSpec::new(0.36, elements, section).supported(supports)
 }
 
 fn beam(elements: usize, supports: [Support; 2]) -> Beam {

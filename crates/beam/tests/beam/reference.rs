@@ -2,7 +2,7 @@
 //! tolerances; `same_scheme` is for a program with the same conventions.
 
 use serde_json::Value;
-use teeter_beam::{Beam, BeamSpec, Damping, Load, MovingLoad, Section, Support};
+use teeter_beam::{Beam, BeamSpec, Load, MovingLoad, Section, Support};
 
 use crate::frequencies::circular_frequencies;
 use crate::stepping::Stepper;
@@ -27,7 +27,7 @@ fn spec(case: &Value, elements: usize, supports: [Support; 2]) -> BeamSpec {
     let b = &case["params"]["beam"];
     let section =
         Section::rectangle(number(&b["width"]), number(&b["thickness"]), number(&b["E"]), number(&b["rho"])).unwrap();
-    BeamSpec { span: number(&b["L"]), elements, section, supports, damping: Damping::default() }
+    BeamSpec::new(number(&b["L"]), elements, section).supported(supports)
 }
 
 fn supports(name: &str) -> [Support; 2] {
@@ -98,7 +98,7 @@ fn run(case: &Value, load: Option<&dyn Load>) {
         while f64::from(run.step) < (t / h).round() {
             run.advance();
         }
-        let middle = |x: &[f64]| beam.deflection_at(x, 0.5 * spec.span).unwrap().w;
+        let middle = |x: &[f64]| beam.deflection_at(x, 0.5 * beam.spec().span).unwrap().w;
         for (column, found) in [(1, middle(&run.q)), (2, middle(&run.v))] {
             let error = (found - number(&row[column])).abs();
             assert!(error <= number(&tolerance[column]), "t {t} column {column}: {error:e}");

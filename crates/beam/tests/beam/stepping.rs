@@ -116,7 +116,7 @@ fn a_larger_theta_takes_the_energy_that_the_identity_says() {
 fn the_first_mode_decays_with_the_damping_ratio_it_was_given() {
     let mut spec = super::spec(20, [Support::Pinned; 2]);
     spec.damping.viscous = spec.viscous_for_ratio(1, 0.01).unwrap();
-    let beam = Beam::new(spec).unwrap();
+    let beam = Beam::new(spec.clone()).unwrap();
     let mut run = Stepper::new(&beam, 1e-4, 0.5, sines(&beam, &[(1.0, 1e-3)]), vec![0.0; beam.dofs()], None);
     let start = run.energy();
     while run.step < 5000 {

@@ -26,11 +26,11 @@ pub(super) struct MovingSupports {
 
 impl MovingSupports {
     pub(super) fn new(beam: &Beam, motion: [Motion; 2]) -> Self {
-        let (n, spec) = (beam.dofs(), beam.spec());
+        let n = beam.dofs();
         let mut coupling = vec![0.0; n];
-        // The load per length is finite and the vector as long as it must be, so there is no error to pass on.
-        let _ = beam.add_uniform_load(spec.section.mass_per_length, &mut coupling);
-        Self { motion, driven: [n, n + 1], coupling, mass: spec.section.mass_per_length * spec.span }
+        // The acceleration is finite and the vector as long as it must be, so there is no error to pass on.
+        let _ = beam.add_self_weight(1.0, &mut coupling);
+        Self { motion, driven: [n, n + 1], coupling, mass: beam.total_mass() }
     }
 
     pub(super) fn displacements(&self, t: f64) -> [f64; 2] {

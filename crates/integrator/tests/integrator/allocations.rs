@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::sync::Arc;
-use teeter_beam::{Beam, BeamSpec, Damping, Section, Support};
+use teeter_beam::{Beam, BeamSpec, Damping, Section};
 use teeter_detect::Kinematics;
 use teeter_integrator::*;
 
@@ -105,13 +105,12 @@ fn a_step_with_closed_contacts_or_another_law_allocates_nothing() {
 
 fn beam() -> Arc<Beam> {
     Arc::new(
-        Beam::new(BeamSpec {
-            span: 0.36,
-            elements: 20,
-            section: Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap(),
-            supports: [Support::Pinned, Support::Pinned],
-            damping: Damping { viscous: 0.4, rayleigh_mass: 0.1, rayleigh_stiffness: 1e-6 },
-        })
+        Beam::new(BeamSpec::new(0.36, 20, Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap()).damped(Damping {
+            viscous: 0.4,
+            rayleigh_mass: 0.1,
+            rayleigh_stiffness: 1e-6,
+            ..Damping::default()
+        }))
         .unwrap(),
     )
 }

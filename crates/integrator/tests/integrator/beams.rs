@@ -4,19 +4,13 @@ use nalgebra::Vector2;
 use serde_json::Value;
 use std::path::Path;
 use std::sync::Arc;
-use teeter_beam::{Beam, BeamSpec, Damping, DistributedLoad, MovingLoad, Section, Support};
+use teeter_beam::{Beam, BeamSpec, Damping, DistributedLoad, MovingLoad, Section};
 use teeter_detect::PointDetector;
 use teeter_integrator::*;
 
 /// The paper's beam alone, under loads.
 fn model(damping: Damping, loads: Vec<Box<dyn teeter_beam::Load>>) -> (Arc<Beam>, Model<2>) {
-    let spec = BeamSpec {
-        span: 0.36,
-        elements: 20,
-        section: Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap(),
-        supports: [Support::Pinned, Support::Pinned],
-        damping,
-    };
+    let spec = BeamSpec::new(0.36, 20, Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap()).damped(damping);
     let beam = Arc::new(Beam::new(spec).unwrap());
     let body = loads
         .into_iter()
@@ -82,7 +76,7 @@ fn f5_undamped_vibration() {
 #[test]
 fn the_work_of_loads_is_in_the_account_for_every_theta() {
     for theta in [0.5, 0.75, 1.0] {
-        let damping = Damping { viscous: 0.4, rayleigh_mass: 0.5, rayleigh_stiffness: 1e-6 };
+        let damping = Damping { viscous: 0.4, rayleigh_mass: 0.5, rayleigh_stiffness: 1e-6, ..Damping::default() };
         let loads: Vec<Box<dyn teeter_beam::Load>> = vec![
             Box::new(MovingLoad::new(-10.0, 2.0, 0.0).unwrap()),
             Box::new(DistributedLoad::new(|t: f64| 5.0 * (300.0 * t).sin())),

@@ -4,7 +4,7 @@ use crate::scenes::{FLAT_BLOCK, PAPER_BLOCK, beam_body, model, workspace};
 use nalgebra::Vector2;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use teeter_beam::{Beam, BeamSpec, Damping, Section, Support};
+use teeter_beam::{Beam, BeamSpec, Section};
 use teeter_detect::Kinematics;
 use teeter_integrator::*;
 
@@ -110,13 +110,7 @@ fn on_a_beam_no_step_gets_energy_from_contact() {
 }
 
 fn paper_beam() -> Arc<Beam> {
-    let mut spec = BeamSpec {
-        span: 0.36,
-        elements: 20,
-        section: Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap(),
-        supports: [Support::Pinned, Support::Pinned],
-        damping: Damping::default(),
-    };
+    let mut spec = BeamSpec::new(0.36, 20, Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap());
     spec.damping.viscous = spec.viscous_for_ratio(1, 0.01).unwrap();
     Arc::new(Beam::new(spec).unwrap())
 }

@@ -8,7 +8,7 @@ use serde_json::Value;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
-use teeter_beam::{Beam, BeamSpec, Damping, Section, Support};
+use teeter_beam::{Beam, BeamSpec, Damping, Section};
 use teeter_detect::Kinematics;
 use teeter_integrator::*;
 
@@ -82,13 +82,10 @@ fn compare(name: &str) {
             Section::rectangle(number(&b["width"]), number(&b["thickness"]), number(&b["E"]), number(&b["rho"]))
                 .unwrap();
         Arc::new(
-            Beam::new(BeamSpec {
-                span: number(&b["L"]),
-                elements: b["n_el"].as_u64().unwrap() as usize,
-                section,
-                supports: [Support::Pinned, Support::Pinned],
-                damping: Damping { viscous: number(&b["c"]), ..Damping::default() },
-            })
+            Beam::new(
+                BeamSpec::new(number(&b["L"]), b["n_el"].as_u64().unwrap() as usize, section)
+                    .damped(Damping { viscous: number(&b["c"]), ..Damping::default() }),
+            )
             .unwrap(),
         )
     });

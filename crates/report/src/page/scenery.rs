@@ -78,7 +78,7 @@ impl Scenery {
             alpha: block.critical_angle(),
         });
         let beams = scene.beams.iter().zip(&layout.beams).map(|(drawn, place)| {
-            let (elements, span) = (drawn.spec.elements.max(1), drawn.spec.span);
+            let (elements, span) = (place.beam.elements(), drawn.spec.span);
             // A multiple of the elements, so that every node is a point, where that is not too many.
             let pieces = (elements * PIECES.div_ceil(elements)).min(MOST_PIECES);
             let at = |k: usize| place.beam.shape_clamped(span * (k as f64 / pieces as f64));
@@ -123,6 +123,8 @@ fn support_word(support: Support) -> &'static str {
     match support {
         Support::Pinned => "pinned",
         Support::Clamped => "clamped",
+        Support::Guided => "guided",
+        Support::Elastic { .. } => "elastic",
         _ => "free",
     }
 }

@@ -64,7 +64,7 @@ impl Resolver<'_, '_> {
                 return None;
             }
         };
-        let mut spec = BeamSpec { span, elements, section, supports, damping: Damping::default() };
+        let mut spec = BeamSpec::new(span, elements, section).supported(supports);
         spec.damping = self.damping(&path, &spec)?;
         let beam = BeamScene {
             name: name.to_owned(),
