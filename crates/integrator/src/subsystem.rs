@@ -111,6 +111,11 @@ pub trait Subsystem<const D: usize>: Send + Sync {
         false
     }
 
+    /// Whether M, C or K change with the coordinates, so that a step has to call [`Compliance::update`].
+    fn follows_coordinates(&self) -> bool {
+        false
+    }
+
     /// Adds `(mass·M + damping·C + stiffness·K) x` to `y`.
     fn apply(&self, w: Weights, q: &[f64], x: &[f64], y: &mut [f64]);
 
@@ -123,6 +128,14 @@ pub trait Subsystem<const D: usize>: Send + Sync {
 
     /// The energies at (q, v).
     fn energy(&self, q: &[f64], v: &[f64]) -> Energy;
+
+    /// What a θ step of length `h` (s) conserves on top of [`Subsystem::energy`] where no force but its own acts, J: 0 for a
+    /// potential that is quadratic and whose K is in W. For any other, what the step keeps constant is an energy that differs from
+    /// the true one by something of order h²; the account books the change of that as numerical.
+    fn modified_energy(&self, h: f64, q: &[f64], v: &[f64]) -> f64 {
+        let _ = (h, q, v);
+        0.0
+    }
 
     /// The least that counts as the scene's energy scale on account of this subsystem, J; m g R for a block.
     fn energy_scale(&self) -> f64 {
@@ -172,6 +185,14 @@ pub trait Compliance<const D: usize>: Send {
     /// # Errors
     /// If the matrix is not positive definite.
     fn refactor(&mut self, w: Weights, q: &[f64]) -> Result<(), FactorError>;
+
+    /// Becomes the inverse of the same combination at coordinates `q`, whatever it was updated to before; allocates nothing. A θ step
+    /// calls it once, with the coordinates q⁰ + hθv⁰ at which it takes the internal forces, if the subsystem
+    /// [follows its coordinates](Subsystem::follows_coordinates). Where the matrix is not positive definite there, solutions have to be
+    /// NaN: the step then ends as diverged.
+    fn update(&mut self, q: &[f64]) {
+        let _ = q;
+    }
 
     /// `f ← W f`; zero for [driven](Subsystem::driven) velocities, whose rows and columns of W are zero.
     fn solve(&mut self, f: &mut [f64]);

@@ -7,7 +7,9 @@ use teeter_contact::Outcome;
 /// Vectors of a step: they carry nothing from one to the next.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ThetaStep {
-    /// Coordinates at which forces or gaps are taken; at last q¹.
+    /// q⁰ + hθv⁰: where forces and matrices are taken.
+    q_forces: Vec<f64>,
+    /// Coordinates at which gaps are taken; at last q¹.
     pub(crate) q_at: Vec<f64>,
     /// v_free; once the impulses are known, v¹.
     pub(crate) v_end: Vec<f64>,
@@ -31,6 +33,7 @@ pub(crate) fn weights(h: f64, theta: f64) -> Weights {
 impl ThetaStep {
     /// Takes the sizes of a model; allocates nothing where they are the same.
     pub(crate) fn resize(&mut self, size: Size) {
+        self.q_forces.resize(size.q, 0.0);
         self.q_at.resize(size.q, 0.0);
         let Self { v_end, v_mean, dq, dv, load, product, impulse, .. } = self;
         for v in [v_end, v_mean, dq, dv, load, product, impulse] {
@@ -40,10 +43,7 @@ impl ThetaStep {
 
     /// Leaves q ⊕ τ v in `q_at`.
     pub(crate) fn predict<const D: usize>(&mut self, model: &Model<D>, q: &[f64], v: &[f64], tau: f64) {
-        for (dq, v) in self.dq.iter_mut().zip(v) {
-            *dq = tau * v;
-        }
-        model.retract(q, &self.dq, &mut self.q_at);
+        retract(model, q, v, tau, &mut self.dq, &mut self.q_at);
     }
 
     /// Leaves v_free and P_θ. Prescribed velocities are those of the end of the step; what their change does to the others
@@ -57,7 +57,7 @@ impl ThetaStep {
         t_end: f64,
     ) {
         let h = state.dt;
-        self.predict(model, &state.q, &state.v, h * theta);
+        retract(model, &state.q, &state.v, h * theta, &mut self.dq, &mut self.q_forces);
         for (part, factor) in model.parts().iter().zip(&mut work.factors) {
             let (q, v) = (part.q.clone(), part.v.clone());
             if v.is_empty() {
@@ -66,7 +66,11 @@ impl ThetaStep {
             let dv = &mut self.dv[v.clone()];
             let v_start = &state.v[v.clone()];
             dv.fill(0.0);
-            part.system.internal_force(&self.q_at[q.clone()], v_start, dv);
+            let q = &self.q_forces[q];
+            if part.system.follows_coordinates() {
+                factor.update(q);
+            }
+            part.system.internal_force(q, v_start, dv);
             if part.system.is_loaded() {
                 let (load, scratch) = (&mut self.load[v.clone()], &mut work.scratch[..v.len()]);
                 mean_load(part.system.as_ref(), theta, [state.t, t_end], load, scratch);
@@ -89,7 +93,7 @@ impl ThetaStep {
                 *jump = v1 - v0;
             }
             pull.fill(0.0);
-            part.system.apply(weights(h, theta), &state.q[q], jump, pull);
+            part.system.apply(weights(h, theta), q, jump, pull);
             dv.iter_mut().zip(pull.iter()).for_each(|(dv, pull)| *dv -= pull);
             factor.solve(dv);
             add(v_end, dv);
@@ -123,7 +127,7 @@ impl ThetaStep {
         theta: f64,
     ) -> StepEnergy {
         let h = state.dt;
-        let Self { v_end, v_mean, dq, dv, load, product, impulse, .. } = self;
+        let Self { q_forces, q_at, v_end, v_mean, dq, dv, load, product, impulse } = self;
         let mut energy = StepEnergy::default();
         let driven = |part: &crate::Part<D>| !part.system.driven().is_empty();
         if theta != 0.5 || model.parts().iter().any(driven) {
@@ -132,7 +136,11 @@ impl ThetaStep {
             }
         }
         for (index, part) in model.parts().iter().enumerate() {
-            let (q, v) = (&state.q[part.q.clone()], part.v.clone());
+            let (q, v) = (&q_forces[part.q.clone()], part.v.clone());
+            let modified = |q: &[f64], velocity: &[f64]| {
+                part.system.modified_energy(h, &q[part.q.clone()], &velocity[part.v.clone()])
+            };
+            energy.numerical -= modified(q_at, v_end) - modified(&state.q, &state.v);
             let product = &mut product[v.clone()];
             let mut form = |w: Weights, x: &[f64]| {
                 product.fill(0.0);
@@ -206,6 +214,14 @@ impl ThetaStep {
         state.tally.count(outcome.as_ref(), contacts.len(), penetration);
         StepReport { step: state.step, t_start, t_end, contacts, outcome, penetration, energy }
     }
+}
+
+/// q ⊕ τ v into `out`.
+fn retract<const D: usize>(model: &Model<D>, q: &[f64], v: &[f64], tau: f64, dq: &mut [f64], out: &mut [f64]) {
+    for (dq, v) in dq.iter_mut().zip(v) {
+        *dq = tau * v;
+    }
+    model.retract(q, dq, out);
 }
 
 /// θP¹ + (1−θ)P⁰ into `load`.

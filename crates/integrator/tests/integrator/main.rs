@@ -5,6 +5,7 @@ mod allocations;
 mod beams;
 mod closed;
 mod driven;
+mod following;
 mod laws;
 mod own_parts;
 mod reference;
