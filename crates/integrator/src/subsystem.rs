@@ -111,6 +111,14 @@ pub trait Subsystem<const D: usize>: Send + Sync {
         false
     }
 
+    /// vᵀC v, the power that damping takes, W. The default takes the product, in `scratch`, as long as the velocities; a subsystem that can
+    /// sum it up as it goes does better.
+    fn damping_power(&self, q: &[f64], v: &[f64], scratch: &mut [f64]) -> f64 {
+        scratch.fill(0.0);
+        self.apply(Weights { damping: 1.0, ..Weights::default() }, q, v, scratch);
+        dot(v, scratch)
+    }
+
     /// Whether M, C or K change with the coordinates, so that a step has to call [`Compliance::update`].
     fn follows_coordinates(&self) -> bool {
         false
@@ -119,10 +127,10 @@ pub trait Subsystem<const D: usize>: Send + Sync {
     /// Adds `(mass·M + damping·C + stiffness·K) x` to `y`.
     fn apply(&self, w: Weights, q: &[f64], x: &[f64], y: &mut [f64]);
 
-    /// `out = q ⊕ dq`, with `dq` a velocity times a time. The default is the sum.
-    fn retract(&self, q: &[f64], dq: &[f64], out: &mut [f64]) {
-        for ((o, q), d) in out.iter_mut().zip(q).zip(dq) {
-            *o = q + d;
+    /// `out = q ⊕ τ v`: where velocities `v` lead in the time `tau` (s); not finite where a velocity isn't. The default is the sum.
+    fn retract(&self, q: &[f64], v: &[f64], tau: f64, out: &mut [f64]) {
+        for ((out, q), v) in out.iter_mut().zip(q).zip(v) {
+            *out = q + tau * v;
         }
     }
 
@@ -162,6 +170,19 @@ pub trait Subsystem<const D: usize>: Send + Sync {
     /// # Errors
     /// If the matrix is not positive definite.
     fn factor(&self, w: Weights, q: &[f64]) -> Result<Box<dyn Compliance<D>>, FactorError>;
+}
+
+/// xᵀy, in four sums at once: one after the other they would wait for each addition.
+pub(crate) fn dot(x: &[f64], y: &[f64]) -> f64 {
+    let ((x, x_rest), (y, y_rest)) = (x.as_chunks::<4>(), y.as_chunks::<4>());
+    let mut sums = [0.0; 4];
+    for (x, y) in x.iter().zip(y) {
+        for k in 0..4 {
+            sums[k] += x[k] * y[k];
+        }
+    }
+    let rest: f64 = x_rest.iter().zip(y_rest).map(|(x, y)| x * y).sum();
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
 /// A matrix that can't be factorised.
