@@ -1,12 +1,16 @@
 //! A beam as a subsystem: the adapter above `teeter-beam`, with the contact kinematics of `docs/theory.md` §3.
 
+mod compliance;
 mod motion;
 
 use crate::{Compliance, Energy, FactorError, Motion, Rows, Signal, Size, Subsystem, Weights};
+use compliance::BeamCompliance;
+pub use compliance::WBackend;
 use motion::MovingSupports;
 use nalgebra::Vector2;
 use std::sync::Arc;
-use teeter_beam::{Beam, Factor, Load, MatrixWeights};
+use teeter_beam::{Beam, Load, MatrixWeights};
+
 use teeter_detect::{Frame, Kinematics, SurfacePoint};
 
 /// Which fibre of a beam is its contact surface.
@@ -64,6 +68,7 @@ pub struct BeamBody {
     surface: BeamSurface,
     loads: Vec<Box<dyn Load>>,
     supports: Option<MovingSupports>,
+    backend: WBackend,
 }
 
 impl std::fmt::Debug for BeamBody {
@@ -80,7 +85,7 @@ impl BeamBody {
     /// A beam with its left end at `position` (m).
     #[must_use]
     pub fn new(beam: Arc<Beam>, position: Vector2<f64>, surface: BeamSurface) -> Self {
-        Self { beam, position, surface, loads: Vec::new(), supports: None }
+        Self { beam, position, surface, loads: Vec::new(), supports: None, backend: WBackend::Auto }
     }
 
     /// The same beam under one more load.
@@ -95,6 +100,13 @@ impl BeamBody {
     #[must_use]
     pub fn with_motion(mut self, motion: [Motion; 2]) -> Self {
         self.supports = Some(MovingSupports::new(&self.beam, motion));
+        self
+    }
+
+    /// The same beam with its W held in another way.
+    #[must_use]
+    pub fn with_backend(mut self, backend: WBackend) -> Self {
+        self.backend = backend;
         self
     }
 
@@ -269,44 +281,12 @@ impl Subsystem<2> for BeamBody {
     }
 
     fn factor(&self, w: Weights, _q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
-        match self.beam.factor(matrix_weights(w)) {
-            Ok(factor) => Ok(Box::new(BeamCompliance { beam: Arc::clone(&self.beam), weights: w, factor })),
-            Err(error) => Err(FactorError { weights: w, reason: error.to_string() }),
-        }
+        Ok(Box::new(BeamCompliance::new(&self.beam, w, self.backend)?))
     }
 }
 
 fn matrix_weights(w: Weights) -> MatrixWeights {
     MatrixWeights { mass: w.mass, damping: w.damping, stiffness: w.stiffness }
-}
-
-/// W_be of the source paper, by a sparse Cholesky factor.
-struct BeamCompliance {
-    beam: Arc<Beam>,
-    weights: Weights,
-    factor: Factor,
-}
-
-impl Compliance<2> for BeamCompliance {
-    fn weights(&self) -> Weights {
-        self.weights
-    }
-
-    fn refactor(&mut self, w: Weights, _q: &[f64]) -> Result<(), FactorError> {
-        match self.beam.refactor(matrix_weights(w), &mut self.factor) {
-            Ok(()) => {
-                self.weights = w;
-                Ok(())
-            }
-            Err(error) => Err(FactorError { weights: w, reason: error.to_string() }),
-        }
-    }
-
-    fn solve(&mut self, f: &mut [f64]) {
-        let (free, driven) = f.split_at_mut(self.beam.dofs());
-        self.factor.solve(free);
-        driven.fill(0.0);
-    }
 }
 
 #[cfg(test)]

@@ -222,27 +222,60 @@ pub trait Compliance<const D: usize>: Send {
     /// velocities. The default solves once for each direction in which a contact can push; a subsystem whose W is known in
     /// closed form does better.
     fn couple(&mut self, rows: &PartRows<'_, D>, scratch: &mut [f64], h: &mut Coupling<'_, D>) {
-        for (j, columns_j, values_j) in rows.iter() {
-            let mut column = |direction: &Vector<D>| {
-                scratch.fill(0.0);
-                for (&c, value) in columns_j.iter().zip(values_j) {
-                    scratch[c] += value.dot(direction);
-                }
-                self.solve(scratch);
-                for (i, columns_i, values_i) in rows.iter() {
-                    let mut u = Vector::<D>::zeros();
-                    for (&c, value) in columns_i.iter().zip(values_i) {
-                        u += value * scratch[c];
-                    }
-                    h.add(i, j, &(u * direction.transpose()));
-                }
-            };
-            match common_direction(values_j) {
-                Some(direction) => column(&direction),
-                None => (0..D).for_each(|d| column(&Vector::<D>::from_fn(|r, _| f64::from(u8::from(r == d))))),
+        couple_by_solving(rows, scratch, h, |f| self.solve(f), |_, _, _| {});
+    }
+
+    /// Adds `W Jᵀ p` to the subsystem's velocities `v`, with p the impulses of all contacts of the model (N·s), and the rows those that
+    /// were [coupled](Compliance::couple) last. `scratch` is as long as `v`. The default solves once; who keeps
+    /// what was solved for in coupling need not.
+    fn respond(&mut self, rows: &PartRows<'_, D>, p: &[Vector<D>], scratch: &mut [f64], v: &mut [f64]) {
+        respond_by_solving(rows, p, scratch, v, |f| self.solve(f));
+    }
+}
+
+/// Couples the rows by one solution for each direction in which a contact can push; shows each to `keep`, with contact and direction.
+pub(crate) fn couple_by_solving<const D: usize>(
+    rows: &PartRows<'_, D>,
+    scratch: &mut [f64],
+    h: &mut Coupling<'_, D>,
+    mut solve: impl FnMut(&mut [f64]),
+    mut keep: impl FnMut(usize, &Vector<D>, &[f64]),
+) {
+    for (j, columns_j, values_j) in rows.iter() {
+        let mut column = |direction: &Vector<D>| {
+            scratch.fill(0.0);
+            for (&c, value) in columns_j.iter().zip(values_j) {
+                scratch[c] += value.dot(direction);
             }
+            solve(scratch);
+            keep(j, direction, scratch);
+            for (i, columns_i, values_i) in rows.iter() {
+                let mut u = Vector::<D>::zeros();
+                for (&c, value) in columns_i.iter().zip(values_i) {
+                    u += value * scratch[c];
+                }
+                h.add(i, j, &(u * direction.transpose()));
+            }
+        };
+        match common_direction(values_j) {
+            Some(direction) => column(&direction),
+            None => (0..D).for_each(|d| column(&Vector::<D>::from_fn(|r, _| f64::from(u8::from(r == d))))),
         }
     }
+}
+
+/// Adds W Jᵀ p to `v` by one solution.
+pub(crate) fn respond_by_solving<const D: usize>(
+    rows: &PartRows<'_, D>,
+    p: &[Vector<D>],
+    scratch: &mut [f64],
+    v: &mut [f64],
+    solve: impl FnOnce(&mut [f64]),
+) {
+    scratch.fill(0.0);
+    rows.add_generalised_impulse(p, scratch);
+    solve(scratch);
+    v.iter_mut().zip(scratch.iter()).for_each(|(v, dv)| *v += dv);
 }
 
 /// The one direction in which a point can be pushed, if its entries are all parallel: so for a beam that is touched on its
@@ -282,6 +315,23 @@ impl<'a, const D: usize> PartRows<'a, D> {
                 (contact, &columns[range.clone()], &values[range])
             })
         })
+    }
+}
+
+impl<const D: usize> PartRows<'_, D> {
+    /// Whether no contact acts on the subsystem.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.iter().next().is_none()
+    }
+
+    /// Adds Jᵀ p to `f`, as long as the subsystem's velocities, with p the impulses of all contacts of the model, N·s.
+    pub fn add_generalised_impulse(&self, p: &[Vector<D>], f: &mut [f64]) {
+        for (contact, columns, values) in self.iter() {
+            for (&c, value) in columns.iter().zip(values) {
+                f[c] += value.dot(&p[contact]);
+            }
+        }
     }
 }
 
