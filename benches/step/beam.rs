@@ -10,7 +10,7 @@ use teeter_beam::MatrixWeights;
 const WEIGHTS: MatrixWeights = MatrixWeights { mass: 1.0, damping: 0.5e-4, stiffness: 0.25e-8 };
 
 pub(crate) fn bench(criterion: &mut Criterion) {
-    for elements in [10, 20, 40] {
+    for elements in [10, 20, 40, 400] {
         let beam = paper_beam(elements);
         let mut group = criterion.benchmark_group(format!("beam/{elements}"));
         let mut factor = beam.factor(WEIGHTS).expect("a factor");
@@ -31,6 +31,12 @@ pub(crate) fn bench(criterion: &mut Criterion) {
             bencher.iter(|| {
                 y.fill(0.0);
                 beam.add_mass_product(1.0, black_box(&x), &mut y);
+            });
+        });
+        group.bench_function("damping product", |bencher| {
+            bencher.iter(|| {
+                y.fill(0.0);
+                beam.add_damping_product(1.0, black_box(&x), &mut y);
             });
         });
         group.bench_function("stiffness product", |bencher| {

@@ -1,6 +1,7 @@
 //! Times of a step and of its parts; see `benches/README.md`.
 
 mod beam;
+mod free_beam;
 mod scenes;
 mod solvers;
 
@@ -13,6 +14,7 @@ fn main() {
     let brief = Criterion::default().warm_up_time(Duration::from_secs(1)).measurement_time(Duration::from_secs(3));
     let mut criterion = brief.configure_from_args();
     scenes::bench(&mut criterion);
+    free_beam::bench(&mut criterion);
     solvers::bench(&mut criterion);
     beam::bench(&mut criterion);
     criterion.final_summary();

@@ -14,10 +14,10 @@ use teeter_rigid::{MassProperties, Rectangle};
 use teeter_solvers::Auto;
 
 /// Steps from a fresh state in one sample: 0.1 s, up to the first impact on rigid ground.
-const STEPS: u64 = 1000;
+pub(crate) const STEPS: u64 = 1000;
 
 /// s.
-const DT: f64 = 1e-4;
+pub(crate) const DT: f64 = 1e-4;
 
 pub(crate) fn bench(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("step");

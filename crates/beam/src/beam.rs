@@ -218,6 +218,11 @@ impl Beam {
         self.damping_of_mass != 0.0 || self.spec.damping.rayleigh_stiffness != 0.0 || self.c.is_some()
     }
 
+    /// Whether it has axial dofs.
+    pub fn has_axial_dofs(&self) -> bool {
+        self.bar.is_some()
+    }
+
     /// Whether a deflection stretches it, so that its elastic force is not linear.
     pub fn is_stretched(&self) -> bool {
         self.membrane.is_some()

@@ -89,6 +89,6 @@ pub use error::{BeamError, FactorError, StaticError};
 pub use factor::{Backend, Factor, MatrixWeights};
 pub use load::{DistributedLoad, Load, MovingLoad, NodalLoad};
 pub use section::{Profile, Section};
-pub use shape::{Deflection, ShapeAt};
+pub use shape::{AxialShape, Deflection, ShapeAt};
 pub use spec::{Axial, BeamSpec, Damping, Foundation, Lump, MAX_ELEMENTS, Segment};
 pub use support::{Hold, Support};

@@ -46,6 +46,39 @@ impl ShapeAt {
     }
 }
 
+/// The axial shape functions at a point of a beam with axial dofs, held ones left out: `u = Σ n[i] q[columns[i]]` over `i < len`.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct AxialShape {
+    /// How many of the two places are in use; 0 for a beam without axial dofs.
+    pub len: usize,
+    /// Indices of free dofs, ascending.
+    pub columns: [usize; 2],
+    /// Values, without unit.
+    pub n: [f64; 2],
+}
+
+impl AxialShape {
+    /// The axial displacement (or its rate) for the dofs `q` (or their rates).
+    ///
+    /// # Panics
+    /// If `q` is shorter than the beam's vectors.
+    #[inline]
+    pub fn displacement(&self, q: &[f64]) -> f64 {
+        (0..self.len.min(2)).map(|i| self.n[i] * q[self.columns[i]]).sum()
+    }
+
+    /// f += force Nᵀ: the nodal load of an axial force (N, in the direction of rising x) there.
+    ///
+    /// # Panics
+    /// If `f` is shorter than the beam's vectors.
+    #[inline]
+    pub fn add_load(&self, force: f64, f: &mut [f64]) {
+        for i in 0..self.len.min(2) {
+            f[self.columns[i]] += force * self.n[i];
+        }
+    }
+}
+
 /// Deflection and slope of a point of the beam.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Deflection {
@@ -89,6 +122,22 @@ impl Beam {
     fn shape_inside(&self, x: f64) -> ShapeAt {
         let (element, xi) = self.mesh.locate(x);
         self.shape_in(element, xi)
+    }
+
+    /// The axial shape functions at the point of [0, span] nearest to x; empty for a beam without axial dofs.
+    #[inline]
+    pub fn axial_shape_clamped(&self, x: f64) -> AxialShape {
+        let Some(bar) = &self.bar else { return AxialShape::default() };
+        let (element, xi) = self.mesh.locate(x.max(0.0).min(self.spec.span));
+        let first = 2 * self.nodes() + element;
+        let mut shape = AxialShape::default();
+        for (local, n) in [1.0 - xi, xi].into_iter().enumerate() {
+            if !bar.held[element + local] {
+                (shape.columns[shape.len], shape.n[shape.len]) = (first + local, n);
+                shape.len += 1;
+            }
+        }
+        shape
     }
 
     /// The shape functions in an element, at ξ in [0, 1], those of held dofs among them: what a load gives to a support is

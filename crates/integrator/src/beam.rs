@@ -1,12 +1,16 @@
 //! A beam as a subsystem: the adapter above `teeter-beam`, with the contact kinematics of `docs/theory.md` §3.
 
+mod compliance;
 mod motion;
 
 use crate::{Compliance, Energy, FactorError, Motion, Rows, Signal, Size, Subsystem, Weights};
+use compliance::BeamCompliance;
+pub use compliance::WBackend;
 use motion::MovingSupports;
 use nalgebra::Vector2;
 use std::sync::Arc;
-use teeter_beam::{Beam, Factor, Load, MatrixWeights};
+use teeter_beam::{Beam, Load, MatrixWeights};
+
 use teeter_detect::{Frame, Kinematics, SurfacePoint};
 
 /// Which fibre of a beam is its contact surface.
@@ -65,6 +69,7 @@ pub struct BeamBody {
     loads: Vec<Box<dyn Load>>,
     supports: Option<MovingSupports>,
     held: Vec<usize>,
+    backend: WBackend,
 }
 
 impl std::fmt::Debug for BeamBody {
@@ -82,7 +87,7 @@ impl BeamBody {
     #[must_use]
     pub fn new(beam: Arc<Beam>, position: Vector2<f64>, surface: BeamSurface) -> Self {
         let held = (0..beam.dofs()).filter(|dof| beam.is_held(*dof)).collect();
-        Self { beam, position, surface, loads: Vec::new(), supports: None, held }
+        Self { beam, position, surface, loads: Vec::new(), supports: None, held, backend: WBackend::Auto }
     }
 
     /// The same beam under one more load.
@@ -97,6 +102,13 @@ impl BeamBody {
     #[must_use]
     pub fn with_motion(mut self, motion: [Motion; 2]) -> Self {
         self.supports = Some(MovingSupports::new(&self.beam, motion));
+        self
+    }
+
+    /// The same beam with its W held in another way.
+    #[must_use]
+    pub fn with_backend(mut self, backend: WBackend) -> Self {
+        self.backend = backend;
         self
     }
 
@@ -131,12 +143,30 @@ impl BeamBody {
         if (-rounding..=span + rounding).contains(&along) { along.clamp(0.0, span) } else { along }
     }
 
+    /// The material point that axial motion has brought to x: x_m + u(x_m) = x. Strains are far below 1, so that a few rounds do.
+    fn before_moving(&self, q: &[f64], x: f64) -> f64 {
+        let mut material = x;
+        for _ in 0..FOOT_ROUNDS {
+            let next = (x - self.beam.axial_shape_clamped(material).displacement(q)).clamp(0.0, self.beam.spec().span);
+            let moved = (next - material).abs();
+            material = next;
+            if moved <= f64::EPSILON * self.beam.spec().span {
+                break;
+            }
+        }
+        material
+    }
+
     /// The foot point at the beam's own coordinate of `at`: the point of the surface with the same x.
     fn foot(&self, q: &[f64], kinematics: Kinematics, at: &Vector2<f64>) -> Option<SurfacePoint<2>> {
         let (q, position) = self.split(q);
         let x = self.along(at.x, position.x);
         let offset = self.surface.offset();
-        let d = self.beam.deflection_at(q, x)?; // None beyond the ends, which belong to the beam
+        self.beam.shape_at(x)?; // None beyond the ends, which belong to the beam
+        // The material point that is at x now.
+        let moves = self.beam.has_axial_dofs() && kinematics == Kinematics::Deformed;
+        let x = if moves { self.before_moving(q, x) } else { x };
+        let d = self.beam.deflection_at(q, x)?;
         if kinematics == Kinematics::Linear {
             let place = Vector2::new(at.x, position.y + d.w + offset);
             return Some(SurfacePoint { place, normal: Vector2::y(), material: Vector2::new(x, offset) });
@@ -171,7 +201,8 @@ impl Subsystem<2> for BeamBody {
     fn size(&self) -> Size {
         let driven = self.driven().len();
         let dofs = self.beam.dofs() + driven;
-        Size { q: dofs, v: dofs, bodies: 1, row: 4 + driven }
+        let axial = if self.beam.has_axial_dofs() { 2 } else { 0 };
+        Size { q: dofs, v: dofs, bodies: 1, row: 4 + axial + driven }
     }
 
     fn internal_force(&self, q: &[f64], v: &[f64], f: &mut [f64]) {
@@ -210,6 +241,19 @@ impl Subsystem<2> for BeamBody {
         self.beam.is_damped()
     }
 
+    fn damping_power(&self, _q: &[f64], v: &[f64], _scratch: &mut [f64]) -> f64 {
+        self.beam.damping_power(&v[..self.beam.dofs()])
+    }
+
+    fn follows_coordinates(&self) -> bool {
+        self.beam.is_stretched()
+    }
+
+    fn modified_energy(&self, h: f64, q: &[f64], v: &[f64]) -> f64 {
+        let n = self.beam.dofs();
+        if self.beam.is_stretched() { self.beam.modified_energy(h, &q[..n], &v[..n]) } else { 0.0 }
+    }
+
     fn apply(&self, w: Weights, _q: &[f64], x: &[f64], y: &mut [f64]) {
         let n = self.beam.dofs();
         if w.mass != 0.0 {
@@ -241,7 +285,8 @@ impl Subsystem<2> for BeamBody {
                 .deflection_at(q, point.x.clamp(0.0, self.beam.spec().span))
                 .map_or((0.0, 0.0), |d| (d.w, d.slope));
             let cos = (1.0 + slope * slope).sqrt().recip();
-            *place = position + Vector2::new(point.x - point.y * slope * cos, w + point.y * cos);
+            let u = self.beam.axial_shape_clamped(point.x).displacement(q);
+            *place = position + Vector2::new(point.x + u - point.y * slope * cos, w + point.y * cos);
         }
     }
 
@@ -267,52 +312,25 @@ impl Subsystem<2> for BeamBody {
                 out.values[k] = up * shape.n[k] + turn * shape.dn[k];
             }
         }
-        for (direction, column) in self.driven().iter().enumerate() {
-            out.columns[shape.len + direction] = *column;
-            out.values[shape.len + direction] = frame.column(direction).into();
+        let axial = self.beam.axial_shape_clamped(point.x);
+        let others = axial.columns[..axial.len].iter().zip(axial.n).map(|(column, n)| (*column, 0, n));
+        let driven = self.driven().iter().enumerate().map(|(direction, column)| (*column, direction, 1.0));
+        let mut len = shape.len;
+        for (column, direction, n) in others.chain(driven) {
+            out.columns[len] = column;
+            out.values[len] = frame.column(direction) * n;
+            len += 1;
         }
-        shape.len + self.driven().len()
+        len
     }
 
     fn factor(&self, w: Weights, _q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
-        match self.beam.factor(matrix_weights(w)) {
-            Ok(factor) => Ok(Box::new(BeamCompliance { beam: Arc::clone(&self.beam), weights: w, factor })),
-            Err(error) => Err(FactorError { weights: w, reason: error.to_string() }),
-        }
+        Ok(Box::new(BeamCompliance::new(&self.beam, w, self.backend)?))
     }
 }
 
 fn matrix_weights(w: Weights) -> MatrixWeights {
     MatrixWeights { mass: w.mass, damping: w.damping, stiffness: w.stiffness }
-}
-
-/// W_be of the source paper, by a sparse Cholesky factor.
-struct BeamCompliance {
-    beam: Arc<Beam>,
-    weights: Weights,
-    factor: Factor,
-}
-
-impl Compliance<2> for BeamCompliance {
-    fn weights(&self) -> Weights {
-        self.weights
-    }
-
-    fn refactor(&mut self, w: Weights, _q: &[f64]) -> Result<(), FactorError> {
-        match self.beam.refactor(matrix_weights(w), &mut self.factor) {
-            Ok(()) => {
-                self.weights = w;
-                Ok(())
-            }
-            Err(error) => Err(FactorError { weights: w, reason: error.to_string() }),
-        }
-    }
-
-    fn solve(&mut self, f: &mut [f64]) {
-        let (free, driven) = f.split_at_mut(self.beam.dofs());
-        self.factor.solve(free);
-        driven.fill(0.0);
-    }
 }
 
 #[cfg(test)]

@@ -318,20 +318,17 @@ impl<const D: usize> ContactSet<D> {
         Ok((problem, &mut self.p))
     }
 
-    /// Adds Jᵀ p of one part to `f`, as long as its velocities, N·s; whether any contact acts on it.
-    pub(crate) fn add_generalised_impulse(&self, part: usize, f: &mut [f64]) -> bool {
-        let rows = PartRows { part, spans: &self.spans, columns: &self.columns, values: &self.values };
-        let mut touched = false;
-        for (contact, columns, values) in rows.iter() {
-            touched = true;
-            for (&c, value) in columns.iter().zip(values) {
-                f[c] += value.dot(&self.p[contact]);
-            }
-        }
-        touched
+    /// The rows of the contacts that act on one part.
+    pub(crate) fn rows_of(&self, part: usize) -> PartRows<'_, D> {
+        PartRows { part, spans: &self.spans, columns: &self.columns, values: &self.values }
     }
 
-    /// Adds W Jᵀ p to `v`; `scratch` is as long as the model's velocities.
+    /// Adds Jᵀ p of one part to `f`, as long as its velocities, N·s.
+    pub(crate) fn add_generalised_impulse(&self, part: usize, f: &mut [f64]) {
+        self.rows_of(part).add_generalised_impulse(&self.p, f);
+    }
+
+    /// Adds W Jᵀ p to `v`, after [`assemble`](Self::assemble); `scratch` is as long as the model's velocities.
     pub fn add_impulses(
         &self,
         model: &Model<D>,
@@ -340,11 +337,9 @@ impl<const D: usize> ContactSet<D> {
         v: &mut [f64],
     ) {
         for (index, (part, factor)) in model.parts().iter().zip(factors).enumerate() {
-            let f = &mut scratch[part.v.clone()];
-            f.fill(0.0);
-            if self.add_generalised_impulse(index, f) {
-                factor.solve(f);
-                v[part.v.clone()].iter_mut().zip(f.iter()).for_each(|(v, dv)| *v += dv);
+            let rows = self.rows_of(index);
+            if !rows.is_empty() {
+                factor.respond(&rows, &self.p, &mut scratch[part.v.clone()], &mut v[part.v.clone()]);
             }
         }
     }

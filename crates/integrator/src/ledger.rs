@@ -6,7 +6,8 @@
 //! Δ(T+V) = −h v_θᵀC v_θ + h v_θᵀP_θ + Σ U_θ·p − (θ−½)(ΔvᵀM Δv + ΔqᵀK Δq)
 //! ```
 //!
-//! viscous loss, work of loads, contact and friction, numerical dissipation. What is left over is rounding, or a mistake.
+//! viscous loss, work of loads, contact and friction, numerical dissipation. What is left over is rounding, or a mistake. Where V is not quadratic, what
+//! a step conserves is T + V plus the parts' [modified energy](crate::Subsystem::modified_energy), and minus the change of that is numerical too.
 
 use crate::Energy;
 
@@ -22,7 +23,7 @@ pub struct StepEnergy {
     pub friction: f64,
     /// Viscous loss.
     pub viscous: f64,
-    /// Numerical dissipation.
+    /// Numerical dissipation, and minus the change of the modified energy.
     pub numerical: f64,
     /// Work of a projection of the positions.
     pub projection: f64,

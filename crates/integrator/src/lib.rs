@@ -64,7 +64,7 @@ mod subsystem;
 mod theta_step;
 mod workspace;
 
-pub use beam::{BeamBody, BeamSurface, SignalLoad};
+pub use beam::{BeamBody, BeamSurface, SignalLoad, WBackend};
 pub use blocks::{Block, BlockLoad, Blocks};
 pub use contacts::{Contact, ContactSet, ContactState, tangential};
 pub use ground::Ground;

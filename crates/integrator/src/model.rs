@@ -47,6 +47,7 @@ pub struct Model<const D: usize> {
     bodies: Vec<(usize, u32)>,
     laws: Vec<PairLaw>,
     springs: bool,
+    contacts: bool,
     detector: Box<dyn ContactDetector<D>>,
     size: Size,
 }
@@ -115,7 +116,16 @@ impl<const D: usize> ModelBuilder<D> {
             law.check().map_err(|(what, value, rule)| ModelError::Law { what, pair: pair as u32, value, rule })?;
         }
         let springs = self.laws.iter().any(|law| law.impact.spring().is_some());
-        Ok(Model { parts: self.parts, bodies: self.bodies, laws: self.laws, springs, detector, size: self.size })
+        let contacts = detector.capacity() > 0;
+        Ok(Model {
+            parts: self.parts,
+            bodies: self.bodies,
+            laws: self.laws,
+            springs,
+            contacts,
+            detector,
+            size: self.size,
+        })
     }
 }
 
@@ -140,6 +150,11 @@ impl<const D: usize> Model<D> {
     /// Whether a pair has a law that can take more than one problem a step.
     pub(crate) fn has_laws(&self) -> bool {
         self.laws.iter().any(|law| law.impact != ImpactLaw::Newton || law.restitution > 0.0)
+    }
+
+    /// Whether anything can ever touch: if not, a step need not look.
+    pub(crate) fn has_contacts(&self) -> bool {
+        self.contacts
     }
 
     /// The detector.
@@ -177,10 +192,10 @@ impl<const D: usize> Model<D> {
         self.parts.iter().map(|part| part.system.energy_scale()).sum()
     }
 
-    /// `out = q ⊕ dq`.
-    pub fn retract(&self, q: &[f64], dq: &[f64], out: &mut [f64]) {
+    /// `out = q ⊕ τ v`: where velocities `v` lead in the time `tau` (s).
+    pub fn retract(&self, q: &[f64], v: &[f64], tau: f64, out: &mut [f64]) {
         for part in &self.parts {
-            part.system.retract(&q[part.q.clone()], &dq[part.v.clone()], &mut out[part.q.clone()]);
+            part.system.retract(&q[part.q.clone()], &v[part.v.clone()], tau, &mut out[part.q.clone()]);
         }
     }
 

@@ -108,7 +108,9 @@ impl<const D: usize> Scheme<D> for MoreauJean {
         } else {
             gap_tolerance
         };
-        self.step.predict(model, &state.q, &state.v, activation_gamma * h);
+        if model.has_contacts() {
+            self.step.predict(model, &state.q, &state.v, activation_gamma * h);
+        }
         work.detect(model, &self.step.q_at, margin);
         let outcome = self.impact(model, state, work).map_err(|source| StepError::Problem { t: state.t, source })?;
         self.step.close(model, state, theta)?;

@@ -117,18 +117,39 @@ pub trait Subsystem<const D: usize>: Send + Sync {
         false
     }
 
+    /// vᵀC v, the power that damping takes, W. The default takes the product, in `scratch`, as long as the velocities; a subsystem that can
+    /// sum it up as it goes does better.
+    fn damping_power(&self, q: &[f64], v: &[f64], scratch: &mut [f64]) -> f64 {
+        scratch.fill(0.0);
+        self.apply(Weights { damping: 1.0, ..Weights::default() }, q, v, scratch);
+        dot(v, scratch)
+    }
+
+    /// Whether M, C or K change with the coordinates, so that a step has to call [`Compliance::update`].
+    fn follows_coordinates(&self) -> bool {
+        false
+    }
+
     /// Adds `(mass·M + damping·C + stiffness·K) x` to `y`.
     fn apply(&self, w: Weights, q: &[f64], x: &[f64], y: &mut [f64]);
 
-    /// `out = q ⊕ dq`, with `dq` a velocity times a time. The default is the sum.
-    fn retract(&self, q: &[f64], dq: &[f64], out: &mut [f64]) {
-        for ((o, q), d) in out.iter_mut().zip(q).zip(dq) {
-            *o = q + d;
+    /// `out = q ⊕ τ v`: where velocities `v` lead in the time `tau` (s); not finite where a velocity isn't. The default is the sum.
+    fn retract(&self, q: &[f64], v: &[f64], tau: f64, out: &mut [f64]) {
+        for ((out, q), v) in out.iter_mut().zip(q).zip(v) {
+            *out = q + tau * v;
         }
     }
 
     /// The energies at (q, v).
     fn energy(&self, q: &[f64], v: &[f64]) -> Energy;
+
+    /// What a θ step of length `h` (s) conserves on top of [`Subsystem::energy`] where no force but its own acts, J: 0 for a
+    /// potential that is quadratic and whose K is in W. For any other, what the step keeps constant is an energy that differs from
+    /// the true one by something of order h²; the account books the change of that as numerical.
+    fn modified_energy(&self, h: f64, q: &[f64], v: &[f64]) -> f64 {
+        let _ = (h, q, v);
+        0.0
+    }
 
     /// The least that counts as the scene's energy scale on account of this subsystem, J; m g R for a block.
     fn energy_scale(&self) -> f64 {
@@ -157,6 +178,19 @@ pub trait Subsystem<const D: usize>: Send + Sync {
     fn factor(&self, w: Weights, q: &[f64]) -> Result<Box<dyn Compliance<D>>, FactorError>;
 }
 
+/// xᵀy, in four sums at once: one after the other they would wait for each addition.
+pub(crate) fn dot(x: &[f64], y: &[f64]) -> f64 {
+    let ((x, x_rest), (y, y_rest)) = (x.as_chunks::<4>(), y.as_chunks::<4>());
+    let mut sums = [0.0; 4];
+    for (x, y) in x.iter().zip(y) {
+        for k in 0..4 {
+            sums[k] += x[k] * y[k];
+        }
+    }
+    let rest: f64 = x_rest.iter().zip(y_rest).map(|(x, y)| x * y).sum();
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
+}
+
 /// A matrix that can't be factorised.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{mass} M + {damping} C + {stiffness} K can't be factorised: {reason}", mass = weights.mass, damping = weights.damping, stiffness = weights.stiffness)]
@@ -179,6 +213,14 @@ pub trait Compliance<const D: usize>: Send {
     /// If the matrix is not positive definite.
     fn refactor(&mut self, w: Weights, q: &[f64]) -> Result<(), FactorError>;
 
+    /// Becomes the inverse of the same combination at coordinates `q`, whatever it was updated to before; allocates nothing. A θ step
+    /// calls it once, with the coordinates q⁰ + hθv⁰ at which it takes the internal forces, if the subsystem
+    /// [follows its coordinates](Subsystem::follows_coordinates). Where the matrix is not positive definite there, solutions have to be
+    /// NaN: the step then ends as diverged.
+    fn update(&mut self, q: &[f64]) {
+        let _ = q;
+    }
+
     /// `f ← W f`; zero for [driven](Subsystem::driven) and [held](Subsystem::held) velocities, whose rows and columns of W are
     /// zero.
     fn solve(&mut self, f: &mut [f64]);
@@ -187,27 +229,60 @@ pub trait Compliance<const D: usize>: Send {
     /// velocities. The default solves once for each direction in which a contact can push; a subsystem whose W is known in
     /// closed form does better.
     fn couple(&mut self, rows: &PartRows<'_, D>, scratch: &mut [f64], h: &mut Coupling<'_, D>) {
-        for (j, columns_j, values_j) in rows.iter() {
-            let mut column = |direction: &Vector<D>| {
-                scratch.fill(0.0);
-                for (&c, value) in columns_j.iter().zip(values_j) {
-                    scratch[c] += value.dot(direction);
-                }
-                self.solve(scratch);
-                for (i, columns_i, values_i) in rows.iter() {
-                    let mut u = Vector::<D>::zeros();
-                    for (&c, value) in columns_i.iter().zip(values_i) {
-                        u += value * scratch[c];
-                    }
-                    h.add(i, j, &(u * direction.transpose()));
-                }
-            };
-            match common_direction(values_j) {
-                Some(direction) => column(&direction),
-                None => (0..D).for_each(|d| column(&Vector::<D>::from_fn(|r, _| f64::from(u8::from(r == d))))),
+        couple_by_solving(rows, scratch, h, |f| self.solve(f), |_, _, _| {});
+    }
+
+    /// Adds `W Jᵀ p` to the subsystem's velocities `v`, with p the impulses of all contacts of the model (N·s), and the rows those that
+    /// were [coupled](Compliance::couple) last. `scratch` is as long as `v`. The default solves once; who keeps
+    /// what was solved for in coupling need not.
+    fn respond(&mut self, rows: &PartRows<'_, D>, p: &[Vector<D>], scratch: &mut [f64], v: &mut [f64]) {
+        respond_by_solving(rows, p, scratch, v, |f| self.solve(f));
+    }
+}
+
+/// Couples the rows by one solution for each direction in which a contact can push; shows each to `keep`, with contact and direction.
+pub(crate) fn couple_by_solving<const D: usize>(
+    rows: &PartRows<'_, D>,
+    scratch: &mut [f64],
+    h: &mut Coupling<'_, D>,
+    mut solve: impl FnMut(&mut [f64]),
+    mut keep: impl FnMut(usize, &Vector<D>, &[f64]),
+) {
+    for (j, columns_j, values_j) in rows.iter() {
+        let mut column = |direction: &Vector<D>| {
+            scratch.fill(0.0);
+            for (&c, value) in columns_j.iter().zip(values_j) {
+                scratch[c] += value.dot(direction);
             }
+            solve(scratch);
+            keep(j, direction, scratch);
+            for (i, columns_i, values_i) in rows.iter() {
+                let mut u = Vector::<D>::zeros();
+                for (&c, value) in columns_i.iter().zip(values_i) {
+                    u += value * scratch[c];
+                }
+                h.add(i, j, &(u * direction.transpose()));
+            }
+        };
+        match common_direction(values_j) {
+            Some(direction) => column(&direction),
+            None => (0..D).for_each(|d| column(&Vector::<D>::from_fn(|r, _| f64::from(u8::from(r == d))))),
         }
     }
+}
+
+/// Adds W Jᵀ p to `v` by one solution.
+pub(crate) fn respond_by_solving<const D: usize>(
+    rows: &PartRows<'_, D>,
+    p: &[Vector<D>],
+    scratch: &mut [f64],
+    v: &mut [f64],
+    solve: impl FnOnce(&mut [f64]),
+) {
+    scratch.fill(0.0);
+    rows.add_generalised_impulse(p, scratch);
+    solve(scratch);
+    v.iter_mut().zip(scratch.iter()).for_each(|(v, dv)| *v += dv);
 }
 
 /// The one direction in which a point can be pushed, if its entries are all parallel: so for a beam that is touched on its
@@ -247,6 +322,23 @@ impl<'a, const D: usize> PartRows<'a, D> {
                 (contact, &columns[range.clone()], &values[range])
             })
         })
+    }
+}
+
+impl<const D: usize> PartRows<'_, D> {
+    /// Whether no contact acts on the subsystem.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.iter().next().is_none()
+    }
+
+    /// Adds Jᵀ p to `f`, as long as the subsystem's velocities, with p the impulses of all contacts of the model, N·s.
+    pub fn add_generalised_impulse(&self, p: &[Vector<D>], f: &mut [f64]) {
+        for (contact, columns, values) in self.iter() {
+            for (&c, value) in columns.iter().zip(values) {
+                f[c] += value.dot(&p[contact]);
+            }
+        }
     }
 }
 

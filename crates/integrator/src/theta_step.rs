@@ -1,19 +1,21 @@
 //! The θ step that the schemes share: free velocities, the end of the step, the account of its forces.
 
 use crate::contacts::tangential;
+use crate::subsystem::dot;
 use crate::{Model, Size, State, StepEnergy, StepError, StepReport, Subsystem, Weights, Workspace};
 use teeter_contact::Outcome;
 
 /// Vectors of a step: they carry nothing from one to the next.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ThetaStep {
-    /// Coordinates at which forces or gaps are taken; at last q¹.
+    /// q⁰ + hθv⁰: where forces and matrices are taken.
+    q_forces: Vec<f64>,
+    /// Coordinates at which gaps are taken; at last q¹.
     pub(crate) q_at: Vec<f64>,
     /// v_free; once the impulses are known, v¹.
     pub(crate) v_end: Vec<f64>,
     /// v_θ.
     v_mean: Vec<f64>,
-    dq: Vec<f64>,
     dv: Vec<f64>,
     /// P_θ.
     load: Vec<f64>,
@@ -31,19 +33,21 @@ pub(crate) fn weights(h: f64, theta: f64) -> Weights {
 impl ThetaStep {
     /// Takes the sizes of a model; allocates nothing where they are the same.
     pub(crate) fn resize(&mut self, size: Size) {
-        self.q_at.resize(size.q, 0.0);
-        let Self { v_end, v_mean, dq, dv, load, product, impulse, .. } = self;
-        for v in [v_end, v_mean, dq, dv, load, product, impulse] {
+        if (self.q_at.len(), self.v_end.len()) == (size.q, size.v) {
+            return;
+        }
+        let Self { q_forces, q_at, v_end, v_mean, dv, load, product, impulse } = self;
+        for q in [q_forces, q_at] {
+            q.resize(size.q, 0.0);
+        }
+        for v in [v_end, v_mean, dv, load, product, impulse] {
             v.resize(size.v, 0.0);
         }
     }
 
     /// Leaves q ⊕ τ v in `q_at`.
     pub(crate) fn predict<const D: usize>(&mut self, model: &Model<D>, q: &[f64], v: &[f64], tau: f64) {
-        for (dq, v) in self.dq.iter_mut().zip(v) {
-            *dq = tau * v;
-        }
-        model.retract(q, &self.dq, &mut self.q_at);
+        model.retract(q, v, tau, &mut self.q_at);
     }
 
     /// Leaves v_free and P_θ. Prescribed velocities are those of the end of the step; what their change does to the others
@@ -57,7 +61,7 @@ impl ThetaStep {
         t_end: f64,
     ) {
         let h = state.dt;
-        self.predict(model, &state.q, &state.v, h * theta);
+        model.retract(&state.q, &state.v, h * theta, &mut self.q_forces);
         for (part, factor) in model.parts().iter().zip(&mut work.factors) {
             let (q, v) = (part.q.clone(), part.v.clone());
             if v.is_empty() {
@@ -66,7 +70,11 @@ impl ThetaStep {
             let dv = &mut self.dv[v.clone()];
             let v_start = &state.v[v.clone()];
             dv.fill(0.0);
-            part.system.internal_force(&self.q_at[q.clone()], v_start, dv);
+            let q = &self.q_forces[q];
+            if part.system.follows_coordinates() {
+                factor.update(q);
+            }
+            part.system.internal_force(q, v_start, dv);
             if part.system.is_loaded() {
                 let (load, scratch) = (&mut self.load[v.clone()], &mut work.scratch[..v.len()]);
                 mean_load(part.system.as_ref(), theta, [state.t, t_end], load, scratch);
@@ -89,7 +97,7 @@ impl ThetaStep {
                 *jump = v1 - v0;
             }
             pull.fill(0.0);
-            part.system.apply(weights(h, theta), &state.q[q], jump, pull);
+            part.system.apply(weights(h, theta), q, jump, pull);
             dv.iter_mut().zip(pull.iter()).for_each(|(dv, pull)| *dv -= pull);
             factor.solve(dv);
             add(v_end, dv);
@@ -103,14 +111,13 @@ impl ThetaStep {
         state: &State,
         theta: f64,
     ) -> Result<(), StepError> {
-        let h = state.dt;
-        let Self { q_at, v_end, v_mean, dq, .. } = self;
-        for (((mean, dq), v1), v0) in v_mean.iter_mut().zip(dq.iter_mut()).zip(v_end.iter()).zip(&state.v) {
+        let Self { q_at, v_end, v_mean, .. } = self;
+        for ((mean, v1), v0) in v_mean.iter_mut().zip(v_end.iter()).zip(&state.v) {
             *mean = theta * v1 + (1.0 - theta) * v0;
-            *dq = h * *mean;
         }
-        model.retract(&state.q, dq, q_at);
-        if all_finite(v_end) && all_finite(q_at) { Ok(()) } else { Err(StepError::Diverged { t: state.t }) }
+        model.retract(&state.q, v_mean, state.dt, q_at);
+        // A velocity that is not finite leads nowhere that is.
+        if all_finite(q_at) { Ok(()) } else { Err(StepError::Diverged { t: state.t }) }
     }
 
     /// The terms of the energy identity that aren't contact: loads, drives, damping, the scheme itself. The impulses of the
@@ -123,7 +130,7 @@ impl ThetaStep {
         theta: f64,
     ) -> StepEnergy {
         let h = state.dt;
-        let Self { v_end, v_mean, dq, dv, load, product, impulse, .. } = self;
+        let Self { q_forces, q_at, v_end, v_mean, dv, load, product, impulse } = self;
         let mut energy = StepEnergy::default();
         let driven = |part: &crate::Part<D>| !part.system.driven().is_empty();
         if theta != 0.5 || model.parts().iter().any(driven) {
@@ -132,21 +139,24 @@ impl ThetaStep {
             }
         }
         for (index, part) in model.parts().iter().enumerate() {
-            let (q, v) = (&state.q[part.q.clone()], part.v.clone());
+            let (q, v) = (&q_forces[part.q.clone()], part.v.clone());
+            let modified = |q: &[f64], velocity: &[f64]| {
+                part.system.modified_energy(h, &q[part.q.clone()], &velocity[part.v.clone()])
+            };
+            energy.numerical -= modified(q_at, v_end) - modified(&state.q, &state.v);
             let product = &mut product[v.clone()];
+            if part.system.is_damped() {
+                energy.viscous -= h * part.system.damping_power(q, &v_mean[v.clone()], product);
+            }
             let mut form = |w: Weights, x: &[f64]| {
                 product.fill(0.0);
                 part.system.apply(w, q, x, product);
                 dot(x, product)
             };
-            if part.system.is_damped() {
-                let c = Weights { damping: 1.0, ..Weights::default() };
-                energy.viscous -= h * form(c, &v_mean[v.clone()]);
-            }
             if theta != 0.5 {
                 let m = Weights { mass: 1.0, ..Weights::default() };
                 let k = Weights { stiffness: 1.0, ..Weights::default() };
-                energy.numerical -= (theta - 0.5) * (form(m, &dv[v.clone()]) + form(k, &dq[v.clone()]));
+                energy.numerical -= (theta - 0.5) * (form(m, &dv[v.clone()]) + h * h * form(k, &v_mean[v.clone()]));
             }
             if part.system.is_loaded() {
                 energy.external += h * dot(&v_mean[v.clone()], &load[v.clone()]);
@@ -171,7 +181,7 @@ impl ThetaStep {
     /// to be remembered are in the state's warm start already.
     #[allow(clippy::too_many_arguments)] // one call a scheme
     pub(crate) fn finish<'w, const D: usize>(
-        &self,
+        &mut self,
         model: &Model<D>,
         state: &mut State,
         work: &'w mut Workspace<D>,
@@ -195,8 +205,8 @@ impl ThetaStep {
         energy.contact += stored - state.ledger.stored;
         state.ledger.stored = stored;
 
-        state.q.copy_from_slice(&self.q_at);
-        state.v.copy_from_slice(&self.v_end);
+        std::mem::swap(&mut state.q, &mut self.q_at);
+        std::mem::swap(&mut state.v, &mut self.v_end);
         let t_start = std::mem::replace(&mut state.t, t_end);
         state.step += 1;
         let mut now = model.energy(&state.q, &state.v);
@@ -230,10 +240,6 @@ fn add(x: &mut [f64], y: &[f64]) {
     for (x, y) in x.iter_mut().zip(y) {
         *x += y;
     }
-}
-
-fn dot(x: &[f64], y: &[f64]) -> f64 {
-    x.iter().zip(y).map(|(x, y)| x * y).sum()
 }
 
 fn all_finite(x: &[f64]) -> bool {

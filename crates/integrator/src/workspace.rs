@@ -94,13 +94,19 @@ impl<const D: usize> Workspace<D> {
 
     /// Puts the candidates with a gap of at most `margin` (m) at coordinates `q` into `candidates`, in order of identity.
     pub fn detect(&mut self, model: &Model<D>, q: &[f64], margin: f64) {
-        model.detector().detect(&model.placed(q), margin, &mut self.candidates);
-        self.candidates.sort_unstable_by_key(|candidate| candidate.id);
+        self.candidates.clear();
+        if model.has_contacts() {
+            model.detector().detect(&model.placed(q), margin, &mut self.candidates);
+            self.candidates.sort_unstable_by_key(|candidate| candidate.id);
+        }
     }
 
     /// Deepest penetration at coordinates `q`, m; 0 if there is none. Replaces `candidates`.
     pub fn penetration(&mut self, model: &Model<D>, q: &[f64]) -> f64 {
-        model.detector().detect(&model.placed(q), 0.0, &mut self.candidates);
+        self.candidates.clear();
+        if model.has_contacts() {
+            model.detector().detect(&model.placed(q), 0.0, &mut self.candidates);
+        }
         self.candidates.iter().map(|candidate| -candidate.gap).fold(0.0, f64::max)
     }
 

@@ -144,8 +144,7 @@ impl Scheme<2> for SemiImplicitEuler {
             let t = state.t;
             Some(work.solve_contacts(model, 0.5, &mut self.v).map_err(|source| StepError::Problem { t, source })?)
         };
-        let dq: Vec<f64> = self.v.iter().map(|v| h * v).collect();
-        model.retract(&state.q.clone(), &dq, &mut state.q);
+        model.retract(&state.q.clone(), &self.v, h, &mut state.q);
         state.v.copy_from_slice(&self.v);
         let t_start = state.t;
         state.step += 1;

@@ -1,0 +1,117 @@
+//! Beams held along their axis, and beams with axial dofs: energy, order, and the exact large vibration.
+
+use nalgebra::Vector2;
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::sync::Arc;
+use teeter_beam::{Axial, Beam, BeamSpec, Damping, Section};
+use teeter_detect::PointDetector;
+use teeter_integrator::*;
+
+fn beam(elements: usize, axial: Axial, damping: Damping) -> Arc<Beam> {
+    let section = Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap();
+    Arc::new(Beam::new(BeamSpec::new(0.36, elements, section).axial(axial).damped(damping)).unwrap())
+}
+
+fn alone(beam: &Arc<Beam>) -> Model<2> {
+    let mut parts = ModelBuilder::new();
+    parts.add(Box::new(BeamBody::new(Arc::clone(beam), Vector2::zeros(), BeamSurface::Axis)));
+    parts.build(Box::new(PointDetector::new(Vec::new()))).unwrap()
+}
+
+fn advance(model: &Model<2>, state: &mut State, steps: u64) {
+    let mut work = crate::scenes::workspace(model);
+    let mut scheme = MoreauJean::new(MoreauJeanSettings::default()).unwrap();
+    let plan = Plan { steps, require_convergence: true };
+    assert_eq!(run(model, &mut scheme, state, &mut work, &plan, &mut []).unwrap(), Ended::Complete);
+}
+
+fn sine(beam: &Beam, amplitude: f64) -> Vec<f64> {
+    let k = PI / beam.spec().span;
+    let nodes: Vec<[f64; 2]> =
+        beam.node_positions().iter().map(|x| [amplitude * (k * x).sin(), amplitude * k * (k * x).cos()]).collect();
+    beam.from_nodes(&nodes).unwrap()
+}
+
+/// In its first mode a pinned beam of uniform axial force is Duffing's oscillator, exactly: w = A(t) sin(πx/L) with
+/// Ä + ω²A + (EA π⁴/(4 ρA L⁴)) A³ = 0. A quarter of its period is ∫dθ/√(ω² + ½γA²(1 + sin²θ)) over a quarter turn.
+fn quarter_period(beam: &Beam, amplitude: f64) -> f64 {
+    let s = &beam.spec().section;
+    let k2 = (PI / beam.spec().span).powi(2);
+    let omega2 = k2 * k2 * s.bending_stiffness / s.mass_per_length;
+    let gamma = k2 * k2 * s.axial_stiffness / (4.0 * s.mass_per_length);
+    let n = 4000;
+    let rate = |theta: f64| (omega2 + 0.5 * gamma * amplitude * amplitude * (1.0 + theta.sin().powi(2))).sqrt().recip();
+    // The midpoint rule over a period of an analytic function converges faster than any power.
+    (0..n).map(|i| rate(FRAC_PI_2 * (f64::from(i) + 0.5) / f64::from(n))).sum::<f64>() * FRAC_PI_2 / f64::from(n)
+}
+
+#[test]
+fn the_large_vibration_of_a_held_beam_is_duffing_s_and_the_step_of_second_order() {
+    // Twenty times as stiff by stretching as by bending.
+    let amplitude = 0.004;
+    let beam = beam(20, Axial::Held, Damping::default());
+    let model = alone(&beam);
+    let quarter = quarter_period(&beam, amplitude);
+    let linear = FRAC_PI_2 / beam.circular_frequency(1).unwrap();
+    assert!(quarter < 0.4 * linear, "{quarter} {linear}");
+    let error = |steps: u64| {
+        let h = quarter / steps as f64;
+        let mut state = State::new(&model, &sine(&beam, amplitude), &vec![0.0; beam.dofs()], h).unwrap();
+        advance(&model, &mut state, steps);
+        beam.deflection_at(&state.q, 0.18).unwrap().w / amplitude
+    };
+    // At a quarter of the period it passes through zero.
+    let errors = [200, 400, 800].map(error);
+    assert!(errors[2].abs() < 3e-6, "{errors:?}");
+    // What is left as h → 0 is the mesh's.
+    let order = ((errors[0] - errors[1]) / (errors[1] - errors[2])).log2();
+    assert!((order - 2.0).abs() < 0.1, "{order} {errors:?}");
+}
+
+#[test]
+fn the_account_of_a_stretched_beam_closes_to_rounding_and_its_energy_stays() {
+    for damping in [Damping::default(), Damping { viscous: 0.4, rayleigh_stiffness: 1e-6, ..Damping::default() }] {
+        let damped = damping != Damping::default();
+        let beam = beam(20, Axial::Held, damping);
+        let model = alone(&beam);
+        // Rough: every mode is in it, most of them not resolved by the step.
+        let mut v: Vec<f64> = (0..beam.dofs()).map(|k| 3.0 * (1.7 * k as f64).sin()).collect();
+        v.iter_mut().enumerate().filter(|(k, _)| beam.is_held(*k)).for_each(|(_, v)| *v = 0.0);
+        let mut state = State::new(&model, &sine(&beam, 0.01), &v, 1e-4).unwrap();
+        let start = model.energy(&state.q, &state.v).total() + beam.modified_energy(1e-4, &state.q, &state.v);
+        advance(&model, &mut state, 20_000);
+        assert!(state.ledger.relative_residual() < 1e-14, "{:e}", state.ledger.relative_residual());
+        let end = model.energy(&state.q, &state.v).total() + beam.modified_energy(1e-4, &state.q, &state.v);
+        if damped {
+            assert!(end < 0.5 * start, "{end} {start}");
+        } else {
+            assert!((end / start - 1.0).abs() < 1e-11, "{:e}", end / start - 1.0);
+        }
+    }
+}
+
+/// A bar struck along its axis: u = v sin(ωt) sin(πx/2L)/ω of its first mode, clamped and free.
+#[test]
+fn axial_dofs_vibrate_as_a_bar_and_leave_bending_alone() {
+    let n = 40;
+    let beam = beam(n, Axial::Elastic { held: [true, false] }, Damping::default());
+    let model = alone(&beam);
+    let (span, section) = (beam.spec().span, beam.spec().section);
+    let omega = FRAC_PI_2 / span * (section.axial_stiffness / section.mass_per_length).sqrt();
+    let first = 2 * beam.nodes();
+    let mut v = sine(&beam, 1.0);
+    let bend = v.clone();
+    for (k, x) in beam.node_positions().iter().enumerate() {
+        v[first + k] = (FRAC_PI_2 * x / span).sin();
+    }
+    let (steps, turns) = (400, 0.7);
+    let h = turns / omega / f64::from(steps);
+    let mut state = State::new(&model, &vec![0.0; beam.dofs()], &v, h).unwrap();
+    advance(&model, &mut state, u64::from(steps as u32));
+    let end = state.q[first + n] * omega;
+    assert!((end - turns.sin()).abs() < 1e-4, "{end}");
+    let mut without = State::new(&model, &vec![0.0; beam.dofs()], &bend, h).unwrap();
+    advance(&model, &mut without, u64::from(steps as u32));
+    assert_eq!(state.q[..first], without.q[..first]);
+    assert!(state.ledger.relative_residual() < 1e-14);
+}
