@@ -296,7 +296,7 @@ impl BeamSpec {
 
     fn validate_nodes(&self) -> Result<(), BeamError> {
         let (count, last) = (self.nodes.len(), self.nodes[self.nodes.len() - 1]);
-        if count < 2 || count > MAX_ELEMENTS + 1 {
+        if !(2..=MAX_ELEMENTS + 1).contains(&count) {
             return Err(BeamError::Count { field: "nodes", value: count, rule: "2 to 10001 of them" });
         }
         check("nodes", self.nodes[0], self.nodes[0] == 0.0, "0 at the left end")?;
