@@ -47,6 +47,7 @@
 mod beam;
 mod blocks;
 mod contacts;
+mod equilibrium;
 mod ground;
 mod laws;
 mod ledger;
@@ -67,6 +68,7 @@ mod workspace;
 pub use beam::{BeamBody, BeamSurface, SignalLoad, WBackend};
 pub use blocks::{Block, BlockLoad, Blocks};
 pub use contacts::{Contact, ContactSet, ContactState, tangential};
+pub use equilibrium::{Equilibrium, EquilibriumError, SettlingLimits, settle};
 pub use ground::Ground;
 pub use ledger::{Ledger, PositiveWork, StepEnergy};
 pub use model::{Model, ModelBuilder, ModelError, Part, Placed};

@@ -1,6 +1,6 @@
 //! The bodies of a scene with what drives them: loads, and prescribed motion.
 
-use crate::scene::{BeamScene, GroundScene, LoadKind, Scene};
+use crate::scene::{BeamScene, ForceScene, GroundScene, LoadKind, Scene};
 use nalgebra::Vector2;
 use std::sync::Arc;
 use teeter_beam::{Beam, BeamError};
@@ -10,12 +10,7 @@ use teeter_integrator::{BeamBody, BeamSurface, Block, BlockLoad, Blocks, Ground,
 pub(crate) fn blocks(scene: &Scene, blocks: Vec<Block>) -> Blocks {
     let mut system = Blocks::new(blocks, Vector2::from(scene.gravity));
     for force in &scene.forces {
-        system = system.with_load(BlockLoad {
-            block: force.block,
-            force: Vector2::from(force.force),
-            couple: force.couple,
-            signal: force.history.signal(),
-        });
+        system = system.with_load(block_load(force, force.block));
     }
     for (number, block) in scene.blocks.iter().enumerate() {
         for (coordinate, axis) in block.motion.0.iter().enumerate() {
@@ -27,11 +22,26 @@ pub(crate) fn blocks(scene: &Scene, blocks: Vec<Block>) -> Blocks {
     system
 }
 
+/// A force of the scene, on the block that has this number.
+pub(crate) fn block_load(force: &ForceScene, block: usize) -> BlockLoad {
+    BlockLoad { block, force: Vector2::from(force.force), couple: force.couple, signal: force.history.signal() }
+}
+
 /// A beam under its loads, on supports that may move.
 pub(crate) fn beam(scene: &Scene, number: usize, beam: &Arc<Beam>) -> Result<BeamBody, BeamError> {
     let of = &scene.beams[number];
-    let mut body = still_beam(of, beam, &[]);
+    let mut body = loaded(scene, number, still_beam(of, beam, &[]))?;
+    if of.motion.is_given() {
+        let [x, y, _] = of.motion.motions();
+        body = body.with_motion([x, y]);
+    }
+    Ok(body)
+}
+
+/// A beam with the loads of the scene on it.
+pub(crate) fn loaded(scene: &Scene, number: usize, mut body: BeamBody) -> Result<BeamBody, BeamError> {
     for load in scene.loads.iter().filter(|load| load.beam == number) {
+        let beam = body.beam();
         let mut pattern = vec![0.0; beam.dofs()];
         match load.kind {
             LoadKind::Point { at, force, couple } => {
@@ -41,10 +51,6 @@ pub(crate) fn beam(scene: &Scene, number: usize, beam: &Arc<Beam>) -> Result<Bea
             LoadKind::Distributed(force) => beam.add_uniform_load(force, &mut pattern)?,
         }
         body = body.with_load(Box::new(SignalLoad::new(pattern, load.history.signal())));
-    }
-    if of.motion.is_given() {
-        let [x, y, _] = of.motion.motions();
-        body = body.with_motion([x, y]);
     }
     Ok(body)
 }

@@ -2,7 +2,7 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;
-use crate::placement::PlacementError;
+use crate::placement::{Departure, PlacementError};
 use crate::simulation::BuildError;
 use teeter_beam::{BeamError, StaticError};
 use teeter_integrator::ModelError;
@@ -94,10 +94,26 @@ fn placement(error: &PlacementError, document: &Document) -> Diagnostic {
             format!("no static equilibrium: {source}"),
             "take fewer elements or a stiffer beam, or start undeformed",
         ),
-        PlacementError::Unsettled { beam, rounds, moved } => start(
+        PlacementError::NoEquilibrium { block, motion } => document.error(
+            &format!("block.{block}.at"),
+            format!("no static equilibrium: the block {motion}"),
+            match motion {
+                Departure::Slides => "give more friction, put it where the beam stays level, or start undeformed",
+                Departure::Tips => "move the block, take a stiffer beam, or start undeformed",
+                _ => "check gravity and forces at t = 0, or start undeformed",
+            },
+        ),
+        PlacementError::Unsettled { beam, rounds, change } => start(
             beam,
-            format!("no static equilibrium found in {rounds} rounds (it still moved by {moved:.1e} m)"),
+            format!(
+                "no static equilibrium found in {rounds} rounds (the last one still moved by {change:.1e}, relative)"
+            ),
             "take a stiffer beam or lighter blocks, or start undeformed",
+        ),
+        PlacementError::Search { beam, source } => start(
+            beam,
+            format!("no static equilibrium found: {source}"),
+            "check the numbers of the beam and of what stands on it, or start undeformed",
         ),
         PlacementError::OffSurface { block, corner, x } => document.error(
             &format!("block.{block}.at"),

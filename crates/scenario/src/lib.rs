@@ -51,6 +51,7 @@ pub mod record;
 pub mod resolve;
 pub mod scene;
 mod sets;
+mod settling;
 pub mod simulation;
 pub mod source;
 mod stability;
@@ -65,7 +66,7 @@ pub mod volume;
 pub mod wording;
 
 pub use left_out::left_out;
-pub use placement::PlacementError;
+pub use placement::{Departure, PlacementError};
 
 /// Reads a scene: text, keys, units, references. `file` is its name in messages, `stem` its title if it has none,
 /// `sets` are overrides by path. A scene that names other files is refused: see [`load_with`].

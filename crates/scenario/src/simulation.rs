@@ -2,8 +2,9 @@
 
 use crate::driven;
 use crate::overlap::{Box2, Overlap, deepest_overlap};
-use crate::placement::{PlacementError, Standing, beam_shape, block_pose};
-use crate::scene::{Scene, SchemeName, Support, Time};
+use crate::placement::{PlacementError, Standing, block_pose};
+use crate::scene::{Placement, Scene, SchemeName, Support, Time};
+use crate::settling::Start;
 use std::ops::Range;
 use std::sync::Arc;
 use teeter_beam::{Beam, BeamError};
@@ -11,8 +12,8 @@ use teeter_contact::ContactSolver;
 use teeter_detect::{BodyId, PointDetector, PointPair};
 use teeter_integrator::{
     Block, Ended, Model, ModelBuilder, ModelError, MoreauJean, MoreauJeanClosed, MoreauJeanClosedSettings,
-    MoreauJeanSettings, Observer, Plan, RunError, Scheme, SettingError, SolverSettings, State, StateError, Subsystem,
-    Workspace, run,
+    MoreauJeanSettings, Observer, Plan, RunError, Scheme, SettingError, SolverSettings, State, StateError, Workspace,
+    run,
 };
 use teeter_rigid::{MassProperties, Rectangle, RigidError};
 
@@ -158,30 +159,26 @@ impl Simulation {
         let mut parts = ModelBuilder::new();
         let mut layout = Layout::default();
 
-        let mut shapes = Vec::new();
         let mut blocks = Vec::new();
         for block in &scene.blocks {
             let named = |error| BuildError::Block(block.name.clone(), error);
             let shape = Rectangle::new(block.width, block.height).map_err(named)?;
             let mass = MassProperties::rectangle(&shape, block.depth, block.density).map_err(named)?;
-            blocks.push(Block::new(mass, &shape));
-            let start = 3 * shapes.len();
+            let start = 3 * blocks.len();
             layout.blocks.push(BlockPlace { name: block.name.clone(), range: start..start + 3 });
-            shapes.push(shape);
+            blocks.push((Block::new(mass, &shape), shape));
         }
-        let first_block = parts.add(Box::new(driven::blocks(scene, blocks)));
+        let bodies = blocks.iter().map(|(body, _)| *body).collect();
+        let first_block = parts.add(Box::new(driven::blocks(scene, bodies)));
 
         let mut beam_bodies = Vec::new();
-        let mut beam_coordinates = Vec::new();
-        let mut dofs = 3 * shapes.len();
+        let mut beams = Vec::new();
+        let mut dofs = 3 * blocks.len();
         for (number, scene_beam) in scene.beams.iter().enumerate() {
             let named = |error| BuildError::Beam(scene_beam.name.clone(), error);
             let beam = Arc::new(Beam::new(scene_beam.spec.clone()).map_err(named)?);
             let body = driven::beam(scene, number, &beam).map_err(named)?;
             let displaced = body.displacements(0.0);
-            // Where the supports start, the beam and what stands on it are placed as if they stood still.
-            let still = driven::still_beam(scene_beam, &beam, &displaced);
-            beam_coordinates.push(beam_shape(scene, number, &still)?);
             let range = dofs..dofs + beam.dofs();
             dofs = range.end + displaced.len();
             layout.beams.push(BeamPlace {
@@ -191,7 +188,8 @@ impl Simulation {
                 range,
                 probes: scene_beam.probes.clone(),
             });
-            beam_bodies.push((parts.add(Box::new(body)), still, displaced));
+            beam_bodies.push(parts.add(Box::new(body)));
+            beams.push((beam, displaced));
         }
         let ground = scene.ground.as_ref().map(driven::ground);
         let ground_start = ground.as_ref().map(|ground| ground.coordinates(0.0)).unwrap_or_default();
@@ -201,27 +199,36 @@ impl Simulation {
         let incline = scene.ground.as_ref().map_or(0.0, |ground| ground.incline);
         let line = if let [x, y, slope] = *ground_start { [x, y, slope] } else { [0.0, 0.0, incline] };
 
-        let (mut q, mut v) = (Vec::with_capacity(dofs), Vec::with_capacity(dofs));
+        let deflections: Vec<Vec<f64>> = beams.iter().map(|(beam, _)| vec![0.0; beam.dofs()]).collect();
+        let mut poses = Vec::with_capacity(blocks.len());
         for block in &scene.blocks {
-            let standing = match block.placement {
-                crate::scene::Placement::On { support: Support::Beam(k), .. } => {
-                    Standing::Surface(&beam_bodies[k].1 as &dyn Subsystem<2>, &beam_coordinates[k])
-                }
-                _ => Standing::Line(line),
+            let Placement::On { support: Support::Beam(k), .. } = block.placement else {
+                poses.push(block_pose(scene, block, &Standing::Line(line))?);
+                continue;
             };
-            q.extend(block_pose(scene, block, &standing)?.iter());
+            // Where the supports start, the beam and what stands on it are placed as if they stood still.
+            let still = driven::still_beam(&scene.beams[k], &beams[k].0, &beams[k].1);
+            poses.push(block_pose(scene, block, &Standing::Surface(&still, &deflections[k]))?);
+        }
+        let mut start = Start { blocks: &blocks, poses, beams: &beams, deflections, ground: &ground_start };
+        start.settle(scene)?;
+        let Start { poses, deflections, .. } = start;
+
+        let (mut q, mut v) = (Vec::with_capacity(dofs), Vec::with_capacity(dofs));
+        for (pose, block) in poses.iter().zip(&scene.blocks) {
+            q.extend(pose.iter());
             v.extend([block.velocity[0], block.velocity[1], block.spin]);
         }
-        for (coordinates, (.., displaced)) in beam_coordinates.iter().zip(&beam_bodies) {
-            q.extend(coordinates.iter().chain(displaced));
+        for (deflection, (_, displaced)) in deflections.iter().zip(&beams) {
+            q.extend(deflection.iter().chain(displaced));
         }
-        q.extend(ground_start);
+        q.extend(&ground_start);
         v.resize(dofs, 0.0);
 
         let mut pairs = Vec::new();
         for contact in &scene.contacts {
             let surface = match contact.surface {
-                Support::Beam(k) => beam_bodies[k].0,
+                Support::Beam(k) => beam_bodies[k],
                 Support::Ground => match ground_body {
                     Some(body) => body,
                     None => continue, // the resolver refuses a contact with ground that isn't there
@@ -229,7 +236,7 @@ impl Simulation {
             };
             pairs.push(PointPair {
                 pair: parts.pair(contact.law),
-                points: shapes[contact.block].corners().to_vec(),
+                points: blocks[contact.block].1.corners().to_vec(),
                 body: BodyId(first_block.0 + contact.block as u32),
                 surface,
                 kinematics: contact.kinematics,

@@ -1,0 +1,235 @@
+//! `start = "static"`: beams in equilibrium under what stands on them (`docs/theory.md` §9).
+//!
+//! The equilibrium is that of a model of its own: the beams that ask for it, the blocks that stand on them, and the ground.
+//! Blocks are put on the straight beam; then weight, and the loads and forces of t = 0, act. A flat block follows the beam,
+//! held by friction where there is any. A tilted one is held as placed by a couple that is let go at t = 0: its angle stays,
+//! and the place of its foot.
+
+use crate::driven;
+use crate::placement::{Departure, PlacementError};
+use crate::scene::{Placement, Scene, Support};
+use crate::simulation::BuildError;
+use nalgebra::{Vector2, Vector3};
+use std::sync::Arc;
+use teeter_beam::{Beam, BeamError};
+use teeter_detect::{BodyId, PointDetector, PointPair};
+use teeter_integrator::{
+    Block, Blocks, EquilibriumError, Model, ModelBuilder, Motion, PairLaw, SettlingLimits, SolverSettings, Workspace,
+    settle,
+};
+use teeter_rigid::{Pose, Rectangle};
+use teeter_solvers::Auto;
+
+/// The start of what moves, before and after settling.
+pub(crate) struct Start<'a> {
+    /// The bodies of the blocks, and their shapes.
+    pub(crate) blocks: &'a [(Block, Rectangle)],
+    /// X, Y, φ of each block.
+    pub(crate) poses: Vec<Vector3<f64>>,
+    /// The beams, and how far their supports are from where the scene has them, x and y, or nothing.
+    pub(crate) beams: &'a [(Arc<Beam>, Vec<f64>)],
+    /// Their coordinates.
+    pub(crate) deflections: Vec<Vec<f64>>,
+    /// The coordinates of ground that moves.
+    pub(crate) ground: &'a [f64],
+}
+
+/// A block that moves this part of its width from where it was put is on its way.
+const REACH: f64 = 0.1;
+
+/// Friction under a block that is held: its foot doesn't slide.
+const HELD: f64 = 1e3;
+
+/// Residual of the contact problems: what the forces are exact to.
+const TOLERANCE: f64 = 1e-13;
+
+/// Iterations of a contact solve.
+const ITERATIONS: u32 = 10_000;
+
+/// Times that held blocks are put back: the top fibre of a section that turns carries them along.
+const RETURNS: usize = 20;
+
+/// A foot that is this near to its place, as a part of its block's width, is there.
+const THERE: f64 = 1e-15;
+
+impl Start<'_> {
+    /// Moves beams that start static, and the blocks on them, to their equilibrium.
+    ///
+    /// # Errors
+    /// If there is none, or it is not found.
+    pub(crate) fn settle(&mut self, scene: &Scene) -> Result<(), BuildError> {
+        let beams: Vec<usize> = (0..scene.beams.len()).filter(|&k| scene.beams[k].static_start).collect();
+        let Some(&first) = beams.first() else { return Ok(()) };
+        for &k in &beams {
+            // Nothing bends it yet: this is about its supports.
+            let beam = &self.beams[k].0;
+            let refused = |source| PlacementError::Static { beam: scene.beams[k].name.clone(), source };
+            beam.solve_static(&mut vec![0.0; beam.dofs()]).map_err(refused)?;
+        }
+        let blocks = (0..scene.blocks.len()).filter(|&k| stands_on(scene, k).is_some_and(|beam| beams.contains(&beam)));
+        let taking_part = TakingPart { blocks: blocks.collect(), beams };
+        let (model, contacts) = taking_part.model(scene, self)?;
+        let reach: Vec<f64> = contacts.iter().map(|&k| REACH * scene.blocks[scene.contacts[k].block].width).collect();
+        let limits = SettlingLimits { reach: &reach, margin: reach.iter().copied().fold(0.0, f64::max) };
+        let held: Vec<HeldFoot> = taking_part.blocks.iter().filter_map(|&k| HeldFoot::of(scene, self, k)).collect();
+        let settings = SolverSettings { tolerance: TOLERANCE, max_iterations: ITERATIONS };
+        for _ in 0..RETURNS {
+            let mut work = Workspace::new(&model, Box::new(Auto::new()), settings);
+            let found = settle(&model, 0.0, &taking_part.coordinates(self), &limits, &mut work)
+                .map_err(|error| refusal(scene, &scene.beams[first].name, &taking_part.blocks, &contacts, error))?;
+            taking_part.take(self, &found.q);
+            if held.iter().fold(true, |there, foot| foot.put_back(self) && there) {
+                break;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The beam that a block stands on.
+fn stands_on(scene: &Scene, block: usize) -> Option<usize> {
+    match scene.blocks[block].placement {
+        Placement::On { support: Support::Beam(k), .. } => Some(k),
+        _ => None,
+    }
+}
+
+fn tilt_of(scene: &Scene, block: usize) -> f64 {
+    match scene.blocks[block].placement {
+        Placement::On { tilt, .. } => tilt,
+        Placement::Free { .. } => 0.0,
+    }
+}
+
+/// The foot of a block that is held, and where it stays.
+struct HeldFoot {
+    block: usize,
+    corner: Vector2<f64>,
+    x: f64,
+    width: f64,
+}
+
+impl HeldFoot {
+    fn of(scene: &Scene, start: &Start<'_>, block: usize) -> Option<Self> {
+        let tilt = tilt_of(scene, block);
+        let corner = if tilt > 0.0 {
+            0
+        } else if tilt < 0.0 {
+            1
+        } else {
+            return None;
+        };
+        let corner = start.blocks[block].1.corners()[corner];
+        let x = Pose::new(&start.poses[block]).point(&corner).x;
+        Some(Self { block, corner, x, width: scene.blocks[block].width })
+    }
+
+    /// Puts the block back to where its foot was; whether it was there.
+    fn put_back(&self, start: &mut Start<'_>) -> bool {
+        let pose = &mut start.poses[self.block];
+        let off = self.x - Pose::new(pose).point(&self.corner).x;
+        pose.x += off;
+        off.abs() <= THERE * (self.width + self.x.abs())
+    }
+}
+
+/// What the equilibrium is of, by number in the scene.
+struct TakingPart {
+    blocks: Vec<usize>,
+    beams: Vec<usize>,
+}
+
+impl TakingPart {
+    /// The model, and the contact of the scene that each of its pairs is.
+    fn model(&self, scene: &Scene, start: &Start<'_>) -> Result<(Model<2>, Vec<usize>), BuildError> {
+        let mut parts = ModelBuilder::new();
+        let bodies = self.blocks.iter().map(|&k| start.blocks[k].0).collect();
+        let mut blocks = Blocks::new(bodies, Vector2::from(scene.gravity));
+        for (number, &k) in self.blocks.iter().enumerate() {
+            for force in scene.forces.iter().filter(|force| force.block == k) {
+                blocks = blocks.with_load(driven::block_load(force, number));
+            }
+            // What is prescribed stays where it is put, but for the height: the block rests on the beam.
+            let [x, _, angle] = scene.blocks[k].motion.0.each_ref().map(Option::is_some);
+            for (coordinate, stays) in [(0, x), (2, angle || tilt_of(scene, k) != 0.0)] {
+                if stays {
+                    blocks = blocks.with_motion(number, coordinate, Motion::still());
+                }
+            }
+        }
+        let first = parts.add(Box::new(blocks));
+        let mut surfaces: Vec<(Support, BodyId)> = Vec::new();
+        for &k in &self.beams {
+            let (beam, displaced) = &start.beams[k];
+            let still = driven::still_beam(&scene.beams[k], beam, displaced);
+            let named = |error: BeamError| BuildError::Beam(scene.beams[k].name.clone(), error);
+            surfaces.push((Support::Beam(k), parts.add(Box::new(driven::loaded(scene, k, still).map_err(named)?))));
+        }
+        if let Some(ground) = &scene.ground {
+            surfaces.push((Support::Ground, parts.add(Box::new(driven::ground(ground)))));
+        }
+        let (mut pairs, mut contacts) = (Vec::new(), Vec::new());
+        for (number, contact) in scene.contacts.iter().enumerate() {
+            let block = self.blocks.iter().position(|&k| k == contact.block);
+            let surface = surfaces.iter().find(|(support, _)| *support == contact.surface);
+            let (Some(block), Some(&(_, surface))) = (block, surface) else { continue };
+            let friction = if tilt_of(scene, contact.block) != 0.0 { HELD } else { contact.law.friction };
+            pairs.push(PointPair {
+                pair: parts.pair(PairLaw::new(friction, 0.0)),
+                points: start.blocks[contact.block].1.corners().to_vec(),
+                body: BodyId(first.0 + block as u32),
+                surface,
+                kinematics: contact.kinematics,
+            });
+            contacts.push(number);
+        }
+        Ok((parts.build(Box::new(PointDetector::new(pairs)))?, contacts))
+    }
+
+    fn coordinates(&self, start: &Start<'_>) -> Vec<f64> {
+        let poses = self.blocks.iter().flat_map(|&k| start.poses[k].data.0[0]);
+        let beams = self.beams.iter().flat_map(|&k| start.deflections[k].iter().copied());
+        poses.chain(beams).chain(start.ground.iter().copied()).collect()
+    }
+
+    fn take(&self, start: &mut Start<'_>, q: &[f64]) {
+        let (poses, mut q) = q.split_at(3 * self.blocks.len());
+        for (&k, pose) in self.blocks.iter().zip(poses.chunks_exact(3)) {
+            start.poses[k] = Vector3::from_column_slice(pose);
+        }
+        for &k in &self.beams {
+            let (own, rest) = q.split_at(start.deflections[k].len());
+            start.deflections[k].copy_from_slice(own);
+            q = rest;
+        }
+    }
+}
+
+/// Why there is no start, with the block that doesn't stay.
+fn refusal(scene: &Scene, beam: &str, blocks: &[usize], contacts: &[usize], error: EquilibriumError) -> PlacementError {
+    let beam = beam.to_owned();
+    match error {
+        EquilibriumError::Leaves { contact, v, .. } => {
+            let block = contacts.get(contact.pair() as usize).map_or(0, |&k| scene.contacts[k].block);
+            let number = blocks.iter().position(|&k| k == block).unwrap_or_default();
+            let of = &scene.blocks[block];
+            let (speed, turning) = match v.get(3 * number..3 * number + 3) {
+                Some(&[x, y, spin]) => (Vector2::new(x, y), 0.5 * of.width.hypot(of.height) * spin.abs()),
+                _ => (Vector2::zeros(), 0.0),
+            };
+            let motion = if turning > TURNING * speed.norm() {
+                Departure::Tips
+            } else if speed.y > speed.x.abs() {
+                Departure::LiftsOff
+            } else {
+                Departure::Slides
+            };
+            PlacementError::NoEquilibrium { block: of.name.clone(), motion }
+        }
+        EquilibriumError::Unsettled { rounds, change, .. } => PlacementError::Unsettled { beam, rounds, change },
+        source => PlacementError::Search { beam, source },
+    }
+}
+
+/// A block whose farthest corner turns faster than this part of its mass centre's speed tips; one that turns about a foot has 1.
+const TURNING: f64 = 0.5;
