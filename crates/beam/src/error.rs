@@ -136,6 +136,47 @@ pub enum StaticError {
     Factor(#[from] FactorError),
 }
 
+/// Why a beam's modes were not found.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ModesError {
+    /// Fewer than one mode, or more than there are.
+    #[error("count = {count}: must be 1 to {unknowns}, the beam's degrees of freedom")]
+    Count {
+        /// The number asked for.
+        count: usize,
+        /// The beam's modes.
+        unknowns: usize,
+    },
+    /// The iteration did not settle.
+    #[error(
+        "count = {count}: the subspace iteration does not settle (relative residual {residual:e}); ask for fewer modes or take a coarser mesh"
+    )]
+    NotSettled {
+        /// The elastic modes sought.
+        count: usize,
+        /// The least residual reached, of the worst of them.
+        residual: f64,
+    },
+    /// The count of eigenvalues says that more lie below than the iteration finds.
+    #[error("count = {count}: a mode below these is missing and can't be found; take a coarser mesh")]
+    Missed {
+        /// The elastic modes sought.
+        count: usize,
+    },
+    /// A solve with K + σM lost all digits: the mesh is too fine for double precision.
+    #[error(
+        "the shifted stiffness can't be solved for in double precision (last correction {correction:e}); take a coarser mesh"
+    )]
+    Solve {
+        /// The last correction, relative to the solution.
+        correction: f64,
+    },
+    /// A matrix could not be factorised.
+    #[error("K + σM: {0}")]
+    Factor(#[from] FactorError),
+}
+
 /// `Ok` for a finite number that satisfies `rule`, else the error that names it.
 pub(crate) fn check(field: &'static str, value: f64, holds: bool, rule: &'static str) -> Result<(), BeamError> {
     if value.is_finite() && holds { Ok(()) } else { Err(BeamError::Value { field, value, rule }) }

@@ -72,6 +72,7 @@
 mod assembly;
 mod band;
 mod beam;
+mod eigen;
 mod element;
 mod error;
 mod factor;
@@ -84,7 +85,8 @@ mod spec;
 mod statics;
 
 pub use beam::Beam;
-pub use error::{BeamError, FactorError, StaticError};
+pub use eigen::Modes;
+pub use error::{BeamError, FactorError, ModesError, StaticError};
 pub use factor::{Factor, MatrixWeights};
 pub use layout::Dof;
 pub use load::{DistributedLoad, Load, MovingLoad, NodalLoad};

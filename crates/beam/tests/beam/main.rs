@@ -8,6 +8,7 @@
 mod allocation;
 mod bad_input;
 mod frequencies;
+mod modes;
 mod reference;
 mod statics;
 mod stepping;
