@@ -22,14 +22,15 @@
 //! No mode is missed: below a bound μ between two Ritz values as many eigenvalues are counted as Ritz values lie there, by
 //! the negative pivots of LDLᵀ = K − μM (Sylvester's law of inertia).
 
-mod block;
+pub(crate) mod block;
 mod inertia;
-mod inverse;
+pub(crate) mod inverse;
 mod rigid;
 
 use crate::beam::Beam;
 use crate::error::ModesError;
-use block::{Block, ritz};
+use block::{Block, Orthonormal, orthonormalised, ritz};
+pub(crate) use inertia::unknowns;
 use inverse::Inverse;
 
 /// The residual at which a mode is done: shapes to ten digits, frequencies to all that the energies give.
@@ -54,7 +55,7 @@ const MAX_GROWTHS: usize = 3;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Modes {
     frequencies: Vec<f64>,
-    shapes: Block,
+    pub(crate) shapes: Block,
     residuals: Vec<f64>,
     rigid: usize,
     rounds: usize,
@@ -121,7 +122,7 @@ impl Beam {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn modes(&self, count: usize) -> Result<Modes, ModesError> {
-        let unknowns = inertia::unknowns(self);
+        let unknowns = unknowns(self);
         if count == 0 || count > unknowns {
             return Err(ModesError::Count { count, unknowns });
         }
@@ -137,7 +138,8 @@ impl Beam {
         };
         if count > shapes.columns() {
             let wanted = count - shapes.columns();
-            let search = Search { beam: self, inverse: &inverse, rigid: &shapes, others: unknowns - shapes.columns() };
+            let rigid = Orthonormal::new(self, shapes.clone());
+            let search = Search { beam: self, inverse: &inverse, rigid: &rigid, others: unknowns - shapes.columns() };
             let found = search.lowest(wanted)?;
             modes.rounds = found.rounds;
             for (j, eigenvalue) in found.eigenvalues.iter().enumerate().take(wanted) {
@@ -162,7 +164,7 @@ impl Beam {
 struct Search<'a> {
     beam: &'a Beam,
     inverse: &'a Inverse<'a>,
-    rigid: &'a Block,
+    rigid: &'a Orthonormal,
     /// How many elastic modes the beam has.
     others: usize,
 }
@@ -190,8 +192,7 @@ impl Search<'_> {
         let mut x = self.inverse.start(0..size);
         let (mut best, mut stalled) = (f64::INFINITY, 0);
         for rounds in 0..MAX_ROUNDS {
-            x.orthonormalise(self.beam, self.rigid);
-            let (eigenvalues, vectors) = ritz(self.beam, &x);
+            let (eigenvalues, vectors) = ritz(self.beam, &orthonormalised(self.beam, self.rigid, &x, 0.0));
             let (next, residuals) = self.inverse.apply(self.rigid, &vectors, &eigenvalues)?;
             let worst = residuals[..wanted].iter().copied().fold(0.0, f64::max);
             stalled = if worst < best { 0 } else { stalled + 1 };
@@ -236,7 +237,7 @@ impl Search<'_> {
         let bound = 0.5 * (values[k - 1] + values[k]);
         // k vectors whose quotients are below the bound prove that there are k such eigenvalues (Courant and Fischer), so a
         // count of fewer is the rounding of the count.
-        if inertia::eigenvalues_below(self.beam, bound) <= k + self.rigid.columns() {
+        if inertia::eigenvalues_below(self.beam, bound) <= k + self.rigid.vectors.columns() {
             Verdict::Complete
         } else {
             Verdict::Missing
@@ -254,8 +255,8 @@ mod tests {
         for supports in all_supports() {
             let beam = beam(40, supports);
             let inverse = Inverse::new(&beam).unwrap();
-            let rigid = rigid::motions(&beam, f64::EPSILON * inverse.shift());
-            let others = inertia::unknowns(&beam) - rigid.columns();
+            let rigid = Orthonormal::new(&beam, rigid::motions(&beam, f64::EPSILON * inverse.shift()));
+            let others = unknowns(&beam) - rigid.vectors.columns();
             let search = Search { beam: &beam, inverse: &inverse, rigid: &rigid, others };
             let mut found = search.lowest(5).unwrap();
             assert!(matches!(search.verdict(&found, 5), Verdict::Complete));

@@ -71,6 +71,7 @@
 
 mod assembly;
 mod band;
+mod basis;
 mod beam;
 mod eigen;
 mod element;
@@ -84,9 +85,10 @@ mod shape;
 mod spec;
 mod statics;
 
+pub use basis::ModalBasis;
 pub use beam::Beam;
 pub use eigen::Modes;
-pub use error::{BeamError, FactorError, ModesError, StaticError};
+pub use error::{BeamError, FactorError, ModalError, ModesError, StaticError};
 pub use factor::{Factor, MatrixWeights};
 pub use layout::Dof;
 pub use load::{DistributedLoad, Load, MovingLoad, NodalLoad};

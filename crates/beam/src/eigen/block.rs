@@ -37,32 +37,66 @@ impl Block {
     pub(crate) fn truncate(&mut self, columns: usize) {
         self.entries.truncate(columns * self.dofs);
     }
+}
 
-    /// Gram–Schmidt in M, against `others` (orthonormal) and among its own columns in their order, twice: once leaves on a
-    /// column what rounding of its long part was (Giraud et al. 2005, doi 10.1007/s00211-005-0615-4).
-    pub(crate) fn orthonormalise(&mut self, beam: &Beam, others: &Self) {
-        let mut momenta = Self::new(self.dofs);
-        for other in others.iter() {
-            momenta.push(&mass_product(beam, other));
-        }
-        let known = others.columns();
-        for j in 0..self.columns() {
-            let (before, from_here) = self.entries.split_at_mut(j * self.dofs);
-            let column = &mut from_here[..self.dofs];
-            for _ in 0..2 {
-                normalise(beam, column);
-                for (k, momentum) in momenta.iter().enumerate() {
-                    let other = match k.checked_sub(known) {
-                        None => others.column(k),
-                        Some(own) => &before[own * self.dofs..(own + 1) * self.dofs],
-                    };
-                    add(-dot(momentum, column), other, column);
-                }
-            }
-            normalise(beam, column);
-            momenta.push(&mass_product(beam, column));
+/// M-orthonormal vectors and their momenta M x.
+#[derive(Debug, Clone)]
+pub(crate) struct Orthonormal {
+    pub(crate) vectors: Block,
+    pub(crate) momenta: Block,
+}
+
+impl Orthonormal {
+    /// Of vectors that are orthonormal already.
+    pub(crate) fn new(beam: &Beam, vectors: Block) -> Self {
+        let mut momenta = Block::new(beam.dofs());
+        vectors.iter().for_each(|x| momenta.push(&mass_product(beam, x)));
+        Self { vectors, momenta }
+    }
+
+    /// Takes its parts along these vectors out of `x`.
+    pub(crate) fn remove_from(&self, x: &mut [f64]) {
+        self.remove_first_from(self.vectors.columns(), x);
+    }
+
+    /// Takes its parts along the first `count` of them out of `x`.
+    pub(crate) fn remove_first_from(&self, count: usize, x: &mut [f64]) {
+        for (own, momentum) in self.vectors.iter().zip(self.momenta.iter()).take(count) {
+            add(-dot(momentum, x), own, x);
         }
     }
+
+    /// Adds what is new in `x`, normalised, if it is more than `least` of it.
+    ///
+    /// Gram–Schmidt twice: once leaves what rounding of the removed part was, a second time what rounding of that was (Giraud
+    /// et al. 2005, doi 10.1007/s00211-005-0615-4).
+    pub(crate) fn add(&mut self, beam: &Beam, x: &[f64], least: f64) {
+        let mut new = x.to_vec();
+        let size = norm(beam, &new);
+        self.remove_from(&mut new);
+        if !(norm(beam, &new) > least * size) {
+            return;
+        }
+        normalise(beam, &mut new);
+        self.remove_from(&mut new);
+        normalise(beam, &mut new);
+        self.momenta.push(&mass_product(beam, &new));
+        self.vectors.push(&new);
+    }
+
+    /// The vectors from number `from` on.
+    pub(crate) fn into_vectors_from(mut self, from: usize) -> Block {
+        self.vectors.entries.drain(..from * self.vectors.dofs);
+        self.vectors
+    }
+}
+
+/// The columns of `x` made orthonormal in M, in their order, and M-orthogonal to `others`, which are orthonormal; without those of
+/// which no more than `least` is new.
+pub(crate) fn orthonormalised(beam: &Beam, others: &Orthonormal, x: &Block, least: f64) -> Block {
+    let mut all = others.clone();
+    x.iter().for_each(|x| all.add(beam, x, least));
+    all.into_vectors_from(others.vectors.columns())
 }
 
 /// The Ritz values and vectors of the space of `y`, M-orthonormal and roughly in rising order; ascending.

@@ -1,6 +1,6 @@
 //! The shifted inverse A = (K + σM)⁻¹M of the subspace iteration, solved to rounding, and its start vectors.
 
-use super::block::{Block, add, dot, mass_product, norm, normalise};
+use super::block::{Block, Orthonormal, norm, normalise};
 use crate::beam::Beam;
 use crate::error::{FactorError, ModesError};
 use crate::factor::{Factor, MatrixWeights};
@@ -66,33 +66,38 @@ impl<'a> Inverse<'a> {
     ///
     /// That part is left out because it carries no news: the Rayleigh–Ritz step has made it vanish (to second order in the
     /// residuals), and what a solve leaves there is ε (λ_j + σ)/(λ_i + σ), its rounding.
-    pub(crate) fn apply(&self, rigid: &Block, x: &Block, eigenvalues: &[f64]) -> Result<(Block, Vec<f64>), ModesError> {
+    pub(crate) fn apply(
+        &self,
+        rigid: &Orthonormal,
+        x: &Block,
+        eigenvalues: &[f64],
+    ) -> Result<(Block, Vec<f64>), ModesError> {
         let mut next = Block::new(self.beam.dofs());
         let mut residuals = Vec::with_capacity(x.columns());
-        let (mut fixed, mut below) = (Deflation::default(), Deflation::default());
-        for x in rigid.iter() {
-            fixed.push(x, mass_product(self.beam, x));
-        }
-        for (x, eigenvalue) in x.iter().zip(eigenvalues) {
-            let momentum = mass_product(self.beam, x);
-            let force: Vec<f64> = momentum.iter().map(|f| f * (eigenvalue + self.shift)).collect();
-            let y = self.solve(&force, &fixed)?;
-            let mut difference: Vec<f64> = y.iter().zip(x).map(|(y, x)| y - x).collect();
-            below.remove(&mut difference);
+        let x = Orthonormal::new(self.beam, x.clone());
+        for (j, (eigenvalue, own)) in eigenvalues.iter().zip(x.vectors.iter()).enumerate() {
+            let force: Vec<f64> = x.momenta.column(j).iter().map(|f| f * (eigenvalue + self.shift)).collect();
+            let y = self.solve(&force, rigid)?;
+            let mut difference: Vec<f64> = y.iter().zip(own).map(|(y, x)| y - x).collect();
+            x.remove_first_from(j, &mut difference);
             residuals.push(norm(self.beam, &difference));
             next.push(&y);
-            below.push(x, momentum);
         }
         Ok((next, residuals))
     }
 
+    /// f ← (K + σM)⁻¹ f, to the digits of one solve.
+    pub(crate) fn solve_once(&self, f: &mut [f64]) {
+        self.factor.solve(f);
+    }
+
     /// (K + σM)⁻¹ f, M-orthogonal to `fixed`, with iterative refinement.
-    fn solve(&self, f: &[f64], fixed: &Deflation<'_>) -> Result<Vec<f64>, ModesError> {
+    fn solve(&self, f: &[f64], fixed: &Orthonormal) -> Result<Vec<f64>, ModesError> {
         let (mut y, mut residual) = (vec![0.0; f.len()], f.to_vec());
         let mut last = f64::INFINITY;
         for _ in 0..=MAX_REFINEMENTS {
             self.factor.solve(&mut residual);
-            fixed.remove(&mut residual);
+            fixed.remove_from(&mut residual);
             y.iter_mut().zip(&residual).for_each(|(y, dy)| *y += dy);
             let correction = norm(self.beam, &residual) / norm(self.beam, &y);
             let shrinks = correction < 0.5 * last;
@@ -106,22 +111,6 @@ impl<'a> Inverse<'a> {
         }
         // Also false for NaN.
         if last <= SOLVED { Ok(y) } else { Err(ModesError::Solve { correction: last }) }
-    }
-}
-
-/// M-orthonormal motions and their momenta, to be kept out of others.
-#[derive(Default)]
-struct Deflation<'a>(Vec<(&'a [f64], Vec<f64>)>);
-
-impl<'a> Deflation<'a> {
-    fn push(&mut self, motion: &'a [f64], momentum: Vec<f64>) {
-        self.0.push((motion, momentum));
-    }
-
-    fn remove(&self, x: &mut [f64]) {
-        for (motion, momentum) in &self.0 {
-            add(-dot(momentum, x), motion, x);
-        }
     }
 }
 

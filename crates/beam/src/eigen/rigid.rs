@@ -1,6 +1,6 @@
 //! The rigid motions that the supports leave.
 
-use super::block::{Block, ritz};
+use super::block::{Block, Orthonormal, orthonormalised, ritz};
 use crate::beam::Beam;
 use crate::layout::Dof;
 
@@ -17,7 +17,7 @@ pub(crate) fn motions(beam: &Beam, unmoved: f64) -> Block {
         let centre = pins.first().map_or(0.5 * beam.spec().span, |node| *node as f64 * length);
         block.push(&shape(beam, |node| [node as f64 * length - centre, 1.0]));
     }
-    block.orthonormalise(beam, &Block::new(beam.dofs()));
+    let block = orthonormalised(beam, &Orthonormal::new(beam, Block::new(beam.dofs())), &block, 0.0);
     // Of both, the combination that an elastic support leaves at rest.
     let (values, mut motions) = ritz(beam, &block);
     motions.truncate(values.iter().filter(|value| **value <= unmoved).count());
