@@ -16,7 +16,7 @@
 //! e = max over x in [x0, x1] of (F(x, x) − F_Φ(x, x)) / F(x, x),     F_Φ(x, x) = Σ_{ω_i > 0} φ_i(x)²/ω_i²
 //! ```
 //!
-//! x runs over [`SAMPLES`] points, the region's ends among them. Of a beam that can move rigidly F is that of its elastic
+//! x runs over 65 points of equal distance, the region's ends among them. Of a beam that can move rigidly F is that of its elastic
 //! modes. Where F is 0, on a support, nothing is asked.
 
 use crate::beam::Beam;
@@ -24,6 +24,7 @@ use crate::eigen::block::{Block, Orthonormal, add, dot, mass_product, orthonorma
 use crate::eigen::inverse::Inverse;
 use crate::eigen::{Modes, unknowns};
 use crate::error::{ModalError, ModesError};
+use crate::factor::MatrixWeights;
 
 /// Points of a contact region at which the flexibility is compared.
 const SAMPLES: usize = 65;
@@ -203,9 +204,55 @@ impl ModalBasis {
             let shape = beam.shape_clamped(*x);
             elastic.clone().map(|i| (shape.deflection(self.shape(i)).w / self.frequencies[i]).powi(2)).sum::<f64>()
         });
-        let missing = flexibility.full.iter().zip(contained).map(|(full, contained)| full - contained);
-        Ok(flexibility.worst(missing).1)
+        let missing: Vec<f64> =
+            flexibility.full.iter().zip(contained).map(|(full, contained)| full - contained).collect();
+        Ok(worst(&flexibility.full, &missing).1)
     }
+}
+
+impl ModalBasis {
+    /// As [`ModalBasis::truncation_error`], for what decides an impact: the largest relative error over the region of N W Nᵀ, the
+    /// velocity at x after a unit impulse at x in a step with W = (mass M + damping C + stiffness K)⁻¹.
+    ///
+    /// It falls off only past the modes with ω above the reciprocal of the step, so a basis for impacts is larger than one for
+    /// contact that lasts.
+    ///
+    /// # Errors
+    /// [`ModalError`]: for a region that is not on the beam, weights without an inverse, coupled damping.
+    pub fn impact_error(&self, beam: &Beam, region: [f64; 2], weights: MatrixWeights) -> Result<f64, ModalError> {
+        let factor = beam.factor(weights)?;
+        let damping = self.damping(beam)?;
+        let diagonal: Vec<f64> = self
+            .frequencies
+            .iter()
+            .zip(&damping)
+            .map(|(omega, d)| weights.mass + weights.damping * d + weights.stiffness * omega * omega)
+            .collect();
+        let (mut full, mut missing) = (Vec::new(), Vec::new());
+        for x in samples(beam, region)? {
+            let shape = beam.shape_clamped(x);
+            let mut jump = vec![0.0; beam.dofs()];
+            shape.add_load(1.0, 0.0, &mut jump);
+            factor.solve(&mut jump);
+            let contained = self.shapes.iter().zip(&diagonal).map(|(phi, d)| shape.deflection(phi).w.powi(2) / d);
+            full.push(shape.deflection(&jump).w);
+            missing.push(full[full.len() - 1] - contained.sum::<f64>());
+        }
+        Ok(worst(&full, &missing).1)
+    }
+}
+
+/// The point at which the most of `full` is missing, and how much of it.
+fn worst(full: &[f64], missing: &[f64]) -> (usize, f64) {
+    // On a support nothing moves, or by some rounding of what moves elsewhere.
+    let held = 1e-12 * full.iter().copied().fold(0.0, f64::max);
+    let mut worst = (0, 0.0);
+    for (s, (missing, full)) in missing.iter().zip(full).enumerate() {
+        if *full > held && missing / full > worst.1 {
+            worst = (s, missing / full);
+        }
+    }
+    worst
 }
 
 /// The points of a region at which flexibilities are compared.
@@ -329,19 +376,6 @@ impl Flexibility {
         self.rest[s * self.full.len() + t] + self.waves[modes..].iter().map(|wave| wave[s] * wave[t]).sum::<f64>()
     }
 
-    /// The sample at which the most of F(x, x) is missing, and how much of it.
-    fn worst(&self, missing: impl Iterator<Item = f64>) -> (usize, f64) {
-        // On a support F is 0, or some rounding of what it is elsewhere.
-        let held = 1e-12 * self.full.iter().copied().fold(0.0, f64::max);
-        let mut worst = (0, 0.0);
-        for (s, (missing, full)) in missing.zip(&self.full).enumerate() {
-            if *full > held && missing / full > worst.1 {
-                worst = (s, missing / full);
-            }
-        }
-        worst
-    }
-
     /// The samples, at most as many as there are modes, whose corrections bring the first `modes` modes to the tolerance.
     ///
     /// What corrections for the samples R leave of the flexibility G that the modes left out is the Schur complement
@@ -351,8 +385,8 @@ impl Flexibility {
         let mut missing: Vec<f64> = (0..count).map(|s| self.left_out(modes, s, s)).collect();
         let (mut chosen, mut columns) = (Vec::new(), Vec::<Vec<f64>>::new());
         loop {
-            let (r, worst) = self.worst(missing.iter().copied());
-            if worst <= tolerance {
+            let (r, error) = worst(&self.full, &missing);
+            if error <= tolerance {
                 return Some(chosen);
             }
             if chosen.len() == modes {

@@ -184,6 +184,9 @@ pub enum ModalError {
     /// Its modes were not found.
     #[error(transparent)]
     Modes(#[from] ModesError),
+    /// Weights whose sum has no inverse.
+    #[error(transparent)]
+    Factor(#[from] FactorError),
     /// A contact region that is not on the beam.
     #[error("contact region [{from}, {to}] m: must be from left to right on the beam, in [0, {span}]")]
     Region {

@@ -7,6 +7,7 @@
 
 mod allocation;
 mod bad_input;
+mod basis;
 mod frequencies;
 mod modes;
 mod reference;

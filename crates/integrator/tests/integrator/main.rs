@@ -6,6 +6,7 @@ mod beams;
 mod closed;
 mod driven;
 mod laws;
+mod modal;
 mod own_parts;
 mod reference;
 mod scenes;
