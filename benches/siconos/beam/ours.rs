@@ -10,7 +10,7 @@ use std::error::Error;
 use std::f64::consts::PI;
 use std::sync::Arc;
 use std::time::Instant;
-use teeter_beam::{Beam, BeamError, BeamSpec, Damping, Section, Support};
+use teeter_beam::{Beam, BeamError, BeamSpec, Section};
 use teeter_detect::{Kinematics, PointDetector, PointPair};
 use teeter_integrator::{
     BeamBody, BeamSurface, Block, Blocks, ModelBuilder, MoreauJean, MoreauJeanSettings, PairLaw, Scheme,
@@ -77,8 +77,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// That of the source paper, undamped.
 fn beam(elements: usize) -> Result<Beam, Box<dyn Error>> {
     let section = Section::rectangle(0.03, 0.0015, 69e9, 2700.0)?;
-    let supports = [Support::Pinned, Support::Pinned];
-    Ok(Beam::new(BeamSpec { span: SPAN, elements, section, supports, damping: Damping::default() })?)
+    Ok(Beam::new(BeamSpec::new(SPAN, elements, section))?)
 }
 
 /// Its first mode, 1 mm at midspan.

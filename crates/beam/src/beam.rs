@@ -192,6 +192,15 @@ impl Beam {
         self.bar.as_ref().and_then(|bar| bar.held.get(dof - bending)).copied().unwrap_or(false)
     }
 
+    /// The entry of M on the diagonal, kg or kg m².
+    pub(crate) fn mass_of(&self, dof: usize) -> f64 {
+        let bending = 2 * self.nodes();
+        match &self.bar {
+            Some(bar) if dof >= bending => bar.m.0[dof - bending][0],
+            _ => self.m.0[dof / 2].own[2 * (dof % 2)],
+        }
+    }
+
     /// Nodes, one more than elements.
     pub fn nodes(&self) -> usize {
         self.mesh.x.len()

@@ -152,6 +152,111 @@ pub enum StaticError {
     Factor(#[from] FactorError),
 }
 
+/// Why a beam's modes were not found.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ModesError {
+    /// Fewer than one mode, or more than there are.
+    #[error("count = {count}: must be 1 to {unknowns}, the beam's degrees of freedom")]
+    Count {
+        /// The number asked for.
+        count: usize,
+        /// The beam's modes.
+        unknowns: usize,
+    },
+    /// The iteration did not settle.
+    #[error(
+        "count = {count}: the subspace iteration does not settle (relative residual {residual:e}); ask for fewer modes or take a coarser mesh"
+    )]
+    NotSettled {
+        /// The elastic modes sought.
+        count: usize,
+        /// The least residual reached, of the worst of them.
+        residual: f64,
+    },
+    /// The count of eigenvalues says that more lie below than the iteration finds.
+    #[error("count = {count}: a mode below these is missing and can't be found; take a coarser mesh")]
+    Missed {
+        /// The elastic modes sought.
+        count: usize,
+    },
+    /// A solve with K + σM lost all digits: the mesh is too fine for double precision.
+    #[error(
+        "the shifted stiffness can't be solved for in double precision (last correction {correction:e}); take a coarser mesh"
+    )]
+    Solve {
+        /// The last correction, relative to the solution.
+        correction: f64,
+    },
+    /// A matrix could not be factorised.
+    #[error("K + σM: {0}")]
+    Factor(#[from] FactorError),
+}
+
+/// Why a beam has no such modal basis.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ModalError {
+    /// Its modes were not found.
+    #[error(transparent)]
+    Modes(#[from] ModesError),
+    /// Weights whose sum has no inverse.
+    #[error(transparent)]
+    Factor(#[from] FactorError),
+    /// A contact region that is not on the beam.
+    #[error("contact region [{from}, {to}] m: must be from left to right on the beam, in [0, {span}]")]
+    Region {
+        /// Its left end, m.
+        from: f64,
+        /// Its right end, m.
+        to: f64,
+        /// The beam's span, m.
+        span: f64,
+    },
+    /// A point that is not on the beam.
+    #[error("point of a static correction x = {x}: must be on the beam, in [0, {span}]")]
+    Point {
+        /// The position, m.
+        x: f64,
+        /// The beam's span, m.
+        span: f64,
+    },
+    /// A tolerance that the flexibilities have no digits for.
+    #[error("tolerance = {tolerance}: must be at least 1e-8 and less than 1")]
+    Tolerance {
+        /// The value found.
+        tolerance: f64,
+    },
+    /// A static correction did not settle: the mesh is too fine for double precision.
+    #[error(
+        "the static correction for x = {x} does not settle in double precision (last change {last:e}); take a coarser mesh"
+    )]
+    Correction {
+        /// The point, m.
+        x: f64,
+        /// The last change, relative to the correction.
+        last: f64,
+    },
+    /// The damping couples the modes.
+    #[error(
+        "damping: C couples the modal coordinates {first} and {second} ({relative:e} of their own damping); give damping ratios of the modes, or use viscous damping in proportion to the mass, or Rayleigh damping"
+    )]
+    CoupledDamping {
+        /// One coordinate.
+        first: usize,
+        /// The other.
+        second: usize,
+        /// The entry of ΦᵀC Φ, relative to the geometric mean of the two on the diagonal.
+        relative: f64,
+    },
+    /// Damping ratios for another number of coordinates, or one that is none.
+    #[error("damping ratios: {reason}")]
+    Ratios {
+        /// What is wrong, and what would be right.
+        reason: String,
+    },
+}
+
 /// `Ok` for a finite number that satisfies `rule`, else the error that names it.
 pub(crate) fn check(field: &'static str, value: f64, holds: bool, rule: &'static str) -> Result<(), BeamError> {
     if value.is_finite() && holds { Ok(()) } else { Err(BeamError::Value { field, value, rule }) }

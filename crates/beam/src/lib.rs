@@ -66,8 +66,10 @@
 
 mod band;
 mod bar;
+mod basis;
 mod beam;
 mod blocks;
+mod eigen;
 mod element;
 mod error;
 mod factor;
@@ -84,8 +86,10 @@ mod spec;
 mod statics;
 mod support;
 
+pub use basis::ModalBasis;
 pub use beam::{Beam, Dof};
-pub use error::{BeamError, FactorError, StaticError};
+pub use eigen::Modes;
+pub use error::{BeamError, FactorError, ModalError, ModesError, StaticError};
 pub use factor::{Backend, Factor, MatrixWeights};
 pub use load::{DistributedLoad, Load, MovingLoad, NodalLoad};
 pub use section::{Profile, Section};

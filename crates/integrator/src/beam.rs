@@ -1,16 +1,17 @@
 //! A beam as a subsystem: the adapter above `teeter-beam`, with the contact kinematics of `docs/theory.md` §3.
 
 mod compliance;
-mod motion;
+pub(crate) mod line;
+pub(crate) mod motion;
 
 use crate::{Compliance, Energy, FactorError, Motion, Rows, Signal, Size, Subsystem, Weights};
 use compliance::BeamCompliance;
 pub use compliance::WBackend;
+use line::{Deflecting, Line};
 use motion::MovingSupports;
 use nalgebra::Vector2;
 use std::sync::Arc;
-use teeter_beam::{Beam, Load, MatrixWeights};
-
+use teeter_beam::{AxialShape, Beam, Deflection, Load, MatrixWeights, ModalBasis};
 use teeter_detect::{Frame, Kinematics, SurfacePoint};
 
 /// Which fibre of a beam is its contact surface.
@@ -26,7 +27,7 @@ pub enum BeamSurface {
 }
 
 impl BeamSurface {
-    fn offset(self) -> f64 {
+    pub(crate) fn offset(self) -> f64 {
         match self {
             Self::Axis => 0.0,
             Self::Top { offset } => offset,
@@ -46,6 +47,12 @@ impl SignalLoad {
     #[must_use]
     pub fn new(pattern: Vec<f64>, signal: Arc<dyn Signal>) -> Self {
         Self { pattern, signal }
+    }
+
+    /// The same for coordinates η with q = Φ η: the pattern becomes Φᵀ pattern.
+    pub(crate) fn in_basis(self, basis: &ModalBasis) -> Self {
+        let work = |i| basis.shape(i).iter().zip(&self.pattern).map(|(phi, p)| phi * p).sum();
+        Self { pattern: (0..basis.len()).map(work).collect(), signal: self.signal }
     }
 }
 
@@ -119,13 +126,10 @@ impl BeamBody {
         self.supports.as_ref().map_or_else(Vec::new, |supports| supports.displacements(t).to_vec())
     }
 
-    /// The coordinates (or velocities) of the beam alone, and the place of its left end.
-    fn split<'q>(&self, q: &'q [f64]) -> (&'q [f64], Vector2<f64>) {
+    /// The coordinates of the beam alone, and where its supports have moved it.
+    fn split<'q>(&self, q: &'q [f64]) -> (&'q [f64], Line) {
         let (q, displaced) = q.split_at(self.beam.dofs());
-        match *displaced {
-            [x, y] => (q, self.position + Vector2::new(x, y)),
-            _ => (q, self.position),
-        }
+        (q, Line::new(self.position, displaced, self.surface))
     }
 
     /// The beam.
@@ -133,69 +137,32 @@ impl BeamBody {
     pub fn beam(&self) -> &Arc<Beam> {
         &self.beam
     }
-
-    /// The beam's own coordinate of a place in the world, with its left end at x = `left`. The ends belong to the beam, so a place beyond one by the rounding
-    /// of a difference is at it.
-    fn along(&self, x: f64, left: f64) -> f64 {
-        let span = self.beam.spec().span;
-        let along = x - left;
-        let rounding = 4.0 * f64::EPSILON * (left.abs() + span);
-        if (-rounding..=span + rounding).contains(&along) { along.clamp(0.0, span) } else { along }
-    }
-
-    /// The material point that axial motion has brought to x: x_m + u(x_m) = x. Strains are far below 1, so that a few rounds do.
-    fn before_moving(&self, q: &[f64], x: f64) -> f64 {
-        let mut material = x;
-        for _ in 0..FOOT_ROUNDS {
-            let next = (x - self.beam.axial_shape_clamped(material).displacement(q)).clamp(0.0, self.beam.spec().span);
-            let moved = (next - material).abs();
-            material = next;
-            if moved <= f64::EPSILON * self.beam.spec().span {
-                break;
-            }
-        }
-        material
-    }
-
-    /// The foot point at the beam's own coordinate of `at`: the point of the surface with the same x.
-    fn foot(&self, q: &[f64], kinematics: Kinematics, at: &Vector2<f64>) -> Option<SurfacePoint<2>> {
-        let (q, position) = self.split(q);
-        let x = self.along(at.x, position.x);
-        let offset = self.surface.offset();
-        self.beam.shape_at(x)?; // None beyond the ends, which belong to the beam
-        // The material point that is at x now.
-        let moves = self.beam.has_axial_dofs() && kinematics == Kinematics::Deformed;
-        let x = if moves { self.before_moving(q, x) } else { x };
-        let d = self.beam.deflection_at(q, x)?;
-        if kinematics == Kinematics::Linear {
-            let place = Vector2::new(at.x, position.y + d.w + offset);
-            return Some(SurfacePoint { place, normal: Vector2::y(), material: Vector2::new(x, offset) });
-        }
-        let normal_of = |slope: f64| {
-            let cos = (1.0 + slope * slope).sqrt().recip();
-            Vector2::new(-slope * cos, cos)
-        };
-        let (mut foot, mut w, mut normal) = (x, d.w, normal_of(d.slope));
-        if offset != 0.0 {
-            // x_f − offset sin ψ(x_f) = x: each round gains a factor offset·w'' on the last, a curvature radius of many
-            // thicknesses for anything that is a beam; 1e-16 of the span is reached in some four rounds.
-            for _ in 0..FOOT_ROUNDS {
-                let next = (x - offset * normal.x).clamp(0.0, self.beam.spec().span);
-                let moved = (next - foot).abs();
-                let d = self.beam.deflection_at(q, next)?;
-                (foot, w, normal) = (next, d.w, normal_of(d.slope));
-                if moved <= f64::EPSILON * self.beam.spec().span {
-                    break;
-                }
-            }
-        }
-        let place = Vector2::new(at.x, position.y + w + offset * normal.y);
-        Some(SurfacePoint { place, normal, material: Vector2::new(foot, offset) })
-    }
 }
 
-/// Most rounds of the fixed point for the foot on the top fibre.
-const FOOT_ROUNDS: usize = 20;
+impl Deflecting for Beam {
+    fn span(&self) -> f64 {
+        self.spec().span
+    }
+
+    fn deflection_at(&self, q: &[f64], x: f64) -> Option<Deflection> {
+        Beam::deflection_at(self, q, x)
+    }
+
+    fn shape(&self, x: f64, mut each: impl FnMut(usize, f64, f64)) {
+        let shape = self.shape_clamped(x);
+        for k in 0..shape.len {
+            each(shape.columns[k], shape.n[k], shape.dn[k]);
+        }
+    }
+
+    fn has_axial(&self) -> bool {
+        self.has_axial_dofs()
+    }
+
+    fn axial_shape(&self, x: f64) -> AxialShape {
+        self.axial_shape_clamped(x)
+    }
+}
 
 impl Subsystem<2> for BeamBody {
     fn size(&self) -> Size {
@@ -278,50 +245,17 @@ impl Subsystem<2> for BeamBody {
     }
 
     fn place(&self, _body: u32, q: &[f64], local: &[Vector2<f64>], out: &mut [Vector2<f64>]) {
-        let (q, position) = self.split(q);
-        for (place, point) in out.iter_mut().zip(local) {
-            let (w, slope) = self
-                .beam
-                .deflection_at(q, point.x.clamp(0.0, self.beam.spec().span))
-                .map_or((0.0, 0.0), |d| (d.w, d.slope));
-            let cos = (1.0 + slope * slope).sqrt().recip();
-            let u = self.beam.axial_shape_clamped(point.x).displacement(q);
-            *place = position + Vector2::new(point.x + u - point.y * slope * cos, w + point.y * cos);
-        }
+        let (q, line) = self.split(q);
+        line.place(&*self.beam, q, local, out);
     }
 
     fn surface(&self, _: u32, q: &[f64], kinematics: Kinematics, at: &Vector2<f64>) -> Option<SurfacePoint<2>> {
-        self.foot(q, kinematics, at)
+        let (q, line) = self.split(q);
+        line.foot(&*self.beam, q, kinematics, at)
     }
 
-    /// The frame is taken to be that of the surface point: its normal (−sin ψ, cos ψ) says how the section stands, so that
-    /// v_s = (−offset cos ψ·ψ̇, ẇ − offset sin ψ·ψ̇) with ψ̇ = ẇ' cos² ψ; for linear kinematics ψ = 0.
     fn rows(&self, _: u32, _q: &[f64], point: &Vector2<f64>, frame: &Frame<2>, out: &mut Rows<'_, 2>) -> usize {
-        let shape = self.beam.shape_clamped(point.x);
-        let (sin, cos) = (-frame[(0, 0)], frame[(0, 1)]);
-        let up: Vector2<f64> = frame.column(1).into();
-        if point.y == 0.0 {
-            for k in 0..shape.len {
-                out.columns[k] = shape.columns[k];
-                out.values[k] = up * shape.n[k];
-            }
-        } else {
-            let turn = frame * Vector2::new(-cos, -sin) * (point.y * cos * cos);
-            for k in 0..shape.len {
-                out.columns[k] = shape.columns[k];
-                out.values[k] = up * shape.n[k] + turn * shape.dn[k];
-            }
-        }
-        let axial = self.beam.axial_shape_clamped(point.x);
-        let others = axial.columns[..axial.len].iter().zip(axial.n).map(|(column, n)| (*column, 0, n));
-        let driven = self.driven().iter().enumerate().map(|(direction, column)| (*column, direction, 1.0));
-        let mut len = shape.len;
-        for (column, direction, n) in others.chain(driven) {
-            out.columns[len] = column;
-            out.values[len] = frame.column(direction) * n;
-            len += 1;
-        }
-        len
+        line::rows(&*self.beam, point, frame, self.driven(), out)
     }
 
     fn factor(&self, w: Weights, _q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {

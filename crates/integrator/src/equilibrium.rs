@@ -245,7 +245,7 @@ impl<const D: usize> Search<D> {
             }
         }
         let step: Vec<f64> = self.v.iter().map(|v| tau * v).collect();
-        model.retract(&self.q, &step, &mut self.next);
+        model.retract(&self.q, &step, 1.0, &mut self.next);
         std::mem::swap(&mut self.q, &mut self.next);
         Ok(())
     }

@@ -3,7 +3,7 @@
 //!
 //! The layers below know nothing of each other; this crate composes them behind traits:
 //!
-//! - a [`Subsystem`] is a model of something with velocities: [`Blocks`], a [`BeamBody`], the [`Ground`], or yours;
+//! - a [`Subsystem`] is a model of something with velocities: [`Blocks`], a [`BeamBody`], a [`ModalBeam`], the [`Ground`], or yours;
 //!   it offers forces, products, Jacobian rows and a [`Compliance`], and owns no state;
 //! - a [`Model`] is subsystems, contact pairs and a detector: immutable;
 //! - a [`State`] is all that decides the next step: flat, to be cloned or stored;
@@ -51,6 +51,7 @@ mod equilibrium;
 mod ground;
 mod laws;
 mod ledger;
+mod modal_beam;
 mod model;
 mod monitor;
 mod moreau_jean;
@@ -71,6 +72,7 @@ pub use contacts::{Contact, ContactSet, ContactState, tangential};
 pub use equilibrium::{Equilibrium, EquilibriumError, SettlingLimits, settle};
 pub use ground::Ground;
 pub use ledger::{Ledger, PositiveWork, StepEnergy};
+pub use modal_beam::ModalBeam;
 pub use model::{Model, ModelBuilder, ModelError, Part, Placed};
 pub use monitor::{Crossing, LISTED_CROSSINGS, Peak, RockingMonitor};
 pub use moreau_jean::{MoreauJean, MoreauJeanSettings};

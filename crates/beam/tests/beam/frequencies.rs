@@ -26,10 +26,10 @@ pub(crate) fn circular_frequencies(beam: &Beam) -> Vec<f64> {
     values.into_iter().map(|value| value.max(0.0).sqrt()).collect()
 }
 
-const ALL: [Support; 3] = [Support::Free, Support::Pinned, Support::Clamped];
+pub(crate) const ALL: [Support; 3] = [Support::Free, Support::Pinned, Support::Clamped];
 
 /// How many rigid motions the supports leave.
-fn rigid(supports: [Support; 2]) -> usize {
+pub(crate) fn rigid(supports: [Support; 2]) -> usize {
     let held: usize = supports
         .iter()
         .map(|support| match support {

@@ -7,7 +7,9 @@
 
 mod allocation;
 mod bad_input;
+mod basis;
 mod frequencies;
+mod modes;
 mod reference;
 mod statics;
 mod stepping;

@@ -11,13 +11,13 @@
 //! Stiffness and damping know the relative motion only.
 
 use crate::Motion;
-use teeter_beam::Beam;
+use teeter_beam::{Beam, ModalBasis};
 
 #[derive(Clone, Debug)]
-pub(super) struct MovingSupports {
+pub(crate) struct MovingSupports {
     motion: [Motion; 2],
     /// Numbers of the two prescribed velocities.
-    pub(super) driven: [usize; 2],
+    pub(crate) driven: [usize; 2],
     /// s, one entry per dof of the beam.
     coupling: Vec<f64>,
     /// m, kg.
@@ -25,7 +25,7 @@ pub(super) struct MovingSupports {
 }
 
 impl MovingSupports {
-    pub(super) fn new(beam: &Beam, motion: [Motion; 2]) -> Self {
+    pub(crate) fn new(beam: &Beam, motion: [Motion; 2]) -> Self {
         let n = beam.dofs();
         let mut coupling = vec![0.0; n];
         // The acceleration is finite and the vector as long as it must be, so there is no error to pass on.
@@ -33,16 +33,25 @@ impl MovingSupports {
         Self { motion, driven: [n, n + 1], coupling, mass: beam.total_mass() }
     }
 
-    pub(super) fn displacements(&self, t: f64) -> [f64; 2] {
+    /// The same for coordinates η with q = Φ η: s becomes Φᵀs.
+    pub(crate) fn in_basis(mut self, basis: &ModalBasis) -> Self {
+        let n = basis.len();
+        self.coupling =
+            (0..n).map(|i| basis.shape(i).iter().zip(&self.coupling).map(|(phi, s)| phi * s).sum()).collect();
+        self.driven = [n, n + 1];
+        self
+    }
+
+    pub(crate) fn displacements(&self, t: f64) -> [f64; 2] {
         self.motion.each_ref().map(|motion| motion.displacement(t))
     }
 
-    pub(super) fn velocities(&self, t: f64) -> [f64; 2] {
+    pub(crate) fn velocities(&self, t: f64) -> [f64; 2] {
         self.motion.each_ref().map(|motion| motion.velocity(t))
     }
 
     /// y += a (M_aug − M) x.
-    pub(super) fn add_mass_product(&self, a: f64, x: &[f64], y: &mut [f64]) {
+    pub(crate) fn add_mass_product(&self, a: f64, x: &[f64], y: &mut [f64]) {
         let [across, up] = self.driven;
         y[across] += a * self.mass * x[across];
         y[up] += a * (self.mass * x[up] + self.momentum(x));
@@ -52,7 +61,7 @@ impl MovingSupports {
     }
 
     /// T − ½ vᵀM v, J.
-    pub(super) fn kinetic_energy(&self, v: &[f64]) -> f64 {
+    pub(crate) fn kinetic_energy(&self, v: &[f64]) -> f64 {
         let [across, up] = self.driven.map(|k| v[k]);
         0.5 * self.mass * (across * across + up * up) + up * self.momentum(v)
     }

@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::sync::Arc;
-use teeter_beam::{Beam, BeamSpec, Damping, Section};
+use teeter_beam::{Beam, BeamSpec, Damping, ModalBasis, Section};
 use teeter_detect::Kinematics;
 use teeter_integrator::*;
 
@@ -134,6 +134,22 @@ fn a_step_on_a_beam_allocates_nothing() {
         .with_motion([tremor(), tremor()])
         .with_load(Box::new(SignalLoad::new(vec![1e-3; beam.dofs()], signal)));
     assert_eq!(allocations(Box::new(moving), beam.dofs() + 2, 0.5), 0);
+}
+
+#[test]
+fn a_step_on_a_beam_in_modes_allocates_nothing() {
+    let beam = beam();
+    let body = || {
+        let basis = ModalBasis::new(&beam, 8, &[0.165, 0.195]).unwrap();
+        ModalBeam::new(Arc::clone(&beam), basis, Vector2::zeros(), BeamSurface::Axis).unwrap()
+    };
+    assert_eq!(allocations(Box::new(body()), 10, 0.5), 0);
+    let signal: Arc<dyn Signal> = Arc::new(Table::new(vec![0.0, 0.1, 0.2], vec![0.0, 1.0, 0.0]).unwrap());
+    let moving = body()
+        .with_motion([tremor(), tremor()])
+        .with_load(Box::new(SignalLoad::new(vec![1e-3; beam.dofs()], Arc::clone(&signal))))
+        .with_signal_load(SignalLoad::new(vec![1e-3; beam.dofs()], signal));
+    assert_eq!(allocations(Box::new(moving), 12, 0.5), 0);
 }
 
 #[test]

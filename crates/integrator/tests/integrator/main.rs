@@ -7,6 +7,7 @@ mod closed;
 mod driven;
 mod following;
 mod laws;
+mod modal;
 mod own_parts;
 mod reference;
 mod scenes;

@@ -1,0 +1,167 @@
+//! The contact kinematics of a straight beam (`docs/theory.md` §3), whatever its coordinates: elements or modes.
+
+use super::BeamSurface;
+use crate::Rows;
+use nalgebra::Vector2;
+use teeter_beam::{AxialShape, Deflection};
+use teeter_detect::{Frame, Kinematics, SurfacePoint};
+
+/// How deflection and slope at a place follow from coordinates, linearly.
+pub(crate) trait Deflecting {
+    /// m.
+    fn span(&self) -> f64;
+
+    /// Deflection and slope at x in [0, span] for coordinates `q`; `None` elsewhere.
+    fn deflection_at(&self, q: &[f64], x: f64) -> Option<Deflection>;
+
+    /// Hands to `each`, for every coordinate that moves the point of [0, span] nearest to x: its number, and the deflection and the
+    /// slope there for a unit of it.
+    fn shape(&self, x: f64, each: impl FnMut(usize, f64, f64));
+
+    /// Whether points move along the axis by coordinates of their own.
+    fn has_axial(&self) -> bool {
+        false
+    }
+
+    /// How the axial displacement at the point of [0, span] nearest to x follows from the coordinates.
+    fn axial_shape(&self, x: f64) -> AxialShape {
+        let _ = x;
+        AxialShape::default()
+    }
+}
+
+/// A straight level beam in the world, or where its supports have moved it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Line {
+    /// Its left end, m.
+    position: Vector2<f64>,
+    surface: BeamSurface,
+}
+
+/// Most rounds of the fixed point for the foot on the top fibre.
+const FOOT_ROUNDS: usize = 20;
+
+impl Line {
+    /// A beam whose left end is at `position`, and its supports displaced (not, or by x and y).
+    pub(crate) fn new(position: Vector2<f64>, displaced: &[f64], surface: BeamSurface) -> Self {
+        let moved = match *displaced {
+            [x, y] => Vector2::new(x, y),
+            _ => Vector2::zeros(),
+        };
+        Self { position: position + moved, surface }
+    }
+
+    /// The beam's own coordinate of a place in the world. The ends belong to the beam, so a place beyond one by the rounding
+    /// of a difference is at it.
+    fn along(&self, span: f64, x: f64) -> f64 {
+        let left = self.position.x;
+        let along = x - left;
+        let rounding = 4.0 * f64::EPSILON * (left.abs() + span);
+        if (-rounding..=span + rounding).contains(&along) { along.clamp(0.0, span) } else { along }
+    }
+
+    /// The foot point at the beam's own coordinate of `at`: the point of the surface with the same x.
+    pub(crate) fn foot(
+        &self,
+        beam: &impl Deflecting,
+        q: &[f64],
+        kinematics: Kinematics,
+        at: &Vector2<f64>,
+    ) -> Option<SurfacePoint<2>> {
+        let x = self.along(beam.span(), at.x);
+        let offset = self.surface.offset();
+        let mut d = beam.deflection_at(q, x)?; // None beyond the ends, which belong to the beam
+        let mut x = x;
+        if beam.has_axial() && kinematics == Kinematics::Deformed {
+            x = before_moving(beam, q, x);
+            d = beam.deflection_at(q, x)?;
+        }
+        if kinematics == Kinematics::Linear {
+            let place = Vector2::new(at.x, self.position.y + d.w + offset);
+            return Some(SurfacePoint { place, normal: Vector2::y(), material: Vector2::new(x, offset) });
+        }
+        let normal_of = |slope: f64| {
+            let cos = (1.0 + slope * slope).sqrt().recip();
+            Vector2::new(-slope * cos, cos)
+        };
+        let (mut foot, mut w, mut normal) = (x, d.w, normal_of(d.slope));
+        if offset != 0.0 {
+            // x_f − offset sin ψ(x_f) = x: each round gains a factor offset·w'' on the last, a curvature radius of many
+            // thicknesses for anything that is a beam; 1e-16 of the span is reached in some four rounds.
+            for _ in 0..FOOT_ROUNDS {
+                let next = (x - offset * normal.x).clamp(0.0, beam.span());
+                let moved = (next - foot).abs();
+                let d = beam.deflection_at(q, next)?;
+                (foot, w, normal) = (next, d.w, normal_of(d.slope));
+                if moved <= f64::EPSILON * beam.span() {
+                    break;
+                }
+            }
+        }
+        let place = Vector2::new(at.x, self.position.y + w + offset * normal.y);
+        Some(SurfacePoint { place, normal, material: Vector2::new(foot, offset) })
+    }
+
+    /// The places of points (x along the beam, y above its axis) of the beam's sections.
+    pub(crate) fn place(&self, beam: &impl Deflecting, q: &[f64], local: &[Vector2<f64>], out: &mut [Vector2<f64>]) {
+        for (place, point) in out.iter_mut().zip(local) {
+            let (w, slope) =
+                beam.deflection_at(q, point.x.clamp(0.0, beam.span())).map_or((0.0, 0.0), |d| (d.w, d.slope));
+            let cos = (1.0 + slope * slope).sqrt().recip();
+            let u = if beam.has_axial() { beam.axial_shape(point.x).displacement(q) } else { 0.0 };
+            *place = self.position + Vector2::new(point.x + u - point.y * slope * cos, w + point.y * cos);
+        }
+    }
+}
+
+/// The material point that axial motion has brought to x: x_m + u(x_m) = x. Strains are far below 1, so that a few rounds do.
+fn before_moving(beam: &impl Deflecting, q: &[f64], x: f64) -> f64 {
+    let mut material = x;
+    for _ in 0..FOOT_ROUNDS {
+        let next = (x - beam.axial_shape(material).displacement(q)).clamp(0.0, beam.span());
+        let moved = (next - material).abs();
+        material = next;
+        if moved <= f64::EPSILON * beam.span() {
+            break;
+        }
+    }
+    material
+}
+
+/// The Jacobian rows of a surface point in a contact's frame, and how many columns they take; then one column for each of the
+/// prescribed velocities `driven`, which move all points along x and y.
+///
+/// The frame is taken to be that of the surface point: its normal (−sin ψ, cos ψ) says how the section stands, so that
+/// v_s = (−offset cos ψ·ψ̇, ẇ − offset sin ψ·ψ̇) with ψ̇ = ẇ' cos² ψ; for linear kinematics ψ = 0.
+pub(crate) fn rows(
+    beam: &impl Deflecting,
+    point: &Vector2<f64>,
+    frame: &Frame<2>,
+    driven: &[usize],
+    out: &mut Rows<'_, 2>,
+) -> usize {
+    let (sin, cos) = (-frame[(0, 0)], frame[(0, 1)]);
+    let up: Vector2<f64> = frame.column(1).into();
+    let mut taken = 0;
+    let mut put = |column: usize, value: Vector2<f64>| {
+        out.columns[taken] = column;
+        out.values[taken] = value;
+        taken += 1;
+    };
+    if point.y == 0.0 {
+        beam.shape(point.x, |column, n, _| put(column, up * n));
+    } else {
+        let turn = frame * Vector2::new(-cos, -sin) * (point.y * cos * cos);
+        beam.shape(point.x, |column, n, dn| put(column, up * n + turn * dn));
+    }
+    if beam.has_axial() {
+        let shape = beam.axial_shape(point.x);
+        for (column, n) in shape.columns.iter().zip(shape.n).take(shape.len) {
+            put(*column, frame.column(0) * n);
+        }
+    }
+    for (direction, column) in driven.iter().enumerate() {
+        put(*column, frame.column(direction).into());
+    }
+    taken
+}

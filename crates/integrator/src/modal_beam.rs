@@ -1,0 +1,343 @@
+//! A beam in modes as a subsystem: few uncoupled coordinates, whatever its mesh.
+//!
+//! ```text
+//! q = Φ η:   η̈_i + d_i η̇_i + ω_i² η_i = φ_iᵀ P + φ_i-rows of the contacts        w(x) = Σ φ_i(x) η_i
+//! ```
+//!
+//! The shapes Φ are those of a [`ModalBasis`], modes and static corrections alike. Contact kinematics, loads and moving supports are
+//! those of [`BeamBody`](crate::BeamBody); a step costs some N operations for N coordinates and 8 N for each point that is touched.
+
+use crate::beam::line::{self, Deflecting, Line};
+use crate::beam::motion::MovingSupports;
+use crate::{BeamSurface, Compliance, Energy, FactorError, Motion, Rows, SignalLoad, Size, Subsystem, Weights};
+use nalgebra::Vector2;
+use std::sync::{Arc, Mutex, PoisonError};
+use teeter_beam::{Beam, Deflection, Load, ModalBasis, ModalError};
+use teeter_detect::{Frame, Kinematics, SurfacePoint};
+
+/// A straight level beam in the world, in modal coordinates η (m √kg).
+///
+/// Where its supports [move](Self::with_motion), deflections are relative to them, and the displacements x and y of the supports
+/// follow as two more, prescribed coordinates.
+pub struct ModalBeam {
+    shapes: Shapes,
+    basis: ModalBasis,
+    /// ω², 1/s².
+    stiffness: Vec<f64>,
+    /// 1/s.
+    damping: Vec<f64>,
+    damped: bool,
+    position: Vector2<f64>,
+    surface: BeamSurface,
+    loads: Vec<Box<dyn Load>>,
+    /// Loads that keep their shape, in modal coordinates.
+    signals: Vec<SignalLoad>,
+    /// A load on the dofs of the beam before it is brought to modes.
+    scratch: Mutex<Vec<f64>>,
+    supports: Option<MovingSupports>,
+}
+
+impl std::fmt::Debug for ModalBeam {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("ModalBeam")
+            .field("coordinates", &self.stiffness.len())
+            .field("position", &self.position)
+            .field("surface", &self.surface)
+            .field("loads", &(self.loads.len() + self.signals.len()))
+            .finish_non_exhaustive()
+    }
+}
+
+impl ModalBeam {
+    /// The beam in the coordinates of `basis`, which was made of it, with its left end at `position` (m) and its own damping.
+    ///
+    /// # Errors
+    /// [`ModalError::CoupledDamping`] for damping that is no combination of mass and stiffness.
+    pub fn new(
+        beam: Arc<Beam>,
+        basis: ModalBasis,
+        position: Vector2<f64>,
+        surface: BeamSurface,
+    ) -> Result<Self, ModalError> {
+        let damping = basis.damping(&beam)?;
+        Ok(Self::damped(beam, basis, damping, position, surface))
+    }
+
+    /// The same with given damping ratios ζ in place of the beam's damping, one for each coordinate: d = 2ζω. What moves
+    /// rigidly is not damped by any.
+    ///
+    /// # Errors
+    /// [`ModalError::Ratios`] for another number of ratios, or one that is not finite and ≥ 0.
+    pub fn with_ratios(
+        beam: Arc<Beam>,
+        basis: ModalBasis,
+        ratios: &[f64],
+        position: Vector2<f64>,
+        surface: BeamSurface,
+    ) -> Result<Self, ModalError> {
+        if ratios.len() != basis.len() {
+            let reason = format!("{} for {} coordinates; give one for each", ratios.len(), basis.len());
+            return Err(ModalError::Ratios { reason });
+        }
+        if let Some((index, ratio)) = ratios.iter().enumerate().find(|(_, z)| !z.is_finite() || **z < 0.0) {
+            let reason = format!("ratios[{index}] = {ratio}: must be finite and >= 0");
+            return Err(ModalError::Ratios { reason });
+        }
+        let damping = ratios.iter().zip(basis.circular_frequencies()).map(|(z, omega)| 2.0 * z * omega).collect();
+        Ok(Self::damped(beam, basis, damping, position, surface))
+    }
+
+    fn damped(
+        beam: Arc<Beam>,
+        basis: ModalBasis,
+        damping: Vec<f64>,
+        position: Vector2<f64>,
+        surface: BeamSurface,
+    ) -> Self {
+        let (n, dofs) = (basis.len(), beam.dofs());
+        let by_dof = (0..dofs * n).map(|k| basis.shape(k % n)[k / n]).collect();
+        Self {
+            stiffness: basis.circular_frequencies().iter().map(|omega| omega * omega).collect(),
+            damped: damping.iter().any(|d| *d != 0.0),
+            damping,
+            basis,
+            shapes: Shapes { beam, coordinates: n, by_dof },
+            position,
+            surface,
+            loads: Vec::new(),
+            signals: Vec::new(),
+            scratch: Mutex::new(vec![0.0; dofs]),
+            supports: None,
+        }
+    }
+
+    /// The same beam under one more load, which every step brings from the beam's dofs to modes; one that keeps its shape is
+    /// cheaper by [`ModalBeam::with_signal_load`].
+    #[must_use]
+    pub fn with_load(mut self, load: Box<dyn Load>) -> Self {
+        self.loads.push(load);
+        self
+    }
+
+    /// The same beam under one more load that keeps its shape, given for the beam's dofs.
+    #[must_use]
+    pub fn with_signal_load(mut self, load: SignalLoad) -> Self {
+        self.signals.push(load.in_basis(&self.basis));
+        self
+    }
+
+    /// The same beam on supports that move together, by these displacements in x and y; as
+    /// [`BeamBody::with_motion`](crate::BeamBody::with_motion).
+    #[must_use]
+    pub fn with_motion(mut self, motion: [Motion; 2]) -> Self {
+        self.supports = Some(MovingSupports::new(&self.shapes.beam, motion).in_basis(&self.basis));
+        self
+    }
+
+    /// The displacements of its supports at time `t` (s) in closed form, m; at t = 0 those to start from. None for supports
+    /// that stand still.
+    #[must_use]
+    pub fn displacements(&self, t: f64) -> Vec<f64> {
+        self.supports.as_ref().map_or_else(Vec::new, |supports| supports.displacements(t).to_vec())
+    }
+
+    /// Its coordinates' shapes.
+    #[must_use]
+    pub fn basis(&self) -> &ModalBasis {
+        &self.basis
+    }
+
+    /// The beam.
+    #[must_use]
+    pub fn beam(&self) -> &Arc<Beam> {
+        &self.shapes.beam
+    }
+
+    /// Deflection and slope at x (m, along the beam) for its own coordinates `q` (their rates for velocities), relative to its
+    /// supports; `None` off the beam.
+    #[must_use]
+    pub fn deflection_at(&self, q: &[f64], x: f64) -> Option<Deflection> {
+        self.shapes.deflection_at(&q[..self.coordinates()], x)
+    }
+
+    fn coordinates(&self) -> usize {
+        self.stiffness.len()
+    }
+
+    fn split<'q>(&self, q: &'q [f64]) -> (&'q [f64], Line) {
+        let (q, displaced) = q.split_at(self.coordinates());
+        (q, Line::new(self.position, displaced, self.surface))
+    }
+}
+
+/// Φ row by row: what one dof of the beam is in all coordinates stands together, for a point is moved by few dofs.
+struct Shapes {
+    beam: Arc<Beam>,
+    coordinates: usize,
+    by_dof: Vec<f64>,
+}
+
+impl Shapes {
+    fn dof(&self, dof: usize) -> &[f64] {
+        &self.by_dof[dof * self.coordinates..(dof + 1) * self.coordinates]
+    }
+}
+
+impl Deflecting for Shapes {
+    fn span(&self) -> f64 {
+        self.beam.spec().span
+    }
+
+    fn deflection_at(&self, q: &[f64], x: f64) -> Option<Deflection> {
+        let shape = self.beam.shape_at(x)?;
+        let mut d = Deflection { w: 0.0, slope: 0.0 };
+        for k in 0..shape.len {
+            let value: f64 = self.dof(shape.columns[k]).iter().zip(q).map(|(phi, eta)| phi * eta).sum();
+            d.w += shape.n[k] * value;
+            d.slope += shape.dn[k] * value;
+        }
+        Some(d)
+    }
+
+    fn shape(&self, x: f64, mut each: impl FnMut(usize, f64, f64)) {
+        let shape = self.beam.shape_clamped(x);
+        for i in 0..self.coordinates {
+            let (mut n, mut dn) = (0.0, 0.0);
+            for k in 0..shape.len {
+                let phi = self.dof(shape.columns[k])[i];
+                n += shape.n[k] * phi;
+                dn += shape.dn[k] * phi;
+            }
+            each(i, n, dn);
+        }
+    }
+}
+
+impl Subsystem<2> for ModalBeam {
+    fn size(&self) -> Size {
+        let all = self.coordinates() + self.driven().len();
+        Size { q: all, v: all, bodies: 1, row: all }
+    }
+
+    fn internal_force(&self, q: &[f64], v: &[f64], f: &mut [f64]) {
+        for (((f, q), v), (k, d)) in f.iter_mut().zip(q).zip(v).zip(self.stiffness.iter().zip(&self.damping)) {
+            *f -= k * q + d * v;
+        }
+    }
+
+    fn is_loaded(&self) -> bool {
+        !(self.loads.is_empty() && self.signals.is_empty())
+    }
+
+    fn load(&self, t: f64, f: &mut [f64]) {
+        for load in &self.signals {
+            load.add(self.beam(), t, f);
+        }
+        if !self.loads.is_empty() {
+            // A thread that panicked can only have left numbers behind, and they are overwritten.
+            let mut force = self.scratch.lock().unwrap_or_else(PoisonError::into_inner);
+            force.fill(0.0);
+            for load in &self.loads {
+                load.add(self.beam(), t, &mut force);
+            }
+            for (dof, force) in force.iter().enumerate().filter(|(_, force)| **force != 0.0) {
+                for (f, phi) in f.iter_mut().zip(self.shapes.dof(dof)) {
+                    *f += force * phi;
+                }
+            }
+        }
+    }
+
+    fn driven(&self) -> &[usize] {
+        self.supports.as_ref().map_or(&[], |supports| &supports.driven)
+    }
+
+    fn drive(&self, t: f64, v: &mut [f64]) {
+        if let Some(supports) = &self.supports {
+            v[self.coordinates()..].copy_from_slice(&supports.velocities(t));
+        }
+    }
+
+    fn is_damped(&self) -> bool {
+        self.damped
+    }
+
+    fn apply(&self, w: Weights, _q: &[f64], x: &[f64], y: &mut [f64]) {
+        if let Some(supports) = &self.supports
+            && w.mass != 0.0
+        {
+            supports.add_mass_product(w.mass, x, y);
+        }
+        for ((y, x), (k, d)) in y.iter_mut().zip(x).zip(self.stiffness.iter().zip(&self.damping)) {
+            *y += (w.mass + w.damping * d + w.stiffness * k) * x;
+        }
+    }
+
+    fn energy(&self, q: &[f64], v: &[f64]) -> Energy {
+        let n = self.coordinates();
+        let relative = 0.5 * v[..n].iter().map(|v| v * v).sum::<f64>();
+        let kinetic = self.supports.as_ref().map_or(relative, |supports| relative + supports.kinetic_energy(v));
+        let elastic = 0.5 * q.iter().zip(&self.stiffness).map(|(q, k)| k * q * q).sum::<f64>();
+        Energy { kinetic, elastic, gravity: 0.0 }
+    }
+
+    fn place(&self, _body: u32, q: &[f64], local: &[Vector2<f64>], out: &mut [Vector2<f64>]) {
+        let (q, line) = self.split(q);
+        line.place(&self.shapes, q, local, out);
+    }
+
+    fn surface(&self, _: u32, q: &[f64], kinematics: Kinematics, at: &Vector2<f64>) -> Option<SurfacePoint<2>> {
+        let (q, line) = self.split(q);
+        line.foot(&self.shapes, q, kinematics, at)
+    }
+
+    fn rows(&self, _: u32, _q: &[f64], point: &Vector2<f64>, frame: &Frame<2>, out: &mut Rows<'_, 2>) -> usize {
+        line::rows(&self.shapes, point, frame, self.driven(), out)
+    }
+
+    fn factor(&self, w: Weights, _q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
+        let mut compliance = Box::new(ModalCompliance {
+            stiffness: self.stiffness.clone(),
+            damping: self.damping.clone(),
+            weights: w,
+            inverse: vec![0.0; self.coordinates()],
+        });
+        compliance.refactor(w, &[])?;
+        Ok(compliance)
+    }
+}
+
+/// W of uncoupled coordinates: the reciprocals of `mass + damping d_i + stiffness ω_i²`.
+struct ModalCompliance {
+    stiffness: Vec<f64>,
+    damping: Vec<f64>,
+    weights: Weights,
+    inverse: Vec<f64>,
+}
+
+impl Compliance<2> for ModalCompliance {
+    fn weights(&self) -> Weights {
+        self.weights
+    }
+
+    fn refactor(&mut self, w: Weights, _q: &[f64]) -> Result<(), FactorError> {
+        for (i, inverse) in self.inverse.iter_mut().enumerate() {
+            let sum = w.mass + w.damping * self.damping[i] + w.stiffness * self.stiffness[i];
+            // Also false for NaN.
+            if !(sum > 0.0 && sum.is_finite()) {
+                let reason =
+                    format!("its modal coordinate {i} has {sum} on the diagonal, which must be finite and > 0");
+                return Err(FactorError { weights: w, reason });
+            }
+            *inverse = sum.recip();
+        }
+        self.weights = w;
+        Ok(())
+    }
+
+    fn solve(&mut self, f: &mut [f64]) {
+        let (free, driven) = f.split_at_mut(self.inverse.len());
+        free.iter_mut().zip(&self.inverse).for_each(|(f, w)| *f *= w);
+        driven.fill(0.0);
+    }
+}
