@@ -125,12 +125,25 @@ impl Element {
     }
 
     /// The curvature dN_ψ/dx at ξ: bending moment over EI.
-    #[allow(dead_code)]
-    pub(crate) fn curvature(&self, xi: f64) -> [f64; 4] {
+    #[cfg(test)]
+    fn curvature(&self, xi: f64) -> [f64; 4] {
         let (l, phi) = (self.length, self.shear);
         let bow = 6.0 * (1.0 - 2.0 * xi) / l;
         let whole = [-bow, 6.0 * xi - 4.0 - phi, bow, 6.0 * xi - 2.0 + phi];
         whole.map(|value| value / (l * (1.0 + phi)))
+    }
+
+    /// ∫ Nᵀ dx over a part of the element, ξ from and to: by quadrature, exact.
+    pub(crate) fn partial_load(&self, [from, to]: [f64; 2]) -> [f64; 4] {
+        if from <= 0.0 && to >= 1.0 {
+            return self.uniform_load();
+        }
+        let mut sum = [0.0; 4];
+        for (s, weight) in GAUSS {
+            let n = self.shape(from + 0.5 * (1.0 + s) * (to - from));
+            sum.iter_mut().zip(n).for_each(|(sum, n)| *sum += 0.5 * weight * (to - from) * self.length * n);
+        }
+        sum
     }
 
     /// ∫ Nᵀ dx: what a uniform load of 1 N/m gives to the nodes, in N and N m. The same with shear.

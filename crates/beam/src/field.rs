@@ -67,6 +67,12 @@ impl Field {
         });
     }
 
+    /// What one element's M x is on its two nodes.
+    pub(crate) fn on_nodes(&self, element: usize, x: &[[f64; 2]]) -> [f64; 4] {
+        let (p, q) = self.0[element].product(x[element], x[element + 1]);
+        [p[0], p[1], q[0], q[1]]
+    }
+
     /// xᵀM x.
     pub(crate) fn form(&self, x: &[[f64; 2]]) -> f64 {
         sum(&self.0, x, Squares::form)
@@ -88,6 +94,15 @@ impl Springs {
     fn deformations(&self, p: [f64; 2], q: [f64; 2]) -> [f64; 3] {
         let rise = self.two_per_length * (q[0] - p[0]);
         [q[1] - p[1], p[1] + q[1] - rise, rise]
+    }
+
+    /// What a K q is on the two nodes.
+    #[inline]
+    fn product(&self, a: f64, p: [f64; 2], q: [f64; 2]) -> ([f64; 2], [f64; 2]) {
+        let [d1, d2, rise] = self.deformations(p, q);
+        let (m1, m2) = (a * self.k1 * d1, a * self.k2 * d2);
+        let shear = self.two_per_length * (m2 - a * self.k3 * rise);
+        ([shear, m2 - m1], [-shear, m2 + m1])
     }
 
     #[inline]
@@ -133,12 +148,13 @@ impl Natural {
     /// force of a smooth shape on n elements gets a relative error of about ε n⁴. Here the differences are taken first, which
     /// leaves about ε n².
     pub(crate) fn add_product(&self, a: f64, x: &[[f64; 2]], y: &mut [[f64; 2]]) {
-        sweep(&self.0, x, y, |k, p, q| {
-            let [d1, d2, rise] = k.deformations(p, q);
-            let (m1, m2) = (a * k.k1 * d1, a * k.k2 * d2);
-            let shear = k.two_per_length * (m2 - a * k.k3 * rise);
-            ([shear, m2 - m1], [-shear, m2 + m1])
-        });
+        sweep(&self.0, x, y, |k, p, q| k.product(a, p, q));
+    }
+
+    /// What one element's K x is on its two nodes.
+    pub(crate) fn on_nodes(&self, element: usize, x: &[[f64; 2]]) -> [f64; 4] {
+        let (p, q) = self.0[element].product(1.0, x[element], x[element + 1]);
+        [p[0], p[1], q[0], q[1]]
     }
 
     /// xᵀK x.
@@ -153,10 +169,8 @@ impl Natural {
             for (i, row) in matrix.iter_mut().enumerate() {
                 let mut e = [0.0; 4];
                 e[i] = 1.0;
-                let [d1, d2, rise] = k.deformations([e[0], e[1]], [e[2], e[3]]);
-                let (m1, m2) = (k.k1 * d1, k.k2 * d2);
-                let shear = k.two_per_length * (m2 - k.k3 * rise);
-                *row = [shear, m2 - m1, -shear, m2 + m1];
+                let (p, q) = k.product(1.0, [e[0], e[1]], [e[2], e[3]]);
+                *row = [p[0], p[1], q[0], q[1]];
             }
             matrix
         })

@@ -43,7 +43,12 @@ impl Beam {
     /// ```
     pub fn add_point_couple(&self, x: f64, couple: f64, f: &mut [f64]) -> Result<(), BeamError> {
         check("couple", couple, true, "finite")?;
-        self.shape_for_load(x, f)?.add_load(0.0, couple, f);
+        self.shape_for_load(x, f)?;
+        // It turns the section, which with shear is another thing than the axis.
+        let (element, xi) = self.mesh.locate(x);
+        for (f, turn) in f[2 * element..].iter_mut().zip(self.elements[element].rotation(xi)) {
+            *f += couple * turn;
+        }
         Ok(())
     }
 
@@ -106,6 +111,30 @@ impl Beam {
         check_len("f", self.dofs(), f.len())?;
         check("load", load, true, "finite")?;
         self.add_uniform(load, f);
+        Ok(())
+    }
+
+    /// f += ∫ Nᵀ dx · p for a load p, N/m, upwards, the same from one place to another (m); exact.
+    ///
+    /// # Errors
+    /// [`BeamError::Length`]; [`BeamError::OutsideSpan`]; [`BeamError::Value`] for a load that is not finite, or a part that ends
+    /// where or before it begins.
+    pub fn add_partial_load(&self, part: [f64; 2], load: f64, f: &mut [f64]) -> Result<(), BeamError> {
+        check_len("f", self.dofs(), f.len())?;
+        check("load", load, true, "finite")?;
+        for x in part {
+            self.shape_at(x).ok_or(BeamError::OutsideSpan { x, span: self.spec.span })?;
+        }
+        check("part", part[1], part[1] > part[0], "right of where it begins")?;
+        let (bend, _) = self.split_mut(f);
+        for (element, e) in self.elements.iter().enumerate() {
+            let inside = part.map(|x| ((x - self.mesh.x[element]) / e.length).clamp(0.0, 1.0));
+            if inside[1] > inside[0] {
+                for (i, share) in e.partial_load(inside).into_iter().enumerate() {
+                    bend[element + i / 2][i % 2] += load * share;
+                }
+            }
+        }
         Ok(())
     }
 

@@ -135,6 +135,8 @@ pub struct Section {
     pub rotatory_inertia: f64,
     /// Axial stiffness EA, N; 0 where it isn't known. A beam that is held along its axis, or has axial dofs, needs it.
     pub axial_stiffness: f64,
+    /// Area A, m²; 0 where it isn't known.
+    pub area: f64,
     /// Elastic section modulus I/c, m³, by which a bending moment makes the largest stress; 0 where it isn't known.
     pub section_modulus: f64,
 }
@@ -157,6 +159,7 @@ impl Section {
             shear_stiffness: f64::INFINITY,
             rotatory_inertia: 0.0,
             axial_stiffness: 0.0,
+            area: 0.0,
             section_modulus: 0.0,
         };
         section.validate()?;
@@ -194,6 +197,7 @@ impl Section {
         };
         let section = Self {
             axial_stiffness: youngs_modulus * profile.area(),
+            area: profile.area(),
             section_modulus: second_moment / profile.fibre(),
             ..Self::new(bending_stiffness, mass_per_length)?
         };
@@ -273,6 +277,7 @@ impl Section {
         }
         not_negative("section.rotatory_inertia", self.rotatory_inertia)?;
         not_negative("section.axial_stiffness", self.axial_stiffness)?;
+        not_negative("section.area", self.area)?;
         not_negative("section.section_modulus", self.section_modulus)
     }
 }

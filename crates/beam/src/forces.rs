@@ -1,0 +1,498 @@
+//! What the beam has to bear inside: bending moment, shear force, stress, and what its supports bear.
+//!
+//! Not from derivatives of the deflection, which lose two orders, but from equilibrium: an element's end forces are
+//! K_e q_e + C_e v_e + M_e a_e − P_e with all that acts on it, and between the ends the load itself is integrated. In statics that is
+//! exact at every place; in a time step of the θ scheme, with q_θ, v_θ and a = Δv/h, the end forces of all elements, the loads and the reactions
+//! balance to rounding.
+//!
+//! Signs: M = EI w'' (with shear EI ψ'), positive where the lower fibre is pulled; V = M', positive where the part to the left of
+//! a cut pushes the part to the right upwards. So V' = f for a load f upwards, and a clamped beam under its weight has M < 0 at its ends. Of a beam
+//! under an axial force N the transverse force V includes N w'.
+
+use crate::beam::Beam;
+use crate::error::{BeamError, check, check_len};
+
+/// A load on the beam, upwards positive.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum SpanLoad {
+    /// At a place.
+    Point {
+        /// Where, m.
+        x: f64,
+        /// Force, N.
+        force: f64,
+        /// Couple, N m, counter-clockwise.
+        couple: f64,
+    },
+    /// The same all along a part.
+    Uniform {
+        /// Its left end, m.
+        from: f64,
+        /// Its right end, m.
+        to: f64,
+        /// Load per length, N/m.
+        load: f64,
+    },
+    /// The weight of the beam and of what it carries, by the acceleration of gravity in the direction of w, m/s².
+    Weight {
+        /// Upwards positive.
+        gravity: f64,
+    },
+}
+
+/// The state that section forces are asked for.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Actions<'a> {
+    /// Deflection, as every vector.
+    pub q: &'a [f64],
+    /// Velocity; empty for a beam at rest.
+    pub velocity: &'a [f64],
+    /// Acceleration; empty for none. That of the supports, where they move, belongs to it.
+    pub acceleration: &'a [f64],
+    /// All loads but those of supports.
+    pub loads: &'a [SpanLoad],
+}
+
+/// What a support bears: the force and the couple of the support on the beam.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reaction {
+    /// Where, m.
+    pub x: f64,
+    /// Force, N, upwards.
+    pub force: f64,
+    /// Couple, N m, counter-clockwise.
+    pub couple: f64,
+}
+
+/// Moment and shear at a place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SectionForce {
+    /// Bending moment M, N m.
+    pub moment: f64,
+    /// Transverse force V, N.
+    pub shear: f64,
+}
+
+/// The section forces of a beam, in memory that is kept: [`SectionForces::update`] allocates nothing unless there are more
+/// point loads than ever before.
+#[derive(Debug, Clone, Default)]
+pub struct SectionForces {
+    /// By elements: V and M at the left end, V and M at the right end.
+    ends: Vec<[f64; 4]>,
+    /// Loads inside elements: element, ξ, force, couple.
+    inside: Vec<(usize, f64, f64, f64)>,
+    reactions: Vec<Reaction>,
+    axial: Vec<f64>,
+}
+
+/// A load this near to a node (in lengths of the element) is at the node.
+const AT_NODE: f64 = 1e-9;
+
+impl SectionForces {
+    /// No forces yet, with room for those of a beam.
+    #[must_use]
+    pub fn new(beam: &Beam) -> Self {
+        let borne = (0..beam.nodes()).filter(|node| beam.bears(*node)).count();
+        Self {
+            ends: vec![[0.0; 4]; beam.elements()],
+            inside: Vec::with_capacity(16),
+            reactions: Vec::with_capacity(borne),
+            axial: vec![beam.spec.axial_force; beam.elements()],
+        }
+    }
+
+    /// Becomes the section forces of a beam in a state.
+    ///
+    /// # Errors
+    /// [`BeamError::Length`] for vectors of another length; [`BeamError::OutsideSpan`] for a load that is not on the beam.
+    pub fn update(&mut self, beam: &Beam, actions: &Actions<'_>) -> Result<(), BeamError> {
+        let dofs = beam.dofs();
+        check_len("q", dofs, actions.q.len())?;
+        for (name, vector) in [("velocity", actions.velocity), ("acceleration", actions.acceleration)] {
+            if !vector.is_empty() {
+                check_len(name, dofs, vector.len())?;
+            }
+        }
+        self.elastic_forces(beam, actions);
+        self.inside.clear();
+        for load in actions.loads {
+            self.take_off(beam, load)?;
+        }
+        self.react(beam, actions);
+        // From forces on the ends to section forces: V and −M on the left one, −V and M on the right one.
+        for end in &mut self.ends {
+            *end = [end[0], -end[1], -end[2], end[3]];
+        }
+        Ok(())
+    }
+
+    /// K_e q_e + C_e v_e + M_e a_e.
+    fn elastic_forces(&mut self, beam: &Beam, actions: &Actions<'_>) {
+        let q = beam.bend(actions.q);
+        let stretching = beam.membrane.as_ref().map(|membrane| (membrane, membrane.force(q)));
+        let damping = &beam.spec.damping;
+        let add = |end: &mut [f64; 4], factor: f64, forces: [f64; 4]| {
+            end.iter_mut().zip(forces).for_each(|(end, force)| *end += factor * force);
+        };
+        self.ends.resize(beam.elements(), [0.0; 4]);
+        for (e, end) in self.ends.iter_mut().enumerate() {
+            *end = beam.bending.on_nodes(e, q);
+            if let Some(bed) = &beam.bed {
+                add(end, 1.0, bed.on_nodes(e, q));
+            }
+            if let Some((membrane, force)) = stretching {
+                add(end, force, membrane.slopes.on_nodes(e, q));
+            }
+            if !actions.velocity.is_empty() && beam.is_damped() {
+                let v = beam.bend(actions.velocity);
+                add(end, beam.damping_of_mass, beam.mass.on_nodes(e, v));
+                if let Some(bath) = &beam.bath {
+                    add(end, 1.0, bath.on_nodes(e, v));
+                }
+                if damping.rayleigh_stiffness != 0.0 {
+                    add(end, damping.rayleigh_stiffness, beam.bending.on_nodes(e, v));
+                    if let Some(bed) = &beam.bed {
+                        add(end, damping.rayleigh_stiffness, bed.on_nodes(e, v));
+                    }
+                }
+            }
+            if !actions.acceleration.is_empty() {
+                add(end, 1.0, beam.mass.on_nodes(e, beam.bend(actions.acceleration)));
+            }
+        }
+        let common = beam.axial_force(actions.q);
+        self.axial.clear();
+        self.axial.resize(beam.elements(), common);
+        if let Some(bar) = &beam.bar {
+            let forces = bar.forces(&actions.q[2 * beam.nodes()..]);
+            self.axial.iter_mut().zip(forces).for_each(|(axial, force)| *axial += force);
+        }
+    }
+
+    /// Takes a load's share off the end forces of the elements that it is on.
+    fn take_off(&mut self, beam: &Beam, load: &SpanLoad) -> Result<(), BeamError> {
+        let span = beam.spec.span;
+        let on_beam = |x: f64| if (0.0..=span).contains(&x) { Ok(x) } else { Err(BeamError::OutsideSpan { x, span }) };
+        match *load {
+            SpanLoad::Point { x, force, couple } => {
+                check("force", force, true, "finite")?;
+                check("couple", couple, true, "finite")?;
+                let (e, xi) = beam.mesh.locate(on_beam(x)?);
+                // At a node it is a jump between two elements and in neither.
+                if xi > AT_NODE && xi < 1.0 - AT_NODE {
+                    let element = &beam.elements[e];
+                    let (n, dn) = (element.shape(xi), element.rotation(xi));
+                    for (end, (n, dn)) in self.ends[e].iter_mut().zip(n.into_iter().zip(dn)) {
+                        *end -= force * n + couple * dn;
+                    }
+                    self.inside.push((e, xi, force, couple));
+                }
+            }
+            SpanLoad::Uniform { from, to, load } => {
+                check("load", load, true, "finite")?;
+                let (from, to) = (on_beam(from)?, on_beam(to)?);
+                for (e, end) in self.ends.iter_mut().enumerate() {
+                    let (left, length) = (beam.mesh.x[e], beam.elements[e].length);
+                    let part = [(from - left) / length, (to - left) / length].map(|xi| xi.clamp(0.0, 1.0));
+                    if part[1] > part[0] {
+                        let share = beam.elements[e].partial_load(part);
+                        end.iter_mut().zip(share).for_each(|(end, share)| *end -= load * share);
+                    }
+                }
+            }
+            SpanLoad::Weight { gravity } => {
+                check("gravity", gravity, true, "finite")?;
+                for (end, element) in self.ends.iter_mut().zip(&beam.elements) {
+                    let load = gravity * element.section.mass_per_length;
+                    end.iter_mut().zip(element.uniform_load()).for_each(|(end, share)| *end -= load * share);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// What supports bear: what the elements at their nodes, masses and loads there leave over.
+    fn react(&mut self, beam: &Beam, actions: &Actions<'_>) {
+        let spring = |entries: &[(usize, f64)], x: &[f64], dof: usize| -> f64 {
+            let of_dof = entries.iter().filter(|(own, _)| *own == dof);
+            if x.is_empty() { 0.0 } else { of_dof.map(|(_, value)| value * x[dof]).sum() }
+        };
+        self.reactions.clear();
+        for node in (0..beam.nodes()).filter(|node| beam.bears(*node)) {
+            let x = beam.mesh.x[node];
+            let mut borne = [0.0; 2];
+            for (i, borne) in borne.iter_mut().enumerate() {
+                let dof = 2 * node + i;
+                if beam.held[node][i] {
+                    let from_left = if node > 0 { self.ends[node - 1][2 + i] } else { 0.0 };
+                    let from_right = if node < beam.elements() { self.ends[node][i] } else { 0.0 };
+                    *borne = from_left + from_right + spring(&beam.lumps, actions.acceleration, dof);
+                    *borne -= actions.loads.iter().map(|load| at_node(beam, load, node, i)).sum::<f64>();
+                } else {
+                    *borne = -spring(&beam.springs, actions.q, dof) - spring(&beam.dashpots, actions.velocity, dof);
+                }
+            }
+            self.reactions.push(Reaction { x, force: borne[0], couple: borne[1] });
+        }
+    }
+
+    /// What each support bears, from left to right.
+    #[must_use]
+    pub fn reactions(&self) -> &[Reaction] {
+        &self.reactions
+    }
+
+    /// The section forces at both ends of an element: just right of its left node, and just left of its right node.
+    ///
+    /// # Panics
+    /// If there is no such element.
+    #[must_use]
+    pub fn ends(&self, element: usize) -> [SectionForce; 2] {
+        let [v0, m0, v1, m1] = self.ends[element];
+        [SectionForce { moment: m0, shear: v0 }, SectionForce { moment: m1, shear: v1 }]
+    }
+
+    /// The section forces at x; right of it where a load or a support at x makes them jump, left of it at the right end.
+    ///
+    /// # Errors
+    /// [`BeamError::OutsideSpan`].
+    pub fn at(&self, beam: &Beam, x: f64) -> Result<SectionForce, BeamError> {
+        let span = beam.spec.span;
+        if !(0.0..=span).contains(&x) {
+            return Err(BeamError::OutsideSpan { x, span });
+        }
+        let (e, xi) = beam.mesh.locate(x);
+        let [v0, m0, v1, m1] = self.ends[e];
+        let length = beam.elements[e].length;
+        let inside = || self.inside.iter().filter(|(element, ..)| *element == e);
+        // The transverse force between its ends: jumps by point loads, the rest (distributed loads, inertia) evenly.
+        let points: f64 = inside().map(|(_, _, force, _)| force).sum();
+        let spread = v1 - v0 - points;
+        let passed = |to: f64| inside().filter(move |(_, at, ..)| *at <= to);
+        let shear = v0 + spread * xi + passed(xi).map(|(_, _, force, _)| force).sum::<f64>();
+        let moment = |to: f64| {
+            let by_points: f64 = passed(to).map(|(_, at, force, couple)| force * (to - at) * length - couple).sum();
+            m0 + length * to * (v0 + 0.5 * spread * to) + by_points
+        };
+        // Even is exact for uniform loads; what other loads and inertia make of it is spread over the element.
+        let moment = moment(xi) + (m1 - moment(1.0)) * xi;
+        Ok(SectionForce { moment, shear })
+    }
+
+    /// Largest normal stress |M|/(I/c) + |N|/A at a place with this bending moment, Pa; `None` where the section doesn't know its
+    /// modulus.
+    #[must_use]
+    pub fn stress(&self, beam: &Beam, x: f64, moment: f64) -> Option<f64> {
+        let (e, _) = beam.mesh.locate(x.clamp(0.0, beam.spec.span));
+        let section = &beam.elements[e].section;
+        let axial = self.axial.get(e).copied().unwrap_or(0.0).abs();
+        let pulled = if section.area > 0.0 { axial / section.area } else { 0.0 };
+        (section.section_modulus > 0.0).then(|| moment.abs() / section.section_modulus + pulled)
+    }
+}
+
+/// What a load at a node itself gives to its dof: point loads there, and the weight of masses.
+fn at_node(beam: &Beam, load: &SpanLoad, node: usize, component: usize) -> f64 {
+    match *load {
+        SpanLoad::Point { x, force, couple } => {
+            let (e, xi) = beam.mesh.locate(x.clamp(0.0, beam.spec.span));
+            let here = (xi <= AT_NODE && e == node) || (xi >= 1.0 - AT_NODE && e + 1 == node);
+            if here { [force, couple][component] } else { 0.0 }
+        }
+        SpanLoad::Weight { gravity } if component == 0 => {
+            let masses = beam.lumps.iter().filter(|(dof, _)| *dof == 2 * node);
+            gravity * masses.map(|(_, mass)| mass).sum::<f64>()
+        }
+        _ => 0.0,
+    }
+}
+
+impl Beam {
+    /// Whether a support, fixed or elastic, bears something at a node.
+    fn bears(&self, node: usize) -> bool {
+        let at = |(dof, _): &(usize, f64)| dof / 2 == node;
+        self.held[node] != [false; 2] || self.springs.iter().any(at) || self.dashpots.iter().any(at)
+    }
+
+    /// The section forces of a beam in equilibrium or in motion.
+    ///
+    /// # Errors
+    /// As [`SectionForces::update`].
+    ///
+    /// ```
+    /// use teeter_beam::{Actions, Beam, BeamSpec, Section, SpanLoad};
+    /// let beam = Beam::new(BeamSpec::new(2.0, 4, Section::new(5.0, 1.0)?))?;
+    /// let mut q = vec![0.0; beam.dofs()];
+    /// beam.add_point_load(0.7, -3.0, &mut q)?;
+    /// beam.solve_static(&mut q)?;
+    /// let loads = [SpanLoad::Point { x: 0.7, force: -3.0, couple: 0.0 }];
+    /// let forces = beam.section_forces(&Actions { q: &q, loads: &loads, ..Default::default() })?;
+    /// assert!((forces.reactions()[0].force - 3.0 * 1.3 / 2.0).abs() < 1e-13);
+    /// assert!((forces.at(&beam, 0.7)?.moment - 3.0 * 0.7 * 1.3 / 2.0).abs() < 1e-13); // P a b/L
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn section_forces(&self, actions: &Actions<'_>) -> Result<SectionForces, BeamError> {
+        let mut forces = SectionForces::new(self);
+        forces.update(self, actions)?;
+        Ok(forces)
+    }
+}
+
+/// The least and the largest of what a beam bore and how far it went, over its nodes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Envelope {
+    /// By nodes: least and largest deflection, m.
+    pub deflection: Vec<[f64; 2]>,
+    /// By nodes: least and largest bending moment on either side, N m.
+    pub moment: Vec<[f64; 2]>,
+    /// By nodes: least and largest transverse force on either side, N.
+    pub shear: Vec<[f64; 2]>,
+    /// By nodes: largest normal stress, Pa; NaN where the section doesn't know its modulus.
+    pub stress: Vec<f64>,
+}
+
+impl Envelope {
+    /// Of nothing yet.
+    #[must_use]
+    pub fn new(beam: &Beam) -> Self {
+        let none = vec![[f64::INFINITY, f64::NEG_INFINITY]; beam.nodes()];
+        Self { deflection: none.clone(), moment: none.clone(), shear: none, stress: vec![f64::NAN; beam.nodes()] }
+    }
+
+    /// Takes a state in.
+    ///
+    /// # Panics
+    /// If `q` has not [`Beam::dofs`] entries, or `forces` are those of a beam with fewer elements.
+    pub fn take(&mut self, beam: &Beam, q: &[f64], forces: &SectionForces) {
+        let widen = |range: &mut [f64; 2], value: f64| *range = [range[0].min(value), range[1].max(value)];
+        for (range, [w, _]) in self.deflection.iter_mut().zip(beam.bend(q)) {
+            widen(range, *w);
+        }
+        for e in 0..beam.elements() {
+            let middle = 0.5 * (beam.mesh.x[e] + beam.mesh.x[e + 1]);
+            for (side, SectionForce { moment, shear }) in forces.ends(e).into_iter().enumerate() {
+                widen(&mut self.moment[e + side], moment);
+                widen(&mut self.shear[e + side], shear);
+                if let Some(stress) = forces.stress(beam, middle, moment) {
+                    self.stress[e + side] = self.stress[e + side].max(stress);
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Support::{Clamped, Free, Pinned};
+    use crate::beam::tests::{beam, furnished, spec, wave};
+
+    /// A cantilever under a uniform load, a force and a couple: all by hand.
+    #[test]
+    fn a_cantilever_bears_what_statics_says_at_every_place() {
+        let cantilever = beam(7, [Clamped, Free]);
+        let loads = [
+            SpanLoad::Uniform { from: 0.2, to: 0.9, load: -4.0 },
+            SpanLoad::Point { x: 0.55, force: 3.0, couple: -0.7 },
+        ];
+        let mut q = vec![0.0; cantilever.dofs()];
+        cantilever.add_partial_load([0.2, 0.9], -4.0, &mut q).unwrap();
+        cantilever.add_point_load(0.55, 3.0, &mut q).unwrap();
+        cantilever.add_point_couple(0.55, -0.7, &mut q).unwrap();
+        cantilever.solve_static(&mut q).unwrap();
+        let forces = cantilever.section_forces(&Actions { q: &q, loads: &loads, ..Actions::default() }).unwrap();
+        for k in 0..=100 {
+            let x = f64::from(k) / 100.0;
+            // What lies to the right of the cut.
+            let part = (0.9 - x.max(0.2)).max(0.0);
+            let arm = 0.9 - 0.5 * part - x;
+            let beyond = if x < 0.55 { 1.0 } else { 0.0 };
+            let shear = 4.0 * part - 3.0 * beyond;
+            let moment = -4.0 * part * arm + beyond * (3.0 * (0.55 - x) - 0.7);
+            let found = forces.at(&cantilever, x).unwrap();
+            // A load that ends inside an element is spread over it: exact but there.
+            let cut = [0.2, 0.9].iter().any(|end: &f64| (end * 7.0).floor() == (x * 7.0).floor());
+            let tolerance = if cut { 0.05 } else { 1e-12 };
+            assert!((found.shear - shear).abs() < 4.0 * tolerance, "V at {x}: {} {shear}", found.shear);
+            assert!((found.moment - moment).abs() < tolerance, "M at {x}: {} {moment}", found.moment);
+        }
+        let [wall] = forces.reactions() else { panic!("{:?}", forces.reactions()) };
+        assert!((wall.force - (2.8 - 3.0)).abs() < 1e-13);
+        assert!((wall.couple - (2.8 * 0.55 - 3.0 * 0.55 + 0.7)).abs() < 1e-12, "{}", wall.couple);
+    }
+
+    /// Any state at all of a beam with everything, at any velocity and acceleration: what acts on the whole balances.
+    #[test]
+    fn reactions_balance_loads_inertia_and_damping() {
+        let beam = furnished();
+        let q = wave(&beam);
+        let v: Vec<f64> = q.iter().map(|q| 0.7 * q * q.signum()).collect();
+        let loads = [
+            SpanLoad::Point { x: 0.33, force: 5.0, couple: 0.4 },
+            SpanLoad::Point { x: 0.75, force: 2.0, couple: 0.0 },
+            SpanLoad::Uniform { from: 0.1, to: 0.5, load: -3.0 },
+            SpanLoad::Weight { gravity: -9.81 },
+        ];
+        // The acceleration that these loads give.
+        let mut f = vec![0.0; beam.dofs()];
+        beam.add_point_load(0.33, 5.0, &mut f).unwrap();
+        beam.add_point_couple(0.33, 0.4, &mut f).unwrap();
+        beam.add_point_load(0.75, 2.0, &mut f).unwrap();
+        beam.add_partial_load([0.1, 0.5], -3.0, &mut f).unwrap();
+        beam.add_self_weight(-9.81, &mut f).unwrap();
+        beam.add_elastic_force(&q, &mut f);
+        beam.add_damping_product(-1.0, &v, &mut f);
+        beam.factor(crate::MatrixWeights { mass: 1.0, damping: 0.0, stiffness: 0.0 }).unwrap().solve(&mut f);
+        let actions = Actions { q: &q, velocity: &v, acceleration: &f, loads: &loads };
+        let forces = beam.section_forces(&actions).unwrap();
+        // Reactions by the residual of the held dofs, independently.
+        let mut residual = vec![0.0; beam.dofs()];
+        beam.add_mass_product(1.0, &f, &mut residual);
+        beam.add_damping_product(1.0, &v, &mut residual);
+        beam.add_stiffness_product(1.0, &q, &mut residual);
+        let mut load = vec![0.0; beam.dofs()];
+        beam.add_point_load(0.33, 5.0, &mut load).unwrap();
+        beam.add_point_couple(0.33, 0.4, &mut load).unwrap();
+        beam.add_point_load(0.75, 2.0, &mut load).unwrap();
+        beam.add_partial_load([0.1, 0.5], -3.0, &mut load).unwrap();
+        beam.add_self_weight(-9.81, &mut load).unwrap();
+        let size = residual.iter().fold(0.0_f64, |m, r| m.max(r.abs()));
+        assert_eq!(forces.reactions().len(), 3);
+        for reaction in &forces.reactions()[..2] {
+            let node = beam.mesh.node(reaction.x).unwrap();
+            assert!((reaction.force - (residual[2 * node] - load[2 * node])).abs() < 1e-12 * size);
+            let couple = residual[2 * node + 1] - load[2 * node + 1];
+            assert!((reaction.couple - if beam.held[node][1] { couple } else { 0.0 }).abs() < 1e-12 * size);
+        }
+        let end = forces.reactions()[2];
+        let last = 2 * beam.elements();
+        assert!((end.force + 30.0 * q[last] + 0.4 * v[last]).abs() < 1e-13);
+        assert!((end.couple + 1.5 * q[last + 1]).abs() < 1e-13);
+    }
+
+    #[test]
+    fn an_envelope_holds_the_extremes_on_either_side() {
+        let spec =
+            crate::BeamSpec { section: crate::Section::rectangle(0.1, 0.1, 1e9, 1e3).unwrap(), ..spec(4, [Pinned; 2]) };
+        let beam = Beam::new(spec).unwrap();
+        let mut envelope = Envelope::new(&beam);
+        for x in [0.25, 0.5, 0.75] {
+            let mut q = vec![0.0; beam.dofs()];
+            beam.add_point_load(x, -8.0, &mut q).unwrap();
+            beam.solve_static(&mut q).unwrap();
+            let loads = [SpanLoad::Point { x, force: -8.0, couple: 0.0 }];
+            envelope.take(
+                &beam,
+                &q,
+                &beam.section_forces(&Actions { q: &q, loads: &loads, ..Actions::default() }).unwrap(),
+            );
+        }
+        let close = |a: f64, b: f64| (a - b).abs() < 1e-12;
+        assert!(close(envelope.moment[2][1], 2.0) && close(envelope.moment[1][1], 1.5));
+        assert!(
+            close(envelope.shear[0][1], 6.0) && close(envelope.shear[2][0], -4.0) && close(envelope.shear[2][1], 4.0)
+        );
+        assert!((envelope.stress[2] / (6.0 * 2.0 / 1e-3) - 1.0).abs() < 1e-12);
+    }
+}
