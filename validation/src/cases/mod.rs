@@ -1,5 +1,6 @@
 //! The rungs of the ladder, one file each.
 
+mod bar_impact;
 mod beam_buckling;
 mod beam_damping;
 mod beam_energy;
@@ -35,6 +36,7 @@ pub(crate) fn all() -> Vec<Box<dyn Case>> {
         Box::new(beam_damping::BeamDamping),
         Box::new(beam_membrane::BeamMembrane),
         Box::new(beam_moving_force::BeamMovingForce),
+        Box::new(bar_impact::BarImpact),
         Box::new(beam_energy::BeamEnergy),
         Box::new(sliding::Sliding),
         Box::new(incline::Incline),
