@@ -28,7 +28,8 @@ impl Beam {
         Ok(())
     }
 
-    /// f += N'(x)ᵀ couple: a couple (N m, counter-clockwise) at x.
+    /// f += N_ψ(x)ᵀ couple: a couple (N m, counter-clockwise) at x. It turns the section, whose rotation is w' for Euler–Bernoulli but
+    /// not with shear.
     ///
     /// # Errors
     /// As [`Beam::add_point_load`].
@@ -43,7 +44,14 @@ impl Beam {
     /// ```
     pub fn add_point_couple(&self, x: f64, couple: f64, f: &mut [f64]) -> Result<(), BeamError> {
         check("couple", couple, true, "finite")?;
-        self.shape_for_load(x, f)?.add_load(0.0, couple, f);
+        check_len("f", self.dofs(), f.len())?;
+        if !(0.0..=self.spec.span).contains(&x) {
+            return Err(BeamError::OutsideSpan { x, span: self.spec.span });
+        }
+        let (element, xi) = self.mesh.locate(x);
+        for (f, share) in f[2 * element..].iter_mut().zip(self.elements[element].rotation(xi)) {
+            *f += couple * share;
+        }
         Ok(())
     }
 
