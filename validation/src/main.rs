@@ -9,6 +9,7 @@ mod cases;
 mod exact;
 mod figure;
 mod fit;
+mod modes;
 mod options;
 mod report;
 mod scene;

@@ -1,8 +1,15 @@
 //! The rungs of the ladder, one file each.
 
+mod bar_impact;
+mod beam_buckling;
+mod beam_damping;
 mod beam_energy;
 mod beam_frequencies;
+mod beam_membrane;
+mod beam_moving_force;
+mod beam_spectrum;
 mod beam_statics;
+mod beam_supports;
 mod bounce;
 mod bouncing;
 mod compliant;
@@ -22,7 +29,14 @@ use crate::case::Case;
 pub(crate) fn all() -> Vec<Box<dyn Case>> {
     vec![
         Box::new(beam_statics::BeamStatics),
+        Box::new(beam_supports::BeamSupports),
         Box::new(beam_frequencies::BeamFrequencies),
+        Box::new(beam_spectrum::BeamSpectrum),
+        Box::new(beam_buckling::BeamBuckling),
+        Box::new(beam_damping::BeamDamping),
+        Box::new(beam_membrane::BeamMembrane),
+        Box::new(beam_moving_force::BeamMovingForce),
+        Box::new(bar_impact::BarImpact),
         Box::new(beam_energy::BeamEnergy),
         Box::new(sliding::Sliding),
         Box::new(incline::Incline),
