@@ -1,6 +1,7 @@
 //! Times of a step and of its parts; see `benches/README.md`.
 
 mod beam;
+mod contacts;
 mod free_beam;
 mod scenes;
 mod solvers;
@@ -15,6 +16,7 @@ fn main() {
     let mut criterion = brief.configure_from_args();
     scenes::bench(&mut criterion);
     free_beam::bench(&mut criterion);
+    contacts::bench(&mut criterion);
     solvers::bench(&mut criterion);
     beam::bench(&mut criterion);
     criterion.final_summary();

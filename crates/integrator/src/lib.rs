@@ -12,6 +12,8 @@
 //! - a [`Workspace`] is the memory and the contact solver of one worker;
 //! - [`run`] takes steps and shows each to [`Observer`]s.
 //!
+//! The feature `conformance` brings a harness that any subsystem can be run through.
+//!
 //! # Example: a block dropped on the ground
 //!
 //! ```
@@ -46,6 +48,8 @@
 
 mod beam;
 mod blocks;
+#[cfg(feature = "conformance")]
+pub mod conformance;
 mod contacts;
 mod equilibrium;
 mod ground;

@@ -143,28 +143,21 @@ impl Compliance<2> for PendulumCompliance {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use teeter_detect::plane_frame;
+    use teeter_integrator::conformance::{Case, check};
 
     const ROD: Pendulum =
         Pendulum { pivot: Vector2::new(0.1, 0.4), length: 0.3, half_thickness: 0.002, mass: 0.2, gravity: 9.81 };
 
     #[test]
-    fn the_force_is_minus_the_slope_of_the_energy() {
-        let h = 1e-5;
-        let slope = (ROD.energy(&[0.7 + h], &[0.0]).gravity - ROD.energy(&[0.7 - h], &[0.0]).gravity) / (2.0 * h);
-        let mut force = [0.0];
-        ROD.internal_force(&[0.7], &[0.0], &mut force);
-        assert!((force[0] + slope).abs() < 1e-10);
-    }
-
-    #[test]
-    fn the_factor_inverts_the_product() {
-        let w = Weights { mass: 1.0, damping: 0.0, stiffness: 2.5e-3 };
-        let mut x = [0.0];
-        ROD.apply(w, &[0.4], &[3.0], &mut x);
-        ROD.factor(w, &[0.4]).unwrap().solve(&mut x);
-        assert!((x[0] - 3.0).abs() < 1e-15);
-        assert!(ROD.factor(Weights::default(), &[0.4]).is_err());
+    fn it_is_what_the_integrator_asks_of_a_subsystem() {
+        let case = Case {
+            q: vec![0.7],
+            weights: Weights { mass: 1.0, damping: 0.0, stiffness: 2.5e-3 },
+            points: vec![(0, Vector2::new(0.002, -0.2)), (0, Vector2::new(-0.002, -0.3))],
+            places: vec![(0, Vector2::new(0.3, 0.3)), (0, Vector2::new(0.1, 0.2))],
+            ..Case::default()
+        };
+        assert_eq!(check(&ROD, &case), []);
     }
 
     #[test]
@@ -182,20 +175,5 @@ mod tests {
             ROD.place(0, &q, &[Vector2::new(0.01, beyond)], &mut at);
             assert_eq!(ROD.surface(0, &q, Kinematics::Deformed, &at[0]), None);
         }
-    }
-
-    #[test]
-    fn a_row_is_the_derivative_of_the_place_of_a_point() {
-        let (q, h, local) = (0.5, 1e-6, Vector2::new(0.002, -0.2));
-        let at = |q: f64| {
-            let mut at = [Vector2::zeros()];
-            ROD.place(0, &[q], &[local], &mut at);
-            at[0]
-        };
-        let frame = plane_frame(&Vector2::new(0.6, 0.8));
-        let (mut columns, mut values) = ([9], [Vector2::zeros()]);
-        let taken = ROD.rows(0, &[q], &local, &frame, &mut Rows::new(&mut columns, &mut values));
-        assert_eq!((taken, columns), (1, [0]));
-        assert!((values[0] - frame * (at(q + h) - at(q - h)) / (2.0 * h)).norm() < 1e-10);
     }
 }

@@ -10,25 +10,34 @@ use crate::subsystem::{couple_by_solving, respond_by_solving};
 use crate::{Compliance, Coupling, FactorError, PartRows, Vector, Weights};
 use nalgebra::Matrix2;
 use std::sync::Arc;
-use teeter_beam::{Beam, Factor};
+use teeter_beam::{Backend, Beam, Factor};
 
 /// How W answers contacts on a beam. The results differ by rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum WBackend {
-    /// The faster one for the beam's dofs, by measurement.
+    /// The faster one for the beam's dofs and the step's contacts, by measurement.
     #[default]
     Auto,
     /// A banded substitution for each contact and direction in a step.
     Banded,
+    /// The same with a general sparse factor: slower, and an independent way to the same numbers.
+    Sparse,
     /// Columns of W, each solved for when a contact first touches its dof and kept until the step size changes: at most
-    /// 64 columns and 16 MB, but 16 columns at least; a step that touches more dofs at once goes by substitutions. Which columns are
-    /// there changes the time of a step, never its numbers.
+    /// 64 columns and 16 MiB, but 16 columns of any beam; a step that touches more dofs at once goes by substitutions. Which columns
+    /// are there changes the time of a step, never its numbers.
     CachedColumns,
 }
 
-/// Most columns of W that are kept: the dofs of 16 contacts. (Benches `contacts on a beam`: the combination takes less time than
-/// substitutions at every number of contacts, so it is memory that asks for a bound.)
+/// Dofs from which columns are kept unless told otherwise. Bench `contacts on a beam`, time of substitutions over that of columns, with 1, 2, 4, 16 contacts:
+/// 1.1, 0.8, 0.7, 0.8 on 22 dofs; 1.6, 1.7, 1.2, 0.7 on 82; 3, 4, 3.5, 1.9 on 802.
+const CACHED_FROM: usize = 60;
+
+/// And then columns are used in steps that touch at most this part of the dofs: from there on, by the same measurement, H from columns takes
+/// longer than substitutions.
+const TOUCHED: usize = 4;
+
+/// Most columns of W that are kept: the dofs of 16 contacts that stand apart.
 const COLUMNS: usize = 64;
 
 /// Bytes of columns beyond which there are fewer.
@@ -56,13 +65,16 @@ enum Memory {
 
 impl BeamCompliance {
     pub(super) fn new(beam: &Arc<Beam>, w: Weights, backend: WBackend) -> Result<Self, FactorError> {
-        let factor = beam.factor(matrix_weights(w)).map_err(|error| refusal(w, &error))?;
+        let kind = if backend == WBackend::Sparse { Backend::Sparse } else { Backend::Banded };
+        let factor = beam.factor_with(matrix_weights(w), kind).map_err(|error| refusal(w, &error))?;
         let dofs = beam.dofs();
         let memory = match backend {
-            // The columns of a matrix that changes with every step aren't worth keeping.
-            _ if beam.is_stretched() => Memory::Responses(Responses::new(dofs)),
-            WBackend::Banded => Memory::Responses(Responses::new(dofs)),
-            WBackend::Auto | WBackend::CachedColumns => Memory::Columns(Columns::new(dofs)),
+            // A stretched beam has other columns in every step.
+            WBackend::Auto if dofs >= CACHED_FROM && !beam.is_stretched() => {
+                Memory::Columns(Columns::new(dofs, dofs / TOUCHED))
+            }
+            WBackend::CachedColumns => Memory::Columns(Columns::new(dofs, dofs)),
+            WBackend::Auto | WBackend::Banded | WBackend::Sparse => Memory::Responses(Responses::new(dofs)),
         };
         Ok(Self { beam: Arc::clone(beam), weights: w, factor, memory })
     }
@@ -94,6 +106,9 @@ impl Compliance<2> for BeamCompliance {
     }
 
     fn update(&mut self, q: &[f64]) {
+        if let Memory::Columns(columns) = &mut self.memory {
+            columns.forget();
+        }
         self.beam.follow(&q[..self.beam.dofs()], &mut self.factor);
     }
 
@@ -177,11 +192,15 @@ impl Responses {
 /// Columns of W, kept from step to step.
 struct Columns {
     dofs: usize,
+    /// Most dofs that a step may touch.
+    most: usize,
     values: Vec<f64>,
-    /// Of each place for a column: its dof, and the round in which it was last asked for; 0 for never.
-    places: Vec<(usize, u64)>,
+    /// The dof that each place holds the column of.
+    places: Vec<Option<usize>>,
     /// Place of the column of each dof.
     place_of: Vec<usize>,
+    /// When the column of each dof was last asked for, in rounds.
+    asked: Vec<u64>,
     round: u64,
     /// The dofs asked for in this round.
     touched: Vec<usize>,
@@ -190,13 +209,21 @@ struct Columns {
 const NOWHERE: usize = usize::MAX;
 
 impl Columns {
-    fn new(dofs: usize) -> Self {
-        let room = COLUMNS.min(MEMORY / (size_of::<f64>() * dofs.max(1))).max(FEWEST_COLUMNS).min(dofs);
+    /// How many columns are kept of a beam.
+    fn room(dofs: usize) -> usize {
+        COLUMNS.min(MEMORY / (size_of::<f64>() * dofs.max(1))).max(FEWEST_COLUMNS).min(dofs)
+    }
+
+    /// For steps that touch at most so many dofs.
+    fn new(dofs: usize, most: usize) -> Self {
+        let room = Self::room(dofs);
         Self {
+            most: most.min(room),
             dofs,
             values: vec![0.0; room * dofs],
-            places: vec![(0, 0); room],
+            places: vec![None; room],
             place_of: vec![NOWHERE; dofs],
+            asked: vec![0; dofs],
             round: 0,
             touched: Vec::with_capacity(room),
         }
@@ -205,47 +232,46 @@ impl Columns {
     /// Drops all columns.
     fn forget(&mut self) {
         self.place_of.fill(NOWHERE);
-        self.places.fill((0, 0));
-        self.round = 0;
+        self.places.fill(None);
     }
 
     /// Makes sure that the columns of all dofs that the rows touch are there, in the place of those that were not asked for the
-    /// longest; whether there is room for them all.
+    /// longest; whether they aren't too many.
     fn fetch(&mut self, factor: &Factor, rows: &PartRows<'_, 2>) -> bool {
         self.round += 1;
         self.touched.clear();
-        let own = self.dofs;
-        for dof in rows.iter().flat_map(|(_, dofs, _)| dofs).copied().filter(|dof| *dof < own) {
-            let mut place = self.place_of[dof];
-            if place == NOWHERE {
-                if self.touched.len() == self.places.len() {
+        for (_, dofs, _) in rows.iter() {
+            for &dof in dofs.iter().filter(|dof| **dof < self.dofs) {
+                if self.asked[dof] == self.round {
+                    continue;
+                }
+                if self.touched.len() == self.most {
                     return false;
                 }
-                place = self.renew(factor, dof);
-            } else if self.places[place].1 == self.round {
-                continue;
+                self.asked[dof] = self.round;
+                self.touched.push(dof);
             }
-            self.places[place].1 = self.round;
-            self.touched.push(dof);
+        }
+        for k in 0..self.touched.len() {
+            if self.place_of[self.touched[k]] == NOWHERE {
+                self.renew(factor, self.touched[k]);
+            }
         }
         true
     }
 
-    /// Solves for the column of `dof`. Returns its place.
-    fn renew(&mut self, factor: &Factor, dof: usize) -> usize {
-        let oldest = self.places.iter().enumerate().min_by_key(|(_, (_, round))| *round);
-        let place = oldest.map_or(0, |(place, _)| place);
-        let (dropped, round) = self.places[place];
-        if round > 0 {
+    /// Solves for the column of `dof`.
+    fn renew(&mut self, factor: &Factor, dof: usize) {
+        let asked = |held: &Option<usize>| held.map_or(0, |dof| self.asked[dof]);
+        let Some(place) = (0..self.places.len()).min_by_key(|&place| asked(&self.places[place])) else { return };
+        if let Some(dropped) = self.places[place].replace(dof) {
             self.place_of[dropped] = NOWHERE;
         }
-        self.places[place].0 = dof;
         self.place_of[dof] = place;
         let column = &mut self.values[place * self.dofs..(place + 1) * self.dofs];
         column.fill(0.0);
         column[dof] = 1.0;
         factor.solve(column);
-        place
     }
 
     /// The column of a dof that is there.
@@ -255,19 +281,21 @@ impl Columns {
     }
 
     fn couple(&self, rows: &PartRows<'_, 2>, h: &mut Coupling<'_, 2>) {
-        let own = |entries: &(&usize, &Vector<2>)| *entries.0 < self.dofs;
-        for (j, dofs_j, values_j) in rows.iter() {
-            for (i, dofs_i, values_i) in rows.iter() {
+        for (number, (j, dofs_j, values_j)) in rows.iter().enumerate() {
+            for (other, (i, dofs_i, values_i)) in rows.iter().take(number + 1).enumerate() {
                 let mut block = Matrix2::zeros();
-                for (&b, value_b) in dofs_j.iter().zip(values_j).filter(own) {
+                for (&b, value_b) in dofs_j.iter().zip(values_j).filter(|(b, _)| **b < self.dofs) {
                     let column = self.column(b);
                     let mut u = Vector::<2>::zeros();
-                    for (&a, value_a) in dofs_i.iter().zip(values_i).filter(own) {
+                    for (&a, value_a) in dofs_i.iter().zip(values_i).filter(|(a, _)| **a < self.dofs) {
                         u += value_a * column[a];
                     }
                     block += u * value_b.transpose();
                 }
                 h.add(i, j, &block);
+                if other < number {
+                    h.add(j, i, &block.transpose());
+                }
             }
         }
     }
@@ -276,9 +304,90 @@ impl Columns {
     fn respond(&self, rows: &PartRows<'_, 2>, p: &[Vector<2>], scratch: &mut [f64], v: &mut [f64]) -> bool {
         self.touched.iter().for_each(|dof| scratch[*dof] = 0.0);
         rows.add_generalised_impulse(p, scratch);
-        for dof in &self.touched {
+        // By four: the columns are read as fast as memory gives them, and v then only once for all four.
+        let (fours, rest) = self.touched.as_chunks::<4>();
+        for dofs in fours {
+            let f = dofs.map(|dof| scratch[dof]);
+            let [a, b, c, d] = dofs.map(|dof| self.column(dof));
+            for ((((v, a), b), c), d) in v.iter_mut().zip(a).zip(b).zip(c).zip(d) {
+                *v += (f[0] * a + f[1] * b) + (f[2] * c + f[3] * d);
+            }
+        }
+        for dof in rest {
             add_multiple(scratch[*dof], self.column(*dof), v);
         }
         true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::subsystem::Span;
+    use teeter_beam::{BeamSpec, Section, Support};
+    use teeter_contact::Block;
+
+    const WEIGHTS: Weights = Weights { mass: 1.0, damping: 0.5e-4, stiffness: 0.25e-8 };
+
+    fn columns() -> (Arc<Beam>, BeamCompliance) {
+        let section = Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap();
+        let supports = [Support::Clamped, Support::Free];
+        let beam = Arc::new(Beam::new(BeamSpec::new(0.36, 50, section).supported(supports)).unwrap());
+        let compliance = BeamCompliance::new(&beam, WEIGHTS, WBackend::CachedColumns).unwrap();
+        (beam, compliance)
+    }
+
+    /// H and W Jᵀ p of contacts that touch four dofs each, from these on.
+    fn answer(compliance: &mut BeamCompliance, first: &[usize]) -> (Vec<Block<2>>, Vec<f64>) {
+        let columns: Vec<usize> = first.iter().flat_map(|dof| *dof..dof + 4).collect();
+        let values: Vec<_> = (0..columns.len()).map(|k| Vector::<2>::new(1.0, 0.1) * (k as f64).cos()).collect();
+        let span = |part, start| Span { part, start, len: 4 * (1 - part) };
+        let spans: Vec<_> = (0..first.len()).map(|k| [span(0, 4 * k), span(1, 0)]).collect();
+        let rows = PartRows { part: 0, spans: &spans, columns: &columns, values: &values };
+        let n = compliance.factor.dofs();
+        let mut blocks = vec![Block::zeros(); first.len() * first.len()];
+        let (mut scratch, mut v) = (vec![f64::NAN; n], vec![0.0; n]);
+        compliance.couple(&rows, &mut scratch, &mut Coupling { contacts: first.len(), blocks: &mut blocks });
+        compliance.respond(&rows, &vec![Vector::<2>::new(1.0, 0.5); first.len()], &mut scratch, &mut v);
+        (blocks, v)
+    }
+
+    fn kept(compliance: &BeamCompliance) -> usize {
+        let Memory::Columns(columns) = &compliance.memory else { return 0 };
+        columns.places.iter().flatten().count()
+    }
+
+    #[test]
+    fn which_columns_are_kept_changes_no_bit() {
+        let (_, mut used) = columns();
+        // Along the whole beam, so that columns have to make room for others; then a step with too many dofs at once.
+        for first in 2..98 {
+            answer(&mut used, &[first]);
+            assert_eq!(kept(&used), (first + 2).min(COLUMNS));
+        }
+        let many: Vec<usize> = (0..24).map(|k| 2 + 4 * k).collect();
+        for contacts in [&[2, 40, 90][..], &[41], &many, &[2, 3, 40]] {
+            let (_, mut fresh) = columns();
+            assert_eq!(answer(&mut used, contacts), answer(&mut fresh, contacts), "{contacts:?}");
+        }
+    }
+
+    #[test]
+    fn another_step_size_drops_the_columns() {
+        let (beam, mut used) = columns();
+        let half = Weights { mass: 1.0, damping: 0.25e-4, stiffness: 0.25e-8 / 4.0 };
+        let before = answer(&mut used, &[10]);
+        used.refactor(half, &[]).unwrap();
+        assert_eq!(kept(&used), 0);
+        let mut fresh = BeamCompliance::new(&beam, half, WBackend::CachedColumns).unwrap();
+        let after = answer(&mut used, &[10]);
+        assert!(after == answer(&mut fresh, &[10]) && after != before);
+    }
+
+    #[test]
+    fn columns_are_bounded_for_every_beam() {
+        for (dofs, room) in [(20, 20), (80, 64), (4000, 64), (80_000, 26), (1_000_000, 16)] {
+            assert_eq!(Columns::room(dofs), room, "{dofs}");
+        }
     }
 }

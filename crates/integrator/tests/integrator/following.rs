@@ -2,6 +2,7 @@
 
 use nalgebra::Vector2;
 use std::sync::{Arc, Mutex};
+use teeter_beam::{Axial, Beam, BeamSpec, Section};
 use teeter_detect::{Frame, PointDetector};
 use teeter_integrator::*;
 
@@ -138,5 +139,32 @@ fn what_the_step_conserves_in_place_of_the_energy_is_booked_as_numerical() {
             largest = largest.max(scheme.advance(&model, &mut state, &mut work).unwrap().energy.numerical.abs());
         }
         assert!(largest > 1e-3 && state.ledger.relative_residual() < 1e-15, "{largest} {:?}", state.ledger);
+    }
+}
+
+#[test]
+fn a_beam_held_along_its_axis_keeps_the_energy_identity_where_it_is_stretched() {
+    let section = Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap();
+    let beam = Arc::new(Beam::new(BeamSpec::new(0.36, 20, section).axial(Axial::Held)).unwrap());
+    // Half a sine, deflected by some six thicknesses: the axial force is most of the stiffness.
+    let (size, k) = (0.01, std::f64::consts::PI / 0.36);
+    let nodes: Vec<_> =
+        beam.node_positions().iter().map(|x| [size * (k * x).sin(), size * k * (k * x).cos()]).collect();
+    let q = beam.from_nodes(&nodes).unwrap();
+    for backend in [WBackend::Auto, WBackend::CachedColumns] {
+        for mut scheme in schemes(0.5) {
+            let mut parts = ModelBuilder::new();
+            parts.add(Box::new(crate::scenes::beam_body(&beam).with_backend(backend)));
+            let model = parts.build(Box::new(PointDetector::new(vec![]))).unwrap();
+            let mut state = State::new(&model, &q, &vec![0.0; q.len()], 1e-4).unwrap();
+            let mut work = crate::scenes::workspace(&model);
+            scheme.start(&model, &mut state, &mut work).unwrap();
+            let mut largest = 0.0_f64;
+            for _ in 0..2000 {
+                largest = largest.max(scheme.advance(&model, &mut state, &mut work).unwrap().energy.numerical.abs());
+            }
+            assert!(largest > 1e-6 * state.ledger.scale, "{largest} {}", state.ledger.scale);
+            assert!(state.ledger.relative_residual() < 1e-12, "{:e}", state.ledger.relative_residual());
+        }
     }
 }

@@ -4,6 +4,7 @@
 mod allocations;
 mod beams;
 mod closed;
+mod conforming;
 mod driven;
 mod following;
 mod laws;
