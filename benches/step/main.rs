@@ -2,6 +2,7 @@
 
 mod beam;
 mod free_beam;
+mod modal_beam;
 mod scenes;
 mod solvers;
 
@@ -15,6 +16,7 @@ fn main() {
     let mut criterion = brief.configure_from_args();
     scenes::bench(&mut criterion);
     free_beam::bench(&mut criterion);
+    modal_beam::bench(&mut criterion);
     solvers::bench(&mut criterion);
     beam::bench(&mut criterion);
     criterion.final_summary();
