@@ -3,6 +3,7 @@
 mod beam;
 mod contacts;
 mod free_beam;
+mod modal_beam;
 mod scenes;
 mod solvers;
 
@@ -17,6 +18,7 @@ fn main() {
     scenes::bench(&mut criterion);
     free_beam::bench(&mut criterion);
     contacts::bench(&mut criterion);
+    modal_beam::bench(&mut criterion);
     solvers::bench(&mut criterion);
     beam::bench(&mut criterion);
     criterion.final_summary();

@@ -19,6 +19,9 @@ pub(crate) const STEPS: u64 = 1000;
 /// s.
 pub(crate) const DT: f64 = 1e-4;
 
+/// The block tilted by 5° on its left corner: mass centre (m) and inclination (rad).
+pub(crate) const BLOCK_AT: [f64; 3] = [0.17405990783590924, 0.0685504782624077, 0.08726646259971647];
+
 pub(crate) fn bench(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("step");
     group.throughput(Throughput::Elements(STEPS));
@@ -26,7 +29,7 @@ pub(crate) fn bench(criterion: &mut Criterion) {
         let model = model(surface);
         let mut scheme = MoreauJean::new(MoreauJeanSettings::default()).expect("default settings");
         let mut work = Workspace::new(&model, Box::new(Auto::new()), SolverSettings::default());
-        let mut q = vec![0.17405990783590924, 0.0685504782624077, 0.08726646259971647];
+        let mut q = BLOCK_AT.to_vec();
         q.resize(model.size().q, 0.0);
         let mut start = State::new(&model, &q, &vec![0.0; model.size().v], DT).expect("a state of the model");
         Scheme::<2>::start(&mut scheme, &model, &mut start, &mut work).expect("a factor");
@@ -51,7 +54,7 @@ pub(crate) fn bench(criterion: &mut Criterion) {
 }
 
 /// The block of the source paper over a surface.
-fn model(surface: Box<dyn Subsystem<2>>) -> Model<2> {
+pub(crate) fn model(surface: Box<dyn Subsystem<2>>) -> Model<2> {
     let shape = Rectangle::new(0.03, 0.135).expect("a rectangle");
     let mass = MassProperties::rectangle(&shape, 0.03, 2700.0).expect("a mass");
     let mut parts = ModelBuilder::new();

@@ -276,6 +276,9 @@ struct Pool<'a> {
 
 impl<'a> Pool<'a> {
     fn new(beam: &'a Beam, size: usize) -> Result<Self, ModalError> {
+        if beam.is_stretched() {
+            return Err(ModalError::Stretched);
+        }
         let modes = beam.modes(size)?;
         let inverse = Inverse::new(beam).map_err(ModesError::from)?;
         let shapes = Orthonormal::new(beam, modes.shapes.clone());
@@ -302,8 +305,8 @@ impl<'a> Pool<'a> {
             self.inverse.solve_once(&mut change);
             self.shapes.remove_from(&mut change);
             add(1.0, &change, &mut psi);
-            let energy = beam.elastic_energy(&psi);
-            let size = if energy == 0.0 { 0.0 } else { (beam.elastic_energy(&change) / energy).sqrt() };
+            let energy = beam.stiffness_form(&psi);
+            let size = if energy == 0.0 { 0.0 } else { (beam.stiffness_form(&change) / energy).sqrt() };
             let shrinks = size < 0.9 * last;
             last = size;
             if !shrinks || size <= f64::EPSILON {

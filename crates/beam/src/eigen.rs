@@ -141,6 +141,9 @@ impl Beam {
             let found = search.lowest(wanted)?;
             modes.rounds = found.rounds;
             for (j, eigenvalue) in found.eigenvalues.iter().enumerate().take(wanted) {
+                if *eigenvalue < -unmoved {
+                    return Err(ModesError::Unstable { eigenvalue: *eigenvalue });
+                }
                 // A motion without energy that is none of the closed forms: rigid nevertheless.
                 let still = *eigenvalue <= unmoved;
                 modes.rigid += usize::from(still);

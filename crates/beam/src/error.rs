@@ -174,6 +174,12 @@ pub enum ModesError {
         /// The least residual reached, of the worst of them.
         residual: f64,
     },
+    /// The axial force is beyond the buckling load.
+    #[error("axial_force: the straight beam is not stable under it (ω² = {eigenvalue:e} 1/s²), so it does not vibrate")]
+    Unstable {
+        /// The lowest ω², 1/s².
+        eigenvalue: f64,
+    },
     /// The count of eigenvalues says that more lie below than the iteration finds.
     #[error("count = {count}: a mode below these is missing and can't be found; take a coarser mesh")]
     Missed {
@@ -237,6 +243,11 @@ pub enum ModalError {
         /// The last change, relative to the correction.
         last: f64,
     },
+    /// A beam held along its axis, whose elastic force is not linear.
+    #[error(
+        "a beam held along its axis stretches as it deflects, which no mode does: use its elements, or axial = free"
+    )]
+    Stretched,
     /// The damping couples the modes.
     #[error(
         "damping: C couples the modal coordinates {first} and {second} ({relative:e} of their own damping); give damping ratios of the modes, or use viscous damping in proportion to the mass, or Rayleigh damping"

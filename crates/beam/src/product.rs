@@ -161,7 +161,7 @@ impl Beam {
         power + diagonal_form(&self.dashpots, v)
     }
 
-    fn stiffness_form(&self, q: &[f64]) -> f64 {
+    pub(crate) fn stiffness_form(&self, q: &[f64]) -> f64 {
         let mut form = self.bending.form(self.bend(q));
         if let Some(bed) = &self.bed {
             form += bed.form(self.bend(q));

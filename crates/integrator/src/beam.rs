@@ -11,7 +11,7 @@ use line::{Deflecting, Line};
 use motion::MovingSupports;
 use nalgebra::Vector2;
 use std::sync::Arc;
-use teeter_beam::{AxialShape, Beam, Deflection, Load, MatrixWeights, ModalBasis};
+use teeter_beam::{Beam, Deflection, Load, MatrixWeights, ModalBasis};
 use teeter_detect::{Frame, Kinematics, SurfacePoint};
 
 /// Which fibre of a beam is its contact surface.
@@ -155,12 +155,19 @@ impl Deflecting for Beam {
         }
     }
 
-    fn has_axial(&self) -> bool {
-        self.has_axial_dofs()
+    fn has_axial_dofs(&self) -> bool {
+        Beam::has_axial_dofs(self)
     }
 
-    fn axial_shape(&self, x: f64) -> AxialShape {
-        self.axial_shape_clamped(x)
+    fn axial_displacement(&self, q: &[f64], x: f64) -> f64 {
+        self.axial_shape_clamped(x).displacement(q)
+    }
+
+    fn axial_shape(&self, x: f64, mut each: impl FnMut(usize, f64)) {
+        let axial = self.axial_shape_clamped(x);
+        for k in 0..axial.len {
+            each(axial.columns[k], axial.n[k]);
+        }
     }
 }
 

@@ -9,6 +9,7 @@
 
 use crate::beam::line::{self, Deflecting, Line};
 use crate::beam::motion::MovingSupports;
+use crate::subsystem::dot;
 use crate::{BeamSurface, Compliance, Energy, FactorError, Motion, Rows, SignalLoad, Size, Subsystem, Weights};
 use nalgebra::Vector2;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -181,6 +182,10 @@ impl Shapes {
     fn dof(&self, dof: usize) -> &[f64] {
         &self.by_dof[dof * self.coordinates..(dof + 1) * self.coordinates]
     }
+
+    fn dof_value(&self, dof: usize, q: &[f64]) -> f64 {
+        dot(self.dof(dof), &q[..self.coordinates])
+    }
 }
 
 impl Deflecting for Shapes {
@@ -192,7 +197,7 @@ impl Deflecting for Shapes {
         let shape = self.beam.shape_at(x)?;
         let mut d = Deflection { w: 0.0, slope: 0.0 };
         for k in 0..shape.len {
-            let value: f64 = self.dof(shape.columns[k]).iter().zip(q).map(|(phi, eta)| phi * eta).sum();
+            let value = self.dof_value(shape.columns[k], q);
             d.w += shape.n[k] * value;
             d.slope += shape.dn[k] * value;
         }
@@ -211,12 +216,31 @@ impl Deflecting for Shapes {
             each(i, n, dn);
         }
     }
+
+    fn has_axial_dofs(&self) -> bool {
+        self.beam.has_axial_dofs()
+    }
+
+    fn axial_displacement(&self, q: &[f64], x: f64) -> f64 {
+        let axial = self.beam.axial_shape_clamped(x);
+        (0..axial.len).map(|k| axial.n[k] * self.dof_value(axial.columns[k], q)).sum()
+    }
+
+    fn axial_shape(&self, x: f64, mut each: impl FnMut(usize, f64)) {
+        let axial = self.beam.axial_shape_clamped(x);
+        if axial.len > 0 {
+            for i in 0..self.coordinates {
+                each(i, (0..axial.len).map(|k| axial.n[k] * self.dof(axial.columns[k])[i]).sum());
+            }
+        }
+    }
 }
 
 impl Subsystem<2> for ModalBeam {
     fn size(&self) -> Size {
         let all = self.coordinates() + self.driven().len();
-        Size { q: all, v: all, bodies: 1, row: all }
+        let axial = if self.shapes.has_axial_dofs() { self.coordinates() } else { 0 };
+        Size { q: all, v: all, bodies: 1, row: all + axial }
     }
 
     fn internal_force(&self, q: &[f64], v: &[f64], f: &mut [f64]) {
@@ -262,6 +286,10 @@ impl Subsystem<2> for ModalBeam {
         self.damped
     }
 
+    fn damping_power(&self, _q: &[f64], v: &[f64], _scratch: &mut [f64]) -> f64 {
+        weighted_squares(&self.damping, v)
+    }
+
     fn apply(&self, w: Weights, _q: &[f64], x: &[f64], y: &mut [f64]) {
         if let Some(supports) = &self.supports
             && w.mass != 0.0
@@ -275,9 +303,9 @@ impl Subsystem<2> for ModalBeam {
 
     fn energy(&self, q: &[f64], v: &[f64]) -> Energy {
         let n = self.coordinates();
-        let relative = 0.5 * v[..n].iter().map(|v| v * v).sum::<f64>();
+        let relative = 0.5 * dot(&v[..n], &v[..n]);
         let kinetic = self.supports.as_ref().map_or(relative, |supports| relative + supports.kinetic_energy(v));
-        let elastic = 0.5 * q.iter().zip(&self.stiffness).map(|(q, k)| k * q * q).sum::<f64>();
+        let elastic = 0.5 * weighted_squares(&self.stiffness, q);
         Energy { kinetic, elastic, gravity: 0.0 }
     }
 
@@ -305,6 +333,19 @@ impl Subsystem<2> for ModalBeam {
         compliance.refactor(w, &[])?;
         Ok(compliance)
     }
+}
+
+/// Σ w x², over the weights, in four sums at once as [`dot`].
+fn weighted_squares(w: &[f64], x: &[f64]) -> f64 {
+    let ((w, w_rest), (x, x_rest)) = (w.as_chunks::<4>(), x[..w.len()].as_chunks::<4>());
+    let mut sums = [0.0; 4];
+    for (w, x) in w.iter().zip(x) {
+        for k in 0..4 {
+            sums[k] += w[k] * x[k] * x[k];
+        }
+    }
+    let rest: f64 = w_rest.iter().zip(x_rest).map(|(w, x)| w * x * x).sum();
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
 /// W of uncoupled coordinates: the reciprocals of `mass + damping d_i + stiffness ω_i²`.

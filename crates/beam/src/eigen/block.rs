@@ -104,7 +104,7 @@ pub(crate) fn ritz(beam: &Beam, y: &Block) -> (Vec<f64>, Block) {
     let p = y.columns();
     let mut s = vec![0.0; p * p];
     for i in 0..p {
-        s[i * p + i] = 2.0 * beam.elastic_energy(y.column(i));
+        s[i * p + i] = beam.stiffness_form(y.column(i));
         // The product of the lower column: it is the smoother, and has less rounding.
         let mut force = vec![0.0; y.dofs];
         beam.add_stiffness_product(1.0, y.column(i), &mut force);
@@ -124,7 +124,7 @@ pub(crate) fn ritz(beam: &Beam, y: &Block) -> (Vec<f64>, Block) {
             add(u[i * p + column], y, &mut shape);
         }
         normalise(beam, &mut shape);
-        values.push(2.0 * beam.elastic_energy(&shape));
+        values.push(beam.stiffness_form(&shape));
         x.push(&shape);
     }
     (values, x)

@@ -1,7 +1,7 @@
 //! Frequencies and shapes of the finite elements: against the continuous beam, against a dense eigen-solve, and their digits.
 
 use crate::frequencies::{ALL, circular_frequencies, rigid};
-use teeter_beam::{Beam, ModesError, Support};
+use teeter_beam::{Axial, Beam, BeamSpec, Foundation, Hold, ModesError, Section, Support};
 
 fn all_supports() -> impl Iterator<Item = [Support; 2]> {
     ALL.iter().flat_map(|a| ALL.map(|b| [*a, b]))
@@ -154,4 +154,103 @@ fn a_count_that_the_beam_has_not_is_refused() {
 fn the_same_beam_has_the_same_modes_to_the_bit() {
     let modes = || super::beam(50, [Support::Clamped, Support::Pinned]).modes(9).unwrap();
     assert_eq!(modes(), modes());
+}
+
+/// Two equal spans on pins: every mode of one span pinned at both ends, and every mode of one pinned and clamped.
+#[test]
+fn two_equal_spans_have_the_modes_of_both_symmetries() {
+    for elements in [40, 1000] {
+        let section = Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap();
+        let beam = Beam::new(BeamSpec::new(0.72, elements, section).support_at(0.36, Support::Pinned)).unwrap();
+        let found = beam.modes(6).unwrap();
+        let one = |supports, mode| super::spec(1, supports).circular_frequency(mode).unwrap();
+        let exact =
+            (1..=3).flat_map(|mode| [one([Support::Pinned; 2], mode), one([Support::Clamped, Support::Pinned], mode)]);
+        for (found, exact) in found.circular_frequencies().iter().zip(exact) {
+            let elements = (12.0 / (0.5 * elements as f64)).powi(4) / 1440.0;
+            assert!((found / exact - 1.0).abs() < elements + 1e-11, "{found} {exact}");
+        }
+    }
+}
+
+#[test]
+fn a_frequency_that_many_modes_share_has_them_all() {
+    // Spans between clamps do not know of each other.
+    let spans = 14;
+    let section = Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap();
+    let mut spec = BeamSpec::new(0.36 * spans as f64, 6 * spans, section).supported([Support::Clamped; 2]);
+    for span in 1..spans {
+        spec = spec.support_at(0.36 * span as f64, Support::Clamped);
+    }
+    let beam = Beam::new(spec).unwrap();
+    let single = super::beam(6, [Support::Clamped; 2]).modes(2).unwrap().circular_frequencies().to_vec();
+    for count in [1, 5, 14, 15, 28] {
+        let found = beam.modes(count).unwrap();
+        for (mode, found) in found.circular_frequencies().iter().enumerate() {
+            let exact = single[mode / spans];
+            assert!((found / exact - 1.0).abs() < 1e-10, "{count} {mode}: {found} {exact}");
+        }
+    }
+}
+
+#[test]
+fn springs_and_axial_dofs_leave_the_rigid_motions_that_they_leave() {
+    let section = Section::new(2.0, 3.0).unwrap().with_axial_stiffness(50.0).unwrap();
+    let spring =
+        |stiffness| Support::Elastic { deflection: Hold::Spring { stiffness, damping: 0.0 }, rotation: Hold::Free };
+    let free = BeamSpec::new(1.0, 10, section).supported([Support::Free; 2]);
+    for (spec, rigid) in [
+        (free.clone(), 2),
+        (free.clone().support_at(0.3, spring(20.0)), 1),
+        (free.clone().support_at(0.3, spring(20.0)).support_at(0.9, spring(5.0)), 0),
+        (free.clone().axial(Axial::Elastic { held: [false; 2] }), 3),
+        (free.clone().axial(Axial::Elastic { held: [true, false] }), 2),
+        (free.clone().foundation(Foundation { from: 0.2, to: 0.4, stiffness: 1.0, damping: 0.0 }), 0),
+    ] {
+        let beam = Beam::new(spec).unwrap();
+        let modes = beam.modes(6).unwrap();
+        assert_eq!(modes.rigid(), rigid, "{:?}", beam.spec());
+        let dense = circular_frequencies(&beam);
+        for (found, dense) in modes.circular_frequencies().iter().zip(&dense).skip(rigid) {
+            assert!((found / dense - 1.0).abs() < 1e-7, "{found} {dense}");
+        }
+        assert!(modes.circular_frequencies()[..rigid].iter().all(|omega| *omega == 0.0));
+    }
+}
+
+#[test]
+fn a_beam_with_everything_has_the_modes_of_a_dense_solve() {
+    let plain = Section::new(2.0, 3.0).unwrap().with_axial_stiffness(50.0).unwrap();
+    let thick = Section::new(5.0, 4.0).unwrap().with_shear(40.0, 0.02).unwrap().with_axial_stiffness(70.0).unwrap();
+    let spring = |stiffness| Hold::Spring { stiffness, damping: 0.0 };
+    let end = Support::Elastic { deflection: spring(30.0), rotation: spring(1.5) };
+    let spec = BeamSpec::new(1.0, 24, plain)
+        .supported([Support::Clamped, end])
+        .segment(0.3, 0.5, thick)
+        .support_at(0.75, Support::Pinned)
+        .lump(0.4, 0.5, 0.01)
+        .foundation(Foundation { from: 0.1, to: 0.65, stiffness: 80.0, damping: 0.0 })
+        .axial(Axial::Elastic { held: [true, false] })
+        .axial_force(3.0);
+    let beam = Beam::new(spec).unwrap();
+    let dense = circular_frequencies(&beam);
+    for count in [4, 12, beam.free_dofs()] {
+        let found = beam.modes(count).unwrap();
+        for (found, dense) in found.circular_frequencies().iter().zip(&dense) {
+            assert!((found / dense - 1.0).abs() < 1e-8, "{count}: {found} {dense}");
+        }
+    }
+}
+
+#[test]
+fn a_beam_beyond_its_buckling_load_is_refused() {
+    let euler = 0.5821875 * (std::f64::consts::PI / 0.36).powi(2);
+    for elements in [20, 2000] {
+        let beam = |force: f64| Beam::new(super::spec(elements, [Support::Pinned; 2]).axial_force(force)).unwrap();
+        let omega = beam(-0.99 * euler).modes(3).unwrap().circular_frequencies()[0];
+        let exact = 0.1 * super::spec(1, [Support::Pinned; 2]).circular_frequency(1).unwrap(); // ω₁ √(1 − N/N_cr)
+        assert!((omega / exact - 1.0).abs() < 1e-4, "{omega} {exact}");
+        let refused = beam(-1.01 * euler).modes(3);
+        assert!(matches!(refused, Err(ModesError::Factor(_) | ModesError::Unstable { .. })), "{refused:?}");
+    }
 }

@@ -3,7 +3,7 @@
 use super::BeamSurface;
 use crate::Rows;
 use nalgebra::Vector2;
-use teeter_beam::{AxialShape, Deflection};
+use teeter_beam::Deflection;
 use teeter_detect::{Frame, Kinematics, SurfacePoint};
 
 /// How deflection and slope at a place follow from coordinates, linearly.
@@ -18,16 +18,14 @@ pub(crate) trait Deflecting {
     /// slope there for a unit of it.
     fn shape(&self, x: f64, each: impl FnMut(usize, f64, f64));
 
-    /// Whether points move along the axis by coordinates of their own.
-    fn has_axial(&self) -> bool {
-        false
-    }
+    /// Whether its points move along the axis too.
+    fn has_axial_dofs(&self) -> bool;
 
-    /// How the axial displacement at the point of [0, span] nearest to x follows from the coordinates.
-    fn axial_shape(&self, x: f64) -> AxialShape {
-        let _ = x;
-        AxialShape::default()
-    }
+    /// By how much the point of [0, span] nearest to x has moved along the axis, m.
+    fn axial_displacement(&self, q: &[f64], x: f64) -> f64;
+
+    /// As [`Deflecting::shape`], for the displacement along the axis.
+    fn axial_shape(&self, x: f64, each: impl FnMut(usize, f64));
 }
 
 /// A straight level beam in the world, or where its supports have moved it.
@@ -70,12 +68,15 @@ impl Line {
     ) -> Option<SurfacePoint<2>> {
         let x = self.along(beam.span(), at.x);
         let offset = self.surface.offset();
-        let mut d = beam.deflection_at(q, x)?; // None beyond the ends, which belong to the beam
-        let mut x = x;
-        if beam.has_axial() && kinematics == Kinematics::Deformed {
-            x = before_moving(beam, q, x);
-            d = beam.deflection_at(q, x)?;
-        }
+        let d = beam.deflection_at(q, x)?; // None beyond the ends, which belong to the beam
+        // The material point that is at x now.
+        let moves = beam.has_axial_dofs() && kinematics == Kinematics::Deformed;
+        let (x, d) = if moves {
+            let x = before_moving(beam, q, x);
+            (x, beam.deflection_at(q, x)?)
+        } else {
+            (x, d)
+        };
         if kinematics == Kinematics::Linear {
             let place = Vector2::new(at.x, self.position.y + d.w + offset);
             return Some(SurfacePoint { place, normal: Vector2::y(), material: Vector2::new(x, offset) });
@@ -108,7 +109,7 @@ impl Line {
             let (w, slope) =
                 beam.deflection_at(q, point.x.clamp(0.0, beam.span())).map_or((0.0, 0.0), |d| (d.w, d.slope));
             let cos = (1.0 + slope * slope).sqrt().recip();
-            let u = if beam.has_axial() { beam.axial_shape(point.x).displacement(q) } else { 0.0 };
+            let u = beam.axial_displacement(q, point.x);
             *place = self.position + Vector2::new(point.x + u - point.y * slope * cos, w + point.y * cos);
         }
     }
@@ -118,7 +119,7 @@ impl Line {
 fn before_moving(beam: &impl Deflecting, q: &[f64], x: f64) -> f64 {
     let mut material = x;
     for _ in 0..FOOT_ROUNDS {
-        let next = (x - beam.axial_shape(material).displacement(q)).clamp(0.0, beam.span());
+        let next = (x - beam.axial_displacement(q, material)).clamp(0.0, beam.span());
         let moved = (next - material).abs();
         material = next;
         if moved <= f64::EPSILON * beam.span() {
@@ -154,12 +155,8 @@ pub(crate) fn rows(
         let turn = frame * Vector2::new(-cos, -sin) * (point.y * cos * cos);
         beam.shape(point.x, |column, n, dn| put(column, up * n + turn * dn));
     }
-    if beam.has_axial() {
-        let shape = beam.axial_shape(point.x);
-        for (column, n) in shape.columns.iter().zip(shape.n).take(shape.len) {
-            put(*column, frame.column(0) * n);
-        }
-    }
+    let along: Vector2<f64> = frame.column(0).into();
+    beam.axial_shape(point.x, |column, n| put(column, along * n));
     for (direction, column) in driven.iter().enumerate() {
         put(*column, frame.column(direction).into());
     }
