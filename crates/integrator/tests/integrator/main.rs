@@ -5,6 +5,7 @@ mod allocations;
 mod beams;
 mod closed;
 mod driven;
+mod equilibrium;
 mod following;
 mod laws;
 mod modal;
