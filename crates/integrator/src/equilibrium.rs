@@ -216,8 +216,17 @@ struct Place<const D: usize> {
     /// The point of side 0, and the point of side 1 that was its foot.
     sides: [Anchor<D>; 2],
     frame: Frame<D>,
+    /// What was between the two, m: a gap, and what a model's surface and its points differ by.
+    apart: Vector<D>,
     /// Whether it touched there.
     touched: bool,
+}
+
+impl<const D: usize> Place<D> {
+    /// How far side 0 has got from it, seen from side 1, m.
+    fn way(&self, model: &Model<D>, q: &[f64]) -> Vector<D> {
+        between(model, q, &self.sides) - self.apart
+    }
 }
 
 /// A candidate with a gap up to this touches at the start, m.
@@ -289,8 +298,8 @@ impl<const D: usize> Search<D> {
             if work.contacts.withdraw_if_prescribed(model) {
                 continue;
             }
-            let place = place_of(&mut self.places, candidate);
-            let mut shift = tangential(&(candidate.frame * between(model, &self.q, &place.sides))) / tau;
+            let place = place_of(model, &self.q, &mut self.places, candidate);
+            let mut shift = tangential(&(candidate.frame * place.way(model, &self.q))) / tau;
             shift[0] = candidate.gap / tau;
             let u_free = work.contacts.velocity(model, i, &self.v);
             work.contacts.pose(i, Vector::zeros(), u_free, shift);
@@ -341,7 +350,7 @@ impl<const D: usize> Search<D> {
         let mut farthest: Option<(f64, f64, ContactId)> = None;
         for place in self.places.iter().filter(|place| place.touched) {
             let Some(reach) = limits.reach.get(place.id.pair() as usize) else { continue };
-            let moved = place.frame * between(model, &self.q, &place.sides);
+            let moved = place.frame * place.way(model, &self.q);
             let excess = moved.norm() / reach;
             // Written so that NaN has left, too.
             if !(excess <= 1.0) && !farthest.is_some_and(|(most, ..)| most >= excess) {
@@ -351,19 +360,23 @@ impl<const D: usize> Search<D> {
         let Some((_, slid, contact)) = farthest else { return Ok(()) };
         // What tips lifts another foot, too.
         let same = self.places.iter().filter(|place| place.touched && place.id.pair() == contact.pair());
-        let lifted =
-            same.map(|place| (place.frame * between(model, &self.q, &place.sides))[0].abs()).fold(0.0, f64::max);
+        let lifted = same.map(|place| (place.frame * place.way(model, &self.q))[0].abs()).fold(0.0, f64::max);
         Err(EquilibriumError::Leaves { contact, lifted, slid, round })
     }
 }
 
 /// The place of a candidate: where it was first seen.
-fn place_of<const D: usize>(places: &mut Vec<Place<D>>, candidate: &Candidate<D>) -> Place<D> {
-    if let Some(place) = places.iter().find(|place| place.id == candidate.id) {
+fn place_of<const D: usize>(
+    model: &Model<D>,
+    q: &[f64],
+    places: &mut Vec<Place<D>>,
+    candidate: &Candidate<D>,
+) -> Place<D> {
+    let Candidate { id, sides, frame, gap } = *candidate;
+    if let Some(place) = places.iter().find(|place| place.id == id) {
         return *place;
     }
-    let place =
-        Place { id: candidate.id, sides: candidate.sides, frame: candidate.frame, touched: candidate.gap <= TOUCHES };
+    let place = Place { id, sides, frame, apart: between(model, q, &sides), touched: gap <= TOUCHES };
     places.push(place);
     place
 }
