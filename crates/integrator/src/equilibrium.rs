@@ -1,4 +1,4 @@
-//! Static equilibrium of a model with contacts: where it can start and stay (`docs/theory.md` §9).
+//! Static equilibrium of a model with contacts: where it can start and stay (`docs/theory.md` §8).
 //!
 //! Coordinates q and contact forces λ are sought with
 //!

@@ -1,4 +1,4 @@
-//! `start = "static"`: beams in equilibrium under what stands on them (`docs/theory.md` §9).
+//! `start = "static"`: beams in equilibrium under what stands on them (`docs/theory.md` §8).
 //!
 //! The equilibrium is that of a model of its own: the beams that ask for it, the blocks that stand on them, and the ground.
 //! Blocks are put on the straight beam; then weight, and the loads and forces of t = 0, act. A flat block follows the beam,

@@ -15,6 +15,7 @@ mod moving_ground;
 mod overturning;
 mod resting;
 mod sliding;
+mod static_start;
 
 use crate::case::Case;
 
@@ -24,6 +25,7 @@ pub(crate) fn all() -> Vec<Box<dyn Case>> {
         Box::new(beam_statics::BeamStatics),
         Box::new(beam_frequencies::BeamFrequencies),
         Box::new(beam_energy::BeamEnergy),
+        Box::new(static_start::StaticStart),
         Box::new(sliding::Sliding),
         Box::new(incline::Incline),
         Box::new(bounce::Bounce),
