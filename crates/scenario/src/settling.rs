@@ -98,7 +98,11 @@ impl Start<'_> {
                 let (block, motion) = (scene.blocks[foot.block].name.clone(), Departure::ChangesFoot);
                 return Err(PlacementError::NoEquilibrium { block, motion }.into());
             }
-            if held.iter().fold(true, |there, foot| foot.put_back(self) && there) {
+            let mut there = true;
+            for foot in &held {
+                there &= foot.put_back(self);
+            }
+            if there {
                 break;
             }
         }
