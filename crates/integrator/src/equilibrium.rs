@@ -316,8 +316,7 @@ impl<const D: usize> Search<D> {
 
     /// Takes the step.
     fn go_on(&mut self, model: &Model<D>, tau: f64) {
-        self.v.iter_mut().for_each(|v| *v *= tau);
-        model.retract(&self.q, &self.v, &mut self.other);
+        model.retract(&self.q, &self.v, tau, &mut self.other);
         std::mem::swap(&mut self.q, &mut self.other);
     }
 

@@ -3,7 +3,7 @@
 use crate::scenes::{FLAT_BLOCK, PAPER_BLOCK};
 use nalgebra::Vector2;
 use std::sync::Arc;
-use teeter_beam::{Beam, BeamSpec, Damping, Section, Support};
+use teeter_beam::{Beam, BeamSpec, Section, Support};
 use teeter_detect::{ContactId, Kinematics, PointDetector, PointPair};
 use teeter_integrator::*;
 use teeter_rigid::{MassProperties, Rectangle};
@@ -16,13 +16,7 @@ const H: f64 = 0.135;
 const REACH: [f64; 1] = [0.1 * B];
 
 fn beam(supports: [Support; 2]) -> Arc<Beam> {
-    let spec = BeamSpec {
-        span: 0.36,
-        elements: 20,
-        section: Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap(),
-        supports,
-        damping: Damping::default(),
-    };
+    let spec = BeamSpec::new(0.36, 20, Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap()).supported(supports);
     Arc::new(Beam::new(spec).unwrap())
 }
 
@@ -202,13 +196,7 @@ fn feet_on_a_slope_stick_where_they_press_more_and_slide_where_they_press_less()
 #[test]
 fn feet_on_a_top_fibre_hold_it_together_as_far_as_friction_goes() {
     // A deep, soft beam: its sections turn under the feet, and the top fibre would move them together by 2 offset ψ.
-    let spec = BeamSpec {
-        span: 0.36,
-        elements: 24,
-        section: Section::new(0.6, 0.12).unwrap(),
-        supports: [Support::Pinned; 2],
-        damping: Damping::default(),
-    };
+    let spec = BeamSpec::new(0.36, 24, Section::new(0.6, 0.12).unwrap()).supported([Support::Pinned; 2]);
     let beam = Arc::new(Beam::new(spec).unwrap());
     let (offset, feet) = (0.03, [0.165, 0.195]);
     let slope = |loads: &[(f64, f64, f64)]| beam.deflection_at(&deflected(&beam, loads), feet[0]).unwrap().slope;
