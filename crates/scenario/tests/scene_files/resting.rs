@@ -70,6 +70,8 @@ fn unbalanced(simulation: &Simulation, top: bool, deformed: bool) -> f64 {
         let held = centre.z.abs() > 0.05;
         worst = worst.max(force.norm() / WEIGHT).max(if held { 0.0 } else { couple.abs() / (0.03 * WEIGHT) });
     }
+    // What a support holds it carries.
+    (0..beam.dofs()).filter(|&dof| beam.is_held(dof)).for_each(|dof| on_beam[dof] = 0.0);
     let length = 0.36 / 20.0;
     let nodes = beam.to_nodes(&on_beam);
     nodes.iter().fold(worst, |most, [f, m]| most.max(f.abs() / WEIGHT).max(m.abs() / (length * WEIGHT)))
