@@ -1,4 +1,4 @@
-//! Static equilibrium of a model with contacts: where it can start and stay (`docs/theory.md` §9).
+//! Static equilibrium of a model with contacts: where it can start and stay (`docs/theory.md` §8).
 //!
 //! Coordinates q and contact forces λ are sought with
 //!
@@ -23,7 +23,7 @@
 use crate::contacts::tangential;
 use crate::{FactorError, Model, Vector, WarmStart, Weights, Workspace};
 use teeter_contact::ProblemError;
-use teeter_detect::{Anchor, Candidate, ContactId, Geometry};
+use teeter_detect::{Anchor, Candidate, ContactId, Frame, Geometry};
 
 /// What limits the search.
 #[derive(Clone, Copy, Debug)]
@@ -33,6 +33,13 @@ pub struct SettlingLimits<'a> {
     pub reach: &'a [f64],
     /// Candidates with a gap up to this are looked at, m: what may touch in the end.
     pub margin: f64,
+    /// τ of the first round, s: [`FIRST_TAU`](Self::FIRST_TAU), or that in which a search ended from which this one goes on.
+    pub tau: f64,
+}
+
+impl SettlingLimits<'_> {
+    /// Shorter than the period of what is worth simulating, s.
+    pub const FIRST_TAU: f64 = 1e-5;
 }
 
 /// Where a model rests.
@@ -45,8 +52,11 @@ pub struct Equilibrium<const D: usize> {
     pub forces: Vec<(ContactId, Vector<D>)>,
     /// Rounds taken.
     pub rounds: u32,
-    /// Size of the last round's step, in the norm of energy, relative to the scene: what is left to rounding.
+    /// Size of the last round's step, and of the impulses that it lacked to balance, relative to the scene and to the contacts'
+    /// impulses, whichever is larger; both in the norm of energy.
     pub change: f64,
+    /// τ of the last round, s.
+    pub tau: f64,
     /// Deepest penetration, m.
     pub penetration: f64,
 }
@@ -56,16 +66,18 @@ pub struct Equilibrium<const D: usize> {
 #[non_exhaustive]
 pub enum EquilibriumError {
     /// A contact leaves its place.
-    #[error("a contact moved {moved:e} m from its place in round {round}: there is no equilibrium there")]
+    #[error(
+        "a contact lifted by {lifted:e} m and slid by {slid:e} m by round {round}: there is no equilibrium where it was put"
+    )]
     Leaves {
         /// The contact that went farthest beyond its reach.
         contact: ContactId,
-        /// How far it got, m.
-        moved: f64,
-        /// The round in which it did.
+        /// How far, at most, a contact of its pair is along the normal that it had, m.
+        lifted: f64,
+        /// How far across it, m.
+        slid: f64,
+        /// The round that found it there.
         round: u32,
-        /// The velocities of that round, m/s and rad/s: which way it goes.
-        v: Vec<f64>,
     },
     /// The rounds ran out.
     #[error(
@@ -74,10 +86,8 @@ pub enum EquilibriumError {
     Unsettled {
         /// Rounds taken.
         rounds: u32,
-        /// Size of the last step, in the norm of energy, relative to the scene.
+        /// As in [`Equilibrium`].
         change: f64,
-        /// The velocities of the last round, m/s and rad/s.
-        v: Vec<f64>,
     },
     /// The stiffness can't be factorised.
     #[error(transparent)]
@@ -92,26 +102,38 @@ pub enum EquilibriumError {
     },
 }
 
-/// The first τ, s: shorter than the period of what is worth simulating.
-const FIRST: f64 = 1e-5;
-
 /// τ grows by this factor as long as mass takes part in a round by more than [`INERT`].
-const GROWTH: f64 = 8.0;
+const GROWTH: f64 = 4.0;
 
-/// Part of a step's energy norm that may come from M before τ grows: the error falls by about as much each round.
-const INERT: f64 = 0.03;
+/// Part of a step's energy norm that may come from M before τ grows: the error falls by about as much each round. With a
+/// larger τ gaps lose digits, ε g τ².
+const INERT: f64 = 0.1;
 
-/// Most rounds; ten to twenty is usual.
+/// While contacts alone would do less than this part of the scene's energy in a round, τ grows in any case.
+const SHORT: f64 = 1e-2;
+
+/// Most rounds; twenty is usual.
 const ROUNDS: u32 = 200;
 
-/// A step of this size, relative to the scene in the norm of energy, ends the search if the next is not much smaller.
-const SETTLED: f64 = 1e-10;
+/// Steps up to this size, relative to the scene in the norm of energy, may end the search where they no longer shrink. What
+/// rounding of the coordinates themselves leaves is ε n² for a beam of n elements: 1e-13 for 20, 1e-9 for 3000, all of it in
+/// deformations of single elements.
+const SETTLED: f64 = 1e-8;
 
 /// Such a step ends it in any case.
 const ROUNDING: f64 = 1e-16;
 
-/// A step that isn't smaller than the last by this factor no longer shrinks.
+/// Steps that aren't smaller than the least by this factor no longer shrink.
 const SHRINKS: f64 = 0.9;
+
+/// Rounds without a smaller step that end the search, once steps are small.
+const STALLED: u32 = 2;
+
+/// A step that is larger than the last of the same τ by this factor, and no fall, says that the tangent is too soft for τ.
+const GROWS: f64 = 1.1;
+
+/// Rounds without a smaller step that say that steps go in a circle, as a tangent too soft makes them.
+const CIRCLES: u32 = 8;
 
 /// Finds the static equilibrium near coordinates `q`, where the contacts were put, under the loads of time `t` (s). `work` may be
 /// fresh, and must be made fresh before it serves a scheme; its solver should solve tightly, as the forces are no more
@@ -132,37 +154,59 @@ pub fn settle<const D: usize>(
     let n = model.size().v;
     let mut search = Search {
         q: q.to_vec(),
-        next: q.to_vec(),
+        other: q.to_vec(),
         v: vec![0.0; n],
         impulse: vec![0.0; n],
         places: Vec::new(),
         warm: WarmStart::default(),
     };
-    let (mut tau, mut longest, mut last) = (FIRST, f64::INFINITY, f64::INFINITY);
-    let mut grown = true;
+    let (mut tau, mut longest) = (limits.tau, f64::INFINITY);
+    let (mut least, mut stalled) = (f64::INFINITY, 0);
+    // Whether the round is the first with its τ: others tell by comparison whether the rounds converge.
+    let mut first = true;
+    let mut size_before = f64::INFINITY;
     for round in 1..=ROUNDS {
         search.round(model, t, tau, limits, work, round)?;
-        let (size, inertia) = search.size(model);
-        let change = size.sqrt();
-        if !grown && change > last {
-            // What a linear tangent promised was too much.
-            longest = 0.25 * tau;
+        let Step { size, change, inertia, short } = search.step(model, work);
+        if !first && size > (GROWS * size_before).max(SETTLED) && inertia < 0.5 {
+            // The tangent promised too much: back, and shorter.
+            search.go_back();
+            tau *= 0.25;
+            (longest, first) = (tau, true);
+            search.warm.clear();
+            continue;
         }
         search.check_reach(model, limits, round)?;
-        let settled = change <= ROUNDING || (!grown && change <= SETTLED && change > SHRINKS * last);
-        if settled {
-            return Ok(search.ended(model, round, change, work));
+        let pressing = || work.contacts.contacts().iter().filter(|contact| contact.p[0] > 0.0);
+        if first || change < SHRINKS * least {
+            (least, stalled) = (change, 0);
+        } else {
+            stalled += 1;
         }
-        if !(change < f64::INFINITY) || round == ROUNDS {
-            return Err(EquilibriumError::Unsettled { rounds: round, change, v: search.v });
+        let last = stalled >= STALLED || round == ROUNDS;
+        if change <= ROUNDING || (last && change <= SETTLED) {
+            let forces = pressing().map(|contact| (contact.id, contact.p / tau)).collect();
+            search.go_on(model, tau);
+            let penetration = work.penetration(model, &search.q);
+            return Ok(Equilibrium { q: search.q, forces, rounds: round, change, tau, penetration });
         }
-        let wanted = if inertia > INERT && change > SETTLED { GROWTH * tau } else { tau };
-        let next = wanted.min(longest);
-        grown = next != tau;
-        search.remember(next / tau, work);
-        (tau, last) = (next, change);
+        if !change.is_finite() || round == ROUNDS {
+            return Err(EquilibriumError::Unsettled { rounds: round, change });
+        }
+        search.go_on(model, tau);
+        if stalled >= CIRCLES {
+            longest = 0.25 * tau;
+        }
+        let grows = !first && (short || (inertia > INERT && change > SETTLED));
+        let next = if grows { GROWTH * tau } else { tau }.min(longest);
+        search.warm.clear();
+        for contact in work.contacts.contacts() {
+            search.warm.push(contact.id, &(contact.p * (next / tau)));
+        }
+        first = next != tau;
+        (tau, size_before) = (next, size);
     }
-    Err(EquilibriumError::Unsettled { rounds: ROUNDS, change: last, v: search.v })
+    Err(EquilibriumError::Unsettled { rounds: ROUNDS, change: least })
 }
 
 /// Where a contact was put.
@@ -171,16 +215,39 @@ struct Place<const D: usize> {
     id: ContactId,
     /// The point of side 0, and the point of side 1 that was its foot.
     sides: [Anchor<D>; 2],
+    frame: Frame<D>,
+    /// What was between the two, m: a gap, and what a model's surface and its points differ by.
+    apart: Vector<D>,
     /// Whether it touched there.
     touched: bool,
+}
+
+impl<const D: usize> Place<D> {
+    /// How far side 0 has got from it, seen from side 1, m.
+    fn way(&self, model: &Model<D>, q: &[f64]) -> Vector<D> {
+        between(model, q, &self.sides) - self.apart
+    }
 }
 
 /// A candidate with a gap up to this touches at the start, m.
 const TOUCHES: f64 = 1e-9;
 
+/// How large a round's step is.
+struct Step {
+    /// In the norm of energy, relative to the scene.
+    size: f64,
+    /// As [`Equilibrium::change`].
+    change: f64,
+    /// The part of M in it.
+    inertia: f64,
+    /// Whether τ is shorter than it takes for gaps to outdo rounding.
+    short: bool,
+}
+
 struct Search<const D: usize> {
     q: Vec<f64>,
-    next: Vec<f64>,
+    /// The coordinates before the last step.
+    other: Vec<f64>,
     v: Vec<f64>,
     /// All impulses of a round, (M + τ²K) v but for what holds driven velocities.
     impulse: Vec<f64>,
@@ -189,7 +256,7 @@ struct Search<const D: usize> {
 }
 
 impl<const D: usize> Search<D> {
-    /// An implicit step of length τ from rest: leaves its velocities in `v`, and moves `q`.
+    /// An implicit step of length τ from rest: leaves its velocities in `v`.
     fn round(
         &mut self,
         model: &Model<D>,
@@ -231,8 +298,8 @@ impl<const D: usize> Search<D> {
             if work.contacts.withdraw_if_prescribed(model) {
                 continue;
             }
-            let place = place_of(&mut self.places, candidate);
-            let mut shift = tangential(&(candidate.frame * between(model, &self.q, &place.sides))) / tau;
+            let place = place_of(model, &self.q, &mut self.places, candidate);
+            let mut shift = tangential(&(candidate.frame * place.way(model, &self.q))) / tau;
             shift[0] = candidate.gap / tau;
             let u_free = work.contacts.velocity(model, i, &self.v);
             work.contacts.pose(i, Vector::zeros(), u_free, shift);
@@ -244,20 +311,37 @@ impl<const D: usize> Search<D> {
                 work.contacts.add_generalised_impulse(index, &mut self.impulse[part.v.clone()]);
             }
         }
-        let step: Vec<f64> = self.v.iter().map(|v| tau * v).collect();
-        model.retract(&self.q, &step, 1.0, &mut self.next);
-        std::mem::swap(&mut self.q, &mut self.next);
         Ok(())
     }
 
-    /// ½ Δqᵀ(M/τ² + K)Δq of the last round over the scene's energy, and the part of M in it.
-    fn size(&self, model: &Model<D>) -> (f64, f64) {
-        let work = 0.5 * self.v.iter().zip(&self.impulse).map(|(v, p)| v * p).sum::<f64>().abs();
-        if work == 0.0 {
-            return (0.0, 0.0);
-        }
+    /// Takes the step.
+    fn go_on(&mut self, model: &Model<D>, tau: f64) {
+        model.retract(&self.q, &self.v, tau, &mut self.other);
+        std::mem::swap(&mut self.q, &mut self.other);
+    }
+
+    /// Undoes the last step taken.
+    fn go_back(&mut self) {
+        self.q.clone_from(&self.other);
+    }
+
+    /// Measures the round's step.
+    fn step(&self, model: &Model<D>, work: &Workspace<D>) -> Step {
+        // ½ vᵀ(M + τ²K) v, which is ½ Δqᵀ(M/τ² + K) Δq: by how much the round lowers the potential.
+        let step = 0.5 * self.v.iter().zip(&self.impulse).map(|(v, p)| v * p).sum::<f64>().abs();
         let now = model.energy(&self.q, &self.v);
-        (work / (model.energy_scale() + now.elastic), now.kinetic / work)
+        let scene = model.energy_scale() + now.elastic;
+        // The same of what the contacts' impulses alone would do. It is small where τ is so short that gaps are rounding.
+        let pressed = work.contacts.contacts().iter().zip(&work.contacts.u_free);
+        let pressed = 0.5 * pressed.map(|(contact, u_free)| (contact.u_after - u_free).dot(&contact.p)).sum::<f64>();
+        let short = pressed > 0.0 && pressed < SHORT * scene;
+        // Nothing to compare with yet, where the first load bends a straight beam: all of it counts.
+        let over = |scale: f64| if scale > 0.0 { (step / scale).sqrt() } else { 1.0 };
+        if step == 0.0 {
+            return Step { size: 0.0, change: 0.0, inertia: 0.0, short };
+        }
+        let change = over(if short { pressed } else { scene });
+        Step { size: over(scene), change, inertia: now.kinetic / step, short }
     }
 
     /// Refuses contacts that have left their place.
@@ -265,41 +349,33 @@ impl<const D: usize> Search<D> {
         let mut farthest: Option<(f64, f64, ContactId)> = None;
         for place in self.places.iter().filter(|place| place.touched) {
             let Some(reach) = limits.reach.get(place.id.pair() as usize) else { continue };
-            let moved = between(model, &self.q, &place.sides).norm();
+            let moved = place.frame * place.way(model, &self.q);
+            let excess = moved.norm() / reach;
             // Written so that NaN has left, too.
-            if !(moved <= *reach) && !farthest.is_some_and(|(excess, ..)| excess >= moved / reach) {
-                farthest = Some((moved / reach, moved, place.id));
+            if !(excess <= 1.0) && !farthest.is_some_and(|(most, ..)| most >= excess) {
+                farthest = Some((excess, tangential(&moved).norm(), place.id));
             }
         }
-        match farthest {
-            Some((_, moved, contact)) => Err(EquilibriumError::Leaves { contact, moved, round, v: self.v.clone() }),
-            None => Ok(()),
-        }
-    }
-
-    /// Keeps the impulses for the next round, whose τ is larger by `factor`.
-    fn remember(&mut self, factor: f64, work: &Workspace<D>) {
-        self.warm.clear();
-        for contact in work.contacts.contacts() {
-            self.warm.push(contact.id, &(contact.p * factor));
-        }
-    }
-
-    fn ended(self, model: &Model<D>, rounds: u32, change: f64, work: &mut Workspace<D>) -> Equilibrium<D> {
-        let tau = work.factors.first().map_or(1.0, |factor| factor.weights().stiffness.sqrt());
-        let pressing = work.contacts.contacts().iter().filter(|contact| contact.p[0] > 0.0);
-        let forces = pressing.map(|contact| (contact.id, contact.p / tau)).collect();
-        let penetration = work.penetration(model, &self.q);
-        Equilibrium { q: self.q, forces, rounds, change, penetration }
+        let Some((_, slid, contact)) = farthest else { return Ok(()) };
+        // What tips lifts another foot, too.
+        let same = self.places.iter().filter(|place| place.touched && place.id.pair() == contact.pair());
+        let lifted = same.map(|place| (place.frame * place.way(model, &self.q))[0].abs()).fold(0.0, f64::max);
+        Err(EquilibriumError::Leaves { contact, lifted, slid, round })
     }
 }
 
 /// The place of a candidate: where it was first seen.
-fn place_of<const D: usize>(places: &mut Vec<Place<D>>, candidate: &Candidate<D>) -> Place<D> {
-    if let Some(place) = places.iter().find(|place| place.id == candidate.id) {
+fn place_of<const D: usize>(
+    model: &Model<D>,
+    q: &[f64],
+    places: &mut Vec<Place<D>>,
+    candidate: &Candidate<D>,
+) -> Place<D> {
+    let Candidate { id, sides, frame, gap } = *candidate;
+    if let Some(place) = places.iter().find(|place| place.id == id) {
         return *place;
     }
-    let place = Place { id: candidate.id, sides: candidate.sides, touched: candidate.gap <= TOUCHES };
+    let place = Place { id, sides, frame, apart: between(model, q, &sides), touched: gap <= TOUCHES };
     places.push(place);
     place
 }

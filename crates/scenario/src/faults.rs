@@ -100,7 +100,8 @@ fn placement(error: &PlacementError, document: &Document) -> Diagnostic {
             match motion {
                 Departure::Slides => "give more friction, put it where the beam stays level, or start undeformed",
                 Departure::Tips => "move the block, take a stiffer beam, or start undeformed",
-                _ => "check gravity and forces at t = 0, or start undeformed",
+                Departure::ChangesFoot => "tilt it more, or the other way, take a stiffer beam, or start undeformed",
+                Departure::LiftsOff => "check gravity and forces at t = 0, or start undeformed",
             },
         ),
         PlacementError::Unsettled { beam, rounds, change } => start(

@@ -67,6 +67,7 @@ pub mod wording;
 
 pub use left_out::left_out;
 pub use placement::{Departure, PlacementError};
+pub use settling::{ContactForce, StaticStart};
 
 /// Reads a scene: text, keys, units, references. `file` is its name in messages, `stem` its title if it has none,
 /// `sets` are overrides by path. A scene that names other files is refused: see [`load_with`].

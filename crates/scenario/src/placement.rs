@@ -69,6 +69,8 @@ pub enum Departure {
     Tips,
     /// It is pulled off.
     LiftsOff,
+    /// Held at its tilt, it comes to stand on its other foot.
+    ChangesFoot,
 }
 
 impl std::fmt::Display for Departure {
@@ -79,6 +81,7 @@ impl std::fmt::Display for Departure {
                 "tips: its weight and the forces on it don't pass between its feet, or the beam gives way under them"
             }
             Self::LiftsOff => "lifts off: the forces on it are upwards",
+            Self::ChangesFoot => "comes to stand on its other foot: the slope under it is more than its tilt",
         })
     }
 }

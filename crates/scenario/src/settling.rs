@@ -1,4 +1,4 @@
-//! `start = "static"`: beams in equilibrium under what stands on them (`docs/theory.md` §9).
+//! `start = "static"`: beams in equilibrium under what stands on them (`docs/theory.md` §8).
 //!
 //! The equilibrium is that of a model of its own: the beams that ask for it, the blocks that stand on them, and the ground.
 //! Blocks are put on the straight beam; then weight, and the loads and forces of t = 0, act. A flat block follows the beam,
@@ -37,7 +37,7 @@ pub(crate) struct Start<'a> {
 /// A block that moves this part of its width from where it was put is on its way.
 const REACH: f64 = 0.1;
 
-/// Friction under a block that is held: its foot doesn't slide.
+/// Friction under the foot of a block that is held: it doesn't slide. Its other corners have none.
 const HELD: f64 = 1e3;
 
 /// Residual of the contact problems: what the forces are exact to.
@@ -53,13 +53,13 @@ const RETURNS: usize = 20;
 const THERE: f64 = 1e-15;
 
 impl Start<'_> {
-    /// Moves beams that start static, and the blocks on them, to their equilibrium.
+    /// Moves beams that start static, and the blocks on them, to their equilibrium; `None` where no beam does.
     ///
     /// # Errors
     /// If there is none, or it is not found.
-    pub(crate) fn settle(&mut self, scene: &Scene) -> Result<(), BuildError> {
+    pub(crate) fn settle(&mut self, scene: &Scene) -> Result<Option<StaticStart>, BuildError> {
         let beams: Vec<usize> = (0..scene.beams.len()).filter(|&k| scene.beams[k].static_start).collect();
-        let Some(&first) = beams.first() else { return Ok(()) };
+        let Some(&first) = beams.first() else { return Ok(None) };
         for &k in &beams {
             // Nothing bends it yet: this is about its supports.
             let beam = &self.beams[k].0;
@@ -68,22 +68,69 @@ impl Start<'_> {
         }
         let blocks = (0..scene.blocks.len()).filter(|&k| stands_on(scene, k).is_some_and(|beam| beams.contains(&beam)));
         let taking_part = TakingPart { blocks: blocks.collect(), beams };
-        let (model, contacts) = taking_part.model(scene, self)?;
-        let reach: Vec<f64> = contacts.iter().map(|&k| REACH * scene.blocks[scene.contacts[k].block].width).collect();
-        let limits = SettlingLimits { reach: &reach, margin: reach.iter().copied().fold(0.0, f64::max) };
+        let (model, pairs) = taking_part.model(scene, self)?;
+        let reach: Vec<f64> =
+            pairs.iter().map(|pair| REACH * scene.blocks[scene.contacts[pair.contact].block].width).collect();
+        let mut limits = SettlingLimits {
+            reach: &reach,
+            margin: reach.iter().copied().fold(0.0, f64::max),
+            tau: SettlingLimits::FIRST_TAU,
+        };
         let held: Vec<HeldFoot> = taking_part.blocks.iter().filter_map(|&k| HeldFoot::of(scene, self, k)).collect();
         let settings = SolverSettings { tolerance: TOLERANCE, max_iterations: ITERATIONS };
+        let mut summary = StaticStart::default();
         for _ in 0..RETURNS {
             let mut work = Workspace::new(&model, Box::new(Auto::new()), settings);
             let found = settle(&model, 0.0, &taking_part.coordinates(self), &limits, &mut work)
-                .map_err(|error| refusal(scene, &scene.beams[first].name, &taking_part.blocks, &contacts, error))?;
+                .map_err(|error| refusal(scene, &scene.beams[first].name, &pairs, error))?;
+            limits.tau = found.tau;
             taking_part.take(self, &found.q);
-            if held.iter().fold(true, |there, foot| foot.put_back(self) && there) {
+            summary.rounds += found.rounds;
+            summary.change = found.change;
+            summary.forces.clear();
+            for (id, force) in &found.forces {
+                let Some(pair) = pairs.get(id.pair() as usize) else { continue };
+                let corner = pair.corners.get(id.point() as usize).copied().unwrap_or_default();
+                let force = [force[0], force[1]];
+                summary.forces.push(ContactForce { contact: pair.contact, corner, force });
+            }
+            if let Some(foot) = held.iter().find(|foot| foot.is_left(scene, &summary.forces)) {
+                let (block, motion) = (scene.blocks[foot.block].name.clone(), Departure::ChangesFoot);
+                return Err(PlacementError::NoEquilibrium { block, motion }.into());
+            }
+            let mut there = true;
+            for foot in &held {
+                there &= foot.put_back(self);
+            }
+            if there {
                 break;
             }
         }
-        Ok(())
+        Ok(Some(summary))
     }
+}
+
+/// What was found for a static start.
+#[derive(Debug, Clone, Default, PartialEq)]
+#[non_exhaustive]
+pub struct StaticStart {
+    /// The contacts that press.
+    pub forces: Vec<ContactForce>,
+    /// Rounds of the search.
+    pub rounds: u32,
+    /// Size of the last round's step, in the norm of energy, relative to the scene.
+    pub change: f64,
+}
+
+/// A contact force of a static start.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactForce {
+    /// The contact, by its number in the scene.
+    pub contact: usize,
+    /// The corner of the block, as in [`Rectangle::CORNER_NAMES`].
+    pub corner: usize,
+    /// The force on the block along the contact's normal and tangent, N.
+    pub force: [f64; 2],
 }
 
 /// The beam that a block stands on.
@@ -94,40 +141,50 @@ fn stands_on(scene: &Scene, block: usize) -> Option<usize> {
     }
 }
 
-fn tilt_of(scene: &Scene, block: usize) -> f64 {
+/// The corner that a tilted block stands on, and is held at.
+fn foot_of(scene: &Scene, block: usize) -> Option<usize> {
     match scene.blocks[block].placement {
-        Placement::On { tilt, .. } => tilt,
-        Placement::Free { .. } => 0.0,
+        Placement::On { tilt, .. } if tilt != 0.0 => Some(usize::from(tilt < 0.0)),
+        _ => None,
     }
+}
+
+/// A pair of the equilibrium's model.
+struct Pair {
+    /// The contact of the scene.
+    contact: usize,
+    /// Its points: corners of the block.
+    corners: Vec<usize>,
 }
 
 /// The foot of a block that is held, and where it stays.
 struct HeldFoot {
     block: usize,
-    corner: Vector2<f64>,
+    corner: usize,
+    /// The corner in the block.
+    point: Vector2<f64>,
     x: f64,
     width: f64,
 }
 
 impl HeldFoot {
     fn of(scene: &Scene, start: &Start<'_>, block: usize) -> Option<Self> {
-        let tilt = tilt_of(scene, block);
-        let corner = if tilt > 0.0 {
-            0
-        } else if tilt < 0.0 {
-            1
-        } else {
-            return None;
-        };
-        let corner = start.blocks[block].1.corners()[corner];
-        let x = Pose::new(&start.poses[block]).point(&corner).x;
-        Some(Self { block, corner, x, width: scene.blocks[block].width })
+        let corner = foot_of(scene, block)?;
+        let point = start.blocks[block].1.corners()[corner];
+        let x = Pose::new(&start.poses[block]).point(&point).x;
+        Some(Self { block, corner, point, x, width: scene.blocks[block].width })
+    }
+
+    /// Whether the block presses elsewhere only.
+    fn is_left(&self, scene: &Scene, forces: &[ContactForce]) -> bool {
+        let of_block = || forces.iter().filter(|force| scene.contacts[force.contact].block == self.block);
+        of_block().next().is_some() && of_block().all(|force| force.corner != self.corner)
     }
 
     /// Puts the block back to where its foot was; whether it was there.
     fn put_back(&self, start: &mut Start<'_>) -> bool {
         let pose = &mut start.poses[self.block];
-        let off = self.x - Pose::new(pose).point(&self.corner).x;
+        let off = self.x - Pose::new(pose).point(&self.point).x;
         pose.x += off;
         off.abs() <= THERE * (self.width + self.x.abs())
     }
@@ -140,8 +197,8 @@ struct TakingPart {
 }
 
 impl TakingPart {
-    /// The model, and the contact of the scene that each of its pairs is.
-    fn model(&self, scene: &Scene, start: &Start<'_>) -> Result<(Model<2>, Vec<usize>), BuildError> {
+    /// The model, and what its pairs are in the scene.
+    fn model(&self, scene: &Scene, start: &Start<'_>) -> Result<(Model<2>, Vec<Pair>), BuildError> {
         let mut parts = ModelBuilder::new();
         let bodies = self.blocks.iter().map(|&k| start.blocks[k].0).collect();
         let mut blocks = Blocks::new(bodies, Vector2::from(scene.gravity));
@@ -151,7 +208,7 @@ impl TakingPart {
             }
             // What is prescribed stays where it is put, but for the height: the block rests on the beam.
             let [x, _, angle] = scene.blocks[k].motion.0.each_ref().map(Option::is_some);
-            for (coordinate, stays) in [(0, x), (2, angle || tilt_of(scene, k) != 0.0)] {
+            for (coordinate, stays) in [(0, x), (2, angle || foot_of(scene, k).is_some())] {
                 if stays {
                     blocks = blocks.with_motion(number, coordinate, Motion::still());
                 }
@@ -173,15 +230,22 @@ impl TakingPart {
             let block = self.blocks.iter().position(|&k| k == contact.block);
             let surface = surfaces.iter().find(|(support, _)| *support == contact.surface);
             let (Some(block), Some(&(_, surface))) = (block, surface) else { continue };
-            let friction = if tilt_of(scene, contact.block) != 0.0 { HELD } else { contact.law.friction };
-            pairs.push(PointPair {
-                pair: parts.pair(PairLaw::new(friction, 0.0)),
-                points: start.blocks[contact.block].1.corners().to_vec(),
-                body: BodyId(first.0 + block as u32),
-                surface,
-                kinematics: contact.kinematics,
-            });
-            contacts.push(number);
+            let corners = start.blocks[contact.block].1.corners();
+            let body = BodyId(first.0 + block as u32);
+            let groups = match foot_of(scene, contact.block) {
+                Some(foot) => vec![(HELD, vec![foot]), (0.0, (0..corners.len()).filter(|&k| k != foot).collect())],
+                None => vec![(contact.law.friction, (0..corners.len()).collect())],
+            };
+            for (friction, numbers) in groups {
+                pairs.push(PointPair {
+                    pair: parts.pair(PairLaw::new(friction, 0.0)),
+                    points: numbers.iter().map(|&k| corners[k]).collect(),
+                    body,
+                    surface,
+                    kinematics: contact.kinematics,
+                });
+                contacts.push(Pair { contact: number, corners: numbers });
+            }
         }
         Ok((parts.build(Box::new(PointDetector::new(pairs)))?, contacts))
     }
@@ -206,30 +270,30 @@ impl TakingPart {
 }
 
 /// Why there is no start, with the block that doesn't stay.
-fn refusal(scene: &Scene, beam: &str, blocks: &[usize], contacts: &[usize], error: EquilibriumError) -> PlacementError {
+fn refusal(scene: &Scene, beam: &str, pairs: &[Pair], error: EquilibriumError) -> PlacementError {
     let beam = beam.to_owned();
     match error {
-        EquilibriumError::Leaves { contact, v, .. } => {
-            let block = contacts.get(contact.pair() as usize).map_or(0, |&k| scene.contacts[k].block);
-            let number = blocks.iter().position(|&k| k == block).unwrap_or_default();
+        EquilibriumError::Leaves { contact, lifted, slid, .. } => {
+            let block = pairs.get(contact.pair() as usize).map_or(0, |pair| scene.contacts[pair.contact].block);
             let of = &scene.blocks[block];
-            let (speed, turning) = match v.get(3 * number..3 * number + 3) {
-                Some(&[x, y, spin]) => (Vector2::new(x, y), 0.5 * of.width.hypot(of.height) * spin.abs()),
-                _ => (Vector2::zeros(), 0.0),
-            };
-            let motion = if turning > TURNING * speed.norm() {
-                Departure::Tips
-            } else if speed.y > speed.x.abs() {
+            let forces = scene.forces.iter().filter(|force| force.block == block);
+            let pushed: f64 = forces.map(|force| force.force[1] * force.history.signal().value(0.0)).sum();
+            let motion = if of.mass() * scene.gravity[1] + pushed >= 0.0 {
                 Departure::LiftsOff
+            } else if foot_of(scene, block).is_some() {
+                // Its angle is held and its foot doesn't slide.
+                Departure::ChangesFoot
+            } else if lifted > LIFTED * slid {
+                Departure::Tips
             } else {
                 Departure::Slides
             };
             PlacementError::NoEquilibrium { block: of.name.clone(), motion }
         }
-        EquilibriumError::Unsettled { rounds, change, .. } => PlacementError::Unsettled { beam, rounds, change },
+        EquilibriumError::Unsettled { rounds, change } => PlacementError::Unsettled { beam, rounds, change },
         source => PlacementError::Search { beam, source },
     }
 }
 
-/// A block whose farthest corner turns faster than this part of its mass centre's speed tips; one that turns about a foot has 1.
-const TURNING: f64 = 0.5;
+/// A block that lifts a foot by more than this part of a slide tips.
+const LIFTED: f64 = 0.3;

@@ -4,7 +4,7 @@ use crate::driven;
 use crate::overlap::{Box2, Overlap, deepest_overlap};
 use crate::placement::{PlacementError, Standing, block_pose};
 use crate::scene::{Placement, Scene, SchemeName, Support, Time};
-use crate::settling::Start;
+use crate::settling::{Start, StaticStart};
 use std::ops::Range;
 use std::sync::Arc;
 use teeter_beam::{Beam, BeamError};
@@ -128,6 +128,8 @@ pub struct Simulation {
     pub layout: Layout,
     /// How far it runs.
     pub plan: Plan,
+    /// What was found for the beams that start static; `None` where none does.
+    pub static_start: Option<StaticStart>,
     scheme: Box<dyn Scheme<2>>,
     work: Workspace<2>,
 }
@@ -211,7 +213,7 @@ impl Simulation {
             poses.push(block_pose(scene, block, &Standing::Surface(&still, &deflections[k]))?);
         }
         let mut start = Start { blocks: &blocks, poses, beams: &beams, deflections, ground: &ground_start };
-        start.settle(scene)?;
+        let static_start = start.settle(scene)?;
         let Start { poses, deflections, .. } = start;
 
         let (mut q, mut v) = (Vec::with_capacity(dofs), Vec::with_capacity(dofs));
@@ -255,7 +257,7 @@ impl Simulation {
         let work = Workspace::new(&model, wrap(solver), settings);
         let scheme = scheme(&scene.time)?;
         let plan = Plan { steps: scene.time.steps, require_convergence: scene.solver.require_convergence };
-        Ok(Self { model, state, layout, plan, scheme, work })
+        Ok(Self { model, state, layout, plan, static_start, scheme, work })
     }
 
     /// The name of the time scheme.

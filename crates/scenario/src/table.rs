@@ -174,7 +174,7 @@ pub static TABLES: &[Table] = &[
             key("elements", Kind::Integer { min: 1, max: MAX_ELEMENTS }, Required, "20", "Number of finite elements.").taking(ELEMENT_BYTES),
             key("supports", Kind::ChoicePair(&["pinned", "clamped", "free"]), Default("[\"pinned\", \"pinned\"]"), "[\"pinned\", \"pinned\"]", "How its left and right ends are held.").reserving(&[later("guided"), later("spring"), later("rotational_spring")]),
             key("viscous_damping", Kind::Quantity(Dimension::DAMPING_PER_LENGTH, Range::NOT_NEGATIVE), Optional, "\"0.4 N s/m^2\"", "Coefficient c of the viscous term of the beam equation; one of the three ways to give damping."),
-            key("start", Kind::Choice(&["undeformed", "static"]), Default("\"undeformed\""), "\"static\"", "Shape at the start: undeformed, or in equilibrium under the blocks held as placed."),
+            key("start", Kind::Choice(&["undeformed", "static"]), Default("\"undeformed\""), "\"static\"", "Shape at the start: undeformed, or in equilibrium under the blocks and the loads of t = 0; flat blocks follow it, tilted ones are held as placed."),
             key("surface", Kind::Choice(&["axis", "top"]), Default("\"axis\""), "\"axis\"", "Where contacts lie: on the axis, or half a thickness above it."),
             key("position", POINT, Default("[\"0 m\", \"0 m\"]"), "[\"0 m\", \"0 m\"]", "Where its left end is, x and y."),
             key("self_weight", Kind::Flag, Default("false"), "false", "Whether gravity acts on the beam itself.").reserving(&[Reserved { value: "true", instead: "leave it out or write false: gravity does not act on beams" }]),

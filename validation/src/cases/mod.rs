@@ -22,6 +22,7 @@ mod moving_ground;
 mod overturning;
 mod resting;
 mod sliding;
+mod static_start;
 
 use crate::case::Case;
 
@@ -38,6 +39,7 @@ pub(crate) fn all() -> Vec<Box<dyn Case>> {
         Box::new(beam_moving_force::BeamMovingForce),
         Box::new(bar_impact::BarImpact),
         Box::new(beam_energy::BeamEnergy),
+        Box::new(static_start::StaticStart),
         Box::new(sliding::Sliding),
         Box::new(incline::Incline),
         Box::new(bounce::Bounce),

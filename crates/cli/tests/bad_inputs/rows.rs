@@ -130,6 +130,9 @@ fn geometry() -> Vec<Row> {
         refused(24, "two blocks in one place", Text(OVERLAPPING), &["block.right.at = \"19 cm\"", "`left`", "`right`", "1.0e-2 m", "not modelled"]),
         refused(25, "static start of a free beam", Edit(&[("\"pinned\", \"pinned\"", "\"free\", \"free\"")]), &["beam.table.start = \"static\"", "rigid body", "both its ends are free", "clamp one end or pin both"]),
         refused(25, "static start of a beam on one pin", Edit(&[("\"pinned\", \"pinned\"", "\"pinned\", \"free\"")]), &["beam.table.start = \"static\"", "pinned left end", "support the right end"]),
+        refused(25, "static start on a slope without friction", Edit(&[("at       = \"18 cm\"", "at = \"10 cm\""), (TILT, ""), ("friction = 0.5", "friction = 0")]), &["block.rocker.at = \"10 cm\"", "no static equilibrium", "slides", "more friction"]),
+        refused(25, "static start that tips", Edit(&[("at       = \"18 cm\"", "at = \"34 cm\""), (TILT, ""), ("\"pinned\", \"pinned\"", "\"clamped\", \"free\"")]), &["block.rocker.at = \"34 cm\"", "no static equilibrium", "tips", "stiffer beam"]),
+        refused(25, "static start on the other foot", Edit(&[("at       = \"18 cm\"", "at = \"7 cm\""), (TILT, "tilt = \"-0.5 deg\"")]), &["block.rocker.at = \"7 cm\"", "no static equilibrium", "other foot", "tilt it more"]),
         refused(27, "probe off the beam", Edit(&[(SPAN, "probes = [\"9 cm\", \"40 cm\"]\nspan = \"36 cm\"")]), &["beam.table.probes", "0.4 m", "[0, 0.36]"]),
         refused(27, "one element clamped at both ends", Set(&["beam.table.elements=1", "beam.table.supports=['clamped', 'clamped']"]), &["beam.table.elements", "at least 2"]),
     ]

@@ -6,6 +6,7 @@ mod beams;
 mod closed;
 mod conforming;
 mod driven;
+mod equilibrium;
 mod following;
 mod laws;
 mod modal;

@@ -8,10 +8,11 @@ use teeter_detect::{Frame, Kinematics, PointDetector, PointPair, SurfacePoint};
 use teeter_integrator::*;
 use teeter_rigid::{MassProperties, Rectangle};
 
-/// A level plate on a spring: one coordinate, its height above the spring's rest.
-struct Plate {
-    mass: f64,
-    stiffness: f64,
+/// A level plate on a spring k q + c q³ with the tangent k: one coordinate, its height above the spring's rest.
+pub(crate) struct Plate {
+    pub(crate) mass: f64,
+    pub(crate) stiffness: f64,
+    pub(crate) cubic: f64,
 }
 
 struct PlateCompliance {
@@ -26,7 +27,7 @@ impl Subsystem<2> for Plate {
     }
 
     fn internal_force(&self, q: &[f64], _v: &[f64], f: &mut [f64]) {
-        f[0] -= self.stiffness * q[0];
+        f[0] -= self.stiffness * q[0] + self.cubic * q[0].powi(3);
     }
 
     fn apply(&self, w: Weights, _q: &[f64], x: &[f64], y: &mut [f64]) {
@@ -34,7 +35,8 @@ impl Subsystem<2> for Plate {
     }
 
     fn energy(&self, q: &[f64], v: &[f64]) -> Energy {
-        Energy { kinetic: 0.5 * self.mass * v[0] * v[0], elastic: 0.5 * self.stiffness * q[0] * q[0], gravity: 0.0 }
+        let elastic = 0.5 * self.stiffness * q[0] * q[0] + 0.25 * self.cubic * q[0].powi(4);
+        Energy { kinetic: 0.5 * self.mass * v[0] * v[0], elastic, gravity: 0.0 }
     }
 
     fn place(&self, _body: u32, q: &[f64], local: &[Vector2<f64>], out: &mut [Vector2<f64>]) {
@@ -84,7 +86,7 @@ fn model(surface: Box<dyn Subsystem<2>>) -> Model<2> {
 
 #[test]
 fn a_subsystem_of_ones_own_is_hit_and_keeps_the_energy_identity() {
-    let model = model(Box::new(Plate { mass: 0.1, stiffness: 1000.0 }));
+    let model = model(Box::new(Plate { mass: 0.1, stiffness: 1000.0, cubic: 0.0 }));
     for theta in [0.5, 0.75, 1.0] {
         let mut state = State::new(&model, &[0.0, 0.0775, 0.0, 0.0], &[0.1, 0.0, 0.0, 0.0], 1e-4).unwrap();
         let mut work = crate::scenes::workspace(&model);

@@ -5,6 +5,7 @@ mod driven;
 mod reading;
 mod refusing;
 mod resolving;
+mod resting;
 mod running;
 mod settings;
 mod together;
