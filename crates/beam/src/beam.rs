@@ -7,6 +7,7 @@ use crate::error::{BeamError, check_len};
 use crate::field::{Field, Natural};
 use crate::membrane::Membrane;
 use crate::mesh::Mesh;
+use crate::modal_damping::ModalDamping;
 use crate::spec::{Axial, BeamSpec, Foundation};
 use crate::support::{Hold, Support};
 
@@ -50,6 +51,7 @@ pub struct Beam {
     pub(crate) bath: Option<Field>,
     pub(crate) bar: Option<Bar>,
     pub(crate) membrane: Option<Membrane>,
+    pub(crate) modal: Option<ModalDamping>,
     /// M, K and what of C is no multiple of them, in bending.
     pub(crate) m: Blocks,
     pub(crate) k: Blocks,
@@ -146,7 +148,8 @@ impl Beam {
         } else {
             None
         };
-        Ok(Self {
+        let ratios = spec.damping.modal.clone();
+        let mut beam = Self {
             damping_of_mass: of_mass + spec.damping.rayleigh_mass,
             mass: Field::new(masses.iter()),
             spec,
@@ -161,10 +164,15 @@ impl Beam {
             bath,
             bar,
             membrane,
+            modal: None,
             m,
             k,
             c,
-        })
+        };
+        if ratios.iter().any(|ratio| *ratio > 0.0) {
+            beam.modal = Some(ModalDamping::new(&beam, &ratios)?);
+        }
+        Ok(beam)
     }
 
     /// The numbers it was made from.
@@ -224,7 +232,10 @@ impl Beam {
 
     /// Whether C is not zero.
     pub fn is_damped(&self) -> bool {
-        self.damping_of_mass != 0.0 || self.spec.damping.rayleigh_stiffness != 0.0 || self.c.is_some()
+        self.damping_of_mass != 0.0
+            || self.spec.damping.rayleigh_stiffness != 0.0
+            || self.c.is_some()
+            || self.modal.is_some()
     }
 
     /// Whether it has axial dofs.

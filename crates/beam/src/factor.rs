@@ -5,6 +5,7 @@ use crate::bar::BarFactor;
 use crate::beam::Beam;
 use crate::blocks::Blocks;
 use crate::error::FactorError;
+use crate::modal_damping::{LowRank, ModalDamping};
 use crate::sparse::SparseFactor;
 
 /// The weights of `mass M + damping C + stiffness K`.
@@ -68,6 +69,7 @@ pub struct Factor {
     weights: MatrixWeights,
     kind: Kind,
     stretch: Option<RankOne>,
+    modal: Option<LowRank>,
     held: Vec<[bool; 2]>,
     dofs: usize,
 }
@@ -114,6 +116,14 @@ impl Factor {
     }
 
     fn solve_linear(&self, f: &mut [f64]) {
+        self.solve_sum(f);
+        if let Some(modal) = &self.modal {
+            modal.correct(f);
+        }
+    }
+
+    /// Without damping ratios of modes.
+    fn solve_sum(&self, f: &mut [f64]) {
         match &self.kind {
             Kind::Banded { bend, bar, .. } => {
                 let (f_bend, f_bar) = f.split_at_mut(2 * self.held.len());
@@ -143,10 +153,14 @@ impl Factor {
                     let nodes = beam.nodes();
                     factor.factorise(bar, mass, stiffness).map_err(|node| not_definite(2 * nodes + node))?;
                 }
-                Ok(())
             }
-            Kind::Sparse(sparse) => sparse.update(beam, weights).map_err(not_definite),
+            Kind::Sparse(sparse) => sparse.update(beam, weights).map_err(not_definite)?,
         }
+        if let (Some(mut modal), Some(damping)) = (self.modal.take(), &beam.modal) {
+            modal.update(damping, weights.damping, |f| self.solve_sum(f));
+            self.modal = Some(modal);
+        }
+        Ok(())
     }
 }
 
@@ -206,7 +220,8 @@ impl Beam {
         };
         let zero = vec![0.0; self.dofs()];
         let stretch = self.membrane.is_some().then(|| RankOne { g: zero.clone(), u: zero, scale: 0.0 });
-        let mut factor = Factor { weights, kind, stretch, held: self.held.clone(), dofs: self.dofs() };
+        let modal = self.modal.as_ref().map(LowRank::new);
+        let mut factor = Factor { weights, kind, stretch, modal, held: self.held.clone(), dofs: self.dofs() };
         factor.update(self, weights)?;
         Ok(factor)
     }
@@ -227,8 +242,11 @@ impl Beam {
     /// ```
     pub fn refactor(&self, weights: MatrixWeights, factor: &mut Factor) -> Result<(), FactorError> {
         // By what is held, not by identity: a beam of another section or span may take over the memory.
-        if self.dofs() != factor.dofs || self.held != factor.held || self.membrane.is_some() != factor.stretch.is_some()
-        {
+        let same = self.dofs() == factor.dofs
+            && self.held == factor.held
+            && self.membrane.is_some() == factor.stretch.is_some()
+            && self.modal.as_ref().map_or(0, ModalDamping::modes) == factor.modal.as_ref().map_or(0, LowRank::modes);
+        if !same {
             return Err(FactorError::OtherBeam { expected: self.dofs(), found: factor.dofs });
         }
         factor.update(self, weights)

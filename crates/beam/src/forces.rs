@@ -84,6 +84,8 @@ pub struct SectionForces {
     inside: Vec<(usize, f64, f64, f64)>,
     reactions: Vec<Reaction>,
     axial: Vec<f64>,
+    /// M⁻¹C v of the damping ratios of modes.
+    deceleration: Vec<f64>,
 }
 
 /// A load this near to a node (in lengths of the element) is at the node.
@@ -99,6 +101,7 @@ impl SectionForces {
             inside: Vec::with_capacity(16),
             reactions: Vec::with_capacity(borne),
             axial: vec![beam.spec.axial_force; beam.elements()],
+            deceleration: vec![0.0; if beam.modal.is_some() { beam.dofs() } else { 0 }],
         }
     }
 
@@ -132,6 +135,11 @@ impl SectionForces {
         let q = beam.bend(actions.q);
         let stretching = beam.membrane.as_ref().map(|membrane| (membrane, membrane.force(q)));
         let damping = &beam.spec.damping;
+        self.deceleration.fill(0.0);
+        if let (Some(modal), false) = (&beam.modal, actions.velocity.is_empty()) {
+            self.deceleration.resize(beam.dofs(), 0.0);
+            modal.add_deceleration(actions.velocity, &mut self.deceleration);
+        }
         let add = |end: &mut [f64; 4], factor: f64, forces: [f64; 4]| {
             end.iter_mut().zip(forces).for_each(|(end, force)| *end += factor * force);
         };
@@ -156,6 +164,9 @@ impl SectionForces {
                         add(end, damping.rayleigh_stiffness, bed.on_nodes(e, v));
                     }
                 }
+            }
+            if !self.deceleration.is_empty() {
+                add(end, 1.0, beam.mass.on_nodes(e, beam.bend(&self.deceleration)));
             }
             if !actions.acceleration.is_empty() {
                 add(end, 1.0, beam.mass.on_nodes(e, beam.bend(actions.acceleration)));

@@ -78,6 +78,7 @@ mod forces;
 mod load;
 mod membrane;
 mod mesh;
+mod modal_damping;
 mod modes;
 mod product;
 mod section;

@@ -76,6 +76,9 @@ impl Beam {
             bath.add_product(a, self.bend(x), self.split_mut(y).0);
         }
         add_diagonal(a, &self.dashpots, x, y);
+        if let Some(modal) = &self.modal {
+            modal.add_product(a, x, y);
+        }
     }
 
     /// y += a K x, element by element through the two natural deformations ψ₂ − ψ₁ and ψ₁ + ψ₂ − 2(w₂ − w₁)/l.
@@ -157,6 +160,9 @@ impl Beam {
         }
         if let Some(bath) = &self.bath {
             power += bath.form(self.bend(v));
+        }
+        if let Some(modal) = &self.modal {
+            power += modal.form(v);
         }
         power + diagonal_form(&self.dashpots, v)
     }

@@ -1,6 +1,7 @@
 //! The numbers that make a beam: mesh, sections, supports, what it carries and rests on, damping.
 
 use crate::error::{BeamError, check};
+use crate::modal_damping::MOST;
 use crate::modes;
 use crate::section::{Section, not_negative, positive};
 use crate::support::Support;
@@ -67,6 +68,13 @@ impl Damping {
         not_negative("damping.viscous", self.viscous)?;
         not_negative("damping.rayleigh_mass", self.rayleigh_mass)?;
         not_negative("damping.rayleigh_stiffness", self.rayleigh_stiffness)?;
+        if self.modal.len() > MOST {
+            return Err(BeamError::Count {
+                field: "damping.modal",
+                value: self.modal.len(),
+                rule: "at most 64 ratios",
+            });
+        }
         self.modal.iter().try_for_each(|ratio| not_negative("damping.modal", *ratio))
     }
 }
