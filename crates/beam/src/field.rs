@@ -7,14 +7,16 @@ use crate::element::{Element, Matrix4};
 /// One element's symmetric quadratic form of the deflection, mirrored onto itself by its middle. In the sums and differences
 /// S = w₁ + w₂, Q = ψ₁ − ψ₂ (symmetric), D = w₁ − w₂, P = ψ₁ + ψ₂ (antisymmetric) it falls apart:
 /// qᵀM q = a(S + bQ)² + cQ² + d(D + eP)² + fP².
+///
+/// Symmetric and antisymmetric part stand side by side in pairs, so that the compiler can take both at once.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Squares {
-    a: f64,
-    b: f64,
-    c: f64,
-    d: f64,
-    e: f64,
-    f: f64,
+    /// a and d.
+    outer: [f64; 2],
+    /// b and e.
+    ratio: [f64; 2],
+    /// c and f.
+    inner: [f64; 2],
 }
 
 impl Squares {
@@ -26,27 +28,29 @@ impl Squares {
         // M in S, Q and D, P: halves of sums and differences of its entries.
         let (a, b, c) = square(0.5 * (m[0][0] + m[0][2]), 0.5 * (m[0][1] - m[0][3]), 0.5 * (m[1][1] - m[1][3]));
         let (d, e, f) = square(0.5 * (m[0][0] - m[0][2]), 0.5 * (m[0][1] + m[0][3]), 0.5 * (m[1][1] + m[1][3]));
-        Self { a, b, c, d, e, f }
+        Self { outer: [a, d], ratio: [b, e], inner: [c, f] }
+    }
+
+    /// (S + bQ, D + eP) and (Q, P).
+    #[inline]
+    fn parts(&self, p: [f64; 2], q: [f64; 2]) -> ([f64; 2], [f64; 2]) {
+        let (w, turn) = ([p[0] + q[0], p[0] - q[0]], [p[1] - q[1], p[1] + q[1]]);
+        ([w[0] + self.ratio[0] * turn[0], w[1] + self.ratio[1] * turn[1]], turn)
     }
 
     #[inline]
-    fn form(&self, p: [f64; 2], q: [f64; 2]) -> f64 {
-        let (sum, bow) = (p[0] + q[0], p[1] - q[1]);
-        let (step, turn) = (p[0] - q[0], p[1] + q[1]);
-        let (sum, step) = (sum + self.b * bow, step + self.e * turn);
-        (self.a * (sum * sum) + self.c * (bow * bow)) + (self.d * (step * step) + self.f * (turn * turn))
+    fn form(&self, p: [f64; 2], q: [f64; 2]) -> [f64; 2] {
+        let (w, turn) = self.parts(p, q);
+        [0, 1].map(|i| self.outer[i] * (w[i] * w[i]) + self.inner[i] * (turn[i] * turn[i]))
     }
 
     /// What M q is on the two nodes.
     #[inline]
     fn product(&self, p: [f64; 2], q: [f64; 2]) -> ([f64; 2], [f64; 2]) {
-        let (sum, bow) = (p[0] + q[0], p[1] - q[1]);
-        let (step, turn) = (p[0] - q[0], p[1] + q[1]);
-        let on_sum = self.a * (sum + self.b * bow);
-        let on_bow = self.b * on_sum + self.c * bow;
-        let on_step = self.d * (step + self.e * turn);
-        let on_turn = self.e * on_step + self.f * turn;
-        ([on_sum + on_step, on_turn + on_bow], [on_sum - on_step, on_turn - on_bow])
+        let (w, turn) = self.parts(p, q);
+        let on_w = [0, 1].map(|i| self.outer[i] * w[i]);
+        let on_turn = [0, 1].map(|i| self.ratio[i] * on_w[i] + self.inner[i] * turn[i]);
+        ([on_w[0] + on_w[1], on_turn[1] + on_turn[0]], [on_w[0] - on_w[1], on_turn[1] - on_turn[0]])
     }
 }
 
@@ -106,9 +110,9 @@ impl Springs {
     }
 
     #[inline]
-    fn form(&self, p: [f64; 2], q: [f64; 2]) -> f64 {
+    fn form(&self, p: [f64; 2], q: [f64; 2]) -> [f64; 2] {
         let [d1, d2, rise] = self.deformations(p, q);
-        self.k1 * (d1 * d1) + self.k2 * (d2 * d2) + self.k3 * (rise * rise)
+        [self.k1 * (d1 * d1) + self.k3 * (rise * rise), self.k2 * (d2 * d2)]
     }
 }
 
@@ -199,23 +203,25 @@ fn sweep<E>(
     *store = on_left;
 }
 
-/// Sums over elements in two interleaved parts, so that one sum needn't wait for the other.
+/// Sums over elements, in pairs and every other one apart, so that a sum needn't wait for the one before.
 #[inline]
-fn sum<E>(elements: &[E], x: &[[f64; 2]], form: impl Fn(&E, [f64; 2], [f64; 2]) -> f64) -> f64 {
-    let (mut even, mut odd) = (0.0, 0.0);
+fn sum<E>(elements: &[E], x: &[[f64; 2]], form: impl Fn(&E, [f64; 2], [f64; 2]) -> [f64; 2]) -> f64 {
+    let (mut even, mut odd) = ([0.0; 2], [0.0; 2]);
     let mut pairs = elements.chunks_exact(2);
     let mut nodes = x;
     for pair in &mut pairs {
         if let ([a, b], [p, q, r, ..]) = (pair, nodes) {
-            even += form(a, *p, *q);
-            odd += form(b, *q, *r);
+            let (first, second) = (form(a, *p, *q), form(b, *q, *r));
+            (0..2).for_each(|i| even[i] += first[i]);
+            (0..2).for_each(|i| odd[i] += second[i]);
         }
         nodes = &nodes[2..];
     }
     if let ([last], [p, q, ..]) = (pairs.remainder(), nodes) {
-        even += form(last, *p, *q);
+        let last = form(last, *p, *q);
+        (0..2).for_each(|i| even[i] += last[i]);
     }
-    even + odd
+    (even[0] + odd[0]) + (even[1] + odd[1])
 }
 
 #[cfg(test)]

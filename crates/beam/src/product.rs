@@ -62,6 +62,18 @@ impl Beam {
         if self.damping_of_mass != 0.0 {
             self.add_bending_mass_product(a * self.damping_of_mass, x, y);
         }
+        self.add_damping_product_beside_mass(a, x, y);
+    }
+
+    /// α, 1/s, where C = αM and nothing else; else 0.
+    pub fn mass_damping(&self) -> f64 {
+        let others = self.spec.damping.rayleigh_stiffness != 0.0 || self.c.is_some() || self.modal.is_some();
+        // Viscous damping leaves axial motion alone.
+        if others || self.bar.is_some() { 0.0 } else { self.damping_of_mass }
+    }
+
+    /// y += a C x, without the multiple of M in bending.
+    fn add_damping_product_beside_mass(&self, a: f64, x: &[f64], y: &mut [f64]) {
         if let Some(bar) = &self.bar
             && self.spec.damping.rayleigh_mass != 0.0
         {

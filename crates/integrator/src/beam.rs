@@ -187,6 +187,17 @@ impl Subsystem<2> for BeamBody {
         }
     }
 
+    fn mass_damping(&self) -> f64 {
+        if self.supports.is_some() || self.beam.is_stretched() { 0.0 } else { self.beam.mass_damping() }
+    }
+
+    fn internal_force_beside_mass_damping(&self, q: &[f64], v: &[f64], f: &mut [f64]) {
+        if self.mass_damping() == 0.0 {
+            return self.internal_force(q, v, f);
+        }
+        self.beam.add_elastic_force(q, f);
+    }
+
     fn is_loaded(&self) -> bool {
         !self.loads.is_empty()
     }

@@ -85,6 +85,17 @@ pub trait Subsystem<const D: usize>: Send + Sync {
     /// Adds the internal forces at (q, v) to `f`: elastic, viscous and weight, `−∂V/∂q − C v`. N (N·m for couples).
     fn internal_force(&self, q: &[f64], v: &[f64], f: &mut [f64]);
 
+    /// α, 1/s, where C is αM and nothing else, and K doesn't change with the coordinates; else 0. A θ step has αM in its
+    /// matrix and can do without the product: it then asks for [`Subsystem::internal_force_beside_mass_damping`].
+    fn mass_damping(&self) -> f64 {
+        0.0
+    }
+
+    /// As [`Subsystem::internal_force`], without the viscous force if [`Subsystem::mass_damping`] is not 0.
+    fn internal_force_beside_mass_damping(&self, q: &[f64], v: &[f64], f: &mut [f64]) {
+        self.internal_force(q, v, f);
+    }
+
     /// Whether [`Subsystem::load`] adds anything.
     fn is_loaded(&self) -> bool {
         false

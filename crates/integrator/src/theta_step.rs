@@ -70,11 +70,17 @@ impl ThetaStep {
             let dv = &mut self.dv[v.clone()];
             let v_start = &state.v[v.clone()];
             dv.fill(0.0);
+            let alpha = part.system.mass_damping();
+            let kept = beside_mass_damping(alpha, h, theta);
+            if alpha != 0.0 {
+                let at = &mut self.q_forces[q.clone()];
+                part.system.retract(&state.q[q.clone()], v_start, h * theta * (1.0 - kept * theta), at);
+            }
             let q = &self.q_forces[q];
             if part.system.follows_coordinates() {
                 factor.update(q);
             }
-            part.system.internal_force(q, v_start, dv);
+            part.system.internal_force_beside_mass_damping(q, v_start, dv);
             if part.system.is_loaded() {
                 let (load, scratch) = (&mut self.load[v.clone()], &mut work.scratch[..v.len()]);
                 mean_load(part.system.as_ref(), theta, [state.t, t_end], load, scratch);
@@ -85,7 +91,7 @@ impl ThetaStep {
             if part.system.driven().is_empty() {
                 factor.solve(dv);
                 for ((free, v0), dv) in v_end.iter_mut().zip(v_start).zip(dv.iter()) {
-                    *free = v0 + dv;
+                    *free = (1.0 - kept) * v0 + dv;
                 }
                 continue;
             }
@@ -216,6 +222,17 @@ impl ThetaStep {
         state.tally.count(outcome.as_ref(), contacts.len(), penetration);
         StepReport { step: state.step, t_start, t_end, contacts, outcome, penetration, energy }
     }
+}
+
+/// β = hα/(1 + hθα): with C = αM the damping needs no product.
+///
+/// A Δv = h[−K(q⁰ + hθv⁰) − αM v⁰ + P] with A = (1 + hθα)M + h²θ²K, so αM v⁰ = α/(1 + hθα) (A − h²θ²K) v⁰ and
+///
+/// ```text
+/// v_free = (1 − β) v⁰ + h W [ −K(q⁰ + hθ(1 − βθ) v⁰) + P ]
+/// ```
+fn beside_mass_damping(alpha: f64, h: f64, theta: f64) -> f64 {
+    h * alpha / (1.0 + h * theta * alpha)
 }
 
 /// θP¹ + (1−θ)P⁰ into `load`.
