@@ -61,7 +61,6 @@ impl ThetaStep {
         t_end: f64,
     ) {
         let h = state.dt;
-        model.retract(&state.q, &state.v, h * theta, &mut self.q_forces);
         for (part, factor) in model.parts().iter().zip(&mut work.factors) {
             let (q, v) = (part.q.clone(), part.v.clone());
             if v.is_empty() {
@@ -72,10 +71,8 @@ impl ThetaStep {
             dv.fill(0.0);
             let alpha = part.system.mass_damping();
             let kept = beside_mass_damping(alpha, h, theta);
-            if alpha != 0.0 {
-                let at = &mut self.q_forces[q.clone()];
-                part.system.retract(&state.q[q.clone()], v_start, h * theta * (1.0 - kept * theta), at);
-            }
+            let ahead = h * theta * (1.0 - kept * theta);
+            part.system.retract(&state.q[q.clone()], v_start, ahead, &mut self.q_forces[q.clone()]);
             let q = &self.q_forces[q];
             if part.system.follows_coordinates() {
                 factor.update(q);
