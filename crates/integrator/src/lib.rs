@@ -51,6 +51,7 @@ mod blocks;
 #[cfg(feature = "conformance")]
 pub mod conformance;
 mod contacts;
+mod coupled_modes;
 mod equilibrium;
 mod ground;
 mod laws;
@@ -73,6 +74,7 @@ mod workspace;
 pub use beam::{BeamBody, BeamSurface, SignalLoad, WBackend};
 pub use blocks::{Block, BlockLoad, Blocks};
 pub use contacts::{Contact, ContactSet, ContactState, tangential};
+pub use coupled_modes::{CoupledModes, CoupledModesError, MOST_VELOCITIES, coupled_modes};
 pub use equilibrium::{Equilibrium, EquilibriumError, SettlingLimits, settle};
 pub use ground::Ground;
 pub use ledger::{Ledger, PositiveWork, StepEnergy};

@@ -5,6 +5,7 @@ mod allocations;
 mod beams;
 mod closed;
 mod conforming;
+mod coupled_modes;
 mod driven;
 mod equilibrium;
 mod following;
