@@ -136,8 +136,19 @@ fn beam(beam: &BeamOutlook) -> String {
         count(beam.dofs as u64, "degree of freedom"),
         beam.backend
     );
+    let between = match beam.inner_supports {
+        0 => String::new(),
+        n => format!(", {} between", count(n as u64, "support")),
+    };
+    let _ =
+        write!(text, "\n    {}, all its nodes; ends {}, {}{between}", beam.theory, beam.supports[0], beam.supports[1]);
+    if let Some(axial) = beam.axial {
+        let _ = write!(text, "; {axial}");
+    }
     if let Some(frequency) = beam.first_frequency {
-        let _ = write!(text, "\n    first frequency {} Hz (period {} s)", digits(frequency), digits(1.0 / frequency));
+        let of = if beam.frequency_is_exact { "" } else { ", of the finite elements" };
+        let (frequency, period) = (digits(frequency), digits(1.0 / frequency));
+        let _ = write!(text, "\n    first frequency {frequency} Hz (period {period} s){of}");
     }
     if let Some(product) = beam.highest_frequency_step {
         let meaning = if product > 1.0 {
@@ -150,10 +161,14 @@ fn beam(beam: &BeamOutlook) -> String {
     if let Some(sag) = beam.sag.filter(|sag| *sag > 0.0) {
         let _ = write!(
             text,
-            "\n    sags by {} m under the blocks at rest, {}",
+            "\n    sags by {} m under {}the blocks at rest, {}",
             digits(sag),
+            if beam.self_weight { "its own weight and " } else { "" },
             wording::part_of(sag, beam.span)
         );
+    }
+    if let Some(moment) = beam.yield_moment {
+        let _ = write!(text, "\n    yields at a bending moment of {} N m", digits(moment));
     }
     text
 }

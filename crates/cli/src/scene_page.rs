@@ -122,14 +122,27 @@ fn default(key: &Key) -> String {
 fn default_alone(key: &Key) -> String {
     match key.presence {
         Presence::Required => "**required**".to_owned(),
+        Presence::RequiredWith(words) => format!("**required** with {}", quoted(words)),
+        Presence::RequiredWithout(sibling) => format!("**required** without `{sibling}`"),
+        Presence::DefaultWithout { sibling, value } => format!("`{value}`, without `{sibling}`"),
         Presence::Default(value) => format!("`{value}`"),
         Presence::DefaultWith { sibling, value } => format!("`{value}`, with `{sibling}`"),
         _ => "–".to_owned(),
     }
 }
 
+/// Words of a key as they are written.
+fn quoted(words: &[&str]) -> String {
+    words.iter().map(|word| format!("`\"{word}\"`")).collect::<Vec<_>>().join(", ")
+}
+
+/// The keys of a table that stands for a word.
+fn table_of(keys: &[Key]) -> String {
+    let keys: Vec<String> = keys.iter().map(|key| format!("`{}` ({}): {}", key.name, value(key), key.doc)).collect();
+    format!("a table of {}", keys.join(" "))
+}
+
 fn value(key: &Key) -> String {
-    let words = |words: &[&str]| words.iter().map(|word| format!("`\"{word}\"`")).collect::<Vec<_>>().join(", ");
     let such_as = format!("such as `{}`", key.example);
     match key.kind {
         Kind::Text => "text".to_owned(),
@@ -139,7 +152,7 @@ fn value(key: &Key) -> String {
             format!("quantity in {}{}, {such_as}", units.join(" or "), limits(&range, Dimension::NONE))
         }
         Kind::Name => format!("name, {such_as}"),
-        Kind::Choice(choices) => words(choices),
+        Kind::Choice(choices) => quoted(choices),
         Kind::Flag => {
             let built_in = |word: &&str| key.reserved.iter().all(|reserved| reserved.value != *word);
             let words: Vec<_> =
@@ -156,7 +169,10 @@ fn value(key: &Key) -> String {
         Kind::List(dimension, range) => {
             format!("array, each {}{}, {such_as}", dimension.name(), limits(&range, dimension))
         }
-        Kind::ChoicePair(choices) => format!("two of {}", words(choices)),
+        Kind::Numbers(range) => format!("array of numbers, each {}, {such_as}", limits(&range, Dimension::NONE).trim()),
+        Kind::WordOrTable(words, keys) => format!("{}, or {}", quoted(words), table_of(keys)),
+        Kind::WordOrTablePair(words, keys) => format!("two of {}, or {}", quoted(words), table_of(keys)),
+        Kind::ChoicePair(choices) => format!("two of {}", quoted(choices)),
         Kind::NamePair => format!("two names, {such_as}"),
         Kind::Gravity => format!("acceleration, {such_as}, or `[x, y]`"),
         _ => such_as,

@@ -97,7 +97,11 @@ fn is_required(key: &Key) -> bool {
 /// With which words of another key alone a key has a meaning.
 fn only_with(key: &Key) -> String {
     let Some(OnlyWith { sibling, words }) = key.only_with else { return String::new() };
-    let required = if key.presence == Presence::Required { " Required there." } else { "" };
+    let required = match key.presence {
+        Presence::Required => " Required there.".to_owned(),
+        Presence::RequiredWith(words) => format!(" Required with {}.", words.join(", ")),
+        _ => String::new(),
+    };
     format!(" Only with {sibling} = {}.{required}", words.join(", "))
 }
 
@@ -109,7 +113,10 @@ fn property(key: &Key) -> Value {
     if let Some(value) = value.as_object_mut() {
         value.insert("description".to_owned(), json!(format!("{}{}{}", key.doc, range_of(key), only_with(key))));
         value.insert("examples".to_owned(), json!([as_json(key.example)]));
-        if let Presence::Default(default) | Presence::DefaultWith { value: default, .. } = key.presence {
+        if let Presence::Default(default)
+        | Presence::DefaultWith { value: default, .. }
+        | Presence::DefaultWithout { value: default, .. } = key.presence
+        {
             value.insert("default".to_owned(), as_json(default));
         }
     }
@@ -154,12 +161,21 @@ fn of_kind(key: &Key) -> Value {
         Kind::Quantity(..) => quantity(),
         Kind::Pair(..) => pair(quantity()),
         Kind::List(..) => json!({ "type": "array", "items": quantity() }),
+        Kind::Numbers(range) => json!({ "type": "array", "items": number(&range) }),
+        Kind::WordOrTable(words, keys) => word_or_table(words, keys),
+        Kind::WordOrTablePair(words, keys) => pair(word_or_table(words, keys)),
         Kind::ChoicePair(words) => pair(json!({ "enum": words })),
         Kind::NamePair => pair(json!({ "$ref": "#/$defs/name" })),
         Kind::Gravity => json!({ "anyOf": [quantity(), pair(quantity())] }),
         // A kind that this page does not know yet: anything goes, the program decides.
         _ => json!({}),
     }
+}
+
+fn word_or_table(words: &[&str], keys: &[Key]) -> Value {
+    let properties: Map<String, Value> = keys.iter().map(|key| (key.name.to_owned(), property(key))).collect();
+    let table = json!({ "type": "object", "properties": properties, "additionalProperties": false });
+    json!({ "anyOf": [{ "enum": words }, table] })
 }
 
 fn number(range: &Range) -> Value {

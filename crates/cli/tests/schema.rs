@@ -48,7 +48,10 @@ fn each_key_of_the_table_is_in_the_schema_with_its_default() {
             assert_eq!(property.get("not").is_some(), key.presence == Presence::NotYet, "{what}");
             assert_eq!(
                 property.get("default").is_some(),
-                matches!(key.presence, Presence::Default(_) | Presence::DefaultWith { .. }),
+                matches!(
+                    key.presence,
+                    Presence::Default(_) | Presence::DefaultWith { .. } | Presence::DefaultWithout { .. }
+                ),
                 "{what}"
             );
             // A default that is no JSON would stand there as a text.
@@ -136,10 +139,12 @@ fn the_scenarios_are_valid_and_broken_ones_are_not() {
         "free-rocking-on-beam",
         "free-rocking-on-beam-undeformed-start",
         "free-rocking-on-ground",
+        "held-beam",
         "incline",
         "pushed-block",
         "shaken-ground",
         "sliding",
+        "two-span-beam",
     ] {
         assert!(accepts(&schema, &scene(&format!("{name}.toml"))), "{name}");
     }

@@ -77,6 +77,12 @@ pub struct BeamBody {
     supports: Option<MovingSupports>,
     held: Vec<usize>,
     backend: WBackend,
+    weight: Option<SelfWeight>,
+}
+
+/// Gravity on a beam: the force on each of its coordinates, those of moving supports at the end.
+struct SelfWeight {
+    force: Vec<f64>,
 }
 
 impl std::fmt::Debug for BeamBody {
@@ -94,7 +100,7 @@ impl BeamBody {
     #[must_use]
     pub fn new(beam: Arc<Beam>, position: Vector2<f64>, surface: BeamSurface) -> Self {
         let held = (0..beam.dofs()).filter(|dof| beam.is_held(*dof)).collect();
-        Self { beam, position, surface, loads: Vec::new(), supports: None, held, backend: WBackend::Auto }
+        Self { beam, position, surface, loads: Vec::new(), supports: None, held, backend: WBackend::Auto, weight: None }
     }
 
     /// The same beam under one more load.
@@ -109,6 +115,26 @@ impl BeamBody {
     #[must_use]
     pub fn with_motion(mut self, motion: [Motion; 2]) -> Self {
         self.supports = Some(MovingSupports::new(&self.beam, motion));
+        self
+    }
+
+    /// The same beam with gravity (m/s², x and y) acting on it and on the masses that it carries: its deflections then count
+    /// from the straight axis. The potential belongs to the beam ([`Energy::gravity`]), so that no load does work.
+    #[must_use]
+    pub fn with_weight(mut self, gravity: Vector2<f64>) -> Self {
+        let n = self.beam.dofs();
+        let mut force = vec![0.0; n];
+        // Finite and as long as it must be, so there is no error to pass on; of a gravity that isn't finite, the state's check
+        // tells.
+        let _ = self.beam.add_self_weight(gravity.y, &mut force);
+        if self.beam.has_axial_dofs() {
+            let mut along = vec![0.0; n];
+            along[2 * self.beam.nodes()..].fill(1.0);
+            self.beam.add_mass_product(gravity.x, &along, &mut force);
+        }
+        let mass = self.beam.total_mass();
+        force.extend([mass * gravity.x, mass * gravity.y]);
+        self.weight = Some(SelfWeight { force });
         self
     }
 
@@ -185,6 +211,10 @@ impl Subsystem<2> for BeamBody {
         if self.beam.is_damped() {
             self.beam.add_damping_product(-1.0, &v[..n], &mut f[..n]);
         }
+        if let Some(weight) = &self.weight {
+            // Coordinates of supports are there only where these move.
+            f.iter_mut().zip(&weight.force).for_each(|(f, weight)| *f += weight);
+        }
     }
 
     fn mass_damping(&self) -> f64 {
@@ -259,7 +289,9 @@ impl Subsystem<2> for BeamBody {
         let n = self.beam.dofs();
         let relative = self.beam.kinetic_energy(&v[..n]);
         let kinetic = self.supports.as_ref().map_or(relative, |supports| relative + supports.kinetic_energy(v));
-        Energy { kinetic, elastic: self.beam.elastic_energy(&q[..n]), gravity: 0.0 }
+        let along: f64 =
+            self.weight.iter().flat_map(|weight| weight.force.iter().zip(q)).map(|(force, q)| force * q).sum();
+        Energy { kinetic, elastic: self.beam.elastic_energy(&q[..n]), gravity: 0.0 - along }
     }
 
     fn place(&self, _body: u32, q: &[f64], local: &[Vector2<f64>], out: &mut [Vector2<f64>]) {

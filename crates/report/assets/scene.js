@@ -124,17 +124,24 @@ const scene = (() => {
     return path;
   }
 
-  function drawSupport(parent, kind, x, y, right) {
+  function drawSupport(parent, kind, x, y, right, roller) {
     if (kind === "pinned") {
       svgElement("path", { d: `M${x} ${y}l-7 12h14z`, class: "support" }, parent);
-      // Axial motion is free: one of the two ends is a roller.
-      if (right) svgElement("path", { d: `M${x - 9} ${y + 16}h18`, class: "support" }, parent);
-      svgElement("path", { d: hatch(x - 6, y + (right ? 16 : 12), 16, 4, 5), class: "hatch" }, parent);
+      // Where axial motion is free, one of the two ends is a roller.
+      if (roller) svgElement("path", { d: `M${x - 9} ${y + 16}h18`, class: "support" }, parent);
+      svgElement("path", { d: hatch(x - 6, y + (roller ? 16 : 12), 16, 4, 5), class: "hatch" }, parent);
     } else if (kind === "clamped") {
       svgElement("path", { d: `M${x} ${y - 16}v32`, class: "support" }, parent);
       let path = "";
       for (let k = 0; k < 8; k++) path += `M${x} ${y - 16 + 4 * k}l${right ? 6 : -6} 5`;
       svgElement("path", { d: path, class: "hatch" }, parent);
+    } else if (kind === "guided") {
+      // A wall with rollers: no rotation, free to move across the axis.
+      const side = right ? 1 : -1;
+      svgElement("path", { d: `M${x} ${y - 16}v32m${5 * side} 0v-32`, class: "support" }, parent);
+    } else if (kind === "elastic") {
+      svgElement("path", { d: `M${x} ${y}v3l-5 2l10 4l-10 4l10 4l-5 2v3m-9 0h18`, class: "support" }, parent);
+      svgElement("path", { d: hatch(x - 6, y + 22, 16, 4, 5), class: "hatch" }, parent);
     }
   }
 
@@ -160,8 +167,9 @@ const scene = (() => {
       const edge = beam.top ? (beam.thickness / 2) * view.scale : 0;
       const line = svgElement("path", { class: "beam" }, group);
       const low = py(beam.y) - edge + thickness;
-      drawSupport(group, beam.supports[0], px(beam.x), low, false);
-      drawSupport(group, beam.supports[1], px(beam.x + beam.span), low, true);
+      drawSupport(group, beam.supports[0], px(beam.x), low, false, false);
+      drawSupport(group, beam.supports[1], px(beam.x + beam.span), low, true, !beam.held);
+      for (const [x, kind] of beam.inner) drawSupport(group, kind, px(beam.x + x), low, true, true);
       return { group, line, thickness, edge };
     });
     layers.blocks = scenery.blocks.map((block, k) => {

@@ -5,6 +5,7 @@ use serde::Serialize;
 use teeter_integrator::{Ended, RockingMonitor, State};
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Layout;
+use teeter_scenario::wording;
 
 /// How a run ended, as files say it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -173,6 +174,8 @@ pub struct BeamSummary {
     pub elements: usize,
     /// Its degrees of freedom.
     pub dofs: usize,
+    /// Its theory, as in a scene.
+    pub theory: &'static str,
     /// How its matrix is solved.
     pub backend: &'static str,
 }
@@ -261,11 +264,13 @@ impl ModelSummary {
         let beams: Vec<BeamSummary> = layout
             .beams
             .iter()
-            .map(|place| BeamSummary {
+            .zip(&scene.beams)
+            .map(|(place, beam)| BeamSummary {
                 name: place.name.clone(),
                 elements: place.beam.elements(),
                 dofs: place.beam.free_dofs(),
-                backend: "banded Cholesky, factorised once",
+                theory: wording::theory(beam),
+                backend: wording::backend(beam),
             })
             .collect();
         Self {

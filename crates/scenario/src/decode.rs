@@ -257,15 +257,14 @@ impl Walk<'_> {
                     self.judge.push(found);
                     self.document.refuse(path);
                 } else {
-                    self.document.add_name(table.name(), &twig.key);
+                    self.document.add_name(path, &twig.key);
                 }
                 self.table(table, &inner, branch, &twig.node.origin);
             } else {
                 // `[beam]` with the keys right below it: say so once.
                 self.document.refuse(path);
                 let rule = format!("each {} has a name and a table of its own", table.name());
-                self.judge.blame(&twig.node, &inner, rule).remedy =
-                    Some(format!("write its keys under [{}.NAME]", table.name()));
+                self.judge.blame(&twig.node, &inner, rule).remedy = Some(format!("write its keys under [{path}.NAME]"));
                 return;
             }
         }
@@ -278,7 +277,7 @@ impl Walk<'_> {
         self.document.refuse(path);
         let rule = format!("a table is expected, got {}", node.raw.what());
         let remedy = match table.occurrence {
-            Occurrence::Named => format!("write its keys under [{}.NAME]", table.name()),
+            Occurrence::Named => format!("write its keys under [{path}.NAME]"),
             Occurrence::Inline => format!("write {} = {{ … }} with {}", table.name(), table.allowed().join(", ")),
             _ => format!("write its keys under [{path}]"),
         };
@@ -330,9 +329,15 @@ impl Walk<'_> {
                 continue;
             }
             match key.presence {
-                Presence::Required if self.document.is_refused(&join(path, key.name)) => {}
+                Presence::Required | Presence::RequiredWith(_) | Presence::RequiredWithout(_)
+                    if self.document.is_refused(&join(path, key.name)) => {}
                 Presence::Required => required.push(key),
+                Presence::RequiredWith(words) if self.goes_with(key, words, path) => required.push(key),
+                Presence::RequiredWithout(sibling) if branch.get(sibling).is_none() => required.push(key),
                 Presence::Default(text) => self.default(key, text, path),
+                Presence::DefaultWithout { sibling, value } if branch.get(sibling).is_none() => {
+                    self.default(key, value, path);
+                }
                 Presence::DefaultWith { sibling, value } if branch.get(sibling).is_some() => {
                     self.default(key, value, path);
                 }
@@ -342,6 +347,8 @@ impl Walk<'_> {
         if required.is_empty() || self.document.is_refused(path) {
             return;
         }
+        // In the order of the table.
+        required.sort_by_key(|key| table.keys.iter().position(|of| std::ptr::eq(of, *key)));
         let names: Vec<&str> = required.iter().map(|key| key.name).collect();
         let names = names.join(", ");
         match origin {
@@ -353,10 +360,10 @@ impl Walk<'_> {
             // Made by a --set, and not whole: most likely a slip in the name.
             Origin::Set { .. } if table.occurrence == Occurrence::Named => {
                 let rule = format!("not in the file, and as a new table it lacks {names}");
-                let name = path.rsplit('.').next().unwrap_or(path);
-                let known = self.document.names(table.name());
+                let (group, name) = path.rsplit_once('.').unwrap_or(("", path));
+                let known = self.document.names(group);
                 let near = suggest::nearest(name, known);
-                let near = near.map(|near| format!("{}.{near}", table.name()));
+                let near = near.map(|near| format!("{group}.{near}"));
                 self.missing.push(self.judge.source.error(origin, path, rule).with_suggestion(near));
             }
             _ => {
@@ -376,6 +383,12 @@ impl Walk<'_> {
     fn has_meaning(&self, key: &Key, path: &str) -> Option<bool> {
         let Some(OnlyWith { sibling, words }) = key.only_with else { return Some(true) };
         self.document.text(&join(path, sibling)).map(|word| words.contains(&word))
+    }
+
+    /// Whether the key that `key` goes with has one of these words.
+    fn goes_with(&self, key: &Key, words: &[&str], path: &str) -> bool {
+        let word = key.only_with.and_then(|only| self.document.text(&join(path, only.sibling)));
+        word.is_some_and(|word| words.contains(&word))
     }
 
     fn without_meaning(&mut self, key: &Key, path: &str, node: &Node) {

@@ -62,6 +62,16 @@ impl Dimension {
     pub const IMPULSE: Self = Self::new(1, 1, -1, 0, 0);
     /// Viscous damping per length of a beam, N s/m².
     pub const DAMPING_PER_LENGTH: Self = Self::new(1, -1, -1, 0, 0);
+    /// Rotational damping, N m s.
+    pub const ROTATIONAL_DAMPING: Self = Self::new(1, 2, -1, 0, 0);
+    /// Bending stiffness, N m².
+    pub const BENDING_STIFFNESS: Self = Self::new(1, 3, -2, 0, 0);
+    /// Mass per length, kg/m.
+    pub const MASS_PER_LENGTH: Self = Self::new(1, -1, 0, 0, 0);
+    /// Rotatory inertia per length, kg m.
+    pub const INERTIA_PER_LENGTH: Self = Self::new(1, 1, 0, 0, 0);
+    /// Moment of inertia, kg m².
+    pub const INERTIA: Self = Self::new(1, 2, 0, 0, 0);
     /// Stiffness, N/m.
     pub const STIFFNESS: Self = Self::new(1, 0, -2, 0, 0);
     /// Viscous damping, N s/m.
@@ -163,6 +173,11 @@ static NAMED: &[Named] = &[
     named(Dimension::DAMPING_PER_LENGTH, "a viscous damping per length", "N s/m^2", &["N s/m^2", "kg/m/s"]),
     named(Dimension::STIFFNESS, "a stiffness or force per length", "N/m", &["N/m", "kN/m", "N/mm"]),
     named(Dimension::DAMPING, "a viscous damping", "N s/m", &["N s/m", "kg/s"]),
+    named(Dimension::ROTATIONAL_DAMPING, "a rotational damping", "N m s", &["N m s"]),
+    named(Dimension::BENDING_STIFFNESS, "a bending stiffness", "N m^2", &["N m^2", "kN m^2"]),
+    named(Dimension::MASS_PER_LENGTH, "a mass per length", "kg/m", &["kg/m", "g/m"]),
+    named(Dimension::INERTIA_PER_LENGTH, "a rotatory inertia per length", "kg m", &["kg m"]),
+    named(Dimension::INERTIA, "a moment of inertia", "kg m^2", &["kg m^2", "g cm^2"]),
     named(Dimension::new(0, 2, 0, 0, 0), "an area", "m^2", &["m^2", "cm^2", "mm^2"]),
     named(Dimension::new(0, 3, 0, 0, 0), "a volume", "m^3", &["m^3", "cm^3", "mm^3"]),
 ];

@@ -4,11 +4,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::diagnostic::Diagnostic;
 use crate::judge::Judge;
-use crate::keys::{self, Found, Key, Kind, Occurrence, TABLES, Table};
+use crate::keys::{self, Found, Key, Kind, Occurrence, Table};
 use crate::measure::Measure;
 use crate::source::{Origin, Source};
 use crate::tree::lenient_value;
-use crate::value::Value;
+use crate::value::{Item, Value};
 
 /// A value of a scene with its key and origin.
 #[derive(Debug, Clone)]
@@ -34,7 +34,8 @@ pub struct Document {
     source: Source,
     entries: BTreeMap<String, Entry>,
     tables: BTreeMap<String, Origin>,
-    names: BTreeMap<&'static str, Vec<String>>,
+    /// By the path of the group.
+    names: BTreeMap<String, Vec<String>>,
     /// Paths that were written, but with something that is no value for them.
     refused: BTreeSet<String>,
 }
@@ -73,8 +74,8 @@ impl Document {
         self.tables.insert(path.to_owned(), origin);
     }
 
-    pub(crate) fn add_name(&mut self, group: &'static str, name: &str) {
-        self.names.entry(group).or_default().push(name.to_owned());
+    pub(crate) fn add_name(&mut self, group: &str, name: &str) {
+        self.names.entry(group.to_owned()).or_default().push(name.to_owned());
     }
 
     pub(crate) fn refuse(&mut self, path: &str) {
@@ -122,7 +123,7 @@ impl Document {
         self.tables.contains_key(path)
     }
 
-    /// The names in a group (`material`, `beam`, `block`, `contact`) in the order of the file.
+    /// The names in a group (`material`, `beam`, `beam.table.support`) in the order of the file.
     pub fn names(&self, group: &str) -> Vec<&str> {
         self.names.get(group).map(|names| names.iter().map(String::as_str).collect()).unwrap_or_default()
     }
@@ -151,10 +152,10 @@ impl Document {
         }
     }
 
-    /// A text, name or choice.
+    /// A text, name, choice, or the word where a table may stand.
     pub fn text(&self, path: &str) -> Option<&str> {
         match &self.entries.get(path)?.value {
-            Value::Text(text) => Some(text),
+            Value::Text(text) | Value::Item(Item::Word(text)) => Some(text),
             _ => None,
         }
     }
@@ -177,7 +178,23 @@ impl Document {
         }
     }
 
-    /// A list of quantities in SI units.
+    /// A word or a table.
+    pub fn item(&self, path: &str) -> Option<&Item> {
+        match &self.entries.get(path)?.value {
+            Value::Item(item) => Some(item),
+            _ => None,
+        }
+    }
+
+    /// Two, each a word or a table: the supports of a beam.
+    pub fn item_pair(&self, path: &str) -> Option<&[Item; 2]> {
+        match &self.entries.get(path)?.value {
+            Value::ItemPair(items) => Some(items),
+            _ => None,
+        }
+    }
+
+    /// A list of numbers, or of quantities in SI units.
     pub fn list(&self, path: &str) -> Option<&[f64]> {
         match &self.entries.get(path)?.value {
             Value::List(values) => Some(values),
@@ -185,7 +202,7 @@ impl Document {
         }
     }
 
-    /// Two words: the supports of a beam, the bodies of a contact.
+    /// Two words: the bodies of a contact.
     pub fn text_pair(&self, path: &str) -> Option<[&str; 2]> {
         match &self.entries.get(path)?.value {
             Value::TextPair([first, second]) => Some([first, second]),
@@ -276,14 +293,8 @@ impl Document {
     /// It parses to the same values bit for bit, and writing that out again gives the same bytes.
     pub fn to_toml(&self) -> String {
         let mut out = String::new();
-        for table in TABLES.iter().filter(|table| table.occurrence != Occurrence::Inline) {
-            if table.occurrence == Occurrence::Named {
-                for name in self.names(table.name()) {
-                    self.write_table(table, &format!("{}.{name}", table.name()), &mut out);
-                }
-            } else {
-                self.write_table(table, table.pattern, &mut out);
-            }
+        if let Some(root) = keys::root() {
+            self.write_table(root, "", &mut out);
         }
         out
     }
@@ -292,9 +303,17 @@ impl Document {
     /// written to another folder.
     pub fn to_toml_elsewhere(&self, path: impl Fn(&str) -> String) -> String {
         let mut moved = self.clone();
-        for entry in moved.entries.values_mut().filter(|entry| entry.key.kind == Kind::Path) {
-            if let Value::Text(file) = &mut entry.value {
-                *file = path(file);
+        for entry in moved.entries.values_mut() {
+            match (&mut entry.value, entry.key.kind) {
+                (Value::Text(file), Kind::Path) => *file = path(file),
+                (Value::Item(Item::Table(values)), Kind::WordOrTable(_, keys)) => {
+                    for key in keys.iter().filter(|key| key.kind == Kind::Path) {
+                        if let Some(Value::Text(file)) = values.get_mut(key.name) {
+                            *file = path(file);
+                        }
+                    }
+                }
+                _ => {}
             }
         }
         moved.to_toml()
@@ -311,15 +330,24 @@ impl Document {
         }
         // A table that always holds says nothing when empty; [ground] does.
         let say = !lines.is_empty() || (table.occurrence != Occurrence::Always && self.has_table(path));
-        if !say {
-            return;
-        }
-        if !path.is_empty() {
+        if say && !path.is_empty() {
             out.push_str(&format!("\n[{path}]\n"));
         }
         for line in lines {
             out.push_str(&line);
             out.push('\n');
+        }
+        for child in table.children() {
+            let inner = if path.is_empty() { child.name().to_owned() } else { format!("{path}.{}", child.name()) };
+            match child.occurrence {
+                Occurrence::Inline => {}
+                Occurrence::Named => {
+                    for name in self.names(&inner) {
+                        self.write_table(child, &format!("{inner}.{name}"), out);
+                    }
+                }
+                _ => self.write_table(child, &inner, out),
+            }
         }
     }
 

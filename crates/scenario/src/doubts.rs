@@ -5,9 +5,9 @@ use crate::diagnostic::Diagnostic;
 use crate::document::Document;
 use crate::placement::weight_of;
 use crate::scene::{BeamScene, BlockScene, ContactScene, Placement, Scene, Support};
-use crate::wording;
+use crate::{stability, wording};
 use std::f64::consts::{PI, TAU};
-use teeter_beam::Beam;
+use teeter_beam::{Axial, Beam};
 use teeter_integrator::ImpactLaw;
 
 /// What was found.
@@ -27,6 +27,9 @@ const DEEP_SAG: f64 = 1.0 / 50.0;
 /// (`docs/theory.md` §8).
 const NOTABLE_SAG: f64 = 1.0 / 250.0;
 
+/// A thickness over this part of the span asks for Timoshenko's theory.
+const THICK: f64 = 1.0 / 10.0;
+
 /// Steps that the shortest motion of contact should get.
 const STEPS_A_MOTION: f64 = 10.0;
 
@@ -40,6 +43,7 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Doubts {
         doubts.notes.extend(slides(block, incline, scene, document));
     }
     for (number, beam) in scene.beams.iter().enumerate() {
+        doubts.warnings.extend(thick(beam, document));
         match sag(scene, number) {
             Some(sag) if sag > DEEP_SAG * beam.spec.span => {
                 let rule = format!("{}: beyond 1/50 small-deflection theory is not to be trusted", sagging(beam, sag));
@@ -50,15 +54,17 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Doubts {
                 );
                 doubts.warnings.push(found.as_warning());
             }
-            Some(sag) if sag > NOTABLE_SAG * beam.spec.span => {
+            Some(sag) if sag > NOTABLE_SAG * beam.spec.span && beam.spec.axial != Axial::Held => {
                 let rule = format!(
-                    "{}: linear theory, which leaves out the shortening of its axis, is off by some per cent",
-                    sagging(beam, sag)
+                    "{}: linear theory, which leaves out the shortening of its axis, is off by some per cent{}",
+                    sagging(beam, sag),
+                    // A beam that is held feels its stretching.
+                    if beam.spec.axial == Axial::Free { "; ends held along the axis would stretch it" } else { "" }
                 );
                 let found = document.error(
                     &format!("beam.{}.thickness", beam.name),
                     rule,
-                    "nothing to mend where that is good enough; else a thicker or shorter beam",
+                    "nothing to mend where that is good enough; else a thicker or shorter beam, or axial = held",
                 );
                 doubts.notes.push(found.as_note());
             }
@@ -72,7 +78,23 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Doubts {
 }
 
 fn sagging(beam: &BeamScene, sag: f64) -> String {
-    format!("the beam sags by {sag:.2e} m under the blocks' weight, {}", wording::part_of(sag, beam.spec.span))
+    let weight = if beam.self_weight { "its own weight and that of the blocks" } else { "the blocks' weight" };
+    format!("the beam sags by {sag:.2e} m under {weight}, {}", wording::part_of(sag, beam.spec.span))
+}
+
+/// A beam so thick that shear counts, of a theory without it. At midspan of a rectangular beam between pins a force deflects by
+/// shear E/(κG) (t/L)² of what it does by bending, some 3 (t/L)² for metals.
+fn thick(beam: &BeamScene, document: &Document) -> Option<Diagnostic> {
+    let part = beam.thickness / beam.spec.span;
+    if part <= THICK || beam.is_sheared() {
+        return None;
+    }
+    let rule = format!(
+        "its thickness is {part:.2} of the span: shear, left out, would add some {:.0} % to the deflection",
+        300.0 * part * part
+    );
+    let remedy = "take theory = \"timoshenko\" (the material then needs poisson_ratio)";
+    Some(document.error(&format!("beam.{}.theory", beam.name), rule, remedy).as_warning())
 }
 
 /// A signal that drives nothing.
@@ -130,15 +152,20 @@ fn tilt(block: &BlockScene, incline: f64, touches: bool, document: &Document) ->
     Some(found.as_warning())
 }
 
-/// The largest static deflection (m) of a beam under the weight of the blocks that stand on it; `None` where nothing stands on
-/// it, or where it has no equilibrium.
+/// The largest static deflection (m) of a beam under its own weight, where it has any, and that of the blocks that stand on it;
+/// `None` where neither is there, or where it has no equilibrium.
 pub(crate) fn sag(scene: &Scene, number: usize) -> Option<f64> {
     let beam = &scene.beams[number];
     let mut standing =
         scene.blocks.iter().filter_map(|block| weight_of(block, Support::Beam(number), scene.gravity)).peekable();
-    standing.peek()?;
+    if !beam.self_weight {
+        standing.peek()?;
+    }
     let model = Beam::new(beam.spec.clone()).ok()?;
     let mut q = vec![0.0; model.dofs()];
+    if beam.self_weight {
+        model.add_self_weight(scene.gravity[1], &mut q).ok()?;
+    }
     for feet in standing {
         for (x, force) in feet {
             model.add_point_load(x - beam.position[0], -force, &mut q).ok()?;
@@ -191,7 +218,7 @@ fn step(scene: &Scene, document: &Document) -> Option<Diagnostic> {
         enter((4.0 * radius / (3.0 * gravity)).sqrt(), format!("the rocking time sqrt(4R/3g) of `{}`", block.name));
         if let Support::Beam(number) = contact.surface {
             let beam = &scene.beams[number];
-            let period = beam.spec.circular_frequency(1).map_or(f64::NAN, |omega| TAU / omega);
+            let period = stability::first_frequency(&beam.spec).map_or(f64::NAN, |(omega, _)| TAU / omega);
             enter(period, format!("the first period of `{}`", beam.name));
         }
     }

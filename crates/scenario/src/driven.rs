@@ -3,8 +3,8 @@
 use crate::scene::{BeamScene, ForceScene, GroundScene, LoadKind, Scene};
 use nalgebra::Vector2;
 use std::sync::Arc;
-use teeter_beam::{Beam, BeamError};
-use teeter_integrator::{BeamBody, BeamSurface, Block, BlockLoad, Blocks, Ground, SignalLoad};
+use teeter_beam::{Beam, BeamError, Load};
+use teeter_integrator::{BeamBody, BeamSurface, Block, BlockLoad, Blocks, Ground, Signal, SignalLoad};
 
 /// The blocks under their weight and forces, with what is prescribed of their motion.
 pub(crate) fn blocks(scene: &Scene, blocks: Vec<Block>) -> Blocks {
@@ -30,7 +30,7 @@ pub(crate) fn block_load(force: &ForceScene, block: usize) -> BlockLoad {
 /// A beam under its loads, on supports that may move.
 pub(crate) fn beam(scene: &Scene, number: usize, beam: &Arc<Beam>) -> Result<BeamBody, BeamError> {
     let of = &scene.beams[number];
-    let mut body = loaded(scene, number, still_beam(of, beam, &[]))?;
+    let mut body = loaded(scene, number, still_beam(of, beam, &[]))?.with_backend(of.backend);
     if of.motion.is_given() {
         let [x, y, _] = of.motion.motions();
         body = body.with_motion([x, y]);
@@ -38,8 +38,11 @@ pub(crate) fn beam(scene: &Scene, number: usize, beam: &Arc<Beam>) -> Result<Bea
     Ok(body)
 }
 
-/// A beam with the loads of the scene on it.
+/// A beam with the loads of the scene on it, its own weight among them where it has any.
 pub(crate) fn loaded(scene: &Scene, number: usize, mut body: BeamBody) -> Result<BeamBody, BeamError> {
+    if scene.beams[number].self_weight {
+        body = body.with_weight(Vector2::from(scene.gravity));
+    }
     for load in scene.loads.iter().filter(|load| load.beam == number) {
         let beam = body.beam();
         let mut pattern = vec![0.0; beam.dofs()];
@@ -48,11 +51,32 @@ pub(crate) fn loaded(scene: &Scene, number: usize, mut body: BeamBody) -> Result
                 beam.add_point_load(at, force, &mut pattern)?;
                 beam.add_point_couple(at, couple, &mut pattern)?;
             }
-            LoadKind::Distributed(force) => beam.add_uniform_load(force, &mut pattern)?,
+            LoadKind::Distributed { load, from, to } => beam.add_partial_load([from, to], load, &mut pattern)?,
+            LoadKind::Moving { force, at, speed } => {
+                let moving = Moving { force, at, speed, signal: load.history.signal() };
+                body = body.with_load(Box::new(moving));
+                continue;
+            }
         }
         body = body.with_load(Box::new(SignalLoad::new(pattern, load.history.signal())));
     }
     Ok(body)
+}
+
+/// A force that moves along a beam, times a signal; none while it is off the beam.
+struct Moving {
+    force: f64,
+    at: f64,
+    speed: f64,
+    signal: Arc<dyn Signal>,
+}
+
+impl Load for Moving {
+    fn add(&self, beam: &Beam, t: f64, f: &mut [f64]) {
+        if let Some(shape) = beam.shape_at(self.at + self.speed * t) {
+            shape.add_load(self.force * self.signal.value(t), 0.0, f);
+        }
+    }
 }
 
 /// A beam without loads, its supports at rest in the place `displaced` (x, y; or nothing) from where the scene has them.

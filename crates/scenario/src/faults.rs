@@ -68,13 +68,18 @@ fn place_of(block: &str, document: &Document) -> String {
     format!("block.{block}.{key}")
 }
 
-fn beam(name: &str, error: &BeamError, document: &Document) -> Diagnostic {
+pub(crate) fn beam(name: &str, error: &BeamError, document: &Document) -> Diagnostic {
     let path = |key: &str| format!("beam.{name}.{key}");
     match error {
         BeamError::Value { field: "span", rule, .. } => document.error(
             &path("span"),
             format!("must be {rule}"),
             "check span, thickness and elements: they are out of proportion",
+        ),
+        BeamError::Value { field: "nodes", value, rule } => document.error(
+            &path("nodes"),
+            format!("the node at {value} m must be {rule}"),
+            "give the places of all nodes from the left end to the right end",
         ),
         BeamError::Count { field: "elements", rule, .. } => {
             document.error(&path("elements"), format!("must be {rule}"), "20 to 100 elements fit most beams")

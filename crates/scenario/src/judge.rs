@@ -7,9 +7,10 @@ use crate::measure::{Measure, Unit};
 use crate::quantity::{self, QuantityError};
 use crate::source::Source;
 use crate::suggest;
-use crate::tree::{Node, Raw};
-use crate::value::Value;
-use crate::wording::{self, expected, noun, with_unit};
+use crate::tree::{Branch, Node, Raw};
+use crate::value::{Item, Value};
+use crate::wording::{self, expected, names, noun, with_unit};
+use std::collections::BTreeMap;
 
 /// Findings after which a file is not read on.
 pub(crate) const MOST_FINDINGS: usize = 200;
@@ -98,6 +99,26 @@ impl Judge<'_> {
                     }
                 }
                 (values.len() == items.len()).then_some(Value::List(values))
+            }
+            Kind::Numbers(range) => {
+                let items = self.items(key, path, node, None)?;
+                let mut values = Vec::new();
+                for item in items {
+                    values.extend(self.number(key, &range, path, item));
+                    if self.is_full() {
+                        return None;
+                    }
+                }
+                (values.len() == items.len()).then_some(Value::List(values))
+            }
+            Kind::WordOrTable(words, keys) => self.item(key, (words, keys), path, node).map(Value::Item),
+            Kind::WordOrTablePair(words, keys) => {
+                let items = self.items(key, path, node, Some(2))?;
+                let read = |judge: &mut Self, item: &Node| {
+                    let reserved = judge.is_reserved(key, path, item);
+                    if reserved { None } else { judge.item(key, (words, keys), path, item) }
+                };
+                self.pair(items, read).map(Value::ItemPair)
             }
             Kind::ChoicePair(choices) => {
                 let items = self.items(key, path, node, Some(2))?;
@@ -223,6 +244,46 @@ impl Judge<'_> {
         found.remedy = Some(expected(key));
         found.did_you_mean = nearest.map(str::to_owned);
         None
+    }
+
+    /// A word, or a table of keys each of which is judged like one of a scene's tables.
+    fn item(&mut self, key: &Key, (words, keys): (&[&str], &'static [Key]), path: &str, node: &Node) -> Option<Item> {
+        match &node.raw {
+            Raw::Branch(branch) => self.item_table(keys, path, branch).map(Item::Table),
+            Raw::Text(_) => self.choice(key, words, path, node).map(Item::Word),
+            _ => {
+                self.mistyped(key, path, node);
+                None
+            }
+        }
+    }
+
+    fn item_table(
+        &mut self,
+        keys: &'static [Key],
+        path: &str,
+        branch: &Branch,
+    ) -> Option<BTreeMap<&'static str, Value>> {
+        let mut values = BTreeMap::new();
+        let mut whole = true;
+        for twig in &branch.twigs {
+            let inner = format!("{path}.{}", twig.key);
+            let Some(key) = keys.iter().find(|key| key.name == twig.key) else {
+                let mut found = self.source.error(&twig.key_origin, &inner, "unknown key");
+                found.did_you_mean = suggest::nearest(&twig.key, keys.iter().map(|key| key.name)).map(str::to_owned);
+                found.remedy = Some(format!("the keys allowed there are {}", names(keys)));
+                self.push(found);
+                whole = false;
+                continue;
+            };
+            match self.value(key, &inner, &twig.node) {
+                Some(value) => {
+                    values.insert(key.name, value);
+                }
+                None => whole = false,
+            }
+        }
+        whole.then_some(values)
     }
 
     fn flag(&mut self, key: &Key, path: &str, node: &Node) -> Option<bool> {

@@ -36,7 +36,7 @@ pub enum Occurrence {
 }
 
 /// One key of a table.
-#[derive(Debug)]
+#[derive(Debug, PartialEq)]
 pub struct Key {
     /// Name within its table.
     pub name: &'static str,
@@ -81,12 +81,23 @@ pub struct Reserved {
 pub enum Presence {
     /// Must be given wherever its table is.
     Required,
+    /// Must be given with these words of the key that it goes with ([`Key::only_with`]); optional with the others.
+    RequiredWith(&'static [&'static str]),
+    /// Must be given where this key of the same table is not.
+    RequiredWithout(&'static str),
     /// May be left out; nothing stands in for it here.
     Optional,
     /// Stands for this TOML value when left out.
     Default(&'static str),
     /// Stands for this TOML value when left out, where the sibling key is given; else it stays absent.
     DefaultWith {
+        /// The other key of the same table.
+        sibling: &'static str,
+        /// In TOML.
+        value: &'static str,
+    },
+    /// Stands for this TOML value when left out, where the sibling key is not given; else it stays absent.
+    DefaultWithout {
         /// The other key of the same table.
         sibling: &'static str,
         /// In TOML.
@@ -127,8 +138,14 @@ pub enum Kind {
     Pair(Dimension, Range),
     /// An array of any number of quantities.
     List(Dimension, Range),
+    /// An array of any number of bare numbers.
+    Numbers(Range),
     /// An array of two words.
     ChoicePair(&'static [&'static str]),
+    /// One of some words, or a table of some keys.
+    WordOrTable(&'static [&'static str], &'static [Key]),
+    /// An array of two, each one of some words or a table of some keys.
+    WordOrTablePair(&'static [&'static str], &'static [Key]),
     /// An array of two names.
     NamePair,
     /// A quantity that may have one of several units, by which it is understood.

@@ -5,9 +5,9 @@ use crate::resolve::Resolved;
 use crate::scene::{BeamScene, BlockScene, Placement};
 use crate::simulation::Simulation;
 use crate::volume::{Volume, expected_seconds};
-use crate::{doubts, stability};
+use crate::{doubts, stability, wording};
 use std::f64::consts::TAU;
-use teeter_beam::Beam;
+use teeter_beam::{Axial, Beam};
 
 /// A block, as far as one wants to check it.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,15 +35,29 @@ pub struct BeamOutlook {
     pub dofs: usize,
     /// How its matrix is solved.
     pub backend: &'static str,
-    /// First frequency of the continuous beam, Hz.
+    /// Its theory, as in a scene.
+    pub theory: &'static str,
+    /// The words for its supports at the ends.
+    pub supports: [&'static str; 2],
+    /// Supports between the ends.
+    pub inner_supports: usize,
+    /// What happens along its axis; `None` where nothing is modelled.
+    pub axial: Option<&'static str>,
+    /// First elastic frequency, Hz.
     pub first_frequency: Option<f64>,
+    /// Whether that is one of the continuous beam; else it is one of the finite elements.
+    pub frequency_is_exact: bool,
     /// Circular frequency of the highest mode of the mesh times the step: over 1, the mode is not resolved in time (the scheme is
     /// stable all the same for θ ≥ ½).
     pub highest_frequency_step: Option<f64>,
     /// Span, m.
     pub span: f64,
-    /// Largest static deflection under the blocks' weight, m.
+    /// Largest static deflection under the blocks' weight and its own, where that acts, m.
     pub sag: Option<f64>,
+    /// Whether its own weight acts.
+    pub self_weight: bool,
+    /// Bending moment at which its own section (not that of a segment) begins to yield, N m, where that is known.
+    pub yield_moment: Option<f64>,
 }
 
 /// What a run will be like.
@@ -107,15 +121,33 @@ impl Outlook {
 impl BeamOutlook {
     fn of(beam: &BeamScene, model: &Beam, step: f64) -> Self {
         let spec = &beam.spec;
+        let first = stability::first_frequency(spec);
         Self {
             name: beam.name.clone(),
             elements: model.elements(),
             dofs: model.free_dofs(),
-            backend: "banded Cholesky, factorised once",
-            first_frequency: spec.circular_frequency(1).ok().map(|omega| omega / TAU),
+            backend: wording::backend(beam),
+            theory: wording::theory(beam),
+            supports: spec.supports.map(wording::support),
+            inner_supports: spec.inner_supports.len(),
+            axial: match spec.axial {
+                Axial::Held => Some("held along its axis, a deflection stretches it"),
+                Axial::Elastic { .. } => Some("elastic along its axis"),
+                _ => None,
+            },
+            first_frequency: first.map(|(omega, _)| omega / TAU),
+            frequency_is_exact: first.is_some_and(|(_, exact)| exact),
             highest_frequency_step: stability::highest_eigenvalue(spec).map(|squared| squared.sqrt() * step),
             span: spec.span,
             sag: None,
+            self_weight: beam.self_weight,
+            yield_moment: yield_moment(beam),
         }
     }
+}
+
+/// σ_y I/c; none of a section given directly.
+fn yield_moment(beam: &BeamScene) -> Option<f64> {
+    let modulus = beam.spec.section.section_modulus;
+    beam.yield_strength.map(|strength| strength * modulus).filter(|moment| *moment > 0.0)
 }

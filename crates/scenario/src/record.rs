@@ -1,4 +1,6 @@
-//! Files of two columns, time and value: the tables of signals.
+//! Files of columns of numbers: the tables of signals, time and value, and the shapes of beams.
+
+use std::ops::RangeInclusive;
 
 use teeter_integrator::{SignalError, Table};
 
@@ -8,12 +10,38 @@ pub const LARGEST_RECORD: usize = 64_000_000;
 /// Most rows: a signal takes 32 bytes for each.
 pub const MOST_ROWS: usize = 2_000_000;
 
-/// Reads a table of two columns, t in s and value, its times moved by `start`: separated by commas, a first row of words
-/// is a heading, lines that start with `#` are comments.
+/// A table read: its columns, and the line of each row.
+pub(crate) struct Columns {
+    pub(crate) columns: Vec<Vec<f64>>,
+    pub(crate) lines: Vec<u64>,
+}
+
+/// Reads a table of two columns, t in s and value, its times moved by `start`.
 ///
 /// # Errors
 /// What is wrong, and in which line.
 pub(crate) fn read(bytes: &[u8], start: f64) -> Result<Table, String> {
+    let Columns { columns, lines } = columns(bytes, 2..=2, "two, t and value")?;
+    let [mut times, values] = <[Vec<f64>; 2]>::try_from(columns).unwrap_or_default();
+    times.iter_mut().for_each(|t| *t += start);
+    Table::new(times, values).map_err(|error| match error {
+        SignalError::Row { row, what } => {
+            let line = row.checked_sub(1).and_then(|row| lines.get(row)).copied().unwrap_or_default();
+            format!("line {line}: {what}")
+        }
+        SignalError::Rows(rows) => {
+            format!("it has {rows} row{} of numbers, but a table needs two or more", if rows == 1 { "" } else { "s" })
+        }
+        error => error.to_string(),
+    })
+}
+
+/// Reads a table of numbers: separated by commas, as many columns in each row, a first row of words is a heading, lines that
+/// start with `#` are comments. `names` are the columns in words, for messages.
+///
+/// # Errors
+/// What is wrong, and in which line.
+pub(crate) fn columns(bytes: &[u8], count_of: RangeInclusive<usize>, names: &str) -> Result<Columns, String> {
     if bytes.len() > LARGEST_RECORD {
         return Err(format!("larger than {} MB, the limit of a table", LARGEST_RECORD / 1_000_000));
     }
@@ -25,7 +53,7 @@ pub(crate) fn read(bytes: &[u8], start: f64) -> Result<Table, String> {
         .trim(csv::Trim::All)
         .from_reader(bytes);
     // No memory is taken before there is a row for it.
-    let (mut times, mut values, mut lines) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut columns, mut lines): (Vec<Vec<f64>>, Vec<u64>) = (Vec::new(), Vec::new());
     let mut count = Count { bytes, at: 0, line: 1 };
     let mut row = csv::ByteRecord::new();
     let mut first = true;
@@ -40,17 +68,19 @@ pub(crate) fn read(bytes: &[u8], start: f64) -> Result<Table, String> {
         if heading {
             continue;
         }
-        if row.len() != 2 {
+        let as_before = columns.is_empty() || row.len() == columns.len();
+        if !count_of.contains(&row.len()) || !as_before {
             return Err(format!(
-                "line {line}: {} column{}, but a table has two, t and value, separated by a comma",
+                "line {line}: {} column{}, but a table has {names}, separated by a comma",
                 row.len(),
                 if row.len() == 1 { "" } else { "s" }
             ));
         }
-        if times.len() == MOST_ROWS {
+        columns.resize_with(row.len(), Vec::new);
+        if lines.len() == MOST_ROWS {
             return Err(format!("line {line}: more than {MOST_ROWS} rows, the limit of a table"));
         }
-        for (cell, column) in row.iter().zip([&mut times, &mut values]) {
+        for (cell, column) in row.iter().zip(&mut columns) {
             match number(cell) {
                 Some(value) => column.push(value),
                 None => {
@@ -61,17 +91,7 @@ pub(crate) fn read(bytes: &[u8], start: f64) -> Result<Table, String> {
         }
         lines.push(line);
     }
-    times.iter_mut().for_each(|t| *t += start);
-    Table::new(times, values).map_err(|error| match error {
-        SignalError::Row { row, what } => {
-            let line = row.checked_sub(1).and_then(|row| lines.get(row)).copied().unwrap_or_default();
-            format!("line {line}: {what}")
-        }
-        SignalError::Rows(rows) => {
-            format!("it has {rows} row{} of numbers, but a table needs two or more", if rows == 1 { "" } else { "s" })
-        }
-        error => error.to_string(),
-    })
+    Ok(Columns { columns, lines })
 }
 
 /// Counts lines. (The reader's own count stands at the end of the row before: ahead of blank lines and comments.)

@@ -4,7 +4,10 @@ mod beams;
 mod blocks;
 mod contacts;
 mod motions;
+mod sections;
+mod shape;
 mod signals;
+mod supports;
 mod timing;
 
 use std::collections::BTreeMap;
@@ -146,8 +149,10 @@ impl<'a, 'f> Resolver<'a, 'f> {
         // Each part is resolved whatever became of the others, so that all errors are found.
         let signals: Vec<_> = doc.names("signal").into_iter().map(|name| self.signal(name)).collect();
         let ground = self.ground(&signals);
-        let beams: Vec<_> = doc.names("beam").into_iter().map(|name| self.beam(name, &signals)).collect();
-        self.mesh_sizes(&beams);
+        let mut beams: Vec<_> = doc.names("beam").into_iter().map(|name| self.beam(name, &signals)).collect();
+        if self.mesh_sizes(&beams) {
+            beams.iter_mut().flatten().for_each(|beam| self.assembled(beam));
+        }
         let contacts: Vec<_> = doc.names("contact").into_iter().map(|name| self.contact(name)).collect();
         let joined = self.joined(&contacts);
         let blocks: Vec<_> =

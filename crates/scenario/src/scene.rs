@@ -90,12 +90,20 @@ pub struct BeamScene {
     pub name: String,
     /// Its numbers.
     pub spec: teeter_beam::BeamSpec,
-    /// Thickness, m.
+    /// Thickness, m; 0 where a section that is given directly has none.
     pub thickness: f64,
+    /// Stress at which its material yields, Pa.
+    pub yield_strength: Option<f64>,
     /// Whether contacts lie on the top fibre, not on the axis.
     pub top: bool,
     /// Whether it starts in equilibrium under the blocks that stand on it.
     pub static_start: bool,
+    /// The coordinates of the shape that it starts in; empty for none of its own.
+    pub shape: Vec<f64>,
+    /// Whether gravity acts on it.
+    pub self_weight: bool,
+    /// How its matrices answer forces and contacts.
+    pub backend: teeter_integrator::WBackend,
     /// Place of its left end, m.
     pub position: [f64; 2],
     /// Places along the span whose deflection is written, m.
@@ -187,6 +195,14 @@ pub struct SolverScene {
     pub max_iterations: u32,
     /// Whether an unsolved step ends the run.
     pub require_convergence: bool,
+}
+
+impl BeamScene {
+    /// Whether its theory is Timoshenko's.
+    #[must_use]
+    pub fn is_sheared(&self) -> bool {
+        self.spec.section.shear_stiffness.is_finite()
+    }
 }
 
 impl BlockScene {

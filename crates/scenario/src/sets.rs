@@ -116,20 +116,27 @@ fn unknown(root: &Branch, path: &str, origin: &Origin, source: &Source) -> Diagn
     }
 }
 
+/// The paths that a pattern stands for, each with a dot at its end: a star is every name that the scene has there.
+fn named_paths(branch: &Branch, pattern: &str, above: &str, all: &mut Vec<String>) {
+    let Some((group, below)) = pattern.split_once(".*") else {
+        all.push(if pattern.is_empty() { above.to_owned() } else { format!("{above}{pattern}.") });
+        return;
+    };
+    let Some(Raw::Branch(named)) = branch.get(group).map(|node| &node.raw) else { return };
+    for twig in &named.twigs {
+        if let Raw::Branch(inner) = &twig.node.raw {
+            let above = format!("{above}{group}.{}.", twig.key);
+            named_paths(inner, below.trim_start_matches('.'), &above, all);
+        }
+    }
+}
+
 /// The paths of all keys that a scene with these names can have.
 fn paths(root: &Branch) -> Vec<String> {
     let mut all = Vec::new();
     for table in TABLES {
-        let prefixes: Vec<String> = match table.pattern.split_once(".*") {
-            None if table.pattern.is_empty() => vec![String::new()],
-            None => vec![format!("{}.", table.pattern)],
-            Some((group, below)) => match root.get(group).map(|node| &node.raw) {
-                Some(Raw::Branch(named)) => {
-                    named.twigs.iter().map(|twig| format!("{group}.{}{below}.", twig.key)).collect()
-                }
-                _ => Vec::new(),
-            },
-        };
+        let mut prefixes = Vec::new();
+        named_paths(root, table.pattern, "", &mut prefixes);
         for prefix in prefixes {
             all.extend(table.keys.iter().map(|key| format!("{prefix}{}", key.name)));
             if all.len() > MOST_COMPARED {

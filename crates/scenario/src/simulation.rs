@@ -3,7 +3,7 @@
 use crate::driven;
 use crate::overlap::{Box2, Overlap, deepest_overlap};
 use crate::placement::{PlacementError, Standing, block_pose};
-use crate::scene::{Placement, Scene, SchemeName, Support, Time};
+use crate::scene::{BeamScene, Placement, Scene, SchemeName, Support, Time};
 use crate::settling::{Start, StaticStart};
 use std::ops::Range;
 use std::sync::Arc;
@@ -201,7 +201,10 @@ impl Simulation {
         let incline = scene.ground.as_ref().map_or(0.0, |ground| ground.incline);
         let line = if let [x, y, slope] = *ground_start { [x, y, slope] } else { [0.0, 0.0, incline] };
 
-        let deflections: Vec<Vec<f64>> = beams.iter().map(|(beam, _)| vec![0.0; beam.dofs()]).collect();
+        let shape = |(of, (beam, _)): (&BeamScene, &(Arc<Beam>, _))| {
+            if of.shape.len() == beam.dofs() { of.shape.clone() } else { vec![0.0; beam.dofs()] }
+        };
+        let deflections: Vec<Vec<f64>> = scene.beams.iter().zip(&beams).map(shape).collect();
         let mut poses = Vec::with_capacity(blocks.len());
         for block in &scene.blocks {
             let Placement::On { support: Support::Beam(k), .. } = block.placement else {

@@ -1,6 +1,6 @@
 //! The largest stable step of a beam for θ < ½ (`docs/theory.md` §5).
 
-use teeter_beam::{Beam, BeamSpec, MatrixWeights};
+use teeter_beam::{Beam, BeamError, BeamSpec, MatrixWeights};
 
 /// Largest step (s) at which no mode of the beam grows, for θ < ½; 0 without damping.
 ///
@@ -20,6 +20,20 @@ pub(crate) fn largest_stable_step(spec: &BeamSpec, theta: f64) -> f64 {
     let highest = if zeta <= 1.0 { 2.0 * zeta / omega } else { 2.0 / (omega * (zeta + (zeta * zeta - 1.0).sqrt())) };
     let lowest = if d > 0.0 { 2.0 / d } else { f64::INFINITY };
     highest.min(lowest) / (1.0 - 2.0 * theta)
+}
+
+/// The first elastic circular frequency, rad/s: of the continuous beam where an equation gives it (then `true`), else of the
+/// finite elements.
+pub(crate) fn first_frequency(spec: &BeamSpec) -> Option<(f64, bool)> {
+    match spec.circular_frequency(1) {
+        Err(BeamError::NoFrequencyEquation) => {
+            let beam = Beam::new(spec.clone()).ok()?;
+            // Up and down, turning, along the axis: at most three rigid motions come before it.
+            let modes = beam.modes(beam.free_dofs().min(4)).ok()?;
+            modes.circular_frequencies().get(modes.rigid()).map(|omega| (*omega, false))
+        }
+        exact => exact.ok().map(|omega| (omega, true)),
+    }
 }
 
 /// Rounds of the power iteration; the estimate rises towards ω² from below.

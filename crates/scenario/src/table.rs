@@ -1,10 +1,13 @@
 //! The entries of the table of keys. See [`crate::keys`] for what the columns mean.
 
+mod beam_keys;
+
 use std::f64::consts::FRAC_PI_2;
 
 use crate::dimension::Dimension;
 use crate::keys::{Bound, Key, Kind, Occurrence, OnlyWith, Presence, Range, Reserved, Table};
 use crate::measure::{CONTACT_DAMPING, CONTACT_STIFFNESS};
+use beam_keys::*;
 
 const fn key(name: &'static str, kind: Kind, presence: Presence, example: &'static str, doc: &'static str) -> Key {
     Key { name, kind, presence, reserved: &[], example, doc, bytes_each: 0, only_with: None }
@@ -36,6 +39,8 @@ const QUARTER_TURN: Range = Range::new(Bound::Closed(-FRAC_PI_2), Bound::Closed(
 /// Steeper ground is a wall.
 const INCLINE: Range = Range::new(Bound::Closed(-MAX_INCLINE), Bound::Closed(MAX_INCLINE));
 const MAX_INCLINE: f64 = 80.0 * FRAC_PI_2 / 90.0;
+const POISSON_RATIO: Range = Range::new(Bound::Open(-1.0), Bound::Closed(0.5));
+const GRADING: Range = Range::new(Bound::Closed(1.0), Bound::Closed(1000.0));
 const EXPONENT: Range = Range::new(Bound::Closed(1.0), Bound::Closed(10.0));
 const OSCILLATING: &[&str] = &["harmonic", "one-sine", "ricker"];
 const DURATION: Range = Range::POSITIVE.sizes(1e-15, 1e12);
@@ -47,7 +52,7 @@ const ELEMENT_BYTES: u64 = 1000;
 /// Scales with the blocks, down to 1e-11 of the smallest side allowed.
 const GAP: Range = Range::NOT_NEGATIVE.sizes(1e-30, 1e12);
 
-use Presence::{Default, DefaultWith, NotYet, Optional, Required};
+use Presence::{Default, DefaultWith, DefaultWithout, NotYet, Optional, Required, RequiredWithout};
 
 const SIZE: Kind = Kind::Quantity(Dimension::LENGTH, Range::POSITIVE);
 const TIME: Kind = Kind::Quantity(Dimension::TIME, DURATION);
@@ -145,6 +150,8 @@ pub static TABLES: &[Table] = &[
         keys: &[
             key("density", Kind::Quantity(Dimension::DENSITY, Range::POSITIVE), Required, "\"2700 kg/m^3\"", "Mass per volume."),
             key("youngs_modulus", Kind::Quantity(Dimension::PRESSURE, MODULUS), Optional, "\"69 GPa\"", "Young's modulus; a beam needs it, a rigid block does not."),
+            key("poisson_ratio", Kind::Number(POISSON_RATIO), Optional, "0.33", "Poisson's ratio; a beam with theory = timoshenko needs it."),
+            key("yield_strength", Kind::Quantity(Dimension::PRESSURE, MODULUS), Optional, "\"240 MPa\"", "Stress at which it yields; `check` tells the bending moment at which a beam of it begins to."),
         ],
     },
     Table {
@@ -165,19 +172,28 @@ pub static TABLES: &[Table] = &[
     Table {
         pattern: "beam.*",
         occurrence: Occurrence::Named,
-        doc: "An elastic beam of rectangular section.",
+        doc: "An elastic beam, straight and level.",
         keys: &[
-            key("material", Kind::Name, Required, "\"aluminium\"", "Name of its material."),
+            SECTION,
+            key("material", Kind::Name, Required, "\"aluminium\"", "Name of its material.").only_with("section", PROFILES),
             key("span", SIZE, Required, "\"36 cm\"", "Length between its ends."),
-            key("width", SIZE, Required, "\"3 cm\"", "Side of its section out of the plane."),
-            key("thickness", SIZE, Required, "\"1.5 mm\"", "Side of its section in the plane."),
-            key("elements", Kind::Integer { min: 1, max: MAX_ELEMENTS }, Required, "20", "Number of finite elements.").taking(ELEMENT_BYTES),
-            key("supports", Kind::ChoicePair(&["pinned", "clamped", "free"]), Default("[\"pinned\", \"pinned\"]"), "[\"pinned\", \"pinned\"]", "How its left and right ends are held.").reserving(&[later("guided"), later("spring"), later("rotational_spring")]),
-            key("viscous_damping", Kind::Quantity(Dimension::DAMPING_PER_LENGTH, Range::NOT_NEGATIVE), Optional, "\"0.4 N s/m^2\"", "Coefficient c of the viscous term of the beam equation; one of the three ways to give damping."),
-            key("start", Kind::Choice(&["undeformed", "static"]), Default("\"undeformed\""), "\"static\"", "Shape at the start: undeformed, or in equilibrium under the blocks and the loads of t = 0; flat blocks follow it, tilted ones are held as placed."),
+            WIDTH, THICKNESS, DIAMETER, WALL, HEIGHT, WEB, FLANGE,
+            BENDING_STIFFNESS, MASS_PER_LENGTH, SHEAR_STIFFNESS, ROTATORY_INERTIA, AXIAL_STIFFNESS,
+            key("theory", Kind::Choice(&["euler-bernoulli", "timoshenko"]), Default("\"euler-bernoulli\""), "\"timoshenko\"", "Whether its sections stay normal to the axis, or shear and rotatory inertia count; a thickness over a tenth of the span calls for timoshenko."),
+            key("elements", Kind::Integer { min: 1, max: MAX_ELEMENTS }, RequiredWithout("nodes"), "20", "Number of finite elements; supports between the ends, masses, and ends of segments and foundations may add a few.").taking(ELEMENT_BYTES),
+            key("nodes", Kind::List(Dimension::LENGTH, Range::NOT_NEGATIVE), Optional, "[\"0 cm\", \"10 cm\", \"36 cm\"]", "Places of its nodes, rising from 0 to the span, in place of elements."),
+            key("supports", Kind::WordOrTablePair(SUPPORTS, SUPPORT_KEYS), Default("[\"pinned\", \"pinned\"]"), "[\"pinned\", { spring = \"1 kN/m\" }]", "How its left and right ends are held."),
+            key("axial", Kind::Choice(&["free", "held", "elastic"]), Default("\"free\""), "\"held\"", "Along the axis: free, no axial motion is modelled; held, both ends are, and a deflection stretches the beam (von Karman; theta = 0.5 only); elastic, axial motion with its inertia, which doesn't feel the deflection."),
+            key("axial_supports", Kind::ChoicePair(&["held", "free"]), Default("[\"held\", \"held\"]"), "[\"held\", \"free\"]", "Whether its left and right ends are held along the axis.").only_with("axial", &["elastic"]),
+            key("axial_force", Kind::Quantity(Dimension::FORCE, Range::ANY), Default("\"0 N\""), "\"100 N\"", "Axial force that is there whatever the beam does, tension positive; less than the buckling load."),
+            key("viscous_damping", Kind::Quantity(Dimension::DAMPING_PER_LENGTH, Range::NOT_NEGATIVE), Optional, "\"0.4 N s/m^2\"", "Coefficient c of the viscous term of the beam equation, which damps high modes ever less; one of the three ways to give damping."),
+            key("modal_damping", Kind::Numbers(Range::NOT_NEGATIVE), NotYet, "[0.01, 0.02]", "Damping ratios of the first modes, of a beam in modes."),
+            key("start", Kind::WordOrTable(&["undeformed", "static"], START_KEYS), Default("\"undeformed\""), "\"static\"", "Shape at the start: undeformed, in equilibrium under the blocks and the loads of t = 0 (flat blocks follow it, tilted ones are held as placed), that of a mode, or that of a file."),
             key("surface", Kind::Choice(&["axis", "top"]), Default("\"axis\""), "\"axis\"", "Where contacts lie: on the axis, or half a thickness above it."),
             key("position", POINT, Default("[\"0 m\", \"0 m\"]"), "[\"0 m\", \"0 m\"]", "Where its left end is, x and y."),
-            key("self_weight", Kind::Flag, Default("false"), "false", "Whether gravity acts on the beam itself.").reserving(&[Reserved { value: "true", instead: "leave it out or write false: gravity does not act on beams" }]),
+            key("self_weight", Kind::Flag, Default("false"), "true", "Whether gravity acts on the beam itself and the masses on it; deflections then count from the straight axis, else from the shape under the weight."),
+            key("model", Kind::Choice(&["full"]), Default("\"full\""), "\"full\"", "In which coordinates it moves: those of all its nodes.").reserving(&[later("modes")]),
+            key("backend", Kind::Choice(&["auto", "banded", "sparse", "cached-columns"]), Default("\"auto\""), "\"auto\"", "How its matrices answer forces and contacts: the same motion up to rounding, in other times; auto takes the fastest one by measurement."),
             key("probes", Kind::List(Dimension::LENGTH, Range::NOT_NEGATIVE), Optional, "[\"9 cm\"]", "Places along the beam, from its left end, whose deflection is written out."),
         ],
     },
@@ -186,17 +202,70 @@ pub static TABLES: &[Table] = &[
         occurrence: Occurrence::Inline,
         doc: "Viscous damping given by the damping ratio of one mode; one of the three ways to give damping.",
         keys: &[
-            key("mode", Kind::Integer { min: 1, max: 100_000 }, Required, "1", "Number of the mode, from 1."),
+            key("mode", Kind::Integer { min: 1, max: 100_000 }, Required, "1", "Number of the elastic mode, from 1; up to 20 but for a uniform beam that its end supports alone hold."),
             key("ratio", Kind::Number(Range::NOT_NEGATIVE), Required, "0.01", "Damping over critical damping in that mode."),
         ],
     },
     Table {
         pattern: "beam.*.rayleigh",
         occurrence: Occurrence::Inline,
-        doc: "Rayleigh damping, C = a0 M + a1 K; one of the three ways to give damping.",
+        doc: "Rayleigh damping, C = a0 M + a1 K: a0 damps low modes most, a1 high ones; given by its factors, or by the damping ratios at two frequencies. One of the three ways to give damping.",
         keys: &[
-            key("a0", Kind::Quantity(Dimension::RATE, Range::NOT_NEGATIVE), Default("\"0 1/s\""), "\"0.5 1/s\"", "Factor of the mass matrix."),
-            key("a1", Kind::Quantity(Dimension::TIME, Range::NOT_NEGATIVE), Default("\"0 s\""), "\"10 us\"", "Factor of the stiffness matrix."),
+            key("a0", Kind::Quantity(Dimension::RATE, Range::NOT_NEGATIVE), DefaultWithout { sibling: "frequencies", value: "\"0 1/s\"" }, "\"0.5 1/s\"", "Factor of the mass matrix."),
+            key("a1", Kind::Quantity(Dimension::TIME, Range::NOT_NEGATIVE), DefaultWithout { sibling: "frequencies", value: "\"0 s\"" }, "\"10 us\"", "Factor of the stiffness matrix."),
+            key("frequencies", Kind::Pair(Dimension::RATE, Range::POSITIVE), Optional, "[\"10 Hz\", \"80 Hz\"]", "Two frequencies, in cycles per second, whose damping ratios are given; in place of a0 and a1."),
+            key("ratios", Kind::Numbers(Range::NOT_NEGATIVE), Optional, "[0.01, 0.01]", "The damping ratios at these two frequencies."),
+        ],
+    },
+    Table {
+        pattern: "beam.*.mesh",
+        occurrence: Occurrence::Inline,
+        doc: "A graded mesh: elements get shorter towards a place, evenly with the distance from it.",
+        keys: &[
+            key("towards", Kind::Quantity(Dimension::LENGTH, Range::NOT_NEGATIVE), Required, "\"18 cm\"", "Place along the beam where the elements are shortest."),
+            key("ratio", Kind::Number(GRADING), Required, "4.0", "Length of the elements farthest from that place over that of the elements at it."),
+        ],
+    },
+    Table {
+        pattern: "beam.*.segment.*",
+        occurrence: Occurrence::Named,
+        doc: "A part of the beam with a section of its own; where two overlap, the later one holds.",
+        keys: &[
+            FROM, TO, SECTION,
+            key("material", Kind::Name, Optional, "\"steel\"", "Name of its material; when left out, that of the beam.").only_with("section", PROFILES),
+            WIDTH, THICKNESS, DIAMETER, WALL, HEIGHT, WEB, FLANGE,
+            BENDING_STIFFNESS, MASS_PER_LENGTH, SHEAR_STIFFNESS, ROTATORY_INERTIA, AXIAL_STIFFNESS,
+        ],
+    },
+    Table {
+        pattern: "beam.*.support.*",
+        occurrence: Occurrence::Named,
+        doc: "A support between the ends of the beam: of a kind, or by springs and dashpots.",
+        keys: &[
+            PLACE,
+            key("kind", Kind::Choice(&["pinned", "clamped", "guided"]), Optional, "\"pinned\"", "How the beam is held there."),
+            SPRING, DASHPOT, DEFLECTION, ROTATIONAL_SPRING, ROTATIONAL_DASHPOT, ROTATION,
+        ],
+    },
+    Table {
+        pattern: "beam.*.mass.*",
+        occurrence: Occurrence::Named,
+        doc: "A mass that is fixed to the beam.",
+        keys: &[
+            PLACE,
+            key("mass", Kind::Quantity(Dimension::MASS, Range::NOT_NEGATIVE), Required, "\"0.2 kg\"", "Its mass."),
+            key("inertia", Kind::Quantity(Dimension::INERTIA, Range::NOT_NEGATIVE.sizes(1e-18, 1e12)), Default("\"0 kg m^2\""), "\"1e-4 kg m^2\"", "Its moment of inertia about the axis of the beam's rotation."),
+        ],
+    },
+    Table {
+        pattern: "beam.*.foundation.*",
+        occurrence: Occurrence::Named,
+        doc: "A foundation under the beam (Winkler): a force per length -k w - c dw/dt.",
+        keys: &[
+            Key { presence: Default("\"0 m\""), ..FROM },
+            Key { presence: Optional, doc: "Where it ends; when left out, at the beam's right end.", ..TO },
+            key("stiffness", Kind::Quantity(Dimension::PRESSURE, SPRING_STIFFNESS), Required, "\"10 kN/m^2\"", "Stiffness k per length."),
+            key("damping", Kind::Quantity(Dimension::DAMPING_PER_LENGTH, Range::NOT_NEGATIVE), Default("\"0 N s/m^2\""), "\"5 N s/m^2\"", "Damping c per length."),
         ],
     },
     Table {
@@ -278,13 +347,16 @@ pub static TABLES: &[Table] = &[
     Table {
         pattern: "load.*",
         occurrence: Occurrence::Named,
-        doc: "A load on a beam: at a point, or the same all along it.",
+        doc: "A load on a beam: at a point that may move, or distributed evenly over the beam or a part of it.",
         keys: &[
             key("on", Kind::Name, Required, "\"table\"", "The beam."),
-            key("at", Kind::Quantity(Dimension::LENGTH, Range::NOT_NEGATIVE), Optional, "\"9 cm\"", "Place along the beam, from its left end, of force and couple."),
+            key("at", Kind::Quantity(Dimension::LENGTH, Range::NOT_NEGATIVE), Optional, "\"9 cm\"", "Place along the beam, from its left end, of force and couple; of a moving force where it is at t = 0."),
             key("force", Kind::Quantity(Dimension::FORCE, Range::ANY), Optional, "\"-10 N\"", "Force at that place, upwards positive."),
             key("couple", Kind::Quantity(Dimension::ENERGY, Range::ANY), Optional, "\"0.1 N m\"", "Couple at that place, counter-clockwise positive."),
-            key("distributed", Kind::Quantity(Dimension::STIFFNESS, Range::ANY), Optional, "\"-10 N/m\"", "Force per length all along the beam, upwards positive; in place of at, force and couple."),
+            key("speed", Kind::Quantity(Dimension::VELOCITY, Range::ANY), Optional, "\"2 m/s\"", "Velocity of the force along the beam; off the beam it acts no more."),
+            key("distributed", Kind::Quantity(Dimension::STIFFNESS, Range::ANY), Optional, "\"-10 N/m\"", "Force per length, upwards positive; in place of at, force and couple."),
+            Key { presence: Optional, doc: "Where a distributed load begins, from the beam's left end; when left out, there.", ..FROM },
+            Key { presence: Optional, doc: "Where it ends; when left out, at the beam's right end.", ..TO },
             SIGNAL,
         ],
     },

@@ -1,7 +1,9 @@
 //! Decoded values, and their way back to TOML.
 
+use std::collections::BTreeMap;
+
 use crate::dimension::Dimension;
-use crate::keys::Kind;
+use crate::keys::{Key, Kind};
 use crate::measure::Measure;
 use crate::quantity;
 
@@ -25,6 +27,69 @@ pub enum Value {
     TextPair([String; 2]),
     /// A quantity by one of the units that its key takes.
     Measure(Measure),
+    /// A word or a table.
+    Item(Item),
+    /// Two of them.
+    ItemPair([Item; 2]),
+}
+
+/// A word, or a table of keys where a word would not say enough.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Item {
+    /// A word.
+    Word(String),
+    /// The keys that are given, by name.
+    Table(BTreeMap<&'static str, Value>),
+}
+
+impl Item {
+    /// The number or quantity (in SI units) of a key of the table.
+    #[must_use]
+    pub fn number(&self, key: &str) -> Option<f64> {
+        match self {
+            Self::Table(values) => match values.get(key)? {
+                Value::Number(number) => Some(*number),
+                _ => None,
+            },
+            Self::Word(_) => None,
+        }
+    }
+
+    /// The whole number of a key of the table.
+    #[must_use]
+    pub fn integer(&self, key: &str) -> Option<i64> {
+        match self {
+            Self::Table(values) => match values.get(key)? {
+                Value::Integer(number) => Some(*number),
+                _ => None,
+            },
+            Self::Word(_) => None,
+        }
+    }
+
+    /// The text of a key of the table.
+    #[must_use]
+    pub fn text(&self, key: &str) -> Option<&str> {
+        match self {
+            Self::Table(values) => match values.get(key)? {
+                Value::Text(text) => Some(text),
+                _ => None,
+            },
+            Self::Word(_) => None,
+        }
+    }
+
+    fn to_toml(&self, keys: &[Key]) -> String {
+        match self {
+            Self::Word(word) => quote(word),
+            Self::Table(values) => {
+                let given = keys.iter().filter_map(|key| Some((key, values.get(key.name)?)));
+                let pairs: Vec<String> =
+                    given.map(|(key, value)| format!("{} = {}", key.name, value.to_toml(key.kind))).collect();
+                if pairs.is_empty() { "{}".to_owned() } else { format!("{{ {} }}", pairs.join(", ")) }
+            }
+        }
+    }
 }
 
 impl Value {
@@ -38,9 +103,11 @@ impl Value {
                 matches!(kind, Kind::Number(_) | Kind::Quantity(..) | Kind::Gravity)
             }
             Self::Pair(_) => matches!(kind, Kind::Pair(..) | Kind::Gravity),
-            Self::List(_) => matches!(kind, Kind::List(..)),
+            Self::List(_) => matches!(kind, Kind::List(..) | Kind::Numbers(_)),
             Self::TextPair(_) => matches!(kind, Kind::ChoicePair(_) | Kind::NamePair),
             Self::Measure(_) => matches!(kind, Kind::Measure(..)),
+            Self::Item(_) => matches!(kind, Kind::WordOrTable(..)),
+            Self::ItemPair(_) => matches!(kind, Kind::WordOrTablePair(..)),
         }
     }
 
@@ -55,11 +122,15 @@ impl Value {
             Self::Number(value) => quoted(value),
             Self::Pair([x, y]) => format!("[{}, {}]", quoted(x), quoted(y)),
             Self::List(values) => {
-                let items: Vec<String> = values.iter().map(quoted).collect();
+                let bare = matches!(kind, Kind::Numbers(_));
+                let show = |value: &f64| if bare { format!("{value:?}") } else { quoted(value) };
+                let items: Vec<String> = values.iter().map(show).collect();
                 format!("[{}]", items.join(", "))
             }
             Self::TextPair([a, b]) => format!("[{}, {}]", quote(a), quote(b)),
             Self::Measure(measure) => quote(&measure.to_string()),
+            Self::Item(item) => item.to_toml(keys_of(kind)),
+            Self::ItemPair([a, b]) => format!("[{}, {}]", a.to_toml(keys_of(kind)), b.to_toml(keys_of(kind))),
         }
     }
 }
@@ -69,6 +140,14 @@ fn dimension_of(kind: Kind) -> Dimension {
         Kind::Quantity(dimension, _) | Kind::Pair(dimension, _) | Kind::List(dimension, _) => dimension,
         Kind::Gravity => Dimension::ACCELERATION,
         _ => Dimension::NONE,
+    }
+}
+
+/// The keys of the tables that may stand for words.
+fn keys_of(kind: Kind) -> &'static [Key] {
+    match kind {
+        Kind::WordOrTable(_, keys) | Kind::WordOrTablePair(_, keys) => keys,
+        _ => &[],
     }
 }
 

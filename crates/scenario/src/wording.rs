@@ -3,6 +3,9 @@
 use crate::diagnostic::printable;
 use crate::dimension::Dimension;
 use crate::keys::{Key, Kind};
+use crate::scene::BeamScene;
+use teeter_beam::Support;
+use teeter_integrator::WBackend;
 
 /// How to give a bare number its unit.
 pub(crate) fn with_unit(number: &str, dimension: Dimension) -> String {
@@ -35,9 +38,18 @@ pub(crate) fn noun(key: &Key) -> String {
         Kind::List(dimension, _) => {
             format!("an array, each item {} with its unit,", dimension.name())
         }
+        Kind::Numbers(_) => "an array of bare numbers".to_owned(),
+        Kind::WordOrTable(..) => "a word in quotes or a table".to_owned(),
+        Kind::WordOrTablePair(..) => "an array of two, each a word in quotes or a table,".to_owned(),
         Kind::ChoicePair(_) | Kind::NamePair => "an array of two words in quotes".to_owned(),
         Kind::Gravity => "an acceleration with its unit, or an array of two,".to_owned(),
     }
+}
+
+/// The names of some keys.
+pub(crate) fn names(keys: &[Key]) -> String {
+    let names: Vec<&str> = keys.iter().map(|key| key.name).collect();
+    names.join(", ")
 }
 
 /// What would be right for a key: for `help:` lines.
@@ -48,6 +60,12 @@ pub fn expected(key: &Key) -> String {
         Kind::ChoicePair(choices) => {
             format!("two of {}, such as {}", choices.join(", "), key.example)
         }
+        Kind::WordOrTable(words, keys) => {
+            format!("built in: {}, or a table of {}", words.join(", "), names(keys))
+        }
+        Kind::WordOrTablePair(words, keys) => {
+            format!("two of {}, or tables of {}; such as {}", words.join(", "), names(keys), key.example)
+        }
         Kind::Flag => "write true or false".to_owned(),
         Kind::Integer { min, max } => {
             format!("a whole number from {min} to {max}, such as {}", key.example)
@@ -57,6 +75,34 @@ pub fn expected(key: &Key) -> String {
             format!("{}, such as {}", noun.trim_end_matches(','), key.example)
         }
     }
+}
+
+/// The word for a support of a beam.
+#[must_use]
+pub fn support(support: Support) -> &'static str {
+    match support {
+        Support::Pinned => "pinned",
+        Support::Clamped => "clamped",
+        Support::Guided => "guided",
+        Support::Elastic { .. } => "elastic",
+        _ => "free",
+    }
+}
+
+/// How the matrices of a beam are solved.
+#[must_use]
+pub fn backend(beam: &BeamScene) -> &'static str {
+    match beam.backend {
+        WBackend::Sparse => "sparse Cholesky, factorised once",
+        WBackend::CachedColumns => "banded Cholesky, factorised once, columns of W kept",
+        _ => "banded Cholesky, factorised once",
+    }
+}
+
+/// The theory of a beam, as in a scene.
+#[must_use]
+pub fn theory(beam: &BeamScene) -> &'static str {
+    if beam.is_sheared() { "timoshenko" } else { "euler-bernoulli" }
 }
 
 /// A size of memory or of files, two digits.

@@ -69,7 +69,8 @@ fn check_refusal(what: &str, folder: &Path, output: &Output, took: Duration) -> 
     assert!(!message.contains("panicked") && !message.contains("stack backtrace"), "{what}: {message}");
     assert!(!message.contains(|c: char| c.is_control() && c != '\n'), "{what}: {message:?}");
     assert!(message.len() < 20_000, "{what}: {} bytes flood the terminal", message.len());
-    let left: Vec<_> = files(folder).into_iter().filter(|name| name != "scene.toml" && name != "quake.csv").collect();
+    let given = ["scene.toml", "quake.csv", "shape.csv"];
+    let left: Vec<_> = files(folder).into_iter().filter(|name| !given.contains(&name.as_str())).collect();
     assert!(left.is_empty(), "{what} left {left:?}");
     message
 }
@@ -94,6 +95,11 @@ fn run_row(row: &Row, missing: &mut String) -> String {
                 std::fs::write(folder.join("quake.csv"), record).unwrap();
             }
             (base() + SHAKEN, &[])
+        }
+        Input::Shape(shape) => {
+            std::fs::write(folder.join("shape.csv"), shape).unwrap();
+            let text = base().replace("elements      = 20", "elements = 2");
+            (text.replace("\"static\"", "{ file = \"shape.csv\" }"), &[])
         }
     };
     std::fs::write(folder.join("scene.toml"), text).unwrap();

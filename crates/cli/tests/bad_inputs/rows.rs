@@ -10,6 +10,8 @@ pub(crate) enum Input {
     Text(&'static str),
     /// The base scene on ground that is shaken by this record; what is absent is a file that isn't there.
     Record(Option<&'static str>),
+    /// The base scene with two elements, that start in the shape of this file.
+    Shape(&'static str),
 }
 
 pub(crate) struct Row {
@@ -22,7 +24,7 @@ pub(crate) struct Row {
     pub(crate) warns: bool,
 }
 
-use Input::{Edit, Record, Set, Text};
+use Input::{Edit, Record, Set, Shape, Text};
 
 const fn refused(number: u32, what: &'static str, input: Input, says: &'static [&'static str]) -> Row {
     Row { number, what, input, says, warns: false }
@@ -77,6 +79,7 @@ pub(crate) fn rows() -> Vec<Row> {
     rows.extend(limits());
     rows.extend(histories());
     rows.extend(laws());
+    rows.extend(beams());
     rows
 }
 
@@ -128,7 +131,7 @@ fn geometry() -> Vec<Row> {
         refused(22, "corner off the beam", Edit(&[("at       = \"18 cm\"", "at = \"35 cm\""), (TILT, "")]), &["block.rocker.at = \"35 cm\"", "bottom-right", "x = 0.365 m", "0.36 m"]),
         refused(23, "corner below the surface", Edit(&[(PLACE, "position = [\"18 cm\", \"6.65 cm\"]"), ("start         = \"static\"", "")]), &["block.rocker.position", "[\"18 cm\", \"6.65 cm\"]", "1.0e-3 m below", "bottom-left", "`table`", "1.4e-10 m"]),
         refused(24, "two blocks in one place", Text(OVERLAPPING), &["block.right.at = \"19 cm\"", "`left`", "`right`", "1.0e-2 m", "not modelled"]),
-        refused(25, "static start of a free beam", Edit(&[("\"pinned\", \"pinned\"", "\"free\", \"free\"")]), &["beam.table.start = \"static\"", "rigid body", "both its ends are free", "clamp one end or pin both"]),
+        refused(25, "static start of a free beam", Edit(&[("\"pinned\", \"pinned\"", "\"free\", \"free\"")]), &["beam.table.start = \"static\"", "rigid body", "both ends are free", "clamp one end or pin both"]),
         refused(25, "static start of a beam on one pin", Edit(&[("\"pinned\", \"pinned\"", "\"pinned\", \"free\"")]), &["beam.table.start = \"static\"", "pinned left end", "support the right end"]),
         refused(25, "static start on a slope without friction", Edit(&[("at       = \"18 cm\"", "at = \"10 cm\""), (TILT, ""), ("friction = 0.5", "friction = 0")]), &["block.rocker.at = \"10 cm\"", "no static equilibrium", "slides", "more friction"]),
         refused(25, "static start that tips", Edit(&[("at       = \"18 cm\"", "at = \"34 cm\""), (TILT, ""), ("\"pinned\", \"pinned\"", "\"clamped\", \"free\"")]), &["block.rocker.at = \"34 cm\"", "no static equilibrium", "tips", "stiffer beam"]),
@@ -196,7 +199,7 @@ fn histories() -> Vec<Row> {
         refused(38, "ramp without duration", Edit(&[("[contact.feet]", "[signal.s]\nshape = \"ramp\"\n[contact.feet]")]), &["signal.s.duration", "missing"]),
         refused(38, "force on a beam", Edit(&[("[contact.feet]", "[force.f]\non = \"table\"\nforce = [\"1 N\", \"0 N\"]\n[contact.feet]")]), &["force.f.on = \"table\"", "is no block", "[load.NAME]"]),
         refused(38, "load off the beam", Edit(&[("[contact.feet]", "[load.f]\non = \"table\"\nat = \"40 cm\"\nforce = \"1 N\"\n[contact.feet]")]), &["load.f.at = \"40 cm\"", "[0, 0.36] m"]),
-        refused(38, "load at a point and all along", Edit(&[("[contact.feet]", "[load.f]\non = \"table\"\nat = \"4 cm\"\ndistributed = \"1 N/m\"\n[contact.feet]")]), &["load.f.at", "distributed all along"]),
+        refused(38, "load at a point and all along", Edit(&[("[contact.feet]", "[load.f]\non = \"table\"\nat = \"4 cm\"\ndistributed = \"1 N/m\"\n[contact.feet]")]), &["load.f.at", "distributed along the beam"]),
         refused(38, "a velocity given twice", Edit(&[("[contact.feet]", "velocity = [\"1 m/s\", \"0 m/s\"]\nmotion = { velocity = [\"1 m/s\", \"0 m/s\"], only = \"x\" }\n[contact.feet]")]), &["block.rocker.velocity", "the motion of the block prescribes"]),
         refused(38, "a wall for ground", Edit(&[("[contact.feet]", "[ground]\nincline = \"85 deg\"\n[contact.feet]")]), &["ground.incline = \"85 deg\"", "[-80 deg, 80 deg]"]),
     ]
@@ -212,5 +215,29 @@ fn laws() -> Vec<Row> {
         refused(8, "stiffness of another exponent", Edit(&[("friction = 0.5", "friction = 0.5\nlaw = \"hunt-crossley\"\nstiffness = \"1e6 N/m^2\"\ndamping = \"1 s/m\"")]), &["contact.feet.stiffness", "exponent 1.5", "N/m^1.5"]),
         refused(8, "linear damping by the exponent", Edit(&[("friction = 0.5", "friction = 0.5\nlaw = \"kelvin-voigt\"\nstiffness = \"1e6 N/m\"\ndamping = \"1 s/m\"")]), &["contact.feet.damping", "N s/m"]),
         refused(9, "theta of moreau-jean-closed", Set(&["time.scheme=moreau-jean-closed", "time.theta=0.6"]), &["time.theta = 0.6", "moreau-jean-closed", "0.5"]),
+    ]
+}
+
+#[rustfmt::skip] // a row a line
+fn beams() -> Vec<Row> {
+    vec![
+        refused(26, "shape that breaks a support", Shape("x,w\n0,0.002\n0.18,0.001\n0.36,0\n"), &["beam.table.start", "breaks the pinned support at x = 0 m", "w = 0.002 m"]),
+        refused(26, "shape with a row too few", Shape("x,w\n0,0\n0.36,0\n"), &["beam.table.start", "expected 3 rows, one for each node, got 2"]),
+        refused(26, "shape of another mesh", Shape("0,0\n0.2,0\n0.36,0\n"), &["line 2: x = 0.2 m, but the node of this row is at 0.18 m"]),
+        refused(26, "shape that is not there", Edit(&[("\"static\"", "{ file = \"shape.csv\" }")]), &["beam.table.start", "there is no such file"]),
+        refused(17, "nodes that go back", Edit(&[("elements      = 20", "nodes = [\"0 cm\", \"20 cm\", \"10 cm\", \"36 cm\"]")]), &["beam.table.nodes", "must rise: 0.1 m follows 0.2 m"]),
+        refused(16, "neither elements nor nodes", Edit(&[("elements      = 20", "")]), &["beam.table.elements: missing"]),
+        refused(3, "wall of a tube beyond its radius", Edit(&[("width         = \"3 cm\"\n", ""), (THICKNESS, "section = \"tube\"\ndiameter = \"2 cm\"\nwall = \"11 mm\"")]), &["beam.table.wall = \"11 mm\"", "at most half the diameter"]),
+        refused(3, "section without its sides", Edit(&[("width         = \"3 cm\"\n", ""), (THICKNESS, "section = \"i-section\"")]), &["beam.table.height: missing", "beam.table.flange: missing"]),
+        refused(28, "key of a support", Set(&["beam.table.supports=[{ sprin = '1 kN/m' }, 'pinned']"]), &["beam.table.supports.sprin: unknown key", "did you mean `spring`?"]),
+        refused(28, "word for a support", Set(&["beam.table.supports=['pinned', 'clampt']"]), &["did you mean `clamped`?", "tables of spring"]),
+        refused(27, "support at the end", Edit(&[("[block.rocker]", "[beam.table.support.pier]\nat = \"36 cm\"\nkind = \"pinned\"\n[block.rocker]")]), &["beam.table.support.pier.at = \"36 cm\"", "between the ends"]),
+        refused(27, "segment beyond the beam", Edit(&[("[block.rocker]", "[beam.table.segment.s]\nfrom = \"20 cm\"\nto = \"40 cm\"\nwidth = \"1 cm\"\nthickness = \"1 cm\"\n[block.rocker]")]), &["beam.table.segment.s.to = \"40 cm\"", "[0, 0.36] m"]),
+        refused(34, "shear without Poisson's ratio", Set(&["beam.table.theory=timoshenko"]), &["material.aluminium.poisson_ratio", "used by beam.table with theory = timoshenko"]),
+        refused(9, "theta of a beam held along its axis", Set(&["beam.table.axial=held", "time.theta=0.6"]), &["time.theta = 0.6", "`table` is held along its axis", "0.5"]),
+        refused(25, "compression beyond buckling", Set(&["beam.table.axial_force=-50 N"]), &["beam.table.axial_force", "buckles under it"]),
+        refused(18, "one ratio for two frequencies", Edit(&[("damping_ratio = { mode = 1, ratio = 0.01 }", "rayleigh = { frequencies = [\"10 Hz\", \"80 Hz\"], ratios = [0.01] }")]), &["beam.table.rayleigh.ratios", "two ratios are expected, one for each frequency, got 1"]),
+        refused(38, "beam in modes", Set(&["beam.table.model=modes"]), &["beam.table.model", "known, but not built in yet"]),
+        warned(38, "thick beam without shear", Set(&["beam.table.thickness=4 cm"]), &["warning: beam.table.theory", "0.11 of the span", "timoshenko"]),
     ]
 }

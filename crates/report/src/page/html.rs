@@ -5,6 +5,7 @@ use super::recorder::PageRecorder;
 use super::rocking::{HalfCycle, half_cycles};
 use super::{data, rounded};
 use crate::Summary;
+use crate::summary::BeamSummary;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -233,7 +234,10 @@ fn model(summary: &Summary) -> String {
     let beams: Vec<String> = model
         .beams
         .iter()
-        .map(|beam| format!("{} ({} elements, {} dofs, {})", beam.name, beam.elements, beam.dofs, beam.backend))
+        .map(|beam| {
+            let BeamSummary { name, elements, dofs, theory, backend } = beam;
+            format!("{name} ({theory}, {elements} elements, {dofs} dofs, {backend})")
+        })
         .collect();
     let mut html = String::new();
     let mut row = |name: &str, text: &str| _ = writeln!(html, "<div><dt>{name}</dt><dd>{text}</dd></div>");

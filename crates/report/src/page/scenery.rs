@@ -1,10 +1,11 @@
 //! What stands in the picture: sizes and places that don't change.
 
 use serde::Serialize;
-use teeter_beam::{ShapeAt, Support};
+use teeter_beam::{Axial, ShapeAt};
 use teeter_rigid::Rectangle;
 use teeter_scenario::scene::{self, Scene};
 use teeter_scenario::simulation::Layout;
+use teeter_scenario::wording;
 
 /// A block as drawn.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -27,6 +28,10 @@ pub(crate) struct BeamDrawn {
     /// Whether contact is with its top fibre.
     pub(crate) top: bool,
     pub(crate) supports: [&'static str; 2],
+    /// Supports between the ends: where, and how.
+    pub(crate) inner: Vec<(f64, &'static str)>,
+    /// Whether its right end is held along the axis.
+    pub(crate) held: bool,
     /// Points along the span, evenly spread.
     pub(crate) points: usize,
     #[serde(skip)]
@@ -89,7 +94,9 @@ impl Scenery {
                 span,
                 thickness: drawn.thickness,
                 top: drawn.top,
-                supports: drawn.spec.supports.map(support_word),
+                supports: drawn.spec.supports.map(wording::support),
+                inner: drawn.spec.inner_supports.iter().map(|(x, support)| (*x, wording::support(*support))).collect(),
+                held: matches!(drawn.spec.axial, Axial::Held | Axial::Elastic { held: [_, true] }),
                 points: pieces + 1,
                 shapes: (0..=pieces).map(at).collect(),
                 middle: place.beam.shape_clamped(0.5 * span),
@@ -116,15 +123,5 @@ impl Scenery {
             contacts: contacts.collect(),
             corners: Rectangle::CORNER_NAMES,
         }
-    }
-}
-
-fn support_word(support: Support) -> &'static str {
-    match support {
-        Support::Pinned => "pinned",
-        Support::Clamped => "clamped",
-        Support::Guided => "guided",
-        Support::Elastic { .. } => "elastic",
-        _ => "free",
     }
 }

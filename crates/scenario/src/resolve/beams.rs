@@ -1,8 +1,11 @@
-//! Beams: section, mesh, supports, damping, start.
+//! Beams: what they are made of, how they are held and damped, where they start.
 
-use teeter_beam::{BeamSpec, Damping, MAX_ELEMENTS, Section, Support};
+use teeter_beam::{Axial, Beam, BeamError, BeamSpec, Damping, Foundation, MAX_ELEMENTS, StaticError};
+use teeter_integrator::WBackend;
 
 use super::Resolver;
+use super::sections::Profiled;
+use crate::faults;
 use crate::scene::{BeamScene, SignalScene};
 
 /// Most elements of all beams together: their memory and the time to factorise them stay within what a scene's check may
@@ -13,34 +16,65 @@ impl Resolver<'_, '_> {
     pub(super) fn beam(&mut self, name: &str, signals: &[Option<SignalScene>]) -> Option<BeamScene> {
         let path = format!("beam.{name}");
         let at = |key: &str| format!("{path}.{key}");
-        let material = self.material(&path);
-        let density = material.as_ref().and_then(|m| self.quantity(&format!("{m}.density")));
-        let modulus = material.as_ref().and_then(|m| {
-            let key = format!("{m}.youngs_modulus");
-            let modulus = self.doc.quantity(&key);
-            if modulus.is_none() && !self.doc.is_refused(&key) {
-                self.error(&key, format!("missing key, used by {path}"), "add it, such as youngs_modulus = \"69 GPa\"");
-            }
-            modulus
-        });
+        let material = (self.doc.text(&at("section")) != Some("direct")).then(|| self.material(&path)).flatten();
+        let profiled = self.section(&path, material.as_deref(), &path);
+        let segments = self.segments(&path, material.as_deref());
         let span = self.quantity(&at("span"));
-        let width = self.quantity(&at("width"));
-        let thickness = self.quantity(&at("thickness"));
-        let elements = self.elements(&at("elements"));
+        let mesh = self.mesh(&path, span);
         let supports = self.supports(&at("supports"));
+        let inner_supports = self.inner_supports(&path, span);
+        let lumps = self.lumps(&path, span);
+        let foundations = self.foundations(&path, span);
+        let axial = self.axial(&path);
+        let axial_force = self.quantity(&at("axial_force"));
         let position = self.pair(&at("position"));
-        let damped = ["damping_ratio", "viscous_damping"].map(|key| {
-            let path = at(key);
-            (self.doc.has(&path) || self.doc.has_table(&path)).then_some(path)
-        });
-        if let [Some(_), Some(second)] = &damped {
-            self.error(second, "damping_ratio and viscous_damping both set the same coefficient", "keep one of them");
+        let probes = self.probes(&at("probes"), span);
+        let static_start = self.doc.text(&at("start")) == Some("static");
+        let top = self.word(&at("surface")).map(|surface| surface == "top");
+        let self_weight = self.doc.flag(&at("self_weight"));
+        let motion = self.motion(&path, signals);
+        self.damped_twice(&path);
+        let Profiled { section, thickness } = profiled?;
+        if top == Some(true) && thickness.is_none() {
+            self.error(
+                &at("thickness"),
+                "missing, where surface = top",
+                "add it: contacts lie half of it above the axis",
+            );
         }
-        let probes = self.doc.list(&at("probes")).unwrap_or_default().to_vec();
+        let (elements, nodes) = mesh?;
+        let mut spec = BeamSpec::new(span?, elements, section).supported(supports?).meshed(nodes);
+        spec.segments = segments?;
+        spec.inner_supports = inner_supports?;
+        spec.lumps = lumps?;
+        spec.foundations = foundations?;
+        spec.axial = axial?;
+        spec.axial_force = axial_force?;
+        spec.damping = self.damping(&path, &spec)?;
+        let beam = BeamScene {
+            name: name.to_owned(),
+            spec,
+            thickness: thickness.unwrap_or(0.0),
+            yield_strength: material.and_then(|m| self.doc.quantity(&format!("{m}.yield_strength"))),
+            top: top?,
+            static_start,
+            shape: Vec::new(),
+            position: position?,
+            self_weight: self_weight?,
+            backend: backend(self.doc.text(&at("backend"))),
+            probes: probes?,
+            motion: motion?,
+        };
+        self.supported(&beam);
+        Some(beam)
+    }
+
+    fn probes(&mut self, path: &str, span: Option<f64>) -> Option<Vec<f64>> {
+        let probes = self.doc.list(path).unwrap_or_default().to_vec();
         let outside = span.and_then(|span| Some((span, probes.iter().find(|x| **x > span)?)));
         if let Some((span, x)) = outside {
             self.error(
-                &at("probes"),
+                path,
                 format!("the probe at {x} m lies outside the span [0, {span}] m"),
                 "give places along the beam, from its left end",
             );
@@ -48,108 +82,266 @@ impl Resolver<'_, '_> {
         if let Some(twice) = (1..probes.len()).find(|&k| probes[..k].contains(&probes[k])) {
             // Two columns of one name could not be told apart.
             let rule = format!("the probe at {} m is there twice", probes[twice]);
-            self.error(&at("probes"), rule, "give each place once");
+            self.error(path, rule, "give each place once");
         }
-        let static_start = self.word(&at("start")).map(|start| start == "static");
-        if let (Some(true), Some(supports)) = (static_start, supports) {
-            self.holds_still(&at("start"), supports);
-        }
-        let top = self.word(&at("surface")).map(|surface| surface == "top");
-        let motion = self.motion(&path, signals);
-        let (span, thickness, elements, supports) = (span?, thickness?, elements?, supports?);
-        let section = match Section::rectangle(width?, thickness, modulus?, density?) {
-            Ok(section) => section,
-            Err(error) => {
-                self.error(&path, error.to_string(), "check width, thickness and material");
-                return None;
+        (!self.doc.is_refused(path)).then_some(probes)
+    }
+
+    fn axial(&mut self, path: &str) -> Option<Axial> {
+        Some(match self.word(&format!("{path}.axial"))?.as_str() {
+            "held" => Axial::Held,
+            "elastic" => {
+                let ends = self.doc.text_pair(&format!("{path}.axial_supports"));
+                let held = ends.map(|ends| ends.map(|end| end == "held"));
+                Axial::Elastic { held: self.need(&format!("{path}.axial_supports"), held)? }
             }
-        };
-        let mut spec = BeamSpec::new(span, elements, section).supported(supports);
-        spec.damping = self.damping(&path, &spec)?;
-        let beam = BeamScene {
-            name: name.to_owned(),
-            spec,
-            thickness,
-            top: top?,
-            static_start: static_start?,
-            position: position?,
-            probes,
-            motion: motion?,
-        };
-        self.supported(&beam);
-        Some(beam)
+            _ => Axial::Free,
+        })
     }
 
-    fn elements(&mut self, path: &str) -> Option<usize> {
-        let elements = self.doc.integer(path).and_then(|elements| usize::try_from(elements).ok());
-        self.need(path, elements)
-    }
-
-    /// Bounds what all beams take together; what a single one takes is bounded by the table of keys.
-    pub(super) fn mesh_sizes(&mut self, beams: &[Option<BeamScene>]) {
+    /// Bounds what all beams take together; what a single one takes is bounded by the table of keys. Whether they stay
+    /// within it.
+    pub(super) fn mesh_sizes(&mut self, beams: &[Option<BeamScene>]) -> bool {
         let mut sum = 0;
         for beam in beams.iter().flatten() {
-            sum += beam.spec.elements;
+            sum += beam.spec.nodes.len().saturating_sub(1).max(beam.spec.elements);
             if sum > MOST_ELEMENTS {
                 let rule = format!("with this beam the scene has {sum} elements, over the limit of {MOST_ELEMENTS}");
                 let remedy = "20 to 100 elements a beam give more digits than the model has";
                 self.error(&format!("beam.{}.elements", beam.name), rule, remedy);
+                return false;
+            }
+        }
+        true
+    }
+
+    /// What only the assembled beam can tell: whether its numbers fit together, whether it stands, and the shape of a file.
+    pub(super) fn assembled(&mut self, beam: &mut BeamScene) {
+        let path = format!("beam.{}", beam.name);
+        let start = format!("{path}.start");
+        let model = match Beam::new(beam.spec.clone()) {
+            Ok(model) => model,
+            Err(error) => {
+                self.errors.push(faults::beam(&beam.name, &error, self.doc));
                 return;
+            }
+        };
+        if let (true, Some(motion)) = (beam.static_start, model.rigid_motion()) {
+            let (motion, missing) = motion.split_once("; ").unwrap_or((motion, "support it"));
+            let rule = format!("the beam can move as a rigid body, so it has no static equilibrium: {motion}");
+            self.error(&start, rule, format!("{missing} (supports), or start undeformed"));
+        }
+        // Under compression only, and whatever the start: beyond the buckling load the straight beam is no equilibrium.
+        if beam.spec.axial_force < 0.0
+            && let Err(error @ StaticError::Buckled { .. }) = model.solve_static(&mut vec![0.0; model.dofs()])
+        {
+            let rule = error.to_string();
+            let rule = rule.split_once(": ").map_or(rule.as_str(), |(_, rule)| rule);
+            self.error(&format!("{path}.axial_force"), rule, "tension is positive");
+        }
+        beam.shape = self.start_shape(&start, &model).unwrap_or_default();
+        if let Err(BeamError::NoFrequencyEquation) = beam.spec.circular_frequency(1)
+            && let Some(c) = self.viscous_for_ratio(&path, &model)
+        {
+            beam.spec.damping.viscous = c;
+        }
+    }
+
+    /// The coordinates at the start where these are of a file or a mode.
+    fn start_shape(&mut self, path: &str, beam: &Beam) -> Option<Vec<f64>> {
+        let item = self.doc.item(path)?;
+        if self.doc.text(path).is_some() {
+            return None; // a word
+        }
+        match (item.text("file"), item.integer("mode"), item.number("amplitude")) {
+            (Some(file), None, None) => self.shape(path, file, beam),
+            (None, Some(mode), Some(amplitude)) => {
+                let shape = self.elastic_mode(path, beam, usize::try_from(mode).ok()?)?.1;
+                let size = beam
+                    .to_nodes(&shape)
+                    .iter()
+                    .map(|[w, _]| *w)
+                    .fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
+                Some(shape.iter().map(|q| amplitude / size * q).collect())
+            }
+            (Some(_), ..) => {
+                self.error(path, "file and mode both give the shape", "keep one of them");
+                None
+            }
+            _ => {
+                let remedy = "write { mode = 1, amplitude = \"1 mm\" }, or { file = \"shape.csv\" }";
+                self.error(path, "it doesn't say which shape", remedy);
+                None
             }
         }
     }
 
-    fn supports(&mut self, path: &str) -> Option<[Support; 2]> {
-        let words = self.doc.text_pair(path).map(|pair| pair.map(str::to_owned));
-        let [left, right] = self.need(path, words)?;
-        let support = |word: &str| match word {
-            "pinned" => Some(Support::Pinned),
-            "clamped" => Some(Support::Clamped),
-            "free" => Some(Support::Free),
-            _ => None,
+    /// Circular frequency and shape of an elastic mode, from 1, of the finite elements.
+    fn elastic_mode(&mut self, path: &str, beam: &Beam, mode: usize) -> Option<(f64, Vec<f64>)> {
+        const MOST_MODES: usize = 20;
+        let rule = if mode > MOST_MODES {
+            format!(
+                "mode {mode} of this beam is one of the finite elements, of which the first {MOST_MODES} can be asked for"
+            )
+        } else {
+            let rigid = usize::from(beam.rigid_motion().is_some()) * RIGID;
+            match beam.modes((mode + rigid).min(beam.free_dofs())) {
+                Ok(modes) if modes.rigid() + mode <= modes.count() => {
+                    let index = modes.rigid() + mode - 1;
+                    return Some((modes.circular_frequencies()[index], modes.shape(index).to_vec()));
+                }
+                Ok(modes) => format!("the finite elements have {} elastic modes", modes.count() - modes.rigid()),
+                Err(error) => error.to_string(),
+            }
         };
-        Some([support(&left)?, support(&right)?])
+        self.error(path, rule, "ask for a lower mode, or take more elements");
+        None
     }
 
-    /// Whether supports leave no rigid motion, so that there is a static equilibrium.
-    fn holds_still(&mut self, path: &str, supports: [Support; 2]) {
-        let (motion, missing) = match supports {
-            [Support::Free, Support::Free] => ("both its ends are free", "clamp one end or pin both"),
-            [Support::Pinned, Support::Free] => {
-                ("it can turn about its pinned left end", "support the right end, or clamp the left one")
-            }
-            [Support::Free, Support::Pinned] => {
-                ("it can turn about its pinned right end", "support the left end, or clamp the right one")
-            }
-            _ => return,
+    /// The viscous damping c that gives a mode of the finite elements its damping ratio: φᵀC φ = 2ζω.
+    fn viscous_for_ratio(&mut self, path: &str, beam: &Beam) -> Option<f64> {
+        let path = format!("{path}.damping_ratio");
+        let mode = self.doc.integer(&format!("{path}.mode")).and_then(|mode| usize::try_from(mode).ok())?;
+        let ratio = self.doc.number(&format!("{path}.ratio"))?;
+        let (omega, shape) = self.elastic_mode(&path, beam, mode)?;
+        let damping = |viscous: f64| {
+            let mut spec = beam.spec().clone();
+            spec.damping = Damping { viscous, ..Damping::default() };
+            Beam::new(spec).map(|beam| {
+                let mut damped = vec![0.0; shape.len()];
+                beam.add_damping_product(1.0, &shape, &mut damped);
+                damped.iter().zip(&shape).map(|(c, x)| c * x).sum::<f64>()
+            })
         };
-        let rule = format!("the beam can move as a rigid body, so it has no static equilibrium: {motion}");
-        self.error(path, rule, format!("{missing} (supports), or start undeformed"));
+        // Less what supports and foundations damp.
+        let unit = damping(1.0).ok()? - damping(0.0).ok()?;
+        Some(2.0 * ratio * omega / unit)
+    }
+
+    fn damped_twice(&mut self, path: &str) {
+        let given = ["damping_ratio", "viscous_damping"].map(|key| format!("{path}.{key}"));
+        if given.iter().all(|path| self.doc.has(path) || self.doc.has_table(path)) {
+            let rule = "damping_ratio and viscous_damping both set the same coefficient";
+            self.error(&given[1], rule, "keep one of them");
+        }
     }
 
     fn damping(&mut self, path: &str, spec: &BeamSpec) -> Option<Damping> {
-        let doc = self.doc;
-        let mut damping = Damping::default();
-        if let Some(c) = doc.quantity(&format!("{path}.viscous_damping")) {
-            damping.viscous = c;
-        }
+        let mut damping = self.rayleigh(&format!("{path}.rayleigh"))?;
+        damping.viscous = self.doc.quantity(&format!("{path}.viscous_damping")).unwrap_or(0.0);
         let ratio = format!("{path}.damping_ratio");
-        if doc.has_table(&ratio) {
-            let mode = doc.integer(&format!("{ratio}.mode")).and_then(|mode| usize::try_from(mode).ok())?;
+        if self.doc.has_table(&ratio) {
+            let mode = self.doc.integer(&format!("{ratio}.mode")).and_then(|mode| usize::try_from(mode).ok())?;
             let zeta = self.number(&format!("{ratio}.ratio"))?;
-            match spec.viscous_for_ratio(mode, zeta) {
-                Ok(c) => damping.viscous = c,
+            damping.viscous = match spec.viscous_for_ratio(mode, zeta) {
+                Ok(c) => c,
+                // By the finite elements, once they are there.
+                Err(BeamError::NoFrequencyEquation) => 0.0,
                 Err(error) => {
                     self.error(&ratio, error.to_string(), "give a mode of the beam and a ratio of at least 0");
                     return None;
                 }
-            }
-        }
-        let rayleigh = format!("{path}.rayleigh");
-        if doc.has_table(&rayleigh) {
-            damping.rayleigh_mass = self.quantity(&format!("{rayleigh}.a0"))?;
-            damping.rayleigh_stiffness = self.quantity(&format!("{rayleigh}.a1"))?;
+            };
         }
         Some(damping)
+    }
+
+    /// Rayleigh's factors, given or fitted.
+    fn rayleigh(&mut self, path: &str) -> Option<Damping> {
+        if !self.doc.has_table(path) {
+            return Some(Damping::default());
+        }
+        let at = |key: &str| format!("{path}.{key}");
+        let doc = self.doc;
+        let (frequencies, ratios) = (doc.pair(&at("frequencies")), doc.list(&at("ratios")));
+        let Some(frequencies) = frequencies else {
+            if doc.is_refused(&at("frequencies")) {
+                return None;
+            }
+            if doc.has(&at("ratios")) {
+                let remedy = "add frequencies = [\"10 Hz\", \"80 Hz\"], at which these are the damping ratios";
+                self.error(&at("ratios"), "ratios of which frequencies", remedy);
+                return None;
+            }
+            let (mass, stiffness) = (self.quantity(&at("a0")), self.quantity(&at("a1")));
+            return Some(Damping { rayleigh_mass: mass?, rayleigh_stiffness: stiffness?, ..Damping::default() });
+        };
+        if let Some(key) = ["a0", "a1"].into_iter().find(|key| doc.has(&at(key))) {
+            self.error(&at(key), "frequencies and ratios already give the factors", "keep these, or a0 and a1");
+            return None;
+        }
+        let &[first, second] = ratios.unwrap_or_default() else {
+            if !doc.is_refused(&at("ratios")) {
+                let rule =
+                    format!("two ratios are expected, one for each frequency, got {}", ratios.map_or(0, <[_]>::len));
+                self.error(&at("ratios"), rule, "write ratios = [0.01, 0.01]");
+            }
+            return None;
+        };
+        let [low, high] = frequencies.map(|frequency| std::f64::consts::TAU * frequency);
+        match Damping::rayleigh([(low, first), (high, second)]) {
+            Ok(damping) => Some(damping),
+            Err(BeamError::Value { field, rule, .. }) => {
+                let key = if field == "ratio" { "ratios" } else { "frequencies" };
+                let remedy = "equal ratios fit any two different frequencies";
+                self.error(&at(key), format!("the second one must be {rule}"), remedy);
+                None
+            }
+            Err(error) => {
+                self.error(path, error.to_string(), "check frequencies and ratios");
+                None
+            }
+        }
+    }
+
+    /// The part [from, to] of the span that a table is about.
+    pub(super) fn part(&mut self, path: &str, span: Option<f64>) -> Option<[f64; 2]> {
+        let span = span?;
+        let (key, doc) = (|key: &str| format!("{path}.{key}"), self.doc);
+        if doc.is_refused(&key("from")) || doc.is_refused(&key("to")) {
+            return None;
+        }
+        let (from, to) = (doc.quantity(&key("from")).unwrap_or(0.0), doc.quantity(&key("to")).unwrap_or(span));
+        for (key, x) in [(key("from"), from), (key("to"), to)] {
+            if x > span {
+                let rule = format!("{x} m lies outside the span [0, {span}] m");
+                self.error(&key, rule, "give a place along the beam, from its left end");
+                return None;
+            }
+        }
+        if to <= from {
+            let rule = format!("must be greater than from, {from} m");
+            self.error(&key("to"), rule, "give the right end of the part");
+            return None;
+        }
+        Some([from, to])
+    }
+
+    /// The foundations under the beam.
+    fn foundations(&mut self, path: &str, span: Option<f64>) -> Option<Vec<Foundation>> {
+        let group = format!("{path}.foundation");
+        let doc = self.doc;
+        let of = |resolver: &mut Self, name: &str| {
+            let path = format!("{group}.{name}");
+            let part = resolver.part(&path, span);
+            let stiffness = resolver.quantity(&format!("{path}.stiffness"));
+            let damping = resolver.quantity(&format!("{path}.damping"));
+            let [from, to] = part?;
+            Some(Foundation { from, to, stiffness: stiffness?, damping: damping? })
+        };
+        let all: Vec<_> = doc.names(&group).into_iter().map(|name| of(self, name)).collect();
+        all.into_iter().collect()
+    }
+}
+
+/// Most rigid motions of a beam: up and down, turning, and along its axis.
+const RIGID: usize = 3;
+
+fn backend(word: Option<&str>) -> WBackend {
+    match word {
+        Some("banded") => WBackend::Banded,
+        Some("sparse") => WBackend::Sparse,
+        Some("cached-columns") => WBackend::CachedColumns,
+        _ => WBackend::Auto,
     }
 }

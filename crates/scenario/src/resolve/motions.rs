@@ -131,9 +131,17 @@ impl Resolver<'_, '_> {
 
     /// Supports have to be there to be moved.
     pub(super) fn supported(&mut self, beam: &BeamScene) {
-        if beam.motion.is_given() && beam.spec.supports == [teeter_beam::Support::Free; 2] {
+        let spec = &beam.spec;
+        let none = spec.supports == [teeter_beam::Support::Free; 2]
+            && spec.inner_supports.is_empty()
+            && spec.foundations.is_empty();
+        if beam.motion.is_given() && none {
             let rule = "the supports move, but the beam has none";
             self.error(&format!("beam.{}.motion", beam.name), rule, "support an end (supports), or leave motion out");
+        }
+        if beam.motion.is_given() && matches!(spec.axial, teeter_beam::Axial::Elastic { .. }) {
+            let rule = "supports that move do not take a beam along its axis with them yet";
+            self.error(&format!("beam.{}.motion", beam.name), rule, "take axial = free or held, or leave motion out");
         }
     }
 
@@ -184,7 +192,6 @@ impl Resolver<'_, '_> {
         let at = |key: &str| format!("{path}.{key}");
         let on = self.word(&at("on"));
         let history = self.history(&at("signal"), signals);
-        let kind = self.load_kind(&path);
         let on = on?;
         let Some(beam) = self.beams.get(on.as_str()).copied() else {
             if self.blocks.contains_key(on.as_str()) || on == "ground" {
@@ -194,28 +201,34 @@ impl Resolver<'_, '_> {
             }
             return None;
         };
-        let kind = kind?;
-        if let (LoadKind::Point { at: x, .. }, Some(Some(beam))) = (kind, beams.get(beam))
-            && x > beam.spec.span
+        let span = beams.get(beam).and_then(|beam| Some(beam.as_ref()?.spec.span));
+        let kind = self.load_kind(&path, span)?;
+        if let (LoadKind::Point { at: x, .. } | LoadKind::Moving { at: x, .. }, Some(span)) = (kind, span)
+            && x > span
         {
-            let rule = format!("the load at {x} m lies outside the span [0, {}] m", beam.spec.span);
+            let rule = format!("the load at {x} m lies outside the span [0, {span}] m");
             self.error(&at("at"), rule, "give a place along the beam, from its left end");
             return None;
         }
         Some(LoadScene { name: name.to_owned(), beam, kind, history: history? })
     }
 
-    fn load_kind(&mut self, path: &str) -> Option<LoadKind> {
+    fn load_kind(&mut self, path: &str, span: Option<f64>) -> Option<LoadKind> {
         let at = |key: &str| format!("{path}.{key}");
         let doc = self.doc;
         let written = |key: &str| doc.has(&at(key)) || doc.is_refused(&at(key));
         if written("distributed") {
-            if let Some(key) = ["at", "force", "couple"].into_iter().find(|key| written(key)) {
+            if let Some(key) = ["at", "force", "couple", "speed"].into_iter().find(|key| written(key)) {
                 let remedy = "keep distributed, or at with force and couple; a second load takes a table of its own";
-                self.error(&at(key), "the load is distributed all along the beam", remedy);
+                self.error(&at(key), "the load is distributed along the beam", remedy);
                 return None;
             }
-            return doc.quantity(&at("distributed")).map(LoadKind::Distributed);
+            let ([from, to], load) = (self.part(path, span)?, doc.quantity(&at("distributed"))?);
+            return Some(LoadKind::Distributed { load, from, to });
+        }
+        if let Some(key) = ["from", "to"].into_iter().find(|key| written(key)) {
+            self.error(&at(key), "it goes with distributed", "leave it out, or add distributed = \"-10 N/m\"");
+            return None;
         }
         if !(written("force") || written("couple")) {
             let remedy = "add distributed = \"-10 N/m\", or at with force or couple";
@@ -231,6 +244,14 @@ impl Resolver<'_, '_> {
             return None;
         }
         let of = |key: &str| if written(key) { doc.quantity(&at(key)) } else { Some(0.0) };
+        if written("speed") {
+            if written("couple") {
+                self.error(&at("couple"), "what moves along the beam is a force", "leave couple or speed out");
+                return None;
+            }
+            let (force, speed) = (doc.quantity(&at("force"))?, doc.quantity(&at("speed"))?);
+            return Some(LoadKind::Moving { force, at: doc.quantity(&at("at"))?, speed });
+        }
         Some(LoadKind::Point { at: doc.quantity(&at("at"))?, force: of("force")?, couple: of("couple")? })
     }
 }

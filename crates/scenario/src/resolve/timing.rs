@@ -28,6 +28,14 @@ impl Resolver<'_, '_> {
             let rule = "moreau-jean-closed is a scheme of theta = 0.5: another one is refused";
             self.error("time.theta", rule, "leave theta out, or take scheme = \"moreau-jean\"");
         }
+        let held = beams.iter().flatten().find(|beam| beam.spec.axial == teeter_beam::Axial::Held);
+        if let (Some(beam), Some(theta)) = (held, theta)
+            && theta != 0.5
+        {
+            let rule =
+                format!("the beam `{}` is held along its axis, and only theta = 0.5 keeps its energy", beam.name);
+            self.error("time.theta", rule, "leave theta out, or take axial = free");
+        }
         let activation_gamma = self.number("time.activation_gamma");
         let gap_tolerance = self.doc.quantity("time.gap_tolerance").unwrap_or_else(|| gap_tolerance(blocks));
         let (end, step) = (end?, step?);

@@ -110,6 +110,22 @@ pub enum LoadKind {
         /// N·m, counter-clockwise.
         couple: f64,
     },
-    /// The same all along, N/m, upwards.
-    Distributed(f64),
+    /// The same all along a part of the beam.
+    Distributed {
+        /// N/m, upwards.
+        load: f64,
+        /// Where it begins, m.
+        from: f64,
+        /// Where it ends, m.
+        to: f64,
+    },
+    /// A force that moves along the beam.
+    Moving {
+        /// N, upwards.
+        force: f64,
+        /// Where it is at t = 0, m.
+        at: f64,
+        /// m/s.
+        speed: f64,
+    },
 }

@@ -75,18 +75,28 @@ struct Variant {
 
 impl Variant {
     fn all(table: &'static Table) -> Vec<Self> {
-        let name = if table.pattern.starts_with("block") { "b" } else { "a" };
+        let name = match table.pattern {
+            pattern if pattern.starts_with("block") => "b",
+            // What belongs to a beam belongs to the one of the first word.
+            pattern if pattern.starts_with("beam.*.") => "a-rectangle",
+            _ => "a",
+        };
         let sibling = table.keys.iter().find_map(|key| key.only_with).map(|only| only.sibling);
         let Some(Key { name: sibling, kind: Kind::Choice(words), .. }) = sibling.and_then(|name| table.key(name))
         else {
             return vec![Self { path: table.pattern.replace('*', name), word: None }];
         };
-        let path = |word: &str| table.pattern.replace('*', &format!("{name}-{word}"));
+        let path = |word: &str| match table.pattern.strip_suffix("*") {
+            Some(group) => format!("{}{name}-{word}", group.replace('*', name)),
+            None => table.pattern.replace('*', &format!("{name}-{word}")),
+        };
         words.iter().map(|word| Self { path: path(word), word: Some((sibling, word)) }).collect()
     }
 
     fn has(&self, key: &Key) -> bool {
-        let word = |only: OnlyWith| self.word.is_some_and(|(_, word)| only.words.contains(&word));
+        let word = |only: OnlyWith| {
+            self.word.is_some_and(|(sibling, word)| only.sibling == sibling && only.words.contains(&word))
+        };
         key.only_with.is_none_or(word)
     }
 
@@ -123,14 +133,16 @@ fn the_examples_and_defaults_of_the_table_are_valid() {
         }
         key.presence != Presence::NotYet
     });
-    assert_eq!(scene.quantity("beam.a.rayleigh.a1"), Some(1e-5));
+    assert_eq!(scene.quantity("beam.a-rectangle.rayleigh.a1"), Some(1e-5));
     // And one with nothing but what is required, so that every default is decoded.
     let scene = scene_of(|table, key| {
-        let is_sibling = |other: &Key| {
-            matches!(other.presence, Presence::DefaultWith { sibling, .. } if sibling == key.name)
-                || other.only_with.is_some_and(|only| only.sibling == key.name)
-        };
-        key.presence == Presence::Required || table.keys.iter().any(is_sibling)
+        let is_sibling =
+            |other: &Key| matches!(other.presence, Presence::DefaultWith { sibling, .. } if sibling == key.name);
+        // The words of the variants.
+        let first = table.keys.iter().find_map(|key| key.only_with).map(|only| only.sibling);
+        matches!(key.presence, Presence::Required | Presence::RequiredWith(_) | Presence::RequiredWithout(_))
+            || table.keys.iter().any(is_sibling)
+            || first == Some(key.name)
     });
     for table in TABLES {
         for variant in Variant::all(table) {
@@ -139,7 +151,10 @@ fn the_examples_and_defaults_of_the_table_are_valid() {
                 let path = path.trim_start_matches('.');
                 if !variant.has(key) {
                     assert!(!scene.has(path), "{path}");
-                } else if matches!(key.presence, Presence::Default(_) | Presence::DefaultWith { .. }) {
+                } else if matches!(
+                    key.presence,
+                    Presence::Default(_) | Presence::DefaultWith { .. } | Presence::DefaultWithout { .. }
+                ) {
                     assert_eq!(scene.origin(path), Origin::Default, "{path}");
                     assert!(scene.has(path), "{path}");
                 }

@@ -92,8 +92,8 @@ fn what_is_known_but_not_built_in_says_so() {
         ("time.step", "auto"),
         ("time.scheme", "event-driven"),
         ("time.accuracy", "1e-3"),
-        ("beam.table.self_weight", "true"),
-        ("beam.table.supports", "[{ spring = '1 N/m' }, 'free']"),
+        ("beam.table.model", "modes"),
+        ("beam.table.modal_damping", "[0.01]"),
         ("ground.profile", "hills.csv"),
         ("solver.method", "socp"),
     ] {
