@@ -2,6 +2,7 @@
 
 use super::curves::Curves;
 use super::frames::Frames;
+use super::rounded;
 use super::scenery::{CORNERS, Scenery};
 use crate::impact_threshold;
 use crate::sections::{BeamRecord, Column, Kind, columns_of};
@@ -154,6 +155,14 @@ impl PageRecorder {
     /// The number of the first column of the curves that is of what beams bear.
     pub(crate) fn first_section(&self) -> usize {
         BLOCK_COLUMNS * self.scenery.blocks.len() + self.scenery.beams.len() + ENERGIES.len()
+    }
+
+    /// What tells a curve of what beams bear from others of its kind: the place, and the beam where there are several.
+    pub(crate) fn section_label(&self, column: &Column) -> String {
+        let beam = &self.scenery.beams[column.beam];
+        let name = (self.scenery.beams.len() > 1).then(|| beam.name.clone());
+        let place = column.x.map(|x| format!("{} m", rounded(x, 4)));
+        name.into_iter().chain(place).collect::<Vec<_>>().join(" ")
     }
 
     /// Takes the values of what beams bear, to be entered with the next step; without them there are no such curves.
