@@ -52,6 +52,9 @@ pub struct Actions<'a> {
     pub acceleration: &'a [f64],
     /// All loads but those of supports.
     pub loads: &'a [SpanLoad],
+    /// Of a beam held along its axis, in a time step: the deflection at which the step took the stretching, q⁰ + hθv⁰ (see
+    /// `membrane.rs`). Empty: `q` itself.
+    pub stretched_at: &'a [f64],
 }
 
 /// What a support bears: the force and the couple of the support on the beam.
@@ -117,6 +120,9 @@ impl SectionForces {
                 check_len(name, dofs, vector.len())?;
             }
         }
+        if !actions.stretched_at.is_empty() {
+            check_len("stretched_at", dofs, actions.stretched_at.len())?;
+        }
         self.elastic_forces(beam, actions);
         self.inside.clear();
         for load in actions.loads {
@@ -133,7 +139,8 @@ impl SectionForces {
     /// K_e q_e + C_e v_e + M_e a_e.
     fn elastic_forces(&mut self, beam: &Beam, actions: &Actions<'_>) {
         let q = beam.bend(actions.q);
-        let stretching = beam.membrane.as_ref().map(|membrane| (membrane, membrane.force(q)));
+        let stretched = if actions.stretched_at.is_empty() { q } else { beam.bend(actions.stretched_at) };
+        let stretching = beam.membrane.as_ref().map(|membrane| (membrane, membrane.force_towards(stretched, q)));
         let damping = &beam.spec.damping;
         self.deceleration.fill(0.0);
         if let (Some(modal), false) = (&beam.modal, actions.velocity.is_empty()) {
@@ -150,7 +157,7 @@ impl SectionForces {
                 add(end, 1.0, bed.on_nodes(e, q));
             }
             if let Some((membrane, force)) = stretching {
-                add(end, force, membrane.slopes.on_nodes(e, q));
+                add(end, force, membrane.slopes.on_nodes(e, stretched));
             }
             if !actions.velocity.is_empty() && beam.is_damped() {
                 let v = beam.bend(actions.velocity);
@@ -172,7 +179,7 @@ impl SectionForces {
                 add(end, 1.0, beam.mass.on_nodes(e, beam.bend(actions.acceleration)));
             }
         }
-        let common = beam.axial_force(actions.q);
+        let common = beam.spec.axial_force + stretching.map_or(0.0, |(_, force)| force);
         self.axial.clear();
         self.axial.resize(beam.elements(), common);
         if let Some(bar) = &beam.bar {
@@ -274,21 +281,68 @@ impl SectionForces {
             return Err(BeamError::OutsideSpan { x, span });
         }
         let (e, xi) = beam.mesh.locate(x);
-        let [v0, m0, v1, m1] = self.ends[e];
-        let length = beam.elements[e].length;
-        let inside = || self.inside.iter().filter(|(element, ..)| *element == e);
-        // The transverse force between its ends: jumps by point loads, the rest (distributed loads, inertia) evenly.
-        let points: f64 = inside().map(|(_, _, force, _)| force).sum();
-        let spread = v1 - v0 - points;
-        let passed = |to: f64| inside().filter(move |(_, at, ..)| *at <= to);
-        let shear = v0 + spread * xi + passed(xi).map(|(_, _, force, _)| force).sum::<f64>();
+        let [v0, ..] = self.ends[e];
+        let shear = v0 + self.spread(e) * xi + self.passed(e, xi).map(|(_, _, force, _)| force).sum::<f64>();
+        Ok(SectionForce { moment: self.moment_in(beam, e, xi), shear })
+    }
+
+    /// The point loads inside an element up to ξ.
+    fn passed(&self, e: usize, xi: f64) -> impl Iterator<Item = &(usize, f64, f64, f64)> {
+        self.inside.iter().filter(move |(element, at, ..)| *element == e && *at <= xi)
+    }
+
+    /// By how much the transverse force changes over an element other than by jumps at point loads: by distributed loads and
+    /// inertia.
+    fn spread(&self, e: usize) -> f64 {
+        let [v0, _, v1, _] = self.ends[e];
+        v1 - v0 - self.passed(e, 1.0).map(|(_, _, force, _)| force).sum::<f64>()
+    }
+
+    /// The bending moment in an element at ξ. That the rest of the transverse force is spread evenly is exact for uniform loads; what
+    /// other loads and inertia make of it is shared out over the element.
+    fn moment_in(&self, beam: &Beam, e: usize, xi: f64) -> f64 {
+        let [v0, m0, _, m1] = self.ends[e];
+        let (length, spread) = (beam.elements[e].length, self.spread(e));
         let moment = |to: f64| {
-            let by_points: f64 = passed(to).map(|(_, at, force, couple)| force * (to - at) * length - couple).sum();
+            let by_points: f64 =
+                self.passed(e, to).map(|(_, at, force, couple)| force * (to - at) * length - couple).sum();
             m0 + length * to * (v0 + 0.5 * spread * to) + by_points
         };
-        // Even is exact for uniform loads; what other loads and inertia make of it is spread over the element.
-        let moment = moment(xi) + (m1 - moment(1.0)) * xi;
-        Ok(SectionForce { moment, shear })
+        moment(xi) + (m1 - moment(1.0)) * xi
+    }
+
+    /// The axial force at x, N, tension positive.
+    #[must_use]
+    pub fn axial_force(&self, beam: &Beam, x: f64) -> f64 {
+        let (e, _) = beam.mesh.locate(x.clamp(0.0, beam.spec.span));
+        self.axial.get(e).copied().unwrap_or(0.0)
+    }
+
+    /// The largest normal stress, Pa, with its place: over the nodes and the places of point loads, on either side of each.
+    /// `None` where no section knows its modulus.
+    #[must_use]
+    pub fn largest_stress(&self, beam: &Beam) -> Option<(f64, f64)> {
+        let mut largest: Option<(f64, f64)> = None;
+        let mut see = |e: usize, x: f64, moment: f64| {
+            if let Some(stress) = self.stress_in(beam, e, moment)
+                && largest.is_none_or(|(most, _)| stress > most)
+            {
+                largest = Some((stress, x));
+            }
+        };
+        for e in 0..beam.elements() {
+            let [left, right] = self.ends(e);
+            see(e, beam.mesh.x[e], left.moment);
+            see(e, beam.mesh.x[e + 1], right.moment);
+        }
+        for &(e, xi, _, couple) in &self.inside {
+            let moment = self.moment_in(beam, e, xi);
+            let x = beam.mesh.x[e] + xi * beam.elements[e].length;
+            // Left of a couple it has not come on yet.
+            see(e, x, moment);
+            see(e, x, moment + couple);
+        }
+        largest
     }
 
     /// Largest normal stress |M|/(I/c) + |N|/A at a place with this bending moment, Pa; `None` where the section doesn't know its
@@ -296,6 +350,10 @@ impl SectionForces {
     #[must_use]
     pub fn stress(&self, beam: &Beam, x: f64, moment: f64) -> Option<f64> {
         let (e, _) = beam.mesh.locate(x.clamp(0.0, beam.spec.span));
+        self.stress_in(beam, e, moment)
+    }
+
+    fn stress_in(&self, beam: &Beam, e: usize, moment: f64) -> Option<f64> {
         let section = &beam.elements[e].section;
         let axial = self.axial.get(e).copied().unwrap_or(0.0).abs();
         let pulled = if section.area > 0.0 { axial / section.area } else { 0.0 };
@@ -455,7 +513,7 @@ mod tests {
         beam.add_elastic_force(&q, &mut f);
         beam.add_damping_product(-1.0, &v, &mut f);
         beam.factor(crate::MatrixWeights { mass: 1.0, damping: 0.0, stiffness: 0.0 }).unwrap().solve(&mut f);
-        let actions = Actions { q: &q, velocity: &v, acceleration: &f, loads: &loads };
+        let actions = Actions { q: &q, velocity: &v, acceleration: &f, loads: &loads, ..Actions::default() };
         let forces = beam.section_forces(&actions).unwrap();
         // Reactions by the residual of the held dofs, independently.
         let mut residual = vec![0.0; beam.dofs()];

@@ -35,6 +35,12 @@ impl Membrane {
         0.5 * self.stiffness * self.slopes.form(q)
     }
 
+    /// The force of a θ step that takes it at `taken` and its matrix of rank one from there to `q`, N: to be applied with the slopes
+    /// of `taken`, EA/(2L) q*ᵀG(2q − q*).
+    pub(crate) fn force_towards(&self, taken: &[[f64; 2]], q: &[[f64; 2]]) -> f64 {
+        0.5 * self.stiffness * (2.0 * self.slopes.between(taken, q) - self.slopes.form(taken))
+    }
+
     /// V, J.
     pub(crate) fn energy(&self, q: &[[f64; 2]]) -> f64 {
         let s = self.slopes.form(q);

@@ -13,7 +13,7 @@ use std::process::ExitCode;
 use teeter_integrator::{Ended, RunError};
 use teeter_report::{
     CHECKPOINT, Checkpoint, EndedWord, ExportWhen, Exporter, Former, Identity, Origin, PageRecorder, Results,
-    ResultsError, RunRecorder, Summary, Watch, figures, render,
+    ResultsError, RunRecorder, Summary, Watch, envelopes, figures, render,
 };
 use teeter_scenario::decode::LARGEST_FILE;
 use teeter_scenario::resolve::Resolved;
@@ -277,7 +277,9 @@ impl Job {
             Err(error) => return Err(error.into()),
         };
         let summary = Summary::new(scene, &layout, &simulation.state, &record, ended, seconds);
-        let written = write_pages(&results, &page, &summary, &scene_as_run);
+        let envelopes = envelopes(&layout, &record.beams);
+        let written = envelopes.map_or(Ok(()), |text| results.write("envelopes.csv", text).map_err(Into::into));
+        let written = written.and_then(|()| write_pages(&results, &page, &summary, &scene_as_run));
         let written = written.and_then(|()| Ok(results.write("summary.json", summary.to_json()?)?));
         match written {
             // No room for these either; the reason is told all the same.

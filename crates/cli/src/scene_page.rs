@@ -170,6 +170,7 @@ fn value(key: &Key) -> String {
             format!("array, each {}{}, {such_as}", dimension.name(), limits(&range, dimension))
         }
         Kind::Numbers(range) => format!("array of numbers, each {}, {such_as}", limits(&range, Dimension::NONE).trim()),
+        Kind::Words(words) => format!("array of some of {}", quoted(words)),
         Kind::WordOrTable(words, keys) => format!("{}, or {}", quoted(words), table_of(keys)),
         Kind::WordOrTablePair(words, keys) => format!("two of {}, or {}", quoted(words), table_of(keys)),
         Kind::ChoicePair(choices) => format!("two of {}", quoted(choices)),

@@ -162,6 +162,7 @@ fn of_kind(key: &Key) -> Value {
         Kind::Pair(..) => pair(quantity()),
         Kind::List(..) => json!({ "type": "array", "items": quantity() }),
         Kind::Numbers(range) => json!({ "type": "array", "items": number(&range) }),
+        Kind::Words(words) => json!({ "type": "array", "items": { "enum": words }, "uniqueItems": true }),
         Kind::WordOrTable(words, keys) => word_or_table(words, keys),
         Kind::WordOrTablePair(words, keys) => pair(word_or_table(words, keys)),
         Kind::ChoicePair(words) => pair(json!({ "enum": words })),

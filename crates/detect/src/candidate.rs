@@ -4,6 +4,7 @@ use crate::Vector;
 
 /// A body of the scene; its owner gives the numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyId(pub u32);
 
 /// Who a contact is, the same from step to step: the pair, and the point of its first side.
@@ -33,6 +34,7 @@ impl ContactId {
 
 /// A point fixed in a body: where one side of a contact acts.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Anchor<const D: usize> {
     /// The body.
     pub body: BodyId,

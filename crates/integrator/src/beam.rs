@@ -1,6 +1,7 @@
 //! A beam as a subsystem: the adapter above `teeter-beam`, with the contact kinematics of `docs/theory.md` §3.
 
 mod compliance;
+pub(crate) mod forces;
 pub(crate) mod line;
 pub(crate) mod motion;
 

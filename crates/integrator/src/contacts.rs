@@ -5,7 +5,7 @@ use crate::spring::SpringStep;
 use crate::subsystem::Span;
 use crate::{Compliance, Coupling, PartRows, Rows, Vector, WarmStart};
 use teeter_contact::{Block, ContactProblem, Delassus, ProblemError};
-use teeter_detect::{Candidate, ContactId};
+use teeter_detect::{Anchor, Candidate, ContactId, Frame};
 
 /// What a contact does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,6 +36,10 @@ impl ContactState {
 pub struct Contact<const D: usize> {
     /// Who it is.
     pub id: ContactId,
+    /// Where it acts on either side, as its rows were taken.
+    pub sides: [Anchor<D>; 2],
+    /// Its frame as its rows were taken, a direction a row.
+    pub frame: Frame<D>,
     /// Gap where the activation was decided, m; of a contact with duration, the gap of its spring at the start of the step.
     pub gap: f64,
     /// Impulse on side 0, N·s.
@@ -183,6 +187,8 @@ impl<const D: usize> ContactSet<D> {
         self.mu.push(model.law(candidate.id.pair()).friction);
         self.contacts.push(Contact {
             id: candidate.id,
+            sides: candidate.sides,
+            frame: candidate.frame,
             gap: candidate.gap,
             p: Vector::zeros(),
             u_before: Vector::zeros(),

@@ -71,6 +71,7 @@ mod subsystem;
 mod theta_step;
 mod workspace;
 
+pub use beam::forces::{BeamForces, SpanLoads};
 pub use beam::{BeamBody, BeamSurface, SignalLoad, WBackend};
 pub use blocks::{Block, BlockLoad, Blocks};
 pub use contacts::{Contact, ContactSet, ContactState, tangential};

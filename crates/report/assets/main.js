@@ -62,6 +62,19 @@
   });
   if (active.length > 3) plots.choose(active[0]);
 
+  for (const [kind, title, unit, factor] of [
+    ["moment", "Bending moment", "N m", 1], ["shear", "Transverse force", "N", 1], ["stress", "Normal stress, largest of the section", "MPa", 1e-6],
+    ["axial_force", "Axial force", "N", 1], ["reaction", "Reactions of the supports", "N", 1], ["reaction_couple", "Couples of the supports", "N m", 1],
+  ]) {
+    const series = data.sections.filter((one) => one.kind === kind)
+      .map(({ label, values }, index) => ({ label, index, t: curves.t, y: values.map((x) => (x === null ? null : x * factor)) }));
+    const largest = Math.max(0, ...series.map(({ y }) => y.reduce((most, x) => Math.max(most, Math.abs(x ?? 0)), 0)));
+    if (!(largest > 0)) continue;
+    const shown = factor === 1 ? plots.scaled(series, unit) : unit;
+    const size = Math.max(...series.map(({ y }) => y.reduce((most, x) => Math.max(most, Math.abs(x ?? 0)), 0)));
+    plots.add({ id: `section-${kind}`, title, unit: shown, series, cut: cutOf(series, 1e-6 * size), least: 1e-6 * size, height: 160 });
+  }
+
   const energy = (name, label, index) =>
     ({ label, index, t: curves.t, y: curves.energies.find((curve) => curve.name === name).values });
   const energies = [

@@ -13,6 +13,7 @@ mod recorder;
 mod results;
 mod run_recorder;
 mod schedule;
+mod sections;
 mod summary;
 mod table;
 mod warnings;
@@ -26,6 +27,7 @@ pub use recorder::{ImpactRow, Record, Recorder};
 pub use results::{FILES, Results, ResultsError};
 pub use run_recorder::{Origin, RunRecorder};
 pub use schedule::Schedule;
+pub use sections::{BeamRecord, LargestStress, ReactionRange, envelopes};
 pub use summary::{EndedWord, Summary};
 pub use warnings::{Warning, WarningLog};
 

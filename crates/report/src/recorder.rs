@@ -2,6 +2,7 @@
 
 use crate::contacts::{self, Impulses, Names};
 use crate::number::{push, push_next};
+use crate::sections::{BeamRecord, Sections, Values};
 use crate::table::Table;
 use crate::{Results, ResultsError, Schedule, WarningLog, impact_threshold};
 use serde::{Deserialize, Serialize};
@@ -41,6 +42,8 @@ pub struct Record {
     pub impact_count: u64,
     /// Zero crossings and peaks, by block.
     pub rocking: Vec<RockingMonitor>,
+    /// What beams bore, of those that are asked.
+    pub beams: Vec<BeamRecord>,
     /// What the run warned of.
     pub warnings: WarningLog,
 }
@@ -62,6 +65,8 @@ pub(crate) struct Kept {
     contacts_now: Vec<Contact<2>>,
     /// The step of the last row.
     row_at: u64,
+    /// Of the last step, for a row after the run's early end too.
+    section_values: Values,
     record: Record,
 }
 
@@ -73,6 +78,7 @@ pub struct Recorder<'a> {
     contacts: Table,
     impacts: Table,
     energy: Table,
+    sections: Sections,
     line: String,
     kept: Kept,
     tell: &'a mut dyn FnMut(&str),
@@ -95,15 +101,19 @@ impl<'a> Recorder<'a> {
         layout: &'a Layout,
         tell: &'a mut dyn FnMut(&str),
     ) -> Result<Self, ResultsError> {
-        let headers = [&trajectory_header(layout), contacts::HEADER, IMPACTS_HEADER, ENERGY_HEADER].map(str::to_owned);
+        let sections = Sections::new(scene, layout);
+        let (beams, section_values) = sections.empty(scene, layout);
+        let headers =
+            [&trajectory_header(layout, &sections), contacts::HEADER, IMPACTS_HEADER, ENERGY_HEADER].map(str::to_owned);
         let kept = Kept {
             schedule: Schedule::new(scene.every, scene.time.steps, scene.time.step),
             impulses: Impulses::default(),
             contacts_now: Vec::new(),
             row_at: 0,
-            record: Record::default(),
+            section_values,
+            record: Record { beams, ..Record::default() },
         };
-        Self::with(|k| results.table(TABLES[k], &headers[k]), kept, scene, layout, tell)
+        Self::with(|k| results.table(TABLES[k], &headers[k]), kept, sections, scene, layout, tell)
     }
 
     /// Opens the tables of a run of `scene` again where a checkpoint left them; what was written past that goes.
@@ -114,12 +124,14 @@ impl<'a> Recorder<'a> {
         layout: &'a Layout,
         tell: &'a mut dyn FnMut(&str),
     ) -> Result<Self, ResultsError> {
-        Self::with(|k| results.reopened_table(TABLES[k], lengths[k]), kept, scene, layout, tell)
+        let sections = Sections::new(scene, layout);
+        Self::with(|k| results.reopened_table(TABLES[k], lengths[k]), kept, sections, scene, layout, tell)
     }
 
     fn with(
         table: impl Fn(usize) -> Result<Table, ResultsError>,
         kept: Kept,
+        sections: Sections,
         scene: &Scene,
         layout: &'a Layout,
         tell: &'a mut dyn FnMut(&str),
@@ -131,6 +143,7 @@ impl<'a> Recorder<'a> {
             contacts: table(1)?,
             impacts: table(2)?,
             energy: table(3)?,
+            sections,
             line: String::new(),
             kept,
             tell,
@@ -159,6 +172,16 @@ impl<'a> Recorder<'a> {
             .try_for_each(Table::flush)
     }
 
+    /// Takes the state from which a resumed run goes on.
+    pub(crate) fn go_on(&mut self, state: &State) {
+        self.sections.go_on(state);
+    }
+
+    /// The values of the last step: of the columns of what beams bear, deflections left out.
+    pub(crate) fn section_values(&self) -> &[f64] {
+        &self.kept.section_values
+    }
+
     /// What was seen.
     #[must_use]
     pub fn into_record(self) -> Record {
@@ -173,14 +196,13 @@ impl<'a> Recorder<'a> {
                 push_next(&mut self.line, *x);
             }
         }
-        for beam in &self.layout.beams {
+        let mut section_values = self.kept.section_values.iter();
+        for (number, beam) in self.layout.beams.iter().enumerate() {
             let (q, v) = (&state.q[beam.range.clone()], &state.v[beam.range.clone()]);
             let middle = beam.beam.shape_clamped(0.5 * beam.beam.spec().span);
             push_next(&mut self.line, middle.deflection(q).w);
             push_next(&mut self.line, middle.deflection(v).w);
-            for &x in &beam.probes {
-                push_next(&mut self.line, beam.beam.shape_clamped(x).deflection(q).w);
-            }
+            self.sections.push_row(number, beam, q, &mut section_values, &mut self.line);
         }
         self.line.push('\n');
         self.trajectory.rows(&self.line)?;
@@ -273,6 +295,8 @@ impl Observer<2> for Recorder<'_> {
             .iter()
             .map(|block| RockingMonitor::new(state.t, state.q[block.range.start + 2]))
             .collect();
+        let (record, values) = (&mut self.kept.record, &mut self.kept.section_values);
+        self.sections.start(self.layout, state, &mut record.beams, values);
         Ok(self.write_row(state)?)
     }
 
@@ -285,6 +309,11 @@ impl Observer<2> for Recorder<'_> {
         self.kept.impulses.add(step.contacts);
         self.write_impacts(step)?;
         self.warn_of(step);
+        let Kept { record, section_values, .. } = &mut self.kept;
+        let kept = (record.beams.as_mut_slice(), section_values);
+        if let Some(text) = self.sections.observe(self.layout, step, state, kept, &mut record.warnings) {
+            (self.tell)(&text);
+        }
         for (monitor, block) in self.kept.record.rocking.iter_mut().zip(&self.layout.blocks) {
             monitor.enter(state.t, state.q[block.range.start + 2]);
         }
@@ -305,18 +334,16 @@ impl Observer<2> for Recorder<'_> {
     }
 }
 
-fn trajectory_header(layout: &Layout) -> String {
+fn trajectory_header(layout: &Layout, sections: &Sections) -> String {
     let mut header = String::from("t");
     for block in &layout.blocks {
         for column in ["x", "y", "phi", "vx", "vy", "omega"] {
             header.push_str(&format!(",{}.{column}", block.name));
         }
     }
-    for beam in &layout.beams {
+    for (number, beam) in layout.beams.iter().enumerate() {
         header.push_str(&format!(",{0}.w_mid,{0}.v_mid", beam.name));
-        for x in &beam.probes {
-            header.push_str(&format!(",{}.w@{x}", beam.name));
-        }
+        sections.push_header(number, &mut header);
     }
     header.push('\n');
     header

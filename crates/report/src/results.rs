@@ -8,17 +8,20 @@ use std::path::{Path, PathBuf};
 
 /// The files that a run may write; which of the figures, depends on its scene. They are removed in this order: no summary
 /// outlives a table, and while there is anything, `scene.toml` says of what.
-pub const FILES: [&str; 14] = [
+pub const FILES: [&str; 17] = [
     CHECKPOINT,
     "summary.json",
     "trajectory.csv",
     "contacts.csv",
     "impacts.csv",
     "energy.csv",
+    "envelopes.csv",
     "report.html",
     "figures/phi.svg",
     "figures/omega.svg",
     "figures/w_mid.svg",
+    "figures/section_forces.svg",
+    "figures/envelopes.svg",
     "figures/contact_forces.svg",
     "figures/energy.svg",
     "figures/phase.svg",

@@ -140,7 +140,9 @@ impl<'a> RunRecorder<'a> {
     /// What was seen, for summary and page.
     #[must_use]
     pub fn into_parts(self) -> (Record, PageRecorder, Option<Exporter>) {
-        (self.recorder.into_record(), self.page, self.exporter)
+        let (record, mut page) = (self.recorder.into_record(), self.page);
+        page.beams.clone_from(&record.beams);
+        (record, page, self.exporter)
     }
 
     fn write_checkpoint(&mut self, state: &State) -> Result<(), ObserverError> {
@@ -190,9 +192,11 @@ impl Observer<2> for RunRecorder<'_> {
             dump.before = (state.tally.unconverged_steps == 0).then(|| state.clone());
         }
         if self.resumed {
+            self.recorder.go_on(state);
             return Ok(());
         }
         self.recorder.start(model, state)?;
+        self.page.see_sections(self.recorder.section_values());
         self.page.start(model, state)
     }
 
@@ -204,6 +208,7 @@ impl Observer<2> for RunRecorder<'_> {
     ) -> Result<ControlFlow<()>, ObserverError> {
         // None of them ends a run.
         let _ = self.recorder.observe(model, step, state)?;
+        self.page.see_sections(self.recorder.section_values());
         let _ = self.page.observe(model, step, state)?;
         if let Some(exporter) = &mut self.exporter {
             let _ = exporter.observe(model, step, state)?;

@@ -1,6 +1,6 @@
 //! `summary.json`: the numbers of a run.
 
-use crate::{ImpactRow, Record, Warning};
+use crate::{BeamRecord, ImpactRow, LargestStress, ReactionRange, Record, Warning};
 use serde::Serialize;
 use teeter_integrator::{Ended, RockingMonitor, State};
 use teeter_scenario::scene::Scene;
@@ -70,6 +70,9 @@ pub struct Summary {
     pub crossing_count: Option<u64>,
     /// Peaks of the angles between crossings.
     pub peaks: Vec<PeakRow>,
+    /// What beams bore, of those that are asked.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub beams: Vec<BorneSummary>,
     /// Until when the motion can be trusted, s; not measured yet.
     pub horizon: Option<f64>,
     /// How the run ended.
@@ -144,6 +147,33 @@ pub struct PeakRow {
     pub body: String,
     /// The angle, rad.
     pub phi: f64,
+}
+
+/// What a beam bore, over all steps.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BorneSummary {
+    /// The beam.
+    pub beam: String,
+    /// The largest normal stress, over nodes and loads; none where the section doesn't know its modulus.
+    pub largest_stress: Option<LargestStress>,
+    /// The same as a part of the yield strength, where that is given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub part_of_yield_strength: Option<f64>,
+    /// What its supports bore, where the scene asks for it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub reactions: Vec<ReactionRange>,
+}
+
+impl BorneSummary {
+    fn new(scene: &Scene, borne: &BeamRecord) -> Self {
+        let strength = scene.beams.iter().find(|beam| beam.name == borne.beam).and_then(|beam| beam.yield_strength);
+        Self {
+            beam: borne.beam.clone(),
+            largest_stress: borne.largest,
+            part_of_yield_strength: borne.largest.zip(strength).map(|(largest, strength)| largest.stress / strength),
+            reactions: borne.reactions.clone(),
+        }
+    }
 }
 
 /// What was modelled and what was left out.
@@ -243,6 +273,7 @@ impl Summary {
             crossing_count: (counted > crossings.len() as u64).then_some(counted),
             crossings,
             peaks,
+            beams: record.beams.iter().map(|borne| BorneSummary::new(scene, borne)).collect(),
             horizon: None,
             ended,
             model: ModelSummary::new(scene, layout),

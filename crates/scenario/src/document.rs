@@ -202,6 +202,14 @@ impl Document {
         }
     }
 
+    /// Some words.
+    pub fn words(&self, path: &str) -> Option<&[String]> {
+        match &self.entries.get(path)?.value {
+            Value::Words(words) => Some(words),
+            _ => None,
+        }
+    }
+
     /// Two words: the bodies of a contact.
     pub fn text_pair(&self, path: &str) -> Option<[&str; 2]> {
         match &self.entries.get(path)?.value {

@@ -3,8 +3,8 @@
 use crate::scene::{BeamScene, ForceScene, GroundScene, LoadKind, Scene};
 use nalgebra::Vector2;
 use std::sync::Arc;
-use teeter_beam::{Beam, BeamError, Load};
-use teeter_integrator::{BeamBody, BeamSurface, Block, BlockLoad, Blocks, Ground, Signal, SignalLoad};
+use teeter_beam::{Beam, BeamError, Load, SpanLoad};
+use teeter_integrator::{BeamBody, BeamSurface, Block, BlockLoad, Blocks, Ground, Signal, SignalLoad, SpanLoads};
 
 /// The blocks under their weight and forces, with what is prescribed of their motion.
 pub(crate) fn blocks(scene: &Scene, blocks: Vec<Block>) -> Blocks {
@@ -76,6 +76,43 @@ impl Load for Moving {
         if let Some(shape) = beam.shape_at(self.at + self.speed * t) {
             shape.add_load(self.force * self.signal.value(t), 0.0, f);
         }
+    }
+}
+
+/// The loads of the scene on a beam, by their places: those of [`loaded`].
+#[derive(Debug)]
+pub(crate) struct PlacedLoads {
+    /// Acceleration of gravity along y, where the beam has weight.
+    weight: Option<f64>,
+    loads: Vec<(LoadKind, Arc<dyn Signal>)>,
+    span: f64,
+}
+
+/// The loads of the scene on a beam by their places; `None` where there are none.
+pub(crate) fn placed_loads(scene: &Scene, number: usize) -> Option<PlacedLoads> {
+    let of = &scene.beams[number];
+    let loads = scene.loads.iter().filter(|load| load.beam == number);
+    let loads: Vec<_> = loads.map(|load| (load.kind, load.history.signal())).collect();
+    let weight = of.self_weight.then(|| scene.gravity[1]);
+    (weight.is_some() || !loads.is_empty()).then_some(PlacedLoads { weight, loads, span: of.spec.span })
+}
+
+impl SpanLoads for PlacedLoads {
+    fn add(&self, t: f64, factor: f64, loads: &mut Vec<SpanLoad>) {
+        loads.extend(self.weight.map(|gravity| SpanLoad::Weight { gravity: factor * gravity }));
+        loads.extend(self.loads.iter().filter_map(|(kind, signal)| {
+            let factor = factor * signal.value(t);
+            match *kind {
+                LoadKind::Point { at, force, couple } => {
+                    Some(SpanLoad::Point { x: at, force: factor * force, couple: factor * couple })
+                }
+                LoadKind::Distributed { load, from, to } => Some(SpanLoad::Uniform { from, to, load: factor * load }),
+                LoadKind::Moving { force, at, speed } => {
+                    let x = at + speed * t;
+                    (0.0..=self.span).contains(&x).then_some(SpanLoad::Point { x, force: factor * force, couple: 0.0 })
+                }
+            }
+        }));
     }
 }
 

@@ -111,6 +111,7 @@ impl Judge<'_> {
                 }
                 (values.len() == items.len()).then_some(Value::List(values))
             }
+            Kind::Words(choices) => self.words(key, choices, path, node).map(Value::Words),
             Kind::WordOrTable(words, keys) => self.item(key, (words, keys), path, node).map(Value::Item),
             Kind::WordOrTablePair(words, keys) => {
                 let items = self.items(key, path, node, Some(2))?;
@@ -143,6 +144,20 @@ impl Judge<'_> {
                 _ => self.gravity(key, path, node).map(Value::Number),
             },
         }
+    }
+
+    fn words(&mut self, key: &Key, choices: &[&str], path: &str, node: &Node) -> Option<Vec<String>> {
+        let items = self.items(key, path, node, None)?;
+        let mut words: Vec<String> = Vec::new();
+        for item in items {
+            let word = self.choice(key, choices, path, item)?;
+            if words.contains(&word) {
+                self.blame(item, path, format!("`{word}` is there twice")).remedy = Some(expected(key));
+                return None;
+            }
+            words.push(word);
+        }
+        Some(words)
     }
 
     /// Says so if the value is known but not built in yet.

@@ -142,6 +142,8 @@ pub enum Kind {
     Numbers(Range),
     /// An array of two words.
     ChoicePair(&'static [&'static str]),
+    /// An array of some of these words, each once.
+    Words(&'static [&'static str]),
     /// One of some words, or a table of some keys.
     WordOrTable(&'static [&'static str], &'static [Key]),
     /// An array of two, each one of some words or a table of some keys.

@@ -1,5 +1,6 @@
 //! From a decoded document to a resolved scene: references, choices that exclude each other, numbers that must fit.
 
+mod beam_output;
 mod beams;
 mod blocks;
 mod contacts;

@@ -1,7 +1,9 @@
 //! A scene resolved: plain SI numbers, references checked, nothing left to guess.
 
+mod beam_output;
 mod history;
 
+pub use beam_output::{BEAM_QUANTITIES, BeamOutput, BeamQuantity};
 pub use history::{AxisScene, ForceScene, History, LoadKind, LoadScene, MotionScene, SignalScene};
 
 /// A scene that can be run.
@@ -108,6 +110,8 @@ pub struct BeamScene {
     pub position: [f64; 2],
     /// Places along the span whose deflection is written, m.
     pub probes: Vec<f64>,
+    /// What is written of what it bears.
+    pub output: BeamOutput,
     /// The prescribed motion of its supports; the third axis has none.
     pub motion: MotionScene,
 }

@@ -11,11 +11,11 @@ use crate::scene::{Placement, Scene, Support};
 use crate::simulation::BuildError;
 use nalgebra::{Vector2, Vector3};
 use std::sync::Arc;
-use teeter_beam::{Beam, BeamError};
+use teeter_beam::{Beam, BeamError, SpanLoad};
 use teeter_detect::{BodyId, PointDetector, PointPair};
 use teeter_integrator::{
-    Block, Blocks, EquilibriumError, Model, ModelBuilder, Motion, PairLaw, SettlingLimits, SolverSettings, Workspace,
-    settle,
+    BeamForces, Block, Blocks, Equilibrium, EquilibriumError, Model, ModelBuilder, Motion, PairLaw, SettlingLimits,
+    SolverSettings, Workspace, settle,
 };
 use teeter_rigid::{Pose, Rectangle};
 use teeter_solvers::Auto;
@@ -32,6 +32,8 @@ pub(crate) struct Start<'a> {
     pub(crate) deflections: Vec<Vec<f64>>,
     /// The coordinates of ground that moves.
     pub(crate) ground: &'a [f64],
+    /// The beams that are in equilibrium, with the forces of contacts on them; none before settling.
+    pub(crate) pressed: Vec<(usize, Vec<SpanLoad>)>,
 }
 
 /// A block that moves this part of its width from where it was put is on its way.
@@ -85,6 +87,7 @@ impl Start<'_> {
                 .map_err(|error| refusal(scene, &scene.beams[first].name, &pairs, error))?;
             limits.tau = found.tau;
             taking_part.take(self, &found.q);
+            self.pressed = taking_part.pressed(scene, &model, &found);
             summary.rounds += found.rounds;
             summary.change = found.change;
             summary.forces.clear();
@@ -266,6 +269,28 @@ impl TakingPart {
             start.deflections[k].copy_from_slice(own);
             q = rest;
         }
+    }
+}
+
+impl TakingPart {
+    /// The forces of contacts on each beam.
+    fn pressed(&self, scene: &Scene, model: &Model<2>, found: &Equilibrium<2>) -> Vec<(usize, Vec<SpanLoad>)> {
+        let mut candidates = Vec::new();
+        model.detector().detect(&model.placed(&found.q), f64::INFINITY, &mut candidates);
+        let on = |body: BodyId, span: f64| {
+            let loads = candidates.iter().flat_map(|candidate| {
+                let force = found.forces.iter().find(|(id, _)| *id == candidate.id).map(|(_, force)| *force);
+                let sides = candidate.sides.iter().zip([1.0, -1.0]).filter(|(side, _)| side.body == body);
+                sides.filter_map(move |(side, sign)| {
+                    Some(BeamForces::surface_load(side, &candidate.frame, &(force? * sign), span))
+                })
+            });
+            loads.collect()
+        };
+        // The model's bodies: the blocks, then the beams.
+        let bodies = (self.blocks.len()..).map(|body| BodyId(body as u32));
+        let beams = self.beams.iter().zip(bodies);
+        beams.map(|(&k, body)| (k, on(body, scene.beams[k].spec.span))).collect()
     }
 }
 

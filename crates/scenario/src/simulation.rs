@@ -7,11 +7,11 @@ use crate::scene::{BeamScene, Placement, Scene, SchemeName, Support, Time};
 use crate::settling::{Start, StaticStart};
 use std::ops::Range;
 use std::sync::Arc;
-use teeter_beam::{Beam, BeamError};
+use teeter_beam::{Beam, BeamError, SpanLoad};
 use teeter_contact::ContactSolver;
 use teeter_detect::{BodyId, PointDetector, PointPair};
 use teeter_integrator::{
-    Block, Ended, Model, ModelBuilder, ModelError, MoreauJean, MoreauJeanClosed, MoreauJeanClosedSettings,
+    BeamForces, Block, Ended, Model, ModelBuilder, ModelError, MoreauJean, MoreauJeanClosed, MoreauJeanClosedSettings,
     MoreauJeanSettings, Observer, Plan, RunError, Scheme, SettingError, SolverSettings, State, StateError, Workspace,
     run,
 };
@@ -94,6 +94,10 @@ pub struct BeamPlace {
     pub supports: Option<Range<usize>>,
     /// Places whose deflection is written, m from its left end.
     pub probes: Vec<f64>,
+    /// Its number as a body.
+    pub body: BodyId,
+    /// Where it starts in equilibrium: the forces of contacts that press on it there.
+    pub pressed: Option<Vec<SpanLoad>>,
 }
 
 /// The names of a contact pair.
@@ -140,6 +144,22 @@ impl std::fmt::Debug for Simulation {
     }
 }
 
+impl Layout {
+    /// What watches the section forces of a beam, by its number, in a run of `scene`.
+    #[must_use]
+    pub fn beam_forces(&self, scene: &Scene, number: usize) -> BeamForces {
+        let place = &self.beams[number];
+        let mut forces = BeamForces::new(&place.beam, place.body, place.range.clone(), scene.time.theta);
+        if let Some(supports) = &place.supports {
+            forces = forces.with_supports(supports.start + 1);
+        }
+        match driven::placed_loads(scene, number) {
+            Some(loads) => forces.with_loads(Box::new(loads)),
+            None => forces,
+        }
+    }
+}
+
 impl Simulation {
     /// Makes the model of a scene, and its start.
     ///
@@ -173,7 +193,6 @@ impl Simulation {
         let bodies = blocks.iter().map(|(body, _)| *body).collect();
         let first_block = parts.add(Box::new(driven::blocks(scene, bodies)));
 
-        let mut beam_bodies = Vec::new();
         let mut beams = Vec::new();
         let mut dofs = 3 * blocks.len();
         for (number, scene_beam) in scene.beams.iter().enumerate() {
@@ -189,8 +208,9 @@ impl Simulation {
                 supports: (!displaced.is_empty()).then_some(range.end..dofs),
                 range,
                 probes: scene_beam.probes.clone(),
+                body: parts.add(Box::new(body)),
+                pressed: None,
             });
-            beam_bodies.push(parts.add(Box::new(body)));
             beams.push((beam, displaced));
         }
         let ground = scene.ground.as_ref().map(driven::ground);
@@ -215,9 +235,13 @@ impl Simulation {
             let still = driven::still_beam(&scene.beams[k], &beams[k].0, &beams[k].1);
             poses.push(block_pose(scene, block, &Standing::Surface(&still, &deflections[k]))?);
         }
-        let mut start = Start { blocks: &blocks, poses, beams: &beams, deflections, ground: &ground_start };
+        let mut start =
+            Start { blocks: &blocks, poses, beams: &beams, deflections, ground: &ground_start, pressed: Vec::new() };
         let static_start = start.settle(scene)?;
-        let Start { poses, deflections, .. } = start;
+        let Start { poses, deflections, pressed, .. } = start;
+        for (k, pressed) in pressed {
+            layout.beams[k].pressed = Some(pressed);
+        }
 
         let (mut q, mut v) = (Vec::with_capacity(dofs), Vec::with_capacity(dofs));
         for (pose, block) in poses.iter().zip(&scene.blocks) {
@@ -233,7 +257,7 @@ impl Simulation {
         let mut pairs = Vec::new();
         for contact in &scene.contacts {
             let surface = match contact.surface {
-                Support::Beam(k) => beam_bodies[k],
+                Support::Beam(k) => layout.beams[k].body,
                 Support::Ground => match ground_body {
                     Some(body) => body,
                     None => continue, // the resolver refuses a contact with ground that isn't there

@@ -195,6 +195,9 @@ pub static TABLES: &[Table] = &[
             key("model", Kind::Choice(&["full"]), Default("\"full\""), "\"full\"", "In which coordinates it moves: those of all its nodes.").reserving(&[later("modes")]),
             key("backend", Kind::Choice(&["auto", "banded", "sparse", "cached-columns"]), Default("\"auto\""), "\"auto\"", "How its matrices answer forces and contacts: the same motion up to rounding, in other times; auto takes the fastest one by measurement."),
             key("probes", Kind::List(Dimension::LENGTH, Range::NOT_NEGATIVE), Optional, "[\"9 cm\"]", "Places along the beam, from its left end, whose deflection is written out."),
+            key("record", Kind::Words(crate::scene::BEAM_QUANTITIES), Default("[\"w\"]"), "[\"w\", \"moment\", \"shear\"]", "What is written at its probes: deflection, bending moment, transverse force, largest normal stress; and its axial force. `docs/section-forces.md` has signs and meaning."),
+            key("reactions", Kind::Flag, Default("false"), "true", "Whether force and couple of each support are written."),
+            key("envelope", Kind::Flag, Default("false"), "true", "Whether the extremes of deflection, moment, transverse force and stress over all steps are written to envelopes.csv, by nodes."),
         ],
     },
     Table {

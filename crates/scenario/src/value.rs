@@ -25,6 +25,8 @@ pub enum Value {
     List(Vec<f64>),
     /// Two texts, names or choices.
     TextPair([String; 2]),
+    /// Some words.
+    Words(Vec<String>),
     /// A quantity by one of the units that its key takes.
     Measure(Measure),
     /// A word or a table.
@@ -105,6 +107,7 @@ impl Value {
             Self::Pair(_) => matches!(kind, Kind::Pair(..) | Kind::Gravity),
             Self::List(_) => matches!(kind, Kind::List(..) | Kind::Numbers(_)),
             Self::TextPair(_) => matches!(kind, Kind::ChoicePair(_) | Kind::NamePair),
+            Self::Words(_) => matches!(kind, Kind::Words(_)),
             Self::Measure(_) => matches!(kind, Kind::Measure(..)),
             Self::Item(_) => matches!(kind, Kind::WordOrTable(..)),
             Self::ItemPair(_) => matches!(kind, Kind::WordOrTablePair(..)),
@@ -128,6 +131,10 @@ impl Value {
                 format!("[{}]", items.join(", "))
             }
             Self::TextPair([a, b]) => format!("[{}, {}]", quote(a), quote(b)),
+            Self::Words(words) => {
+                let words: Vec<String> = words.iter().map(|word| quote(word)).collect();
+                format!("[{}]", words.join(", "))
+            }
             Self::Measure(measure) => quote(&measure.to_string()),
             Self::Item(item) => item.to_toml(keys_of(kind)),
             Self::ItemPair([a, b]) => format!("[{}, {}]", a.to_toml(keys_of(kind)), b.to_toml(keys_of(kind))),

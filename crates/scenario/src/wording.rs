@@ -39,6 +39,7 @@ pub(crate) fn noun(key: &Key) -> String {
             format!("an array, each item {} with its unit,", dimension.name())
         }
         Kind::Numbers(_) => "an array of bare numbers".to_owned(),
+        Kind::Words(_) => "an array of words in quotes".to_owned(),
         Kind::WordOrTable(..) => "a word in quotes or a table".to_owned(),
         Kind::WordOrTablePair(..) => "an array of two, each a word in quotes or a table,".to_owned(),
         Kind::ChoicePair(_) | Kind::NamePair => "an array of two words in quotes".to_owned(),
@@ -60,6 +61,7 @@ pub fn expected(key: &Key) -> String {
         Kind::ChoicePair(choices) => {
             format!("two of {}, such as {}", choices.join(", "), key.example)
         }
+        Kind::Words(words) => format!("some of {}, each once, such as {}", words.join(", "), key.example),
         Kind::WordOrTable(words, keys) => {
             format!("built in: {}, or a table of {}", words.join(", "), names(keys))
         }

@@ -141,8 +141,7 @@ pub(crate) fn rows(
     driven: &[usize],
     out: &mut Rows<'_, 2>,
 ) -> usize {
-    let (sin, cos) = (-frame[(0, 0)], frame[(0, 1)]);
-    let up: Vector2<f64> = frame.column(1).into();
+    let [up, turn] = lift_and_turn(point, frame);
     let mut taken = 0;
     let mut put = |column: usize, value: Vector2<f64>| {
         out.columns[taken] = column;
@@ -152,7 +151,6 @@ pub(crate) fn rows(
     if point.y == 0.0 {
         beam.shape(point.x, |column, n, _| put(column, up * n));
     } else {
-        let turn = frame * Vector2::new(-cos, -sin) * (point.y * cos * cos);
         beam.shape(point.x, |column, n, dn| put(column, up * n + turn * dn));
     }
     let along: Vector2<f64> = frame.column(0).into();
@@ -161,4 +159,11 @@ pub(crate) fn rows(
         put(*column, frame.column(direction).into());
     }
     taken
+}
+
+/// The velocities of a surface point in a contact's frame for a unit of ẇ and of ẇ' there. So an impulse p on the beam is the
+/// vertical one up·p and the couple turn·p about the axis.
+pub(crate) fn lift_and_turn(point: &Vector2<f64>, frame: &Frame<2>) -> [Vector2<f64>; 2] {
+    let (sin, cos) = (-frame[(0, 0)], frame[(0, 1)]);
+    [frame.column(1).into(), frame * Vector2::new(-cos, -sin) * (point.y * cos * cos)]
 }

@@ -137,6 +137,30 @@ fn a_step_on_a_beam_allocates_nothing() {
 }
 
 #[test]
+fn the_section_forces_of_a_step_allocate_nothing() {
+    let beam = beam();
+    let law = PairLaw::new(0.5, 0.2);
+    let surface = Box::new(beam_body(&beam));
+    let model = model(&PAPER_BLOCK, Vector2::new(0.0, -9.81), law, Kinematics::Deformed, surface);
+    let mut q = vec![0.17405990783590924, 0.0685504782624077, 0.08726646259971647];
+    q.resize(3 + beam.dofs(), 0.0);
+    let mut state = State::new(&model, &q, &vec![0.0; q.len()], 1e-4).unwrap();
+    let mut work = workspace(&model);
+    let mut scheme = MoreauJean::new(MoreauJeanSettings::default()).unwrap();
+    let mut forces = BeamForces::new(&beam, teeter_detect::BodyId(1), 3..q.len(), 0.5);
+    scheme.start(&model, &mut state, &mut work).unwrap();
+    forces.start(&state, None).unwrap();
+    let before = ALLOCATIONS.with(Cell::get);
+    let mut most = 0.0_f64;
+    for _ in 0..3000 {
+        let step = scheme.advance(&model, &mut state, &mut work).unwrap();
+        most = most.max(forces.enter(&step, &state).unwrap().largest_stress(&beam).unwrap().0);
+    }
+    assert_eq!(ALLOCATIONS.with(Cell::get) - before, 0);
+    assert!(most > 1e6, "it bends: {most}");
+}
+
+#[test]
 fn a_step_on_a_beam_in_modes_allocates_nothing() {
     let beam = beam();
     let body = || {

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stderr, unsafe_code)]
 
 mod allocations;
+mod beam_forces;
 mod beams;
 mod closed;
 mod conforming;

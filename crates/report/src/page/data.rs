@@ -4,6 +4,7 @@ use super::recorder::{BLOCK_COLUMNS, BLOCK_FRAME, ENERGIES, PageRecorder};
 use super::scenery::{CORNERS, Scenery};
 use super::{DIGITS, TIME_DIGITS, rounded};
 use crate::Summary;
+use crate::sections::Kind;
 use serde::Serialize;
 use teeter_integrator::ContactState;
 
@@ -16,6 +17,15 @@ struct Data<'a> {
     forces: ForceData,
     impacts: Vec<ImpactData>,
     impact_count: u64,
+    sections: Vec<SectionData>,
+}
+
+/// What a beam bears over time, at the times of the curves.
+#[derive(Serialize)]
+struct SectionData {
+    kind: Kind,
+    label: String,
+    values: Vec<f64>,
 }
 
 /// The pictures: `blocks[k].x[i]` at `t[i]`; `beams[k].w` row by row in units of `beams[k].unit`. Displacements of supports
@@ -120,6 +130,7 @@ pub(crate) fn json(recorder: &PageRecorder, summary: &Summary) -> String {
             })
             .collect(),
         impact_count: recorder.kept.impact_count,
+        sections: sections(recorder),
     };
     // Strings, vectors and numbers (null where not finite) always serialise.
     serde_json::to_string(&data).unwrap_or_default().replace('<', "\\u003c")
@@ -181,6 +192,16 @@ fn curves(recorder: &PageRecorder) -> CurveData {
             .map(|(k, name)| EnergyCurve { name, values: column(beam + beams + k) })
             .collect(),
     }
+}
+
+fn sections(recorder: &PageRecorder) -> Vec<SectionData> {
+    let curves = recorder.sections.iter().zip(recorder.first_section()..).map(|(column, k)| SectionData {
+        kind: column.kind,
+        label: recorder.section_label(column),
+        values: recorder.kept.curves.curve(k).into_iter().map(digits).collect(),
+    });
+    // Of a recorder on its own, which has seen no section forces, there is nothing to draw.
+    curves.filter(|curve| curve.values.iter().any(|value| value.is_finite())).collect()
 }
 
 fn forces(recorder: &PageRecorder) -> ForceData {

@@ -1,13 +1,16 @@
 //! The plots of the page as figures for a paper.
 
-use super::plot::{Band, Figure, Line, Panel, range_of};
+use super::plot::{Band, Figure, KEY_WIDTH, Line, Panel, key_width, range_of, text_width};
 use super::recorder::{BLOCK_COLUMNS, ENERGIES, ImpactMark, PageRecorder};
 use super::rounded;
 use super::scenery::CORNERS;
+use crate::BeamRecord;
+use crate::sections::Kind;
+use teeter_beam::Envelope;
 use teeter_integrator::ContactState;
 
 /// File names and SVG text of the figures that the scene has: `phi.svg`, `omega.svg` and `phase.svg` with blocks,
-/// `w_mid.svg` with beams, `contact_forces.svg` where contacts carried something, `energy.svg` always.
+/// `w_mid.svg` with beams, `section_forces.svg` and `envelopes.svg` where the scene asks for what beams bear, `contact_forces.svg` where contacts carried something, `energy.svg` always.
 #[must_use]
 pub fn figures(recorder: &PageRecorder) -> Vec<(String, String)> {
     let plots = Plots { recorder, t: recorder.kept.curves.times() };
@@ -21,6 +24,12 @@ pub fn figures(recorder: &PageRecorder) -> Vec<(String, String)> {
     }
     if !scenery.beams.is_empty() {
         add("w_mid.svg", plots.w_mid());
+    }
+    if let Some(figure) = plots.section_forces() {
+        add("section_forces.svg", figure);
+    }
+    if let Some(figure) = envelopes(recorder) {
+        add("envelopes.svg", figure);
     }
     if let Some(figure) = plots.contact_forces() {
         add("contact_forces.svg", figure);
@@ -117,6 +126,35 @@ impl<'a> Plots<'a> {
         self.over_time("w_mid", "Deflection of the beams at midspan over time", vec![panel])
     }
 
+    /// What beams bear at their probes and supports; the largest curves, as many as can be named.
+    fn section_forces(&self) -> Option<Figure> {
+        let mut panels = Vec::new();
+        for (kind, y_label, factor) in [
+            (Kind::Moment, "Bending moment M (N m)", 1.0),
+            (Kind::Shear, "Transverse force V (N)", 1.0),
+            (Kind::Stress, "Normal stress (MPa)", 1e-6),
+            (Kind::AxialForce, "Axial force N (N)", 1.0),
+            (Kind::Reaction, "Reactions (N)", 1.0),
+            (Kind::ReactionCouple, "Couples of supports (N m)", 1.0),
+        ] {
+            let columns = self.recorder.sections.iter().zip(self.recorder.first_section()..);
+            let lines = columns.filter(|(column, _)| column.kind == kind).enumerate();
+            let mut lines: Vec<Line> = lines
+                .map(|(number, (column, k))| self.line(&self.recorder.section_label(column), number, k, factor))
+                .filter(|line| largest(std::slice::from_ref(line)) > 0.0)
+                .collect();
+            if lines.is_empty() {
+                continue;
+            }
+            let least = 1e-6 * largest(&lines);
+            let (range, note) = cut(&lines, least, y_label.rsplit(['(', ')']).nth(1).unwrap_or_default());
+            let room = KEY_WIDTH - note.as_deref().map_or(0.0, text_width);
+            keep_named(&mut lines, room);
+            panels.push(Panel { y_label: y_label.to_owned(), lines, range, note, least, ..Panel::default() });
+        }
+        (!panels.is_empty()).then(|| self.over_time("section_forces", "What beams bear over time", panels))
+    }
+
     fn contact_forces(&self) -> Option<Figure> {
         let scenery = &self.recorder.scenery;
         let borders = self.recorder.kept.curves.borders();
@@ -144,7 +182,7 @@ impl<'a> Plots<'a> {
             let mine = |impact: &&ImpactMark| impact.contact == pair;
             let marks: Vec<f64> = self.recorder.kept.impacts.iter().filter(mine).map(|impact| impact.t).collect();
             for (what, lines) in [("Normal", normal), ("Tangential", tangential)] {
-                let (range, cut) = cut(&lines, least);
+                let (range, cut) = cut(&lines, least, "N");
                 let name = (scenery.contacts.len() > 1).then(|| contact.name.clone());
                 let note = [name, cut].into_iter().flatten().collect::<Vec<_>>().join(": ");
                 panels.push(Panel {
@@ -192,6 +230,61 @@ impl<'a> Plots<'a> {
     }
 }
 
+/// Moment and transverse force over the span: their least and largest in the run.
+pub(super) fn envelopes(recorder: &PageRecorder) -> Option<Figure> {
+    let drawn = || {
+        recorder.beams.iter().filter_map(|record| {
+            let place = recorder.layout.beams.iter().find(|place| place.name == record.beam)?;
+            Some((record, place.beam.node_positions(), record.envelope.as_ref()?))
+        })
+    };
+    let several = recorder.scenery.beams.len() > 1;
+    let panel = |y_label: &str, pick: &dyn Fn(&Envelope) -> Vec<[f64; 2]>| {
+        let sides = drawn().flat_map(|drawn| [(drawn, 1, "largest"), (drawn, 0, "least")]).enumerate();
+        let line = |(number, ((record, x, envelope), side, word)): (
+            usize,
+            ((&BeamRecord, &[f64], &Envelope), usize, &str),
+        )| {
+            let label = if several { format!("{} {word}", record.beam) } else { word.to_owned() };
+            Line { label, number, x: x.to_vec(), y: pick(envelope).iter().map(|range| range[side]).collect() }
+        };
+        let mut lines: Vec<Line> = sides.map(line).collect();
+        keep_named(&mut lines, KEY_WIDTH);
+        let least = 1e-6 * largest(&lines);
+        Panel { y_label: y_label.to_owned(), lines, least, ..Panel::default() }
+    };
+    let span = drawn().filter_map(|(_, x, _)| x.last().copied()).fold(0.0, f64::max);
+    (span > 0.0).then(|| Figure {
+        id: "envelopes",
+        title: "Bending moment and transverse force over the span, least and largest of all steps".to_owned(),
+        x_label: "Place along the beam x (m)".to_owned(),
+        x_range: (0.0, span),
+        panels: vec![
+            panel("Bending moment M (N m)", &|envelope| envelope.moment.clone()),
+            panel("Transverse force V (N)", &|envelope| envelope.shear.clone()),
+        ],
+        marks: Vec::new(),
+    })
+}
+
+/// Keeps the lines with the largest values, as many as can be named in this width, and their order.
+fn keep_named(lines: &mut Vec<Line>, width: f64) {
+    let mut by_size: Vec<(usize, f64)> =
+        lines.iter().enumerate().map(|(k, line)| (k, largest(std::slice::from_ref(line)))).collect();
+    by_size.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let mut left = width;
+    let named = by_size.iter().take_while(|(k, _)| {
+        left -= key_width(&lines[*k].label);
+        left >= 0.0
+    });
+    let kept: Vec<usize> = named.map(|(k, _)| *k).collect();
+    let mut k = 0;
+    lines.retain(|_| {
+        k += 1;
+        kept.is_empty() || kept.contains(&(k - 1))
+    });
+}
+
 fn largest(lines: &[Line]) -> f64 {
     lines.iter().flat_map(|line| &line.y).fold(0.0, |largest, y| y.abs().max(largest))
 }
@@ -229,7 +322,7 @@ fn stretches(borders: &[f64], states: &[ContactState]) -> Vec<(f64, f64, &'stati
 const PEAK: f64 = 6.0;
 
 /// The range that shows the forces between impacts, where those would dwarf them.
-fn cut(lines: &[Line], least: f64) -> (Option<(f64, f64)>, Option<String>) {
+fn cut(lines: &[Line], least: f64, unit: &str) -> (Option<(f64, f64)>, Option<String>) {
     let mut sizes: Vec<f64> =
         lines.iter().flat_map(|line| &line.y).map(|y| y.abs()).filter(|y| *y > least && y.is_finite()).collect();
     sizes.sort_by(f64::total_cmp);
@@ -240,5 +333,5 @@ fn cut(lines: &[Line], least: f64) -> (Option<(f64, f64)>, Option<String>) {
     let limit = 0.5 * PEAK * usual;
     let negative = lines.iter().flat_map(|line| &line.y).any(|y| *y < -0.01 * limit);
     let low = if negative { -limit } else { -0.06 * limit };
-    (Some((low, limit)), Some(format!("peaks cut, up to {} N", rounded(largest, 3))))
+    (Some((low, limit)), Some(format!("peaks cut, up to {} {unit}", rounded(largest, 3))))
 }

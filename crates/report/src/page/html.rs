@@ -1,5 +1,6 @@
 //! The page itself: text and numbers as HTML here, pictures by the script from the data.
 
+use super::figures::envelopes;
 use super::plot::escaped;
 use super::recorder::PageRecorder;
 use super::rocking::{HalfCycle, half_cycles};
@@ -36,6 +37,7 @@ pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> S
         ("warnings", warnings(summary)),
         ("tiles", tiles(&values, summary)),
         ("residual", scientific(summary.energy.largest_residual)),
+        ("borne", borne(recorder, summary)),
         ("rocking", rocking(&half_cycles(recorder, summary))),
         ("model", model(summary)),
         ("numbers", numbers(&values)),
@@ -226,6 +228,81 @@ fn rocking(cycles: &[HalfCycle]) -> String {
     html
 }
 
+/// What beams bore: largest stress, reactions, envelopes.
+fn borne(recorder: &PageRecorder, summary: &Summary) -> String {
+    let mut html = String::new();
+    let several = summary.beams.len() > 1;
+    let stresses = summary.beams.iter().filter_map(|borne| {
+        let largest = borne.largest_stress?;
+        let part = borne.part_of_yield_strength.map(|part| {
+            let class = if part > 1.0 { " class=\"bad\"" } else { "" };
+            format!(", <span{class}>{} % of the yield strength</span>", rounded(100.0 * part, 3))
+        });
+        let name = if several { format!("{}: ", escaped(&borne.beam)) } else { String::new() };
+        Some(format!(
+            "<p data-beam=\"{}\" data-stress=\"{}\">{name}largest normal stress {} at x = {} m, t = {} s{}</p>\n",
+            escaped(&borne.beam),
+            largest.stress,
+            with_prefix(largest.stress, "Pa"),
+            rounded(largest.x, 4),
+            rounded(largest.t, 6),
+            part.unwrap_or_default()
+        ))
+    });
+    let stresses: String = stresses.collect();
+    if !stresses.is_empty() {
+        let _ = writeln!(
+            html,
+            "<section id=\"stress\" class=\"panel\" aria-labelledby=\"stress-title\">\n<h3 id=\"stress-title\">Stress</h3>\n\
+             {stresses}</section>"
+        );
+    }
+    if let Some(figure) = envelopes(recorder) {
+        let _ = writeln!(
+            html,
+            "<section id=\"envelopes\" class=\"panel\" aria-labelledby=\"envelopes-title\">\n<h3 id=\"envelopes-title\">Moment \
+             and transverse force over the span, least and largest of all steps</h3>\n<div class=\"paper\">{}</div>\n</section>",
+            figure.to_svg()
+        );
+    }
+    html.push_str(&reactions(summary));
+    html
+}
+
+fn reactions(summary: &Summary) -> String {
+    let supports: Vec<_> =
+        summary.beams.iter().flat_map(|borne| borne.reactions.iter().map(|range| (&borne.beam, range))).collect();
+    if supports.is_empty() {
+        return String::new();
+    }
+    let several = summary.beams.len() > 1;
+    let mut html = "<section id=\"reactions\" class=\"panel\" aria-labelledby=\"reactions-title\">\n\
+        <h3 id=\"reactions-title\">Reactions of the supports</h3>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" \
+        aria-labelledby=\"reactions-title\"><table>\n<thead><tr>"
+        .to_owned();
+    html.push_str(if several { "<th scope=\"col\">Beam</th>" } else { "" });
+    html.push_str("<th scope=\"col\">x<br><small>m</small></th>");
+    for (what, unit) in [("Force", "N"), ("Couple", "N m")] {
+        for when in ["at the start", "least", "largest"] {
+            let _ = write!(html, "<th scope=\"col\">{what} {when}<br><small>{unit}</small></th>");
+        }
+    }
+    html.push_str("</tr></thead>\n<tbody>\n");
+    let cell = |x: f64| format!("<td>{}</td>", rounded(x, 4).to_string().replace('-', "\u{2212}"));
+    for (beam, range) in supports {
+        let name = escaped(beam);
+        let head = if several { format!("<th scope=\"row\">{name}</th>") } else { String::new() };
+        let ([force, couple], [low, high], [least, most]) = (range.start, range.force, range.couple);
+        let cells: String = [range.x, force, low, high, couple, least, most].into_iter().map(cell).collect();
+        let _ = writeln!(html, "<tr data-beam=\"{name}\" data-x=\"{}\">{head}{cells}</tr>", range.x);
+    }
+    html.push_str(
+        "</tbody></table></div>\n<p class=\"note\">Of the support on the beam: force upwards, couple counter-clockwise. Means over a \
+         step: an impact\u{2019}s peak grows as the step shrinks.</p>\n</section>",
+    );
+    html
+}
+
 fn model(summary: &Summary) -> String {
     let model = &summary.model;
     let list = |words: &[String]| {
@@ -294,7 +371,7 @@ mod tests {
         for piece in TEMPLATE.split("{{").skip(1) {
             let name = piece.split_once("}}").unwrap().0;
             let known = ["title", "style", "script", "data", "subtitle", "warnings", "tiles", "residual", "rocking"];
-            assert!(known.contains(&name) || ["model", "numbers", "settings"].contains(&name), "{name}");
+            assert!(known.contains(&name) || ["borne", "model", "numbers", "settings"].contains(&name), "{name}");
         }
     }
 

@@ -204,7 +204,7 @@ impl Panel {
                 x + 18.0,
                 escaped(&line.label)
             );
-            x += text_width(&line.label) + 32.0;
+            x += key_width(&line.label);
         }
         for (colour, word) in &self.band_key {
             let _ = writeln!(
@@ -253,8 +253,16 @@ fn stroke(number: usize) -> String {
     format!("stroke=\"{colour}\" stroke-dasharray=\"{dash}\"")
 }
 
+/// Room for the names of lines above a panel.
+pub(crate) const KEY_WIDTH: f64 = WIDTH - LEFT - RIGHT;
+
+/// What a line's name takes of it.
+pub(crate) fn key_width(label: &str) -> f64 {
+    text_width(label) + 32.0
+}
+
 /// About the width of Helvetica at the size of the labels.
-fn text_width(text: &str) -> f64 {
+pub(crate) fn text_width(text: &str) -> f64 {
     5.6 * text.chars().count() as f64
 }
 

@@ -2,8 +2,10 @@
 
 use super::curves::Curves;
 use super::frames::Frames;
+use super::rounded;
 use super::scenery::{CORNERS, Scenery};
 use crate::impact_threshold;
+use crate::sections::{BeamRecord, Column, Kind, columns_of};
 use serde::{Deserialize, Serialize};
 use std::ops::{ControlFlow, Range};
 use teeter_integrator::{Model, Observer, ObserverError, State, StepReport};
@@ -97,6 +99,12 @@ pub struct PageRecorder {
     pub(crate) layout: Layout,
     threshold: f64,
     bucket_capacity: usize,
+    /// What beams bear, after all other columns of the curves.
+    pub(crate) sections: Vec<Column>,
+    /// What beams bore in the whole run; nothing before its end.
+    pub(crate) beams: Vec<BeamRecord>,
+    /// Their values at the end of the step.
+    section_values: Vec<f64>,
     /// Values of the curves at the end of the step.
     row: Vec<f64>,
 }
@@ -109,7 +117,10 @@ impl PageRecorder {
         let frame = BLOCK_FRAME * scenery.blocks.len()
             + scenery.beams.iter().map(|beam| beam.points).sum::<usize>()
             + moved(layout).map(|range| range.len()).sum::<usize>();
-        let columns = BLOCK_COLUMNS * scenery.blocks.len() + scenery.beams.len() + ENERGIES.len();
+        let beams = scene.beams.iter().zip(&layout.beams).enumerate();
+        let sections = beams.flat_map(|(number, (of, place))| columns_of(number, of, place));
+        let sections: Vec<Column> = sections.filter(|column| column.kind != Kind::Deflection).collect();
+        let columns = BLOCK_COLUMNS * scenery.blocks.len() + scenery.beams.len() + ENERGIES.len() + sections.len();
         let points = CORNERS * scenery.contacts.len();
         let even = |n: usize| n - n % 2;
         let capacity = |most: usize, width: usize| even((NUMBERS / width).clamp(10, most));
@@ -125,6 +136,9 @@ impl PageRecorder {
             layout: layout.clone(),
             threshold: impact_threshold(scene.gravity, scene.time.step),
             bucket_capacity,
+            section_values: vec![f64::NAN; sections.len()],
+            sections,
+            beams: Vec::new(),
             row: Vec::with_capacity(columns),
             scenery,
         }
@@ -136,6 +150,26 @@ impl PageRecorder {
 
     pub(crate) fn restore(&mut self, kept: Kept) {
         self.kept = kept;
+    }
+
+    /// The number of the first column of the curves that is of what beams bear.
+    pub(crate) fn first_section(&self) -> usize {
+        BLOCK_COLUMNS * self.scenery.blocks.len() + self.scenery.beams.len() + ENERGIES.len()
+    }
+
+    /// What tells a curve of what beams bear from others of its kind: the place, and the beam where there are several.
+    pub(crate) fn section_label(&self, column: &Column) -> String {
+        let beam = &self.scenery.beams[column.beam];
+        let name = (self.scenery.beams.len() > 1).then(|| beam.name.clone());
+        let place = column.x.map(|x| format!("{} m", rounded(x, 4)));
+        name.into_iter().chain(place).collect::<Vec<_>>().join(" ")
+    }
+
+    /// Takes the values of what beams bear, to be entered with the next step; without them there are no such curves.
+    pub(crate) fn see_sections(&mut self, values: &[f64]) {
+        if values.len() == self.section_values.len() {
+            self.section_values.copy_from_slice(values);
+        }
     }
 
     fn take_frame(&mut self, state: &State) {
@@ -166,6 +200,7 @@ impl PageRecorder {
             sum.projection,
             sum.residual,
         ]);
+        self.row.extend_from_slice(&self.section_values);
     }
 
     fn take_contacts(&mut self, step: &StepReport<'_, 2>) {

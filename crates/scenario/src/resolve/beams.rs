@@ -34,6 +34,8 @@ impl Resolver<'_, '_> {
         let self_weight = self.doc.flag(&at("self_weight"));
         let motion = self.motion(&path, signals);
         self.damped_twice(&path);
+        let parts = segments.iter().flatten().map(|segment| &segment.section);
+        let output = self.beam_output(&path, profiled.iter().map(|profiled| &profiled.section).chain(parts));
         let Profiled { section, thickness } = profiled?;
         if top == Some(true) && thickness.is_none() {
             self.error(
@@ -63,6 +65,7 @@ impl Resolver<'_, '_> {
             self_weight: self_weight?,
             backend: backend(self.doc.text(&at("backend"))),
             probes: probes?,
+            output: output?,
             motion: motion?,
         };
         self.supported(&beam);

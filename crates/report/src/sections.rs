@@ -1,0 +1,365 @@
+//! What beams bear, for those of the scene that ask for it: columns of `trajectory.csv`, extremes over all steps, `envelopes.csv`, the warning
+//! that a beam yields.
+
+use crate::WarningLog;
+use crate::number::{push, push_next};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use teeter_beam::{Actions, Beam, Envelope, SectionForces};
+use teeter_integrator::{BeamForces, State, StepReport};
+use teeter_scenario::scene::{BeamQuantity, BeamScene, Scene};
+use teeter_scenario::simulation::{BeamPlace, Layout};
+
+/// What a column of a beam holds.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Kind {
+    Deflection,
+    Moment,
+    Shear,
+    Stress,
+    AxialForce,
+    Reaction,
+    ReactionCouple,
+}
+
+/// A column of a beam in `trajectory.csv`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Column {
+    /// The beam's number.
+    pub(crate) beam: usize,
+    pub(crate) kind: Kind,
+    /// Where, m from the left end; not of an axial force.
+    pub(crate) x: Option<f64>,
+    /// The column's name.
+    pub(crate) name: String,
+}
+
+/// The columns of a beam's record, in order.
+pub(crate) fn columns_of(number: usize, of: &BeamScene, place: &BeamPlace) -> Vec<Column> {
+    let column = |kind: Kind, word: &str, x: Option<f64>| {
+        let name = x.map_or_else(|| format!("{}.{word}", place.name), |x| format!("{}.{word}@{x}", place.name));
+        Column { beam: number, kind, x, name }
+    };
+    let mut columns = Vec::new();
+    for quantity in &of.output.quantities {
+        let kind = match quantity {
+            BeamQuantity::Moment => Kind::Moment,
+            BeamQuantity::Shear => Kind::Shear,
+            BeamQuantity::Stress => Kind::Stress,
+            BeamQuantity::AxialForce => {
+                columns.push(column(Kind::AxialForce, quantity.word(), None));
+                continue;
+            }
+            _ => Kind::Deflection,
+        };
+        columns.extend(place.probes.iter().map(|x| column(kind, quantity.word(), Some(*x))));
+    }
+    if of.output.reactions {
+        for x in supports(&place.beam) {
+            columns.push(column(Kind::Reaction, "reaction", Some(x)));
+            columns.push(column(Kind::ReactionCouple, "reaction_couple", Some(x)));
+        }
+    }
+    columns
+}
+
+/// Where a beam is supported, m.
+fn supports(beam: &Beam) -> Vec<f64> {
+    let q = vec![0.0; beam.dofs()];
+    // A vector as long as it must be has forces.
+    let forces = beam.section_forces(&Actions { q: &q, ..Actions::default() });
+    forces.map(|forces| forces.reactions().iter().map(|reaction| reaction.x).collect()).unwrap_or_default()
+}
+
+/// The largest normal stress of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LargestStress {
+    /// Pa.
+    pub stress: f64,
+    /// Where, m from the left end.
+    pub x: f64,
+    /// End of the step, s.
+    pub t: f64,
+}
+
+/// What a support bore: the force (N, upwards) and the couple (N·m, counter-clockwise) on the beam.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ReactionRange {
+    /// Where, m from the left end.
+    pub x: f64,
+    /// Force and couple at the start.
+    pub start: [f64; 2],
+    /// Least and largest force.
+    pub force: [f64; 2],
+    /// Least and largest couple.
+    pub couple: [f64; 2],
+}
+
+/// What a beam bore in a run: its extremes over all steps.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BeamRecord {
+    /// The beam's name.
+    pub beam: String,
+    /// The largest stress; none where the section doesn't know its modulus.
+    pub largest: Option<LargestStress>,
+    /// The supports, where the scene asks for reactions.
+    pub reactions: Vec<ReactionRange>,
+    /// Extremes by nodes, where the scene asks for them.
+    #[serde(with = "kept_envelope")]
+    pub envelope: Option<Envelope>,
+}
+
+/// The beam's layers know no files: an envelope in a checkpoint.
+mod kept_envelope {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+    use teeter_beam::Envelope;
+
+    #[derive(Serialize, Deserialize)]
+    struct Kept {
+        deflection: Vec<[f64; 2]>,
+        moment: Vec<[f64; 2]>,
+        shear: Vec<[f64; 2]>,
+        stress: Vec<f64>,
+    }
+
+    pub(super) fn serialize<S: Serializer>(envelope: &Option<Envelope>, to: S) -> Result<S::Ok, S::Error> {
+        let kept = envelope.clone().map(|Envelope { deflection, moment, shear, stress }| Kept {
+            deflection,
+            moment,
+            shear,
+            stress,
+        });
+        kept.serialize(to)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Envelope>, D::Error> {
+        let kept = Option::<Kept>::deserialize(from)?;
+        Ok(kept.map(|Kept { deflection, moment, shear, stress }| Envelope { deflection, moment, shear, stress }))
+    }
+}
+
+/// A beam whose section forces are looked at in every step.
+struct Watched {
+    forces: BeamForces,
+    columns: Vec<Column>,
+    /// Of its columns the first that is not a deflection's, among those of all beams.
+    first: usize,
+    yield_strength: Option<f64>,
+}
+
+/// The beams that ask for more than deflections, or whose material's yield strength is known.
+pub(crate) struct Sections {
+    watched: Vec<Watched>,
+    columns: Vec<Vec<Column>>,
+}
+
+/// What a checkpoint has of it, beside the [`BeamRecord`]s: the values of the last step, of all columns but deflections.
+pub(crate) type Values = Vec<f64>;
+
+impl Sections {
+    pub(crate) fn new(scene: &Scene, layout: &Layout) -> Self {
+        let beams = || scene.beams.iter().zip(&layout.beams).enumerate();
+        let columns: Vec<_> = beams().map(|(number, (of, place))| columns_of(number, of, place)).collect();
+        let mut first = 0;
+        let mut watched = Vec::new();
+        for (number, (of, _)) in beams() {
+            let columns: Vec<_> =
+                columns[number].iter().filter(|column| column.kind != Kind::Deflection).cloned().collect();
+            if of.output.needs_forces() || of.yield_strength.is_some() {
+                let own = columns.len();
+                let forces = layout.beam_forces(scene, number);
+                watched.push(Watched { forces, columns, first, yield_strength: of.yield_strength });
+                first += own;
+            }
+        }
+        Self { watched, columns }
+    }
+
+    /// The records and values to start with.
+    pub(crate) fn empty(&self, scene: &Scene, layout: &Layout) -> (Vec<BeamRecord>, Values) {
+        let asked = scene.beams.iter().zip(&layout.beams);
+        let asked = asked.filter(|(of, _)| of.output.needs_forces() || of.yield_strength.is_some());
+        let record = |(of, place): (&BeamScene, &BeamPlace)| BeamRecord {
+            beam: place.name.clone(),
+            largest: None,
+            reactions: Vec::new(),
+            envelope: of.output.envelope.then(|| Envelope::new(&place.beam)),
+        };
+        let values = self.watched.iter().map(|watched| watched.columns.len()).sum();
+        (asked.map(record).collect(), vec![f64::NAN; values])
+    }
+
+    /// The names of a beam's columns, each after a comma.
+    pub(crate) fn push_header(&self, beam: usize, header: &mut String) {
+        for column in &self.columns[beam] {
+            header.push(',');
+            header.push_str(&column.name);
+        }
+    }
+
+    /// The values of a beam's columns, each after a comma; `values` are those of all beams' columns but deflections, of which those of
+    /// the beams before have been taken.
+    pub(crate) fn push_row<'v>(
+        &self,
+        beam: usize,
+        place: &BeamPlace,
+        q: &[f64],
+        values: &mut impl Iterator<Item = &'v f64>,
+        line: &mut String,
+    ) {
+        for column in &self.columns[beam] {
+            match (column.kind, column.x) {
+                (Kind::Deflection, Some(x)) => push_next(line, place.beam.shape_clamped(x).deflection(q).w),
+                _ => push_next(line, values.next().copied().unwrap_or(f64::NAN)),
+            }
+        }
+    }
+
+    /// Takes the start of the run, which belongs to the extremes.
+    pub(crate) fn start(&mut self, layout: &Layout, state: &State, records: &mut [BeamRecord], values: &mut Values) {
+        for (watched, record) in self.watched.iter_mut().zip(records) {
+            let Some(place) = layout.beams.iter().find(|place| place.name == record.beam) else { continue };
+            // An equilibrium is one at t = 0; a run that goes on from another's state is in motion.
+            let pressed = place.pressed.as_deref().filter(|_| state.step == 0);
+            let fine = watched.forces.start(state, pressed).is_ok();
+            watched.fill(fine, values);
+            if !fine {
+                continue;
+            }
+            let forces = watched.forces.forces();
+            if watched.columns.iter().any(|column| column.kind == Kind::Reaction) {
+                let range = |x: f64| [x, x];
+                record.reactions = forces
+                    .reactions()
+                    .iter()
+                    .map(|r| ReactionRange {
+                        x: r.x,
+                        start: [r.force, r.couple],
+                        force: range(r.force),
+                        couple: range(r.couple),
+                    })
+                    .collect();
+            }
+            record.take(watched.forces.beam(), &state.q[place.range.clone()], forces, state.t);
+        }
+    }
+
+    /// Takes the state from which a run goes on.
+    pub(crate) fn go_on(&mut self, state: &State) {
+        for watched in &mut self.watched {
+            // It is the state that counts; what a deflection that is not finite bears, nobody asks.
+            let _ = watched.forces.start(state, None);
+        }
+    }
+
+    /// Takes a step in. Returns what is to be told of yielding.
+    pub(crate) fn observe(
+        &mut self,
+        layout: &Layout,
+        step: &StepReport<'_, 2>,
+        state: &State,
+        (records, values): (&mut [BeamRecord], &mut Values),
+        warnings: &mut WarningLog,
+    ) -> Option<String> {
+        let mut told = None;
+        for (watched, record) in self.watched.iter_mut().zip(records) {
+            // A motion that goes beyond all bounds is about to end the run: its forces are no numbers, and no reason to end it.
+            let fine = watched.forces.enter(step, state).is_ok();
+            watched.fill(fine, values);
+            let Some(place) = layout.beams.iter().find(|place| place.name == record.beam) else { continue };
+            if !fine {
+                continue;
+            }
+            let forces = watched.forces.forces();
+            let largest = record.take(watched.forces.beam(), &state.q[place.range.clone()], forces, state.t);
+            if let (Some(LargestStress { stress, x, t }), Some(strength)) = (largest, watched.yield_strength)
+                && stress > strength
+            {
+                let text = warnings.enter("yield", Some(t), || {
+                    format!(
+                        "the stress in `{}` passes its yield strength in the step to t = {t} s: {:.4} MPa of {:.4} MPa at x = {x:.4} m; \
+                         the model stays elastic",
+                        record.beam,
+                        1e-6 * stress,
+                        1e-6 * strength
+                    )
+                });
+                told = told.or(text);
+            }
+        }
+        told
+    }
+}
+
+impl Watched {
+    /// The values of the step entered last; NaN where it has none.
+    fn fill(&self, fine: bool, values: &mut Values) {
+        let (beam, forces) = (self.forces.beam(), self.forces.forces());
+        let mut reactions = forces.reactions().iter();
+        let mut couple = f64::NAN;
+        for (column, value) in self.columns.iter().zip(&mut values[self.first..]) {
+            let x = column.x.unwrap_or(0.5 * beam.spec().span);
+            let at = || forces.at(beam, x).ok().filter(|_| fine);
+            *value = match column.kind {
+                Kind::Deflection => None,
+                Kind::Moment => at().map(|force| force.moment),
+                Kind::Shear => at().map(|force| force.shear),
+                Kind::Stress => at().and_then(|force| forces.stress(beam, x, force.moment)),
+                Kind::AxialForce => fine.then(|| forces.axial_force(beam, x)),
+                Kind::Reaction => reactions.next().filter(|_| fine).map(|reaction| {
+                    couple = reaction.couple;
+                    reaction.force
+                }),
+                Kind::ReactionCouple => fine.then_some(couple),
+            }
+            .unwrap_or(f64::NAN);
+        }
+    }
+}
+
+impl BeamRecord {
+    /// Takes the forces of a step in, and returns its largest stress.
+    fn take(&mut self, beam: &Arc<Beam>, q: &[f64], forces: &SectionForces, t: f64) -> Option<LargestStress> {
+        if let Some(envelope) = &mut self.envelope {
+            envelope.take(beam, q, forces);
+        }
+        let widen = |range: &mut [f64; 2], value: f64| *range = [range[0].min(value), range[1].max(value)];
+        for (range, reaction) in self.reactions.iter_mut().zip(forces.reactions()) {
+            widen(&mut range.force, reaction.force);
+            widen(&mut range.couple, reaction.couple);
+        }
+        let (stress, x) = forces.largest_stress(beam)?;
+        let found = LargestStress { stress, x, t };
+        if self.largest.is_none_or(|largest| stress > largest.stress) {
+            self.largest = Some(found);
+        }
+        Some(found)
+    }
+}
+
+/// The text of `envelopes.csv`: the extremes over all steps by nodes, of the beams that ask for it; `None` where none does.
+#[must_use]
+pub fn envelopes(layout: &Layout, records: &[BeamRecord]) -> Option<String> {
+    let mut text = "beam,x,w_min,w_max,moment_min,moment_max,shear_min,shear_max,stress_max\n".to_owned();
+    let header = text.len();
+    for record in records {
+        let place = layout.beams.iter().find(|place| place.name == record.beam);
+        let (Some(place), Some(envelope)) = (place, &record.envelope) else { continue };
+        for (node, x) in place.beam.node_positions().iter().enumerate() {
+            text.push_str(&record.beam);
+            text.push(',');
+            push(&mut text, *x);
+            for range in [envelope.deflection[node], envelope.moment[node], envelope.shear[node]] {
+                range.into_iter().for_each(|value| push_next(&mut text, value));
+            }
+            if envelope.stress[node].is_nan() {
+                text.push(',');
+            } else {
+                push_next(&mut text, envelope.stress[node]);
+            }
+            text.push('\n');
+        }
+    }
+    (text.len() > header).then_some(text)
+}
