@@ -69,6 +69,7 @@ mod bar;
 mod basis;
 mod beam;
 mod blocks;
+mod digits;
 mod eigen;
 mod element;
 mod error;
@@ -90,6 +91,7 @@ mod support;
 
 pub use basis::ModalBasis;
 pub use beam::{Beam, Dof};
+pub use digits::Digits;
 pub use eigen::Modes;
 pub use error::{BeamError, FactorError, ModalError, ModesError, StaticError};
 pub use factor::{Backend, Factor, MatrixWeights};

@@ -3,7 +3,7 @@
 use crate::beam::Beam;
 use crate::blocks::Blocks;
 use crate::error::{FactorError, StaticError};
-use crate::factor::MatrixWeights;
+use crate::factor::{Factor, MatrixWeights};
 use crate::membrane::Membrane;
 use crate::support::Hold;
 
@@ -18,6 +18,15 @@ const MAX_ROUNDS: usize = 200;
 
 /// The axial force is found where it changes, or is out of balance, by no more than this part.
 const ROUNDED: f64 = 4.0 * f64::EPSILON;
+
+/// What [`Beam::refine`] finds.
+pub(crate) struct Refined {
+    /// The first solution, before any refinement.
+    pub(crate) plain: Vec<f64>,
+    pub(crate) solution: Vec<f64>,
+    /// The last correction, relative to the solution.
+    pub(crate) correction: f64,
+}
 
 impl Beam {
     /// Turns a load (N and N m per dof) into the deflection under it: f ← K⁻¹ f.
@@ -81,34 +90,46 @@ impl Beam {
             }
             other => StaticError::Factor(other),
         })?;
-        let mut residual = load.to_vec();
-        let mut q = vec![0.0; load.len()];
-        let mut last = f64::INFINITY;
+        let refined = self.refine(&factor, load, |q, residual| {
+            self.add_stiffness_product(-1.0, q, residual);
+            if let (Some(membrane), true) = (slopes, n != 0.0) {
+                membrane.slopes.add_product(-n, self.bend(q), self.split_mut(residual).0);
+            }
+        });
+        // Also false for NaN.
+        if refined.correction <= SETTLED {
+            Ok(refined.solution)
+        } else {
+            Err(StaticError::NotSettled { elements: self.elements(), correction: refined.correction })
+        }
+    }
+
+    /// Solves A x = f by a factor of A, with iterative refinement until corrections no longer shrink; `take_off` takes A x off a
+    /// residual.
+    pub(crate) fn refine(&self, factor: &Factor, f: &[f64], take_off: impl Fn(&[f64], &mut [f64])) -> Refined {
+        let mut residual = f.to_vec();
+        let mut solution = vec![0.0; f.len()];
+        let mut plain = Vec::new();
+        let mut correction = f64::INFINITY;
         for _ in 0..=MAX_REFINEMENTS {
             factor.solve(&mut residual);
             let size = self.size(&residual);
-            for (q, dq) in q.iter_mut().zip(&residual) {
-                *q += dq;
+            for (x, dx) in solution.iter_mut().zip(&residual) {
+                *x += dx;
             }
-            let correction = if size == 0.0 { 0.0 } else { size / self.size(&q) };
+            if plain.is_empty() {
+                plain.clone_from(&solution);
+            }
+            let last = correction;
+            correction = if size == 0.0 { 0.0 } else { size / self.size(&solution) };
             // Rounding is reached where a correction no longer shrinks (a NaN counts as that).
             if !(correction < 0.5 * last && correction > 0.0) {
-                last = correction;
                 break;
             }
-            last = correction;
-            residual.copy_from_slice(load);
-            self.add_stiffness_product(-1.0, &q, &mut residual);
-            if let (Some(membrane), true) = (slopes, n != 0.0) {
-                membrane.slopes.add_product(-n, self.bend(&q), self.split_mut(&mut residual).0);
-            }
+            residual.copy_from_slice(f);
+            take_off(&solution, &mut residual);
         }
-        // Also false for NaN.
-        if last <= SETTLED {
-            Ok(q)
-        } else {
-            Err(StaticError::NotSettled { elements: self.elements(), correction: last })
-        }
+        Refined { plain, solution, correction }
     }
 
     /// The deflection whose stretching makes the axial force that it is in equilibrium with. That force is the root of
@@ -146,7 +167,7 @@ impl Beam {
     }
 
     /// Largest deflection, a rotation counted over the span; axial dofs as they are.
-    fn size(&self, q: &[f64]) -> f64 {
+    pub(crate) fn size(&self, q: &[f64]) -> f64 {
         let of = |pair: &[f64; 2]| pair[0].abs().max(self.spec.span * pair[1].abs());
         let bend = self.bend(q).iter().map(of).fold(0.0, f64::max);
         q[2 * self.nodes()..].iter().fold(bend, |size, u| size.max(u.abs()))

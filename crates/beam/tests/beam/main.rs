@@ -8,6 +8,8 @@
 mod allocation;
 mod bad_input;
 mod basis;
+mod digits;
+mod double_double;
 mod frequencies;
 mod modes;
 mod reference;
