@@ -109,7 +109,7 @@ pub enum StaticError {
     #[error("supports = {supports:?}: {missing}")]
     RigidMotion {
         /// The supports of the left and the right end.
-        supports: [Support; 2],
+        supports: Box<[Support; 2]>,
         /// The motion that is left, and the support that would take it.
         missing: &'static str,
     },

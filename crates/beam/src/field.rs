@@ -168,11 +168,12 @@ impl Natural {
 
     /// xᵀK y.
     pub(crate) fn between(&self, x: &[[f64; 2]], y: &[[f64; 2]]) -> f64 {
-        let of = |(k, (x, y)): (&Springs, (&[[f64; 2]], &[[f64; 2]]))| {
+        let mut sum = 0.0;
+        for ((k, x), y) in self.0.iter().zip(x.windows(2)).zip(y.windows(2)) {
             let (a, b) = (k.deformations(x[0], x[1]), k.deformations(y[0], y[1]));
-            k.k1 * (a[0] * b[0]) + k.k2 * (a[1] * b[1]) + k.k3 * (a[2] * b[2])
-        };
-        self.0.iter().zip(x.windows(2).zip(y.windows(2))).map(of).sum()
+            sum += k.k1 * (a[0] * b[0]) + k.k2 * (a[1] * b[1]) + k.k3 * (a[2] * b[2]);
+        }
+        sum
     }
 
     /// The assembled element matrices.

@@ -54,7 +54,7 @@ impl Beam {
     /// ```
     pub fn solve_static(&self, load: &mut [f64]) -> Result<(), StaticError> {
         if let Some(missing) = self.rigid_motion() {
-            return Err(StaticError::RigidMotion { supports: self.spec.supports, missing });
+            return Err(StaticError::RigidMotion { supports: Box::new(self.spec.supports), missing });
         }
         if load.len() != self.dofs() {
             return Err(StaticError::Length { expected: self.dofs(), found: load.len() });
