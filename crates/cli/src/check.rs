@@ -7,7 +7,7 @@ use crate::run::{Exit, named, read};
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::PathBuf;
-use teeter_scenario::outlook::{BeamOutlook, BlockOutlook, Outlook};
+use teeter_scenario::outlook::{BeamOutlook, BlockOutlook, FEW_DIGITS, Outlook};
 use teeter_scenario::resolve::Resolved;
 use teeter_scenario::scene::{GroundScene, Scene, SchemeName};
 use teeter_scenario::simulation::Simulation;
@@ -128,6 +128,9 @@ fn block(block: &BlockOutlook) -> String {
     )
 }
 
+/// Digits below which they are told.
+const WORTH_TELLING: f64 = 10.0;
+
 fn beam(beam: &BeamOutlook) -> String {
     let mut text = format!(
         "beam {}: {}, {}, {}",
@@ -158,6 +161,11 @@ fn beam(beam: &BeamOutlook) -> String {
         };
         let _ = write!(text, "\n    highest frequency of the mesh × step = {} ({meaning})", digits(product));
     }
+    // Full precision is not worth a line.
+    if let Some(correct) = beam.digits.filter(|correct| *correct < WORTH_TELLING) {
+        let few = if correct < FEW_DIGITS { ": too few, take a coarser mesh or a shorter step" } else { "" };
+        let _ = write!(text, "\n    {correct:.1} digits of a step's solve are correct{few}");
+    }
     if let Some(sag) = beam.sag.filter(|sag| *sag > 0.0) {
         let _ = write!(
             text,
@@ -182,6 +190,10 @@ fn model(scene: &Scene, outlook: &Outlook) -> Vec<String> {
         ),
         format!("contact solver {}, to a residual of {:e}", scene.solver.method, scene.solver.tolerance),
     ];
+    if let [first, others @ ..] = outlook.coupled_frequencies.as_slice() {
+        let all = others.iter().fold(digits(*first), |all, next| format!("{all}, {}", digits(*next)));
+        lines.push(format!("small vibrations of blocks and beams together about the start: {all} Hz"));
+    }
     // The default is not worth a line.
     if scene.time.gap_tolerance != 1e-12 {
         lines.push(format!(

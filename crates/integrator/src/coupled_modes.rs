@@ -12,9 +12,9 @@
 //! pull, is of a larger size than these modes know.
 
 use crate::contacts::tangential;
-use crate::{Equilibrium, Model, Rows, Vector, Weights};
+use crate::{Model, Rows, Vector, Weights};
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
-use teeter_detect::{Anchor, Frame};
+use teeter_detect::{Anchor, ContactId, Frame};
 
 /// The most velocities: dense matrices of this many take a second.
 pub const MOST_VELOCITIES: usize = 1000;
@@ -60,24 +60,25 @@ pub enum CoupledModesError {
     Mass,
 }
 
-/// The first `count` modes of a model about an equilibrium, its contacts closed and sticking (without friction: closed).
+/// The first `count` modes of a model about an equilibrium `q`, the contacts with these forces (on side 0, N, normal first: those of
+/// [`Equilibrium`](crate::Equilibrium)) closed and sticking; closed only, without friction.
 ///
 /// # Errors
 /// If the model is too large, or its mass matrix not positive definite.
 pub fn coupled_modes(
     model: &Model<2>,
-    equilibrium: &Equilibrium<2>,
+    q: &[f64],
+    forces: &[(ContactId, Vector<2>)],
     count: usize,
 ) -> Result<CoupledModes, CoupledModesError> {
     let n = model.size().v;
     if n > MOST_VELOCITIES {
         return Err(CoupledModesError::TooMany { velocities: n });
     }
-    let q = &equilibrium.q;
     let mut mass = matrix(model, q, Weights { mass: 1.0, ..Weights::default() });
     let mut stiffness = matrix(model, q, Weights { stiffness: 1.0, ..Weights::default() });
     let mut constraints = Vec::new();
-    for touching in touching(model, equilibrium) {
+    for touching in touching(model, q, forces) {
         touching.add_stiffness(model, q, &mut stiffness);
         let directions = if touching.friction > 0.0 { 2 } else { 1 };
         constraints.extend(touching.rows(model, q).into_iter().take(directions));
@@ -123,11 +124,25 @@ fn matrix(model: &Model<2>, q: &[f64], weights: Weights) -> DMatrix<f64> {
     let mut matrix = DMatrix::zeros(n, n);
     for part in model.parts() {
         let (start, len) = (part.v.start, part.v.len());
+        let q = &q[part.q.clone()];
+        // What follows the coordinates has a tangent that `apply` doesn't know: by differences of its force.
+        let differences = weights.stiffness != 0.0 && part.system.follows_coordinates();
+        let step = DIFFERENCE * q.iter().fold(1e-6_f64, |size, q| size.max(q.abs()));
         let (mut x, mut y) = (vec![0.0; len], vec![0.0; len]);
+        let (rest, mut at) = (vec![0.0; len], q.to_vec());
         for column in 0..len {
             x[column] = 1.0;
             y.fill(0.0);
-            part.system.apply(weights, &q[part.q.clone()], &x, &mut y);
+            if differences {
+                for sign in [1.0, -1.0] {
+                    part.system.retract(q, &x, sign * step, &mut at);
+                    y.iter_mut().for_each(|y| *y = -*y);
+                    part.system.internal_force(&at, &rest, &mut y);
+                }
+                y.iter_mut().for_each(|y| *y *= weights.stiffness / (2.0 * step));
+            } else {
+                part.system.apply(weights, q, &x, &mut y);
+            }
             x[column] = 0.0;
             for (row, y) in y.iter().enumerate() {
                 matrix[(start + row, start + column)] = *y;
@@ -145,10 +160,10 @@ struct Touching {
     friction: f64,
 }
 
-fn touching(model: &Model<2>, equilibrium: &Equilibrium<2>) -> Vec<Touching> {
+fn touching(model: &Model<2>, q: &[f64], forces: &[(ContactId, Vector<2>)]) -> Vec<Touching> {
     let mut candidates = Vec::new();
-    model.detector().detect(&model.placed(&equilibrium.q), f64::INFINITY, &mut candidates);
-    let pressing = equilibrium.forces.iter().filter(|(_, force)| force[0] > 0.0);
+    model.detector().detect(&model.placed(q), f64::INFINITY, &mut candidates);
+    let pressing = forces.iter().filter(|(_, force)| force[0] > 0.0);
     pressing
         .filter_map(|(id, force)| {
             let candidate = candidates.iter().find(|candidate| candidate.id == *id)?;

@@ -2,12 +2,14 @@
 
 use crate::left_out::left_out;
 use crate::resolve::Resolved;
-use crate::scene::{BeamScene, BlockScene, Placement};
+use crate::scene::{BeamScene, BlockScene, Placement, Scene};
 use crate::simulation::Simulation;
 use crate::volume::{Volume, expected_seconds};
 use crate::{doubts, stability, wording};
 use std::f64::consts::TAU;
-use teeter_beam::{Axial, Beam};
+use teeter_beam::{Axial, Beam, MatrixWeights};
+use teeter_detect::ContactId;
+use teeter_integrator::coupled_modes;
 
 /// A block, as far as one wants to check it.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,6 +52,8 @@ pub struct BeamOutlook {
     /// Circular frequency of the highest mode of the mesh times the step: over 1, the mode is not resolved in time (the scheme is
     /// stable all the same for θ ≥ ½).
     pub highest_frequency_step: Option<f64>,
+    /// Correct decimal digits of a solve with the matrix of a step, estimated.
+    pub digits: Option<f64>,
     /// Span, m.
     pub span: f64,
     /// Largest static deflection under the blocks' weight and its own, where that acts, m.
@@ -75,6 +79,8 @@ pub struct Outlook {
     pub seconds: f64,
     /// What its tables hold; an estimate.
     pub volume: Volume,
+    /// First frequencies of blocks and beams together about a static start in which all blocks stand flat, Hz.
+    pub coupled_frequencies: Vec<f64>,
     /// What the model leaves out, and why.
     pub left_out: Vec<&'static str>,
 }
@@ -91,7 +97,7 @@ impl Outlook {
             .enumerate()
             .map(|(number, (beam, place))| BeamOutlook {
                 sag: doubts::sag(scene, number),
-                ..BeamOutlook::of(beam, &place.beam, scene.time.step)
+                ..BeamOutlook::of(beam, &place.beam, scene.time.theta, scene.time.step)
             })
             .collect();
         let block = |block: &BlockScene| {
@@ -112,6 +118,7 @@ impl Outlook {
             dofs: simulation.model.size().v - held,
             seconds: expected_seconds(scene, beams.iter().map(|beam| beam.dofs).sum()),
             volume: Volume::of(scene),
+            coupled_frequencies: coupled_frequencies(scene, simulation),
             left_out: left_out(scene),
             beams,
         }
@@ -119,7 +126,7 @@ impl Outlook {
 }
 
 impl BeamOutlook {
-    fn of(beam: &BeamScene, model: &Beam, step: f64) -> Self {
+    fn of(beam: &BeamScene, model: &Beam, theta: f64, step: f64) -> Self {
         let spec = &beam.spec;
         let first = stability::first_frequency(spec);
         Self {
@@ -138,12 +145,42 @@ impl BeamOutlook {
             first_frequency: first.map(|(omega, _)| omega / TAU),
             frequency_is_exact: first.is_some_and(|(_, exact)| exact),
             highest_frequency_step: stability::highest_eigenvalue(spec).map(|squared| squared.sqrt() * step),
+            digits: step_digits(model, theta, step),
             span: spec.span,
             sag: None,
             self_weight: beam.self_weight,
             yield_moment: yield_moment(beam),
         }
     }
+}
+
+/// With fewer correct digits of a step's solve a run deserves a warning.
+pub const FEW_DIGITS: f64 = teeter_beam::Digits::FEW;
+
+/// How many frequencies of the whole are told.
+const COUPLED: usize = 3;
+
+/// The frequencies of small vibrations about a static start, Hz; none where a block is held tilted, and so doesn't rest.
+fn coupled_frequencies(scene: &Scene, simulation: &Simulation) -> Vec<f64> {
+    let tilted = |block: &BlockScene| !matches!(block.placement, Placement::On { tilt, .. } if tilt == 0.0);
+    let Some(start) =
+        simulation.static_start.as_ref().filter(|_| !scene.blocks.is_empty() && !scene.blocks.iter().any(tilted))
+    else {
+        return Vec::new();
+    };
+    let force = |f: &crate::settling::ContactForce| {
+        (ContactId::new(f.contact as u32, f.corner as u32), nalgebra::Vector2::from(f.force))
+    };
+    let forces: Vec<_> = start.forces.iter().map(force).collect();
+    let modes = coupled_modes(&simulation.model, &simulation.state.q, &forces, COUPLED);
+    modes.map_or_else(|_| Vec::new(), |modes| modes.circular_frequencies().map(|omega| omega / TAU).collect())
+}
+
+/// Digits of a step's solve.
+fn step_digits(model: &Beam, theta: f64, step: f64) -> Option<f64> {
+    let ht = theta * step;
+    let weights = MatrixWeights { mass: 1.0, damping: ht, stiffness: ht * ht };
+    model.digits(weights).ok().map(|digits| digits.of_solve())
 }
 
 /// σ_y I/c; none of a section given directly.

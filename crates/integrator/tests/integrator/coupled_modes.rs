@@ -41,7 +41,7 @@ fn standing(width: f64, height: f64, friction: f64) -> (Model<2>, Equilibrium<2>
 #[test]
 fn a_narrow_block_is_a_lumped_mass() {
     let (model, equilibrium, mass) = standing(0.001, 0.3, 0.5);
-    let found = coupled_modes(&model, &equilibrium, 8).unwrap();
+    let found = coupled_modes(&model, &equilibrium.q, &equilibrium.forces, 8).unwrap();
     let lumped = Beam::new(spec().lump(0.5 * SPAN, mass, 0.0)).unwrap().modes(5).unwrap();
     // A mass in the middle without inertia: modes 1, 3, 5 are symmetric.
     for mode in [0, 2] {
@@ -56,10 +56,10 @@ fn a_narrow_block_is_a_lumped_mass() {
 #[test]
 fn the_weight_of_a_tall_block_softens_its_rocking() {
     let (model, equilibrium, _) = standing(0.02, 1.0, 0.5);
-    let with = coupled_modes(&model, &equilibrium, 1).unwrap().eigenvalues[0];
+    let with = coupled_modes(&model, &equilibrium.q, &equilibrium.forces, 1).unwrap().eigenvalues[0];
     let mut weightless = equilibrium.clone();
     weightless.forces.iter_mut().for_each(|(_, force)| *force *= 1e-9);
-    let without = coupled_modes(&model, &weightless, 1).unwrap().eigenvalues[0];
+    let without = coupled_modes(&model, &weightless.q, &weightless.forces, 1).unwrap().eigenvalues[0];
     // Both in one: ω² = (k_θ − m g H/2)/(I + m H²/4 …), with the block's own angle for 1.
     let (mass, height) = (2700.0 * 0.02 * 1.0 * 0.03, 1.0);
     let inertia = mass * (0.02_f64.powi(2) + height * height) / 12.0 + mass * height * height / 4.0;
@@ -71,7 +71,7 @@ fn the_weight_of_a_tall_block_softens_its_rocking() {
 #[test]
 fn a_small_vibration_in_time_has_the_frequency_of_its_mode() {
     let (model, equilibrium, _) = standing(0.03, 0.135, 0.5);
-    let modes = coupled_modes(&model, &equilibrium, 2).unwrap();
+    let modes = coupled_modes(&model, &equilibrium.q, &equilibrium.forces, 2).unwrap();
     for (shape, squared) in modes.shapes.iter().zip(&modes.eigenvalues) {
         let omega = squared.sqrt();
         let largest = shape.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
@@ -89,4 +89,31 @@ fn a_small_vibration_in_time_has_the_frequency_of_its_mode() {
         let ratio = momentum(&state.v) / momentum(&v);
         assert!((ratio - 1.0).abs() < 1e-3, "ω {omega}: {ratio}");
     }
+}
+
+/// Of a beam held along its axis the tangent about the sagging shape is stiffer: K + N G + EA/L (Gq)(Gq)ᵀ, here against Beam's own
+/// static solve under a little more load.
+#[test]
+fn the_stretching_of_a_held_beam_is_in_its_tangent() {
+    let axial = teeter_beam::Axial::Held;
+    let section = Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap();
+    let beam = Arc::new(Beam::new(BeamSpec::new(SPAN, 20, section).axial(axial)).unwrap());
+    let mut parts = ModelBuilder::new();
+    parts.add(Box::new(BeamBody::new(Arc::clone(&beam), Vector2::zeros(), BeamSurface::Axis)));
+    let model = parts.build(Box::new(PointDetector::new(Vec::new()))).unwrap();
+    let under = |force: f64| {
+        let mut q = vec![0.0; beam.dofs()];
+        beam.add_point_load(0.5 * SPAN, force, &mut q).unwrap();
+        beam.solve_static(&mut q).unwrap();
+        q
+    };
+    let q = under(-3.0);
+    let modes = coupled_modes(&model, &q, &[], beam.free_dofs()).unwrap();
+    // The flexibility Σ φφᵀ/ω² of all modes is the inverse of the tangent.
+    let middle = |q: &[f64]| beam.deflection_at(q, 0.5 * SPAN).unwrap().w;
+    let flexibility: f64 = modes.shapes.iter().zip(&modes.eigenvalues).map(|(x, l)| middle(x).powi(2) / l).sum();
+    let difference = (middle(&under(-2.999)) - middle(&under(-3.001))) / 0.002;
+    assert!((flexibility / difference - 1.0).abs() < 1e-5, "{flexibility} {difference}");
+    let linear = Beam::new(beam.spec().clone().axial(teeter_beam::Axial::Free)).unwrap();
+    assert!(modes.eigenvalues[0].sqrt() > 2.0 * linear.circular_frequency(1).unwrap());
 }
