@@ -5,11 +5,13 @@ mod beam_buckling;
 mod beam_damping;
 mod beam_energy;
 mod beam_frequencies;
+mod beam_ledger;
 mod beam_membrane;
 mod beam_moving_force;
 mod beam_spectrum;
 mod beam_statics;
 mod beam_supports;
+mod beam_winkler;
 mod bounce;
 mod bouncing;
 mod compliant;
@@ -38,7 +40,9 @@ pub(crate) fn all() -> Vec<Box<dyn Case>> {
         Box::new(beam_membrane::BeamMembrane),
         Box::new(beam_moving_force::BeamMovingForce),
         Box::new(bar_impact::BarImpact),
+        Box::new(beam_winkler::BeamWinkler),
         Box::new(beam_energy::BeamEnergy),
+        Box::new(beam_ledger::BeamLedger),
         Box::new(static_start::StaticStart),
         Box::new(sliding::Sliding),
         Box::new(incline::Incline),
