@@ -101,7 +101,9 @@ impl Compliance<2> for BeamCompliance {
             columns.forget();
         }
         self.beam.refactor(matrix_weights(w), &mut self.factor).map_err(|error| refusal(w, &error))?;
-        self.beam.follow(&q[..self.beam.dofs()], &mut self.factor);
+        if self.beam.is_stretched() {
+            self.beam.follow(&q[..self.beam.dofs()], &mut self.factor);
+        }
         self.weights = w;
         Ok(())
     }
