@@ -101,9 +101,7 @@ impl Compliance<2> for BeamCompliance {
             columns.forget();
         }
         self.beam.refactor(matrix_weights(w), &mut self.factor).map_err(|error| refusal(w, &error))?;
-        if self.beam.is_stretched() {
-            self.beam.follow(&q[..self.beam.dofs()], &mut self.factor);
-        }
+        self.beam.follow(&q[..self.beam.dofs()], &mut self.factor);
         self.weights = w;
         Ok(())
     }
