@@ -283,6 +283,9 @@ impl<const D: usize> Search<D> {
                 // The tangent of a part that is not linear is that of q.
                 factor.refactor(w, q)?;
             }
+            if part.system.follows_coordinates() {
+                factor.update(q);
+            }
             let v = &mut self.v[part.v.clone()];
             part.system.internal_force(q, v, f);
             part.system.load(t, f);

@@ -81,6 +81,11 @@ pub(crate) fn beam(name: &str, error: &BeamError, document: &Document) -> Diagno
             format!("the node at {value} m must be {rule}"),
             "give the places of all nodes from the left end to the right end",
         ),
+        BeamError::Count { field: "damping.modal", value, rule } => document.error(
+            &path("modal_damping"),
+            format!("{value} ratios: must be {rule}"),
+            "give the ratios of the first modes only",
+        ),
         BeamError::Count { field: "elements", rule, .. } => {
             document.error(&path("elements"), format!("must be {rule}"), "20 to 100 elements fit most beams")
         }

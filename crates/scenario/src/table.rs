@@ -187,7 +187,7 @@ pub static TABLES: &[Table] = &[
             key("axial_supports", Kind::ChoicePair(&["held", "free"]), Default("[\"held\", \"held\"]"), "[\"held\", \"free\"]", "Whether its left and right ends are held along the axis.").only_with("axial", &["elastic"]),
             key("axial_force", Kind::Quantity(Dimension::FORCE, Range::ANY), Default("\"0 N\""), "\"100 N\"", "Axial force that is there whatever the beam does, tension positive; less than the buckling load."),
             key("viscous_damping", Kind::Quantity(Dimension::DAMPING_PER_LENGTH, Range::NOT_NEGATIVE), Optional, "\"0.4 N s/m^2\"", "Coefficient c of the viscous term of the beam equation, which damps high modes ever less; one of the three ways to give damping."),
-            key("modal_damping", Kind::Numbers(Range::NOT_NEGATIVE), NotYet, "[0.01, 0.02]", "Damping ratios of the first modes, of a beam in modes."),
+            key("modal_damping", Kind::Numbers(Range::NOT_NEGATIVE), Optional, "[0.01, 0.02]", "Damping ratios of the first elastic modes of the finite elements, on top of the rest; other modes are left alone."),
             key("start", Kind::WordOrTable(&["undeformed", "static"], START_KEYS), Default("\"undeformed\""), "\"static\"", "Shape at the start: undeformed, in equilibrium under the blocks and the loads of t = 0 (flat blocks follow it, tilted ones are held as placed), that of a mode, or that of a file."),
             key("surface", Kind::Choice(&["axis", "top"]), Default("\"axis\""), "\"axis\"", "Where contacts lie: on the axis, or half a thickness above it."),
             key("position", POINT, Default("[\"0 m\", \"0 m\"]"), "[\"0 m\", \"0 m\"]", "Where its left end is, x and y."),

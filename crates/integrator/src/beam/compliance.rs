@@ -96,12 +96,11 @@ impl Compliance<2> for BeamCompliance {
         self.weights
     }
 
-    fn refactor(&mut self, w: Weights, q: &[f64]) -> Result<(), FactorError> {
+    fn refactor(&mut self, w: Weights, _q: &[f64]) -> Result<(), FactorError> {
         if let Memory::Columns(columns) = &mut self.memory {
             columns.forget();
         }
         self.beam.refactor(matrix_weights(w), &mut self.factor).map_err(|error| refusal(w, &error))?;
-        self.beam.follow(&q[..self.beam.dofs()], &mut self.factor);
         self.weights = w;
         Ok(())
     }

@@ -232,6 +232,7 @@ impl Resolver<'_, '_> {
     fn damping(&mut self, path: &str, spec: &BeamSpec) -> Option<Damping> {
         let mut damping = self.rayleigh(&format!("{path}.rayleigh"))?;
         damping.viscous = self.doc.quantity(&format!("{path}.viscous_damping")).unwrap_or(0.0);
+        damping.modal = self.doc.list(&format!("{path}.modal_damping")).unwrap_or_default().to_vec();
         let ratio = format!("{path}.damping_ratio");
         if self.doc.has_table(&ratio) {
             let mode = self.doc.integer(&format!("{ratio}.mode")).and_then(|mode| usize::try_from(mode).ok())?;

@@ -239,6 +239,14 @@ fn damping_is_fitted_to_ratios_and_to_any_mode() {
     ] {
         refused(&plain(&format!("rayleigh = {{ {rayleigh} }}\n")), &[], &[says]);
     }
+    let modal = beam(&plain("modal_damping = [0.01, 0.02]\n"), &[]).spec;
+    assert_eq!(modal.damping.modal, [0.01, 0.02]);
+    let model = Beam::new(modal).unwrap();
+    let modes = model.modes(2).unwrap();
+    let rate = model.damping_power(modes.shape(1)).abs() / (2.0 * modes.circular_frequencies()[1]);
+    assert!((rate / 0.02 - 1.0).abs() < 1e-9, "{rate}");
+    let many = ["0.01"; 9].join(", ");
+    refused(&plain(&format!("modal_damping = [{many}]\n")), &[], &["beam.b.modal_damping", "9 ratios"]);
     // Of the uniform beam the modes are known, and the finite elements give the same; a mass in the middle slows the first.
     let ratio = "damping_ratio = { mode = 1, ratio = 0.02 }\n";
     let exact = beam(&plain(ratio), &[]).spec.damping.viscous;

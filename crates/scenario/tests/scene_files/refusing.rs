@@ -93,7 +93,6 @@ fn what_is_known_but_not_built_in_says_so() {
         ("time.scheme", "event-driven"),
         ("time.accuracy", "1e-3"),
         ("beam.table.model", "modes"),
-        ("beam.table.modal_damping", "[0.01]"),
         ("ground.profile", "hills.csv"),
         ("solver.method", "socp"),
     ] {
