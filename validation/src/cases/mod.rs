@@ -21,6 +21,7 @@ mod incline;
 mod moving_ground;
 mod overturning;
 mod resting;
+mod section_forces;
 mod sliding;
 mod static_start;
 
@@ -40,6 +41,7 @@ pub(crate) fn all() -> Vec<Box<dyn Case>> {
         Box::new(bar_impact::BarImpact),
         Box::new(beam_energy::BeamEnergy),
         Box::new(static_start::StaticStart),
+        Box::new(section_forces::SectionForcesCase),
         Box::new(sliding::Sliding),
         Box::new(incline::Incline),
         Box::new(bounce::Bounce),
