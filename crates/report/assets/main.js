@@ -63,7 +63,7 @@
   if (active.length > 3) plots.choose(active[0]);
 
   for (const [kind, title, unit, factor] of [
-    ["moment", "Bending moment", "N m", 1], ["shear", "Transverse force", "N", 1], ["stress", "Normal stress, largest of the section", "MPa", 1e-6],
+    ["moment", "Bending moment", "N m", 1], ["shear", "Transverse force", "N", 1], ["stress", "Largest stress", "MPa", 1e-6],
     ["axial_force", "Axial force", "N", 1], ["reaction", "Reactions of the supports", "N", 1], ["reaction_couple", "Couples of the supports", "N m", 1],
   ]) {
     const series = data.sections.filter((one) => one.kind === kind)

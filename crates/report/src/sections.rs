@@ -69,7 +69,14 @@ fn supports(beam: &Beam) -> Vec<f64> {
     let q = vec![0.0; beam.dofs()];
     // A vector as long as it must be has forces.
     let forces = beam.section_forces(&Actions { q: &q, ..Actions::default() });
-    forces.map(|forces| forces.reactions().iter().map(|reaction| reaction.x).collect()).unwrap_or_default()
+    forces.map(|forces| forces.reactions().iter().map(|r| as_given(beam, r.x)).collect()).unwrap_or_default()
+}
+
+/// A support's place as the scene has it, 0.342 and not 0.34199999999999997 as the mesh may: names of columns hang on it.
+fn as_given(beam: &Beam, x: f64) -> f64 {
+    let span = beam.spec().span;
+    let given = beam.spec().inner_supports.iter().map(|(place, _)| *place).chain([0.0, span]);
+    given.into_iter().find(|place| (place - x).abs() <= 1e-9 * span).unwrap_or(x)
 }
 
 /// The largest normal stress of a run.
@@ -234,7 +241,7 @@ impl Sections {
                     .reactions()
                     .iter()
                     .map(|r| ReactionRange {
-                        x: r.x,
+                        x: as_given(watched.forces.beam(), r.x),
                         start: [r.force, r.couple],
                         force: range(r.force),
                         couple: range(r.couple),

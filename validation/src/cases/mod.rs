@@ -23,6 +23,7 @@ mod incline;
 mod moving_ground;
 mod overturning;
 mod resting;
+mod section_forces;
 mod sliding;
 mod static_start;
 
@@ -44,6 +45,7 @@ pub(crate) fn all() -> Vec<Box<dyn Case>> {
         Box::new(beam_energy::BeamEnergy),
         Box::new(beam_ledger::BeamLedger),
         Box::new(static_start::StaticStart),
+        Box::new(section_forces::SectionForcesCase),
         Box::new(sliding::Sliding),
         Box::new(incline::Incline),
         Box::new(bounce::Bounce),

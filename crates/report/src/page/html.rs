@@ -243,7 +243,7 @@ fn borne(recorder: &PageRecorder, summary: &Summary) -> String {
             "<p data-beam=\"{}\" data-stress=\"{}\">{name}largest normal stress {} at x = {} m, t = {} s{}</p>\n",
             escaped(&borne.beam),
             largest.stress,
-            with_prefix(largest.stress, "Pa"),
+            format_args!("{} MPa", rounded(1e-6 * largest.stress, 4)),
             rounded(largest.x, 4),
             rounded(largest.t, 6),
             part.unwrap_or_default()
@@ -282,7 +282,10 @@ fn reactions(summary: &Summary) -> String {
         .to_owned();
     html.push_str(if several { "<th scope=\"col\">Beam</th>" } else { "" });
     html.push_str("<th scope=\"col\">x<br><small>m</small></th>");
-    for (what, unit) in [("Force", "N"), ("Couple", "N m")] {
+    // Pinned ends have none.
+    let turned = supports.iter().any(|(_, range)| range.couple != [0.0; 2]);
+    let columns = [("Force", "N"), ("Couple", "N m")];
+    for (what, unit) in &columns[..if turned { 2 } else { 1 }] {
         for when in ["at the start", "least", "largest"] {
             let _ = write!(html, "<th scope=\"col\">{what} {when}<br><small>{unit}</small></th>");
         }
@@ -293,7 +296,8 @@ fn reactions(summary: &Summary) -> String {
         let name = escaped(beam);
         let head = if several { format!("<th scope=\"row\">{name}</th>") } else { String::new() };
         let ([force, couple], [low, high], [least, most]) = (range.start, range.force, range.couple);
-        let cells: String = [range.x, force, low, high, couple, least, most].into_iter().map(cell).collect();
+        let cells = [range.x, force, low, high, couple, least, most];
+        let cells: String = cells[..if turned { 7 } else { 4 }].iter().copied().map(cell).collect();
         let _ = writeln!(html, "<tr data-beam=\"{name}\" data-x=\"{}\">{head}{cells}</tr>", range.x);
     }
     html.push_str(

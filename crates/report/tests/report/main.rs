@@ -3,3 +3,4 @@
 
 mod memory;
 mod page;
+mod sections;

@@ -1,0 +1,155 @@
+//! What beams bear, in the files of a run: exact where statics is, extremes over all steps, and who asks for nothing gets nothing.
+
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use teeter_report::{EndedWord, Results, RunRecorder, Summary, envelopes, figures, render};
+use teeter_scenario::simulation::Simulation;
+
+struct Run {
+    folder: PathBuf,
+    summary: Value,
+    html: String,
+    figures: Vec<(String, String)>,
+    envelopes: Option<String>,
+}
+
+fn run(name: &str, sets: &[(&str, &str)]) -> Run {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/free-rocking-on-beam.toml");
+    let sets: Vec<(String, String)> = sets.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
+    let resolved = teeter_scenario::load(&fs::read(file).unwrap(), name, name, &sets).unwrap();
+    let mut simulation = Simulation::new(&resolved.scene).unwrap();
+    let layout = simulation.layout.clone();
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("sections").join(name);
+    let results = Results::create(&folder, true).unwrap();
+    let mut tell = |_: &str| {};
+    let mut recorder = RunRecorder::new(&results, &resolved.scene, &layout, None, None, &mut tell).unwrap();
+    let ended = simulation.run(&mut [&mut recorder]).unwrap();
+    let (record, page, _) = recorder.into_parts();
+    let summary = Summary::new(&resolved.scene, &layout, &simulation.state, &record, EndedWord::from(&ended), 0.25);
+    let html = render(&page, &summary, "");
+    fs::write(folder.join("report.html"), &html).unwrap();
+    Run {
+        folder,
+        summary: serde_json::to_value(&summary).unwrap(),
+        html,
+        figures: figures(&page),
+        envelopes: envelopes(&layout, &record.beams),
+    }
+}
+
+/// The columns of a table of numbers, by name.
+fn columns(text: &str) -> Vec<(String, Vec<f64>)> {
+    let mut lines = text.lines();
+    let mut columns: Vec<(String, Vec<f64>)> =
+        lines.next().unwrap().split(',').map(|name| (name.to_owned(), Vec::new())).collect();
+    for line in lines {
+        for (cell, (_, values)) in line.split(',').zip(&mut columns) {
+            values.push(cell.parse().unwrap_or(f64::NAN));
+        }
+    }
+    columns
+}
+
+fn column<'c>(columns: &'c [(String, Vec<f64>)], name: &str) -> &'c [f64] {
+    &columns.iter().find(|(known, _)| known == name).unwrap_or_else(|| panic!("no column {name}")).1
+}
+
+const ASKED: [(&str, &str); 6] = [
+    ("output.every", "\"100 us\""),
+    ("beam.table.probes", "[\"9 cm\", \"18 cm\"]"),
+    ("beam.table.record", "[\"moment\", \"w\", \"shear\", \"stress\", \"axial_force\"]"),
+    ("beam.table.reactions", "true"),
+    ("beam.table.envelope", "true"),
+    ("material.aluminium.yield_strength", "\"30 MPa\""),
+];
+
+#[test]
+fn a_static_start_is_written_as_statics_has_it() {
+    let run = run("asked", &ASKED);
+    let table = columns(&fs::read_to_string(run.folder.join("trajectory.csv")).unwrap());
+    let names: Vec<&str> =
+        table.iter().skip_while(|(name, _)| name != "table.v_mid").map(|(name, _)| name.as_str()).collect();
+    assert_eq!(
+        names,
+        [
+            "table.v_mid",
+            "table.moment@0.09",
+            "table.moment@0.18",
+            "table.w@0.09",
+            "table.w@0.18",
+            "table.shear@0.09",
+            "table.shear@0.18",
+            "table.stress@0.09",
+            "table.stress@0.18",
+            "table.axial_force",
+            "table.reaction@0",
+            "table.reaction_couple@0",
+            "table.reaction@0.36",
+            "table.reaction_couple@0.36",
+        ]
+    );
+    let first = |name: &str| column(&table, name)[0];
+    // The block stands on its left corner, at 0.165.
+    let weight = 2700.0 * 0.03 * 0.03 * 0.135 * 9.81;
+    let (left, right) = (weight * 0.195 / 0.36, weight * 0.165 / 0.36);
+    for (name, exact) in [
+        ("table.reaction@0", left),
+        ("table.reaction@0.36", right),
+        ("table.shear@0.09", left),
+        ("table.shear@0.18", -right),
+        ("table.moment@0.09", 0.09 * left),
+        ("table.moment@0.18", 0.18 * right),
+        ("table.stress@0.18", 0.18 * right / (0.03 * 0.0015 * 0.0015 / 6.0)),
+    ] {
+        // What the contact forces of the static start are solved to.
+        assert!((first(name) / exact - 1.0).abs() < 1e-11, "{name}: {} {exact}", first(name));
+    }
+    assert_eq!(first("table.reaction_couple@0"), 0.0);
+
+    // Every step is a row, so the extremes of the columns are those of the envelope at the nodes that are probes, and of the summary.
+    let envelope = columns(run.envelopes.as_ref().unwrap());
+    let node = |x: f64| column(&envelope, "x").iter().position(|node| (node - x).abs() < 1e-12).unwrap();
+    let extreme =
+        |name: &str, fold: fn(f64, f64) -> f64, start: f64| column(&table, name).iter().copied().fold(start, fold);
+    for (x, place) in [(0.09, "0.09"), (0.18, "0.18")] {
+        for (quantity, exact) in [("w", true), ("moment", true), ("shear", false)] {
+            let name = format!("table.{quantity}@{place}");
+            let (low, high) = (extreme(&name, f64::min, f64::INFINITY), extreme(&name, f64::max, f64::NEG_INFINITY));
+            let (least, most) = (
+                column(&envelope, &format!("{quantity}_min"))[node(x)],
+                column(&envelope, &format!("{quantity}_max"))[node(x)],
+            );
+            // The envelope has both sides of the node, the probe the right one; a mass between two steps makes V jump by rounding only.
+            let room = if exact { 1e-12 } else { 1e-9 };
+            assert!((least - low).abs() <= room && (most - high).abs() <= room, "{name}: {least} {low} {most} {high}");
+        }
+    }
+    let support = &run.summary["beams"][0]["reactions"][1];
+    assert_eq!(support["force"][1].as_f64().unwrap(), extreme("table.reaction@0.36", f64::max, f64::NEG_INFINITY));
+    assert_eq!(support["start"][0].as_f64().unwrap(), first("table.reaction@0.36"));
+    let largest = &run.summary["beams"][0]["largest_stress"];
+    assert!(largest["stress"].as_f64().unwrap() >= extreme("table.stress@0.18", f64::max, 0.0));
+    let part = run.summary["beams"][0]["part_of_yield_strength"].as_f64().unwrap();
+    assert!((part - largest["stress"].as_f64().unwrap() / 30e6).abs() < 1e-14 && part > 1.0);
+    let warnings = run.summary["warnings"].as_array().unwrap();
+    assert!(warnings.iter().any(|warning| warning["code"] == "yield"), "{warnings:?}");
+
+    let names: Vec<&str> = run.figures.iter().map(|(name, _)| name.as_str()).collect();
+    assert!(names.contains(&"section_forces.svg") && names.contains(&"envelopes.svg"), "{names:?}");
+    for part in
+        ["id=\"reactions\"", "id=\"envelopes\"", "id=\"stress\"", "\"kind\":\"moment\"", "\"kind\":\"reaction\""]
+    {
+        assert!(run.html.contains(part), "{part}");
+    }
+}
+
+#[test]
+fn who_does_not_ask_gets_what_was_there_before() {
+    let run = run("unasked", &[("time.end", "\"20 ms\"")]);
+    let header = fs::read_to_string(run.folder.join("trajectory.csv")).unwrap();
+    assert!(header.lines().next().unwrap().ends_with(",table.w_mid,table.v_mid"));
+    assert_eq!(run.envelopes, None);
+    assert_eq!(run.summary.get("beams"), None);
+    assert!(!run.html.contains("id=\"reactions\"") && run.figures.iter().all(|(name, _)| name != "envelopes.svg"));
+}
