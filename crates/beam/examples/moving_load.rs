@@ -45,7 +45,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         let on_beam = times.map(|t| load.position(t)).into_iter().filter(|x| *x <= SPAN);
         let halves: Vec<_> = on_beam.map(|x| SpanLoad::Point { x, force: 0.5 * FORCE, couple: 0.0 }).collect();
-        forces.update(&beam, &Actions { q: &q, velocity: &v, acceleration: &a, loads: &halves })?;
+        forces
+            .update(&beam, &Actions { q: &q, velocity: &v, acceleration: &a, loads: &halves, ..Actions::default() })?;
         envelope.take(&beam, &q, &forces);
         for i in 0..beam.dofs() {
             q[i] += 0.5 * h * v[i];
