@@ -70,13 +70,27 @@ fn furniture() -> impl Strategy<Value = Furniture> {
 
 fn spec() -> impl Strategy<Value = BeamSpec> {
     let sizes = (decades(-3.0..=3.0), decades(-4.0..=-0.301), decades(3.0..=12.0), decades(0.0..=4.301), any::<bool>());
-    (sizes, elements(), [support(), support()], axial_force(), axial(), furniture()).prop_map(
-        |((span, slenderness, e, density, shear), elements, supports, force, axial, (inner, lump, bed, other))| {
+    let ratios = prop_oneof![3 => Just(vec![]), 1 => Just(vec![0.02, 0.0, 1.5])];
+    (sizes, elements(), [support(), support()], axial_force(), axial(), furniture(), ratios).prop_map(
+        |(
+            (span, slenderness, e, density, shear),
+            elements,
+            supports,
+            force,
+            axial,
+            (inner, lump, bed, other),
+            modal,
+        )| {
             let own = section(span, slenderness, e, density, shear);
             let euler = own.bending_stiffness * (std::f64::consts::PI / span).powi(2);
             let mut spec =
                 BeamSpec::new(span, elements, own).supported(supports).axial(axial).axial_force(force * euler).damped(
-                    Damping { viscous: 0.1 * own.mass_per_length, rayleigh_stiffness: 1e-6, ..Damping::default() },
+                    Damping {
+                        viscous: 0.1 * own.mass_per_length,
+                        rayleigh_stiffness: 1e-6,
+                        modal,
+                        ..Damping::default()
+                    },
                 );
             if let Some((x, support)) = inner {
                 spec = spec.support_at(x * span, support);
