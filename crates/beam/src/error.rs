@@ -147,6 +147,11 @@ pub enum StaticError {
         /// The last correction, relative to the solution.
         correction: f64,
     },
+    /// Held by springs or foundations alone, and these leave the solve no digits: rounding of the beam's own stiffness hides them.
+    #[error(
+        "the springs or foundations that hold the beam are too soft beside its own stiffness for double precision; take stiffer ones, a support, or a coarser mesh"
+    )]
+    Soft,
     /// The stiffness matrix could not be factorised.
     #[error("stiffness matrix: {0}")]
     Factor(#[from] FactorError),
@@ -166,7 +171,7 @@ pub enum ModesError {
     },
     /// The iteration did not settle.
     #[error(
-        "count = {count}: the subspace iteration does not settle (relative residual {residual:e}); ask for fewer modes or take a coarser mesh"
+        "count = {count}: the subspace iteration does not settle (relative residual {residual:e}); ask for fewer modes or take a coarser mesh, and under compression see whether the beam bears it"
     )]
     NotSettled {
         /// The elastic modes sought.

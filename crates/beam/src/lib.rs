@@ -57,11 +57,15 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! Three programs in `examples/` draw what they find: a beam over two spans (`two_span`), the first five modes of a cantilever
+//! (`modes`), a force that crosses a bridge with the envelope of the bending moment (`moving_load`). What to model how, and how fine
+//! a mesh should be: `docs/beams.md`.
+//!
 //! # Limits
 //!
 //! - Small deflections: the slope should stay below a few hundredths. Stretching is left out but for [`Axial::Held`].
 //! - The error of the assembled matrices grows with the mesh: cond(K) ~ n⁴. [`Beam::solve_static`] and the products are
-//!   built to lose less than that; [`Factor::solve`] with little mass in its weights is not. See [`MAX_ELEMENTS`].
+//!   built to lose less than that; [`Factor::solve`] with little mass in its weights is not. [`Beam::digits`] tells how much.
 //! - A vector of the wrong length is the caller's error: functions that return no `Result` panic on it, and say so.
 
 mod band;

@@ -39,8 +39,8 @@ impl Beam {
     ///
     /// # Errors
     /// [`StaticError::RigidMotion`] where the supports leave one; [`StaticError::Length`] and [`StaticError::Load`] for a
-    /// load of another length or not finite; [`StaticError::NotSettled`] for a mesh too fine for double precision (a
-    /// cantilever of 10 000 elements). After an error `load` is as it was.
+    /// load of another length or not finite; [`StaticError::Buckled`] under too much compression; [`StaticError::NotSettled`] for a mesh
+    /// too fine for double precision (a cantilever of 10 000 elements), [`StaticError::Soft`] for springs too soft for it. After an error `load` is as it was.
     ///
     /// ```
     /// # use teeter_beam::{Beam, BeamSpec, Section};
@@ -88,6 +88,7 @@ impl Beam {
             FactorError::NotPositiveDefinite { .. } if self.spec.axial_force < 0.0 => {
                 StaticError::Buckled { axial_force: self.spec.axial_force }
             }
+            FactorError::NotPositiveDefinite { .. } if self.is_held_by_springs() => StaticError::Soft,
             other => StaticError::Factor(other),
         })?;
         let refined = self.refine(&factor, load, |q, residual| {
@@ -99,6 +100,8 @@ impl Beam {
         // Also false for NaN.
         if refined.correction <= SETTLED {
             Ok(refined.solution)
+        } else if self.is_held_by_springs() {
+            Err(StaticError::Soft)
         } else {
             Err(StaticError::NotSettled { elements: self.elements(), correction: refined.correction })
         }
@@ -171,6 +174,13 @@ impl Beam {
         let of = |pair: &[f64; 2]| pair[0].abs().max(self.spec.span * pair[1].abs());
         let bend = self.bend(q).iter().map(of).fold(0.0, f64::max);
         q[2 * self.nodes()..].iter().fold(bend, |size, u| size.max(u.abs()))
+    }
+
+    /// Whether springs or foundations take a rigid motion that supports alone would leave.
+    fn is_held_by_springs(&self) -> bool {
+        let places = self.held.iter().filter(|held| held[0]).count();
+        let turned = self.held.iter().any(|held| held[1]);
+        !(places >= 2 || places == 1 && turned)
     }
 
     /// The rigid motion that supports, springs and foundations leave, with what would take it.

@@ -36,9 +36,15 @@ impl<'a> Inverse<'a> {
         for _ in 0..POWER_STEPS {
             normalise(beam, &mut x);
             let mut force = vec![0.0; x.len()];
-            beam.add_stiffness_product(1.0, &x, &mut force);
+            // Of the elements alone: a spring is one entry on the diagonal, which no elimination loses digits by however stiff it is, and
+            // the frequency of a stiff one would hide those of the beam behind the shift.
+            let (bend, axial) = beam.split_mut(&mut force);
+            beam.bending.add_product(1.0, beam.bend(&x), bend);
+            if let Some(bar) = &beam.bar {
+                bar.add_stiffness_product(1.0, &x[2 * beam.nodes()..], axial);
+            }
             mass.solve(&mut force);
-            // ‖M⁻¹K x‖, never above ω²_max and above xᵀK x.
+            // ‖M⁻¹K x‖, never above ω²_max (of the elements) and above xᵀK x.
             highest = highest.max(norm(beam, &force));
             x = force;
         }

@@ -10,6 +10,7 @@ mod bad_input;
 mod basis;
 mod digits;
 mod double_double;
+mod extremes;
 mod frequencies;
 mod modes;
 mod reference;
