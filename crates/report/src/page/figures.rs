@@ -4,7 +4,6 @@ use super::plot::{Band, Figure, KEY_WIDTH, Line, Panel, key_width, range_of, tex
 use super::recorder::{BLOCK_COLUMNS, ENERGIES, ImpactMark, PageRecorder};
 use super::rounded;
 use super::scenery::CORNERS;
-use crate::BeamRecord;
 use crate::sections::Kind;
 use teeter_beam::Envelope;
 use teeter_integrator::ContactState;
@@ -240,15 +239,14 @@ pub(super) fn envelopes(recorder: &PageRecorder) -> Option<Figure> {
     };
     let several = recorder.scenery.beams.len() > 1;
     let panel = |y_label: &str, pick: &dyn Fn(&Envelope) -> Vec<[f64; 2]>| {
-        let sides = drawn().flat_map(|drawn| [(drawn, 1, "largest"), (drawn, 0, "least")]).enumerate();
-        let line = |(number, ((record, x, envelope), side, word)): (
-            usize,
-            ((&BeamRecord, &[f64], &Envelope), usize, &str),
-        )| {
-            let label = if several { format!("{} {word}", record.beam) } else { word.to_owned() };
-            Line { label, number, x: x.to_vec(), y: pick(envelope).iter().map(|range| range[side]).collect() }
-        };
-        let mut lines: Vec<Line> = sides.map(line).collect();
+        let mut lines = Vec::new();
+        for (record, x, envelope) in drawn() {
+            for (side, word) in [(1, "largest"), (0, "least")] {
+                let label = if several { format!("{} {word}", record.beam) } else { word.to_owned() };
+                let y = pick(envelope).iter().map(|range| range[side]).collect();
+                lines.push(Line { label, number: lines.len(), x: x.to_vec(), y });
+            }
+        }
         keep_named(&mut lines, KEY_WIDTH);
         let least = 1e-6 * largest(&lines);
         Panel { y_label: y_label.to_owned(), lines, least, ..Panel::default() }
