@@ -151,7 +151,7 @@ pub static TABLES: &[Table] = &[
             key("density", Kind::Quantity(Dimension::DENSITY, Range::POSITIVE), Required, "\"2700 kg/m^3\"", "Mass per volume."),
             key("youngs_modulus", Kind::Quantity(Dimension::PRESSURE, MODULUS), Optional, "\"69 GPa\"", "Young's modulus; a beam needs it, a rigid block does not."),
             key("poisson_ratio", Kind::Number(POISSON_RATIO), Optional, "0.33", "Poisson's ratio; a beam with theory = timoshenko needs it."),
-            key("yield_strength", Kind::Quantity(Dimension::PRESSURE, MODULUS), Optional, "\"240 MPa\"", "Stress at which it yields; `check` tells the bending moment at which a beam of it begins to."),
+            key("yield_strength", Kind::Quantity(Dimension::PRESSURE, MODULUS), Optional, "\"240 MPa\"", "Stress at which it yields; `check` tells the bending moment at which a beam of it begins to, and a run warns where it is passed."),
         ],
     },
     Table {
