@@ -26,9 +26,9 @@ const LOAD: f64 = -21.0;
 /// Probes along the span: none is a node of a mesh, or where a load acts.
 const PROBES: u32 = 101;
 
-/// Of moments relative to the load times L, of forces to the load. The rounding of w alone changes an element's force by (12 EI/l³) ε w: with 50
-/// elements and the w of a force on a guided–pinned beam, F L³/(3 EI), that is 4 n³ ε = 5.5e-11 of the force.
-const AT_REST: f64 = 1e-10;
+/// Of moments relative to the load times L, of forces to the load. The rounding ε w of both ends of an element changes its transverse force
+/// by 2 (12 EI/l³) ε w: with 50 elements and the w of a couple at the end of a guided–pinned beam, C L²/(2 EI), that is 12 n³ ε = 1.7e-10 of C/L.
+const AT_REST: f64 = 1.7e-10;
 
 /// Of sums over the beam, relative to the largest force of the step.
 const BALANCE: f64 = 1e-11;
