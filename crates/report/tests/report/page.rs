@@ -21,7 +21,8 @@ fn run(name: &str, text: &str) -> Run {
     let resolved = teeter_scenario::load(text.as_bytes(), name, name, &[]).unwrap();
     let mut simulation = Simulation::new(&resolved.scene).unwrap();
     let layout = simulation.layout.clone();
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("page").join(name);
+    // By process: a runner that gives each test its own would have them write over one another.
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("page-{}", std::process::id())).join(name);
     let results = Results::create(&folder, true).unwrap();
     let mut tell = |_: &str| {};
     let mut recorder = Recorder::new(&results, &resolved.scene, &layout, &mut tell).unwrap();

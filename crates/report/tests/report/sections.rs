@@ -20,7 +20,7 @@ fn run(name: &str, sets: &[(&str, &str)]) -> Run {
     let resolved = teeter_scenario::load(&fs::read(file).unwrap(), name, name, &sets).unwrap();
     let mut simulation = Simulation::new(&resolved.scene).unwrap();
     let layout = simulation.layout.clone();
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("sections").join(name);
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("sections-{}", std::process::id())).join(name);
     let results = Results::create(&folder, true).unwrap();
     let mut tell = |_: &str| {};
     let mut recorder = RunRecorder::new(&results, &resolved.scene, &layout, None, None, &mut tell).unwrap();
