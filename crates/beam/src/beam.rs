@@ -139,7 +139,10 @@ impl Beam {
         });
 
         let flexibility: f64 = elements.iter().map(|e| e.length / e.section.axial_stiffness).sum();
-        let membrane = (spec.axial == Axial::Held).then(|| Membrane { slopes, stiffness: 1.0 / flexibility });
+        let membrane = (spec.axial == Axial::Held).then(|| {
+            let matrix = Blocks::assemble(nodes, slopes.matrices());
+            Membrane { slopes, matrix, stiffness: 1.0 / flexibility }
+        });
         let bar = if let Axial::Elastic { held } = spec.axial {
             let parts: Vec<_> =
                 elements.iter().map(|e| (e.section.axial_stiffness, e.section.mass_per_length, e.length)).collect();

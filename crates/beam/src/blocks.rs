@@ -36,6 +36,15 @@ impl Blocks {
         }
     }
 
+    /// Adds a multiple of another one of the same size.
+    pub(crate) fn add_scaled(&mut self, factor: f64, other: &Self) {
+        for (sum, node) in self.0.iter_mut().zip(&other.0) {
+            sum.own.iter_mut().zip(node.own).for_each(|(sum, value)| *sum += factor * value);
+            let entries = node.next.into_iter().flatten();
+            sum.next.as_flattened_mut().iter_mut().zip(entries).for_each(|(sum, value)| *sum += factor * value);
+        }
+    }
+
     /// Becomes the weighted sum of others of the same size.
     pub(crate) fn combine(&mut self, terms: &[(f64, &Self)]) {
         for (k, node) in self.0.iter_mut().enumerate() {

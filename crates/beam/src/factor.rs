@@ -136,8 +136,8 @@ impl Factor {
         }
     }
 
-    /// Fills in the numbers of a factor whose memory is there.
-    fn update(&mut self, beam: &Beam, weights: MatrixWeights) -> Result<(), FactorError> {
+    /// Fills in the numbers of a factor whose memory is there, with N G in K of an axial force beside that of the beam.
+    fn update(&mut self, beam: &Beam, weights: MatrixWeights, tension: f64) -> Result<(), FactorError> {
         weights.validate()?;
         self.weights = weights;
         if let Some(stretch) = &mut self.stretch {
@@ -146,7 +146,7 @@ impl Factor {
         let not_definite = |dof| FactorError::NotPositiveDefinite { weights, dof };
         match &mut self.kind {
             Kind::Banded { bend, bar, sum } => {
-                beam.combine(weights, sum);
+                beam.combine(weights, tension, sum);
                 bend.factorise(sum, &beam.held).map_err(not_definite)?;
                 if let (Some(factor), Some(bar)) = (bar, &beam.bar) {
                     let (mass, stiffness) = beam.axial_weights(weights);
@@ -154,7 +154,7 @@ impl Factor {
                     factor.factorise(bar, mass, stiffness).map_err(|node| not_definite(2 * nodes + node))?;
                 }
             }
-            Kind::Sparse(sparse) => sparse.update(beam, weights).map_err(not_definite)?,
+            Kind::Sparse(sparse) => sparse.update(beam, weights, tension).map_err(not_definite)?,
         }
         if let (Some(mut modal), Some(damping)) = (self.modal.take(), &beam.modal) {
             modal.update(damping, weights.damping, |f| self.solve_sum(f));
@@ -176,11 +176,14 @@ impl Beam {
         (w.mass + w.damping * damping.rayleigh_mass, w.stiffness + w.damping * damping.rayleigh_stiffness)
     }
 
-    pub(crate) fn combine(&self, weights: MatrixWeights, sum: &mut Blocks) {
+    pub(crate) fn combine(&self, weights: MatrixWeights, tension: f64, sum: &mut Blocks) {
         let [m, k, c] = self.bending_weights(weights);
         match &self.c {
             Some(rest) => sum.combine(&[(m, &self.m), (k, &self.k), (c, rest)]),
             None => sum.combine(&[(m, &self.m), (k, &self.k)]),
+        }
+        if let (Some(membrane), true) = (&self.membrane, tension != 0.0) {
+            sum.add_scaled(k * tension, &membrane.matrix);
         }
     }
 
@@ -222,7 +225,16 @@ impl Beam {
         let stretch = self.membrane.is_some().then(|| RankOne { g: zero.clone(), u: zero, scale: 0.0 });
         let modal = self.modal.as_ref().map(LowRank::new);
         let mut factor = Factor { weights, kind, stretch, modal, held: self.held.clone(), dofs: self.dofs() };
-        factor.update(self, weights)?;
+        factor.update(self, weights, 0.0)?;
+        Ok(factor)
+    }
+
+    /// The factor with N G in K of an axial force beside that of the beam.
+    pub(crate) fn factor_under(&self, weights: MatrixWeights, tension: f64) -> Result<Factor, FactorError> {
+        let mut factor = self.factor(weights)?;
+        if tension != 0.0 {
+            factor.update(self, weights, tension)?;
+        }
         Ok(factor)
     }
 
@@ -249,7 +261,23 @@ impl Beam {
         if !same {
             return Err(FactorError::OtherBeam { expected: self.dofs(), found: factor.dofs });
         }
-        factor.update(self, weights)
+        factor.update(self, weights, 0.0)
+    }
+
+    /// Makes `factor` that of the tangent at `q`, with its own weights: of a beam held along its axis K + N(q) G + EA/L (Gq)(Gq)ᵀ in
+    /// place of K, the derivative of its elastic force; of other beams what it is already. For equilibria; a time step wants
+    /// [`Beam::follow`].
+    ///
+    /// # Errors
+    /// As [`Beam::refactor`].
+    ///
+    /// # Panics
+    /// If `q` has not [`Beam::dofs`] entries.
+    pub fn refactor_tangent(&self, q: &[f64], factor: &mut Factor) -> Result<(), FactorError> {
+        let Some(membrane) = &self.membrane else { return Ok(()) };
+        factor.update(self, factor.weights, membrane.force(self.bend(q)))?;
+        self.follow(q, factor);
+        Ok(())
     }
 
     /// Takes the stretching at `q` into the factor of a beam that is held along its axis: K + EA/L (Gq)(Gq)ᵀ in place of K,

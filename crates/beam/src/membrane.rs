@@ -18,6 +18,7 @@
 //! by O(h²); no iteration, and unconditionally stable. (Auxiliary variables of this kind: Yang 2016, doi
 //! 10.1016/j.jcp.2016.09.029; that this one is a function of q and v, and so can't drift, is peculiar to the quartic potential.)
 
+use crate::blocks::Blocks;
 use crate::field::Natural;
 
 /// The membrane term of a beam.
@@ -25,6 +26,8 @@ use crate::field::Natural;
 pub(crate) struct Membrane {
     /// G.
     pub(crate) slopes: Natural,
+    /// G assembled, for factors.
+    pub(crate) matrix: Blocks,
     /// EA/L, N/m.
     pub(crate) stiffness: f64,
 }

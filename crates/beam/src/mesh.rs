@@ -6,6 +6,9 @@ use crate::spec::{BeamSpec, MAX_ELEMENTS};
 /// A place within this part of the span of a node is at the node: nine digits, so that 0.1 + 0.2 is 0.3.
 const SAME_PLACE: f64 = 1e-9;
 
+/// The shortest element, as a part of the span.
+pub(crate) const SHORTEST: f64 = 1e-6;
+
 /// The nodes of a beam.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Mesh {
@@ -32,6 +35,11 @@ impl Mesh {
                     x.insert(x.partition_point(|node| *node < place), place);
                 }
             }
+        }
+        // A quotient of a million between span and element leaves the matrices no digits.
+        if let Some(pair) = x.windows(2).find(|pair| pair[1] - pair[0] < SHORTEST * span) {
+            let rule = "at least a millionth of the span from the next node, of supports, lumps and ends of parts";
+            return Err(BeamError::Value { field: "place", value: pair[1], rule });
         }
         let elements = x.len() - 1;
         if elements > MAX_ELEMENTS {

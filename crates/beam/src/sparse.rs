@@ -76,7 +76,7 @@ impl Beam {
     /// The values of `mass M + damping C + stiffness K` on the pattern.
     fn values(&self, weights: MatrixWeights, out: &mut Vec<f64>) {
         let mut sum = Blocks::zero(self.nodes());
-        self.combine(weights, &mut sum);
+        self.combine(weights, 0.0, &mut sum);
         self.gather(weights, &sum, out);
     }
 
@@ -128,8 +128,8 @@ impl SparseFactor {
     }
 
     /// Factorises; the error is the dof whose pivot is not positive.
-    pub(crate) fn update(&mut self, beam: &Beam, weights: MatrixWeights) -> Result<(), usize> {
-        beam.combine(weights, &mut self.sum);
+    pub(crate) fn update(&mut self, beam: &Beam, weights: MatrixWeights, tension: f64) -> Result<(), usize> {
+        beam.combine(weights, tension, &mut self.sum);
         beam.gather(weights, &self.sum, &mut self.gathered);
         self.matrix.val_mut().copy_from_slice(&self.gathered);
         let outcome = factorize_simplicial_numeric_llt(

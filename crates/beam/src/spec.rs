@@ -1,6 +1,7 @@
 //! The numbers that make a beam: mesh, sections, supports, what it carries and rests on, damping.
 
 use crate::error::{BeamError, check};
+use crate::mesh::SHORTEST;
 use crate::modal_damping::MOST;
 use crate::modes;
 use crate::section::{Section, not_negative, positive};
@@ -264,7 +265,8 @@ impl BeamSpec {
         let part = |fields: [&'static str; 2], from: f64, to: f64| {
             on_beam(fields[0], from)?;
             on_beam(fields[1], to)?;
-            check(fields[1], to, to > from, "right of where it begins")
+            let long = to - from >= SHORTEST * self.span;
+            check(fields[1], to, long, "right of where it begins, by at least a millionth of the span")
         };
         for segment in &self.segments {
             part(["segment.from", "segment.to"], segment.from, segment.to)?;
@@ -309,8 +311,7 @@ impl BeamSpec {
         }
         check("nodes", self.nodes[0], self.nodes[0] == 0.0, "0 at the left end")?;
         check("nodes", last, last == self.span, "the span at the right end")?;
-        // A quotient of a million between span and element leaves the matrices no digits.
-        let least = 1e-6 * self.span;
+        let least = SHORTEST * self.span;
         for pair in self.nodes.windows(2) {
             check("nodes", pair[1], pair[1] - pair[0] >= least, "rising, by at least a millionth of the span")?;
         }

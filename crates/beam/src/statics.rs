@@ -1,7 +1,6 @@
 //! Static equilibrium, K q = f.
 
 use crate::beam::Beam;
-use crate::blocks::Blocks;
 use crate::error::{FactorError, StaticError};
 use crate::factor::{Factor, MatrixWeights};
 use crate::membrane::Membrane;
@@ -73,18 +72,7 @@ impl Beam {
     /// (K + N G)⁻¹ f, N an axial force beside that of the beam, by refinement to rounding.
     fn solve_refined(&self, load: &[f64], n: f64) -> Result<Vec<f64>, StaticError> {
         let (stiffness, slopes) = (MatrixWeights { mass: 0.0, damping: 0.0, stiffness: 1.0 }, self.membrane.as_ref());
-        let stretched;
-        let factor = if let (Some(membrane), true) = (slopes, n != 0.0) {
-            // A beam of the same numbers with the force among them.
-            let mut k = self.k.clone();
-            let geometric = Blocks::assemble(self.nodes(), membrane.slopes.matrices());
-            k.combine(&[(1.0, &self.k), (n, &geometric)]);
-            stretched = Self { k, ..self.clone() };
-            stretched.factor(stiffness)
-        } else {
-            self.factor(stiffness)
-        };
-        let factor = factor.map_err(|error| match error {
+        let factor = self.factor_under(stiffness, n).map_err(|error| match error {
             FactorError::NotPositiveDefinite { .. } if self.spec.axial_force < 0.0 => {
                 StaticError::Buckled { axial_force: self.spec.axial_force }
             }

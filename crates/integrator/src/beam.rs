@@ -159,6 +159,16 @@ impl BeamBody {
         (q, Line::new(self.position, displaced, self.surface))
     }
 
+    /// Adds the elastic force and the weight.
+    fn add_conservative_force(&self, q: &[f64], f: &mut [f64]) {
+        let n = self.beam.dofs();
+        self.beam.add_elastic_force(&q[..n], &mut f[..n]);
+        if let Some(weight) = &self.weight {
+            // Coordinates of supports are there only where these move.
+            f.iter_mut().zip(&weight.force).for_each(|(f, weight)| *f += weight);
+        }
+    }
+
     /// The beam.
     #[must_use]
     pub fn beam(&self) -> &Arc<Beam> {
@@ -208,13 +218,9 @@ impl Subsystem<2> for BeamBody {
 
     fn internal_force(&self, q: &[f64], v: &[f64], f: &mut [f64]) {
         let n = self.beam.dofs();
-        self.beam.add_elastic_force(&q[..n], &mut f[..n]);
+        self.add_conservative_force(q, f);
         if self.beam.is_damped() {
             self.beam.add_damping_product(-1.0, &v[..n], &mut f[..n]);
-        }
-        if let Some(weight) = &self.weight {
-            // Coordinates of supports are there only where these move.
-            f.iter_mut().zip(&weight.force).for_each(|(f, weight)| *f += weight);
         }
     }
 
@@ -226,7 +232,7 @@ impl Subsystem<2> for BeamBody {
         if self.mass_damping() == 0.0 {
             return self.internal_force(q, v, f);
         }
-        self.beam.add_elastic_force(q, f);
+        self.add_conservative_force(q, f);
     }
 
     fn is_loaded(&self) -> bool {

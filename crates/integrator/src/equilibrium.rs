@@ -284,7 +284,7 @@ impl<const D: usize> Search<D> {
                 factor.refactor(w, q)?;
             }
             if part.system.follows_coordinates() {
-                factor.update(q);
+                factor.take_tangent(q)?;
             }
             let v = &mut self.v[part.v.clone()];
             part.system.internal_force(q, v, f);

@@ -232,6 +232,16 @@ pub trait Compliance<const D: usize>: Send {
         let _ = q;
     }
 
+    /// Becomes the inverse with the tangent at `q` for K, the derivative of the internal force: what a search for an
+    /// equilibrium goes by, where a step's [`Compliance::update`] serves its energy. The default is that.
+    ///
+    /// # Errors
+    /// If the matrix is not positive definite.
+    fn take_tangent(&mut self, q: &[f64]) -> Result<(), FactorError> {
+        self.update(q);
+        Ok(())
+    }
+
     /// `f ← W f`; zero for [driven](Subsystem::driven) and [held](Subsystem::held) velocities, whose rows and columns of W are
     /// zero.
     fn solve(&mut self, f: &mut [f64]);

@@ -112,6 +112,14 @@ impl Compliance<2> for BeamCompliance {
         self.beam.follow(&q[..self.beam.dofs()], &mut self.factor);
     }
 
+    fn take_tangent(&mut self, q: &[f64]) -> Result<(), FactorError> {
+        if let Memory::Columns(columns) = &mut self.memory {
+            columns.forget();
+        }
+        let tangent = self.beam.refactor_tangent(&q[..self.beam.dofs()], &mut self.factor);
+        tangent.map_err(|error| refusal(self.weights, &error))
+    }
+
     fn solve(&mut self, f: &mut [f64]) {
         solve(&self.factor, f);
     }
