@@ -115,3 +115,57 @@ fn axial_dofs_vibrate_as_a_bar_and_leave_bending_alone() {
     assert_eq!(state.q[..first], without.q[..first]);
     assert!(state.ledger.relative_residual() < 1e-14);
 }
+
+/// A thin beam that stretches a hundred times stiffer than it bends settles where the beam's own statics says.
+#[test]
+fn a_held_beam_settles_where_its_statics_says() {
+    for thickness in [0.0003, 0.001, 0.02] {
+        let section = Section::rectangle(0.05, thickness, 210e9, 7850.0).unwrap();
+        let beam = Arc::new(Beam::new(BeamSpec::new(2.0, 20, section).axial(Axial::Held)).unwrap());
+        for force in [-0.1, -2.0, -10.0] {
+            let mut exact = vec![0.0; beam.dofs()];
+            beam.add_point_load(0.7, force, &mut exact).unwrap();
+            let pattern = exact.clone();
+            beam.solve_static(&mut exact).unwrap();
+            let signal: Arc<dyn Signal> = Arc::new(Formula::constant(0.0).unwrap());
+            let load = SignalLoad::new(pattern, signal);
+            let body = BeamBody::new(Arc::clone(&beam), Vector2::zeros(), BeamSurface::Axis).with_load(Box::new(load));
+            let mut parts = ModelBuilder::new();
+            parts.add(Box::new(body));
+            let model = parts.build(Box::new(PointDetector::new(Vec::new()))).unwrap();
+            let limits = SettlingLimits { reach: &[], margin: 0.0, tau: SettlingLimits::FIRST_TAU };
+            let found =
+                settle(&model, 0.0, &vec![0.0; beam.dofs()], &limits, &mut crate::scenes::workspace(&model)).unwrap();
+            let middle = |q: &[f64]| beam.deflection_at(q, 1.0).unwrap().w;
+            let error = middle(&found.q) / middle(&exact) - 1.0;
+            assert!(error.abs() < 1e-9, "{thickness} {force}: {error:e} after {} rounds", found.rounds);
+        }
+    }
+}
+
+/// The weight acts whatever the damping: a beam let go from its equilibrium under it stays there.
+#[test]
+fn a_beam_at_rest_under_its_weight_stays_at_rest_however_it_is_damped() {
+    let section = Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap();
+    for damping in [
+        Damping::default(),
+        Damping { viscous: 0.4, ..Damping::default() },
+        Damping { rayleigh_mass: 3.0, ..Damping::default() },
+        Damping { rayleigh_stiffness: 1e-5, ..Damping::default() },
+        Damping { modal: vec![0.01], ..Damping::default() },
+    ] {
+        let beam = Arc::new(Beam::new(BeamSpec::new(0.36, 20, section).damped(damping.clone())).unwrap());
+        let mut q = vec![0.0; beam.dofs()];
+        beam.add_self_weight(-9.81, &mut q).unwrap();
+        beam.solve_static(&mut q).unwrap();
+        let body = BeamBody::new(Arc::clone(&beam), Vector2::zeros(), BeamSurface::Axis);
+        let mut parts = ModelBuilder::new();
+        parts.add(Box::new(body.with_weight(Vector2::new(0.0, -9.81))));
+        let model = parts.build(Box::new(PointDetector::new(Vec::new()))).unwrap();
+        let mut state = State::new(&model, &q, &vec![0.0; beam.dofs()], 1e-3).unwrap();
+        advance(&model, &mut state, 200);
+        let middle = |q: &[f64]| beam.deflection_at(q, 0.18).unwrap().w;
+        assert!((middle(&state.q) / middle(&q) - 1.0).abs() < 1e-10, "{damping:?}");
+        assert!(state.ledger.relative_residual() < 1e-12);
+    }
+}
