@@ -200,8 +200,8 @@ impl<'a> Recorder<'a> {
         for (number, beam) in self.layout.beams.iter().enumerate() {
             let (q, v) = (&state.q[beam.range.clone()], &state.v[beam.range.clone()]);
             let middle = beam.beam.shape_clamped(0.5 * beam.beam.spec().span);
-            push_next(&mut self.line, middle.deflection(q).w);
-            push_next(&mut self.line, middle.deflection(v).w);
+            push_next(&mut self.line, beam.deflection(&middle, q).w);
+            push_next(&mut self.line, beam.deflection(&middle, v).w);
             self.sections.push_row(number, beam, q, &mut section_values, &mut self.line);
         }
         self.line.push('\n');

@@ -316,8 +316,11 @@ fn model(summary: &Summary) -> String {
         .beams
         .iter()
         .map(|beam| {
-            let BeamSummary { name, elements, dofs, theory, backend } = beam;
-            format!("{name} ({theory}, {elements} elements, {dofs} dofs, {backend})")
+            let BeamSummary { name, elements, dofs, theory, backend, shapes } = beam;
+            let shapes = shapes.map_or_else(String::new, |shapes| {
+                format!(" in {} modes and {} static corrections", shapes.modes, shapes.corrections)
+            });
+            format!("{name} ({theory}, {elements} elements{shapes}, {dofs} dofs, {backend})")
         })
         .collect();
     let mut html = String::new();
