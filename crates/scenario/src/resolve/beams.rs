@@ -120,6 +120,11 @@ impl Resolver<'_, '_> {
             self.error(&model, rule, "take model = \"full\", or axial = \"free\"");
             return None;
         }
+        let backend = format!("{path}.backend");
+        if doc.text(&backend).is_some_and(|word| word != "auto") {
+            self.error(&backend, "a beam in modes has a diagonal matrix", "leave it out, or take model = \"full\"");
+            return None;
+        }
         if doc.is_refused(&at("count")) || doc.is_refused(&at("tolerance")) {
             return None;
         }
