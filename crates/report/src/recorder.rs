@@ -311,7 +311,7 @@ impl Observer<2> for Recorder<'_> {
         self.warn_of(step);
         let Kept { record, section_values, .. } = &mut self.kept;
         let kept = (record.beams.as_mut_slice(), section_values);
-        if let Some(text) = self.sections.observe(self.layout, step, state, kept, &mut record.warnings) {
+        if let Some(text) = self.sections.observe(step, state, kept, &mut record.warnings) {
             (self.tell)(&text);
         }
         for (monitor, block) in self.kept.record.rocking.iter_mut().zip(&self.layout.blocks) {

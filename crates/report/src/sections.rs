@@ -263,7 +263,6 @@ impl Sections {
     /// Takes a step in. Returns what is to be told of yielding.
     pub(crate) fn observe(
         &mut self,
-        layout: &Layout,
         step: &StepReport<'_, 2>,
         state: &State,
         (records, values): (&mut [BeamRecord], &mut Values),

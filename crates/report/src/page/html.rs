@@ -318,7 +318,11 @@ fn model(summary: &Summary) -> String {
         .map(|beam| {
             let BeamSummary { name, elements, dofs, theory, backend, shapes } = beam;
             let shapes = shapes.map_or_else(String::new, |shapes| {
-                format!(" in {} modes and {} static corrections", shapes.modes, shapes.corrections)
+                let corrections = match shapes.corrections {
+                    0 => String::new(),
+                    n => format!(" and {n} static corrections"),
+                };
+                format!(" in {} modes{corrections}", shapes.modes)
             });
             format!("{name} ({theory}, {elements} elements{shapes}, {dofs} dofs, {backend})")
         })
