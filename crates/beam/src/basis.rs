@@ -158,10 +158,19 @@ impl ModalBasis {
     #[must_use]
     pub fn dofs(&self, coordinates: &[f64]) -> Vec<f64> {
         let mut q = vec![0.0; self.shape(0).len()];
-        for (index, coordinate) in coordinates.iter().enumerate() {
-            add(*coordinate, self.shape(index), &mut q);
-        }
+        self.expand(coordinates, &mut q);
         q
+    }
+
+    /// Writes the dofs Φ η of the beam for modal coordinates into `q`; allocates nothing.
+    ///
+    /// # Panics
+    /// If there are more coordinates than shapes, or `q` has not [`Beam::dofs`] entries.
+    pub fn expand(&self, coordinates: &[f64], q: &mut [f64]) {
+        q.fill(0.0);
+        for (index, coordinate) in coordinates.iter().enumerate() {
+            add(*coordinate, self.shape(index), q);
+        }
     }
 
     /// The diagonal of ΦᵀC Φ, 1/s: 2ζω of each coordinate.

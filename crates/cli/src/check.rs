@@ -7,7 +7,7 @@ use crate::run::{Exit, named, read};
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::PathBuf;
-use teeter_scenario::outlook::{BeamOutlook, BlockOutlook, FEW_DIGITS, Outlook};
+use teeter_scenario::outlook::{BeamOutlook, BlockOutlook, FEW_DIGITS, Outlook, ShapesOutlook};
 use teeter_scenario::resolve::Resolved;
 use teeter_scenario::scene::{GroundScene, Scene, SchemeName};
 use teeter_scenario::simulation::Simulation;
@@ -133,9 +133,10 @@ const WORTH_TELLING: f64 = 10.0;
 
 fn beam(beam: &BeamOutlook) -> String {
     let mut text = format!(
-        "beam {}: {}, {}, {}",
+        "beam {}: {}{}, {}, {}",
         beam.name,
         count(beam.elements as u64, "element"),
+        beam.shapes.as_ref().map_or_else(String::new, shapes),
         count(beam.dofs as u64, "degree of freedom"),
         beam.backend
     );
@@ -143,8 +144,8 @@ fn beam(beam: &BeamOutlook) -> String {
         0 => String::new(),
         n => format!(", {} between", count(n as u64, "support")),
     };
-    let _ =
-        write!(text, "\n    {}, all its nodes; ends {}, {}{between}", beam.theory, beam.supports[0], beam.supports[1]);
+    let nodes = if beam.shapes.is_some() { "" } else { ", all its nodes" };
+    let _ = write!(text, "\n    {}{nodes}; ends {}, {}{between}", beam.theory, beam.supports[0], beam.supports[1]);
     if let Some(axial) = beam.axial {
         let _ = write!(text, "; {axial}");
     }
@@ -159,7 +160,12 @@ fn beam(beam: &BeamOutlook) -> String {
         } else {
             "all modes are resolved in time"
         };
-        let _ = write!(text, "\n    highest frequency of the mesh × step = {} ({meaning})", digits(product));
+        let _ = write!(
+            text,
+            "\n    highest frequency of the {} × step = {} ({meaning})",
+            if beam.shapes.is_some() { "shapes" } else { "mesh" },
+            digits(product)
+        );
     }
     // Full precision is not worth a line.
     if let Some(correct) = beam.digits.filter(|correct| *correct < WORTH_TELLING) {
@@ -177,6 +183,19 @@ fn beam(beam: &BeamOutlook) -> String {
     }
     if let Some(moment) = beam.yield_moment {
         let _ = write!(text, "\n    yields at a bending moment of {} N m", digits(moment));
+    }
+    text
+}
+
+/// " in 6 modes and 3 static corrections (flexibility over [0.1, 0.26] m to 7e-5)"
+fn shapes(shapes: &ShapesOutlook) -> String {
+    let mut text = format!(" in {}", count(shapes.modes as u64, "mode"));
+    if shapes.corrections > 0 {
+        let _ = write!(text, " and {}", count(shapes.corrections as u64, "static correction"));
+    }
+    if let Some(error) = shapes.error {
+        let [from, to] = shapes.region;
+        let _ = write!(text, " (flexibility over [{from}, {to}] m to {error:.0e})");
     }
     text
 }

@@ -141,11 +141,20 @@ fn the_impulses_of_the_contact_table_add_up_to_the_change_of_momentum() {
 
 #[test]
 fn the_scene_as_run_gives_the_same_bytes() {
-    let folder = folder("again");
-    assert!(
-        run(&folder, "drop", &["--set", "time.end=0.3 s", "--set", "contact.base.restitution=0.5"]).status.success()
+    let restitution = "contact.base.restitution=0.5";
+    same_bytes(&folder("again"), "drop", &["--set", "time.end=0.3 s", "--set", restitution]);
+    let modes = ["--set", "beam.table.model=modes", "--set", "beam.table.modes={ from = '10 cm', to = '26 cm' }"];
+    same_bytes(
+        &folder("again-in-modes"),
+        "free-rocking-on-beam",
+        &[&modes[..], &["--set", "time.end=0.15 s"]].concat(),
     );
-    let again = teeter(&folder, &["run", "out/scene.toml", "--out", "again", "--quiet"]);
+}
+
+/// Runs a scenario, and the scene as run again.
+fn same_bytes(folder: &Path, scenario: &str, sets: &[&str]) {
+    assert!(run(folder, scenario, sets).status.success());
+    let again = teeter(folder, &["run", "out/scene.toml", "--out", "again", "--quiet"]);
     assert!(again.status.success() && again.stderr.is_empty(), "{}", stderr(&again));
     for file in FILES.iter().filter(|file| !["summary.json", "figures"].contains(file)) {
         let read = |run: &str| std::fs::read(folder.join(run).join(file)).unwrap();

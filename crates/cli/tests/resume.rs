@@ -157,6 +157,17 @@ const BORNE: [&str; 8] = [
     "material.aluminium.yield_strength=\"30 MPa\"",
 ];
 
+/// The state holds modal coordinates; what is written is of the nodes.
+const MODES: [&str; 7] = [
+    "free-rocking-on-beam",
+    "beam.table.model=modes",
+    "beam.table.record=['w', 'moment']",
+    "beam.table.probes=['9 cm']",
+    "beam.table.reactions=true",
+    "beam.table.envelope=true",
+    "output.every=0.3 ms",
+];
+
 /// A run of a second or more.
 const LONG: [&str; 3] = ["free-rocking-on-beam", "time.step=2us", "output.every=0.3 ms"];
 
@@ -183,7 +194,9 @@ fn killed_after(mut child: Child, time: Duration) {
 #[test]
 fn a_run_killed_at_twenty_random_moments_ends_with_the_same_bytes() {
     let mut random = Random(20);
-    for (number, scene) in [&ROCKING[..], &SLIDING, &COMPLIANT, &SHAKEN, &CLOSED, &BORNE].into_iter().enumerate() {
+    for (number, scene) in
+        [&ROCKING[..], &SLIDING, &COMPLIANT, &SHAKEN, &CLOSED, &BORNE, &MODES].into_iter().enumerate()
+    {
         let name = scene[0];
         let place = Place::new(&format!("kill-{number}-{name}"));
         let (wanted, took) = alone(&place, scene, &[]);
@@ -433,6 +446,11 @@ fn a_run_from_a_checkpoint_moves_as_the_one_that_went_on() {
     );
     assert!(place.refused(2, &["sliding"], &from).contains("is a state of `rocker` (3 coordinates), `table`"));
     assert!(place.refused(2, &with("beam.table.elements=10"), &from).contains("but the scene has `rocker` (3"));
+    let message = place.refused(2, &with("beam.table.model=modes"), &from);
+    assert!(
+        message.contains("but the scene has `rocker` (3 coordinates), `table in modes` (20 coordinates)"),
+        "{message}"
+    );
     let message = place.refused(2, &with("time.step=7.77 us"), &from);
     assert!(message.contains("no whole number of steps of 0.00000777 s"), "{message}");
     assert!(place.refused(2, &with("time.end=2 ms"), &from).contains("give a later end"));

@@ -123,18 +123,8 @@ impl BeamBody {
     /// from the straight axis. The potential belongs to the beam ([`Energy::gravity`]), so that no load does work.
     #[must_use]
     pub fn with_weight(mut self, gravity: Vector2<f64>) -> Self {
-        let n = self.beam.dofs();
-        let mut force = vec![0.0; n];
-        // Finite and as long as it must be, so there is no error to pass on; of a gravity that isn't finite, the state's check
-        // tells.
-        let _ = self.beam.add_self_weight(gravity.y, &mut force);
-        if self.beam.has_axial_dofs() {
-            let mut along = vec![0.0; n];
-            along[2 * self.beam.nodes()..].fill(1.0);
-            self.beam.add_mass_product(gravity.x, &along, &mut force);
-        }
-        let mass = self.beam.total_mass();
-        force.extend([mass * gravity.x, mass * gravity.y]);
+        let (mut force, supports) = weight(&self.beam, gravity);
+        force.extend(supports);
         self.weight = Some(SelfWeight { force });
         self
     }
@@ -174,6 +164,22 @@ impl BeamBody {
     pub fn beam(&self) -> &Arc<Beam> {
         &self.beam
     }
+}
+
+/// Gravity on the dofs of a beam, and on coordinates x and y that move all of it.
+pub(crate) fn weight(beam: &Beam, gravity: Vector2<f64>) -> (Vec<f64>, [f64; 2]) {
+    let n = beam.dofs();
+    let mut force = vec![0.0; n];
+    // Finite and as long as it must be, so there is no error to pass on; of a gravity that isn't finite, the state's check
+    // tells.
+    let _ = beam.add_self_weight(gravity.y, &mut force);
+    if beam.has_axial_dofs() {
+        let mut along = vec![0.0; n];
+        along[2 * beam.nodes()..].fill(1.0);
+        beam.add_mass_product(gravity.x, &along, &mut force);
+    }
+    let mass = beam.total_mass();
+    (force, [mass * gravity.x, mass * gravity.y])
 }
 
 impl Deflecting for Beam {

@@ -7,6 +7,7 @@
 //! The shapes Φ are those of a [`ModalBasis`], modes and static corrections alike. Contact kinematics, loads and moving supports are
 //! those of [`BeamBody`](crate::BeamBody); a step costs some N operations for N coordinates and 8 N for each point that is touched.
 
+use crate::beam;
 use crate::beam::line::{self, Deflecting, Line};
 use crate::beam::motion::MovingSupports;
 use crate::subsystem::dot;
@@ -36,6 +37,8 @@ pub struct ModalBeam {
     /// A load on the dofs of the beam before it is brought to modes.
     scratch: Mutex<Vec<f64>>,
     supports: Option<MovingSupports>,
+    /// Gravity on each coordinate, those of moving supports at the end; empty for none.
+    weight: Vec<f64>,
 }
 
 impl std::fmt::Debug for ModalBeam {
@@ -109,6 +112,7 @@ impl ModalBeam {
             signals: Vec::new(),
             scratch: Mutex::new(vec![0.0; dofs]),
             supports: None,
+            weight: Vec::new(),
         }
     }
 
@@ -132,6 +136,16 @@ impl ModalBeam {
     #[must_use]
     pub fn with_motion(mut self, motion: [Motion; 2]) -> Self {
         self.supports = Some(MovingSupports::new(&self.shapes.beam, motion).in_basis(&self.basis));
+        self
+    }
+
+    /// The same beam with gravity (m/s², x and y) acting on it and on the masses that it carries, as
+    /// [`BeamBody::with_weight`](crate::BeamBody::with_weight): Φᵀ of its weight.
+    #[must_use]
+    pub fn with_weight(mut self, gravity: Vector2<f64>) -> Self {
+        let (weight, supports) = beam::weight(&self.shapes.beam, gravity);
+        self.weight = (0..self.coordinates()).map(|i| dot(self.basis.shape(i), &weight)).collect();
+        self.weight.extend(supports);
         self
     }
 
@@ -247,6 +261,8 @@ impl Subsystem<2> for ModalBeam {
         for (((f, q), v), (k, d)) in f.iter_mut().zip(q).zip(v).zip(self.stiffness.iter().zip(&self.damping)) {
             *f -= k * q + d * v;
         }
+        // Coordinates of supports are there only where these move.
+        f.iter_mut().zip(&self.weight).for_each(|(f, weight)| *f += weight);
     }
 
     fn is_loaded(&self) -> bool {
@@ -306,7 +322,8 @@ impl Subsystem<2> for ModalBeam {
         let relative = 0.5 * dot(&v[..n], &v[..n]);
         let kinetic = self.supports.as_ref().map_or(relative, |supports| relative + supports.kinetic_energy(v));
         let elastic = 0.5 * weighted_squares(&self.stiffness, q);
-        Energy { kinetic, elastic, gravity: 0.0 }
+        let along: f64 = self.weight.iter().zip(q).map(|(force, q)| force * q).sum();
+        Energy { kinetic, elastic, gravity: 0.0 - along }
     }
 
     fn place(&self, _body: u32, q: &[f64], local: &[Vector2<f64>], out: &mut [Vector2<f64>]) {

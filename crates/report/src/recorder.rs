@@ -200,8 +200,8 @@ impl<'a> Recorder<'a> {
         for (number, beam) in self.layout.beams.iter().enumerate() {
             let (q, v) = (&state.q[beam.range.clone()], &state.v[beam.range.clone()]);
             let middle = beam.beam.shape_clamped(0.5 * beam.beam.spec().span);
-            push_next(&mut self.line, middle.deflection(q).w);
-            push_next(&mut self.line, middle.deflection(v).w);
+            push_next(&mut self.line, beam.deflection(&middle, q).w);
+            push_next(&mut self.line, beam.deflection(&middle, v).w);
             self.sections.push_row(number, beam, q, &mut section_values, &mut self.line);
         }
         self.line.push('\n');
@@ -311,7 +311,7 @@ impl Observer<2> for Recorder<'_> {
         self.warn_of(step);
         let Kept { record, section_values, .. } = &mut self.kept;
         let kept = (record.beams.as_mut_slice(), section_values);
-        if let Some(text) = self.sections.observe(self.layout, step, state, kept, &mut record.warnings) {
+        if let Some(text) = self.sections.observe(step, state, kept, &mut record.warnings) {
             (self.tell)(&text);
         }
         for (monitor, block) in self.kept.record.rocking.iter_mut().zip(&self.layout.blocks) {

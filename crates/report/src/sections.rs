@@ -217,7 +217,7 @@ impl Sections {
     ) {
         for column in &self.columns[beam] {
             match (column.kind, column.x) {
-                (Kind::Deflection, Some(x)) => push_next(line, place.beam.shape_clamped(x).deflection(q).w),
+                (Kind::Deflection, Some(x)) => push_next(line, place.deflection(&place.beam.shape_clamped(x), q).w),
                 _ => push_next(line, values.next().copied().unwrap_or(f64::NAN)),
             }
         }
@@ -248,7 +248,7 @@ impl Sections {
                     })
                     .collect();
             }
-            record.take(watched.forces.beam(), &state.q[place.range.clone()], forces, state.t);
+            record.take(watched.forces.beam(), watched.forces.dofs(), forces, state.t);
         }
     }
 
@@ -263,7 +263,6 @@ impl Sections {
     /// Takes a step in. Returns what is to be told of yielding.
     pub(crate) fn observe(
         &mut self,
-        layout: &Layout,
         step: &StepReport<'_, 2>,
         state: &State,
         (records, values): (&mut [BeamRecord], &mut Values),
@@ -274,12 +273,11 @@ impl Sections {
             // A motion that goes beyond all bounds is about to end the run: its forces are no numbers, and no reason to end it.
             let fine = watched.forces.enter(step, state).is_ok();
             watched.fill(fine, values);
-            let Some(place) = layout.beams.iter().find(|place| place.name == record.beam) else { continue };
             if !fine {
                 continue;
             }
             let forces = watched.forces.forces();
-            let largest = record.take(watched.forces.beam(), &state.q[place.range.clone()], forces, state.t);
+            let largest = record.take(watched.forces.beam(), watched.forces.dofs(), forces, state.t);
             if let (Some(LargestStress { stress, x, t }), Some(strength)) = (largest, watched.yield_strength)
                 && stress > strength
             {

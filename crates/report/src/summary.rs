@@ -204,10 +204,22 @@ pub struct BeamSummary {
     pub elements: usize,
     /// Its degrees of freedom.
     pub dofs: usize,
+    /// The shapes in which it moves, where these are not those of all its nodes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shapes: Option<ShapesSummary>,
     /// Its theory, as in a scene.
     pub theory: &'static str,
     /// How its matrix is solved.
     pub backend: &'static str,
+}
+
+/// The shapes of a beam in modes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct ShapesSummary {
+    /// Its modes, rigid motions included.
+    pub modes: usize,
+    /// Its static corrections.
+    pub corrections: usize,
 }
 
 impl Summary {
@@ -299,7 +311,11 @@ impl ModelSummary {
             .map(|(place, beam)| BeamSummary {
                 name: place.name.clone(),
                 elements: place.beam.elements(),
-                dofs: place.beam.free_dofs(),
+                dofs: place.free_dofs(),
+                shapes: place
+                    .basis
+                    .as_ref()
+                    .map(|basis| ShapesSummary { modes: basis.modes(), corrections: basis.len() - basis.modes() }),
                 theory: wording::theory(beam),
                 backend: wording::backend(beam),
             })

@@ -1,10 +1,13 @@
 //! The bodies of a scene with what drives them: loads, and prescribed motion.
 
 use crate::scene::{BeamScene, ForceScene, GroundScene, LoadKind, Scene};
+use crate::simulation::BuildError;
 use nalgebra::Vector2;
 use std::sync::Arc;
-use teeter_beam::{Beam, BeamError, Load, SpanLoad};
-use teeter_integrator::{BeamBody, BeamSurface, Block, BlockLoad, Blocks, Ground, Signal, SignalLoad, SpanLoads};
+use teeter_beam::{Beam, BeamError, Load, ModalBasis, SpanLoad};
+use teeter_integrator::{
+    BeamBody, BeamSurface, Block, BlockLoad, Blocks, Ground, ModalBeam, Signal, SignalLoad, SpanLoads, Subsystem,
+};
 
 /// The blocks under their weight and forces, with what is prescribed of their motion.
 pub(crate) fn blocks(scene: &Scene, blocks: Vec<Block>) -> Blocks {
@@ -27,24 +30,124 @@ pub(crate) fn block_load(force: &ForceScene, block: usize) -> BlockLoad {
     BlockLoad { block, force: Vector2::from(force.force), couple: force.couple, signal: force.history.signal() }
 }
 
-/// A beam under its loads, on supports that may move.
-pub(crate) fn beam(scene: &Scene, number: usize, beam: &Arc<Beam>) -> Result<BeamBody, BeamError> {
-    let of = &scene.beams[number];
-    let mut body = loaded(scene, number, still_beam(of, beam, &[]))?.with_backend(of.backend);
-    if of.motion.is_given() {
-        let [x, y, _] = of.motion.motions();
-        body = body.with_motion([x, y]);
+/// A beam of the scene, of which bodies are made.
+pub(crate) struct BeamModel {
+    pub(crate) beam: Arc<Beam>,
+    /// The shapes in which it moves, where these are not those of all its nodes.
+    pub(crate) basis: Option<Arc<ModalBasis>>,
+    /// How far its supports are from where the scene has them, x and y; nothing where they don't move.
+    pub(crate) displaced: Vec<f64>,
+}
+
+impl BeamModel {
+    pub(crate) fn new(of: &BeamScene) -> Result<Self, BuildError> {
+        let beam = Beam::new(of.spec.clone()).map_err(|error| BuildError::Beam(of.name.clone(), error))?;
+        let basis = of.reduction.map(|reduction| reduction.basis(&beam)).transpose();
+        let basis = basis.map_err(|error| BuildError::Modes(of.name.clone(), error))?.map(Arc::new);
+        Ok(Self { beam: Arc::new(beam), basis, displaced: Vec::new() })
     }
-    Ok(body)
+
+    /// Its coordinates for a shape given by its dofs, or for none.
+    pub(crate) fn coordinates(&self, shape: &[f64]) -> Vec<f64> {
+        let given = shape.len() == self.beam.dofs();
+        match &self.basis {
+            Some(basis) if given => basis.coordinates(&self.beam, shape),
+            Some(basis) => vec![0.0; basis.len()],
+            None if given => shape.to_vec(),
+            None => vec![0.0; self.beam.dofs()],
+        }
+    }
+
+    /// Without loads, its supports at rest where they are displaced to.
+    pub(crate) fn still(&self, of: &BeamScene) -> Result<BeamSystem, BuildError> {
+        let surface = if of.top { BeamSurface::Top { offset: 0.5 * of.thickness } } else { BeamSurface::Axis };
+        let mut position = Vector2::from(of.position);
+        if let [x, y] = *self.displaced {
+            position += Vector2::new(x, y);
+        }
+        let beam = Arc::clone(&self.beam);
+        Ok(match &self.basis {
+            None => BeamSystem::Full(BeamBody::new(beam, position, surface)),
+            Some(basis) => {
+                let body = ModalBeam::new(beam, ModalBasis::clone(basis), position, surface);
+                BeamSystem::Modes(body.map_err(|error| BuildError::Modes(of.name.clone(), error))?)
+            }
+        })
+    }
+
+    /// Under the loads of the scene, its own weight among them where it has any.
+    pub(crate) fn loaded(&self, scene: &Scene, number: usize) -> Result<BeamSystem, BuildError> {
+        let of = &scene.beams[number];
+        loaded(scene, number, &self.beam, self.still(of)?).map_err(|error| BuildError::Beam(of.name.clone(), error))
+    }
+
+    /// Under its loads, on supports that may move.
+    pub(crate) fn body(&self, scene: &Scene, number: usize) -> Result<BeamSystem, BuildError> {
+        let of = &scene.beams[number];
+        let body = match self.loaded(scene, number)? {
+            BeamSystem::Full(body) => BeamSystem::Full(body.with_backend(of.backend)),
+            modes => modes,
+        };
+        if !of.motion.is_given() {
+            return Ok(body);
+        }
+        let [x, y, _] = of.motion.motions();
+        Ok(match body {
+            BeamSystem::Full(body) => BeamSystem::Full(body.with_motion([x, y])),
+            BeamSystem::Modes(body) => BeamSystem::Modes(body.with_motion([x, y])),
+        })
+    }
+}
+
+/// A beam as a subsystem: in the coordinates of all its nodes, or in modes.
+pub(crate) enum BeamSystem {
+    Full(BeamBody),
+    Modes(ModalBeam),
+}
+
+impl BeamSystem {
+    pub(crate) fn boxed(self) -> Box<dyn Subsystem<2>> {
+        match self {
+            Self::Full(body) => Box::new(body),
+            Self::Modes(body) => Box::new(body),
+        }
+    }
+
+    pub(crate) fn displacements(&self, t: f64) -> Vec<f64> {
+        match self {
+            Self::Full(body) => body.displacements(t),
+            Self::Modes(body) => body.displacements(t),
+        }
+    }
+
+    fn with_weight(self, gravity: Vector2<f64>) -> Self {
+        match self {
+            Self::Full(body) => Self::Full(body.with_weight(gravity)),
+            Self::Modes(body) => Self::Modes(body.with_weight(gravity)),
+        }
+    }
+
+    fn with_load(self, load: Box<dyn Load>) -> Self {
+        match self {
+            Self::Full(body) => Self::Full(body.with_load(load)),
+            Self::Modes(body) => Self::Modes(body.with_load(load)),
+        }
+    }
+
+    fn with_signal_load(self, load: SignalLoad) -> Self {
+        match self {
+            Self::Full(body) => Self::Full(body.with_load(Box::new(load))),
+            Self::Modes(body) => Self::Modes(body.with_signal_load(load)),
+        }
+    }
 }
 
 /// A beam with the loads of the scene on it, its own weight among them where it has any.
-pub(crate) fn loaded(scene: &Scene, number: usize, mut body: BeamBody) -> Result<BeamBody, BeamError> {
+fn loaded(scene: &Scene, number: usize, beam: &Beam, mut body: BeamSystem) -> Result<BeamSystem, BeamError> {
     if scene.beams[number].self_weight {
         body = body.with_weight(Vector2::from(scene.gravity));
     }
     for load in scene.loads.iter().filter(|load| load.beam == number) {
-        let beam = body.beam();
         let mut pattern = vec![0.0; beam.dofs()];
         match load.kind {
             LoadKind::Point { at, force, couple } => {
@@ -58,7 +161,7 @@ pub(crate) fn loaded(scene: &Scene, number: usize, mut body: BeamBody) -> Result
                 continue;
             }
         }
-        body = body.with_load(Box::new(SignalLoad::new(pattern, load.history.signal())));
+        body = body.with_signal_load(SignalLoad::new(pattern, load.history.signal()));
     }
     Ok(body)
 }
@@ -114,16 +217,6 @@ impl SpanLoads for PlacedLoads {
             }
         }));
     }
-}
-
-/// A beam without loads, its supports at rest in the place `displaced` (x, y; or nothing) from where the scene has them.
-pub(crate) fn still_beam(of: &BeamScene, beam: &Arc<Beam>, displaced: &[f64]) -> BeamBody {
-    let surface = if of.top { BeamSurface::Top { offset: 0.5 * of.thickness } } else { BeamSurface::Axis };
-    let mut position = Vector2::from(of.position);
-    if let [x, y] = *displaced {
-        position += Vector2::new(x, y);
-    }
-    BeamBody::new(Arc::clone(beam), position, surface)
 }
 
 /// The ground: flat and fixed, inclined, or moving.

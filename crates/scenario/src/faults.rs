@@ -4,7 +4,7 @@ use crate::diagnostic::Diagnostic;
 use crate::document::Document;
 use crate::placement::{Departure, PlacementError};
 use crate::simulation::BuildError;
-use teeter_beam::{BeamError, StaticError};
+use teeter_beam::{BeamError, ModalError, ModesError, StaticError};
 use teeter_integrator::ModelError;
 
 impl BuildError {
@@ -32,6 +32,7 @@ impl BuildError {
                 "check its width, height and depth, and the density of its material",
             ),
             Self::Beam(name, error) => beam(name, error, document),
+            Self::Modes(name, error) => modes(name, error, document),
             Self::Placement(error) => placement(error, document),
             Self::Model(error) => law(error, document),
             Self::State(error) => document.error(
@@ -91,6 +92,32 @@ pub(crate) fn beam(name: &str, error: &BeamError, document: &Document) -> Diagno
         }
         _ => document.error(&format!("beam.{name}"), error.to_string(), "check the keys of this beam and its material"),
     }
+}
+
+fn modes(name: &str, error: &ModalError, document: &Document) -> Diagnostic {
+    let path = |key: &str| format!("beam.{name}.{key}");
+    match error {
+        ModalError::CoupledDamping { relative, .. } => document.error(
+            &path("model"),
+            format!("the damping of this beam couples its modes ({relative:.1e} of their own damping), and they must move one by one"),
+            "leave out dashpots and damped foundations and what else is not in proportion to mass or stiffness, or take model = \"full\"",
+        ),
+        ModalError::Modes(ModesError::Count { count, unknowns }) => document.error(
+            &path("modes.count"),
+            format!("{count} modes of a beam with {} that can move", plural(*unknowns, "dof")),
+            "ask for fewer, or take more elements",
+        ),
+        ModalError::Tolerance { .. } => document.error(
+            &path("modes.tolerance"),
+            "must be at least 1e-8 and less than 1: the flexibilities that are compared have no more digits",
+            "1e-4 is usual",
+        ),
+        _ => document.error(&path("model"), error.to_string(), "take model = \"full\", or a coarser mesh"),
+    }
+}
+
+fn plural(count: usize, what: &str) -> String {
+    if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
 }
 
 fn placement(error: &PlacementError, document: &Document) -> Diagnostic {

@@ -27,6 +27,9 @@ pub fn left_out(scene: &Scene) -> Vec<&'static str> {
         if any(|beam| !beam.is_sheared()) {
             left_out.push("shear and rotatory inertia of beams of the theory euler-bernoulli");
         }
+        if any(|beam| beam.reduction.is_some()) {
+            left_out.push("the higher shapes of beams in modes: what an impact would stir in them");
+        }
         if any(|beam| !beam.self_weight) {
             left_out.push("self-weight of beams: deflections count from the shape under it");
         }

@@ -3,7 +3,7 @@
 use crate::left_out::left_out;
 use crate::resolve::Resolved;
 use crate::scene::{BeamScene, BlockScene, Placement, Scene};
-use crate::simulation::Simulation;
+use crate::simulation::{BeamPlace, Simulation};
 use crate::volume::{Volume, expected_seconds};
 use crate::{doubts, stability, wording};
 use std::f64::consts::TAU;
@@ -35,6 +35,8 @@ pub struct BeamOutlook {
     pub elements: usize,
     /// Its degrees of freedom.
     pub dofs: usize,
+    /// The shapes in which it moves, where these are not those of all its nodes.
+    pub shapes: Option<ShapesOutlook>,
     /// How its matrix is solved.
     pub backend: &'static str,
     /// Its theory, as in a scene.
@@ -62,6 +64,19 @@ pub struct BeamOutlook {
     pub self_weight: bool,
     /// Bending moment at which its own section (not that of a segment) begins to yield, N m, where that is known.
     pub yield_moment: Option<f64>,
+}
+
+/// The shapes of a beam in modes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShapesOutlook {
+    /// Its modes, rigid motions included.
+    pub modes: usize,
+    /// Its static corrections.
+    pub corrections: usize,
+    /// Where its flexibility counts, m from the left end.
+    pub region: [f64; 2],
+    /// Largest relative error of its static flexibility there; `None` where there are no digits to tell.
+    pub error: Option<f64>,
 }
 
 /// What a run will be like.
@@ -97,7 +112,7 @@ impl Outlook {
             .enumerate()
             .map(|(number, (beam, place))| BeamOutlook {
                 sag: doubts::sag(scene, number),
-                ..BeamOutlook::of(beam, &place.beam, scene.time.theta, scene.time.step)
+                ..BeamOutlook::of(beam, place, scene.time.theta, scene.time.step)
             })
             .collect();
         let block = |block: &BlockScene| {
@@ -111,7 +126,7 @@ impl Outlook {
             BlockOutlook { name: block.name.clone(), mass, critical_angle, angle, on }
         };
         // What supports hold has a place in the state, and no motion.
-        let held: usize = simulation.layout.beams.iter().map(|place| place.beam.dofs() - place.beam.free_dofs()).sum();
+        let held: usize = simulation.layout.beams.iter().map(|place| place.range.len() - place.free_dofs()).sum();
         Self {
             blocks: scene.blocks.iter().map(block).collect(),
             possible_contacts: simulation.model.detector().capacity(),
@@ -126,13 +141,29 @@ impl Outlook {
 }
 
 impl BeamOutlook {
-    fn of(beam: &BeamScene, model: &Beam, theta: f64, step: f64) -> Self {
-        let spec = &beam.spec;
+    fn of(beam: &BeamScene, place: &BeamPlace, theta: f64, step: f64) -> Self {
+        let (spec, model) = (&beam.spec, place.beam.as_ref());
+        let full = place.basis.is_none();
+        let shapes = beam.reduction.zip(place.basis.as_ref()).map(|(reduction, basis)| {
+            let region = reduction.region(spec.span);
+            let corrections = basis.len() - basis.modes();
+            ShapesOutlook {
+                modes: basis.modes(),
+                corrections,
+                region,
+                error: basis.truncation_error(model, region).ok(),
+            }
+        });
+        let highest = match &place.basis {
+            Some(basis) => basis.circular_frequencies().last().copied(),
+            None => stability::highest_eigenvalue(spec).map(f64::sqrt),
+        };
         let first = stability::first_frequency(spec);
         Self {
             name: beam.name.clone(),
             elements: model.elements(),
-            dofs: model.free_dofs(),
+            dofs: place.free_dofs(),
+            shapes,
             backend: wording::backend(beam),
             theory: wording::theory(beam),
             supports: spec.supports.map(wording::support),
@@ -144,8 +175,9 @@ impl BeamOutlook {
             },
             first_frequency: first.map(|(omega, _)| omega / TAU),
             frequency_is_exact: first.is_some_and(|(_, exact)| exact),
-            highest_frequency_step: stability::highest_eigenvalue(spec).map(|squared| squared.sqrt() * step),
-            digits: step_digits(model, theta, step),
+            highest_frequency_step: highest.map(|omega| omega * step),
+            // A diagonal matrix keeps all.
+            digits: if full { step_digits(model, theta, step) } else { None },
             span: spec.span,
             sag: None,
             self_weight: beam.self_weight,

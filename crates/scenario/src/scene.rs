@@ -2,9 +2,11 @@
 
 mod beam_output;
 mod history;
+mod reduction;
 
 pub use beam_output::{BEAM_QUANTITIES, BeamOutput, BeamQuantity};
 pub use history::{AxisScene, ForceScene, History, LoadKind, LoadScene, MotionScene, SignalScene};
+pub use reduction::Reduction;
 
 /// A scene that can be run.
 #[derive(Debug, Clone, PartialEq)]
@@ -104,6 +106,8 @@ pub struct BeamScene {
     pub shape: Vec<f64>,
     /// Whether gravity acts on it.
     pub self_weight: bool,
+    /// In which shapes it moves; `None` for those of all its nodes.
+    pub reduction: Option<Reduction>,
     /// How its matrices answer forces and contacts.
     pub backend: teeter_integrator::WBackend,
     /// Place of its left end, m.

@@ -2,16 +2,15 @@
 //!
 //! The equilibrium is that of a model of its own: the beams that ask for it, the blocks that stand on them, and the ground.
 //! Blocks are put on the straight beam; then weight, and the loads and forces of t = 0, act. A flat block follows the beam,
-//! held by friction where there is any. A tilted one is held as placed by a couple that is let go at t = 0: its angle stays,
+//! held by friction where there is any. A beam in modes settles in its modes: it is at rest in the model that runs. A tilted one is held as placed by a couple that is let go at t = 0: its angle stays,
 //! and the place of its foot.
 
-use crate::driven;
+use crate::driven::{self, BeamModel};
 use crate::placement::{Departure, PlacementError};
 use crate::scene::{Placement, Scene, Support};
 use crate::simulation::BuildError;
 use nalgebra::{Vector2, Vector3};
-use std::sync::Arc;
-use teeter_beam::{Beam, BeamError, SpanLoad};
+use teeter_beam::SpanLoad;
 use teeter_detect::{BodyId, PointDetector, PointPair};
 use teeter_integrator::{
     BeamForces, Block, Blocks, Equilibrium, EquilibriumError, Model, ModelBuilder, Motion, PairLaw, SettlingLimits,
@@ -26,8 +25,8 @@ pub(crate) struct Start<'a> {
     pub(crate) blocks: &'a [(Block, Rectangle)],
     /// X, Y, φ of each block.
     pub(crate) poses: Vec<Vector3<f64>>,
-    /// The beams, and how far their supports are from where the scene has them, x and y, or nothing.
-    pub(crate) beams: &'a [(Arc<Beam>, Vec<f64>)],
+    /// The beams.
+    pub(crate) beams: &'a [BeamModel],
     /// Their coordinates.
     pub(crate) deflections: Vec<Vec<f64>>,
     /// The coordinates of ground that moves.
@@ -64,7 +63,7 @@ impl Start<'_> {
         let Some(&first) = beams.first() else { return Ok(None) };
         for &k in &beams {
             // Nothing bends it yet: this is about its supports.
-            let beam = &self.beams[k].0;
+            let beam = &self.beams[k].beam;
             let refused = |source| PlacementError::Static { beam: scene.beams[k].name.clone(), source };
             beam.solve_static(&mut vec![0.0; beam.dofs()]).map_err(refused)?;
         }
@@ -220,10 +219,7 @@ impl TakingPart {
         let first = parts.add(Box::new(blocks));
         let mut surfaces: Vec<(Support, BodyId)> = Vec::new();
         for &k in &self.beams {
-            let (beam, displaced) = &start.beams[k];
-            let still = driven::still_beam(&scene.beams[k], beam, displaced);
-            let named = |error: BeamError| BuildError::Beam(scene.beams[k].name.clone(), error);
-            surfaces.push((Support::Beam(k), parts.add(Box::new(driven::loaded(scene, k, still).map_err(named)?))));
+            surfaces.push((Support::Beam(k), parts.add(start.beams[k].loaded(scene, k)?.boxed())));
         }
         if let Some(ground) = &scene.ground {
             surfaces.push((Support::Ground, parts.add(Box::new(driven::ground(ground)))));

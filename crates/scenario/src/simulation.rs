@@ -1,13 +1,13 @@
 //! A resolved scene made into a model and its start: ready to run in memory.
 
-use crate::driven;
+use crate::driven::{self, BeamModel};
 use crate::overlap::{Box2, Overlap, deepest_overlap};
 use crate::placement::{PlacementError, Standing, block_pose};
-use crate::scene::{BeamScene, Placement, Scene, SchemeName, Support, Time};
+use crate::scene::{Placement, Scene, SchemeName, Support, Time};
 use crate::settling::{Start, StaticStart};
 use std::ops::Range;
 use std::sync::Arc;
-use teeter_beam::{Beam, BeamError, SpanLoad};
+use teeter_beam::{Beam, BeamError, Deflection, ModalBasis, ModalError, ShapeAt, SpanLoad};
 use teeter_contact::ContactSolver;
 use teeter_detect::{BodyId, PointDetector, PointPair};
 use teeter_integrator::{
@@ -27,6 +27,9 @@ pub enum BuildError {
     /// A beam's numbers.
     #[error("beam `{0}`: {1}")]
     Beam(String, BeamError),
+    /// The shapes in which a beam is to move.
+    #[error("beam `{0}`: {1}")]
+    Modes(String, ModalError),
     /// A start that doesn't exist.
     #[error(transparent)]
     Placement(#[from] PlacementError),
@@ -88,6 +91,8 @@ pub struct BeamPlace {
     pub name: String,
     /// The beam.
     pub beam: Arc<Beam>,
+    /// The shapes in which it moves: its coordinates are theirs. `None`: its coordinates are its dofs.
+    pub basis: Option<Arc<ModalBasis>>,
     /// Its coordinates; its velocities have the same places.
     pub range: Range<usize>,
     /// The displacements x and y of its supports, where they move; deflections are relative to them.
@@ -98,6 +103,39 @@ pub struct BeamPlace {
     pub body: BodyId,
     /// Where it starts in equilibrium: the forces of contacts that press on it there.
     pub pressed: Option<Vec<SpanLoad>>,
+}
+
+impl BeamPlace {
+    /// How many velocities it has that no support holds.
+    #[must_use]
+    pub fn free_dofs(&self) -> usize {
+        self.basis.as_ref().map_or_else(|| self.beam.free_dofs(), |basis| basis.len())
+    }
+
+    /// The deflection at a place of the beam for its own coordinates `q` (its rate for velocities); allocates nothing.
+    #[must_use]
+    pub fn deflection(&self, at: &ShapeAt, q: &[f64]) -> Deflection {
+        let Some(basis) = &self.basis else { return at.deflection(q) };
+        let mut sum = Deflection { w: 0.0, slope: 0.0 };
+        for (index, coordinate) in q.iter().enumerate() {
+            let shape = at.deflection(basis.shape(index));
+            sum.w += coordinate * shape.w;
+            sum.slope += coordinate * shape.slope;
+        }
+        sum
+    }
+
+    /// The deflection at x (m, along the beam) for its own coordinates `q`; `None` off the beam.
+    #[must_use]
+    pub fn deflection_at(&self, q: &[f64], x: f64) -> Option<Deflection> {
+        Some(self.deflection(&self.beam.shape_at(x)?, q))
+    }
+
+    /// The dofs of the beam for its own coordinates `q`.
+    #[must_use]
+    pub fn dofs(&self, q: &[f64]) -> Vec<f64> {
+        self.basis.as_ref().map_or_else(|| q.to_vec(), |basis| basis.dofs(q))
+    }
 }
 
 /// The names of a contact pair.
@@ -153,6 +191,9 @@ impl Layout {
         if let Some(supports) = &place.supports {
             forces = forces.with_supports(supports.start + 1);
         }
+        if let Some(basis) = &place.basis {
+            forces = forces.in_modes(Arc::clone(basis));
+        }
         match driven::placed_loads(scene, number) {
             Some(loads) => forces.with_loads(Box::new(loads)),
             None => forces,
@@ -196,22 +237,22 @@ impl Simulation {
         let mut beams = Vec::new();
         let mut dofs = 3 * blocks.len();
         for (number, scene_beam) in scene.beams.iter().enumerate() {
-            let named = |error| BuildError::Beam(scene_beam.name.clone(), error);
-            let beam = Arc::new(Beam::new(scene_beam.spec.clone()).map_err(named)?);
-            let body = driven::beam(scene, number, &beam).map_err(named)?;
-            let displaced = body.displacements(0.0);
-            let range = dofs..dofs + beam.dofs();
-            dofs = range.end + displaced.len();
+            let mut model = BeamModel::new(scene_beam)?;
+            let body = model.body(scene, number)?;
+            model.displaced = body.displacements(0.0);
+            let range = dofs..dofs + model.coordinates(&[]).len();
+            dofs = range.end + model.displaced.len();
             layout.beams.push(BeamPlace {
                 name: scene_beam.name.clone(),
-                beam: Arc::clone(&beam),
-                supports: (!displaced.is_empty()).then_some(range.end..dofs),
+                beam: Arc::clone(&model.beam),
+                basis: model.basis.clone(),
+                supports: (!model.displaced.is_empty()).then_some(range.end..dofs),
                 range,
                 probes: scene_beam.probes.clone(),
-                body: parts.add(Box::new(body)),
+                body: parts.add(body.boxed()),
                 pressed: None,
             });
-            beams.push((beam, displaced));
+            beams.push(model);
         }
         let ground = scene.ground.as_ref().map(driven::ground);
         let ground_start = ground.as_ref().map(|ground| ground.coordinates(0.0)).unwrap_or_default();
@@ -221,10 +262,8 @@ impl Simulation {
         let incline = scene.ground.as_ref().map_or(0.0, |ground| ground.incline);
         let line = if let [x, y, slope] = *ground_start { [x, y, slope] } else { [0.0, 0.0, incline] };
 
-        let shape = |(of, (beam, _)): (&BeamScene, &(Arc<Beam>, _))| {
-            if of.shape.len() == beam.dofs() { of.shape.clone() } else { vec![0.0; beam.dofs()] }
-        };
-        let deflections: Vec<Vec<f64>> = scene.beams.iter().zip(&beams).map(shape).collect();
+        let deflections: Vec<Vec<f64>> =
+            scene.beams.iter().zip(&beams).map(|(of, model)| model.coordinates(&of.shape)).collect();
         let mut poses = Vec::with_capacity(blocks.len());
         for block in &scene.blocks {
             let Placement::On { support: Support::Beam(k), .. } = block.placement else {
@@ -232,8 +271,8 @@ impl Simulation {
                 continue;
             };
             // Where the supports start, the beam and what stands on it are placed as if they stood still.
-            let still = driven::still_beam(&scene.beams[k], &beams[k].0, &beams[k].1);
-            poses.push(block_pose(scene, block, &Standing::Surface(&still, &deflections[k]))?);
+            let still = beams[k].still(&scene.beams[k])?.boxed();
+            poses.push(block_pose(scene, block, &Standing::Surface(still.as_ref(), &deflections[k]))?);
         }
         let mut start =
             Start { blocks: &blocks, poses, beams: &beams, deflections, ground: &ground_start, pressed: Vec::new() };
@@ -248,8 +287,8 @@ impl Simulation {
             q.extend(pose.iter());
             v.extend([block.velocity[0], block.velocity[1], block.spin]);
         }
-        for (deflection, (_, displaced)) in deflections.iter().zip(&beams) {
-            q.extend(deflection.iter().chain(displaced));
+        for (deflection, model) in deflections.iter().zip(&beams) {
+            q.extend(deflection.iter().chain(&model.displaced));
         }
         q.extend(&ground_start);
         v.resize(dofs, 0.0);

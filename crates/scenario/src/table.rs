@@ -41,6 +41,8 @@ const INCLINE: Range = Range::new(Bound::Closed(-MAX_INCLINE), Bound::Closed(MAX
 const MAX_INCLINE: f64 = 80.0 * FRAC_PI_2 / 90.0;
 const POISSON_RATIO: Range = Range::new(Bound::Open(-1.0), Bound::Closed(0.5));
 const GRADING: Range = Range::new(Bound::Closed(1.0), Bound::Closed(1000.0));
+/// Below it the flexibilities that are compared have no digits.
+const FLEXIBILITY: Range = Range::new(Bound::Closed(1e-8), Bound::Open(1.0));
 const EXPONENT: Range = Range::new(Bound::Closed(1.0), Bound::Closed(10.0));
 const OSCILLATING: &[&str] = &["harmonic", "one-sine", "ricker"];
 const DURATION: Range = Range::POSITIVE.sizes(1e-15, 1e12);
@@ -192,8 +194,8 @@ pub static TABLES: &[Table] = &[
             key("surface", Kind::Choice(&["axis", "top"]), Default("\"axis\""), "\"axis\"", "Where contacts lie: on the axis, or half a thickness above it."),
             key("position", POINT, Default("[\"0 m\", \"0 m\"]"), "[\"0 m\", \"0 m\"]", "Where its left end is, x and y."),
             key("self_weight", Kind::Flag, Default("false"), "true", "Whether gravity acts on the beam itself and the masses on it; deflections then count from the straight axis, else from the shape under the weight."),
-            key("model", Kind::Choice(&["full"]), Default("\"full\""), "\"full\"", "In which coordinates it moves: those of all its nodes.").reserving(&[later("modes")]),
-            key("backend", Kind::Choice(&["auto", "banded", "sparse", "cached-columns"]), Default("\"auto\""), "\"auto\"", "How its matrices answer forces and contacts: the same motion up to rounding, in other times; auto takes the fastest one by measurement."),
+            key("model", Kind::Choice(&["full", "modes"]), Default("\"full\""), "\"full\"", "In which coordinates it moves: full, those of all its nodes; modes, its lowest modes and static corrections, uncoupled and few: the keys of `modes` say how many, and `docs/beams.md` what is lost."),
+            key("backend", Kind::Choice(&["auto", "banded", "sparse", "cached-columns"]), Default("\"auto\""), "\"auto\"", "How its matrices answer forces and contacts: the same motion up to rounding, in other times; auto takes the fastest one by measurement. A beam in modes has a diagonal matrix, and auto only."),
             key("probes", Kind::List(Dimension::LENGTH, Range::NOT_NEGATIVE), Optional, "[\"9 cm\"]", "Places along the beam, from its left end, whose deflection is written out."),
             key("record", Kind::Words(crate::scene::BEAM_QUANTITIES), Default("[\"w\"]"), "[\"w\", \"moment\", \"shear\"]", "What is written at its probes: deflection, bending moment, transverse force, largest normal stress; and its axial force. `docs/section-forces.md` has signs and meaning."),
             key("reactions", Kind::Flag, Default("false"), "true", "Whether force and couple of each support are written."),
@@ -218,6 +220,17 @@ pub static TABLES: &[Table] = &[
             key("a1", Kind::Quantity(Dimension::TIME, Range::NOT_NEGATIVE), DefaultWithout { sibling: "frequencies", value: "\"0 s\"" }, "\"10 us\"", "Factor of the stiffness matrix."),
             key("frequencies", Kind::Pair(Dimension::RATE, Range::POSITIVE), Optional, "[\"10 Hz\", \"80 Hz\"]", "Two frequencies, in cycles per second, whose damping ratios are given; in place of a0 and a1."),
             key("ratios", Kind::Numbers(Range::NOT_NEGATIVE), Optional, "[0.01, 0.01]", "The damping ratios at these two frequencies."),
+        ],
+    },
+    Table {
+        pattern: "beam.*.modes",
+        occurrence: Occurrence::Inline,
+        doc: "The shapes of a beam with model = modes: a number of modes, or as few modes and static corrections as the static flexibility of a region needs. When left out, the latter with a tolerance of 1e-4 over the whole span.",
+        keys: &[
+            key("count", Kind::Integer { min: 1, max: 256 }, Optional, "12", "Number of modes, rigid motions included; in place of tolerance, from and to."),
+            key("tolerance", Kind::Number(FLEXIBILITY), DefaultWithout { sibling: "count", value: "1e-4" }, "1e-4", "Largest relative error of the deflection at x under a force at x at rest, for x in [from, to]: where contacts are."),
+            Key { presence: DefaultWithout { sibling: "count", value: "\"0 m\"" }, doc: "Where that region begins, from the beam's left end.", ..FROM },
+            Key { presence: Optional, doc: "Where it ends; when left out, at the beam's right end.", ..TO },
         ],
     },
     Table {

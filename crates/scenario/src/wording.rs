@@ -95,6 +95,7 @@ pub fn support(support: Support) -> &'static str {
 #[must_use]
 pub fn backend(beam: &BeamScene) -> &'static str {
     match beam.backend {
+        _ if beam.reduction.is_some() => "diagonal",
         WBackend::Sparse => "sparse Cholesky, factorised once",
         WBackend::CachedColumns => "banded Cholesky, factorised once, columns of W kept",
         _ => "banded Cholesky, factorised once",

@@ -237,7 +237,14 @@ fn beams() -> Vec<Row> {
         refused(9, "theta of a beam held along its axis", Set(&["beam.table.axial=held", "time.theta=0.6"]), &["time.theta = 0.6", "`table` is held along its axis", "0.5"]),
         refused(25, "compression beyond buckling", Set(&["beam.table.axial_force=-50 N"]), &["beam.table.axial_force", "buckles under it"]),
         refused(18, "one ratio for two frequencies", Edit(&[("damping_ratio = { mode = 1, ratio = 0.01 }", "rayleigh = { frequencies = [\"10 Hz\", \"80 Hz\"], ratios = [0.01] }")]), &["beam.table.rayleigh.ratios", "two ratios are expected, one for each frequency, got 1"]),
-        refused(38, "beam in modes", Set(&["beam.table.model=modes"]), &["beam.table.model", "known, but not built in yet"]),
+        refused(38, "beam in modes held along its axis", Set(&["beam.table.model=modes", "beam.table.axial=held"]), &["beam.table.model", "stretches as it deflects"]),
+        refused(38, "modes of a full beam", Set(&["beam.table.modes={ count = 12 }"]), &["beam.table.modes", "goes with model = modes only"]),
+        refused(38, "count and tolerance of modes", Set(&["beam.table.model=modes", "beam.table.modes={ count = 12, tolerance = 1e-4 }"]), &["beam.table.modes.tolerance", "count already says"]),
+        refused(38, "more modes than there are", Set(&["beam.table.model=modes", "beam.table.modes={ count = 200 }"]), &["beam.table.modes.count", "200 modes of a beam with 40 dofs"]),
+        refused(38, "tolerance of modes without digits", Set(&["beam.table.model=modes", "beam.table.modes={ tolerance = 1e-9 }"]), &["beam.table.modes.tolerance", "at least 1e-8 and less than 1"]),
+        refused(38, "region of modes beyond the beam", Set(&["beam.table.model=modes", "beam.table.modes={ to = '40 cm' }"]), &["beam.table.modes.to", "[0, 0.36] m"]),
+        refused(38, "backend of a beam in modes", Set(&["beam.table.model=modes", "beam.table.backend=sparse"]), &["beam.table.backend", "a beam in modes has a diagonal matrix"]),
+        refused(38, "dashpot under a beam in modes", Edit(&[("[block.rocker]", "[beam.table.support.pier]\nat = \"9 cm\"\ndashpot = \"2 N s/m\"\n[block.rocker]"), ("start         = \"static\"", "model = \"modes\"")]), &["beam.table.model", "couples its modes"]),
         warned(38, "thick beam without shear", Set(&["beam.table.thickness=4 cm"]), &["warning: beam.table.theory", "0.11 of the span", "timoshenko"]),
     ]
 }

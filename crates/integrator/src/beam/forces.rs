@@ -14,7 +14,7 @@ use super::line::lift_and_turn;
 use crate::{Contact, State, StepReport, Vector};
 use std::ops::Range;
 use std::sync::Arc;
-use teeter_beam::{Actions, Beam, BeamError, SectionForces, SpanLoad};
+use teeter_beam::{Actions, Beam, BeamError, ModalBasis, SectionForces, SpanLoad};
 use teeter_detect::{Anchor, BodyId, Frame};
 
 /// Loads on a beam by their places: the same that its [`BeamBody`](crate::BeamBody) is under, weight included.
@@ -35,10 +35,15 @@ pub struct BeamForces {
     lifted: Option<usize>,
     theta: f64,
     loads: Option<Box<dyn SpanLoads>>,
-    /// The state before the step.
+    /// What its coordinates are, where they are not its dofs.
+    basis: Option<Arc<ModalBasis>>,
+    /// The dofs of the state before the step, and their rates.
     q: Vec<f64>,
     v: Vec<f64>,
     lift: f64,
+    /// Those of the state after it.
+    q_next: Vec<f64>,
+    v_next: Vec<f64>,
     /// q_θ, v_θ, the acceleration, and q⁰ + hθv⁰.
     q_mean: Vec<f64>,
     v_mean: Vec<f64>,
@@ -62,9 +67,12 @@ impl BeamForces {
             lifted: None,
             theta,
             loads: None,
+            basis: None,
             q: none.clone(),
             v: none.clone(),
             lift: 0.0,
+            q_next: none.clone(),
+            v_next: none.clone(),
             q_mean: none.clone(),
             v_mean: none.clone(),
             acceleration: none.clone(),
@@ -86,6 +94,14 @@ impl BeamForces {
     #[must_use]
     pub fn with_loads(mut self, loads: Box<dyn SpanLoads>) -> Self {
         self.loads = Some(loads);
+        self
+    }
+
+    /// The same for a beam whose coordinates are those of `basis`. What is read balances up to what the basis leaves out: loads
+    /// and contacts act on the elements, while deflections and inertia have the basis' shapes only.
+    #[must_use]
+    pub fn in_modes(mut self, basis: Arc<ModalBasis>) -> Self {
+        self.basis = Some(basis);
         self
     }
 
@@ -113,6 +129,12 @@ impl BeamForces {
         &self.acceleration
     }
 
+    /// The dofs of the beam in the last state started from or entered.
+    #[must_use]
+    pub fn dofs(&self) -> &[f64] {
+        &self.q
+    }
+
     /// The velocity v_θ of the last step entered, relative to the supports.
     #[must_use]
     pub fn velocity(&self) -> &[f64] {
@@ -132,6 +154,7 @@ impl BeamForces {
     /// # Errors
     /// As [`SectionForces::update`].
     pub fn start(&mut self, state: &State, pressing: Option<&[SpanLoad]>) -> Result<&SectionForces, BeamError> {
+        self.read(state);
         self.keep(state);
         self.span_loads.clear();
         if let Some(pressing) = pressing {
@@ -151,7 +174,8 @@ impl BeamForces {
     /// As [`SectionForces::update`], such as for a state that is not finite.
     pub fn enter(&mut self, step: &StepReport<'_, 2>, state: &State) -> Result<&SectionForces, BeamError> {
         let (h, theta) = (state.dt, self.theta);
-        let (q1, v1) = (&state.q[self.range.clone()], &state.v[self.range.clone()]);
+        self.read(state);
+        let (q1, v1) = (&self.q_next, &self.v_next);
         let mean = |out: &mut [f64], x0: &[f64], x1: &[f64]| {
             out.iter_mut().zip(x0.iter().zip(x1)).for_each(|(out, (x0, x1))| *out = theta * x1 + (1.0 - theta) * x0);
         };
@@ -189,9 +213,20 @@ impl BeamForces {
         Ok(&self.forces)
     }
 
+    /// The dofs of the state.
+    fn read(&mut self, state: &State) {
+        for (dofs, of) in [(&mut self.q_next, &state.q), (&mut self.v_next, &state.v)] {
+            let own = &of[self.range.clone()];
+            match &self.basis {
+                Some(basis) => basis.expand(own, dofs),
+                None => dofs.copy_from_slice(own),
+            }
+        }
+    }
+
     fn keep(&mut self, state: &State) {
-        self.q.copy_from_slice(&state.q[self.range.clone()]);
-        self.v.copy_from_slice(&state.v[self.range.clone()]);
+        std::mem::swap(&mut self.q, &mut self.q_next);
+        std::mem::swap(&mut self.v, &mut self.v_next);
         self.lift = self.lifted.map_or(0.0, |y| state.v[y]);
     }
 }

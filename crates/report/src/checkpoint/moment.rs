@@ -99,7 +99,8 @@ fn bodies(layout: &Layout) -> Vec<(String, usize)> {
     let blocks = layout.blocks.iter().map(|block| (block.name.clone(), block.range.len()));
     let beams = layout.beams.iter().map(|beam| {
         let supports = beam.supports.as_ref().map_or(0, ExactSizeIterator::len);
-        (beam.name.clone(), beam.range.len() + supports)
+        let name = if beam.basis.is_some() { format!("{} in modes", beam.name) } else { beam.name.clone() };
+        (name, beam.range.len() + supports)
     });
     let ground = layout.ground.iter().map(|ground| ("ground".to_owned(), ground.len()));
     blocks.chain(beams).chain(ground).collect()

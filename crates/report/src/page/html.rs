@@ -316,8 +316,15 @@ fn model(summary: &Summary) -> String {
         .beams
         .iter()
         .map(|beam| {
-            let BeamSummary { name, elements, dofs, theory, backend } = beam;
-            format!("{name} ({theory}, {elements} elements, {dofs} dofs, {backend})")
+            let BeamSummary { name, elements, dofs, theory, backend, shapes } = beam;
+            let shapes = shapes.map_or_else(String::new, |shapes| {
+                let corrections = match shapes.corrections {
+                    0 => String::new(),
+                    n => format!(" and {n} static corrections"),
+                };
+                format!(" in {} modes{corrections}", shapes.modes)
+            });
+            format!("{name} ({theory}, {elements} elements{shapes}, {dofs} dofs, {backend})")
         })
         .collect();
     let mut html = String::new();

@@ -183,7 +183,7 @@ impl PageRecorder {
             self.row.extend([state.q[phi], state.v[phi]]);
         }
         for (place, drawn) in self.layout.beams.iter().zip(&self.scenery.beams) {
-            self.row.push(drawn.middle.deflection(&state.q[place.range.clone()]).w);
+            self.row.push(place.deflection(&drawn.middle, &state.q[place.range.clone()]).w);
         }
         let (now, initial, sum) = (&state.ledger.current, &state.ledger.initial, &state.ledger.sum);
         let gravity = now.gravity - initial.gravity;
@@ -242,7 +242,7 @@ fn fill_frame(layout: &Layout, scenery: &Scenery, state: &State, row: &mut [f64]
     for (place, drawn) in layout.beams.iter().zip(&scenery.beams) {
         let (points, rest) = beams.split_at_mut(drawn.points);
         let q = &state.q[place.range.clone()];
-        points.iter_mut().zip(&drawn.shapes).for_each(|(w, shape)| *w = shape.deflection(q).w);
+        points.iter_mut().zip(&drawn.shapes).for_each(|(w, shape)| *w = place.deflection(shape, q).w);
         beams = rest;
     }
     for range in moved(layout) {

@@ -145,6 +145,36 @@ fn a_static_start_is_written_as_statics_has_it() {
 }
 
 #[test]
+fn a_beam_in_all_its_modes_writes_what_the_elements_write() {
+    let sets = [
+        ("time.end", "\"20 ms\""),
+        ("beam.table.probes", "[\"9 cm\", \"0.18 m\"]"),
+        ("beam.table.record", "[\"w\", \"moment\", \"shear\"]"),
+        ("beam.table.reactions", "true"),
+        ("beam.table.envelope", "true"),
+    ];
+    let modes = [("beam.table.model", "modes"), ("beam.table.modes", "{ count = 40 }")];
+    let (full, reduced) = (run("in-full", &sets), run("in-modes", &[&sets[..], &modes].concat()));
+    let read = |run: &Run| columns(&fs::read_to_string(run.folder.join("trajectory.csv")).unwrap());
+    for (full, reduced) in [
+        (read(&full), read(&reduced)),
+        (columns(full.envelopes.as_ref().unwrap()), columns(reduced.envelopes.as_ref().unwrap())),
+    ] {
+        assert_eq!(full.len(), reduced.len());
+        for ((name, full), (_, reduced)) in full.iter().zip(&reduced).filter(|((name, _), _)| name != "beam") {
+            let largest = full.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
+            for (a, b) in full.iter().zip(reduced).filter(|(a, _)| !a.is_nan()) {
+                assert!((a - b).abs() <= 1e-6 * largest.max(1e-6), "{name}: {a} {b}");
+            }
+        }
+    }
+    let beam = &reduced.summary["model"]["beams"][0];
+    assert_eq!((&beam["dofs"], &beam["backend"]), (&40.into(), &"diagonal".into()));
+    assert_eq!(beam["shapes"], serde_json::json!({ "modes": 40, "corrections": 0 }));
+    assert!(reduced.html.contains("20 elements in 40 modes, 40 dofs, diagonal"));
+}
+
+#[test]
 fn who_does_not_ask_gets_what_was_there_before() {
     let run = run("unasked", &[("time.end", "\"20 ms\"")]);
     let header = fs::read_to_string(run.folder.join("trajectory.csv")).unwrap();

@@ -6,7 +6,7 @@ use teeter_integrator::WBackend;
 use super::Resolver;
 use super::sections::Profiled;
 use crate::faults;
-use crate::scene::{BeamScene, SignalScene};
+use crate::scene::{BeamScene, Reduction, SignalScene};
 
 /// Most elements of all beams together: their memory and the time to factorise them stay within what a scene's check may
 /// take.
@@ -26,6 +26,7 @@ impl Resolver<'_, '_> {
         let lumps = self.lumps(&path, span);
         let foundations = self.foundations(&path, span);
         let axial = self.axial(&path);
+        let reduction = self.reduction(&path, span);
         let axial_force = self.quantity(&at("axial_force"));
         let position = self.pair(&at("position"));
         let probes = self.probes(&at("probes"), span);
@@ -63,6 +64,7 @@ impl Resolver<'_, '_> {
             shape: Vec::new(),
             position: position?,
             self_weight: self_weight?,
+            reduction: reduction?,
             backend: backend(self.doc.text(&at("backend"))),
             probes: probes?,
             output: output?,
@@ -100,6 +102,43 @@ impl Resolver<'_, '_> {
             }
             _ => Axial::Free,
         })
+    }
+
+    /// The shapes of a beam in modes.
+    fn reduction(&mut self, path: &str, span: Option<f64>) -> Option<Option<Reduction>> {
+        let (table, model) = (format!("{path}.modes"), format!("{path}.model"));
+        let at = |key: &str| format!("{table}.{key}");
+        let (doc, given) = (self.doc, self.doc.has_table(&table));
+        if self.word(&model)? != "modes" {
+            if given {
+                self.error(&table, "goes with model = modes only", "write model = \"modes\", or leave it out");
+            }
+            return (!given).then_some(None);
+        }
+        if doc.text(&format!("{path}.axial")) == Some("held") {
+            let rule = "a beam held along its axis stretches as it deflects, which no mode does";
+            self.error(&model, rule, "take model = \"full\", or axial = \"free\"");
+            return None;
+        }
+        let backend = format!("{path}.backend");
+        if doc.text(&backend).is_some_and(|word| word != "auto") {
+            self.error(&backend, "a beam in modes has a diagonal matrix", "leave it out, or take model = \"full\"");
+            return None;
+        }
+        if doc.is_refused(&at("count")) || doc.is_refused(&at("tolerance")) {
+            return None;
+        }
+        if let Some(count) = doc.integer(&at("count")) {
+            if let Some(key) = ["tolerance", "from", "to"].into_iter().find(|key| doc.has(&at(key))) {
+                let remedy = "keep count, or tolerance with from and to";
+                self.error(&at(key), "count already says how many modes there are", remedy);
+                return None;
+            }
+            return Some(Some(Reduction::Modes(usize::try_from(count).ok()?)));
+        }
+        let tolerance = doc.number(&at("tolerance")).unwrap_or(Reduction::TOLERANCE);
+        let region = self.part(&table, span)?;
+        Some(Some(Reduction::Flexibility { tolerance, region }))
     }
 
     /// Bounds what all beams take together; what a single one takes is bounded by the table of keys. Whether they stay

@@ -3,6 +3,7 @@
 
 mod beams;
 mod driven;
+mod modes;
 mod reading;
 mod refusing;
 mod resolving;

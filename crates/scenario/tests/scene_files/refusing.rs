@@ -92,7 +92,6 @@ fn what_is_known_but_not_built_in_says_so() {
         ("time.step", "auto"),
         ("time.scheme", "event-driven"),
         ("time.accuracy", "1e-3"),
-        ("beam.table.model", "modes"),
         ("ground.profile", "hills.csv"),
         ("solver.method", "socp"),
     ] {
