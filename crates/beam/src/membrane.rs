@@ -15,7 +15,8 @@
 //! ```
 //!
 //! because q̄ − q* = ¼h Δv and Δq = ½h(v⁰ + v¹). So EA/(8L) σ², never negative, takes the place of V, from which it differs
-//! by O(h²); no iteration, and unconditionally stable. (Auxiliary variables of this kind: Yang 2016, doi
+//! by O(h²); no iteration, and bounded for every h. Not accurate for every h: modes with ωh ≫ 1 that ring, v changing its sign in
+//! every step, take from σ and so from N. (Auxiliary variables of this kind: Yang 2016, doi
 //! 10.1016/j.jcp.2016.09.029; that this one is a function of q and v, and so can't drift, is peculiar to the quartic potential.)
 
 use crate::blocks::Blocks;
