@@ -44,6 +44,8 @@ fn apart(model: &[(&str, &str)], sets: &[(&str, &str)]) -> [f64; 2] {
         let mut simulation = simulation(model, sets);
         let mut watcher = Watcher { place: simulation.layout.beams[0].clone(), seen: Vec::new() };
         simulation.run(&mut [&mut watcher]).unwrap();
+        let relative = simulation.state.ledger.relative_residual();
+        assert!(relative <= 1e-12, "{model:?}: the identity of energy to {relative:e}");
         watcher.seen
     };
     let (full, modes) = (run(&[]), run(model));
