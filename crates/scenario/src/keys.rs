@@ -81,7 +81,7 @@ pub struct Reserved {
 pub enum Presence {
     /// Must be given wherever its table is.
     Required,
-    /// Must be given with these words of the key that it goes with ([`Key::only_with`]); optional with the others.
+    /// Must be given with these words of the key that it goes with (`only_with`); optional with the others.
     RequiredWith(&'static [&'static str]),
     /// Must be given where this key of the same table is not.
     RequiredWithout(&'static str),

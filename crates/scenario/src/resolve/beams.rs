@@ -1,6 +1,6 @@
 //! Beams: what they are made of, how they are held and damped, where they start.
 
-use teeter_beam::{Axial, Beam, BeamError, BeamSpec, Damping, Foundation, MAX_ELEMENTS, StaticError};
+use teeter_beam::{Axial, Beam, BeamError, BeamSpec, Damping, Foundation, Hold, MAX_ELEMENTS, StaticError, Support};
 use teeter_integrator::WBackend;
 
 use super::Resolver;
@@ -35,6 +35,7 @@ impl Resolver<'_, '_> {
         let self_weight = self.doc.flag(&at("self_weight"));
         let motion = self.motion(&path, signals);
         self.damped_twice(&path);
+        self.held_at_its_ends(&path, axial, supports);
         let parts = segments.iter().flatten().map(|segment| &segment.section);
         let output = self.beam_output(&path, profiled.iter().map(|profiled| &profiled.section).chain(parts));
         let Profiled { section, thickness } = profiled?;
@@ -199,11 +200,7 @@ impl Resolver<'_, '_> {
             (Some(file), None, None) => self.shape(path, file, beam),
             (None, Some(mode), Some(amplitude)) => {
                 let shape = self.elastic_mode(path, beam, usize::try_from(mode).ok()?)?.1;
-                let size = beam
-                    .to_nodes(&shape)
-                    .iter()
-                    .map(|[w, _]| *w)
-                    .fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
+                let size = largest_deflection(beam, &shape);
                 Some(shape.iter().map(|q| amplitude / size * q).collect())
             }
             (Some(_), ..) => {
@@ -260,6 +257,17 @@ impl Resolver<'_, '_> {
         Some(2.0 * ratio * omega / unit)
     }
 
+    /// What is to stretch has to be held at both ends.
+    fn held_at_its_ends(&mut self, path: &str, axial: Option<Axial>, supports: Option<[Support; 2]>) {
+        let (Some(Axial::Held), Some(supports)) = (axial, supports) else { return };
+        let ends = supports.iter().zip(["left", "right"]);
+        if let Some((_, end)) = ends.into_iter().find(|(support, _)| support.holds() == [Hold::Free; 2]) {
+            let rule = format!("the {end} end is free: nothing holds it along the axis");
+            let remedy = "support that end, or take axial = free or elastic";
+            self.error(&format!("{path}.axial"), rule, remedy);
+        }
+    }
+
     fn damped_twice(&mut self, path: &str) {
         let given = ["damping_ratio", "viscous_damping"].map(|key| format!("{path}.{key}"));
         if given.iter().all(|path| self.doc.has(path) || self.doc.has_table(path)) {
@@ -304,6 +312,12 @@ impl Resolver<'_, '_> {
             if doc.has(&at("ratios")) {
                 let remedy = "add frequencies = [\"10 Hz\", \"80 Hz\"], at which these are the damping ratios";
                 self.error(&at("ratios"), "ratios of which frequencies", remedy);
+                return None;
+            }
+            // Both have a default.
+            if ["a0", "a1"].iter().all(|key| !doc.is_given(&at(key)) && !doc.is_refused(&at(key))) {
+                let remedy = "give a0 and a1, or frequencies and ratios";
+                self.error(path, "it doesn't say how much", remedy);
                 return None;
             }
             let (mass, stiffness) = (self.quantity(&at("a0")), self.quantity(&at("a1")));
@@ -375,6 +389,24 @@ impl Resolver<'_, '_> {
         let all: Vec<_> = doc.names(&group).into_iter().map(|name| of(self, name)).collect();
         all.into_iter().collect()
     }
+}
+
+/// The size of the largest deflection with its sign, of equal ones that of the leftmost: also inside elements, where a mode may
+/// have all of it.
+fn largest_deflection(beam: &Beam, shape: &[f64]) -> f64 {
+    const PLACES: u32 = 16;
+    /// Deflections that differ by less are equal: rounding must not choose a mode's sign.
+    const ROUNDING: f64 = 1e-6;
+    let deflections = || {
+        let inside = beam.node_positions().windows(2).flat_map(|ends| {
+            let (left, side) = (ends[0], ends[1] - ends[0]);
+            (1..=PLACES).map(move |k| left + side * f64::from(k) / f64::from(PLACES))
+        });
+        std::iter::once(0.0).chain(inside).map(|x| beam.shape_clamped(x).deflection(shape).w)
+    };
+    let size = deflections().fold(0.0, |size: f64, w| size.max(w.abs()));
+    let first = deflections().find(|w| w.abs() >= (1.0 - ROUNDING) * size);
+    size.copysign(first.unwrap_or(size))
 }
 
 /// Most rigid motions of a beam: up and down, turning, and along its axis.
