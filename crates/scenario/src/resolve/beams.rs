@@ -199,11 +199,7 @@ impl Resolver<'_, '_> {
             (Some(file), None, None) => self.shape(path, file, beam),
             (None, Some(mode), Some(amplitude)) => {
                 let shape = self.elastic_mode(path, beam, usize::try_from(mode).ok()?)?.1;
-                let size = beam
-                    .to_nodes(&shape)
-                    .iter()
-                    .map(|[w, _]| *w)
-                    .fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
+                let size = largest_deflection(beam, &shape);
                 Some(shape.iter().map(|q| amplitude / size * q).collect())
             }
             (Some(_), ..) => {
@@ -375,6 +371,24 @@ impl Resolver<'_, '_> {
         let all: Vec<_> = doc.names(&group).into_iter().map(|name| of(self, name)).collect();
         all.into_iter().collect()
     }
+}
+
+/// The size of the largest deflection with its sign, of equal ones that of the leftmost: also inside elements, where a mode may
+/// have all of it.
+fn largest_deflection(beam: &Beam, shape: &[f64]) -> f64 {
+    const PLACES: u32 = 16;
+    /// Deflections that differ by less are equal: rounding must not choose a mode's sign.
+    const ROUNDING: f64 = 1e-6;
+    let deflections = || {
+        let inside = beam.node_positions().windows(2).flat_map(|ends| {
+            let (left, side) = (ends[0], ends[1] - ends[0]);
+            (1..=PLACES).map(move |k| left + side * f64::from(k) / f64::from(PLACES))
+        });
+        std::iter::once(0.0).chain(inside).map(|x| beam.shape_clamped(x).deflection(shape).w)
+    };
+    let size = deflections().fold(0.0, |size: f64, w| size.max(w.abs()));
+    let first = deflections().find(|w| w.abs() >= (1.0 - ROUNDING) * size);
+    size.copysign(first.unwrap_or(size))
 }
 
 /// Most rigid motions of a beam: up and down, turning, and along its axis.

@@ -268,6 +268,16 @@ fn it_starts_in_the_shape_of_a_file_or_a_mode() {
     assert_eq!(beam(&two("{ file = 'bent.csv' }"), &[]).shape, [0.0, 0.1, 0.01, 0.0, 0.0, -0.1]);
     let mode = beam(&plain("start = { mode = 2, amplitude = '-2 mm' }\n"), &[]).shape;
     assert!((mode[2].abs() - 0.002).abs() < 1e-15 && (mode[2] + mode[6]).abs() < 1e-12 && mode[4].abs() < 1e-12);
+    // All of these modes is inside the elements: nodes of the pinned beam stand still.
+    for (elements, mode, peaks) in [(1, 1, 1), (2, 2, 2), (20, 20, 20)] {
+        let start = format!("{SECTION}elements = {elements}\nstart = {{ mode = {mode}, amplitude = '-2 mm' }}\n");
+        let scene = beam(&start, &[]);
+        let model = Beam::new(scene.spec).unwrap();
+        let at = |k: i32| model.shape_clamped(2.0 * f64::from(k) / f64::from(32 * peaks)).deflection(&scene.shape).w;
+        let largest = (0..=32 * peaks).map(|k| at(k).abs()).fold(0.0, f64::max);
+        assert!((largest / 0.002 - 1.0).abs() < 1e-9, "{elements}: {largest}");
+        assert!(at(16) < 0.0, "the first peak has the sign");
+    }
     for (start, says) in [
         ("{ file = 'broken.csv' }", "breaks the pinned support at x = 0 m: w = 0.002 m, but must be 0 there"),
         ("{ file = 'short.csv' }", "expected 3 rows, one for each node, got 2"),
