@@ -3,6 +3,7 @@
 use teeter_beam::{Beam, BeamError, Hold};
 
 use super::Resolver;
+use crate::keys::Range;
 use crate::{record, wording};
 
 /// A row is about the node that is within this part of the span of its x.
@@ -40,6 +41,16 @@ fn read(bytes: &[u8], beam: &Beam) -> Result<Vec<f64>, String> {
     };
     if x.len() != nodes.len() {
         return Err(format!("expected {} rows, one for each node, got {}", nodes.len(), x.len()));
+    }
+    let most = Range::ANY.largest;
+    for (column, values) in table.columns.iter().enumerate() {
+        if let Some(row) = values.iter().position(|value| value.abs() > most) {
+            let (line, value) = (table.lines[row], values[row]);
+            return Err(format!(
+                "line {line}, column {}: {value:e} is over {most:e} in size, the limit of numbers",
+                column + 1
+            ));
+        }
     }
     let span = beam.spec().span;
     // Not a number is nowhere.
@@ -157,5 +168,7 @@ mod tests {
         );
         assert!(told("1\n", pinned).starts_with("line 1: 1 column, but a table has two or three"));
         assert!(told(&file(|_| f64::NAN), pinned).contains("not finite"));
+        let large = file(|x| if x == 0.25 { -1e300 } else { 0.0 });
+        assert_eq!(told(&large, pinned), "line 3, column 2: -1e300 is over 1e12 in size, the limit of numbers");
     }
 }
