@@ -366,10 +366,10 @@ pub static TABLES: &[Table] = &[
         doc: "A load on a beam: at a point that may move, or distributed evenly over the beam or a part of it.",
         keys: &[
             key("on", Kind::Name, Required, "\"table\"", "The beam."),
-            key("at", Kind::Quantity(Dimension::LENGTH, Range::NOT_NEGATIVE), Optional, "\"9 cm\"", "Place along the beam, from its left end, of force and couple; of a moving force where it is at t = 0."),
+            key("at", Kind::Quantity(Dimension::LENGTH, Range::ANY), Optional, "\"9 cm\"", "Place along the beam, from its left end, of force and couple; of a moving force where it is at t = 0, which may be off the beam."),
             key("force", Kind::Quantity(Dimension::FORCE, Range::ANY), Optional, "\"-10 N\"", "Force at that place, upwards positive."),
             key("couple", Kind::Quantity(Dimension::ENERGY, Range::ANY), Optional, "\"0.1 N m\"", "Couple at that place, counter-clockwise positive."),
-            key("speed", Kind::Quantity(Dimension::VELOCITY, Range::ANY), Optional, "\"2 m/s\"", "Velocity of the force along the beam; off the beam it acts no more."),
+            key("speed", Kind::Quantity(Dimension::VELOCITY, Range::ANY), Optional, "\"2 m/s\"", "Velocity of the force along the beam; it acts only while it is on the beam."),
             key("distributed", Kind::Quantity(Dimension::STIFFNESS, Range::ANY), Optional, "\"-10 N/m\"", "Force per length, upwards positive; in place of at, force and couple."),
             Key { presence: Optional, doc: "Where a distributed load begins, from the beam's left end; when left out, there.", ..FROM },
             Key { presence: Optional, doc: "Where it ends; when left out, at the beam's right end.", ..TO },

@@ -203,8 +203,9 @@ impl Resolver<'_, '_> {
         };
         let span = beams.get(beam).and_then(|beam| Some(beam.as_ref()?.spec.span));
         let kind = self.load_kind(&path, span)?;
-        if let (LoadKind::Point { at: x, .. } | LoadKind::Moving { at: x, .. }, Some(span)) = (kind, span)
-            && x > span
+        // A force that moves may come from off the beam.
+        if let (LoadKind::Point { at: x, .. }, Some(span)) = (kind, span)
+            && !(0.0..=span).contains(&x)
         {
             let rule = format!("the load at {x} m lies outside the span [0, {span}] m");
             self.error(&at("at"), rule, "give a place along the beam, from its left end");
