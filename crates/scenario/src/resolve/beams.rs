@@ -1,6 +1,6 @@
 //! Beams: what they are made of, how they are held and damped, where they start.
 
-use teeter_beam::{Axial, Beam, BeamError, BeamSpec, Damping, Foundation, MAX_ELEMENTS, StaticError};
+use teeter_beam::{Axial, Beam, BeamError, BeamSpec, Damping, Foundation, Hold, MAX_ELEMENTS, StaticError, Support};
 use teeter_integrator::WBackend;
 
 use super::Resolver;
@@ -35,6 +35,7 @@ impl Resolver<'_, '_> {
         let self_weight = self.doc.flag(&at("self_weight"));
         let motion = self.motion(&path, signals);
         self.damped_twice(&path);
+        self.held_at_its_ends(&path, axial, supports);
         let parts = segments.iter().flatten().map(|segment| &segment.section);
         let output = self.beam_output(&path, profiled.iter().map(|profiled| &profiled.section).chain(parts));
         let Profiled { section, thickness } = profiled?;
@@ -256,6 +257,17 @@ impl Resolver<'_, '_> {
         Some(2.0 * ratio * omega / unit)
     }
 
+    /// What is to stretch has to be held at both ends.
+    fn held_at_its_ends(&mut self, path: &str, axial: Option<Axial>, supports: Option<[Support; 2]>) {
+        let (Some(Axial::Held), Some(supports)) = (axial, supports) else { return };
+        let ends = supports.iter().zip(["left", "right"]);
+        if let Some((_, end)) = ends.into_iter().find(|(support, _)| support.holds() == [Hold::Free; 2]) {
+            let rule = format!("the {end} end is free: nothing holds it along the axis");
+            let remedy = "support that end, or take axial = free or elastic";
+            self.error(&format!("{path}.axial"), rule, remedy);
+        }
+    }
+
     fn damped_twice(&mut self, path: &str) {
         let given = ["damping_ratio", "viscous_damping"].map(|key| format!("{path}.{key}"));
         if given.iter().all(|path| self.doc.has(path) || self.doc.has_table(path)) {
@@ -300,6 +312,12 @@ impl Resolver<'_, '_> {
             if doc.has(&at("ratios")) {
                 let remedy = "add frequencies = [\"10 Hz\", \"80 Hz\"], at which these are the damping ratios";
                 self.error(&at("ratios"), "ratios of which frequencies", remedy);
+                return None;
+            }
+            // Both have a default.
+            if ["a0", "a1"].iter().all(|key| !doc.is_given(&at(key)) && !doc.is_refused(&at(key))) {
+                let remedy = "give a0 and a1, or frequencies and ratios";
+                self.error(path, "it doesn't say how much", remedy);
                 return None;
             }
             let (mass, stiffness) = (self.quantity(&at("a0")), self.quantity(&at("a1")));
