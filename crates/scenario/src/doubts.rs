@@ -5,9 +5,9 @@ use crate::diagnostic::Diagnostic;
 use crate::document::Document;
 use crate::placement::weight_of;
 use crate::scene::{BeamScene, BlockScene, ContactScene, Placement, Scene, Support};
-use crate::{stability, wording};
+use crate::{deflection, outlook, stability, wording};
 use std::f64::consts::{PI, TAU};
-use teeter_beam::{Axial, Beam};
+use teeter_beam::{Axial, Beam, Digits, MatrixWeights};
 use teeter_integrator::ImpactLaw;
 
 /// What was found.
@@ -44,6 +44,7 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Doubts {
     }
     for (number, beam) in scene.beams.iter().enumerate() {
         doubts.warnings.extend(thick(beam, document));
+        doubts.warnings.extend(of_model(beam, scene, document));
         match sag(scene, number) {
             Some(sag) if sag > DEEP_SAG * beam.spec.span => {
                 let rule = format!("{}: beyond 1/50 small-deflection theory is not to be trusted", sagging(beam, sag));
@@ -80,6 +81,39 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Doubts {
 fn sagging(beam: &BeamScene, sag: f64) -> String {
     let weight = if beam.self_weight { "its own weight and that of the blocks" } else { "the blocks' weight" };
     format!("the beam sags by {sag:.2e} m under {weight}, {}", wording::part_of(sag, beam.spec.span))
+}
+
+/// What only the assembled beam can tell.
+fn of_model(beam: &BeamScene, scene: &Scene, document: &Document) -> Vec<Diagnostic> {
+    let Ok(model) = Beam::new(beam.spec.clone()) else { return Vec::new() };
+    let start = deflection::large(&model, &beam.shape).map(|large| {
+        let remedy = "start from a smaller shape";
+        document.error(&format!("beam.{}.start", beam.name), format!("the shape at the start: {large}"), remedy)
+    });
+    start.into_iter().chain(digits(beam, &model, scene, document)).map(Diagnostic::as_warning).collect()
+}
+
+/// Most elements of a beam whose mesh is not what loses digits.
+const COARSE: usize = 100;
+
+/// Solves that leave few digits. What a static start solves is refined, and loses them later.
+fn digits(beam: &BeamScene, model: &Beam, scene: &Scene, document: &Document) -> Option<Diagnostic> {
+    let step = outlook::step_digits(model, scene.time.theta, scene.time.step).map(|digits| (digits, "a step's solve"));
+    let statics = || {
+        let weights = MatrixWeights { mass: 0.0, damping: 0.0, stiffness: 1.0 };
+        model.digits(weights).ok().map(|digits| (digits.of_refined(), "the static start"))
+    };
+    let both = step.into_iter().chain(beam.static_start.then(statics).flatten());
+    let (correct, what) = both.min_by(|(a, _), (b, _)| a.total_cmp(b)).filter(|(correct, _)| *correct < Digits::FEW)?;
+    let path = |key: &str| format!("beam.{}.{key}", beam.name);
+    let key = if document.has(&path("nodes")) { "nodes" } else { "elements" };
+    let rule = format!("only {correct:.1} digits of {what} are correct: rounding takes the rest");
+    let remedy = if model.elements() > COARSE {
+        "take a coarser mesh: 20 to 100 elements give more digits than the model has"
+    } else {
+        "make elements more even in length, and what is soft and what is stiff in beam and supports less far apart"
+    };
+    Some(document.error(&path(key), rule, remedy))
 }
 
 /// A beam so thick that shear counts, of a theory without it. At midspan of a rectangular beam between pins a force deflects by

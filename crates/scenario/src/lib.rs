@@ -33,6 +33,7 @@
 //! ```
 
 pub mod decode;
+pub mod deflection;
 pub mod diagnostic;
 pub mod dimension;
 pub mod document;

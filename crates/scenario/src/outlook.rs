@@ -209,7 +209,7 @@ fn coupled_frequencies(scene: &Scene, simulation: &Simulation) -> Vec<f64> {
 }
 
 /// Digits of a step's solve.
-fn step_digits(model: &Beam, theta: f64, step: f64) -> Option<f64> {
+pub(crate) fn step_digits(model: &Beam, theta: f64, step: f64) -> Option<f64> {
     let ht = theta * step;
     let weights = MatrixWeights { mass: 1.0, damping: ht, stiffness: ht * ht };
     model.digits(weights).ok().map(|digits| digits.of_solve())

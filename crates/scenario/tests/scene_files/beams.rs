@@ -205,6 +205,13 @@ fn the_axis_is_free_held_or_elastic() {
     let elastic = "axial = 'elastic'\naxial_supports = ['held', 'free']\n";
     assert_eq!(beam(&plain(elastic), &[]).spec.axial, Axial::Elastic { held: [true, false] });
     refused(&plain("axial_supports = ['held', 'free']\n"), &[], &["has no meaning with axial = free"]);
+    for (supports, end) in
+        [("['pinned', 'free']", "right"), ("['free', 'clamped']", "left"), ("['pinned', {}]", "right")]
+    {
+        let text = plain(&format!("axial = 'held'\nsupports = {supports}\n"));
+        refused(&text, &[], &["beam.b.axial", &format!("the {end} end is free: nothing holds it along the axis")]);
+    }
+    beam(&plain("axial = 'held'\nsupports = ['pinned', 'guided']\n"), &[]);
     refused(&plain("axial = 'held'\n"), &[("time.theta", "0.7")], &["time.theta", "`b` is held along its axis", "0.5"]);
     // Euler: π² EI/L² = 2159 N.
     beam(&plain("axial_force = '-2150 N'\n"), &[]);
@@ -295,6 +302,23 @@ fn it_starts_in_the_shape_of_a_file_or_a_mode() {
 }
 
 #[test]
+fn large_starts_and_lost_digits_are_warned_of() {
+    let warnings = |elements: u32, more: &str, step: &str| {
+        let text = format!("{BARE}{SECTION}elements = {elements}\n{more}");
+        let found = resolve(&text, &[("time.step", step)]).unwrap().warnings;
+        found.iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    assert!(warnings(20, "start = { mode = 1, amplitude = '19 cm' }\n", "1 ms").is_empty());
+    let [large] = &warnings(20, "start = { mode = 1, amplitude = '21 cm' }\n", "1 ms")[..] else { panic!() };
+    assert!(large.contains("beam.b.start") && large.contains("theory is for small slopes"), "{large}");
+    let [few] = &warnings(5000, "", "1 ms")[..] else { panic!() };
+    assert!(
+        few.contains("beam.b.elements") && few.contains("digits of a step's solve") && few.contains("20 to 100"),
+        "{few}"
+    );
+}
+
+#[test]
 fn self_weight_bends_the_beam_from_its_straight_axis() {
     let resolved = resolve(&format!("{BARE}{}", plain("self_weight = true\nstart = 'static'\n")), &[]).unwrap();
     let mut simulation = Simulation::new(&resolved.scene).unwrap();
@@ -325,12 +349,15 @@ fn loads_act_on_a_part_of_the_span_or_move() {
     assert_eq!(kind("distributed = '-3 N/m'\nfrom = '1 m'"), LoadKind::Distributed { load: -3.0, from: 1.0, to: 2.0 });
     let moving = "at = '50 cm'\nforce = '-10 N'\nspeed = '2 m/s'";
     assert_eq!(kind(moving), LoadKind::Moving { force: -10.0, at: 0.5, speed: 2.0 });
+    let entering = "at = '-50 cm'\nforce = '-10 N'\nspeed = '2 m/s'";
+    assert_eq!(kind(entering), LoadKind::Moving { force: -10.0, at: -0.5, speed: 2.0 });
     for (load, says) in [
         ("distributed = '-3 N/m'\nfrom = '2 m'\nto = '1 m'", "must be greater than from, 2 m"),
         ("distributed = '-3 N/m'\nspeed = '1 m/s'", "the load is distributed along the beam"),
         ("at = '1 m'\nforce = '1 N'\nto = '1 m'", "it goes with distributed"),
         ("at = '1 m'\ncouple = '1 N m'\nspeed = '1 m/s'", "what moves along the beam is a force"),
-        ("at = '3 m'\nforce = '1 N'\nspeed = '1 m/s'", "outside the span"),
+        ("at = '3 m'\nforce = '1 N'", "outside the span"),
+        ("at = '-1 m'\nforce = '1 N'", "outside the span"),
     ] {
         let message = scene(load).map(drop).expect_err(load);
         assert!(message.contains(says), "{message}");
