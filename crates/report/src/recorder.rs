@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::ops::ControlFlow;
 use teeter_integrator::{Contact, Model, Observer, ObserverError, RockingMonitor, State, StepReport};
+use teeter_scenario::deflection;
 use teeter_scenario::diagnostic::Diagnostic;
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Layout;
@@ -27,6 +28,9 @@ pub struct ImpactRow {
     /// Normal velocity before, m/s.
     pub u_n_before: f64,
 }
+
+/// A change of the modified energy over this part of the energy scale is a warning.
+const FAR_FROM_CONSERVED: f64 = 0.02;
 
 /// Impacts that the summary lists; `impacts.csv` has all.
 const LISTED_IMPACTS: usize = 1000;
@@ -189,6 +193,7 @@ impl<'a> Recorder<'a> {
     }
 
     fn write_row(&mut self, state: &State) -> Result<(), ResultsError> {
+        self.warn_of_row(state);
         self.line.clear();
         push(&mut self.line, state.t);
         for block in &self.layout.blocks {
@@ -235,6 +240,34 @@ impl<'a> Recorder<'a> {
         self.line.clear();
         self.kept.impulses.rows(self.layout, model, state, &self.kept.contacts_now, &mut self.line);
         self.contacts.rows(&self.line)
+    }
+
+    /// Warns of what a row shows to be outside the model; told once each.
+    fn warn_of_row(&mut self, state: &State) {
+        let (ledger, warnings) = (&state.ledger, &mut self.kept.record.warnings);
+        let mut first = |code, text: &dyn Fn() -> String| {
+            let known = warnings.warnings().iter().any(|warning| warning.code == code);
+            if let (Some(text), false) = (warnings.enter(code, Some(state.t), text), known) {
+                (self.tell)(&text);
+            }
+        };
+        for place in &self.layout.beams {
+            if let Some(large) = deflection::large(&place.beam, &state.q[place.range.clone()]) {
+                first("large-deflection", &|| format!("`{}` deflects far at t = {} s: {large}", place.name, state.t));
+            }
+        }
+        // With theta = 1/2 nothing dissipates but that what is conserved is a modified energy: `numerical` is minus its change.
+        let share = ledger.sum.numerical.abs() / ledger.scale;
+        if share > FAR_FROM_CONSERVED && self.layout.beams.iter().any(|place| place.beam.is_stretched()) {
+            first("stretching", &|| {
+                format!(
+                    "the step is too long for the vibrations that stretch the beam: at t = {} s the energy that it conserves is off \
+                     by {:.1} % of the largest there was, and so is the axial force it goes by; take a shorter step",
+                    state.t,
+                    100.0 * share
+                )
+            });
+        }
     }
 
     fn write_impacts(&mut self, step: &StepReport<'_, 2>) -> Result<(), ResultsError> {
