@@ -224,6 +224,7 @@ fn beams() -> Vec<Row> {
         refused(26, "shape that breaks a support", Shape("x,w\n0,0.002\n0.18,0.001\n0.36,0\n"), &["beam.table.start", "breaks the pinned support at x = 0 m", "w = 0.002 m"]),
         refused(26, "shape with a row too few", Shape("x,w\n0,0\n0.36,0\n"), &["beam.table.start", "expected 3 rows, one for each node, got 2"]),
         refused(26, "shape of another mesh", Shape("0,0\n0.2,0\n0.36,0\n"), &["line 2: x = 0.2 m, but the node of this row is at 0.18 m"]),
+        refused(26, "shape beyond all numbers", Shape("0,0\n0.18,1e300\n0.36,0\n"), &["beam.table.start", "line 2, column 2: 1e300 is over 1e12"]),
         refused(26, "shape that is not there", Edit(&[("\"static\"", "{ file = \"shape.csv\" }")]), &["beam.table.start", "there is no such file"]),
         refused(17, "nodes that go back", Edit(&[("elements      = 20", "nodes = [\"0 cm\", \"20 cm\", \"10 cm\", \"36 cm\"]")]), &["beam.table.nodes", "must rise: 0.1 m follows 0.2 m"]),
         refused(16, "neither elements nor nodes", Edit(&[("elements      = 20", "")]), &["beam.table.elements: missing"]),
@@ -245,6 +246,9 @@ fn beams() -> Vec<Row> {
         refused(38, "region of modes beyond the beam", Set(&["beam.table.model=modes", "beam.table.modes={ to = '40 cm' }"]), &["beam.table.modes.to", "[0, 0.36] m"]),
         refused(38, "backend of a beam in modes", Set(&["beam.table.model=modes", "beam.table.backend=sparse"]), &["beam.table.backend", "a beam in modes has a diagonal matrix"]),
         refused(38, "dashpot under a beam in modes", Edit(&[("[block.rocker]", "[beam.table.support.pier]\nat = \"9 cm\"\ndashpot = \"2 N s/m\"\n[block.rocker]"), ("start         = \"static\"", "model = \"modes\"")]), &["beam.table.model", "couples its modes"]),
+        refused(18, "Rayleigh damping of nothing", Edit(&[("damping_ratio = { mode = 1, ratio = 0.01 }", "rayleigh = {}")]), &["beam.table.rayleigh", "give a0 and a1, or frequencies and ratios"]),
+        refused(25, "beam held along its axis with a free end", Edit(&[("[\"pinned\", \"pinned\"]", "[\"clamped\", \"free\"]\naxial = \"held\"")]), &["beam.table.axial", "the right end is free"]),
+        warned(38, "mesh too fine for its digits", Set(&["beam.table.elements=9000"]), &["warning: beam.table.elements", "digits of"]),
         warned(38, "thick beam without shear", Set(&["beam.table.thickness=4 cm"]), &["warning: beam.table.theory", "0.11 of the span", "timoshenko"]),
     ]
 }
