@@ -183,3 +183,19 @@ fn who_does_not_ask_gets_what_was_there_before() {
     assert_eq!(run.summary.get("beams"), None);
     assert!(!run.html.contains("id=\"reactions\"") && run.figures.iter().all(|(name, _)| name != "envelopes.svg"));
 }
+
+#[test]
+fn what_leaves_the_model_is_warned_of_in_the_summary() {
+    let count = |name: &str, code: &str, sets: &[(&str, &str)]| {
+        let run = run(name, sets);
+        let warnings = run.summary["warnings"].as_array().unwrap();
+        warnings.iter().find(|warning| warning["code"] == code).map_or(0, |warning| warning["count"].as_u64().unwrap())
+    };
+    let thickness = |thickness| [("beam.table.thickness", thickness), ("time.end", "20 ms"), ("output.every", "1 ms")];
+    assert_eq!(count("small", "large-deflection", &thickness("1.5 mm")), 0);
+    // In equilibrium already it sags by more than 1/9 of the span.
+    assert_eq!(count("large", "large-deflection", &thickness("0.75 mm")), 21);
+    let held = |step| [("beam.table.axial", "held"), ("time.step", step), ("output.every", "1 ms")];
+    assert_eq!(count("short-steps", "stretching", &held("100 us")), 0);
+    assert!(count("long-steps", "stretching", &held("500 us")) > 0);
+}
