@@ -252,7 +252,9 @@ impl<'a> Recorder<'a> {
             }
         };
         for place in &self.layout.beams {
-            if let Some(large) = deflection::large(&place.beam, &state.q[place.range.clone()]) {
+            let q = &state.q[place.range.clone()];
+            let nodal = place.basis.as_ref().map(|basis| basis.dofs(q));
+            if let Some(large) = deflection::large(&place.beam, nodal.as_deref().unwrap_or(q)) {
                 first("large-deflection", &|| format!("`{}` deflects far at t = {} s: {large}", place.name, state.t));
             }
         }
