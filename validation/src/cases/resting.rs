@@ -119,6 +119,8 @@ fn unbalanced(beam: &Beam, end: &State, pressed: &[Contact<2>], length: f64) -> 
         block_lacks += force;
         beam.add_point_load(x, -force.y, &mut beam_lacks)?;
     }
+    // What a support bears is no lack.
+    beam_lacks.iter_mut().enumerate().filter(|(dof, _)| beam.is_held(*dof)).for_each(|(_, lack)| *lack = 0.0);
     let nodes = beam.to_nodes(&beam_lacks);
     Ok([block_lacks.norm(), nodes.iter().fold(0.0, |most, [f, couple]| f.abs().max(couple.abs() / length).max(most))])
 }
