@@ -129,8 +129,7 @@ impl Beam {
         let mut q = self.solve_refined(load, 0.0)?;
         let (mut low, mut high) = (0.0, membrane.force(self.bend(&q)));
         let (mut at_low, mut at_high) = (high, f64::NEG_INFINITY);
-        // Newton from below in the variable that makes r nearly straight: s falls like 1/(N_c + N)², so the next N is that of
-        // √(EA/2L s) by secant, kept inside the bracket by bisection.
+        // By secants between the ends of a bracket.
         let mut n = 0.0;
         let mut correction = f64::INFINITY;
         for round in 0..MAX_ROUNDS {
