@@ -104,6 +104,6 @@ pub use factor::{Backend, Factor, MatrixWeights};
 pub use forces::{Actions, Reaction, SectionForce, SectionForces, SpanLoad};
 pub use load::{DistributedLoad, Load, MovingLoad, NodalLoad};
 pub use section::{Profile, Section};
-pub use shape::{AxialShape, Deflection, ShapeAt};
+pub use shape::{AxialShape, Deflection, DeflectionBounds, ShapeAt};
 pub use spec::{Axial, BeamSpec, Damping, Foundation, Lump, MAX_ELEMENTS, Segment};
 pub use support::{Hold, Support};

@@ -17,6 +17,8 @@ pub(crate) struct Mesh {
     /// n/L: on a uniform mesh x times this is the number of the element.
     elements_per_length: f64,
     uniform: bool,
+    /// Lengths of the shortest and the longest element, m.
+    pub(crate) lengths: [f64; 2],
 }
 
 impl Mesh {
@@ -46,7 +48,10 @@ impl Mesh {
             let rule = "few enough to stay at 10000 with the nodes that supports, lumps and segments need";
             return Err(BeamError::Count { field: "elements", value: elements, rule });
         }
-        Ok(Self { x, elements_per_length: elements as f64 / span, uniform })
+        let mut mesh = Self { x, elements_per_length: elements as f64 / span, uniform, lengths: [0.0; 2] };
+        let lengths = (0..elements).map(|element| mesh.length(element));
+        mesh.lengths = lengths.fold([f64::INFINITY, 0.0], |[least, most], l| [l.min(least), l.max(most)]);
+        Ok(mesh)
     }
 
     pub(crate) fn elements(&self) -> usize {

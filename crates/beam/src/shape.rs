@@ -88,7 +88,47 @@ pub struct Deflection {
     pub slope: f64,
 }
 
+/// What deflection and slope of a beam do not exceed anywhere.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DeflectionBounds {
+    /// No w is above it, m.
+    pub highest: f64,
+    /// No |w'| is above it, rad.
+    pub steepest: f64,
+}
+
 impl Beam {
+    /// Bounds of the deflection for the dofs `q`, from its nodes alone: in an element of length l the shape functions of the two w are not
+    /// negative and sum to 1, those of the two ψ sum to at most l/4; of their derivatives the first are at most 3/(2l), the
+    /// second sum to at most 1.
+    ///
+    /// # Panics
+    /// If `q` has not [`Beam::dofs`] entries.
+    ///
+    /// ```
+    /// # use teeter_beam::{Beam, BeamSpec, Section, Support};
+    /// # let beam = Beam::new(BeamSpec::new(1.0, 4, Section::new(1.0, 1.0)?).supported([Support::Free; 2]))?;
+    /// let rising = beam.from_nodes(&[[0.5, 0.0]; 5])?;
+    /// assert_eq!(beam.deflection_bounds(&rising).highest, 0.5);
+    /// # Ok::<(), teeter_beam::BeamError>(())
+    /// ```
+    #[must_use]
+    pub fn deflection_bounds(&self, q: &[f64]) -> DeflectionBounds {
+        assert_eq!(q.len(), self.dofs(), "a vector must have one entry per degree of freedom");
+        let [least, most] = self.mesh.lengths;
+        // w and ψ side by side, by comparisons that know no NaN: the machine's own.
+        let (mut high, mut low) = ([f64::NEG_INFINITY; 2], [f64::INFINITY; 2]);
+        for node in self.bend(q) {
+            for k in 0..2 {
+                high[k] = if node[k] > high[k] { node[k] } else { high[k] };
+                low[k] = if node[k] < low[k] { node[k] } else { low[k] };
+            }
+        }
+        let ([high, turn], [low, back]) = (high, low);
+        let turn = turn.max(-back);
+        DeflectionBounds { highest: high + 0.25 * most * turn, steepest: 1.5 * (high - low) / least + turn }
+    }
+
     /// The shape functions at x; `None` outside the closed [0, span], and for NaN.
     ///
     /// ```
@@ -178,7 +218,15 @@ impl Beam {
     /// ```
     pub fn deflection_at(&self, q: &[f64], x: f64) -> Option<Deflection> {
         assert_eq!(q.len(), self.dofs(), "a vector must have one entry per degree of freedom");
-        self.shape_at(x).map(|shape| shape.deflection(q))
+        if !(x >= 0.0 && x <= self.spec.span) {
+            return None;
+        }
+        let (element, xi) = self.mesh.locate(x);
+        let (e, nodes) = (&self.elements[element], self.bend(q));
+        let [[a, b], [c, d]] = [nodes[element], nodes[element + 1]];
+        // What is held is 0 in q.
+        let sum = |n: [f64; 4]| ((n[0] * a + n[1] * b) + n[2] * c) + n[3] * d;
+        Some(Deflection { w: sum(e.shape(xi)), slope: sum(e.shape_slope(xi)) })
     }
 }
 

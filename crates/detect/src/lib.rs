@@ -69,12 +69,40 @@ pub struct SurfacePoint<const D: usize> {
     pub material: Vector<D>,
 }
 
+/// The points x with n·x ≤ offset.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HalfSpace<const D: usize> {
+    /// The unit normal n, out of it.
+    pub normal: Vector<D>,
+    /// m.
+    pub offset: f64,
+}
+
+impl<const D: usize> HalfSpace<D> {
+    /// Whether a point is outside, and not by rounding only.
+    #[inline]
+    #[must_use]
+    pub fn excludes(&self, x: &Vector<D>) -> bool {
+        let mut size = self.offset.abs();
+        for x in x.iter() {
+            size += x.abs();
+        }
+        self.normal.dot(x) - self.offset > 8.0 * f64::EPSILON * size
+    }
+}
+
 /// What a detector may ask of the bodies in one configuration.
 pub trait Geometry<const D: usize> {
     /// Places points fixed in a body: `out[k]` is where `local[k]` is in the world. Both have the same length.
     fn place(&self, body: BodyId, local: &[Vector<D>], out: &mut [Vector<D>]);
     /// The point of the body's surface that answers to the world's point `at`; `None` where the surface doesn't reach.
     fn surface(&self, body: BodyId, kinematics: Kinematics, at: &Vector<D>) -> Option<SurfacePoint<D>>;
+    /// A half space that holds all points whose gap to the body's surface is at most `margin` (m): what a detector needs to look at. `None`,
+    /// the default, says nothing.
+    fn reach(&self, body: BodyId, margin: f64) -> Option<HalfSpace<D>> {
+        let _ = (body, margin);
+        None
+    }
 }
 
 /// Finds candidates for contact.
@@ -82,6 +110,19 @@ pub trait ContactDetector<const D: usize>: Send + Sync {
     /// Puts all candidates with a gap of at most `margin` (m) into `out`, which is cleared first, in an order that
     /// depends on nothing but the detector. Allocates only where there are more than ever before.
     fn detect(&self, at: &dyn Geometry<D>, margin: f64, out: &mut Candidates<D>);
+    /// The deepest penetration of any candidate, m; 0 where there is none. `scratch` is what [`ContactDetector::detect`] would fill; its content
+    /// is lost. The default detects with a margin of 0.
+    fn deepest(&self, at: &dyn Geometry<D>, scratch: &mut Candidates<D>) -> f64 {
+        self.detect(at, 0.0, scratch);
+        scratch.iter().map(|candidate| -candidate.gap).fold(0.0, f64::max)
+    }
+    /// Puts those of the contacts `ids` that there are now into `out`, which is cleared first, however large their gaps. `ids` rise, and
+    /// so do those of `out`. The default detects all.
+    fn locate(&self, at: &dyn Geometry<D>, ids: &[ContactId], out: &mut Candidates<D>) {
+        self.detect(at, f64::INFINITY, out);
+        out.retain(|candidate| ids.binary_search(&candidate.id).is_ok());
+        out.sort_unstable_by_key(|candidate| candidate.id);
+    }
     /// Most candidates that there can ever be.
     fn capacity(&self) -> usize;
 }

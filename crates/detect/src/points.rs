@@ -1,7 +1,9 @@
 //! Points of one body (the corners of a block) against the surface of another (a beam, the ground).
 
 use crate::plane_frame;
-use crate::{Anchor, BodyId, Candidate, Candidates, ContactDetector, ContactId, Geometry, Kinematics, Vector};
+use crate::{
+    Anchor, BodyId, Candidate, Candidates, ContactDetector, ContactId, Geometry, Kinematics, SurfacePoint, Vector,
+};
 
 /// Points of a body that can touch a surface of another.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,29 +43,84 @@ impl<const D: usize> PointDetector<D> {
     }
 }
 
+impl PointPair<2> {
+    /// The foot of a point of the pair that is at `place`, and its gap; `None` where the surface doesn't reach.
+    #[inline]
+    fn foot(&self, at: &dyn Geometry<2>, place: &Vector<2>) -> Option<(SurfacePoint<2>, f64)> {
+        let foot = at.surface(self.surface, self.kinematics, place)?;
+        let gap = foot.normal.dot(&(place - foot.place));
+        Some((foot, gap))
+    }
+
+    #[inline]
+    fn candidate(&self, k: usize, foot: &SurfacePoint<2>, gap: f64) -> Candidate<2> {
+        Candidate {
+            id: ContactId::new(self.pair, k as u32),
+            sides: [
+                Anchor { body: self.body, point: self.points[k] },
+                Anchor { body: self.surface, point: foot.material },
+            ],
+            frame: plane_frame(&foot.normal),
+            gap,
+        }
+    }
+
+    /// Hands the points that may have a gap of at most `margin` to `each`, with their places.
+    #[inline]
+    fn near(&self, at: &dyn Geometry<2>, margin: f64, mut each: impl FnMut(usize, &Vector<2>)) {
+        // Most corners are far above the surface, and it is dear to look there.
+        let reach = if margin < f64::INFINITY { at.reach(self.surface, margin) } else { None };
+        let mut places = [Vector::<2>::zeros(); BATCH];
+        for (batch, local) in self.points.chunks(BATCH).enumerate() {
+            let places = &mut places[..local.len()];
+            at.place(self.body, local, places);
+            for (k, place) in places.iter().enumerate() {
+                if !reach.is_some_and(|reach| reach.excludes(place)) {
+                    each(batch * BATCH + k, place);
+                }
+            }
+        }
+    }
+}
+
 impl ContactDetector<2> for PointDetector<2> {
     fn detect(&self, at: &dyn Geometry<2>, margin: f64, out: &mut Candidates<2>) {
         out.clear();
-        let mut places = [Vector::<2>::zeros(); BATCH];
         for pair in &self.pairs {
-            for (batch, local) in pair.points.chunks(BATCH).enumerate() {
-                let places = &mut places[..local.len()];
-                at.place(pair.body, local, places);
-                for (k, place) in places.iter().enumerate() {
-                    let Some(foot) = at.surface(pair.surface, pair.kinematics, place) else { continue };
-                    let gap = foot.normal.dot(&(place - foot.place));
-                    if gap <= margin {
-                        out.push(Candidate {
-                            id: ContactId::new(pair.pair, (batch * BATCH + k) as u32),
-                            sides: [
-                                Anchor { body: pair.body, point: local[k] },
-                                Anchor { body: pair.surface, point: foot.material },
-                            ],
-                            frame: plane_frame(&foot.normal),
-                            gap,
-                        });
-                    }
+            pair.near(at, margin, |k, place| {
+                if let Some((foot, gap)) = pair.foot(at, place)
+                    && gap <= margin
+                {
+                    out.push(pair.candidate(k, &foot, gap));
                 }
+            });
+        }
+    }
+
+    fn deepest(&self, at: &dyn Geometry<2>, _scratch: &mut Candidates<2>) -> f64 {
+        let mut deepest = 0.0_f64;
+        for pair in &self.pairs {
+            pair.near(at, 0.0, |_, place| {
+                if let Some((_, gap)) = pair.foot(at, place) {
+                    deepest = deepest.max(-gap);
+                }
+            });
+        }
+        deepest
+    }
+
+    fn locate(&self, at: &dyn Geometry<2>, ids: &[ContactId], out: &mut Candidates<2>) {
+        out.clear();
+        for id in ids {
+            // As a rule pairs stand in the order of their numbers.
+            let here = self.pairs.get(id.pair() as usize).filter(|pair| pair.pair == id.pair());
+            let k = id.point() as usize;
+            let Some(pair) = here.or_else(|| self.pairs.iter().find(|pair| pair.pair == id.pair())) else { continue };
+            let Some(point) = pair.points.get(k) else { continue };
+            let mut place = [Vector::<2>::zeros()];
+            at.place(pair.body, std::slice::from_ref(point), &mut place);
+            if let Some((foot, gap)) = pair.foot(at, &place[0]) {
+                out.push(pair.candidate(k, &foot, gap));
             }
         }
     }

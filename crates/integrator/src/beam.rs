@@ -13,7 +13,7 @@ use motion::MovingSupports;
 use nalgebra::Vector2;
 use std::sync::Arc;
 use teeter_beam::{Beam, Deflection, Load, MatrixWeights, ModalBasis};
-use teeter_detect::{Frame, Kinematics, SurfacePoint};
+use teeter_detect::{Frame, HalfSpace, Kinematics, SurfacePoint};
 
 /// Which fibre of a beam is its contact surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -315,6 +315,11 @@ impl Subsystem<2> for BeamBody {
     fn surface(&self, _: u32, q: &[f64], kinematics: Kinematics, at: &Vector2<f64>) -> Option<SurfacePoint<2>> {
         let (q, line) = self.split(q);
         line.foot(&*self.beam, q, kinematics, at)
+    }
+
+    fn reach(&self, _: u32, q: &[f64], margin: f64) -> Option<HalfSpace<2>> {
+        let (q, line) = self.split(q);
+        Some(line.reach(self.beam.deflection_bounds(q), margin))
     }
 
     fn rows(&self, _: u32, _q: &[f64], point: &Vector2<f64>, frame: &Frame<2>, out: &mut Rows<'_, 2>) -> usize {

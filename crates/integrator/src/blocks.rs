@@ -1,6 +1,9 @@
 //! Rigid blocks as a subsystem: the adapter above `teeter-rigid`.
 
-use crate::{Compliance, Coupling, Energy, FactorError, Motion, PartRows, Rows, Signal, Size, Subsystem, Weights};
+use crate::subsystem::respond_by_diagonal;
+use crate::{
+    Compliance, Coupling, Energy, FactorError, Motion, PartRows, Rows, Signal, Size, Subsystem, Vector, Weights,
+};
 use nalgebra::{Matrix2, Vector2, Vector3};
 use std::sync::Arc;
 use teeter_detect::Frame;
@@ -218,5 +221,9 @@ impl Compliance<2> for BlockCompliance {
                 }
             }
         }
+    }
+
+    fn respond(&mut self, rows: &PartRows<'_, 2>, p: &[Vector<2>], _scratch: &mut [f64], v: &mut [f64]) {
+        respond_by_diagonal(&self.inverse, rows, p, v);
     }
 }

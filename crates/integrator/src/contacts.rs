@@ -107,7 +107,11 @@ pub(crate) enum Rule {
 pub struct ContactSet<const D: usize> {
     contacts: Vec<Contact<D>>,
     spans: Vec<[Span; 2]>,
+    /// Where the rows of each contact end in the arena; they begin where those of the one before end.
+    ends: Vec<usize>,
+    /// The columns within their subsystems, and among the model's velocities.
     columns: Vec<usize>,
+    global: Vec<usize>,
     values: Vec<Vector<D>>,
     pub(crate) blocks: Vec<Block<D>>,
     pub(crate) u_free: Vec<Vector<D>>,
@@ -125,7 +129,9 @@ impl<const D: usize> ContactSet<D> {
         Self {
             contacts: Vec::with_capacity(contacts),
             spans: Vec::with_capacity(contacts),
+            ends: Vec::with_capacity(contacts),
             columns: Vec::with_capacity(2 * contacts * row),
+            global: Vec::with_capacity(2 * contacts * row),
             values: Vec::with_capacity(2 * contacts * row),
             blocks: Vec::with_capacity(contacts * contacts),
             u_free: Vec::with_capacity(contacts),
@@ -147,8 +153,7 @@ impl<const D: usize> ContactSet<D> {
     pub fn clear(&mut self) {
         self.contacts.clear();
         self.spans.clear();
-        self.columns.clear();
-        self.values.clear();
+        self.ends.clear();
         self.u_free.clear();
         self.shift.clear();
         self.rules.clear();
@@ -161,23 +166,34 @@ impl<const D: usize> ContactSet<D> {
     /// starts from that of the step before.
     pub fn activate(&mut self, model: &Model<D>, q: &[f64], candidate: &Candidate<D>, warm: &WarmStart) {
         let mut spans = [Span { part: 0, start: 0, len: 0 }; 2];
+        let mut start = self.ends.last().copied().unwrap_or(0);
         for (side, anchor) in candidate.sides.iter().enumerate() {
-            let start = self.columns.len();
             let Some((index, part, body)) = model.owner(anchor.body) else { continue };
-            let row = part.system.size().row;
-            self.columns.resize(start + row, 0);
-            self.values.resize(start + row, Vector::zeros());
-            let mut rows = Rows { columns: &mut self.columns[start..], values: &mut self.values[start..] };
+            if part.row == 0 {
+                continue;
+            }
+            // Never shorter again, so that a step with known contacts has no entries to make.
+            if self.values.len() < start + part.row {
+                self.columns.resize(start + part.row, 0);
+                self.global.resize(start + part.row, 0);
+                self.values.resize(start + part.row, Vector::zeros());
+            }
+            let room = start..start + part.row;
+            let mut rows = Rows { columns: &mut self.columns[room.clone()], values: &mut self.values[room] };
             let q = &q[part.q.clone()];
-            let len = part.system.rows(body, q, &anchor.point, &candidate.frame, &mut rows).min(row);
-            self.columns.truncate(start + len);
-            self.values.truncate(start + len);
+            let len = part.system.rows(body, q, &anchor.point, &candidate.frame, &mut rows).min(part.row);
+            let taken = start..start + len;
+            for (global, column) in self.global[taken.clone()].iter_mut().zip(&self.columns[taken.clone()]) {
+                *global = part.v.start + column;
+            }
             if side == 1 {
-                self.values[start..].iter_mut().for_each(|value| *value = -*value);
+                self.values[taken].iter_mut().for_each(|value| *value = -*value);
             }
             spans[side] = Span { part: index, start, len };
+            start += len;
         }
         self.spans.push(spans);
+        self.ends.push(start);
         let before = warm.impulse::<D>(candidate.id);
         self.p.push(before.unwrap_or_else(Vector::zeros));
         self.u_free.push(Vector::zeros());
@@ -205,19 +221,19 @@ impl<const D: usize> ContactSet<D> {
     pub fn withdraw_if_prescribed(&mut self, model: &Model<D>) -> bool {
         let Some(sides) = self.spans.last() else { return false };
         let prescribed = sides.iter().filter(|side| side.len > 0).all(|side| {
-            let driven = model.parts()[side.part].system.driven();
+            let part = &model.parts()[side.part];
+            if !part.traits.driven {
+                return false;
+            }
+            let driven = part.system.driven();
             let range = side.start..side.start + side.len;
-            // Most scenes have no drives: nothing to search then.
-            !driven.is_empty()
-                && self.columns[range.clone()]
-                    .iter()
-                    .zip(&self.values[range])
-                    .all(|(c, value)| value[0] == 0.0 || driven.contains(c))
+            self.columns[range.clone()]
+                .iter()
+                .zip(&self.values[range])
+                .all(|(c, value)| value[0] == 0.0 || driven.contains(c))
         });
         if prescribed {
-            let start = sides.iter().filter(|side| side.len > 0).map(|side| side.start).min();
-            self.columns.truncate(start.unwrap_or(self.columns.len()));
-            self.values.truncate(start.unwrap_or(self.values.len()));
+            self.ends.pop();
             self.spans.pop();
             self.p.pop();
             self.u_free.pop();
@@ -230,15 +246,20 @@ impl<const D: usize> ContactSet<D> {
         prescribed
     }
 
-    /// The relative velocity J_i v of contact `i`.
+    /// The entries of contact `i`, with their columns among the model's velocities.
+    #[inline]
+    fn entries(&self, i: usize) -> impl Iterator<Item = (usize, &Vector<D>)> {
+        let start = if i == 0 { 0 } else { self.ends[i - 1] };
+        let range = start..self.ends[i];
+        self.global[range.clone()].iter().copied().zip(&self.values[range])
+    }
+
+    /// The relative velocity J_i v of contact `i`, for velocities of the whole model.
     #[must_use]
-    pub fn velocity(&self, model: &Model<D>, i: usize, v: &[f64]) -> Vector<D> {
+    pub fn velocity(&self, i: usize, v: &[f64]) -> Vector<D> {
         let mut u = Vector::zeros();
-        for side in self.spans[i].iter().filter(|side| side.len > 0) {
-            let v = &v[model.parts()[side.part].v.clone()];
-            for k in side.start..side.start + side.len {
-                u += self.values[k] * v[self.columns[k]];
-            }
+        for (column, value) in self.entries(i) {
+            u += value * v[column];
         }
         u
     }
@@ -282,15 +303,8 @@ impl<const D: usize> ContactSet<D> {
     }
 
     /// Σ |J_i v| of contact `i`, m/s: what rounding of its velocity is measured by.
-    pub(crate) fn speed(&self, model: &Model<D>, i: usize, v: &[f64]) -> f64 {
-        let mut sum = 0.0;
-        for side in self.spans[i].iter().filter(|side| side.len > 0) {
-            let v = &v[model.parts()[side.part].v.clone()];
-            for k in side.start..side.start + side.len {
-                sum += self.values[k].norm() * v[self.columns[k]].abs();
-            }
-        }
-        sum
+    pub(crate) fn speed(&self, i: usize, v: &[f64]) -> f64 {
+        self.entries(i).map(|(column, value)| value.norm() * v[column].abs()).sum()
     }
 
     /// U¹ of contact `i` by the impulses, m/s.
@@ -343,6 +357,9 @@ impl<const D: usize> ContactSet<D> {
         v: &mut [f64],
     ) {
         for (index, (part, factor)) in model.parts().iter().zip(factors).enumerate() {
+            if part.v.is_empty() {
+                continue;
+            }
             let rows = self.rows_of(index);
             if !rows.is_empty() {
                 factor.respond(&rows, &self.p, &mut scratch[part.v.clone()], &mut v[part.v.clone()]);
@@ -351,10 +368,10 @@ impl<const D: usize> ContactSet<D> {
     }
 
     /// Completes the contacts after a solve, with velocities after the step.
-    pub fn complete(&mut self, model: &Model<D>, v: &[f64]) {
-        let fastest = self.q.iter().map(Vector::norm).fold(0.0, f64::max);
+    pub fn complete(&mut self, v: &[f64]) {
+        let fastest = self.q.iter().map(Vector::norm_squared).fold(0.0, f64::max).sqrt();
         for i in 0..self.contacts.len() {
-            let u_after = self.velocity(model, i, v);
+            let u_after = self.velocity(i, v);
             let contact = &mut self.contacts[i];
             (contact.p, contact.u_after, contact.still) = (self.p[i], u_after, STILL * fastest);
             contact.u_law = u_after + self.shift[i];

@@ -304,7 +304,7 @@ impl<const D: usize> Search<D> {
             let place = place_of(model, &self.q, &mut self.places, candidate);
             let mut shift = tangential(&(candidate.frame * place.way(model, &self.q))) / tau;
             shift[0] = candidate.gap / tau;
-            let u_free = work.contacts.velocity(model, i, &self.v);
+            let u_free = work.contacts.velocity(i, &self.v);
             work.contacts.pose(i, Vector::zeros(), u_free, shift);
         }
         if !work.contacts.contacts().is_empty() {

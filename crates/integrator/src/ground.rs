@@ -2,7 +2,7 @@
 
 use crate::{Compliance, Coupling, Energy, FactorError, Motion, PartRows, Rows, Size, Subsystem, Weights};
 use nalgebra::{Vector2, Vector3};
-use teeter_detect::{Frame, Kinematics, SurfacePoint};
+use teeter_detect::{Frame, HalfSpace, Kinematics, SurfacePoint};
 use teeter_rigid::Pose;
 
 /// The half plane below a straight line.
@@ -109,6 +109,15 @@ impl Subsystem<2> for Ground {
         let (along, normal) = (pose.rotate(&Vector2::x()), pose.rotate(&Vector2::y()));
         let material = Vector2::new(along.dot(&(at - pose.point(&Vector2::zeros()))), 0.0);
         Some(SurfacePoint { place: pose.point(&material), normal, material })
+    }
+
+    fn reach(&self, _body: u32, q: &[f64], margin: f64) -> Option<HalfSpace<2>> {
+        if let Form::Level(level) = self.0 {
+            return Some(HalfSpace { normal: Vector2::y(), offset: level + margin });
+        }
+        let pose = self.pose(q);
+        let normal = pose.rotate(&Vector2::y());
+        Some(HalfSpace { normal, offset: normal.dot(&pose.point(&Vector2::zeros())) + margin })
     }
 
     fn rows(&self, _: u32, q: &[f64], point: &Vector2<f64>, frame: &Frame<2>, out: &mut Rows<'_, 2>) -> usize {

@@ -90,7 +90,7 @@ pub use scheme::{Scheme, SettingError, StepError, StepReport};
 pub use signal::{Formula, Given, Motion, Signal, SignalError, Table};
 pub use state::{State, StateError, Tally, WarmStart};
 pub use subsystem::{Compliance, Coupling, Energy, FactorError, PartRows, Rows, Size, Subsystem, Weights};
-pub use workspace::{SolverSettings, Workspace};
+pub use workspace::{SolverSettings, WorkCounts, Workspace};
 
 /// A point, direction, impulse or relative velocity in D dimensions.
 pub type Vector<const D: usize> = nalgebra::SVector<f64, D>;

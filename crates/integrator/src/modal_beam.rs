@@ -10,12 +10,15 @@
 use crate::beam;
 use crate::beam::line::{self, Deflecting, Line};
 use crate::beam::motion::MovingSupports;
-use crate::subsystem::dot;
-use crate::{BeamSurface, Compliance, Energy, FactorError, Motion, Rows, SignalLoad, Size, Subsystem, Weights};
-use nalgebra::Vector2;
+use crate::subsystem::{couple_by_solving, dot, respond_by_diagonal};
+use crate::{
+    BeamSurface, Compliance, Coupling, Energy, FactorError, Motion, PartRows, Rows, SignalLoad, Size, Subsystem,
+    Vector, Weights,
+};
+use nalgebra::{Matrix2, Vector2};
 use std::sync::{Arc, Mutex, PoisonError};
-use teeter_beam::{Beam, Deflection, Load, ModalBasis, ModalError};
-use teeter_detect::{Frame, Kinematics, SurfacePoint};
+use teeter_beam::{Beam, Deflection, DeflectionBounds, Load, ModalBasis, ModalError};
+use teeter_detect::{Frame, HalfSpace, Kinematics, SurfacePoint};
 
 /// A straight level beam in the world, in modal coordinates η (m √kg).
 ///
@@ -100,12 +103,13 @@ impl ModalBeam {
     ) -> Self {
         let (n, dofs) = (basis.len(), beam.dofs());
         let by_dof = (0..dofs * n).map(|k| basis.shape(k % n)[k / n]).collect();
+        let bounds = (0..n).map(|i| bounds(&beam, basis.shape(i))).collect();
         Self {
             stiffness: basis.circular_frequencies().iter().map(|omega| omega * omega).collect(),
             damped: damping.iter().any(|d| *d != 0.0),
             damping,
             basis,
-            shapes: Shapes { beam, coordinates: n, by_dof },
+            shapes: Shapes { beam, coordinates: n, by_dof, bounds },
             position,
             surface,
             loads: Vec::new(),
@@ -190,9 +194,26 @@ struct Shapes {
     beam: Arc<Beam>,
     coordinates: usize,
     by_dof: Vec<f64>,
+    /// Bounds of the deflections of each coordinate, of either sign.
+    bounds: Vec<DeflectionBounds>,
+}
+
+fn bounds(beam: &Beam, shape: &[f64]) -> DeflectionBounds {
+    let turned: Vec<f64> = shape.iter().map(|phi| -phi).collect();
+    let [up, down] = [shape, &turned].map(|shape| beam.deflection_bounds(shape));
+    DeflectionBounds { highest: up.highest.max(down.highest), steepest: up.steepest }
 }
 
 impl Shapes {
+    fn deflection_bounds(&self, q: &[f64]) -> DeflectionBounds {
+        let mut sum = DeflectionBounds { highest: 0.0, steepest: 0.0 };
+        for (bounds, q) in self.bounds.iter().zip(q) {
+            sum.highest += bounds.highest * q.abs();
+            sum.steepest += bounds.steepest * q.abs();
+        }
+        sum
+    }
+
     fn dof(&self, dof: usize) -> &[f64] {
         &self.by_dof[dof * self.coordinates..(dof + 1) * self.coordinates]
     }
@@ -210,23 +231,22 @@ impl Deflecting for Shapes {
     fn deflection_at(&self, q: &[f64], x: f64) -> Option<Deflection> {
         let shape = self.beam.shape_at(x)?;
         let mut d = Deflection { w: 0.0, slope: 0.0 };
-        for k in 0..shape.len {
-            let value = self.dof_value(shape.columns[k], q);
-            d.w += shape.n[k] * value;
-            d.slope += shape.dn[k] * value;
+        // Places that are not in use count for nothing.
+        let [a, b, c, e] = shape.columns.map(|dof| self.dof(dof));
+        for ((((q, a), b), c), e) in q.iter().zip(a).zip(b).zip(c).zip(e) {
+            let [n, dn] = [shape.n, shape.dn].map(|n| (n[0] * a + n[1] * b) + (n[2] * c + n[3] * e));
+            d.w += n * q;
+            d.slope += dn * q;
         }
         Some(d)
     }
 
     fn shape(&self, x: f64, mut each: impl FnMut(usize, f64, f64)) {
         let shape = self.beam.shape_clamped(x);
-        for i in 0..self.coordinates {
-            let (mut n, mut dn) = (0.0, 0.0);
-            for k in 0..shape.len {
-                let phi = self.dof(shape.columns[k])[i];
-                n += shape.n[k] * phi;
-                dn += shape.dn[k] * phi;
-            }
+        // Places that are not in use count for nothing.
+        let [a, b, c, d] = shape.columns.map(|dof| self.dof(dof));
+        for (i, (((a, b), c), d)) in a.iter().zip(b).zip(c).zip(d).enumerate() {
+            let [n, dn] = [shape.n, shape.dn].map(|n| (n[0] * a + n[1] * b) + (n[2] * c + n[3] * d));
             each(i, n, dn);
         }
     }
@@ -336,6 +356,11 @@ impl Subsystem<2> for ModalBeam {
         line.foot(&self.shapes, q, kinematics, at)
     }
 
+    fn reach(&self, _: u32, q: &[f64], margin: f64) -> Option<HalfSpace<2>> {
+        let (q, line) = self.split(q);
+        Some(line.reach(self.shapes.deflection_bounds(q), margin))
+    }
+
     fn rows(&self, _: u32, _q: &[f64], point: &Vector2<f64>, frame: &Frame<2>, out: &mut Rows<'_, 2>) -> usize {
         line::rows(&self.shapes, point, frame, self.driven(), out)
     }
@@ -397,5 +422,27 @@ impl Compliance<2> for ModalCompliance {
         let (free, driven) = f.split_at_mut(self.inverse.len());
         free.iter_mut().zip(&self.inverse).for_each(|(f, w)| *f *= w);
         driven.fill(0.0);
+    }
+    fn couple(&mut self, rows: &PartRows<'_, 2>, scratch: &mut [f64], h: &mut Coupling<'_, 2>) {
+        // Each coordinate has one place in a row, its own, unless points move along the axis too.
+        if !rows.iter().all(|(_, columns, _)| columns.len() == scratch.len()) {
+            return couple_by_solving(rows, scratch, h, |f| self.solve(f), |_, _, _| {});
+        }
+        for (number, (j, _, values_j)) in rows.iter().enumerate() {
+            for (other, (i, _, values_i)) in rows.iter().take(number + 1).enumerate() {
+                let mut block = Matrix2::zeros();
+                for ((a, b), w) in values_i.iter().zip(values_j).zip(&self.inverse) {
+                    block += (a * *w) * b.transpose();
+                }
+                h.add(i, j, &block);
+                if other < number {
+                    h.add(j, i, &block.transpose());
+                }
+            }
+        }
+    }
+
+    fn respond(&mut self, rows: &PartRows<'_, 2>, p: &[Vector<2>], _scratch: &mut [f64], v: &mut [f64]) {
+        respond_by_diagonal(&self.inverse, rows, p, v);
     }
 }

@@ -3,7 +3,7 @@
 use crate::contacts::ContactSet;
 use crate::{Energy, ImpactLaw, PairLaw, Size, Subsystem, Vector, WarmStart};
 use std::ops::Range;
-use teeter_detect::{BodyId, Candidate, ContactDetector, Geometry, Kinematics, SurfacePoint};
+use teeter_detect::{BodyId, Candidate, ContactDetector, Geometry, HalfSpace, Kinematics, SurfacePoint};
 
 /// What is wrong with a model.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -32,6 +32,19 @@ pub struct Part<const D: usize> {
     pub q: Range<usize>,
     /// Its velocities.
     pub v: Range<usize>,
+    pub(crate) traits: Traits,
+    /// Most columns of a row.
+    pub(crate) row: usize,
+}
+
+/// What a subsystem says of itself once and for all, so that a step needn't ask.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Traits {
+    pub(crate) loaded: bool,
+    pub(crate) damped: bool,
+    pub(crate) driven: bool,
+    pub(crate) follows_coordinates: bool,
+    pub(crate) mass_damping: f64,
 }
 
 impl<const D: usize> std::fmt::Debug for Part<D> {
@@ -91,7 +104,14 @@ impl<const D: usize> ModelBuilder<D> {
         let first = self.bodies.len() as u32;
         self.bodies.extend((0..size.bodies as u32).map(|local| (part, local)));
         let (q, v) = (self.size.q..self.size.q + size.q, self.size.v..self.size.v + size.v);
-        self.parts.push(Part { system, q, v });
+        let traits = Traits {
+            loaded: system.is_loaded(),
+            damped: system.is_damped(),
+            driven: !system.driven().is_empty(),
+            follows_coordinates: system.follows_coordinates(),
+            mass_damping: system.mass_damping(),
+        };
+        self.parts.push(Part { system, q, v, traits, row: size.row });
         self.size = Size {
             q: self.size.q + size.q,
             v: self.size.v + size.v,
@@ -171,7 +191,7 @@ impl<const D: usize> Model<D> {
 
     /// Writes the prescribed velocities at time `t` into their places in `v`.
     pub fn drive(&self, t: f64, v: &mut [f64]) {
-        for part in self.parts.iter().filter(|part| !part.system.driven().is_empty()) {
+        for part in self.parts.iter().filter(|part| part.traits.driven) {
             part.system.drive(t, &mut v[part.v.clone()]);
         }
     }
@@ -194,7 +214,7 @@ impl<const D: usize> Model<D> {
 
     /// `out = q ⊕ τ v`: where velocities `v` lead in the time `tau` (s).
     pub fn retract(&self, q: &[f64], v: &[f64], tau: f64, out: &mut [f64]) {
-        for part in &self.parts {
+        for part in self.parts.iter().filter(|part| !part.q.is_empty()) {
             part.system.retract(&q[part.q.clone()], &v[part.v.clone()], tau, &mut out[part.q.clone()]);
         }
     }
@@ -204,7 +224,7 @@ impl<const D: usize> Model<D> {
     pub fn relative_velocity(&self, candidate: &Candidate<D>, q: &[f64], v: &[f64]) -> Vector<D> {
         let mut set = ContactSet::with_capacity(1, self.size.row);
         set.activate(self, q, candidate, &WarmStart::default());
-        set.velocity(self, 0, v)
+        set.velocity(0, v)
     }
 
     /// The subsystems with their places in the state.
@@ -239,5 +259,9 @@ impl<const D: usize> Geometry<D> for Placed<'_, D> {
     fn surface(&self, body: BodyId, kinematics: Kinematics, at: &Vector<D>) -> Option<SurfacePoint<D>> {
         let (_, part, number) = self.model.owner(body)?;
         part.system.surface(number, &self.q[part.q.clone()], kinematics, at)
+    }
+    fn reach(&self, body: BodyId, margin: f64) -> Option<HalfSpace<D>> {
+        let (_, part, number) = self.model.owner(body)?;
+        part.system.reach(number, &self.q[part.q.clone()], margin)
     }
 }

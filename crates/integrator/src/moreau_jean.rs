@@ -147,8 +147,8 @@ impl MoreauJean {
             if contacts.withdraw_if_prescribed(model) {
                 continue;
             }
-            let u_before = contacts.velocity(model, i, &state.v);
-            let u_free = contacts.velocity(model, i, v_free);
+            let u_before = contacts.velocity(i, &state.v);
+            let u_free = contacts.velocity(i, v_free);
             let shift = shift(contacts, i, &law, &u_before, &u_free);
             contacts.pose(i, u_before, u_free, shift);
             if let Some(spring) = spring {

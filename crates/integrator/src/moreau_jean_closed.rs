@@ -154,21 +154,22 @@ impl<const D: usize> Scheme<D> for MoreauJeanClosed<D> {
         self.v_free.extend_from_slice(&self.step.v_end);
         self.closed.clear();
         self.closed.extend_from_slice(state.warm.ids());
-        self.start.clear();
-        let mut looked = false;
+        let mut looked_for = 0;
         let (outcome, penetration) = loop {
             // In flight there is nothing to look at.
-            if !(looked || self.closed.is_empty()) {
+            if looked_for < self.closed.len() {
                 self.look_ahead(model, state, work);
-                looked = true;
+                looked_for = self.closed.len();
             }
             let outcome =
                 self.attempt(model, state, work).map_err(|source| StepError::Problem { t: state.t, source })?;
             self.step.close(model, state, THETA)?;
-            let penetration = work.penetration(model, &self.step.q_at);
+            work.detect(model, &self.step.q_at, 0.0);
+            let penetration = work.candidates.iter().map(|candidate| -candidate.gap).fold(0.0, f64::max);
             if !self.close_what_sinks(model, state, work) {
                 break (outcome, penetration);
             }
+            work.counts.refused_attempts += 1;
         };
         let energy = self.step.work_of_forces(model, state, work, THETA);
         state.warm.clear();
@@ -178,7 +179,7 @@ impl<const D: usize> Scheme<D> for MoreauJeanClosed<D> {
                 None => {
                     let leaves = contact.u_after[0] + self.resting_shift[i];
                     contact.p[0] > 0.0
-                        && (leaves <= 0.0 || leaves <= LEAVING * work.contacts.speed(model, i, &self.step.v_end))
+                        && (leaves <= 0.0 || leaves <= LEAVING * work.contacts.speed(i, &self.step.v_end))
                 }
             };
             if stays {
@@ -190,23 +191,17 @@ impl<const D: usize> Scheme<D> for MoreauJeanClosed<D> {
 }
 
 impl<const D: usize> MoreauJeanClosed<D> {
-    /// Finds frames and gaps at q̃_m and q̃.
+    /// Finds frames and gaps of the closed contacts at q̃_m and q̃.
     fn look_ahead(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>) {
         // ½(v⁰ + v_free), the mean velocity of the free motion.
         let mean = &mut self.step.v_end;
         mean.iter_mut().zip(&self.v_free).zip(&state.v).for_each(|((v, free), v0)| *v = 0.5 * (free + v0));
-        let mut at = |step: &mut ThetaStep, tau: f64, q: &mut Vec<f64>, candidates: &mut Candidates<D>| {
-            let mean = std::mem::take(&mut step.v_end);
-            step.predict(model, &state.q, &mean, tau);
-            step.v_end = mean;
-            q.clear();
-            q.extend_from_slice(&step.q_at);
-            work.detect(model, q, f64::INFINITY);
-            candidates.clear();
-            candidates.extend_from_slice(&work.candidates);
-        };
-        at(&mut self.step, 0.5 * state.dt, &mut self.q_mid, &mut self.middle);
-        at(&mut self.step, state.dt, &mut self.q_ahead, &mut self.ahead);
+        let places =
+            [(0.5 * state.dt, &mut self.q_mid, &mut self.middle), (state.dt, &mut self.q_ahead, &mut self.ahead)];
+        for (tau, q, candidates) in places {
+            model.retract(&state.q, mean, tau, q);
+            work.locate(model, q, &self.closed, candidates);
+        }
     }
 
     /// Takes the step with the closed contacts: leaves v¹ in the step.
@@ -224,9 +219,7 @@ impl<const D: usize> MoreauJeanClosed<D> {
         }
         for k in 0..self.middle.len() {
             let candidate = self.middle[k];
-            if self.closed.binary_search(&candidate.id).is_ok() {
-                self.pose(model, state, work, &candidate);
-            }
+            self.pose(model, state, work, &candidate);
         }
         let n = work.contacts.contacts().len();
         if n == 0 {
@@ -252,14 +245,14 @@ impl<const D: usize> MoreauJeanClosed<D> {
         if contacts.withdraw_if_prescribed(model) {
             return;
         }
-        let u_before = contacts.velocity(model, i, &state.v);
-        let u_free = contacts.velocity(model, i, &self.v_free);
+        let u_before = contacts.velocity(i, &state.v);
+        let u_free = contacts.velocity(i, &self.v_free);
         // Off the end of its surface by then, it has no frame there.
         let b = match find(&self.ahead, candidate.id) {
             Some(ahead) => {
                 self.rows_ahead.clear();
                 self.rows_ahead.activate(model, &self.q_ahead, ahead, &state.warm);
-                self.rows_ahead.velocity(model, 0, &state.v) - u_before
+                self.rows_ahead.velocity(0, &state.v) - u_before
             }
             None => Vector::zeros(),
         };
@@ -273,7 +266,7 @@ impl<const D: usize> MoreauJeanClosed<D> {
         if let Some(spring) = law.impact.spring() {
             let gap = match state.warm.gap(candidate.id) {
                 Some(gap) if gap < 0.0 => gap,
-                _ => self.gap_at_start(model, state, candidate.id).max(0.0),
+                _ => self.gap_at_start(model, state, work, candidate.id).max(0.0),
             };
             shift[0] = 0.0;
             work.contacts.pose(i, u_before, u_free, shift);
@@ -286,12 +279,9 @@ impl<const D: usize> MoreauJeanClosed<D> {
     }
 
     /// The gap of a contact at q⁰, m; 0 where it has none. Only a step with a new contact pays for looking there.
-    fn gap_at_start(&mut self, model: &Model<D>, state: &State, id: ContactId) -> f64 {
-        if self.start.is_empty() {
-            model.detector().detect(&model.placed(&state.q), f64::INFINITY, &mut self.start);
-            self.start.sort_unstable_by_key(|candidate| candidate.id);
-        }
-        find(&self.start, id).map_or(0.0, |candidate| candidate.gap)
+    fn gap_at_start(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>, id: ContactId) -> f64 {
+        work.locate(model, &state.q, &[id], &mut self.start);
+        self.start.first().map_or(0.0, |candidate| candidate.gap)
     }
 
     /// Changes what holds for contacts whose work is positive, so that it can't be; whether there are any.
@@ -321,7 +311,7 @@ impl<const D: usize> MoreauJeanClosed<D> {
                 continue;
             }
             // At rest it is the free velocity whose digits are lost.
-            let speed = contacts.speed(model, i, &state.v).max(contacts.speed(model, i, &self.v_free));
+            let speed = contacts.speed(i, &state.v).max(contacts.speed(i, &self.v_free));
             if gain <= WORKLESS * p.norm() * speed {
                 continue;
             }
@@ -346,14 +336,14 @@ impl<const D: usize> MoreauJeanClosed<D> {
 
     /// Closes the open contacts that the attempt ends with in their surface (they are the workspace's candidates), deeper
     /// than they began; whether there are any.
-    fn close_what_sinks(&mut self, model: &Model<D>, state: &State, work: &Workspace<D>) -> bool {
+    fn close_what_sinks(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>) -> bool {
         let before = self.closed.len();
         for k in 0..work.candidates.len() {
             let Candidate { id, gap, .. } = work.candidates[k];
             if gap >= -self.settings.gap_tolerance || self.closed[..before].binary_search(&id).is_ok() {
                 continue;
             }
-            let level = self.gap_at_start(model, state, id).min(0.0);
+            let level = self.gap_at_start(model, state, work, id).min(0.0);
             if gap < level - SINKING * self.settings.gap_tolerance {
                 self.closed.push(id);
             }

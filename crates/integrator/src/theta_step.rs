@@ -69,23 +69,22 @@ impl ThetaStep {
             let dv = &mut self.dv[v.clone()];
             let v_start = &state.v[v.clone()];
             dv.fill(0.0);
-            let alpha = part.system.mass_damping();
-            let kept = beside_mass_damping(alpha, h, theta);
+            let kept = beside_mass_damping(part.traits.mass_damping, h, theta);
             let ahead = h * theta * (1.0 - kept * theta);
             part.system.retract(&state.q[q.clone()], v_start, ahead, &mut self.q_forces[q.clone()]);
             let q = &self.q_forces[q];
-            if part.system.follows_coordinates() {
+            if part.traits.follows_coordinates {
                 factor.update(q);
             }
             part.system.internal_force_beside_mass_damping(q, v_start, dv);
-            if part.system.is_loaded() {
+            if part.traits.loaded {
                 let (load, scratch) = (&mut self.load[v.clone()], &mut work.scratch[..v.len()]);
                 mean_load(part.system.as_ref(), theta, [state.t, t_end], load, scratch);
                 add(dv, load);
             }
             dv.iter_mut().for_each(|f| *f *= h);
             let v_end = &mut self.v_end[v.clone()];
-            if part.system.driven().is_empty() {
+            if !part.traits.driven {
                 factor.solve(dv);
                 for ((free, v0), dv) in v_end.iter_mut().zip(v_start).zip(dv.iter()) {
                     *free = (1.0 - kept) * v0 + dv;
@@ -135,20 +134,19 @@ impl ThetaStep {
         let h = state.dt;
         let Self { q_forces, q_at, v_end, v_mean, dv, load, product, impulse } = self;
         let mut energy = StepEnergy::default();
-        let driven = |part: &crate::Part<D>| !part.system.driven().is_empty();
-        if theta != 0.5 || model.parts().iter().any(driven) {
+        if theta != 0.5 || model.parts().iter().any(|part| part.traits.driven) {
             for ((dv, v1), v0) in dv.iter_mut().zip(v_end.iter()).zip(&state.v) {
                 *dv = v1 - v0;
             }
         }
-        for (index, part) in model.parts().iter().enumerate() {
+        for (index, part) in model.parts().iter().enumerate().filter(|(_, part)| !part.v.is_empty()) {
             let (q, v) = (&q_forces[part.q.clone()], part.v.clone());
             let modified = |q: &[f64], velocity: &[f64]| {
                 part.system.modified_energy(h, &q[part.q.clone()], &velocity[part.v.clone()])
             };
             energy.numerical -= modified(q_at, v_end) - modified(&state.q, &state.v);
             let product = &mut product[v.clone()];
-            if part.system.is_damped() {
+            if part.traits.damped {
                 energy.viscous -= h * part.system.damping_power(q, &v_mean[v.clone()], product);
             }
             let mut form = |w: Weights, x: &[f64]| {
@@ -161,10 +159,10 @@ impl ThetaStep {
                 let k = Weights { stiffness: 1.0, ..Weights::default() };
                 energy.numerical -= (theta - 0.5) * (form(m, &dv[v.clone()]) + h * h * form(k, &v_mean[v.clone()]));
             }
-            if part.system.is_loaded() {
+            if part.traits.loaded {
                 energy.external += h * dot(&v_mean[v.clone()], &load[v.clone()]);
             }
-            if driven(part) {
+            if part.traits.driven {
                 // What the drives give: momentum gained less the impulses of all other forces.
                 product.fill(0.0);
                 part.system.apply(weights(h, theta), q, &dv[v.clone()], product);
@@ -201,7 +199,9 @@ impl ThetaStep {
             energy.friction += tangential(&u_theta).dot(&contact.p);
             let slip = tangential(&contact.u_law).dot(&contact.p);
             state.ledger.largest_tangential_work = state.ledger.largest_tangential_work.max(slip);
-            if let (Some(gap), Some(spring)) = (contact.gap_after, model.law(contact.id.pair()).impact.spring()) {
+            if let Some(gap) = contact.gap_after
+                && let Some(spring) = model.law(contact.id.pair()).impact.spring()
+            {
                 stored += spring.potential(gap);
             }
         }

@@ -2,9 +2,9 @@
 
 use crate::contacts::{ContactSet, Rule};
 use crate::laws::Laws;
-use crate::{Compliance, FactorError, Model, Weights};
-use teeter_contact::{ContactSolver, Outcome, ProblemError, Stop};
-use teeter_detect::Candidates;
+use crate::{Compliance, FactorError, Model, Vector, Weights};
+use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, ProblemError, Stop};
+use teeter_detect::{Candidates, ContactId};
 
 /// When the contact solver of a run stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,6 +26,62 @@ impl Default for SolverSettings {
 /// dense operator of this many takes 2 MB in the plane.
 const RESERVED_CONTACTS: usize = 256;
 
+/// How much work steps have taken, by count: the same on every machine, whatever its clock says.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct WorkCounts {
+    /// Factorisations of a subsystem's matrix.
+    pub factorisations: u64,
+    /// Looks at all bodies, or at some contacts, in one configuration.
+    pub detections: u64,
+    /// Contact problems that were handed to the solver.
+    pub problems: u64,
+    /// Iterations of the solver over all of them.
+    pub iterations: u64,
+    /// Problems that were not solved to tolerance.
+    pub unsolved: u64,
+    /// Attempts at a step that the scheme refused and made anew.
+    pub refused_attempts: u64,
+}
+
+impl WorkCounts {
+    fn solved(&mut self, outcome: &Outcome) {
+        self.problems += 1;
+        self.iterations += u64::from(outcome.iterations);
+        self.unsolved += u64::from(!outcome.converged());
+    }
+}
+
+/// A solver whose work is counted.
+struct Counted<'a, const D: usize> {
+    solver: &'a mut dyn ContactSolver<D>,
+    counts: &'a mut WorkCounts,
+}
+
+impl<const D: usize> ContactSolver<D> for Counted<'_, D> {
+    fn name(&self) -> &'static str {
+        self.solver.name()
+    }
+
+    fn law(&self) -> Law {
+        self.solver.law()
+    }
+
+    fn reserve(&mut self, contacts: usize, blocks: usize) {
+        self.solver.reserve(contacts, blocks);
+    }
+
+    fn solve(&mut self, problem: &ContactProblem<'_, D>, stop: &Stop<'_>, p: &mut [Vector<D>]) -> Outcome {
+        let outcome = self.solver.solve(problem, stop, p);
+        self.counts.solved(&outcome);
+        outcome
+    }
+
+    fn fork(&self) -> Box<dyn ContactSolver<D>> {
+        self.solver.fork()
+    }
+}
+
 /// The contact solver, the factors and the memory that any scheme needs. It carries nothing that decides a step.
 #[non_exhaustive]
 pub struct Workspace<const D: usize> {
@@ -41,6 +97,8 @@ pub struct Workspace<const D: usize> {
     pub contacts: ContactSet<D>,
     /// As long as the model's velocities.
     pub scratch: Vec<f64>,
+    /// The work of all steps so far.
+    pub counts: WorkCounts,
     laws: Laws<D>,
 }
 
@@ -69,6 +127,7 @@ impl<const D: usize> Workspace<D> {
             candidates: Vec::with_capacity(contacts),
             contacts: ContactSet::with_capacity(contacts, model.size().row),
             scratch: vec![0.0; model.size().v],
+            counts: WorkCounts::default(),
             laws,
         }
     }
@@ -81,12 +140,14 @@ impl<const D: usize> Workspace<D> {
         if self.factors.is_empty() {
             for part in model.parts() {
                 self.factors.push(part.system.factor(w, &q[part.q.clone()])?);
+                self.counts.factorisations += 1;
             }
             return Ok(());
         }
         for (factor, part) in self.factors.iter_mut().zip(model.parts()) {
             if factor.weights() != w {
                 factor.refactor(w, &q[part.q.clone()])?;
+                self.counts.factorisations += 1;
             }
         }
         Ok(())
@@ -96,18 +157,25 @@ impl<const D: usize> Workspace<D> {
     pub fn detect(&mut self, model: &Model<D>, q: &[f64], margin: f64) {
         self.candidates.clear();
         if model.has_contacts() {
+            self.counts.detections += 1;
             model.detector().detect(&model.placed(q), margin, &mut self.candidates);
             self.candidates.sort_unstable_by_key(|candidate| candidate.id);
         }
     }
 
-    /// Deepest penetration at coordinates `q`, m; 0 if there is none. Replaces `candidates`.
+    /// Puts those of the contacts `ids`, which rise, into `out`, however large their gaps at coordinates `q`.
+    pub fn locate(&mut self, model: &Model<D>, q: &[f64], ids: &[ContactId], out: &mut Candidates<D>) {
+        self.counts.detections += 1;
+        model.detector().locate(&model.placed(q), ids, out);
+    }
+
+    /// Deepest penetration at coordinates `q`, m; 0 if there is none. May change `candidates`.
     pub fn penetration(&mut self, model: &Model<D>, q: &[f64]) -> f64 {
-        self.candidates.clear();
-        if model.has_contacts() {
-            model.detector().detect(&model.placed(q), 0.0, &mut self.candidates);
+        if !model.has_contacts() {
+            return 0.0;
         }
-        self.candidates.iter().map(|candidate| -candidate.gap).fold(0.0, f64::max)
+        self.counts.detections += 1;
+        model.detector().deepest(&model.placed(q), &mut self.candidates)
     }
 
     /// Assembles and solves the problem of `contacts`, and adds W Jᵀ p to `v`, which becomes the velocity after the step. θ is
@@ -132,15 +200,18 @@ impl<const D: usize> Workspace<D> {
         let SolverSettings { tolerance, max_iterations } = self.settings;
         let stop = Stop { tolerance, max_iterations, cancel: None };
         if self.contacts.rules.iter().any(|rule| *rule != Rule::Shifted) {
-            return self.laws.solve(&mut self.contacts, theta, self.solver.as_mut(), &stop);
+            let mut solver = Counted { solver: self.solver.as_mut(), counts: &mut self.counts };
+            return self.laws.solve(&mut self.contacts, theta, &mut solver, &stop);
         }
         let (problem, p) = self.contacts.problem()?;
-        Ok(self.solver.solve(&problem, &stop, p))
+        let outcome = self.solver.solve(&problem, &stop, p);
+        self.counts.solved(&outcome);
+        Ok(outcome)
     }
 
     /// Adds W Jᵀ p to `v`, and completes `contacts` with the velocities after the step.
     pub(crate) fn apply_impulses(&mut self, model: &Model<D>, v: &mut [f64]) {
         self.contacts.add_impulses(model, &mut self.factors, &mut self.scratch, v);
-        self.contacts.complete(model, v);
+        self.contacts.complete(v);
     }
 }

@@ -12,8 +12,8 @@ use teeter_contact::ContactSolver;
 use teeter_detect::{BodyId, PointDetector, PointPair};
 use teeter_integrator::{
     BeamForces, Block, Ended, Model, ModelBuilder, ModelError, MoreauJean, MoreauJeanClosed, MoreauJeanClosedSettings,
-    MoreauJeanSettings, Observer, Plan, RunError, Scheme, SettingError, SolverSettings, State, StateError, Workspace,
-    run,
+    MoreauJeanSettings, Observer, Plan, RunError, Scheme, SettingError, SolverSettings, State, StateError, WorkCounts,
+    Workspace, run,
 };
 use teeter_rigid::{MassProperties, Rectangle, RigidError};
 
@@ -330,6 +330,12 @@ impl Simulation {
     #[must_use]
     pub fn scheme(&self) -> &'static str {
         self.scheme.name()
+    }
+
+    /// How much work its steps have taken so far, by count.
+    #[must_use]
+    pub fn work_counts(&self) -> WorkCounts {
+        self.work.counts
     }
 
     /// Runs to the plan's end, showing every step to the observers. The state is left at the last step taken.

@@ -3,8 +3,8 @@
 use super::BeamSurface;
 use crate::Rows;
 use nalgebra::Vector2;
-use teeter_beam::Deflection;
-use teeter_detect::{Frame, Kinematics, SurfacePoint};
+use teeter_beam::{Deflection, DeflectionBounds};
+use teeter_detect::{Frame, HalfSpace, Kinematics, SurfacePoint};
 
 /// How deflection and slope at a place follow from coordinates, linearly.
 pub(crate) trait Deflecting {
@@ -101,6 +101,14 @@ impl Line {
         }
         let place = Vector2::new(at.x, self.position.y + w + offset * normal.y);
         Some(SurfacePoint { place, normal, material: Vector2::new(foot, offset) })
+    }
+
+    /// All points whose gap is at most `margin`: the foot of a point lies right below it, not above w + offset, and the gap is the height
+    /// above it times cos ψ.
+    pub(crate) fn reach(&self, bounds: DeflectionBounds, margin: f64) -> HalfSpace<2> {
+        let DeflectionBounds { highest, steepest } = bounds;
+        let top = self.position.y + highest + self.surface.offset().max(0.0);
+        HalfSpace { normal: Vector2::y(), offset: top + margin * (1.0 + steepest) }
     }
 
     /// The places of points (x along the beam, y above its axis) of the beam's sections.

@@ -136,8 +136,7 @@ impl Scheme<2> for SemiImplicitEuler {
         work.contacts.clear();
         for i in 0..work.candidates.len() {
             work.contacts.activate(model, &state.q, &work.candidates[i], &state.warm);
-            let (before, free) =
-                (work.contacts.velocity(model, i, &state.v), work.contacts.velocity(model, i, &self.v));
+            let (before, free) = (work.contacts.velocity(i, &state.v), work.contacts.velocity(i, &self.v));
             work.contacts.pose(i, before, free, Vector2::zeros());
         }
         let outcome = if work.candidates.is_empty() {

@@ -11,6 +11,7 @@ mod resting;
 mod running;
 mod settings;
 mod together;
+mod work;
 mod writing;
 
 use teeter_scenario::decode::parse;

@@ -7,7 +7,7 @@ use teeter_integrator::{Ended, Model, Observer, ObserverError, State, StepReport
 use teeter_scenario::load;
 use teeter_scenario::simulation::Simulation;
 
-fn workspace() -> PathBuf {
+pub(crate) fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
