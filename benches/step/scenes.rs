@@ -4,17 +4,20 @@
 use criterion::{BatchSize, Criterion, Throughput};
 use nalgebra::Vector2;
 use std::sync::Arc;
-use teeter_beam::{Beam, BeamSpec, Section};
+use teeter_beam::{Beam, BeamSpec, ModalBasis, Section};
 use teeter_detect::{Kinematics, PointDetector, PointPair};
 use teeter_integrator::{
-    BeamBody, BeamSurface, Block, Blocks, Ground, Model, ModelBuilder, MoreauJean, MoreauJeanSettings, PairLaw, Scheme,
-    SolverSettings, State, Subsystem, Workspace,
+    BeamBody, BeamSurface, Block, Blocks, Ground, ModalBeam, Model, ModelBuilder, MoreauJean, MoreauJeanSettings,
+    PairLaw, Scheme, SolverSettings, State, Subsystem, Workspace,
 };
 use teeter_rigid::{MassProperties, Rectangle};
 use teeter_solvers::Auto;
 
 /// Steps from a fresh state in one sample: 0.1 s, up to the first impact on rigid ground.
 pub(crate) const STEPS: u64 = 1000;
+
+/// Shapes of the beam in modes.
+const MODES: usize = 10;
 
 /// s.
 pub(crate) const DT: f64 = 1e-4;
@@ -50,6 +53,10 @@ pub(crate) fn bench(criterion: &mut Criterion) {
         let beam = Arc::new(paper_beam(elements));
         measure(&format!("beam/{elements}"), Box::new(BeamBody::new(beam, Vector2::zeros(), BeamSurface::Axis)));
     }
+    let beam = Arc::new(paper_beam(40));
+    let basis = ModalBasis::new(&beam, MODES, &[]).expect("shapes");
+    let modes = ModalBeam::new(beam, basis, Vector2::zeros(), BeamSurface::Axis).expect("a beam in modes");
+    measure(&format!("modes/{MODES}"), Box::new(modes));
     group.finish();
 }
 

@@ -59,12 +59,14 @@ fn judge_with<const D: usize>(
         let map = |rho: f64| p[i] - project(&(p[i] - u_hat * rho), mu);
         p_norm += p[i].norm_squared();
         q_norm += q.norm_squared();
-        map_norm += map(rho).norm_squared();
+        let squared = map(rho).norm_squared();
+        map_norm += squared;
 
         let rho_i = D as f64 / problem.diagonal(i).trace();
         // Squares, so that a contact costs one division and no root.
         let scale = p[i].norm_squared().max(rho_i * rho_i * q.norm_squared()).max(SCALE_FLOOR);
-        let own = map(rho_i).norm_squared() / scale;
+        // A single contact's scale is the problem's.
+        let own = if rho_i == rho { squared } else { map(rho_i).norm_squared() } / scale;
         // NaN counts as worst: `!(own <= worst)` is true for it.
         if !(own <= residual.worst) {
             residual.worst = own;
