@@ -26,6 +26,7 @@ OURS = {
     "moreau-jean": ('time.scheme="moreau-jean"',),
     "moreau-jean-closed": ('time.scheme="moreau-jean-closed"',),
 }
+CHAIN = "chain of 20 links"
 MODES = ('beam.table.model="modes"',)
 
 
@@ -35,16 +36,16 @@ def label(job):
 
 
 def ground_jobs(names):
-    """Scene R: every program's ladder, each peer with the settings that the search kept for a step."""
+    """Scene R: every program's ladder with the settings that the search kept for a step, and ours with its defaults."""
     for step in STEPS + FINER:
         steps = round(accuracy.END / step)
         if "teeter" in names:
             for scheme, words in OURS.items():
                 yield Job("teeter", "ground", 0, step, steps, words, scheme)
         for name in names:
-            if name != "teeter" and step >= STEPS[-1]:
+            if name == "teeter" or step >= STEPS[-1]:
                 for words in search.kept(name, step):
-                    yield Job(name, "ground", 0, step, steps, words)
+                    yield Job(name, "ground", 0, step, steps, words, tuned=True)
 
 
 def beam_jobs(names):
@@ -55,6 +56,7 @@ def beam_jobs(names):
             for scheme, words in OURS.items():
                 yield Job("teeter", "beam", MESH, step, steps, words, scheme)
                 yield Job("teeter", "beam", MESH, step, steps, words + MODES, f"{scheme}, modes")
+            yield Job("teeter", "beam", MESH, step, steps, ("time.activation_gamma=0.0",), tuned=True)
         if "siconos" in names and step >= STEPS[-1]:
             yield Job("siconos", "beam", MESH, step, steps, (), "theta=0.5")
             yield Job("siconos", "beam", MESH, step, steps, ("theta=0.5", "gamma=0"))
@@ -63,19 +65,24 @@ def beam_jobs(names):
                 for integrator in ("implicitfast", "RK4"):
                     yield Job("mujoco", "beam", links, step, steps, (f"integrator={integrator}",), f"{links} links, {integrator}")
         if "rapier" in names and step >= 5e-5:
-            for links in (10, MESH):
-                words = ("unit=0.01", "recycle=0", "iterations=8", "frequency=1e3", "damping=1", "stabilisation=0")
-                yield Job("rapier", "beam", links, step, steps, words, f"{links} links, 8 iterations")
+            for links, iterations in ((10, 1), (10, 8), (MESH, 1), (MESH, 8)):
+                words = (f"iterations={iterations}", "sweeps=4", "frequency=1e5", "damping=1", "stabilisation=0", "unit=0.01", "recycle=0")
+                yield Job("rapier", "beam", links, step, steps, words, f"{links} links, {iterations} iterations")
 
 
 def reference_jobs(names, quick):
-    """The motion on the beam by three ways at small steps: two of ours, one of Siconos."""
+    """The motion on the beam by three ways at small steps, two of ours, one of Siconos; and by the two chains."""
     fine = 1e-6
     for scheme, words in OURS.items():
         yield Job("teeter", "beam", MESH, fine, round(BEAM_END / fine), words, scheme)
     if "siconos" in names:
         for step in (1e-5, 5e-6) if quick else (1e-5, 5e-6, 2e-6, 1e-6):
             yield Job("siconos", "beam", MESH, step, round(BEAM_END / step), (), "theta=0.5")
+    if "mujoco" in names:
+        yield Job("mujoco", "beam", MESH, 2e-5, round(BEAM_END / 2e-5), ("integrator=RK4",), CHAIN)
+    if "rapier" in names:
+        words = ("iterations=8", "sweeps=4", "frequency=1e7", "damping=1", "stabilisation=0", "unit=0.01", "recycle=0")
+        yield Job("rapier", "beam", MESH, 1e-4, round(BEAM_END / 1e-4), words, CHAIN)
 
 
 def cost_jobs(names):
@@ -131,13 +138,19 @@ def apart(a, b):
 
 
 def beam_reference(bench, names, quick):
-    """Our motion by `moreau-jean-closed` at 1 µs; how far ours by `moreau-jean` and Siconos' are from it, by step."""
+    """Our motion by `moreau-jean-closed` at 1 µs; how far ours by `moreau-jean`, Siconos' and the chains are from it, and the two chains from
+    each other."""
     motions = {}
     for job in reference_jobs(names, quick):
         _, track = bench.running[job.program].run(job, 0.0)
         motions[job.program, job.label, job.step] = samples(track, job.step)
     ours = motions["teeter", "moreau-jean-closed", 1e-6]
-    return {"samples": ours, "apart": {key: apart(motion, ours) for key, motion in motions.items() if motion is not ours}}
+    chains = [motion for (_, label, _), motion in motions.items() if label == CHAIN]
+    return {
+        "samples": ours,
+        "apart": {key: apart(motion, ours) for key, motion in motions.items() if motion is not ours},
+        "chains": apart(*chains) if len(chains) == 2 else None,
+    }
 
 
 def write_csv(path, tables):
@@ -166,7 +179,7 @@ def arguments():
     parser.add_argument("--turns", type=int, default=3)
     parser.add_argument("--core", type=int, default=os.cpu_count() - 1, help="the core on which all of it runs")
     parser.add_argument("--python", help="a Python that has MuJoCo; else one is made for it")
-    parser.add_argument("--search", action="store_true", help="tune the peers anew first (settings.json): a quarter of an hour")
+    parser.add_argument("--search", metavar="NAMES", help="tune these programs anew first (settings.json): ten minutes for all")
     parser.add_argument("--out", default=str(drivers.ROOT / "benches" / "results"), help="folder of the results")
     parser.add_argument("--name", default=f"peers-{today}")
     return parser.parse_args()
@@ -185,7 +198,7 @@ def main():
     began = time.time()
     running = {name: drivers.Driver(name, words, args.core) for name, words in commands.items()}
     if args.search:
-        search.search(running, say)
+        search.search(running, args.search.split(","), say)
         began = time.time()
     bench = Bench(running, 1 if args.quick else args.turns, 0.02 if args.quick else 0.05, 1.5, say)
     slow = 1e-4 if args.quick else 0.0

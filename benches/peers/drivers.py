@@ -17,6 +17,8 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1")
 NAMES = ["teeter", "siconos", "mujoco", "rapier"]
+TUNED = "teeter, tuned"  # ours with settings searched as the peers' are
+SERIES = ["teeter", TUNED, *NAMES[1:]]
 
 
 @dataclass(frozen=True)
@@ -30,6 +32,12 @@ class Job:
     steps: int
     settings: tuple = ()
     label: str = ""
+    tuned: bool = False
+
+    @property
+    def series(self):
+        """The front that it belongs to: the program, ours by its defaults apart from ours tuned."""
+        return TUNED if self.tuned and self.program == "teeter" else self.program
 
     def line(self, budget, file):
         words = [self.scene, self.elements, repr(self.step), self.steps, budget, file, *self.settings]

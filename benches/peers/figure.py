@@ -4,8 +4,8 @@ import math
 from html import escape
 
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 760, 470, 80, 190, 46, 56
-COLOURS = {"teeter": "#0b6e99", "siconos": "#c2410c", "mujoco": "#4d7c0f", "rapier": "#7e22ce"}
-MARKS = ["circle", "square", "diamond", "triangle"]
+COLOURS = {"teeter": "#0b6e99", "teeter, tuned": "#5fb0d3", "siconos": "#c2410c", "mujoco": "#4d7c0f", "rapier": "#7e22ce"}
+MARKS = {"teeter": "circle", "teeter, tuned": "circle", "siconos": "square", "mujoco": "diamond", "rapier": "triangle"}
 
 
 def _mark(kind, x, y, colour, faint):
@@ -61,7 +61,7 @@ def figure(title, series, fronts, x_label, y_label, floor=None):
             f'<text x="{right + 12}" y="{y + 18:.1f}" fill="#666">the reference</text>'
         )
     for number, (name, many) in enumerate(series.items()):
-        colour, kind = COLOURS.get(name, "#444"), MARKS[number % len(MARKS)]
+        colour, kind = COLOURS[name], MARKS[name]
         line = " ".join(f"{across(x):.1f},{down(y):.1f}" for x, y in fronts[name])
         out.append(f'<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="1.6"/>')
         out += [_mark(kind, across(x), down(y), colour, (x, y) not in fronts[name]) for x, y in many]

@@ -1,4 +1,4 @@
-"""The settings with which the peers are at their best: a grid of each, kept in settings.json. Ours are the defaults; only the scheme is varied."""
+"""The settings with which each program is at its best: a grid of each, kept in settings.json. Ours runs by its defaults too, as users have it."""
 
 import itertools
 import json
@@ -11,6 +11,11 @@ from front import thinned
 
 KEPT = Path(__file__).resolve().parent / "settings.json"
 GRIDS = {
+    "teeter": {
+        "time.theta": ["0.5", "0.51", "0.6", "1.0"],
+        "time.activation_gamma": ["0.0", "0.25", "0.5", "1.0"],
+        "time.gap_tolerance": ['"1e-12m"', '"1e-8m"', '"1e-6m"'],
+    },
     "siconos": {
         "theta": ["0.5", "0.51", "0.6", "1"],
         "gamma": [None, "0", "0.5", "1"],
@@ -59,11 +64,11 @@ def tried(driver, settings, step):
     return found
 
 
-def search(drivers, say):
-    """For each peer and step the settings on its front, written to settings.json."""
-    table = {}
-    for name, grid in GRIDS.items():
-        table[name], settings, good = {}, list(combinations(grid)), []
+def search(drivers, names, say):
+    """For each of these programs and each step the settings on its front, written to settings.json."""
+    table = json.loads(KEPT.read_text()) if KEPT.exists() else {}
+    for name in names:
+        table[name], settings, good = {}, list(combinations(GRIDS[name])), []
         for step in FULL + FINE:
             found = tried(drivers[name], settings if step in FULL else good, step)
             best = thinned(found)

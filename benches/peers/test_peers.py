@@ -101,14 +101,23 @@ class ThePage(unittest.TestCase):
         rows = [row("teeter", 1.0, 5e-2), row("teeter", 10.0, 5e-4), row("mujoco", 20.0, 5e-2), row("rapier", 4.0, 8e-4)]
         said = page.who_leads(rows, "Here")
         self.assertIn("0.1 (4.0 ×)", said[0])
-        self.assertIn("0.001 (rapier2d-f64)", said[-1])
+        self.assertIn("0.001 (rapier2d-f64, 2.5 ×)", said[-1])
         self.assertNotIn("0.001", said[0])
 
     def test_the_ratio_is_against_the_best_peer(self):
         rows = [row("teeter", 2.0, 1e-3), row("mujoco", 20.0, 1e-3), row("siconos", 8.0, 1e-3)]
-        ratios = {target: ratio for target, _, ratio in page.targets(rows)}
+        ratios = {target: ratio for target, _, (ratio, _) in page.targets(rows)}
         self.assertEqual(ratios[1e-3], 4.0)
         self.assertIsNone(ratios[1e-4])
+
+    def test_our_tuned_runs_are_no_peer_and_do_not_pass_for_our_defaults(self):
+        tuned = row("teeter", 1.0, 1e-3)
+        tuned["job"] = Job("teeter", "beam", 20, 1e-4, 1000, (), "x", tuned=True)
+        rows = [tuned, row("teeter", 10.0, 1e-3), row("mujoco", 20.0, 1e-3)]
+        self.assertEqual({target: ratios for target, _, ratios in page.targets(rows)}[1e-3], [2.0, 20.0])
+
+    def test_a_run_that_is_off_by_the_release_itself_tells_nothing(self):
+        self.assertEqual(page.targets([row("teeter", 1.0, 1.5)])[0][1], {})
 
     def test_an_aim_that_is_missed_is_said_to_be(self):
         many = [row("siconos", 60.0, 0, label="full"), row("teeter", 1.0, 0, label="moreau-jean")]

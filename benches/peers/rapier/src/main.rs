@@ -33,6 +33,8 @@ const FRICTION: f64 = 0.5;
 const SPAN: f64 = 0.36;
 const THICKNESS: f64 = 0.0015;
 const YOUNG: f64 = 69e9;
+/// Which of a plane joint's three directions is the angle.
+const ANGLE: usize = 2;
 
 /// The block on its lower left corner, which is at (`corner`, 0), tilted by 5°.
 fn block(world: &mut PhysicsWorld, corner: f64) -> RigidBodyHandle {
@@ -56,7 +58,7 @@ fn ground(world: &mut PhysicsWorld) {
 
 /// Links of equal length, their hinges with the bending stiffness of a piece as long; the first is pinned, the last on a roller. The
 /// upper side of a link is the axis.
-fn chain(world: &mut PhysicsWorld, links: usize) {
+fn chain(world: &mut PhysicsWorld, links: usize) -> Result<()> {
     let length = SPAN / links as f64;
     let stiffness = YOUNG * DEPTH * THICKNESS.powi(3) / 12.0 / length;
     let support = world.insert_body(RigidBodyBuilder::fixed());
@@ -75,14 +77,17 @@ fn chain(world: &mut PhysicsWorld, links: usize) {
             ))
             .collision_groups(InteractionGroups::new(Group::GROUP_2, Group::GROUP_1, InteractionTestMode::And));
         world.insert_collider(shape, Some(body));
-        let mut hinge = RevoluteJointBuilder::new()
+        let hinge = RevoluteJointBuilder::new()
             .local_anchor1(Vector::new(if link == 0 { 0.0 } else { 0.5 * length }, 0.0))
             .local_anchor2(Vector::new(-0.5 * length, 0.0))
             .contacts_enabled(false);
+        let joint = world.insert_multibody_joint(before, body, hinge);
+        let (beam, at) = joint.and_then(|joint| world.multibody_joints.get_mut(joint)).ok_or("the chain is broken")?;
+        // rapier damps the joints of a multibody unless told not to.
+        beam.damping_mut().fill(0.0);
         if link > 0 {
-            hinge = hinge.motor_model(MotorModel::ForceBased).motor_position(0.0, stiffness, 0.0);
+            beam.link_mut(at).ok_or("the chain is broken")?.joint.set_spring(ANGLE, stiffness, 0.0);
         }
-        world.insert_multibody_joint(before, body, hinge);
         before = body;
     }
     let roller = PinSlotJointBuilder::new(Vector::X)
@@ -90,6 +95,7 @@ fn chain(world: &mut PhysicsWorld, links: usize) {
         .local_anchor2(Vector::new(0.5 * length, 0.0))
         .contacts_enabled(false);
     world.insert_impulse_joint(support, before, roller);
+    Ok(())
 }
 
 fn build(scene: &str, elements: usize, step: f64, settings: &[&str]) -> Result<(PhysicsWorld, RigidBodyHandle)> {
@@ -124,7 +130,7 @@ fn build(scene: &str, elements: usize, step: f64, settings: &[&str]) -> Result<(
             block(&mut world, -0.5 * WIDTH)
         }
         "beam" => {
-            chain(&mut world, elements);
+            chain(&mut world, elements)?;
             block(&mut world, 0.165)
         }
         other => return Err(format!("no scene «{other}»; there are ground and beam").into()),
