@@ -4,6 +4,7 @@ import math
 from array import array
 from dataclasses import dataclass
 from functools import cache
+from itertools import pairwise
 
 WIDTH, HEIGHT, GRAVITY, TILT = 0.03, 0.135, 9.81, math.radians(5)
 ALPHA = math.atan2(WIDTH, HEIGHT)
@@ -53,20 +54,18 @@ def exact(per_sample=100):
     phi, omega, side = TILT, 0.0, 1
     samples, impacts, peaks = [phi], [], [TILT]
     for step in range(round(END / SAMPLE) * per_sample):
-        left = h
-        while True:
+        start, left = (phi, omega, side), h
+        after = _advance(phi, omega, left, side)
+        if side * phi > 0 > side * after[0]:
+            part = _root(lambda t, at=start: _advance(*at[:2], t, at[2])[0], 0.0, h)
+            omega = RESTITUTION * _advance(phi, omega, part, side)[1]
+            impacts.append(step * h + part)
+            phi, left, side = 0.0, h - part, -side
             after = _advance(phi, omega, left, side)
-            if omega * side < 0 < side * phi and after[0] * side < 0:
-                part = _root(lambda t: _advance(phi, omega, t, side)[0], 0.0, left)
-                omega = RESTITUTION * _advance(phi, omega, part, side)[1]
-                impacts.append(step * h + (h - left) + part)
-                phi, left, side = 0.0, left - part, -side
-                after = _advance(phi, omega, left, side)
-            if omega * after[1] < 0:
-                part = _root(lambda t: _advance(phi, omega, t, side)[1], 0.0, left)
-                peaks.append(_advance(phi, omega, part, side)[0])
-            phi, omega = after
-            break
+        elif omega * after[1] < 0:
+            part = _root(lambda t, at=start: _advance(*at[:2], t, at[2])[1], 0.0, h)
+            peaks.append(_advance(phi, omega, part, side)[0])
+        phi, omega = after
         if (step + 1) % per_sample == 0:
             samples.append(phi)
     return Exact(samples, impacts, peaks)
@@ -82,13 +81,13 @@ def load(path):
 
 def crossings(phi, step):
     """When φ passes zero, linear between steps."""
-    return [(k + a / (a - b)) * step for k, (a, b) in enumerate(zip(phi, phi[1:])) if a != 0 and (a > 0) != (b > 0)]
+    return [(k + a / (a - b)) * step for k, (a, b) in enumerate(pairwise(phi)) if a != 0 and (a > 0) != (b > 0)]
 
 
 def peaks(phi):
     """The largest |φ| between two crossings, with its sign; the first is the release, an unfinished one at the end is left out."""
     found, best = [], phi[0]
-    for a, b in zip(phi, phi[1:]):
+    for a, b in pairwise(phi):
         if a != 0 and (a > 0) != (b > 0):
             found.append(best)
             best = b

@@ -63,10 +63,26 @@ def beam_jobs(names):
         if "mujoco" in names and step >= STEPS[-1]:
             for links in (10, MESH):
                 for integrator in ("implicitfast", "RK4"):
-                    yield Job("mujoco", "beam", links, step, steps, (f"integrator={integrator}",), f"{links} links, {integrator}")
+                    yield Job(
+                        "mujoco",
+                        "beam",
+                        links,
+                        step,
+                        steps,
+                        (f"integrator={integrator}",),
+                        f"{links} links, {integrator}",
+                    )
         if "rapier" in names and step >= 5e-5:
             for links, iterations in ((10, 1), (10, 8), (MESH, 1), (MESH, 8)):
-                words = (f"iterations={iterations}", "sweeps=4", "frequency=1e5", "damping=1", "stabilisation=0", "unit=0.01", "recycle=0")
+                words = (
+                    f"iterations={iterations}",
+                    "sweeps=4",
+                    "frequency=1e5",
+                    "damping=1",
+                    "stabilisation=0",
+                    "unit=0.01",
+                    "recycle=0",
+                )
                 yield Job("rapier", "beam", links, step, steps, words, f"{links} links, {iterations} iterations")
 
 
@@ -153,13 +169,16 @@ def beam_reference(bench, names, quick):
     }
 
 
+COLUMNS = (
+    "table program elements step_s steps settings cpu_ms cpu_ms_least cpu_ms_most us_a_step "
+    "angle_error peak_error first_impact_error_s penetration_m failed"
+)
+
+
 def write_csv(path, tables):
     with open(path, "w", newline="") as file:
         writer = csv.writer(file)
-        writer.writerow(
-            "table program elements step_s steps settings cpu_ms cpu_ms_least cpu_ms_most us_a_step angle_error peak_error "
-            "first_impact_error_s penetration_m failed".split()
-        )
+        writer.writerow(COLUMNS.split())
         for name, rows in tables.items():
             for row in rows:
                 job, spread = row["job"], row.get("spread", ("", ""))
@@ -179,7 +198,9 @@ def arguments():
     parser.add_argument("--turns", type=int, default=3)
     parser.add_argument("--core", type=int, default=os.cpu_count() - 1, help="the core on which all of it runs")
     parser.add_argument("--python", help="a Python that has MuJoCo; else one is made for it")
-    parser.add_argument("--search", metavar="NAMES", help="tune these programs anew first (settings.json): ten minutes for all")
+    parser.add_argument(
+        "--search", metavar="NAMES", help="tune these programs anew first (settings.json): ten minutes for all"
+    )
     parser.add_argument("--out", default=str(drivers.ROOT / "benches" / "results"), help="folder of the results")
     parser.add_argument("--name", default=f"peers-{today}")
     return parser.parse_args()
@@ -227,7 +248,13 @@ def main():
     for which, svg in figures.items():
         (out / f"{args.name}-{which}.svg").write_text(svg)
     command = " ".join(["python3 benches/peers/compare.py", *sys.argv[1:]])
-    about = {"command": command, "took": time.time() - began, "core": args.core, "mujoco": commands.get("mujoco"), "name": args.name}
+    about = {
+        "command": command,
+        "took": time.time() - began,
+        "core": args.core,
+        "mujoco": commands.get("mujoco"),
+        "name": args.name,
+    }
     (out / f"{args.name}.md").write_text(page.page(tables, reference, about))
     say(f"written to {out / args.name}.md, .csv and two figures; measuring took {time.time() - began:.0f} s")
 

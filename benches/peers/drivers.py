@@ -89,7 +89,7 @@ def mujoco_python(given=None):
     """A Python that has MuJoCo: the one given, this one, or that of an environment made for it beside the build."""
     if given:
         return given
-    if subprocess.run([sys.executable, "-c", "import mujoco"], capture_output=True).returncode == 0:
+    if subprocess.run([sys.executable, "-c", "import mujoco"], capture_output=True, check=False).returncode == 0:
         return sys.executable
     place = target_directory() / "mujoco"
     python = place / "bin" / "python"

@@ -4,7 +4,13 @@ import math
 from html import escape
 
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 760, 470, 80, 190, 46, 56
-COLOURS = {"teeter": "#0b6e99", "teeter, tuned": "#5fb0d3", "siconos": "#c2410c", "mujoco": "#4d7c0f", "rapier": "#7e22ce"}
+COLOURS = {
+    "teeter": "#0b6e99",
+    "teeter, tuned": "#5fb0d3",
+    "siconos": "#c2410c",
+    "mujoco": "#4d7c0f",
+    "rapier": "#7e22ce",
+}
 MARKS = {"teeter": "circle", "teeter, tuned": "circle", "siconos": "square", "mujoco": "diamond", "rapier": "triangle"}
 
 
@@ -28,8 +34,8 @@ def _power(exponent):
     return f'10<tspan dy="-5" font-size="9">{exponent}</tspan>'
 
 
-def figure(title, series, fronts, x_label, y_label, floor=None):
-    """`series`: name of a program → all its points (x, y); `fronts`: the same → those that are joined. `floor`: a level below which
+def figure(title, series, fronts, names, x_label, y_label, floor=None):
+    """`series`: key of a front → all its points (x, y); `fronts`: the same → those that are joined; `names`: the same → what to call it. `floor`: a level below which
     errors aren't known."""
     points = [p for many in series.values() for p in many] + ([(None, floor)] if floor else [])
     x0, x1 = _decades([x for x, _ in points if x])
@@ -49,10 +55,14 @@ def figure(title, series, fronts, x_label, y_label, floor=None):
     right, foot = WIDTH - RIGHT, HEIGHT - BOTTOM
     for k in range(x0, x1 + 1):
         x = across(10.0**k)
-        out.append(f'<path d="M{x:.1f} {TOP}V{foot}" stroke="#ddd"/><text x="{x:.1f}" y="{foot + 18}" text-anchor="middle">{_power(k)}</text>')
+        out.append(
+            f'<path d="M{x:.1f} {TOP}V{foot}" stroke="#ddd"/><text x="{x:.1f}" y="{foot + 18}" text-anchor="middle">{_power(k)}</text>'
+        )
     for k in range(y0, y1 + 1):
         y = down(10.0**k)
-        out.append(f'<path d="M{LEFT} {y:.1f}H{right}" stroke="#ddd"/><text x="{LEFT - 8}" y="{y + 4:.1f}" text-anchor="end">{_power(k)}</text>')
+        out.append(
+            f'<path d="M{LEFT} {y:.1f}H{right}" stroke="#ddd"/><text x="{LEFT - 8}" y="{y + 4:.1f}" text-anchor="end">{_power(k)}</text>'
+        )
     if floor:
         y = down(floor)
         out.append(
@@ -66,7 +76,10 @@ def figure(title, series, fronts, x_label, y_label, floor=None):
         out.append(f'<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="1.6"/>')
         out += [_mark(kind, across(x), down(y), colour, (x, y) not in fronts[name]) for x, y in many]
         y = TOP + 14 + 20 * number
-        out.append(_mark(kind, right + 18, y - 4, colour, False) + f'<text x="{right + 30}" y="{y}">{escape(name)}</text>')
+        out.append(
+            _mark(kind, right + 18, y - 4, colour, False)
+            + f'<text x="{right + 30}" y="{y}">{escape(names[name])}</text>'
+        )
     out.append(f'<text x="{(LEFT + right) / 2}" y="{HEIGHT - 14}" text-anchor="middle">{escape(x_label)}</text>')
     middle = (TOP + foot) / 2
     out.append(f'<text transform="translate(22 {middle}) rotate(-90)" text-anchor="middle">{escape(y_label)}</text>')

@@ -73,7 +73,9 @@ def search(drivers, names, say):
             found = tried(drivers[name], settings if step in FULL else good, step)
             best = thinned(found)
             table[name][f"{step:g}"] = [list(point["settings"]) for point in best]
-            say(f"{name}, step {step:g}: {len(found)} settings ran, {len(best)} kept; angle error down to {best[-1]['angle']:.1e}")
+            say(
+                f"{name}, step {step:g}: {len(found)} settings ran, {len(best)} kept; angle error down to {best[-1]['angle']:.1e}"
+            )
             accurate = sorted(found, key=lambda point: point["angle"])[:KEEP]
             good = list(dict.fromkeys(point["settings"] for point in best + accurate))
     KEPT.write_text(json.dumps(table, indent=1) + "\n")

@@ -14,7 +14,14 @@ from drivers import Job, middle
 from front import cheapest, front, thinned
 
 # Thirty digits of an independent computation, rounded: the impacts and peaks of Housner's block (s; degrees).
-IMPACTS = [0.1065102494257787, 0.2924883786209590, 0.4575369613794153, 0.6055805824371352, 0.7393648085500958, 0.8609261793512886]
+IMPACTS = [
+    0.1065102494257787,
+    0.2924883786209590,
+    0.4575369613794153,
+    0.6055805824371352,
+    0.7393648085500958,
+    0.8609261793512886,
+]
 PEAKS = [5.0, -4.143612418601134, 3.4683697087566774, -2.922929838949477, 2.475357949574953, -2.1040476397216907]
 
 
@@ -38,7 +45,9 @@ class TheExactBlock(unittest.TestCase):
 
 class WhatATrackIsWorth(unittest.TestCase):
     def test_a_crossing_is_linear_between_steps_and_a_zero_counts_once(self):
-        self.assertEqual(accuracy.crossings([2.0, 1.0, -1.0, -2.0, 1.0], 0.1), [0.15000000000000002, 0.3666666666666667])
+        self.assertEqual(
+            accuracy.crossings([2.0, 1.0, -1.0, -2.0, 1.0], 0.1), [0.15000000000000002, 0.3666666666666667]
+        )
         self.assertEqual(len(accuracy.crossings([1.0, 0.0, -1.0], 0.1)), 1)
 
     def test_peaks_begin_with_the_release_and_leave_the_unfinished_one_out(self):
@@ -93,12 +102,26 @@ class TheFront(unittest.TestCase):
 
 def row(program, ms, angle, elements=20, label="x", step=1e-4, steps=1000):
     job = Job(program, "beam", elements, step, steps, (), label)
-    return {"job": job, "ms": ms, "spread": (ms, ms), "us": 1e3 * ms / steps, "angle": angle, "peaks": angle, "impact": angle, "penetration": 0.0}
+    return {
+        "job": job,
+        "ms": ms,
+        "spread": (ms, ms),
+        "us": 1e3 * ms / steps,
+        "angle": angle,
+        "peaks": angle,
+        "impact": angle,
+        "penetration": 0.0,
+    }
 
 
 class ThePage(unittest.TestCase):
     def test_a_target_is_ours_where_we_are_cheaper_and_said_so_where_not(self):
-        rows = [row("teeter", 1.0, 5e-2), row("teeter", 10.0, 5e-4), row("mujoco", 20.0, 5e-2), row("rapier", 4.0, 8e-4)]
+        rows = [
+            row("teeter", 1.0, 5e-2),
+            row("teeter", 10.0, 5e-4),
+            row("mujoco", 20.0, 5e-2),
+            row("rapier", 4.0, 8e-4),
+        ]
         said = page.who_leads(rows, "Here")
         self.assertIn("0.1 (4.0 ×)", said[0])
         self.assertIn("0.001 (rapier2d-f64, 2.5 ×)", said[-1])
@@ -130,7 +153,7 @@ class ThePage(unittest.TestCase):
         from xml.dom.minidom import parseString
 
         series = {"teeter": [(1.0, 1e-2), (10.0, 1e-4)], "mujoco": [(5.0, 1e-1)]}
-        svg = figure.figure("a < b", series, series, "x", "y", floor=1e-5)
+        svg = figure.figure("a < b", series, series, {"teeter": "t", "mujoco": "<m>"}, "x", "y", floor=1e-5)
         picture = parseString(svg)
         self.assertEqual(len(picture.getElementsByTagName("polyline")), 2)
         self.assertEqual(svg.count('r="3.2"'), 3)  # two points and the legend's
