@@ -5,6 +5,7 @@ import argparse
 import csv
 import datetime
 import os
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -157,8 +158,11 @@ def beam_reference(bench, names, quick):
     each other."""
     motions = {}
     for job in reference_jobs(names, quick):
-        _, track = bench.running[job.program].run(job, 0.0)
-        motions[job.program, job.label, job.step] = samples(track, job.step)
+        try:
+            _, track = bench.running[job.program].run(job, 0.0)
+            motions[job.program, job.label, job.step] = samples(track, job.step)
+        except Refused as refused:
+            bench.say(f"  {job.program}, step {job.step:g}, {label(job)}: {refused}")
     ours = motions["teeter", "moreau-jean-closed", REFERENCE]
     chains = [motion for (_, label, _), motion in motions.items() if label == CHAIN]
     return {
@@ -206,6 +210,15 @@ def arguments():
     return parser.parse_args()
 
 
+def told(args):
+    """The command, without what is of this machine only."""
+    words = ["python3 benches/peers/compare.py"]
+    words += ["--quick"] if args.quick else [f"--turns {args.turns}"]
+    words += [f"--programs {args.programs}"] if args.programs != ",".join(drivers.NAMES) else []
+    words += [f"--search {args.search}"] if args.search else []
+    return " ".join(words)
+
+
 def main():
     args = arguments()
     begin = time.time()
@@ -213,8 +226,15 @@ def main():
     def say(text):
         print(f"{time.time() - begin:6.1f} s  {text}", flush=True)
 
-    names = ["teeter"] + [name for name in args.programs.split(",") if name != "teeter"]
-    commands = {name: drivers.command(name, args.python) for name in names}
+    commands = {}
+    for name in ["teeter"] + [name for name in args.programs.split(",") if name != "teeter"]:
+        try:
+            commands[name] = drivers.command(name, args.python)
+        except (OSError, subprocess.CalledProcessError) as error:
+            if name == "teeter":
+                raise
+            say(f"{name} is left out, for it can't be built: {error}")
+    names = list(commands)
     say("built")
     began = time.time()
     running = {name: drivers.Driver(name, words, args.core) for name, words in commands.items()}
@@ -247,12 +267,11 @@ def main():
     figures = page.figures(tables, reference)
     for which, svg in figures.items():
         (out / f"{args.name}-{which}.svg").write_text(svg)
-    command = " ".join(["python3 benches/peers/compare.py", *sys.argv[1:]])
     about = {
-        "command": command,
+        "command": told(args),
         "took": time.time() - began,
         "core": args.core,
-        "mujoco": commands.get("mujoco"),
+        "commands": commands,
         "name": args.name,
     }
     (out / f"{args.name}.md").write_text(page.page(tables, reference, about))

@@ -109,7 +109,7 @@ def command(name, python=None):
 class Driver:
     """A running driver; it is started again where a job killed it."""
 
-    def __init__(self, name, words, core, patience=120):
+    def __init__(self, name, words, core, patience=600):
         pin = ["taskset", "-c", str(core)] if shutil.which("taskset") else []
         self.name, self.words, self.patience = name, pin + [str(word) for word in words], patience
         self.folder = tempfile.TemporaryDirectory()
