@@ -6,7 +6,6 @@ import csv
 import datetime
 import os
 import subprocess
-import sys
 import time
 from pathlib import Path
 
