@@ -269,7 +269,8 @@ WHY = """
 - **Siconos** does the same step (Moreau–Jean, the same law), with the Jacobian at another predicted place: with its defaults about our error on the ground, more
   on the beam, both of first order. What differs is the price: it builds each step's contact problem through graphs of shared objects and
   allocates, and its beam is a dense matrix, n² a step where the band of a beam is n. Its sparse storage (`sparse=1`) was tried on this scene and is slower than
-  the dense one up to 400 elements. Its Newton loop is off (`SICONOS_TS_LINEAR`), which gives the same motion in two thirds of the time.
+  the dense one up to 400 elements. Who gives it the beam in its lowest modes, done by hand beforehand, pays for so many dofs: 20 modes are the 20 dofs of 10
+  elements in the table, to be compared with our modes. Its Newton loop is off (`SICONOS_TS_LINEAR`), which gives the same motion in two thirds of the time.
 - **rapier** is among the cheapest of the peers a step, and as accurate as any at 1e-2 s; its integrator is semi-implicit Euler in every substep,
   so accuracy comes in proportion to substeps. It is made for many bodies at once, which these scenes don't show.
 - **The beam by MuJoCo and rapier** is a chain of rigid links with springs in the hinges, the natural attempt; neither has an elastic Euler–Bernoulli beam. Both chains
