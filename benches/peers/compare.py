@@ -60,6 +60,8 @@ def beam_jobs(names):
         if "siconos" in names and step >= STEPS[-1]:
             yield Job("siconos", "beam", MESH, step, steps, (), "theta=0.5")
             yield Job("siconos", "beam", MESH, step, steps, ("theta=0.5", "gamma=0"))
+            for modes in (10, 20):
+                yield Job("siconos", "beam", MESH, step, steps, (f"modes={modes}",), f"{modes} modes")
         if "mujoco" in names and step >= STEPS[-1]:
             for links in (10, MESH):
                 for integrator in ("implicitfast", "RK4"):
@@ -106,6 +108,7 @@ def cost_jobs(names):
         steps = 1000 if elements <= 40 else 400 if elements <= 100 else 200
         if "siconos" in names:
             yield Job("siconos", "beam", elements, COST_STEP, steps, (), "full")
+            yield Job("siconos", "beam", elements, COST_STEP, 1000, ("modes=20",), "20 modes")
         for scheme, words in OURS.items():
             yield Job("teeter", "beam", elements, COST_STEP, 1000, words, scheme)
             yield Job("teeter", "beam", elements, COST_STEP, 1000, words + MODES, f"{scheme}, modes")

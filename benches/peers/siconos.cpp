@@ -10,6 +10,7 @@
 //   threshold         gap below which a contact is active, m
 //   gamma             the part of the step over which the gap is predicted; without it Siconos' own rule, half
 //   projection        1: the combined projection scheme, which takes the penetration away
+//   modes             the beam in so many of its lowest modes in place of its elements
 //   sparse            1: the beam's matrices in Siconos' sparse storage
 //   newton            1: a search for a fixed point in place of one solve a step
 
@@ -26,6 +27,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Friction_cst.h>
@@ -69,6 +71,87 @@ class CornerOverGround : public LagrangianScleronomousR {
  private:
   const double x_, y_;
 };
+
+/// A corner of the block over the beam in its lowest modes, sines: w(x) = Σ q_k sin(kπx/L). The gap and the rows are those of CornerOverBeam.
+class CornerOverSines : public LagrangianScleronomousR {
+ public:
+  CornerOverSines(unsigned modes, double x, double y) : modes_(modes), x_(x), y_(y) {
+    _jachq = std::make_shared<SimpleMatrix>(2, 3 + modes);
+    _jachq->zero();
+  }
+
+  void computeh(const BlockVector& q, BlockVector&, SiconosVector& y) override {
+    const auto [arm_x, arm_y] = arm(q);
+    const auto [w, slope] = surface(q, (*q.vector(0))(0) + arm_x);
+    y.setValue(0, ((*q.vector(0))(1) + arm_y - w) / std::sqrt(1 + slope * slope));
+    y.setValue(1, 0.0);
+  }
+
+  void computeJachq(const BlockVector& q, BlockVector&) override {
+    const auto [arm_x, arm_y] = arm(q);
+    const double x = (*q.vector(0))(0) + arm_x, slope = surface(q, x).second, norm = 1 / std::sqrt(1 + slope * slope);
+    const double frame[2][2] = {{-slope * norm, norm}, {norm, slope * norm}};
+    for (unsigned row = 0; row < 2; ++row) {
+      const double* f = frame[row];
+      _jachq->setValue(row, 0, f[0]);
+      _jachq->setValue(row, 1, f[1]);
+      _jachq->setValue(row, 2, f[1] * arm_x - f[0] * arm_y);
+      for (unsigned k = 0; k < modes_; ++k) _jachq->setValue(row, 3 + k, -f[1] * std::sin((k + 1) * kPi * x / kSpan));
+    }
+  }
+
+ private:
+  std::pair<double, double> arm(const BlockVector& q) const {
+    const double phi = (*q.vector(0))(2), c = std::cos(phi), s = std::sin(phi);
+    return {c * x_ - s * y_, s * x_ + c * y_};
+  }
+
+  /// w and w' at x.
+  std::pair<double, double> surface(const BlockVector& q, double x) const {
+    double w = 0, slope = 0;
+    for (unsigned k = 0; k < modes_; ++k) {
+      const double number = (k + 1) * kPi / kSpan, amplitude = (*q.vector(1))(k);
+      w += amplitude * std::sin(number * x);
+      slope += amplitude * number * std::cos(number * x);
+    }
+    return {w, slope};
+  }
+
+  const unsigned modes_;
+  const double x_, y_;
+};
+
+/// The beam in its lowest modes.
+std::shared_ptr<LagrangianLinearTIDS> sines(unsigned modes) {
+  const auto M = std::make_shared<SimpleMatrix>(modes, modes), K = std::make_shared<SimpleMatrix>(modes, modes);
+  M->zero();
+  K->zero();
+  const double ei = kYoung * kWidth * std::pow(kThickness, 3) / 12;
+  for (unsigned k = 0; k < modes; ++k) {
+    M->setValue(k, k, 0.5 * kSpan * kDensity * kWidth * kThickness);
+    K->setValue(k, k, 0.5 * kSpan * ei * std::pow((k + 1) * kPi / kSpan, 4));
+  }
+  const auto q = std::make_shared<SiconosVector>(modes), v = std::make_shared<SiconosVector>(modes);
+  q->zero();
+  v->zero();
+  const auto beam = std::make_shared<LagrangianLinearTIDS>(q, v, M);
+  beam->setKPtr(K);
+  return beam;
+}
+
+/// The beam of finite elements.
+std::shared_ptr<LagrangianLinearTIDS> elements(const BeamMesh& mesh, Siconos::UBLAS_TYPE storage) {
+  const unsigned n = mesh.dofs();
+  const auto M = std::make_shared<SimpleMatrix>(n, n, storage, 8 * n);
+  const auto K = std::make_shared<SimpleMatrix>(n, n, storage, 8 * n);
+  assemble(mesh, *M, *K);
+  const auto q = std::make_shared<SiconosVector>(n), v = std::make_shared<SiconosVector>(n);
+  q->zero();
+  v->zero();
+  const auto beam = std::make_shared<LagrangianLinearTIDS>(q, v, M);
+  beam->setKPtr(K);
+  return beam;
+}
 
 struct Job {
   std::string scene, file;
@@ -121,20 +204,19 @@ struct Run {
       }
     } else if (job.scene == "beam") {
       const BeamMesh mesh(job.elements);
-      const unsigned n = mesh.dofs();
+      const auto modes = unsigned(job.number("modes", 0));
       const auto storage = job.number("sparse", 0) != 0 ? Siconos::SPARSE : Siconos::DENSE;
-      const auto M = std::make_shared<SimpleMatrix>(n, n, storage, 8 * n), K = std::make_shared<SimpleMatrix>(n, n, storage, 8 * n);
-      assemble(mesh, *M, *K);
-      const auto q = std::make_shared<SiconosVector>(n), v = std::make_shared<SiconosVector>(n);
-      q->zero();
-      v->zero();
-      const auto beam = std::make_shared<LagrangianLinearTIDS>(q, v, M);
-      beam->setKPtr(K);
+      const auto beam = modes ? sines(modes) : elements(mesh, storage);
       block = tilted_block(0.165);
       system->insertDynamicalSystem(block);
       system->insertDynamicalSystem(beam);
       for (const double side : {-1.0, 1.0}) {
-        const auto relation = std::make_shared<CornerOverBeam>(mesh, side * 0.5 * kBlockWidth, below);
+        const double across = side * 0.5 * kBlockWidth;
+        std::shared_ptr<LagrangianScleronomousR> relation;
+        if (modes)
+          relation = std::make_shared<CornerOverSines>(modes, across, below);
+        else
+          relation = std::make_shared<CornerOverBeam>(mesh, across, below);
         system->link(std::make_shared<Interaction>(law, relation), block, beam);
       }
     } else {
