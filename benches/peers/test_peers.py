@@ -149,6 +149,12 @@ class ThePage(unittest.TestCase):
         self.assertIn("60 × Siconos (aim: 50 ×, reached)", first)
         self.assertIn("**not reached**", second)
 
+    def test_failures_of_one_setting_are_one_row(self):
+        failed = [{"job": Job("mujoco", "beam", 20, step, 1, (), "x"), "failed": "died"} for step in (1e-3, 1e-4)]
+        lines = page.failed_table([*failed, row("teeter", 1.0, 1e-3)])
+        self.assertEqual([line for line in lines if "died" in line], ["| MuJoCo | beam | x | 0.001, 0.0001 | died |"])
+        self.assertEqual(page.failed_table([row("teeter", 1.0, 1e-3)]), [])
+
     def test_a_figure_is_one_well_formed_picture(self):
         from xml.dom.minidom import parseString
 
