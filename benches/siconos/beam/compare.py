@@ -37,7 +37,8 @@ class Program:
 
 def build_theirs():
     source, path = HERE / "theirs.cpp", target_directory() / "siconos" / "beam"
-    if not path.exists() or path.stat().st_mtime < source.stat().st_mtime:
+    newest = max(file.stat().st_mtime for file in (source, HERE / "scene.hpp"))
+    if not path.exists() or path.stat().st_mtime < newest:
         path.parent.mkdir(parents=True, exist_ok=True)
         include = "/usr/include/siconos"
         folders = [f"-I{include}", f"-I{include}/kernel", f"-I{include}/numerics"]
