@@ -302,7 +302,7 @@ fn impacts() -> Family {
          as many steps.",
     );
     // A flight of 10 steps, or 100; two feet land each time.
-    for (value, steps, flight) in [("1e3", 1e4, 10.0), ("1e6", 5.2e6, 10.0), ("1e4-slow", 1e6, 100.0)] {
+    for (value, steps, flight) in [("1e3", 1e4, 10.0), ("1e6", 5.6e6, 10.0), ("1e4-slow", 1e6, 100.0)] {
         let (dt, bases): (f64, &[Base]) = (1e-4, if value == "1e6" { &[Base::Ground] } else { &BOTH });
         let velocity = format!("[\"0 m/s\", \"{:e} m/s\"]", 0.5 * 9.81 * flight * dt);
         family.add(value, bases, |_| {

@@ -77,6 +77,19 @@ pub(crate) fn run(options: &Options, out: &mut dyn Write) -> Result<bool> {
         let names: Vec<_> = families::all().iter().map(|family| family.name).collect();
         return Err(format!("no such family; there are {}", names.join(", ")).into());
     }
+    if options.depth == Depth::Full && options.only.is_none() {
+        let findings = found.iter().flat_map(|(_, findings)| findings);
+        let missed = findings.flat_map(|finding| finding.missed.iter().map(|demand| (&finding.row, *demand)));
+        for name in demands::outlived(missed) {
+            failed += 1;
+            writeln!(out, "{name}: listed as missed, and isn't")?;
+        }
+        let known = |name: &&String| !found.iter().any(|(_, of)| of.iter().any(|finding| finding.row.name == **name));
+        for name in stored.keys().filter(known) {
+            failed += 1;
+            writeln!(out, "{name}: a bound is stored, and there is no such row")?;
+        }
+    }
     writeln!(out, "{rows} rows, {failed} of them worse than they must be")?;
     if options.write_bounds {
         fs::write(file, bounds::write(&fresh)?)?;
