@@ -33,6 +33,8 @@ pub(crate) enum Axes {
     Logarithmic,
     /// Both evenly, with zero where it is near.
     Linear,
+    /// x by powers of ten, y evenly.
+    LogarithmicX,
 }
 
 /// The corner that the legend takes.
@@ -71,7 +73,7 @@ impl Series {
         Self { name: name.into(), points, drawn: Drawn::Curve }
     }
 
-    /// A curve in the colour of the marks before it.
+    /// A curve in the colour of the marks before it; without a name, it isn't in the legend.
     pub(crate) fn line(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
         Self { name: name.into(), points, drawn: Drawn::Line }
     }
@@ -97,16 +99,20 @@ pub(crate) fn svg(figure: &Figure) -> Result<String> {
     match figure.axes {
         Axes::Logarithmic => {
             let [x, y] = [decades(figure, xs())?, decades(figure, ys())?];
-            draw(figure, (x.0..x.1).log_scale(), (y.0..y.1).log_scale(), &decade)
+            draw(figure, (x.0..x.1).log_scale(), (y.0..y.1).log_scale(), [&decade, &decade])
         }
         Axes::Linear => {
             let [x, y] = [evenly(figure, xs())?, evenly(figure, ys())?];
-            draw(figure, x.0..x.1, y.0..y.1, &plain)
+            draw(figure, x.0..x.1, y.0..y.1, [&plain, &plain])
+        }
+        Axes::LogarithmicX => {
+            let (x, y) = (decades(figure, xs())?, evenly(figure, ys())?);
+            draw(figure, (x.0..x.1).log_scale(), y.0..y.1, [&decade, &plain])
         }
     }
 }
 
-fn draw<X, Y>(figure: &Figure, x: X, y: Y, label: &dyn Fn(&f64) -> String) -> Result<String>
+fn draw<X, Y>(figure: &Figure, x: X, y: Y, labels: [&dyn Fn(&f64) -> String; 2]) -> Result<String>
 where
     X: AsRangedCoord<Value = f64>,
     X::CoordDescType: ValueFormatter<f64>,
@@ -129,8 +135,8 @@ where
             .y_desc(figure.y)
             .x_labels(10)
             .y_labels(10)
-            .x_label_formatter(&label)
-            .y_label_formatter(&label)
+            .x_label_formatter(&labels[0])
+            .y_label_formatter(&labels[1])
             .axis_desc_style(("sans-serif", 16))
             .label_style(("sans-serif", 14))
             .bold_line_style(BLACK.mix(0.18))
@@ -148,6 +154,8 @@ where
                     .draw_series(points.map(|point| Circle::new(point, 3, colour.filled())))?
                     .label(series.name.as_str())
                     .legend(move |(x, y)| Circle::new((x + 10, y), 3, colour.filled()));
+            } else if series.name.is_empty() {
+                chart.draw_series(LineSeries::new(points, colour.stroke_width(1)))?;
             } else {
                 chart
                     .draw_series(LineSeries::new(points, colour.stroke_width(1)))?
@@ -234,12 +242,12 @@ mod tests {
             caption: "",
             series: vec![Series::marks("a", vec![(1e-3, 1e-4), (1e-2, y)])],
         };
-        for axes in [Axes::Logarithmic, Axes::Linear] {
+        for axes in [Axes::Logarithmic, Axes::Linear, Axes::LogarithmicX] {
             assert_eq!(svg(&figure(axes, 1e-3)).ok(), svg(&figure(axes, 1e-3)).ok());
             assert!(svg(&figure(axes, 1e-3)).is_ok_and(|text| text.starts_with("<svg") && text.contains("x / m")));
             assert!(svg(&figure(axes, f64::NAN)).is_err());
         }
         assert!(svg(&figure(Axes::Logarithmic, 0.0)).is_err());
-        assert!(svg(&figure(Axes::Linear, 0.0)).is_ok());
+        assert!(svg(&figure(Axes::Linear, 0.0)).is_ok() && svg(&figure(Axes::LogarithmicX, 0.0)).is_ok());
     }
 }

@@ -7,6 +7,7 @@
 mod case;
 mod cases;
 mod exact;
+mod extremes;
 mod figure;
 mod fit;
 mod modes;
@@ -23,6 +24,8 @@ fn main() -> ExitCode {
     let mut out = std::io::stdout().lock();
     let done = match options::parse(std::env::args().skip(1)) {
         Ok(Asked::Help) => out.write_all(options::HELP.as_bytes()).map(|()| true).map_err(Into::into),
+        Ok(Asked::Scene(row)) => extremes::scene(&row, &mut out),
+        Ok(Asked::Run(options)) if options.extremes => extremes::run(&options, &mut out),
         Ok(Asked::Run(options)) => validate(&options, &mut out),
         Err(wrong) => {
             let _ = writeln!(std::io::stderr(), "{wrong}\n\n{}", options::HELP);

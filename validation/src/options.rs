@@ -9,7 +9,10 @@ teeter-validation: runs the cases with known answers
 
   --short      what fits into a continuous build; writes no files unless --out is given
   --out DIR    where validation.md and figures/ go (default: docs)
-  --only CASE  this case alone; writes no files unless --out is given
+  --only CASE  this case alone (of --extremes: this family); writes no files unless --out is given
+  --extremes   the scenes at the extremes instead: writes extremes.md
+  --write-bounds  with --extremes: stores what they are held to from now on
+  --scene ROW  prints the scene of a row of extremes.md
   --help       this
 
 Exit code: 0 if every bound holds, 1 if one is missed, 2 for a wrong command line.
@@ -24,6 +27,10 @@ pub(crate) struct Options {
     pub(crate) only: Option<String>,
     /// Where files go; `None` writes none.
     pub(crate) out: Option<PathBuf>,
+    /// Whether to run the extremes, not the cases.
+    pub(crate) extremes: bool,
+    /// Whether to store the bounds of the extremes' rows anew.
+    pub(crate) write_bounds: bool,
 }
 
 /// What the command line asks for.
@@ -33,26 +40,35 @@ pub(crate) enum Asked {
     Run(Options),
     /// To be told how.
     Help,
+    /// To be shown the scene of a row of the extremes.
+    Scene(String),
 }
 
 /// Reads the arguments after the program's name.
 pub(crate) fn parse(mut arguments: impl Iterator<Item = String>) -> Result<Asked, String> {
     let mut depth = Depth::Full;
     let (mut out, mut only) = (None, None);
+    let (mut extremes, mut write_bounds) = (false, false);
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
             "--help" | "-h" => return Ok(Asked::Help),
             "--short" => depth = Depth::Short,
             "--only" => only = Some(arguments.next().ok_or("--only needs the name of a case")?),
+            "--extremes" => extremes = true,
+            "--write-bounds" => write_bounds = true,
+            "--scene" => return Ok(Asked::Scene(arguments.next().ok_or("--scene needs the name of a row")?)),
             "--out" => out = Some(PathBuf::from(arguments.next().ok_or("--out needs a folder")?)),
             other => return Err(format!("unknown argument {other:?}")),
         }
+    }
+    if write_bounds && !(extremes && depth == Depth::Full && only.is_none()) {
+        return Err("--write-bounds goes with --extremes, all of them".to_owned());
     }
     // The kept page is that of a full run: a part of one must not replace it unasked.
     if out.is_none() && only.is_none() && depth == Depth::Full {
         out = Some(PathBuf::from("docs"));
     }
-    Ok(Asked::Run(Options { depth, only, out }))
+    Ok(Asked::Run(Options { depth, only, out, extremes, write_bounds }))
 }
 
 #[cfg(test)]
@@ -66,7 +82,8 @@ mod tests {
     #[test]
     fn a_short_run_does_not_replace_the_kept_page() {
         let run = |depth, only: Option<&str>, out: Option<&str>| {
-            Ok(Asked::Run(Options { depth, only: only.map(str::to_owned), out: out.map(PathBuf::from) }))
+            let (only, out) = (only.map(str::to_owned), out.map(PathBuf::from));
+            Ok(Asked::Run(Options { depth, only, out, extremes: false, write_bounds: false }))
         };
         assert_eq!(asked(""), run(Depth::Full, None, Some("docs")));
         assert_eq!(asked("--short"), run(Depth::Short, None, None));
@@ -77,6 +94,7 @@ mod tests {
     #[test]
     fn wrong_arguments_are_named() {
         assert!(asked("--sort").is_err_and(|error| error.contains("--sort")));
-        assert!(asked("--out").is_err() && asked("--only").is_err());
+        assert!(asked("--out").is_err() && asked("--only").is_err() && asked("--scene").is_err());
+        assert!(asked("--write-bounds").is_err() && asked("--extremes --short --write-bounds").is_err());
     }
 }

@@ -113,7 +113,8 @@ const WORKLESS: f64 = 1e-13;
 /// rounding, and so little that no approach is too slow to be seen.
 const SINKING: f64 = 1e-3;
 
-/// A contact that leaves faster than this part of Σ|J_i v| is open after the step.
+/// A contact that leaves faster than this part of Σ|J_i v| is open after the step, v the larger of v¹ and v_free: what was stopped has no
+/// velocity left to tell its rounding by.
 const LEAVING: f64 = 1e-10;
 
 impl<const D: usize> Scheme<D> for MoreauJeanClosed<D> {
@@ -179,7 +180,10 @@ impl<const D: usize> Scheme<D> for MoreauJeanClosed<D> {
                 None => {
                     let leaves = contact.u_after[0] + self.resting_shift[i];
                     contact.p[0] > 0.0
-                        && (leaves <= 0.0 || leaves <= LEAVING * work.contacts.speed(i, &self.step.v_end))
+                        && (leaves <= 0.0
+                            || [&self.step.v_end, &self.v_free]
+                                .iter()
+                                .any(|v| leaves <= LEAVING * work.contacts.speed(i, v)))
                 }
             };
             if stays {

@@ -167,3 +167,15 @@ fn no_approach_is_too_slow_to_be_seen() {
         assert!((state.v[1] - e * 1e-7).abs() < 1e-18 && state.tally.max_penetration < 2e-12, "{e}: {state:?}");
     }
 }
+
+/// A foot that was stopped stays closed, however rounding has its velocity end: else the block stands on the other one alone, above the
+/// ground by where the impact fell in its step, and rocks.
+#[test]
+fn a_block_that_lands_flat_stays_on_both_feet() {
+    let model = ground(PairLaw::new(0.5, 0.0));
+    for h in [3e-5, 1e-4, 3e-4, 1e-3] {
+        let (state, _) = take(&model, &[0.18, 0.0675, 0.0], &[0.0, 0.05, 0.0], h, 2000, true);
+        assert_eq!(state.warm.ids().len(), 2, "{h}");
+        assert!(state.v.iter().all(|v| v.abs() < 1e-14) && state.q[2].abs() < 1e-14, "{h}: {:?}", (state.q, state.v));
+    }
+}

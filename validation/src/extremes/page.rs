@@ -1,0 +1,160 @@
+//! The rows on the screen, and the page.
+
+use super::families::Family;
+use super::maps::Map;
+use super::measure::{Ending, Measured};
+use super::row::Row;
+use super::{Finding, demands};
+use crate::case::{Depth, Result};
+use crate::figure;
+use std::fmt::Write as _;
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+
+/// A row on the screen.
+pub(crate) fn write_line(out: &mut dyn Write, row: &Row, m: &Measured, wrong: &[String]) -> Result<()> {
+    let told = match &m.ending {
+        Ending::Complete => {
+            format!(
+                "gain {:.0e} residual {:.0e} depth {:.0e} ({:.2}) solver {:.0e} unconverged {} iterations {} solves {} impacts {}{}",
+                m.gain,
+                m.residual,
+                m.depth,
+                m.penetration,
+                m.solver,
+                m.unconverged,
+                m.iterations,
+                m.solves,
+                m.impacts,
+                if m.warnings.is_empty() { String::new() } else { format!(" warnings {}", m.warnings.len()) }
+            )
+        }
+        Ending::Refused(message) | Ending::Failed(message) => {
+            format!("{} after {} steps: {message}", m.ending.word(), m.steps)
+        }
+    };
+    let verdict = if wrong.is_empty() { String::new() } else { format!("  WORSE: {}", wrong.join("; ")) };
+    Ok(writeln!(out, "{:<44} {told}{verdict}", row.name)?)
+}
+
+/// A relative number; rounding has no digits on the page, as it would change with the processor.
+fn relative(value: f64) -> String {
+    if value < 1e-13 { "< 1e-13".to_owned() } else { format!("{value:.0e}") }
+}
+
+/// Writes the page.
+pub(crate) fn write(folder: &Path, depth: Depth, found: &[(Family, Vec<Finding>)], maps: &[Map]) -> Result<()> {
+    let figures = folder.join("figures");
+    fs::create_dir_all(&figures)?;
+    for figure in maps.iter().flat_map(|map| &map.figures) {
+        fs::write(figures.join(figure.file), figure::svg(figure)?)?;
+    }
+    Ok(fs::write(folder.join("extremes.md"), page(depth, found, maps)?)?)
+}
+
+fn page(depth: Depth, found: &[(Family, Vec<Finding>)], maps: &[Map]) -> Result<String> {
+    let command = match depth {
+        Depth::Full => "cargo run --release -p teeter-validation -- --extremes",
+        Depth::Short => "cargo run --release -p teeter-validation -- --extremes --short --out DIR",
+    };
+    let mut page = HEAD.replace("COMMAND", command);
+    let all = || found.iter().flat_map(|(_, findings)| findings);
+    let count = |of: &dyn Fn(&Finding) -> bool| all().filter(|finding| of(finding)).count();
+    writeln!(
+        page,
+        "\n{} rows: {} complete, {} refused with a reason, {} failed; {} miss something that every run should keep, and are \
+         listed first.\n",
+        all().count(),
+        count(&|f| f.measured.ending == Ending::Complete),
+        count(&|f| matches!(f.measured.ending, Ending::Refused(_))),
+        count(&|f| matches!(f.measured.ending, Ending::Failed(_))),
+        count(&|f| !f.missed.is_empty()),
+    )?;
+    page.push_str("## Missed\n\n");
+    if all().all(|finding| finding.missed.is_empty()) {
+        page.push_str("Nothing.\n");
+    } else {
+        page.push_str("| row | misses | why |\n|---|---|---|\n");
+        for finding in all() {
+            for demand in &finding.missed {
+                let why = demands::reason(&finding.row, *demand).unwrap_or("new");
+                writeln!(page, "| {} | {} | {why} |", finding.row.name, demand.word())?;
+            }
+        }
+    }
+    for Map { title, about, says, figures } in maps {
+        write!(page, "\n## {title}\n\n{about}\n\n**{says}**\n")?;
+        for figure in figures {
+            write!(page, "\n![{}](figures/{})\n", figure.title, figure.file)?;
+        }
+    }
+    for (family, findings) in found {
+        write!(page, "\n## {}\n\n{}\n\n{TABLE}", family.name, family.about)?;
+        for Finding { row, measured: m, .. } in findings {
+            let name = row.name.trim_start_matches(family.name).trim_start_matches('/');
+            if m.ending == Ending::Complete {
+                writeln!(
+                    page,
+                    "| {name} | {} | {} | {} | {:.0e} | {:.2} | {} | {} | {} | {} | {} |",
+                    m.steps,
+                    relative(m.gain),
+                    relative(m.residual),
+                    m.depth,
+                    m.penetration,
+                    relative(m.solver),
+                    m.unconverged,
+                    m.iterations,
+                    m.impacts,
+                    m.warnings.len(),
+                )?;
+            } else {
+                let (Ending::Refused(message) | Ending::Failed(message)) = &m.ending else { continue };
+                writeln!(page, "| {name} | {} | {}: {message} | | | | | | | | |", m.steps, m.ending.word())?;
+            }
+        }
+    }
+    Ok(page)
+}
+
+const TABLE: &str = "| row | steps | gain | account | depth, m | of bound | solver | unconverged | iterations | impacts | warnings |\n\
+                     |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n";
+
+const HEAD: &str = "# The extremes
+
+Scenes at the ends of what can be asked for: each runs without a lost number, without an end that doesn't come, without energy out of
+nothing, or is refused with a reason. This page is written by
+
+```sh
+COMMAND
+```
+
+which exits with 1 if a row misses something without a known reason, or is worse than its stored bound (`validation/bounds.toml`). A row's
+scene is one of `validation/extremes/` with some keys changed; this prints it, with the command, and runs it:
+
+```sh
+cargo run --release -p teeter-validation -- --scene dt/1e0/beam/closed/e=1 > scene.toml
+cargo run --release -- run scene.toml
+```
+
+Names of rows: value / base scene / scheme (`open`: moreau-jean, `closed`: moreau-jean-closed) / restitution. What is measured, over all steps:
+
+- **gain**: the largest gain of energy in a step, Δ(T+V) without the work of loads, over the scene's energy scale. Must be rounding (1e-13, or
+  a thousandth of the contact solver's tolerance) with `moreau-jean-closed`; is reported with `moreau-jean`, which doesn't promise it.
+- **account**: the largest residual of a step's energy account over the same scale; must be rounding (1e-12).
+- **depth**: the deepest penetration at the end of a step, m, and what part it is **of its bound**
+
+      h (c |U_n| + 2σ|U|) + 2 R (h ω)² + 2 gap_tolerance,      c = 1 (moreau-jean, γ = ½, θ ≥ ½), ½ (moreau-jean-closed)
+
+  with the fastest approach |U_n| of an active contact, its fastest slide and approach together |U|, the surface's steepest slope σ under one, the fastest
+  spin ω, R from the mass centre to a corner. A contact that is not seen in a step ends it
+  at most (1−γ)h|U_n| + θh²a below, a the free acceleration, and is caught in the next, in which its mean normal velocity still is (1−θ)U_n; the
+  acceleration is in |U_n| as measured there, so together h|U_n|. The closed scheme catches it in the step itself: ½h|U_n|. J is taken once a step, so a turn by hω leaves
+  the corner off its straight path by at most ½R(hω)² before J's place and R(hω)² after; and the normal of a surface that bends can turn
+  by 2σ until the step's end. A depth that comes up only in the last step is left
+  out where no contact was active: its impact is not part of the run.
+- **solver**: the largest residual of a solve that converged, over the tolerance; recomputed by the judge in every solve, and the same as the solver
+  says, or the row fails. **unconverged**: steps that say that they are not solved.
+- **iterations**: most of a step, all its solves together. Nothing is timed: what doesn't end shows as work.
+- **warnings**: what `teeter check` warns of.
+";
