@@ -52,7 +52,9 @@ const STEPS_AN_ELEMENT: u64 = 100;
 /// a run would meet its limits.
 const LEAST_ROOM: f64 = 2e-3;
 
-/// The room between start and barrier is shared: half for energy that the scheme makes, a quarter for penetration, a quarter stays.
+/// The room between start and barrier is shared: half for energy that the scheme makes, a quarter for penetration, a quarter stays. More
+/// than this part of m g R in all is not given to a run: it would be fast for nothing.
+const MOST_ROOM: f64 = 2e-2;
 const FOR_ENERGY: f64 = 0.5;
 const FOR_PENETRATION: f64 = 0.25;
 
@@ -127,6 +129,7 @@ impl Barrier {
         if !(room > needed * scale) {
             return None;
         }
+        let room = room.min(MOST_ROOM * scale);
         let limit = energy + FOR_ENERGY * room;
         let depth = FOR_PENETRATION * room / total;
         let (least, worst) = (least - total * depth, worst - total * depth);
@@ -161,6 +164,9 @@ impl Barrier {
             let height = half_height(k) + (limit - least) / weight(k);
             let angle = alpha - (height / radius).clamp(-1.0, 1.0).acos();
             let fastest = (2.0 * (limit - worst) * (1.0 / mass + radius * radius / inertia)).sqrt() + fall;
+            // A corner that comes as fast as can be sinks in by half a step's way, or the run would meet its limits for nothing.
+            let impact = (2.0 * (limit - least) * (1.0 / mass + radius * radius / inertia)).sqrt();
+            let shallow = 0.5 * start.scene.time.step * impact <= proof.limits.penetration;
             let spin = (2.0 * (limit - worst) / inertia).sqrt();
             let ahead = start.ahead() * fastest;
             let swing = match stands[k] {
@@ -182,7 +188,7 @@ impl Barrier {
             // Not even a single step, as fast as can be, leads across the band of angles that it hasn't the energy for.
             let stays_in = start.scene.time.step * spin < 2.0 * (alpha - angle);
             let clear = well.upper - 2.0 * swing - depth - 2.0 * ahead > scene.time.gap_tolerance;
-            if !(starts_in && stays_in && clear) {
+            if !(starts_in && stays_in && clear && shallow) {
                 return None;
             }
             proof.blocks.push(well);
