@@ -294,7 +294,7 @@ fn the_full_model_writes_the_same_bytes_and_the_summary_tells_what_the_other_doe
         .replace("\"static\"", "\"undeformed\"\nrecord = [\"w\", \"moment\"]\nreactions = true\nprobes = [\"9 cm\"]");
     std::fs::write(&scene, format!("{text}\n{beam}")).unwrap();
     let end = |out: &str, more: &[&str]| {
-        let output = teeter(&folder, &[&["run", "scene.toml", "--out", out, "--set", "time.end=0.1 s"], more].concat());
+        let output = teeter(&folder, &[&["run", "scene.toml", "--out", out, "--set", "time.end=0.3 s"], more].concat());
         assert!(output.status.success(), "{}", stderr(&output));
     };
     end("out", &[]);

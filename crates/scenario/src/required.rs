@@ -121,25 +121,9 @@ impl Required {
         let mut required = Self { extent: Extent::Required, ..Self::all(scene) };
         let start = Start { scene, layout, model, q, v };
         let rests: Vec<Option<Rest>> = (0..scene.beams.len()).map(|k| Rest::of(&start, k)).collect();
-        let mut dead: Vec<bool> = scene.contacts.iter().map(|contact| !start.is_stood_on(contact)).collect();
-        let (barrier, reaches) = loop {
-            let barrier = Barrier::of(&start, &dead);
-            let reaches: Vec<Reach> = (0..scene.blocks.len())
-                .map(|block| match &barrier {
-                    Some(barrier) => barrier.reach(&start, block),
-                    None => Reach::of_flight(&start, block, &dead),
-                })
-                .collect();
-            let alive = |k: &usize| {
-                let contact = &scene.contacts[*k];
-                dead[*k] && !reaches[contact.block].misses(&start, contact.surface, &rests, &dead, barrier.as_ref())
-            };
-            let back: Vec<usize> = (0..dead.len()).filter(alive).collect();
-            if back.is_empty() {
-                break (barrier, reaches);
-            }
-            back.into_iter().for_each(|k| dead[k] = false);
-        };
+        let dead = scene.contacts.iter().map(|contact| !start.is_stood_on(contact)).collect();
+        let Some((pairs, barrier, reaches)) = Pairs::search(&start, dead, &rests) else { return required };
+        let dead = &pairs.dead;
         for (k, contact) in scene.contacts.iter().enumerate().filter(|(k, _)| dead[*k]) {
             required.points[k] = 0;
             required.removed.push(Removed {
@@ -149,7 +133,7 @@ impl Required {
             });
         }
         for (k, rest) in rests.iter().enumerate() {
-            let Some(rest) = rest.as_ref().filter(|_| start.is_untouched(k, &dead)) else { continue };
+            let Some(rest) = rest.as_ref().filter(|_| !pairs.touched[k]) else { continue };
             required.at_rest[k] = Some(rest.energy);
             required.removed.push(rest.removed(&scene.beams[k].name));
         }
@@ -161,6 +145,60 @@ impl Required {
             required.limits = Some(barrier.limits);
         }
         required
+    }
+}
+
+/// Which pairs are taken for such that never touch, and what that leaves.
+struct Pairs {
+    /// Of each contact, whether it is one of them.
+    dead: Vec<bool>,
+    /// Of each block, the contacts that may act.
+    live: Vec<Vec<usize>>,
+    /// Of each beam, whether one of these acts on it.
+    touched: Vec<bool>,
+}
+
+/// Times that pairs are taken back; a search that needs more is given up.
+const ROUNDS: usize = 20;
+
+impl Pairs {
+    fn of(scene: &Scene, dead: Vec<bool>) -> Self {
+        let mut pairs =
+            Self { dead, live: vec![Vec::new(); scene.blocks.len()], touched: vec![false; scene.beams.len()] };
+        for (k, contact) in scene.contacts.iter().enumerate().filter(|(k, _)| !pairs.dead[*k]) {
+            pairs.live[contact.block].push(k);
+            if let Support::Beam(beam) = contact.surface {
+                pairs.touched[beam] = true;
+            }
+        }
+        pairs
+    }
+
+    /// Takes pairs back until all that are left hold together; with what keeps the blocks off them.
+    fn search(
+        start: &Start<'_>,
+        dead: Vec<bool>,
+        rests: &[Option<Rest>],
+    ) -> Option<(Self, Option<Barrier>, Vec<Reach>)> {
+        let scene = start.scene;
+        let mut pairs = Self::of(scene, dead);
+        for _ in 0..ROUNDS {
+            let barrier = Barrier::of(start, &pairs);
+            let reach = |block| match &barrier {
+                Some(barrier) => barrier.reach(start, block),
+                None => Reach::of_flight(start, block, &pairs),
+            };
+            let reaches: Vec<Reach> = (0..scene.blocks.len()).map(reach).collect();
+            let stays_dead = |(contact, dead): (&ContactScene, &bool)| {
+                *dead && reaches[contact.block].misses(start, contact.surface, rests, &pairs, barrier.as_ref())
+            };
+            let dead: Vec<bool> = scene.contacts.iter().zip(&pairs.dead).map(stays_dead).collect();
+            if dead == pairs.dead {
+                return Some((pairs, barrier, reaches));
+            }
+            pairs = Self::of(scene, dead);
+        }
+        None
     }
 }
 
@@ -188,18 +226,6 @@ impl Start<'_> {
     fn is_stood_on(&self, contact: &ContactScene) -> bool {
         use crate::scene::Placement::On;
         matches!(self.scene.blocks[contact.block].placement, On { support, .. } if support == contact.surface)
-    }
-
-    /// The contacts of a block that may act.
-    fn live<'s>(&'s self, block: usize, dead: &'s [bool]) -> impl Iterator<Item = &'s ContactScene> {
-        let contacts = self.scene.contacts.iter().zip(dead);
-        contacts.filter(move |(contact, dead)| contact.block == block && !**dead).map(|(contact, _)| contact)
-    }
-
-    /// Whether no contact acts on a beam.
-    fn is_untouched(&self, beam: usize, dead: &[bool]) -> bool {
-        let mut contacts = self.scene.contacts.iter().zip(dead);
-        contacts.all(|(contact, dead)| *dead || contact.surface != Support::Beam(beam))
     }
 
     /// Whether a block moves under its weight and its contacts alone.

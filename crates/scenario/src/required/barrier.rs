@@ -6,7 +6,7 @@
 
 use super::beam_bounds::BeamBounds;
 use super::reach::{By, ROUNDING, Reach};
-use super::{Limits, Removed, Start};
+use super::{Limits, Pairs, Removed, Start};
 use crate::scene::{ContactScene, SchemeName, Support};
 use teeter_beam::{Axial, Beam};
 use teeter_integrator::ImpactLaw;
@@ -62,7 +62,7 @@ const FOR_PENETRATION: f64 = 0.25;
 struct Level {
     /// Height, undeflected, m.
     y: f64,
-    /// Weight of the blocks on it, N.
+    /// Weight of the blocks on it, N; 0 of ground, which doesn't sag.
     weight: f64,
     /// `None` for ground.
     bounds: Option<BeamBounds>,
@@ -77,30 +77,33 @@ impl Level {
 
 impl Barrier {
     /// The proof, if there is one, with these pairs `dead`.
-    pub(super) fn of(start: &Start<'_>, dead: &[bool]) -> Option<Self> {
+    pub(super) fn of(start: &Start<'_>, pairs: &Pairs) -> Option<Self> {
         let scene = start.scene;
         if scene.blocks.is_empty() || !conserves(start) {
             return None;
         }
-        let stands: Vec<Support> = (0..scene.blocks.len())
-            .map(|block| {
-                let mut live = start.live(block, dead);
-                let contact = live.next().filter(|contact| live.next().is_none() && loses(contact))?;
-                Some(contact.surface)
-            })
-            .collect::<Option<_>>()?;
+        let stands_on = |live: &Vec<usize>| match live[..] {
+            [contact] => Some(&scene.contacts[contact]).filter(|contact| loses(contact)).map(|contact| contact.surface),
+            _ => None,
+        };
+        let stands: Vec<Support> = pairs.live.iter().map(stands_on).collect::<Option<_>>()?;
         let g = -scene.gravity[1];
         let weight = |block: usize| scene.blocks[block].mass() * g;
-        let weight_on = |surface| (0..stands.len()).filter(|&k| stands[k] == surface).map(weight).sum::<f64>();
+        let mut weights = vec![0.0; scene.beams.len()];
+        for (block, surface) in stands.iter().enumerate() {
+            if let Support::Beam(beam) = surface {
+                weights[*beam] += weight(block);
+            }
+        }
         let ground = match &scene.ground {
             Some(ground) if !ground.motion.is_given() && ground.incline == 0.0 => {
-                Some(Level { y: 0.0, weight: weight_on(Support::Ground), bounds: None })
+                Some(Level { y: 0.0, weight: 0.0, bounds: None })
             }
             _ => None,
         };
         let beams: Vec<Option<Level>> = (0..scene.beams.len())
             .map(|k| {
-                let (beam, weight) = (&scene.beams[k], weight_on(Support::Beam(k)));
+                let (beam, weight) = (&scene.beams[k], weights[k]);
                 let level = |bounds| Level { y: beam.position[1], weight, bounds: Some(bounds) };
                 (weight > 0.0).then(|| bounds(start, k).map(level)).flatten()
             })

@@ -1,8 +1,8 @@
 //! Where the corners of a block can come in the time of a run.
 
-use super::Start;
 use super::at_rest::Rest;
 use super::barrier::Barrier;
+use super::{Pairs, Start};
 use crate::scene::{ContactScene, Support};
 use teeter_beam::Axial;
 
@@ -36,8 +36,8 @@ impl Reach {
         Self { x: [f64::NEG_INFINITY, f64::INFINITY], y: f64::NEG_INFINITY, by: By::Nothing };
 
     /// That of a block in free flight: the θ step has velocities v⁰ + g t, and places on the parabola but for (θ − ½) h g t.
-    pub(super) fn of_flight(start: &Start<'_>, block: usize, dead: &[bool]) -> Self {
-        if !start.is_left_alone(block) || start.live(block, dead).next().is_some() {
+    pub(super) fn of_flight(start: &Start<'_>, block: usize, pairs: &Pairs) -> Self {
+        if !start.is_left_alone(block) || !pairs.live[block].is_empty() {
             return Self::ANYWHERE;
         }
         let (of, time) = (&start.scene.blocks[block], &start.scene.time);
@@ -71,7 +71,7 @@ impl Reach {
         start: &Start<'_>,
         surface: Support,
         rests: &[Option<Rest>],
-        dead: &[bool],
+        pairs: &Pairs,
         barrier: Option<&Barrier>,
     ) -> bool {
         let gap = start.scene.time.gap_tolerance;
@@ -88,7 +88,7 @@ impl Reach {
                 }
                 let [x, y] = beam.position;
                 let deflection = match (&rests[k], barrier) {
-                    (Some(rest), _) if start.is_untouched(k, dead) => Some(rest.deflection),
+                    (Some(rest), _) if !pairs.touched[k] => Some(rest.deflection),
                     (_, Some(barrier)) => barrier.deflection(k),
                     _ => None,
                 };
