@@ -4,11 +4,11 @@
 //! Points looked at and degrees of freedom are counts. Times are of the processor, not of the clock; runs of both models in turn, medians;
 //! no output.
 
+use cpu_time::ThreadTime;
 use std::error::Error;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
-use std::time::Instant;
 use teeter_scenario::Extent;
 use teeter_scenario::resolve::Resolved;
 use teeter_scenario::simulation::Simulation;
@@ -16,10 +16,10 @@ use teeter_scenario::simulation::Simulation;
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
 /// Runs of each model.
-const ROUNDS: usize = 15;
+const ROUNDS: usize = 11;
 
 /// Steps of a run, at least: short scenes are run again.
-const STEPS: u64 = 10_000;
+const STEPS: u64 = 20_000;
 
 /// A second beam, beside the first, that nothing touches.
 const SHELF: &str = "[beam.shelf]\nmaterial = 'aluminium'\nspan = '36 cm'\nwidth = '3 cm'\nthickness = '0.15 cm'\nelements = 20\n\
@@ -103,22 +103,15 @@ fn row(name: &str, resolved: &Resolved) -> Result<String> {
 fn measure(resolved: &Resolved, extent: Extent) -> Result<[f64; 2]> {
     let (mut set_up, mut stepping, mut steps, mut runs) = (0.0, 0.0, 0, 0.0);
     while steps < STEPS {
-        let begin = processor_time();
+        let begin = ThreadTime::now();
         let mut simulation = Simulation::with_extent(&resolved.scene, extent, |solver| solver)?;
-        let built = processor_time();
+        set_up += begin.elapsed().as_secs_f64();
+        let begin = ThreadTime::now();
         let _ = simulation.run(&mut [])?;
-        (set_up, stepping) = (set_up + built - begin, stepping + processor_time() - built);
+        stepping += begin.elapsed().as_secs_f64();
         (steps, runs) = (steps + simulation.state.step, runs + 1.0);
     }
     Ok([set_up / runs, stepping / steps as f64])
-}
-
-/// Time that this thread has had of a processor, s; where the system doesn't tell, that of the clock.
-fn processor_time() -> f64 {
-    thread_local!(static BEGIN: Instant = Instant::now());
-    let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
-    let nanoseconds = told.and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
-    nanoseconds.map_or_else(|| BEGIN.with(|begin| begin.elapsed().as_secs_f64()), |ns| 1e-9 * ns)
 }
 
 fn median(mut times: Vec<f64>) -> f64 {
