@@ -20,9 +20,8 @@ const PLACES: usize = 32;
 impl BeamBounds {
     /// Those of a beam without axial dofs; `None` where supports leave it a rigid motion.
     ///
-    /// Between `PLACES` Chebyshev points a polynomial of degree six exceeds its largest value there at most by the factor
-    /// 1/cos(6π/(2 · 32)) = 1.20 (Ehlich & Zeller 1964, doi 10.1007/BF01111276); of its part that isn't constant over the element, so of
-    /// what it can exceed by, hardly anything is left in a mesh worth the name, but the bound is taken as it is of the variation.
+    /// A polynomial of degree six is nowhere more than 1/cos(6π/64) = 1.203 times as large as it is at the `PLACES` = 32 zeros of a Chebyshev
+    /// polynomial (Ehlich & Zeller 1964). Of the flexibility that is taken of the part that varies over the element.
     pub(super) fn of(beam: &Beam) -> Option<Self> {
         let (columns, nodes) = (Self::flexibility(beam)?, beam.node_positions());
         let mut bounds = Self { deflection: 0.0, slope: 0.0, velocity: 0.0 };
