@@ -11,12 +11,13 @@ use teeter_scenario::outlook::{BeamOutlook, BlockOutlook, FEW_DIGITS, Outlook, S
 use teeter_scenario::resolve::Resolved;
 use teeter_scenario::scene::{GroundScene, Scene, SchemeName};
 use teeter_scenario::simulation::Simulation;
-use teeter_scenario::wording;
+use teeter_scenario::{Extent, Removed, wording};
 
 #[derive(Debug)]
 pub(crate) struct Options {
     pub(crate) scene: PathBuf,
     pub(crate) set: Vec<(String, String)>,
+    pub(crate) extent: Extent,
 }
 
 pub(crate) fn check(options: &Options) -> Exit {
@@ -36,7 +37,7 @@ pub(crate) fn check(options: &Options) -> Exit {
         Err(errors) => return refuse(&Presenter::of_bytes(&bytes).all(&errors)),
     };
     let presenter = Presenter::new(resolved.document.source());
-    let simulation = match Simulation::new(&resolved.scene) {
+    let simulation = match Simulation::with_extent(&resolved.scene, options.extent, |solver| solver) {
         Ok(simulation) => simulation,
         Err(error) => return refuse(&presenter.one(&error.diagnostic(&resolved.document))),
     };
@@ -56,7 +57,20 @@ fn told(resolved: &Resolved, outlook: &Outlook) -> String {
     section(&mut text, "model", &model(scene, outlook));
     section(&mut text, "run", &run(scene, outlook));
     section(&mut text, "left out", &outlook.left_out);
+    if !outlook.removed.is_empty() {
+        let mut lines: Vec<String> = outlook.removed.iter().take(LISTED).map(removed).collect();
+        lines.extend(more(outlook.removed.len(), "removal"));
+        section(&mut text, "not needed, and so not modelled (--model full has it)", &lines);
+    }
     text
+}
+
+fn removed(removed: &Removed) -> String {
+    let how = match &removed.accuracy {
+        None => "exact: every number is the same".to_owned(),
+        Some(accuracy) => format!("within {accuracy}"),
+    };
+    format!("{}\n    {}\n    {how}", removed.what, removed.why)
 }
 
 fn section(text: &mut String, title: &str, lines: &[impl AsRef<str>]) {

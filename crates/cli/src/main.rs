@@ -16,6 +16,7 @@ use clap::{Parser, Subcommand};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
+use teeter_scenario::Extent;
 
 /// Simulates rigid blocks that rock, slide and bounce on elastic beams and on rigid ground.
 #[derive(Debug, Parser)]
@@ -60,7 +61,10 @@ enum Command {
         /// Go on from the checkpoint in the folder for results; without one, start at the beginning
         #[arg(long, conflicts_with = "force")]
         resume: bool,
-        /// Start from a state or checkpoint of a run with the same bodies; its clock goes on, up to time.end
+        /// `full`: model all that the scene names, also what can't matter to it and is left out otherwise; `teeter check` lists that
+        #[arg(long, value_name = "required|full", default_value = "required", value_parser = run::extent)]
+        model: Extent,
+        /// Start from a state or checkpoint of a run with the same bodies; its clock goes on, up to time.end; by the full model
         #[arg(long, value_name = "FILE")]
         from: Option<PathBuf>,
         /// Write the state before the first step whose contact problem is not solved to FILE, for --from
@@ -76,6 +80,9 @@ enum Command {
         /// Override a key of the scene, such as beam.table.thickness="2 mm"; may be repeated
         #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value)]
         set: Vec<(String, String)>,
+        /// `full`: model all that the scene names, also what can't matter to it and is left out otherwise; `teeter check` lists that
+        #[arg(long, value_name = "required|full", default_value = "required", value_parser = run::extent)]
+        model: Extent,
     },
     /// List the contact solvers: their dimensions, law (exact or convex) and source
     Solvers,
@@ -142,6 +149,7 @@ fn main() -> ExitCode {
             export_when,
             checkpoint_every,
             resume,
+            model,
             from,
             dump_unconverged,
         } => {
@@ -155,12 +163,13 @@ fn main() -> ExitCode {
                 export,
                 checkpoint_every,
                 resume,
+                extent: model,
                 from,
                 dump_unconverged,
             };
             run::run(&options).into()
         }
-        Command::Check { scene, set } => check::check(&check::Options { scene, set }).into(),
+        Command::Check { scene, set, model } => check::check(&check::Options { scene, set, extent: model }).into(),
         Command::Solvers => solve::list().into(),
         Command::Solve { paths, solvers, tolerance, time_limit, json, solutions, profile } => {
             solve::solve(&solve::Options { paths, solvers, tolerance, time_limit, json, solutions, profile }).into()

@@ -15,6 +15,7 @@ use teeter_report::{
     CHECKPOINT, Checkpoint, EndedWord, ExportWhen, Exporter, Former, Identity, Origin, PageRecorder, Results,
     ResultsError, RunRecorder, Summary, Watch, envelopes, figures, render,
 };
+use teeter_scenario::Extent;
 use teeter_scenario::decode::LARGEST_FILE;
 use teeter_scenario::resolve::Resolved;
 use teeter_scenario::simulation::Simulation;
@@ -54,10 +55,25 @@ pub(crate) struct Options {
     /// Simulated time between checkpoints, s.
     pub(crate) checkpoint_every: Option<f64>,
     pub(crate) resume: bool,
+    /// How much of the scene is modelled.
+    pub(crate) extent: Extent,
     /// A state to start from.
     pub(crate) from: Option<PathBuf>,
     /// Where to write the state before the first step that is not solved.
     pub(crate) dump_unconverged: Option<PathBuf>,
+}
+
+impl Options {
+    /// How much of the scene is modelled. What a scene can't need is known of its own start only: from another state, all is.
+    pub(crate) fn extent(&self) -> Extent {
+        if self.from.is_some() { Extent::Full } else { self.extent }
+    }
+}
+
+/// `required` or `full`.
+pub(crate) fn extent(text: &str) -> Result<Extent, String> {
+    let known = [Extent::Required, Extent::Full].into_iter().find(|extent| extent.word() == text);
+    known.ok_or_else(|| "write full, or required, which is the default".to_owned())
 }
 
 /// `hard` or `every:N`.
@@ -91,7 +107,7 @@ pub(crate) fn run(options: &Options) -> Exit {
     let presenter = Presenter::new(resolved.document.source());
     let watch = Watch::default();
     let wrap = |solver| if options.export.is_some() { watch.around(solver) } else { solver };
-    let mut simulation = match Simulation::with_solver(&resolved.scene, wrap) {
+    let mut simulation = match Simulation::with_extent(&resolved.scene, options.extent(), wrap) {
         Ok(simulation) => simulation,
         Err(error) => return bad_input(console, &presenter.one(&error.diagnostic(&resolved.document))),
     };

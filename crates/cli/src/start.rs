@@ -5,6 +5,7 @@ use std::error::Error;
 use std::path::Path;
 use teeter_integrator::State;
 use teeter_report::{CHECKPOINT, Checkpoint, ExportWhen, Former, Found, Identity, Moment, Results, program_hash};
+use teeter_scenario::Extent;
 use teeter_scenario::dimension::Dimension;
 use teeter_scenario::quantity;
 use teeter_scenario::scene::Scene;
@@ -99,6 +100,9 @@ pub(crate) fn identity(
             ExportWhen::Every(n) => format!("every:{n}"),
         };
         deciding.push(format!("--export-problems of {stem}, --export-when {when}"));
+    }
+    if options.extent == Extent::Full {
+        deciding.push("--model full".to_owned());
     }
     let from = match &options.from {
         None => Vec::new(),

@@ -52,7 +52,7 @@ fn the_paper_s_beam_is_noted_to_be_soft() {
         "  block rocker: 0.3281 kg, on table, tilted by 5 deg; overturns beyond 12.53 deg (critical angle)",
         "  beam table: 20 elements, 40 degrees of freedom, banded Cholesky, factorised once",
         "    first frequency 26.53 Hz (period 0.03769 s)",
-        "  4 contacts at most, 43 degrees of freedom",
+        "  2 contacts at most, 43 degrees of freedom",
         "  5000 steps of 0.0001 s to 0.5 s, theta = 0.5",
         "  axial motion of beams: their supports are free along the axis",
     ] {
@@ -106,4 +106,20 @@ fn a_scene_from_standard_input_and_a_reader_that_goes_away() {
     child.stdin.take().unwrap().write_all(&std::fs::read(scenario("sliding")).unwrap()).unwrap();
     let output = child.wait_with_output().unwrap();
     assert!(output.status.success() && output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn what_is_not_needed_is_listed_with_its_reason_and_the_full_model_has_it() {
+    let scene = scenario("free-rocking-on-beam");
+    let (_, stdout, _) = check(&[&scene]);
+    for part in
+        ["not needed", "the upper corners of `rocker`", "would be needed to tilt `rocker`", "exact: every number"]
+    {
+        assert!(stdout.contains(part), "«{part}» is missing in\n{stdout}");
+    }
+    let (_, full, _) = check(&[&scene, "--model", "full"]);
+    assert!(!full.contains("not needed") && full.contains("  4 contacts at most, 43 degrees of freedom"), "{full}");
+    let (output, _, stderr) = check(&[&scene, "--model", "some"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr.contains("write full, or required"), "{stderr}");
 }

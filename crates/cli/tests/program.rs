@@ -282,3 +282,39 @@ fn a_scene_that_names_a_file_runs_again_from_its_results_to_the_same_bytes() {
     let external = header.iter().position(|name| name == "external").unwrap();
     assert_ne!(rows.last().unwrap()[external], "0.0", "the ground works");
 }
+
+#[test]
+fn the_full_model_writes_the_same_bytes_and_the_summary_tells_what_the_other_does_without() {
+    let folder = folder("full-model");
+    let scene = folder.join("scene.toml");
+    let text = std::fs::read_to_string(scenario("free-rocking-on-beam")).unwrap();
+    // A second beam that nothing touches, in all tables but unmoved.
+    let beam = text[text.find("[beam.table]").unwrap()..text.find("[block").unwrap()].replace("table", "shelf");
+    let beam = beam
+        .replace("\"static\"", "\"undeformed\"\nrecord = [\"w\", \"moment\"]\nreactions = true\nprobes = [\"9 cm\"]");
+    std::fs::write(&scene, format!("{text}\n{beam}")).unwrap();
+    let end = |out: &str, more: &[&str]| {
+        let output = teeter(&folder, &[&["run", "scene.toml", "--out", out, "--set", "time.end=0.3 s"], more].concat());
+        assert!(output.status.success(), "{}", stderr(&output));
+    };
+    end("out", &[]);
+    let removed = summary(&folder)["model"].clone();
+    assert_eq!(
+        (&removed["extent"], &removed["dofs"], &removed["possible_contacts"]),
+        (&"required".into(), &43.into(), &2.into())
+    );
+    let listed = removed["removed"].as_array().unwrap();
+    let whats: Vec<&str> = listed.iter().map(|removed| removed["what"].as_str().unwrap()).collect();
+    assert_eq!(whats, ["beam `shelf`: its motion", "contact `feet`: the upper corners of `rocker`"]);
+    assert!(listed.iter().all(|removed| removed["exact"] == true && removed["why"].as_str().unwrap().len() > 40));
+    std::fs::rename(folder.join("out"), folder.join("required")).unwrap();
+    end("out", &["--model", "full"]);
+    let full = summary(&folder)["model"].clone();
+    assert_eq!((&full["extent"], &full["dofs"], &full["possible_contacts"]), (&"full".into(), &83.into(), &4.into()));
+    assert_eq!(full["removed"], Value::Array(Vec::new()));
+    for table in FILES.iter().filter(|file| file.ends_with(".csv") || file.ends_with(".toml")) {
+        let bytes = |run: &str| std::fs::read(folder.join(run).join(table)).unwrap();
+        assert!(bytes("out") == bytes("required"), "{table}");
+    }
+    assert!(table(&folder.join("out/trajectory.csv")).0.iter().any(|column| column == "shelf.w_mid"));
+}

@@ -317,6 +317,8 @@ fn what_does_not_fit_is_refused_and_nothing_changed() {
     }
     let message = place.refused(2, &LONG, &["--resume", "--export-problems", "problems"]);
     assert!(message.contains("other options (none, now --export-problems"), "{message}");
+    let message = place.refused(2, &LONG, &["--resume", "--model", "full"]);
+    assert!(message.contains("other options (none, now --model full)"), "{message}");
     let message = place.refused(2, &LONG, &EVERY);
     assert!(message.contains("holds results already"), "{message}");
     assert!(place.refused(2, &LONG, &["--resume", "--force"]).contains("cannot be used with"));

@@ -242,6 +242,25 @@ impl<'a> Recorder<'a> {
         self.contacts.rows(&self.line)
     }
 
+    /// Warns where the model lacks what the run may need after all.
+    fn warn_of_limits(&mut self, state: &State) {
+        let Some(limits) = self.layout.required.limits.filter(|limits| !limits.hold(state)) else { return };
+        let told = self.kept.record.warnings.enter("model-limits", Some(state.t), || {
+            format!(
+                "at t = {} s the energy is {:.6} J and the deepest penetration so far {:.1e} m, over the {:.6} J or the {:.1e} m up to which \
+                 the upper corners of blocks can't touch, and they are not looked at; --model full has them",
+                state.t,
+                state.ledger.current.total(),
+                state.tally.max_penetration,
+                limits.energy,
+                limits.penetration
+            )
+        });
+        if let Some(text) = told {
+            (self.tell)(&text);
+        }
+    }
+
     /// Warns of what a row shows to be outside the model; told once each.
     fn warn_of_row(&mut self, state: &State) {
         let (ledger, warnings) = (&state.ledger, &mut self.kept.record.warnings);
@@ -345,6 +364,7 @@ impl Observer<2> for Recorder<'_> {
         self.kept.impulses.add(step.contacts);
         self.write_impacts(step)?;
         self.warn_of(step);
+        self.warn_of_limits(state);
         let Kept { record, section_values, .. } = &mut self.kept;
         let kept = (record.beams.as_mut_slice(), section_values);
         if let Some(text) = self.sections.observe(step, state, kept, &mut record.warnings) {

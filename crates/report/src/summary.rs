@@ -187,12 +187,30 @@ pub struct ModelSummary {
     pub ground: bool,
     /// Names of the contact pairs.
     pub contacts: Vec<String>,
-    /// Contacts that are possible at all.
+    /// Points that contacts are looked for at.
     pub possible_contacts: usize,
     /// Velocities of blocks and beams together.
     pub dofs: usize,
     /// What the model leaves out, and why.
     pub left_out: Vec<&'static str>,
+    /// How much of the scene was asked for: `required` or `full`.
+    pub extent: &'static str,
+    /// What of the scene it does without, as nothing needs it.
+    pub removed: Vec<RemovedSummary>,
+}
+
+/// Something that the model does without.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct RemovedSummary {
+    /// What.
+    pub what: String,
+    /// Why nothing misses it.
+    pub why: String,
+    /// Whether every number is the same with it.
+    pub exact: bool,
+    /// If not, how far they are apart.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub accuracy: Option<String>,
 }
 
 /// A beam as modelled.
@@ -320,14 +338,27 @@ impl ModelSummary {
                 backend: wording::backend(beam),
             })
             .collect();
+        let required = &layout.required;
+        let moving = beams.iter().enumerate().filter(|(k, _)| !required.is_at_rest(*k));
         Self {
             blocks: layout.blocks.iter().map(|place| place.name.clone()).collect(),
-            dofs: 3 * layout.blocks.len() + beams.iter().map(|beam| beam.dofs).sum::<usize>(),
+            dofs: 3 * layout.blocks.len() + moving.map(|(_, beam)| beam.dofs).sum::<usize>(),
             beams,
             ground: scene.ground.is_some(),
             contacts: layout.pairs.iter().map(|pair| pair.name.clone()).collect(),
-            possible_contacts: 4 * scene.contacts.len(),
+            possible_contacts: (0..scene.contacts.len()).map(|contact| required.points(contact)).sum(),
             left_out: teeter_scenario::left_out(scene),
+            extent: required.extent.word(),
+            removed: required
+                .removed
+                .iter()
+                .map(|removed| RemovedSummary {
+                    what: removed.what.clone(),
+                    why: removed.why.clone(),
+                    exact: removed.accuracy.is_none(),
+                    accuracy: removed.accuracy.clone(),
+                })
+                .collect(),
         }
     }
 }

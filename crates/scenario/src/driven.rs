@@ -100,6 +100,7 @@ impl BeamModel {
 }
 
 /// A beam as a subsystem: in the coordinates of all its nodes, or in modes.
+#[allow(clippy::large_enum_variant)] // one a beam, boxed as soon as it is made
 pub(crate) enum BeamSystem {
     Full(BeamBody),
     Modes(ModalBeam),

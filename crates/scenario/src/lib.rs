@@ -49,6 +49,7 @@ mod overlap;
 mod placement;
 pub mod quantity;
 pub mod record;
+mod required;
 pub mod resolve;
 pub mod scene;
 mod sets;
@@ -68,6 +69,7 @@ pub mod wording;
 
 pub use left_out::left_out;
 pub use placement::{Departure, PlacementError};
+pub use required::{Extent, Limits, Removed, Required};
 pub use settling::{ContactForce, StaticStart};
 
 /// Reads a scene: text, keys, units, references. `file` is its name in messages, `stem` its title if it has none,

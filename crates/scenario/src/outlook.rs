@@ -1,6 +1,7 @@
 //! What a run of a scene will be like: the numbers to look at before it is started.
 
 use crate::left_out::left_out;
+use crate::required::Removed;
 use crate::resolve::Resolved;
 use crate::scene::{BeamScene, BlockScene, Placement, Scene};
 use crate::simulation::{BeamPlace, Simulation};
@@ -98,6 +99,8 @@ pub struct Outlook {
     pub coupled_frequencies: Vec<f64>,
     /// What the model leaves out, and why.
     pub left_out: Vec<&'static str>,
+    /// What of the scene the model does without, as nothing needs it.
+    pub removed: Vec<Removed>,
 }
 
 impl Outlook {
@@ -125,16 +128,15 @@ impl Outlook {
             let (mass, critical_angle) = (block.mass(), block.critical_angle());
             BlockOutlook { name: block.name.clone(), mass, critical_angle, angle, on }
         };
-        // What supports hold has a place in the state, and no motion.
-        let held: usize = simulation.layout.beams.iter().map(|place| place.range.len() - place.free_dofs()).sum();
         Self {
             blocks: scene.blocks.iter().map(block).collect(),
             possible_contacts: simulation.model.detector().capacity(),
-            dofs: simulation.model.size().v - held,
+            dofs: simulation.dofs(),
             seconds: expected_seconds(scene, beams.iter().map(|beam| beam.dofs).sum()),
             volume: Volume::of(scene),
             coupled_frequencies: coupled_frequencies(scene, simulation),
             left_out: left_out(scene),
+            removed: simulation.layout.required.removed.clone(),
             beams,
         }
     }

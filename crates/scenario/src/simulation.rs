@@ -3,6 +3,7 @@
 use crate::driven::{self, BeamModel};
 use crate::overlap::{Box2, Overlap, deepest_overlap};
 use crate::placement::{PlacementError, Standing, block_pose};
+use crate::required::{AtRest, Extent, Required};
 use crate::scene::{Placement, Scene, SchemeName, Support, Time};
 use crate::settling::{Start, StaticStart};
 use std::ops::Range;
@@ -12,8 +13,8 @@ use teeter_contact::ContactSolver;
 use teeter_detect::{BodyId, PointDetector, PointPair};
 use teeter_integrator::{
     BeamForces, Block, Ended, Model, ModelBuilder, ModelError, MoreauJean, MoreauJeanClosed, MoreauJeanClosedSettings,
-    MoreauJeanSettings, Observer, Plan, RunError, Scheme, SettingError, SolverSettings, State, StateError, WorkCounts,
-    Workspace, run,
+    MoreauJeanSettings, Observer, Plan, RunError, Scheme, SettingError, SolverSettings, State, StateError, Subsystem,
+    WorkCounts, Workspace, run,
 };
 use teeter_rigid::{MassProperties, Rectangle, RigidError};
 
@@ -158,6 +159,8 @@ pub struct Layout {
     pub pairs: Vec<PairPlace>,
     /// The coordinates of ground that moves: the place of its origin, x and y, and its slope.
     pub ground: Option<Range<usize>>,
+    /// What the model does without.
+    pub required: Required,
 }
 
 /// A scene ready to run.
@@ -202,7 +205,8 @@ impl Layout {
 }
 
 impl Simulation {
-    /// Makes the model of a scene, and its start.
+    /// Makes the model of a scene, and its start. What the scene can't need from there on is left out of the model (`docs/required.md`):
+    /// who starts from another state takes [`Simulation::with_extent`] and the full model.
     ///
     /// # Errors
     /// If a number doesn't make sense to a layer, a beam has no equilibrium, a corner starts inside a surface or a block inside
@@ -219,8 +223,19 @@ impl Simulation {
         scene: &Scene,
         wrap: impl FnOnce(Box<dyn ContactSolver<2>>) -> Box<dyn ContactSolver<2>>,
     ) -> Result<Self, BuildError> {
-        let mut parts = ModelBuilder::new();
-        let mut layout = Layout::default();
+        Self::with_extent(scene, Extent::Required, wrap)
+    }
+
+    /// As [`Simulation::with_solver`], with as much of the scene as asked for.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`].
+    pub fn with_extent(
+        scene: &Scene,
+        extent: Extent,
+        wrap: impl FnOnce(Box<dyn ContactSolver<2>>) -> Box<dyn ContactSolver<2>>,
+    ) -> Result<Self, BuildError> {
+        let mut layout = Layout { required: Required::all(scene), ..Layout::default() };
 
         let mut blocks = Vec::new();
         for block in &scene.blocks {
@@ -231,9 +246,6 @@ impl Simulation {
             layout.blocks.push(BlockPlace { name: block.name.clone(), range: start..start + 3 });
             blocks.push((Block::new(mass, &shape), shape));
         }
-        let bodies = blocks.iter().map(|(body, _)| *body).collect();
-        let first_block = parts.add(Box::new(driven::blocks(scene, bodies)));
-
         let mut beams = Vec::new();
         let mut dofs = 3 * blocks.len();
         for (number, scene_beam) in scene.beams.iter().enumerate() {
@@ -249,7 +261,7 @@ impl Simulation {
                 supports: (!model.displaced.is_empty()).then_some(range.end..dofs),
                 range,
                 probes: scene_beam.probes.clone(),
-                body: parts.add(body.boxed()),
+                body: BodyId((blocks.len() + number) as u32),
                 pressed: None,
             });
             beams.push(model);
@@ -258,7 +270,6 @@ impl Simulation {
         let ground_start = ground.as_ref().map(|ground| ground.coordinates(0.0)).unwrap_or_default();
         layout.ground = (!ground_start.is_empty()).then_some(dofs..dofs + ground_start.len());
         dofs += ground_start.len();
-        let ground_body = ground.map(|ground| parts.add(Box::new(ground)));
         let incline = scene.ground.as_ref().map_or(0.0, |ground| ground.incline);
         let line = if let [x, y, slope] = *ground_start { [x, y, slope] } else { [0.0, 0.0, incline] };
 
@@ -293,27 +304,20 @@ impl Simulation {
         q.extend(&ground_start);
         v.resize(dofs, 0.0);
 
-        let mut pairs = Vec::new();
-        for contact in &scene.contacts {
-            let surface = match contact.surface {
-                Support::Beam(k) => layout.beams[k].body,
-                Support::Ground => match ground_body {
-                    Some(body) => body,
-                    None => continue, // the resolver refuses a contact with ground that isn't there
-                },
-            };
-            pairs.push(PointPair {
-                pair: parts.pair(contact.law),
-                points: blocks[contact.block].1.corners().to_vec(),
-                body: BodyId(first_block.0 + contact.block as u32),
-                surface,
-                kinematics: contact.kinematics,
-            });
-            layout.pairs.push(PairPlace { name: contact.name.clone(), between: contact.between.clone() });
-        }
-        let model = parts.build(Box::new(PointDetector::new(pairs)))?;
+        layout.pairs = scene
+            .contacts
+            .iter()
+            .map(|contact| PairPlace { name: contact.name.clone(), between: contact.between.clone() })
+            .collect();
+        let mut model = assemble(scene, &blocks, &beams, &layout)?;
         check_start(scene, &model, &layout, &q)?;
         check_apart(scene, &q)?;
+        if extent == Extent::Required {
+            layout.required = Required::of(scene, &layout, &model, &q, &v);
+            if !layout.required.removed.is_empty() {
+                model = assemble(scene, &blocks, &beams, &layout)?;
+            }
+        }
 
         let state = State::new(&model, &q, &v, scene.time.step)?;
         let solver = teeter_solvers::plane_solver(&scene.solver.method)
@@ -338,6 +342,16 @@ impl Simulation {
         self.work.counts
     }
 
+    /// Velocities of the model that something moves: what supports hold, and beams at rest, have a place in the state only.
+    #[must_use]
+    pub fn dofs(&self) -> usize {
+        let held = |k: usize, place: &BeamPlace| match self.layout.required.rests(k) {
+            Some(_) => place.range.len(),
+            None => place.range.len() - place.free_dofs(),
+        };
+        self.model.size().v - self.layout.beams.iter().enumerate().map(|(k, place)| held(k, place)).sum::<usize>()
+    }
+
     /// Runs to the plan's end, showing every step to the observers. The state is left at the last step taken.
     ///
     /// # Errors
@@ -345,6 +359,49 @@ impl Simulation {
     pub fn run(&mut self, observers: &mut [&mut dyn Observer<2>]) -> Result<Ended, RunError> {
         run(&self.model, self.scheme.as_mut(), &mut self.state, &mut self.work, &self.plan, observers)
     }
+}
+
+/// The model, of what `layout` has as required.
+fn assemble(
+    scene: &Scene,
+    blocks: &[(Block, Rectangle)],
+    beams: &[BeamModel],
+    layout: &Layout,
+) -> Result<Model<2>, BuildError> {
+    let mut parts = ModelBuilder::new();
+    let bodies = blocks.iter().map(|(body, _)| *body).collect();
+    let first_block = parts.add(Box::new(driven::blocks(scene, bodies)));
+    let mut surfaces = Vec::with_capacity(beams.len());
+    for (number, model) in beams.iter().enumerate() {
+        let body: Box<dyn Subsystem<2>> = match layout.required.rests(number) {
+            Some(energy) => Box::new(AtRest::new(layout.beams[number].range.len(), energy)),
+            None => model.body(scene, number)?.boxed(),
+        };
+        surfaces.push(parts.add(body));
+    }
+    let ground = scene.ground.as_ref().map(|ground| parts.add(Box::new(driven::ground(ground))));
+    let mut pairs = Vec::new();
+    for (number, contact) in scene.contacts.iter().enumerate() {
+        let surface = match contact.surface {
+            Support::Beam(k) => surfaces[k],
+            Support::Ground => match ground {
+                Some(body) => body,
+                None => continue, // the resolver refuses a contact with ground that isn't there
+            },
+        };
+        let pair = parts.pair(contact.law);
+        let points = layout.required.points(number);
+        if points > 0 {
+            pairs.push(PointPair {
+                pair,
+                points: blocks[contact.block].1.corners()[..points].to_vec(),
+                body: BodyId(first_block.0 + contact.block as u32),
+                surface,
+                kinematics: contact.kinematics,
+            });
+        }
+    }
+    Ok(parts.build(Box::new(PointDetector::new(pairs)))?)
 }
 
 fn scheme(time: &Time) -> Result<Box<dyn Scheme<2>>, SettingError> {

@@ -67,9 +67,7 @@ impl BeamCompliance {
         let dofs = beam.dofs();
         let memory = match backend {
             // A stretched beam has other columns in every step.
-            WBackend::Auto if !beam.is_stretched() => {
-                Memory::Columns(Columns::new(dofs, dofs / TOUCHED))
-            }
+            WBackend::Auto if !beam.is_stretched() => Memory::Columns(Columns::new(dofs, dofs / TOUCHED)),
             WBackend::CachedColumns => Memory::Columns(Columns::new(dofs, dofs)),
             WBackend::Auto | WBackend::Banded | WBackend::Sparse => Memory::Responses(Responses::new(dofs)),
         };

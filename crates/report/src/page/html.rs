@@ -6,7 +6,7 @@ use super::recorder::PageRecorder;
 use super::rocking::{HalfCycle, half_cycles};
 use super::{data, rounded};
 use crate::Summary;
-use crate::summary::BeamSummary;
+use crate::summary::{BeamSummary, RemovedSummary};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -336,6 +336,10 @@ fn model(summary: &Summary) -> String {
     row("Degrees of freedom", &model.dofs.to_string());
     if !model.left_out.is_empty() {
         row("Left out", &model.left_out.iter().map(|text| escaped(text)).collect::<Vec<_>>().join("<br>"));
+    }
+    if !model.removed.is_empty() {
+        let told = |removed: &RemovedSummary| format!("{}: {}", escaped(&removed.what), escaped(&removed.why));
+        row("Not needed", &model.removed.iter().map(told).collect::<Vec<_>>().join("<br>"));
     }
     html
 }

@@ -6,6 +6,7 @@ mod driven;
 mod modes;
 mod reading;
 mod refusing;
+mod required;
 mod resolving;
 mod resting;
 mod running;

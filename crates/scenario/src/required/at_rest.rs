@@ -1,0 +1,132 @@
+//! Beams that never move.
+
+use super::{Removed, Start};
+use nalgebra::Vector2;
+use teeter_detect::Frame;
+use teeter_integrator::{Compliance, Energy, FactorError, Rows, Size, Subsystem, Weights};
+
+/// A beam that stays as it starts unless something touches it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Rest {
+    /// Its energy there.
+    pub(super) energy: Energy,
+    /// What rounding moves it by in the full model, m; 0 where its forces are 0 to the last bit.
+    trembles: f64,
+    /// Its largest deflection, m.
+    pub(super) deflection: f64,
+}
+
+/// A trembling of this part of the deflection is no longer rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// The trembling may be so many times the deflection that the rounding of the forces makes in one step: steps add to each other, at worst in
+/// time with a mode.
+const STEPS_ADD: f64 = 1e3;
+
+impl Rest {
+    /// The rest of a beam, by its number; `None` for one that moves by itself or is moved.
+    pub(super) fn of(start: &Start<'_>, beam: usize) -> Option<Self> {
+        let place = &start.layout.beams[beam];
+        let (_, part, _) = start.model.owner(place.body)?;
+        let system = &part.system;
+        let (q, v) = (&start.q[part.q.clone()], &start.v[part.v.clone()]);
+        if system.is_loaded() || !system.driven().is_empty() || v.iter().any(|v| *v != 0.0) {
+            return None;
+        }
+        let mut force = vec![0.0; v.len()];
+        system.internal_force(q, v, &mut force);
+        system.held().iter().for_each(|k| force[*k] = 0.0);
+        let energy = system.energy(q, v);
+        if force.iter().all(|f| *f == 0.0) && q.iter().all(|q| *q == 0.0) {
+            return Some(Self { energy, trembles: 0.0, deflection: 0.0 });
+        }
+        if place.basis.is_some() || place.beam.is_stretched() {
+            return None;
+        }
+        let largest = |q: &[f64]| place.beam.to_nodes(q).iter().map(|[w, _]| w.abs()).fold(0.0, f64::max);
+        place.beam.solve_static(&mut force).ok()?;
+        let (trembles, deflection) = (STEPS_ADD * largest(&force), largest(q));
+        (trembles <= ROUNDING * deflection).then_some(Self { energy, trembles, deflection })
+    }
+
+    pub(super) fn removed(&self, name: &str) -> Removed {
+        let (why, accuracy) = if self.deflection == 0.0 {
+            (
+                "nothing touches, loads or drives it, and it starts undeformed at rest: no force acts on it".to_owned(),
+                None,
+            )
+        } else {
+            (
+                format!(
+                    "nothing touches or drives it, and it starts in equilibrium, deflected by {:.3e} m: its forces are 0 to rounding",
+                    self.deflection
+                ),
+                Some(format!("{:.1e} m: a thousand times what the rounding of its forces moves it by", self.trembles)),
+            )
+        };
+        Removed { what: format!("beam `{name}`: its motion"), why, accuracy }
+    }
+}
+
+/// A body that stays where it is: it has its places in the state, and no part in any step.
+#[derive(Debug)]
+pub(crate) struct AtRest {
+    held: Vec<usize>,
+    energy: Energy,
+}
+
+impl AtRest {
+    /// With so many coordinates.
+    pub(crate) fn new(coordinates: usize, energy: Energy) -> Self {
+        Self { held: (0..coordinates).collect(), energy }
+    }
+}
+
+impl Subsystem<2> for AtRest {
+    fn size(&self) -> Size {
+        Size { q: self.held.len(), v: self.held.len(), bodies: 1, row: 0 }
+    }
+
+    fn internal_force(&self, _q: &[f64], _v: &[f64], _f: &mut [f64]) {}
+
+    fn held(&self) -> &[usize] {
+        &self.held
+    }
+
+    fn apply(&self, _w: Weights, _q: &[f64], _x: &[f64], _y: &mut [f64]) {}
+
+    fn energy(&self, _q: &[f64], _v: &[f64]) -> Energy {
+        self.energy
+    }
+
+    /// Nothing refers to its points.
+    fn place(&self, _body: u32, _q: &[f64], local: &[Vector2<f64>], out: &mut [Vector2<f64>]) {
+        out.copy_from_slice(local);
+    }
+
+    fn rows(&self, _: u32, _: &[f64], _: &Vector2<f64>, _: &Frame<2>, _: &mut Rows<'_, 2>) -> usize {
+        0
+    }
+
+    fn factor(&self, w: Weights, _q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
+        Ok(Box::new(Immovable(w)))
+    }
+}
+
+/// W = 0.
+struct Immovable(Weights);
+
+impl Compliance<2> for Immovable {
+    fn weights(&self) -> Weights {
+        self.0
+    }
+
+    fn refactor(&mut self, w: Weights, _q: &[f64]) -> Result<(), FactorError> {
+        self.0 = w;
+        Ok(())
+    }
+
+    fn solve(&mut self, f: &mut [f64]) {
+        f.fill(0.0);
+    }
+}
