@@ -4,8 +4,10 @@ use super::drawn::{Drawn, Law, Use};
 use std::fmt::Display;
 use std::ops::ControlFlow;
 use teeter_beam::ShapeAt;
+use teeter_contact::ContactSolver;
 use teeter_integrator::{Ended, Model, Observer, ObserverError, State, StepReport};
 use teeter_scenario::load;
+use teeter_scenario::resolve::Resolved;
 use teeter_scenario::simulation::{BeamPlace, Simulation};
 
 /// Relative change of every number of a scene, for the runs that show how far rounding may grow.
@@ -13,6 +15,9 @@ pub(crate) const NUDGE: f64 = 1e-12;
 
 /// Nudged runs that have come apart by this part of the largest block are past the horizon: a growth of 10⁴.
 const HORIZON: f64 = 1e4 * NUDGE;
+
+/// The same where a solver's tolerance parts them.
+const FAR_HORIZON: f64 = 1e-4;
 
 /// Beams are looked at here, as parts of their span: where their mirror images are looked at too.
 pub(crate) const PROBES: [f64; 4] = [0.0, 0.3, 0.7, 1.0];
@@ -37,12 +42,21 @@ pub(crate) enum NoMotion {
     Failed(String),
 }
 
-/// Reads a scene and makes it ready to run.
-pub(crate) fn simulation(drawn: &Drawn) -> Result<Simulation, NoMotion> {
+/// Reads a scene and makes it ready to run, with something around its solver.
+pub(crate) fn ready(
+    drawn: &Drawn,
+    wrap: impl FnOnce(Box<dyn ContactSolver<2>>) -> Box<dyn ContactSolver<2>>,
+) -> Result<(Resolved, Simulation), NoMotion> {
     let refused = |why: &dyn Display| NoMotion::Refused(why.to_string());
     let text = drawn.to_toml();
     let resolved = load(text.as_bytes(), "drawn.toml", "drawn", &[]).map_err(|why| refused(&why))?;
-    Simulation::new(&resolved.scene).map_err(|why| refused(&why))
+    let simulation = Simulation::with_solver(&resolved.scene, wrap).map_err(|why| refused(&why))?;
+    Ok((resolved, simulation))
+}
+
+/// Reads a scene and makes it ready to run.
+pub(crate) fn simulation(drawn: &Drawn) -> Result<Simulation, NoMotion> {
+    Ok(ready(drawn, |solver| solver)?.1)
 }
 
 /// Writes down where everything is.
@@ -116,8 +130,9 @@ pub(crate) fn motion(drawn: &Drawn) -> Result<Motion, NoMotion> {
 ///
 /// Four runs whose numbers are all nudged by a part of 1e-12, two by two in opposite directions, show what the scene makes of
 /// a small difference; what they are apart by at most so far, D(t), is what 1e-12 grows to. A step rounds by some 1e-16, so
-/// 100 steps put in less than a hundredth of 1e-12: rounding alone may not part two motions by more than D(t). A solver that stops at a
-/// tolerance τ puts in up to τ where a nudge puts in 1e-12: 100 τ/1e-12 D(t).
+/// 100 steps put in less than a tenth of 1e-12: rounding alone may not part two motions by more than D(t). Where a solver stops at a tolerance τ,
+/// it is 100 times what the tolerance makes of the motion: τ/1e-12 D(t), or what a hundredth of τ changes, if that is more
+/// (in an ill-conditioned problem the impulses are off by far more than the residual).
 pub(crate) struct Horizon {
     /// By row; as many as there are before the horizon.
     pub(crate) allowed: Vec<f64>,
@@ -138,15 +153,22 @@ impl Horizon {
                 }
             }
         }
-        let mut so_far = 0.0_f64;
+        if !is_exact(drawn, base) {
+            let finer = motion(&Drawn { tolerance: 0.01 * drawn.tolerance, ..drawn.clone() })?;
+            apart.truncate(finer.solved);
+            for (k, apart) in apart.iter_mut().enumerate() {
+                let solver = distance(drawn, &base.rows[k], &finer.rows[k]);
+                *apart = 100.0 * solver.max(*apart * drawn.tolerance.max(NUDGE) / NUDGE);
+            }
+        }
+        let (mut so_far, limit) = (0.0_f64, if is_exact(drawn, base) { HORIZON } else { FAR_HORIZON });
         for apart in &mut apart {
             so_far = so_far.max(*apart);
             *apart = so_far;
         }
-        let before = apart.iter().take_while(|apart| **apart <= HORIZON).count();
+        let before = apart.iter().take_while(|apart| **apart <= limit).count();
         apart.truncate(before);
-        let factor = if is_exact(drawn, base) { 1.0 } else { 100.0 * drawn.tolerance.max(NUDGE) / NUDGE };
-        Ok(Self { allowed: apart.into_iter().map(|apart| factor * apart).collect() })
+        Ok(Self { allowed: apart })
     }
 
     /// Whether two motions of the scene agree up to the horizon; how many rows could be compared.
