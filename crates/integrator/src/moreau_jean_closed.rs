@@ -113,7 +113,7 @@ const WORKLESS: f64 = 1e-13;
 /// rounding, and so little that no approach is too slow to be seen.
 const SINKING: f64 = 1e-3;
 
-/// A contact that leaves faster than this part of Σ|J_i v| is open after the step.
+/// A contact that leaves faster than this part of Σ|J_i v|, the larger of v¹ and v_free, is open after the step.
 const LEAVING: f64 = 1e-10;
 
 impl<const D: usize> Scheme<D> for MoreauJeanClosed<D> {
@@ -177,9 +177,15 @@ impl<const D: usize> Scheme<D> for MoreauJeanClosed<D> {
             let stays = match contact.gap_after {
                 Some(gap) => gap < 0.0,
                 None => {
-                    let leaves = contact.u_after[0] + self.resting_shift[i];
-                    contact.p[0] > 0.0
-                        && (leaves <= 0.0 || leaves <= LEAVING * work.contacts.speed(i, &self.step.v_end))
+                    let leaves = match work.contacts.rules[i] {
+                        // What comes back is found in expansion.
+                        Rule::Poisson { .. } => contact.u_after[0] + self.resting_shift[i],
+                        // U_n¹ = −s_n where it presses: by s_n itself, as at rest a velocity is all rounding and solver's error.
+                        _ => self.resting_shift[i] - work.contacts.shift[i][0],
+                    };
+                    let speed = |v: &[f64]| work.contacts.speed(i, v);
+                    let still = || LEAVING * speed(&self.step.v_end).max(speed(&self.v_free));
+                    contact.p[0] > 0.0 && (leaves <= 0.0 || leaves <= still())
                 }
             };
             if stays {

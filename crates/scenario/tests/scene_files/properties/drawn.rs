@@ -103,10 +103,27 @@ pub(crate) struct Block {
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Law {
     /// The word, and restitution along the normal and the tangent.
-    Instant { word: &'static str, normal: f64, tangential: f64 },
-    KelvinVoigt { stiffness: f64, damping: f64 },
+    Instant {
+        word: &'static str,
+        normal: f64,
+        tangential: f64,
+    },
+    KelvinVoigt {
+        stiffness: f64,
+        damping: f64,
+    },
     /// With D (s/m).
-    HuntCrossley { stiffness: f64, damping: f64, exponent: f64 },
+    HuntCrossley {
+        stiffness: f64,
+        damping: f64,
+        exponent: f64,
+    },
+}
+
+impl Law {
+    pub(crate) fn is_poisson(&self) -> bool {
+        matches!(self, Self::Instant { word: "poisson", .. })
+    }
 }
 
 #[derive(Clone, Debug)]

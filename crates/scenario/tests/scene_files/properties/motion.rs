@@ -1,6 +1,6 @@
 //! A scene run in memory, and two motions compared up to the horizon.
 
-use super::drawn::{Drawn, Law, Use};
+use super::drawn::{Drawn, Law, Scheme, Use};
 use std::fmt::Display;
 use std::ops::ControlFlow;
 use teeter_beam::ShapeAt;
@@ -16,7 +16,7 @@ pub(crate) const NUDGE: f64 = 1e-12;
 /// Nudged runs that have come apart by this part of the largest block are past the horizon: a growth of 10⁴.
 const HORIZON: f64 = 1e4 * NUDGE;
 
-/// The same where a solver's tolerance parts them.
+/// The same where more than rounding parts them.
 const FAR_HORIZON: f64 = 1e-4;
 
 /// Beams are looked at here, as parts of their span: where their mirror images are looked at too.
@@ -132,7 +132,7 @@ pub(crate) fn motion(drawn: &Drawn) -> Result<Motion, NoMotion> {
 /// a small difference; what they are apart by at most so far, D(t), is what 1e-12 grows to. A step rounds by some 1e-16, so
 /// 100 steps put in less than a tenth of 1e-12: rounding alone may not part two motions by more than D(t). Where a solver stops at a tolerance τ,
 /// it is 100 times what the tolerance makes of the motion: τ/1e-12 D(t), or what a hundredth of τ changes, if that is more
-/// (in an ill-conditioned problem the impulses are off by far more than the residual).
+/// (in an ill-conditioned problem the impulses are off by far more than the residual). Scaled restitution puts in 1e-7.
 pub(crate) struct Horizon {
     /// By row; as many as there are before the horizon.
     pub(crate) allowed: Vec<f64>,
@@ -153,15 +153,16 @@ impl Horizon {
                 }
             }
         }
-        if !is_exact(drawn, base) {
+        let put_in = put_in(drawn, base);
+        if put_in > NUDGE {
             let finer = motion(&Drawn { tolerance: 0.01 * drawn.tolerance, ..drawn.clone() })?;
             apart.truncate(finer.solved);
             for (k, apart) in apart.iter_mut().enumerate() {
                 let solver = distance(drawn, &base.rows[k], &finer.rows[k]);
-                *apart = 100.0 * solver.max(*apart * drawn.tolerance.max(NUDGE) / NUDGE);
+                *apart = (100.0 * solver).max(*apart * put_in / NUDGE);
             }
         }
-        let (mut so_far, limit) = (0.0_f64, if is_exact(drawn, base) { HORIZON } else { FAR_HORIZON });
+        let (mut so_far, limit) = (0.0_f64, if put_in > NUDGE { FAR_HORIZON } else { HORIZON });
         for apart in &mut apart {
             so_far = so_far.max(*apart);
             *apart = so_far;
@@ -193,10 +194,20 @@ pub(crate) fn extent(drawn: &Drawn, motion: &Motion) -> f64 {
     places.fold(0.0, |largest, x| largest.max(x.abs()))
 }
 
-/// Whether every contact problem was solved by enumeration, and by one problem a step: then only rounding is left.
-pub(crate) fn is_exact(drawn: &Drawn, motion: &Motion) -> bool {
+/// What a step may put in beside a nudge's 1e-12, relative: no more where every contact problem is enumerated, and is one problem.
+fn put_in(drawn: &Drawn, motion: &Motion) -> f64 {
     let newton = |law: &Law| matches!(law, Law::Instant { word: "newton", .. });
-    drawn.method != "pgs" && motion.contacts <= 3 && drawn.contacts.iter().all(|contact| newton(&contact.law))
+    let exact =
+        drawn.method != "pgs" && motion.contacts <= 3 && drawn.contacts.iter().all(|contact| newton(&contact.law));
+    let solved = if exact { NUDGE } else { 100.0 * drawn.tolerance };
+    // Restitution is scaled until its work is none up to rounding, 1e-14 of the impact's: the velocity that comes back is then
+    // known to the root of that.
+    let scaled = |law: &Law| match law {
+        Law::Instant { word: "energetic", normal, .. } => *normal > 0.0,
+        Law::Instant { word: "newton", normal, .. } => *normal > 0.0 && drawn.scheme == Scheme::Closed,
+        _ => false,
+    };
+    if drawn.contacts.iter().any(|contact| scaled(&contact.law)) { solved.max(1e-7) } else { solved }
 }
 
 /// The largest difference of two rows: of lengths in parts of the largest block, of angles in rad.
