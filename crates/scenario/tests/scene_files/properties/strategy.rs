@@ -257,6 +257,10 @@ pub(crate) fn scene() -> impl Strategy<Value = Drawn> {
                     drawn.contacts.push(Contact { name, block: k, surface, friction, law, linear });
                 }
             }
+            if drawn.contacts.iter().any(|contact| contact.law.is_poisson()) {
+                // Who parts in expansion is told to 1e-11; a solver that stops before that can't tell a tie from a choice.
+                (drawn.method, drawn.tolerance) = ("auto", 1e-12);
+            }
             drawn
         },
     )
