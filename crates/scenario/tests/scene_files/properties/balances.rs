@@ -357,6 +357,8 @@ const BEAM_ROUNDING: f64 = 1e-11;
 #[test]
 fn energy_is_accounted_for_and_never_made() {
     check("ledger", "proptest-regressions/ledger.txt", Just(()), |drawn, ()| {
+        // Beside friction Poisson's law gives energy now and then: `open/poisson-gain.toml`.
+        let phased = drawn.contacts.iter().any(|contact| contact.law.is_poisson());
         let shaken = drawn.ground.is_some_and(|ground| ground.motion.is_some())
             || drawn.beams.iter().any(|beam| beam.motion.is_some());
         steps(drawn, |_, simulation| {
@@ -386,7 +388,7 @@ fn energy_is_accounted_for_and_never_made() {
                     }
                 }
                 let contact = energy.contact + energy.friction;
-                if drawn.scheme == Scheme::Closed && !shaken && !(contact <= rounding + step.open.energy) {
+                if drawn.scheme == Scheme::Closed && !shaken && !phased && !(contact <= rounding + step.open.energy) {
                     return Err(format!("contacts give {contact:e} J, more than {:e} J", rounding + step.open.energy));
                 }
                 Ok(())
