@@ -178,12 +178,15 @@ impl<const D: usize> Scheme<D> for MoreauJeanClosed<D> {
             let stays = match contact.gap_after {
                 Some(gap) => gap < 0.0,
                 None => {
-                    let leaves = contact.u_after[0] + self.resting_shift[i];
-                    contact.p[0] > 0.0
-                        && (leaves <= 0.0
-                            || [&self.step.v_end, &self.v_free]
-                                .iter()
-                                .any(|v| leaves <= LEAVING * work.contacts.speed(i, v)))
+                    let leaves = match work.contacts.rules[i] {
+                        // What comes back is found in expansion.
+                        Rule::Poisson { .. } => contact.u_after[0] + self.resting_shift[i],
+                        // U_n¹ = −s_n where it presses: by s_n itself, as at rest a velocity is all rounding and solver's error.
+                        _ => self.resting_shift[i] - work.contacts.shift[i][0],
+                    };
+                    let speed = |v: &[f64]| work.contacts.speed(i, v);
+                    let still = || LEAVING * speed(&self.step.v_end).max(speed(&self.v_free));
+                    contact.p[0] > 0.0 && (leaves <= 0.0 || leaves <= still())
                 }
             };
             if stays {

@@ -8,6 +8,15 @@ use super::sections::Profiled;
 use crate::faults;
 use crate::scene::{BeamScene, Reduction, SignalScene};
 
+/// The same support without dashpots.
+fn undamped(support: Support) -> Support {
+    let [deflection, rotation] = support.holds().map(|hold| match hold {
+        Hold::Spring { stiffness, .. } => Hold::Spring { stiffness, damping: 0.0 },
+        other => other,
+    });
+    Support::Elastic { deflection, rotation }
+}
+
 /// Most elements of all beams together: their memory and the time to factorise them stay within what a scene's check may
 /// take.
 const MOST_ELEMENTS: usize = 2 * MAX_ELEMENTS;
@@ -243,17 +252,15 @@ impl Resolver<'_, '_> {
         let mode = self.doc.integer(&format!("{path}.mode")).and_then(|mode| usize::try_from(mode).ok())?;
         let ratio = self.doc.number(&format!("{path}.ratio"))?;
         let (omega, shape) = self.elastic_mode(&path, beam, mode)?;
-        let damping = |viscous: f64| {
-            let mut spec = beam.spec().clone();
-            spec.damping = Damping { viscous, ..Damping::default() };
-            Beam::new(spec).map(|beam| {
-                let mut damped = vec![0.0; shape.len()];
-                beam.add_damping_product(1.0, &shape, &mut damped);
-                damped.iter().zip(&shape).map(|(c, x)| c * x).sum::<f64>()
-            })
-        };
-        // Less what supports and foundations damp.
-        let unit = damping(1.0).ok()? - damping(0.0).ok()?;
+        // Without what supports and foundations damp: that is on top, and may be so much that it hides the rest.
+        let mut alone = beam.spec().clone();
+        alone.damping = Damping { viscous: 1.0, ..Damping::default() };
+        alone.supports = alone.supports.map(undamped);
+        alone.inner_supports.iter_mut().for_each(|(_, support)| *support = undamped(*support));
+        alone.foundations.iter_mut().for_each(|foundation| foundation.damping = 0.0);
+        let mut damped = vec![0.0; shape.len()];
+        Beam::new(alone).ok()?.add_damping_product(1.0, &shape, &mut damped);
+        let unit: f64 = damped.iter().zip(&shape).map(|(c, x)| c * x).sum();
         Some(2.0 * ratio * omega / unit)
     }
 

@@ -265,6 +265,10 @@ fn damping_is_fitted_to_ratios_and_to_any_mode() {
     // φᵀC φ = 2ζω.
     let damped = Beam::new(laden).unwrap().damping_power(modes.shape(0));
     assert!((damped.abs() / (2.0 * 0.02 * modes.circular_frequencies()[0]) - 1.0).abs() < 1e-9);
+    // A dashpot damps on top of it, however much.
+    let beside = |dashpot: &str| format!("{ratio}[beam.b.support.s]\nat = '1 m'\ndashpot = '{dashpot} N s/m'\n");
+    let viscous = |dashpot: &str| beam(&plain(&beside(dashpot)), &[]).spec.damping.viscous;
+    assert_eq!(viscous("1e12"), viscous("0"));
     refused(&plain(&with("1 kg").replace("mode = 1", "mode = 30")), &[], &["beam.b.damping_ratio", "first 20"]);
     refused(&plain(&with("1 kg").replace("mode = 1", "mode = 9")), &[], &["have 8 elastic modes"]);
 }

@@ -4,6 +4,7 @@
 mod beams;
 mod driven;
 mod modes;
+mod properties;
 mod reading;
 mod refusing;
 mod required;
