@@ -50,7 +50,7 @@ pub struct Axes {
 const OTHERS: [fn(&Resolved) -> Option<Axis>; 6] = [theta, mesh, modes, kinematics, solver, tolerance];
 
 /// Steps as multiples of the scene's own, from coarse to fine.
-const STEPS: [f64; 11] = [50.0, 20.0, 10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02];
+const STEPS: [f64; 12] = [50.0, 20.0, 10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01];
 /// Fewer steps than this are no simulation.
 const FEWEST_STEPS: f64 = 20.0;
 
@@ -217,7 +217,7 @@ fn modes(resolved: &Resolved) -> Option<Axis> {
 mod tests {
     use super::*;
 
-    pub(crate) const GROUND: &str = "[time]\nend = \"0.1 s\"\nstep = \"1 ms\"\n[ground]\n[material.wood]\n\
+    const GROUND: &str = "[time]\nend = \"0.1 s\"\nstep = \"1 ms\"\n[ground]\n[material.wood]\n\
         density = \"600 kg/m^3\"\nyoungs_modulus = \"10 GPa\"\n[block.cube]\nmaterial = \"wood\"\nwidth = \"10 cm\"\nheight = \"10 cm\"\n\
         depth = \"10 cm\"\nposition = [\"0 m\", \"6 cm\"]\n[contact.floor]\nbetween = [\"cube\", \"ground\"]\nfriction = 0.4\n";
 
@@ -258,7 +258,7 @@ mod tests {
     fn steps_go_from_coarse_to_fine_in_texts_that_read_back() {
         let (resolved, axes) = axes(GROUND);
         let texts: Vec<_> = axes.step.options.iter().map(|option| option.get("time.step").unwrap_or("1 ms")).collect();
-        assert_eq!(texts, ["5 ms", "2 ms", "1 ms", "500 us", "200 us", "100 us", "50 us", "20 us"]);
+        assert_eq!(texts, ["5 ms", "2 ms", "1 ms", "500 us", "200 us", "100 us", "50 us", "20 us", "10 us"]);
         assert_eq!(resolved.scene.time.step, 1e-3);
         assert_eq!(in_seconds(0.1 * 3.0 * 1e-3), "300 us");
         assert_eq!(in_seconds(2.5e-10), "0.25 ns");
@@ -269,7 +269,7 @@ mod tests {
         let (_, axes) = axes(GROUND);
         let [coarse, .., fine] = axes.step.options.as_slice() else { panic!("a ladder") };
         let both = axes.step.apply(fine, &axes.step.apply(coarse, &Setting::none().set("time.theta", "1.0")));
-        assert_eq!(both.get("time.step"), Some("20 us"));
+        assert_eq!(both.get("time.step"), Some("10 us"));
         assert_eq!(axes.step.part_of(&both), *fine);
         assert_eq!(axes.step.apply(&Setting::none(), &both), Setting::none().set("time.theta", "1.0"));
     }

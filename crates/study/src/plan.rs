@@ -2,18 +2,24 @@
 
 use crate::axes::Axes;
 use crate::recommend::{TARGETS, cheapest};
-use crate::row::front_of;
+use crate::row::{differ, front_of};
 use crate::{Row, Setting};
 
 /// How many stages there are at the most.
-pub(crate) const STAGES: usize = 5;
+pub(crate) const STAGES: usize = 6;
+
+/// Rounds of the last stage at the most.
+pub(crate) const CONFIRMATIONS: usize = 8;
 
 /// What each stage tries, for people.
-pub const TOLD: [&str; 3] = [
+pub const TOLD: [&str; 5] = [
     "every scheme with every step, all else as in the scene",
-    "every other axis alone, its options one at a time, on: the scene as it is, the cheapest setting so far for each accuracy asked for, and the most accurate one",
+    "every option of every other axis, one at a time, on the scene as it is",
+    "those of them that changed accuracy or cost by more than 5 %, one at a time, on the cheapest setting so far for each accuracy asked for and on the most \
+     accurate one",
     "what came onto the front so far, alone and all that goes together at once, with the two coarser and the two finer steps and with the other schemes; \
-     repeated twice while that brings something new",
+     once more while that brings something new",
+    "the next finer step of what is the cheapest so far for each accuracy: accuracy that it does not confirm was luck, and the next cheapest is confirmed in its place",
 ];
 
 /// The settings of a stage (from 1), in an order that is the same in every run; those tried already are left out. `takes` says whether a
@@ -27,8 +33,22 @@ pub(crate) fn stage(
 ) -> Vec<Setting> {
     let wanted = match stage {
         1 => schemes_and_steps(axes),
-        2 => one_at_a_time(axes, rows, bar, takes),
-        _ => together(axes, rows, bar, takes),
+        2 => one_at_a_time(axes, &[Setting::none()], takes),
+        3 => {
+            let own = rows.iter().find(|row| row.setting.is_none());
+            let matters = |setting: &Setting| {
+                let tried = rows.iter().find(|row| row.setting == *setting);
+                own.zip(tried).is_none_or(|(own, tried)| differ(own, tried))
+            };
+            let mut axes = axes.clone();
+            axes.others.iter_mut().for_each(|axis| axis.options.retain(|option| option.is_none() || matters(option)));
+            one_at_a_time(&axes, &bases(&axes, rows, bar), takes)
+        }
+        4 | 5 => together(axes, rows, bar, takes),
+        _ => {
+            let chosen = TARGETS.iter().filter_map(|&target| cheapest(rows, axes, target, bar));
+            chosen.filter_map(|row| axes.finer(&rows[row].setting)).collect()
+        }
     };
     let mut new: Vec<Setting> = Vec::new();
     for setting in wanted {
@@ -57,13 +77,13 @@ fn bases(axes: &Axes, rows: &[Row], bar: f64) -> Vec<Setting> {
     bases
 }
 
-fn one_at_a_time(axes: &Axes, rows: &[Row], bar: f64, takes: &dyn Fn(&Setting) -> bool) -> Vec<Setting> {
+fn one_at_a_time(axes: &Axes, bases: &[Setting], takes: &dyn Fn(&Setting) -> bool) -> Vec<Setting> {
     let mut settings = Vec::new();
-    for base in bases(axes, rows, bar) {
+    for base in bases {
         for axis in &axes.others {
-            let options: Vec<Setting> = axis.options.iter().map(|option| axis.apply(option, &base)).collect();
+            let options: Vec<Setting> = axis.options.iter().map(|option| axis.apply(option, base)).collect();
             // An axis that a scheme knows in one value only, as θ may be, is none with it.
-            if options.iter().any(|setting| *setting != base && takes(setting)) {
+            if options.iter().any(|setting| setting != base && takes(setting)) {
                 settings.extend(options);
             }
         }
@@ -156,28 +176,37 @@ mod tests {
     }
 
     #[test]
-    fn the_second_stage_changes_one_other_axis_of_what_is_worth_it() {
+    fn other_axes_are_tried_on_the_scene_first_and_what_matters_on_what_is_worth_it() {
         let step = |word: &str| Setting::none().set("time.step", word);
-        let rows = [row(step("4"), 10, 0.05), row(Setting::none(), 20, 0.2), row(step("1"), 40, 0.04)];
-        // θ is refused with the coarse step: there it is no axis.
+        let mut rows = vec![row(step("4"), 10, 0.05), row(Setting::none(), 20, 0.2), row(step("1"), 40, 0.04)];
+        // θ is refused with the fine step: there it is no axis.
         let takes = |setting: &Setting| setting.get("theta").is_none() || setting.get("time.step") != Some("1");
-        let settings = stage(2, &axes(), &rows, 0.0, &takes);
-        let texts: Vec<_> = settings.iter().map(ToString::to_string).collect();
+        let texts = |settings: Vec<Setting>| settings.iter().map(ToString::to_string).collect::<Vec<_>>();
+        let second = stage(2, &axes(), &rows, 0.0, &takes);
+        assert_eq!(texts(second), ["--set elements=10", "--set elements=40", "--set theta=1"]);
+        rows.push(row(Setting::none().set("elements", "10"), 10, 0.2));
+        rows.push(row(Setting::none().set("elements", "40"), 20, 0.2));
+        rows.push(row(Setting::none().set("theta", "1"), 20, 0.1));
         assert_eq!(
-            texts,
-            [
-                "--set elements=10",
-                "--set elements=40",
-                "--set theta=1",
-                "--set elements=10 --set time.step=1",
-                "--set elements=40 --set time.step=1"
-            ],
-            "on the scene as it is and the most accurate; the coarse step is luck, as its finer one is worse"
+            texts(stage(3, &axes(), &rows, 0.0, &takes)),
+            ["--set elements=10 --set theta=1", "--set elements=10 --set time.step=1"],
+            "40 elements changed nothing, and the coarse step was luck, as its finer one is worse"
         );
     }
 
     #[test]
-    fn the_third_stage_brings_together_what_helped_with_the_steps_near_it() {
+    fn the_last_stage_confirms_what_would_be_advised() {
+        let own = Setting::none();
+        let rows = [row(own.clone(), 20, 0.2), row(own.clone().set("elements", "10"), 10, 0.05)];
+        assert_eq!(
+            stage(6, &axes(), &rows, 0.0, &|_| true),
+            [own.set("elements", "10").set("time.step", "1")],
+            "the cheapest for 10 %; for the others there is none"
+        );
+    }
+
+    #[test]
+    fn the_fourth_stage_brings_together_what_helped_with_the_steps_near_it() {
         let own = Setting::none();
         let rows = [
             row(own.clone(), 20, 0.04),
@@ -185,12 +214,12 @@ mod tests {
             row(own.clone().set("theta", "1"), 30, 0.01),
             row(own.clone().set("elements", "40"), 90, 0.02),
         ];
-        let settings = stage(3, &axes(), &rows, 0.0, &|_| true);
+        let settings = stage(4, &axes(), &rows, 0.0, &|_| true);
         let both = own.clone().set("elements", "10").set("theta", "1");
         assert!(settings.contains(&both));
         assert!(settings.contains(&both.clone().set("time.step", "4")));
         assert!(settings.contains(&both.set("time.scheme", "b")));
         assert!(!settings.iter().any(|setting| setting.get("elements") == Some("40")), "was not on the front");
-        assert_eq!(settings, stage(3, &axes(), &rows, 0.0, &|_| true), "the same in every run");
+        assert_eq!(settings, stage(4, &axes(), &rows, 0.0, &|_| true), "the same in every run");
     }
 }

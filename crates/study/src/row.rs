@@ -69,12 +69,34 @@ pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
     order
 }
 
-/// The rows on the front of accuracy over counted work.
+/// Two costs or two errors nearer to each other than this factor are the same: a solve more or less is no reason to choose.
+const SAME: f64 = 1.05;
+
+/// The rows on the front of accuracy over counted work, both in classes 5 % wide; of a class the row that changes least of the scene, then the
+/// first.
 #[must_use]
 pub fn front_of(rows: &[Row]) -> Vec<usize> {
-    let point = |row: &Row| Some((row.modelled()?, row.accuracy()?));
-    let points: Vec<_> = rows.iter().map(|row| point(row).unwrap_or((f64::NAN, f64::NAN))).collect();
-    front(&points)
+    let class = |x: f64| (x.max(f64::MIN_POSITIVE).ln() / SAME.ln()).round();
+    let point = |row: &Row| Some((class(row.modelled()?), class(row.accuracy()?)));
+    let mut order: Vec<usize> = (0..rows.len()).collect();
+    order.sort_by_key(|&k| (rows[k].setting.len(), k));
+    let points: Vec<_> = order.iter().map(|&k| point(&rows[k]).unwrap_or((f64::NAN, f64::NAN))).collect();
+    front(&points).into_iter().map(|k| order[k]).collect()
+}
+
+/// Whether two rows differ in cost or accuracy by more than 5 %, or in whether they came to their end.
+pub(crate) fn differ(a: &Row, b: &Row) -> bool {
+    let apart = |a: Option<f64>, b: Option<f64>| match (a, b) {
+        (Some(a), Some(b)) => a > SAME * b || b > SAME * a,
+        (None, None) => false,
+        _ => true,
+    };
+    apart(a.modelled(), b.modelled()) || apart(a.accuracy(), b.accuracy())
+}
+
+/// Whether a cost is as good as the least: within the same 5 %.
+pub(crate) fn as_cheap(cost: f64, least: f64) -> bool {
+    cost <= SAME * least
 }
 
 #[cfg(test)]

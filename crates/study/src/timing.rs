@@ -28,11 +28,13 @@ impl Cpu {
     }
 }
 
+/// How often a short run is measured.
+const SHORT: usize = 7;
+
 /// How often a run is measured, by its modelled cost (s) and not by the clock: short ones vary the most and cost the least.
 fn runs(modelled: f64) -> usize {
     match modelled {
-        short if short < 0.03 => 7,
-        middling if middling < 0.2 => 5,
+        short if short < 0.03 => SHORT,
         long if long < 1.0 => 3,
         _ => 1,
     }
@@ -55,7 +57,7 @@ pub(crate) fn in_turns(
             if turn + runs < most {
                 continue;
             }
-            if times.is_empty() && runs == 7 {
+            if times.is_empty() && runs == SHORT {
                 time(source, setting, cancel)?;
             }
             times.push(time(source, setting, cancel)?);

@@ -1,7 +1,7 @@
 //! The study of one scene: reference, candidates in stages, times, advice.
 
 use crate::axes::Axes;
-use crate::plan::{STAGES, stage};
+use crate::plan::{CONFIRMATIONS, STAGES, stage};
 use crate::recommend::{Advice, TARGETS, advise};
 use crate::reference::{self, Reference};
 use crate::row::{Done, Row, front_of};
@@ -40,8 +40,8 @@ pub struct Tradeoff {
 }
 
 /// Modelled work of a candidate, and of all of them, s: the rest is left out, the dear ones of a late stage first.
-const MOST_WORK_OF_ONE: f64 = 1.5;
-const MOST_WORK: f64 = 9.0;
+const MOST_WORK_OF_ONE: f64 = 0.8;
+const MOST_WORK: f64 = 6.0;
 
 /// How far a study is: what it is at, and how much of that is done.
 pub type Tell<'a> = dyn FnMut(&str, usize, usize) + Send + 'a;
@@ -77,7 +77,7 @@ impl Tradeoff {
             too_dear: 0,
             advice: [Advice::NotReached; TARGETS.len()],
         };
-        for number in 1..=STAGES {
+        for number in (1..STAGES).chain(std::iter::repeat_n(STAGES, CONFIRMATIONS)) {
             study.stage(number, source, threads, cancel, tell)?;
         }
         study.time(source, cancel, tell)?;
@@ -96,6 +96,12 @@ impl Tradeoff {
     #[must_use]
     pub fn own(&self) -> Option<&Row> {
         self.rows.iter().find(|row| row.setting.is_none())
+    }
+
+    /// The least error of the accuracy among the candidates.
+    #[must_use]
+    pub fn best(&self) -> Option<f64> {
+        self.rows.iter().filter_map(Row::accuracy).reduce(f64::min)
     }
 
     /// How many settings the full grid of the axes would have.

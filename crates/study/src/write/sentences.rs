@@ -13,7 +13,11 @@ pub fn advice(study: &Tradeoff) -> Vec<String> {
             Advice::NotMeasurable => {
                 format!("{target} of accuracy: not measurable here: the reference is known to {}", percent(study.bar()))
             }
-            Advice::NotReached => format!("{target} of accuracy: none of the settings tried is known to reach it"),
+            Advice::NotReached => format!(
+                "{target} of accuracy: none of the settings tried is known to reach it: the best is off by {}, and the reference known to {}",
+                percent(study.best().unwrap_or(f64::NAN)),
+                percent(study.bar())
+            ),
             Advice::Take { row, overruled } => {
                 let row = &study.rows[*row];
                 let overruled = if *overruled { "; by measured time, which the counted work is far from" } else { "" };
@@ -84,7 +88,9 @@ pub fn findings(study: &Tradeoff) -> Vec<String> {
 /// How the grid was pruned.
 #[must_use]
 pub fn pruning(study: &Tradeoff) -> Vec<String> {
-    let stages = STAGES_TOLD.iter().enumerate().map(|(number, told)| format!("stage {}: {told}", number + 1));
+    // The fourth is two stages.
+    let numbers = ["1", "2", "3", "4 and 5", "6"];
+    let stages = numbers.iter().zip(STAGES_TOLD).map(|(number, told)| format!("stage {number}: {told}"));
     let axes = study.axes.iter().map(|axis| format!("{} {}", axis.options.len(), axis.name));
     let mut texts: Vec<String> = stages.collect();
     texts.push(format!(
