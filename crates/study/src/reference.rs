@@ -51,7 +51,7 @@ const STEP: f64 = 0.0025;
 /// the two is as large as the error of the finer one.
 const MESHES: [f64; 2] = [4.0, 2.0];
 /// Modelled work of the reference, s.
-const MOST_WORK: f64 = 2.5;
+const MOST_WORK: f64 = 1.2;
 /// Tolerance of its contact solver.
 const TOLERANCE: &str = "1e-13";
 

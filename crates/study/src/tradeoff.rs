@@ -40,8 +40,8 @@ pub struct Tradeoff {
 }
 
 /// Modelled work of a candidate, and of all of them, s: the rest is left out, the dear ones of a late stage first.
-const MOST_WORK_OF_ONE: f64 = 0.8;
-const MOST_WORK: f64 = 6.0;
+const MOST_WORK_OF_ONE: f64 = 0.5;
+const MOST_WORK: f64 = 3.5;
 
 /// How far a study is: what it is at, and how much of that is done.
 pub type Tell<'a> = dyn FnMut(&str, usize, usize) + Send + 'a;
