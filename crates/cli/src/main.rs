@@ -11,6 +11,7 @@ mod scene_page;
 mod schema;
 mod solve;
 mod start;
+mod tradeoff;
 
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
@@ -83,6 +84,25 @@ enum Command {
         /// `full`: model all that the scene names, also what can't matter to it and is left out otherwise; `teeter check` lists that
         #[arg(long, value_name = "required|full", default_value = "required", value_parser = run::extent)]
         model: Extent,
+    },
+    /// Measure what accuracy costs in a scene: errors and CPU time over schemes, steps, meshes and solvers; what to take for which accuracy
+    #[command(after_help = "Examples:\n  teeter tradeoff scenarios/free-rocking-on-beam.toml\n  \
+        teeter tradeoff scene.toml --out trade --set time.end=200ms")]
+    Tradeoff {
+        /// The scene file; `-` reads standard input
+        scene: PathBuf,
+        /// Folder for the results (default: `runs/`, the name of the scene file and `-tradeoff`)
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Override a key of the scene, such as beam.table.thickness="2 mm"; may be repeated
+        #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value)]
+        set: Vec<(String, String)>,
+        /// Print the advice and errors only
+        #[arg(long)]
+        quiet: bool,
+        /// Replace results of an earlier study
+        #[arg(long)]
+        force: bool,
     },
     /// List the contact solvers: their dimensions, law (exact or convex) and source
     Solvers,
@@ -170,6 +190,9 @@ fn main() -> ExitCode {
             run::run(&options).into()
         }
         Command::Check { scene, set, model } => check::check(&check::Options { scene, set, extent: model }).into(),
+        Command::Tradeoff { scene, out, set, quiet, force } => {
+            tradeoff::tradeoff(&tradeoff::Options { scene, out, set, quiet, force }).into()
+        }
         Command::Solvers => solve::list().into(),
         Command::Solve { paths, solvers, tolerance, time_limit, json, solutions, profile } => {
             solve::solve(&solve::Options { paths, solvers, tolerance, time_limit, json, solutions, profile }).into()

@@ -99,3 +99,38 @@ impl Drop for Solves {
         self.bar.finish_and_clear();
     }
 }
+
+/// A bar for work in phases, on standard error.
+pub(crate) struct Phases {
+    console: Console,
+    begin: Instant,
+    bar: ProgressBar,
+}
+
+impl Phases {
+    pub(crate) fn new(console: Console) -> Self {
+        let bar = ProgressBar::with_draw_target(Some(0), ProgressDrawTarget::hidden());
+        if let Ok(style) = ProgressStyle::with_template("{bar:30} {msg}: {human_pos} of {human_len}  {elapsed}") {
+            bar.set_style(style);
+        }
+        Self { console, begin: Instant::now(), bar }
+    }
+
+    /// A phase is so far.
+    pub(crate) fn at(&self, phase: &str, done: usize, of: usize) {
+        if self.console.is_watched() && self.bar.is_hidden() && self.begin.elapsed() > PATIENCE {
+            self.bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(10));
+        }
+        if self.bar.message() != phase {
+            self.bar.set_message(phase.to_owned());
+        }
+        self.bar.set_length(of as u64);
+        self.bar.set_position(done as u64);
+    }
+}
+
+impl Drop for Phases {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}

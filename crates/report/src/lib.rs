@@ -22,7 +22,7 @@ pub use checkpoint::{
     CHECKPOINT, Checkpoint, CheckpointError, Found, Identity, Moment, VERSION as CHECKPOINT_VERSION, program_hash,
 };
 pub use export::{ExportWhen, Exporter, Former, HARD, Watch};
-pub use page::{HalfCycle, PageRecorder, figures, half_cycles, render};
+pub use page::{HalfCycle, PageRecorder, STYLE, escaped, figures, half_cycles, render};
 pub use recorder::{ImpactRow, Record, Recorder};
 pub use results::{FILES, Results, ResultsError};
 pub use run_recorder::{Origin, RunRecorder};

@@ -14,7 +14,8 @@ mod rocking;
 mod scenery;
 
 pub use figures::figures;
-pub use html::render;
+pub use html::{STYLE, render};
+pub use plot::escaped;
 pub(crate) use recorder::Kept;
 pub use recorder::PageRecorder;
 pub use rocking::{HalfCycle, half_cycles};

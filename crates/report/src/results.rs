@@ -52,6 +52,7 @@ pub enum ResultsError {
 #[derive(Debug)]
 pub struct Results {
     folder: PathBuf,
+    files: &'static [&'static str],
 }
 
 impl ResultsError {
@@ -69,19 +70,27 @@ impl Results {
     /// # Errors
     /// If it holds results and `force` is not given, or it can't be made or written.
     pub fn create(folder: &Path, force: bool) -> Result<Self, ResultsError> {
+        Self::create_of(&FILES, folder, force)
+    }
+
+    /// As [`Results::create`], for results that are other files than a run's: these, in the order in which they are removed.
+    ///
+    /// # Errors
+    /// As [`Results::create`].
+    pub fn create_of(files: &'static [&'static str], folder: &Path, force: bool) -> Result<Self, ResultsError> {
         if folder.exists() && !folder.is_dir() {
             return Err(ResultsError::NotFolder(folder.to_owned()));
         }
-        let old: Vec<PathBuf> = FILES.iter().map(|file| folder.join(file)).filter(|path| path.exists()).collect();
+        let old: Vec<PathBuf> = files.iter().map(|file| folder.join(file)).filter(|path| path.exists()).collect();
         if !old.is_empty() && !force {
             return Err(ResultsError::Exists(folder.to_owned()));
         }
         fs::create_dir_all(folder).map_err(|source| ResultsError::Io { path: folder.to_owned(), source })?;
-        let results = Self { folder: folder.to_owned() };
+        let results = Self { folder: folder.to_owned(), files };
         // Before anything old goes, it has to be sure that something new can come.
         let trial = results.temporary("trial");
         fs::write(&trial, b"").map_err(|source| ResultsError::Io { path: folder.to_owned(), source })?;
-        let parts = FILES.iter().map(|file| results.temporary(file)).filter(|path| path.exists());
+        let parts = results.files.iter().map(|file| results.temporary(file)).filter(|path| path.exists());
         let old: Vec<PathBuf> = parts.chain(old).collect();
         // An old summary beside new tables would look like one run.
         for path in old.into_iter().chain([trial]) {
@@ -95,10 +104,10 @@ impl Results {
     /// # Errors
     /// If a file can't be removed.
     pub fn reopen(folder: &Path) -> Result<Self, ResultsError> {
-        let results = Self { folder: folder.to_owned() };
+        let results = Self { folder: folder.to_owned(), files: &FILES };
         // While the summary stands, the folder looks like one of a run that has ended.
         let (summary, trial) = (folder.join("summary.json"), results.temporary("trial"));
-        let parts = FILES.iter().map(|file| results.temporary(file));
+        let parts = results.files.iter().map(|file| results.temporary(file));
         for path in [summary, trial].into_iter().chain(parts).filter(|path| path.exists()) {
             fs::remove_file(&path).map_err(|source| ResultsError::Io { path, source })?;
         }

@@ -12,7 +12,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 const TEMPLATE: &str = include_str!("../../assets/report.html");
-const STYLE: &str = include_str!("../../assets/report.css");
+/// The style of the pages.
+pub const STYLE: &str = include_str!("../../assets/report.css");
 const SCRIPTS: [&str; 4] = [
     include_str!("../../assets/model.js"),
     include_str!("../../assets/scene.js"),

@@ -332,7 +332,8 @@ impl Ticks {
 }
 
 /// Text with the characters that XML takes for its own replaced.
-pub(crate) fn escaped(text: &str) -> String {
+#[must_use]
+pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         match c {

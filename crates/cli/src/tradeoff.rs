@@ -1,0 +1,105 @@
+//! `teeter tradeoff`.
+
+use crate::companions;
+use crate::console::Console;
+use crate::interrupt;
+use crate::progress::Phases;
+use crate::render::Presenter;
+use crate::run::{Exit, named, read};
+use std::error::Error;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use teeter_report::Results;
+use teeter_scenario::resolve::Resolved;
+use teeter_scenario::simulation::Simulation;
+use teeter_study::{Failure, Source, Tradeoff, runner, write};
+
+#[derive(Debug)]
+pub(crate) struct Options {
+    pub(crate) scene: PathBuf,
+    pub(crate) out: Option<PathBuf>,
+    pub(crate) set: Vec<(String, String)>,
+    pub(crate) quiet: bool,
+    pub(crate) force: bool,
+}
+
+pub(crate) fn tradeoff(options: &Options) -> Exit {
+    let console = Console::new(options.quiet);
+    let (name, stem) = named(&options.scene);
+    let bad_input = |text: &str| {
+        console.error(text);
+        Exit::BadInput
+    };
+    let bytes = match read(&options.scene) {
+        Ok(bytes) => bytes,
+        Err(why) => return bad_input(&format!("error: {name}: {why}")),
+    };
+    let mut files = companions::reader(&options.scene);
+    let (source, resolved) = match Source::new(bytes.clone(), &name, &stem, &options.set, &mut files) {
+        Ok(loaded) => loaded,
+        Err(errors) => return bad_input(&Presenter::of_bytes(&bytes).all(&errors)),
+    };
+    let presenter = Presenter::new(resolved.document.source());
+    if let Err(error) = Simulation::new(&resolved.scene) {
+        return bad_input(&presenter.one(&error.diagnostic(&resolved.document)));
+    }
+    let folder = options.out.clone().unwrap_or_else(|| Path::new("runs").join(format!("{stem}-tradeoff")));
+    let results = match Results::create_of(&write::FILES, &folder, options.force) {
+        Ok(results) => results,
+        Err(error) => return bad_input(&format!("error: {error}")),
+    };
+    for warning in &resolved.warnings {
+        console.note(&presenter.one(warning));
+    }
+    let cancel = interrupt::listen();
+    let progress = Phases::new(console);
+    let study = Tradeoff::of(&source, &resolved, runner::cores(), cancel, &mut |phase, done, of| {
+        progress.at(phase, done, of);
+    });
+    drop(progress);
+    match study {
+        Ok(study) => match write_all(&study, &results, &resolved, options) {
+            Ok(()) => {
+                console.note(&format!("results in {0}, to be looked at in {0}/tradeoff.html", folder.display()));
+                Exit::Done
+            }
+            Err(error) => {
+                console.error(&format!("error: {error}"));
+                Exit::Failed
+            }
+        },
+        Err(Failure::Interrupted) => {
+            console.note("interrupted: nothing is known yet, and nothing written");
+            Exit::Interrupted
+        }
+        Err(failure) => {
+            console.error(&format!("error: the scene has no reference: {failure}"));
+            Exit::Failed
+        }
+    }
+}
+
+/// Writes the files, and the sentences to standard output.
+fn write_all(
+    study: &Tradeoff,
+    results: &Results,
+    resolved: &Resolved,
+    options: &Options,
+) -> Result<(), Box<dyn Error>> {
+    let scene = |file: &str| companions::seen_from(results.folder(), &options.scene, file);
+    results.write("scene.toml", resolved.document.to_toml_elsewhere(scene))?;
+    results.write("tradeoff.csv", write::csv(study))?;
+    for (name, svg) in write::figures(study) {
+        results.write(&format!("figures/{name}"), svg)?;
+    }
+    results.write("tradeoff.html", write::page(study))?;
+    results.write("tradeoff.json", write::json(study))?;
+    let findings = write::findings(study);
+    let lines = write::advice(study).into_iter().chain(findings.iter().map(|line| format!("  {line}")));
+    let mut out = std::io::stdout().lock();
+    for line in lines {
+        // A reader that went away has seen enough: the results are in files.
+        let _ = writeln!(out, "{line}");
+    }
+    Ok(())
+}

@@ -1,0 +1,79 @@
+//! `teeter tradeoff` from outside: what it says, what it writes, how it exits.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn folder(test: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("tradeoff").join(test);
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn tradeoff(folder: &Path, arguments: &[&str]) -> Output {
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/free-rocking-on-ground.toml");
+    let mut all = vec!["tradeoff", scene.to_str().unwrap()];
+    all.extend(arguments);
+    Command::new(env!("CARGO_BIN_EXE_teeter")).current_dir(folder).args(all).output().unwrap()
+}
+
+const SHORT: [&str; 4] = ["--set", "time.end=0.2 s", "--set", "time.step=1 ms"];
+
+fn json(folder: &Path, out: &str) -> Value {
+    serde_json::from_str(&std::fs::read_to_string(folder.join(out).join("tradeoff.json")).unwrap()).unwrap()
+}
+
+#[test]
+fn a_study_writes_its_files_and_says_the_same_again() {
+    let folder = folder("files");
+    let first = tradeoff(&folder, &SHORT);
+    let stderr = String::from_utf8_lossy(&first.stderr).into_owned();
+    assert!(first.status.success(), "{stderr}");
+    let out = "runs/free-rocking-on-ground-tradeoff";
+    for file in ["tradeoff.csv", "tradeoff.json", "tradeoff.html", "scene.toml", "figures/accuracy.svg"] {
+        assert!(folder.join(out).join(file).is_file(), "{file}");
+    }
+    assert!(stderr.contains("tradeoff.html"), "{stderr}");
+    let stdout = String::from_utf8(first.stdout).unwrap();
+    assert!(
+        stdout.starts_with("for 10 % of accuracy take `--set time.end=\"0.2 s\" --set time.step=\"1 ms\""),
+        "{stdout}"
+    );
+    assert!(stdout.contains("× real time") && stdout.contains("the reference is known to"), "{stdout}");
+
+    let again = tradeoff(&folder, &[&SHORT[..], &["--out", "again", "--quiet"]].concat());
+    assert!(again.status.success() && again.stderr.is_empty());
+    let advised = |value: &Value| {
+        let all = value["recommendations"].as_array().unwrap().iter();
+        all.map(|one| (one["outcome"].clone(), one["set"].clone())).collect::<Vec<_>>()
+    };
+    let (a, b) = (json(&folder, out), json(&folder, "again"));
+    assert_eq!(advised(&a), advised(&b));
+    assert_eq!((&a["error_bar"], &a["horizon"], &a["candidates"]), (&b["error_bar"], &b["horizon"], &b["candidates"]));
+    assert!(a["error_bar"]["accuracy"].as_f64().unwrap() > 0.0);
+
+    // What is advised runs as it stands, `time.step` once more on top of the user's own.
+    let set = a["recommendations"][0]["set"].as_object().unwrap();
+    let sets: Vec<String> = set.iter().map(|(key, value)| format!("{key}={}", value.as_str().unwrap())).collect();
+    let scene = folder.join(out).join("scene.toml");
+    let mut arguments = vec!["run", scene.to_str().unwrap(), "--out", "advised", "--quiet"];
+    sets.iter().for_each(|set| arguments.extend(["--set", set]));
+    let ran = Command::new(env!("CARGO_BIN_EXE_teeter")).current_dir(&folder).args(arguments).status().unwrap();
+    assert!(ran.success());
+
+    let blocked = tradeoff(&folder, &[&SHORT[..], &["--out", "again"]].concat());
+    assert_eq!(blocked.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&blocked.stderr).contains("--force"));
+}
+
+#[test]
+fn bad_input_exits_with_2_and_writes_nothing() {
+    let folder = folder("bad");
+    let output = tradeoff(&folder, &["--set", "time.stepp=1 ms"]);
+    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{stderr}");
+    assert!(stderr.contains("time.stepp") && stderr.contains("did you mean"), "{stderr}");
+    assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
+}

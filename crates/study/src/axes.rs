@@ -1,0 +1,276 @@
+//! What can be varied of a scene to trade speed for accuracy: one entry an axis. A scene has those that mean something in it.
+//!
+//! Schemes, kinematics and solvers are the words that the scene file takes, so new ones join by themselves.
+
+use crate::Setting;
+use teeter_scenario::document::Document;
+use teeter_scenario::keys::{self, Found, Kind};
+use teeter_scenario::resolve::Resolved;
+use teeter_scenario::scene::{BeamScene, Support};
+
+/// One thing that can be varied.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    /// Its name.
+    pub name: &'static str,
+    /// The keys that it changes.
+    pub keys: Vec<String>,
+    /// What it tries, the scene's own being one without keys.
+    pub options: Vec<Setting>,
+}
+
+impl Axis {
+    /// A setting with another option of this axis.
+    #[must_use]
+    pub fn apply(&self, option: &Setting, to: &Setting) -> Setting {
+        to.clone().without(&self.keys).with(option)
+    }
+
+    /// What a setting has of this axis.
+    #[must_use]
+    pub fn part_of(&self, setting: &Setting) -> Setting {
+        let others: Vec<String> =
+            setting.pairs().into_iter().map(|(key, _)| key).filter(|key| !self.keys.contains(key)).collect();
+        setting.clone().without(&others)
+    }
+}
+
+/// The axes of a scene: scheme and step first, which are tried together; the others one at a time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axes {
+    /// The time schemes.
+    pub scheme: Axis,
+    /// The steps, from coarse to fine.
+    pub step: Axis,
+    /// The rest that the scene has.
+    pub others: Vec<Axis>,
+}
+
+/// The registry of the others.
+const OTHERS: [fn(&Resolved) -> Option<Axis>; 6] = [theta, mesh, modes, kinematics, solver, tolerance];
+
+/// Steps as multiples of the scene's own, from coarse to fine.
+const STEPS: [f64; 12] = [50.0, 20.0, 10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01];
+/// Fewer steps than this are no simulation.
+const FEWEST_STEPS: f64 = 20.0;
+
+/// Values of θ that are tried: no dissipation, some, the most.
+const THETAS: [f64; 3] = [0.5, 0.6, 1.0];
+/// Elements as multiples of the scene's own.
+const MESHES: [f64; 4] = [0.25, 0.5, 1.0, 2.0];
+/// Numbers of modes; beside them, as many as the scene file takes when left out.
+const MODES: [&str; 4] = ["4", "8", "16", "32"];
+const TOLERANCES: [f64; 4] = [1e-4, 1e-6, 1e-10, 1e-13];
+
+impl Axes {
+    /// The axes of a scene.
+    #[must_use]
+    pub fn of(resolved: &Resolved) -> Self {
+        let time = resolved.scene.time;
+        let mut steps: Vec<f64> = STEPS.iter().map(|factor| factor * time.step).collect();
+        steps.retain(|step| *step <= time.step || time.end / step >= FEWEST_STEPS);
+        let key = "time.step".to_owned();
+        let step = Axis {
+            name: "step",
+            options: steps
+                .iter()
+                .map(|&h| if h == time.step { Setting::none() } else { Setting::none().set(&key, in_seconds(h)) })
+                .collect(),
+            keys: vec![key],
+        };
+        let scheme = words(resolved, "scheme", &["time.scheme".to_owned()], |_| true).unwrap_or_else(|| Axis {
+            name: "scheme",
+            keys: Vec::new(),
+            options: vec![Setting::none()],
+        });
+        Self { scheme, step, others: OTHERS.iter().filter_map(|axis| axis(resolved)).collect() }
+    }
+
+    /// All of them.
+    pub fn iter(&self) -> impl Iterator<Item = &Axis> {
+        [&self.scheme, &self.step].into_iter().chain(&self.others)
+    }
+}
+
+/// A time as a scene file says it, in the unit that makes it shortest.
+#[must_use]
+pub(crate) fn in_seconds(t: f64) -> String {
+    const UNITS: [(f64, &str); 4] = [(1.0, "s"), (1e3, "ms"), (1e6, "us"), (1e9, "ns")];
+    let (factor, unit) = UNITS.into_iter().find(|(factor, _)| t * factor >= 0.9995).unwrap_or(UNITS[3]);
+    // Twelve digits: what the multiples of a decimal step have, without the rounding of the product.
+    let digits = format!("{:.11e}", t * factor).parse::<f64>().unwrap_or(t * factor);
+    format!("{digits} {unit}")
+}
+
+/// An axis of words: those of the table of keys, for all keys at once.
+fn words(resolved: &Resolved, name: &'static str, keys: &[String], taken: impl Fn(&str) -> bool) -> Option<Axis> {
+    let Some(Found::Key(_, key)) = keys.first().and_then(|key| keys::find(key)) else { return None };
+    let Kind::Choice(words) = key.kind else { return None };
+    let mut options = vec![Setting::none()];
+    for word in words.iter().filter(|word| taken(word)) {
+        let own = keys.iter().all(|key| resolved.document.text(key) == Some(word));
+        if !own {
+            options.push(keys.iter().fold(Setting::none(), |setting, key| setting.set(key, *word)));
+        }
+    }
+    Some(Axis { name, keys: keys.to_vec(), options })
+}
+
+/// An axis of one number.
+fn numbers(name: &'static str, key: &str, own: f64, values: &[f64]) -> Axis {
+    let others = values.iter().filter(|value| **value != own);
+    let options = others.map(|value| Setting::none().set(key, format!("{value:?}")));
+    Axis { name, keys: vec![key.to_owned()], options: std::iter::once(Setting::none()).chain(options).collect() }
+}
+
+fn theta(resolved: &Resolved) -> Option<Axis> {
+    Some(numbers("theta", "time.theta", resolved.scene.time.theta, &THETAS))
+}
+
+fn tolerance(resolved: &Resolved) -> Option<Axis> {
+    let scene = &resolved.scene;
+    (!scene.contacts.is_empty()).then(|| numbers("tolerance", "solver.tolerance", scene.solver.tolerance, &TOLERANCES))
+}
+
+fn solver(resolved: &Resolved) -> Option<Axis> {
+    // A convex law is another model, not a cheaper way to this one.
+    let exact = |name: &str| {
+        let known = teeter_solvers::SOLVERS.iter().find(|info| info.name == name);
+        known.is_some_and(|info| info.law == teeter_contact::Law::Exact && info.dimensions.contains(&2))
+    };
+    let axis = words(resolved, "solver", &["solver.method".to_owned()], exact)?;
+    (!resolved.scene.contacts.is_empty()).then_some(axis)
+}
+
+fn kinematics(resolved: &Resolved) -> Option<Axis> {
+    let on_beam = resolved.scene.contacts.iter().filter(|contact| matches!(contact.surface, Support::Beam(_)));
+    let keys: Vec<String> = on_beam.map(|contact| format!("contact.{}.kinematics", contact.name)).collect();
+    words(resolved, "kinematics", &keys, |_| true)
+}
+
+/// The beams whose mesh is given by a number of elements, with that.
+fn meshed(resolved: &Resolved) -> Vec<(&BeamScene, i64)> {
+    let of = |document: &Document, beam: &BeamScene| document.integer(&elements_key(beam));
+    resolved.scene.beams.iter().filter_map(|beam| Some((beam, of(&resolved.document, beam)?))).collect()
+}
+
+fn elements_key(beam: &BeamScene) -> String {
+    format!("beam.{}.elements", beam.name)
+}
+
+/// All beams with so many times their own elements; the scene's own where that changes nothing.
+pub(crate) fn refined(resolved: &Resolved, factor: f64) -> Setting {
+    meshed(resolved).into_iter().fold(Setting::none(), |setting, (beam, own)| {
+        let elements = ((own as f64 * factor).round() as i64).clamp(2, teeter_beam::MAX_ELEMENTS as i64);
+        if elements == own { setting } else { setting.set(elements_key(beam), elements.to_string()) }
+    })
+}
+
+/// The kinematics of the deformed beam wherever they are not the scene's own, and all dofs of the mesh.
+pub(crate) fn unreduced(resolved: &Resolved) -> Setting {
+    let mut setting = Setting::none();
+    for contact in resolved.scene.contacts.iter().filter(|contact| matches!(contact.surface, Support::Beam(_))) {
+        let key = format!("contact.{}.kinematics", contact.name);
+        if resolved.document.text(&key) != Some("deformed") {
+            setting = setting.set(key, "deformed");
+        }
+    }
+    setting
+}
+
+fn mesh(resolved: &Resolved) -> Option<Axis> {
+    let keys: Vec<String> = meshed(resolved).into_iter().map(|(beam, _)| elements_key(beam)).collect();
+    if keys.is_empty() {
+        return None;
+    }
+    let mut options = vec![Setting::none()];
+    for setting in MESHES.iter().map(|factor| refined(resolved, *factor)) {
+        if !options.contains(&setting) {
+            options.push(setting);
+        }
+    }
+    Some(Axis { name: "mesh", keys, options })
+}
+
+fn modes(resolved: &Resolved) -> Option<Axis> {
+    let beams = &resolved.scene.beams;
+    if beams.is_empty() {
+        return None;
+    }
+    let model = |beam: &BeamScene| format!("beam.{}.model", beam.name);
+    let shapes = |beam: &BeamScene| format!("beam.{}.modes", beam.name);
+    let all = |set: &dyn Fn(Setting, &BeamScene) -> Setting| beams.iter().fold(Setting::none(), set);
+    let mut options = vec![Setting::none()];
+    if beams.iter().all(|beam| beam.reduction.is_none()) {
+        options.push(all(&|setting, beam| setting.set(model(beam), "modes")));
+        options.extend(MODES.iter().map(|count| {
+            all(&|setting, beam| setting.set(model(beam), "modes").set(shapes(beam), format!("{{ count = {count} }}")))
+        }));
+    } else {
+        options.push(all(&|setting, beam| setting.set(model(beam), "full")));
+    }
+    let keys = beams.iter().flat_map(|beam| [model(beam), shapes(beam)]).collect();
+    Some(Axis { name: "modes", keys, options })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GROUND: &str = "[time]\nend = \"0.1 s\"\nstep = \"1 ms\"\n[ground]\n[material.wood]\n\
+        density = \"600 kg/m^3\"\nyoungs_modulus = \"10 GPa\"\n[block.cube]\nmaterial = \"wood\"\nwidth = \"10 cm\"\nheight = \"10 cm\"\n\
+        depth = \"10 cm\"\nposition = [\"0 m\", \"6 cm\"]\n[contact.floor]\nbetween = [\"cube\", \"ground\"]\nfriction = 0.4\n";
+
+    fn axes(text: &str) -> (Resolved, Axes) {
+        let resolved = teeter_scenario::load(text.as_bytes(), "s.toml", "s", &[]).unwrap();
+        let axes = Axes::of(&resolved);
+        (resolved, axes)
+    }
+
+    #[test]
+    fn a_scene_has_the_axes_that_mean_something_in_it() {
+        let names = |axes: &Axes| axes.iter().map(|axis| axis.name).collect::<Vec<_>>();
+        let (_, ground) = axes(GROUND);
+        assert_eq!(names(&ground), ["scheme", "step", "theta", "solver", "tolerance"]);
+        let beam = "[time]\nend = \"0.1 s\"\nstep = \"1 ms\"\n[material.wood]\ndensity = \"600 kg/m^3\"\nyoungs_modulus = \"10 GPa\"\n\
+            [beam.table]\nmaterial = \"wood\"\nspan = \"1 m\"\nwidth = \"3 cm\"\nthickness = \"1 cm\"\nelements = 10\n";
+        let (resolved, axes) = axes(beam);
+        assert_eq!(names(&axes), ["scheme", "step", "theta", "mesh", "modes"]);
+        let mesh = &axes.others[1];
+        let elements: Vec<_> = mesh.options.iter().map(|option| option.get("beam.table.elements")).collect();
+        assert_eq!(elements, [None, Some("3"), Some("5"), Some("20")]);
+        assert_eq!(refined(&resolved, 1.0), Setting::none());
+    }
+
+    #[test]
+    fn every_option_of_every_axis_is_a_scene_or_refused_with_a_reason() {
+        let (_, axes) = axes(GROUND);
+        for axis in axes.iter() {
+            assert!(axis.options.contains(&Setting::none()), "{}: the scene's own is one", axis.name);
+            for option in &axis.options {
+                let resolved = teeter_scenario::load(GROUND.as_bytes(), "s.toml", "s", &option.pairs());
+                assert!(resolved.is_ok(), "{option}: {:?}", resolved.err().map(|found| found.to_string()));
+            }
+        }
+    }
+
+    #[test]
+    fn steps_go_from_coarse_to_fine_in_texts_that_read_back() {
+        let (resolved, axes) = axes(GROUND);
+        let texts: Vec<_> = axes.step.options.iter().map(|option| option.get("time.step").unwrap_or("1 ms")).collect();
+        assert_eq!(texts, ["5 ms", "2 ms", "1 ms", "500 us", "200 us", "100 us", "50 us", "20 us", "10 us"]);
+        assert_eq!(resolved.scene.time.step, 1e-3);
+        assert_eq!(in_seconds(0.1 * 3.0 * 1e-3), "300 us");
+        assert_eq!(in_seconds(2.5e-10), "0.25 ns");
+    }
+
+    #[test]
+    fn an_option_replaces_what_the_axis_had_before() {
+        let (_, axes) = axes(GROUND);
+        let [coarse, .., fine] = axes.step.options.as_slice() else { panic!("a ladder") };
+        let both = axes.step.apply(fine, &axes.step.apply(coarse, &Setting::none().set("time.theta", "1.0")));
+        assert_eq!(both.get("time.step"), Some("10 us"));
+        assert_eq!(axes.step.part_of(&both), *fine);
+        assert_eq!(axes.step.apply(&Setting::none(), &both), Setting::none().set("time.theta", "1.0"));
+    }
+}

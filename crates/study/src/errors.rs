@@ -1,0 +1,451 @@
+//! How far a motion is from the reference: the errors that a user cares about, each in a norm of its own.
+
+use crate::{Motion, Sampling};
+use teeter_scenario::scene::Scene;
+
+/// A quantity that is compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Quantity {
+    /// The larger of the errors of angle and position; of deflection in a scene without blocks.
+    Accuracy,
+    /// Angles of the blocks.
+    Angle,
+    /// Places of the blocks' mass centres.
+    Position,
+    /// Deflections of the beams, at midspan and at their probes.
+    Deflection,
+    /// Times of impacts.
+    ImpactTimes,
+    /// Peaks of the angles between impacts.
+    Peaks,
+    /// Normal forces of the contacts.
+    Forces,
+    /// Mechanical energy.
+    Energy,
+    /// Deepest penetration: 0 in the exact motion, so no reference is needed.
+    Penetration,
+}
+
+impl Quantity {
+    /// All of them, in the order of the table.
+    pub const ALL: [Self; 9] = [
+        Self::Accuracy,
+        Self::Angle,
+        Self::Position,
+        Self::Deflection,
+        Self::ImpactTimes,
+        Self::Peaks,
+        Self::Forces,
+        Self::Energy,
+        Self::Penetration,
+    ];
+
+    /// Its name in files.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Accuracy => "accuracy",
+            Self::Angle => "angle",
+            Self::Position => "position",
+            Self::Deflection => "deflection",
+            Self::ImpactTimes => "impact_times",
+            Self::Peaks => "peaks",
+            Self::Forces => "forces",
+            Self::Energy => "energy",
+            Self::Penetration => "penetration",
+        }
+    }
+
+    /// Its name for people.
+    #[must_use]
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Accuracy => "Accuracy",
+            Self::Angle => "Angle",
+            Self::Position => "Position",
+            Self::Deflection => "Deflection",
+            Self::ImpactTimes => "Impact times",
+            Self::Peaks => "Peak angles",
+            Self::Forces => "Contact forces",
+            Self::Energy => "Energy",
+            Self::Penetration => "Penetration",
+        }
+    }
+
+    /// The norm of its error.
+    #[must_use]
+    pub fn norm(self) -> &'static str {
+        match self {
+            Self::Accuracy => {
+                "the larger of the errors of angle and position; of deflection where the scene has no block"
+            }
+            Self::Angle => {
+                "largest |φ − φ_ref| of any block at any sample before the horizon, over the largest |φ_ref|"
+            }
+            Self::Position => {
+                "largest |x − x_ref| or |y − y_ref| of any block at any sample before the horizon, over its larger side"
+            }
+            Self::Deflection => {
+                "largest |w − w_ref| at midspan and probes of any beam at any sample before the horizon, over the largest |w_ref|"
+            }
+            Self::ImpactTimes => {
+                "largest |t − t_ref| of the impacts before the horizon, matched in order, over the mean time between them; an impact is a zero crossing of φ \
+                 where a block rocks, else a contact that closes with at least 5 % of the largest closing speed; 1 where one is missing"
+            }
+            Self::Peaks => {
+                "largest |φ_peak/φ_peak,ref − 1| of the peaks between two crossings before the horizon, matched in order; 1 where one is missing"
+            }
+            Self::Forces => {
+                "largest |P − P_ref| of the normal impulse P of any contact in any window of 1/50 of the run, over the contact's whole P_ref before the horizon"
+            }
+            Self::Energy => {
+                "largest |E − E_ref| of kinetic and potential energy at any sample before the horizon, over the energy scale of the ledger"
+            }
+            Self::Penetration => "deepest penetration before the horizon, over the largest side of a block",
+        }
+    }
+}
+
+/// An error for each quantity that the scene has.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Errors([Option<f64>; Quantity::ALL.len()]);
+
+impl Errors {
+    /// The error of a quantity; `None` where the scene doesn't have it.
+    #[must_use]
+    pub fn of(&self, quantity: Quantity) -> Option<f64> {
+        self.0[quantity as usize]
+    }
+
+    /// Quantity by quantity, the larger one.
+    #[must_use]
+    pub fn larger(&self, other: &Self) -> Self {
+        let mut errors = *self;
+        for (mine, other) in errors.0.iter_mut().zip(other.0) {
+            *mine = match (*mine, other) {
+                (Some(a), Some(b)) => Some(a.max(b)),
+                (a, b) => a.or(b),
+            };
+        }
+        errors
+    }
+
+    /// An error of the accuracy alone.
+    #[cfg(test)]
+    pub(crate) fn of_accuracy(error: f64) -> Self {
+        let mut errors = Self::default();
+        errors.set(Quantity::Accuracy, Some(error));
+        errors
+    }
+
+    fn set(&mut self, quantity: Quantity, error: Option<f64>) {
+        // A motion that is no longer finite is as wrong as can be.
+        self.0[quantity as usize] = error.map(|error| if error.is_nan() { f64::INFINITY } else { error });
+    }
+}
+
+/// An angle that stays below this doesn't turn: its error would be relative to rounding, rad.
+const TURNS: f64 = 1e-6;
+/// A deflection that stays below this part of the span is none.
+const BENDS: f64 = 1e-12;
+/// Closing speeds below this part of the largest one are no impacts to compare.
+const IMPACT_SHARE: f64 = 0.05;
+/// A contact that closes again within this part of the run is the same impact: a corner on a beam closes many times.
+const SAME_IMPACT: f64 = 0.01;
+/// Samples of a window of forces, 1/50 of a run.
+const WINDOW: usize = 10;
+
+/// What errors are relative to, and how far they are taken.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ruler {
+    /// The larger side of each block, m.
+    sides: Vec<f64>,
+    /// The block of each contact.
+    owners: Vec<usize>,
+    sampling: Sampling,
+    /// Samples before the horizon.
+    pub(crate) samples: usize,
+    shortest: f64,
+}
+
+impl Ruler {
+    /// For motions of a scene, all of their samples.
+    #[must_use]
+    pub fn new(scene: &Scene, sampling: Sampling) -> Self {
+        Self {
+            sides: scene.blocks.iter().map(|block| block.width.max(block.height)).collect(),
+            owners: scene.contacts.iter().map(|contact| contact.block).collect(),
+            sampling,
+            samples: sampling.count,
+            shortest: SAME_IMPACT * scene.time.end,
+        }
+    }
+
+    /// The same up to so many samples.
+    #[must_use]
+    pub fn up_to(mut self, samples: usize) -> Self {
+        self.samples = samples;
+        self
+    }
+
+    /// The time up to which errors are taken, s.
+    #[must_use]
+    pub fn horizon(&self) -> f64 {
+        self.sampling.time(self.samples.saturating_sub(1))
+    }
+
+    /// How many samples from the start on two motions agree, within a share of the motion, in what accuracy is made of.
+    #[must_use]
+    pub fn agree(&self, a: &Motion, reference: &Motion, share: f64) -> usize {
+        let (turn, bend) = (self.turn(reference), self.bend(reference));
+        let count = self.samples.min(a.samples).min(reference.samples);
+        let apart = |sample: usize| {
+            if self.sides.is_empty() {
+                return self.deflected(a, reference, sample) / bend.unwrap_or(1.0);
+            }
+            let angle = turn.map_or(0.0, |turn| self.turned(a, reference, sample) / turn);
+            angle.max(self.moved(a, reference, sample))
+        };
+        // Written so that NaN fails too.
+        (0..count).find(|&sample| !(apart(sample) <= share)).unwrap_or(count)
+    }
+
+    /// The errors of a motion.
+    #[must_use]
+    pub fn errors(&self, motion: &Motion, reference: &Motion) -> Errors {
+        let samples = 0..self.samples.min(motion.samples).min(reference.samples);
+        let largest = |of: &dyn Fn(usize) -> f64| samples.clone().map(of).fold(0.0, worse);
+        let mut errors = Errors::default();
+        if !self.sides.is_empty() {
+            let angle = self.turn(reference).map(|turn| largest(&|k| self.turned(motion, reference, k)) / turn);
+            errors.set(Quantity::Angle, angle);
+            errors.set(Quantity::Position, Some(largest(&|k| self.moved(motion, reference, k))));
+            let deepest = samples.end.checked_sub(1).and_then(|last| motion.penetration.get(last));
+            let side = self.sides.iter().copied().fold(0.0, f64::max);
+            errors.set(Quantity::Penetration, deepest.filter(|_| !self.owners.is_empty()).map(|depth| depth / side));
+        }
+        let bend = self.bend(reference);
+        errors.set(Quantity::Deflection, bend.map(|bend| largest(&|k| self.deflected(motion, reference, k)) / bend));
+        let (angle, position) = (errors.of(Quantity::Angle), errors.of(Quantity::Position));
+        let accuracy = angle.into_iter().chain(position).reduce(worse).or(errors.of(Quantity::Deflection));
+        errors.set(Quantity::Accuracy, accuracy);
+        errors.set(Quantity::ImpactTimes, self.impact_times(motion, reference));
+        errors.set(Quantity::Peaks, self.peaks(motion, reference));
+        errors.set(Quantity::Forces, self.forces(motion, reference));
+        let scale = reference.energy_scale;
+        let energy = (scale > 0.0).then(|| largest(&|k| (motion.energy[k] - reference.energy[k]).abs()) / scale);
+        errors.set(Quantity::Energy, energy);
+        errors
+    }
+
+    /// The largest angle of the reference before the horizon, rad; `None` where nothing turns.
+    fn turn(&self, reference: &Motion) -> Option<f64> {
+        let poses = &reference.poses[..self.sides.len() * self.samples.min(reference.samples)];
+        let turn = poses.iter().map(|pose| pose[2].abs()).fold(0.0, f64::max);
+        (turn > TURNS).then_some(turn)
+    }
+
+    fn bend(&self, reference: &Motion) -> Option<f64> {
+        let points = points(reference);
+        let all = &reference.deflections[..points * self.samples.min(reference.samples)];
+        let bend = all.iter().map(|w| w.abs()).fold(0.0, f64::max);
+        (bend > BENDS).then_some(bend)
+    }
+
+    fn turned(&self, a: &Motion, b: &Motion, sample: usize) -> f64 {
+        pairs(&a.poses, &b.poses, self.sides.len(), sample).map(|(a, b)| (a[2] - b[2]).abs()).fold(0.0, worse)
+    }
+
+    fn moved(&self, a: &Motion, b: &Motion, sample: usize) -> f64 {
+        let poses = pairs(&a.poses, &b.poses, self.sides.len(), sample).zip(&self.sides);
+        poses.map(|((a, b), side)| worse((a[0] - b[0]).abs(), (a[1] - b[1]).abs()) / side).fold(0.0, worse)
+    }
+
+    fn deflected(&self, a: &Motion, b: &Motion, sample: usize) -> f64 {
+        pairs(&a.deflections, &b.deflections, points(b), sample).map(|(a, b)| (a - b).abs()).fold(0.0, worse)
+    }
+
+    fn impact_times(&self, motion: &Motion, reference: &Motion) -> Option<f64> {
+        let horizon = self.horizon();
+        let mut worst: Option<f64> = None;
+        let mut enter = |times: &[f64], wanted: &[f64]| {
+            if let Some(error) = matched(times, wanted, horizon) {
+                worst = Some(worst.map_or(error, |worst| worse(worst, error)));
+            }
+        };
+        let rocks = |block: usize| reference.crossings[block].first().is_some_and(|t| *t <= horizon);
+        for block in (0..self.sides.len()).filter(|&block| rocks(block)) {
+            enter(&motion.crossings[block], &reference.crossings[block]);
+        }
+        for (pair, &owner) in self.owners.iter().enumerate() {
+            if !rocks(owner) {
+                let fastest = reference.impacts[pair].iter().map(|impact| impact.speed).fold(0.0, f64::max);
+                let of = |motion: &Motion| self.impacts(motion, pair, IMPACT_SHARE * fastest);
+                enter(&of(motion), &of(reference));
+            }
+        }
+        worst
+    }
+
+    /// Times of the impacts of a contact that are no slower than `least`.
+    fn impacts(&self, motion: &Motion, pair: usize, least: f64) -> Vec<f64> {
+        let mut times: Vec<f64> = Vec::new();
+        for impact in motion.impacts[pair].iter().filter(|impact| impact.speed >= least && least > 0.0) {
+            if times.last().is_none_or(|last| impact.t - last > self.shortest) {
+                times.push(impact.t);
+            }
+        }
+        times
+    }
+
+    fn peaks(&self, motion: &Motion, reference: &Motion) -> Option<f64> {
+        let horizon = self.horizon();
+        let mut worst: Option<f64> = None;
+        for (peaks, wanted) in motion.peaks.iter().zip(&reference.peaks) {
+            for (number, (_, phi)) in wanted.iter().take_while(|(t, _)| *t <= horizon).enumerate() {
+                let error = peaks.get(number).map_or(1.0, |peak| (peak.1 / phi - 1.0).abs());
+                worst = Some(worst.map_or(error, |worst| worse(worst, error)));
+            }
+        }
+        worst
+    }
+
+    fn forces(&self, motion: &Motion, reference: &Motion) -> Option<f64> {
+        let contacts = self.owners.len();
+        let last = self.samples.min(motion.samples).min(reference.samples).checked_sub(1)?;
+        let mut worst: Option<f64> = None;
+        for contact in 0..contacts {
+            let at = |motion: &Motion, sample: usize| motion.impulses[sample * contacts + contact];
+            let whole = at(reference, last);
+            if !(whole > 0.0) {
+                continue;
+            }
+            let off = |from: usize| {
+                let to = (from + WINDOW).min(last);
+                let window = |motion: &Motion| at(motion, to) - at(motion, from);
+                (window(motion) - window(reference)).abs() / whole
+            };
+            let error = (0..last).step_by(WINDOW).map(off).fold(0.0, worse);
+            worst = Some(worst.map_or(error, |worst| worse(worst, error)));
+        }
+        worst
+    }
+}
+
+/// The larger of two errors; one that is not a number counts as infinite.
+fn worse(a: f64, b: f64) -> f64 {
+    let finite = |x: f64| if x.is_nan() { f64::INFINITY } else { x };
+    finite(a).max(finite(b))
+}
+
+/// Deflections in a sample.
+fn points(motion: &Motion) -> usize {
+    motion.deflections.len() / motion.samples.max(1)
+}
+
+/// What two motions have at a sample, `each` numbers long.
+fn pairs<'a, T>(a: &'a [T], b: &'a [T], each: usize, sample: usize) -> impl Iterator<Item = (&'a T, &'a T)> {
+    let range = sample * each..(sample + 1) * each;
+    a[range.clone()].iter().zip(&b[range])
+}
+
+/// The largest difference of times matched in order, over the mean time between the wanted ones up to the horizon; 1 where one is
+/// missing; `None` where none is wanted.
+fn matched(times: &[f64], wanted: &[f64], horizon: f64) -> Option<f64> {
+    let wanted: Vec<f64> = wanted.iter().copied().take_while(|t| *t <= horizon).collect();
+    let mean = wanted.last()? / wanted.len() as f64;
+    if times.len() < wanted.len() {
+        return Some(1.0);
+    }
+    Some(times.iter().zip(&wanted).map(|(t, wanted)| (t - wanted).abs()).fold(0.0, worse) / mean)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::Impact;
+
+    fn ruler() -> Ruler {
+        Ruler {
+            sides: vec![0.5],
+            owners: vec![0],
+            sampling: Sampling { every: 0.1, count: 11 },
+            samples: 11,
+            shortest: 0.01,
+        }
+    }
+
+    fn motion(phi: impl Fn(f64) -> f64, crossings: &[f64], peaks: &[(f64, f64)]) -> Motion {
+        let t = |k: usize| 0.1 * k as f64;
+        Motion {
+            poses: (0..11).map(|k| [0.0, 1.0, phi(t(k))]).collect(),
+            energy: vec![2.0; 11],
+            impulses: (0..11).map(t).collect(),
+            penetration: (0..11).map(|k| 1e-3 * t(k)).collect(),
+            crossings: vec![crossings.to_vec()],
+            peaks: vec![peaks.to_vec()],
+            impacts: vec![vec![]],
+            energy_scale: 4.0,
+            samples: 11,
+            ..Motion::default()
+        }
+    }
+
+    #[test]
+    fn errors_are_relative_as_stated() {
+        let reference = motion(|t| 0.2 - 0.4 * t, &[0.5], &[(0.9, -0.2)]);
+        let mut other = motion(|t| 0.2 - 0.4 * t + if t > 0.75 { 0.01 } else { 0.0 }, &[0.51], &[(0.9, -0.19)]);
+        other.poses[3][0] = 0.001;
+        other.energy[4] = 2.2;
+        for k in 5..11 {
+            other.impulses[k] += 0.1;
+        }
+        let errors = ruler().errors(&other, &reference);
+        let expect = [
+            (Quantity::Angle, 0.05),
+            (Quantity::Position, 0.002),
+            (Quantity::Accuracy, 0.05),
+            (Quantity::ImpactTimes, 0.02),
+            (Quantity::Peaks, 0.05),
+            (Quantity::Forces, 0.1),
+            (Quantity::Energy, 0.05),
+            (Quantity::Penetration, 2e-3),
+        ];
+        for (quantity, wanted) in expect {
+            assert!((errors.of(quantity).unwrap() - wanted).abs() < 1e-12, "{quantity:?}: {:?}", errors.of(quantity));
+        }
+        assert_eq!(errors.of(Quantity::Deflection), None);
+        let early = ruler().up_to(3).errors(&other, &reference);
+        assert!(early.of(Quantity::Accuracy).unwrap() < 1e-15, "before anything differs");
+        assert_eq!(early.of(Quantity::ImpactTimes), None, "no impact is due by then");
+    }
+
+    #[test]
+    fn motions_agree_up_to_where_they_part() {
+        let reference = motion(|t| 0.2 - 0.4 * t, &[], &[]);
+        let parting = motion(|t| 0.2 - 0.4 * t + if t > 0.55 { 1e-3 } else { 1e-6 }, &[], &[]);
+        assert_eq!(ruler().agree(&parting, &reference, 1e-4), 6);
+        assert_eq!(ruler().agree(&parting, &reference, 1e-2), 11);
+        let lost = motion(|t| if t > 0.25 { f64::NAN } else { 0.2 - 0.4 * t }, &[], &[]);
+        assert_eq!(ruler().agree(&lost, &reference, 1e-2), 3);
+        assert_eq!(ruler().errors(&lost, &reference).of(Quantity::Accuracy), Some(f64::INFINITY));
+    }
+
+    #[test]
+    fn impacts_are_matched_in_order_and_a_missing_one_counts_whole() {
+        assert_eq!(matched(&[1.0, 2.1, 3.0], &[1.0, 2.0], 10.0), Some((2.1_f64 - 2.0) / 1.0));
+        assert_eq!(matched(&[1.0], &[1.0, 2.0], 10.0), Some(1.0));
+        assert_eq!(matched(&[1.0], &[1.0, 2.0], 1.5), Some(0.0), "the second is beyond the horizon");
+        assert_eq!(matched(&[1.0], &[], 1.5), None);
+    }
+
+    #[test]
+    fn a_contact_that_closes_many_times_at_once_is_one_impact() {
+        let mut bouncing = motion(|_| 0.0, &[], &[]);
+        let impact = |t, speed| Impact { t, speed };
+        bouncing.impacts[0] = vec![impact(0.2, 1.0), impact(0.201, 0.5), impact(0.5, 0.04), impact(0.6, 0.8)];
+        assert_eq!(ruler().impacts(&bouncing, 0, 0.05), [0.2, 0.6]);
+        assert_eq!(ruler().errors(&bouncing, &bouncing).of(Quantity::ImpactTimes), Some(0.0));
+        assert_eq!(ruler().errors(&bouncing, &bouncing).of(Quantity::Angle), None, "nothing turns");
+    }
+}

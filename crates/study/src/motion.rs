@@ -1,0 +1,228 @@
+//! What a run shows, at the same times for all runs of a study.
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+use teeter_beam::ShapeAt;
+use teeter_integrator::{Model, Observer, ObserverError, RockingMonitor, State, StepReport};
+use teeter_scenario::scene::Scene;
+use teeter_scenario::simulation::{BeamPlace, Layout};
+
+/// When samples are taken: `count` of them, `every` seconds apart, from t = 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sampling {
+    /// Time between two, s.
+    pub every: f64,
+    /// How many.
+    pub count: usize,
+}
+
+/// Samples of a run, about.
+const SAMPLES: f64 = 500.0;
+
+impl Sampling {
+    /// For a scene: some 500 samples, a whole number of the scene's own steps apart. Steps that divide this hit the samples; for
+    /// others the motion is taken in between.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        let (end, step) = (scene.time.end, scene.time.step);
+        let every = step * (end / (SAMPLES * step)).round().max(1.0);
+        Self { every, count: (end / every * (1.0 + 1e-9)).floor() as usize + 1 }
+    }
+
+    /// The time of a sample, s.
+    #[must_use]
+    pub fn time(&self, sample: usize) -> f64 {
+        self.every * sample as f64
+    }
+}
+
+/// A contact that closes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Impact {
+    /// End of the step, s.
+    pub t: f64,
+    /// Speed at which it closes, m/s.
+    pub speed: f64,
+}
+
+/// What a run showed. A sample's numbers stand together, one sample after the other.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Motion {
+    /// X, Y, φ of the blocks.
+    pub poses: Vec<[f64; 3]>,
+    /// Deflections at midspan and probes of the beams, m.
+    pub deflections: Vec<f64>,
+    /// Mechanical energy, J.
+    pub energy: Vec<f64>,
+    /// Normal impulse of each contact since the start, N·s.
+    pub impulses: Vec<f64>,
+    /// Deepest penetration so far, m.
+    pub penetration: Vec<f64>,
+    /// Times at which the angle of each block crosses zero, s.
+    pub crossings: Vec<Vec<f64>>,
+    /// Its peaks between two crossings, rad; the release is none.
+    pub peaks: Vec<Vec<(f64, f64)>>,
+    /// The impacts of each contact.
+    pub impacts: Vec<Vec<Impact>>,
+    /// The energy scale of the ledger, J.
+    pub energy_scale: f64,
+    /// Samples taken: fewer than asked for in a run that ended early.
+    pub samples: usize,
+}
+
+/// Impacts that are kept of a contact; a run that closes more often has no list of them to compare.
+const MOST_IMPACTS: usize = 200_000;
+
+/// The observer that fills a [`Motion`].
+#[derive(Debug)]
+pub(crate) struct Sampler<'a> {
+    sampling: Sampling,
+    cancel: &'a AtomicBool,
+    blocks: usize,
+    watched: Vec<(&'a BeamPlace, Vec<ShapeAt>)>,
+    monitors: Vec<RockingMonitor>,
+    before: Before,
+    pub(crate) motion: Motion,
+}
+
+/// What the last step ended with, of what is sampled.
+#[derive(Debug, Default)]
+struct Before {
+    t: f64,
+    q: Vec<f64>,
+    v: Vec<f64>,
+    energy: f64,
+    impulses: Vec<f64>,
+    now: Vec<f64>,
+}
+
+impl<'a> Sampler<'a> {
+    pub(crate) fn new(sampling: Sampling, layout: &'a Layout, cancel: &'a AtomicBool) -> Self {
+        let watched = |place: &'a BeamPlace| {
+            let beam = &place.beam;
+            let middle = 0.5 * beam.spec().span;
+            (
+                place,
+                std::iter::once(middle).chain(place.probes.iter().copied()).map(|x| beam.shape_clamped(x)).collect(),
+            )
+        };
+        let pairs = layout.pairs.len();
+        Self {
+            sampling,
+            cancel,
+            blocks: layout.blocks.len(),
+            watched: layout.beams.iter().map(watched).collect(),
+            monitors: Vec::new(),
+            before: Before { impulses: vec![0.0; pairs], now: vec![0.0; pairs], ..Before::default() },
+            motion: Motion { impacts: vec![Vec::new(); pairs], ..Motion::default() },
+        }
+    }
+
+    /// The motion, when the run has ended.
+    pub(crate) fn finish(mut self, state: &State) -> Motion {
+        self.motion.energy_scale = state.ledger.scale;
+        for monitor in &self.monitors {
+            self.motion.crossings.push(monitor.crossings().iter().map(|crossing| crossing.t).collect());
+            self.motion.peaks.push(monitor.peaks().iter().skip(1).map(|peak| (peak.t, peak.phi)).collect());
+        }
+        self.motion
+    }
+
+    /// Takes the sample at the share `s` of the step that ended with `state`.
+    fn take(&mut self, s: f64, state: &State) {
+        let h = state.t - self.before.t;
+        let (before, motion) = (&self.before, &mut self.motion);
+        let between = |k: usize| hermite(s, h, [before.q[k], state.q[k]], [before.v[k], state.v[k]]);
+        for block in 0..self.blocks {
+            motion.poses.push([0, 1, 2].map(|k| between(3 * block + k)));
+        }
+        for (place, shapes) in &self.watched {
+            let range = place.range.clone();
+            // Deflections are linear in the coordinates: of q and of v at both ends.
+            let of = |shape: &ShapeAt, x: &[f64]| place.deflection(shape, &x[range.clone()]).w;
+            for shape in shapes {
+                let (q, v) = ([of(shape, &before.q), of(shape, &state.q)], [of(shape, &before.v), of(shape, &state.v)]);
+                motion.deflections.push(hermite(s, h, q, v));
+            }
+        }
+        let linear = |a: f64, b: f64| a + s * (b - a);
+        motion.energy.push(linear(before.energy, state.ledger.current.total()));
+        motion.impulses.extend(before.impulses.iter().zip(&before.now).map(|(&a, &b)| linear(a, b)));
+        motion.penetration.push(state.tally.max_penetration);
+        motion.samples += 1;
+    }
+
+    fn keep(&mut self, state: &State) {
+        let Before { t, q, v, energy, impulses, now } = &mut self.before;
+        (*t, *energy) = (state.t, state.ledger.current.total());
+        q.clone_from(&state.q);
+        v.clone_from(&state.v);
+        impulses.clone_from(now);
+    }
+}
+
+/// The cubic with these values and derivatives at both ends of a step of length `h`, at its share `s`.
+fn hermite(s: f64, h: f64, q: [f64; 2], v: [f64; 2]) -> f64 {
+    if s >= 1.0 {
+        return q[1];
+    }
+    let (a, b) = ((1.0 + 2.0 * s) * (1.0 - s) * (1.0 - s), s * s * (3.0 - 2.0 * s));
+    let (c, d) = (s * (1.0 - s) * (1.0 - s), s * s * (s - 1.0));
+    a * q[0] + b * q[1] + h * (c * v[0] + d * v[1])
+}
+
+/// A step that ends this share of itself before a sample's time is meant to end at it.
+const ROUNDING: f64 = 1e-6;
+
+impl Observer<2> for Sampler<'_> {
+    fn start(&mut self, _: &Model<2>, state: &State) -> Result<(), ObserverError> {
+        self.monitors = (0..self.blocks).map(|block| RockingMonitor::new(state.t, state.q[3 * block + 2])).collect();
+        self.keep(state);
+        self.take(1.0, state);
+        Ok(())
+    }
+
+    fn observe(
+        &mut self,
+        _: &Model<2>,
+        step: &StepReport<'_, 2>,
+        state: &State,
+    ) -> Result<ControlFlow<()>, ObserverError> {
+        for (block, monitor) in self.monitors.iter_mut().enumerate() {
+            monitor.enter(state.t, state.q[3 * block + 2]);
+        }
+        for contact in step.contacts {
+            let pair = contact.id.pair() as usize;
+            self.before.now[pair] += contact.p[0];
+            let impacts = &mut self.motion.impacts[pair];
+            if !contact.persisting && contact.u_before[0] < 0.0 && impacts.len() < MOST_IMPACTS {
+                impacts.push(Impact { t: step.t_end, speed: -contact.u_before[0] });
+            }
+        }
+        let h = state.t - self.before.t;
+        while self.motion.samples < self.sampling.count {
+            let s = (self.sampling.time(self.motion.samples) - self.before.t) / h;
+            if s > 1.0 + ROUNDING {
+                break;
+            }
+            self.take(if s > 1.0 - ROUNDING { 1.0 } else { s }, state);
+        }
+        self.keep(state);
+        let cancelled = state.step.is_multiple_of(256) && self.cancel.load(Ordering::Relaxed);
+        Ok(if cancelled { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cubic_is_taken_exactly_between_steps() {
+        let (q, v) = (|t: f64| 2.0 * t * t * t - t + 3.0, |t: f64| 6.0 * t * t - 1.0);
+        for s in [0.0, 0.25, 0.7, 1.0] {
+            let got = hermite(s, 0.5, [q(1.0), q(1.5)], [v(1.0), v(1.5)]);
+            assert!((got - q(1.0 + 0.5 * s)).abs() < 1e-14, "{s}");
+        }
+    }
+}

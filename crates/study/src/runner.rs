@@ -1,0 +1,86 @@
+//! Jobs on all cores, with their results in order.
+
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+/// As many threads as the machine runs at once.
+#[must_use]
+pub fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// Does `work` for every job, on up to `threads` threads, and returns the results in the order of the jobs, whatever the order in
+/// which they came to an end. Jobs are begun in their order. Once `cancel` is set none is begun: its result is `None`.
+/// `done` hears of each job that has ended, from the threads, one at a time.
+///
+/// ```
+/// use std::sync::atomic::AtomicBool;
+/// let squares = teeter_study::runner::in_order(&[3, 1, 2], 2, &AtomicBool::new(false), |n| n * n, |_| {});
+/// assert_eq!(squares, [Some(9), Some(1), Some(4)]);
+/// ```
+pub fn in_order<J: Sync, R: Send>(
+    jobs: &[J],
+    threads: usize,
+    cancel: &AtomicBool,
+    work: impl Fn(&J) -> R + Sync,
+    done: impl FnMut(usize) + Send,
+) -> Vec<Option<R>> {
+    let next = AtomicUsize::new(0);
+    let results: Mutex<Vec<Option<R>>> = Mutex::new(jobs.iter().map(|_| None).collect());
+    let done = Mutex::new(done);
+    std::thread::scope(|scope| {
+        for _ in 0..threads.clamp(1, jobs.len().max(1)) {
+            scope.spawn(|| {
+                while !cancel.load(Ordering::Relaxed) {
+                    let number = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(job) = jobs.get(number) else { break };
+                    let result = work(job);
+                    if let Some(place) = results.lock().unwrap_or_else(PoisonError::into_inner).get_mut(number) {
+                        *place = Some(result);
+                    }
+                    (done.lock().unwrap_or_else(PoisonError::into_inner))(number);
+                }
+            });
+        }
+    });
+    results.into_inner().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn results_are_in_the_order_of_the_jobs_whatever_ends_first() {
+        let jobs: Vec<u64> = (0..50).collect();
+        for threads in [1, 2, 7] {
+            let mut ended = 0;
+            let results = in_order(
+                &jobs,
+                threads,
+                &AtomicBool::new(false),
+                |&n| (0..(50 - n) * 1000).fold(n, |sum, k| sum ^ k) ^ (0..(50 - n) * 1000).fold(0, |sum, k| sum ^ k),
+                |_| ended += 1,
+            );
+            assert_eq!(results, jobs.iter().map(|&n| Some(n)).collect::<Vec<_>>());
+            assert_eq!(ended, 50);
+        }
+    }
+
+    #[test]
+    fn once_cancelled_no_job_is_begun() {
+        let cancel = AtomicBool::new(false);
+        let results = in_order(
+            &[1, 2, 3, 4],
+            1,
+            &cancel,
+            |&n| {
+                cancel.fetch_or(n == 2, Ordering::Relaxed);
+                n
+            },
+            |_| {},
+        );
+        assert_eq!(results, [Some(1), Some(2), None, None]);
+        assert!(in_order(&[0_u8; 0], 4, &cancel, |_| (), |_| {}).is_empty());
+    }
+}

@@ -1,0 +1,97 @@
+//! One run of a setting: its motion and its work, or why there is none; and its time.
+
+use crate::motion::Sampler;
+use crate::work::{Counted, Counters};
+use crate::{Motion, Sampling, Setting, Source, Work};
+use cpu_time::ThreadTime;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use teeter_integrator::Ended;
+use teeter_scenario::diagnostic::Diagnostics;
+use teeter_scenario::simulation::Simulation;
+
+/// Why a setting has no motion.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Failure {
+    /// The scene is none with it.
+    #[error("refused: {0}")]
+    Refused(String),
+    /// The run ended before its time.
+    #[error("{0}")]
+    Ended(String),
+    /// The user ended it.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl From<Diagnostics> for Failure {
+    fn from(found: Diagnostics) -> Self {
+        let first = found.iter().find(|found| !found.rule.is_empty());
+        Self::Refused(first.map_or_else(|| found.to_string(), |found| format!("{}: {}", found.path, found.rule)))
+    }
+}
+
+/// A run that came to its end.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Ran {
+    pub(crate) motion: Motion,
+    pub(crate) work: Work,
+    /// Steps whose contact problem was not solved to tolerance.
+    pub(crate) unconverged: u64,
+}
+
+/// A model of the setting, ready to run.
+fn ready(source: &Source, setting: &Setting, counters: &Arc<Counters>) -> Result<Simulation, Failure> {
+    let resolved = source.load(setting)?;
+    let counted = |solver| Box::new(Counted { solver, counters: Arc::clone(counters) }) as _;
+    Simulation::with_solver(&resolved.scene, counted).map_err(|error| Failure::Refused(error.to_string()))
+}
+
+/// What a run of the setting will do at least.
+pub(crate) fn expect(source: &Source, setting: &Setting) -> Result<Work, Failure> {
+    Ok(Work::expected(&ready(source, setting, &Arc::default())?))
+}
+
+/// Runs a setting; the coordinates of the first body start greater by the share `nudge` of themselves.
+pub(crate) fn simulate(
+    source: &Source,
+    setting: &Setting,
+    nudge: f64,
+    sampling: Sampling,
+    cancel: &AtomicBool,
+) -> Result<Ran, Failure> {
+    let counters = Arc::default();
+    let mut simulation = ready(source, setting, &counters)?;
+    let first = match (simulation.layout.blocks.first(), simulation.layout.beams.first()) {
+        (Some(block), _) => block.range.clone(),
+        (None, Some(beam)) => beam.range.clone(),
+        (None, None) => 0..0,
+    };
+    simulation.state.q[first].iter_mut().for_each(|q| *q *= 1.0 + nudge);
+    let expected = Work::expected(&simulation);
+    let layout = simulation.layout.clone();
+    let mut sampler = Sampler::new(sampling, &layout, cancel);
+    let ended = simulation.run(&mut [&mut sampler]).map_err(|error| Failure::Ended(error.to_string()))?;
+    let state = &simulation.state;
+    match ended {
+        Ended::Complete => {}
+        Ended::Interrupted => return Err(Failure::Interrupted),
+        Ended::Failed(error) => return Err(Failure::Ended(error.to_string())),
+        _ => return Err(Failure::Ended(format!("a step was not solved to tolerance at t = {} s", state.t))),
+    }
+    let work = counters.add_to(expected, state.step);
+    Ok(Ran { motion: sampler.finish(state), work, unconverged: state.tally.unconverged_steps })
+}
+
+/// CPU time of the steps of a run without output, s: of this thread alone, whatever else the machine does. Making the model is not in it.
+pub(crate) fn time(source: &Source, setting: &Setting, cancel: &AtomicBool) -> Result<f64, Failure> {
+    if cancel.load(Ordering::Relaxed) {
+        return Err(Failure::Interrupted);
+    }
+    let resolved = source.load(setting)?;
+    let mut simulation = Simulation::new(&resolved.scene).map_err(|error| Failure::Refused(error.to_string()))?;
+    let clock = ThreadTime::now();
+    simulation.run(&mut []).map_err(|error| Failure::Ended(error.to_string()))?;
+    Ok(clock.elapsed().as_secs_f64())
+}

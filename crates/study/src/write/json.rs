@@ -1,0 +1,79 @@
+//! `tradeoff.json`: reference, error bars, horizon, advice, pruning; the rows are in `tradeoff.csv`.
+
+use super::{advice, pruning};
+use crate::{Advice, Errors, NUDGE, Quantity, SHARE, Setting, TARGETS, Tradeoff};
+use serde_json::{Map, Value, json};
+
+/// The study as JSON text. Numbers that are not finite are null.
+#[must_use]
+pub fn json(study: &Tradeoff) -> String {
+    let reference = &study.reference;
+    let checks: Vec<Value> = reference
+        .checks
+        .iter()
+        .map(|check| {
+            json!({
+                "what": check.what,
+                "setting": setting(&check.setting),
+                "agrees_until": check.agrees_until,
+                "in_error_bar": check.for_bar,
+                "differences": errors(&check.errors),
+            })
+        })
+        .collect();
+    let norms: Map<String, Value> =
+        Quantity::ALL.into_iter().map(|quantity| (quantity.word().to_owned(), quantity.norm().into())).collect();
+    let recommendations: Vec<Value> = TARGETS
+        .iter()
+        .zip(&study.advice)
+        .zip(advice(study))
+        .map(|((target, advice), text)| {
+            let mut value = json!({ "accuracy": target, "text": text });
+            match advice {
+                Advice::NotMeasurable => value["outcome"] = "not-measurable".into(),
+                Advice::NotReached => value["outcome"] = "not-reached".into(),
+                Advice::Take { row, overruled } => {
+                    value["outcome"] = "take".into();
+                    value["row"] = (row + 1).into();
+                    value["set"] = setting(&study.rows[*row].setting);
+                    value["by_measured_time"] = (*overruled).into();
+                    value["reached"] = study.rows[*row].accuracy().into();
+                    value["cpu_seconds"] = study.rows[*row].measured().into();
+                    value["modelled_seconds"] = study.rows[*row].modelled().into();
+                }
+            }
+            value
+        })
+        .collect();
+    let value = json!({
+        "title": study.title,
+        "version": env!("CARGO_PKG_VERSION"),
+        "end": study.end,
+        "step": study.step,
+        "set": study.sets.iter().map(|(key, value)| (key.clone(), value.clone().into())).collect::<Map<String, Value>>(),
+        "horizon": reference.ruler.horizon(),
+        "whole": reference.whole,
+        "horizon_share": SHARE,
+        "nudge": NUDGE,
+        "sample_every": study.sampling.every,
+        "reference": { "setting": setting(&reference.setting), "checks": checks },
+        "error_bar": errors(&reference.bar),
+        "norms": norms,
+        "recommendations": recommendations,
+        "candidates": study.rows.len(),
+        "grid": study.grid(),
+        "too_dear": study.too_dear,
+        "pruning": pruning(study),
+    });
+    // A value of strings, finite numbers and nulls always serialises.
+    serde_json::to_string_pretty(&value).unwrap_or_default() + "\n"
+}
+
+fn setting(setting: &Setting) -> Value {
+    Value::Object(setting.pairs().into_iter().map(|(key, value)| (key, value.into())).collect())
+}
+
+fn errors(errors: &Errors) -> Value {
+    let all = Quantity::ALL.into_iter();
+    Value::Object(all.map(|quantity| (quantity.word().to_owned(), errors.of(quantity).into())).collect())
+}

@@ -1,0 +1,69 @@
+//! What a study writes: a table, the same as JSON, figures, a page, and the sentences for people.
+
+mod csv;
+mod figure;
+mod json;
+mod page;
+mod sentences;
+
+pub use csv::csv;
+pub use figure::figures;
+pub use json::json;
+pub use page::page;
+pub use sentences::{advice, findings, pruning};
+
+/// All files that a study may write; which of the figures, depends on its scene.
+pub const FILES: [&str; 13] = [
+    "tradeoff.json",
+    "tradeoff.csv",
+    "tradeoff.html",
+    "figures/accuracy.svg",
+    "figures/angle.svg",
+    "figures/position.svg",
+    "figures/deflection.svg",
+    "figures/impact_times.svg",
+    "figures/peaks.svg",
+    "figures/forces.svg",
+    "figures/energy.svg",
+    "figures/penetration.svg",
+    "scene.toml",
+];
+
+/// A number with two significant digits, as people write it.
+pub(crate) fn short(x: f64) -> String {
+    if x == 0.0 || !x.is_finite() {
+        return x.to_string();
+    }
+    let rounded: f64 = format!("{x:.1e}").parse().unwrap_or(x);
+    if (1e-3..1e4).contains(&rounded.abs()) { format!("{rounded}") } else { format!("{rounded:e}") }
+}
+
+/// A part as a percentage with two significant digits.
+pub(crate) fn percent(x: f64) -> String {
+    format!("{} %", short(100.0 * x))
+}
+
+/// A time with two significant digits and the unit that suits it.
+pub(crate) fn duration(seconds: f64) -> String {
+    const UNITS: [(f64, &str); 3] = [(1.0, "s"), (1e3, "ms"), (1e6, "µs")];
+    let (factor, unit) = UNITS.into_iter().find(|(factor, _)| seconds * factor >= 0.9995).unwrap_or(UNITS[2]);
+    format!("{} {unit}", short(seconds * factor))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        assert_eq!(
+            (short(0.001_234), short(1.96), short(3e-7), short(0.0)),
+            ("0.0012".into(), "2".into(), "3e-7".into(), "0".into())
+        );
+        assert_eq!((percent(1e-4), percent(0.1)), ("0.01 %".into(), "10 %".into()));
+        assert_eq!(
+            (duration(0.004_21), duration(2.0), duration(1.3e-5)),
+            ("4.2 ms".into(), "2 s".into(), "13 µs".into())
+        );
+    }
+}
