@@ -199,7 +199,7 @@ fn key(svg: &mut String, study: &Tradeoff) {
     }
     let _ = writeln!(
         svg,
-        "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\" fill=\"#555\">hollow: more than scheme and step is changed</text>",
+        "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\" fill=\"#555\">hollow: other keys too</text>",
         WIDTH - RIGHT,
         TOP - 9.0
     );
