@@ -44,10 +44,10 @@ pub(crate) fn tradeoff(options: &Options) -> Exit {
         return bad_input(&presenter.one(&error.diagnostic(&resolved.document)));
     }
     let folder = options.out.clone().unwrap_or_else(|| Path::new("runs").join(format!("{stem}-tradeoff")));
-    let results = match Results::create_of(&write::FILES, &folder, options.force) {
-        Ok(results) => results,
-        Err(error) => return bad_input(&format!("error: {error}")),
-    };
+    // An earlier study stays until there is a new one.
+    if let Err(error) = Results::replaced(&write::FILES, &folder, options.force) {
+        return bad_input(&format!("error: {error}"));
+    }
     for warning in &resolved.warnings {
         console.note(&presenter.one(warning));
     }
@@ -58,7 +58,7 @@ pub(crate) fn tradeoff(options: &Options) -> Exit {
     });
     drop(progress);
     match study {
-        Ok(study) => match write_all(&study, &results, &resolved, options) {
+        Ok(study) => match write_all(&study, &folder, &resolved, options) {
             Ok(()) => {
                 console.note(&format!("results in {0}, to be looked at in {0}/tradeoff.html", folder.display()));
                 Exit::Done
@@ -69,7 +69,7 @@ pub(crate) fn tradeoff(options: &Options) -> Exit {
             }
         },
         Err(Failure::Interrupted) => {
-            console.note("interrupted: nothing is known yet, and nothing written");
+            console.note("interrupted: nothing is advised before all is compared, and nothing was written");
             Exit::Interrupted
         }
         Err(failure) => {
@@ -80,12 +80,8 @@ pub(crate) fn tradeoff(options: &Options) -> Exit {
 }
 
 /// Writes the files, and the sentences to standard output.
-fn write_all(
-    study: &Tradeoff,
-    results: &Results,
-    resolved: &Resolved,
-    options: &Options,
-) -> Result<(), Box<dyn Error>> {
+fn write_all(study: &Tradeoff, folder: &Path, resolved: &Resolved, options: &Options) -> Result<(), Box<dyn Error>> {
+    let results = Results::create_of(&write::FILES, folder, options.force)?;
     let scene = |file: &str| companions::seen_from(results.folder(), &options.scene, file);
     results.write("scene.toml", resolved.document.to_toml_elsewhere(scene))?;
     results.write("tradeoff.csv", write::csv(study))?;

@@ -119,7 +119,9 @@ impl ContactDetector<2> for PointDetector<2> {
             let Some(point) = pair.points.get(k) else { continue };
             let mut place = [Vector::<2>::zeros()];
             at.place(pair.body, std::slice::from_ref(point), &mut place);
-            if let Some((foot, gap)) = pair.foot(at, &place[0]) {
+            if let Some((foot, gap)) = pair.foot(at, &place[0])
+                && gap <= f64::INFINITY
+            {
                 out.push(pair.candidate(k, &foot, gap));
             }
         }

@@ -185,7 +185,7 @@ pub trait Subsystem<const D: usize>: Send + Sync {
     }
 
     /// Fills the Jacobian rows of a body's point (in the coordinates that detection used for it) in `frame`, and returns
-    /// how many columns it took.
+    /// how many columns it took; what it finds in the places that it is to fill means nothing.
     fn rows(&self, body: u32, q: &[f64], point: &Vector<D>, frame: &Frame<D>, out: &mut Rows<'_, D>) -> usize;
 
     /// Factorises `mass·M + damping·C + stiffness·K`, without the rows and columns of the [driven](Subsystem::driven) and

@@ -73,11 +73,11 @@ impl Results {
         Self::create_of(&FILES, folder, force)
     }
 
-    /// As [`Results::create`], for results that are other files than a run's: these, in the order in which they are removed.
+    /// What [`Results::create_of`] would remove; changes nothing, so that who takes long can ask before and create after.
     ///
     /// # Errors
-    /// As [`Results::create`].
-    pub fn create_of(files: &'static [&'static str], folder: &Path, force: bool) -> Result<Self, ResultsError> {
+    /// If the folder is none, or holds results and `force` isn't given.
+    pub fn replaced(files: &[&str], folder: &Path, force: bool) -> Result<Vec<PathBuf>, ResultsError> {
         if folder.exists() && !folder.is_dir() {
             return Err(ResultsError::NotFolder(folder.to_owned()));
         }
@@ -85,6 +85,15 @@ impl Results {
         if !old.is_empty() && !force {
             return Err(ResultsError::Exists(folder.to_owned()));
         }
+        Ok(old)
+    }
+
+    /// As [`Results::create`], for results that are other files than a run's: these, in the order in which they are removed.
+    ///
+    /// # Errors
+    /// As [`Results::create`].
+    pub fn create_of(files: &'static [&'static str], folder: &Path, force: bool) -> Result<Self, ResultsError> {
+        let old = Self::replaced(files, folder, force)?;
         fs::create_dir_all(folder).map_err(|source| ResultsError::Io { path: folder.to_owned(), source })?;
         let results = Self { folder: folder.to_owned(), files };
         // Before anything old goes, it has to be sure that something new can come.

@@ -120,7 +120,7 @@ impl Required {
     pub(crate) fn of(scene: &Scene, layout: &Layout, model: &Model<2>, q: &[f64], v: &[f64]) -> Self {
         let mut required = Self { extent: Extent::Required, ..Self::all(scene) };
         let start = Start { scene, layout, model, q, v };
-        let rests: Vec<Option<Rest>> = (0..scene.beams.len()).map(|k| Rest::of(&start, k)).collect();
+        let rests: Vec<Option<Rest>> = (0..scene.beams.len()).map(|k| Rest::of(&start, k, scene.time.steps)).collect();
         let dead = scene.contacts.iter().map(|contact| !start.is_stood_on(contact)).collect();
         let Some((pairs, barrier, reaches)) = Pairs::search(&start, dead, &rests) else { return required };
         let dead = &pairs.dead;

@@ -19,6 +19,8 @@ pub enum Advice {
         row: usize,
         /// Whether the measured time overruled the counted work.
         overruled: bool,
+        /// Whether a finer step of the same setting was tried: it holds the accuracy too, then.
+        confirmed: bool,
     },
     /// No setting that was tried is known to be as accurate.
     NotReached,
@@ -26,15 +28,19 @@ pub enum Advice {
     NotMeasurable,
 }
 
-/// Whether a row is known to be as accurate as `target`: its difference from the reference and the reference's error bar together. One that the next
-/// finer step of the same setting doesn't confirm was luck.
+/// Whether a row is known to be as accurate as `target`: its difference from the reference and the reference's error bar together. One that a
+/// finer step of the same setting, of all that were tried, doesn't confirm was luck.
 #[must_use]
 pub fn meets(rows: &[Row], axes: &Axes, row: usize, target: f64, bar: f64) -> bool {
     let within = |row: &Row| row.accuracy().is_some_and(|accuracy| accuracy + bar <= target);
-    let Some(this) = rows.get(row) else { return false };
-    let finer = axes.finer(&this.setting);
-    let confirmed = rows.iter().find(|row| Some(&row.setting) == finer.as_ref()).is_none_or(within);
-    within(this) && confirmed
+    rows.get(row).is_some_and(within) && finer(rows, axes, row).all(within)
+}
+
+/// The rows of the same setting with finer steps.
+fn finer<'a>(rows: &'a [Row], axes: &'a Axes, row: usize) -> impl Iterator<Item = &'a Row> {
+    let first = rows.get(row).and_then(|row| axes.finer(&row.setting));
+    let settings = std::iter::successors(first, |setting| axes.finer(setting));
+    settings.filter_map(|setting| rows.iter().find(|row| row.setting == setting))
 }
 
 /// The least work among the rows that meet a target; of those within 5 % of it the one that changes least of the scene, then the most accurate,
@@ -62,11 +68,13 @@ pub fn advise(rows: &[Row], axes: &Axes, target: f64, bar: f64) -> Advice {
     let fastest = (0..rows.len())
         .filter(|&k| time(k).is_some() && meets(rows, axes, k, target, bar))
         .min_by(|&a, &b| time(a).unwrap_or(f64::INFINITY).total_cmp(&time(b).unwrap_or(f64::INFINITY)));
+    let take =
+        |row: usize, overruled| Advice::Take { row, overruled, confirmed: finer(rows, axes, row).next().is_some() };
     match (fastest, time(chosen)) {
         (Some(fastest), Some(own)) if time(fastest).is_some_and(|time| time < CONTRADICTION * own) => {
-            Advice::Take { row: fastest, overruled: true }
+            take(fastest, true)
         }
-        _ => Advice::Take { row: chosen, overruled: false },
+        _ => take(chosen, false),
     }
 }
 
@@ -123,7 +131,7 @@ mod tests {
     #[test]
     fn of_equally_cheap_settings_the_one_that_changes_least_and_is_best_is_taken() {
         let advice = advise(&rows(), &axes(), 0.01, 0.0);
-        assert_eq!(advice, Advice::Take { row: 4, overruled: false });
+        assert_eq!(advice, Advice::Take { row: 4, overruled: false, confirmed: false });
     }
 
     #[test]
@@ -134,9 +142,9 @@ mod tests {
             for (k, row) in rows.iter_mut().enumerate() {
                 row.cpu = Cpu::of(vec![if k == fastest { 1.0 } else { 1.9 }]);
             }
-            assert_eq!(advise(&rows, &axes(), 0.01, 0.0), Advice::Take { row: 4, overruled: false });
+            assert_eq!(advise(&rows, &axes(), 0.01, 0.0), Advice::Take { row: 4, overruled: false, confirmed: false });
         }
         rows[2].cpu = Cpu::of(vec![0.9]);
-        assert_eq!(advise(&rows, &axes(), 0.01, 0.0), Advice::Take { row: 2, overruled: true });
+        assert_eq!(advise(&rows, &axes(), 0.01, 0.0), Advice::Take { row: 2, overruled: true, confirmed: false });
     }
 }

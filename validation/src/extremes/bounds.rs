@@ -51,6 +51,9 @@ fn room(value: f64) -> f64 {
 /// times larger in another one.
 const CHANCE: f64 = 1e-10;
 
+/// A penetration below this part of what is allowed is none: what it is there goes by rounding and by the solver's error.
+const SHALLOW: f64 = 1e-3;
+
 /// A step with so many iterations was searched for by iteration; in another run one such step may not be solved at all, and then its
 /// solvers have done all that they may.
 const SEARCH: u64 = 20;
@@ -66,7 +69,7 @@ impl Bound {
             ended: measured.ending.word().to_owned(),
             gain: if measured.gain > CHANCE { room(5.0 * measured.gain) } else { room(measured.gain.max(0.0)) },
             residual: room(measured.residual),
-            penetration: room(measured.penetration),
+            penetration: room(measured.penetration).max(SHALLOW),
             solver: 1.0,
             unconverged: 2 * measured.unconverged + u64::from(searched),
             iterations: if searched { (2 * measured.iterations).max(GIVEN_UP) } else { 2 * measured.iterations },

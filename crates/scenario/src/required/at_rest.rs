@@ -19,13 +19,13 @@ pub(super) struct Rest {
 /// A trembling of this part of the deflection is no longer rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// The trembling may be so many times the deflection that the rounding of the forces makes in one step: steps add to each other, at worst in
-/// time with a mode.
+/// The trembling may be so many times the deflection that the rounding of the forces makes in one step, and as many times as there are steps if those
+/// are more: steps add to each other, at worst in time with a mode.
 const STEPS_ADD: f64 = 1e3;
 
 impl Rest {
-    /// The rest of a beam, by its number; `None` for one that moves by itself or is moved.
-    pub(super) fn of(start: &Start<'_>, beam: usize) -> Option<Self> {
+    /// The rest of a beam, by its number, in a run of so many steps; `None` for one that moves by itself or is moved.
+    pub(super) fn of(start: &Start<'_>, beam: usize, steps: u64) -> Option<Self> {
         let place = &start.layout.beams[beam];
         let (_, part, _) = start.model.owner(place.body)?;
         let system = &part.system;
@@ -45,7 +45,7 @@ impl Rest {
         }
         let largest = |q: &[f64]| place.beam.to_nodes(q).iter().map(|[w, _]| w.abs()).fold(0.0, f64::max);
         place.beam.solve_static(&mut force).ok()?;
-        let (trembles, deflection) = (STEPS_ADD * largest(&force), largest(q));
+        let (trembles, deflection) = (STEPS_ADD.max(steps as f64) * largest(&force), largest(q));
         (trembles <= ROUNDING * deflection).then_some(Self { energy, trembles, deflection })
     }
 

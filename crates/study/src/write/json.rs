@@ -32,11 +32,12 @@ pub fn json(study: &Tradeoff) -> String {
             match advice {
                 Advice::NotMeasurable => value["outcome"] = "not-measurable".into(),
                 Advice::NotReached => value["outcome"] = "not-reached".into(),
-                Advice::Take { row, overruled } => {
+                Advice::Take { row, overruled, confirmed } => {
                     value["outcome"] = "take".into();
                     value["row"] = (row + 1).into();
                     value["set"] = setting(&study.rows[*row].setting);
                     value["by_measured_time"] = (*overruled).into();
+                    value["confirmed_by_finer_step"] = (*confirmed).into();
                     value["reached"] = study.rows[*row].accuracy().into();
                     value["cpu_seconds"] = study.rows[*row].measured().into();
                     value["modelled_seconds"] = study.rows[*row].modelled().into();

@@ -15,22 +15,31 @@ pub fn advice(study: &Tradeoff) -> Vec<String> {
             }
             Advice::NotReached => format!(
                 "{target} of accuracy: none of the settings tried is known to reach it: the best is off by {}, and the reference known to {}",
-                percent(study.best().unwrap_or(f64::NAN)),
+                percent(study.best().unwrap_or(f64::INFINITY)),
                 percent(study.bar())
             ),
-            Advice::Take { row, overruled } => {
+            Advice::Take { row, overruled, confirmed } => {
                 let row = &study.rows[*row];
+                let unconfirmed = if *confirmed { "" } else { "; no finer step of it was tried that would confirm it" };
                 let overruled = if *overruled { "; by measured time, which the counted work is far from" } else { "" };
-                format!("for {target} of accuracy take {}: {}{overruled}", taken(study, row), cost(study, row))
+                format!(
+                    "for {target} of accuracy take {}: {}{overruled}{unconfirmed}",
+                    taken(study, row),
+                    cost(study, row)
+                )
             }
         }
     };
+    if study.best().is_none() {
+        return vec!["nothing that is compared moves before the horizon, so there is nothing to choose".to_owned()];
+    }
     TARGETS.iter().zip(&study.advice).map(one).collect()
 }
 
 /// The setting of a row as arguments to copy, the user's own first.
 pub(crate) fn taken(study: &Tradeoff, row: &Row) -> String {
-    let texts = [as_arguments(&study.sets), row.setting.to_string()];
+    let own: Vec<_> = study.sets.iter().filter(|(key, _)| row.setting.get(key).is_none()).cloned().collect();
+    let texts = [as_arguments(&own), row.setting.to_string()];
     let texts: Vec<&str> = texts.iter().map(String::as_str).filter(|text| !text.is_empty()).collect();
     if texts.is_empty() { "the scene as it is".to_owned() } else { format!("`{}`", texts.join(" ")) }
 }
@@ -67,7 +76,10 @@ pub fn findings(study: &Tradeoff) -> Vec<String> {
         let bar = reference.bar.of(quantity).filter(|_| quantity != Quantity::Penetration)?;
         Some(format!("{} {}", quantity.title().to_lowercase(), percent(bar)))
     });
-    texts.push(format!("the reference is known to: {}", bars.collect::<Vec<_>>().join(", ")));
+    let bars: Vec<_> = bars.collect();
+    if !bars.is_empty() {
+        texts.push(format!("the reference is known to: {}", bars.join(", ")));
+    }
     let absent = Quantity::ALL.into_iter().filter(|quantity| match study.own().map(|row| &row.result) {
         Some(Ok(done)) => done.errors.of(*quantity).is_none(),
         _ => false,
