@@ -32,6 +32,9 @@ pub struct ImpactRow {
 /// A change of the modified energy over this part of the kinetic and elastic energy is a warning.
 const FAR_FROM_CONSERVED: f64 = 0.02;
 
+/// A penetration over this part of the shortest side of a block is a warning.
+const DEEP: f64 = 0.1;
+
 /// Impacts that the summary lists; `impacts.csv` has all.
 const LISTED_IMPACTS: usize = 1000;
 
@@ -276,6 +279,17 @@ impl<'a> Recorder<'a> {
             if let Some(large) = deflection::large(&place.beam, nodal.as_deref().unwrap_or(q)) {
                 first("large-deflection", &|| format!("`{}` deflects far at t = {} s: {large}", place.name, state.t));
             }
+        }
+        let least = self.layout.blocks.iter().map(|place| place.side).fold(f64::INFINITY, f64::min);
+        let depth = state.tally.max_penetration;
+        if depth > DEEP * least {
+            first("deep-penetration", &|| {
+                format!(
+                    "up to t = {} s a corner was {depth:.2e} m deep in a surface, more than {:.0} % of a block's shorter side: that is no contact any                      more; the step is too long for what moves, or a corner came in from the side, past the end of a beam",
+                    state.t,
+                    100.0 * DEEP
+                )
+            });
         }
         // With theta = 1/2 nothing dissipates but that what is conserved is a modified energy: `numerical` is minus its change.
         let stirred = ledger.current.kinetic + ledger.current.elastic;

@@ -83,6 +83,8 @@ pub struct BlockPlace {
     pub name: String,
     /// Its coordinates X, Y, φ; its velocities have the same places.
     pub range: Range<usize>,
+    /// The shorter of its sides, m.
+    pub side: f64,
 }
 
 /// Where a beam is in the state.
@@ -243,7 +245,11 @@ impl Simulation {
             let shape = Rectangle::new(block.width, block.height).map_err(named)?;
             let mass = MassProperties::rectangle(&shape, block.depth, block.density).map_err(named)?;
             let start = 3 * blocks.len();
-            layout.blocks.push(BlockPlace { name: block.name.clone(), range: start..start + 3 });
+            layout.blocks.push(BlockPlace {
+                name: block.name.clone(),
+                range: start..start + 3,
+                side: block.width.min(block.height),
+            });
             blocks.push((Block::new(mass, &shape), shape));
         }
         let mut beams = Vec::new();

@@ -195,6 +195,9 @@ fn what_leaves_the_model_is_warned_of_in_the_summary() {
     assert_eq!(count("small", "large-deflection", &thickness("1.5 mm")), 0);
     // In equilibrium already it sags by more than 1/9 of the span.
     assert_eq!(count("large", "large-deflection", &thickness("0.75 mm")), 21);
+    let coarse = |step| [("time.step", step), ("output.every", step)];
+    assert_eq!(count("shallow", "deep-penetration", &coarse("1 ms")), 0);
+    assert!(count("deep", "deep-penetration", &coarse("50 ms")) > 0);
     let held = |step| [("beam.table.axial", "held"), ("time.step", step), ("output.every", "1 ms")];
     assert_eq!(count("short-steps", "stretching", &held("100 us")), 0);
     assert!(count("long-steps", "stretching", &held("500 us")) > 0);
