@@ -36,6 +36,8 @@ pub struct WorkCounts {
     pub detections: u64,
     /// Contact problems that were handed to the solver.
     pub problems: u64,
+    /// The contacts in them, added up.
+    pub contacts: u64,
     /// Iterations of the solver over all of them.
     pub iterations: u64,
     /// Problems that were not solved to tolerance.
@@ -45,8 +47,9 @@ pub struct WorkCounts {
 }
 
 impl WorkCounts {
-    fn solved(&mut self, outcome: &Outcome) {
+    fn solved(&mut self, contacts: usize, outcome: &Outcome) {
         self.problems += 1;
+        self.contacts += contacts as u64;
         self.iterations += u64::from(outcome.iterations);
         self.unsolved += u64::from(!outcome.converged());
     }
@@ -73,7 +76,7 @@ impl<const D: usize> ContactSolver<D> for Counted<'_, D> {
 
     fn solve(&mut self, problem: &ContactProblem<'_, D>, stop: &Stop<'_>, p: &mut [Vector<D>]) -> Outcome {
         let outcome = self.solver.solve(problem, stop, p);
-        self.counts.solved(&outcome);
+        self.counts.solved(p.len(), &outcome);
         outcome
     }
 
@@ -205,7 +208,7 @@ impl<const D: usize> Workspace<D> {
         }
         let (problem, p) = self.contacts.problem()?;
         let outcome = self.solver.solve(&problem, &stop, p);
-        self.counts.solved(&outcome);
+        self.counts.solved(p.len(), &outcome);
         Ok(outcome)
     }
 

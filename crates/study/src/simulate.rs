@@ -1,10 +1,8 @@
 //! One run of a setting: its motion and its work, or why there is none; and its time.
 
 use crate::motion::Sampler;
-use crate::work::{Counted, Counters};
 use crate::{Motion, Sampling, Setting, Source, Work};
 use cpu_time::ThreadTime;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use teeter_integrator::Ended;
 use teeter_scenario::diagnostic::Diagnostics;
@@ -42,15 +40,14 @@ pub(crate) struct Ran {
 }
 
 /// A model of the setting, ready to run.
-fn ready(source: &Source, setting: &Setting, counters: &Arc<Counters>) -> Result<Simulation, Failure> {
+fn ready(source: &Source, setting: &Setting) -> Result<Simulation, Failure> {
     let resolved = source.load(setting)?;
-    let counted = |solver| Box::new(Counted { solver, counters: Arc::clone(counters) }) as _;
-    Simulation::with_solver(&resolved.scene, counted).map_err(|error| Failure::Refused(error.to_string()))
+    Simulation::new(&resolved.scene).map_err(|error| Failure::Refused(error.to_string()))
 }
 
 /// What a run of the setting will do at least.
 pub(crate) fn expect(source: &Source, setting: &Setting) -> Result<Work, Failure> {
-    Ok(Work::expected(&ready(source, setting, &Arc::default())?))
+    Ok(Work::expected(&ready(source, setting)?))
 }
 
 /// Runs a setting; the coordinates of the first body start greater by the share `nudge` of themselves.
@@ -61,15 +58,13 @@ pub(crate) fn simulate(
     sampling: Sampling,
     cancel: &AtomicBool,
 ) -> Result<Ran, Failure> {
-    let counters = Arc::default();
-    let mut simulation = ready(source, setting, &counters)?;
+    let mut simulation = ready(source, setting)?;
     let first = match (simulation.layout.blocks.first(), simulation.layout.beams.first()) {
         (Some(block), _) => block.range.clone(),
         (None, Some(beam)) => beam.range.clone(),
         (None, None) => 0..0,
     };
     simulation.state.q[first].iter_mut().for_each(|q| *q *= 1.0 + nudge);
-    let expected = Work::expected(&simulation);
     let layout = simulation.layout.clone();
     let mut sampler = Sampler::new(sampling, &layout, cancel);
     let ended = simulation.run(&mut [&mut sampler]).map_err(|error| Failure::Ended(error.to_string()))?;
@@ -80,7 +75,7 @@ pub(crate) fn simulate(
         Ended::Failed(error) => return Err(Failure::Ended(error.to_string())),
         _ => return Err(Failure::Ended(format!("a step was not solved to tolerance at t = {} s", state.t))),
     }
-    let work = counters.add_to(expected, state.step);
+    let work = Work::of(&simulation);
     Ok(Ran { motion: sampler.finish(state), work, unconverged: state.tally.unconverged_steps })
 }
 
@@ -89,8 +84,7 @@ pub(crate) fn time(source: &Source, setting: &Setting, cancel: &AtomicBool) -> R
     if cancel.load(Ordering::Relaxed) {
         return Err(Failure::Interrupted);
     }
-    let resolved = source.load(setting)?;
-    let mut simulation = Simulation::new(&resolved.scene).map_err(|error| Failure::Refused(error.to_string()))?;
+    let mut simulation = ready(source, setting)?;
     let clock = ThreadTime::now();
     simulation.run(&mut []).map_err(|error| Failure::Ended(error.to_string()))?;
     Ok(clock.elapsed().as_secs_f64())

@@ -1,7 +1,5 @@
 //! Counted work: what a run costs, by what it did and not by the clock, so that a choice made by it is the same in every run.
 
-use std::sync::atomic::{AtomicU64, Ordering};
-use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, Stop, Vector};
 use teeter_scenario::simulation::Simulation;
 
 /// What a run did.
@@ -66,6 +64,18 @@ impl Work {
         }
     }
 
+    /// What a simulation has done since it was made.
+    pub(crate) fn of(simulation: &Simulation) -> Self {
+        let counts = simulation.work_counts();
+        Self {
+            steps: simulation.state.step,
+            solves: counts.problems,
+            contacts: counts.contacts,
+            iterations: counts.iterations,
+            ..Self::expected(simulation)
+        }
+    }
+
     /// What it should cost, s: an estimate that is good for ratios.
     #[must_use]
     pub fn seconds(&self) -> f64 {
@@ -78,61 +88,6 @@ impl Work {
             cost::CONTACT + cost::CONTACT_BEAM * beams + cost::CONTACT_NODAL_DOF * dofs + cost::CONTACT_SHAPE * shapes;
         let scheme = cost::SCHEMES.iter().find(|(name, _)| *name == self.scheme).map_or(1.0, |(_, factor)| *factor);
         1e-9 * scheme * (steps * step + solves * cost::SOLVE + contacts * contact + iterations * cost::ITERATION)
-    }
-}
-
-/// Counters that a solver under watch fills.
-#[derive(Debug, Default)]
-pub(crate) struct Counters {
-    solves: AtomicU64,
-    contacts: AtomicU64,
-    iterations: AtomicU64,
-}
-
-impl Counters {
-    /// The counts, on top of what was expected.
-    pub(crate) fn add_to(&self, work: Work, steps: u64) -> Work {
-        let count = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
-        Work {
-            steps,
-            solves: count(&self.solves),
-            contacts: count(&self.contacts),
-            iterations: count(&self.iterations),
-            ..work
-        }
-    }
-}
-
-/// A solver whose work is counted.
-pub(crate) struct Counted {
-    pub(crate) solver: Box<dyn ContactSolver<2>>,
-    pub(crate) counters: std::sync::Arc<Counters>,
-}
-
-impl ContactSolver<2> for Counted {
-    fn name(&self) -> &'static str {
-        self.solver.name()
-    }
-
-    fn law(&self) -> Law {
-        self.solver.law()
-    }
-
-    fn reserve(&mut self, contacts: usize, blocks: usize) {
-        self.solver.reserve(contacts, blocks);
-    }
-
-    fn solve(&mut self, problem: &ContactProblem<'_, 2>, stop: &Stop<'_>, p: &mut [Vector<2>]) -> Outcome {
-        let outcome = self.solver.solve(problem, stop, p);
-        let add = |counter: &AtomicU64, n: u64| _ = counter.fetch_add(n, Ordering::Relaxed);
-        add(&self.counters.solves, 1);
-        add(&self.counters.contacts, p.len() as u64);
-        add(&self.counters.iterations, u64::from(outcome.iterations));
-        outcome
-    }
-
-    fn fork(&self) -> Box<dyn ContactSolver<2>> {
-        Box::new(Self { solver: self.solver.fork(), counters: std::sync::Arc::clone(&self.counters) })
     }
 }
 
