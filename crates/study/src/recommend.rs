@@ -7,7 +7,8 @@ use crate::row::as_cheap;
 /// The accuracies that are asked for.
 pub const TARGETS: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
 
-/// The measured time overrules the counted work where it says that another setting takes less than this part of the time.
+/// The measured time overrules the counted work where it says that another setting takes less than this part of the time. The least of the runs
+/// decides: other work on the machine only adds to a time, by up to a factor of two in the median.
 const CONTRADICTION: f64 = 0.5;
 
 /// What to take for an accuracy.
@@ -64,7 +65,7 @@ pub fn advise(rows: &[Row], axes: &Axes, target: f64, bar: f64) -> Advice {
         return Advice::NotMeasurable;
     }
     let Some(chosen) = cheapest(rows, axes, target, bar) else { return Advice::NotReached };
-    let time = |k: usize| rows[k].measured();
+    let time = |k: usize| rows[k].cpu.map(|cpu| cpu.least);
     let fastest = (0..rows.len())
         .filter(|&k| time(k).is_some() && meets(rows, axes, k, target, bar))
         .min_by(|&a, &b| time(a).unwrap_or(f64::INFINITY).total_cmp(&time(b).unwrap_or(f64::INFINITY)));
