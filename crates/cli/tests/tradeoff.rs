@@ -38,7 +38,7 @@ fn a_study_writes_its_files_and_says_the_same_again() {
     assert!(stderr.contains("tradeoff.html"), "{stderr}");
     let stdout = String::from_utf8(first.stdout).unwrap();
     assert!(
-        stdout.starts_with("for 10 % of accuracy take `--set time.end=\"0.2 s\" --set time.")
+        stdout.starts_with("for 10 % of accuracy over the whole 0.2 s take `--set time.end=\"0.2 s\" --set time.")
             && stdout.lines().next().unwrap().matches("time.step=").count() == 1,
         "{stdout}"
     );
@@ -63,6 +63,15 @@ fn a_study_writes_its_files_and_says_the_same_again() {
     sets.iter().for_each(|set| arguments.extend(["--set", set]));
     let ran = Command::new(env!("CARGO_BIN_EXE_teeter")).current_dir(&folder).args(arguments).status().unwrap();
     assert!(ran.success());
+    // And neither `check` nor `run` has a word against it.
+    let summary = std::fs::read_to_string(folder.join("advised/summary.json")).unwrap();
+    let summary: Value = serde_json::from_str(&summary).unwrap();
+    assert_eq!(summary["warnings"], Value::Array(Vec::new()), "{summary}");
+    let mut arguments = vec!["check", scene.to_str().unwrap()];
+    sets.iter().for_each(|set| arguments.extend(["--set", set]));
+    let checked = Command::new(env!("CARGO_BIN_EXE_teeter")).current_dir(&folder).args(arguments).output().unwrap();
+    let stderr = String::from_utf8_lossy(&checked.stderr).into_owned();
+    assert!(checked.status.success() && !stderr.contains("warning"), "{stderr}");
 
     let blocked = tradeoff(&folder, &[&SHORT[..], &["--out", "again"]].concat());
     assert_eq!(blocked.status.code(), Some(2));

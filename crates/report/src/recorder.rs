@@ -108,6 +108,23 @@ impl<'a> Recorder<'a> {
         layout: &'a Layout,
         tell: &'a mut dyn FnMut(&str),
     ) -> Result<Self, ResultsError> {
+        Self::fresh(|k, header| results.table(TABLES[k], header), scene, layout, tell)
+    }
+
+    /// A recorder of a run of `scene` that writes no tables: for what a run shows and warns of.
+    ///
+    /// # Errors
+    /// None today; as [`Recorder::new`].
+    pub fn watching(scene: &Scene, layout: &'a Layout, tell: &'a mut dyn FnMut(&str)) -> Result<Self, ResultsError> {
+        Self::fresh(|_, _| Ok(Table::nowhere()), scene, layout, tell)
+    }
+
+    fn fresh(
+        table: impl Fn(usize, &str) -> Result<Table, ResultsError>,
+        scene: &Scene,
+        layout: &'a Layout,
+        tell: &'a mut dyn FnMut(&str),
+    ) -> Result<Self, ResultsError> {
         let sections = Sections::new(scene, layout);
         let (beams, section_values) = sections.empty(scene, layout);
         let headers =
@@ -120,7 +137,7 @@ impl<'a> Recorder<'a> {
             section_values,
             record: Record { beams, ..Record::default() },
         };
-        Self::with(|k| results.table(TABLES[k], &headers[k]), kept, sections, scene, layout, tell)
+        Self::with(|k| table(k, &headers[k]), kept, sections, scene, layout, tell)
     }
 
     /// Opens the tables of a run of `scene` again where a checkpoint left them; what was written past that goes.

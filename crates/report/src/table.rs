@@ -13,18 +13,24 @@ const BUFFER: usize = 1 << 16;
 #[derive(Debug)]
 pub(crate) struct Table {
     path: PathBuf,
-    file: File,
+    /// None where the rows go nowhere.
+    file: Option<File>,
     buffer: Vec<u8>,
     /// Bytes of whole rows on disk.
     written: u64,
 }
 
 impl Table {
+    /// A table whose rows go nowhere: of a run that is watched and not written.
+    pub(crate) fn nowhere() -> Self {
+        Self { path: PathBuf::new(), file: None, buffer: Vec::new(), written: 0 }
+    }
+
     /// A new table with its header row on disk.
     pub(crate) fn create(folder: &Path, name: &str, header: &str) -> Result<Self, ResultsError> {
         let path = folder.join(name);
         let file = File::create(&path).map_err(|source| ResultsError::Io { path: path.clone(), source })?;
-        let mut table = Self { path, file, buffer: Vec::with_capacity(2 * BUFFER), written: 0 };
+        let mut table = Self { path, file: Some(file), buffer: Vec::with_capacity(2 * BUFFER), written: 0 };
         table.rows(header)?;
         table.flush()?;
         Ok(table)
@@ -40,7 +46,7 @@ impl Table {
             Ok(file)
         };
         match open() {
-            Ok(file) => Ok(Self { path, file, buffer: Vec::with_capacity(2 * BUFFER), written: length }),
+            Ok(file) => Ok(Self { path, file: Some(file), buffer: Vec::with_capacity(2 * BUFFER), written: length }),
             Err(source) => Err(ResultsError::Io { path, source }),
         }
     }
@@ -52,13 +58,17 @@ impl Table {
 
     /// Adds whole rows, each with its line end.
     pub(crate) fn rows(&mut self, text: &str) -> Result<(), ResultsError> {
+        if self.file.is_none() {
+            return Ok(());
+        }
         self.buffer.extend_from_slice(text.as_bytes());
         if self.buffer.len() >= BUFFER { self.flush() } else { Ok(()) }
     }
 
     /// Brings all rows to disk.
     pub(crate) fn flush(&mut self) -> Result<(), ResultsError> {
-        let (taken, result) = write_counted(&mut self.file, &self.buffer);
+        let Some(file) = &mut self.file else { return Ok(()) };
+        let (taken, result) = write_counted(file, &self.buffer);
         let whole = match result {
             Ok(()) => taken,
             Err(_) => self.buffer[..taken].iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1),
@@ -67,7 +77,7 @@ impl Table {
         self.buffer.clear();
         result.map_err(|source| {
             // Half a row would read as a wrong number. Where even this fails, the error below is still the one to tell.
-            let _ = self.file.set_len(self.written);
+            let _ = file.set_len(self.written);
             ResultsError::Io { path: self.path.clone(), source }
         })
     }

@@ -35,19 +35,26 @@ impl Axis {
     }
 }
 
-/// The axes of a scene: scheme and step first, which are tried together; the others one at a time.
+/// The axes of a scene. Those of the grid are tried in all their combinations, as what is cheapest in one of them hangs on the others: a coarse mesh
+/// lets few modes do, few modes a long step. The rest is tried one at a time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axes {
     /// The time schemes.
     pub scheme: Axis,
     /// The steps, from coarse to fine.
     pub step: Axis,
+    /// The others of the grid that the scene has.
+    pub grid: Vec<Axis>,
     /// The rest that the scene has.
     pub others: Vec<Axis>,
 }
 
+/// Makes an axis of the scenes that have it.
+type Make = fn(&Resolved) -> Option<Axis>;
+/// The registry of the grid, beside scheme and step.
+const GRID: [Make; 3] = [theta, mesh, modes];
 /// The registry of the others.
-const OTHERS: [fn(&Resolved) -> Option<Axis>; 6] = [theta, mesh, modes, kinematics, solver, tolerance];
+const OTHERS: [Make; 3] = [kinematics, solver, tolerance];
 
 /// Steps as multiples of the scene's own, from coarse to fine.
 const STEPS: [f64; 12] = [50.0, 20.0, 10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01];
@@ -83,12 +90,53 @@ impl Axes {
             keys: Vec::new(),
             options: vec![Setting::none()],
         });
-        Self { scheme, step, others: OTHERS.iter().filter_map(|axis| axis(resolved)).collect() }
+        let made = |all: [Make; 3]| all.iter().filter_map(|axis| axis(resolved)).collect();
+        Self { scheme, step, grid: made(GRID), others: made(OTHERS) }
     }
 
     /// All of them.
     pub fn iter(&self) -> impl Iterator<Item = &Axis> {
-        [&self.scheme, &self.step].into_iter().chain(&self.others)
+        [&self.scheme, &self.step].into_iter().chain(&self.grid).chain(&self.others)
+    }
+
+    /// All combinations of the schemes with the options of the grid, without the steps: the scene's own first.
+    #[must_use]
+    pub fn combinations(&self) -> Vec<Setting> {
+        let mut all = self.scheme.options.clone();
+        for axis in &self.grid {
+            all = all.iter().flat_map(|base| axis.options.iter().map(|option| axis.apply(option, base))).collect();
+        }
+        all
+    }
+
+    /// A setting with each of the steps, from coarse to fine.
+    #[must_use]
+    pub fn ladder(&self, setting: &Setting) -> Vec<Setting> {
+        self.step.options.iter().map(|option| self.step.apply(option, setting)).collect()
+    }
+
+    /// The number of a setting's step on the ladder.
+    pub(crate) fn rung(&self, setting: &Setting) -> Option<usize> {
+        let step = self.step.part_of(setting);
+        self.step.options.iter().position(|option| *option == step)
+    }
+
+    /// The same setting with the next finer step; `None` at the end of the ladder.
+    #[must_use]
+    pub fn finer(&self, setting: &Setting) -> Option<Setting> {
+        Some(self.step.apply(self.step.options.get(self.rung(setting)? + 1)?, setting))
+    }
+
+    /// The settings that differ in one axis, the steps in one rung or two.
+    pub(crate) fn neighbours(&self, setting: &Setting) -> Vec<Setting> {
+        let ladder = self.ladder(setting);
+        let steps = self.rung(setting).map_or(0..0, |rung| rung.saturating_sub(2)..(rung + 3).min(ladder.len()));
+        let mut near = ladder[steps].to_vec();
+        for axis in self.iter().filter(|axis| axis.name != self.step.name) {
+            near.extend(axis.options.iter().map(|option| axis.apply(option, setting)));
+        }
+        near.retain(|one| one != setting);
+        near
     }
 }
 
@@ -236,22 +284,48 @@ mod tests {
             [beam.table]\nmaterial = \"wood\"\nspan = \"1 m\"\nwidth = \"3 cm\"\nthickness = \"1 cm\"\nelements = 10\n";
         let (resolved, axes) = axes(beam);
         assert_eq!(names(&axes), ["scheme", "step", "theta", "mesh", "modes"]);
-        let mesh = &axes.others[1];
+        let mesh = &axes.grid[1];
         let elements: Vec<_> = mesh.options.iter().map(|option| option.get("beam.table.elements")).collect();
         assert_eq!(elements, [None, Some("3"), Some("5"), Some("20")]);
         assert_eq!(refined(&resolved, 1.0), Setting::none());
     }
 
+    /// A block on a beam of four elements: 16 modes are more than it has.
+    const BEAM: &str = "[time]\nend = \"0.1 s\"\nstep = \"1 ms\"\n[material.wood]\n\
+        density = \"600 kg/m^3\"\nyoungs_modulus = \"10 GPa\"\n[beam.table]\nmaterial = \"wood\"\nspan = \"1 m\"\nwidth = \"5 cm\"\n\
+        thickness = \"2 cm\"\nelements = 4\nsupports = [\"pinned\", \"pinned\"]\n[block.cube]\nmaterial = \"wood\"\nwidth = \"5 cm\"\n\
+        height = \"5 cm\"\ndepth = \"5 cm\"\non = \"table\"\nat = \"50 cm\"\n[contact.feet]\nbetween = [\"cube\", \"table\"]\nfriction = 0.4\n";
+
     #[test]
     fn every_option_of_every_axis_is_a_scene_or_refused_with_a_reason() {
-        let (_, axes) = axes(GROUND);
-        for axis in axes.iter() {
-            assert!(axis.options.contains(&Setting::none()), "{}: the scene's own is one", axis.name);
-            for option in &axis.options {
-                let resolved = teeter_scenario::load(GROUND.as_bytes(), "s.toml", "s", &option.pairs());
-                assert!(resolved.is_ok(), "{option}: {:?}", resolved.err().map(|found| found.to_string()));
+        let mut refused = Vec::new();
+        for (text, names) in [
+            (GROUND, &["scheme", "step", "theta", "solver", "tolerance"][..]),
+            (BEAM, &["scheme", "step", "theta", "mesh", "modes", "kinematics", "solver", "tolerance"][..]),
+        ] {
+            let mut read = |_: &str| Err("no other file".to_owned());
+            let (source, resolved) =
+                crate::Source::new(text.as_bytes().to_vec(), "s.toml", "s", &[], &mut read).unwrap();
+            let axes = Axes::of(&resolved);
+            assert_eq!(axes.iter().map(|axis| axis.name).collect::<Vec<_>>(), names);
+            for axis in axes.iter() {
+                assert!(axis.options.contains(&Setting::none()), "{}: the scene's own is one", axis.name);
+                assert!(axis.options.len() > 1, "{}: nothing to choose", axis.name);
+                for option in &axis.options {
+                    match crate::simulate::expect(&source, option) {
+                        Ok(work) => assert!(work.steps > 0, "{option}"),
+                        Err(crate::Failure::Refused(reason)) => {
+                            let key = option.pairs().into_iter().map(|(key, _)| key).find(|key| reason.contains(key));
+                            assert!(key.is_some(), "{option}: the reason names no key of it: {reason}");
+                            refused.push(option.to_string());
+                        }
+                        Err(other) => panic!("{option}: {other}"),
+                    }
+                }
             }
         }
+        let modes = |count| format!("--set beam.table.model=modes --set beam.table.modes=\"{{ count = {count} }}\"");
+        assert_eq!(refused, [modes(16), modes(32)], "these, and no other");
     }
 
     #[test]

@@ -6,13 +6,13 @@ use teeter_scenario::scene::Scene;
 /// A quantity that is compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Quantity {
-    /// The larger of the errors of angle and position; of deflection in a scene without blocks.
+    /// The largest of the errors of angle, position and deflection: of all that moves in the scene.
     Accuracy,
     /// Angles of the blocks.
     Angle,
     /// Places of the blocks' mass centres.
     Position,
-    /// Deflections of the beams, at midspan and at their probes.
+    /// Deflections of the beams, at their probes, at midspan and in the middle between supports.
     Deflection,
     /// Times of impacts.
     ImpactTimes,
@@ -77,7 +77,7 @@ impl Quantity {
     pub fn norm(self) -> &'static str {
         match self {
             Self::Accuracy => {
-                "the larger of the errors of angle and position; of deflection where the scene has no block"
+                "the largest of the errors of angle, position and deflection, of those that the scene has"
             }
             Self::Angle => {
                 "largest |φ − φ_ref| of any block at any sample before the horizon, over the largest |φ_ref|"
@@ -86,7 +86,7 @@ impl Quantity {
                 "largest |x − x_ref| or |y − y_ref| of any block at any sample before the horizon, over its larger side"
             }
             Self::Deflection => {
-                "largest |w − w_ref| at midspan and probes of any beam at any sample before the horizon, over the largest |w_ref|"
+                "largest |w − w_ref| of any beam at probes, midspan and the middle between supports at any sample before the horizon, over the largest |w_ref|"
             }
             Self::ImpactTimes => {
                 "largest |t − t_ref| of the impacts before the horizon, matched in order, over the mean time between them; an impact is a zero crossing of φ \
@@ -200,11 +200,9 @@ impl Ruler {
         let (turn, bend) = (self.turn(reference), self.bend(reference));
         let count = self.samples.min(a.samples).min(reference.samples);
         let apart = |sample: usize| {
-            if self.sides.is_empty() {
-                return self.deflected(a, reference, sample) / bend.unwrap_or(1.0);
-            }
             let angle = turn.map_or(0.0, |turn| self.turned(a, reference, sample) / turn);
-            angle.max(self.moved(a, reference, sample))
+            let bent = bend.map_or(0.0, |bend| self.deflected(a, reference, sample) / bend);
+            worse(worse(angle, bent), self.moved(a, reference, sample))
         };
         // Written so that NaN fails too.
         (0..count).find(|&sample| !(apart(sample) <= share)).unwrap_or(count)
@@ -226,8 +224,8 @@ impl Ruler {
         }
         let bend = self.bend(reference);
         errors.set(Quantity::Deflection, bend.map(|bend| largest(&|k| self.deflected(motion, reference, k)) / bend));
-        let (angle, position) = (errors.of(Quantity::Angle), errors.of(Quantity::Position));
-        let accuracy = angle.into_iter().chain(position).reduce(worse).or(errors.of(Quantity::Deflection));
+        let moving = [Quantity::Angle, Quantity::Position, Quantity::Deflection].map(|moving| errors.of(moving));
+        let accuracy = moving.into_iter().flatten().reduce(worse);
         errors.set(Quantity::Accuracy, accuracy);
         errors.set(Quantity::ImpactTimes, self.impact_times(motion, reference));
         errors.set(Quantity::Peaks, self.peaks(motion, reference));
@@ -285,6 +283,26 @@ impl Ruler {
             }
         }
         worst
+    }
+
+    /// When a block first has an impact and when the next one after it, over the whole run, s: as impact times are compared. `None` where it has
+    /// none.
+    #[must_use]
+    pub(crate) fn first_impacts(&self, motion: &Motion, block: usize) -> Option<(f64, Option<f64>)> {
+        let mut times = motion.crossings.get(block)?.clone();
+        if times.is_empty() {
+            for pair in (0..self.owners.len()).filter(|&pair| self.owners[pair] == block) {
+                let fastest = motion.impacts[pair].iter().map(|impact| impact.speed).fold(0.0, f64::max);
+                times.extend(self.impacts(motion, pair, IMPACT_SHARE * fastest));
+            }
+            times.sort_by(f64::total_cmp);
+        }
+        Some((*times.first()?, times.iter().copied().find(|t| *t > times[0] + self.shortest)))
+    }
+
+    /// Blocks that it measures.
+    pub(crate) fn blocks(&self) -> usize {
+        self.sides.len()
     }
 
     /// Times of the impacts of a contact that are no slower than `least`.

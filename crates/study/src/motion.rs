@@ -3,7 +3,8 @@
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use teeter_beam::ShapeAt;
-use teeter_integrator::{Model, Observer, ObserverError, RockingMonitor, State, StepReport};
+use teeter_integrator::{Model, Observer, ObserverError, State, StepReport};
+use teeter_report::Record;
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::{BeamPlace, Layout};
 
@@ -50,7 +51,7 @@ pub struct Impact {
 pub struct Motion {
     /// X, Y, φ of the blocks.
     pub poses: Vec<[f64; 3]>,
-    /// Deflections at midspan and probes of the beams, m.
+    /// Deflections of the beams at their probes, at midspan and in the middle between supports, m.
     pub deflections: Vec<f64>,
     /// Mechanical energy, J.
     pub energy: Vec<f64>,
@@ -80,7 +81,6 @@ pub(crate) struct Sampler<'a> {
     cancel: &'a AtomicBool,
     blocks: usize,
     watched: Vec<(&'a BeamPlace, Vec<ShapeAt>)>,
-    monitors: Vec<RockingMonitor>,
     before: Before,
     pub(crate) motion: Motion,
 }
@@ -99,12 +99,7 @@ struct Before {
 impl<'a> Sampler<'a> {
     pub(crate) fn new(sampling: Sampling, layout: &'a Layout, cancel: &'a AtomicBool) -> Self {
         let watched = |place: &'a BeamPlace| {
-            let beam = &place.beam;
-            let middle = 0.5 * beam.spec().span;
-            (
-                place,
-                std::iter::once(middle).chain(place.probes.iter().copied()).map(|x| beam.shape_clamped(x)).collect(),
-            )
+            (place, watched_places(place).into_iter().map(|x| place.beam.shape_clamped(x)).collect())
         };
         let pairs = layout.pairs.len();
         Self {
@@ -112,16 +107,16 @@ impl<'a> Sampler<'a> {
             cancel,
             blocks: layout.blocks.len(),
             watched: layout.beams.iter().map(watched).collect(),
-            monitors: Vec::new(),
             before: Before { impulses: vec![0.0; pairs], now: vec![0.0; pairs], ..Before::default() },
             motion: Motion { impacts: vec![Vec::new(); pairs], ..Motion::default() },
         }
     }
 
     /// The motion, when the run has ended.
-    pub(crate) fn finish(mut self, state: &State) -> Motion {
+    pub(crate) fn finish(mut self, state: &State, record: &Record) -> Motion {
         self.motion.energy_scale = state.ledger.scale;
-        for monitor in &self.monitors {
+        // As the run itself has them: of the angle that the summary lists.
+        for monitor in &record.rocking {
             self.motion.crossings.push(monitor.crossings().iter().map(|crossing| crossing.t).collect());
             self.motion.peaks.push(monitor.peaks().iter().skip(1).map(|peak| (peak.t, peak.phi)).collect());
         }
@@ -161,6 +156,22 @@ impl<'a> Sampler<'a> {
     }
 }
 
+/// Where the deflection of a beam is watched, m from its left end: at its probes, at midspan, and in the middle between two supports, as midspan may
+/// be one.
+fn watched_places(place: &BeamPlace) -> Vec<f64> {
+    let spec = place.beam.spec();
+    let mut stops: Vec<f64> = spec.inner_supports.iter().map(|(x, _)| *x).chain([0.0, spec.span]).collect();
+    stops.sort_by(f64::total_cmp);
+    let mut places = vec![0.5 * spec.span];
+    let middles = stops.windows(2).map(|stops| 0.5 * (stops[0] + stops[1]));
+    for x in middles.chain(place.probes.iter().copied()) {
+        if !places.contains(&x) {
+            places.push(x);
+        }
+    }
+    places
+}
+
 /// The cubic with these values and derivatives at both ends of a step of length `h`, at its share `s`.
 fn hermite(s: f64, h: f64, q: [f64; 2], v: [f64; 2]) -> f64 {
     if s >= 1.0 {
@@ -176,7 +187,6 @@ const ROUNDING: f64 = 1e-6;
 
 impl Observer<2> for Sampler<'_> {
     fn start(&mut self, _: &Model<2>, state: &State) -> Result<(), ObserverError> {
-        self.monitors = (0..self.blocks).map(|block| RockingMonitor::new(state.t, state.q[3 * block + 2])).collect();
         self.keep(state);
         self.take(1.0, state);
         Ok(())
@@ -188,9 +198,6 @@ impl Observer<2> for Sampler<'_> {
         step: &StepReport<'_, 2>,
         state: &State,
     ) -> Result<ControlFlow<()>, ObserverError> {
-        for (block, monitor) in self.monitors.iter_mut().enumerate() {
-            monitor.enter(state.t, state.q[3 * block + 2]);
-        }
         for contact in step.contacts {
             let pair = contact.id.pair() as usize;
             self.before.now[pair] += contact.p[0];

@@ -1,8 +1,10 @@
 //! Which setting to take for which accuracy: by counted work, so that every run of the study says the same.
 
-use crate::Row;
 use crate::axes::Axes;
 use crate::row::as_cheap;
+use crate::warned::of_the_scene;
+use crate::{Row, Setting, Warned};
+use std::collections::BTreeMap;
 
 /// The accuracies that are asked for.
 pub const TARGETS: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
@@ -25,52 +27,91 @@ pub enum Advice {
     },
     /// No setting that was tried is known to be as accurate.
     NotReached,
+    /// Every setting that is known to be as accurate is warned of by `check` or `run`: this is the cheapest, by its number.
+    Warned(usize),
+    /// The horizon ends before the first impacts of the scene have been compared.
+    BeforeImpact,
     /// The reference itself is not known as well as that.
     NotMeasurable,
 }
 
-/// Whether a row is known to be as accurate as `target`: its difference from the reference and the reference's error bar together. One that a
-/// finer step of the same setting, of all that were tried, doesn't confirm was luck.
-#[must_use]
-pub fn meets(rows: &[Row], axes: &Axes, row: usize, target: f64, bar: f64) -> bool {
-    let within = |row: &Row| row.accuracy().is_some_and(|accuracy| accuracy + bar <= target);
-    rows.get(row).is_some_and(within) && finer(rows, axes, row).all(within)
+/// What the finer steps of the same setting leave of the accuracy of each row: the largest error of the row and of all those of its finer steps that
+/// were tried. Accuracy that a finer step doesn't confirm was luck.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Held {
+    worst: Vec<f64>,
+    confirmed: Vec<bool>,
 }
 
-/// The rows of the same setting with finer steps.
-fn finer<'a>(rows: &'a [Row], axes: &'a Axes, row: usize) -> impl Iterator<Item = &'a Row> {
-    let first = rows.get(row).and_then(|row| axes.finer(&row.setting));
-    let settings = std::iter::successors(first, |setting| axes.finer(setting));
-    settings.filter_map(|setting| rows.iter().find(|row| row.setting == setting))
+impl Held {
+    /// Of rows that were tried.
+    #[must_use]
+    pub fn of(rows: &[Row], axes: &Axes) -> Self {
+        let mut ladders: BTreeMap<Setting, Vec<(usize, usize)>> = BTreeMap::new();
+        for (number, row) in rows.iter().enumerate() {
+            if let Some(rung) = axes.rung(&row.setting) {
+                let rest = row.setting.clone().without(&axes.step.keys);
+                ladders.entry(rest).or_default().push((rung, number));
+            }
+        }
+        let error = |number: usize| rows[number].accuracy().unwrap_or(f64::INFINITY);
+        let mut held = Self { worst: (0..rows.len()).map(error).collect(), confirmed: vec![false; rows.len()] };
+        for ladder in ladders.values_mut() {
+            ladder.sort_unstable();
+            for at in (1..ladder.len()).rev() {
+                let (coarse, fine) = (ladder[at - 1].1, ladder[at].1);
+                held.worst[coarse] = held.worst[coarse].max(held.worst[fine]);
+                held.confirmed[coarse] = true;
+            }
+        }
+        held
+    }
+
+    /// The rows that are known to be as accurate as `target`: their difference from the reference and the reference's error bar together, and so for
+    /// every finer step that was tried.
+    pub fn meeting(&self, target: f64, bar: f64) -> impl Iterator<Item = usize> + '_ {
+        (0..self.worst.len()).filter(move |&row| self.worst[row] + bar <= target)
+    }
 }
 
-/// The least work among the rows that meet a target; of those within 5 % of it the one that changes least of the scene, then the most accurate,
-/// then the first.
+/// The rows that meet a target and that nothing warns of but what is of the scene.
 #[must_use]
-pub(crate) fn cheapest(rows: &[Row], axes: &Axes, target: f64, bar: f64) -> Option<usize> {
+pub(crate) fn eligible(rows: &[Row], held: &Held, target: f64, bar: f64, reference: &[Warned]) -> Vec<usize> {
+    let scene = of_the_scene(reference, held.meeting(target, bar).map(|k| rows[k].warned()));
+    let clean = |&k: &usize| rows[k].warned().iter().all(|warned| scene.contains(&warned.kind));
+    held.meeting(target, bar).filter(clean).collect()
+}
+
+/// The least work among these rows; of those within 5 % of it the one that changes least of the scene, then the most accurate, then the first.
+#[must_use]
+pub(crate) fn cheapest(rows: &[Row], among: &[usize]) -> Option<usize> {
     let value = |x: Option<f64>| x.unwrap_or(f64::INFINITY);
     let work = |k: usize| value(rows[k].modelled());
-    let meeting: Vec<usize> = (0..rows.len()).filter(|&k| meets(rows, axes, k, target, bar)).collect();
-    let least = meeting.iter().map(|&k| work(k)).fold(f64::INFINITY, f64::min);
-    meeting.into_iter().filter(|&k| as_cheap(work(k), least)).min_by(|&a, &b| {
+    let least = among.iter().map(|&k| work(k)).fold(f64::INFINITY, f64::min);
+    among.iter().copied().filter(|&k| as_cheap(work(k), least)).min_by(|&a, &b| {
         let error = |k: usize| value(rows[k].accuracy());
         rows[a].setting.len().cmp(&rows[b].setting.len()).then(error(a).total_cmp(&error(b))).then(a.cmp(&b))
     })
 }
 
-/// The advice for a target.
+/// The advice for a target, by a reference that is known to `bar` and warned of `reference`.
 #[must_use]
-pub fn advise(rows: &[Row], axes: &Axes, target: f64, bar: f64) -> Advice {
+pub fn advise(rows: &[Row], axes: &Axes, target: f64, bar: f64, reference: &[Warned]) -> Advice {
     if bar >= target {
         return Advice::NotMeasurable;
     }
-    let Some(chosen) = cheapest(rows, axes, target, bar) else { return Advice::NotReached };
+    let held = Held::of(rows, axes);
+    let among = eligible(rows, &held, target, bar, reference);
+    let Some(chosen) = cheapest(rows, &among) else {
+        let meeting: Vec<usize> = held.meeting(target, bar).collect();
+        return cheapest(rows, &meeting).map_or(Advice::NotReached, Advice::Warned);
+    };
     let time = |k: usize| rows[k].cpu.map(|cpu| cpu.least);
-    let fastest = (0..rows.len())
-        .filter(|&k| time(k).is_some() && meets(rows, axes, k, target, bar))
+    let fastest = among
+        .into_iter()
+        .filter(|&k| time(k).is_some())
         .min_by(|&a, &b| time(a).unwrap_or(f64::INFINITY).total_cmp(&time(b).unwrap_or(f64::INFINITY)));
-    let take =
-        |row: usize, overruled| Advice::Take { row, overruled, confirmed: finer(rows, axes, row).next().is_some() };
+    let take = |row: usize, overruled| Advice::Take { row, overruled, confirmed: held.confirmed[row] };
     match (fastest, time(chosen)) {
         (Some(fastest), Some(own)) if time(fastest).is_some_and(|time| time < CONTRADICTION * own) => {
             take(fastest, true)
@@ -92,12 +133,12 @@ mod tests {
         });
         let nothing = |name| Axis { name, keys: Vec::new(), options: vec![Setting::none()] };
         let step = Axis { name: "step", keys: vec!["time.step".to_owned()], options: options.to_vec() };
-        Axes { scheme: nothing("scheme"), step, others: Vec::new() }
+        Axes { scheme: nothing("scheme"), step, grid: Vec::new(), others: Vec::new() }
     }
 
     fn row(setting: Setting, steps: u64, accuracy: f64, time: f64) -> Row {
         let work = Work { steps, ..Work::default() };
-        let result = Ok(Done { errors: Errors::of_accuracy(accuracy), work, unconverged: 0 });
+        let result = Ok(Done { errors: Errors::of_accuracy(accuracy), work, unconverged: 0, warned: Vec::new() });
         Row { setting, stage: 1, result, cpu: Cpu::of(vec![time]) }
     }
 
@@ -116,22 +157,43 @@ mod tests {
     #[test]
     fn luck_is_no_accuracy() {
         let (rows, axes) = (rows(), axes());
-        assert!(!meets(&rows, &axes, 0, 0.01, 0.0), "its finer step is off by 2 %");
-        assert!(meets(&rows, &axes, 0, 0.05, 0.0));
-        assert!(meets(&rows, &axes, 2, 0.01, 0.0));
+        let held = Held::of(&rows, &axes);
+        let meets = |row: usize, target: f64| held.meeting(target, 0.0).any(|one| one == row);
+        assert!(!meets(0, 0.01), "its finer step is off by 2 %");
+        assert!(meets(0, 0.05));
+        assert!(meets(2, 0.01));
+    }
+
+    #[test]
+    fn what_is_warned_of_is_not_advised_unless_it_is_of_the_scene() {
+        let (mut rows, axes) = (rows(), axes());
+        let warn = |row: &mut Row, kind: &str| {
+            let warned = Warned { kind: kind.to_owned(), text: String::new() };
+            row.result.as_mut().unwrap().warned.push(warned);
+        };
+        let advice = |rows: &[Row], reference: &[Warned]| match advise(rows, &axes, 0.01, 0.0, reference) {
+            Advice::Take { row, .. } => Ok(row),
+            other => Err(other),
+        };
+        let tilted = [Warned { kind: "tilt".to_owned(), text: String::new() }];
+        warn(&mut rows[4], "time.step: too coarse");
+        assert_eq!(advice(&rows, &[]), Ok(3), "the cheapest is warned of, and so the other mesh is taken");
+        rows.iter_mut().for_each(|row| warn(row, "tilt"));
+        assert_eq!(advice(&rows, &[]), Err(Advice::Warned(4)), "the reference has no such warning: the settings have");
+        assert_eq!(advice(&rows, &tilted), Ok(3), "the reference has it too: it is of the scene");
     }
 
     #[test]
     fn nothing_is_advised_below_what_the_reference_is_known_to() {
         let (rows, axes) = (rows(), axes());
-        assert_eq!(advise(&rows, &axes, 0.01, 0.01), Advice::NotMeasurable);
-        assert_eq!(advise(&rows, &axes, 0.01, 0.00995), Advice::NotReached, "difference and error bar together");
-        assert_eq!(advise(&rows, &axes, 1e-5, 1e-6), Advice::NotReached);
+        assert_eq!(advise(&rows, &axes, 0.01, 0.01, &[]), Advice::NotMeasurable);
+        assert_eq!(advise(&rows, &axes, 0.01, 0.00995, &[]), Advice::NotReached, "difference and error bar together");
+        assert_eq!(advise(&rows, &axes, 1e-5, 1e-6, &[]), Advice::NotReached);
     }
 
     #[test]
     fn of_equally_cheap_settings_the_one_that_changes_least_and_is_best_is_taken() {
-        let advice = advise(&rows(), &axes(), 0.01, 0.0);
+        let advice = advise(&rows(), &axes(), 0.01, 0.0, &[]);
         assert_eq!(advice, Advice::Take { row: 4, overruled: false, confirmed: false });
     }
 
@@ -143,9 +205,12 @@ mod tests {
             for (k, row) in rows.iter_mut().enumerate() {
                 row.cpu = Cpu::of(vec![if k == fastest { 1.0 } else { 1.9 }]);
             }
-            assert_eq!(advise(&rows, &axes(), 0.01, 0.0), Advice::Take { row: 4, overruled: false, confirmed: false });
+            assert_eq!(
+                advise(&rows, &axes(), 0.01, 0.0, &[]),
+                Advice::Take { row: 4, overruled: false, confirmed: false }
+            );
         }
         rows[2].cpu = Cpu::of(vec![0.9]);
-        assert_eq!(advise(&rows, &axes(), 0.01, 0.0), Advice::Take { row: 2, overruled: true, confirmed: false });
+        assert_eq!(advise(&rows, &axes(), 0.01, 0.0, &[]), Advice::Take { row: 2, overruled: true, confirmed: false });
     }
 }

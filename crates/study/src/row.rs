@@ -1,7 +1,7 @@
 //! A setting that was tried, with what came of it; and the front of those.
 
 use crate::errors::{Errors, Quantity};
-use crate::{Cpu, Failure, Setting, Work};
+use crate::{Cpu, Failure, Setting, Warned, Work};
 
 /// A candidate.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,7 +17,7 @@ pub struct Row {
 }
 
 /// A candidate that came to its end.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Done {
     /// Its errors.
     pub errors: Errors,
@@ -25,6 +25,8 @@ pub struct Done {
     pub work: Work,
     /// Steps whose contact problem was not solved to tolerance.
     pub unconverged: u64,
+    /// What `check` and `run` warn of.
+    pub warned: Vec<Warned>,
 }
 
 impl Row {
@@ -32,6 +34,12 @@ impl Row {
     #[must_use]
     pub fn accuracy(&self) -> Option<f64> {
         self.result.as_ref().ok()?.errors.of(Quantity::Accuracy)
+    }
+
+    /// What `check` and `run` warn of in it.
+    #[must_use]
+    pub fn warned(&self) -> &[Warned] {
+        self.result.as_ref().map_or(&[], |done| &done.warned)
     }
 
     /// What its counted work should cost, s.

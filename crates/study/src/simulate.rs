@@ -1,11 +1,13 @@
 //! One run of a setting: its motion and its work, or why there is none; and its time.
 
 use crate::motion::Sampler;
-use crate::{Motion, Sampling, Setting, Source, Work};
+use crate::{Motion, Sampling, Setting, Source, Warned, Work};
 use cpu_time::ThreadTime;
 use std::sync::atomic::{AtomicBool, Ordering};
 use teeter_integrator::Ended;
+use teeter_report::{EndedWord, Recorder, Summary};
 use teeter_scenario::diagnostic::Diagnostics;
+use teeter_scenario::resolve::Resolved;
 use teeter_scenario::simulation::Simulation;
 
 /// Why a setting has no motion.
@@ -37,17 +39,20 @@ pub(crate) struct Ran {
     pub(crate) work: Work,
     /// Steps whose contact problem was not solved to tolerance.
     pub(crate) unconverged: u64,
+    /// What `check` and `run` warn of.
+    pub(crate) warned: Vec<Warned>,
 }
 
 /// A model of the setting, ready to run.
-fn ready(source: &Source, setting: &Setting) -> Result<Simulation, Failure> {
+fn ready(source: &Source, setting: &Setting) -> Result<(Resolved, Simulation), Failure> {
     let resolved = source.load(setting)?;
-    Simulation::new(&resolved.scene).map_err(|error| Failure::Refused(error.to_string()))
+    let simulation = Simulation::new(&resolved.scene).map_err(|error| Failure::Refused(error.to_string()))?;
+    Ok((resolved, simulation))
 }
 
 /// What a run of the setting will do at least.
 pub(crate) fn expect(source: &Source, setting: &Setting) -> Result<Work, Failure> {
-    Ok(Work::expected(&ready(source, setting)?))
+    Ok(Work::expected(&ready(source, setting)?.1))
 }
 
 /// Runs a setting; the coordinates of the first body start greater by the share `nudge` of themselves.
@@ -58,7 +63,7 @@ pub(crate) fn simulate(
     sampling: Sampling,
     cancel: &AtomicBool,
 ) -> Result<Ran, Failure> {
-    let mut simulation = ready(source, setting)?;
+    let (resolved, mut simulation) = ready(source, setting)?;
     let first = match (simulation.layout.blocks.first(), simulation.layout.beams.first()) {
         (Some(block), _) => block.range.clone(),
         (None, Some(beam)) => beam.range.clone(),
@@ -67,7 +72,11 @@ pub(crate) fn simulate(
     simulation.state.q[first].iter_mut().for_each(|q| *q *= 1.0 + nudge);
     let layout = simulation.layout.clone();
     let mut sampler = Sampler::new(sampling, &layout, cancel);
-    let ended = simulation.run(&mut [&mut sampler]).map_err(|error| Failure::Ended(error.to_string()))?;
+    // What `teeter run` would warn of is known to what watches a run of it, and to nothing else.
+    let mut tell = |_: &str| {};
+    let failed = |error: &dyn std::fmt::Display| Failure::Ended(error.to_string());
+    let mut recorder = Recorder::watching(&resolved.scene, &layout, &mut tell).map_err(|error| failed(&error))?;
+    let ended = simulation.run(&mut [&mut sampler, &mut recorder]).map_err(|error| failed(&error))?;
     let state = &simulation.state;
     match ended {
         Ended::Complete => {}
@@ -76,7 +85,10 @@ pub(crate) fn simulate(
         _ => return Err(Failure::Ended(format!("a step was not solved to tolerance at t = {} s", state.t))),
     }
     let work = Work::of(&simulation);
-    Ok(Ran { motion: sampler.finish(state), work, unconverged: state.tally.unconverged_steps })
+    let record = recorder.into_record();
+    let summary = Summary::new(&resolved.scene, &layout, state, &record, EndedWord::Complete, 0.0);
+    let warned = Warned::of(&resolved.warnings, &summary.warnings);
+    Ok(Ran { motion: sampler.finish(state, &record), work, unconverged: state.tally.unconverged_steps, warned })
 }
 
 /// CPU time of the steps of a run without output, s: of this thread alone, whatever else the machine does. Making the model is not in it.
@@ -84,7 +96,7 @@ pub(crate) fn time(source: &Source, setting: &Setting, cancel: &AtomicBool) -> R
     if cancel.load(Ordering::Relaxed) {
         return Err(Failure::Interrupted);
     }
-    let mut simulation = ready(source, setting)?;
+    let (_, mut simulation) = ready(source, setting)?;
     let clock = ThreadTime::now();
     simulation.run(&mut []).map_err(|error| Failure::Ended(error.to_string()))?;
     Ok(clock.elapsed().as_secs_f64())

@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 /// The table, with its header: `number, stage, setting` (as arguments; empty: the scene as it is), a column for each error (empty where the scene doesn't have
 /// it), `steps, solves, contacts, iterations, unconverged_steps, modelled_ms` (counted work), `cpu_ms, cpu_ms_least, cpu_runs`, `front` (of
-/// accuracy over counted work: yes or no), `failure` (empty where it came to its end).
+/// accuracy over counted work: yes or no), `failure` (empty where it came to its end), `warnings` (what `check` and `run` warn of, with semicolons between).
 #[must_use]
 pub fn csv(study: &Tradeoff) -> String {
     let mut text = "number,stage,setting".to_owned();
@@ -13,7 +13,7 @@ pub fn csv(study: &Tradeoff) -> String {
         let _ = write!(text, ",{}", quantity.word());
     }
     text.push_str(
-        ",steps,solves,contacts,iterations,unconverged_steps,modelled_ms,cpu_ms,cpu_ms_least,cpu_runs,front,failure\n",
+        ",steps,solves,contacts,iterations,unconverged_steps,modelled_ms,cpu_ms,cpu_ms_least,cpu_runs,front,failure,warnings\n",
     );
     for (number, row) in study.rows.iter().enumerate() {
         let _ = write!(text, "{},{},{}", number + 1, row.stage, quoted(&row.setting.to_string()));
@@ -45,7 +45,8 @@ pub fn csv(study: &Tradeoff) -> String {
         }
         let front = if study.front.contains(&number) { "yes" } else { "no" };
         let failure = row.result.as_ref().err().map(ToString::to_string).unwrap_or_default();
-        let _ = writeln!(text, ",{front},{}", quoted(&failure));
+        let warned: Vec<&str> = row.warned().iter().map(|warned| warned.text.as_str()).collect();
+        let _ = writeln!(text, ",{front},{},{}", quoted(&failure), quoted(&warned.join("; ")));
     }
     text
 }

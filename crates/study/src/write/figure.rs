@@ -45,7 +45,7 @@ fn points(study: &Tradeoff, quantity: Quantity) -> Vec<Point> {
             time: row.measured()?,
             error: error.max(LEAST),
             scheme: axes.scheme.options.iter().position(|option| *option == scheme)?,
-            plain: axes.others.iter().all(|axis| axis.part_of(&row.setting).is_none()),
+            plain: axes.grid.iter().chain(&axes.others).all(|axis| axis.part_of(&row.setting).is_none()),
         })
     };
     study.rows.iter().filter_map(point).collect()

@@ -1,7 +1,7 @@
 //! `tradeoff.json`: reference, error bars, horizon, advice, pruning; the rows are in `tradeoff.csv`.
 
 use super::{advice, pruning};
-use crate::{Advice, Errors, NUDGE, Quantity, SHARE, Setting, TARGETS, Tradeoff};
+use crate::{Advice, Errors, NUDGE, Quantity, Setting, TARGETS, Tradeoff, Warned};
 use serde_json::{Map, Value, json};
 
 /// The study as JSON text. Numbers that are not finite are null.
@@ -32,6 +32,12 @@ pub fn json(study: &Tradeoff) -> String {
             match advice {
                 Advice::NotMeasurable => value["outcome"] = "not-measurable".into(),
                 Advice::NotReached => value["outcome"] = "not-reached".into(),
+                Advice::BeforeImpact => value["outcome"] = "horizon-before-impact".into(),
+                Advice::Warned(row) => {
+                    value["outcome"] = "warned".into();
+                    value["row"] = (row + 1).into();
+                    value["warnings"] = warnings(study.rows[*row].warned());
+                }
                 Advice::Take { row, overruled, confirmed } => {
                     value["outcome"] = "take".into();
                     value["row"] = (row + 1).into();
@@ -39,6 +45,8 @@ pub fn json(study: &Tradeoff) -> String {
                     value["by_measured_time"] = (*overruled).into();
                     value["confirmed_by_finer_step"] = (*confirmed).into();
                     value["reached"] = study.rows[*row].accuracy().into();
+                    value["off_by_at_most"] = study.rows[*row].accuracy().map(|accuracy| accuracy + study.bar()).into();
+                    value["warnings"] = warnings(study.rows[*row].warned());
                     value["cpu_seconds"] = study.rows[*row].measured().into();
                     value["modelled_seconds"] = study.rows[*row].modelled().into();
                 }
@@ -54,20 +62,28 @@ pub fn json(study: &Tradeoff) -> String {
         "set": study.sets.iter().map(|(key, value)| (key.clone(), value.clone().into())).collect::<Map<String, Value>>(),
         "horizon": reference.ruler.horizon(),
         "whole": reference.whole,
-        "horizon_share": SHARE,
+        "horizon_share": reference.share,
+        "first_impact": reference.first_impact.map(|impact| json!({ "block": impact.block, "t": impact.t, "until": impact.until })),
+        "first_impacts_compared": reference.has_first_impacts(),
         "nudge": NUDGE,
         "sample_every": study.sampling.every,
-        "reference": { "setting": setting(&reference.setting), "checks": checks },
+        "reference": {
+            "setting": setting(&reference.setting), "checks": checks, "warnings": warnings(&reference.warned)
+        },
         "error_bar": errors(&reference.bar),
         "norms": norms,
         "recommendations": recommendations,
         "candidates": study.rows.len(),
         "grid": study.grid(),
-        "too_dear": study.too_dear,
+        "too_dear": study.too_dear.len(),
         "pruning": pruning(study),
     });
     // A value of strings, finite numbers and nulls always serialises.
     serde_json::to_string_pretty(&value).unwrap_or_default() + "\n"
+}
+
+fn warnings(warned: &[Warned]) -> Value {
+    warned.iter().map(|warned| Value::from(warned.text.as_str())).collect()
 }
 
 fn setting(setting: &Setting) -> Value {

@@ -36,7 +36,7 @@ pub fn page(study: &Tradeoff) -> String {
         let _ = writeln!(html, "<li>{}</li>", with_code(&sentence));
     }
     html.push_str(
-        "</ul></section>\n<section class=\"panel\"><h3>Error over CPU time</h3>\n<p class=\"note\">A point is a candidate, the line the least error within a time; grey: \
+        "</ul></section>\n<section class=\"panel\"><h3>Error over CPU time</h3>\n<p class=\"note\">A point is a candidate whose time was measured, the line the least error within a time; grey: \
          below what the reference is known to.</p>\n<div id=\"front\">\n",
     );
     for (_, svg) in figures(study) {
@@ -104,11 +104,17 @@ fn checks(html: &mut String, study: &Tradeoff) {
 
 fn candidates(html: &mut String, study: &Tradeoff) {
     html.push_str(
-        "<section id=\"candidates\" class=\"panel\"><h3>The candidates</h3>\n<p class=\"note\">Bold: on the front of accuracy over counted work.</p>\n\
+        "<section id=\"candidates\" class=\"panel\"><h3>The candidates</h3>\n<p class=\"note\">Bold: on the front of accuracy over counted work. Of the later stages those that \
+         were near the front; tradeoff.csv has all. A setting that `check` or `run` \
+         warns of is not advised.</p>\n\
          <div class=\"scroll\" tabindex=\"0\"><table>\n",
     );
     header(html, &["Stage"], &["CPU time", "by counted work", "Setting"]);
-    for (number, row) in study.rows.iter().enumerate() {
+    // Of hundreds, those that say something; the table in the file has all.
+    let shown = |number: usize, row: &crate::Row| {
+        row.stage <= 2 || row.cpu.is_some() || row.result.is_err() || study.front.contains(&number)
+    };
+    for (number, row) in study.rows.iter().enumerate().filter(|(number, row)| shown(*number, row)) {
         let class = if study.front.contains(&number) { " class=\"on\"" } else { "" };
         let _ = write!(html, "<tr{class}><td>{}</td>", row.stage);
         let setting =
@@ -128,7 +134,11 @@ fn candidates(html: &mut String, study: &Tradeoff) {
                 let _ = write!(html, "<td colspan=\"{columns}\" class=\"bad\">{}</td>", escaped(&failure.to_string()));
             }
         }
-        let _ = writeln!(html, "<td><code>{setting}</code></td></tr>");
+        let warned = row
+            .warned()
+            .iter()
+            .map(|warned| format!("<br><span class=\"bad\">warned: {}</span>", escaped(&warned.text)));
+        let _ = writeln!(html, "<td><code>{setting}</code>{}</td></tr>", warned.collect::<String>());
     }
     let _ = writeln!(
         html,

@@ -1,32 +1,45 @@
 //! What a study says to people.
 
-use super::{duration, percent};
+use super::{duration, percent, short};
 use crate::setting::as_arguments;
-use crate::{Advice, NUDGE, Quantity, Row, SHARE, STAGES_TOLD, TARGETS, Tradeoff};
+use crate::{Advice, NUDGE, Quantity, Row, STAGES_TOLD, TARGETS, Tradeoff};
 
 /// A sentence for each accuracy: what to take, as arguments to copy, or why nothing can be said.
 #[must_use]
 pub fn advice(study: &Tradeoff) -> Vec<String> {
+    let until = until(study);
     let one = |(target, advice): (&f64, &Advice)| {
-        let target = percent(*target);
+        let target = format!("{} of accuracy {until}", percent(*target));
         match advice {
             Advice::NotMeasurable => {
-                format!("{target} of accuracy: not measurable here: the reference is known to {}", percent(study.bar()))
+                format!("{target}: not measurable here: the reference is known to {}", percent(study.bar()))
             }
             Advice::NotReached => format!(
-                "{target} of accuracy: none of the settings tried is known to reach it: the best is off by {}, and the reference known to {}",
-                percent(study.best().unwrap_or(f64::INFINITY)),
-                percent(study.bar())
+                "{target}: none of the settings tried is known to reach it: the best is off by at most {}",
+                off_by(study, study.best().unwrap_or(f64::INFINITY))
             ),
+            Advice::BeforeImpact => format!("{target}: nothing is advised: {}", before_impact(study)),
+            Advice::Warned(row) => {
+                let row = &study.rows[*row];
+                format!(
+                    "{target}: nothing is advised: `check` or `run` warns of every setting tried that is known to reach it, of the cheapest, {}, \
+                     that {}",
+                    taken(study, row),
+                    row.warned().iter().map(|warned| warned.text.as_str()).collect::<Vec<_>>().join("; and that ")
+                )
+            }
             Advice::Take { row, overruled, confirmed } => {
                 let row = &study.rows[*row];
                 let unconfirmed = if *confirmed { "" } else { "; no finer step of it was tried that would confirm it" };
                 let overruled = if *overruled { "; by measured time, which the counted work is far from" } else { "" };
-                format!(
-                    "for {target} of accuracy take {}: {}{overruled}{unconfirmed}",
-                    taken(study, row),
-                    cost(study, row)
-                )
+                let warned = match row.warned() {
+                    [] => String::new(),
+                    warned => format!(
+                        "; of the scene itself, whatever is taken, `check` or `run` warns: {}",
+                        warned.iter().map(|warned| warned.text.as_str()).collect::<Vec<_>>().join("; ")
+                    ),
+                };
+                format!("for {target} take {}: {}{overruled}{unconfirmed}{warned}", taken(study, row), cost(study, row))
             }
         }
     };
@@ -34,6 +47,40 @@ pub fn advice(study: &Tradeoff) -> Vec<String> {
         return vec!["nothing that is compared moves before the horizon, so there is nothing to choose".to_owned()];
     }
     TARGETS.iter().zip(&study.advice).map(one).collect()
+}
+
+/// How far what is said holds.
+fn until(study: &Tradeoff) -> String {
+    if study.reference.whole {
+        format!("over the whole {} s", study.end)
+    } else {
+        format!("up to t = {} s of {} s", study.reference.ruler.horizon(), study.end)
+    }
+}
+
+/// Why the horizon doesn't do.
+fn before_impact(study: &Tradeoff) -> String {
+    let horizon = study.reference.ruler.horizon();
+    match (study.reference.first_impact, study.axes.scheme.options.len()) {
+        (Some(impact), schemes) => format!(
+            "motions can be compared up to {horizon} s only, and the first impact of block {} is at {} s, so that up to {} s should be compared to tell \
+             what it does; none of {schemes} schemes has a longer horizon",
+            impact.block + 1,
+            short(impact.t),
+            short(impact.until)
+        ),
+        (None, _) => format!("motions can be compared up to {horizon} s only"),
+    }
+}
+
+/// How far off a setting can be, with what that is made of.
+fn off_by(study: &Tradeoff, accuracy: f64) -> String {
+    format!(
+        "{}: {} from the reference, which is known to {}",
+        percent(accuracy + study.bar()),
+        percent(accuracy),
+        percent(study.bar())
+    )
 }
 
 /// The setting of a row as arguments to copy, the user's own first.
@@ -45,7 +92,8 @@ pub(crate) fn taken(study: &Tradeoff, row: &Row) -> String {
 }
 
 fn cost(study: &Tradeoff, row: &Row) -> String {
-    let accuracy = row.accuracy().map_or_else(String::new, |accuracy| format!(" (off by {})", percent(accuracy)));
+    let accuracy =
+        row.accuracy().map_or_else(String::new, |accuracy| format!(" (off by at most {})", off_by(study, accuracy)));
     match row.measured() {
         Some(time) => format!("{} of CPU time, {:.2e} × real time{accuracy}", duration(time), time / study.end),
         None => format!("no time measured{accuracy}"),
@@ -62,16 +110,31 @@ pub fn findings(study: &Tradeoff) -> Vec<String> {
         format!(
             "horizon: the whole run of {} s; started {NUDGE:e} beside it or with twice the step, it stays within {} of the motion",
             study.end,
-            percent(SHARE)
+            percent(reference.share)
         )
     } else {
         format!(
             "horizon: {} s of {} s; beyond it the reference, started {NUDGE:e} beside it or with twice the step, is more than {} of the motion off, and nothing is compared",
             ruler.horizon(),
             study.end,
-            percent(SHARE)
+            percent(reference.share)
         )
     });
+    if let Some(impact) = reference.first_impact {
+        texts.push(format!(
+            "first impacts: compared up to {} s at least, as the last of the blocks to have one has its first at {} s",
+            short(impact.until),
+            short(impact.t)
+        ));
+    }
+    let warned = study.rows.iter().filter(|row| !row.warned().is_empty()).count();
+    if warned > 0 {
+        texts.push(format!(
+            "warnings: `check` or `run` warns of {warned} of the {} settings tried; one is advised only where the reference and all that are as accurate \
+             are warned of the same",
+            study.rows.len()
+        ));
+    }
     let bars = Quantity::ALL.into_iter().filter_map(|quantity| {
         let bar = reference.bar.of(quantity).filter(|_| quantity != Quantity::Penetration)?;
         Some(format!("{} {}", quantity.title().to_lowercase(), percent(bar)))
@@ -100,9 +163,7 @@ pub fn findings(study: &Tradeoff) -> Vec<String> {
 /// How the grid was pruned.
 #[must_use]
 pub fn pruning(study: &Tradeoff) -> Vec<String> {
-    // The fourth is two stages.
-    let numbers = ["1", "2", "3", "4 and 5", "6"];
-    let stages = numbers.iter().zip(STAGES_TOLD).map(|(number, told)| format!("stage {number}: {told}"));
+    let stages = (1..).zip(STAGES_TOLD).map(|(number, told)| format!("stage {number}: {told}"));
     let axes = study.axes.iter().map(|axis| format!("{} {}", axis.options.len(), axis.name));
     let mut texts: Vec<String> = stages.collect();
     texts.push(format!(
@@ -111,8 +172,8 @@ pub fn pruning(study: &Tradeoff) -> Vec<String> {
         study.grid(),
         axes.collect::<Vec<_>>().join(" × ")
     ));
-    if study.too_dear > 0 {
-        texts.push(format!("{} more were left out as too much work, by counted work", study.too_dear));
+    if !study.too_dear.is_empty() {
+        texts.push(format!("{} more were left out as too much work, by counted work", study.too_dear.len()));
     }
     texts
 }

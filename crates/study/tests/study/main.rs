@@ -3,10 +3,17 @@
 
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-use teeter_study::{Advice, Failure, Quantity, Row, Source, TARGETS, Tradeoff, write};
+use teeter_study::{Advice, Failure, Held, Quantity, Row, Source, TARGETS, Tradeoff, Warned, runner, write};
 
 fn study(scenario: &str, sets: &[(&str, &str)]) -> Tradeoff {
     with(scenario, sets, &AtomicBool::new(false)).expect("a study")
+}
+
+/// A study of a scene in a text.
+fn of_text(text: &str) -> Tradeoff {
+    let mut read = |_: &str| Err("no other file".to_owned());
+    let (source, resolved) = Source::new(text.as_bytes().to_vec(), "s.toml", "s", &[], &mut read).expect("a scene");
+    Tradeoff::of(&source, &resolved, 2, &AtomicBool::new(false), &mut |_, _, _| {}).expect("a study")
 }
 
 fn with(scenario: &str, sets: &[(&str, &str)], cancel: &AtomicBool) -> Result<Tradeoff, Failure> {
@@ -57,9 +64,13 @@ fn a_study_says_the_same_again_and_advises_what_it_measured() {
             Advice::Take { row, .. } => {
                 taken += 1;
                 assert!(first.rows[*row].accuracy().unwrap() + bar <= *target);
+                let of_scene = |warned: &Warned| first.reference.warned.iter().any(|own| own.kind == warned.kind);
+                assert!(first.rows[*row].warned().iter().all(of_scene), "{:?}", first.rows[*row]);
             }
             Advice::NotMeasurable => assert!(bar >= *target),
             Advice::NotReached => assert!(bar < *target),
+            Advice::Warned(row) => assert!(!first.rows[*row].warned().is_empty()),
+            Advice::BeforeImpact => assert!(!first.reference.has_first_impacts()),
         }
     }
     assert!(taken > 0, "10 % can be had");
@@ -95,7 +106,7 @@ fn a_refused_candidate_is_a_row_with_its_reason() {
     let line = text.lines().find(|line| line.contains("refused")).expect("a row");
     assert!(line.contains("count = 16"), "{line}\n{refused:?}");
     let columns = text.lines().next().unwrap().split(',').count();
-    assert_eq!(columns, 3 + Quantity::ALL.len() + 11);
+    assert_eq!(columns, 3 + Quantity::ALL.len() + 12);
 }
 
 #[test]
@@ -103,4 +114,120 @@ fn an_interrupted_study_says_so() {
     let cancel = AtomicBool::new(true);
     assert_eq!(with("sliding", &[], &cancel), Err(Failure::Interrupted));
     assert!(cancel.load(Ordering::Relaxed));
+}
+
+/// A steel block falls 2 mm onto a timber beam of two spans whose midspan is a support, and the wave in the beam is most of the motion.
+const TWO_SPANS: &str = "[time]\nend = '60 ms'\nstep = '1 ms'\n[material.timber]\ndensity = '450 kg/m^3'\nyoungs_modulus = '11 GPa'\n\
+    [material.steel]\ndensity = '7850 kg/m^3'\n[beam.joist]\nmaterial = 'timber'\nspan = '4 m'\nwidth = '8 cm'\nthickness = '16 cm'\n\
+    elements = 8\nsupports = ['pinned', 'pinned']\ndamping_ratio = { mode = 1, ratio = 0.02 }\nprobes = ['3 m']\n\
+    [beam.joist.support.mid]\nat = '2 m'\nkind = 'pinned'\n[block.cube]\nmaterial = 'steel'\nwidth = '10 cm'\nheight = '10 cm'\ndepth = '10 cm'\n\
+    position = ['1 m', '13.2 cm']\n[contact.feet]\nbetween = ['cube', 'joist']\nfriction = 0.4\n";
+
+#[test]
+fn deflection_counts_where_there_is_a_block_too() {
+    let study = of_text(TWO_SPANS);
+    let done = |row: &Row| row.result.clone().ok();
+    let largest = |errors: &teeter_study::Errors| {
+        let parts = [Quantity::Angle, Quantity::Position, Quantity::Deflection];
+        parts.into_iter().filter_map(|quantity| errors.of(quantity)).fold(0.0, f64::max)
+    };
+    let mut by_deflection = 0;
+    for row in study.rows.iter().filter_map(done) {
+        let accuracy = row.errors.of(Quantity::Accuracy).unwrap();
+        assert_eq!(accuracy, largest(&row.errors));
+        by_deflection += usize::from(Some(accuracy) == row.errors.of(Quantity::Deflection));
+    }
+    assert!(by_deflection > 0, "in no row is the beam further off than the block: the scene tests nothing");
+    assert!(study.reference.motion.deflections.iter().any(|w| w.abs() > 1e-6), "the middle of a span is watched");
+}
+
+#[test]
+fn nothing_is_advised_before_the_first_impact_has_been_compared() {
+    // A horizon that ends just after the first impact: made by hand, as no scenario of ours has one.
+    let mut study = study("free-rocking-on-ground", &[("time.end", "0.4 s"), ("time.step", "1 ms")]);
+    let impact = study.reference.first_impact.expect("the block rocks over at 0.1065 s");
+    assert!((impact.t - 0.1065).abs() < 1e-4 && impact.until > 1.4 * impact.t, "{impact:?}");
+    assert!(study.reference.has_first_impacts());
+    let samples = (0.11 / study.sampling.every) as usize;
+    study.reference.ruler = study.reference.ruler.clone().up_to(samples);
+    study.reference.whole = false;
+    assert!(!study.reference.has_first_impacts(), "3 ms after the impact show nothing of it");
+    study.advise_all();
+    assert!(study.advice.iter().all(|advice| *advice == Advice::BeforeImpact));
+    let sentences = write::advice(&study);
+    assert!(
+        sentences.iter().all(|sentence| sentence.contains("nothing is advised") && sentence.contains("0.11 s")),
+        "{sentences:?}"
+    );
+    assert!(sentences.iter().all(|sentence| !sentence.contains("take")), "{sentences:?}");
+}
+
+#[test]
+fn what_is_said_names_the_horizon_and_how_far_off_with_the_bar() {
+    let study = study("free-rocking-on-ground", &[("time.end", "0.2 s"), ("time.step", "1 ms")]);
+    let sentences = write::advice(&study);
+    for (advice, sentence) in study.advice.iter().zip(&sentences) {
+        let Advice::Take { row, .. } = advice else { continue };
+        let at_most = study.rows[*row].accuracy().unwrap() + study.bar();
+        let said = sentence.split("off by at most ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
+        let said: f64 = said.parse().unwrap();
+        assert!((said / (100.0 * at_most) - 1.0).abs() < 0.06, "{sentence}: {at_most}");
+        assert!(sentence.contains("over the whole 0.2 s"), "{sentence}");
+    }
+    assert!(sentences[0].starts_with("for 10 %"), "{sentences:?}");
+}
+
+#[test]
+fn what_run_and_check_would_warn_of_is_marked_and_not_advised() {
+    // Steps of 5 and 10 ms are coarser than a tenth of the rocking time: `check` warns of them.
+    let study = study("free-rocking-on-ground", &[("time.end", "0.2 s"), ("time.step", "1 ms")]);
+    let coarse = study.rows.iter().find(|row| row.setting.get("time.step") == Some("10 ms")).expect("a coarse step");
+    assert!(coarse.warned().iter().any(|warned| warned.kind.starts_with("time.step")), "{coarse:?}");
+    assert!(study.reference.warned.is_empty(), "{:?}", study.reference.warned);
+    for advice in &study.advice {
+        if let Advice::Take { row, .. } = advice {
+            assert_eq!(study.rows[*row].warned(), &[]);
+        }
+    }
+    let text = write::csv(&study);
+    let line = text.lines().find(|line| line.contains("time.step=\"\"10 ms\"\"")).expect("its row");
+    assert!(line.contains("coarser than a tenth"), "{line}");
+}
+
+#[test]
+fn the_warnings_of_a_setting_are_those_of_its_run() {
+    // One sweep of pgs doesn't solve two contacts: `run` warns of it.
+    let sets = [("time.end", "20 ms"), ("time.step", "1 ms"), ("solver.method", "pgs"), ("solver.max_iterations", "1")];
+    let study = study("free-rocking-on-ground", &sets);
+    let own = study.own().unwrap();
+    let unsolved = own.result.as_ref().unwrap().unconverged > 0;
+    assert!(unsolved, "{own:?}");
+    assert!(own.warned().iter().any(|warned| warned.kind == "unconverged"), "{own:?}");
+}
+
+#[test]
+fn what_is_advised_costs_hardly_more_than_the_cheapest_of_the_whole_grid() {
+    let sets = [("time.end", "0.12 s"), ("time.step", "2 ms"), ("beam.table.elements", "8")];
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/free-rocking-on-beam.toml");
+    let sets: Vec<_> = sets.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
+    let mut read = |_: &str| Err("no other file".to_owned());
+    let (source, resolved) =
+        Source::new(std::fs::read(path).unwrap(), "s.toml", "s", &sets, &mut read).expect("a scene");
+    let cancel = AtomicBool::new(false);
+    let study = Tradeoff::of(&source, &resolved, runner::cores(), &cancel, &mut |_, _, _| {}).expect("a study");
+    // The coarser half of the ladder: what is finer is dearer than what is advised here.
+    let ladder = |one| study.axes.ladder(one).into_iter().take(study.axes.step.options.len() / 2);
+    let grid: Vec<_> = study.axes.combinations().iter().flat_map(ladder).collect();
+    let rows = study.beside(grid, &source, runner::cores(), &cancel).expect("rows");
+    let held = Held::of(&rows, &study.axes);
+    let mut compared = 0;
+    for (target, advice) in TARGETS.iter().zip(&study.advice) {
+        let Advice::Take { row, .. } = advice else { continue };
+        let clean = held.meeting(*target, study.bar()).filter(|&row| rows[row].warned().is_empty());
+        let Some(least) = clean.filter_map(|row| rows[row].modelled()).reduce(f64::min) else { continue };
+        compared += 1;
+        let advised = study.rows[*row].modelled().unwrap();
+        assert!(advised <= 1.3 * least, "{target}: {advised} s against {least} s");
+    }
+    assert!(compared > 0, "nothing was compared");
 }
