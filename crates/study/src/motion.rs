@@ -63,16 +63,13 @@ pub struct Motion {
     pub crossings: Vec<Vec<f64>>,
     /// Its peaks between two crossings, rad; the release is none.
     pub peaks: Vec<Vec<(f64, f64)>>,
-    /// The impacts of each contact.
+    /// The impacts of each contact, of the first 1000 of the run.
     pub impacts: Vec<Vec<Impact>>,
     /// The energy scale of the ledger, J.
     pub energy_scale: f64,
     /// Samples taken: fewer than asked for in a run that ended early.
     pub samples: usize,
 }
-
-/// Impacts that are kept of a contact; a run that closes more often has no list of them to compare.
-const MOST_IMPACTS: usize = 200_000;
 
 /// The observer that fills a [`Motion`].
 #[derive(Debug)]
@@ -81,6 +78,8 @@ pub(crate) struct Sampler<'a> {
     cancel: &'a AtomicBool,
     blocks: usize,
     watched: Vec<(&'a BeamPlace, Vec<ShapeAt>)>,
+    /// Names of the contacts.
+    contacts: Vec<&'a str>,
     before: Before,
     pub(crate) motion: Motion,
 }
@@ -107,6 +106,7 @@ impl<'a> Sampler<'a> {
             cancel,
             blocks: layout.blocks.len(),
             watched: layout.beams.iter().map(watched).collect(),
+            contacts: layout.pairs.iter().map(|pair| pair.name.as_str()).collect(),
             before: Before { impulses: vec![0.0; pairs], now: vec![0.0; pairs], ..Before::default() },
             motion: Motion { impacts: vec![Vec::new(); pairs], ..Motion::default() },
         }
@@ -115,7 +115,12 @@ impl<'a> Sampler<'a> {
     /// The motion, when the run has ended.
     pub(crate) fn finish(mut self, state: &State, record: &Record) -> Motion {
         self.motion.energy_scale = state.ledger.scale;
-        // As the run itself has them: of the angle that the summary lists.
+        // Impacts, crossings and peaks are those that the summary lists.
+        for impact in &record.impacts {
+            if let Some(pair) = self.contacts.iter().position(|contact| *contact == impact.contact) {
+                self.motion.impacts[pair].push(Impact { t: impact.t, speed: -impact.u_n_before });
+            }
+        }
         for monitor in &record.rocking {
             self.motion.crossings.push(monitor.crossings().iter().map(|crossing| crossing.t).collect());
             self.motion.peaks.push(monitor.peaks().iter().skip(1).map(|peak| (peak.t, peak.phi)).collect());
@@ -199,12 +204,7 @@ impl Observer<2> for Sampler<'_> {
         state: &State,
     ) -> Result<ControlFlow<()>, ObserverError> {
         for contact in step.contacts {
-            let pair = contact.id.pair() as usize;
-            self.before.now[pair] += contact.p[0];
-            let impacts = &mut self.motion.impacts[pair];
-            if !contact.persisting && contact.u_before[0] < 0.0 && impacts.len() < MOST_IMPACTS {
-                impacts.push(Impact { t: step.t_end, speed: -contact.u_before[0] });
-            }
+            self.before.now[contact.id.pair() as usize] += contact.p[0];
         }
         let h = state.t - self.before.t;
         while self.motion.samples < self.sampling.count {

@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 /// The accuracies that are asked for.
 pub const TARGETS: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
 
-/// The measured time overrules the counted work where it says that another setting takes less than this part of the time. The least of the runs
-/// decides: other work on the machine only adds to a time, by up to a factor of two in the median.
+/// The advice goes by counted work, so that it is the same in every run. Where another setting was measured in less than this part of the time, it is
+/// told beside it. The least of the runs decides: other work on the machine only adds to a time, by up to a factor of two in the median.
 const CONTRADICTION: f64 = 0.5;
 
 /// What to take for an accuracy.
@@ -20,8 +20,8 @@ pub enum Advice {
     Take {
         /// The row.
         row: usize,
-        /// Whether the measured time overruled the counted work.
-        overruled: bool,
+        /// Another row that does as well and was measured in less than half the time, if there is one.
+        faster: Option<usize>,
         /// Whether a finer step of the same setting was tried: it holds the accuracy too, then.
         confirmed: bool,
     },
@@ -111,13 +111,8 @@ pub fn advise(rows: &[Row], axes: &Axes, target: f64, bar: f64, reference: &[War
         .into_iter()
         .filter(|&k| time(k).is_some())
         .min_by(|&a, &b| time(a).unwrap_or(f64::INFINITY).total_cmp(&time(b).unwrap_or(f64::INFINITY)));
-    let take = |row: usize, overruled| Advice::Take { row, overruled, confirmed: held.confirmed[row] };
-    match (fastest, time(chosen)) {
-        (Some(fastest), Some(own)) if time(fastest).is_some_and(|time| time < CONTRADICTION * own) => {
-            take(fastest, true)
-        }
-        _ => take(chosen, false),
-    }
+    let contradicts = |&row: &usize| time(row).zip(time(chosen)).is_some_and(|(time, own)| time < CONTRADICTION * own);
+    Advice::Take { row: chosen, faster: fastest.filter(contradicts), confirmed: held.confirmed[chosen] }
 }
 
 #[cfg(test)]
@@ -194,23 +189,20 @@ mod tests {
     #[test]
     fn of_equally_cheap_settings_the_one_that_changes_least_and_is_best_is_taken() {
         let advice = advise(&rows(), &axes(), 0.01, 0.0, &[]);
-        assert_eq!(advice, Advice::Take { row: 4, overruled: false, confirmed: false });
+        assert_eq!(advice, Advice::Take { row: 4, faster: None, confirmed: false });
     }
 
     #[test]
-    fn the_advice_does_not_follow_noise_but_a_contradiction() {
+    fn the_advice_does_not_follow_the_clock_but_tells_a_contradiction() {
         let mut rows = rows();
         // Every time a different one is measured as the fastest, by less than a factor of two.
         for fastest in 0..rows.len() {
             for (k, row) in rows.iter_mut().enumerate() {
                 row.cpu = Cpu::of(vec![if k == fastest { 1.0 } else { 1.9 }]);
             }
-            assert_eq!(
-                advise(&rows, &axes(), 0.01, 0.0, &[]),
-                Advice::Take { row: 4, overruled: false, confirmed: false }
-            );
+            assert_eq!(advise(&rows, &axes(), 0.01, 0.0, &[]), Advice::Take { row: 4, faster: None, confirmed: false });
         }
         rows[2].cpu = Cpu::of(vec![0.9]);
-        assert_eq!(advise(&rows, &axes(), 0.01, 0.0, &[]), Advice::Take { row: 2, overruled: true, confirmed: false });
+        assert_eq!(advise(&rows, &axes(), 0.01, 0.0, &[]), Advice::Take { row: 4, faster: Some(2), confirmed: false });
     }
 }

@@ -38,11 +38,11 @@ pub fn json(study: &Tradeoff) -> String {
                     value["row"] = (row + 1).into();
                     value["warnings"] = warnings(study.rows[*row].warned());
                 }
-                Advice::Take { row, overruled, confirmed } => {
+                Advice::Take { row, faster, confirmed } => {
                     value["outcome"] = "take".into();
                     value["row"] = (row + 1).into();
                     value["set"] = setting(&study.rows[*row].setting);
-                    value["by_measured_time"] = (*overruled).into();
+                    value["measured_faster"] = faster.map(|row| row + 1).into();
                     value["confirmed_by_finer_step"] = (*confirmed).into();
                     value["reached"] = study.rows[*row].accuracy().into();
                     value["off_by_at_most"] = study.rows[*row].accuracy().map(|accuracy| accuracy + study.bar()).into();

@@ -28,10 +28,16 @@ pub fn advice(study: &Tradeoff) -> Vec<String> {
                     row.warned().iter().map(|warned| warned.text.as_str()).collect::<Vec<_>>().join("; and that ")
                 )
             }
-            Advice::Take { row, overruled, confirmed } => {
+            Advice::Take { row, faster, confirmed } => {
                 let row = &study.rows[*row];
                 let unconfirmed = if *confirmed { "" } else { "; no finer step of it was tried that would confirm it" };
-                let overruled = if *overruled { "; by measured time, which the counted work is far from" } else { "" };
+                let faster = faster.map(|row| &study.rows[row]).map_or_else(String::new, |row| {
+                    format!(
+                        "; by counted work that is the cheapest, but {} was measured in less than half the time, {}",
+                        taken(study, row),
+                        row.measured().map_or_else(String::new, duration)
+                    )
+                });
                 let warned = match row.warned() {
                     [] => String::new(),
                     warned => format!(
@@ -39,7 +45,7 @@ pub fn advice(study: &Tradeoff) -> Vec<String> {
                         warned.iter().map(|warned| warned.text.as_str()).collect::<Vec<_>>().join("; ")
                     ),
                 };
-                format!("for {target} take {}: {}{overruled}{unconfirmed}{warned}", taken(study, row), cost(study, row))
+                format!("for {target} take {}: {}{faster}{unconfirmed}{warned}", taken(study, row), cost(study, row))
             }
         }
     };
