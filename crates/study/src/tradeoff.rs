@@ -148,8 +148,8 @@ impl Tradeoff {
         self.stage(1, plain, MOST_WORK_OF_PLAIN, run, tell)?;
         let single = self.known().one_at_a_time();
         self.stage(2, single, MOST_WORK, run, tell)?;
-        // Without the first impacts nothing will be advised.
-        if !self.reference.has_first_impacts() {
+        // Without the first impacts, or without motion, nothing will be advised.
+        if !self.reference.has_first_impacts() || self.best().is_none() {
             return Ok(());
         }
         self.confirm(run, tell)?;
