@@ -439,6 +439,17 @@ mod tests {
     }
 
     #[test]
+    fn a_beam_that_is_off_counts_where_there_is_a_block_too() {
+        let bent =
+            |by: f64| Motion { deflections: (0..11).map(|k| by * f64::from(k)).collect(), ..motion(|t| t, &[], &[]) };
+        let errors = ruler().errors(&bent(1.45e-3), &bent(1e-3));
+        assert!((errors.of(Quantity::Accuracy).unwrap() - 0.45).abs() < 1e-12, "{errors:?}");
+        assert_eq!(errors.of(Quantity::Angle), Some(0.0));
+        // At sample 1, by 0.045 of the largest deflection; at sample 0 there is none.
+        assert_eq!(ruler().agree(&bent(1.45e-3), &bent(1e-3), 0.01), 1);
+    }
+
+    #[test]
     fn motions_agree_up_to_where_they_part() {
         let reference = motion(|t| 0.2 - 0.4 * t, &[], &[]);
         let parting = motion(|t| 0.2 - 0.4 * t + if t > 0.55 { 1e-3 } else { 1e-6 }, &[], &[]);

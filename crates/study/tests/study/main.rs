@@ -135,9 +135,12 @@ fn deflection_counts_where_there_is_a_block_too() {
     for row in study.rows.iter().filter_map(done) {
         let accuracy = row.errors.of(Quantity::Accuracy).unwrap();
         assert_eq!(accuracy, largest(&row.errors));
-        by_deflection += usize::from(Some(accuracy) == row.errors.of(Quantity::Deflection));
+        by_deflection += usize::from(row.errors.of(Quantity::Deflection) > row.errors.of(Quantity::Position));
     }
-    assert!(by_deflection > 0, "in no row is the beam further off than the block: the scene tests nothing");
+    assert!(
+        by_deflection > 0,
+        "in no row is the beam further off than the place of the block: the scene tests nothing"
+    );
     assert!(study.reference.motion.deflections.iter().any(|w| w.abs() > 1e-6), "the middle of a span is watched");
 }
 
@@ -198,7 +201,7 @@ fn what_run_and_check_would_warn_of_is_marked_and_not_advised() {
 fn the_warnings_of_a_setting_are_those_of_its_run() {
     // One sweep of pgs doesn't solve two contacts: `run` warns of it.
     let sets = [("time.end", "20 ms"), ("time.step", "1 ms"), ("solver.method", "pgs"), ("solver.max_iterations", "1")];
-    let study = study("free-rocking-on-ground", &sets);
+    let study = study("sliding", &sets);
     let own = study.own().unwrap();
     let unsolved = own.result.as_ref().unwrap().unconverged > 0;
     assert!(unsolved, "{own:?}");
