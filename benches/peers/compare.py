@@ -6,14 +6,17 @@ import csv
 import datetime
 import os
 import subprocess
+import sys
 import time
 from pathlib import Path
 
-import accuracy
-import drivers
-import page
-import search
-from drivers import Job, Refused, middle
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+import accuracy  # noqa: E402
+import drivers  # noqa: E402
+import page  # noqa: E402
+import search  # noqa: E402
+from drivers import Job, Refused, middle  # noqa: E402
+from folders import writable_folder  # noqa: E402
 
 
 STEPS = [1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5]
@@ -207,7 +210,7 @@ def arguments():
     parser.add_argument(
         "--search", metavar="NAMES", help="tune these programs anew first (settings.json): ten minutes for all"
     )
-    parser.add_argument("--out", default=str(drivers.ROOT / "benches" / "results"), help="folder of the results")
+    parser.add_argument("--out", type=writable_folder, default=str(drivers.ROOT / "benches" / "results"), help="folder of the results")
     parser.add_argument("--name", default=f"peers-{today}")
     return parser.parse_args()
 
@@ -263,7 +266,7 @@ def main():
     for driver in running.values():
         driver.stop()
 
-    out = Path(args.out)
+    out = args.out
     tables = {"ground": ground, "beam": beam, "cost": cost}
     write_csv(out / f"{args.name}.csv", tables)
     figures = page.figures(tables, reference)

@@ -10,9 +10,11 @@ import tempfile
 import time
 from pathlib import Path
 
-import page
-import siconos
-from programs import HERE, ROOT, Crash, Driver, Place, Teeter, middle
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+import page  # noqa: E402
+import siconos  # noqa: E402
+from folders import writable_folder  # noqa: E402
+from programs import HERE, ROOT, Crash, Driver, Place, Teeter, middle  # noqa: E402
 
 # The methods of the same name: ours, theirs, and the dimensions in which both have it.
 PAIRS = [
@@ -201,7 +203,7 @@ def arguments():
     )
     parse.add_argument("--siconos-only", action="store_true")
     parse.add_argument("--above", type=int, default=0, help="only problems of more contacts than this")
-    parse.add_argument("--out", default=str(HERE.parent / "results"), help="folder for the table and the page")
+    parse.add_argument("--out", type=writable_folder, default=str(HERE.parent / "results"), help="folder for the table and the page")
     parse.add_argument("--name", default=f"siconos-{datetime.date.today()}", help="stem of the two files")
     parse.add_argument("--teeter", help="the program (default: builds this workspace's)")
     parse.add_argument("--core", type=int, default=0, help="the core that everything runs on")
@@ -272,7 +274,7 @@ def main():
                 rows += [{**shared, **entry.row()} for entry in entries]
             print(f"{number}/{len(problems)} {name}: {time.time() - begin:.0f} s so far", file=sys.stderr)
 
-    out = Path(args.out)
+    out = args.out
     out.mkdir(parents=True, exist_ok=True)
     with open(out / f"{args.name}.csv", "w", newline="") as file:
         table = csv.DictWriter(file, FIELDS, lineterminator="\n")

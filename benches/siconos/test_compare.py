@@ -1,9 +1,13 @@
 """The protocol and the figures, on made-up solvers: python3 -m unittest discover benches/siconos"""
 
+import argparse
 import math
+import tempfile
 import unittest
+from pathlib import Path
 
 import compare
+import folders
 import page
 import siconos
 
@@ -141,6 +145,16 @@ class TheFigures(unittest.TestCase):
         ]
         self.assertEqual([s.solver for s in compare.wanted(at, 1e-8, {"VI_EG"}, 2)], ["NSGS", "PROX", "VI_EG"])
         self.assertEqual(len(compare.wanted(at, 1e-8, set(), None)), 4)
+
+
+class TheFolderOfResults(unittest.TestCase):
+    def test_it_is_made_or_refused_before_anything_is_measured(self):
+        with tempfile.TemporaryDirectory() as place:
+            self.assertTrue(folders.writable_folder(f"{place}/new/one").is_dir())
+            (Path(place) / "file").write_text("")
+            for taken in ("file", "file/below"):
+                with self.assertRaises(argparse.ArgumentTypeError):
+                    folders.writable_folder(f"{place}/{taken}")
 
 
 if __name__ == "__main__":

@@ -13,7 +13,8 @@ from pathlib import Path
 from statistics import median
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent))
+sys.path[:0] = [str(HERE.parent), str(HERE.parent.parent)]
+from folders import writable_folder  # noqa: E402
 from programs import ROOT, Place, run, target_directory  # noqa: E402
 
 WARM = 10  # steps before the clock starts: pages, caches, the factorisation
@@ -126,7 +127,7 @@ def arguments():
     parse.add_argument("--repeats", type=int, default=9, help="processes of ours in a turn, for they are short; Siconos has one")
     parse.add_argument("--core", type=int, default=0, help="the core that everything runs on")
     parse.add_argument("--ahead", action="store_true", help="run both before the machine's other work (root only: nice -15)")
-    parse.add_argument("--out", default=str(HERE.parent.parent / "results"), help="folder for the page")
+    parse.add_argument("--out", type=writable_folder, default=str(HERE.parent.parent / "results"), help="folder for the page")
     parse.add_argument("--name", default=f"siconos-beam-{datetime.date.today()}", help="stem of the page")
     return parse.parse_args()
 
@@ -140,7 +141,7 @@ def main():
         for elements in map(int, args.elements.split(",")):
             rows.append(compare(scene, elements, programs, args.turns, place))
             print(scene, *cells(rows[-1]), sep="  ", flush=True)
-    path = Path(args.out) / f"{args.name}.md"
+    path = args.out / f"{args.name}.md"
     command = " ".join(["compare.py", *sys.argv[1:]])
     path.write_text(page(rows, args.core, command, time.time() - begin))
     print(f"written to {path}")

@@ -1,11 +1,10 @@
 //! `teeter check`: what a run would model, cost and write, and what looks wrong; runs nothing, writes nothing.
 
 use crate::companions;
-use crate::console::Console;
+use crate::console::{Console, print_all};
 use crate::render::Presenter;
 use crate::run::{Exit, named, read};
 use std::fmt::Write as _;
-use std::io::Write as _;
 use std::path::PathBuf;
 use teeter_scenario::outlook::{BeamOutlook, BlockOutlook, FEW_DIGITS, Outlook, ShapesOutlook};
 use teeter_scenario::resolve::Resolved;
@@ -42,12 +41,11 @@ pub(crate) fn check(options: &Options) -> Exit {
         Err(error) => return refuse(&presenter.one(&error.diagnostic(&resolved.document))),
     };
     let text = told(&resolved, &Outlook::new(&resolved, &simulation));
-    // A reader that went away has seen enough.
-    let _ = std::io::stdout().lock().write_all(text.as_bytes());
+    let exit = print_all(&text);
     for finding in resolved.warnings.iter().chain(&resolved.notes) {
         console.note(&format!("\n{}", presenter.one(finding)));
     }
-    Exit::Done
+    exit
 }
 
 fn told(resolved: &Resolved, outlook: &Outlook) -> String {

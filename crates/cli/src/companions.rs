@@ -23,6 +23,11 @@ pub(crate) fn reader(scene: &Path) -> impl FnMut(&str) -> Result<Vec<u8>, String
     }
 }
 
+/// Where a file that a scene names is.
+pub(crate) fn place(scene: &Path, file: &str) -> PathBuf {
+    folder_of(scene).join(file)
+}
+
 fn folder_of(scene: &Path) -> PathBuf {
     match scene.parent() {
         Some(parent) if scene != Path::new("-") => parent.to_owned(),

@@ -1,6 +1,8 @@
 //! What the program says to its user: on standard error, quietly where that is closed.
 
-use std::io::{IsTerminal, Write};
+use crate::run::Exit;
+use std::io::{ErrorKind, IsTerminal, Write};
+use teeter_scenario::diagnostic::steers;
 
 /// Standard error, or less of it.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +32,36 @@ impl Console {
     pub(crate) fn error(self, text: &str) {
         say(text);
     }
+}
+
+/// Writes results to standard output. A closed pipe (`teeter … | head -1`) is no failure: its reader has seen enough.
+///
+/// # Errors
+/// What is to be told the user where the text can't be written, such as to a full disk.
+pub(crate) fn print(text: &str) -> Result<(), String> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(format!("error: can't write to standard output: {error}"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// As [`print`], for a command that does nothing else.
+pub(crate) fn print_all(text: &str) -> Exit {
+    match print(text) {
+        Ok(()) => Exit::Done,
+        Err(why) => {
+            say(&why);
+            Exit::Failed
+        }
+    }
+}
+
+/// A text without characters that would steer the terminal or turn the direction of writing, but for those to `keep`.
+pub(crate) fn clean(text: &str, keep: &str) -> String {
+    text.chars().map(|c| if steers(c) && !keep.contains(c) { '\u{fffd}' } else { c }).collect()
 }
 
 /// A reader that went away (`teeter … 2>&1 | head -1`) is no reason to fail: the results are in files.

@@ -1,19 +1,60 @@
-//! Ctrl-C: the run ends after the step at hand, with its rows complete; a second one ends the program at once.
+//! Ctrl-C, and the signals by which batch systems and closed terminals end a program: the run ends after the step at hand,
+//! with its rows complete; a second one ends the program at once.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 /// Exit code of a program that a user ended.
 pub(crate) const INTERRUPTED: u8 = 130;
 
 static WANTED: AtomicBool = AtomicBool::new(false);
 
-/// Listens for Ctrl-C from now on; the flag says that it came. Where listening is impossible the signal ends the program as it
+/// Listens from now on; the flag says that a signal came. Where listening is impossible the signal ends the program as it
 /// always did.
 pub(crate) fn listen() -> &'static AtomicBool {
-    let _ = ctrlc::set_handler(|| {
-        if WANTED.swap(true, Ordering::Relaxed) {
-            std::process::exit(i32::from(INTERRUPTED));
-        }
-    });
+    static ONCE: std::sync::Once = std::sync::Once::new();
+    ONCE.call_once(system::listen);
     &WANTED
+}
+
+#[cfg(unix)]
+mod system {
+    use super::{INTERRUPTED, WANTED};
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::iterator::Signals;
+    use std::sync::atomic::Ordering;
+
+    pub(super) fn listen() {
+        // Who starts a program with a signal ignored (`nohup`, a shell's `&`) wants it to go on.
+        let heeded = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|&signal| !is_ignored(signal));
+        let Ok(mut signals) = Signals::new(heeded) else { return };
+        std::thread::spawn(move || {
+            for _ in signals.forever() {
+                if WANTED.swap(true, Ordering::Relaxed) {
+                    std::process::exit(i32::from(INTERRUPTED));
+                }
+            }
+        });
+    }
+
+    /// Whether the process was started with this signal ignored; false where the system doesn't say.
+    fn is_ignored(signal: i32) -> bool {
+        let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+        let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+        let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0);
+        mask >> (signal - 1) & 1 == 1
+    }
+}
+
+#[cfg(not(unix))]
+mod system {
+    use super::{INTERRUPTED, WANTED};
+    use std::sync::atomic::Ordering;
+
+    pub(super) fn listen() {
+        let _ = ctrlc::set_handler(|| {
+            if WANTED.swap(true, Ordering::Relaxed) {
+                std::process::exit(i32::from(INTERRUPTED));
+            }
+        });
+    }
 }

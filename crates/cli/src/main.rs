@@ -14,6 +14,8 @@ mod start;
 mod tradeoff;
 
 use clap::{Parser, Subcommand};
+use console::Console;
+use run::Exit;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
@@ -130,6 +132,9 @@ enum Command {
         /// Solve to 1e-4, 1e-8 and 1e-12; write table.csv, performance profiles (SVG) and profile.md to DIR
         #[arg(long, value_name = "DIR", conflicts_with = "tolerance")]
         profile: Option<PathBuf>,
+        /// Replace solutions or profiles of an earlier solve
+        #[arg(long)]
+        force: bool,
     },
     /// Print the JSON Schema of scene files, for editors
     #[command(after_help = "Examples:\n  teeter schema > scene.schema.json\n  teeter schema --format markdown")]
@@ -157,8 +162,24 @@ fn key_value(text: &str) -> Result<(String, String), String> {
     }
 }
 
+/// What clap has to say instead of running anything: help and version on standard output, wrong usage on standard error.
+fn explain(error: &clap::Error) -> ExitCode {
+    match error.print() {
+        Err(why) if !error.use_stderr() && why.kind() != std::io::ErrorKind::BrokenPipe => {
+            Console::new(false).error(&format!("error: can't write to standard output: {why}"));
+            Exit::Failed.into()
+        }
+        _ if error.use_stderr() => Exit::BadInput.into(),
+        _ => Exit::Done.into(),
+    }
+}
+
 fn main() -> ExitCode {
-    match Arguments::parse().command {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return explain(&error),
+    };
+    match arguments.command {
         Command::Run {
             scene,
             out,
@@ -194,8 +215,9 @@ fn main() -> ExitCode {
             tradeoff::tradeoff(&tradeoff::Options { scene, out, set, quiet, force }).into()
         }
         Command::Solvers => solve::list().into(),
-        Command::Solve { paths, solvers, tolerance, time_limit, json, solutions, profile } => {
-            solve::solve(&solve::Options { paths, solvers, tolerance, time_limit, json, solutions, profile }).into()
+        Command::Solve { paths, solvers, tolerance, time_limit, json, solutions, profile, force } => {
+            solve::solve(&solve::Options { paths, solvers, tolerance, time_limit, json, solutions, profile, force })
+                .into()
         }
         Command::Schema { format } => schema::print(format).into(),
     }

@@ -1,8 +1,7 @@
 //! The progress bars of what takes its time.
 
-use crate::console::Console;
+use crate::console::{self, Console};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::io::Write;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 use teeter_integrator::{Model, Observer, ObserverError, State, StepReport};
@@ -74,12 +73,12 @@ impl Solves {
         Self { console, begin: Instant::now(), bar }
     }
 
-    /// Writes to standard output; a reader that went away has seen enough.
-    pub(crate) fn print(&self, text: &str) {
-        self.bar.suspend(|| {
-            let mut out = std::io::stdout().lock();
-            let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
-        });
+    /// Writes to standard output.
+    ///
+    /// # Errors
+    /// As [`console::print`].
+    pub(crate) fn print(&self, text: &str) -> Result<(), String> {
+        self.bar.suspend(|| console::print(text))
     }
 
     pub(crate) fn tell(&self, text: &str) {

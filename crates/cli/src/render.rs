@@ -1,5 +1,6 @@
 //! Findings about a scene as rustc shows its own: the line of the file, the place underlined, the rule beside it, the remedy below.
 
+use crate::console::clean;
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 use std::io::IsTerminal;
 use std::ops::Range;
@@ -32,10 +33,7 @@ impl<'a> Presenter<'a> {
     /// All findings, one after the other.
     pub(crate) fn all(&self, findings: &Diagnostics) -> String {
         let mut shown: Vec<String> = findings.iter().take(MOST_PRINTED).map(|found| self.one(found)).collect();
-        let more = findings.0.len().saturating_sub(MOST_PRINTED);
-        if more > 0 {
-            shown.push(format!("… and {more} more"));
-        }
+        shown.extend(findings.rest());
         shown.join("\n\n")
     }
 
@@ -148,11 +146,6 @@ fn cut(text: &str, most: usize) -> String {
     }
 }
 
-/// A text without control characters, but for those to `keep`.
-fn clean(text: &str, keep: &str) -> String {
-    text.chars().map(|c| if c.is_control() && !keep.contains(c) { '\u{fffd}' } else { c }).collect()
-}
-
 /// The custom of <https://no-color.org>.
 fn wants_colours() -> bool {
     let set = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty());
@@ -189,7 +182,7 @@ mod tests {
 
     #[test]
     fn nothing_in_a_scene_steers_the_terminal() {
-        let source = "[time]\nend = \"\u{1b}[2J\u{9b}2J\"\n";
+        let source = "[time]\nend = \"\u{1b}[2J\u{9b}2\u{202e}\"\n";
         let found = Diagnostic::error("a.toml", "bell \u{7}").with_remedy("\u{1b}c");
         let mut placed = found.clone();
         (placed.span, placed.position) = (Some(13..24), Some((2, 7)));
@@ -199,7 +192,7 @@ mod tests {
         set.set = Some("k\u{1b}=\u{7}\nv".to_owned());
         for finding in [found, placed, set] {
             let text = Presenter::with_colours(source, false).one(&finding);
-            assert!(!text.contains(|c: char| c.is_control() && c != '\n'), "{text:?}");
+            assert!(!text.contains(|c: char| (c.is_control() && c != '\n') || c == '\u{202e}'), "{text:?}");
         }
     }
 

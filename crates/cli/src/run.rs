@@ -1,7 +1,7 @@
 //! `teeter run`.
 
 use crate::companions;
-use crate::console::Console;
+use crate::console::{Console, clean};
 use crate::interrupt::{self, INTERRUPTED};
 use crate::progress::Progress;
 use crate::render::Presenter;
@@ -93,10 +93,11 @@ pub(crate) fn run(options: &Options) -> Exit {
         Ok(bytes) => bytes,
         Err(why) => return bad_input(console, &format!("error: {name}: {why}")),
     };
-    let mut files = Vec::new();
+    let (mut files, mut inputs) = (Vec::new(), inputs(options));
     let mut companions = companions::reader(&options.scene);
     let mut read_file = |file: &str| {
         let bytes = companions(file)?;
+        inputs.push(companions::place(&options.scene, file));
         files.extend(start::is_identified(options).then(|| bytes.clone()));
         Ok(bytes)
     };
@@ -112,7 +113,10 @@ pub(crate) fn run(options: &Options) -> Exit {
         Err(error) => return bad_input(console, &presenter.one(&error.diagnostic(&resolved.document))),
     };
     let folder = options.out.clone().unwrap_or_else(|| Path::new("runs").join(&stem));
-    match begin(options, console, &resolved, &files, &stem, &folder, &watch, &mut simulation) {
+    let begun = start::spare(&inputs, options, &folder)
+        .map_err(Into::into)
+        .and_then(|()| begin(options, console, &resolved, &files, &stem, &folder, &watch, &mut simulation));
+    match begun {
         Ok(Begun::Ready(job)) => {
             for warning in &resolved.warnings {
                 console.note(&presenter.one(warning));
@@ -122,6 +126,12 @@ pub(crate) fn run(options: &Options) -> Exit {
         Ok(Begun::Ended(exit)) => exit,
         Err(error) => bad_input(console, &format!("error: {error}")),
     }
+}
+
+/// The files that the command line names to be read; those that the scene names come to them.
+fn inputs(options: &Options) -> Vec<PathBuf> {
+    let scene = Some(&options.scene).filter(|scene| scene.as_path() != Path::new("-"));
+    scene.into_iter().chain(&options.from).cloned().collect()
 }
 
 /// What is settled before anything is simulated.
@@ -150,11 +160,12 @@ fn begin(
     watch: &Watch,
     simulation: &mut Simulation,
 ) -> Result<Begun, Box<dyn Error>> {
-    let identity = start::identity(options, stem, &resolved.document.to_toml(), files)?;
-    start::check_dump(options)?;
+    // Before its whole content is hashed: it may be of another kind.
     if let Some(path) = &options.from {
         simulation.state = start::state_from(path, &resolved.scene, simulation)?;
     }
+    let identity = start::identity(options, stem, &resolved.document.to_toml(), files)?;
+    start::check_dump(options)?;
     // Paths in it hold from the folder, which is to be there.
     let scene_as_run =
         || resolved.document.to_toml_elsewhere(|file| companions::seen_from(folder, &options.scene, file));
@@ -168,6 +179,8 @@ fn begin(
         console.error(&format!("error: {text}"));
         return Ok(Begun::Ended(Exit::Failed));
     }
+    // From here on files are touched: a signal ends the run in order, not the process.
+    interrupt::listen();
     let exporter = exporter(options, watch, resolved, stem, start.former())?;
     let results = start.take(folder)?;
     let checkpoint = match start {
@@ -205,7 +218,7 @@ pub(crate) fn named(scene: &Path) -> (String, String) {
         return ("<stdin>".to_owned(), "stdin".to_owned());
     }
     let stem = scene.file_stem().map_or("scene".into(), |stem| stem.to_string_lossy().into_owned());
-    (scene.display().to_string(), stem)
+    (clean(&scene.display().to_string(), ""), stem)
 }
 
 impl Job {
@@ -379,7 +392,11 @@ fn bad_input(console: Console, text: &str) -> Exit {
 
 fn how_it_ended(summary: &Summary, why: &str) -> String {
     let t = summary.t;
-    format!("the run ended at t = {t} s after {} steps: {why}; the rows up to there are written", summary.steps)
+    let rows = match summary.ended {
+        EndedWord::DiskFull => "the tables hold the rows that there was room for",
+        _ => "the rows up to there are written",
+    };
+    format!("the run ended at t = {t} s after {} steps: {why}; {rows}", summary.steps)
 }
 
 /// What a user wants to know first.

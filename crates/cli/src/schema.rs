@@ -1,11 +1,11 @@
 //! `teeter schema`: the JSON Schema of scene files, from the table of keys.
 
+use crate::console::print_all;
 use crate::run::Exit;
 use crate::scene_page;
 use serde_json::{Map, Value, json};
-use std::io::Write;
 use teeter_scenario::dimension::Dimension;
-use teeter_scenario::keys::{Bound, Key, Kind, Occurrence, OnlyWith, Presence, Range, TABLES, Table};
+use teeter_scenario::keys::{Bound, Key, Kind, LONGEST_TITLE, Occurrence, OnlyWith, Presence, Range, TABLES, Table};
 
 /// What the schema is printed as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -19,9 +19,7 @@ pub(crate) fn print(format: Format) -> Exit {
         Format::Json => format!("{:#}\n", schema()),
         Format::Markdown => scene_page::page(),
     };
-    // A reader that went away has seen enough.
-    let _ = std::io::stdout().lock().write_all(text.as_bytes());
-    Exit::Done
+    print_all(&text)
 }
 
 /// The schema of a scene file read as JSON, draft 2020-12.
@@ -143,7 +141,9 @@ fn of_kind(key: &Key) -> Value {
     let quantity = || json!({ "type": "string", "pattern": QUANTITY });
     let pair = |item: Value| json!({ "type": "array", "items": item, "minItems": 2, "maxItems": 2 });
     match key.kind {
-        Kind::Text => json!({ "type": "string" }),
+        Kind::Text => {
+            json!({ "type": "string", "maxLength": LONGEST_TITLE, "pattern": "^[^\\u0000-\\u001f\\u007f-\\u009f]*$" })
+        }
         Kind::Path => json!({ "type": "string", "minLength": 1 }),
         Kind::Measure(..) => quantity(),
         Kind::Name => json!({ "$ref": "#/$defs/name" }),

@@ -2,9 +2,11 @@
 
 use crate::run::Options;
 use std::error::Error;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use teeter_integrator::State;
-use teeter_report::{CHECKPOINT, Checkpoint, ExportWhen, Former, Found, Identity, Moment, Results, program_hash};
+use teeter_report::{
+    CHECKPOINT, Checkpoint, ExportWhen, FILES, Former, Found, Identity, Moment, Results, ResultsError, program_hash,
+};
 use teeter_scenario::Extent;
 use teeter_scenario::dimension::Dimension;
 use teeter_scenario::quantity;
@@ -136,6 +138,15 @@ pub(crate) fn check_dump(options: &Options) -> Result<(), Box<dyn Error>> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if !folder.is_dir() {
         return Err(format!("there is no folder {}", folder.display()).into());
+    }
+    Ok(())
+}
+
+/// Refuses to replace what the run reads: scene, files that it names, a state to start from.
+pub(crate) fn spare(inputs: &[PathBuf], options: &Options, folder: &Path) -> Result<(), ResultsError> {
+    Results::spares(&FILES, folder, inputs)?;
+    if let Some(dump) = options.dump_unconverged.as_ref().and_then(|path| path.to_str()) {
+        Results::spares(&[dump], Path::new(""), inputs)?;
     }
     Ok(())
 }

@@ -1,13 +1,12 @@
 //! `teeter tradeoff`.
 
 use crate::companions;
-use crate::console::Console;
+use crate::console::{Console, print};
 use crate::interrupt;
 use crate::progress::Phases;
 use crate::render::Presenter;
 use crate::run::{Exit, named, read};
 use std::error::Error;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use teeter_report::Results;
 use teeter_scenario::resolve::Resolved;
@@ -34,7 +33,13 @@ pub(crate) fn tradeoff(options: &Options) -> Exit {
         Ok(bytes) => bytes,
         Err(why) => return bad_input(&format!("error: {name}: {why}")),
     };
-    let mut files = companions::reader(&options.scene);
+    let mut inputs: Vec<PathBuf> =
+        Some(&options.scene).filter(|scene| *scene != Path::new("-")).into_iter().cloned().collect();
+    let mut companions = companions::reader(&options.scene);
+    let mut files = |file: &str| {
+        inputs.push(companions::place(&options.scene, file));
+        companions(file)
+    };
     let (source, resolved) = match Source::new(bytes.clone(), &name, &stem, &options.set, &mut files) {
         Ok(loaded) => loaded,
         Err(errors) => return bad_input(&Presenter::of_bytes(&bytes).all(&errors)),
@@ -45,7 +50,9 @@ pub(crate) fn tradeoff(options: &Options) -> Exit {
     }
     let folder = options.out.clone().unwrap_or_else(|| Path::new("runs").join(format!("{stem}-tradeoff")));
     // An earlier study stays until there is a new one.
-    if let Err(error) = Results::replaced(&write::FILES, &folder, options.force) {
+    let free = Results::spares(&write::FILES, &folder, &inputs)
+        .and_then(|()| Results::replaced(&write::FILES, &folder, options.force));
+    if let Err(error) = free {
         return bad_input(&format!("error: {error}"));
     }
     for warning in &resolved.warnings {
@@ -92,10 +99,6 @@ fn write_all(study: &Tradeoff, folder: &Path, resolved: &Resolved, options: &Opt
     results.write("tradeoff.json", write::json(study))?;
     let findings = write::findings(study);
     let lines = write::advice(study).into_iter().chain(findings.iter().map(|line| format!("  {line}")));
-    let mut out = std::io::stdout().lock();
-    for line in lines {
-        // A reader that went away has seen enough: the results are in files.
-        let _ = writeln!(out, "{line}");
-    }
-    Ok(())
+    let text: String = lines.map(|line| format!("{line}\n")).collect();
+    Ok(print(&text)?)
 }

@@ -62,19 +62,51 @@ fn signalled(out: &Path, signal: &str) -> Output {
     child.wait_with_output().unwrap()
 }
 
+/// Ctrl-C; what a batch system sends; what a terminal sends that closes.
 #[test]
-fn ctrl_c_ends_a_run_with_whole_rows_and_a_summary_that_says_so() {
-    let out = folder("ctrl-c");
-    let output = signalled(&out, "-INT");
-    assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
-    assert!(stderr(&output).contains("interrupted"), "{}", stderr(&output));
-    assert!(rows_are_whole(&out) > 0);
-    let summary: Value = serde_json::from_str(&std::fs::read_to_string(out.join("summary.json")).unwrap()).unwrap();
-    assert_eq!(summary["ended"], "interrupted");
-    // The last row is the last step.
-    let trajectory = std::fs::read_to_string(out.join("trajectory.csv")).unwrap();
-    let t: f64 = trajectory.lines().last().unwrap().split(',').next().unwrap().parse().unwrap();
-    assert_eq!(Some(t), summary["t"].as_f64());
+fn a_signal_ends_a_run_with_whole_rows_and_a_summary_that_says_so() {
+    for signal in ["-INT", "-TERM", "-HUP"] {
+        let out = folder(&format!("signal{signal}"));
+        let output = signalled(&out, signal);
+        assert_eq!(output.status.code(), Some(130), "{signal}: {}", stderr(&output));
+        assert!(stderr(&output).contains("interrupted"), "{signal}: {}", stderr(&output));
+        assert!(rows_are_whole(&out) > 0);
+        let summary: Value = serde_json::from_str(&std::fs::read_to_string(out.join("summary.json")).unwrap()).unwrap();
+        assert_eq!(summary["ended"], "interrupted");
+        // The last row is the last step.
+        let trajectory = std::fs::read_to_string(out.join("trajectory.csv")).unwrap();
+        let t: f64 = trajectory.lines().last().unwrap().split(',').next().unwrap().parse().unwrap();
+        assert_eq!(Some(t), summary["t"].as_f64());
+        assert_eq!(hidden(&out), [""; 0], "{signal}");
+    }
+}
+
+/// Files that are there until something is complete.
+fn hidden(out: &Path) -> Vec<String> {
+    let names = std::fs::read_dir(out).unwrap().map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned());
+    names.filter(|name| name.starts_with('.')).collect()
+}
+
+/// Who starts a program with `nohup` wants it to outlive the terminal.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_signal_that_was_ignored_at_the_start_stays_ignored() {
+    let out = folder("nohup");
+    let mut inner = long_run(&out);
+    inner.args(["--set", "time.end=20 ms"]);
+    let mut child = Command::new("sh");
+    child.args(["-c", "trap '' HUP; exec \"$0\" \"$@\""]).arg(inner.get_program()).args(inner.get_args());
+    let child = child.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    for _ in 0..2000 {
+        if out.join("energy.csv").exists() {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let id = child.id().to_string();
+    assert!(Command::new("kill").args(["-HUP", &id]).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success(), "{}", stderr(&output));
 }
 
 #[test]
@@ -85,7 +117,8 @@ fn a_killed_run_leaves_whole_rows_and_nothing_that_looks_complete() {
     // The system may cut the write that a kill falls into: then, and only then, there is half a row at the end.
     assert!(count_rows(&out, |_, _| ()) > 0);
     assert!(!out.join("summary.json").exists());
-    assert!(std::fs::read_dir(&out).unwrap().all(|entry| !entry.unwrap().path().ends_with("part")));
+    // The lock is the next run's to take over.
+    assert_eq!(hidden(&out), [".teeter.lock"]);
 }
 
 #[test]
@@ -144,6 +177,7 @@ fn a_full_disk_ends_a_run_with_the_reason_and_whole_rows() {
     let output = long_run(&out).output().unwrap();
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     assert!(stderr(&output).contains("No space left"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("the tables hold the rows that there was room for"), "{}", stderr(&output));
     rows_are_whole(&out);
     // There may be room for a summary; it must not look like that of a complete run.
     if let Ok(text) = std::fs::read_to_string(out.join("summary.json")) {

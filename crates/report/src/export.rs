@@ -4,6 +4,8 @@
 //! observer, who knows the step, takes it off and writes it if it is wanted. The integrator knows nothing of it.
 
 use crate::ResultsError;
+use crate::lock::FolderLock;
+use crate::results::check_folder;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -116,7 +118,12 @@ pub struct Exporter {
     when: ExportWhen,
     tolerance: f64,
     kept: Kept,
+    /// Nobody else writes problems there while this is.
+    _lock: FolderLock,
 }
+
+/// The lock of a folder for problems: another one than that for results, which may go to the same folder.
+const LOCK: &str = ".teeter-problems.lock";
 
 /// What an exporter knows of the run so far.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -159,10 +166,9 @@ impl Exporter {
         former: Former,
     ) -> Result<Self, ResultsError> {
         let io = |source| ResultsError::Io { path: folder.to_owned(), source };
-        if folder.exists() && !folder.is_dir() {
-            return Err(ResultsError::NotFolder(folder.to_owned()));
-        }
+        check_folder(folder)?;
         std::fs::create_dir_all(folder).map_err(io)?;
+        let lock = FolderLock::take(folder, LOCK)?;
         let begin = format!("{stem}-step");
         let mut old = Vec::new();
         for entry in std::fs::read_dir(folder).map_err(io)? {
@@ -192,6 +198,7 @@ impl Exporter {
             when,
             tolerance,
             kept: Kept::default(),
+            _lock: lock,
         })
     }
 

@@ -7,6 +7,7 @@
 mod checkpoint;
 mod contacts;
 mod export;
+mod lock;
 mod number;
 mod page;
 mod recorder;

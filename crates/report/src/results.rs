@@ -1,9 +1,10 @@
 //! The folder that a run writes.
 
 use crate::checkpoint::CHECKPOINT;
+use crate::lock::FolderLock;
 use crate::table::Table;
 use std::fs;
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// The files that a run may write; which of the figures, depends on its scene. They are removed in this order: no summary
@@ -38,6 +39,25 @@ pub enum ResultsError {
     /// The name is taken by a file.
     #[error("{} is a file, not a folder", .0.display())]
     NotFolder(PathBuf),
+    /// Somebody else is writing there.
+    #[error("{holder} is writing results to {}; wait for it, or take another folder (--out)", folder.display())]
+    InUse {
+        /// The folder.
+        folder: PathBuf,
+        /// Who is writing, such as `process 4711`.
+        holder: String,
+    },
+    /// A link that leads nowhere, or a link or file where a folder of results is to be.
+    #[error("{} {what}; remove it, or take another folder (--out)", path.display())]
+    Link {
+        /// The link.
+        path: PathBuf,
+        /// What is wrong with it.
+        what: String,
+    },
+    /// A file that a command reads would be replaced by one that it writes.
+    #[error("{} is read by this command, and would be replaced by its own results; take another folder (--out)", .0.display())]
+    Input(PathBuf),
     /// A folder or file that can't be made or written.
     #[error("can't write {}: {source}", path.display())]
     Io {
@@ -53,7 +73,12 @@ pub enum ResultsError {
 pub struct Results {
     folder: PathBuf,
     files: &'static [&'static str],
+    /// Nobody else writes there while this is.
+    _lock: FolderLock,
 }
+
+/// The lock of a folder for results.
+const LOCK: &str = ".teeter.lock";
 
 impl ResultsError {
     /// Whether there was no room.
@@ -76,16 +101,33 @@ impl Results {
     /// What [`Results::create_of`] would remove; changes nothing, so that who takes long can ask before and create after.
     ///
     /// # Errors
-    /// If the folder is none, or holds results and `force` isn't given.
+    /// If the path is not a directory, leads out of itself by a link, or holds results and `force` isn't given.
     pub fn replaced(files: &[&str], folder: &Path, force: bool) -> Result<Vec<PathBuf>, ResultsError> {
-        if folder.exists() && !folder.is_dir() {
-            return Err(ResultsError::NotFolder(folder.to_owned()));
+        check_folder(folder)?;
+        if !folder.exists() {
+            return Ok(Vec::new());
         }
-        let old: Vec<PathBuf> = files.iter().map(|file| folder.join(file)).filter(|path| path.exists()).collect();
+        check_inner_folders(files, folder)?;
+        let old: Vec<PathBuf> = files.iter().map(|file| folder.join(file)).filter(|path| is_there(path)).collect();
         if !old.is_empty() && !force {
             return Err(ResultsError::Exists(folder.to_owned()));
         }
         Ok(old)
+    }
+
+    /// Refuses a folder where one of `inputs` stands in the place of one of `files`, which may also be absolute paths; links
+    /// are followed. Changes nothing.
+    ///
+    /// # Errors
+    /// If there is such a file.
+    pub fn spares(files: &[&str], folder: &Path, inputs: &[PathBuf]) -> Result<(), ResultsError> {
+        let outputs: Vec<PathBuf> = files.iter().filter_map(|file| real_place(&folder.join(file))).collect();
+        let hit = inputs.iter().find(|input| {
+            // The file itself, or a link to it that stands in the folder: either would be replaced.
+            let places = [input.canonicalize().ok(), real_place(input)];
+            places.into_iter().flatten().any(|place| outputs.contains(&place))
+        });
+        hit.map_or(Ok(()), |input| Err(ResultsError::Input(input.clone())))
     }
 
     /// As [`Results::create`], for results that are other files than a run's: these, in the order in which they are removed.
@@ -93,17 +135,21 @@ impl Results {
     /// # Errors
     /// As [`Results::create`].
     pub fn create_of(files: &'static [&'static str], folder: &Path, force: bool) -> Result<Self, ResultsError> {
-        let old = Self::replaced(files, folder, force)?;
+        Self::replaced(files, folder, force)?;
         fs::create_dir_all(folder).map_err(|source| ResultsError::Io { path: folder.to_owned(), source })?;
-        let results = Self { folder: folder.to_owned(), files };
+        let lock = FolderLock::take(folder, LOCK)?;
+        // Somebody may have written there before the lock was ours.
+        let old = Self::replaced(files, folder, force)?;
+        let results = Self { folder: folder.to_owned(), files, _lock: lock };
         // Before anything old goes, it has to be sure that something new can come.
         let trial = results.temporary("trial");
-        fs::write(&trial, b"").map_err(|source| ResultsError::Io { path: folder.to_owned(), source })?;
-        let parts = results.files.iter().map(|file| results.temporary(file)).filter(|path| path.exists());
+        remove_if_there(&trial)?;
+        new_file(&trial).map_err(|source| ResultsError::Io { path: folder.to_owned(), source })?;
+        let parts = results.files.iter().map(|file| results.temporary(file));
         let old: Vec<PathBuf> = parts.chain(old).collect();
         // An old summary beside new tables would look like one run.
         for path in old.into_iter().chain([trial]) {
-            fs::remove_file(&path).map_err(|source| ResultsError::Io { path, source })?;
+            remove_if_there(&path)?;
         }
         Ok(results)
     }
@@ -111,14 +157,17 @@ impl Results {
     /// Takes the folder of a run that goes on from a checkpoint: what it wrote at an earlier end goes, tables and checkpoint stay.
     ///
     /// # Errors
-    /// If a file can't be removed.
+    /// If somebody else writes there, or a file can't be removed.
     pub fn reopen(folder: &Path) -> Result<Self, ResultsError> {
-        let results = Self { folder: folder.to_owned(), files: &FILES };
+        check_folder(folder)?;
+        check_inner_folders(&FILES, folder)?;
+        let lock = FolderLock::take(folder, LOCK)?;
+        let results = Self { folder: folder.to_owned(), files: &FILES, _lock: lock };
         // While the summary stands, the folder looks like one of a run that has ended.
         let (summary, trial) = (folder.join("summary.json"), results.temporary("trial"));
         let parts = results.files.iter().map(|file| results.temporary(file));
-        for path in [summary, trial].into_iter().chain(parts).filter(|path| path.exists()) {
-            fs::remove_file(&path).map_err(|source| ResultsError::Io { path, source })?;
+        for path in [summary, trial].into_iter().chain(parts) {
+            remove_if_there(&path)?;
         }
         Ok(results)
     }
@@ -149,11 +198,7 @@ impl Results {
     /// # Errors
     /// If it is there to stay.
     pub fn remove(&self, name: &str) -> Result<(), ResultsError> {
-        let path = self.folder.join(name);
-        match fs::remove_file(&path) {
-            Err(source) if source.kind() != io::ErrorKind::NotFound => Err(ResultsError::Io { path, source }),
-            _ => Ok(()),
-        }
+        remove_if_there(&self.folder.join(name))
     }
 
     /// Writes a whole file, under a temporary name until it is complete.
@@ -171,7 +216,11 @@ pub(crate) fn write_whole(path: &Path, content: &[u8]) -> Result<(), ResultsErro
     let written = path
         .parent()
         .map_or(Ok(()), fs::create_dir_all)
-        .and_then(|()| fs::write(&temporary, content))
+        .and_then(|()| match fs::remove_file(&temporary) {
+            // Left by a run that was killed, or a link that is not to be followed.
+            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+            _ => new_file(&temporary)?.write_all(content),
+        })
         .and_then(|()| fs::rename(&temporary, path));
     written.map_err(|source| {
         // The first error is the one to tell; what is left of the file may stay where it can't be removed.
@@ -184,4 +233,63 @@ pub(crate) fn write_whole(path: &Path, content: &[u8]) -> Result<(), ResultsErro
 fn temporary(path: &Path) -> PathBuf {
     let file = path.file_name().unwrap_or_default().to_string_lossy();
     path.with_file_name(format!(".{file}.part"))
+}
+
+/// A file that isn't there yet, nor a link of that name.
+pub(crate) fn new_file(path: &Path) -> io::Result<fs::File> {
+    fs::File::options().write(true).create_new(true).open(path)
+}
+
+/// Whether there is a file, or a link of that name, wherever it leads.
+fn is_there(path: &Path) -> bool {
+    fs::symlink_metadata(path).is_ok()
+}
+
+fn remove_if_there(path: &Path) -> Result<(), ResultsError> {
+    match fs::remove_file(path) {
+        Err(source) if source.kind() != io::ErrorKind::NotFound => {
+            Err(ResultsError::Io { path: path.to_owned(), source })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Refuses a file, or a link that leads nowhere, where a folder is wanted; a link to a folder is one.
+pub(crate) fn check_folder(folder: &Path) -> Result<(), ResultsError> {
+    if folder.is_dir() {
+        return Ok(());
+    }
+    match fs::symlink_metadata(folder) {
+        Ok(data) if data.is_symlink() && !folder.exists() => {
+            let to = fs::read_link(folder).unwrap_or_default();
+            let what = format!("is a link to {}, which is not there", to.display());
+            Err(ResultsError::Link { path: folder.to_owned(), what })
+        }
+        Ok(_) => Err(ResultsError::NotFolder(folder.to_owned())),
+        Err(_) => Ok(()),
+    }
+}
+
+/// Folders inside a folder for results belong to it: a link would lead out of it, into files of somebody else.
+fn check_inner_folders(files: &[&str], folder: &Path) -> Result<(), ResultsError> {
+    let inner = files.iter().filter_map(|file| Path::new(file).parent()).filter(|inner| !inner.as_os_str().is_empty());
+    for inner in inner {
+        let path = folder.join(inner);
+        match fs::symlink_metadata(&path) {
+            Ok(data) if data.is_symlink() => {
+                let what = "is a link, and results are not written through links".to_owned();
+                return Err(ResultsError::Link { path, what });
+            }
+            Ok(data) if !data.is_dir() => return Err(ResultsError::NotFolder(path)),
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// Where a file of that path is or would be, links of its folder followed but not its own; `None` without its folder.
+pub(crate) fn real_place(path: &Path) -> Option<PathBuf> {
+    let name = path.file_name()?;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    Some(folder.canonicalize().ok()?.join(name))
 }

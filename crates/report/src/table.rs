@@ -1,6 +1,7 @@
 //! A table on disk that holds whole rows, whatever ends the run; but a kill may cut the row that is being written.
 
 use crate::ResultsError;
+use crate::results::new_file;
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -29,7 +30,7 @@ impl Table {
     /// A new table with its header row on disk.
     pub(crate) fn create(folder: &Path, name: &str, header: &str) -> Result<Self, ResultsError> {
         let path = folder.join(name);
-        let file = File::create(&path).map_err(|source| ResultsError::Io { path: path.clone(), source })?;
+        let file = create(&path).map_err(|source| ResultsError::Io { path: path.clone(), source })?;
         let mut table = Self { path, file: Some(file), buffer: Vec::with_capacity(2 * BUFFER), written: 0 };
         table.rows(header)?;
         table.flush()?;
@@ -40,6 +41,12 @@ impl Table {
     pub(crate) fn reopen(folder: &Path, name: &str, length: u64) -> Result<Self, ResultsError> {
         let path = folder.join(name);
         let open = || {
+            if std::fs::symlink_metadata(&path)?.is_symlink() {
+                return Err(io::Error::new(
+                    io::ErrorKind::InvalidInput,
+                    "it is a link, and tables are not written through links",
+                ));
+            }
             let mut file = File::options().write(true).open(&path)?;
             file.set_len(length)?;
             file.seek(SeekFrom::Start(length))?;
@@ -80,6 +87,14 @@ impl Table {
             let _ = file.set_len(self.written);
             ResultsError::Io { path: self.path.clone(), source }
         })
+    }
+}
+
+/// An empty file; one of that name goes, and a link isn't followed.
+fn create(path: &Path) -> io::Result<File> {
+    match std::fs::remove_file(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+        _ => new_file(path),
     }
 }
 

@@ -1,8 +1,9 @@
 //! From the text of a scene file to a [`Document`]: the whole file against the table of keys, all errors at once.
 
+use crate::diagnostic::MOST_FINDINGS;
 use crate::diagnostic::{Diagnostic, Diagnostics, printable};
 use crate::document::{Document, Entry};
-use crate::judge::{Judge, MOST_FINDINGS, name_rule};
+use crate::judge::{Judge, name_rule};
 use crate::keys::{self, Key, Occurrence, OnlyWith, Presence, Table};
 use crate::sets::setting;
 use crate::source::{Origin, Source};

@@ -129,6 +129,9 @@ pub struct Diagnostics(pub Vec<Diagnostic>);
 /// Findings that are printed; the rest is counted.
 pub const MOST_PRINTED: usize = 50;
 
+/// Findings after which a file is not read on.
+pub(crate) const MOST_FINDINGS: usize = 200;
+
 impl Diagnostics {
     /// Sorts by place: findings about the whole file, then by position, then those about `--set` in the order given.
     pub fn sort(&mut self) {
@@ -138,6 +141,17 @@ impl Diagnostics {
     /// Whether one of them is an error.
     pub fn has_errors(&self) -> bool {
         self.0.iter().any(|found| found.severity == Severity::Error)
+    }
+
+    /// What is said of the findings past [`MOST_PRINTED`]; `None` if there are none. Reading ends early where very much is
+    /// wrong, so that their number is then a lower bound.
+    #[must_use]
+    pub fn rest(&self) -> Option<String> {
+        match self.0.len().saturating_sub(MOST_PRINTED) {
+            0 => None,
+            more if self.0.len() >= MOST_FINDINGS => Some(format!("… and at least {more} more")),
+            more => Some(format!("… and {more} more")),
+        }
     }
 
     /// The findings, one after the other.
@@ -160,10 +174,7 @@ impl fmt::Display for Diagnostics {
             }
             write!(f, "{found}")?;
         }
-        match self.0.len().saturating_sub(MOST_PRINTED) {
-            0 => Ok(()),
-            more => write!(f, "\n… and {more} more"),
-        }
+        self.rest().map_or(Ok(()), |rest| write!(f, "\n{rest}"))
     }
 }
 
@@ -180,12 +191,20 @@ pub(crate) fn printable(text: &str) -> String {
     }
 }
 
-/// Control characters made visible, so that a file cannot steer the terminal.
+/// Control characters, and those by which text is shown in another order than it is written: what a terminal obeys and
+/// doesn't show.
+#[must_use]
+pub fn steers(c: char) -> bool {
+    let turns = matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    turns || c.is_control()
+}
+
+/// Such characters made visible, so that a file cannot steer the terminal.
 fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
-        if c.is_control() {
-            out.extend(c.escape_default());
+        if steers(c) {
+            out.extend(c.escape_unicode());
         } else {
             out.push(c);
         }
@@ -195,7 +214,7 @@ fn escaped(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{Diagnostic, Diagnostics, printable};
+    use super::{Diagnostic, Diagnostics, MOST_FINDINGS, printable};
 
     #[test]
     fn a_diagnostic_prints_place_path_value_rule_and_help() {
@@ -219,7 +238,10 @@ mod tests {
     fn long_lists_are_cut_and_control_characters_escaped() {
         let many = Diagnostics(vec![Diagnostic::error("f", "x"); 52]);
         assert!(many.to_string().ends_with("\n… and 2 more"));
+        let very_many = Diagnostics(vec![Diagnostic::error("f", "x"); MOST_FINDINGS]);
+        assert!(very_many.to_string().ends_with("\n… and at least 150 more"));
         assert_eq!(printable("a\u{1b}[0m"), "a\\u{1b}[0m");
+        assert_eq!(printable("a\u{202e}b"), "a\\u{202e}b");
         assert_eq!(printable(&"é".repeat(1000)).chars().count(), 81);
     }
 }

@@ -1,8 +1,8 @@
 //! Decoding of one TOML value against one entry of the table of keys.
 
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, MOST_FINDINGS, steers};
 use crate::dimension::Dimension;
-use crate::keys::{Key, Kind, Range};
+use crate::keys::{Key, Kind, LONGEST_TITLE, Range};
 use crate::measure::{Measure, Unit};
 use crate::quantity::{self, QuantityError};
 use crate::source::Source;
@@ -11,9 +11,6 @@ use crate::tree::{Branch, Node, Raw};
 use crate::value::{Item, Value};
 use crate::wording::{self, expected, names, noun, with_unit};
 use std::collections::BTreeMap;
-
-/// Findings after which a file is not read on.
-pub(crate) const MOST_FINDINGS: usize = 200;
 
 /// Decodes nodes and collects what is wrong with them.
 pub(crate) struct Judge<'a> {
@@ -74,7 +71,7 @@ impl Judge<'_> {
             return None;
         }
         match key.kind {
-            Kind::Text => self.text(key, path, node).map(Value::Text),
+            Kind::Text => self.title(key, path, node).map(Value::Text),
             Kind::Path => self.file(key, path, node).map(Value::Text),
             Kind::Measure(units, range) => self.measure(key, units, &range, path, node).map(Value::Measure),
             Kind::Name => self.name(key, path, node).map(Value::Text),
@@ -202,6 +199,20 @@ impl Judge<'_> {
             return Some(text.clone());
         }
         self.mistyped(key, path, node);
+        None
+    }
+
+    /// A text that is shown to people, in a line.
+    fn title(&mut self, key: &Key, path: &str, node: &Node) -> Option<String> {
+        let text = self.text(key, path, node)?;
+        let rule = if let Some(c) = text.chars().find(|&c| steers(c)) {
+            format!("holds the character U+{:04X}, which is not shown but steers how a line is shown", u32::from(c))
+        } else if text.chars().nth(LONGEST_TITLE).is_some() {
+            format!("has {} characters, and at most {LONGEST_TITLE} fit", text.chars().count())
+        } else {
+            return Some(text);
+        };
+        self.blame(node, path, rule).remedy = Some("a line of text that fits above a figure".to_owned());
         None
     }
 

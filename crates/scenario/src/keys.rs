@@ -107,11 +107,14 @@ pub enum Presence {
     NotYet,
 }
 
+/// Characters of a [`Kind::Text`].
+pub const LONGEST_TITLE: usize = 200;
+
 /// What a key's value is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Kind {
-    /// Any text.
+    /// A line of text for people, of at most [`LONGEST_TITLE`] characters, none of which steers a terminal.
     Text,
     /// A file, relative to the scene's own.
     Path,

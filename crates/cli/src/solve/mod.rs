@@ -7,16 +7,16 @@ mod measure;
 mod profile;
 mod rows;
 
-use crate::console::Console;
+use crate::console::{Console, print_all};
 use crate::progress::Solves;
 use crate::run::Exit;
 use inputs::{Choice, Input};
 use measure::Measured;
 use rows::{Columns, Row};
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use teeter_fclib::FclibProblem;
+use teeter_report::{Results, ResultsError};
 use teeter_scenario::dimension::Dimension;
 use teeter_scenario::quantity;
 use teeter_solvers::SolverInfo;
@@ -30,6 +30,7 @@ pub(crate) struct Options {
     pub(crate) json: bool,
     pub(crate) solutions: Option<PathBuf>,
     pub(crate) profile: Option<PathBuf>,
+    pub(crate) force: bool,
 }
 
 /// A tolerance of the command line.
@@ -76,18 +77,41 @@ fn settle(options: &Options) -> Result<(Vec<Input>, Choice), String> {
     }
     let inputs = inputs::read(&inputs::files(&paths)?)?;
     inputs::check_dimensions(&choice, &inputs)?;
-    if let Some(folder) = &options.solutions {
-        inputs::check_stems(&inputs)?;
-        make_folder(folder)?;
-    }
-    if let Some(folder) = &options.profile {
-        make_folder(folder)?;
+    let folder = options.solutions.as_ref().or(options.profile.as_ref());
+    if let Some(folder) = folder {
+        let files = match options.solutions {
+            Some(_) => {
+                inputs::check_stems(&inputs)?;
+                solution_files(&inputs, &choice)
+            }
+            None => profile::files(),
+        };
+        take_folder(folder, &files, &inputs, options.force)?;
     }
     Ok((inputs, choice))
 }
 
-fn make_folder(folder: &Path) -> Result<(), String> {
-    std::fs::create_dir_all(folder).map_err(|error| format!("error: {}: {error}", folder.display()))
+/// Makes a folder where these files can be written; what is there already is replaced by `--force` only, and what is read never.
+fn take_folder(folder: &Path, files: &[String], inputs: &[Input], force: bool) -> Result<(), String> {
+    let files: Vec<&str> = files.iter().map(String::as_str).collect();
+    let inputs: Vec<PathBuf> = inputs.iter().map(|input| PathBuf::from(&input.file)).collect();
+    let told = |error: ResultsError| format!("error: {error}");
+    Results::spares(&files, folder, &inputs).map_err(told)?;
+    let old = Results::replaced(&files, folder, force).map_err(told)?;
+    std::fs::create_dir_all(folder).map_err(|error| format!("error: {}: {error}", folder.display()))?;
+    for path in old {
+        std::fs::remove_file(&path).map_err(|error| format!("error: {}: {error}", path.display()))?;
+    }
+    Ok(())
+}
+
+fn solution_files(inputs: &[Input], choice: &Choice) -> Vec<String> {
+    let of = |input: &Input| choice.of_dimension(input.problem.dimension());
+    inputs.iter().flat_map(|input| of(input).into_iter().map(|info| solution_file(&input.stem, info.name))).collect()
+}
+
+fn solution_file(stem: &str, solver: &str) -> String {
+    format!("{stem}.{solver}.csv")
 }
 
 fn solve_all(console: Console, options: &Options, inputs: &[Input], choice: &Choice) -> Result<(), String> {
@@ -99,7 +123,7 @@ fn solve_all(console: Console, options: &Options, inputs: &[Input], choice: &Cho
     let count: usize = inputs.iter().map(|input| choice.of_dimension(input.problem.dimension()).len()).sum();
     let progress = Solves::new(console, (count * tolerances.len()) as u64);
     if !options.json {
-        progress.print(&columns.header());
+        progress.print(&columns.header())?;
     }
     for input in inputs {
         for info in choice.of_dimension(input.problem.dimension()) {
@@ -108,7 +132,7 @@ fn solve_all(console: Console, options: &Options, inputs: &[Input], choice: &Cho
                 if let Some(text) = &row.measured.complaint {
                     progress.tell(&format!("warning: {}: {text}", row.file));
                 }
-                progress.print(&if options.json { row.json() } else { columns.row(&row) });
+                progress.print(&if options.json { row.json() } else { columns.row(&row) })?;
                 if let Some(folder) = &options.solutions {
                     write_solution(folder, &input.stem, &row)?;
                 }
@@ -161,7 +185,7 @@ fn write_solution(folder: &Path, stem: &str, row: &Row) -> Result<(), String> {
     let Measured { impulses, .. } = &row.measured;
     // The shortest digits that read back to the same double.
     let text: String = impulses.iter().map(|p| format!("{p:?}\n")).collect();
-    let path = folder.join(format!("{stem}.{}.csv", row.solver));
+    let path = folder.join(solution_file(stem, row.solver));
     std::fs::write(&path, text).map_err(|error| format!("error: {}: {error}", path.display()))
 }
 
@@ -186,7 +210,5 @@ pub(crate) fn list() -> Exit {
         text.push_str(line.trim_end());
         text.push('\n');
     }
-    // A reader that went away has seen enough.
-    let _ = std::io::stdout().lock().write_all(text.as_bytes());
-    Exit::Done
+    print_all(&text)
 }

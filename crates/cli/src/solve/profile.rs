@@ -74,7 +74,7 @@ impl<'a> Contest<'a> {
     }
 
     fn figure_name(&self) -> String {
-        format!("profile-{}d-{}.svg", self.dimension, power(self.tolerance))
+        figure_name(self.dimension, self.tolerance)
     }
 
     fn figure(&self) -> Result<String, String> {
@@ -141,6 +141,17 @@ impl Table {
     pub(super) fn write(&mut self, text: &str) -> Result<(), String> {
         self.file.write_all(text.as_bytes()).map_err(|error| format!("error: {}: {error}", self.path.display()))
     }
+}
+
+/// All files that a comparison may write.
+pub(super) fn files() -> Vec<String> {
+    let figures =
+        [2, 3].into_iter().flat_map(|dimension| TOLERANCES.map(|tolerance| figure_name(dimension, tolerance)));
+    ["table.csv", "profile.md"].map(str::to_owned).into_iter().chain(figures).collect()
+}
+
+fn figure_name(dimension: usize, tolerance: f64) -> String {
+    format!("profile-{dimension}d-{}.svg", power(tolerance))
 }
 
 /// Writes profile.md and the figures.

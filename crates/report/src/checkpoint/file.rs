@@ -4,6 +4,7 @@ use super::{CheckpointError, Identity, Moment};
 use crate::{export, page, recorder};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
+use std::io::Read;
 use std::path::Path;
 use teeter_integrator::State;
 
@@ -51,7 +52,7 @@ impl Checkpoint {
     }
 
     pub(super) fn read(path: &Path, identity: &Identity) -> Result<Self, CheckpointError> {
-        let bytes = read(path)?;
+        let bytes = read(path, "checkpoint")?;
         let body = opened(&bytes, path, "checkpoint")?;
         let (head, rest) = head(body, path)?;
         identity.admit(&head.identity, path)?;
@@ -71,7 +72,7 @@ impl Moment {
     /// # Errors
     /// If the file can't be read, is of another kind or version, or is damaged.
     pub fn read(path: &Path) -> Result<Self, CheckpointError> {
-        let bytes = read(path)?;
+        let bytes = read(path, "state or checkpoint")?;
         let body = opened(&bytes, path, "state or checkpoint")?;
         Ok(head(body, path)?.0.moment)
     }
@@ -87,8 +88,33 @@ fn unreadable(path: &Path) -> CheckpointError {
     CheckpointError::Damaged { path: path.to_owned(), what }
 }
 
-fn read(path: &Path) -> Result<Vec<u8>, CheckpointError> {
-    std::fs::read(path).map_err(|source| CheckpointError::Read { path: path.to_owned(), source })
+/// A file of ours; of one that isn't, no more than shows that.
+fn read(path: &Path, wanted: &'static str) -> Result<Vec<u8>, CheckpointError> {
+    let failed = |source| CheckpointError::Read { path: path.to_owned(), source };
+    let data = std::fs::metadata(path).map_err(failed)?;
+    if data.is_dir() {
+        return Err(failed(std::io::ErrorKind::IsADirectory.into()));
+    }
+    // A pipe would be waited for.
+    if !data.is_file() {
+        return Err(CheckpointError::Foreign { path: path.to_owned(), wanted });
+    }
+    let mut file = std::fs::File::open(path).map_err(failed)?;
+    let mut bytes = Vec::new();
+    file.by_ref().take(PREFIX as u64).read_to_end(&mut bytes).map_err(failed)?;
+    if let Ok(prefix) = <&[u8; PREFIX]>::try_from(bytes.as_slice()) {
+        let (length, found) = (body_length(prefix, path, wanted)?, data.len().saturating_sub(PREFIX as u64));
+        if length != found {
+            return Err(wrong_length(path, found, length));
+        }
+        file.take(length).read_to_end(&mut bytes).map_err(failed)?;
+    }
+    Ok(bytes)
+}
+
+fn wrong_length(path: &Path, found: u64, wanted: u64) -> CheckpointError {
+    let what = format!("its body holds {found} bytes, and should hold {wanted}");
+    CheckpointError::Damaged { path: path.to_owned(), what }
 }
 
 /// The bytes of a file into `file`, which is cleared first.
@@ -108,6 +134,22 @@ pub(crate) fn sealed(file: Vec<u8>, head: &Head<'_>, rest: Option<&Rest<'_>>) ->
     Ok(file)
 }
 
+/// How many bytes follow the prefix, as it says.
+fn body_length(prefix: &[u8; PREFIX], path: &Path, wanted: &'static str) -> Result<u64, CheckpointError> {
+    if !prefix.starts_with(&MAGIC) {
+        return Err(CheckpointError::Foreign { path: path.to_owned(), wanted });
+    }
+    let mut version = [0; 4];
+    version.copy_from_slice(&prefix[8..12]);
+    let found = u32::from_le_bytes(version);
+    if found != VERSION {
+        return Err(CheckpointError::Version { path: path.to_owned(), found });
+    }
+    let mut length = [0; 8];
+    length.copy_from_slice(&prefix[12..20]);
+    Ok(u64::from_le_bytes(length))
+}
+
 /// The body of a file that is whole.
 fn opened<'a>(bytes: &'a [u8], path: &Path, wanted: &'static str) -> Result<&'a [u8], CheckpointError> {
     let damaged = |what: String| CheckpointError::Damaged { path: path.to_owned(), what };
@@ -118,17 +160,9 @@ fn opened<'a>(bytes: &'a [u8], path: &Path, wanted: &'static str) -> Result<&'a 
     let Some((prefix, body)) = bytes.split_first_chunk::<PREFIX>() else {
         return Err(damaged(format!("it ends after {} bytes", bytes.len())));
     };
-    let mut version = [0; 4];
-    version.copy_from_slice(&prefix[8..12]);
-    let found = u32::from_le_bytes(version);
-    if found != VERSION {
-        return Err(CheckpointError::Version { path: path.to_owned(), found });
-    }
-    let mut length = [0; 8];
-    length.copy_from_slice(&prefix[12..20]);
-    let length = u64::from_le_bytes(length);
+    let length = body_length(prefix, path, wanted)?;
     if length != body.len() as u64 {
-        return Err(damaged(format!("its body holds {} bytes, and should hold {length}", body.len())));
+        return Err(wrong_length(path, body.len() as u64, length));
     }
     if crc32fast::hash(body).to_le_bytes() != prefix[20..24] {
         return Err(damaged("its check sum is wrong".to_owned()));
@@ -190,6 +224,23 @@ mod tests {
         let mut longer = file.clone();
         longer.push(0);
         assert!(opened(&longer, path(), "state").is_err());
+    }
+
+    #[test]
+    fn a_large_file_of_another_kind_is_not_read_to_its_end() {
+        let path = std::env::temp_dir().join(format!("teeter-large-{}.bin", std::process::id()));
+        let large = std::fs::File::create(&path).unwrap();
+        // Sparse: it takes no room on disk, but would take 100 GB of memory.
+        large.set_len(100_000_000_000).unwrap();
+        assert!(matches!(read(&path, "state"), Err(CheckpointError::Foreign { .. })));
+        let mut prefix = file()[..PREFIX].to_vec();
+        std::fs::write(&path, &prefix).unwrap();
+        std::fs::File::options().write(true).open(&path).unwrap().set_len(100_000_000_000).unwrap();
+        assert!(matches!(read(&path, "state"), Err(CheckpointError::Damaged { .. })));
+        prefix[12..20].copy_from_slice(&u64::MAX.to_le_bytes());
+        std::fs::write(&path, &prefix).unwrap();
+        assert!(matches!(read(&path, "state"), Err(CheckpointError::Damaged { .. })));
+        std::fs::remove_file(&path).unwrap();
     }
 
     /// If this fails, files written before can no longer be read: make [`VERSION`] one larger, then put the new numbers here.
