@@ -41,9 +41,7 @@ impl Console {
 pub(crate) fn print(text: &str) -> Result<(), String> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(format!("error: can't write to standard output: {error}"))
-        }
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(format!("can't write to standard output: {error}")),
         _ => Ok(()),
     }
 }
@@ -53,7 +51,7 @@ pub(crate) fn print_all(text: &str) -> Exit {
     match print(text) {
         Ok(()) => Exit::Done,
         Err(why) => {
-            say(&why);
+            say(&format!("error: {why}"));
             Exit::Failed
         }
     }

@@ -78,7 +78,7 @@ impl Solves {
     /// # Errors
     /// As [`console::print`].
     pub(crate) fn print(&self, text: &str) -> Result<(), String> {
-        self.bar.suspend(|| console::print(text))
+        self.bar.suspend(|| console::print(text)).map_err(|why| format!("error: {why}"))
     }
 
     pub(crate) fn tell(&self, text: &str) {
