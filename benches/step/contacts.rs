@@ -39,16 +39,16 @@ pub(crate) fn bench(criterion: &mut Criterion) {
             let mut v = vec![0.0; model.size().v];
             let w = Weights { mass: 1.0, damping: 0.5 * DT, stiffness: 0.25 * DT * DT };
             work.factorise(&model, w, &q).expect("a factor");
-            work.detect(&model, &q, 1e-9);
+            work.detect(&model, &q, 1e-9).expect("of the model");
             for candidate in &work.candidates {
-                work.contacts.activate(&model, &q, candidate, &WarmStart::default());
+                work.contacts.activate(&model, &q, candidate, &WarmStart::default()).expect("of the model");
             }
             assert_eq!(work.contacts.contacts().len(), contacts, "all of them touch");
             let Workspace { contacts, factors, scratch, .. } = &mut work;
             group.bench_function(format!("{backend:?}"), |bencher| {
                 bencher.iter(|| {
-                    contacts.assemble(&model, factors, scratch);
-                    contacts.add_impulses(&model, factors, scratch, &mut v);
+                    contacts.assemble(&model, factors, scratch).expect("of the model");
+                    contacts.add_impulses(&model, factors, scratch, &mut v).expect("of the model");
                 });
             });
         }

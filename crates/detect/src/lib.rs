@@ -91,6 +91,21 @@ impl<const D: usize> HalfSpace<D> {
     }
 }
 
+/// Two bodies that a detector joins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wiring {
+    /// The number of their pair.
+    pub pair: u32,
+    /// The bodies of side 0 and of side 1.
+    pub bodies: [BodyId; 2],
+    /// Whether the detector asks for the [surface](Geometry::surface) of the body of side 1.
+    pub on_surface: bool,
+    /// How many contacts the pair can have.
+    pub contacts: usize,
+    /// The first of its points that is not finite.
+    pub not_finite: Option<usize>,
+}
+
 /// What a detector may ask of the bodies in one configuration.
 pub trait Geometry<const D: usize> {
     /// Places points fixed in a body: `out[k]` is where `local[k]` is in the world. Both have the same length.
@@ -122,6 +137,11 @@ pub trait ContactDetector<const D: usize>: Send + Sync {
         self.detect(at, f64::INFINITY, out);
         out.retain(|candidate| ids.binary_search(&candidate.id).is_ok());
         out.sort_unstable_by_key(|candidate| candidate.id);
+    }
+    /// Whom it joins, as far as that is known before anything moves, so that a model can refuse what can't work when it is built. The default,
+    /// nothing, leaves that to the candidates that come.
+    fn wiring(&self) -> Vec<Wiring> {
+        Vec::new()
     }
     /// Most candidates that there can ever be.
     fn capacity(&self) -> usize;

@@ -3,6 +3,7 @@
 use crate::plane_frame;
 use crate::{
     Anchor, BodyId, Candidate, Candidates, ContactDetector, ContactId, Geometry, Kinematics, SurfacePoint, Vector,
+    Wiring,
 };
 
 /// Points of a body that can touch a surface of another.
@@ -125,6 +126,17 @@ impl ContactDetector<2> for PointDetector<2> {
                 out.push(pair.candidate(k, &foot, gap));
             }
         }
+    }
+
+    fn wiring(&self) -> Vec<Wiring> {
+        let of = |pair: &PointPair<2>| Wiring {
+            pair: pair.pair,
+            bodies: [pair.body, pair.surface],
+            on_surface: true,
+            contacts: pair.points.len(),
+            not_finite: pair.points.iter().position(|point| !point.iter().all(|x| x.is_finite())),
+        };
+        self.pairs.iter().map(of).collect()
     }
 
     fn capacity(&self) -> usize {

@@ -312,6 +312,10 @@ impl Subsystem<2> for BeamBody {
         line.place(&*self.beam, q, local, out);
     }
 
+    fn has_surface(&self, _body: u32) -> bool {
+        true
+    }
+
     fn surface(&self, _: u32, q: &[f64], kinematics: Kinematics, at: &Vector2<f64>) -> Option<SurfacePoint<2>> {
         let (q, line) = self.split(q);
         line.foot(&*self.beam, q, kinematics, at)

@@ -2,7 +2,8 @@
 
 use crate::subsystem::respond_by_diagonal;
 use crate::{
-    Compliance, Coupling, Energy, FactorError, Motion, PartRows, Rows, Signal, Size, Subsystem, Vector, Weights,
+    Compliance, Coupling, Energy, FactorError, ModelError, Motion, PartRows, Rows, Signal, Size, Subsystem, Vector,
+    Weights,
 };
 use nalgebra::{Matrix2, Vector2, Vector3};
 use std::sync::Arc;
@@ -56,31 +57,44 @@ impl Blocks {
         Self { blocks, gravity, loads: Vec::new(), driven: Vec::new(), motions: Vec::new() }
     }
 
-    /// The same with one more load; none on a block that isn't there.
-    #[must_use]
-    pub fn with_load(mut self, load: BlockLoad) -> Self {
-        if load.block < self.blocks.len() {
-            self.loads.push(load);
+    /// The same with one more load.
+    ///
+    /// # Errors
+    /// If the block isn't there, or force or couple are not finite.
+    pub fn with_load(mut self, load: BlockLoad) -> Result<Self, ModelError> {
+        self.check_block(load.block)?;
+        if !(load.force.iter().all(|f| f.is_finite()) && load.couple.is_finite()) {
+            return Err(ModelError::Load { block: load.block });
         }
-        self
+        self.loads.push(load);
+        Ok(self)
+    }
+
+    fn check_block(&self, block: usize) -> Result<(), ModelError> {
+        let blocks = self.blocks.len();
+        if block < blocks { Ok(()) } else { Err(ModelError::Block { block, blocks }) }
     }
 
     /// The same with one coordinate of a block (0: X, 1: Y, 2: φ) prescribed; its others stay free. It starts from where
     /// the state has it, so of a given displacement only the changes count. A later motion of the same coordinate takes the place of the
-    /// earlier; a block or coordinate that isn't there has none.
-    #[must_use]
-    pub fn with_motion(mut self, block: usize, coordinate: usize, motion: Motion) -> Self {
-        if block < self.blocks.len() && coordinate < 3 {
-            let velocity = 3 * block + coordinate;
-            match self.driven.binary_search(&velocity) {
-                Ok(at) => self.motions[at] = motion,
-                Err(at) => {
-                    self.driven.insert(at, velocity);
-                    self.motions.insert(at, motion);
-                }
+    /// earlier.
+    ///
+    /// # Errors
+    /// If the block or the coordinate isn't there.
+    pub fn with_motion(mut self, block: usize, coordinate: usize, motion: Motion) -> Result<Self, ModelError> {
+        self.check_block(block)?;
+        if coordinate >= 3 {
+            return Err(ModelError::Coordinate { coordinate });
+        }
+        let velocity = 3 * block + coordinate;
+        match self.driven.binary_search(&velocity) {
+            Ok(at) => self.motions[at] = motion,
+            Err(at) => {
+                self.driven.insert(at, velocity);
+                self.motions.insert(at, motion);
             }
         }
-        self
+        Ok(self)
     }
 }
 

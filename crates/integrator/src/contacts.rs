@@ -1,9 +1,10 @@
 //! The active contacts of a step: their rows, their problem, and what became of them.
 
+use crate::mismatch::{Identity, length};
 use crate::model::Model;
 use crate::spring::SpringStep;
 use crate::subsystem::Span;
-use crate::{Compliance, Coupling, PartRows, Rows, Vector, WarmStart};
+use crate::{Compliance, Coupling, ImpactLaw, Mismatch, PairLaw, PartRows, Rows, Vector, WarmStart};
 use teeter_contact::{Block, ContactProblem, Delassus, ProblemError};
 use teeter_detect::{Anchor, Candidate, ContactId, Frame};
 
@@ -84,6 +85,29 @@ pub fn tangential<const D: usize>(u: &Vector<D>) -> Vector<D> {
     t
 }
 
+/// Why contacts can't be solved.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ContactError {
+    /// They don't make a problem.
+    #[error(transparent)]
+    Problem(#[from] ProblemError),
+    /// What was given doesn't belong to them.
+    #[error(transparent)]
+    Mismatch(#[from] Mismatch),
+    /// A law that goes beyond Signorini's and Coulomb's, of which the scheme that posed the contact knows nothing.
+    #[error(
+        "pair {pair} has {law}, which the scheme doesn't handle: it must do so and say it ({remedy}), or the pair take another law",
+        remedy = "ContactSet::handles_law"
+    )]
+    Law {
+        /// The pair.
+        pair: u32,
+        /// What its law has beyond the standard one.
+        law: &'static str,
+    },
+}
+
 /// How a contact answers, beyond the standard law on its shifted velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Rule {
@@ -102,7 +126,8 @@ pub(crate) enum Rule {
 ///
 /// A scheme fills it in this order: [`clear`](Self::clear), [`activate`](Self::activate) for each contact,
 /// [`pose`](Self::pose) for each, [`assemble`](Self::assemble), [`problem`](Self::problem) for a solver,
-/// [`add_impulses`](Self::add_impulses), [`complete`](Self::complete).
+/// [`add_impulses`](Self::add_impulses), [`complete`](Self::complete). A pair whose law is more than Signorini's and Coulomb's is refused
+/// unless the scheme says that it [handles](Self::handles_law) it.
 #[derive(Debug)]
 pub struct ContactSet<const D: usize> {
     contacts: Vec<Contact<D>>,
@@ -120,6 +145,10 @@ pub struct ContactSet<const D: usize> {
     q: Vec<Vector<D>>,
     pub(crate) mu: Vec<f64>,
     pub(crate) p: Vec<Vector<D>>,
+    /// What the law of each contact has beyond the standard one, as long as the scheme hasn't said that it handles it.
+    unhandled: Vec<Option<&'static str>>,
+    /// The model that the contacts are of, and the number of its velocities.
+    model: Option<(Identity, usize)>,
 }
 
 impl<const D: usize> ContactSet<D> {
@@ -140,6 +169,8 @@ impl<const D: usize> ContactSet<D> {
             q: Vec::with_capacity(contacts),
             mu: Vec::with_capacity(contacts),
             p: Vec::with_capacity(contacts),
+            unhandled: Vec::with_capacity(contacts),
+            model: None,
         }
     }
 
@@ -160,15 +191,49 @@ impl<const D: usize> ContactSet<D> {
         self.q.clear();
         self.mu.clear();
         self.p.clear();
+        self.blocks.clear();
+        self.unhandled.clear();
+        self.model = None;
+    }
+
+    /// Whether the contacts are of this model; those of an empty set are of any.
+    fn check(&self, model: &Model<D>) -> Result<(), Mismatch> {
+        match self.model {
+            Some((identity, _)) if identity != model.identity() => {
+                let remedy = "clear the set before contacts of this one are activated";
+                Err(Mismatch::OtherModel { what: "the contacts are those", remedy })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn check_index(&self, i: usize) -> Result<(), Mismatch> {
+        let contacts = self.contacts.len();
+        if i < contacts { Ok(()) } else { Err(Mismatch::Contact { contact: i, contacts }) }
     }
 
     /// Takes a candidate in, with its rows at coordinates `q`; side 1 enters with a minus, for u = v_0 − v_1. Its impulse
     /// starts from that of the step before.
-    pub fn activate(&mut self, model: &Model<D>, q: &[f64], candidate: &Candidate<D>, warm: &WarmStart) {
+    ///
+    /// # Errors
+    /// If there are too few or too many coordinates, or the candidate is of a pair or a body that the model doesn't have, or the contacts
+    /// before it are of another model. The set is as it was, then.
+    pub fn activate(
+        &mut self,
+        model: &Model<D>,
+        q: &[f64],
+        candidate: &Candidate<D>,
+        warm: &WarmStart,
+    ) -> Result<(), Mismatch> {
+        self.check(model)?;
+        length("the coordinates", q, model.size().q)?;
+        let law = model.law(candidate.id.pair())?;
         let mut spans = [Span { part: 0, start: 0, len: 0 }; 2];
         let mut start = self.ends.last().copied().unwrap_or(0);
         for (side, anchor) in candidate.sides.iter().enumerate() {
-            let Some((index, part, body)) = model.owner(anchor.body) else { continue };
+            let Some((index, part, body)) = model.owner(anchor.body) else {
+                return Err(Mismatch::Body { body: anchor.body, bodies: model.size().bodies });
+            };
             if part.row == 0 {
                 continue;
             }
@@ -183,7 +248,10 @@ impl<const D: usize> ContactSet<D> {
             let q = &q[part.q.clone()];
             let len = part.system.rows(body, q, &anchor.point, &candidate.frame, &mut rows).min(part.row);
             let taken = start..start + len;
-            for (global, column) in self.global[taken.clone()].iter_mut().zip(&self.columns[taken.clone()]) {
+            for (global, &column) in self.global[taken.clone()].iter_mut().zip(&self.columns[taken.clone()]) {
+                if column >= part.v.len() {
+                    return Err(Mismatch::Column { body: anchor.body, column, velocities: part.v.len() });
+                }
                 *global = part.v.start + column;
             }
             if side == 1 {
@@ -200,7 +268,9 @@ impl<const D: usize> ContactSet<D> {
         self.shift.push(Vector::zeros());
         self.rules.push(Rule::Shifted);
         self.q.push(Vector::zeros());
-        self.mu.push(model.law(candidate.id.pair()).friction);
+        self.mu.push(law.friction);
+        self.unhandled.push(beyond_standard(&law));
+        self.model = Some((model.identity(), model.size().v));
         self.contacts.push(Contact {
             id: candidate.id,
             sides: candidate.sides,
@@ -214,12 +284,35 @@ impl<const D: usize> ContactSet<D> {
             gap_after: None,
             still: 0.0,
         });
+        Ok(())
+    }
+
+    /// Says that the scheme handles the law of contact `i`, whatever it is: restitution is in the shift, say.
+    ///
+    /// # Errors
+    /// For a contact that isn't there.
+    pub fn handles_law(&mut self, i: usize) -> Result<(), Mismatch> {
+        self.check_index(i)?;
+        self.unhandled[i] = None;
+        Ok(())
+    }
+
+    /// Refuses contacts whose law nobody handles.
+    pub(crate) fn check_laws(&self) -> Result<(), ContactError> {
+        match self.unhandled.iter().zip(&self.contacts).find_map(|(law, contact)| law.map(|law| (law, contact.id))) {
+            Some((law, id)) => Err(ContactError::Law { pair: id.pair(), law }),
+            None => Ok(()),
+        }
     }
 
     /// Takes the last contact out again if all that could part its sides is prescribed: no impulse changes its normal velocity,
     /// so there is none to be found. Returns whether it did.
-    pub fn withdraw_if_prescribed(&mut self, model: &Model<D>) -> bool {
-        let Some(sides) = self.spans.last() else { return false };
+    ///
+    /// # Errors
+    /// If the contacts are of another model.
+    pub fn withdraw_if_prescribed(&mut self, model: &Model<D>) -> Result<bool, Mismatch> {
+        self.check(model)?;
+        let Some(sides) = self.spans.last() else { return Ok(false) };
         let prescribed = sides.iter().filter(|side| side.len > 0).all(|side| {
             let part = &model.parts()[side.part];
             if !part.traits.driven {
@@ -241,9 +334,10 @@ impl<const D: usize> ContactSet<D> {
             self.rules.pop();
             self.q.pop();
             self.mu.pop();
+            self.unhandled.pop();
             self.contacts.pop();
         }
-        prescribed
+        Ok(prescribed)
     }
 
     /// The entries of contact `i`, with their columns among the model's velocities.
@@ -255,8 +349,21 @@ impl<const D: usize> ContactSet<D> {
     }
 
     /// The relative velocity J_i v of contact `i`, for velocities of the whole model.
-    #[must_use]
-    pub fn velocity(&self, i: usize, v: &[f64]) -> Vector<D> {
+    ///
+    /// # Errors
+    /// For a contact that isn't there, or too few or too many velocities.
+    pub fn velocity(&self, i: usize, v: &[f64]) -> Result<Vector<D>, Mismatch> {
+        self.check_index(i)?;
+        self.check_velocities(v)?;
+        Ok(self.velocity_of(i, v))
+    }
+
+    fn check_velocities(&self, v: &[f64]) -> Result<(), Mismatch> {
+        self.model.map_or(Ok(()), |(_, expected)| length("the velocities", v, expected))
+    }
+
+    /// The same for what is known to fit.
+    pub(crate) fn velocity_of(&self, i: usize, v: &[f64]) -> Vector<D> {
         let mut u = Vector::zeros();
         for (column, value) in self.entries(i) {
             u += value * v[column];
@@ -266,10 +373,15 @@ impl<const D: usize> ContactSet<D> {
 
     /// Gives contact `i` its velocity before the step, its free velocity and the shift s of the law, m/s: the law holds for
     /// U¹ + s, so the problem's constant vector is q = U_free + s.
-    pub fn pose(&mut self, i: usize, u_before: Vector<D>, u_free: Vector<D>, shift: Vector<D>) {
+    ///
+    /// # Errors
+    /// For a contact that isn't there.
+    pub fn pose(&mut self, i: usize, u_before: Vector<D>, u_free: Vector<D>, shift: Vector<D>) -> Result<(), Mismatch> {
+        self.check_index(i)?;
         self.contacts[i].u_before = u_before;
         self.u_free[i] = u_free;
         self.reshift(i, shift);
+        Ok(())
     }
 
     /// Gives contact `i` another shift.
@@ -315,7 +427,18 @@ impl<const D: usize> ContactSet<D> {
     }
 
     /// H = Σ J W Jᵀ over the subsystems; `scratch` is as long as the model's velocities.
-    pub fn assemble(&mut self, model: &Model<D>, factors: &mut [Box<dyn Compliance<D>>], scratch: &mut [f64]) {
+    ///
+    /// # Errors
+    /// If the contacts are of another model, or factors or scratch don't fit it.
+    pub fn assemble(
+        &mut self,
+        model: &Model<D>,
+        factors: &mut [Box<dyn Compliance<D>>],
+        scratch: &mut [f64],
+    ) -> Result<(), Mismatch> {
+        self.check(model)?;
+        length("the factors", factors, model.parts().len())?;
+        length("the scratch", scratch, model.size().v)?;
         let n = self.contacts.len();
         self.blocks.clear();
         self.blocks.resize(n * n, Block::zeros());
@@ -327,13 +450,15 @@ impl<const D: usize> ContactSet<D> {
             let rows = PartRows { part: index, spans: &self.spans, columns: &self.columns, values: &self.values };
             factor.couple(&rows, &mut scratch[..part.v.len()], &mut coupling);
         }
+        Ok(())
     }
 
     /// The problem, and the impulses to start from and to leave the solution in.
     ///
     /// # Errors
-    /// As [`ContactProblem::new`].
-    pub fn problem(&mut self) -> Result<(ContactProblem<'_, D>, &mut [Vector<D>]), ProblemError> {
+    /// As [`ContactProblem::new`], which tells of a set that isn't [assembled](Self::assemble), too; and for a law that nobody handles.
+    pub fn problem(&mut self) -> Result<(ContactProblem<'_, D>, &mut [Vector<D>]), ContactError> {
+        self.check_laws()?;
         let problem = ContactProblem::new(Delassus::Dense(&self.blocks), &self.q, &self.mu)?;
         Ok((problem, &mut self.p))
     }
@@ -349,13 +474,20 @@ impl<const D: usize> ContactSet<D> {
     }
 
     /// Adds W Jᵀ p to `v`, after [`assemble`](Self::assemble); `scratch` is as long as the model's velocities.
+    ///
+    /// # Errors
+    /// If the contacts are of another model, or factors, scratch or velocities don't fit it.
     pub fn add_impulses(
         &self,
         model: &Model<D>,
         factors: &mut [Box<dyn Compliance<D>>],
         scratch: &mut [f64],
         v: &mut [f64],
-    ) {
+    ) -> Result<(), Mismatch> {
+        self.check(model)?;
+        length("the factors", factors, model.parts().len())?;
+        length("the scratch", scratch, model.size().v)?;
+        length("the velocities", v, model.size().v)?;
         for (index, (part, factor)) in model.parts().iter().zip(factors).enumerate() {
             if part.v.is_empty() {
                 continue;
@@ -365,13 +497,18 @@ impl<const D: usize> ContactSet<D> {
                 factor.respond(&rows, &self.p, &mut scratch[part.v.clone()], &mut v[part.v.clone()]);
             }
         }
+        Ok(())
     }
 
     /// Completes the contacts after a solve, with velocities after the step.
-    pub fn complete(&mut self, v: &[f64]) {
+    ///
+    /// # Errors
+    /// For too few or too many velocities.
+    pub fn complete(&mut self, v: &[f64]) -> Result<(), Mismatch> {
+        self.check_velocities(v)?;
         let fastest = self.q.iter().map(Vector::norm_squared).fold(0.0, f64::max).sqrt();
         for i in 0..self.contacts.len() {
-            let u_after = self.velocity(i, v);
+            let u_after = self.velocity_of(i, v);
             let contact = &mut self.contacts[i];
             (contact.p, contact.u_after, contact.still) = (self.p[i], u_after, STILL * fastest);
             contact.u_law = u_after + self.shift[i];
@@ -381,5 +518,19 @@ impl<const D: usize> ContactSet<D> {
                 Rule::Shifted | Rule::Energetic => {}
             }
         }
+        Ok(())
+    }
+}
+
+/// What a law has beyond Signorini's and Coulomb's.
+fn beyond_standard(law: &PairLaw) -> Option<&'static str> {
+    match law.impact {
+        ImpactLaw::Poisson => Some("Poisson's impact law"),
+        ImpactLaw::Energetic => Some("the energetic impact law"),
+        ImpactLaw::KelvinVoigt { .. } => Some("Kelvin and Voigt's contact law"),
+        ImpactLaw::HuntCrossley { .. } => Some("Hunt and Crossley's contact law"),
+        ImpactLaw::Newton if law.restitution > 0.0 => Some("a coefficient of restitution"),
+        ImpactLaw::Newton if law.tangential_restitution > 0.0 => Some("a tangential coefficient of restitution"),
+        ImpactLaw::Newton => None,
     }
 }

@@ -12,7 +12,8 @@
 //! pull, is of a larger size than these modes know.
 
 use crate::contacts::tangential;
-use crate::{Model, Rows, Vector, Weights};
+use crate::mismatch::length;
+use crate::{Mismatch, Model, Rows, Vector, Weights};
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 use teeter_detect::{Anchor, ContactId, Frame};
 
@@ -58,13 +59,17 @@ pub enum CoupledModesError {
     /// A mass matrix that is not positive definite.
     #[error("the mass matrix of what can move is not positive definite")]
     Mass,
+    /// Coordinates or contacts of another model.
+    #[error(transparent)]
+    Mismatch(#[from] Mismatch),
 }
 
 /// The first `count` modes of a model about an equilibrium `q`, the contacts with these forces (on side 0, N, normal first: those of
 /// [`Equilibrium`](crate::Equilibrium)) closed and sticking; closed only, without friction.
 ///
 /// # Errors
-/// If the model is too large, or its mass matrix not positive definite.
+/// If the model is too large, or its mass matrix not positive definite; or if there are too few or too many coordinates, or forces of a pair
+/// that the model doesn't have.
 pub fn coupled_modes(
     model: &Model<2>,
     q: &[f64],
@@ -75,10 +80,11 @@ pub fn coupled_modes(
     if n > MOST_VELOCITIES {
         return Err(CoupledModesError::TooMany { velocities: n });
     }
+    length("the coordinates", q, model.size().q)?;
     let mut mass = matrix(model, q, Weights { mass: 1.0, ..Weights::default() });
     let mut stiffness = matrix(model, q, Weights { stiffness: 1.0, ..Weights::default() });
     let mut constraints = Vec::new();
-    for touching in touching(model, q, forces) {
+    for touching in touching(model, q, forces)? {
         touching.add_stiffness(model, q, &mut stiffness);
         let directions = if touching.friction > 0.0 { 2 } else { 1 };
         constraints.extend(touching.rows(model, q).into_iter().take(directions));
@@ -160,16 +166,19 @@ struct Touching {
     friction: f64,
 }
 
-fn touching(model: &Model<2>, q: &[f64], forces: &[(ContactId, Vector<2>)]) -> Vec<Touching> {
+fn touching(model: &Model<2>, q: &[f64], forces: &[(ContactId, Vector<2>)]) -> Result<Vec<Touching>, Mismatch> {
     let mut candidates = Vec::new();
-    model.detector().detect(&model.placed(q), f64::INFINITY, &mut candidates);
+    model.detector().detect(&model.placed_at(q), f64::INFINITY, &mut candidates);
     let pressing = forces.iter().filter(|(_, force)| force[0] > 0.0);
     pressing
         .filter_map(|(id, force)| {
+            let friction = match model.law(id.pair()) {
+                Ok(law) => law.friction,
+                Err(unknown) => return Some(Err(unknown)),
+            };
             let candidate = candidates.iter().find(|candidate| candidate.id == *id)?;
-            let friction = model.law(id.pair()).friction;
             let force = if friction > 0.0 { *force } else { *force - tangential(force) };
-            Some(Touching { sides: candidate.sides, frame: candidate.frame, force, friction })
+            Some(Ok(Touching { sides: candidate.sides, frame: candidate.frame, force, friction }))
         })
         .collect()
 }
@@ -206,7 +215,7 @@ impl Touching {
             let step = DIFFERENCE * self.reach() / size;
             v[column] = 1.0;
             let mut side = |tau: f64| {
-                model.retract(q, &v, tau, &mut at);
+                model.move_along(q, &v, tau, &mut at);
                 let [normal, tangent] = self.rows(model, &at);
                 normal * self.force[0] + tangent * self.force[1]
             };

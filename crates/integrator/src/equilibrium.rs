@@ -21,8 +21,8 @@
 //! leads there, and may be approximate.
 
 use crate::contacts::tangential;
-use crate::{FactorError, Model, Vector, WarmStart, Weights, Workspace};
-use teeter_contact::ProblemError;
+use crate::mismatch::length;
+use crate::{ContactError, FactorError, Mismatch, Model, Vector, WarmStart, Weights, Workspace};
 use teeter_detect::{Anchor, Candidate, ContactId, Frame, Geometry};
 
 /// What limits the search.
@@ -98,8 +98,11 @@ pub enum EquilibriumError {
         /// The round.
         round: u32,
         /// Why not.
-        source: ProblemError,
+        source: ContactError,
     },
+    /// The coordinates or the workspace are of another model.
+    #[error(transparent)]
+    Mismatch(#[from] Mismatch),
 }
 
 /// τ grows by this factor as long as mass takes part in a round by more than [`INERT`].
@@ -143,7 +146,8 @@ const CIRCLES: u32 = 8;
 /// hyperstatic (both feet of a rigid block stick), λ_t is one of many, q is not.
 ///
 /// # Errors
-/// If something slides, tips, or falls, or the rounds don't come to rest.
+/// If something slides, tips, or falls, or the rounds don't come to rest; or if there are too few or too many coordinates, or the workspace
+/// is of another model.
 pub fn settle<const D: usize>(
     model: &Model<D>,
     t: f64,
@@ -151,6 +155,8 @@ pub fn settle<const D: usize>(
     limits: &SettlingLimits<'_>,
     work: &mut Workspace<D>,
 ) -> Result<Equilibrium<D>, EquilibriumError> {
+    work.check(model)?;
+    length("the coordinates", q, model.size().q)?;
     let n = model.size().v;
     let mut search = Search {
         q: q.to_vec(),
@@ -187,7 +193,7 @@ pub fn settle<const D: usize>(
         if change <= ROUNDING || (last && change <= SETTLED) {
             let forces = pressing().map(|contact| (contact.id, contact.p / tau)).collect();
             search.go_on(model, tau);
-            let penetration = work.penetration(model, &search.q);
+            let penetration = work.penetration(model, &search.q)?;
             return Ok(Equilibrium { q: search.q, forces, rounds: round, change, tau, penetration });
         }
         if !change.is_finite() || round == ROUNDS {
@@ -269,7 +275,7 @@ impl<const D: usize> Search<D> {
         let w = Weights { mass: 1.0, damping: 0.0, stiffness: tau * tau };
         let fresh = work.factors.is_empty();
         if fresh {
-            work.factorise(model, w, &self.q)?;
+            work.factorise_all(model, w, &self.q)?;
         }
         self.v.fill(0.0);
         self.impulse.fill(0.0);
@@ -293,19 +299,21 @@ impl<const D: usize> Search<D> {
             v.copy_from_slice(f);
             factor.solve(v);
         }
-        work.detect(model, &self.q, limits.margin);
+        work.detect(model, &self.q, limits.margin)?;
         work.contacts.clear();
         for candidate in &work.candidates {
             let i = work.contacts.contacts().len();
-            work.contacts.activate(model, &self.q, candidate, &self.warm);
-            if work.contacts.withdraw_if_prescribed(model) {
+            work.contacts.activate(model, &self.q, candidate, &self.warm)?;
+            if work.contacts.withdraw_if_prescribed(model)? {
                 continue;
             }
+            // At rest all laws are Signorini's and Coulomb's.
+            work.contacts.handles_law(i)?;
             let place = place_of(model, &self.q, &mut self.places, candidate);
             let mut shift = tangential(&(candidate.frame * place.way(model, &self.q))) / tau;
             shift[0] = candidate.gap / tau;
-            let u_free = work.contacts.velocity(i, &self.v);
-            work.contacts.pose(i, Vector::zeros(), u_free, shift);
+            let u_free = work.contacts.velocity_of(i, &self.v);
+            work.contacts.pose(i, Vector::zeros(), u_free, shift)?;
         }
         if !work.contacts.contacts().is_empty() {
             work.solve_contacts(model, 1.0, &mut self.v)
@@ -319,7 +327,7 @@ impl<const D: usize> Search<D> {
 
     /// Takes the step.
     fn go_on(&mut self, model: &Model<D>, tau: f64) {
-        model.retract(&self.q, &self.v, tau, &mut self.other);
+        model.move_along(&self.q, &self.v, tau, &mut self.other);
         std::mem::swap(&mut self.q, &mut self.other);
     }
 
@@ -332,7 +340,7 @@ impl<const D: usize> Search<D> {
     fn step(&self, model: &Model<D>, work: &Workspace<D>) -> Step {
         // ½ vᵀ(M + τ²K) v, which is ½ Δqᵀ(M/τ² + K) Δq: by how much the round lowers the potential.
         let step = 0.5 * self.v.iter().zip(&self.impulse).map(|(v, p)| v * p).sum::<f64>().abs();
-        let now = model.energy(&self.q, &self.v);
+        let now = model.energy_at(&self.q, &self.v);
         let scene = model.energy_scale() + now.elastic;
         // The same of what the contacts' impulses alone would do. It is small where τ is so short that gaps are rounding.
         let pressed = work.contacts.contacts().iter().zip(&work.contacts.u_free);
@@ -385,7 +393,7 @@ fn place_of<const D: usize>(
 
 /// The way from the point of side 1 to that of side 0, m.
 fn between<const D: usize>(model: &Model<D>, q: &[f64], sides: &[Anchor<D>; 2]) -> Vector<D> {
-    let placed = model.placed(q);
+    let placed = model.placed_at(q);
     let at = |anchor: &Anchor<D>| {
         let mut place = [Vector::zeros()];
         placed.place(anchor.body, &[anchor.point], &mut place);

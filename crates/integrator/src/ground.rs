@@ -100,6 +100,10 @@ impl Subsystem<2> for Ground {
         }
     }
 
+    fn has_surface(&self, _body: u32) -> bool {
+        true
+    }
+
     fn surface(&self, _body: u32, q: &[f64], _: Kinematics, at: &Vector2<f64>) -> Option<SurfacePoint<2>> {
         if let Form::Level(level) = self.0 {
             let foot = Vector2::new(at.x, level);

@@ -16,18 +16,25 @@ use crate::Energy;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StepEnergy {
     /// Work of external loads.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub external: f64,
     /// Normal contact: Σ U_θ,n p_n; of a contact with duration the loss alone, what its spring takes counted as stored.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub contact: f64,
     /// Friction: Σ U_θ,t·p_t.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub friction: f64,
     /// Viscous loss.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub viscous: f64,
     /// Numerical dissipation, and minus the change of the modified energy.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub numerical: f64,
     /// Work of a projection of the positions.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub projection: f64,
     /// Δ(T+V) minus all of the above.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub residual: f64,
 }
 
@@ -54,8 +61,10 @@ pub struct PositiveWork {
     /// How many.
     pub steps: u64,
     /// The largest gain in one step, J.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub largest: f64,
     /// All gains together, J.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub sum: f64,
 }
 
@@ -70,14 +79,18 @@ pub struct Ledger {
     /// The terms added up since the start; `residual` is the sum of the signed residuals.
     pub sum: StepEnergy,
     /// Largest |residual| of a step, J.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub largest_residual: f64,
     /// The scene's energy scale so far, J: max |T| + |V_elastic| + |ΔV_gravity|, at least Σ m g R.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub scale: f64,
     /// Elastic energy held by contacts with duration, J; part of the current one's.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub stored: f64,
     /// Gains by contact.
     pub positive_contact_work: PositiveWork,
     /// Largest (U¹ + s)_t·p_t of a contact in a step, J, s the shift of its law; the law makes it ≤ 0 up to rounding.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub largest_tangential_work: f64,
 }
 

@@ -48,6 +48,7 @@
 
 mod beam;
 mod blocks;
+mod clock;
 #[cfg(feature = "conformance")]
 pub mod conformance;
 mod contacts;
@@ -56,6 +57,7 @@ mod equilibrium;
 mod ground;
 mod laws;
 mod ledger;
+mod mismatch;
 mod modal_beam;
 mod model;
 mod monitor;
@@ -67,6 +69,8 @@ mod scheme;
 mod signal;
 mod spring;
 mod state;
+#[cfg(feature = "serde")]
+mod stored;
 mod subsystem;
 mod theta_step;
 mod workspace;
@@ -74,11 +78,12 @@ mod workspace;
 pub use beam::forces::{BeamForces, SpanLoads};
 pub use beam::{BeamBody, BeamSurface, SignalLoad, WBackend};
 pub use blocks::{Block, BlockLoad, Blocks};
-pub use contacts::{Contact, ContactSet, ContactState, tangential};
+pub use contacts::{Contact, ContactError, ContactSet, ContactState, tangential};
 pub use coupled_modes::{CoupledModes, CoupledModesError, MOST_VELOCITIES, coupled_modes};
 pub use equilibrium::{Equilibrium, EquilibriumError, SettlingLimits, settle};
 pub use ground::Ground;
 pub use ledger::{Ledger, PositiveWork, StepEnergy};
+pub use mismatch::Mismatch;
 pub use modal_beam::ModalBeam;
 pub use model::{Model, ModelBuilder, ModelError, Part, Placed};
 pub use monitor::{Crossing, LISTED_CROSSINGS, Peak, RockingMonitor};

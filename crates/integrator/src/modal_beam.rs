@@ -351,6 +351,10 @@ impl Subsystem<2> for ModalBeam {
         line.place(&self.shapes, q, local, out);
     }
 
+    fn has_surface(&self, _body: u32) -> bool {
+        true
+    }
+
     fn surface(&self, _: u32, q: &[f64], kinematics: Kinematics, at: &Vector2<f64>) -> Option<SurfacePoint<2>> {
         let (q, line) = self.split(q);
         line.foot(&self.shapes, q, kinematics, at)

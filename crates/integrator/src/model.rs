@@ -1,9 +1,10 @@
 //! A scene for the integrator: subsystems, who can touch whom by what law, and a detector. Immutable.
 
 use crate::contacts::ContactSet;
-use crate::{Energy, ImpactLaw, PairLaw, Size, Subsystem, Vector, WarmStart};
+use crate::mismatch::{Identity, length};
+use crate::{Energy, ImpactLaw, Mismatch, PairLaw, Size, Subsystem, Vector, WarmStart};
 use std::ops::Range;
-use teeter_detect::{BodyId, Candidate, ContactDetector, Geometry, HalfSpace, Kinematics, SurfacePoint};
+use teeter_detect::{BodyId, Candidate, ContactDetector, Geometry, HalfSpace, Kinematics, SurfacePoint, Wiring};
 
 /// What is wrong with a model.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -20,6 +21,90 @@ pub enum ModelError {
         value: f64,
         /// The range.
         rule: &'static str,
+    },
+    /// A detector with a pair that wasn't added.
+    #[error("the detector has pair {pair}, but the model has {pairs}: use the number that ModelBuilder::pair returned")]
+    Pair {
+        /// The number.
+        pair: u32,
+        /// How many pairs there are.
+        pairs: usize,
+    },
+    /// A detector that gives two pairs the same number: their contacts could not be told apart.
+    #[error("the detector has pair {pair} twice: add a pair for each")]
+    PairTwice {
+        /// The number.
+        pair: u32,
+    },
+    /// A pair without a point.
+    #[error("pair {pair} has no points, so nothing of it can ever touch")]
+    NoPoints {
+        /// The number.
+        pair: u32,
+    },
+    /// A point that is not finite.
+    #[error("point {point} of pair {pair} is not finite")]
+    Point {
+        /// The number.
+        pair: u32,
+        /// Which point.
+        point: usize,
+    },
+    /// A body that wasn't added.
+    #[error("pair {pair} is of body {}, but the model has {bodies}: use the body that ModelBuilder::add returned", body.0)]
+    Body {
+        /// The pair.
+        pair: u32,
+        /// The body.
+        body: BodyId,
+        /// How many bodies there are.
+        bodies: usize,
+    },
+    /// A body whose surface is to be touched, but that has none.
+    #[error("pair {pair} is on the surface of body {}, which has none", body.0)]
+    NoSurface {
+        /// The pair.
+        pair: u32,
+        /// The body.
+        body: BodyId,
+    },
+    /// A body that is to touch itself.
+    #[error("pair {pair} is of body {} against itself", body.0)]
+    Itself {
+        /// The pair.
+        pair: u32,
+        /// The body.
+        body: BodyId,
+    },
+    /// A load or a motion of a block that isn't there.
+    #[error("there is no block {block}: there are {blocks}, numbered from 0")]
+    Block {
+        /// Its number.
+        block: usize,
+        /// How many there are.
+        blocks: usize,
+    },
+    /// A motion of a coordinate that a block doesn't have.
+    #[error("a block has no coordinate {coordinate}: they are 0 for X, 1 for Y and 2 for φ")]
+    Coordinate {
+        /// Its number.
+        coordinate: usize,
+    },
+    /// A load that is not finite.
+    #[error("a load of block {block} is not finite")]
+    Load {
+        /// Number of the block.
+        block: usize,
+    },
+    /// A subsystem whose prescribed or held velocities aren't numbers of velocities, in rising order.
+    #[error("the {what} velocities of subsystem {part} must be rising numbers below {velocities}")]
+    Velocities {
+        /// Prescribed or held ones.
+        what: &'static str,
+        /// Number of the subsystem, in the order of adding.
+        part: usize,
+        /// How many velocities it has.
+        velocities: usize,
     },
 }
 
@@ -61,8 +146,11 @@ pub struct Model<const D: usize> {
     laws: Vec<PairLaw>,
     springs: bool,
     contacts: bool,
+    /// Whether the detector said whom it joins, so that its candidates needn't be looked at.
+    wired: bool,
     detector: Box<dyn ContactDetector<D>>,
     size: Size,
+    identity: Identity,
 }
 
 impl<const D: usize> std::fmt::Debug for Model<D> {
@@ -130,11 +218,15 @@ impl<const D: usize> ModelBuilder<D> {
     /// The model.
     ///
     /// # Errors
-    /// If a coefficient of a pair is out of its range.
+    /// If a coefficient of a pair is out of its range, or the detector joins what can't touch: pairs or bodies that weren't added, the surface
+    /// of a body that has none, a body and itself. Of a detector that doesn't [say](ContactDetector::wiring) whom it joins, the steps tell.
     pub fn build(self, detector: Box<dyn ContactDetector<D>>) -> Result<Model<D>, ModelError> {
         for (pair, law) in self.laws.iter().enumerate() {
             law.check().map_err(|(what, value, rule)| ModelError::Law { what, pair: pair as u32, value, rule })?;
         }
+        self.check_parts()?;
+        let wiring = detector.wiring();
+        self.check_wiring(&wiring)?;
         let springs = self.laws.iter().any(|law| law.impact.spring().is_some());
         let contacts = detector.capacity() > 0;
         Ok(Model {
@@ -143,9 +235,55 @@ impl<const D: usize> ModelBuilder<D> {
             laws: self.laws,
             springs,
             contacts,
+            wired: !wiring.is_empty(),
             detector,
             size: self.size,
+            identity: Identity::new(),
         })
+    }
+}
+
+impl<const D: usize> ModelBuilder<D> {
+    fn check_parts(&self) -> Result<(), ModelError> {
+        for (number, part) in self.parts.iter().enumerate() {
+            let velocities = part.v.len();
+            for (what, given) in [("prescribed", part.system.driven()), ("held", part.system.held())] {
+                if !given.is_sorted_by(|a, b| a < b) || given.last().is_some_and(|last| *last >= velocities) {
+                    return Err(ModelError::Velocities { what, part: number, velocities });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn check_wiring(&self, wiring: &[Wiring]) -> Result<(), ModelError> {
+        let mut seen = vec![false; self.laws.len()];
+        for &Wiring { pair, bodies: [first, second], on_surface, contacts, not_finite } in wiring {
+            match seen.get_mut(pair as usize) {
+                None => return Err(ModelError::Pair { pair, pairs: self.laws.len() }),
+                Some(true) => return Err(ModelError::PairTwice { pair }),
+                Some(seen) => *seen = true,
+            }
+            for body in [first, second] {
+                if body.0 as usize >= self.bodies.len() {
+                    return Err(ModelError::Body { pair, body, bodies: self.bodies.len() });
+                }
+            }
+            if first == second {
+                return Err(ModelError::Itself { pair, body: first });
+            }
+            let (part, number) = self.bodies[second.0 as usize];
+            if on_surface && !self.parts[part].system.has_surface(number) {
+                return Err(ModelError::NoSurface { pair, body: second });
+            }
+            if contacts == 0 {
+                return Err(ModelError::NoPoints { pair });
+            }
+            if let Some(point) = not_finite {
+                return Err(ModelError::Point { pair, point });
+            }
+        }
+        Ok(())
     }
 }
 
@@ -156,10 +294,38 @@ impl<const D: usize> Model<D> {
         self.size
     }
 
-    /// The law of a pair; the default (no friction, no restitution) for a pair that the model doesn't have.
-    #[must_use]
-    pub fn law(&self, pair: u32) -> PairLaw {
-        self.laws.get(pair as usize).copied().unwrap_or_default()
+    /// The law of a pair.
+    ///
+    /// # Errors
+    /// For a pair that the model doesn't have.
+    pub fn law(&self, pair: u32) -> Result<PairLaw, Mismatch> {
+        self.laws.get(pair as usize).copied().ok_or(Mismatch::Pair { pair, pairs: self.laws.len() })
+    }
+
+    /// Refuses candidates of pairs and bodies that the model doesn't have.
+    pub(crate) fn check_candidates(&self, candidates: &[Candidate<D>]) -> Result<(), Mismatch> {
+        if self.wired {
+            return Ok(());
+        }
+        for candidate in candidates {
+            self.law(candidate.id.pair())?;
+            for side in &candidate.sides {
+                if side.body.0 as usize >= self.bodies.len() {
+                    return Err(Mismatch::Body { body: side.body, bodies: self.bodies.len() });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    pub(crate) fn identity(&self) -> Identity {
+        self.identity
+    }
+
+    /// Whether the slices are as long as the coordinates and velocities.
+    fn fits(&self, q: &[f64], v: &[f64]) -> Result<(), Mismatch> {
+        length("the coordinates", q, self.size.q)?;
+        length("the velocities", v, self.size.v)
     }
 
     /// Whether a pair has a law with duration.
@@ -184,21 +350,47 @@ impl<const D: usize> Model<D> {
     }
 
     /// The bodies placed at coordinates `q`, for a detector to look at.
-    #[must_use]
-    pub fn placed<'a>(&'a self, q: &'a [f64]) -> Placed<'a, D> {
+    ///
+    /// # Errors
+    /// If there are too few or too many coordinates.
+    pub fn placed<'a>(&'a self, q: &'a [f64]) -> Result<Placed<'a, D>, Mismatch> {
+        length("the coordinates", q, self.size.q)?;
+        Ok(self.placed_at(q))
+    }
+
+    /// The same for what is known to fit.
+    pub(crate) fn placed_at<'a>(&'a self, q: &'a [f64]) -> Placed<'a, D> {
         Placed { model: self, q }
     }
 
     /// Writes the prescribed velocities at time `t` into their places in `v`.
-    pub fn drive(&self, t: f64, v: &mut [f64]) {
+    ///
+    /// # Errors
+    /// If there are too few or too many velocities.
+    pub fn drive(&self, t: f64, v: &mut [f64]) -> Result<(), Mismatch> {
+        length("the velocities", v, self.size.v)?;
+        self.drive_at(t, v);
+        Ok(())
+    }
+
+    /// The same for what is known to fit.
+    pub(crate) fn drive_at(&self, t: f64, v: &mut [f64]) {
         for part in self.parts.iter().filter(|part| part.traits.driven) {
             part.system.drive(t, &mut v[part.v.clone()]);
         }
     }
 
     /// The energies at (q, v).
-    #[must_use]
-    pub fn energy(&self, q: &[f64], v: &[f64]) -> Energy {
+    ///
+    /// # Errors
+    /// If there are too few or too many coordinates or velocities.
+    pub fn energy(&self, q: &[f64], v: &[f64]) -> Result<Energy, Mismatch> {
+        self.fits(q, v)?;
+        Ok(self.energy_at(q, v))
+    }
+
+    /// The same for what is known to fit.
+    pub(crate) fn energy_at(&self, q: &[f64], v: &[f64]) -> Energy {
         let mut energy = Energy::default();
         for part in &self.parts {
             energy += part.system.energy(&q[part.q.clone()], &v[part.v.clone()]);
@@ -213,17 +405,30 @@ impl<const D: usize> Model<D> {
     }
 
     /// `out = q ⊕ τ v`: where velocities `v` lead in the time `tau` (s).
-    pub fn retract(&self, q: &[f64], v: &[f64], tau: f64, out: &mut [f64]) {
+    ///
+    /// # Errors
+    /// If there are too few or too many coordinates or velocities.
+    pub fn retract(&self, q: &[f64], v: &[f64], tau: f64, out: &mut [f64]) -> Result<(), Mismatch> {
+        self.fits(q, v)?;
+        length("the coordinates to be", out, self.size.q)?;
+        self.move_along(q, v, tau, out);
+        Ok(())
+    }
+
+    /// The same for what is known to fit.
+    pub(crate) fn move_along(&self, q: &[f64], v: &[f64], tau: f64, out: &mut [f64]) {
         for part in self.parts.iter().filter(|part| !part.q.is_empty()) {
             part.system.retract(&q[part.q.clone()], &v[part.v.clone()], tau, &mut out[part.q.clone()]);
         }
     }
 
     /// The relative velocity u = v_0 − v_1 of a candidate in its frame, with its rows taken at `q`.
-    #[must_use]
-    pub fn relative_velocity(&self, candidate: &Candidate<D>, q: &[f64], v: &[f64]) -> Vector<D> {
+    ///
+    /// # Errors
+    /// If there are too few or too many coordinates or velocities, or the candidate is of a pair or a body that the model doesn't have.
+    pub fn relative_velocity(&self, candidate: &Candidate<D>, q: &[f64], v: &[f64]) -> Result<Vector<D>, Mismatch> {
         let mut set = ContactSet::with_capacity(1, self.size.row);
-        set.activate(self, q, candidate, &WarmStart::default());
+        set.activate(self, q, candidate, &WarmStart::default())?;
         set.velocity(0, v)
     }
 

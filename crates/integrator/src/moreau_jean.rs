@@ -14,9 +14,10 @@ use crate::laws::is_impact;
 use crate::spring::{SpringStep, Springs};
 use crate::theta_step::{ThetaStep, weights};
 use crate::{
-    ContactSet, ImpactLaw, Model, PairLaw, Scheme, SettingError, State, StepError, StepReport, Vector, Workspace,
+    ContactError, ContactSet, ImpactLaw, Model, PairLaw, Scheme, SettingError, State, StepError, StepReport, Vector,
+    Workspace,
 };
-use teeter_contact::{Outcome, ProblemError};
+use teeter_contact::Outcome;
 
 /// The settings of [`MoreauJean`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,7 +82,7 @@ impl<const D: usize> Scheme<D> for MoreauJean {
     }
 
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {
-        self.step.resize(model.size());
+        self.step.start(model, state, work)?;
         self.springs.reserve(model.detector().capacity());
         state.warm.reserve(model.detector().capacity(), D);
         work.factorise(model, weights(state.dt, self.settings.theta), &state.q)?;
@@ -96,14 +97,14 @@ impl<const D: usize> Scheme<D> for MoreauJean {
     ) -> Result<StepReport<'w, D>, StepError> {
         let MoreauJeanSettings { theta, activation_gamma, gap_tolerance } = self.settings;
         let h = state.dt;
-        let t_end = (state.step + 1) as f64 * h;
-        self.step.resize(model.size());
+        self.step.check(model, state, work)?;
+        let t_end = state.end_of_step();
         work.factorise(model, weights(h, theta), &state.q)?;
 
         self.step.free_velocity(model, state, work, theta, t_end);
         let margin = if model.has_springs() {
             self.step.close(model, state, theta)?;
-            self.springs.look(model, &state.q, &self.step.q_at, work);
+            self.springs.look(model, &state.q, &self.step.q_at, work)?;
             f64::INFINITY
         } else {
             gap_tolerance
@@ -111,16 +112,17 @@ impl<const D: usize> Scheme<D> for MoreauJean {
         if model.has_contacts() {
             self.step.predict(model, &state.q, &state.v, activation_gamma * h);
         }
-        work.detect(model, &self.step.q_at, margin);
+        work.detect(model, &self.step.q_at, margin)?;
         let outcome = self.impact(model, state, work).map_err(|source| StepError::Problem { t: state.t, source })?;
         self.step.close(model, state, theta)?;
+        let now = self.step.energy_at_end(model, state.t)?;
+        let penetration = work.penetration(model, &self.step.q_at)?;
         let energy = self.step.work_of_forces(model, state, work, theta);
         state.warm.clear();
         for contact in work.contacts.contacts() {
             state.warm.keep(contact);
         }
-        let penetration = work.penetration(model, &self.step.q_at);
-        Ok(self.step.finish(model, state, work, theta, t_end, outcome, penetration, energy))
+        Ok(self.step.finish(model, state, work, theta, t_end, outcome, penetration, now, energy))
     }
 }
 
@@ -131,26 +133,27 @@ impl MoreauJean {
         model: &Model<D>,
         state: &State,
         work: &mut Workspace<D>,
-    ) -> Result<Option<Outcome>, ProblemError> {
+    ) -> Result<Option<Outcome>, ContactError> {
         let ThetaStep { q_at, v_end: v_free, .. } = &mut self.step;
         let theta = self.settings.theta;
         let Workspace { contacts, candidates, .. } = work;
         contacts.clear();
         for candidate in candidates.iter() {
-            let law = model.law(candidate.id.pair());
+            let law = model.law(candidate.id.pair())?;
             let spring = law.impact.spring();
             if !self.springs.admit(spring.is_some(), candidate, &state.warm, self.settings.gap_tolerance) {
                 continue;
             }
             let i = contacts.contacts().len();
-            contacts.activate(model, q_at, candidate, &state.warm);
-            if contacts.withdraw_if_prescribed(model) {
+            contacts.activate(model, q_at, candidate, &state.warm)?;
+            if contacts.withdraw_if_prescribed(model)? {
                 continue;
             }
-            let u_before = contacts.velocity(i, &state.v);
-            let u_free = contacts.velocity(i, v_free);
+            let u_before = contacts.velocity_of(i, &state.v);
+            let u_free = contacts.velocity_of(i, v_free);
             let shift = shift(contacts, i, &law, &u_before, &u_free);
-            contacts.pose(i, u_before, u_free, shift);
+            contacts.handles_law(i)?;
+            contacts.pose(i, u_before, u_free, shift)?;
             if let Some(spring) = spring {
                 let gap = self.springs.gap(candidate.id, &state.warm);
                 // With θ < ½ the force at the end of the step would count for less than half, or nothing, of the work.

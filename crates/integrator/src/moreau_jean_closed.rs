@@ -26,9 +26,10 @@ use crate::laws::is_impact;
 use crate::spring::SpringStep;
 use crate::theta_step::{ThetaStep, weights};
 use crate::{
-    ContactSet, ImpactLaw, Model, PairLaw, Scheme, SettingError, State, StepError, StepReport, Vector, Workspace,
+    ContactError, ContactSet, ImpactLaw, Mismatch, Model, PairLaw, Scheme, SettingError, State, StepError, StepReport,
+    Vector, Workspace,
 };
-use teeter_contact::{Outcome, ProblemError};
+use teeter_contact::Outcome;
 use teeter_detect::{Candidate, Candidates, ContactId};
 
 /// θ: the scheme's account of work holds for the trapezoidal rule.
@@ -124,10 +125,8 @@ impl<const D: usize> Scheme<D> for MoreauJeanClosed<D> {
 
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {
         let (contacts, row) = (model.detector().capacity(), model.size().row);
-        self.step.resize(model.size());
-        self.v_free.resize(model.size().v, 0.0);
-        self.q_mid.resize(model.size().q, 0.0);
-        self.q_ahead.resize(model.size().q, 0.0);
+        self.step.start(model, state, work)?;
+        self.resize(model);
         for candidates in [&mut self.middle, &mut self.ahead, &mut self.start, &mut work.candidates] {
             candidates.reserve(contacts);
         }
@@ -147,8 +146,9 @@ impl<const D: usize> Scheme<D> for MoreauJeanClosed<D> {
         work: &'w mut Workspace<D>,
     ) -> Result<StepReport<'w, D>, StepError> {
         let h = state.dt;
-        let t_end = (state.step + 1) as f64 * h;
-        self.step.resize(model.size());
+        self.step.check(model, state, work)?;
+        self.resize(model);
+        let t_end = state.end_of_step();
         work.factorise(model, weights(h, THETA), &state.q)?;
         self.step.free_velocity(model, state, work, THETA, t_end);
         self.v_free.clear();
@@ -159,19 +159,20 @@ impl<const D: usize> Scheme<D> for MoreauJeanClosed<D> {
         let (outcome, penetration) = loop {
             // In flight there is nothing to look at.
             if looked_for < self.closed.len() {
-                self.look_ahead(model, state, work);
+                self.look_ahead(model, state, work)?;
                 looked_for = self.closed.len();
             }
             let outcome =
                 self.attempt(model, state, work).map_err(|source| StepError::Problem { t: state.t, source })?;
             self.step.close(model, state, THETA)?;
-            work.detect(model, &self.step.q_at, 0.0);
+            work.detect(model, &self.step.q_at, 0.0)?;
             let penetration = work.candidates.iter().map(|candidate| -candidate.gap).fold(0.0, f64::max);
-            if !self.close_what_sinks(model, state, work) {
+            if !self.close_what_sinks(model, state, work)? {
                 break (outcome, penetration);
             }
             work.counts.refused_attempts += 1;
         };
+        let now = self.step.energy_at_end(model, state.t)?;
         let energy = self.step.work_of_forces(model, state, work, THETA);
         state.warm.clear();
         for (i, contact) in work.contacts.contacts().iter().enumerate() {
@@ -193,22 +194,30 @@ impl<const D: usize> Scheme<D> for MoreauJeanClosed<D> {
                 state.warm.keep(contact);
             }
         }
-        Ok(self.step.finish(model, state, work, THETA, t_end, outcome, penetration, energy))
+        Ok(self.step.finish(model, state, work, THETA, t_end, outcome, penetration, now, energy))
     }
 }
 
 impl<const D: usize> MoreauJeanClosed<D> {
+    /// Takes the sizes of a model; allocates nothing where they are the same.
+    fn resize(&mut self, model: &Model<D>) {
+        self.v_free.resize(model.size().v, 0.0);
+        self.q_mid.resize(model.size().q, 0.0);
+        self.q_ahead.resize(model.size().q, 0.0);
+    }
+
     /// Finds frames and gaps of the closed contacts at q̃_m and q̃.
-    fn look_ahead(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>) {
+    fn look_ahead(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>) -> Result<(), Mismatch> {
         // ½(v⁰ + v_free), the mean velocity of the free motion.
         let mean = &mut self.step.v_end;
         mean.iter_mut().zip(&self.v_free).zip(&state.v).for_each(|((v, free), v0)| *v = 0.5 * (free + v0));
         let places =
             [(0.5 * state.dt, &mut self.q_mid, &mut self.middle), (state.dt, &mut self.q_ahead, &mut self.ahead)];
         for (tau, q, candidates) in places {
-            model.retract(&state.q, mean, tau, q);
-            work.locate(model, q, &self.closed, candidates);
+            model.move_along(&state.q, mean, tau, q);
+            work.locate(model, q, &self.closed, candidates)?;
         }
+        Ok(())
     }
 
     /// Takes the step with the closed contacts: leaves v¹ in the step.
@@ -217,7 +226,7 @@ impl<const D: usize> MoreauJeanClosed<D> {
         model: &Model<D>,
         state: &State,
         work: &mut Workspace<D>,
-    ) -> Result<Option<Outcome>, ProblemError> {
+    ) -> Result<Option<Outcome>, ContactError> {
         self.step.v_end.copy_from_slice(&self.v_free);
         work.contacts.clear();
         self.resting_shift.clear();
@@ -226,40 +235,47 @@ impl<const D: usize> MoreauJeanClosed<D> {
         }
         for k in 0..self.middle.len() {
             let candidate = self.middle[k];
-            self.pose(model, state, work, &candidate);
+            self.pose(model, state, work, &candidate)?;
         }
         let n = work.contacts.contacts().len();
         if n == 0 {
             return Ok(None);
         }
-        work.assemble_contacts(model);
+        work.assemble_contacts(model)?;
         let mut outcome = work.solve_assembled(THETA)?;
         self.guarded.clear();
         self.guarded.resize(n, false);
         // Each round guards one contact more at least, so it ends.
-        while self.guard(model, state, work) {
+        while self.guard(model, state, work)? {
             outcome = crate::laws::join(outcome, work.solve_assembled(THETA)?);
         }
-        work.apply_impulses(model, &mut self.step.v_end);
+        work.apply_impulses(model, &mut self.step.v_end)?;
         Ok(Some(outcome))
     }
 
-    fn pose(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>, candidate: &Candidate<D>) {
-        let law = model.law(candidate.id.pair());
+    fn pose(
+        &mut self,
+        model: &Model<D>,
+        state: &State,
+        work: &mut Workspace<D>,
+        candidate: &Candidate<D>,
+    ) -> Result<(), Mismatch> {
+        let law = model.law(candidate.id.pair())?;
         let contacts = &mut work.contacts;
         let i = contacts.contacts().len();
-        contacts.activate(model, &self.q_mid, candidate, &state.warm);
-        if contacts.withdraw_if_prescribed(model) {
-            return;
+        contacts.activate(model, &self.q_mid, candidate, &state.warm)?;
+        if contacts.withdraw_if_prescribed(model)? {
+            return Ok(());
         }
-        let u_before = contacts.velocity(i, &state.v);
-        let u_free = contacts.velocity(i, &self.v_free);
+        contacts.handles_law(i)?;
+        let u_before = contacts.velocity_of(i, &state.v);
+        let u_free = contacts.velocity_of(i, &self.v_free);
         // Off the end of its surface by then, it has no frame there.
         let b = match find(&self.ahead, candidate.id) {
             Some(ahead) => {
                 self.rows_ahead.clear();
-                self.rows_ahead.activate(model, &self.q_ahead, ahead, &state.warm);
-                self.rows_ahead.velocity(0, &state.v) - u_before
+                self.rows_ahead.activate(model, &self.q_ahead, ahead, &state.warm)?;
+                self.rows_ahead.velocity_of(0, &state.v) - u_before
             }
             None => Vector::zeros(),
         };
@@ -273,29 +289,36 @@ impl<const D: usize> MoreauJeanClosed<D> {
         if let Some(spring) = law.impact.spring() {
             let gap = match state.warm.gap(candidate.id) {
                 Some(gap) if gap < 0.0 => gap,
-                _ => self.gap_at_start(model, state, work, candidate.id).max(0.0),
+                _ => self.gap_at_start(model, state, work, candidate.id)?.max(0.0),
             };
             shift[0] = 0.0;
-            work.contacts.pose(i, u_before, u_free, shift);
+            work.contacts.pose(i, u_before, u_free, shift)?;
             let step = SpringStep { spring, gap, u_before: u_before[0], h: state.dt, theta: THETA };
             work.contacts.follow(i, Rule::Spring(step));
         } else {
             restitute(contacts, i, &law, &u_before, &u_free, &mut shift);
-            contacts.pose(i, u_before, u_free, shift);
+            contacts.pose(i, u_before, u_free, shift)?;
         }
+        Ok(())
     }
 
     /// The gap of a contact at q⁰, m; 0 where it has none. Only a step with a new contact pays for looking there.
-    fn gap_at_start(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>, id: ContactId) -> f64 {
-        work.locate(model, &state.q, &[id], &mut self.start);
-        self.start.first().map_or(0.0, |candidate| candidate.gap)
+    fn gap_at_start(
+        &mut self,
+        model: &Model<D>,
+        state: &State,
+        work: &mut Workspace<D>,
+        id: ContactId,
+    ) -> Result<f64, Mismatch> {
+        work.locate(model, &state.q, &[id], &mut self.start)?;
+        Ok(self.start.first().map_or(0.0, |candidate| candidate.gap))
     }
 
     /// Changes what holds for contacts whose work is positive, so that it can't be; whether there are any.
     ///
     /// The usual case is a slide that turns within the step: sticking at its end would take an impulse along the slide that
     /// was. Then either no friction, or the velocity turned about, whichever ends nearer to rest; it sticks in the next step.
-    fn guard(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>) -> bool {
+    fn guard(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>) -> Result<bool, Mismatch> {
         let mut found = false;
         // Poisson's law hands a blow on: what one contact gains another has lost, so it is their sum that counts.
         let contacts = &work.contacts;
@@ -327,7 +350,7 @@ impl<const D: usize> MoreauJeanClosed<D> {
             if without.norm() < shift.norm() {
                 contacts.mu[i] = 0.0;
             }
-            let e = model.law(contacts.contacts()[i].id.pair()).restitution;
+            let e = model.law(contacts.contacts()[i].id.pair())?.restitution;
             let back = match contacts.rules[i] {
                 Rule::Poisson { .. } if is_impact(e, &u_before, &contacts.u_free[i]) => e * u_before[0],
                 _ => contacts.shift[i][0],
@@ -338,26 +361,26 @@ impl<const D: usize> MoreauJeanClosed<D> {
             self.guarded[i] = true;
             found = true;
         }
-        found
+        Ok(found)
     }
 
     /// Closes the open contacts that the attempt ends with in their surface (they are the workspace's candidates), deeper
     /// than they began; whether there are any.
-    fn close_what_sinks(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>) -> bool {
+    fn close_what_sinks(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>) -> Result<bool, Mismatch> {
         let before = self.closed.len();
         for k in 0..work.candidates.len() {
             let Candidate { id, gap, .. } = work.candidates[k];
             if gap >= -self.settings.gap_tolerance || self.closed[..before].binary_search(&id).is_ok() {
                 continue;
             }
-            let level = self.gap_at_start(model, state, work, id).min(0.0);
+            let level = self.gap_at_start(model, state, work, id)?.min(0.0);
             if gap < level - SINKING * self.settings.gap_tolerance {
                 self.closed.push(id);
             }
         }
         let found = self.closed.len() > before;
         self.closed.sort_unstable();
-        found
+        Ok(found)
     }
 }
 

@@ -71,7 +71,8 @@ pub enum RunError {
     Observer(ObserverError),
 }
 
-/// Takes steps up to the plan's last. The state is left at the last step taken, whatever ended the run.
+/// Takes steps up to the plan's last. The state is left at the last step taken, whatever ended the run. A state or a workspace of another model
+/// ends it before observers see anything.
 ///
 /// # Errors
 /// If an observer fails.
@@ -83,6 +84,10 @@ pub fn run<const D: usize>(
     plan: &Plan,
     observers: &mut [&mut dyn Observer<D>],
 ) -> Result<Ended, RunError> {
+    let checked = state.check(model).map_err(StepError::from).and_then(|()| Ok(work.check(model)?));
+    if let Err(error) = checked {
+        return Ok(Ended::Failed(error));
+    }
     for observer in observers.iter_mut() {
         observer.start(model, state).map_err(RunError::Observer)?;
     }

@@ -1,7 +1,7 @@
 //! What every time scheme offers.
 
-use crate::{Contact, FactorError, Model, State, StepEnergy, Workspace};
-use teeter_contact::{Outcome, ProblemError};
+use crate::{Contact, ContactError, FactorError, Mismatch, Model, State, StateError, StepEnergy, Workspace};
+use teeter_contact::Outcome;
 
 /// What happened in a step.
 #[derive(Clone, Copy, Debug)]
@@ -29,15 +29,21 @@ pub enum StepError {
     /// The effective mass matrix can't be factorised.
     #[error(transparent)]
     Factor(#[from] FactorError),
-    /// The contact problem is not one.
+    /// The contact problem is not one, or not one that the scheme can pose.
     #[error("at t = {t} s: {source}")]
     Problem {
         /// Start of the step, s.
         t: f64,
         /// What is wrong with it.
-        source: ProblemError,
+        source: ContactError,
     },
-    /// A coordinate or velocity is no longer finite.
+    /// The state is not one of the model, or not one to step from.
+    #[error(transparent)]
+    State(#[from] StateError),
+    /// Scheme, workspace or numbers are of another model.
+    #[error(transparent)]
+    Mismatch(#[from] Mismatch),
+    /// A coordinate, a velocity or an energy is no longer finite.
     #[error("the motion diverged in the step from t = {t} s")]
     Diverged {
         /// Start of the step, s.
@@ -51,7 +57,7 @@ impl StepError {
     pub fn t(&self) -> Option<f64> {
         match self {
             Self::Problem { t, .. } | Self::Diverged { t } => Some(*t),
-            Self::Factor(_) => None,
+            Self::Factor(_) | Self::State(_) | Self::Mismatch(_) => None,
         }
     }
 }
@@ -73,16 +79,18 @@ pub trait Scheme<const D: usize>: Send {
     /// The name by which users choose it.
     fn name(&self) -> &'static str;
 
-    /// Prepares for steps from this state: factorises, reserves; afterwards a step of the same size allocates nothing.
+    /// Prepares for steps from this state: factorises, reserves; afterwards a step of the same size allocates nothing. From then on the
+    /// scheme serves this model, until it is started with another.
     ///
     /// # Errors
-    /// If a matrix can't be factorised.
+    /// If a matrix can't be factorised, or state or workspace are of another model.
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError>;
 
     /// Takes one step. After an error the state is as it was before the step.
     ///
     /// # Errors
-    /// If the step can't be taken; an unsolved contact problem is not an error here but a report.
+    /// If the step can't be taken, or scheme, state or workspace are of another model; an unsolved contact problem is not an error here but a
+    /// report.
     fn advance<'w>(
         &mut self,
         model: &Model<D>,

@@ -18,7 +18,7 @@
 //! U_θ p + ΔV ≤ 0 in both, whatever h and k. As a function of U¹ the impulse falls, and is convex: Newton's method from the
 //! side of compression converges.
 
-use crate::{ImpactLaw, Model, WarmStart, Workspace};
+use crate::{ImpactLaw, Mismatch, Model, WarmStart, Workspace};
 use teeter_detect::{Candidate, ContactId};
 
 /// A contact's spring.
@@ -161,20 +161,22 @@ impl Springs {
         q: &[f64],
         q_free: &[f64],
         work: &mut Workspace<D>,
-    ) {
-        work.detect(model, q_free, 0.0);
-        let springs = work.candidates.iter().filter(|c| model.law(c.id.pair()).impact.spring().is_some());
+    ) -> Result<(), Mismatch> {
+        work.detect(model, q_free, 0.0)?;
+        let spring = |c: &&Candidate<D>| model.law(c.id.pair()).is_ok_and(|law| law.impact.spring().is_some());
+        let springs = work.candidates.iter().filter(spring);
         self.touched.clear();
         self.touched.extend(springs.map(|candidate| (candidate.id, 0.0)));
         if self.touched.is_empty() {
-            return;
+            return Ok(());
         }
-        work.detect(model, q, f64::INFINITY);
+        work.detect(model, q, f64::INFINITY)?;
         for (id, gap) in &mut self.touched {
             if let Ok(at) = work.candidates.binary_search_by_key(id, |candidate| candidate.id) {
                 *gap = work.candidates[at].gap;
             }
         }
+        Ok(())
     }
 
     /// Whether a candidate at the predicted position is a contact of the step.

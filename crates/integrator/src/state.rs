@@ -1,5 +1,6 @@
 //! All that decides the next step, flat: clone it to reject a step, store it for a checkpoint.
 
+use crate::clock::Clock;
 use crate::{Contact, Ledger, Model, Vector};
 use teeter_contact::Outcome;
 use teeter_detect::ContactId;
@@ -11,8 +12,10 @@ use teeter_detect::ContactId;
 pub struct WarmStart {
     ids: Vec<ContactId>,
     /// D numbers a contact.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored::list"))]
     impulses: Vec<f64>,
     /// Gaps of the springs of contacts with duration, m; 0 for others.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored::list"))]
     gaps: Vec<f64>,
 }
 
@@ -79,10 +82,13 @@ impl WarmStart {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tally {
     /// Deepest penetration at the end of a step, m; 0 if there was none.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub max_penetration: f64,
     /// Largest global residual of a contact problem.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub max_residual: f64,
     /// Largest residual of a single contact.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub max_contact_residual: f64,
     /// Most iterations of a contact solve.
     pub max_iterations: u32,
@@ -100,15 +106,20 @@ pub struct Tally {
 pub struct State {
     /// Steps taken.
     pub step: u64,
-    /// Time, s; `step · dt` while dt doesn't change.
+    /// Time, s: `step · dt` from t = 0 while dt doesn't change, and from where it changed counted on in the same way.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub t: f64,
-    /// Step size, s.
+    /// Step size, s; may be changed between steps.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub dt: f64,
     /// Coordinates of all subsystems.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored::list"))]
     pub q: Vec<f64>,
     /// Velocities of all subsystems.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored::list"))]
     pub v: Vec<f64>,
     /// What a scheme remembers from step to step.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored::list"))]
     pub memory: Vec<f64>,
     /// The contacts of the last step.
     pub warm: WarmStart,
@@ -116,6 +127,8 @@ pub struct State {
     pub ledger: Ledger,
     /// Counts and extremes.
     pub tally: Tally,
+    /// How time is counted.
+    clock: Clock,
 }
 
 /// What is wrong with an initial state.
@@ -145,6 +158,29 @@ pub enum StateError {
     /// A step size that is not positive and finite.
     #[error("the step size is {0} s, but must be positive and finite")]
     StepSize(f64),
+    /// A time that is not finite, or more steps than can be counted.
+    #[error("the state is {t} s after {step} steps: there is no step after that")]
+    Time {
+        /// Steps taken.
+        step: u64,
+        /// Time, s.
+        t: f64,
+    },
+    /// The contacts of the last step aren't those of a state in so many dimensions.
+    #[error(
+        "the state has {impulses} numbers for the impulses of its {contacts} contacts, but needs {dimension} for each"
+    )]
+    Contacts {
+        /// How many there are.
+        contacts: usize,
+        /// Numbers of their impulses.
+        impulses: usize,
+        /// Numbers that a contact has.
+        dimension: usize,
+    },
+    /// The contacts of the last step aren't in order of identity.
+    #[error("the state's contacts of the last step don't rise in number")]
+    ContactOrder,
 }
 
 impl Tally {
@@ -194,8 +230,8 @@ impl State {
             return Err(StateError::StepSize(dt));
         }
         let mut v = v.to_vec();
-        let t = step as f64 * dt;
-        model.drive(t, &mut v);
+        let t = Clock::new(dt).at(step);
+        model.drive_at(t, &mut v);
         Ok(Self {
             step,
             t,
@@ -203,16 +239,63 @@ impl State {
             q: q.to_vec(),
             memory: Vec::new(),
             warm: WarmStart::default(),
-            ledger: Ledger::new(model.energy(q, &v), model.energy_scale()),
+            ledger: Ledger::new(model.energy_at(q, &v), model.energy_scale()),
             v,
             tally: Tally::default(),
+            clock: Clock::new(dt),
         })
+    }
+
+    /// Whether steps of this model can start from it: its numbers are as many as the model needs, there is a next time, and its contacts are in
+    /// order. (That they are finite shows when a step doesn't end in finite numbers.)
+    ///
+    /// # Errors
+    /// If not.
+    pub fn check<const D: usize>(&self, model: &Model<D>) -> Result<(), StateError> {
+        let Self { step, t, dt, q, v, warm, .. } = self;
+        for (what, found, expected) in [
+            ("the coordinates", q.len(), model.size().q),
+            ("the velocities", v.len(), model.size().v),
+            ("the spring gaps of its contacts", warm.gaps.len(), warm.ids.len()),
+        ] {
+            if found != expected {
+                return Err(StateError::Length { what, found, expected });
+            }
+        }
+        // Written so that NaN fails too.
+        if !(*dt > 0.0 && dt.is_finite()) {
+            return Err(StateError::StepSize(*dt));
+        }
+        if *step == u64::MAX || !t.is_finite() {
+            return Err(StateError::Time { step: *step, t: *t });
+        }
+        let (contacts, impulses) = (warm.ids.len(), warm.impulses.len());
+        if impulses != contacts * D {
+            return Err(StateError::Contacts { contacts, impulses, dimension: D });
+        }
+        if !warm.ids.is_sorted_by(|a, b| a < b) {
+            return Err(StateError::ContactOrder);
+        }
+        Ok(())
+    }
+
+    /// The end of the step that begins now, s.
+    #[must_use]
+    pub fn end_of_step(&self) -> f64 {
+        self.clock.going_on(self.step, self.t, self.dt).at(self.step.saturating_add(1))
+    }
+
+    /// Moves time and the number of steps to the end of the step that begins now: what a scheme does once a step.
+    pub fn count_step(&mut self) {
+        self.clock = self.clock.going_on(self.step, self.t, self.dt);
+        self.step = self.step.saturating_add(1);
+        self.t = self.clock.at(self.step);
     }
 
     /// Becomes equal to `other`; allocates only where that holds more than ever before.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { step, t, dt, q, v, memory, warm, ledger, tally } = other;
-        (self.step, self.t, self.dt) = (*step, *t, *dt);
+        let Self { step, t, dt, q, v, memory, warm, ledger, tally, clock } = other;
+        (self.step, self.t, self.dt, self.clock) = (*step, *t, *dt, *clock);
         for (mine, other) in [(&mut self.q, q), (&mut self.v, v), (&mut self.memory, memory)] {
             mine.clone_from(other);
         }

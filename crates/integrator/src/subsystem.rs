@@ -33,10 +33,13 @@ pub struct Weights {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Energy {
     /// ½ vᵀM v.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub kinetic: f64,
     /// Stored in deformation.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub elastic: f64,
     /// Of weight, from the origin's level.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub gravity: f64,
 }
 
@@ -176,6 +179,13 @@ pub trait Subsystem<const D: usize>: Send + Sync {
     fn surface(&self, body: u32, q: &[f64], kinematics: Kinematics, at: &Vector<D>) -> Option<SurfacePoint<D>> {
         let _ = (body, q, kinematics, at);
         None
+    }
+
+    /// Whether a body has a surface, so that [`Subsystem::surface`] ever finds a point. The default has none: a model is refused whose detector
+    /// looks for one.
+    fn has_surface(&self, body: u32) -> bool {
+        let _ = body;
+        false
     }
 
     /// A half space that holds all points whose gap to a body's surface is at most `margin` (m); `None`, the default, where none is known.

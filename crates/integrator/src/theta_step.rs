@@ -1,8 +1,9 @@
 //! The θ step that the schemes share: free velocities, the end of the step, the account of its forces.
 
 use crate::contacts::tangential;
+use crate::mismatch::Identity;
 use crate::subsystem::dot;
-use crate::{Model, Size, State, StepEnergy, StepError, StepReport, Subsystem, Weights, Workspace};
+use crate::{Energy, Mismatch, Model, Size, State, StepEnergy, StepError, StepReport, Subsystem, Weights, Workspace};
 use teeter_contact::Outcome;
 
 /// Vectors of a step: they carry nothing from one to the next.
@@ -22,6 +23,8 @@ pub(crate) struct ThetaStep {
     product: Vec<f64>,
     /// h times the forces at the start of the step, of parts with prescribed velocities.
     impulse: Vec<f64>,
+    /// The model that the scheme was started with.
+    model: Option<Identity>,
 }
 
 /// The combination whose inverse is W.
@@ -31,12 +34,40 @@ pub(crate) fn weights(h: f64, theta: f64) -> Weights {
 }
 
 impl ThetaStep {
+    /// Starts to serve a model.
+    pub(crate) fn start<const D: usize>(
+        &mut self,
+        model: &Model<D>,
+        state: &State,
+        work: &Workspace<D>,
+    ) -> Result<(), StepError> {
+        self.model = None;
+        self.check(model, state, work)
+    }
+
+    /// Refuses what belongs to another model than that which the scheme was started with; a scheme that never was starts with this one.
+    pub(crate) fn check<const D: usize>(
+        &mut self,
+        model: &Model<D>,
+        state: &State,
+        work: &Workspace<D>,
+    ) -> Result<(), StepError> {
+        if *self.model.get_or_insert(model.identity()) != model.identity() {
+            let remedy = "start it with this one before its first step";
+            return Err(Mismatch::OtherModel { what: "the scheme was started with that", remedy }.into());
+        }
+        state.check(model)?;
+        work.check(model)?;
+        self.resize(model.size());
+        Ok(())
+    }
+
     /// Takes the sizes of a model; allocates nothing where they are the same.
-    pub(crate) fn resize(&mut self, size: Size) {
+    fn resize(&mut self, size: Size) {
         if (self.q_at.len(), self.v_end.len()) == (size.q, size.v) {
             return;
         }
-        let Self { q_forces, q_at, v_end, v_mean, dv, load, product, impulse } = self;
+        let Self { q_forces, q_at, v_end, v_mean, dv, load, product, impulse, .. } = self;
         for q in [q_forces, q_at] {
             q.resize(size.q, 0.0);
         }
@@ -47,7 +78,7 @@ impl ThetaStep {
 
     /// Leaves q ⊕ τ v in `q_at`.
     pub(crate) fn predict<const D: usize>(&mut self, model: &Model<D>, q: &[f64], v: &[f64], tau: f64) {
-        model.retract(q, v, tau, &mut self.q_at);
+        model.move_along(q, v, tau, &mut self.q_at);
     }
 
     /// Leaves v_free and P_θ. Prescribed velocities are those of the end of the step; what their change does to the others
@@ -117,9 +148,15 @@ impl ThetaStep {
         for ((mean, v1), v0) in v_mean.iter_mut().zip(v_end.iter()).zip(&state.v) {
             *mean = theta * v1 + (1.0 - theta) * v0;
         }
-        model.retract(&state.q, v_mean, state.dt, q_at);
+        model.move_along(&state.q, v_mean, state.dt, q_at);
         // A velocity that is not finite leads nowhere that is.
         if all_finite(q_at) { Ok(()) } else { Err(StepError::Diverged { t: state.t }) }
+    }
+
+    /// The energies at the end of the step; a step that ends without finite ones has diverged.
+    pub(crate) fn energy_at_end<const D: usize>(&self, model: &Model<D>, t: f64) -> Result<Energy, StepError> {
+        let energy = model.energy_at(&self.q_at, &self.v_end);
+        if energy.total().is_finite() { Ok(energy) } else { Err(StepError::Diverged { t }) }
     }
 
     /// The terms of the energy identity that aren't contact: loads, drives, damping, the scheme itself. The impulses of the
@@ -132,7 +169,7 @@ impl ThetaStep {
         theta: f64,
     ) -> StepEnergy {
         let h = state.dt;
-        let Self { q_forces, q_at, v_end, v_mean, dv, load, product, impulse } = self;
+        let Self { q_forces, q_at, v_end, v_mean, dv, load, product, impulse, .. } = self;
         let mut energy = StepEnergy::default();
         if theta != 0.5 || model.parts().iter().any(|part| part.traits.driven) {
             for ((dv, v1), v0) in dv.iter_mut().zip(v_end.iter()).zip(&state.v) {
@@ -190,6 +227,7 @@ impl ThetaStep {
         t_end: f64,
         outcome: Option<Outcome>,
         penetration: f64,
+        mut now: Energy,
         mut energy: StepEnergy,
     ) -> StepReport<'w, D> {
         let mut stored = 0.0;
@@ -200,7 +238,8 @@ impl ThetaStep {
             let slip = tangential(&contact.u_law).dot(&contact.p);
             state.ledger.largest_tangential_work = state.ledger.largest_tangential_work.max(slip);
             if let Some(gap) = contact.gap_after
-                && let Some(spring) = model.law(contact.id.pair()).impact.spring()
+                && let Ok(law) = model.law(contact.id.pair())
+                && let Some(spring) = law.impact.spring()
             {
                 stored += spring.potential(gap);
             }
@@ -210,9 +249,8 @@ impl ThetaStep {
 
         std::mem::swap(&mut state.q, &mut self.q_at);
         std::mem::swap(&mut state.v, &mut self.v_end);
-        let t_start = std::mem::replace(&mut state.t, t_end);
-        state.step += 1;
-        let mut now = model.energy(&state.q, &state.v);
+        let t_start = state.t;
+        state.count_step();
         now.elastic += stored;
         state.ledger.enter(now, &mut energy);
         let contacts = work.contacts.contacts();

@@ -1,9 +1,10 @@
 //! The memory and the contact solver of one worker.
 
-use crate::contacts::{ContactSet, Rule};
+use crate::contacts::{ContactError, ContactSet, Rule};
 use crate::laws::Laws;
-use crate::{Compliance, FactorError, Model, Vector, Weights};
-use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, ProblemError, Stop};
+use crate::mismatch::{Identity, length};
+use crate::{Compliance, FactorError, Mismatch, Model, StepError, Vector, Weights};
+use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, Stop};
 use teeter_detect::{Candidates, ContactId};
 
 /// When the contact solver of a run stops.
@@ -103,6 +104,8 @@ pub struct Workspace<const D: usize> {
     /// The work of all steps so far.
     pub counts: WorkCounts,
     laws: Laws<D>,
+    /// The model that it was made for.
+    model: Identity,
 }
 
 impl<const D: usize> std::fmt::Debug for Workspace<D> {
@@ -132,17 +135,50 @@ impl<const D: usize> Workspace<D> {
             scratch: vec![0.0; model.size().v],
             counts: WorkCounts::default(),
             laws,
+            model: model.identity(),
         }
+    }
+
+    /// Whether it was made for this model, and its memory still fits it: else steps would take the factors of another.
+    ///
+    /// # Errors
+    /// If it wasn't, or doesn't.
+    pub fn check(&self, model: &Model<D>) -> Result<(), Mismatch> {
+        if self.model != model.identity() {
+            let remedy = "make one for this model with Workspace::new";
+            return Err(Mismatch::OtherModel { what: "the workspace is that", remedy });
+        }
+        length("the workspace's scratch", &self.scratch, model.size().v)?;
+        let expected = if self.factors.is_empty() { 0 } else { model.parts().len() };
+        length("the workspace's factors", &self.factors, expected)
+    }
+
+    fn check_at(&self, model: &Model<D>, q: &[f64]) -> Result<(), Mismatch> {
+        self.check(model)?;
+        length("the coordinates", q, model.size().q)
     }
 
     /// Makes `factors` the inverses of these weights: once for a given step size.
     ///
     /// # Errors
-    /// If a matrix can't be factorised.
-    pub fn factorise(&mut self, model: &Model<D>, w: Weights, q: &[f64]) -> Result<(), FactorError> {
+    /// If a matrix can't be factorised, or the workspace is of another model, or there are too few or too many coordinates.
+    pub fn factorise(&mut self, model: &Model<D>, w: Weights, q: &[f64]) -> Result<(), StepError> {
+        self.check_at(model, q)?;
+        Ok(self.factorise_all(model, w, q)?)
+    }
+
+    /// The same for what is known to fit.
+    pub(crate) fn factorise_all(&mut self, model: &Model<D>, w: Weights, q: &[f64]) -> Result<(), FactorError> {
         if self.factors.is_empty() {
             for part in model.parts() {
-                self.factors.push(part.system.factor(w, &q[part.q.clone()])?);
+                match part.system.factor(w, &q[part.q.clone()]) {
+                    Ok(factor) => self.factors.push(factor),
+                    Err(error) => {
+                        // All or none: some would look like those of another model.
+                        self.factors.clear();
+                        return Err(error);
+                    }
+                }
                 self.counts.factorisations += 1;
             }
             return Ok(());
@@ -157,54 +193,80 @@ impl<const D: usize> Workspace<D> {
     }
 
     /// Puts the candidates with a gap of at most `margin` (m) at coordinates `q` into `candidates`, in order of identity.
-    pub fn detect(&mut self, model: &Model<D>, q: &[f64], margin: f64) {
+    ///
+    /// # Errors
+    /// If the workspace is of another model, or there are too few or too many coordinates, or the detector finds pairs or bodies that the model
+    /// doesn't have.
+    pub fn detect(&mut self, model: &Model<D>, q: &[f64], margin: f64) -> Result<(), Mismatch> {
+        self.check_at(model, q)?;
         self.candidates.clear();
         if model.has_contacts() {
             self.counts.detections += 1;
-            model.detector().detect(&model.placed(q), margin, &mut self.candidates);
+            model.detector().detect(&model.placed_at(q), margin, &mut self.candidates);
             self.candidates.sort_unstable_by_key(|candidate| candidate.id);
+            model.check_candidates(&self.candidates)?;
         }
+        Ok(())
     }
 
     /// Puts those of the contacts `ids`, which rise, into `out`, however large their gaps at coordinates `q`.
-    pub fn locate(&mut self, model: &Model<D>, q: &[f64], ids: &[ContactId], out: &mut Candidates<D>) {
+    ///
+    /// # Errors
+    /// As [`Workspace::detect`].
+    pub fn locate(
+        &mut self,
+        model: &Model<D>,
+        q: &[f64],
+        ids: &[ContactId],
+        out: &mut Candidates<D>,
+    ) -> Result<(), Mismatch> {
+        self.check_at(model, q)?;
         self.counts.detections += 1;
-        model.detector().locate(&model.placed(q), ids, out);
+        model.detector().locate(&model.placed_at(q), ids, out);
+        Ok(())
     }
 
     /// Deepest penetration at coordinates `q`, m; 0 if there is none. May change `candidates`.
-    pub fn penetration(&mut self, model: &Model<D>, q: &[f64]) -> f64 {
+    ///
+    /// # Errors
+    /// As [`Workspace::detect`].
+    pub fn penetration(&mut self, model: &Model<D>, q: &[f64]) -> Result<f64, Mismatch> {
+        self.check_at(model, q)?;
         if !model.has_contacts() {
-            return 0.0;
+            return Ok(0.0);
         }
         self.counts.detections += 1;
-        model.detector().deepest(&model.placed(q), &mut self.candidates)
+        Ok(model.detector().deepest(&model.placed_at(q), &mut self.candidates))
     }
 
     /// Assembles and solves the problem of `contacts`, and adds W Jᵀ p to `v`, which becomes the velocity after the step. θ is
     /// that of the step's mean velocity: by it a law knows the work of its impulses.
     ///
     /// # Errors
-    /// If the contacts don't make a problem: a number is not finite, or a contact can't move.
-    pub fn solve_contacts(&mut self, model: &Model<D>, theta: f64, v: &mut [f64]) -> Result<Outcome, ProblemError> {
-        self.assemble_contacts(model);
+    /// If the contacts don't make a problem: a number is not finite, a contact can't move, or the scheme that posed them knows nothing of
+    /// a contact's law; or if workspace, contacts or velocities are of another model.
+    pub fn solve_contacts(&mut self, model: &Model<D>, theta: f64, v: &mut [f64]) -> Result<Outcome, ContactError> {
+        self.check(model)?;
+        length("the velocities", v, model.size().v)?;
+        self.assemble_contacts(model)?;
         let outcome = self.solve_assembled(theta)?;
-        self.apply_impulses(model, v);
+        self.apply_impulses(model, v)?;
         Ok(outcome)
     }
 
     /// H of `contacts`.
-    pub(crate) fn assemble_contacts(&mut self, model: &Model<D>) {
-        self.contacts.assemble(model, &mut self.factors, &mut self.scratch);
+    pub(crate) fn assemble_contacts(&mut self, model: &Model<D>) -> Result<(), Mismatch> {
+        self.contacts.assemble(model, &mut self.factors, &mut self.scratch)
     }
 
     /// Solves the problem of `contacts`, whose H is there, by their rules.
-    pub(crate) fn solve_assembled(&mut self, theta: f64) -> Result<Outcome, ProblemError> {
+    pub(crate) fn solve_assembled(&mut self, theta: f64) -> Result<Outcome, ContactError> {
+        self.contacts.check_laws()?;
         let SolverSettings { tolerance, max_iterations } = self.settings;
         let stop = Stop { tolerance, max_iterations, cancel: None };
         if self.contacts.rules.iter().any(|rule| *rule != Rule::Shifted) {
             let mut solver = Counted { solver: self.solver.as_mut(), counts: &mut self.counts };
-            return self.laws.solve(&mut self.contacts, theta, &mut solver, &stop);
+            return Ok(self.laws.solve(&mut self.contacts, theta, &mut solver, &stop)?);
         }
         let (problem, p) = self.contacts.problem()?;
         let outcome = self.solver.solve(&problem, &stop, p);
@@ -213,8 +275,8 @@ impl<const D: usize> Workspace<D> {
     }
 
     /// Adds W Jᵀ p to `v`, and completes `contacts` with the velocities after the step.
-    pub(crate) fn apply_impulses(&mut self, model: &Model<D>, v: &mut [f64]) {
-        self.contacts.add_impulses(model, &mut self.factors, &mut self.scratch, v);
-        self.contacts.complete(v);
+    pub(crate) fn apply_impulses(&mut self, model: &Model<D>, v: &mut [f64]) -> Result<(), Mismatch> {
+        self.contacts.add_impulses(model, &mut self.factors, &mut self.scratch, v)?;
+        self.contacts.complete(v)
     }
 }

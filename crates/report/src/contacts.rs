@@ -38,7 +38,8 @@ impl Impulses {
         if self.sums.is_empty() {
             return;
         }
-        model.detector().detect(&model.placed(&state.q), f64::INFINITY, &mut self.candidates);
+        let Ok(placed) = model.placed(&state.q) else { return };
+        model.detector().detect(&placed, f64::INFINITY, &mut self.candidates);
         for (id, p) in &self.sums {
             let Some(names) = Names::of(layout, *id) else { continue };
             let now = self.candidates.iter().find(|candidate| candidate.id == *id);
@@ -54,7 +55,7 @@ impl Impulses {
             push_next(out, p[1]);
             let u = active
                 .map(|contact| contact.u_after)
-                .or_else(|| now.map(|candidate| model.relative_velocity(candidate, &state.q, &state.v)));
+                .or_else(|| now.and_then(|candidate| model.relative_velocity(candidate, &state.q, &state.v).ok()));
             match u {
                 Some(u) => {
                     push_next(out, u[0]);

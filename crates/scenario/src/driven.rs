@@ -6,23 +6,24 @@ use nalgebra::Vector2;
 use std::sync::Arc;
 use teeter_beam::{Beam, BeamError, Load, ModalBasis, SpanLoad};
 use teeter_integrator::{
-    BeamBody, BeamSurface, Block, BlockLoad, Blocks, Ground, ModalBeam, Signal, SignalLoad, SpanLoads, Subsystem,
+    BeamBody, BeamSurface, Block, BlockLoad, Blocks, Ground, ModalBeam, ModelError, Signal, SignalLoad, SpanLoads,
+    Subsystem,
 };
 
 /// The blocks under their weight and forces, with what is prescribed of their motion.
-pub(crate) fn blocks(scene: &Scene, blocks: Vec<Block>) -> Blocks {
+pub(crate) fn blocks(scene: &Scene, blocks: Vec<Block>) -> Result<Blocks, ModelError> {
     let mut system = Blocks::new(blocks, Vector2::from(scene.gravity));
     for force in &scene.forces {
-        system = system.with_load(block_load(force, force.block));
+        system = system.with_load(block_load(force, force.block))?;
     }
     for (number, block) in scene.blocks.iter().enumerate() {
         for (coordinate, axis) in block.motion.0.iter().enumerate() {
             if let Some(axis) = axis {
-                system = system.with_motion(number, coordinate, axis.motion());
+                system = system.with_motion(number, coordinate, axis.motion())?;
             }
         }
     }
-    system
+    Ok(system)
 }
 
 /// A force of the scene, on the block that has this number.

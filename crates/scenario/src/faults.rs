@@ -40,6 +40,11 @@ impl BuildError {
                 format!("the start can't be computed: {error}"),
                 "check sizes, places and velocities for numbers that are out of proportion",
             ),
+            Self::Mismatch(error) => document.error(
+                "",
+                format!("the parts of the model don't belong together: {error}"),
+                "this is a mistake of the program: report it with the scene",
+            ),
             Self::Scheme(error) => document.error("time", error.to_string(), "check theta, activation_gamma and gap_tolerance"),
             Self::Solver(_) => document.error("solver.method", self.to_string(), "name one of the solvers built in"),
             Self::Penetration { block, corner, surface, depth, tolerance } => {

@@ -13,8 +13,8 @@ use nalgebra::{Vector2, Vector3};
 use teeter_beam::SpanLoad;
 use teeter_detect::{BodyId, PointDetector, PointPair};
 use teeter_integrator::{
-    BeamForces, Block, Blocks, Equilibrium, EquilibriumError, Model, ModelBuilder, Motion, PairLaw, SettlingLimits,
-    SolverSettings, Workspace, settle,
+    BeamForces, Block, Blocks, Equilibrium, EquilibriumError, Mismatch, Model, ModelBuilder, Motion, PairLaw,
+    SettlingLimits, SolverSettings, Workspace, settle,
 };
 use teeter_rigid::{Pose, Rectangle};
 use teeter_solvers::Auto;
@@ -86,7 +86,7 @@ impl Start<'_> {
                 .map_err(|error| refusal(scene, &scene.beams[first].name, &pairs, error))?;
             limits.tau = found.tau;
             taking_part.take(self, &found.q);
-            self.pressed = taking_part.pressed(scene, &model, &found);
+            self.pressed = taking_part.pressed(scene, &model, &found)?;
             summary.rounds += found.rounds;
             summary.change = found.change;
             summary.forces.clear();
@@ -206,13 +206,13 @@ impl TakingPart {
         let mut blocks = Blocks::new(bodies, Vector2::from(scene.gravity));
         for (number, &k) in self.blocks.iter().enumerate() {
             for force in scene.forces.iter().filter(|force| force.block == k) {
-                blocks = blocks.with_load(driven::block_load(force, number));
+                blocks = blocks.with_load(driven::block_load(force, number))?;
             }
             // What is prescribed stays where it is put, but for the height: the block rests on the beam.
             let [x, _, angle] = scene.blocks[k].motion.0.each_ref().map(Option::is_some);
             for (coordinate, stays) in [(0, x), (2, angle || foot_of(scene, k).is_some())] {
                 if stays {
-                    blocks = blocks.with_motion(number, coordinate, Motion::still());
+                    blocks = blocks.with_motion(number, coordinate, Motion::still())?;
                 }
             }
         }
@@ -270,9 +270,14 @@ impl TakingPart {
 
 impl TakingPart {
     /// The forces of contacts on each beam.
-    fn pressed(&self, scene: &Scene, model: &Model<2>, found: &Equilibrium<2>) -> Vec<(usize, Vec<SpanLoad>)> {
+    fn pressed(
+        &self,
+        scene: &Scene,
+        model: &Model<2>,
+        found: &Equilibrium<2>,
+    ) -> Result<Vec<(usize, Vec<SpanLoad>)>, Mismatch> {
         let mut candidates = Vec::new();
-        model.detector().detect(&model.placed(&found.q), f64::INFINITY, &mut candidates);
+        model.detector().detect(&model.placed(&found.q)?, f64::INFINITY, &mut candidates);
         let on = |body: BodyId, span: f64| {
             let loads = candidates.iter().flat_map(|candidate| {
                 let force = found.forces.iter().find(|(id, _)| *id == candidate.id).map(|(_, force)| *force);
@@ -286,7 +291,7 @@ impl TakingPart {
         // The model's bodies: the blocks, then the beams.
         let bodies = (self.blocks.len()..).map(|body| BodyId(body as u32));
         let beams = self.beams.iter().zip(bodies);
-        beams.map(|(&k, body)| (k, on(body, scene.beams[k].spec.span))).collect()
+        Ok(beams.map(|(&k, body)| (k, on(body, scene.beams[k].spec.span))).collect())
     }
 }
 

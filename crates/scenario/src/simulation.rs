@@ -12,9 +12,9 @@ use teeter_beam::{Beam, BeamError, Deflection, ModalBasis, ModalError, ShapeAt, 
 use teeter_contact::ContactSolver;
 use teeter_detect::{BodyId, PointDetector, PointPair};
 use teeter_integrator::{
-    BeamForces, Block, Ended, Model, ModelBuilder, ModelError, MoreauJean, MoreauJeanClosed, MoreauJeanClosedSettings,
-    MoreauJeanSettings, Observer, Plan, RunError, Scheme, SettingError, SolverSettings, State, StateError, Subsystem,
-    WorkCounts, Workspace, run,
+    BeamForces, Block, Ended, Mismatch, Model, ModelBuilder, ModelError, MoreauJean, MoreauJeanClosed,
+    MoreauJeanClosedSettings, MoreauJeanSettings, Observer, Plan, RunError, Scheme, SettingError, SolverSettings,
+    State, StateError, Subsystem, WorkCounts, Workspace, run,
 };
 use teeter_rigid::{MassProperties, Rectangle, RigidError};
 
@@ -40,6 +40,9 @@ pub enum BuildError {
     /// The initial state.
     #[error(transparent)]
     State(#[from] StateError),
+    /// Parts that don't belong together.
+    #[error(transparent)]
+    Mismatch(#[from] Mismatch),
     /// The scheme's settings.
     #[error(transparent)]
     Scheme(#[from] SettingError),
@@ -376,7 +379,7 @@ fn assemble(
 ) -> Result<Model<2>, BuildError> {
     let mut parts = ModelBuilder::new();
     let bodies = blocks.iter().map(|(body, _)| *body).collect();
-    let first_block = parts.add(Box::new(driven::blocks(scene, bodies)));
+    let first_block = parts.add(Box::new(driven::blocks(scene, bodies)?));
     let mut surfaces = Vec::with_capacity(beams.len());
     for (number, model) in beams.iter().enumerate() {
         let body: Box<dyn Subsystem<2>> = match layout.required.rests(number) {
@@ -445,7 +448,7 @@ const START_TOLERANCE: f64 = 1e-9;
 /// Refuses a start with a corner inside a surface.
 fn check_start(scene: &Scene, model: &Model<2>, layout: &Layout, q: &[f64]) -> Result<(), BuildError> {
     let mut candidates = Vec::new();
-    model.detector().detect(&model.placed(q), 0.0, &mut candidates);
+    model.detector().detect(&model.placed(q)?, 0.0, &mut candidates);
     for candidate in &candidates {
         let pair = candidate.id.pair() as usize;
         let contact = &scene.contacts[pair];

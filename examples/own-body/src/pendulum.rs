@@ -86,6 +86,10 @@ impl Subsystem<2> for Pendulum {
     }
 
     /// The foot of the perpendicular from `at` on the nearer face; none beyond the pivot or the tip.
+    fn has_surface(&self, _body: u32) -> bool {
+        true
+    }
+
     fn surface(&self, _body: u32, q: &[f64], _: Kinematics, at: &Vector2<f64>) -> Option<SurfacePoint<2>> {
         let local = Self::rotate(&[-q[0]], &(at - self.pivot));
         if !(-self.length..=0.0).contains(&local.y) {

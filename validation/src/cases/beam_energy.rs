@@ -70,7 +70,7 @@ fn energies(runner: &mut Runner, beam: &Arc<Beam>, q: Vec<f64>, theta: f64, step
     parts.add(Box::new(beam_body(beam)));
     let model = parts.build(Box::new(PointDetector::new(Vec::new())))?;
     let start = Start { v: vec![0.0; beam.dofs()], q, dt: DT, theta };
-    let initial = model.energy(&start.q, &start.v).total();
+    let initial = model.energy(&start.q, &start.v)?.total();
     let mut drift = 0.0_f64;
     let end = runner.run(&model, &start, steps, |_, state| {
         drift = drift.max((state.ledger.current.total() - initial).abs());

@@ -152,9 +152,9 @@ impl BeamForces {
     /// loads and the forces `pressing` of contacts; without these, of the deflection alone.
     ///
     /// # Errors
-    /// As [`SectionForces::update`].
+    /// As [`SectionForces::update`]; and for a state without the coordinates that these are of.
     pub fn start(&mut self, state: &State, pressing: Option<&[SpanLoad]>) -> Result<&SectionForces, BeamError> {
-        self.read(state);
+        self.read(state)?;
         self.keep(state);
         self.span_loads.clear();
         if let Some(pressing) = pressing {
@@ -171,10 +171,10 @@ impl BeamForces {
     /// The section forces of a step that led to `state`; allocates nothing unless there are more loads than ever before.
     ///
     /// # Errors
-    /// As [`SectionForces::update`], such as for a state that is not finite.
+    /// As [`SectionForces::update`], such as for a state that is not finite; and for a state without the coordinates that these are of.
     pub fn enter(&mut self, step: &StepReport<'_, 2>, state: &State) -> Result<&SectionForces, BeamError> {
         let (h, theta) = (state.dt, self.theta);
-        self.read(state);
+        self.read(state)?;
         let (q1, v1) = (&self.q_next, &self.v_next);
         let mean = |out: &mut [f64], x0: &[f64], x1: &[f64]| {
             out.iter_mut().zip(x0.iter().zip(x1)).for_each(|(out, (x0, x1))| *out = theta * x1 + (1.0 - theta) * x0);
@@ -214,7 +214,19 @@ impl BeamForces {
     }
 
     /// The dofs of the state.
-    fn read(&mut self, state: &State) {
+    fn read(&mut self, state: &State) -> Result<(), BeamError> {
+        let coordinates = self.basis.as_ref().map_or(self.beam.dofs(), |basis| basis.len());
+        let last = self.lifted.map_or(0, |y| y + 1).max(self.range.end);
+        for (field, expected, found) in [
+            ("the range of the beam's coordinates", coordinates, self.range.len()),
+            ("the shapes of the beam's basis", self.beam.dofs(), self.basis_dofs()),
+            ("the coordinates of the state, at the least", last, state.q.len().min(last)),
+            ("the velocities of the state, at the least", last, state.v.len().min(last)),
+        ] {
+            if expected != found {
+                return Err(BeamError::Length { field, expected, found });
+            }
+        }
         for (dofs, of) in [(&mut self.q_next, &state.q), (&mut self.v_next, &state.v)] {
             let own = &of[self.range.clone()];
             match &self.basis {
@@ -222,6 +234,11 @@ impl BeamForces {
                 None => dofs.copy_from_slice(own),
             }
         }
+        Ok(())
+    }
+
+    fn basis_dofs(&self) -> usize {
+        self.basis.as_ref().map_or(self.beam.dofs(), |basis| basis.shape(0).len())
     }
 
     fn keep(&mut self, state: &State) {

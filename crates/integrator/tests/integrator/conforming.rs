@@ -29,7 +29,19 @@ fn blocks_conform() {
         couple: 0.3,
         signal: Arc::new(Formula::constant(2.0).unwrap()),
     };
-    assert_eq!(check(&blocks.with_load(load).with_motion(0, 2, motion(0.1)).with_motion(1, 0, motion(0.2)), &case), []);
+    assert_eq!(
+        check(
+            &blocks
+                .with_load(load)
+                .unwrap()
+                .with_motion(0, 2, motion(0.1))
+                .unwrap()
+                .with_motion(1, 0, motion(0.2))
+                .unwrap(),
+            &case
+        ),
+        []
+    );
 }
 
 #[test]
@@ -153,6 +165,10 @@ impl Subsystem<2> for Wrong {
         for (x, l) in out.iter_mut().zip(local) {
             *x = l + Vector2::new(q[0], q[1]);
         }
+    }
+
+    fn has_surface(&self, _body: u32) -> bool {
+        true
     }
 
     fn surface(&self, _: u32, q: &[f64], _: Kinematics, at: &Vector2<f64>) -> Option<SurfacePoint<2>> {

@@ -31,7 +31,8 @@ fn driven_blocks() -> Blocks {
     let mass = MassProperties::rectangle(&shape, 0.1, 900.0).unwrap();
     Blocks::new(vec![Block::new(mass, &shape); 2], Vector2::new(0.0, -9.81))
         .with_motion(1, 2, sine(Given::Velocity, 0.1))
-        .with_motion(0, 1, sine(Given::Displacement, 0.2))
+        .and_then(|blocks| blocks.with_motion(0, 1, sine(Given::Displacement, 0.2)))
+        .unwrap()
 }
 
 fn all() -> Vec<Box<dyn Subsystem<2>>> {
@@ -188,7 +189,7 @@ fn ground_slopes_through_the_origin_and_its_gap_is_perpendicular() {
 fn loads_on_blocks_and_beams_follow_their_signal() {
     let pulse: Arc<dyn Signal> = Arc::new(Formula::half_sine(0.0, 1.0).unwrap());
     let load = BlockLoad { block: 1, force: Vector2::new(2.0, -3.0), couple: 0.5, signal: Arc::clone(&pulse) };
-    let blocks = driven_blocks().with_load(load);
+    let blocks = driven_blocks().with_load(load).unwrap();
     let mut f = [0.0; 6];
     blocks.load(0.5, &mut f);
     blocks.load(2.0, &mut f);
@@ -241,7 +242,7 @@ fn the_energy_account_holds_the_work_of_the_drives() {
             let mass = MassProperties::rectangle(&shape, block.depth, block.density).unwrap();
             let mut parts = ModelBuilder::new();
             let pulled = Blocks::new(vec![Block::new(mass, &shape)], gravity);
-            let body = parts.add(Box::new(pulled.with_motion(0, 0, sine(Given::Velocity, 0.3))));
+            let body = parts.add(Box::new(pulled.with_motion(0, 0, sine(Given::Velocity, 0.3)).unwrap()));
             let surface = parts.add(surface());
             let pair = parts.pair(law);
             let (points, kinematics) = (shape.corners().to_vec(), Kinematics::Deformed);
@@ -273,7 +274,7 @@ fn a_block_on_rails_goes_through_the_ground() {
         // With x left free nothing but the normal velocity is prescribed.
         let blocks = (first..3)
             .fold(Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -9.81)), |blocks, axis| {
-                blocks.with_motion(0, axis, sine(Given::Velocity, 0.1))
+                blocks.with_motion(0, axis, sine(Given::Velocity, 0.1)).unwrap()
             });
         let level = Ground::moving(0.0, [0.4, 0.2, 0.0].map(|a| sine(Given::Velocity, a)));
         for ground in [Ground::flat(0.0), level] {

@@ -29,7 +29,7 @@ fn over(surface: Box<dyn Subsystem<2>>, friction: f64, kinematics: Kinematics, h
     let shape = Rectangle::new(B, H).unwrap();
     let mass = MassProperties::rectangle(&shape, 0.03, 2700.0).unwrap();
     let blocks = Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -G));
-    let blocks = held.iter().fold(blocks, |blocks, &k| blocks.with_motion(0, k, Motion::still()));
+    let blocks = held.iter().fold(blocks, |blocks, &k| blocks.with_motion(0, k, Motion::still()).unwrap());
     let mut parts = ModelBuilder::new();
     let body = parts.add(Box::new(blocks));
     let surface = parts.add(surface);
@@ -230,7 +230,7 @@ fn a_block_held_level_on_a_slope_stands_on_one_foot_and_the_other_is_clear() {
     assert!(off(&beam, &found.q[3..], &exact) < 1e-12 && found.q[2] == 0.0);
     assert_eq!(found.forces.len(), 1);
     let mut candidates = Vec::new();
-    model.detector().detect(&model.placed(&found.q), 0.05, &mut candidates);
+    model.detector().detect(&model.placed(&found.q).unwrap(), 0.05, &mut candidates);
     let gap = |corner| candidates.iter().find(|c| c.id == ContactId::new(0, corner)).unwrap().gap;
     let w = |x| beam.deflection_at(&exact, x).unwrap();
     let clear = (w(0.085).w - w(0.115).w) / (1.0 + w(0.115).slope.powi(2)).sqrt();

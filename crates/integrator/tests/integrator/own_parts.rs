@@ -45,6 +45,10 @@ impl Subsystem<2> for Plate {
         }
     }
 
+    fn has_surface(&self, _body: u32) -> bool {
+        true
+    }
+
     fn surface(&self, _: u32, q: &[f64], _: Kinematics, at: &Vector2<f64>) -> Option<SurfacePoint<2>> {
         let place = Vector2::new(at.x, q[0]);
         Some(SurfacePoint { place, normal: Vector2::y(), material: Vector2::new(at.x, 0.0) })
@@ -132,12 +136,13 @@ impl Scheme<2> for SemiImplicitEuler {
             factor.solve(f);
             self.v[part.v.clone()].iter_mut().zip(f.iter()).for_each(|(v, a)| *v += h * a);
         }
-        work.detect(model, &state.q, 0.0);
+        state.check(model)?;
+        work.detect(model, &state.q, 0.0)?;
         work.contacts.clear();
         for i in 0..work.candidates.len() {
-            work.contacts.activate(model, &state.q, &work.candidates[i], &state.warm);
-            let (before, free) = (work.contacts.velocity(i, &state.v), work.contacts.velocity(i, &self.v));
-            work.contacts.pose(i, before, free, Vector2::zeros());
+            work.contacts.activate(model, &state.q, &work.candidates[i], &state.warm)?;
+            let (before, free) = (work.contacts.velocity(i, &state.v)?, work.contacts.velocity(i, &self.v)?);
+            work.contacts.pose(i, before, free, Vector2::zeros())?;
         }
         let outcome = if work.candidates.is_empty() {
             None
@@ -145,18 +150,17 @@ impl Scheme<2> for SemiImplicitEuler {
             let t = state.t;
             Some(work.solve_contacts(model, 0.5, &mut self.v).map_err(|source| StepError::Problem { t, source })?)
         };
-        model.retract(&state.q.clone(), &self.v, h, &mut state.q);
+        model.retract(&state.q.clone(), &self.v, h, &mut state.q)?;
         state.v.copy_from_slice(&self.v);
         let t_start = state.t;
-        state.step += 1;
-        state.t = state.step as f64 * h;
+        state.count_step();
         let mut energy = StepEnergy::default();
-        state.ledger.enter(model.energy(&state.q, &state.v), &mut energy);
+        state.ledger.enter(model.energy(&state.q, &state.v)?, &mut energy);
         state.warm.clear();
         for contact in work.contacts.contacts() {
             state.warm.push(contact.id, &contact.p);
         }
-        let penetration = work.penetration(model, &state.q);
+        let penetration = work.penetration(model, &state.q)?;
         let contacts = work.contacts.contacts();
         state.tally.count(outcome.as_ref(), contacts.len(), penetration);
         Ok(StepReport { step: state.step, t_start, t_end: state.t, contacts, outcome, penetration, energy })
@@ -282,4 +286,37 @@ fn a_motion_that_leaves_the_numbers_ends_as_diverged_with_the_state_before_it() 
     let ended = run(&model, &mut scheme, &mut state, &mut work, &plan, &mut []).unwrap();
     assert_eq!(ended, Ended::Failed(StepError::Diverged { t: 0.0 }));
     assert_eq!((state.step, state.v[1]), (0, 1e308));
+}
+
+#[test]
+fn a_scheme_of_ones_own_is_refused_a_law_that_it_does_not_handle() {
+    let standard = PairLaw::new(0.5, 0.0);
+    for (law, named) in [
+        (PairLaw::new(0.5, 0.3), "a coefficient of restitution"),
+        (standard.with_tangential_restitution(0.2), "a tangential coefficient of restitution"),
+        (standard.with_impact(ImpactLaw::Poisson), "Poisson's impact law"),
+        (standard.with_impact(ImpactLaw::Energetic), "the energetic impact law"),
+        (
+            standard.with_impact(ImpactLaw::KelvinVoigt { stiffness: 1e5, damping: 1.0 }),
+            "Kelvin and Voigt's contact law",
+        ),
+        (
+            standard.with_impact(ImpactLaw::HuntCrossley { stiffness: 1e5, damping: 1.0, exponent: 1.5 }),
+            "Hunt and Crossley's contact law",
+        ),
+    ] {
+        let ground = Box::new(Ground::flat(0.0));
+        let model = crate::scenes::model(&PAPER_BLOCK, Vector2::new(0.0, -9.81), law, Kinematics::Deformed, ground);
+        let mut state = State::new(&model, &[0.0, 0.0685, 0.0], &[0.0; 3], 1e-4).unwrap();
+        let mut work = crate::scenes::workspace(&model);
+        let plan = Plan { steps: 2000, require_convergence: true };
+        let ended = run(&model, &mut SemiImplicitEuler::default(), &mut state, &mut work, &plan, &mut []).unwrap();
+        let Ended::Failed(StepError::Problem { source, .. }) = ended else { panic!("{law:?}: {ended:?}") };
+        assert_eq!(source, ContactError::Law { pair: 0, law: named });
+        // The schemes here handle them all.
+        let mut scheme = MoreauJean::new(MoreauJeanSettings::default()).unwrap();
+        let mut work = crate::scenes::workspace(&model);
+        let ended = run(&model, &mut scheme, &mut state, &mut work, &plan, &mut []).unwrap();
+        assert_eq!(ended, Ended::Complete);
+    }
 }

@@ -124,7 +124,7 @@ impl Barrier {
         // Upright on what sags as it may; and with the lower corners on top, for what is not known to be upright.
         let least = all(&|k| weight(k) * (on[k].y + half_height(k))) - sag;
         let worst = all(&|k| weight(k) * (on[k].y - radius(k))) - sag;
-        let energy = start.model.energy(start.q, start.v).total();
+        let energy = start.model.energy(start.q, start.v).ok()?.total();
         let barrier = |k: usize| least + weight(k) * (radius(k) - half_height(k));
         let room = (0..on.len()).map(barrier).fold(f64::INFINITY, f64::min) - energy;
         let scale = all(&|k| weight(k) * radius(k));

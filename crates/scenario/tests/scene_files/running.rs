@@ -254,7 +254,7 @@ fn a_static_start_stays_in_equilibrium_while_the_block_is_upright() {
             &[("block.rocker.tilt", "0 deg"), ("beam.table.surface", surface), ("contact.feet.kinematics", kinematics)],
         );
         let mut candidates = Vec::new();
-        let placed = simulation.model.placed(&simulation.state.q);
+        let placed = simulation.model.placed(&simulation.state.q).unwrap();
         simulation.model.detector().detect(&placed, 1e-12, &mut candidates);
         assert_eq!(candidates.len(), 2, "both feet touch ({surface}, {kinematics})");
         assert!(candidates.iter().all(|c| c.gap.abs() < 1e-14), "{candidates:?}");

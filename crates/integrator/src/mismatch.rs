@@ -1,0 +1,79 @@
+//! What is told to who joins parts that don't belong together.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+use teeter_detect::BodyId;
+
+/// Things that don't belong together: slices of another length, a workspace of another model, a pair that isn't there.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Mismatch {
+    /// Too few or too many numbers.
+    #[error("{found} numbers given for {what}, but the model needs {expected}")]
+    Length {
+        /// What they are.
+        what: &'static str,
+        /// Numbers given.
+        found: usize,
+        /// Numbers needed.
+        expected: usize,
+    },
+    /// A workspace, a scheme or contacts of another model, be it of the same sizes.
+    #[error("{what} of another model: {remedy}")]
+    OtherModel {
+        /// What is used.
+        what: &'static str,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// A pair number that the model didn't give.
+    #[error("there is no pair {pair}: the model has {pairs}, numbered from 0")]
+    Pair {
+        /// The number.
+        pair: u32,
+        /// How many there are.
+        pairs: usize,
+    },
+    /// A body that the model doesn't have.
+    #[error("there is no body {}: the model has {bodies}, numbered from 0", body.0)]
+    Body {
+        /// The body.
+        body: BodyId,
+        /// How many there are.
+        bodies: usize,
+    },
+    /// A contact that isn't there.
+    #[error("there is no contact {contact}: there are {contacts}, numbered from 0")]
+    Contact {
+        /// Its number.
+        contact: usize,
+        /// How many there are.
+        contacts: usize,
+    },
+    /// A subsystem whose row names a velocity that it doesn't have.
+    #[error("a row of body {} has an entry in column {column}, but its subsystem has {velocities} velocities", body.0)]
+    Column {
+        /// The body whose point the row is of.
+        body: BodyId,
+        /// The column.
+        column: usize,
+        /// How many velocities there are.
+        velocities: usize,
+    },
+}
+
+/// Whether a slice is as long as it must be.
+pub(crate) fn length<T>(what: &'static str, x: &[T], expected: usize) -> Result<(), Mismatch> {
+    if x.len() == expected { Ok(()) } else { Err(Mismatch::Length { what, found: x.len(), expected }) }
+}
+
+/// Who a model is: no two that were built in one process are the same. It is compared for equality and nothing else, and is stored nowhere,
+/// so that no result depends on how many models were built before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Identity(u64);
+
+impl Identity {
+    pub(crate) fn new() -> Self {
+        static BUILT: AtomicU64 = AtomicU64::new(0);
+        Self(BUILT.fetch_add(1, Ordering::Relaxed))
+    }
+}

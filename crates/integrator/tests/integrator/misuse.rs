@@ -1,0 +1,194 @@
+//! What doesn't belong together is refused: another model's workspace or scheme, wiring that can't work, a law that nobody handles.
+
+use crate::scenes::{PAPER_BLOCK, beam_body, workspace};
+use nalgebra::Vector2;
+use std::sync::Arc;
+use teeter_beam::{Beam, BeamSpec, Section};
+use teeter_detect::{
+    Anchor, BodyId, Candidate, Candidates, ContactDetector, ContactId, Geometry, Kinematics, PointDetector, PointPair,
+    plane_frame,
+};
+use teeter_integrator::*;
+use teeter_rigid::{MassProperties, Rectangle};
+
+fn on_ground(law: PairLaw) -> Model<2> {
+    let ground = Box::new(Ground::flat(0.0));
+    crate::scenes::model(&PAPER_BLOCK, Vector2::new(0.0, -9.81), law, Kinematics::Deformed, ground)
+}
+
+fn schemes() -> [Box<dyn Scheme<2>>; 2] {
+    [
+        Box::new(MoreauJean::new(MoreauJeanSettings::default()).unwrap()),
+        Box::new(MoreauJeanClosed::new(MoreauJeanClosedSettings::default()).unwrap()),
+    ]
+}
+
+fn start(model: &Model<2>) -> State {
+    let mut q = vec![0.1, 0.0775, 0.02];
+    q.resize(model.size().q, 0.0);
+    State::new(model, &q, &vec![0.0; model.size().v], 1e-4).unwrap()
+}
+
+fn beam_of(height: f64) -> Model<2> {
+    let section = Section::rectangle(0.03, height, 69e9, 2700.0).unwrap();
+    let beam = Arc::new(Beam::new(BeamSpec::new(0.36, 4, section)).unwrap());
+    let law = PairLaw::new(0.5, 0.0);
+    let surface = Box::new(beam_body(&beam));
+    crate::scenes::model(&PAPER_BLOCK, Vector2::new(0.0, -9.81), law, Kinematics::Deformed, surface)
+}
+
+#[test]
+fn a_workspace_of_another_model_of_the_same_sizes_is_refused() {
+    // A beam twice as thick: the same sizes, other numbers.
+    let (one, other) = (beam_of(0.0015), beam_of(0.003));
+    for mut scheme in schemes() {
+        let (mut state, mut work) = (start(&one), workspace(&one));
+        scheme.start(&one, &mut state, &mut work).unwrap();
+        scheme.advance(&one, &mut state, &mut work).unwrap();
+        let before = state.clone();
+        let error = scheme.advance(&other, &mut state, &mut work).unwrap_err();
+        assert!(matches!(error, StepError::Mismatch(Mismatch::OtherModel { .. })), "{error}");
+        assert_eq!(state, before, "the state is as before");
+
+        // A workspace of its own, but the scheme was started with the other.
+        let mut own = workspace(&other);
+        let error = scheme.advance(&other, &mut state, &mut own).unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "the scheme was started with that of another model: start it with this one before its first step"
+        );
+        // Started anew it serves it, but not with the old workspace.
+        let error = scheme.start(&other, &mut state, &mut work).unwrap_err().to_string();
+        assert!(error.starts_with("the workspace is that of another model"), "{error}");
+        scheme.start(&other, &mut state, &mut own).unwrap();
+        scheme.advance(&other, &mut state, &mut own).unwrap();
+    }
+    let (mut state, mut work) = (start(&other), workspace(&one));
+    let mut scheme = MoreauJean::new(MoreauJeanSettings::default()).unwrap();
+    let plan = Plan { steps: 5, require_convergence: true };
+    let ended = run(&other, &mut scheme, &mut state, &mut work, &plan, &mut []).unwrap();
+    assert!(matches!(ended, Ended::Failed(StepError::Mismatch(Mismatch::OtherModel { .. }))), "{ended:?}");
+    let limits = SettlingLimits { reach: &[], margin: 0.0, tau: SettlingLimits::FIRST_TAU };
+    let error = settle(&other, 0.0, &state.q, &limits, &mut work).unwrap_err();
+    assert!(matches!(error, EquilibriumError::Mismatch(Mismatch::OtherModel { .. })), "{error}");
+}
+
+#[test]
+fn contacts_of_one_model_are_not_solved_in_another() {
+    let (one, other) = (on_ground(PairLaw::new(0.5, 0.0)), on_ground(PairLaw::new(0.5, 0.0)));
+    let (state, mut of_one, mut of_other) = (start(&one), workspace(&one), workspace(&other));
+    of_one.detect(&one, &state.q, 1.0).unwrap();
+    of_one.contacts.activate(&one, &state.q, &of_one.candidates[0], &state.warm).unwrap();
+    std::mem::swap(&mut of_one.contacts, &mut of_other.contacts);
+    let w = Weights { mass: 1.0, ..Weights::default() };
+    of_other.factorise(&other, w, &state.q).unwrap();
+    let error = of_other.solve_contacts(&other, 0.5, &mut state.v.clone()).unwrap_err();
+    assert!(matches!(error, ContactError::Mismatch(Mismatch::OtherModel { .. })), "{error}");
+    let candidate = of_one.candidates[0];
+    let error = of_other.contacts.activate(&other, &state.q, &candidate, &state.warm).unwrap_err();
+    assert!(matches!(error, Mismatch::OtherModel { .. }), "{error}");
+}
+
+/// A block, and a block or the ground.
+fn wired(change: impl Fn(&mut Vec<PointPair<2>>)) -> Result<Model<2>, ModelError> {
+    let shape = Rectangle::new(0.1, 0.1).unwrap();
+    let mass = MassProperties::rectangle(&shape, 0.1, 1000.0).unwrap();
+    let mut parts = ModelBuilder::new();
+    let body = parts.add(Box::new(Blocks::new(vec![Block::new(mass, &shape); 2], Vector2::zeros())));
+    let surface = parts.add(Box::new(Ground::flat(0.0)));
+    let (first, second) = (parts.pair(PairLaw::new(0.5, 0.0)), parts.pair(PairLaw::new(0.1, 0.0)));
+    let pair = |pair, body| PointPair {
+        pair,
+        points: shape.corners().to_vec(),
+        body,
+        surface,
+        kinematics: Kinematics::Deformed,
+    };
+    let mut pairs = vec![pair(first, body), pair(second, BodyId(1))];
+    change(&mut pairs);
+    parts.build(Box::new(PointDetector::new(pairs)))
+}
+
+#[test]
+fn wiring_that_cannot_work_is_refused_when_the_model_is_built() {
+    assert!(wired(|_| {}).is_ok());
+    let refused = |change: &dyn Fn(&mut Vec<PointPair<2>>)| wired(change).unwrap_err();
+    assert_eq!(refused(&|pairs| pairs[0].pair = 7), ModelError::Pair { pair: 7, pairs: 2 });
+    assert_eq!(refused(&|pairs| pairs[1].pair = 0), ModelError::PairTwice { pair: 0 });
+    assert_eq!(refused(&|pairs| pairs[0].body = BodyId(3)), ModelError::Body { pair: 0, body: BodyId(3), bodies: 3 });
+    assert_eq!(
+        refused(&|pairs| pairs[1].surface = BodyId(9)),
+        ModelError::Body { pair: 1, body: BodyId(9), bodies: 3 }
+    );
+    assert_eq!(refused(&|pairs| pairs[0].surface = BodyId(1)), ModelError::NoSurface { pair: 0, body: BodyId(1) });
+    assert_eq!(refused(&|pairs| pairs[0].surface = BodyId(0)), ModelError::Itself { pair: 0, body: BodyId(0) });
+    assert_eq!(refused(&|pairs| pairs[1].points.clear()), ModelError::NoPoints { pair: 1 });
+    assert_eq!(refused(&|pairs| pairs[0].points[1].x = f64::NAN).to_string(), "point 1 of pair 0 is not finite");
+}
+
+#[test]
+fn loads_and_motions_of_blocks_that_are_not_there_are_refused() {
+    let shape = Rectangle::new(0.1, 0.1).unwrap();
+    let mass = MassProperties::rectangle(&shape, 0.1, 1000.0).unwrap();
+    let blocks = || Blocks::new(vec![Block::new(mass, &shape); 2], Vector2::zeros());
+    let signal: Arc<dyn Signal> = Arc::new(Formula::constant(0.0).unwrap());
+    let load = |block, force| BlockLoad { block, force, couple: 0.0, signal: Arc::clone(&signal) };
+    assert!(blocks().with_load(load(1, Vector2::zeros())).is_ok());
+    assert_eq!(blocks().with_load(load(2, Vector2::zeros())).unwrap_err(), ModelError::Block { block: 2, blocks: 2 });
+    let infinite = Vector2::new(0.0, f64::INFINITY);
+    assert_eq!(blocks().with_load(load(0, infinite)).unwrap_err(), ModelError::Load { block: 0 });
+    assert!(blocks().with_motion(1, 2, Motion::still()).is_ok());
+    let refused = |block, coordinate| blocks().with_motion(block, coordinate, Motion::still()).unwrap_err();
+    assert_eq!(refused(usize::MAX, 0), ModelError::Block { block: usize::MAX, blocks: 2 });
+    assert_eq!(refused(0, 3), ModelError::Coordinate { coordinate: 3 });
+}
+
+#[test]
+fn the_law_of_a_pair_that_is_not_there_is_an_error() {
+    let model = on_ground(PairLaw::new(0.5, 0.25));
+    assert_eq!(model.law(0), Ok(PairLaw::new(0.5, 0.25)));
+    assert_eq!(model.law(1), Err(Mismatch::Pair { pair: 1, pairs: 1 }));
+}
+
+/// A detector from outside that doesn't say whom it joins.
+struct Fixed(Candidate<2>);
+
+impl ContactDetector<2> for Fixed {
+    fn detect(&self, _: &dyn Geometry<2>, _: f64, out: &mut Candidates<2>) {
+        out.clear();
+        out.push(self.0);
+    }
+
+    fn capacity(&self) -> usize {
+        1
+    }
+}
+
+#[test]
+fn candidates_of_pairs_and_bodies_that_are_not_there_end_the_step() {
+    let candidate = |pair, bodies: [u32; 2]| Candidate {
+        id: ContactId::new(pair, 0),
+        sides: bodies.map(|body| Anchor { body: BodyId(body), point: Vector2::new(0.0, -0.05) }),
+        frame: plane_frame(&Vector2::y()),
+        gap: -1e-3,
+    };
+    for (candidate, expected) in [
+        (candidate(3, [0, 1]), "there is no pair 3: the model has 1, numbered from 0"),
+        (candidate(0, [5, 1]), "there is no body 5: the model has 2, numbered from 0"),
+        (candidate(0, [0, 2]), "there is no body 2: the model has 2, numbered from 0"),
+    ] {
+        let shape = Rectangle::new(0.1, 0.1).unwrap();
+        let mass = MassProperties::rectangle(&shape, 0.1, 1000.0).unwrap();
+        let mut parts = ModelBuilder::new();
+        parts.add(Box::new(Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -9.81))));
+        parts.add(Box::new(Ground::flat(0.0)));
+        parts.pair(PairLaw::new(0.5, 0.0));
+        let model = parts.build(Box::new(Fixed(candidate))).unwrap();
+        for mut scheme in schemes() {
+            let mut state = State::new(&model, &[0.0; 3], &[0.0, -1.0, 0.0], 1e-3).unwrap();
+            let mut work = workspace(&model);
+            let error = (0..3).find_map(|_| scheme.advance(&model, &mut state, &mut work).err()).unwrap().to_string();
+            assert!(error.ends_with(expected), "{}: {error}", scheme.name());
+        }
+    }
+}
