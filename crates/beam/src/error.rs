@@ -40,7 +40,7 @@ pub enum BeamError {
         found: usize,
     },
     /// A nodal shape that moves where the support holds it.
-    #[error("nodal[{node}][{component}] = {value}: must be 0, the support there is {support:?}")]
+    #[error("nodal[{node}][{component}] = {value}: must be 0, the support there is {support}")]
     BrokenSupport {
         /// The node.
         node: usize,
@@ -79,7 +79,7 @@ pub enum FactorError {
         value: f64,
     },
     /// The weighted sum is not positive definite, at least not to rounding.
-    #[error("{weights:?}: the weighted sum of M, C and K is not positive definite (found at dof {dof})")]
+    #[error("{weights} is not positive definite, or not in double precision (found at dof {dof})")]
     NotPositiveDefinite {
         /// The weights asked for.
         weights: MatrixWeights,
@@ -106,7 +106,7 @@ pub enum FactorError {
 #[non_exhaustive]
 pub enum StaticError {
     /// The supports leave a rigid motion, so no static equilibrium is unique.
-    #[error("supports = {supports:?}: {missing}")]
+    #[error("supports = [{}, {}]: {missing}", supports[0], supports[1])]
     RigidMotion {
         /// The supports of the left and the right end.
         supports: Box<[Support; 2]>,

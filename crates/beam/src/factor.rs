@@ -1,5 +1,7 @@
 //! Factors of weighted sums of the three matrices: the effective inverse mass of a time step.
 
+use std::fmt;
+
 use crate::band::Twisted;
 use crate::bar::BarFactor;
 use crate::beam::Beam;
@@ -20,6 +22,22 @@ pub struct MatrixWeights {
     pub damping: f64,
     /// Weight of K.
     pub stiffness: f64,
+}
+
+/// The sum as in a formula, such as "M + 5e-5 C + 2.5e-9 K".
+impl fmt::Display for MatrixWeights {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let terms = [(self.mass, "M"), (self.damping, "C"), (self.stiffness, "K")];
+        let mut first = true;
+        for (weight, matrix) in terms.into_iter().filter(|(weight, _)| *weight != 0.0) {
+            if !first {
+                f.write_str(" + ")?;
+            }
+            first = false;
+            if weight == 1.0 { f.write_str(matrix)? } else { write!(f, "{weight:?} {matrix}")? }
+        }
+        if first { f.write_str("0") } else { Ok(()) }
+    }
 }
 
 impl MatrixWeights {
@@ -74,8 +92,8 @@ pub struct Factor {
     dofs: usize,
 }
 
-impl std::fmt::Debug for Factor {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl fmt::Debug for Factor {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Factor").field("dofs", &self.dofs).field("weights", &self.weights).finish_non_exhaustive()
     }
 }

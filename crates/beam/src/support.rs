@@ -1,5 +1,7 @@
 //! How a node of a beam is held.
 
+use std::fmt;
+
 use crate::error::BeamError;
 use crate::section::not_negative;
 
@@ -42,6 +44,41 @@ pub enum Support {
         /// The rotation of the section: w' for Euler–Bernoulli.
         rotation: Hold,
     },
+}
+
+/// Its word; of springs and dashpots, both motions.
+impl fmt::Display for Support {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Free => f.write_str("free"),
+            Self::Pinned => f.write_str("pinned"),
+            Self::Clamped => f.write_str("clamped"),
+            Self::Guided => f.write_str("guided"),
+            Self::Elastic { deflection, rotation } => {
+                write!(
+                    f,
+                    "elastic (deflection {}, rotation {})",
+                    Held(*deflection, "N/m", "N s/m"),
+                    Held(*rotation, "N m/rad", "N m s/rad")
+                )
+            }
+        }
+    }
+}
+
+/// How a motion is held, with the units of stiffness and damping.
+struct Held(Hold, &'static str, &'static str);
+
+impl fmt::Display for Held {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(hold, stiff, damped) = self;
+        match hold {
+            Hold::Free => f.write_str("free"),
+            Hold::Fixed => f.write_str("fixed"),
+            Hold::Spring { stiffness, damping: 0.0 } => write!(f, "{stiffness:?} {stiff}"),
+            Hold::Spring { stiffness, damping } => write!(f, "{stiffness:?} {stiff} and {damping:?} {damped}"),
+        }
+    }
 }
 
 impl Support {

@@ -162,9 +162,19 @@ fn beam(beam: &BeamOutlook) -> String {
         let _ = write!(text, "; {axial}");
     }
     if let Some(frequency) = beam.first_frequency {
-        let of = if beam.frequency_is_exact { "" } else { ", of the finite elements" };
-        let (frequency, period) = (digits(frequency), digits(1.0 / frequency));
-        let _ = write!(text, "\n    first frequency {frequency} Hz (period {period} s){of}");
+        let own = if beam.frequency_is_exact { "the continuous beam" } else { "a mesh eight times as fine" };
+        let _ = write!(
+            text,
+            "\n    first frequency {} Hz (period {} s){}",
+            digits(frequency.model),
+            digits(1.0 / frequency.model),
+            match frequency.parted() {
+                Some(beam) =>
+                    format!(" of the model, {} the {} Hz of {own}", beside(frequency.model, beam), digits(beam)),
+                None if beam.frequency_is_exact => String::new(),
+                None => ", of the finite elements".to_owned(),
+            }
+        );
     }
     if let Some(product) = beam.highest_frequency_step {
         let meaning = if product > 1.0 {
@@ -184,19 +194,29 @@ fn beam(beam: &BeamOutlook) -> String {
         let few = if correct < FEW_DIGITS { ": too few, take a coarser mesh or a shorter step" } else { "" };
         let _ = write!(text, "\n    {correct:.1} digits of a step's solve are correct{few}");
     }
-    if let Some(sag) = beam.sag.filter(|sag| *sag > 0.0) {
+    if let Some(sag) = beam.sag.filter(|sag| sag.larger() > 0.0) {
         let _ = write!(
             text,
             "\n    sags by {} m under {}the blocks at rest, {}",
-            digits(sag),
+            digits(sag.model),
             if beam.self_weight { "its own weight and " } else { "" },
-            wording::part_of(sag, beam.span)
+            wording::part_of(sag.model, beam.span)
         );
+        if let Some(own) = sag.parted() {
+            let part = wording::part_of(own, beam.span);
+            let _ = write!(text, "; that is {} the {} m ({part}) of a finer mesh", beside(sag.model, own), digits(own));
+        }
     }
     if let Some(moment) = beam.yield_moment {
         let _ = write!(text, "\n    yields at a bending moment of {} N m", digits(moment));
     }
     text
+}
+
+/// "11 % above"
+fn beside(model: f64, beam: f64) -> String {
+    let percent = 100.0 * (model / beam - 1.0);
+    format!("{:.0} % {}", percent.abs(), if percent < 0.0 { "below" } else { "above" })
 }
 
 /// " in 6 modes and 3 static corrections (flexibility over [0.1, 0.26] m to 7e-5)"

@@ -1,5 +1,8 @@
 //! `teeter schema`: the JSON Schema of scene files, from the table of keys.
 
+mod patterns;
+mod rules;
+
 use crate::console::print_all;
 use crate::run::Exit;
 use crate::scene_page;
@@ -24,7 +27,7 @@ pub(crate) fn print(format: Format) -> Exit {
 
 /// The schema of a scene file read as JSON, draft 2020-12.
 ///
-/// It is a little more lenient than the program: units and what takes several keys are checked by the program only.
+/// It is more lenient than the program where only that can tell: `docs/schema.md` says where.
 fn schema() -> Value {
     let mut schema = json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -40,9 +43,6 @@ fn schema() -> Value {
 /// What the program takes for a name.
 const NAME: &str = "^[A-Za-z0-9_-]{1,64}$";
 
-/// A number and the start of a unit; which units there are and how they combine is more than a pattern can say.
-const QUANTITY: &str = "^\\s*[-+−]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)?(\\s+1/|\\s*[A-Za-zµμ°(]).*$";
-
 fn object(table: &Table) -> Map<String, Value> {
     let mut properties = Map::new();
     for key in table.keys {
@@ -57,6 +57,8 @@ fn object(table: &Table) -> Map<String, Value> {
                 "description": format!("{} Each has a name of its own.", child.doc),
                 "patternProperties": { NAME: inner },
                 "additionalProperties": false,
+                // Names are unique, and this one is that of the ground.
+                "propertyNames": { "not": { "const": taken(child) } },
             }),
             _ => inner,
         };
@@ -84,7 +86,16 @@ fn object(table: &Table) -> Map<String, Value> {
     if !siblings.is_empty() {
         object.insert("dependentRequired".to_owned(), Value::Object(siblings));
     }
+    let rules = rules::of(table);
+    if !rules.is_empty() {
+        object.insert("allOf".to_owned(), Value::Array(rules));
+    }
     object
+}
+
+/// The name that a body can't have; none of other tables, whose names are never empty.
+fn taken(table: &Table) -> &'static str {
+    if ["beam.*", "block.*"].contains(&table.pattern) { "ground" } else { "" }
 }
 
 /// Whether a key is required whatever the others say.
@@ -138,14 +149,15 @@ fn range_of(key: &Key) -> String {
 }
 
 fn of_kind(key: &Key) -> Value {
-    let quantity = || json!({ "type": "string", "pattern": QUANTITY });
+    let quantity =
+        |dimension, range: &Range| json!({ "type": "string", "pattern": patterns::quantity(dimension, range) });
     let pair = |item: Value| json!({ "type": "array", "items": item, "minItems": 2, "maxItems": 2 });
     match key.kind {
         Kind::Text => {
             json!({ "type": "string", "maxLength": LONGEST_TITLE, "pattern": "^[^\\u0000-\\u001f\\u007f-\\u009f]*$" })
         }
         Kind::Path => json!({ "type": "string", "minLength": 1 }),
-        Kind::Measure(..) => quantity(),
+        Kind::Measure(units, range) => json!({ "type": "string", "pattern": patterns::measure(units, &range) }),
         Kind::Name => json!({ "$ref": "#/$defs/name" }),
         Kind::Choice(words) => json!({ "enum": words }),
         Kind::Flag if key.reserved.is_empty() => json!({ "type": "boolean" }),
@@ -158,24 +170,27 @@ fn of_kind(key: &Key) -> Value {
         Kind::Version(known) => json!({ "enum": known }),
         Kind::Number(range) => number(&range),
         Kind::Quantity(Dimension::NONE, range) => number(&range),
-        Kind::Quantity(..) => quantity(),
-        Kind::Pair(..) => pair(quantity()),
-        Kind::List(..) => json!({ "type": "array", "items": quantity() }),
+        Kind::Quantity(dimension, range) => quantity(dimension, &range),
+        Kind::Pair(dimension, range) => pair(quantity(dimension, &range)),
+        Kind::List(dimension, range) => json!({ "type": "array", "items": quantity(dimension, &range) }),
         Kind::Numbers(range) => json!({ "type": "array", "items": number(&range) }),
         Kind::Words(words) => json!({ "type": "array", "items": { "enum": words }, "uniqueItems": true }),
-        Kind::WordOrTable(words, keys) => word_or_table(words, keys),
-        Kind::WordOrTablePair(words, keys) => pair(word_or_table(words, keys)),
+        Kind::WordOrTable(words, keys) => word_or_table(words, keys, rules::of_start()),
+        Kind::WordOrTablePair(words, keys) => pair(word_or_table(words, keys, rules::of_support())),
         Kind::ChoicePair(words) => pair(json!({ "enum": words })),
         Kind::NamePair => pair(json!({ "$ref": "#/$defs/name" })),
-        Kind::Gravity => json!({ "anyOf": [quantity(), pair(quantity())] }),
+        Kind::Gravity => {
+            let of = |range| quantity(Dimension::ACCELERATION, range);
+            json!({ "anyOf": [of(&Range::NOT_NEGATIVE), pair(of(&Range::ANY))] })
+        }
         // A kind that this page does not know yet: anything goes, the program decides.
         _ => json!({}),
     }
 }
 
-fn word_or_table(words: &[&str], keys: &[Key]) -> Value {
+fn word_or_table(words: &[&str], keys: &[Key], rules: Vec<Value>) -> Value {
     let properties: Map<String, Value> = keys.iter().map(|key| (key.name.to_owned(), property(key))).collect();
-    let table = json!({ "type": "object", "properties": properties, "additionalProperties": false });
+    let table = json!({ "type": "object", "properties": properties, "additionalProperties": false, "allOf": rules });
     json!({ "anyOf": [{ "enum": words }, table] })
 }
 
@@ -188,6 +203,14 @@ fn number(range: &Range) -> Value {
             Bound::Open(end) => number[open] = json!(end),
             _ => {}
         }
+    }
+    // What can't be computed with.
+    let most = range.largest;
+    if range.high == Bound::None {
+        number["maximum"] = json!(most);
+    }
+    if range.low == Bound::None {
+        number["minimum"] = json!(-most);
     }
     number
 }

@@ -81,6 +81,34 @@ fn a_doubtful_scene_is_warned_of_and_exits_with_0() {
 }
 
 #[test]
+fn with_few_elements_the_model_s_numbers_stand_beside_the_beam_s() {
+    let file = scenario("free-rocking-on-beam");
+    for elements in ["1", "2"] {
+        let sets = [format!("beam.table.elements={elements}"), "beam.table.thickness=1 mm".to_owned()];
+        let (_, stdout, stderr) = check(&[&file, "--set", &sets[0], "--set", &sets[1]]);
+        assert!(stderr.contains("warning: beam.table.thickness"), "{elements}: {stderr}");
+        assert!(stderr.contains("1/20 of its span"), "{elements}: {stderr}");
+        let parted = stdout.contains("% above the 17.69 Hz of the continuous beam");
+        assert_eq!(parted, elements == "1", "{stdout}");
+    }
+    let (_, stdout, _) = check(&[&file, "--set", "beam.table.elements=1"]);
+    for part in
+        ["first frequency 29.45 Hz", "of the model, 11 % above the 26.53 Hz of the continuous beam", "% below the 0.00"]
+    {
+        assert!(stdout.contains(part), "«{part}» is missing in\n{stdout}");
+    }
+    // In one mode the beam is as much too stiff; a mesh of spans has no formula, but a finer one.
+    let (_, stdout, _) = check(&[&file, "--set", "beam.table.model=modes", "--set", "beam.table.modes={ count = 1 }"]);
+    assert!(stdout.contains("% below the 0.005"), "{stdout}");
+    let pier = "[beam.table.support.pier]\nat = \"20 cm\"\nkind = \"pinned\"\n[block.rocker]";
+    let text = std::fs::read_to_string(&file).unwrap().replace("[block.rocker]", pier).replace("= 20\n", "= 1\n");
+    let scene = Path::new(env!("CARGO_TARGET_TMPDIR")).join("spans.toml");
+    std::fs::write(&scene, text.replace("18 cm", "10 cm")).unwrap();
+    let (_, stdout, stderr) = check(&[scene.to_str().unwrap()]);
+    assert!(stdout.contains("Hz of a mesh eight times as fine"), "{stdout}{stderr}");
+}
+
+#[test]
 fn an_unusual_gap_tolerance_is_told() {
     let (_, stdout, _) = check(&[&scenario("free-rocking-on-ground"), "--set", "block.rocker.height=2 m"]);
     assert!(stdout.contains("a gap below 2e-11 m counts as closed"), "{stdout}");

@@ -3,7 +3,7 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;
-use crate::placement::weight_of;
+use crate::mesh_error::{self, OfMesh};
 use crate::scene::{BeamScene, BlockScene, ContactScene, Placement, Scene, Support};
 use crate::{deflection, outlook, stability, wording};
 use std::f64::consts::{PI, TAU};
@@ -45,8 +45,9 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Doubts {
     for (number, beam) in scene.beams.iter().enumerate() {
         doubts.warnings.extend(thick(beam, document));
         doubts.warnings.extend(of_model(beam, scene, document));
-        match sag(scene, number) {
-            Some(sag) if sag > DEEP_SAG * beam.spec.span => {
+        let sag = mesh_error::sag(scene, number);
+        match sag.map(|sag| sag.larger()) {
+            Some(largest) if largest > DEEP_SAG * beam.spec.span => {
                 let rule = format!("{}: beyond 1/50 small-deflection theory is not to be trusted", sagging(beam, sag));
                 let found = document.error(
                     &format!("beam.{}.thickness", beam.name),
@@ -55,7 +56,7 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Doubts {
                 );
                 doubts.warnings.push(found.as_warning());
             }
-            Some(sag) if sag > NOTABLE_SAG * beam.spec.span && beam.spec.axial != Axial::Held => {
+            Some(largest) if largest > NOTABLE_SAG * beam.spec.span && beam.spec.axial != Axial::Held => {
                 let rule = format!(
                     "{}: linear theory, which leaves out the shortening of its axis, is off by some per cent{}",
                     sagging(beam, sag),
@@ -78,9 +79,17 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Doubts {
     doubts
 }
 
-fn sagging(beam: &BeamScene, sag: f64) -> String {
+fn sagging(beam: &BeamScene, sag: Option<OfMesh>) -> String {
+    let Some(sag) = sag else { return String::new() };
     let weight = if beam.self_weight { "its own weight and that of the blocks" } else { "the blocks' weight" };
-    format!("the beam sags by {sag:.2e} m under {weight}, {}", wording::part_of(sag, beam.spec.span))
+    let own = sag.beam.unwrap_or(sag.model);
+    let part = wording::part_of(own, beam.spec.span);
+    match sag.parted() {
+        None => format!("the beam sags by {own:.2e} m under {weight}, {part}"),
+        Some(_) => {
+            format!("the beam sags by {own:.2e} m under {weight}, {part} (and this mesh of it by {:.2e} m)", sag.model)
+        }
+    }
 }
 
 /// What only the assembled beam can tell.
@@ -189,29 +198,6 @@ fn tilt(block: &BlockScene, incline: f64, touches: bool, document: &Document) ->
     Some(found.as_warning())
 }
 
-/// The largest static deflection (m) of a beam under its own weight, where it has any, and that of the blocks that stand on it;
-/// `None` where neither is there, or where it has no equilibrium.
-pub(crate) fn sag(scene: &Scene, number: usize) -> Option<f64> {
-    let beam = &scene.beams[number];
-    let mut standing =
-        scene.blocks.iter().filter_map(|block| weight_of(block, Support::Beam(number), scene.gravity)).peekable();
-    if !beam.self_weight {
-        standing.peek()?;
-    }
-    let model = Beam::new(beam.spec.clone()).ok()?;
-    let mut q = vec![0.0; model.dofs()];
-    if beam.self_weight {
-        model.add_self_weight(scene.gravity[1], &mut q).ok()?;
-    }
-    for feet in standing {
-        for (x, force) in feet {
-            model.add_point_load(x - beam.position[0], -force, &mut q).ok()?;
-        }
-    }
-    model.solve_static(&mut q).ok()?;
-    Some(model.to_nodes(&q).iter().map(|[w, _]| w.abs()).fold(0.0, f64::max))
-}
-
 /// Steps that a contact with duration should get from touch to release.
 const STEPS_A_CONTACT: f64 = 20.0;
 
@@ -270,6 +256,7 @@ fn step(scene: &Scene, document: &Document) -> Option<Diagnostic> {
 
 #[cfg(test)]
 mod tests {
+    use crate::mesh_error;
     use crate::resolve::Resolved;
 
     const SCENE: &str = "[time]\nend = '1 s'\nstep = '1 ms'\n[ground]\n\
@@ -289,9 +276,29 @@ mod tests {
         let scene = resolved(&[]).scene;
         let (p, a, ei) = (0.5 * 5.4 * 9.81, 0.45, 69e9 * 0.03 * 0.005_f64.powi(3) / 12.0);
         let exact = p * a * (3.0 - 4.0 * a * a) / (24.0 * ei);
-        let found = super::sag(&scene, 0).unwrap();
-        assert!((found / exact - 1.0).abs() < 1e-12, "{found} {exact}");
-        assert_eq!(super::sag(&resolved(&[("beam.b.supports", "['free', 'free']")]).scene, 0), None);
+        let found = mesh_error::sag(&scene, 0).unwrap();
+        for found in [found.model, found.beam.unwrap()] {
+            assert!((found / exact - 1.0).abs() < 1e-12, "{found} {exact}");
+        }
+        assert_eq!(mesh_error::sag(&resolved(&[("beam.b.supports", "['free', 'free']")]).scene, 0), None);
+    }
+
+    /// With few elements, where nodes don't sag, and in one mode too.
+    #[test]
+    fn a_sag_is_warned_of_whatever_the_mesh() {
+        for more in [vec![], vec![("beam.b.model", "modes"), ("beam.b.modes.count", "1")]] {
+            let fine = mesh_error::sag(&resolved(&[("beam.b.thickness", "4 mm")]).scene, 0).unwrap();
+            for elements in ["1", "2", "3", "5"] {
+                let mut sets = vec![("beam.b.thickness", "4 mm"), ("beam.b.elements", elements)];
+                sets.extend(&more);
+                let found = resolved(&sets);
+                assert!(found.warnings.iter().any(|found| found.rule.contains("1/14 of its span")), "{sets:?}");
+                let sag = mesh_error::sag(&found.scene, 0).unwrap();
+                assert!((sag.beam.unwrap() / fine.model - 1.0).abs() < 2e-3, "{sets:?} {sag:?}");
+                assert_eq!(sag.parted().is_some(), (sag.model / fine.model - 1.0).abs() > 0.01, "{sets:?} {sag:?}");
+                assert!(elements != "1" || sag.parted().is_some());
+            }
+        }
     }
 
     #[test]

@@ -5,7 +5,7 @@ use crate::document::Document;
 use crate::placement::{Departure, PlacementError};
 use crate::simulation::BuildError;
 use teeter_beam::{BeamError, ModalError, ModesError, StaticError};
-use teeter_integrator::ModelError;
+use teeter_integrator::{EquilibriumError, ModelError};
 
 impl BuildError {
     /// The refusal as an error about the scene it came from, at the key that is to blame.
@@ -152,6 +152,11 @@ fn placement(error: &PlacementError, document: &Document) -> Diagnostic {
                 "no static equilibrium found in {rounds} rounds (the last one still moved by {change:.1e}, relative)"
             ),
             "take a stiffer beam or lighter blocks, or start undeformed",
+        ),
+        PlacementError::Search { beam, source: EquilibriumError::Factor(_) } => start(
+            beam,
+            "no static equilibrium found: what is soft in the beam and its supports is lost in the rounding of what is stiff".to_owned(),
+            "take stiffer springs or foundations, a support, or a coarser mesh, or start undeformed",
         ),
         PlacementError::Search { beam, source } => start(
             beam,

@@ -44,6 +44,7 @@ mod judge;
 pub mod keys;
 mod left_out;
 pub mod measure;
+pub mod mesh_error;
 pub mod outlook;
 mod overlap;
 mod placement;

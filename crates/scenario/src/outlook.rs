@@ -1,12 +1,13 @@
 //! What a run of a scene will be like: the numbers to look at before it is started.
 
 use crate::left_out::left_out;
+use crate::mesh_error::{self, OfMesh};
 use crate::required::Removed;
 use crate::resolve::Resolved;
 use crate::scene::{BeamScene, BlockScene, Placement, Scene};
 use crate::simulation::{BeamPlace, Simulation};
 use crate::volume::{Volume, expected_seconds};
-use crate::{doubts, stability, wording};
+use crate::{stability, wording};
 use std::f64::consts::TAU;
 use teeter_beam::{Axial, Beam, MatrixWeights};
 use teeter_detect::ContactId;
@@ -48,9 +49,9 @@ pub struct BeamOutlook {
     pub inner_supports: usize,
     /// What happens along its axis; `None` where nothing is modelled.
     pub axial: Option<&'static str>,
-    /// First elastic frequency, Hz.
-    pub first_frequency: Option<f64>,
-    /// Whether that is one of the continuous beam; else it is one of the finite elements.
+    /// First elastic frequency, Hz: of the model, and without the error of its mesh.
+    pub first_frequency: Option<OfMesh>,
+    /// Whether the latter is that of the continuous beam; else it is of a finer mesh.
     pub frequency_is_exact: bool,
     /// Circular frequency of the highest mode of the mesh times the step: over 1, the mode is not resolved in time (the scheme is
     /// stable all the same for θ ≥ ½).
@@ -59,8 +60,8 @@ pub struct BeamOutlook {
     pub digits: Option<f64>,
     /// Span, m.
     pub span: f64,
-    /// Largest static deflection under the blocks' weight and its own, where that acts, m.
-    pub sag: Option<f64>,
+    /// Largest static deflection under the blocks' weight and its own, where that acts, m: of the model, and without the error of its mesh.
+    pub sag: Option<OfMesh>,
     /// Whether its own weight acts.
     pub self_weight: bool,
     /// Bending moment at which its own section (not that of a segment) begins to yield, N m, where that is known.
@@ -114,7 +115,7 @@ impl Outlook {
             .zip(&simulation.layout.beams)
             .enumerate()
             .map(|(number, (beam, place))| BeamOutlook {
-                sag: doubts::sag(scene, number),
+                sag: mesh_error::sag(scene, number),
                 ..BeamOutlook::of(beam, place, scene.time.theta, scene.time.step)
             })
             .collect();
@@ -160,7 +161,7 @@ impl BeamOutlook {
             Some(basis) => basis.circular_frequencies().last().copied(),
             None => stability::highest_eigenvalue(spec).map(f64::sqrt),
         };
-        let first = stability::first_frequency(spec);
+        let first = mesh_error::first_frequency(model, place.basis.as_deref());
         Self {
             name: beam.name.clone(),
             elements: model.elements(),
@@ -175,7 +176,7 @@ impl BeamOutlook {
                 Axial::Elastic { .. } => Some("elastic along its axis"),
                 _ => None,
             },
-            first_frequency: first.map(|(omega, _)| omega / TAU),
+            first_frequency: first.map(|(frequency, _)| frequency),
             frequency_is_exact: first.is_some_and(|(_, exact)| exact),
             highest_frequency_step: highest.map(|omega| omega * step),
             // A diagonal matrix keeps all.

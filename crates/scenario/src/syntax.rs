@@ -96,6 +96,7 @@ pub(crate) fn read(source: &Source) -> Parsed {
 // Messages of the TOML parser that are told better here.
 const DUPLICATE: &str = "duplicate key";
 const NO_VALUE: &str = "key with no value";
+const TOO_DEEP: &str = "recursion limit";
 const UNQUOTED: &str = "string values must be quoted";
 /// Readings of one file, each of which gets past lines that stop the parser.
 const MOST_ROUNDS: u32 = 3;
@@ -149,6 +150,9 @@ fn finding(source: &Source, span: &Range<usize>, message: &str) -> Diagnostic {
             return source.error(&origin, &key, rule).with_remedy(remedy);
         }
     }
+    if message == TOO_DEEP {
+        return too_deep(source);
+    }
     let rule = message
         .replace("invalid basic string, expected", "the text in quotes does not end, expected")
         .replace("invalid literal string, expected", "the text in quotes does not end, expected")
@@ -157,6 +161,23 @@ fn finding(source: &Source, span: &Range<usize>, message: &str) -> Diagnostic {
     let bare = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.');
     let is_key = text.contains('=') && !key.is_empty() && key.chars().all(bare);
     source.error(&origin, if is_key { &key } else { "" }, rule)
+}
+
+/// The parser doesn't say where: at the first of the lines in which most begins that is within something else.
+fn too_deep(source: &Source) -> Diagnostic {
+    let depth = |line: &str| line.matches(['.', '[', '{']).count();
+    let (mut start, mut deepest, mut most) = (0, 0, 0);
+    for line in source.text.split_inclusive('\n') {
+        if depth(line) > most {
+            (deepest, most) = (start, depth(line));
+        }
+        start += line.len();
+    }
+    let origin = Origin::File(deepest..deepest);
+    let remedy = "no key of a scene has more than five parts, as in beam.table.support.middle.at";
+    source
+        .error(&origin, "", "nested too deeply: a key of too many parts, or too many tables or arrays in each other")
+        .with_remedy(remedy)
 }
 
 fn join(table: &str, key: &str) -> String {
@@ -172,9 +193,16 @@ fn duplicate(source: &Source, span: &Range<usize>) -> Diagnostic {
         let table = table_of(source, line);
         let whole = key_of(source, line);
         let key = source.text.get(span.clone()).unwrap_or_default();
-        if whole == key || whole.ends_with(&format!(".{key}")) {
-            let same = |earlier: &usize| key_of(source, *earlier) == whole && table_of(source, *earlier) == table;
-            (join(&table, whole), (0..line).find(same))
+        let before = source.line_text(line).get(..span.end.saturating_sub(source.line_range(line).start));
+        if let Some(given) = before.filter(|before| !before.contains('=')) {
+            // Of a dotted key the part up to the one that is taken: by the same key, or by a table of that name.
+            let path = join(&table, given.trim());
+            let same = |earlier: &usize| match header_of(source, *earlier) {
+                Some(header) => header == path,
+                None => join(&table_of(source, *earlier), key_of(source, *earlier)) == path,
+            };
+            let first = (0..line).find(same);
+            (path, first)
         } else {
             // Within { … }.
             (join(&join(&table, whole), key), None)

@@ -68,6 +68,9 @@ fn check_refusal(what: &str, folder: &Path, output: &Output, took: Duration) -> 
     assert!(took < PATIENCE, "{what} took {took:?}");
     assert!(!message.contains("panicked") && !message.contains("stack backtrace"), "{what}: {message}");
     assert!(!message.contains(|c: char| c.is_control() && c != '\n'), "{what}: {message:?}");
+    // As Rust shows what a type holds.
+    let internal = regex::Regex::new("[A-Z][A-Za-z0-9]+ \\{ [a-z_]+: ").unwrap();
+    assert!(!internal.is_match(&message), "{what} shows internals: {message}");
     assert!(message.len() < 20_000, "{what}: {} bytes flood the terminal", message.len());
     let given = ["scene.toml", "quake.csv", "shape.csv"];
     let left: Vec<_> = files(folder).into_iter().filter(|name| !given.contains(&name.as_str())).collect();

@@ -41,6 +41,16 @@ const TILT: &str = "tilt     = \"5 deg\"    # about its bottom left corner, coun
 const PLACE: &str = "on       = \"table\"\nat       = \"18 cm\"    # the middle of its base before it is tilted: midspan\n\
                      tilt     = \"5 deg\"    # about its bottom left corner, counter-clockwise";
 
+/// A key that TOML could have, and a table after it.
+const DEEP: &str = concat!(
+    "[a]\n",
+    "b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.",
+    "b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.",
+    "b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.",
+    "b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.",
+    "b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.b.b = 1\n[output]"
+);
+
 /// Two blocks on the ground that share some space.
 const OVERLAPPING: &str = "\
 [time]
@@ -159,6 +169,7 @@ fn names() -> Vec<Row> {
         refused(35, "contact with nobody", Edit(&[("[\"rocker\", \"table\"]", "[\"rocker\", \"tabel\"]")]), &["contact.feet.between", "there is no body `tabel`", "did you mean `table`?", "rocker, table"]),
         refused(35, "contact with itself", Edit(&[("[\"rocker\", \"table\"]", "[\"rocker\", \"rocker\"]")]), &["contact.feet.between", "`rocker` can't touch itself"]),
         refused(36, "a key twice", Edit(&[(SPAN, "span = \"36 cm\"\nspan = \"40 cm\"")]), &["scene.toml:21:1", "beam.table.span", "given twice, first on line 20"]),
+        refused(36, "a table by a dotted key too", Edit(&[("[block.rocker]", "[beam]\ntable.elements = 5\n[block.rocker]")]), &["scene.toml:29:1", "beam.table: given twice, first on line 18"]),
         refused(37, "unknown solver", Set(&["solver.method=foo"]), &["solver.method", "unknown method", "auto, pgs, enumeration"]),
         refused(37, "solver not built in", Set(&["solver.method=socp"]), &["solver.method", "known, but not built in yet"]),
         refused(38, "version of the future", Edit(&[("version = 1", "version = 99")]), &["scene.toml:8:11", "version = 99", "version 1", "got 99"]),
@@ -174,6 +185,7 @@ fn limits() -> Vec<Row> {
         refused(42, "cut off file", Text("[time]\nend = \"1 s\"\nstep = \"1 m"), &["scene.toml:3:"]),
         refused(49, "no time between rows", Set(&["output.every=0 s"]), &["output.every", "greater than 0 s"]),
         refused(49, "too much output", Set(&["time.end=1e6 s", "time.step=1 ms", "output.every=1 ms"]), &["output.every", "1.0e9 rows", "GB", "10 GB"]),
+        refused(50, "a key of a hundred parts", Edit(&[("[output]", DEEP)]), &["nested too deeply", "more than five parts"]),
         refused(51, "name with a path", Edit(&[("[block.rocker]", "[block.\"../../x\"]")]), &["../../x", "letters (a-z, A-Z), digits, `_`, `-`"]),
     ]
 }
@@ -237,6 +249,9 @@ fn beams() -> Vec<Row> {
         refused(34, "shear without Poisson's ratio", Set(&["beam.table.theory=timoshenko"]), &["material.aluminium.poisson_ratio", "used by beam.table with theory = timoshenko"]),
         refused(9, "theta of a beam held along its axis", Set(&["beam.table.axial=held", "time.theta=0.6"]), &["time.theta = 0.6", "`table` is held along its axis", "0.5"]),
         refused(25, "compression beyond buckling", Set(&["beam.table.axial_force=-50 N"]), &["beam.table.axial_force", "buckles under it"]),
+        refused(25, "compression beyond buckling, in modes and a shape", Set(&["beam.table.axial_force=-50 N", "beam.table.model=modes", "beam.table.start={ mode = 1, amplitude = '1 mm' }"]), &["error: beam.table.axial_force", "buckles under it"]),
+        refused(25, "free beam under compression, in a mode", Set(&["beam.table.axial_force=-50 N", "beam.table.supports=['free', 'free']", "beam.table.start={ mode = 1, amplitude = '1 mm' }"]), &["error: beam.table.axial_force", "not stable under it"]),
+        refused(25, "springs that hold nothing", Edit(&[("[\"pinned\", \"pinned\"]", "[{ spring = \"1e-12 N/m\" }, { spring = \"1e-12 N/m\" }]")]), &["beam.table.s", "soft"]),
         refused(18, "one ratio for two frequencies", Edit(&[("damping_ratio = { mode = 1, ratio = 0.01 }", "rayleigh = { frequencies = [\"10 Hz\", \"80 Hz\"], ratios = [0.01] }")]), &["beam.table.rayleigh.ratios", "two ratios are expected, one for each frequency, got 1"]),
         refused(38, "beam in modes held along its axis", Set(&["beam.table.model=modes", "beam.table.axial=held"]), &["beam.table.model", "stretches as it deflects"]),
         refused(38, "modes of a full beam", Set(&["beam.table.modes={ count = 12 }"]), &["beam.table.modes", "goes with model = modes only"]),

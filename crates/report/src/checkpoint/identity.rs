@@ -93,7 +93,10 @@ pub(super) fn difference(then: &str, now: &str) -> String {
             None | Some("") => "nothing more".to_owned(),
             Some(line) => format!("`{line}`"),
         };
-        let place = if table.is_empty() { String::new() } else { format!(" in {table}") };
+        // A table that is there or here only, or has another name, is in none.
+        let is_header = |line: Option<&str>| line.is_some_and(|line| line.starts_with('['));
+        let outside = table.is_empty() || is_header(old) || is_header(new);
+        let place = if outside { String::new() } else { format!(" in {table}") };
         return format!("{} there, {} here{place}", shown(old), shown(new));
     }
 }
@@ -112,6 +115,16 @@ mod tests {
         assert!(here.admit(&here.clone(), Path::new("c")).is_ok());
         let step = refused(&run(1, "title = \"a\"\n\n[time]\nstep = 1\n", b"1,2", "x"));
         assert!(step.contains("`step = 1` there, `step = 2` here in [time]"), "{step}");
+        // A block of another name is not in the table before it.
+        let named = |name: &str| format!("[beam.table]\nspan = 1\n\n[block.{name}]\nat = 2\n");
+        let renamed = difference(&named("a"), &named("b"));
+        assert_eq!(renamed, "`[block.a]` there, `[block.b]` here");
+        let more = difference("[beam.table]\nspan = 1\n", &named("b"));
+        assert_eq!(more, "nothing more there, `[block.b]` here");
+        assert!(
+            difference("[time]\n\n[world]\n", "[time]\nstep = 2\n")
+                .ends_with("nothing more there, `step = 2` here in [time]")
+        );
         let text = here.text.as_str();
         assert!(refused(&run(1, text, b"1,3", "x")).contains("a file that it refers to"));
         assert!(refused(&run(1, text, b"1,2", "")).contains("(none, now x)"));

@@ -2,6 +2,7 @@
 
 use super::{Removed, Start};
 use nalgebra::Vector2;
+use teeter_beam::{Beam, DeflectionExtremes};
 use teeter_detect::Frame;
 use teeter_integrator::{Compliance, Energy, FactorError, Rows, Size, Subsystem, Weights};
 
@@ -11,9 +12,9 @@ pub(super) struct Rest {
     /// Its energy there.
     pub(super) energy: Energy,
     /// What rounding moves it by in the full model, m; 0 where its forces are 0 to the last bit.
-    trembles: f64,
-    /// Its largest deflection, m.
-    pub(super) deflection: f64,
+    pub(super) trembles: f64,
+    /// How far it is deflected, between its nodes too.
+    pub(super) shape: DeflectionExtremes,
 }
 
 /// A trembling of this part of the deflection is no longer rounding.
@@ -38,19 +39,21 @@ impl Rest {
         system.held().iter().for_each(|k| force[*k] = 0.0);
         let energy = system.energy(q, v);
         if force.iter().all(|f| *f == 0.0) && q.iter().all(|q| *q == 0.0) {
-            return Some(Self { energy, trembles: 0.0, deflection: 0.0 });
+            return Some(Self { energy, trembles: 0.0, shape: DeflectionExtremes::default() });
         }
-        if place.basis.is_some() || place.beam.is_stretched() {
+        // Below θ = ½ rounding grows from step to step.
+        if place.basis.is_some() || place.beam.is_stretched() || start.scene.time.theta < 0.5 {
             return None;
         }
-        let largest = |q: &[f64]| place.beam.to_nodes(q).iter().map(|[w, _]| w.abs()).fold(0.0, f64::max);
         place.beam.solve_static(&mut force).ok()?;
-        let (trembles, deflection) = (STEPS_ADD.max(steps as f64) * largest(&force), largest(q));
-        (trembles <= ROUNDING * deflection).then_some(Self { energy, trembles, deflection })
+        let (trembles, shape) =
+            (STEPS_ADD.max(steps as f64) * size(&place.beam, &force), place.beam.deflection_extremes(q));
+        (trembles <= ROUNDING * shape.largest()).then_some(Self { energy, trembles, shape })
     }
 
     pub(super) fn removed(&self, name: &str) -> Removed {
-        let (why, accuracy) = if self.deflection == 0.0 {
+        let deflection = self.shape.largest();
+        let (why, accuracy) = if deflection == 0.0 {
             (
                 "nothing touches, loads or drives it, and it starts undeformed at rest: no force acts on it".to_owned(),
                 None,
@@ -58,14 +61,23 @@ impl Rest {
         } else {
             (
                 format!(
-                    "nothing touches or drives it, and it starts in equilibrium, deflected by {:.3e} m: its forces are 0 to rounding",
-                    self.deflection
+                    "nothing touches or drives it, and it starts in equilibrium, deflected by {deflection:.3e} m: its forces are 0 to rounding"
                 ),
                 Some(format!("{:.1e} m: a thousand times what the rounding of its forces moves it by", self.trembles)),
             )
         };
         Removed { what: format!("beam `{name}`: its motion"), why, accuracy }
     }
+}
+
+/// What no point of a beam is moved by more than, m, across its axis or along it: from all its dofs, so that it is 0 for the straight
+/// beam alone. In an element of length l the shape functions of the two w sum to 1, those of the two rotations to l/4 at most.
+fn size(beam: &Beam, q: &[f64]) -> f64 {
+    let longest = beam.node_positions().windows(2).map(|ends| ends[1] - ends[0]).fold(0.0, f64::max);
+    let [w, rotation] =
+        beam.to_nodes(q).iter().fold([0.0_f64; 2], |[w, r], node| [w.max(node[0].abs()), r.max(node[1].abs())]);
+    let along = q[2 * beam.node_positions().len()..].iter().fold(0.0_f64, |most, u| most.max(u.abs()));
+    w + 0.25 * longest * rotation + along
 }
 
 /// A body that stays where it is: it has its places in the state, and no part in any step.

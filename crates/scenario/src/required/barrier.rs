@@ -8,7 +8,7 @@ use super::beam_bounds::BeamBounds;
 use super::reach::{By, ROUNDING, Reach};
 use super::{Limits, Pairs, Removed, Start};
 use crate::scene::{ContactScene, SchemeName, Support};
-use teeter_beam::{Axial, Beam};
+use teeter_beam::{Axial, Beam, MatrixWeights};
 use teeter_integrator::ImpactLaw;
 
 /// The proof that no block tips over, with its numbers.
@@ -18,8 +18,10 @@ pub(super) struct Barrier {
     /// Energy at the start, J.
     energy: f64,
     blocks: Vec<Well>,
-    /// Of each beam that is stood on, its largest deflection, m.
+    /// Of each beam that is stood on, its largest deflection, m, to where a step looks ahead.
     deflections: Vec<Option<f64>>,
+    /// No slope of any of them is above it.
+    steepest: f64,
 }
 
 /// A block that doesn't tip over.
@@ -129,7 +131,9 @@ impl Barrier {
         let room = (0..on.len()).map(barrier).fold(f64::INFINITY, f64::min) - energy;
         let scale = all(&|k| weight(k) * radius(k));
         let needed = if scene.time.scheme == SchemeName::MoreauJeanClosed { ROUNDING } else { LEAST_ROOM };
-        if !(room > needed * scale) {
+        // Heights count from the world's origin: where that is far off, so much of the energy is rounding.
+        let lost = ROUNDING * 1e-3 * all(&|k| weight(k) * on[k].y.abs());
+        if !(room > needed * scale + lost) {
             return None;
         }
         let room = room.min(MOST_ROOM * scale);
@@ -143,8 +147,8 @@ impl Barrier {
             energy,
             blocks: Vec::new(),
             deflections: Vec::new(),
+            steepest: 0.0,
         };
-        let mut steepest: f64 = 0.0;
         for level in &beams {
             let swing = level.as_ref().and_then(|level| Some((level, level.bounds?))).map(|(level, bounds)| {
                 // W²/2F − (Σ m g) W ≤ all that is left when the blocks are as low as the others let them.
@@ -152,14 +156,16 @@ impl Barrier {
                 let sagged = bounds.deflection * level.weight;
                 let largest = sagged + (sagged * sagged + 2.0 * bounds.deflection * left).max(0.0).sqrt();
                 let stored = (left + level.weight * largest).max(0.0);
-                steepest = steepest.max((2.0 * bounds.slope * stored).sqrt());
+                proof.steepest = proof.steepest.max((2.0 * bounds.slope * stored).sqrt());
                 // And to where a step looks ahead.
                 largest + 2.0 * start.ahead() * (2.0 * bounds.velocity * (limit - least)).sqrt()
             });
             proof.deflections.push(swing);
         }
-        // Penetration is measured along the normal.
-        proof.limits.penetration = depth / steepest.hypot(1.0);
+        // Penetration and gaps are measured along the normal.
+        let normal = proof.steepest.hypot(1.0);
+        proof.limits.penetration = depth / normal;
+        let gap = scene.time.gap_tolerance * normal;
         for (k, of) in scene.blocks.iter().enumerate() {
             let (mass, radius, alpha) = (of.mass(), radius(k), of.critical_angle());
             let inertia = mass * (of.width * of.width + of.height * of.height) / 12.0;
@@ -190,7 +196,7 @@ impl Barrier {
             let starts_in = phi.abs() <= angle;
             // Not even a single step, as fast as can be, leads across the band of angles that it hasn't the energy for.
             let stays_in = start.scene.time.step * spin < 2.0 * (alpha - angle);
-            let clear = well.upper - 2.0 * swing - depth - 2.0 * ahead > scene.time.gap_tolerance;
+            let clear = well.upper - 2.0 * swing - depth - 2.0 * ahead > gap;
             if !(starts_in && stays_in && clear && shallow) {
                 return None;
             }
@@ -218,9 +224,9 @@ impl Barrier {
         Reach { x: [x - away, x + away], y: well.low, by: By::Energy }
     }
 
-    /// The largest deflection of a beam that is stood on, m.
-    pub(super) fn deflection(&self, beam: usize) -> Option<f64> {
-        self.deflections[beam]
+    /// The largest deflection of a beam that is stood on, m, and its largest slope; without bound for others.
+    pub(super) fn swing(&self, beam: usize) -> (f64, f64) {
+        self.deflections[beam].map_or((f64::INFINITY, f64::INFINITY), |w| (w, self.steepest))
     }
 
     /// The upper corners of a contact's block.
@@ -251,7 +257,19 @@ fn conserves(start: &Start<'_>) -> bool {
         || scene.beams.iter().any(|beam| beam.motion.is_given())
         || scene.ground.as_ref().is_some_and(|ground| ground.motion.is_given());
     let weighty = scene.beams.iter().any(|beam| beam.self_weight);
-    down && !driven && !weighty && scene.forces.is_empty() && scene.loads.is_empty() && scene.time.theta >= 0.5
+    // A beam beyond its buckling load, or one under compression that may turn as a whole, has energy below that of its straight shape
+    // to give.
+    let stable = scene
+        .beams
+        .iter()
+        .zip(&start.layout.beams)
+        .all(|(of, place)| of.spec.axial_force >= 0.0 || place.beam.factor(STATIC).is_ok());
+    down && stable
+        && !driven
+        && !weighty
+        && scene.forces.is_empty()
+        && scene.loads.is_empty()
+        && scene.time.theta >= 0.5
 }
 
 /// Whether a contact's law can't give energy: an impact at once, and without restitution.
@@ -260,6 +278,9 @@ fn loses(contact: &ContactScene) -> bool {
     let at_once = matches!(law.impact, ImpactLaw::Newton | ImpactLaw::Poisson | ImpactLaw::Energetic);
     at_once && law.restitution == 0.0 && law.tangential_restitution == 0.0
 }
+
+/// The weights of a static solve.
+pub(super) const STATIC: MatrixWeights = MatrixWeights { mass: 0.0, damping: 0.0, stiffness: 1.0 };
 
 /// What is known of a beam's motion by its energy; `None` for one that this is not for, or not worth its time.
 fn bounds(start: &Start<'_>, beam: usize) -> Option<BeamBounds> {

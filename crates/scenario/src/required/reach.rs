@@ -28,8 +28,17 @@ pub(super) enum By {
     Nothing,
 }
 
-/// Of the sizes that a bound is made of, so much is added for rounding: of sums over many steps too.
+/// Of the sizes that a bound is made of, so much is added for rounding.
 pub(super) const ROUNDING: f64 = 1e-9;
+
+/// Deflection (m) and slope of a beam that may be anywhere.
+const UNBOUNDED: (f64, f64) = (f64::INFINITY, f64::INFINITY);
+
+/// Of a run of so many steps, this part of the sizes is added: sums of one step after the other round each time, and may do so in one
+/// direction.
+fn rounding(steps: u64) -> f64 {
+    ROUNDING.max(4.0 * f64::EPSILON * steps as f64)
+}
 
 impl Reach {
     pub(super) const ANYWHERE: Self =
@@ -56,7 +65,7 @@ impl Reach {
             // Where it turns back, if it does so in time.
             let turn = if g == 0.0 { 0.0 } else { (-rate / g).clamp(0.0, end) };
             let margin = start.ahead() * (v[k].abs() + g.abs() * (end + start.ahead()))
-                + ROUNDING * (q[k].abs() + v[k].abs() * end + g.abs() * end * end + extent[k]);
+                + rounding(time.steps) * (q[k].abs() + v[k].abs() * end + g.abs() * end * end + extent[k]);
             let places = [q[k], at(turn), at(end)];
             let low = places.into_iter().fold(f64::INFINITY, f64::min);
             let high = places.into_iter().fold(f64::NEG_INFINITY, f64::max);
@@ -87,12 +96,16 @@ impl Reach {
                     return false;
                 }
                 let [x, y] = beam.position;
-                let deflection = match (&rests[k], barrier) {
-                    (Some(rest), _) if !pairs.touched[k] => Some(rest.deflection),
-                    (_, Some(barrier)) => barrier.deflection(k),
-                    _ => None,
+                let (w, slope) = match (&rests[k], barrier) {
+                    (Some(rest), _) if !pairs.touched[k] => {
+                        let margin = rest.trembles + ROUNDING * rest.shape.largest();
+                        (rest.shape.highest + margin, (1.0 + ROUNDING) * rest.shape.steepest)
+                    }
+                    (_, Some(barrier)) => barrier.swing(k),
+                    _ => UNBOUNDED,
                 };
-                let above = deflection.is_some_and(|w| self.y - y - w - beam.thickness > gap);
+                // The gap is the height over the surface times the cosine of its slope.
+                let above = self.y - y - w - beam.thickness > gap * slope.hypot(1.0);
                 // An elastic axis carries the surface along.
                 let stays = !matches!(beam.spec.axial, Axial::Elastic { .. });
                 above || (stays && (self.x[1] < x || self.x[0] > x + beam.spec.span))

@@ -1,6 +1,8 @@
 //! Beams: what they are made of, how they are held and damped, where they start.
 
-use teeter_beam::{Axial, Beam, BeamError, BeamSpec, Damping, Foundation, Hold, MAX_ELEMENTS, StaticError, Support};
+use teeter_beam::{
+    Axial, Beam, BeamError, BeamSpec, Damping, Foundation, Hold, MAX_ELEMENTS, ModesError, StaticError, Support,
+};
 use teeter_integrator::WBackend;
 
 use super::Resolver;
@@ -183,13 +185,9 @@ impl Resolver<'_, '_> {
             let rule = format!("the beam can move as a rigid body, so it has no static equilibrium: {motion}");
             self.error(&start, rule, format!("{missing} (supports), or start undeformed"));
         }
-        // Under compression only, and whatever the start: beyond the buckling load the straight beam is no equilibrium.
-        if beam.spec.axial_force < 0.0
-            && let Err(error @ StaticError::Buckled { .. }) = model.solve_static(&mut vec![0.0; model.dofs()])
-        {
-            let rule = error.to_string();
-            let rule = rule.split_once(": ").map_or(rule.as_str(), |(_, rule)| rule);
-            self.error(&format!("{path}.axial_force"), rule, "tension is positive");
+        // Whatever the start. Its modes would only say the same again, of keys that are not to blame.
+        if !self.bears(&path, &model) {
+            return;
         }
         beam.shape = self.start_shape(&start, &model).unwrap_or_default();
         if let Err(BeamError::NoFrequencyEquation) = beam.spec.circular_frequency(1)
@@ -197,6 +195,48 @@ impl Resolver<'_, '_> {
         {
             beam.spec.damping.viscous = c;
         }
+    }
+
+    /// Whether the beam bears its axial force, or the error: beyond the buckling load the straight beam is no equilibrium.
+    fn bears(&mut self, path: &str, model: &Beam) -> bool {
+        if model.spec().axial_force >= 0.0 {
+            return true;
+        }
+        let Err(error @ StaticError::Buckled { .. }) = model.solve_static(&mut vec![0.0; model.dofs()]) else {
+            return true;
+        };
+        let rule = error.to_string();
+        let rule = rule.split_once(": ").map_or(rule.as_str(), |(_, rule)| rule);
+        self.error(&format!("{path}.axial_force"), rule, "tension is positive");
+        false
+    }
+
+    /// Why the modes of a beam that a key asks for can't be found: where its axial force or its springs are to blame, at their keys.
+    fn no_modes<T>(&mut self, path: &str, beam: &Beam, error: &ModesError) -> Option<T> {
+        let of = path.rsplit_once('.').map_or(path, |(beam, _)| beam);
+        let asked = format!("the modes that {path} asks for can't be found");
+        let soft = || matches!(beam.solve_static(&mut vec![0.0; beam.dofs()]), Err(StaticError::Soft));
+        if beam.spec().axial_force < 0.0 && matches!(error, ModesError::Unstable { .. } | ModesError::Factor(_)) {
+            let rule = format!("the straight beam is not stable under it: {asked}");
+            self.error(
+                &format!("{of}.axial_force"),
+                rule,
+                "tension is positive; take less compression, or leave that key out",
+            );
+        } else if soft() {
+            let rule = format!("{asked}: {}", StaticError::Soft);
+            self.error(&self.holding(of), rule, "a free end needs no spring: leave out springs that hold nothing");
+        } else {
+            self.error(path, error.to_string(), "ask for a lower mode, take fewer elements, or leave it out");
+        }
+        None
+    }
+
+    /// The key that holds a beam by springs: its ends, or else what is between them.
+    fn holding(&self, path: &str) -> String {
+        let keys = ["supports", "support", "foundation"].map(|key| format!("{path}.{key}"));
+        let given = keys.iter().find(|key| self.doc.has(key) || !self.doc.names(key).is_empty());
+        given.unwrap_or(&keys[0]).clone()
     }
 
     /// The coordinates at the start where these are of a file or a mode.
@@ -239,7 +279,7 @@ impl Resolver<'_, '_> {
                     return Some((modes.circular_frequencies()[index], modes.shape(index).to_vec()));
                 }
                 Ok(modes) => format!("the finite elements have {} elastic modes", modes.count() - modes.rigid()),
-                Err(error) => error.to_string(),
+                Err(error) => return self.no_modes(path, beam, &error),
             }
         };
         self.error(path, rule, "ask for a lower mode, or take more elements");

@@ -1,5 +1,7 @@
 //! What a model does without: a run with it gives the same numbers, and each bound holds against scenes that try to break it.
 
+mod random;
+
 use super::{ROCKING, sets};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -284,4 +286,57 @@ fn a_run_that_leaves_its_limits_shows_it() {
     let mut seen = Seen { tilts: vec![0.0], required, ..Seen::default() };
     kicked.run(&mut [&mut seen]).unwrap();
     assert!(seen.broken && seen.tilts[0] > 0.3, "{seen:?}");
+}
+
+/// Beams that are deformed between their nodes alone, or along their axis alone, are not at rest.
+#[test]
+fn a_beam_that_is_deformed_by_any_of_its_dofs_moves() {
+    let beam = |elements: usize, rest: &str| {
+        format!(
+            "[time]\nend = '20 ms'\nstep = '100 us'\n[world]\ngravity = ['9.81 m/s^2', '0 m/s^2']\n[beam.t]\nsection = 'direct'\n\
+             bending_stiffness = '0.2 N m^2'\nmass_per_length = '0.08 kg/m'\naxial_stiffness = '1 MN'\nspan = '36 cm'\nelements = {elements}\n{rest}"
+        )
+    };
+    let mode = "start = { mode = 1, amplitude = '1 mm' }\n";
+    let two_spans = format!("{mode}[beam.t.support.middle]\nat = '18 cm'\nkind = 'pinned'\n");
+    let file = "start = { file = 'shape.csv' }\n";
+    let along = "axial = 'elastic'\nself_weight = true\n";
+    for (elements, rest) in [(1, mode), (2, &two_spans), (1, file), (2, along), (3, along)] {
+        let text = beam(elements, rest);
+        let mut read = |_: &str| Ok(b"0,0,0.01\n0.36,0,0.002\n".to_vec());
+        let loaded = teeter_scenario::load_with(text.as_bytes(), "scene", "scene", &[], &mut read);
+        let scene = loaded.unwrap_or_else(|errors| panic!("{errors}")).scene;
+        let start = simulation(&scene, Extent::Required).state;
+        let seen = same(&scene);
+        assert!(seen.required.removed.is_empty(), "{text} {:#?}", seen.required.removed);
+        assert_ne!(run(&scene, Extent::Required).1.q, start.q, "{text}");
+    }
+}
+
+/// What grows from rounding is not at rest.
+#[test]
+fn an_unstable_scheme_moves_a_beam_from_its_equilibrium() {
+    let scene = scene(
+        &format!("{MATERIALS}{TABLE}self_weight = true\nstart = 'static'\n[time]\nend = '50 ms'\nstep = '1 ms'\n"),
+        &[("time.theta", "0.1"), ("time.allow_conditional_stability", "true")],
+    );
+    assert!(!has_removed(&same(&scene), "its motion"));
+}
+
+/// A beam with one element has no deflection at its nodes: the bulge of its own weight in gravity that points up is between them.
+#[test]
+fn a_block_hits_a_beam_that_bulges_between_its_nodes() {
+    let text = "[time]\nend = '0.3 s'\nstep = '100 us'\n[world]\ngravity = ['0 m/s^2', '9.81 m/s^2']\n[beam.t]\nsection = 'direct'\n\
+        bending_stiffness = '0.02 N m^2'\nmass_per_length = '0.08 kg/m'\nspan = '36 cm'\nelements = 1\nself_weight = true\n\
+        start = 'static'\n[material.a]\ndensity = '2700 kg/m^3'\n[block.b]\nmaterial = 'a'\nwidth = '2 cm'\nheight = '2 cm'\n\
+        depth = '1 cm'\nposition = ['0.18 m', '0.31 m']\nvelocity = ['0 m/s', '-2.40 m/s']\n\
+        [contact.c]\nbetween = ['b', 't']\nfriction = 0.3\n";
+    let scene = scene(text, &[]);
+    let bulge = simulation(&scene, Extent::Full);
+    let highest = bulge.layout.beams[0].beam.deflection_extremes(&bulge.state.q[3..]).highest;
+    // It turns back at 0.3 m − v²/2g over the axis.
+    let turns = 0.3 - 2.40f64.powi(2) / (2.0 * 9.81);
+    assert!(0.0 < turns && turns < highest, "{turns} {highest}");
+    let seen = same(&scene);
+    assert!(seen.required.removed.is_empty(), "{:#?}", seen.required.removed);
 }

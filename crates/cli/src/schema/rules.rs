@@ -1,0 +1,199 @@
+//! What several keys of one table have to agree on: exclusive keys, keys that need each other, keys of some words of another one.
+
+use serde_json::{Map, Value, json};
+use teeter_scenario::keys::{Key, OnlyWith, Presence, Table};
+
+/// The conditions on a table, for its `allOf`.
+pub(super) fn of(table: &Table) -> Vec<Value> {
+    let mut all: Vec<Value> = table.keys.iter().flat_map(|key| of_key(table, key)).collect();
+    all.extend(of_pattern(table.pattern));
+    all
+}
+
+/// What follows from the row of a key.
+fn of_key(table: &Table, key: &Key) -> Vec<Value> {
+    let mut all = Vec::new();
+    if let Presence::RequiredWithout(other) = key.presence {
+        all.push(at_least_one(&[key.name, other]));
+    }
+    if let Some(OnlyWith { sibling, words }) = key.only_with {
+        let needed = match key.presence {
+            Presence::Required => words,
+            Presence::RequiredWith(some) => some,
+            _ => &[],
+        };
+        all.push(json!({ "if": is_one_of(table, sibling, words), "else": without(&[key.name]) }));
+        if !needed.is_empty() {
+            all.push(json!({ "if": is_one_of(table, sibling, needed), "then": { "required": [key.name] } }));
+        }
+    }
+    all
+}
+
+/// That a key is one of some words, by its default too.
+fn is_one_of(table: &Table, name: &str, words: &[&str]) -> Value {
+    let by_default = table.key(name).is_some_and(|key| match key.presence {
+        Presence::Default(default) => words.iter().any(|word| default == format!("\"{word}\"")),
+        _ => false,
+    });
+    let is = properties([(name, json!({ "enum": words }))]);
+    if by_default { is } else { json!({ "allOf": [is, { "required": [name] }] }) }
+}
+
+fn properties<'k>(of: impl IntoIterator<Item = (&'k str, Value)>) -> Value {
+    let map: Map<String, Value> = of.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
+    json!({ "properties": map })
+}
+
+/// None of these keys.
+fn without(keys: &[&str]) -> Value {
+    properties(keys.iter().map(|key| (*key, json!(false))))
+}
+
+fn at_least_one(keys: &[&str]) -> Value {
+    json!({ "anyOf": keys.iter().map(|key| json!({ "required": [key] })).collect::<Vec<_>>() })
+}
+
+/// Not both of any two of these.
+fn at_most_one(keys: &[&str]) -> Vec<Value> {
+    let pairs = keys.iter().enumerate().flat_map(|(k, first)| keys[k + 1..].iter().map(move |second| (first, second)));
+    pairs.map(|(first, second)| json!({ "not": { "required": [first, second] } })).collect()
+}
+
+/// With the first key none of the others.
+fn excludes(key: &str, others: &[&str]) -> Value {
+    json!({ "if": { "required": [key] }, "then": without(others) })
+}
+
+/// Where the key has this value, the others keep to `then`.
+fn where_is(key: &str, value: &Value, then: &Value) -> Value {
+    json!({ "if": { "required": [key], "properties": { key: { "const": value } } }, "then": then })
+}
+
+const SHIFTS: [&str; 3] = ["displacement", "velocity", "acceleration"];
+const TURNS: [&str; 3] = ["angle", "angular_velocity", "angular_acceleration"];
+/// How the two motions of a node are held: by a word, or by the others.
+const HELD: [[&str; 3]; 2] =
+    [["deflection", "spring", "dashpot"], ["rotation", "rotational_spring", "rotational_dashpot"]];
+
+/// A support by springs: the word of a motion excludes its numbers.
+pub(super) fn of_support() -> Vec<Value> {
+    HELD.iter().map(|[word, numbers @ ..]| excludes(word, numbers)).collect()
+}
+
+/// The start of a beam: by a mode and its amplitude, or by a file.
+pub(super) fn of_start() -> Vec<Value> {
+    vec![
+        json!({ "oneOf": [{ "required": ["mode", "amplitude"] }, { "required": ["file"] }] }),
+        excludes("file", &["mode", "amplitude"]),
+    ]
+}
+
+fn motion(turns: bool) -> Vec<Value> {
+    let mut all = at_most_one(&SHIFTS);
+    let mut moved = SHIFTS.to_vec();
+    if turns {
+        all.extend(at_most_one(&TURNS));
+        moved.extend(TURNS);
+    }
+    all.push(at_least_one(&moved));
+    // `signal` is that of a turn, beside those of x and y.
+    let turned = if turns { at_least_one(&TURNS) } else { json!(false) };
+    all.push(json!({ "if": { "required": ["signal", "signals"] }, "then": turned }));
+    all
+}
+
+/// An array with this word.
+fn holds(word: &str) -> Value {
+    json!({ "contains": { "const": word } })
+}
+
+/// What the resolver asks of a table beyond the rows of its keys.
+fn of_pattern(pattern: &str) -> Vec<Value> {
+    match pattern {
+        "time" => vec![
+            where_is("scheme", &json!("moreau-jean-closed"), &properties([("theta", json!({ "const": 0.5 }))])),
+            json!({
+                "if": { "required": ["theta"], "properties": { "theta": { "exclusiveMaximum": 0.5 } } },
+                "then": { "required": ["allow_conditional_stability"], "properties": { "allow_conditional_stability": { "const": true } } },
+            }),
+        ],
+        "ground.motion" => motion(true),
+        "block.*.motion" => {
+            let mut all = motion(true);
+            all.push(json!({ "if": { "required": ["only"] }, "then": at_least_one(&SHIFTS) }));
+            all
+        }
+        "beam.*.motion" => motion(false),
+        "beam.*" => vec![
+            excludes("nodes", &["elements", "mesh"]),
+            json!({ "not": { "required": ["damping_ratio", "viscous_damping"] } }),
+            json!({ "if": { "required": ["modes"] }, "then": { "required": ["model"], "properties": { "model": { "const": "modes" } } } }),
+            where_is(
+                "model",
+                &json!("modes"),
+                &properties([
+                    ("axial", json!({ "enum": ["free", "elastic"] })),
+                    ("backend", json!({ "const": "auto" })),
+                ]),
+            ),
+            json!({
+                "if": { "required": ["surface", "section"], "properties": { "surface": { "const": "top" }, "section": { "const": "direct" } } },
+                "then": { "required": ["thickness"] },
+            }),
+            where_is(
+                "axial",
+                &json!("held"),
+                &properties([("supports", json!({ "items": { "not": { "const": "free" } } }))]),
+            ),
+            where_is("axial", &json!("elastic"), &without(&["motion"])),
+            // What nothing holds has no equilibrium, and no supports to move.
+            json!({
+                "if": { "required": ["supports"], "properties": { "supports": { "const": ["free", "free"] } } },
+                "then": { "anyOf": [
+                    { "required": ["support"] },
+                    { "required": ["foundation"] },
+                    { "properties": { "start": { "not": { "const": "static" } }, "motion": false } },
+                ] },
+            }),
+            json!({
+                "if": { "required": ["record"], "properties": { "record": { "anyOf": [holds("moment"), holds("shear"), holds("stress")] } } },
+                "then": { "required": ["probes"], "properties": { "probes": { "minItems": 1 } } },
+            }),
+        ],
+        "beam.*.rayleigh" => vec![
+            at_least_one(&["a0", "a1", "frequencies"]),
+            excludes("frequencies", &["a0", "a1"]),
+            json!({ "dependentRequired": { "frequencies": ["ratios"], "ratios": ["frequencies"] } }),
+            properties([("ratios", json!({ "minItems": 2, "maxItems": 2 }))]),
+        ],
+        "beam.*.modes" => vec![excludes("count", &["tolerance", "from", "to"])],
+        "beam.*.support.*" => {
+            let mut all = of_support();
+            all.push(excludes("kind", &HELD.concat()));
+            all.push(at_least_one(&[&["kind"], HELD.concat().as_slice()].concat()));
+            all
+        }
+        "block.*" => vec![
+            at_least_one(&["position", "on"]),
+            excludes("position", &["on", "at", "tilt"]),
+            json!({ "dependentRequired": { "on": ["at"] } }),
+        ],
+        "contact.*" => vec![properties([("between", json!({ "uniqueItems": true }))])],
+        "signal.*" => vec![
+            json!({ "not": { "required": ["frequency", "period"] } }),
+            json!({
+                "if": { "required": ["shape"], "properties": { "shape": { "enum": ["harmonic", "one-sine", "ricker"] } } },
+                "then": at_least_one(&["frequency", "period"]),
+            }),
+        ],
+        "force.*" => vec![at_least_one(&["force", "couple"])],
+        "load.*" => vec![
+            at_least_one(&["force", "couple", "distributed"]),
+            excludes("distributed", &["at", "force", "couple", "speed"]),
+            json!({ "dependentRequired": { "from": ["distributed"], "to": ["distributed"], "force": ["at"], "couple": ["at"], "speed": ["force"] } }),
+            excludes("speed", &["couple"]),
+        ],
+        _ => Vec::new(),
+    }
+}
