@@ -94,6 +94,7 @@ mod sparse;
 mod spec;
 mod statics;
 mod support;
+mod under_load;
 
 pub use basis::ModalBasis;
 pub use beam::{Beam, Dof};

@@ -206,6 +206,9 @@ impl Beam {
 
     /// Deflection and slope at x; `None` outside [0, span]. For rates give the rates of `q`.
     ///
+    /// That is the shape functions', as contacts and time steps have it. Between nodes it lacks what a load there bends its element by;
+    /// [`deflection_under`](Self::deflection_under) adds that.
+    ///
     /// # Panics
     /// If `q` has not [`Beam::dofs`] entries.
     ///

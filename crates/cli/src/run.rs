@@ -12,8 +12,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use teeter_integrator::{Ended, RunError};
 use teeter_report::{
-    CHECKPOINT, Checkpoint, EndedWord, ExportWhen, Exporter, Former, Identity, Origin, PageRecorder, Results,
-    ResultsError, RunRecorder, Summary, Watch, envelopes, figures, render,
+    CHECKPOINT, Checkpoint, ENERGY_MADE, EndedWord, ExportWhen, Exporter, Former, Identity, Origin, PageRecorder,
+    Results, ResultsError, RunRecorder, Summary, Watch, envelopes, figures, render,
 };
 use teeter_scenario::Extent;
 use teeter_scenario::decode::LARGEST_FILE;
@@ -345,6 +345,10 @@ fn is_disk_full(error: &(dyn Error + 'static)) -> bool {
 }
 
 fn conclude(console: Console, summary: &Summary, folder: &Path, resumable: bool) -> Exit {
+    // All others have been told as they came.
+    for warning in summary.warnings.iter().filter(|warning| warning.code == ENERGY_MADE) {
+        console.note(&format!("warning: {}", warning.text));
+    }
     match summary.ended {
         EndedWord::Complete => {
             console.note(&told(summary, folder));

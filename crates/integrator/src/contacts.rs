@@ -426,6 +426,11 @@ impl<const D: usize> ContactSet<D> {
         row.iter().zip(&self.p).fold(self.u_free[i], |u, (block, p)| u + block * p)
     }
 
+    /// The work Ū·p of contact `i` by the impulses, Ū the mean of U⁰ and U¹, J.
+    pub(crate) fn work(&self, i: usize) -> f64 {
+        ((self.velocity_by_impulses(i) + self.contacts[i].u_before) * 0.5).dot(&self.p[i])
+    }
+
     /// H = Σ J W Jᵀ over the subsystems; `scratch` is as long as the model's velocities.
     ///
     /// # Errors

@@ -4,18 +4,20 @@
 //! - **Poisson**: a problem of compression; then one of expansion, in which a contact parts under the normal impulse e p_C,
 //!   or stays under a larger one. Friction of an imposed normal impulse N is a standard contact too: its normal part touches
 //!   nothing and is made to be N, its tangential part is the real one.
-//! - **Energetic**: Newton's law with e scaled, for contacts that feel each other alike, by the largest f ∈ [0, 1] with
-//!   which their work Ū·p is not positive: bisection.
+//! - **Restitution that makes no energy** (`scaling.rs`): by the energetic law and by Poisson's, what is given back is scaled, for contacts
+//!   that feel each other alike, by the largest f ∈ [0, 1] with which their work Ū·p is not positive: bisection.
 //! - **Springs**: Newton's method on the force law p = φ(U¹). Its tangent, U¹ + R p = U_k + R p_k with R = −1/φ', is a standard
 //!   contact whose H_nn is larger by R; scaling its normal direction keeps the problem's size what it was. Its friction never
 //!   gives energy.
 
 mod phases;
 mod rows;
+mod scaling;
 
 use crate::Vector;
 use crate::contacts::{ContactSet, Rule, tangential};
 use rows::Row;
+use scaling::WORKLESS;
 use teeter_contact::{Block, ContactSolver, Outcome, ProblemError, Status, Stop};
 
 /// Whether a contact's approach is an impact that e sends back, not the approach that its free acceleration makes within a
@@ -44,6 +46,10 @@ pub(crate) struct Laws<const D: usize> {
     island: Vec<usize>,
     /// Of each island, by its first contact: a range that holds the largest f.
     range: Vec<[f64; 2]>,
+    /// The f of each contact's island: the part of Poisson's expansion that takes place.
+    part: Vec<f64>,
+    /// The work of each contact were nothing given back; 0 where that was not looked at.
+    unreturned: Vec<f64>,
     /// Which springs' friction can't give energy.
     guarded: Vec<bool>,
     /// Work of each island with f = 0, if positive.
@@ -51,12 +57,6 @@ pub(crate) struct Laws<const D: usize> {
     /// The shifts that the scheme asked for.
     shift: Vec<Vector<D>>,
 }
-
-/// Halvings of the range of f.
-const HALVINGS: u32 = 40;
-
-/// Work below this part of Σ‖U‖‖p‖ is rounding.
-const WORKLESS: f64 = 1e-14;
 
 impl<const D: usize> Laws<D> {
     /// Makes room for so many contacts.
@@ -73,6 +73,8 @@ impl<const D: usize> Laws<D> {
         self.parts.reserve(contacts);
         self.island.reserve(contacts);
         self.range.reserve(contacts);
+        self.part.reserve(contacts);
+        self.unreturned.reserve(contacts);
         self.floor.reserve(contacts);
         self.guarded.reserve(contacts);
         self.shift.reserve(contacts);
@@ -91,107 +93,15 @@ impl<const D: usize> Laws<D> {
         if set.rules.iter().any(|rule| matches!(rule, Rule::Poisson { .. } | Rule::Energetic)) {
             self.find_islands(set);
         }
+        self.part.clear();
+        self.part.resize(set.rules.len(), 1.0);
+        self.unreturned.clear();
+        self.unreturned.resize(set.rules.len(), 0.0);
         let outcome = self.guarded_pass(set, theta, solver, stop)?;
-        let n = set.rules.len();
-        self.range.clear();
-        self.range.resize(n, [1.0, 1.0]);
-        for i in (0..n).filter(|&i| matches!(set.rules[i], Rule::Energetic) && set.shift[i][0] != 0.0) {
-            let first = self.island[i];
-            let (work, rounding) = self.work(set, first);
-            if work > rounding {
-                self.range[first] = [0.0, 1.0];
-            }
-        }
-        if self.range.iter().all(|range| range[0] == 1.0) {
+        if !self.find_gains(set) {
             return Ok(outcome);
         }
-        self.shift.clear();
-        self.shift.extend_from_slice(&set.shift);
         Ok(join(outcome, self.scale_restitution(set, theta, solver, stop)?))
-    }
-
-    /// Finds the largest part f of restitution that makes no energy, for each island whose range says that f = 1 does.
-    ///
-    /// Beside an impact there can be contacts that give energy by themselves, as one that has sunk in and is on its way out; that
-    /// is not restitution's to pay for, so what there is with f = 0 is allowed.
-    fn scale_restitution(
-        &mut self,
-        set: &mut ContactSet<D>,
-        theta: f64,
-        solver: &mut dyn ContactSolver<D>,
-        stop: &Stop<'_>,
-    ) -> Result<Outcome, ProblemError> {
-        let n = set.rules.len();
-        self.scale_shifts(set, |_| 0.0);
-        let mut outcome = self.guarded_pass(set, theta, solver, stop)?;
-        self.floor.clear();
-        for first in 0..n {
-            let own = if self.island[first] == first { self.work(set, first).0 } else { 0.0 };
-            self.floor.push(own.max(0.0));
-        }
-        for halving in 0..=HALVINGS {
-            // At last the largest f that is known to make none.
-            let at = move |[low, high]: [f64; 2]| if halving < HALVINGS { 0.5 * (low + high) } else { low };
-            self.scale_shifts(set, at);
-            outcome = join(outcome, self.guarded_pass(set, theta, solver, stop)?);
-            for first in (0..n).filter(|&i| self.island[i] == i) {
-                let [low, high] = self.range[first];
-                if low < 1.0 {
-                    let f = at(self.range[first]);
-                    let (work, rounding) = self.work(set, first);
-                    self.range[first] = if work > self.floor[first] + rounding { [low, f] } else { [f, high] };
-                }
-            }
-        }
-        Ok(outcome)
-    }
-
-    /// Scales the normal shifts of energetic contacts by f of their island's range; f = 1 where the range is one point.
-    fn scale_shifts(&self, set: &mut ContactSet<D>, f: impl Fn([f64; 2]) -> f64) {
-        for i in 0..set.rules.len() {
-            let range = self.range[self.island[i]];
-            if matches!(set.rules[i], Rule::Energetic) && range[0] < 1.0 {
-                let mut shift = self.shift[i];
-                shift[0] *= f(range);
-                set.reshift(i, shift);
-            }
-        }
-    }
-
-    /// Contacts that feel each other through H, directly or by others.
-    fn find_islands(&mut self, set: &ContactSet<D>) {
-        let n = set.rules.len();
-        self.island.clear();
-        self.island.extend(0..n);
-        let mut changed = true;
-        while changed {
-            changed = false;
-            for i in 0..n {
-                for j in 0..n {
-                    let first = self.island[i].min(self.island[j]);
-                    let couples = set.blocks[i * n + j] != Block::<D>::zeros();
-                    if couples && (self.island[i] != first || self.island[j] != first) {
-                        (self.island[i], self.island[j]) = (first, first);
-                        changed = true;
-                    }
-                }
-            }
-        }
-    }
-
-    /// The work Ū·p of an island's contacts, Ū the mean of U⁰ and U¹ whatever θ is: that is what an impact changes of the kinetic
-    /// energy. And how much of it is rounding. Both in J.
-    fn work(&self, set: &ContactSet<D>, first: usize) -> (f64, f64) {
-        let (mut work, mut size) = (0.0, 0.0);
-        for i in (0..set.rules.len()).filter(|&i| self.island[i] == first) {
-            let (before, after) = (set.contacts()[i].u_before, set.velocity_by_impulses(i));
-            work += ((after + before) * 0.5).dot(&set.p[i]);
-            size += (after.norm() + before.norm()) * set.p[i].norm();
-            if let Rule::Spring(spring) = set.rules[i] {
-                work += spring.spring.potential(spring.gap_after(after[0])) - spring.spring.potential(spring.gap);
-            }
-        }
-        (work, WORKLESS * size)
     }
 
     /// A pass in which friction of springs doesn't give energy: where U_θ,t·p_t > 0, Coulomb's law is made to hold for U_θ,t.

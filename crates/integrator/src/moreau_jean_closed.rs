@@ -318,14 +318,15 @@ impl<const D: usize> MoreauJeanClosed<D> {
     ///
     /// The usual case is a slide that turns within the step: sticking at its end would take an impulse along the slide that
     /// was. Then either no friction, or the velocity turned about, whichever ends nearer to rest; it sticks in the next step.
+    ///
+    /// Where Poisson's law hands a blow on, what one contact gains another one has lost: there it is the sum over contacts that feel
+    /// each other that counts. The law scales what it gives back by it, so what is left is of contacts that would give energy without
+    /// any restitution, too.
     fn guard(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>) -> Result<bool, Mismatch> {
+        let n = self.guarded.len();
         let mut found = false;
-        // Poisson's law hands a blow on: what one contact gains another has lost, so it is their sum that counts.
-        let contacts = &work.contacts;
-        let instant = |i: &usize| !matches!(contacts.rules[*i], Rule::Spring(_));
-        let sum: f64 = (0..self.guarded.len()).filter(instant).map(|i| gain(contacts, i)).sum();
-        for i in 0..self.guarded.len() {
-            let contacts = &mut work.contacts;
+        for i in 0..n {
+            let (contacts, laws) = (&work.contacts, &work.laws);
             let (u_before, p) = (contacts.contacts()[i].u_before, contacts.p[i]);
             // A spring's law sees to it itself.
             if self.guarded[i] || p[0] <= 0.0 || matches!(contacts.rules[i], Rule::Spring(_)) {
@@ -335,16 +336,21 @@ impl<const D: usize> MoreauJeanClosed<D> {
             if contacts.contacts()[i].persisting && contacts.feels_drive(model, i, &state.v, &self.v_free) {
                 continue;
             }
-            let own = gain(contacts, i);
-            let gain = if matches!(contacts.rules[i], Rule::Poisson { .. }) { own.min(sum) } else { own };
-            if gain <= 0.0 {
-                continue;
-            }
             // At rest it is the free velocity whose digits are lost.
-            let speed = contacts.speed(i, &state.v).max(contacts.speed(i, &self.v_free));
-            if gain <= WORKLESS * p.norm() * speed {
+            let rounding = |i: usize| {
+                let speed = contacts.speed(i, &state.v).max(contacts.speed(i, &self.v_free));
+                WORKLESS * contacts.p[i].norm() * speed
+            };
+            let gain = if laws.handed_on(contacts, i) {
+                let allowed: f64 = (0..n).map(rounding).sum();
+                if laws.work_around(contacts, i) > allowed { laws.work_unreturned(i) } else { 0.0 }
+            } else {
+                contacts.work(i)
+            };
+            if gain <= rounding(i) {
                 continue;
             }
+            let contacts = &mut work.contacts;
             let without = contacts.without_own_friction(i);
             let mut shift = tangential(&u_before);
             if without.norm() < shift.norm() {
@@ -361,7 +367,25 @@ impl<const D: usize> MoreauJeanClosed<D> {
             self.guarded[i] = true;
             found = true;
         }
-        Ok(found)
+        Ok(found || self.stop_handing_on(state, work))
+    }
+
+    /// The last resort where contacts that hand a blow on give energy though none does by itself, as the solver finds another one of
+    /// several solutions each time: nothing is given back there. Whether it changed anything.
+    fn stop_handing_on(&self, state: &State, work: &mut Workspace<D>) -> bool {
+        let (contacts, laws) = (&work.contacts, &work.laws);
+        let n = contacts.contacts().len();
+        let allowed = |i: usize| {
+            let speed = contacts.speed(i, &state.v).max(contacts.speed(i, &self.v_free));
+            WORKLESS * contacts.p[i].norm() * speed + laws.work_unreturned(i).max(0.0)
+        };
+        let gives = |i: usize| {
+            let phased = matches!(contacts.rules[i], Rule::Poisson { .. }) && laws.handed_on(contacts, i);
+            phased && laws.work_around(contacts, i) > (0..n).map(allowed).sum::<f64>()
+        };
+        let Some(first) = (0..n).find(|&i| gives(i)) else { return false };
+        work.contacts.follow(first, Rule::Shifted);
+        true
     }
 
     /// Closes the open contacts that the attempt ends with in their surface (they are the workspace's candidates), deeper
@@ -382,12 +406,6 @@ impl<const D: usize> MoreauJeanClosed<D> {
         self.closed.sort_unstable();
         Ok(found)
     }
-}
-
-/// The work Ū·p of a contact, J.
-fn gain<const D: usize>(contacts: &ContactSet<D>, i: usize) -> f64 {
-    let mean = (contacts.velocity_by_impulses(i) + contacts.contacts()[i].u_before) * 0.5;
-    mean.dot(&contacts.p[i])
 }
 
 /// Puts restitution into the shift of a contact that closes with an impact.

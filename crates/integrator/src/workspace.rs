@@ -103,7 +103,7 @@ pub struct Workspace<const D: usize> {
     pub scratch: Vec<f64>,
     /// The work of all steps so far.
     pub counts: WorkCounts,
-    laws: Laws<D>,
+    pub(crate) laws: Laws<D>,
     /// The model that it was made for.
     model: Identity,
 }

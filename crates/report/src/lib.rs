@@ -8,6 +8,7 @@ mod checkpoint;
 mod contacts;
 mod export;
 mod lock;
+mod made_energy;
 mod number;
 mod page;
 mod recorder;
@@ -23,6 +24,7 @@ pub use checkpoint::{
     CHECKPOINT, Checkpoint, CheckpointError, Found, Identity, Moment, VERSION as CHECKPOINT_VERSION, program_hash,
 };
 pub use export::{ExportWhen, Exporter, Former, HARD, Watch};
+pub use made_energy::ENERGY_MADE;
 pub use page::{HalfCycle, PageRecorder, STYLE, escaped, figures, half_cycles, render};
 pub use recorder::{ImpactRow, Record, Recorder};
 pub use results::{FILES, Results, ResultsError};

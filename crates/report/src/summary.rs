@@ -1,5 +1,6 @@
 //! `summary.json`: the numbers of a run.
 
+use crate::made_energy;
 use crate::{BeamRecord, ImpactRow, LargestStress, ReactionRange, Record, Warning};
 use serde::Serialize;
 use teeter_integrator::{Ended, RockingMonitor, State};
@@ -307,7 +308,7 @@ impl Summary {
             horizon: None,
             ended,
             model: ModelSummary::new(scene, layout),
-            warnings: record.warnings.warnings().to_vec(),
+            warnings: record.warnings.warnings().iter().cloned().chain(made_energy::warning(scene, state)).collect(),
         }
     }
 

@@ -16,6 +16,7 @@ mod modes;
 mod reference;
 mod statics;
 mod stepping;
+mod under_load;
 
 use teeter_beam::{Beam, BeamSpec, Section, Support};
 

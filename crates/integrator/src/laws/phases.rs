@@ -29,7 +29,7 @@ impl<const D: usize> Laws<D> {
         self.take(set);
         self.given.clear();
         for i in 0..n {
-            let given = self.expands(set, i).map_or(0.0, |e| e * set.p[i][0]);
+            let given = self.expands(set, i).map_or(0.0, |e| self.part[i] * e * set.p[i][0]);
             self.given.push(given);
         }
         if self.given.iter().all(|given| *given == 0.0) {
@@ -49,7 +49,7 @@ impl<const D: usize> Laws<D> {
         let outcome = join(outcome, blow);
         for i in 0..n {
             if let (Rule::Poisson { e, .. }, true) = (set.rules[i], self.given[i] > 0.0) {
-                self.given[i] = e * self.rows[i].p[0];
+                self.given[i] = self.part[i] * e * self.rows[i].p[0];
             }
         }
         Ok(join(outcome, self.expand(set, solver, stop)?))

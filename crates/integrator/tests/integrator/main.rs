@@ -21,3 +21,4 @@ mod springs;
 mod stored;
 mod stretched;
 mod time;
+mod tipping;

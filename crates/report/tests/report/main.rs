@@ -1,6 +1,7 @@
 //! The public face of the crate.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+mod energy;
 mod memory;
 mod page;
 mod sections;

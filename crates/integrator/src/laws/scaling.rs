@@ -1,0 +1,148 @@
+//! Restitution that makes no energy: what is given back is scaled, by one f for all contacts that feel each other.
+
+use super::{Laws, join};
+use crate::contacts::{ContactSet, Rule};
+use teeter_contact::{Block, ContactSolver, Outcome, ProblemError, Stop};
+
+/// Halvings of the range of f.
+const HALVINGS: u32 = 40;
+
+/// Work below this part of Σ‖U‖‖p‖ is rounding.
+pub(super) const WORKLESS: f64 = 1e-14;
+
+impl<const D: usize> Laws<D> {
+    /// Looks for islands whose contacts gave energy in the last pass, where restitution may have done it; whether there are any.
+    pub(super) fn find_gains(&mut self, set: &ContactSet<D>) -> bool {
+        let n = set.rules.len();
+        self.range.clear();
+        self.range.resize(n, [1.0, 1.0]);
+        for i in 0..n {
+            if self.returns(set, i) {
+                let first = self.island[i];
+                let (work, rounding) = self.work(set, first);
+                if work > rounding {
+                    self.range[first] = [0.0, 1.0];
+                }
+            }
+        }
+        self.range.iter().any(|range| range[0] < 1.0)
+    }
+
+    /// Whether a contact gave something back in the last pass that can be scaled.
+    fn returns(&self, set: &ContactSet<D>, i: usize) -> bool {
+        match set.rules[i] {
+            Rule::Energetic => set.shift[i][0] != 0.0,
+            Rule::Poisson { .. } => self.given[i] > 0.0,
+            Rule::Shifted | Rule::Spring(_) => false,
+        }
+    }
+
+    /// Finds the largest part f of restitution that makes no energy, for each island whose range says that f = 1 does.
+    ///
+    /// Beside an impact there can be contacts that give energy by themselves, as one that has sunk in and is on its way out; that
+    /// is not restitution's to pay for, so what there is with f = 0 is allowed.
+    pub(super) fn scale_restitution(
+        &mut self,
+        set: &mut ContactSet<D>,
+        theta: f64,
+        solver: &mut dyn ContactSolver<D>,
+        stop: &Stop<'_>,
+    ) -> Result<Outcome, ProblemError> {
+        let n = set.rules.len();
+        self.shift.clear();
+        self.shift.extend_from_slice(&set.shift);
+        self.scale(set, |_| 0.0);
+        let mut outcome = self.guarded_pass(set, theta, solver, stop)?;
+        self.floor.clear();
+        for first in 0..n {
+            let own = if self.island[first] == first { self.work(set, first).0 } else { 0.0 };
+            self.floor.push(own.max(0.0));
+        }
+        for i in (0..n).filter(|&i| self.range[self.island[i]][0] < 1.0) {
+            self.unreturned[i] = set.work(i);
+        }
+        for halving in 0..=HALVINGS {
+            // At last the largest f that is known to make none.
+            let at = move |[low, high]: [f64; 2]| if halving < HALVINGS { 0.5 * (low + high) } else { low };
+            self.scale(set, at);
+            outcome = join(outcome, self.guarded_pass(set, theta, solver, stop)?);
+            for first in (0..n).filter(|&i| self.island[i] == i) {
+                let [low, high] = self.range[first];
+                if low < 1.0 {
+                    let f = at(self.range[first]);
+                    let (work, rounding) = self.work(set, first);
+                    self.range[first] = if work > self.floor[first] + rounding { [low, f] } else { [f, high] };
+                }
+            }
+        }
+        Ok(outcome)
+    }
+
+    /// Scales what is given back by f of each island's range; f = 1 where the range is one point.
+    fn scale(&mut self, set: &mut ContactSet<D>, f: impl Fn([f64; 2]) -> f64) {
+        for i in 0..set.rules.len() {
+            let range = self.range[self.island[i]];
+            if range[0] < 1.0 {
+                self.part[i] = f(range);
+                if matches!(set.rules[i], Rule::Energetic) {
+                    let mut shift = self.shift[i];
+                    shift[0] *= self.part[i];
+                    set.reshift(i, shift);
+                }
+            }
+        }
+    }
+
+    /// Contacts that feel each other through H, directly or by others.
+    pub(super) fn find_islands(&mut self, set: &ContactSet<D>) {
+        let n = set.rules.len();
+        self.island.clear();
+        self.island.extend(0..n);
+        let mut changed = true;
+        while changed {
+            changed = false;
+            for i in 0..n {
+                for j in 0..n {
+                    let first = self.island[i].min(self.island[j]);
+                    let couples = set.blocks[i * n + j] != Block::<D>::zeros();
+                    if couples && (self.island[i] != first || self.island[j] != first) {
+                        (self.island[i], self.island[j]) = (first, first);
+                        changed = true;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Whether the contacts that contact `i` feels gave something back in two phases, in the last solve. What one of them gains
+    /// another one may have handed on then, so it is their sum that counts.
+    pub(crate) fn handed_on(&self, set: &ContactSet<D>, i: usize) -> bool {
+        let given = |j: usize| matches!(set.rules[j], Rule::Poisson { .. }) && self.given[j] > 0.0;
+        (0..set.rules.len()).any(|j| given(j) && self.island[j] == self.island[i])
+    }
+
+    /// The work Ū·p of the contacts that contact `i` feels, itself among them, J; only after [`Laws::handed_on`] said so.
+    pub(crate) fn work_around(&self, set: &ContactSet<D>, i: usize) -> f64 {
+        self.work(set, self.island[i]).0
+    }
+
+    /// The work Ū·p of contact `i` had none of those that it feels given anything back, J; 0 where they gave no energy.
+    pub(crate) fn work_unreturned(&self, i: usize) -> f64 {
+        self.unreturned[i]
+    }
+
+    /// The work Ū·p of an island's contacts, Ū the mean of U⁰ and U¹ whatever θ is: that is what an impact changes of the kinetic
+    /// energy. And how much of it is rounding. Both in J.
+    fn work(&self, set: &ContactSet<D>, first: usize) -> (f64, f64) {
+        let (mut work, mut size) = (0.0, 0.0);
+        for i in (0..set.rules.len()).filter(|&i| self.island[i] == first) {
+            let (before, after) = (set.contacts()[i].u_before, set.velocity_by_impulses(i));
+            work += ((after + before) * 0.5).dot(&set.p[i]);
+            size += (after.norm() + before.norm()) * set.p[i].norm();
+            if let Rule::Spring(spring) = set.rules[i] {
+                work += spring.spring.potential(spring.gap_after(after[0])) - spring.spring.potential(spring.gap);
+            }
+        }
+        (work, WORKLESS * size)
+    }
+}

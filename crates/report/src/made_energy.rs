@@ -1,0 +1,75 @@
+//! The warning that contacts made energy, and what to take instead.
+
+use crate::Warning;
+use teeter_integrator::{Ledger, State};
+use teeter_scenario::scene::{Scene, SchemeName};
+
+/// The kind of the warning that contacts made energy: it is known at the end of a run, and in its summary only.
+pub const ENERGY_MADE: &str = "energy-made";
+
+/// From this part of the energy scale or of the energy lost on, energy made at contacts is a warning.
+const PART: f64 = 0.01;
+
+/// Energy made below this part of the energy scale is none to speak of, however little is lost.
+const NOTHING: f64 = 1e-6;
+
+/// The warning of a run that made energy at its contacts: at least 1 % of the energy scale, or of the energy lost.
+pub(crate) fn warning(scene: &Scene, state: &State) -> Option<Warning> {
+    let ledger = &state.ledger;
+    let (made, lost) = (ledger.positive_contact_work, lost(ledger));
+    // Also false for NaN.
+    let much = made.sum >= PART * ledger.scale.min(lost) && made.sum > NOTHING * ledger.scale;
+    much.then(|| Warning { code: ENERGY_MADE.into(), count: 1, first_t: None, text: text(scene, ledger, lost) })
+}
+
+/// What contacts, friction, damping and the scheme took from the bodies, J.
+fn lost(ledger: &Ledger) -> f64 {
+    let sum = &ledger.sum;
+    let contacts = ledger.positive_contact_work.sum - (sum.contact + sum.friction);
+    contacts.max(0.0) + (-sum.viscous).max(0.0) + (-sum.numerical).max(0.0)
+}
+
+fn text(scene: &Scene, ledger: &Ledger, lost: f64) -> String {
+    let made = ledger.positive_contact_work;
+    let steps = if made.steps == 1 { "1 step".to_owned() } else { format!("{} steps", made.steps) };
+    let of_lost = if lost > 0.0 {
+        format!("{} of the {lost:.2e} J that were lost", percent(made.sum / lost))
+    } else {
+        "nothing was lost".to_owned()
+    };
+    format!(
+        "contacts made {:.2e} J of energy in {steps}, {:.2e} J in the one that made most: {of_lost}, {} of the scene's energy \
+         scale of {:.2e} J; no contact does that: the energy of the motion is off by as much; {}",
+        made.sum,
+        made.largest,
+        percent(made.sum / ledger.scale),
+        ledger.scale,
+        remedy(scene)
+    )
+}
+
+fn percent(part: f64) -> String {
+    let percent = 100.0 * part;
+    if percent < 0.1 {
+        "less than 0.1 %".to_owned()
+    } else if percent < 10.0 {
+        format!("{percent:.1} %")
+    } else {
+        format!("{percent:.0} %")
+    }
+}
+
+/// What to take instead. The closed scheme's contacts make none; that a shorter step or the energetic law helps in the other one could not be
+/// found (`docs/schemes.md`, "Energy made").
+fn remedy(scene: &Scene) -> String {
+    match scene.time.scheme {
+        SchemeName::MoreauJeanClosed => "take a shorter step (`time.step`)".to_owned(),
+        _ => {
+            let theta = if scene.time.theta == 0.5 { "" } else { " and `theta = 0.5`" };
+            format!(
+                "take `time.scheme = \"{}\"`{theta}, whose contacts make none; a shorter step of this scheme can make more",
+                SchemeName::MoreauJeanClosed.word()
+            )
+        }
+    }
+}

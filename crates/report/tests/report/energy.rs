@@ -1,0 +1,81 @@
+//! Energy that contacts make is warned of, and what the warning says to take makes none.
+
+use std::fs;
+use std::path::Path;
+use teeter_report::{ENERGY_MADE, EndedWord, Record, Summary};
+use teeter_scenario::simulation::Simulation;
+
+/// The summary of a run in memory.
+fn summary(text: &[u8], folder: &Path, sets: &[&str]) -> Summary {
+    let pair = |set: &&str| set.split_once('=').map(|(key, value)| (key.to_owned(), value.to_owned()));
+    let sets: Vec<(String, String)> = sets.iter().filter_map(pair).collect();
+    let mut read = |file: &str| fs::read(folder.join(file)).map_err(|error| error.to_string());
+    let resolved = teeter_scenario::load_with(text, "scene.toml", "scene", &sets, &mut read).unwrap();
+    let mut simulation = Simulation::new(&resolved.scene).unwrap();
+    let ended = simulation.run(&mut []).unwrap();
+    let (layout, state) = (&simulation.layout, &simulation.state);
+    Summary::new(&resolved.scene, layout, state, &Record::default(), EndedWord::from(&ended), 0.0)
+}
+
+fn warning(summary: &Summary) -> Option<&str> {
+    summary.warnings.iter().find(|warning| warning.code == ENERGY_MADE).map(|warning| warning.text.as_str())
+}
+
+/// Warned of with `sets`; and not with the scheme that the warning names.
+fn warns(text: &[u8], folder: &Path, sets: &[&str]) {
+    let made = summary(text, folder, sets);
+    let Some(told) = warning(&made) else { panic!("{sets:?}: {:?}", made.energy) };
+    assert!(told.contains("`time.scheme = \"moreau-jean-closed\"`"), "{told}");
+    let work = made.energy.positive_contact_work;
+    for number in [work.sum, work.largest] {
+        assert!(told.contains(&format!("{number:.2e} J")), "{told}");
+    }
+    let closed = [sets, &["time.scheme=moreau-jean-closed"]].concat();
+    let without = summary(text, folder, &closed);
+    assert_eq!(warning(&without), None, "{sets:?}");
+    let left = without.energy.positive_contact_work.sum;
+    assert!(left <= 1e-4 * work.sum, "{sets:?}: still {left:e} J of {:e} J", work.sum);
+}
+
+#[test]
+fn energy_made_in_impacts_with_friction_is_warned_of() {
+    for law in ["newton", "poisson"] {
+        for mu in ["0.5", "1000"] {
+            let sets = [format!("contact.a.law={law}"), format!("contact.b.law={law}")];
+            let friction = [format!("contact.a.friction={mu}"), format!("contact.b.friction={mu}")];
+            let sets: Vec<&str> = sets.iter().chain(&friction).map(String::as_str).collect();
+            warns(include_bytes!("two-blocks.toml"), Path::new("."), &sets);
+        }
+    }
+}
+
+#[allow(clippy::print_stderr)]
+fn skip(name: &str) {
+    eprintln!("skipped: {name}.toml is not here");
+}
+
+/// The scenes in which the trial found it.
+#[test]
+fn energy_made_by_the_scheme_is_warned_of() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/scenes");
+    for (name, end) in [("timber-two-span", "0.5 s"), ("shaken-supports", "1 s")] {
+        let Ok(text) = fs::read(folder.join(format!("{name}.toml"))) else {
+            skip(name);
+            continue;
+        };
+        let end = format!("time.end={end}");
+        warns(&text, &folder, &[&end]);
+    }
+}
+
+/// At their own settings: far below 1 % of the loss, or nothing.
+#[test]
+fn scenarios_that_make_none_are_not_warned_of() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
+    for name in
+        ["drop", "sliding", "incline", "pushed-block", "compliant-drop", "free-rocking-on-ground", "shaken-ground"]
+    {
+        let text = fs::read(folder.join(format!("{name}.toml"))).unwrap();
+        assert_eq!(warning(&summary(&text, &folder, &[])), None, "{name}");
+    }
+}
