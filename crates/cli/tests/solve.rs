@@ -219,11 +219,12 @@ fn wrong_words_are_refused_with_what_would_be_right() {
 fn a_solver_that_fails_is_a_row_and_no_failure_of_the_program() {
     let folder = folder("row");
     chain::<2>(4).write(folder.join("four.hdf5")).unwrap();
-    let arguments = ["solve", "four.hdf5", "--json", "--time-limit", "200 ms", "--solver", "enumeration", "pgs"];
+    chain::<2>(6).write(folder.join("six.hdf5")).unwrap();
+    let arguments = ["solve", "six.hdf5", "--json", "--time-limit", "200 ms", "--solver", "enumeration", "pgs"];
     let output = teeter(&folder, &arguments);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     let rows = rows(&output);
-    // Enumeration takes up to three contacts.
+    // Enumeration takes up to five contacts.
     assert_eq!((&rows[0]["outcome"], &rows[1]["outcome"]), (&"breakdown".into(), &"converged".into()));
     // A tolerance that no double reaches: stalled, out of time, but never converged.
     let output = teeter(

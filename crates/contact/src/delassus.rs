@@ -58,6 +58,27 @@ impl<const D: usize> Delassus<'_, D> {
             Self::Operator(h) => h.row_product(i, p),
         }
     }
+
+    /// `Σ_j ‖H_ij,T‖ ‖p_j‖` over the tangential rows of contact `i`, and how many numbers its sum has: what rounding of the
+    /// tangential part of [`Self::row_product`] is measured by. Of an operator that is given by what it does, the product stands for the blocks that
+    /// can't be seen.
+    pub(crate) fn tangential_size(&self, i: usize, p: &[Vector<D>]) -> (f64, usize) {
+        let of = |h: &Block<D>, p: &Vector<D>| {
+            let rows: f64 = (1..D).map(|r| (0..D).map(|c| (h[(r, c)] * p[c]).abs()).sum::<f64>()).sum();
+            rows
+        };
+        match self {
+            Self::Dense(blocks) => {
+                let row = &blocks[i * p.len()..(i + 1) * p.len()];
+                (row.iter().zip(p).map(|(h, p)| of(h, p)).sum(), D * p.len())
+            }
+            Self::Blocks(h) => (h.row(i).map(|(j, h)| of(h, &p[j])).sum(), D * h.range(i).len()),
+            Self::Operator(h) => {
+                let others = h.row_product(i, p) - h.diagonal(i) * p[i];
+                (of(&h.diagonal(i), &p[i]) + others.iter().skip(1).map(|c| c.abs()).sum::<f64>(), D * p.len())
+            }
+        }
+    }
 }
 
 /// A block-sparse matrix by rows (BSR): the columns of a row ascend, the diagonal block is always present.

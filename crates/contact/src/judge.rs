@@ -1,6 +1,6 @@
 //! The one judge of a solution: the scaled residual of the natural map.
 
-use crate::cone::{de_saxce, project};
+use crate::cone::{de_saxce, project, tangential_norm};
 use crate::{ContactProblem, Vector};
 
 /// How far impulses are from solving a contact problem; 0 is exact. Both numbers are without unit.
@@ -17,11 +17,23 @@ pub struct Residual {
 /// The floor of a scale, so that the residual of "nothing moves, nothing presses" is 0, not 0/0.
 const SCALE_FLOOR: f64 = 1e-300;
 
+/// Above this coefficient of friction, rounding of a sticking contact's velocity is not taken for slip. Below it, it
+/// doesn't show: 1e3 times some rounding errors are less than any tolerance that makes sense.
+const MUCH_FRICTION: f64 = 1e3;
+
+/// Rounding of a velocity is at most so much of the terms that it is the sum of, for each of them: what the sum and a solver's
+/// elimination leave.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
 /// Judges `p` against the exact Coulomb law, whatever a solver minimised inside (`docs/theory.md` §6):
 ///
 /// ```text
 /// err(p) = ‖p − Π_{K_μ}(p − ρ û)‖ / max(‖p‖, ρ‖q‖, 1e-300),   ρ = 1/mean(diag H)
 /// ```
+///
+/// With friction beyond 1e3 the shift μ‖u_T‖ of û would magnify the rounding of a sticking contact's velocity (at 1e7 to 1e-9 of the
+/// whole): there, what rounding makes of ‖u_T‖ is left out of the shift. In other words, of all velocities within rounding of
+/// H p + q the one that slips least is judged. A slip beyond rounding counts as ever.
 ///
 /// # Panics
 /// If `p` doesn't hold one impulse a contact: a mistake of the calling code.
@@ -55,7 +67,8 @@ fn judge_with<const D: usize>(
     let (mut p_norm, mut q_norm, mut map_norm) = (0.0, 0.0, 0.0);
     for i in 0..p.len() {
         let (mu, q) = (problem.mu()[i], problem.q()[i]);
-        let u_hat = de_saxce(&velocity(i), mu);
+        let u = velocity(i);
+        let u_hat = if mu > MUCH_FRICTION { shifted_beyond_rounding(problem, i, p, &u) } else { de_saxce(&u, mu) };
         let map = |rho: f64| p[i] - project(&(p[i] - u_hat * rho), mu);
         p_norm += p[i].norm_squared();
         q_norm += q.norm_squared();
@@ -76,6 +89,25 @@ fn judge_with<const D: usize>(
     residual.worst = residual.worst.sqrt();
     residual.global = map_norm.sqrt() / p_norm.sqrt().max(rho * q_norm.sqrt()).max(SCALE_FLOOR);
     residual
+}
+
+/// û with the shift of the part of ‖u_T‖ that rounding can't have made.
+#[cold]
+fn shifted_beyond_rounding<const D: usize>(
+    problem: &ContactProblem<'_, D>,
+    i: usize,
+    p: &[Vector<D>],
+    u: &Vector<D>,
+) -> Vector<D> {
+    let (size, terms) = problem.delassus().tangential_size(i, p);
+    let rounding = ROUNDING * (terms + 1) as f64 * (size + tangential_norm(&problem.q()[i]));
+    let slip = tangential_norm(u) - rounding;
+    let mut shifted = *u;
+    // Written so that a NaN stays one.
+    if !(slip <= 0.0) {
+        shifted[0] += problem.mu()[i] * slip;
+    }
+    shifted
 }
 
 #[cfg(test)]
@@ -128,5 +160,28 @@ mod tests {
         let p = [Vector2::new(1e6, 0.0), Vector2::zeros()];
         let r = judge(&ContactProblem::new(Delassus::Dense(&h), &q, &[0.3, 0.3]).unwrap(), &p);
         assert!(r.global < 1e-9 && r.worst > 0.9 && r.worst_contact == 1);
+    }
+
+    #[test]
+    fn rounding_of_a_sticking_contact_is_no_slip_however_much_friction() {
+        // One third is no double, so neither is the velocity quite zero.
+        let h = [Matrix2::new(2.0, 0.3, 0.3, 1.0 / 3.0)];
+        let q = [Vector2::new(-1.0, 0.7)];
+        let p = h[0].lu().solve(&-q[0]).unwrap();
+        for mu in [1e2, 1e4, 1e7, 1e12, 1e300] {
+            let residual = |q: Vector2<f64>, p: Vector2<f64>| {
+                judge(&ContactProblem::new(Delassus::Dense(&h), &[q], &[mu]).unwrap(), &[p]).global
+            };
+            // Wherever the last digits lie.
+            for k in -8..8 {
+                let near = Vector2::new(p[0], p[1] * (1.0 + f64::from(k) * 0.5 * f64::EPSILON));
+                assert!(residual(q[0], near) < 1e-10, "{mu:e}: {:e}", residual(q[0], near));
+            }
+            // A slip of 1e-9 of the problem's speed is one, as ever; and so are the other faults.
+            let slips = residual(q[0] + Vector2::new(0.0, 1e-9), p);
+            assert!(slips > 1e-10 && slips > 1e-10 * mu.min(1e8), "{mu:e}: {slips:e}");
+            assert!(residual(q[0] - Vector2::new(1e-3, 0.0), p) > 1e-4, "{mu:e}: penetrates");
+            assert!(residual(Vector2::new(1.0, 0.0), Vector2::new(0.2, 0.0)) > 0.1, "{mu:e}: pulls while open");
+        }
     }
 }

@@ -2,15 +2,22 @@
 //!
 //! Contacts that don't feel each other (blocks that stand apart on the ground) are problems of their own: a dense problem is
 //! split along the zero blocks of H. Up to three plane contacts are enumerated; the rest goes along a chain (`chain.rs`)
-//! of methods until the judge is satisfied.
+//! of methods until the judge is satisfied. If it never is, four and five plane contacts are enumerated too: that takes
+//! milliseconds, but it has the solution if there is one.
 
 use crate::Enumeration;
 use crate::chain::Chain;
+use crate::enumeration::{FEW, MAX_CONTACTS};
 use crate::memory::reserve;
+use crate::pairs::Small;
 use teeter_contact::{Block, ContactProblem, ContactSolver, Delassus, Law, Outcome, Status, Stop, Vector, judge};
 
-/// An exact method for a few contacts: what it found, if the judge is satisfied.
-type Small<const D: usize> = fn(&ContactProblem<'_, D>, &Stop<'_>, &mut [Vector<D>]) -> Option<Outcome>;
+/// The exact methods of a dimension: for parts of a few contacts, and for those that the chain doesn't solve.
+#[derive(Clone, Copy)]
+struct Exact<const D: usize> {
+    first: Small<D>,
+    last: Small<D>,
+}
 
 /// The solver that chooses; see the [crate's table](crate). `used` of the outcome says which method gave the result;
 /// `iterations` are those of all methods tried; of a
@@ -73,7 +80,7 @@ impl<const D: usize> Auto<D> {
         problem: &ContactProblem<'_, D>,
         blocks: &[Block<D>],
         part: usize,
-        small: Small<D>,
+        exact: Exact<D>,
         stop: &Stop<'_>,
         all: &mut [Vector<D>],
     ) -> Option<Outcome> {
@@ -91,9 +98,9 @@ impl<const D: usize> Auto<D> {
             self.p.push(all[i]);
         }
         let own = ContactProblem::new(Delassus::Dense(&self.h), &self.q, &self.mu).ok()?;
-        let outcome = match small(&own, stop, &mut self.p) {
+        let outcome = match (exact.first)(&own, stop, &mut self.p) {
             Some(outcome) => outcome,
-            None => self.chain.solve(&own, stop, &mut self.p),
+            None => along(&mut self.chain, exact, &own, stop, &mut self.p),
         };
         for (&i, p) in self.members.iter().zip(&self.p) {
             all[i] = *p;
@@ -104,22 +111,24 @@ impl<const D: usize> Auto<D> {
     fn solve_with(
         &mut self,
         problem: &ContactProblem<'_, D>,
-        small: Small<D>,
+        exact: Exact<D>,
         stop: &Stop<'_>,
         p: &mut [Vector<D>],
     ) -> Outcome {
-        if let Some(outcome) = small(problem, stop, p) {
+        if let Some(outcome) = (exact.first)(problem, stop, p) {
             return outcome;
         }
         let n = problem.contacts();
-        let Delassus::Dense(blocks) = problem.delassus() else { return self.chain.solve(problem, stop, p) };
+        let Delassus::Dense(blocks) = problem.delassus() else {
+            return along(&mut self.chain, exact, problem, stop, p);
+        };
         let parts = self.split(blocks, n);
         if parts <= 1 {
-            return self.chain.solve(problem, stop, p);
+            return along(&mut self.chain, exact, problem, stop, p);
         }
         let (mut used, mut iterations) = (Enumeration::NAME, 0);
         for part in 0..parts {
-            let Some(outcome) = self.solve_part(problem, blocks, part, small, stop, p) else { continue };
+            let Some(outcome) = self.solve_part(problem, blocks, part, exact, stop, p) else { continue };
             iterations = iterations.max(outcome.iterations);
             if outcome.used != Enumeration::NAME {
                 used = outcome.used;
@@ -131,7 +140,7 @@ impl<const D: usize> Auto<D> {
             return Outcome::new(Status::Converged, used, iterations, residual);
         }
         let rest = Stop { max_iterations: stop.max_iterations.saturating_sub(iterations), ..*stop };
-        let mut outcome = self.chain.solve(problem, &rest, p);
+        let mut outcome = self.chain.solve(problem, exact.first, &rest, p);
         outcome.iterations = outcome.iterations.saturating_add(iterations);
         outcome
     }
@@ -149,6 +158,45 @@ impl<const D: usize> Auto<D> {
     }
 }
 
+/// The chain, and if it fails the exact method.
+fn along<const D: usize>(
+    chain: &mut Chain<D>,
+    exact: Exact<D>,
+    problem: &ContactProblem<'_, D>,
+    stop: &Stop<'_>,
+    p: &mut [Vector<D>],
+) -> Outcome {
+    let outcome = chain.solve(problem, exact.first, stop, p);
+    if outcome.converged() || stop.cancelled() {
+        return outcome;
+    }
+    match (exact.last)(problem, stop, p) {
+        Some(mut found) => {
+            found.iterations = found.iterations.saturating_add(outcome.iterations);
+            found
+        }
+        None => outcome,
+    }
+}
+
+/// Enumerates `p.len()` contacts, if they are in the range; leaves `p` as it is if the judge isn't satisfied.
+fn enumerate(
+    range: std::ops::RangeInclusive<usize>,
+    problem: &ContactProblem<'_, 2>,
+    stop: &Stop<'_>,
+    p: &mut [Vector<2>],
+) -> Option<Outcome> {
+    if !range.contains(&p.len()) {
+        return None;
+    }
+    let mut found = [Vector::<2>::zeros(); MAX_CONTACTS];
+    let found = found.get_mut(..p.len())?;
+    found.copy_from_slice(p);
+    let outcome = Some(Enumeration.solve(problem, stop, found)).filter(Outcome::converged)?;
+    p.copy_from_slice(found);
+    Some(outcome)
+}
+
 impl ContactSolver<2> for Auto<2> {
     fn name(&self) -> &'static str {
         Self::NAME
@@ -163,11 +211,11 @@ impl ContactSolver<2> for Auto<2> {
     }
 
     fn solve(&mut self, problem: &ContactProblem<'_, 2>, stop: &Stop<'_>, p: &mut [Vector<2>]) -> Outcome {
-        let enumerate: Small<2> = |problem, stop, p| {
-            let few = p.len() <= Enumeration::MAX_CONTACTS;
-            few.then(|| Enumeration.solve(problem, stop, p)).filter(Outcome::converged)
+        let first: Small<2> = |problem, stop, p| {
+            (p.len() <= FEW).then(|| Enumeration.solve(problem, stop, p)).filter(Outcome::converged)
         };
-        self.solve_with(problem, enumerate, stop, p)
+        let last: Small<2> = |problem, stop, p| enumerate(FEW + 1..=MAX_CONTACTS, problem, stop, p);
+        self.solve_with(problem, Exact { first, last }, stop, p)
     }
 
     fn fork(&self) -> Box<dyn ContactSolver<2>> {
@@ -189,7 +237,7 @@ impl ContactSolver<3> for Auto<3> {
     }
 
     fn solve(&mut self, problem: &ContactProblem<'_, 3>, stop: &Stop<'_>, p: &mut [Vector<3>]) -> Outcome {
-        self.solve_with(problem, |_, _, _| None, stop, p)
+        self.solve_with(problem, Exact { first: |_, _, _| None, last: |_, _, _| None }, stop, p)
     }
 
     fn fork(&self) -> Box<dyn ContactSolver<3>> {

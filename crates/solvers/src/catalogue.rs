@@ -36,7 +36,7 @@ pub const SOLVERS: &[SolverInfo] = &[
         name: Enumeration::NAME,
         dimensions: &[2],
         law: Law::Exact,
-        summary: "all contact states, exactly; up to three contacts",
+        summary: "all contact states, exactly; up to five contacts",
         reference: "Klarbring 1990, doi 10.1007/BF00534316",
     },
     SolverInfo {

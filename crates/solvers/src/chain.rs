@@ -2,12 +2,13 @@
 //!
 //! 1. **Gauss–Seidel** ([`Pgs`]): some sweeps, and more as long as the rate at which the residual falls says that it arrives before Newton
 //!    would.
-//! 2. **Alternating directions** ([`Admm`](crate::Admm), feature `sparse`) where rows of H are long: factors fill in there, and this takes
+//! 2. **Pairs** (`pairs.rs`): where that left little, but contacts hold a body twice, sweeps over pairs of them.
+//! 3. **Alternating directions** ([`Admm`](crate::Admm), feature `sparse`) where rows of H are long: factors fill in there, and this takes
 //!    one or two where Newton takes ten.
-//! 3. **Semi-smooth Newton** ([`Newton`]): a round of steps from there; where they fail, more sweeps for about the same
+//! 4. **Semi-smooth Newton** ([`Newton`]): a round of steps from there; where they fail, more sweeps for about the same
 //!    work, and another round, a few times.
-//! 4. **The central path** ([`Smoothing`]): for what is degenerate.
-//! 5. **The proximal point** ([`Prox`]), Newton with more sweeps between its steps, and sweeps until the iterations run out.
+//! 5. **The central path** ([`Smoothing`]): for what is degenerate.
+//! 6. **The proximal point** ([`Prox`]), Newton with more sweeps between its steps, and sweeps until the iterations run out.
 //!
 //! What decides is counted work (blocks, block products), never time: the same problem takes the same way on every machine.
 //!
@@ -18,6 +19,7 @@
 use crate::Admm;
 use crate::ending::ended;
 use crate::memory::reserve;
+use crate::pairs::{Pairs, Small};
 use crate::{Newton, Pgs, Prox, Smoothing};
 #[cfg(feature = "sparse")]
 use teeter_contact::Delassus;
@@ -31,6 +33,8 @@ const FIRST: u32 = 12;
 /// Rounds of Newton steps, each after a batch of sweeps; and for each, the work in Newton steps within which Gauss–Seidel must
 /// be expected to arrive to go on instead. After the last round comes the central path, which takes tens of steps.
 const WORTH: [f64; 4] = [4.0, 8.0, 16.0, 40.0];
+/// Impulses that are right to this residual after the first sweeps may want sweeps over pairs.
+const NEARLY: f64 = 1e-4;
 /// Work of a Newton step and of a sweep in one measure (times a block product): per block of the factors and per contact. Measured
 /// on the published problems; a factor of two either way changes no choice among them that matters.
 const STEP_BLOCK: f64 = 1.3;
@@ -49,6 +53,7 @@ const DIRECTIONS: u32 = 300;
 #[derive(Debug, Default)]
 pub(crate) struct Chain<const D: usize> {
     pgs: Pgs<D>,
+    pairs: Pairs<D>,
     #[cfg(feature = "sparse")]
     admm: Admm<D>,
     newton: Newton<D>,
@@ -94,6 +99,7 @@ impl Progress {
 impl<const D: usize> Chain<D> {
     pub(crate) fn reserve(&mut self, contacts: usize, blocks: usize) {
         self.pgs.reserve(contacts, blocks);
+        self.pairs.reserve(contacts);
         #[cfg(feature = "sparse")]
         self.admm.reserve(contacts, blocks);
         self.newton.reserve(contacts, blocks);
@@ -102,8 +108,15 @@ impl<const D: usize> Chain<D> {
         reserve(&mut self.best, contacts);
     }
 
-    pub(crate) fn solve(&mut self, problem: &ContactProblem<'_, D>, stop: &Stop<'_>, p: &mut [Vector<D>]) -> Outcome {
-        let mut outcome = self.approach(problem, stop, p);
+    /// `small` solves a few contacts exactly.
+    pub(crate) fn solve(
+        &mut self,
+        problem: &ContactProblem<'_, D>,
+        small: Small<D>,
+        stop: &Stop<'_>,
+        p: &mut [Vector<D>],
+    ) -> Outcome {
+        let mut outcome = self.approach(problem, small, stop, p);
         if outcome.converged() && p.len() <= SMALL && outcome.residual.global > POLISHED {
             self.best.clear();
             self.best.extend_from_slice(p);
@@ -121,10 +134,22 @@ impl<const D: usize> Chain<D> {
         outcome
     }
 
-    fn approach(&mut self, problem: &ContactProblem<'_, D>, stop: &Stop<'_>, p: &mut [Vector<D>]) -> Outcome {
+    fn approach(
+        &mut self,
+        problem: &ContactProblem<'_, D>,
+        small: Small<D>,
+        stop: &Stop<'_>,
+        p: &mut [Vector<D>],
+    ) -> Outcome {
         let within = |left: u32, most: u32| Stop { max_iterations: left.min(most), ..*stop };
         let first = self.pgs.solve(problem, &within(stop.max_iterations, FIRST), p);
         let mut progress = Progress { best: first, iterations: first.iterations };
+        if !progress.over(stop)
+            && first.residual.global < NEARLY
+            && let Some(outcome) = self.pairs.solve(problem, small, &within(progress.left(stop), u32::MAX), p)
+        {
+            progress.add(outcome);
+        }
         #[cfg(feature = "sparse")]
         if !progress.over(stop) && has_long_rows(problem) {
             let outcome = self.admm.solve(problem, &within(progress.left(stop), DIRECTIONS), p);

@@ -1,15 +1,18 @@
-//! Exact enumeration of contact states, for up to three plane contacts.
+//! Exact enumeration of contact states, for up to five plane contacts.
 //!
 //! Each contact is open, sticks, or slides to the right or left; each of the 4ⁿ combinations is a small linear system
-//! (n ≤ 3: at most 6 × 6) whose solution is checked against the inequalities of the law. There is no iteration and no
+//! (n ≤ 5: at most 10 × 10) whose solution is checked against the inequalities of the law. There is no iteration and no
 //! tolerance of its own beyond rounding.
 //!
-//! The combinations are the leaves of a tree. On the way down each contact is eliminated in one of its states, so that a
+//! Up to three contacts the combinations are the leaves of a tree. On the way down each contact is eliminated in one of its states, so that a
 //! leaf is left with the 2 × 2 problem of the last contact: all leaves share the work above them, and most fail a
 //! sign there.
 //!
 //! Before the walk through the tree the likely states are tried, one by one (`likely.rs`): that is the whole solve wherever they
 //! fit with room to spare. The tree is for the rest: borders between states, and problems where a contact can't choose alone.
+//!
+//! Four and five contacts have 256 and 1024 combinations. They are gone through one by one, each by a solve with complete pivoting: some
+//! tenths of a millisecond and some milliseconds, which [`Auto`](crate::Auto) spends where all else has failed.
 //!
 //! Hyperstatic contacts (two sticking corners of one body) make the system of a state singular: its solution of least
 //! norm is taken. The least-norm point of all impulses that obey the law lies on a face of the cones, and a face is a
@@ -23,14 +26,16 @@ use crate::{likely, one_contact};
 use nalgebra::{Matrix2, Vector2};
 use teeter_contact::{ContactProblem, ContactSolver, Delassus, Law, Outcome, Status, Stop, judge, judge_velocities};
 
-/// Most contacts that are enumerated: 4³ = 64 states.
-pub(crate) const MAX_CONTACTS: usize = 3;
-/// How far an inequality may be missed, relative to the terms that its left side is the sum of: rounding of a 6 × 6 solve.
+/// Up to so many contacts the states are a tree: 4³ = 64 leaves.
+pub(crate) const FEW: usize = 3;
+/// Most contacts that are enumerated: 4⁵ = 1024 states.
+pub(crate) const MAX_CONTACTS: usize = 5;
+/// How far an inequality may be missed, relative to the terms that its left side is the sum of: rounding of a 10 × 10 solve.
 pub(crate) const ROUNDING: f64 = 1e-13;
 
-/// The exact 2D solver for up to three contacts; see the [crate's table](crate).
+/// The exact 2D solver for up to five contacts; see the [crate's table](crate).
 ///
-/// `iterations` counts the states tried. With more than three contacts, or where no state fits, the status is
+/// `iterations` counts the states tried. With more than five contacts, or where no state fits, the status is
 /// [`Status::Breakdown`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Enumeration;
@@ -79,8 +84,8 @@ impl ContactSolver<2> for Enumeration {
                 }
                 None => (false, 1),
             },
-            2..=MAX_CONTACTS => {
-                let table = Table::new(problem);
+            2..=FEW => {
+                let table = Table::<FEW>::new(problem);
                 let (likely, tried) = likely::find(&table, p);
                 if let Some((impulses, velocities)) = likely {
                     let residual = judge_velocities(problem, &impulses[..n], &velocities[..n]);
@@ -92,6 +97,8 @@ impl ContactSolver<2> for Enumeration {
                 let (found, searched) = table.search(p);
                 (found, tried + searched)
             }
+            4 => Table::<4>::new(problem).try_all::<8>(p),
+            MAX_CONTACTS => Table::<MAX_CONTACTS>::new(problem).try_all::<{ 2 * MAX_CONTACTS }>(p),
             _ => (false, 0),
         };
         let residual = judge(problem, p);
@@ -106,24 +113,24 @@ impl ContactSolver<2> for Enumeration {
 }
 
 /// The problem with its blocks at hand.
-pub(crate) struct Table {
+pub(crate) struct Table<const N: usize = FEW> {
     pub(crate) n: usize,
-    pub(crate) h: [[Matrix2<f64>; MAX_CONTACTS]; MAX_CONTACTS],
-    pub(crate) q: [Vector2<f64>; MAX_CONTACTS],
-    pub(crate) mu: [f64; MAX_CONTACTS],
+    pub(crate) h: [[Matrix2<f64>; N]; N],
+    pub(crate) q: [Vector2<f64>; N],
+    pub(crate) mu: [f64; N],
 }
 
 /// Impulses, or velocities, of all contacts.
-pub(crate) type Impulses = [Vector2<f64>; MAX_CONTACTS];
+pub(crate) type Impulses<const N: usize = FEW> = [Vector2<f64>; N];
 
-impl Table {
+impl<const N: usize> Table<N> {
     fn new(problem: &ContactProblem<'_, 2>) -> Self {
         let n = problem.contacts();
         let mut table = Self {
             n,
-            h: [[Matrix2::zeros(); MAX_CONTACTS]; MAX_CONTACTS],
-            q: [Vector2::zeros(); MAX_CONTACTS],
-            mu: [0.0; MAX_CONTACTS],
+            h: [[Matrix2::zeros(); N]; N],
+            q: [Vector2::zeros(); N],
+            mu: [0.0; N],
         };
         table.mu[..n].copy_from_slice(problem.mu());
         table.q[..n].copy_from_slice(problem.q());
@@ -133,7 +140,7 @@ impl Table {
             }
         } else {
             // Any other shape, column by column: H e_k = (velocity of e_k) − q.
-            let mut unit = [Vector2::zeros(); MAX_CONTACTS];
+            let mut unit = [Vector2::zeros(); N];
             for j in 0..n {
                 for c in 0..2 {
                     unit[j][c] = 1.0;
@@ -147,25 +154,8 @@ impl Table {
         table
     }
 
-    /// Tries the states; leaves the smallest impulses that fit in `p`. Returns whether one fits, and how many were tried.
-    fn search(&self, p: &mut [Vector2<f64>]) -> (bool, u32) {
-        let mut search = Search {
-            table: self,
-            states: [State::Open; MAX_CONTACTS],
-            gains: [Matrix2::zeros(); MAX_CONTACTS],
-            speed: self.q.iter().map(Vector2::amax).fold(0.0, f64::max),
-            best: None,
-            tried: 0,
-        };
-        search.descend(0, &self.h, &self.q);
-        if let Some((_, best)) = search.best {
-            p.copy_from_slice(&best[..self.n]);
-        }
-        (search.best.is_some(), search.tried)
-    }
-
     /// Whether impulses obey the law in these states, up to rounding.
-    fn obeys(&self, states: &[State; MAX_CONTACTS], p: &Impulses) -> bool {
+    fn obeys(&self, states: &[State; N], p: &Impulses<N>) -> bool {
         for i in 0..self.n {
             let mut u = self.q[i];
             let mut size = u.abs();
@@ -189,11 +179,11 @@ impl Table {
     }
 
     /// The impulses of a combination of states by a pivoted solve, of least norm where it leaves a choice.
-    fn pivoted(&self, states: &[State; MAX_CONTACTS]) -> Option<Impulses> {
+    fn pivoted<const M: usize>(&self, states: &[State; N]) -> Option<Impulses<N>> {
         // Unknown k is the size of an impulse along (1, −σμ) at a contact, or a component of a sticking one's; its
         // equation is a row of u = 0.
-        let mut rows = [(0, 0); MAX];
-        let mut tangent = [0.0; MAX];
+        let mut rows = [(0, 0); M];
+        let mut tangent = [0.0; M];
         let mut m = 0;
         for i in 0..self.n {
             if states[i] == State::Open {
@@ -209,7 +199,7 @@ impl Table {
                 }
             }
         }
-        let mut system = System::new(m);
+        let mut system = System::<M>::new(m);
         for (r, &(i, a)) in rows[..m].iter().enumerate() {
             for (c, &(j, b)) in rows[..m].iter().enumerate() {
                 let h = &self.h[i][j];
@@ -220,21 +210,69 @@ impl Table {
             system.length[r] = tangent[r].hypot(1.0);
         }
         let x = system.solve()?;
-        let mut p = [Vector2::zeros(); MAX_CONTACTS];
+        let mut p = [Vector2::zeros(); N];
         for (k, &(i, a)) in rows[..m].iter().enumerate() {
             p[i][a] += x[k];
             p[i][1] += tangent[k] * x[k];
         }
         Some(p)
     }
+
+    /// Tries the combinations of states one by one, `M` = 2 `N`; leaves the smallest impulses that fit in `p`. Returns
+    /// whether one fits, and how many were tried.
+    fn try_all<const M: usize>(&self, p: &mut [Vector2<f64>]) -> (bool, u32) {
+        let mut best: Option<(f64, Impulses<N>)> = None;
+        let mut tried = 0;
+        // The combination's number, its digits to the base of four the states.
+        'combinations: for number in 0..1_u32 << (2 * self.n) {
+            let mut states = [State::Open; N];
+            for (i, state) in states[..self.n].iter_mut().enumerate() {
+                let digit = (number >> (2 * i) & 3) as usize;
+                // Without friction there is nothing to stick, and sliding to the left is sliding to the right.
+                if self.mu[i] == 0.0 && digit > 1 {
+                    continue 'combinations;
+                }
+                *state = STATES[digit];
+            }
+            tried += 1;
+            let Some(found) = self.pivoted::<M>(&states) else { continue };
+            let norm: f64 = found.iter().map(Vector2::norm_squared).sum();
+            if best.is_none_or(|(best, _)| norm < best) && self.obeys(&states, &found) {
+                best = Some((norm, found));
+            }
+        }
+        if let Some((_, best)) = best {
+            p.copy_from_slice(&best[..self.n]);
+        }
+        (best.is_some(), tried)
+    }
+}
+
+impl Table {
+    /// Tries the states; leaves the smallest impulses that fit in `p`. Returns whether one fits, and how many were tried.
+    fn search(&self, p: &mut [Vector2<f64>]) -> (bool, u32) {
+        let mut search = Search {
+            table: self,
+            states: [State::Open; FEW],
+            gains: [Matrix2::zeros(); FEW],
+            speed: self.q.iter().map(Vector2::amax).fold(0.0, f64::max),
+            best: None,
+            tried: 0,
+        };
+        search.descend(0, &self.h, &self.q);
+        if let Some((_, best)) = search.best {
+            p.copy_from_slice(&best[..self.n]);
+        }
+        (search.best.is_some(), search.tried)
+    }
 }
 
 /// A walk through the tree of states.
 struct Search<'a> {
     table: &'a Table,
-    states: [State; MAX_CONTACTS],
+    states: [State; FEW],
     /// p_k = −gain (velocity of contact k without its own impulse), for the contacts eliminated so far.
-    gains: [Matrix2<f64>; MAX_CONTACTS],
+    gains: [Matrix2<f64>; FEW],
     /// The largest component of q: what velocities are small against.
     speed: f64,
     best: Option<(f64, Impulses)>,
@@ -256,7 +294,7 @@ impl Search<'_> {
     }
 
     /// Eliminates contact `k` in each of its states from the problem (h, q) of the contacts from `k` on.
-    fn descend(&mut self, k: usize, h: &[[Matrix2<f64>; MAX_CONTACTS]; MAX_CONTACTS], q: &Impulses) {
+    fn descend(&mut self, k: usize, h: &[[Matrix2<f64>; FEW]; FEW], q: &Impulses) {
         let n = self.table.n;
         for &state in self.states_of(k) {
             if self.done() {
@@ -294,7 +332,7 @@ impl Search<'_> {
     /// Goes back up from the last contact's impulse, and offers the impulses of all.
     fn leaf(&mut self, last: &Vector2<f64>) {
         let table = self.table;
-        let mut p = [Vector2::zeros(); MAX_CONTACTS];
+        let mut p = [Vector2::zeros(); FEW];
         p[table.n - 1] = *last;
         // Contact k was eliminated before those after it, in the velocities that those before it had left.
         for k in (0..table.n - 1).rev() {
@@ -335,7 +373,7 @@ impl Search<'_> {
     }
 
     fn offer_pivoted(&mut self) {
-        if let Some(p) = self.table.pivoted(&self.states) {
+        if let Some(p) = self.table.pivoted::<MAX>(&self.states) {
             self.offer(&p);
         }
     }
@@ -429,10 +467,21 @@ mod tests {
     }
 
     #[test]
-    fn more_than_three_contacts_are_a_breakdown_not_a_panic() {
-        let feet = [(-0.5, -1.0), (-0.2, -1.0), (0.2, -1.0), (0.5, -1.0)];
-        let case = body_on_floor("four", 0.3, &feet, [0.0, -1.0, 0.0], 0.5);
-        let mut p = vec![Vector2::zeros(); 4];
+    fn four_and_five_contacts_are_solved_to_rounding() {
+        for n in [4, 5] {
+            let feet: Vec<_> = (0..n).map(|k| (f64::from(k) * 0.3 - 0.5, -1.0)).collect();
+            for push in [[0.01, -1.0, 0.0], [0.9, -1.0, 0.2], [0.4, -1.0, -0.6], [0.1, 1.0, 0.3]] {
+                let p = solve(&body_on_floor("feet", 0.3, &feet, push, 0.5));
+                assert!(p.iter().all(|p| p[0] >= 0.0));
+            }
+        }
+    }
+
+    #[test]
+    fn more_than_five_contacts_are_a_breakdown_not_a_panic() {
+        let feet = [(-0.5, -1.0), (-0.2, -1.0), (-0.1, -1.0), (0.2, -1.0), (0.4, -1.0), (0.5, -1.0)];
+        let case = body_on_floor("six", 0.3, &feet, [0.0, -1.0, 0.0], 0.5);
+        let mut p = vec![Vector2::zeros(); 6];
         let outcome = Enumeration::new().solve(&case.problem().unwrap(), &Stop::default(), &mut p);
         assert_eq!(outcome.status, Status::Breakdown);
     }

@@ -1,33 +1,33 @@
 //! Small linear systems, singular ones included, in the least norm.
 
-/// Most unknowns: a normal and a tangential impulse for each of three contacts.
-pub(crate) const MAX: usize = 2 * crate::enumeration::MAX_CONTACTS;
+/// Unknowns of a small problem: a normal and a tangential impulse for each of three contacts.
+pub(crate) const MAX: usize = 2 * crate::enumeration::FEW;
 
 /// A pivot below this, relative to the compliances of its row and column, is taken for zero: hyperstatic contacts leave
 /// pivots of some 1e-16, while two corners on a beam that slopes by w' leave w'² and more.
 pub(crate) const RANK_TOLERANCE: f64 = 1e-12;
 
-/// A square system `a x = b` of order `m` ≤ 6.
-pub(crate) struct System {
+/// A square system `a x = b` of order `m` ≤ `M`.
+pub(crate) struct System<const M: usize = MAX> {
     m: usize,
-    pub(crate) a: [[f64; MAX]; MAX],
-    pub(crate) b: [f64; MAX],
+    pub(crate) a: [[f64; M]; M],
+    pub(crate) b: [f64; M],
     /// Natural sizes of rows and columns: pivots are judged relative to `scale[r] scale[c]`.
-    pub(crate) scale: [f64; MAX],
+    pub(crate) scale: [f64; M],
     /// Lengths of what the unknowns stand for: the norm is that of `length[k] x[k]`.
-    pub(crate) length: [f64; MAX],
+    pub(crate) length: [f64; M],
 }
 
-impl System {
+impl<const M: usize> System<M> {
     pub(crate) fn new(m: usize) -> Self {
-        Self { m, a: [[0.0; MAX]; MAX], b: [0.0; MAX], scale: [1.0; MAX], length: [1.0; MAX] }
+        Self { m, a: [[0.0; M]; M], b: [0.0; M], scale: [1.0; M], length: [1.0; M] }
     }
 
     /// The solution of least norm, by Gaussian elimination with complete pivoting; `None` where a number overflows.
     /// Whether a singular system was consistent, the caller has to see from the residual.
-    pub(crate) fn solve(mut self) -> Option<[f64; MAX]> {
+    pub(crate) fn solve(mut self) -> Option<[f64; M]> {
         let m = self.m;
-        let mut column = [0, 1, 2, 3, 4, 5];
+        let mut column: [usize; M] = std::array::from_fn(|k| k);
         let mut row_scale = self.scale;
         let mut rank = m;
         for k in 0..m {
@@ -62,9 +62,9 @@ impl System {
         // Back substitution with the free unknowns at zero …
         let mut solution = self.back_substitute(rank, &column, &self.b);
         // … then out of it what lies in the null space, so that the norm is least.
-        let mut basis = [[0.0; MAX]; MAX];
+        let mut basis = [[0.0; M]; M];
         for free in rank..m {
-            let mut b = [0.0; MAX];
+            let mut b = [0.0; M];
             for r in 0..rank {
                 b[r] = -self.a[r][column[free]];
             }
@@ -81,8 +81,8 @@ impl System {
         solution.iter().all(|c| c.is_finite()).then_some(solution)
     }
 
-    fn back_substitute(&self, rank: usize, column: &[usize; MAX], b: &[f64; MAX]) -> [f64; MAX] {
-        let mut x = [0.0; MAX];
+    fn back_substitute(&self, rank: usize, column: &[usize; M], b: &[f64; M]) -> [f64; M] {
+        let mut x = [0.0; M];
         for r in (0..rank).rev() {
             let mut sum = b[r];
             for c in r + 1..rank {
@@ -93,12 +93,12 @@ impl System {
         x
     }
 
-    fn inner(&self, x: &[f64; MAX], y: &[f64; MAX]) -> f64 {
+    fn inner(&self, x: &[f64; M], y: &[f64; M]) -> f64 {
         (0..self.m).map(|k| self.length[k] * self.length[k] * x[k] * y[k]).sum()
     }
 
     /// Removes from `x` its part along `e`, of length 1.
-    fn subtract_projection(&self, x: &mut [f64; MAX], e: &[f64; MAX]) {
+    fn subtract_projection(&self, x: &mut [f64; M], e: &[f64; M]) {
         let along = self.inner(x, e);
         for (a, b) in x.iter_mut().zip(e) {
             *a -= along * b;
@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn a_singular_system_gets_its_solution_of_least_norm() {
         // x + y = 2 twice, and z = 3.
-        let mut system = System::new(3);
+        let mut system = System::<MAX>::new(3);
         system.a[0][0] = 1.0;
         system.a[0][1] = 1.0;
         system.a[1] = system.a[0];
@@ -126,7 +126,7 @@ mod tests {
     #[test]
     fn the_norm_counts_lengths() {
         // x + y = 5 with y of length 2: x = 4, y = 1 is nearest to zero.
-        let mut system = System::new(2);
+        let mut system = System::<MAX>::new(2);
         system.a[0][..2].fill(1.0);
         system.a[1][..2].fill(1.0);
         system.b = [5.0, 5.0, 0.0, 0.0, 0.0, 0.0];

@@ -6,7 +6,7 @@
 //! | name | dim. | law | how | take it when |
 //! |---|---|---|---|---|
 //! | [`Auto`] | 2D, 3D | exact | a chain of the others | you don't want to choose |
-//! | [`Enumeration`] | 2D | exact | all contact states, up to three contacts | always, where it fits |
+//! | [`Enumeration`] | 2D | exact | all contact states, up to five contacts | up to three: always; four, five: to be sure |
 //! | [`Pgs`] | 2D, 3D | exact | Gauss–Seidel over contacts | 1e-4 or so is enough, or contacts couple weakly |
 //! | [`Newton`] | 2D, 3D | exact | semi-smooth Newton, sparse LU | the start is good, or pgs crawls |
 //! | [`Smoothing`] | 2D, 3D | exact | Newton along the central path | it is degenerate: packings, hyperstatic contacts by the hundred |
@@ -73,6 +73,7 @@ mod one_contact;
 mod one_contact_space;
 mod operator;
 mod ordering;
+mod pairs;
 pub mod pgs;
 pub mod prox;
 mod rows;

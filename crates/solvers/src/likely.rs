@@ -9,7 +9,7 @@
 //! least norm among the states' impulses is then that of the whole set. Contacts change state together, so their order
 //! doesn't matter. (Where several *velocities* obey the law, as with much friction, it is the ones next to the start.)
 
-use crate::enumeration::{Impulses, MAX_CONTACTS, ROUNDING, State, Table};
+use crate::enumeration::{FEW, Impulses, ROUNDING, State, Table};
 use crate::least_norm::{MAX, RANK_TOLERANCE};
 use nalgebra::Vector2;
 
@@ -30,7 +30,7 @@ const AT_LIMIT: f64 = 1.0 - 1e-9;
 pub(crate) fn find(table: &Table, start: &[Vector2<f64>]) -> (Option<(Impulses, Impulses)>, u32) {
     let n = table.n;
     let from_rest = start.iter().all(|p| p[0] == 0.0 && p[1] == 0.0);
-    let mut states = [State::Open; MAX_CONTACTS];
+    let mut states = [State::Open; FEW];
     for i in 0..n {
         states[i] = if from_rest { alone(table, i) } else { of_impulse(&start[i], table.mu[i]) };
     }
@@ -86,9 +86,9 @@ enum Check {
 }
 
 #[inline]
-fn check(table: &Table, states: &mut [State; MAX_CONTACTS], p: &Impulses) -> Check {
+fn check(table: &Table, states: &mut [State; FEW], p: &Impulses) -> Check {
     let n = table.n;
-    let mut velocities = [Vector2::zeros(); MAX_CONTACTS];
+    let mut velocities = [Vector2::zeros(); FEW];
     let (mut changed, mut tight) = (false, false);
     for i in 0..n {
         // In the order of `ContactProblem::velocity`, so that the judge finds the same to the last bit.
@@ -145,7 +145,7 @@ fn check(table: &Table, states: &mut [State; MAX_CONTACTS], p: &Impulses) -> Che
 
 /// The impulses of a combination of states, of least norm where it leaves a choice.
 #[inline]
-fn impulses(table: &Table, states: &[State; MAX_CONTACTS]) -> Option<Impulses> {
+fn impulses(table: &Table, states: &[State; FEW]) -> Option<Impulses> {
     // Unknowns and equations as in `Table::pivoted`.
     let mut rows = [(0, 0); MAX];
     let mut tangent = [0.0; MAX];
@@ -166,7 +166,7 @@ fn impulses(table: &Table, states: &[State; MAX_CONTACTS]) -> Option<Impulses> {
         }
     }
     let x = match m {
-        0 => return Some([Vector2::zeros(); MAX_CONTACTS]),
+        0 => return Some([Vector2::zeros(); FEW]),
         1 => solve::<1>(table, &rows, &tangent),
         2 => solve::<2>(table, &rows, &tangent),
         3 => solve::<3>(table, &rows, &tangent),
@@ -174,7 +174,7 @@ fn impulses(table: &Table, states: &[State; MAX_CONTACTS]) -> Option<Impulses> {
         5 => solve::<5>(table, &rows, &tangent),
         _ => solve::<6>(table, &rows, &tangent),
     }?;
-    let mut p = [Vector2::zeros(); MAX_CONTACTS];
+    let mut p = [Vector2::zeros(); FEW];
     for (k, &(i, a)) in rows[..m].iter().enumerate() {
         p[i][a] += x[k];
         p[i][1] += tangent[k] * x[k];

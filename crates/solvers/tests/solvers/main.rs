@@ -8,3 +8,4 @@ mod many;
 mod published;
 mod random;
 mod reserved;
+mod wedged;

@@ -239,7 +239,7 @@ pub(crate) fn scene() -> impl Strategy<Value = Drawn> {
                 blocks: Vec::new(),
                 contacts: Vec::new(),
                 signal: Signal { start: driven.0, frequency: driven.1 },
-                // Which takes up to three contacts.
+                // Which is quick up to three contacts.
                 method: if solver.0 == "enumeration" && blocks.len() > 1 { "auto" } else { solver.0 },
                 tolerance: solver.1,
             };
