@@ -10,6 +10,7 @@ use teeter_scenario::outlook::{BeamOutlook, BlockOutlook, FEW_DIGITS, Outlook, S
 use teeter_scenario::resolve::Resolved;
 use teeter_scenario::scene::{GroundScene, Scene, SchemeName};
 use teeter_scenario::simulation::Simulation;
+use teeter_scenario::volume::accuracy_of_seconds;
 use teeter_scenario::{Extent, Removed, wording};
 
 #[derive(Debug)]
@@ -268,8 +269,9 @@ fn run(scene: &Scene, outlook: &Outlook) -> Vec<String> {
             if time.scheme == SchemeName::MoreauJeanClosed { ", by moreau-jean-closed" } else { "" }
         ),
         format!(
-            "time: {} (an estimate from times measured on a server, good to a factor of three)",
-            wording::duration(outlook.seconds)
+            "time: {} (an estimate from times measured on a server, good {})",
+            wording::duration(outlook.seconds),
+            accuracy_of_seconds(scene)
         ),
         format!("tables: about {} in {} rows", wording::bytes(volume.bytes), volume.rows),
     ]

@@ -44,6 +44,8 @@ impl Default for Stop<'_> {
 pub enum Status {
     /// The residual is within the tolerance.
     Converged,
+    /// A method of the convex law has solved that to the tolerance; by Coulomb's, which the residual is of, the impulses are wrong.
+    ConvexLaw,
     /// The iterations ran out.
     MaxIterations,
     /// The residual no longer falls.
@@ -60,6 +62,7 @@ impl Status {
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Converged => "converged",
+            Self::ConvexLaw => "convex-law",
             Self::MaxIterations => "max-iterations",
             Self::Stalled => "stalled",
             Self::Breakdown => "breakdown",
@@ -95,10 +98,17 @@ impl Outcome {
         Self { status, used, iterations, residual }
     }
 
-    /// Whether the residual is within the tolerance.
+    /// Whether the impulses obey Coulomb's law to the tolerance. Not so where a method of the convex law ends on a sliding contact, however
+    /// well it solved its own program: that is [`Self::solved_its_own_law`].
     #[must_use]
     pub fn converged(&self) -> bool {
         self.status == Status::Converged
+    }
+
+    /// Whether the method arrived at what it looks for, be that Coulomb's law or the convex one ([`ContactSolver::law`]).
+    #[must_use]
+    pub fn solved_its_own_law(&self) -> bool {
+        matches!(self.status, Status::Converged | Status::ConvexLaw)
     }
 }
 

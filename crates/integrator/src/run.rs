@@ -51,6 +51,7 @@ pub struct Plan {
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
+#[must_use = "a run that failed is an `Ok` too"]
 pub enum Ended {
     /// All steps were taken.
     Complete,

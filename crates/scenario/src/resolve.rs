@@ -18,6 +18,9 @@ use crate::document::Document;
 use crate::doubts;
 use crate::scene::{ContactScene, GroundScene, Scene, SignalScene, SolverScene, Support};
 use crate::value::Value;
+use crate::{volume, wording};
+use teeter_contact::Law;
+use teeter_solvers::SOLVERS;
 
 pub use timing::MAX_STEPS;
 
@@ -155,6 +158,7 @@ impl<'a, 'f> Resolver<'a, 'f> {
             beams.iter_mut().flatten().for_each(|beam| self.assembled(beam));
         }
         let contacts: Vec<_> = doc.names("contact").into_iter().map(|name| self.contact(name)).collect();
+        self.contacts_fit_memory(contacts.len());
         let joined = self.joined(&contacts);
         let blocks: Vec<_> =
             doc.names("block").into_iter().map(|name| self.block(name, &beams, &contacts, &joined, &signals)).collect();
@@ -270,14 +274,38 @@ impl<'a, 'f> Resolver<'a, 'f> {
         }
     }
 
+    /// Refuses more contacts than whose dense operator memory can be asked for: a run would end in the middle, without a word.
+    fn contacts_fit_memory(&mut self, pairs: usize) {
+        let most = volume::operator_bytes(2 * pairs);
+        if most > volume::MOST_OPERATOR_BYTES {
+            let rule = format!(
+                "{pairs} contacts of blocks, each on two corners, take {} of memory for their operator, over the limit of {}",
+                wording::bytes(most),
+                wording::bytes(volume::MOST_OPERATOR_BYTES)
+            );
+            self.error(
+                "contact",
+                rule,
+                "take fewer blocks, or run those that don't feel each other in scenes of their own",
+            );
+        }
+    }
+
     fn solver(&mut self) -> Option<SolverScene> {
         let doc = self.doc;
-        // A block rests on two corners, so two pairs can have four contacts at once.
-        let (most, pairs) = (teeter_solvers::Enumeration::MAX_CONTACTS, doc.names("contact").len());
-        if doc.text("solver.method") == Some("enumeration") && 2 * pairs > most {
+        let known = doc.text("solver.method").and_then(|name| SOLVERS.iter().find(|info| info.name == name));
+        // A block rests on two corners, so three pairs can have six contacts at once.
+        let pairs = doc.names("contact").len();
+        if let Some(most) = known.and_then(|info| info.most_contacts).filter(|most| 2 * pairs > *most) {
             let rule = format!("takes up to {most} contacts at once, but {pairs} pairs can have {}", 2 * pairs);
             let remedy = "take auto or pgs: a step with more contacts is not solved, and bodies fall through";
             self.warnings.push(doc.error("solver.method", rule, remedy).as_warning());
+        }
+        if known.is_some_and(|info| info.law == Law::Convex) && pairs > 0 {
+            let rule = "solves the associated (convex) law, not Coulomb's: a contact that slides lifts off, by its friction coefficient times \
+                        its sliding speed";
+            let remedy = "take auto for Coulomb's law; the residuals of this run are told by Coulomb's law too";
+            self.warnings.push(doc.error("solver.method", rule.to_owned(), remedy).as_warning());
         }
         let max_iterations = doc.integer("solver.max_iterations").and_then(|n| u32::try_from(n).ok());
         Some(SolverScene {

@@ -381,7 +381,7 @@ pub static TABLES: &[Table] = &[
         occurrence: Occurrence::Always,
         doc: "How the contact problem of a step is solved.",
         keys: &[
-            key("method", Kind::Choice(&["auto", "pgs", "enumeration"]), Default("\"auto\""), "\"auto\"", "Name of a contact solver; auto takes the one that fits the step.").reserving(&[later("newton"), later("socp")]),
+            key("method", Kind::Choice(&["auto", "pgs", "enumeration", "newton", "smoothing", "prox", "lemke", "acary-cadoux", "admm", "apgd", "vi-eg", "socp"]), Default("\"auto\""), "\"auto\"", "Name of a contact solver; auto takes the one that fits the step, `docs/solvers.md` has the others. socp solves another law than Coulomb's."),
             key("tolerance", Kind::Number(Range::INSIDE_UNIT), Default("1e-10"), "1e-10", "Relative residual at which a step counts as solved."),
             key("max_iterations", Kind::Integer { min: 1, max: 4_294_967_295 }, Default("10000"), "10000", "Iterations after which a solver gives up on a step."),
             key("require_convergence", Kind::Flag, Default("false"), "false", "Whether a step that is not solved ends the run."),

@@ -1,6 +1,6 @@
 //! How much a run writes and how long it takes: estimates, before anything is run.
 
-use crate::scene::Scene;
+use crate::scene::{Scene, Support};
 
 /// Rows of a run without `output.every`: every step up to here, thinned evenly past that.
 const ROWS: f64 = 10_000.0;
@@ -45,6 +45,38 @@ mod cost {
     pub(super) const DOF: f64 = 0.031;
     /// A number written, µs.
     pub(super) const NUMBER: f64 = 0.1;
+    /// A pair of contacts, whether they feel each other or not, µs: their place in the dense operator of all is cleared, looked at for islands,
+    /// and looked at for coupling (3000 blocks on the ground, 36e6 of them: 0.7 s a step).
+    pub(super) const PAIR_OF_CONTACTS: f64 = 0.02;
+}
+
+/// Contacts that can be closed at once as a rule: a block rests on two corners.
+#[must_use]
+pub fn usual_contacts(scene: &Scene) -> usize {
+    2 * scene.contacts.len()
+}
+
+/// Most bytes that the dense operator of all contacts may take: some 11 000 contacts.
+pub const MOST_OPERATOR_BYTES: f64 = 4e9;
+
+/// Bytes of the dense operator of so many contacts in the plane: four numbers for each two of them.
+#[must_use]
+pub fn operator_bytes(contacts: usize) -> f64 {
+    32.0 * (contacts as f64) * (contacts as f64)
+}
+
+/// Up to so many contacts the time of a step is known to a factor of three; of more, how many of them feel each other and how their solver fares
+/// decides, and an order of magnitude is all that is known.
+const FEW_CONTACTS: usize = 8;
+
+/// The factor to which [`expected_seconds`] is good, in words.
+#[must_use]
+pub fn accuracy_of_seconds(scene: &Scene) -> &'static str {
+    if usual_contacts(scene) > FEW_CONTACTS {
+        "to an order of magnitude, for so many contacts"
+    } else {
+        "to a factor of three"
+    }
 }
 
 /// Time that a run of `scene` takes, s: a rule of thumb, good to a factor of two or three on today's machines while few
@@ -52,7 +84,15 @@ mod cost {
 #[must_use]
 pub fn expected_seconds(scene: &Scene, beam_dofs: usize) -> f64 {
     let bodies = scene.contacts.len().max(scene.blocks.len()) as f64;
-    let step = cost::PAIR * bodies + cost::BEAM * scene.beams.len() as f64 + cost::DOF * beam_dofs as f64;
+    let contacts = usual_contacts(scene) as f64;
+    let few = scene.contacts.len() <= 1;
+    let on_beams = scene.contacts.iter().filter(|contact| matches!(contact.surface, Support::Beam(_))).count();
+    // A block's two contacts use columns of W that are there; those of many are solved for in each step, a substitution each.
+    let substitutions = if few { 0.0 } else { 2.0 * on_beams as f64 / scene.beams.len().max(1) as f64 };
+    let step = cost::PAIR * bodies
+        + cost::BEAM * scene.beams.len() as f64
+        + cost::DOF * beam_dofs as f64 * (1.0 + substitutions)
+        + if few { 0.0 } else { cost::PAIR_OF_CONTACTS * contacts * contacts };
     let writing = cost::NUMBER * Volume::of(scene).bytes / BYTES_A_NUMBER;
     (step * scene.time.steps as f64 + writing) * 1e-6
 }

@@ -211,9 +211,8 @@ impl ContactSolver<2> for Auto<2> {
     }
 
     fn solve(&mut self, problem: &ContactProblem<'_, 2>, stop: &Stop<'_>, p: &mut [Vector<2>]) -> Outcome {
-        let first: Small<2> = |problem, stop, p| {
-            (p.len() <= FEW).then(|| Enumeration.solve(problem, stop, p)).filter(Outcome::converged)
-        };
+        let first: Small<2> =
+            |problem, stop, p| (p.len() <= FEW).then(|| Enumeration.solve(problem, stop, p)).filter(Outcome::converged);
         let last: Small<2> = |problem, stop, p| enumerate(FEW + 1..=MAX_CONTACTS, problem, stop, p);
         self.solve_with(problem, Exact { first, last }, stop, p)
     }

@@ -126,12 +126,7 @@ pub(crate) type Impulses<const N: usize = FEW> = [Vector2<f64>; N];
 impl<const N: usize> Table<N> {
     fn new(problem: &ContactProblem<'_, 2>) -> Self {
         let n = problem.contacts();
-        let mut table = Self {
-            n,
-            h: [[Matrix2::zeros(); N]; N],
-            q: [Vector2::zeros(); N],
-            mu: [0.0; N],
-        };
+        let mut table = Self { n, h: [[Matrix2::zeros(); N]; N], q: [Vector2::zeros(); N], mu: [0.0; N] };
         table.mu[..n].copy_from_slice(problem.mu());
         table.q[..n].copy_from_slice(problem.q());
         if let Delassus::Dense(blocks) = problem.delassus() {

@@ -9,9 +9,7 @@
 use crate::Pgs;
 use crate::ending::ended;
 use crate::memory::{refill, reserve};
-use teeter_contact::{
-    Block, ContactProblem, Delassus, Outcome, Stop, Vector, judge,
-};
+use teeter_contact::{Block, ContactProblem, Delassus, Outcome, Stop, Vector, judge};
 
 /// An exact method for a few contacts: what it found, if the judge is satisfied.
 pub(crate) type Small<const D: usize> = fn(&ContactProblem<'_, D>, &Stop<'_>, &mut [Vector<D>]) -> Option<Outcome>;

@@ -98,6 +98,12 @@ pub(crate) fn time(source: &Source, setting: &Setting, cancel: &AtomicBool) -> R
     }
     let (_, mut simulation) = ready(source, setting)?;
     let clock = ThreadTime::now();
-    simulation.run(&mut []).map_err(|error| Failure::Ended(error.to_string()))?;
-    Ok(clock.elapsed().as_secs_f64())
+    let ended = simulation.run(&mut []).map_err(|error| Failure::Ended(error.to_string()))?;
+    let seconds = clock.elapsed().as_secs_f64();
+    // A run that broke off says nothing about the time of a whole one.
+    match ended {
+        Ended::Complete => Ok(seconds),
+        Ended::Failed(error) => Err(Failure::Ended(error.to_string())),
+        _ => Err(Failure::Ended("the run broke off".to_owned())),
+    }
 }

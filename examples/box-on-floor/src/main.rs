@@ -191,7 +191,7 @@ mod tests {
     fn the_convex_law_makes_the_sliding_box_lift_off() {
         let answers = solve_with_all(&slides()).unwrap();
         let socp = answers.iter().find(|answer| answer.law == Law::Convex).unwrap();
-        assert!(socp.outcome.converged(), "it solves its own law");
+        assert!(socp.outcome.solved_its_own_law(), "it solves its own law");
         assert!(socp.separation > 0.1, "separates at {}", socp.separation);
         assert!(socp.outcome.residual.global > 1e-3, "the judge, who asks for Coulomb's, says so");
     }

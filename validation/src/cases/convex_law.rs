@@ -38,7 +38,7 @@ impl Case for ConvexLaw {
             for (s, solver) in solvers.into_iter().enumerate() {
                 let mut p = [Vector2::zeros()];
                 let outcome = solver.solve(&problem, &Stop::default(), &mut p);
-                if !outcome.converged() {
+                if !outcome.solved_its_own_law() {
                     return Err(format!("{}: {}", solver.name(), outcome.status).into());
                 }
                 let u = problem.velocity(0, &p);

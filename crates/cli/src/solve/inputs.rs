@@ -99,6 +99,16 @@ impl Choice {
     }
 }
 
+impl Choice {
+    /// Whether a solver is to try a problem: of all of them only those that take so many contacts, one asked for by name in any case.
+    pub(super) fn takes(&self, info: &SolverInfo, input: &Input) -> bool {
+        match self {
+            Self::All => info.most_contacts.is_none_or(|most| input.problem.contacts() <= most),
+            Self::Named(_) => true,
+        }
+    }
+}
+
 /// Takes the names of `--solver`. What follows it may also be a file, as in `solve --solver pgs problem.hdf5`: whatever is
 /// no solver but there on disk goes to `paths`.
 pub(super) fn choose(names: &[String], paths: &mut Vec<PathBuf>) -> Result<Choice, String> {

@@ -63,6 +63,11 @@ pub(super) fn measure<const D: usize>(
             complaint = Some(format!("`{}` says converged, but the judge finds {residual:.1e}", outcome.used));
             Status::Stalled.as_str()
         }
+        Status::ConvexLaw => {
+            let told = "has solved the convex law; the residual is that of Coulomb's, by which a sliding contact doesn't lift off";
+            complaint = Some(format!("`{}` {told}", outcome.used));
+            Status::Stalled.as_str()
+        }
         other => other.as_str(),
     };
 

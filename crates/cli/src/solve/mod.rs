@@ -120,13 +120,20 @@ fn solve_all(console: Console, options: &Options, inputs: &[Input], choice: &Cho
     let mut rows = Vec::new();
     let mut table = options.profile.as_deref().map(profile::Table::create).transpose()?;
     let columns = Columns::new(inputs, tolerances.len() > 1);
-    let count: usize = inputs.iter().map(|input| choice.of_dimension(input.problem.dimension()).len()).sum();
+    let taken = |input: &Input| -> (Vec<&SolverInfo>, Vec<&SolverInfo>) {
+        choice.of_dimension(input.problem.dimension()).into_iter().partition(|info| choice.takes(info, input))
+    };
+    let count: usize = inputs.iter().map(|input| taken(input).0.len()).sum();
     let progress = Solves::new(console, (count * tolerances.len()) as u64);
     if !options.json {
         progress.print(&columns.header())?;
     }
     for input in inputs {
-        for info in choice.of_dimension(input.problem.dimension()) {
+        let (solvers, left_out) = taken(input);
+        for info in left_out {
+            progress.tell(&format!("note: {}: `{}` is left out: {}", input.file, info.name, too_many(info, input)));
+        }
+        for info in solvers {
             for &tolerance in tolerances {
                 let row = row(input, info, tolerance, options.time_limit)?;
                 if let Some(text) = &row.measured.complaint {
@@ -152,6 +159,12 @@ fn solve_all(console: Console, options: &Options, inputs: &[Input], choice: &Cho
     Ok(())
 }
 
+/// Why a solver doesn't take a problem.
+fn too_many(info: &SolverInfo, input: &Input) -> String {
+    let most = info.most_contacts.unwrap_or(usize::MAX);
+    format!("it takes up to {most} contacts, and the problem has {}", input.problem.contacts())
+}
+
 fn row(input: &Input, info: &SolverInfo, tolerance: f64, limit: Duration) -> Result<Row, String> {
     let measured = match &input.problem {
         FclibProblem::Plane(local) => {
@@ -165,6 +178,10 @@ fn row(input: &Input, info: &SolverInfo, tolerance: f64, limit: Duration) -> Res
             measure::measure(solver.as_mut(), &problem, tolerance, limit)
         }
     };
+    let mut measured = measured;
+    if info.most_contacts.is_some_and(|most| input.problem.contacts() > most) {
+        measured.complaint = Some(format!("`{}` breaks down: {}", info.name, too_many(info, input)));
+    }
     Ok(Row {
         file: input.file.clone(),
         solver: info.name,

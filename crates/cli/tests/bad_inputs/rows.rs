@@ -171,7 +171,6 @@ fn names() -> Vec<Row> {
         refused(36, "a key twice", Edit(&[(SPAN, "span = \"36 cm\"\nspan = \"40 cm\"")]), &["scene.toml:21:1", "beam.table.span", "given twice, first on line 20"]),
         refused(36, "a table by a dotted key too", Edit(&[("[block.rocker]", "[beam]\ntable.elements = 5\n[block.rocker]")]), &["scene.toml:29:1", "beam.table: given twice, first on line 18"]),
         refused(37, "unknown solver", Set(&["solver.method=foo"]), &["solver.method", "unknown method", "auto, pgs, enumeration"]),
-        refused(37, "solver not built in", Set(&["solver.method=socp"]), &["solver.method", "known, but not built in yet"]),
         refused(38, "version of the future", Edit(&[("version = 1", "version = 99")]), &["scene.toml:8:11", "version = 99", "version 1", "got 99"]),
         refused(38, "profile of the ground", Edit(&[("[contact.feet]", "[ground]\nprofile = \"hills.csv\"\n[contact.feet]")]), &["ground.profile", "known, but not built in yet"]),
     ]

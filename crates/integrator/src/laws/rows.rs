@@ -79,7 +79,7 @@ impl<const D: usize> Laws<D> {
             sum = Some(outcome);
             let (off, noise) = self.retouch(set);
             let settled = off <= ON_LAW || (tangent > 3 && off >= last && off <= noise.max(ROUNDED));
-            if settled || !outcome.converged() {
+            if settled || !outcome.solved_its_own_law() {
                 return Ok(outcome);
             }
             last = off;

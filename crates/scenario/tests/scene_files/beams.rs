@@ -33,7 +33,7 @@ fn beam(more: &str, pairs: &[(&str, &str)]) -> BeamScene {
     assert_eq!(again.document.to_toml(), written);
     assert_eq!(again.scene, resolved.scene);
     let mut simulation = Simulation::new(&resolved.scene).unwrap();
-    simulation.run(&mut []).unwrap();
+    assert_eq!(simulation.run(&mut []).unwrap(), teeter_integrator::Ended::Complete);
     assert!(simulation.state.q.iter().all(|q| q.is_finite()));
     resolved.scene.beams[0].clone()
 }
@@ -331,7 +331,7 @@ fn self_weight_bends_the_beam_from_its_straight_axis() {
     let middle = simulation.state.q[range.start + 4];
     assert!((middle / (-5.0 * load * 16.0 / (384.0 * ei)) - 1.0).abs() < 1e-12, "{middle}");
     let before = simulation.state.q.clone();
-    simulation.run(&mut []).unwrap();
+    assert_eq!(simulation.run(&mut []).unwrap(), teeter_integrator::Ended::Complete);
     let moved = simulation.state.q.iter().zip(&before).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     assert!(moved < 1e-12, "it stays where it is: {moved:e}");
     let energy = |simulation: &Simulation| {
@@ -341,7 +341,7 @@ fn self_weight_bends_the_beam_from_its_straight_axis() {
     let mut falling =
         Simulation::new(&resolve(&format!("{BARE}{}", plain("self_weight = true\n")), &[]).unwrap().scene).unwrap();
     let start = energy(&falling);
-    falling.run(&mut []).unwrap();
+    assert_eq!(falling.run(&mut []).unwrap(), teeter_integrator::Ended::Complete);
     assert!(falling.state.q[4] < 0.0 && (energy(&falling) - start).abs() < 1e-12, "{start} {}", energy(&falling));
 }
 
@@ -369,7 +369,7 @@ fn loads_act_on_a_part_of_the_span_or_move() {
     // One that moves with no speed is one that stands.
     let end = |load: &str| {
         let mut simulation = Simulation::new(&scene(load).unwrap().scene).unwrap();
-        simulation.run(&mut []).unwrap();
+        assert_eq!(simulation.run(&mut []).unwrap(), teeter_integrator::Ended::Complete);
         simulation.state.q.clone()
     };
     assert_eq!(end("at = '50 cm'\nforce = '-10 N'\nspeed = '0 m/s'"), end("at = '50 cm'\nforce = '-10 N'"));
@@ -384,7 +384,7 @@ fn backends_give_the_same_motion() {
         assert_eq!(found.backend, backend);
         let text = format!("{BARE}{}backend = '{word}'\n[load.l]\non = 'b'\nat = '1 m'\nforce = '-10 N'\n", plain(""));
         let mut simulation = Simulation::new(&resolve(&text, &[]).unwrap().scene).unwrap();
-        simulation.run(&mut []).unwrap();
+        assert_eq!(simulation.run(&mut []).unwrap(), teeter_integrator::Ended::Complete);
         simulation.state.q[4]
     };
     let auto = of("auto", WBackend::Auto);

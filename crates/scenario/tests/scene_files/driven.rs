@@ -69,7 +69,7 @@ fn a_pulse_leaves_its_area_and_a_table_of_it_the_same() {
         (vec!["push.csv".to_owned()], vec![("push.csv".to_owned(), rows.into_bytes())])
     );
     let mut table = Simulation::new(&resolved.scene).unwrap();
-    table.run(&mut []).unwrap();
+    assert_eq!(table.run(&mut []).unwrap(), teeter_integrator::Ended::Complete);
     for (a, b) in table.state.q.iter().zip(&formula.state.q) {
         assert!((a - b).abs() < 1e-13, "the rows are at the steps: {a} {b}");
     }

@@ -3,6 +3,7 @@
 
 mod beams;
 mod driven;
+mod many;
 mod modes;
 mod properties;
 mod reading;

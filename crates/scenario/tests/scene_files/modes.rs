@@ -43,7 +43,7 @@ fn apart(model: &[(&str, &str)], sets: &[(&str, &str)]) -> [f64; 2] {
     let run = |model: &[(&str, &str)]| {
         let mut simulation = simulation(model, sets);
         let mut watcher = Watcher { place: simulation.layout.beams[0].clone(), seen: Vec::new() };
-        simulation.run(&mut [&mut watcher]).unwrap();
+        assert_eq!(simulation.run(&mut [&mut watcher]).unwrap(), teeter_integrator::Ended::Complete);
         let relative = simulation.state.ledger.relative_residual();
         assert!(relative <= 1e-12, "{model:?}: the identity of energy to {relative:e}");
         watcher.seen
@@ -103,7 +103,7 @@ fn a_static_start_is_an_equilibrium_of_the_modes() {
     let sets = [("block.rocker.tilt", "0 deg"), ("beam.table.self_weight", "true"), ("time.end", "0.05 s")];
     let mut run = simulation(&[MODES], &sets);
     let start = run.state.q.clone();
-    run.run(&mut []).unwrap();
+    assert_eq!(run.run(&mut []).unwrap(), teeter_integrator::Ended::Complete);
     let moved = start.iter().zip(&run.state.q).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     let fastest = run.state.v.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
     assert!(moved <= 1e-12 && fastest <= 1e-10, "{moved:e} {fastest:e}");

@@ -93,7 +93,6 @@ fn what_is_known_but_not_built_in_says_so() {
         ("time.scheme", "event-driven"),
         ("time.accuracy", "1e-3"),
         ("ground.profile", "hills.csv"),
-        ("solver.method", "socp"),
     ] {
         let found = findings(ROCKING, &[(key, value)]);
         assert_eq!(found.len(), 1, "{found:#?}");

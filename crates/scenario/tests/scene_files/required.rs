@@ -284,7 +284,7 @@ fn a_run_that_leaves_its_limits_shows_it() {
     kicked.state.v[2] += 8.0;
     let required = kicked.layout.required.clone();
     let mut seen = Seen { tilts: vec![0.0], required, ..Seen::default() };
-    kicked.run(&mut [&mut seen]).unwrap();
+    assert_eq!(kicked.run(&mut [&mut seen]).unwrap(), teeter_integrator::Ended::Complete);
     assert!(seen.broken && seen.tilts[0] > 0.3, "{seen:?}");
 }
 

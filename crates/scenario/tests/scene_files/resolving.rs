@@ -178,12 +178,27 @@ fn a_probe_given_twice_and_a_solver_for_fewer_contacts() {
     let second = [
         ("solver.method", "enumeration"),
         ("contact.more", "{ between = ['rocker', 'ground'], friction = 0.1 }"),
+        (
+            "block.other",
+            "{ material = 'aluminium', width = '1 cm', height = '1 cm', depth = '1 cm', position = ['3 m', '2 m'] }",
+        ),
+        ("contact.third", "{ between = ['other', 'ground'], friction = 0.1 }"),
         ("ground", "{}"),
         // above the ground
         ("beam.table.position", "['0 m', '1 m']"),
     ];
     let (resolved, _) = set(&second).unwrap();
-    says(&resolved.warnings[0].to_string(), &["solver.method", "up to 3 contacts", "auto or pgs"]);
+    says(&resolved.warnings[0].to_string(), &["solver.method", "up to 5 contacts", "auto or pgs"]);
+}
+
+#[test]
+fn every_plane_solver_of_the_catalogue_is_a_method_and_the_convex_one_warns() {
+    for info in teeter_solvers::SOLVERS.iter().filter(|info| info.dimensions.contains(&2)) {
+        let (resolved, _) =
+            set(&[("solver.method", info.name)]).unwrap_or_else(|error| panic!("{}: {error}", info.name));
+        let warned = resolved.warnings.iter().any(|warning| warning.to_string().contains("not Coulomb's"));
+        assert_eq!(warned, info.law == teeter_contact::Law::Convex, "{}", info.name);
+    }
 }
 
 #[test]

@@ -146,7 +146,7 @@ fn flat_blocks_that_start_static_stay_at_rest() {
                     .replace("step = '100 us'", &format!("step = '100 us'\nscheme = '{scheme}'"));
                 let mut simulation = build(&text).unwrap();
                 let mut seen = Fastest { first: 0.0, ever: 0.0 };
-                simulation.run(&mut [&mut seen]).unwrap();
+                assert_eq!(simulation.run(&mut [&mut seen]).unwrap(), teeter_integrator::Ended::Complete);
                 // The closed scheme takes J where the free step's middle would be: on a top fibre, whose feet wander as the
                 // unloaded sections turn, that is not J at rest.
                 let wanders = scheme == "moreau-jean-closed" && (surface, kinematics) == ("top", "deformed");

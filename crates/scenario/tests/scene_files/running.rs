@@ -64,7 +64,7 @@ impl Comparer {
     }
 
     fn compare(mut self, mut simulation: Simulation) -> f64 {
-        simulation.run(&mut [&mut self]).unwrap();
+        assert_eq!(simulation.run(&mut [&mut self]).unwrap(), teeter_integrator::Ended::Complete);
         assert_eq!(self.next, self.rows.len(), "the run ended before the last sample");
         self.worst
     }
@@ -221,10 +221,16 @@ fn the_undeformed_start_overturns_between_02_and_03_seconds_and_the_static_one_d
         }
     }
     let mut seen = Overturning(None);
-    scenario("free-rocking-on-beam-undeformed-start", &[]).run(&mut [&mut seen]).unwrap();
+    assert_eq!(
+        scenario("free-rocking-on-beam-undeformed-start", &[]).run(&mut [&mut seen]).unwrap(),
+        teeter_integrator::Ended::Complete
+    );
     assert!(seen.0.is_some_and(|t| (0.2..0.3).contains(&t)), "{:?}", seen.0);
     let mut seen = Overturning(None);
-    scenario("free-rocking-on-beam", &[]).run(&mut [&mut seen]).unwrap();
+    assert_eq!(
+        scenario("free-rocking-on-beam", &[]).run(&mut [&mut seen]).unwrap(),
+        teeter_integrator::Ended::Complete
+    );
     assert_eq!(seen.0, None);
 }
 
@@ -233,7 +239,7 @@ fn gauss_seidel_gives_the_motion_of_the_exact_solver() {
     for name in SCENARIOS {
         let end = |method| {
             let mut simulation = scenario(name, &[("solver.method", method), ("solver.tolerance", "1e-13")]);
-            simulation.run(&mut []).unwrap();
+            assert_eq!(simulation.run(&mut []).unwrap(), teeter_integrator::Ended::Complete);
             assert_eq!(simulation.state.tally.unconverged_steps, 0, "{name} {method}");
             simulation.state.q
         };
@@ -273,7 +279,7 @@ fn a_tilted_block_on_the_top_fibre_starts_in_touch_and_moves_like_one_on_the_axi
     let run = |surface| {
         let mut simulation =
             scenario("free-rocking-on-beam", &[("beam.table.surface", surface), ("time.end", "0.05 s")]);
-        simulation.run(&mut []).unwrap();
+        assert_eq!(simulation.run(&mut []).unwrap(), teeter_integrator::Ended::Complete);
         assert!(simulation.state.ledger.relative_residual() <= 1e-12);
         simulation.state.q[2]
     };
@@ -286,7 +292,7 @@ fn a_mirrored_scene_gives_the_mirrored_motion() {
     for name in ["free-rocking-on-beam", "free-rocking-on-ground"] {
         let end = |tilt| {
             let mut simulation = scenario(name, &[("block.rocker.tilt", tilt), ("time.end", "0.15 s")]);
-            simulation.run(&mut []).unwrap();
+            assert_eq!(simulation.run(&mut []).unwrap(), teeter_integrator::Ended::Complete);
             simulation.state.q
         };
         let (left, right) = (end("5 deg"), end("-5 deg"));
@@ -306,7 +312,7 @@ fn order_and_position_of_bodies_do_not_matter() {
     let end = |text: &str| {
         let resolved = load(text.as_bytes(), "scene", "scene", &[("time.end".to_owned(), "0.1 s".to_owned())]).unwrap();
         let mut simulation = Simulation::new(&resolved.scene).unwrap();
-        simulation.run(&mut []).unwrap();
+        assert_eq!(simulation.run(&mut []).unwrap(), teeter_integrator::Ended::Complete);
         simulation.state.q
     };
     let (here, there) = (end(&text), end(&moved));

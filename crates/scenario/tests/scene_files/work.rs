@@ -25,7 +25,7 @@ fn counts(name: &str, scheme: &str) -> [u64; 7] {
     let sets: Vec<(String, String)> = sets.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
     let resolved = teeter_scenario::load(&bytes, name, name, &sets).unwrap();
     let mut simulation = Simulation::new(&resolved.scene).unwrap();
-    simulation.run(&mut []).unwrap();
+    assert_eq!(simulation.run(&mut []).unwrap(), teeter_integrator::Ended::Complete);
     let work = simulation.work_counts();
     let steps = simulation.state.step;
     [steps, work.factorisations, work.detections, work.problems, work.iterations, work.unsolved, work.refused_attempts]
