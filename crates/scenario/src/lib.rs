@@ -67,6 +67,7 @@ pub mod units;
 pub mod value;
 pub mod volume;
 pub mod wording;
+mod words;
 
 pub use left_out::left_out;
 pub use placement::{Departure, PlacementError};

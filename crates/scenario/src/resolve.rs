@@ -18,6 +18,7 @@ use crate::document::Document;
 use crate::doubts;
 use crate::scene::{ContactScene, GroundScene, Scene, SignalScene, SolverScene, Support};
 use crate::value::Value;
+use crate::words::Word;
 use crate::{volume, wording};
 use teeter_contact::Law;
 use teeter_solvers::SOLVERS;
@@ -144,6 +145,17 @@ impl<'a, 'f> Resolver<'a, 'f> {
     fn word(&mut self, path: &str) -> Option<String> {
         let value = self.doc.text(path).map(str::to_owned);
         self.need(path, value)
+    }
+
+    /// What the word of a key means.
+    fn choice<W: Word>(&mut self, path: &str) -> Option<W> {
+        let word = self.word(path)?;
+        let meant = W::of(&word);
+        if meant.is_none() {
+            let words: Vec<&str> = W::ALL.iter().map(|(word, _)| *word).collect();
+            self.error(path, format!("`{word}` is none of its words"), format!("one of {}", words.join(", ")));
+        }
+        meant
     }
 
     fn scene(&mut self, stem: &str) -> Option<Scene> {

@@ -7,6 +7,7 @@ use std::f64::consts::FRAC_PI_2;
 use crate::dimension::Dimension;
 use crate::keys::{Bound, Key, Kind, Occurrence, OnlyWith, Presence, Range, Reserved, Table};
 use crate::measure::{CONTACT_DAMPING, CONTACT_STIFFNESS};
+use crate::words;
 use beam_keys::*;
 
 const fn key(name: &'static str, kind: Kind, presence: Presence, example: &'static str, doc: &'static str) -> Key {
@@ -131,7 +132,7 @@ pub static TABLES: &[Table] = &[
             key("end", TIME, Required, "\"0.5 s\"", "Simulated time; the run ends with the first step at or past it."),
             key("step", TIME, Required, "\"100 us\"", "Size of the time step.").reserving(&[Reserved { value: "auto", instead: "give a step, such as \"100 us\"" }]),
             key("accuracy", Kind::Number(Range::INSIDE_UNIT), NotYet, "1e-3", "Largest relative error allowed, in place of a step."),
-            key("scheme", Kind::Choice(&["moreau-jean", "moreau-jean-closed"]), Default("\"moreau-jean\""), "\"moreau-jean\"", "Time integration scheme; in moreau-jean-closed a contact stays closed until it pulls, and no contact gives energy.").reserving(&[later("moreau-jean-located"), later("moreau-jean-projected"), later("generalized-alpha"), later("event-driven")]),
+            key("scheme", Kind::Choice(words::SCHEMES), Default("\"moreau-jean\""), "\"moreau-jean\"", "Time integration scheme; in moreau-jean-closed a contact stays closed until it pulls, and no contact gives energy.").reserving(&[later("moreau-jean-located"), later("moreau-jean-projected"), later("generalized-alpha"), later("event-driven")]),
             key("theta", Kind::Number(Range::UNIT), Default("0.5"), "0.5", "Weight of the end of the step in the theta method: 0.5 keeps energy, 1 damps the most; moreau-jean-closed takes 0.5 only."),
             key("gap_tolerance", Kind::Quantity(Dimension::LENGTH, GAP), Optional, "\"1e-12 m\"", "Gap below which a contact counts as closed; when left out, it follows from the largest block side."),
             key("activation_gamma", Kind::Number(Range::UNIT), Default("0.5"), "0.5", "Fraction of the step by which positions are predicted to find the active contacts; of moreau-jean only."),
@@ -181,21 +182,21 @@ pub static TABLES: &[Table] = &[
             key("span", SIZE, Required, "\"36 cm\"", "Length between its ends."),
             WIDTH, THICKNESS, DIAMETER, WALL, HEIGHT, WEB, FLANGE,
             BENDING_STIFFNESS, MASS_PER_LENGTH, SHEAR_STIFFNESS, ROTATORY_INERTIA, AXIAL_STIFFNESS,
-            key("theory", Kind::Choice(&["euler-bernoulli", "timoshenko"]), Default("\"euler-bernoulli\""), "\"timoshenko\"", "Whether its sections stay normal to the axis, or shear and rotatory inertia count; a thickness over a tenth of the span calls for timoshenko."),
+            key("theory", Kind::Choice(words::Theory::WORDS), Default("\"euler-bernoulli\""), "\"timoshenko\"", "Whether its sections stay normal to the axis, or shear and rotatory inertia count; a thickness over a tenth of the span calls for timoshenko."),
             key("elements", Kind::Integer { min: 1, max: MAX_ELEMENTS }, RequiredWithout("nodes"), "20", "Number of finite elements; supports between the ends, masses, and ends of segments and foundations may add a few.").taking(ELEMENT_BYTES),
             key("nodes", Kind::List(Dimension::LENGTH, Range::NOT_NEGATIVE), Optional, "[\"0 cm\", \"10 cm\", \"36 cm\"]", "Places of its nodes, rising from 0 to the span, in place of elements."),
             key("supports", Kind::WordOrTablePair(SUPPORTS, SUPPORT_KEYS), Default("[\"pinned\", \"pinned\"]"), "[\"pinned\", { spring = \"1 kN/m\" }]", "How its left and right ends are held."),
-            key("axial", Kind::Choice(&["free", "held", "elastic"]), Default("\"free\""), "\"held\"", "Along the axis: free, no axial motion is modelled; held, both ends are, and a deflection stretches the beam (von Karman; theta = 0.5 only); elastic, axial motion with its inertia, which doesn't feel the deflection."),
+            key("axial", Kind::Choice(words::Along::WORDS), Default("\"free\""), "\"held\"", "Along the axis: free, no axial motion is modelled; held, both ends are, and a deflection stretches the beam (von Karman; theta = 0.5 only); elastic, axial motion with its inertia, which doesn't feel the deflection."),
             key("axial_supports", Kind::ChoicePair(&["held", "free"]), Default("[\"held\", \"held\"]"), "[\"held\", \"free\"]", "Whether its left and right ends are held along the axis.").only_with("axial", &["elastic"]),
             key("axial_force", Kind::Quantity(Dimension::FORCE, Range::ANY), Default("\"0 N\""), "\"100 N\"", "Axial force that is there whatever the beam does, tension positive; less than the buckling load."),
             key("viscous_damping", Kind::Quantity(Dimension::DAMPING_PER_LENGTH, Range::NOT_NEGATIVE), Optional, "\"0.4 N s/m^2\"", "Coefficient c of the viscous term of the beam equation, which damps high modes ever less; one of the three ways to give damping."),
             key("modal_damping", Kind::Numbers(Range::NOT_NEGATIVE), Optional, "[0.01, 0.02]", "Damping ratios of the first elastic modes of the finite elements, on top of the rest; other modes are left alone."),
             key("start", Kind::WordOrTable(&["undeformed", "static"], START_KEYS), Default("\"undeformed\""), "\"static\"", "Shape at the start: undeformed, in equilibrium under the blocks and the loads of t = 0 (flat blocks follow it, tilted ones are held as placed), that of a mode, or that of a file."),
-            key("surface", Kind::Choice(&["axis", "top"]), Default("\"axis\""), "\"axis\"", "Where contacts lie: on the axis, or half a thickness above it."),
+            key("surface", Kind::Choice(words::Lies::WORDS), Default("\"axis\""), "\"axis\"", "Where contacts lie: on the axis, or half a thickness above it."),
             key("position", POINT, Default("[\"0 m\", \"0 m\"]"), "[\"0 m\", \"0 m\"]", "Where its left end is, x and y."),
             key("self_weight", Kind::Flag, Default("false"), "true", "Whether gravity acts on the beam itself and the masses on it; deflections then count from the straight axis, else from the shape under the weight."),
             key("model", Kind::Choice(&["full", "modes"]), Default("\"full\""), "\"full\"", "In which coordinates it moves: full, those of all its nodes; modes, its lowest modes and static corrections, uncoupled and few: the keys of `modes` say how many, and `docs/beams.md` what is lost."),
-            key("backend", Kind::Choice(&["auto", "banded", "sparse", "cached-columns"]), Default("\"auto\""), "\"auto\"", "How its matrices answer forces and contacts: the same motion up to rounding, in other times; auto takes the fastest one by measurement. A beam in modes has a diagonal matrix, and auto only."),
+            key("backend", Kind::Choice(words::Backend::WORDS), Default("\"auto\""), "\"auto\"", "How its matrices answer forces and contacts: the same motion up to rounding, in other times; auto takes the fastest one by measurement. A beam in modes has a diagonal matrix, and auto only."),
             key("probes", Kind::List(Dimension::LENGTH, Range::NOT_NEGATIVE), Optional, "[\"9 cm\"]", "Places along the beam, from its left end, whose deflection is written out."),
             key("record", Kind::Words(crate::scene::BEAM_QUANTITIES), Default("[\"w\"]"), "[\"w\", \"moment\", \"shear\"]", "What is written at its probes: deflection, bending moment, transverse force, largest normal stress; and its axial force. `docs/section-forces.md` has signs and meaning."),
             key("reactions", Kind::Flag, Default("false"), "true", "Whether force and couple of each support are written."),
@@ -327,8 +328,8 @@ pub static TABLES: &[Table] = &[
             key("friction", Kind::Number(Range::NOT_NEGATIVE), Required, "0.5", "Coefficient of Coulomb friction."),
             key("restitution", Kind::Number(Range::UNIT), Default("0.0"), "0.0", "Coefficient of restitution: of the normal velocity, or with poisson of the normal impulse.").only_with("law", IMPACTS),
             key("tangential_restitution", Kind::Number(Range::UNIT), Default("0.0"), "0.0", "Part of the tangential velocity that comes back from an impact that does not slide.").only_with("law", IMPACTS),
-            key("kinematics", Kind::Choice(&["deformed", "linear"]), Default("\"deformed\""), "\"deformed\"", "Whether contact frames follow the deformed beam or its undeformed axis."),
-            key("law", Kind::Choice(&["newton", "poisson", "energetic", "kelvin-voigt", "hunt-crossley"]), Default("\"newton\""), "\"newton\"", "Law along the normal: an impact in an instant (newton, poisson, energetic), or a contact with duration (kelvin-voigt, hunt-crossley)."),
+            key("kinematics", Kind::Choice(words::Frames::WORDS), Default("\"deformed\""), "\"deformed\"", "Whether contact frames follow the deformed beam or its undeformed axis."),
+            key("law", Kind::Choice(words::Law::WORDS), Default("\"newton\""), "\"newton\"", "Law along the normal: an impact in an instant (newton, poisson, energetic), or a contact with duration (kelvin-voigt, hunt-crossley)."),
             key("stiffness", Kind::Measure(CONTACT_STIFFNESS, Range::POSITIVE.sizes(1e-12, 1e18)), Required, "\"1e6 N/m\"", "Stiffness k. In F = k d^n (hunt-crossley) its unit is N/m^n; N/m stands for that too, with the same number.").only_with("law", COMPLIANT),
             key("damping", Kind::Measure(CONTACT_DAMPING, Range::NOT_NEGATIVE), Required, "\"10 N s/m\"", "Damping: with kelvin-voigt c in N s/m; with hunt-crossley, in F = k d^n (1 + D v), D in s/m, or c = k D in N s/m^(n+1), for which N s/m stands too.").only_with("law", COMPLIANT),
             key("exponent", Kind::Number(EXPONENT), Default("1.5"), "1.5", "Exponent n of the force: 1.5 is that of two spheres.").only_with("law", &["hunt-crossley"]),
@@ -339,7 +340,7 @@ pub static TABLES: &[Table] = &[
         occurrence: Occurrence::Named,
         doc: "A time history without unit, with a peak of 1 if by formula: what it is used for gives the amplitude. Formulas and integrals: `docs/signals.md`.",
         keys: &[
-            key("shape", Kind::Choice(&["constant", "ramp", "harmonic", "one-sine", "half-sine", "ricker", "table"]), Required, "\"one-sine\"", "What it looks like."),
+            key("shape", Kind::Choice(words::History::WORDS), Required, "\"one-sine\"", "What it looks like."),
             key("start", INSTANT, Default("\"0 s\""), "\"0.1 s\"", "When it starts: it is 0 before; the times of a table count from it.").only_with("shape", &["constant", "ramp", "harmonic", "one-sine", "half-sine", "table"]),
             key("peak", INSTANT, Required, "\"0.5 s\"", "When a Ricker wavelet has its peak.").only_with("shape", &["ricker"]),
             key("duration", TIME, Required, "\"0.2 s\"", "How long a ramp takes to reach 1, or a half sine lasts.").only_with("shape", &["ramp", "half-sine"]),

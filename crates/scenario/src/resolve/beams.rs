@@ -9,6 +9,7 @@ use super::Resolver;
 use super::sections::Profiled;
 use crate::faults;
 use crate::scene::{BeamScene, Reduction, SignalScene};
+use crate::words::{Along, Backend, Lies};
 
 /// The same support without dashpots.
 fn undamped(support: Support) -> Support {
@@ -42,7 +43,10 @@ impl Resolver<'_, '_> {
         let position = self.pair(&at("position"));
         let probes = self.probes(&at("probes"), span);
         let static_start = self.doc.text(&at("start")) == Some("static");
-        let top = self.word(&at("surface")).map(|surface| surface == "top");
+        let top = self.choice(&at("surface")).map(|lies| match lies {
+            Lies::Axis => false,
+            Lies::Top => true,
+        });
         let self_weight = self.doc.flag(&at("self_weight"));
         let motion = self.motion(&path, signals);
         self.damped_twice(&path);
@@ -77,7 +81,7 @@ impl Resolver<'_, '_> {
             position: position?,
             self_weight: self_weight?,
             reduction: reduction?,
-            backend: backend(self.doc.text(&at("backend"))),
+            backend: self.backend(&at("backend"))?,
             probes: probes?,
             output: output?,
             motion: motion?,
@@ -104,15 +108,26 @@ impl Resolver<'_, '_> {
         (!self.doc.is_refused(path)).then_some(probes)
     }
 
+    /// A beam in modes has no choice, and no such key.
+    fn backend(&mut self, path: &str) -> Option<WBackend> {
+        let word = if self.doc.text(path).is_some() { self.choice(path)? } else { Backend::Auto };
+        Some(match word {
+            Backend::Auto => WBackend::Auto,
+            Backend::Banded => WBackend::Banded,
+            Backend::Sparse => WBackend::Sparse,
+            Backend::CachedColumns => WBackend::CachedColumns,
+        })
+    }
+
     fn axial(&mut self, path: &str) -> Option<Axial> {
-        Some(match self.word(&format!("{path}.axial"))?.as_str() {
-            "held" => Axial::Held,
-            "elastic" => {
+        Some(match self.choice(&format!("{path}.axial"))? {
+            Along::Held => Axial::Held,
+            Along::Elastic => {
                 let ends = self.doc.text_pair(&format!("{path}.axial_supports"));
                 let held = ends.map(|ends| ends.map(|end| end == "held"));
                 Axial::Elastic { held: self.need(&format!("{path}.axial_supports"), held)? }
             }
-            _ => Axial::Free,
+            Along::Free => Axial::Free,
         })
     }
 
@@ -458,12 +473,3 @@ fn largest_deflection(beam: &Beam, shape: &[f64]) -> f64 {
 
 /// Most rigid motions of a beam: up and down, turning, and along its axis.
 const RIGID: usize = 3;
-
-fn backend(word: Option<&str>) -> WBackend {
-    match word {
-        Some("banded") => WBackend::Banded,
-        Some("sparse") => WBackend::Sparse,
-        Some("cached-columns") => WBackend::CachedColumns,
-        _ => WBackend::Auto,
-    }
-}

@@ -6,6 +6,7 @@ use teeter_integrator::{ImpactLaw, PairLaw};
 use super::Resolver;
 use crate::measure::Measure;
 use crate::scene::{ContactScene, Support};
+use crate::words::{Frames, Law};
 
 impl Resolver<'_, '_> {
     pub(super) fn contact(&mut self, name: &str) -> Option<ContactScene> {
@@ -14,29 +15,30 @@ impl Resolver<'_, '_> {
         let between = self.doc.text_pair(&at("between")).map(|pair| pair.map(str::to_owned));
         let between = self.need(&at("between"), between);
         let law = self.pair_law(&path);
-        let kinematics = self.word(&at("kinematics"));
+        let kinematics = self.choice(&at("kinematics"));
         let between = between?;
         let (block, surface) = self.sides(&at("between"), &between)?;
-        let kinematics = if kinematics? == "linear" { Kinematics::Linear } else { Kinematics::Deformed };
+        let kinematics = match kinematics? {
+            Frames::Deformed => Kinematics::Deformed,
+            Frames::Linear => Kinematics::Linear,
+        };
         Some(ContactScene { name: name.to_owned(), between, block, surface, law: law?, kinematics })
     }
 
     fn pair_law(&mut self, path: &str) -> Option<PairLaw> {
         let at = |key: &str| format!("{path}.{key}");
         let friction = self.number(&at("friction"));
-        let law = self.word(&at("law"))?;
-        let impact = match law.as_str() {
-            "kelvin-voigt" => self.kelvin_voigt(path)?,
-            "hunt-crossley" => self.hunt_crossley(path)?,
-            instant => {
-                let (e, tangential) = (self.number(&at("restitution")), self.number(&at("tangential_restitution")));
-                let impact = match instant {
-                    "poisson" => ImpactLaw::Poisson,
-                    "energetic" => ImpactLaw::Energetic,
-                    _ => ImpactLaw::Newton,
-                };
-                return Some(PairLaw::new(friction?, e?).with_impact(impact).with_tangential_restitution(tangential?));
-            }
+        let instant = |resolver: &mut Self, impact: ImpactLaw| {
+            let e = resolver.number(&at("restitution"));
+            let tangential = resolver.number(&at("tangential_restitution"));
+            Some(PairLaw::new(friction?, e?).with_impact(impact).with_tangential_restitution(tangential?))
+        };
+        let impact = match self.choice(&at("law"))? {
+            Law::Newton => return instant(self, ImpactLaw::Newton),
+            Law::Poisson => return instant(self, ImpactLaw::Poisson),
+            Law::Energetic => return instant(self, ImpactLaw::Energetic),
+            Law::KelvinVoigt => self.kelvin_voigt(path)?,
+            Law::HuntCrossley => self.hunt_crossley(path)?,
         };
         Some(PairLaw::new(friction?, 0.0).with_impact(impact))
     }

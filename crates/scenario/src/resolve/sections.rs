@@ -3,6 +3,7 @@
 use teeter_beam::{BeamError, Profile, Section, Segment};
 
 use super::Resolver;
+use crate::words::{Shape, Theory, Word};
 
 /// A section, and how thick it is.
 pub(super) struct Profiled {
@@ -15,13 +16,16 @@ impl Resolver<'_, '_> {
     /// The section of the table at `path`, of a material and of the theory of the beam at `beam`.
     pub(super) fn section(&mut self, path: &str, material: Option<&str>, beam: &str) -> Option<Profiled> {
         let at = |key: &str| format!("{path}.{key}");
-        let shear = self.doc.text(&format!("{beam}.theory")) == Some("timoshenko");
-        let word = self.word(&at("section"))?;
-        if word == "direct" {
+        let shear = match self.doc.text(&format!("{beam}.theory")).and_then(Theory::of) {
+            Some(Theory::Timoshenko) => true,
+            Some(Theory::EulerBernoulli) | None => false,
+        };
+        let shape = self.choice(&at("section"))?;
+        if shape == Shape::Direct {
             return self.direct(path, shear, self.doc.text(&format!("{beam}.axial")) != Some("free"));
         }
         let values = material.map(|material| self.of_material(material, path, shear));
-        let profile = self.profile(path, &word);
+        let profile = self.profile(path, shape);
         let (Some([modulus, density, poisson]), profile) = (values??, profile?) else { return None };
         let section = if shear {
             Section::timoshenko(profile, modulus, density, poisson)
@@ -41,20 +45,22 @@ impl Resolver<'_, '_> {
         }
     }
 
-    fn profile(&mut self, path: &str, word: &str) -> Option<Profile> {
+    fn profile(&mut self, path: &str, shape: Shape) -> Option<Profile> {
         let mut side = |key: &str| self.quantity(&format!("{path}.{key}"));
-        Some(match word {
-            "circle" => Profile::Circle { diameter: side("diameter")? },
-            "tube" => {
+        Some(match shape {
+            // Given by numbers, without a profile.
+            Shape::Direct => return None,
+            Shape::Circle => Profile::Circle { diameter: side("diameter")? },
+            Shape::Tube => {
                 let (diameter, wall) = (side("diameter"), side("wall"));
                 Profile::Tube { diameter: diameter?, wall: wall? }
             }
-            "i-section" => {
+            Shape::ISection => {
                 let sides = ["height", "width", "web", "flange"].map(side);
                 let [height, width, web, flange] = sides;
                 Profile::ISection { height: height?, width: width?, web: web?, flange: flange? }
             }
-            _ => {
+            Shape::Rectangle => {
                 let (width, thickness) = (side("width"), side("thickness"));
                 Profile::Rectangle { width: width?, thickness: thickness? }
             }

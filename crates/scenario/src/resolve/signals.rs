@@ -5,46 +5,54 @@ use std::sync::Arc;
 use super::Resolver;
 use crate::record;
 use crate::scene::{History, SignalScene};
+use crate::words;
 use teeter_integrator::{Formula, SignalError};
+
+/// A formula, or what is wrong with its numbers.
+type Made = Result<Formula, SignalError>;
 
 impl Resolver<'_, '_> {
     pub(super) fn signal(&mut self, name: &str) -> Option<SignalScene> {
         let path = format!("signal.{name}");
-        let shape = self.word(&format!("{path}.shape"))?;
-        let history = if shape == "table" {
-            History::Table(Arc::new(self.table(&path)?))
-        } else {
-            History::Formula(self.formula(&path, &shape)?)
+        let history = match self.choice(&format!("{path}.shape"))? {
+            words::History::Table => History::Table(Arc::new(self.table(&path)?)),
+            words::History::Constant => self.formula(&path, Self::constant)?,
+            words::History::Ramp => self.formula(&path, |this, path| this.lasting(path, Formula::ramp))?,
+            words::History::HalfSine => self.formula(&path, |this, path| this.lasting(path, Formula::half_sine))?,
+            words::History::Ricker => self.formula(&path, Self::ricker)?,
+            words::History::Harmonic => self.formula(&path, |this, path| this.waving(path, Formula::harmonic))?,
+            words::History::OneSine => self.formula(&path, |this, path| this.waving(path, Formula::one_sine))?,
         };
         Some(SignalScene { name: name.to_owned(), history })
     }
 
-    fn formula(&mut self, path: &str, shape: &str) -> Option<Formula> {
+    fn constant(&mut self, path: &str) -> Option<Made> {
+        Some(Formula::constant(self.quantity(&format!("{path}.start"))?))
+    }
+
+    fn lasting(&mut self, path: &str, of: fn(f64, f64) -> Made) -> Option<Made> {
         let at = |key: &str| format!("{path}.{key}");
-        let made = match shape {
-            "constant" => Formula::constant(self.quantity(&at("start"))?),
-            "ramp" | "half-sine" => {
-                let (start, duration) = (self.quantity(&at("start")), self.quantity(&at("duration")));
-                let of = if shape == "ramp" { Formula::ramp } else { Formula::half_sine };
-                of(start?, duration?)
-            }
-            "ricker" => {
-                let (peak, frequency) = (self.quantity(&at("peak")), self.frequency(path));
-                Formula::ricker(peak?, frequency?)
-            }
-            _ => {
-                let (start, phase) = (self.quantity(&at("start")), self.quantity(&at("phase")));
-                let frequency = self.frequency(path);
-                let (start, phase, frequency) = (start?, phase?, frequency?);
-                if shape == "harmonic" {
-                    Formula::harmonic(start, frequency, phase)
-                } else {
-                    Formula::one_sine(start, frequency, phase)
-                }
-            }
-        };
-        match made {
-            Ok(formula) => Some(formula),
+        let (start, duration) = (self.quantity(&at("start")), self.quantity(&at("duration")));
+        Some(of(start?, duration?))
+    }
+
+    fn ricker(&mut self, path: &str) -> Option<Made> {
+        let (peak, frequency) = (self.quantity(&format!("{path}.peak")), self.frequency(path));
+        Some(Formula::ricker(peak?, frequency?))
+    }
+
+    fn waving(&mut self, path: &str, of: fn(f64, f64, f64) -> Made) -> Option<Made> {
+        let at = |key: &str| format!("{path}.{key}");
+        let (start, phase) = (self.quantity(&at("start")), self.quantity(&at("phase")));
+        let frequency = self.frequency(path);
+        let (start, phase, frequency) = (start?, phase?, frequency?);
+        Some(of(start, frequency, phase))
+    }
+
+    fn formula(&mut self, path: &str, make: impl Fn(&mut Self, &str) -> Option<Made>) -> Option<History> {
+        let at = |key: &str| format!("{path}.{key}");
+        match make(self, path)? {
+            Ok(formula) => Some(History::Formula(formula)),
             Err(SignalError::Value { what: "the phase", .. }) => {
                 self.error(&at("phase"), "must be at least 0 deg and less than 360 deg", "an angle such as \"20 deg\"");
                 None

@@ -18,10 +18,7 @@ impl Resolver<'_, '_> {
         if let Some(theta) = theta {
             self.stable(theta, beams);
         }
-        let scheme = self.word("time.scheme").map(|name| match name.as_str() {
-            "moreau-jean-closed" => SchemeName::MoreauJeanClosed,
-            _ => SchemeName::MoreauJean,
-        });
+        let scheme = self.choice::<SchemeName>("time.scheme");
         if let (Some(SchemeName::MoreauJeanClosed), Some(theta)) = (scheme, theta)
             && theta != 0.5
         {

@@ -13,7 +13,7 @@ pub(super) const SPRING_STIFFNESS: Range = Range::NOT_NEGATIVE.sizes(1e-18, 1e18
 
 pub(super) const SECTION: Key = key(
     "section",
-    Kind::Choice(&["rectangle", "circle", "tube", "i-section", "direct"]),
+    Kind::Choice(crate::words::Shape::WORDS),
     Default("\"rectangle\""),
     "\"tube\"",
     "Shape of the section; direct: given by its stiffness and mass per length, without a material.",

@@ -1,0 +1,104 @@
+//! Words of the scene that choose something: each list is written once, here, and both the table of keys and the decoding take it from here. A word
+//! that is added is a variant that is added, and every place that decides by it has to say what it means.
+
+use crate::scene::SchemeName;
+use teeter_integrator::{MoreauJean, MoreauJeanClosed};
+
+/// One of some words.
+pub(crate) trait Word: Copy + Sized + 'static {
+    /// All of them, in the order of the table of keys.
+    const ALL: &'static [(&'static str, Self)];
+
+    /// What a word means; `None` for any other.
+    fn of(word: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(name, _)| *name == word).map(|(_, meant)| *meant)
+    }
+}
+
+macro_rules! words {
+    ($($(#[$doc:meta])* $name:ident { $($variant:ident = $word:literal),* $(,)? })*) => {$(
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub(crate) enum $name { $($variant),* }
+
+        impl $name {
+            pub(crate) const WORDS: &'static [&'static str] = &[$($word),*];
+        }
+
+        impl Word for $name {
+            const ALL: &'static [(&'static str, Self)] = &[$(($word, Self::$variant)),*];
+        }
+    )*};
+}
+
+words! {
+    /// Law along the normal of a contact.
+    Law {
+        Newton = "newton",
+        Poisson = "poisson",
+        Energetic = "energetic",
+        KelvinVoigt = "kelvin-voigt",
+        HuntCrossley = "hunt-crossley",
+    }
+    /// Whether contact frames follow the deformed beam.
+    Frames { Deformed = "deformed", Linear = "linear" }
+    /// Where contacts of a beam lie.
+    Lies { Axis = "axis", Top = "top" }
+    /// What a beam does along its axis.
+    Along { Free = "free", Held = "held", Elastic = "elastic" }
+    /// How a beam's matrices answer.
+    Backend { Auto = "auto", Banded = "banded", Sparse = "sparse", CachedColumns = "cached-columns" }
+    /// A beam's theory.
+    Theory { EulerBernoulli = "euler-bernoulli", Timoshenko = "timoshenko" }
+    /// What a section looks like.
+    Shape {
+        Rectangle = "rectangle",
+        Circle = "circle",
+        Tube = "tube",
+        ISection = "i-section",
+        Direct = "direct",
+    }
+    /// What a signal looks like.
+    History {
+        Constant = "constant",
+        Ramp = "ramp",
+        Harmonic = "harmonic",
+        OneSine = "one-sine",
+        HalfSine = "half-sine",
+        Ricker = "ricker",
+        Table = "table",
+    }
+}
+
+/// The words of the schemes.
+pub(crate) const SCHEMES: &[&str] = &[MoreauJean::NAME, MoreauJeanClosed::<2>::NAME];
+
+impl Word for SchemeName {
+    const ALL: &'static [(&'static str, Self)] =
+        &[(SCHEMES[0], Self::MoreauJean), (SCHEMES[1], Self::MoreauJeanClosed)];
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn each_means_something_of_its_own<W: Word + PartialEq>() {
+        for (k, (word, meant)) in W::ALL.iter().enumerate() {
+            assert!(W::of(word) == Some(*meant) && W::ALL[..k].iter().all(|(_, other)| other != meant), "{word}");
+        }
+        assert!(["", "other", "moreau", "newton "].iter().all(|word| W::of(word).is_none()));
+    }
+
+    #[test]
+    fn no_word_is_taken_for_another() {
+        each_means_something_of_its_own::<SchemeName>();
+        each_means_something_of_its_own::<Law>();
+        each_means_something_of_its_own::<Frames>();
+        each_means_something_of_its_own::<Lies>();
+        each_means_something_of_its_own::<Along>();
+        each_means_something_of_its_own::<Backend>();
+        each_means_something_of_its_own::<Theory>();
+        each_means_something_of_its_own::<Shape>();
+        each_means_something_of_its_own::<History>();
+    }
+}
