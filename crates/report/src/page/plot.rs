@@ -289,14 +289,28 @@ fn path(x: &[f64], y: &[f64], px: impl Fn(f64) -> f64, py: impl Fn(f64) -> f64) 
 
 /// The range of the values with a little room, at least `least` wide; never empty.
 pub(crate) fn range_of(values: impl Iterator<Item = f64>, least: f64) -> (f64, f64) {
-    let finite = values.filter(|x| x.is_finite());
+    // So that no width overflows.
+    let finite = values.filter(|x| x.is_finite()).map(|x| x.clamp(-LARGEST, LARGEST));
     let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
     if low > high {
         return (-1.0, 1.0);
     }
     let room = 0.06 * (high - low) + 0.5 * (least - (high - low)).max(0.0);
-    if room > 1e-9 * low.abs().max(high.abs()) { (low - room, high + room) } else { (low - 1.0, high + 1.0) }
+    // Of constant values, wide enough for the ends to be other numbers than the values, however large these are.
+    let least = CONSTANT * low.abs().max(high.abs());
+    if room > least {
+        (low - room, high + room)
+    } else {
+        let room = least.max(1.0);
+        (low - room, high + room)
+    }
 }
+
+/// Values beyond are drawn there.
+const LARGEST: f64 = 1e300;
+
+/// What differs by less than this part of its size is drawn as constant.
+const CONSTANT: f64 = 1e-9;
 
 /// Round numbers along an axis.
 struct Ticks {
@@ -366,9 +380,20 @@ mod tests {
 
     #[test]
     fn a_range_is_never_empty() {
-        for values in [vec![], vec![f64::NAN], vec![3.0], vec![0.0, 0.0], vec![1e300, 1e300], vec![-1.0, 1.0]] {
-            let (low, high) = range_of(values.into_iter(), 0.0);
-            assert!(low < high || low.abs() > 1e15, "{low} {high}");
+        let mut sets = vec![vec![], vec![f64::NAN], vec![f64::MIN, f64::MAX], vec![-1.0, 1.0], vec![0.0, 5e-324]];
+        sets.extend((-300..=308).step_by(4).flat_map(|power| {
+            let x = 10f64.powi(power);
+            [vec![x], vec![-x, -x], vec![x, x * (1.0 + f64::EPSILON)], vec![x, 2.0 * x]]
+        }));
+        for values in sets {
+            for least in [0.0, 1e-3] {
+                let (low, high) = range_of(values.iter().copied(), least);
+                assert!(low < high && (high - low).is_finite(), "{values:?}: {low} {high}");
+                let inside = |x: &f64| !x.is_finite() || (low..=high).contains(&x.clamp(-LARGEST, LARGEST));
+                assert!(values.iter().all(inside), "{values:?}: {low} {high}");
+                let ticks = Ticks::new((low, high), 6);
+                assert!((1..=12).contains(&ticks.at.len()), "{values:?}: {:?}", ticks.at);
+            }
         }
     }
 
