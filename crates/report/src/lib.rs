@@ -12,6 +12,7 @@ mod made_energy;
 mod number;
 mod page;
 mod recorder;
+mod resolution;
 mod results;
 mod run_recorder;
 mod schedule;

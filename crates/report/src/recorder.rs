@@ -2,6 +2,7 @@
 
 use crate::contacts::{self, Impulses, Names};
 use crate::number::{push, push_next};
+use crate::resolution::{Bodies, COARSE, Resolution};
 use crate::sections::{BeamRecord, Sections, Values};
 use crate::table::Table;
 use crate::{Results, ResultsError, Schedule, WarningLog, impact_threshold};
@@ -74,6 +75,7 @@ pub(crate) struct Kept {
     row_at: u64,
     /// Of the last step, for a row after the run's early end too.
     section_values: Values,
+    resolution: Resolution,
     record: Record,
 }
 
@@ -86,6 +88,7 @@ pub struct Recorder<'a> {
     impacts: Table,
     energy: Table,
     sections: Sections,
+    bodies: Bodies,
     line: String,
     kept: Kept,
     tell: &'a mut dyn FnMut(&str),
@@ -135,6 +138,7 @@ impl<'a> Recorder<'a> {
             contacts_now: Vec::new(),
             row_at: 0,
             section_values,
+            resolution: Resolution::default(),
             record: Record { beams, ..Record::default() },
         };
         Self::with(|k| table(k, &headers[k]), kept, sections, scene, layout, tell)
@@ -168,6 +172,7 @@ impl<'a> Recorder<'a> {
             impacts: table(2)?,
             energy: table(3)?,
             sections,
+            bodies: Bodies::of(scene),
             line: String::new(),
             kept,
             tell,
@@ -323,6 +328,26 @@ impl<'a> Recorder<'a> {
         }
     }
 
+    /// Warns where the steps were too long for the motion that the whole run showed.
+    fn warn_of_resolution(&mut self, state: &State) {
+        let Some(coarse) = self.kept.resolution.coarse(&self.bodies, state.dt) else { return };
+        let name = self.layout.blocks.get(coarse.block).map_or("a block", |place| &place.name);
+        let told = self.kept.record.warnings.enter("under-resolved", None, || {
+            format!(
+                "steps of {:e} s are too long for the impacts of `{name}`: a contact closes up to a step late, and here that adds up to {:.1} % \
+                 of its motion; above {:.0} % motions are likely off by more than 10 %; take a step of at most {:.0e} s, and let `teeter tradeoff` \
+                 measure what accuracy it gives",
+                state.dt,
+                100.0 * coarse.part,
+                100.0 * COARSE,
+                coarse.step
+            )
+        });
+        if let Some(text) = told {
+            (self.tell)(&text);
+        }
+    }
+
     fn write_impacts(&mut self, step: &StepReport<'_, 2>) -> Result<(), ResultsError> {
         for contact in step.contacts {
             if contact.persisting || contact.u_before[0] >= -self.threshold {
@@ -381,6 +406,7 @@ impl Observer<2> for Recorder<'_> {
             .iter()
             .map(|block| RockingMonitor::new(state.t, state.q[block.range.start + 2]))
             .collect();
+        self.kept.resolution.start(self.layout, state);
         let (record, values) = (&mut self.kept.record, &mut self.kept.section_values);
         self.sections.start(self.layout, state, &mut record.beams, values);
         Ok(self.write_row(state)?)
@@ -396,6 +422,7 @@ impl Observer<2> for Recorder<'_> {
         self.write_impacts(step)?;
         self.warn_of(step);
         self.warn_of_limits(state);
+        self.kept.resolution.observe(&self.bodies, self.layout, step, state);
         let Kept { record, section_values, .. } = &mut self.kept;
         let kept = (record.beams.as_mut_slice(), section_values);
         if let Some(text) = self.sections.observe(step, state, kept, &mut record.warnings) {
@@ -417,6 +444,7 @@ impl Observer<2> for Recorder<'_> {
         if state.step != self.kept.row_at {
             self.write_rows(model, state)?;
         }
+        self.warn_of_resolution(state);
         Ok(self.flush()?)
     }
 }

@@ -5,7 +5,7 @@ use crate::diagnostic::Diagnostic;
 use crate::document::Document;
 use crate::mesh_error::{self, OfMesh};
 use crate::scene::{BeamScene, BlockScene, ContactScene, Placement, Scene, Support};
-use crate::{deflection, outlook, stability, wording};
+use crate::{deflection, flexibility, outlook, rocking, stability, wording};
 use std::f64::consts::{PI, TAU};
 use teeter_beam::{Axial, Beam, Digits, MatrixWeights};
 use teeter_integrator::ImpactLaw;
@@ -45,6 +45,7 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Doubts {
     for (number, beam) in scene.beams.iter().enumerate() {
         doubts.warnings.extend(thick(beam, document));
         doubts.warnings.extend(of_model(beam, scene, document));
+        doubts.warnings.extend(under_meshed(number, scene, document));
         let sag = mesh_error::sag(scene, number);
         match sag.map(|sag| sag.larger()) {
             Some(largest) if largest > DEEP_SAG * beam.spec.span => {
@@ -74,7 +75,8 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Doubts {
         }
     }
     doubts.warnings.extend(scene.signals.iter().filter_map(|signal| unused(&signal.name, document)));
-    doubts.warnings.extend(step(scene, document));
+    // What is too coarse for the motion of contact is so for its impacts.
+    doubts.warnings.extend(step(scene, document).or_else(|| rocking::coarse(scene, document)));
     doubts.warnings.extend(scene.contacts.iter().filter_map(|contact| resolved_in_time(contact, scene, document)));
     doubts
 }
@@ -141,6 +143,28 @@ fn thick(beam: &BeamScene, document: &Document) -> Option<Diagnostic> {
     );
     let remedy = "take theory = \"timoshenko\" (the material then needs poisson_ratio)";
     Some(document.error(&format!("beam.{}.theory", beam.name), rule, remedy).as_warning())
+}
+
+/// A mesh, or modes, without the flexibility that what presses on the beam feels.
+fn under_meshed(number: usize, scene: &Scene, document: &Document) -> Option<Diagnostic> {
+    let lack = flexibility::lacking(scene, number)?;
+    let beam = &scene.beams[number];
+    let path = |key: &str| format!("beam.{}.{key}", beam.name);
+    let key = match beam.reduction {
+        Some(_) if document.has(&path("modes")) => "modes",
+        Some(_) => "model",
+        None if document.has(&path("nodes")) => "nodes",
+        None => "elements",
+    };
+    let rule = format!(
+        "under-resolved: {:.0} % of the flexibility that {} feel is missing; above {:.0} % motions are likely off by more than 10 %, \
+         however fine the step",
+        100.0 * lack.part,
+        lack.what,
+        100.0 * flexibility::LACKING
+    );
+    let remedy = format!("{}; `teeter tradeoff` measures what it is worth", lack.advice);
+    Some(document.error(&path(key), rule, remedy).as_warning())
 }
 
 /// A signal that drives nothing.

@@ -7,6 +7,7 @@
 //! What is tried and what is advised is decided by counted [`Work`] and not by the clock: it is the same in every run. Nothing is advised that
 //! `check` or `run` would warn of, and nothing before the first impacts of the scene have been compared.
 
+mod against;
 mod axes;
 mod errors;
 mod horizon;
@@ -25,6 +26,7 @@ mod warned;
 mod work;
 pub mod write;
 
+pub use against::Against;
 pub use axes::{Axes, Axis};
 pub use errors::{Errors, Quantity, Ruler};
 pub use horizon::FirstImpact;

@@ -1,0 +1,85 @@
+//! Runs that are likely off by more than 10 % say so, and those that are not keep quiet (`docs/resolution.md` has the whole sweep).
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+fn scenarios() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios")
+}
+
+/// What a run of a scenario says, on the terminal and by the codes of its summary.
+fn run(stem: &str, number: usize, sets: &[&str]) -> (String, Vec<(String, String)>) {
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("resolution-{stem}-{number}"));
+    let mut command = Command::new(env!("CARGO_BIN_EXE_teeter"));
+    command.arg("run").arg(scenarios().join(format!("{stem}.toml"))).arg("--out").arg(&out).arg("--force");
+    command.args(["--set", "output.every=10 ms"]);
+    sets.iter().for_each(|set| {
+        command.args(["--set", set]);
+    });
+    let ran = command.output().unwrap();
+    let told = String::from_utf8_lossy(&ran.stderr).into_owned();
+    assert!(ran.status.success(), "{stem} {sets:?}: {told}");
+    let summary: serde_json::Value = serde_json::from_slice(&std::fs::read(out.join("summary.json")).unwrap()).unwrap();
+    let text = |value: &serde_json::Value| value.as_str().unwrap().to_owned();
+    let warnings = summary["warnings"].as_array().unwrap();
+    (told, warnings.iter().map(|warning| (text(&warning["code"]), text(&warning["text"]))).collect())
+}
+
+/// Whether the run warned that its steps, mesh or modes don't resolve the motion.
+fn warned(stem: &str, number: usize, sets: &[&str]) -> bool {
+    let (told, warnings) = run(stem, number, sets);
+    let found = warnings.iter().find(|(code, text)| code == "under-resolved" || text.contains("under-resolved"));
+    if let Some((_, text)) = found {
+        assert!(
+            told.contains("under-resolved") || told.contains("too long for the impacts"),
+            "{text}\nnot told: {told}"
+        );
+        assert!(text.contains("teeter tradeoff") && text.contains("take "), "{text}");
+    }
+    found.is_some()
+}
+
+#[test]
+fn runs_that_are_far_off_say_so() {
+    // Off by 17, 59, 65, 135 % of the largest angle.
+    for (number, step) in ["500 us", "1 ms", "2 ms", "3.7 ms"].into_iter().enumerate() {
+        assert!(warned("free-rocking-on-beam", number, &[&format!("time.step={step}")]), "{step}");
+    }
+    // By 58, 13 and 42 %.
+    for (number, body) in
+        ["beam.table.elements=1", "beam.table.elements=3", "beam.table.model=modes"].into_iter().enumerate()
+    {
+        let modes: &[&str] = if body.contains("model") { &[body, "beam.table.modes={ count = 1 }"] } else { &[body] };
+        assert!(warned("free-rocking-on-beam", 10 + number, modes), "{body}");
+    }
+    // By 20, 29 and 13 %.
+    assert!(warned("free-rocking-on-ground", 0, &["time.step=500 us"]));
+    assert!(warned("free-rocking-on-ground", 1, &["time.step=500 us", "time.scheme=moreau-jean-closed"]));
+    assert!(warned("drop", 0, &["time.step=5 ms"]));
+}
+
+#[test]
+fn runs_that_are_right_keep_quiet() {
+    for path in std::fs::read_dir(scenarios()).unwrap() {
+        let path = path.unwrap().path();
+        let stem = path.file_stem().unwrap().to_str().unwrap().to_owned();
+        assert!(!warned(&stem, 20, &[]), "{stem} as it is");
+    }
+    // Within 1 %.
+    for (number, (stem, sets)) in [
+        ("free-rocking-on-beam", &["time.step=50 us"] as &[&str]),
+        ("free-rocking-on-beam", &["time.step=100 us", "time.scheme=moreau-jean-closed"]),
+        ("free-rocking-on-beam", &["time.step=50 us", "beam.table.elements=5"]),
+        ("free-rocking-on-ground", &["time.step=20 us"]),
+        ("drop", &["time.step=200 us"]),
+        ("shaken-ground", &["time.step=200 us"]),
+        ("sliding", &["time.step=5 ms"]),
+        ("pushed-block", &["time.step=5 ms"]),
+        ("incline", &["time.step=5 ms"]),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        assert!(!warned(stem, 30 + number, sets), "{stem} {sets:?}");
+    }
+}
