@@ -157,7 +157,7 @@ fn under_meshed(number: usize, scene: &Scene, document: &Document) -> Option<Dia
         None => "elements",
     };
     let rule = format!(
-        "under-resolved: {:.0} % of the flexibility that {} feel is missing; above {:.0} % motions are likely off by more than 10 %, \
+        "under-resolved: {:.0} % of the flexibility that {} feel is missing; above {:.1} % motions are likely off by more than 10 %, \
          however fine the step",
         100.0 * lack.part,
         lack.what,

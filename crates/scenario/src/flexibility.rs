@@ -9,8 +9,9 @@ use crate::scene::{BeamScene, BlockScene, Placement, Scene, Support};
 use crate::stability;
 use teeter_beam::{Beam, BeamSpec, MatrixWeights, ShapeAt};
 
-/// A part of the flexibility that lacks, from which on motions are likely off by more than 10 %.
-pub(crate) const LACKING: f64 = 0.1;
+/// A part of the flexibility that lacks, from which on motions are likely off by more than 10 %: between the 13.3 % of four modes (off by 1 to 2 %) and
+/// the 14.1 % of three elements (off by 13 %).
+pub(crate) const LACKING: f64 = 0.135;
 
 /// A mesh or a basis that lacks no more than this is advised in place of one that lacks too much.
 const ENOUGH: f64 = 0.03;
