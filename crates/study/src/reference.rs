@@ -137,7 +137,7 @@ pub(crate) fn find(
         match (ran.pop(), ran.pop()) {
             (Some(Ok(twice)), Some(Ok(fine))) => candidates.push(Candidate { fine, twice, scheme, nudged: None }),
             (Some(twice), Some(fine)) => {
-                singles.extend(twice.ok().map(|ran| (2 * scheme + 1, ran)).into_iter());
+                singles.extend(twice.ok().map(|ran| (2 * scheme + 1, ran)));
                 singles.extend(fine.ok().map(|ran| (2 * scheme, ran)));
             }
             _ => {}
