@@ -1,5 +1,7 @@
 //! Runs that are likely off by more than 10 % say so, and those that are not keep quiet (`docs/resolution.md` has the whole sweep).
 
+#![allow(clippy::unwrap_used)] // a test
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
