@@ -411,8 +411,13 @@ fn told(summary: &Summary, folder: &Path) -> String {
     );
     let count = |n: u64, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
     text.push_str(&format!(
-        "  {}, {}, deepest penetration {:.1e} m, energy identity to {:.0e}\n",
+        "  {}{}, {}, deepest penetration of a corner {:.1e} m, energy identity to {:.0e}\n",
         count(summary.impact_count, "impact"),
+        if summary.reclosure_count > 0 {
+            format!(" and {}", count(summary.reclosure_count, "re-closure"))
+        } else {
+            String::new()
+        },
         count(summary.crossings.len() as u64, "zero crossing"),
         summary.max_penetration,
         summary.energy.largest_residual

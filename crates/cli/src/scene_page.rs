@@ -48,6 +48,7 @@ A scene with a warning runs all the same. `teeter check` and `teeter run` warn o
 - a `step` coarser than a tenth of the shortest time scale of a contact: the rocking time √(4R/3g) of a block, R half its diagonal, and
   for a block on a beam the beam's first period as well;
 - an `end` that is no multiple of the step: the run goes on to the first step past it;
+- a `gap_tolerance` over 1e-6 of the shortest side of a block, as blocks hover that high (over 1e-3 it is refused), and a `tolerance` of the solver over 1e-4;
 - `theta` below 0.5, with the largest stable step.
 ";
 

@@ -347,3 +347,46 @@ fn what_the_program_takes_is_valid() {
         }
     }
 }
+
+/// All files of Rust below `folder`.
+fn sources(folder: &Path, out: &mut Vec<std::path::PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            sources(&path, out);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            out.push(path);
+        }
+    }
+}
+
+/// A line of a text that goes on in the next line without a backslash carries the indentation of the source with it.
+#[test]
+fn no_text_has_a_run_of_spaces_within_a_sentence() {
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(crates).unwrap() {
+        let source = entry.unwrap().path().join("src");
+        if source.is_dir() {
+            sources(&source, &mut files);
+        }
+    }
+    assert!(files.len() > 100, "{}", files.len());
+    let in_sentence =
+        |byte: Option<&u8>| byte.is_some_and(|byte| byte.is_ascii_alphanumeric() || b",;:.`".contains(byte));
+    for file in files {
+        let text = std::fs::read_to_string(&file).unwrap();
+        for (number, line) in text.lines().enumerate() {
+            let line = line.trim();
+            for (at, _) in line.match_indices("      ").filter(|_| line.contains('"') && !line.starts_with("//")) {
+                let (before, after) = (line[..at].trim_end(), line[at..].trim_start());
+                assert!(
+                    !in_sentence(before.as_bytes().last()) || !in_sentence(after.as_bytes().first()),
+                    "{}:{}: {line}",
+                    file.display(),
+                    number + 1
+                );
+            }
+        }
+    }
+}

@@ -49,6 +49,7 @@
 mod beam;
 mod blocks;
 mod clock;
+mod closings;
 #[cfg(feature = "conformance")]
 pub mod conformance;
 mod contacts;
@@ -78,6 +79,7 @@ mod workspace;
 pub use beam::forces::{BeamForces, SpanLoads};
 pub use beam::{BeamBody, BeamSurface, SignalLoad, WBackend};
 pub use blocks::{Block, BlockLoad, Blocks};
+pub use closings::{Closing, ClosingMonitor, Opening};
 pub use contacts::{Contact, ContactError, ContactSet, ContactState, tangential};
 pub use coupled_modes::{CoupledModes, CoupledModesError, MOST_VELOCITIES, coupled_modes};
 pub use equilibrium::{Equilibrium, EquilibriumError, SettlingLimits, settle};

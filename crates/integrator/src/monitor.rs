@@ -1,4 +1,5 @@
-//! The numbers of rocking: zero crossings of an angle and the peaks between them (`docs/theory.md` §9).
+//! The numbers of rocking: zero crossings of an angle and the peaks between them (`docs/theory.md` §9, `docs/impacts.md`). The angle is
+//! the caller's: that of a block from what carries it.
 
 /// A zero crossing of an angle: on a rigid base, the impact of a rocking block.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +42,8 @@ pub const LISTED_CROSSINGS: usize = 100_000;
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RockingMonitor {
+    /// An excursion up to this is none, rad.
+    least: f64,
     last: (f64, f64),
     /// Where the sign last changed, until the excursion beyond it shows that it was more than rounding.
     pending: Option<f64>,
@@ -56,7 +59,22 @@ impl RockingMonitor {
     #[must_use]
     pub fn new(t: f64, phi: f64) -> Self {
         let extreme = Peak { t, phi };
-        Self { last: (t, phi), pending: None, extreme, crossings: Vec::new(), peaks: Vec::new(), count: 0 }
+        Self {
+            least: STILL,
+            last: (t, phi),
+            pending: None,
+            extreme,
+            crossings: Vec::new(),
+            peaks: Vec::new(),
+            count: 0,
+        }
+    }
+
+    /// Takes excursions up to `least` (rad) for none; otherwise those up to 1e-12, which is rounding.
+    #[must_use]
+    pub fn with_least(mut self, least: f64) -> Self {
+        self.least = least.max(STILL);
+        self
     }
 
     /// Enters the end of a step.
@@ -64,7 +82,7 @@ impl RockingMonitor {
         let (t0, phi0) = self.last;
         self.last = (t, phi);
         // The side that the current excursion is on; none before the angle has left zero for the first time.
-        let side = if self.extreme.phi.abs() > STILL { self.extreme.phi.signum() } else { 0.0 };
+        let side = if self.extreme.phi.abs() > self.least { self.extreme.phi.signum() } else { 0.0 };
         if side == 0.0 {
             if phi.abs() > self.extreme.phi.abs() {
                 self.extreme = Peak { t, phi };
@@ -81,7 +99,7 @@ impl RockingMonitor {
         if phi0 * side > 0.0 {
             self.pending = Some(t0 + (t - t0) * (phi0 / (phi0 - phi)));
         }
-        if phi.abs() > STILL
+        if phi.abs() > self.least
             && let Some(t_zero) = self.pending.take()
         {
             self.count += 1;

@@ -16,7 +16,7 @@ pub struct StepReport<'w, const D: usize> {
     pub contacts: &'w [Contact<D>],
     /// How their problem was solved; `None` without contacts.
     pub outcome: Option<Outcome>,
-    /// Deepest penetration at its end, m; 0 if there is none.
+    /// Deepest penetration of a contact's point at its end, m; 0 if there is none.
     pub penetration: f64,
     /// Its energy account.
     pub energy: StepEnergy,

@@ -81,7 +81,7 @@ impl WarmStart {
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tally {
-    /// Deepest penetration at the end of a step, m; 0 if there was none.
+    /// Deepest penetration of a contact's point at the end of a step, m; 0 if there was none.
     #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub max_penetration: f64,
     /// Largest global residual of a contact problem.

@@ -9,6 +9,7 @@ mod contacts;
 mod export;
 mod lock;
 mod made_energy;
+mod meetings;
 mod number;
 mod page;
 mod recorder;
@@ -34,12 +35,3 @@ pub use schedule::Schedule;
 pub use sections::{BeamRecord, LargestStress, ReactionRange, envelopes};
 pub use summary::{EndedWord, Summary};
 pub use warnings::{Warning, WarningLog};
-
-/// A contact that was open in the step before and closes faster than this speed (m/s) is an impact.
-///
-/// A resting contact that drops out for one step falls for that step, so it comes back with some g·dt; twice that keeps
-/// it out of the list of impacts, and goes to zero with the step.
-#[must_use]
-pub fn impact_threshold(gravity: [f64; 2], dt: f64) -> f64 {
-    2.0 * gravity[0].hypot(gravity[1]) * dt
-}

@@ -1,19 +1,22 @@
 //! The observer that writes the tables and keeps what the summary needs.
 
 use crate::contacts::{self, Impulses, Names};
+use crate::meetings::Met;
 use crate::number::{push, push_next};
 use crate::resolution::{Bodies, COARSE, Resolution};
 use crate::sections::{BeamRecord, Sections, Values};
 use crate::table::Table;
-use crate::{Results, ResultsError, Schedule, WarningLog, impact_threshold};
+use crate::{Results, ResultsError, Schedule, WarningLog};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::ops::ControlFlow;
-use teeter_integrator::{Contact, Model, Observer, ObserverError, RockingMonitor, State, StepReport};
-use teeter_scenario::deflection;
+use teeter_integrator::{
+    Closing, ClosingMonitor, Contact, Model, Observer, ObserverError, RockingMonitor, State, StepReport,
+};
 use teeter_scenario::diagnostic::Diagnostic;
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Layout;
+use teeter_scenario::{Shapes, deflection};
 
 /// An impact as the summary lists it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -48,6 +51,8 @@ pub struct Record {
     pub impacts: Vec<ImpactRow>,
     /// All impacts, counted.
     pub impact_count: u64,
+    /// How often a contact was lost for a moment and found again, without having been truly open.
+    pub reclosure_count: u64,
     /// Zero crossings and peaks, by block.
     pub rocking: Vec<RockingMonitor>,
     /// What beams bore, of those that are asked.
@@ -68,6 +73,8 @@ const ENERGY_HEADER: &str =
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Kept {
     schedule: Schedule,
+    closings: ClosingMonitor<2>,
+    met: Met,
     impulses: Impulses,
     /// The contacts of the last step, for a row after the run's early end.
     contacts_now: Vec<Contact<2>>,
@@ -82,7 +89,7 @@ pub(crate) struct Kept {
 /// Writes the tables of a run as it goes.
 pub struct Recorder<'a> {
     layout: &'a Layout,
-    threshold: f64,
+    shapes: Shapes,
     trajectory: Table,
     contacts: Table,
     impacts: Table,
@@ -134,6 +141,8 @@ impl<'a> Recorder<'a> {
             [&trajectory_header(layout, &sections), contacts::HEADER, IMPACTS_HEADER, ENERGY_HEADER].map(str::to_owned);
         let kept = Kept {
             schedule: Schedule::new(scene.every, scene.time.steps, scene.time.step),
+            closings: ClosingMonitor::default(),
+            met: Met::default(),
             impulses: Impulses::default(),
             contacts_now: Vec::new(),
             row_at: 0,
@@ -166,7 +175,7 @@ impl<'a> Recorder<'a> {
     ) -> Result<Self, ResultsError> {
         Ok(Self {
             layout,
-            threshold: impact_threshold(scene.gravity, scene.time.step),
+            shapes: Shapes::new(scene),
             trajectory: table(0)?,
             contacts: table(1)?,
             impacts: table(2)?,
@@ -288,6 +297,8 @@ impl<'a> Recorder<'a> {
 
     /// Warns of what a row shows to be outside the model; told once each.
     fn warn_of_row(&mut self, state: &State) {
+        let Self { layout, shapes, kept: Kept { met, record, .. }, tell, .. } = self;
+        met.look(shapes, layout, state, &mut record.warnings, tell);
         let (ledger, warnings) = (&state.ledger, &mut self.kept.record.warnings);
         let mut first = |code, text: &dyn Fn() -> String| {
             let known = warnings.warnings().iter().any(|warning| warning.code == code);
@@ -307,7 +318,8 @@ impl<'a> Recorder<'a> {
         if depth > DEEP * least {
             first("deep-penetration", &|| {
                 format!(
-                    "up to t = {} s a corner was {depth:.2e} m deep in a surface, more than {:.0} % of a block's shorter side: that is no contact any                      more; the step is too long for what moves, or a corner came in from the side, past the end of a beam",
+                    "up to t = {} s a corner was {depth:.2e} m deep in a surface, more than {:.0} % of a block's shorter side: that is no contact any \
+                     more; the step is too long for what moves, or a corner came in from the side, past the end of a beam",
                     state.t,
                     100.0 * DEEP
                 )
@@ -348,23 +360,23 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    fn write_impacts(&mut self, step: &StepReport<'_, 2>) -> Result<(), ResultsError> {
-        for contact in step.contacts {
-            if contact.persisting || contact.u_before[0] >= -self.threshold {
-                continue;
-            }
-            let Some(names) = Names::of(self.layout, contact.id) else { continue };
-            self.line.clear();
-            push(&mut self.line, step.t_end);
-            names.push(&mut self.line);
+    /// Tells impacts from contacts that were lost for a moment, and writes the impacts.
+    fn write_impacts(&mut self, model: &Model<2>, step: &StepReport<'_, 2>, state: &State) -> Result<(), ResultsError> {
+        let Self { layout, impacts, line, kept: Kept { closings, record, .. }, .. } = self;
+        let mut written = Ok(());
+        closings.enter(model, step, state, &layout.openings, |contact, closing| {
+            let names = Names::of(layout, contact.id).filter(|_| closing == Closing::Impact);
+            let (Some(names), Ok(())) = (names, &written) else { return };
+            line.clear();
+            push(line, step.t_end);
+            names.push(line);
             for x in [contact.p[0], contact.p[1], contact.u_before[0], contact.u_after[0]] {
-                push_next(&mut self.line, x);
+                push_next(line, x);
             }
-            self.line.push('\n');
-            self.impacts.rows(&self.line)?;
-            self.kept.record.impact_count += 1;
-            if self.kept.record.impacts.len() < LISTED_IMPACTS {
-                self.kept.record.impacts.push(ImpactRow {
+            line.push('\n');
+            written = impacts.rows(line);
+            if record.impacts.len() < LISTED_IMPACTS {
+                record.impacts.push(ImpactRow {
                     t: step.t_end,
                     contact: names.contact.to_owned(),
                     point: names.point.into(),
@@ -372,8 +384,9 @@ impl<'a> Recorder<'a> {
                     u_n_before: contact.u_before[0],
                 });
             }
-        }
-        Ok(())
+        });
+        (record.impact_count, record.reclosure_count) = (closings.impacts(), closings.reclosures());
+        written
     }
 
     fn warn_of(&mut self, step: &StepReport<'_, 2>) {
@@ -396,16 +409,12 @@ impl<'a> Recorder<'a> {
 }
 
 impl Observer<2> for Recorder<'_> {
-    fn start(&mut self, _model: &Model<2>, state: &State) -> Result<(), ObserverError> {
+    fn start(&mut self, model: &Model<2>, state: &State) -> Result<(), ObserverError> {
         // A run that starts from the state of another one has its rows from there on.
         self.kept.schedule = self.kept.schedule.clone().starting_at(state.step);
         (self.kept.row_at, self.kept.record.first_step) = (state.step, state.step);
-        self.kept.record.rocking = self
-            .layout
-            .blocks
-            .iter()
-            .map(|block| RockingMonitor::new(state.t, state.q[block.range.start + 2]))
-            .collect();
+        self.kept.record.rocking = self.layout.rocking_monitors(state.t, &state.q);
+        self.kept.closings = ClosingMonitor::new(model, state, &self.layout.openings);
         self.kept.resolution.start(self.layout, state);
         let (record, values) = (&mut self.kept.record, &mut self.kept.section_values);
         self.sections.start(self.layout, state, &mut record.beams, values);
@@ -419,7 +428,7 @@ impl Observer<2> for Recorder<'_> {
         state: &State,
     ) -> Result<ControlFlow<()>, ObserverError> {
         self.kept.impulses.add(step.contacts);
-        self.write_impacts(step)?;
+        self.write_impacts(model, step, state)?;
         self.warn_of(step);
         self.warn_of_limits(state);
         self.kept.resolution.observe(&self.bodies, self.layout, step, state);
@@ -428,8 +437,8 @@ impl Observer<2> for Recorder<'_> {
         if let Some(text) = self.sections.observe(step, state, kept, &mut record.warnings) {
             (self.tell)(&text);
         }
-        for (monitor, block) in self.kept.record.rocking.iter_mut().zip(&self.layout.blocks) {
-            monitor.enter(state.t, state.q[block.range.start + 2]);
+        for (block, monitor) in self.kept.record.rocking.iter_mut().enumerate() {
+            monitor.enter(state.t, self.layout.tilt(block, &state.q));
         }
         self.kept.contacts_now.clear();
         self.kept.contacts_now.extend_from_slice(step.contacts);

@@ -56,7 +56,8 @@ pub struct Summary {
     pub us_per_step: f64,
     /// The contact solver.
     pub contact: ContactSummary,
-    /// Deepest penetration at the end of a step, m.
+    /// Deepest penetration of a block's corner in a surface that a contact joins it to, at the end of a step, m; what else is inside what
+    /// (`docs/impacts.md`) isn't in it.
     pub max_penetration: f64,
     /// The energy account.
     pub energy: EnergySummary,
@@ -64,6 +65,8 @@ pub struct Summary {
     pub impacts: Vec<ImpactRow>,
     /// All impacts, counted.
     pub impact_count: u64,
+    /// How often a contact was lost for a moment and found again, without having been truly open.
+    pub reclosure_count: u64,
     /// Zero crossings of the angles.
     pub crossings: Vec<CrossingRow>,
     /// All crossings, counted; only where the list holds no more than the first of them.
@@ -301,6 +304,7 @@ impl Summary {
             },
             impacts: record.impacts.clone(),
             impact_count: record.impact_count,
+            reclosure_count: record.reclosure_count,
             crossing_count: (counted > crossings.len() as u64).then_some(counted),
             crossings,
             peaks,

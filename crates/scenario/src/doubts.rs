@@ -77,6 +77,7 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Doubts {
     doubts.warnings.extend(scene.signals.iter().filter_map(|signal| unused(&signal.name, document)));
     // What is too coarse for the motion of contact is so for its impacts.
     doubts.warnings.extend(step(scene, document).or_else(|| rocking::coarse(scene, document)));
+    doubts.warnings.extend(loosely_solved(scene, document));
     doubts.warnings.extend(scene.contacts.iter().filter_map(|contact| resolved_in_time(contact, scene, document)));
     doubts
 }
@@ -220,6 +221,23 @@ fn tilt(block: &BlockScene, incline: f64, touches: bool, document: &Document) ->
     };
     let found = document.error(&format!("block.{}.{key}", block.name), rule, "check the angle and its unit");
     Some(found.as_warning())
+}
+
+/// A solver's tolerance over this leaves impulses that are visibly wrong.
+const LOOSE: f64 = 1e-4;
+
+/// A solver's tolerance at which contacts are hardly solved for.
+fn loosely_solved(scene: &Scene, document: &Document) -> Option<Diagnostic> {
+    let tolerance = scene.solver.tolerance;
+    if tolerance <= LOOSE || scene.contacts.is_empty() {
+        return None;
+    }
+    let rule = format!(
+        "contact impulses may be off by some {:.1e} % of the largest and still count as solved",
+        100.0 * tolerance
+    );
+    let remedy = "take at most 1e-4; 1e-10, the default, costs little more";
+    Some(document.error("solver.tolerance", rule, remedy).as_warning())
 }
 
 /// Steps that a contact with duration should get from touch to release.

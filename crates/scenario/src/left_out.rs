@@ -1,6 +1,7 @@
 //! What a model leaves out, and why: said by the check before a run and by the summary after it.
 
-use crate::scene::{BeamScene, Scene};
+use crate::scene::{BeamScene, Scene, Support};
+use std::collections::BTreeSet;
 use teeter_beam::Axial;
 
 /// What the model of a scene leaves out, each with its reason.
@@ -34,8 +35,32 @@ pub fn left_out(scene: &Scene) -> Vec<&'static str> {
             left_out.push("self-weight of beams: deflections count from the shape under it");
         }
     }
-    if scene.blocks.len() > 1 {
-        left_out.push("contact between blocks");
-    }
+    meetings(scene, &mut left_out);
     left_out
+}
+
+/// Where bodies can meet that the model keeps apart nowhere, or only at corners.
+fn meetings(scene: &Scene, left_out: &mut Vec<&'static str>) {
+    if scene.blocks.len() > 1 {
+        left_out.push("contact between blocks: they pass through each other");
+    }
+    let joined: BTreeSet<(usize, Support)> =
+        scene.contacts.iter().map(|contact| (contact.block, contact.surface)).collect();
+    let mut pairs = (0..scene.blocks.len()).flat_map(|block| {
+        let ground = scene.ground.iter().map(|_| Support::Ground);
+        ground.chain((0..scene.beams.len()).map(Support::Beam)).map(move |surface| (block, surface))
+    });
+    if pairs.any(|pair| !joined.contains(&pair)) {
+        left_out
+            .push("contact of blocks with the ground or a beam that no contact joins them to: they pass through it");
+    }
+    if scene.beams.len() > 1 || (!scene.beams.is_empty() && scene.ground.is_some()) {
+        left_out.push("contact of beams with each other and with the ground: they pass through it");
+    }
+    if scene.contacts.iter().any(|contact| matches!(contact.surface, Support::Beam(_))) {
+        left_out.push(
+            "contact of beams with blocks but at the blocks' corners: a hump or a support between two corners goes into the base, and \
+             so does a beam's end when a corner is past it",
+        );
+    }
 }

@@ -32,6 +32,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod carrier;
 pub mod decode;
 pub mod deflection;
 pub mod diagnostic;
@@ -45,7 +46,9 @@ mod judge;
 pub mod keys;
 mod left_out;
 pub mod measure;
+mod meeting;
 pub mod mesh_error;
+mod opening;
 pub mod outlook;
 mod overlap;
 mod placement;
@@ -71,7 +74,10 @@ pub mod volume;
 pub mod wording;
 mod words;
 
+pub use carrier::Carrier;
 pub use left_out::left_out;
+pub use meeting::{Meeting, Shapes};
+pub use opening::OPEN_GAP;
 pub use placement::{Departure, PlacementError};
 pub use required::{Extent, Limits, Removed, Required};
 pub use settling::{ContactForce, StaticStart};

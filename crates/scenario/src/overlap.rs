@@ -25,6 +25,18 @@ impl Box2 {
         Self { centre, axes: [[cos, sin], [-sin, cos]], half: sides.map(|side| 0.5 * side) }
     }
 
+    /// How deep a point is inside, m; negative outside.
+    pub(crate) fn depth_of(&self, point: [f64; 2]) -> f64 {
+        let from = [point[0] - self.centre[0], point[1] - self.centre[1]];
+        let room = |k: usize| self.half[k] - dot(from, self.axes[k]).abs();
+        room(0).min(room(1))
+    }
+
+    /// The centre along a direction, and how far it reaches to either side of that.
+    pub(crate) fn shadow(&self, direction: [f64; 2]) -> (f64, f64) {
+        (dot(self.centre, direction), self.reach(direction))
+    }
+
     /// Half of its shadow on a direction.
     fn reach(&self, direction: [f64; 2]) -> f64 {
         self.half[0] * dot(self.axes[0], direction).abs() + self.half[1] * dot(self.axes[1], direction).abs()
@@ -52,28 +64,45 @@ fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
 /// Pairs that are looked at; past it a heap of blocks is judged by what was found.
 const MOST_PAIRS: usize = 1_000_000;
 
-/// The two that overlap the most, of all that do by more than `tolerance` of the smaller one's larger side.
-pub(crate) fn deepest_overlap(boxes: &[Box2], tolerance: f64) -> Option<Overlap> {
+/// Hands all that overlap by more than `tolerance` of the smaller one's larger side to `each`, as far as `most` pairs of neighbours along
+/// x tell; `order` is memory.
+pub(crate) fn each_overlap(
+    boxes: &[Box2],
+    tolerance: f64,
+    most: usize,
+    order: &mut Vec<usize>,
+    mut each: impl FnMut(Overlap),
+) {
     // By their left ends: only neighbours along x can overlap.
     let left = |k: usize| boxes[k].centre[0] - boxes[k].reach([1.0, 0.0]);
     let right = |k: usize| boxes[k].centre[0] + boxes[k].reach([1.0, 0.0]);
-    let mut order: Vec<usize> = (0..boxes.len()).collect();
-    order.sort_by(|&a, &b| left(a).total_cmp(&left(b)));
-    let mut deepest: Option<Overlap> = None;
+    order.clear();
+    order.extend(0..boxes.len());
+    order.sort_unstable_by(|&a, &b| left(a).total_cmp(&left(b)).then(a.cmp(&b)));
     let mut pairs = 0;
     for (place, &a) in order.iter().enumerate() {
         for &b in order[place + 1..].iter().take_while(|&&b| left(b) < right(a)) {
             pairs += 1;
             let depth = boxes[a].depth(&boxes[b]);
             let allowed = tolerance * boxes[a].largest_side().min(boxes[b].largest_side());
-            if depth > allowed && deepest.is_none_or(|known| depth > known.depth) {
-                deepest = Some(Overlap { first: a.min(b), second: a.max(b), depth });
+            if depth > allowed {
+                each(Overlap { first: a.min(b), second: a.max(b), depth });
             }
-            if pairs > MOST_PAIRS {
-                return deepest;
+            if pairs > most {
+                return;
             }
         }
     }
+}
+
+/// The two that overlap the most, of all that do by more than `tolerance` of the smaller one's larger side.
+pub(crate) fn deepest_overlap(boxes: &[Box2], tolerance: f64) -> Option<Overlap> {
+    let mut deepest: Option<Overlap> = None;
+    each_overlap(boxes, tolerance, MOST_PAIRS, &mut Vec::new(), |overlap| {
+        if deepest.is_none_or(|known| overlap.depth > known.depth) {
+            deepest = Some(overlap);
+        }
+    });
     deepest
 }
 

@@ -1,6 +1,8 @@
 //! A resolved scene made into a model and its start: ready to run in memory.
 
+use crate::carrier::{Carrier, carriers};
 use crate::driven::{self, BeamModel};
+use crate::opening::{OPEN_GAP, openings};
 use crate::overlap::{Box2, Overlap, deepest_overlap};
 use crate::placement::{PlacementError, Standing, block_pose};
 use crate::required::{AtRest, Extent, Required};
@@ -13,8 +15,8 @@ use teeter_contact::ContactSolver;
 use teeter_detect::{BodyId, PointDetector, PointPair};
 use teeter_integrator::{
     BeamForces, Block, Ended, Mismatch, Model, ModelBuilder, ModelError, MoreauJean, MoreauJeanClosed,
-    MoreauJeanClosedSettings, MoreauJeanSettings, Observer, Plan, RunError, Scheme, SettingError, SolverSettings,
-    State, StateError, Subsystem, WorkCounts, Workspace, run,
+    MoreauJeanClosedSettings, MoreauJeanSettings, Observer, Opening, Plan, RunError, Scheme, SettingError,
+    SolverSettings, State, StateError, Subsystem, WorkCounts, Workspace, run,
 };
 use teeter_rigid::{MassProperties, Rectangle, RigidError};
 
@@ -88,6 +90,10 @@ pub struct BlockPlace {
     pub range: Range<usize>,
     /// The shorter of its sides, m.
     pub side: f64,
+    /// A swing up to this angle, at which no corner is off its surface by more than counts as open, is none, rad.
+    pub still: f64,
+    /// What carries it: its rocking is measured from there.
+    pub carrier: Carrier,
 }
 
 /// Where a beam is in the state.
@@ -164,6 +170,8 @@ pub struct Layout {
     pub pairs: Vec<PairPlace>,
     /// The coordinates of ground that moves: the place of its origin, x and y, and its slope.
     pub ground: Option<Range<usize>>,
+    /// When the contacts of a pair count as truly open, by its number in the model.
+    pub openings: Vec<Opening>,
     /// What the model does without.
     pub required: Required,
 }
@@ -252,6 +260,8 @@ impl Simulation {
                 name: block.name.clone(),
                 range: start..start + 3,
                 side: block.width.min(block.height),
+                still: OPEN_GAP * block.width.min(block.height) / block.width,
+                carrier: Carrier::Level,
             });
             blocks.push((Block::new(mass, &shape), shape));
         }
@@ -278,6 +288,10 @@ impl Simulation {
         let ground = scene.ground.as_ref().map(driven::ground);
         let ground_start = ground.as_ref().map(|ground| ground.coordinates(0.0)).unwrap_or_default();
         layout.ground = (!ground_start.is_empty()).then_some(dofs..dofs + ground_start.len());
+        let slope = layout.ground.as_ref().map(|ground| ground.start + 2);
+        for (place, carrier) in layout.blocks.iter_mut().zip(carriers(scene, slope)) {
+            place.carrier = carrier;
+        }
         dofs += ground_start.len();
         let incline = scene.ground.as_ref().map_or(0.0, |ground| ground.incline);
         let line = if let [x, y, slope] = *ground_start { [x, y, slope] } else { [0.0, 0.0, incline] };
@@ -318,6 +332,7 @@ impl Simulation {
             .iter()
             .map(|contact| PairPlace { name: contact.name.clone(), between: contact.between.clone() })
             .collect();
+        layout.openings = openings(scene);
         let mut model = assemble(scene, &blocks, &beams, &layout)?;
         check_start(scene, &model, &layout, &q)?;
         check_apart(scene, &q)?;

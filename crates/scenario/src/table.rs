@@ -134,7 +134,7 @@ pub static TABLES: &[Table] = &[
             key("accuracy", Kind::Number(Range::INSIDE_UNIT), NotYet, "1e-3", "Largest relative error allowed, in place of a step."),
             key("scheme", Kind::Choice(words::SCHEMES), Default("\"moreau-jean\""), "\"moreau-jean\"", "Time integration scheme; in moreau-jean-closed a contact stays closed until it pulls, and no contact gives energy.").reserving(&[later("moreau-jean-located"), later("moreau-jean-projected"), later("generalized-alpha"), later("event-driven")]),
             key("theta", Kind::Number(Range::UNIT), Default("0.5"), "0.5", "Weight of the end of the step in the theta method: 0.5 keeps energy, 1 damps the most; moreau-jean-closed takes 0.5 only."),
-            key("gap_tolerance", Kind::Quantity(Dimension::LENGTH, GAP), Optional, "\"1e-12 m\"", "Gap below which a contact counts as closed; when left out, it follows from the largest block side."),
+            key("gap_tolerance", Kind::Quantity(Dimension::LENGTH, GAP), Optional, "\"1e-12 m\"", "Gap below which a contact counts as closed, at most 1e-3 of the shortest block side; when left out, it follows from the largest block side."),
             key("activation_gamma", Kind::Number(Range::UNIT), Default("0.5"), "0.5", "Fraction of the step by which positions are predicted to find the active contacts; of moreau-jean only."),
             key("allow_conditional_stability", Kind::Flag, Default("false"), "false", "Allows theta below 0.5, where the step must be short enough to be stable."),
             key("spectral_radius", Kind::Number(Range::UNIT), NotYet, "0.8", "Damping of the highest frequencies in the generalized-alpha scheme."),

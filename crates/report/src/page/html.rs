@@ -99,8 +99,9 @@ impl Numbers {
 }
 
 /// What users want to know first.
-const TILES: [&str; 6] = [
+const TILES: [&str; 7] = [
     "impact_count",
+    "reclosure_count",
     "max_penetration",
     "energy.largest_residual",
     "contact.unconverged_steps",
@@ -113,7 +114,8 @@ fn tiles(values: &Numbers, summary: &Summary) -> String {
     for path in TILES {
         let (label, shown) = match path {
             "impact_count" => ("Impacts", summary.impact_count.to_string()),
-            "max_penetration" => ("Deepest penetration", with_prefix(summary.max_penetration, "m")),
+            "reclosure_count" => ("Contacts lost and found again", summary.reclosure_count.to_string()),
+            "max_penetration" => ("Deepest penetration of a corner", with_prefix(summary.max_penetration, "m")),
             "energy.largest_residual" => ("Energy residual", scientific(summary.energy.largest_residual)),
             "contact.unconverged_steps" => ("Steps not solved", summary.contact.unconverged_steps.to_string()),
             "contact.max_residual" => ("Contact residual", scientific(summary.contact.max_residual)),

@@ -4,11 +4,10 @@ use super::curves::Curves;
 use super::frames::Frames;
 use super::rounded;
 use super::scenery::{CORNERS, Scenery};
-use crate::impact_threshold;
 use crate::sections::{BeamRecord, Column, Kind, columns_of};
 use serde::{Deserialize, Serialize};
 use std::ops::{ControlFlow, Range};
-use teeter_integrator::{Model, Observer, ObserverError, State, StepReport};
+use teeter_integrator::{Closing, ClosingMonitor, Model, Observer, ObserverError, State, StepReport};
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Layout;
 
@@ -25,7 +24,7 @@ pub(crate) struct ImpactMark {
     pub(crate) point: usize,
     /// Normal and tangential impulse, N·s.
     pub(crate) impulse: [f64; 2],
-    /// The block's angular velocity before the step and after it, rad/s.
+    /// The block's angular velocity before the step and after it, relative to what carries it, rad/s.
     pub(crate) omega: [f64; 2],
 }
 
@@ -69,8 +68,9 @@ pub(crate) struct Kept {
     pub(crate) frames: Frames,
     pub(crate) curves: Curves,
     pub(crate) impacts: Vec<ImpactMark>,
-    pub(crate) impact_count: u64,
-    omega_before: Vec<f64>,
+    closings: ClosingMonitor<2>,
+    /// The blocks' angular velocities relative to what carries them, rad/s: at the end of the step, and before it.
+    omega: [Vec<f64>; 2],
 }
 
 /// Watches a run for [`render`](super::render) and [`figures`](super::figures); its memory doesn't grow with the run.
@@ -97,7 +97,6 @@ pub struct PageRecorder {
     pub(crate) scenery: Scenery,
     pub(crate) kept: Kept,
     pub(crate) layout: Layout,
-    threshold: f64,
     bucket_capacity: usize,
     /// What beams bear, after all other columns of the curves.
     pub(crate) sections: Vec<Column>,
@@ -130,11 +129,10 @@ impl PageRecorder {
                 frames: Frames::new(capacity(FRAMES, frame + 1), frame),
                 curves: Curves::new(bucket_capacity, 0.0, vec![0.0; columns], points),
                 impacts: Vec::new(),
-                impact_count: 0,
-                omega_before: Vec::new(),
+                closings: ClosingMonitor::default(),
+                omega: [vec![0.0; layout.blocks.len()], vec![0.0; layout.blocks.len()]],
             },
             layout: layout.clone(),
-            threshold: impact_threshold(scene.gravity, scene.time.step),
             bucket_capacity,
             section_values: vec![f64::NAN; sections.len()],
             sections,
@@ -203,34 +201,39 @@ impl PageRecorder {
         self.row.extend_from_slice(&self.section_values);
     }
 
-    fn take_contacts(&mut self, step: &StepReport<'_, 2>) {
+    fn take_contacts(&mut self, model: &Model<2>, step: &StepReport<'_, 2>, state: &State) {
+        let Self { scenery, kept, layout, .. } = self;
+        let Kept { curves, impacts, closings, omega: [now, before], .. } = kept;
         for contact in step.contacts {
             let (pair, point) = (contact.id.pair() as usize, contact.id.point() as usize);
-            let impulse = [contact.p[0], contact.p[1]];
-            self.kept.curves.add(CORNERS * pair + point, impulse, contact.state());
-            if contact.persisting || contact.u_before[0] >= -self.threshold {
-                continue;
-            }
-            self.kept.impact_count += 1;
-            let Some(drawn) = self.scenery.contacts.get(pair) else { continue };
-            if self.kept.impacts.len() < MARKED_IMPACTS {
-                let omega = [self.kept.omega_before[drawn.block], self.row[BLOCK_COLUMNS * drawn.block + 1]];
-                self.kept.impacts.push(ImpactMark {
+            curves.add(CORNERS * pair + point, [contact.p[0], contact.p[1]], contact.state());
+        }
+        closings.enter(model, step, state, &layout.openings, |contact, closing| {
+            let (pair, point) = (contact.id.pair() as usize, contact.id.point() as usize);
+            let Some(drawn) = scenery.contacts.get(pair) else { return };
+            if closing == Closing::Impact && impacts.len() < MARKED_IMPACTS {
+                impacts.push(ImpactMark {
                     t: step.t_end,
                     contact: pair,
                     block: drawn.block,
                     point,
-                    impulse,
-                    omega,
+                    impulse: [contact.p[0], contact.p[1]],
+                    omega: [before[drawn.block], now[drawn.block]],
                 });
             }
+        });
+    }
+
+    fn take_omega(&mut self, state: &State) {
+        self.kept.omega.swap(0, 1);
+        for (block, omega) in self.kept.omega[0].iter_mut().enumerate() {
+            *omega = self.layout.tilt_rate(block, &state.v);
         }
     }
 
-    fn keep_omega(&mut self) {
-        let blocks = self.layout.blocks.len();
-        self.kept.omega_before.clear();
-        self.kept.omega_before.extend((0..blocks).map(|k| self.row[BLOCK_COLUMNS * k + 1]));
+    /// All impacts so far, marked or not.
+    pub(crate) fn impact_count(&self) -> u64 {
+        self.kept.closings.impacts()
     }
 }
 
@@ -259,10 +262,11 @@ pub(crate) fn moved(layout: &Layout) -> impl Iterator<Item = Range<usize>> {
 }
 
 impl Observer<2> for PageRecorder {
-    fn start(&mut self, _model: &Model<2>, state: &State) -> Result<(), ObserverError> {
+    fn start(&mut self, model: &Model<2>, state: &State) -> Result<(), ObserverError> {
         self.take_frame(state);
         self.take_row(state);
-        self.keep_omega();
+        self.take_omega(state);
+        self.kept.closings = ClosingMonitor::new(model, state, &self.layout.openings);
         self.kept.curves =
             Curves::new(self.bucket_capacity, state.t, self.row.clone(), CORNERS * self.scenery.contacts.len());
         Ok(())
@@ -270,15 +274,15 @@ impl Observer<2> for PageRecorder {
 
     fn observe(
         &mut self,
-        _model: &Model<2>,
+        model: &Model<2>,
         step: &StepReport<'_, 2>,
         state: &State,
     ) -> Result<ControlFlow<()>, ObserverError> {
         self.take_frame(state);
         self.take_row(state);
+        self.take_omega(state);
         self.kept.curves.enter(state.t, &self.row);
-        self.take_contacts(step);
-        self.keep_omega();
+        self.take_contacts(model, step, state);
         Ok(ControlFlow::Continue(()))
     }
 

@@ -2,6 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod energy;
+mod impacts;
+mod meetings;
 mod memory;
 mod page;
 mod sections;

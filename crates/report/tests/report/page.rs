@@ -112,6 +112,7 @@ fn the_page_shows_the_numbers_of_the_summary() {
         let json = run.summary.to_json().unwrap();
         for path in [
             "impact_count",
+            "reclosure_count",
             "max_penetration",
             "energy.largest_residual",
             "energy.final",

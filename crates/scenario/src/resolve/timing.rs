@@ -8,6 +8,10 @@ use crate::wording;
 /// Most steps of a run.
 pub const MAX_STEPS: f64 = 1e12;
 
+/// A gap tolerance beyond this part of the shortest side of a block is refused; one beyond the second is warned of.
+const MOST_GAP: f64 = 1e-3;
+const DOUBTFUL_GAP: f64 = 1e-6;
+
 /// Most bytes of the tables of a run.
 const MAX_BYTES: f64 = 10e9;
 
@@ -34,7 +38,7 @@ impl Resolver<'_, '_> {
             self.error("time.theta", rule, "leave theta out, or take axial = free");
         }
         let activation_gamma = self.number("time.activation_gamma");
-        let gap_tolerance = self.doc.quantity("time.gap_tolerance").unwrap_or_else(|| gap_tolerance(blocks));
+        let gap_tolerance = self.gap_tolerance(blocks);
         let (end, step) = (end?, step?);
         if step > end {
             self.error(
@@ -70,6 +74,25 @@ impl Resolver<'_, '_> {
             activation_gamma: activation_gamma?,
             gap_tolerance,
         })
+    }
+
+    /// The gap below which a contact counts as closed, m: what is given, if it is small against the blocks.
+    fn gap_tolerance(&mut self, blocks: &[Option<BlockScene>]) -> f64 {
+        let Some(given) = self.doc.quantity("time.gap_tolerance") else { return gap_tolerance(blocks) };
+        let shortest = blocks.iter().flatten().map(|block| block.width.min(block.height)).fold(f64::INFINITY, f64::min);
+        let part = given / shortest;
+        if part > DOUBTFUL_GAP {
+            let rule = format!(
+                "{part:.1e} of the shortest side of a block, {shortest} m: blocks would hover that far above what carries them"
+            );
+            let most = |part: f64| format!("take at most {:.0e} m, or leave it out", part * shortest);
+            if part > MOST_GAP {
+                self.error("time.gap_tolerance", rule, &most(MOST_GAP));
+            } else {
+                self.warnings.push(self.doc.error("time.gap_tolerance", rule, &most(DOUBTFUL_GAP)).as_warning());
+            }
+        }
+        given
     }
 
     /// θ < ½ is allowed only on request; the largest stable step is named either way.

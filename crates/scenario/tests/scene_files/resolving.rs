@@ -163,6 +163,29 @@ fn the_gap_tolerance_follows_the_largest_block() {
 }
 
 #[test]
+fn a_gap_tolerance_at_which_blocks_hover_is_refused_or_warned_of() {
+    // The shortest side is 3 cm.
+    let of = |given: &str| set(&[("time.gap_tolerance", given), ("time.step", "10 us")]);
+    let refused = of("0.2 m").map(|_| ()).expect_err("accepted");
+    says(&refused, &["time.gap_tolerance", "6.7e0 of the shortest side of a block, 0.03 m", "hover", "3e-5 m"]);
+    assert!(of("31 um").is_err());
+    let warns = |given: &str| {
+        let (resolved, _) = of(given).unwrap();
+        resolved.warnings.iter().filter(|found| found.path == "time.gap_tolerance").count()
+    };
+    assert_eq!((warns("29 um"), warns("31 nm"), warns("29 nm")), (1, 1, 0));
+}
+
+#[test]
+fn a_solver_tolerance_that_leaves_contacts_unsolved_is_warned_of() {
+    let warns = |given: &str| {
+        let (resolved, _) = set(&[("solver.tolerance", given)]).unwrap();
+        resolved.warnings.iter().filter(|found| found.path == "solver.tolerance").count()
+    };
+    assert_eq!((warns("0.5"), warns("2e-4"), warns("1e-4")), (1, 1, 0));
+}
+
+#[test]
 fn the_scene_as_run_runs_again_to_the_same_bytes() {
     let (resolved, _) = set(&[("time.step", "50us")]).unwrap();
     let written = resolved.document.to_toml();

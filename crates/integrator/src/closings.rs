@@ -1,0 +1,149 @@
+//! Contacts that close: impacts, told from contacts that were lost for a moment and found again (`docs/impacts.md`).
+
+use crate::{Contact, Model, State, StepReport};
+use teeter_detect::{Candidate, ContactId};
+
+/// When a contact counts as truly open: since it last carried, its gap has been above `gap` **and** longer than `time` has
+/// passed. Both are physical and don't depend on the step; what a step can make by itself comes on top, see
+/// [`ClosingMonitor`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Opening {
+    /// Least gap, m.
+    pub gap: f64,
+    /// Least time without an impulse, s.
+    pub time: f64,
+    /// Acceleration with which what is let go falls, m/s².
+    pub fall: f64,
+}
+
+/// What the closing of a contact is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Closing {
+    /// It was truly open and approached.
+    Impact,
+    /// It was lost for a moment, by the scheme or in chatter below what counts as open, and is found again.
+    Reclosure,
+}
+
+/// A scheme can lose a contact for a step or two: what carries again sooner than after so many steps wasn't open.
+const STEPS: f64 = 3.0;
+
+/// A contact that carries, or has not been truly open since it last did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Held {
+    id: ContactId,
+    /// End of the last step in which it carried, s; the start of the run for one that hasn't yet.
+    last: f64,
+    carried: bool,
+    /// Whether its gap has been large enough since.
+    opened: bool,
+}
+
+/// Tells impacts from re-closures, step by step.
+///
+/// A contact *carries* in a step with a normal impulse. It is truly open once, since it last carried, its gap has been
+/// above [`Opening::gap`] and above the free fall of two steps, 2·`fall`·h², and longer than [`Opening::time`] and than three
+/// steps has passed. A truly open contact that approaches and carries is an [impact](Closing::Impact); one that did not carry for a step
+/// at least, and wasn't truly open or doesn't approach, is a [re-closure](Closing::Reclosure). A contact that starts with no more than that gap and carries for the
+/// first time is neither.
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct ClosingMonitor<const D: usize> {
+    /// In order of identity; all others are truly open.
+    held: Vec<Held>,
+    impacts: u64,
+    reclosures: u64,
+    /// Memory of a step.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    lost: Vec<ContactId>,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    candidates: Vec<Candidate<D>>,
+}
+
+impl<const D: usize> ClosingMonitor<D> {
+    /// A monitor that starts at `state`; `openings` by the numbers of the model's pairs.
+    #[must_use]
+    pub fn new(model: &Model<D>, state: &State, openings: &[Opening]) -> Self {
+        let mut monitor =
+            Self { held: Vec::new(), impacts: 0, reclosures: 0, lost: Vec::new(), candidates: Vec::new() };
+        let widest = openings.iter().map(|opening| opening.gap).fold(0.0, f64::max);
+        model.detector().detect(&model.placed(&state.q), widest, &mut monitor.candidates);
+        for candidate in &monitor.candidates {
+            let carried = state.warm.ids().binary_search(&candidate.id).is_ok();
+            if carried || candidate.gap <= opening_of(openings, candidate.id).gap {
+                monitor.held.push(Held { id: candidate.id, last: state.t, carried, opened: false });
+            }
+        }
+        monitor.held.sort_unstable_by_key(|held| held.id);
+        monitor
+    }
+
+    /// Enters a step, `state` being that at its end; tells `each` contact that closes in it.
+    pub fn enter(
+        &mut self,
+        model: &Model<D>,
+        step: &StepReport<'_, D>,
+        state: &State,
+        openings: &[Opening],
+        mut each: impl FnMut(&Contact<D>, Closing),
+    ) {
+        let (t, h) = (step.t_end, step.t_end - step.t_start);
+        let before = step.t_start;
+        for contact in step.contacts.iter().filter(|contact| contact.p[0] > 0.0) {
+            let now = Held { id: contact.id, last: t, carried: true, opened: false };
+            match self.held.binary_search_by_key(&contact.id, |held| held.id) {
+                Ok(at) => {
+                    let held = std::mem::replace(&mut self.held[at], now);
+                    if held.carried && held.last < before {
+                        self.reclosures += 1;
+                        each(contact, Closing::Reclosure);
+                    }
+                }
+                Err(at) => {
+                    self.held.insert(at, now);
+                    // One that is laid on, with nothing to stop, is no blow.
+                    let approaches = contact.u_before[0] < 0.0;
+                    *if approaches { &mut self.impacts } else { &mut self.reclosures } += 1;
+                    each(contact, if approaches { Closing::Impact } else { Closing::Reclosure });
+                }
+            }
+        }
+        self.lost.clear();
+        self.lost.extend(self.held.iter().filter(|held| held.last < t && !held.opened).map(|held| held.id));
+        if !self.lost.is_empty() {
+            model.detector().locate(&model.placed(&state.q), &self.lost, &mut self.candidates);
+        }
+        let candidates = &self.candidates;
+        self.held.retain_mut(|held| {
+            if held.last >= t {
+                return true;
+            }
+            let opening = opening_of(openings, held.id);
+            if !held.opened {
+                let found = candidates.binary_search_by_key(&held.id, |candidate| candidate.id);
+                // Where the surface doesn't reach, nothing is in the way.
+                let gap = found.map_or(f64::INFINITY, |at| candidates[at].gap);
+                held.opened = gap > opening.gap.max(2.0 * opening.fall * h * h);
+            }
+            // Half a step of room for the rounding of times.
+            !(held.opened && t - held.last > opening.time.max((STEPS - 0.5) * h))
+        });
+    }
+
+    /// The impacts so far.
+    #[must_use]
+    pub fn impacts(&self) -> u64 {
+        self.impacts
+    }
+
+    /// How often a contact was lost for a moment and found again so far.
+    #[must_use]
+    pub fn reclosures(&self) -> u64 {
+        self.reclosures
+    }
+}
+
+fn opening_of(openings: &[Opening], id: ContactId) -> Opening {
+    openings.get(id.pair() as usize).copied().unwrap_or_default()
+}

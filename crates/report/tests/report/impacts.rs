@@ -1,0 +1,98 @@
+//! Impacts, crossings and peaks are of the motion, not of the step.
+
+use std::path::Path;
+use teeter_report::{EndedWord, Recorder, Results, Summary};
+use teeter_scenario::simulation::Simulation;
+
+/// The summary of a run of `text`.
+pub(crate) fn summary(name: &str, text: &str, sets: &[(&str, &str)]) -> Summary {
+    let sets: Vec<_> = sets.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
+    let resolved = teeter_scenario::load(text.as_bytes(), name, name, &sets).unwrap();
+    let mut simulation = Simulation::new(&resolved.scene).unwrap();
+    let layout = simulation.layout.clone();
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("impacts-{}", std::process::id())).join(name);
+    let results = Results::create(&folder, true).unwrap();
+    let mut tell = |_: &str| {};
+    let mut recorder = Recorder::new(&results, &resolved.scene, &layout, &mut tell).unwrap();
+    let ended = simulation.run(&mut [&mut recorder]).unwrap();
+    let record = recorder.into_record();
+    Summary::new(&resolved.scene, &layout, &simulation.state, &record, EndedWord::from(&ended), 0.25)
+}
+
+pub(crate) fn scenario(name: &str) -> String {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
+    std::fs::read_to_string(folder.join(format!("{name}.toml"))).unwrap()
+}
+
+#[test]
+fn the_impacts_of_the_default_scene_do_not_grow_with_steps_and_elements() {
+    let text = scenario("free-rocking-on-beam");
+    let run = |step: &str, elements: &str| {
+        let name = format!("beam-{}-{elements}", step.replace(' ', "-"));
+        summary(&name, &text, &[("time.step", step), ("beam.table.elements", elements), ("time.end", "0.16 s")])
+    };
+    let runs = [run("100 us", "20"), run("20 us", "20"), run("50 us", "80")];
+    for found in &runs {
+        assert!(
+            found.impacts[0].t > 0.1,
+            "the first impact is that of the corner that comes down: {:?}",
+            found.impacts[0]
+        );
+        assert!(found.impact_count <= 4, "{} impacts", found.impact_count);
+    }
+    assert!(runs.iter().any(|found| found.reclosure_count > 0), "what isn't an impact is counted all the same");
+}
+
+#[test]
+fn a_block_that_rocks_on_rigid_ground_has_an_impact_at_each_crossing() {
+    let text = scenario("free-rocking-on-ground");
+    let counts = ["1 ms", "200 us", "50 us"].map(|step| {
+        let found = summary(&format!("ground-{}", step.replace(' ', "-")), &text, &[("time.step", step)]);
+        assert_eq!(found.impact_count, found.crossings.len() as u64, "{step}");
+        for (impact, crossing) in found.impacts.iter().zip(&found.crossings) {
+            assert!((impact.t - crossing.t).abs() < 4e-3, "{step}: {} {}", impact.t, crossing.t);
+        }
+        found.impact_count
+    });
+    assert!(counts.iter().all(|count| *count == counts[2] && *count >= 6), "{counts:?}");
+}
+
+#[test]
+fn a_block_that_bounces_has_impacts_down_to_bounces_that_count_as_none() {
+    let text = scenario("drop");
+    let counts = ["200 us", "50 us", "20 us"].map(|step| {
+        let found = summary(&format!("drop-{}", step.replace(' ', "-")), &text, &[("time.step", step)]);
+        found.impact_count
+    });
+    // Two corners each time.
+    assert!(counts.iter().all(|count| count.abs_diff(counts[2]) <= 2 && *count >= 10), "{counts:?}");
+}
+
+const BLOCK: &str = r#"
+time = { end = "1 s", step = "100 us" }
+material.aluminium.density = "2700 kg/m^3"
+block.rocker = { material = "aluminium", width = "3 cm", height = "13.5 cm", depth = "3 cm", on = "ground", at = "0 m", tilt = "TILT" }
+contact.feet = { between = ["rocker", "ground"], friction = 0.5 }
+"#;
+
+#[test]
+fn rocking_is_measured_from_the_surface_that_carries_the_block() {
+    let inclined = format!("{}\nground.incline = \"5 deg\"\n", BLOCK.replace("TILT", "3 deg"));
+    let found = summary("inclined", &inclined, &[]);
+    assert!(found.crossings.len() >= 10, "{} crossings", found.crossings.len());
+    assert!(
+        (found.peaks[0].phi - 3_f64.to_radians()).abs() < 1e-12,
+        "the release, from the incline: {:?}",
+        found.peaks[0]
+    );
+    assert_eq!(found.impact_count, found.crossings.len() as u64);
+
+    // Turned by 5 degrees within a second, by fits and starts, slowly enough for the block to stand.
+    let turning = format!(
+        "{}\nground.motion = {{ angular_acceleration = \"1 rad/s^2\", signal = \"slow\" }}\nsignal.slow = {{ shape = \"harmonic\", frequency = \"2 Hz\" }}\n",
+        BLOCK.replace("TILT", "0 deg")
+    );
+    let found = summary("turning", &turning, &[]);
+    assert!(found.crossings.is_empty() && found.peaks.is_empty(), "{:?}", found.crossings);
+    assert_eq!(found.impact_count, 0);
+}

@@ -1,0 +1,95 @@
+//! What is inside what without a contact is said: before the run under what is left out, in it as a warning, once a pair.
+
+use crate::impacts::{scenario, summary};
+use teeter_report::Summary;
+
+const CODES: [&str; 3] = ["passes-through", "between-corners", "past-the-end"];
+
+/// Warnings of meetings: their codes and counts.
+fn met(summary: &Summary) -> Vec<(String, u64)> {
+    let met = summary.warnings.iter().filter(|warning| CODES.contains(&warning.code.as_ref()));
+    met.map(|warning| (warning.code.to_string(), warning.count)).collect()
+}
+
+fn only(summary: &Summary, code: &str, texts: &[&str]) {
+    assert_eq!(met(summary), [(code.to_owned(), 1)]);
+    let warning = summary.warnings.iter().find(|warning| warning.code == code).unwrap();
+    for text in texts {
+        assert!(warning.text.contains(text), "{}", warning.text);
+    }
+}
+
+fn left_out(summary: &Summary, text: &str) -> bool {
+    summary.model.left_out.iter().any(|left_out| left_out.contains(text))
+}
+
+const HEAD: &str = "time = { end = \"0.5 s\", step = \"1 ms\" }\nmaterial.s = { density = \"7850 kg/m^3\", youngs_modulus = \"210 GPa\" }\n";
+
+fn block(name: &str, width: &str, place: &str) -> String {
+    format!(
+        "block.{name} = {{ material = \"s\", width = \"{width}\", height = \"10 cm\", depth = \"10 cm\", {place} }}\n"
+    )
+}
+
+#[test]
+fn blocks_that_pass_through_each_other_are_told_once() {
+    let scene = format!(
+        "{HEAD}ground = {{}}\n{}{}contact.g = {{ between = [\"p\", \"ground\"], friction = 0.1 }}\n\
+         contact.h = {{ between = [\"q\", \"ground\"], friction = 0.1 }}\n",
+        block("p", "10 cm", "on = \"ground\", at = \"0 m\", velocity = [\"2 m/s\", \"0 m/s\"]"),
+        block("q", "10 cm", "on = \"ground\", at = \"20 cm\""),
+    );
+    let found = summary("pounding", &scene, &[]);
+    only(&found, "passes-through", &["`p` and `q` overlap", "contact between blocks is not modelled"]);
+    assert!(left_out(&found, "contact between blocks"));
+    let slow = summary("no-pounding", &scene, &[("block.p.velocity", "['0.1 m/s', '0 m/s']")]);
+    assert!(met(&slow).is_empty());
+}
+
+#[test]
+fn a_block_in_ground_or_a_beam_that_no_contact_names_is_told() {
+    let scene = format!("{HEAD}ground = {{}}\n{}", block("p", "10 cm", "position = [\"0 m\", \"10 cm\"]"));
+    let found = summary("no-ground-contact", &scene, &[]);
+    only(&found, "passes-through", &["`p`", "below the ground", "no contact joins the two"]);
+    assert!(left_out(&found, "that no contact joins them to"));
+
+    let beam = "beam.b = { material = \"s\", span = \"1 m\", width = \"5 cm\", thickness = \"1 cm\", elements = 4 }\n";
+    let scene = format!("{HEAD}{beam}{}", block("p", "10 cm", "position = [\"0.5 m\", \"10 cm\"]"));
+    only(&summary("no-beam-contact", &scene, &[]), "passes-through", &["`b` is inside `p`"]);
+}
+
+#[test]
+fn a_beams_support_in_a_base_between_the_corners_is_told() {
+    // Both corners sink with the spans, the support between them doesn't.
+    let scene = format!(
+        "{HEAD}beam.b = {{ material = \"s\", span = \"1 m\", width = \"1 cm\", thickness = \"5 mm\", elements = 20, start = \"static\", \
+         support.pier = {{ at = \"50 cm\", kind = \"pinned\" }} }}\n{}contact.c = {{ between = [\"p\", \"b\"], friction = 0.5 }}\n",
+        block("p", "40 cm", "on = \"b\", at = \"50 cm\"")
+    );
+    let found = summary("support", &scene, &[("time.end", "10 ms")]);
+    assert!(found.max_penetration < 1e-6, "{}", found.max_penetration);
+    only(&found, "between-corners", &["`b` is", "inside `p` between its corners", "max_penetration"]);
+    assert!(left_out(&found, "a hump or a support"));
+}
+
+#[test]
+fn a_corner_past_the_end_of_a_beam_is_told() {
+    let scene = format!(
+        "{HEAD}beam.cant = {{ material = \"s\", span = \"50 cm\", width = \"5 cm\", thickness = \"6 mm\", elements = 25, \
+         supports = [\"clamped\", \"free\"] }}\n{}contact.k = {{ between = [\"b\", \"cant\"], friction = 0.3 }}\n",
+        block("b", "4 cm", "position = [\"49.5 cm\", \"8 cm\"]")
+    );
+    let found = summary("off-the-end", &scene, &[("time.step", "200 us")]);
+    // Then the block falls on, the beam through its base.
+    let first = found.warnings.iter().find(|warning| CODES.contains(&warning.code.as_ref())).unwrap();
+    assert_eq!((first.code.as_ref(), first.count), ("past-the-end", 1));
+    assert!(first.text.contains("the end of `cant`") && first.text.contains("inside `b`"), "{}", first.text);
+}
+
+#[test]
+fn scenarios_have_no_meetings() {
+    for name in ["free-rocking-on-beam", "free-rocking-on-ground", "drop", "sliding", "held-beam", "two-span-beam"] {
+        let found = summary(&format!("met-{name}"), &scenario(name), &[("time.end", "0.2 s")]);
+        assert!(met(&found).is_empty(), "{name}: {:?}", met(&found));
+    }
+}

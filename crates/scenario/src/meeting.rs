@@ -1,0 +1,135 @@
+//! Bodies that meet where the model has no contact: until it has contact of whole shapes, this is told and not prevented.
+
+use crate::overlap::{Box2, each_overlap};
+use crate::scene::{Scene, Support};
+use crate::simulation::Layout;
+
+/// Two bodies, by their numbers in the scene, that are inside each other where nothing keeps them apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Meeting {
+    /// Two blocks.
+    Blocks(usize, usize),
+    /// A block, below ground that no contact joins it to.
+    Ground(usize),
+    /// A block, and a beam that no contact joins it to.
+    Beam(usize, usize),
+    /// A block, and a beam that it touches with its corners only: the beam is inside the block between them.
+    BetweenCorners(usize, usize),
+    /// A block with corners past the end of a beam, below its surface.
+    PastEnd(usize, usize),
+}
+
+/// Overlap up to this part of a block's shorter side is rounding and drift of corners, and no meeting.
+const MEETS: f64 = 3e-3;
+
+/// Pairs of neighbouring blocks looked at; past it a heap is judged by what was found.
+const MOST_PAIRS: usize = 20_000;
+
+/// Places along a beam that are looked at under a block.
+const PLACES: usize = 12;
+
+/// A beam's line in the plane.
+#[derive(Debug, Clone, Copy)]
+struct BeamShape {
+    /// The contact surface at the left end when nothing is displaced, m.
+    left: [f64; 2],
+    span: f64,
+}
+
+/// The shapes of a scene's bodies, which tells who meets whom.
+#[derive(Debug, Clone)]
+pub struct Shapes {
+    sides: Vec<[f64; 2]>,
+    beams: Vec<BeamShape>,
+    /// Slope of ground that stands still; `None` without ground.
+    incline: Option<f64>,
+    /// Which blocks a contact joins to the ground, and to each beam.
+    on_ground: Vec<bool>,
+    on_beam: Vec<Vec<bool>>,
+    boxes: Vec<Box2>,
+    order: Vec<usize>,
+}
+
+impl Shapes {
+    /// The shapes of a scene.
+    #[must_use]
+    pub fn new(scene: &Scene) -> Self {
+        let joined = |surface: Support| {
+            let mut joined = vec![false; scene.blocks.len()];
+            let contacts = scene.contacts.iter().filter(|contact| contact.surface == surface);
+            contacts.for_each(|contact| joined[contact.block] = true);
+            joined
+        };
+        let line = |beam: &crate::scene::BeamScene| {
+            let offset = if beam.top { 0.5 * beam.thickness } else { 0.0 };
+            BeamShape { left: [beam.position[0], beam.position[1] + offset], span: beam.spec.span }
+        };
+        Self {
+            sides: scene.blocks.iter().map(|block| [block.width, block.height]).collect(),
+            beams: scene.beams.iter().map(line).collect(),
+            incline: scene.ground.as_ref().map(|ground| ground.incline),
+            on_ground: joined(Support::Ground),
+            on_beam: (0..scene.beams.len()).map(|beam| joined(Support::Beam(beam))).collect(),
+            boxes: Vec::with_capacity(scene.blocks.len()),
+            order: Vec::with_capacity(scene.blocks.len()),
+        }
+    }
+
+    /// Hands who meets whom at coordinates `q` of the whole model to `each`, with the depth, m.
+    pub fn meetings(&mut self, layout: &Layout, q: &[f64], mut each: impl FnMut(Meeting, f64)) {
+        let Self { sides, beams, incline, on_ground, on_beam, boxes, order } = self;
+        boxes.clear();
+        boxes.extend(layout.blocks.iter().zip(sides.iter()).map(|(place, sides)| {
+            let q = &q[place.range.clone()];
+            Box2::new([q[0], q[1]], q[2], *sides)
+        }));
+        if boxes.len() > 1 {
+            each_overlap(boxes, MEETS, MOST_PAIRS, order, |overlap| {
+                each(Meeting::Blocks(overlap.first, overlap.second), overlap.depth);
+            });
+        }
+        let allowed = |block: usize| MEETS * sides[block][0].min(sides[block][1]);
+        if let Some(incline) = *incline {
+            let [x, y, slope] = match &layout.ground {
+                Some(range) => [q[range.start], q[range.start + 1], q[range.start + 2]],
+                None => [0.0, 0.0, incline],
+            };
+            let up = [-slope.sin(), slope.cos()];
+            let level = x * up[0] + y * up[1];
+            for (block, _) in on_ground.iter().enumerate().filter(|(_, joined)| !**joined) {
+                let (centre, reach) = boxes[block].shadow(up);
+                let depth = level - (centre - reach);
+                if depth > allowed(block) {
+                    each(Meeting::Ground(block), depth);
+                }
+            }
+        }
+        for (number, ((shape, place), joined)) in beams.iter().zip(&layout.beams).zip(on_beam.iter()).enumerate() {
+            let moved = place.supports.as_ref().map_or([0.0; 2], |range| [q[range.start], q[range.start + 1]]);
+            let (left, bottom) = (shape.left[0] + moved[0], shape.left[1] + moved[1]);
+            let depth_at = |block: &Box2, along: f64| {
+                let w = place.deflection_at(&q[place.range.clone()], along).map_or(f64::NAN, |at| at.w);
+                block.depth_of([left + along, bottom + w])
+            };
+            for (block, of) in boxes.iter().enumerate() {
+                let (centre, reach) = of.shadow([1.0, 0.0]);
+                let (from, to) = ((centre - reach - left).max(0.0), (centre + reach - left).min(shape.span));
+                if from > to {
+                    continue;
+                }
+                let along = |k: usize| from + (to - from) * (k as f64 / PLACES as f64);
+                let deepest = (0..=PLACES).map(|k| depth_at(of, along(k))).fold(0.0, f64::max);
+                if deepest > allowed(block) {
+                    let at_end = [0.0, shape.span].into_iter().any(|end| depth_at(of, end) > allowed(block));
+                    let meeting = match (joined[block], at_end) {
+                        (false, _) => Meeting::Beam(block, number),
+                        (true, false) => Meeting::BetweenCorners(block, number),
+                        (true, true) => Meeting::PastEnd(block, number),
+                    };
+                    each(meeting, deepest);
+                }
+            }
+        }
+    }
+}

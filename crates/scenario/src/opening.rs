@@ -1,0 +1,20 @@
+//! When a contact counts as open, so that its closing is an impact (`docs/impacts.md`).
+
+use crate::scene::Scene;
+use teeter_integrator::Opening;
+
+/// A gap up to this part of the block's shorter side is none: 3 µm for a block of 3 cm.
+pub const OPEN_GAP: f64 = 1e-4;
+
+/// By contact, when it counts as truly open: a gap of more than [`OPEN_GAP`] of its block's shorter side, for longer than a bounce of
+/// that height takes under the scene's gravity g, 2 √(2 gap/g). Without gravity the gap alone counts.
+pub(crate) fn openings(scene: &Scene) -> Vec<Opening> {
+    let fall = scene.gravity[0].hypot(scene.gravity[1]);
+    let opening = |block: usize| {
+        let block = &scene.blocks[block];
+        let gap = OPEN_GAP * block.width.min(block.height);
+        let time = if fall > 0.0 { 2.0 * (2.0 * gap / fall).sqrt() } else { 0.0 };
+        Opening { gap, time, fall }
+    };
+    scene.contacts.iter().map(|contact| opening(contact.block)).collect()
+}
