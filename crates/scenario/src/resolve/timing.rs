@@ -87,9 +87,9 @@ impl Resolver<'_, '_> {
             );
             let most = |part: f64| format!("take at most {:.0e} m, or leave it out", part * shortest);
             if part > MOST_GAP {
-                self.error("time.gap_tolerance", rule, &most(MOST_GAP));
+                self.error("time.gap_tolerance", rule, most(MOST_GAP));
             } else {
-                self.warnings.push(self.doc.error("time.gap_tolerance", rule, &most(DOUBTFUL_GAP)).as_warning());
+                self.warnings.push(self.doc.error("time.gap_tolerance", rule, most(DOUBTFUL_GAP)).as_warning());
             }
         }
         given
