@@ -1,6 +1,6 @@
 //! Contacts that close: impacts, told from contacts that were lost for a moment and found again (`docs/impacts.md`).
 
-use crate::{Contact, Model, State, StepReport};
+use crate::{Contact, Mismatch, Model, State, StepReport};
 use teeter_detect::{Candidate, ContactId};
 
 /// When a contact counts as truly open: since it last carried, its gap has been above `gap` **and** longer than `time` has
@@ -63,12 +63,14 @@ pub struct ClosingMonitor<const D: usize> {
 
 impl<const D: usize> ClosingMonitor<D> {
     /// A monitor that starts at `state`; `openings` by the numbers of the model's pairs.
-    #[must_use]
-    pub fn new(model: &Model<D>, state: &State, openings: &[Opening]) -> Self {
+    ///
+    /// # Errors
+    /// If the state is not one of the model.
+    pub fn new(model: &Model<D>, state: &State, openings: &[Opening]) -> Result<Self, Mismatch> {
         let mut monitor =
             Self { held: Vec::new(), impacts: 0, reclosures: 0, lost: Vec::new(), candidates: Vec::new() };
         let widest = openings.iter().map(|opening| opening.gap).fold(0.0, f64::max);
-        model.detector().detect(&model.placed(&state.q), widest, &mut monitor.candidates);
+        model.detector().detect(&model.placed(&state.q)?, widest, &mut monitor.candidates);
         for candidate in &monitor.candidates {
             let carried = state.warm.ids().binary_search(&candidate.id).is_ok();
             if carried || candidate.gap <= opening_of(openings, candidate.id).gap {
@@ -76,10 +78,13 @@ impl<const D: usize> ClosingMonitor<D> {
             }
         }
         monitor.held.sort_unstable_by_key(|held| held.id);
-        monitor
+        Ok(monitor)
     }
 
     /// Enters a step, `state` being that at its end; tells `each` contact that closes in it.
+    ///
+    /// # Errors
+    /// If the state is not one of the model.
     pub fn enter(
         &mut self,
         model: &Model<D>,
@@ -87,7 +92,7 @@ impl<const D: usize> ClosingMonitor<D> {
         state: &State,
         openings: &[Opening],
         mut each: impl FnMut(&Contact<D>, Closing),
-    ) {
+    ) -> Result<(), Mismatch> {
         let (t, h) = (step.t_end, step.t_end - step.t_start);
         let before = step.t_start;
         for contact in step.contacts.iter().filter(|contact| contact.p[0] > 0.0) {
@@ -112,7 +117,7 @@ impl<const D: usize> ClosingMonitor<D> {
         self.lost.clear();
         self.lost.extend(self.held.iter().filter(|held| held.last < t && !held.opened).map(|held| held.id));
         if !self.lost.is_empty() {
-            model.detector().locate(&model.placed(&state.q), &self.lost, &mut self.candidates);
+            model.detector().locate(&model.placed(&state.q)?, &self.lost, &mut self.candidates);
         }
         let candidates = &self.candidates;
         self.held.retain_mut(|held| {
@@ -129,6 +134,7 @@ impl<const D: usize> ClosingMonitor<D> {
             // Half a step of room for the rounding of times.
             !(held.opened && t - held.last > opening.time.max((STEPS - 0.5) * h))
         });
+        Ok(())
     }
 
     /// The impacts so far.

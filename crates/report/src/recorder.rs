@@ -361,7 +361,12 @@ impl<'a> Recorder<'a> {
     }
 
     /// Tells impacts from contacts that were lost for a moment, and writes the impacts.
-    fn write_impacts(&mut self, model: &Model<2>, step: &StepReport<'_, 2>, state: &State) -> Result<(), ResultsError> {
+    fn write_impacts(
+        &mut self,
+        model: &Model<2>,
+        step: &StepReport<'_, 2>,
+        state: &State,
+    ) -> Result<(), ObserverError> {
         let Self { layout, impacts, line, kept: Kept { closings, record, .. }, .. } = self;
         let mut written = Ok(());
         closings.enter(model, step, state, &layout.openings, |contact, closing| {
@@ -384,9 +389,9 @@ impl<'a> Recorder<'a> {
                     u_n_before: contact.u_before[0],
                 });
             }
-        });
+        })?;
         (record.impact_count, record.reclosure_count) = (closings.impacts(), closings.reclosures());
-        written
+        Ok(written?)
     }
 
     fn warn_of(&mut self, step: &StepReport<'_, 2>) {
@@ -414,7 +419,7 @@ impl Observer<2> for Recorder<'_> {
         self.kept.schedule = self.kept.schedule.clone().starting_at(state.step);
         (self.kept.row_at, self.kept.record.first_step) = (state.step, state.step);
         self.kept.record.rocking = self.layout.rocking_monitors(state.t, &state.q);
-        self.kept.closings = ClosingMonitor::new(model, state, &self.layout.openings);
+        self.kept.closings = ClosingMonitor::new(model, state, &self.layout.openings)?;
         self.kept.resolution.start(self.layout, state);
         let (record, values) = (&mut self.kept.record, &mut self.kept.section_values);
         self.sections.start(self.layout, state, &mut record.beams, values);

@@ -201,7 +201,12 @@ impl PageRecorder {
         self.row.extend_from_slice(&self.section_values);
     }
 
-    fn take_contacts(&mut self, model: &Model<2>, step: &StepReport<'_, 2>, state: &State) {
+    fn take_contacts(
+        &mut self,
+        model: &Model<2>,
+        step: &StepReport<'_, 2>,
+        state: &State,
+    ) -> Result<(), ObserverError> {
         let Self { scenery, kept, layout, .. } = self;
         let Kept { curves, impacts, closings, omega: [now, before], .. } = kept;
         for contact in step.contacts {
@@ -221,7 +226,8 @@ impl PageRecorder {
                     omega: [before[drawn.block], now[drawn.block]],
                 });
             }
-        });
+        })?;
+        Ok(())
     }
 
     fn take_omega(&mut self, state: &State) {
@@ -266,7 +272,7 @@ impl Observer<2> for PageRecorder {
         self.take_frame(state);
         self.take_row(state);
         self.take_omega(state);
-        self.kept.closings = ClosingMonitor::new(model, state, &self.layout.openings);
+        self.kept.closings = ClosingMonitor::new(model, state, &self.layout.openings)?;
         self.kept.curves =
             Curves::new(self.bucket_capacity, state.t, self.row.clone(), CORNERS * self.scenery.contacts.len());
         Ok(())
@@ -282,7 +288,7 @@ impl Observer<2> for PageRecorder {
         self.take_row(state);
         self.take_omega(state);
         self.kept.curves.enter(state.t, &self.row);
-        self.take_contacts(model, step, state);
+        self.take_contacts(model, step, state)?;
         Ok(ControlFlow::Continue(()))
     }
 
