@@ -24,7 +24,7 @@ fn main() {
     for _ in 0..runs.max(1) {
         let mut simulation = Simulation::new(&resolved.scene).expect("a model");
         let start = Instant::now();
-        simulation.run(&mut []).expect("a run without observers");
+        let _ = simulation.run(&mut []).expect("a run without observers");
         let steps = simulation.state.step;
         times.push(1e9 * start.elapsed().as_secs_f64() / steps as f64);
         if times.len() == runs.max(1) {
