@@ -101,7 +101,7 @@ fn run(name: &str, scheme: &str, (h, step): (f64, &str), end: &str, nudge: f64) 
     let mut sampler =
         Sampler { every: (SAMPLE / h).round() as u64, blocks, samples: Vec::new(), without: 4, drop_outs: 0 };
     let clock = Instant::now();
-    simulation.run(&mut [&mut sampler])?;
+    let _ = simulation.run(&mut [&mut sampler])?;
     let seconds = clock.elapsed().as_secs_f64();
     Ok(Run {
         samples: sampler.samples,
