@@ -73,7 +73,7 @@ fn job(line: &str) -> Result<Vec<f64>> {
         track.0.clear();
         track.0.extend_from_slice(&simulation.state.q[..3]);
         let clock = ProcessTime::now();
-        simulation.run(&mut [&mut track])?;
+        let _ = simulation.run(&mut [&mut track])?;
         let time = clock.elapsed();
         spent += time;
         times.push(time.as_secs_f64());
