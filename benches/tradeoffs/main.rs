@@ -61,7 +61,7 @@ fn with_part(page: &str, stem: &str, part: &str) -> String {
 
 fn part(study: &Tradeoff, stem: &str, figure: bool) -> Result<String> {
     let mut text = format!("### {}\n\n`scenarios/{stem}.toml`\n\n", study.title);
-    writeln!(text, "| accuracy | take | off by | CPU time |\n|---|---|---|---|")?;
+    writeln!(text, "| accuracy | take | off by at most | CPU time |\n|---|---|---|---|")?;
     for (target, advice) in TARGETS.iter().zip(&study.advice) {
         let target = format!("{} %", 100.0 * target);
         match advice {
@@ -69,7 +69,7 @@ fn part(study: &Tradeoff, stem: &str, figure: bool) -> Result<String> {
                 let row = &study.rows[*row];
                 let take =
                     if row.setting.is_none() { "the scene as it is".to_owned() } else { format!("`{}`", row.setting) };
-                let accuracy = row.accuracy().unwrap_or(f64::NAN);
+                let accuracy = row.accuracy().unwrap_or(f64::NAN) + study.bar();
                 let time = row.measured().unwrap_or(f64::NAN);
                 writeln!(text, "| {target} | {take} | {accuracy:.1e} | {:.3} ms |", 1e3 * time)?;
             }
@@ -78,7 +78,11 @@ fn part(study: &Tradeoff, stem: &str, figure: bool) -> Result<String> {
                 "| {target} | none of what was tried | {:.1e} at best | |",
                 study.best().unwrap_or(f64::NAN)
             )?,
-            _ => writeln!(text, "| {target} | not measurable here | | |")?,
+            Advice::Warned(_) => writeln!(text, "| {target} | nothing: all that reach it are warned of | | |")?,
+            Advice::BeforeImpact => {
+                writeln!(text, "| {target} | nothing: the horizon ends before the first impacts are compared | | |")?;
+            }
+            Advice::NotMeasurable => writeln!(text, "| {target} | not measurable here | | |")?,
         }
     }
     text.push('\n');
