@@ -10,8 +10,8 @@ pub const ENERGY_MADE: &str = "energy-made";
 /// From this part of the energy scale or of the energy lost on, energy made at contacts is a warning.
 const PART: f64 = 0.01;
 
-/// Energy made below this part of the energy scale is none to speak of, however little is lost.
-const NOTHING: f64 = 1e-6;
+/// Energy made below this part of the energy scale is none to speak of, however little is lost, as before the first impact.
+const NOTHING: f64 = 1e-5;
 
 /// The warning of a run that made energy at its contacts: at least 1 % of the energy scale, or of the energy lost.
 pub(crate) fn warning(scene: &Scene, state: &State) -> Option<Warning> {
