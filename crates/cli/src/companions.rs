@@ -9,8 +9,13 @@ pub(crate) fn reader(scene: &Path) -> impl FnMut(&str) -> Result<Vec<u8>, String
     let folder = folder_of(scene);
     move |file| {
         let path = folder.join(file);
-        if path.is_dir() {
-            return Err("is a folder, not a file".to_owned());
+        // A pipe would be waited for without end, and a device is read without end.
+        match std::fs::metadata(&path) {
+            Ok(found) if found.is_dir() => return Err("is a folder, not a file".to_owned()),
+            Ok(found) if !found.is_file() => {
+                return Err("is no regular file, but a pipe or a device: give a file that stays on disk".to_owned());
+            }
+            _ => {}
         }
         let mut bytes = Vec::new();
         let most = LARGEST_RECORD as u64 + 1;

@@ -3,16 +3,18 @@
 mod compliance;
 pub(crate) mod forces;
 pub(crate) mod line;
+pub(crate) mod loads;
 pub(crate) mod motion;
 
-use crate::{Compliance, Energy, FactorError, Motion, Rows, Signal, Size, Subsystem, Weights};
+use crate::{Compliance, Energy, FactorError, Motion, Rows, Size, Subsystem, Weights};
 use compliance::BeamCompliance;
 pub use compliance::WBackend;
 use line::{Deflecting, Line};
+pub use loads::{MovingForce, SignalLoad};
 use motion::MovingSupports;
 use nalgebra::Vector2;
 use std::sync::Arc;
-use teeter_beam::{Beam, Deflection, Load, MatrixWeights, ModalBasis};
+use teeter_beam::{Beam, Deflection, Load, MatrixWeights};
 use teeter_detect::{Frame, HalfSpace, Kinematics, SurfacePoint};
 
 /// Which fibre of a beam is its contact surface.
@@ -32,36 +34,6 @@ impl BeamSurface {
         match self {
             Self::Axis => 0.0,
             Self::Top { offset } => offset,
-        }
-    }
-}
-
-/// A load on a beam that keeps its shape: a vector of nodal loads times a signal.
-#[derive(Clone, Debug)]
-pub struct SignalLoad {
-    pattern: Vec<f64>,
-    signal: Arc<dyn Signal>,
-}
-
-impl SignalLoad {
-    /// The nodal loads `pattern` of a beam, as its `add_…_load` methods add them, times `signal`.
-    #[must_use]
-    pub fn new(pattern: Vec<f64>, signal: Arc<dyn Signal>) -> Self {
-        Self { pattern, signal }
-    }
-
-    /// The same for coordinates η with q = Φ η: the pattern becomes Φᵀ pattern.
-    pub(crate) fn in_basis(self, basis: &ModalBasis) -> Self {
-        let work = |i| basis.shape(i).iter().zip(&self.pattern).map(|(phi, p)| phi * p).sum();
-        Self { pattern: (0..basis.len()).map(work).collect(), signal: self.signal }
-    }
-}
-
-impl Load for SignalLoad {
-    fn add(&self, _beam: &Beam, t: f64, f: &mut [f64]) {
-        let factor = self.signal.value(t);
-        for (f, p) in f.iter_mut().zip(&self.pattern) {
-            *f += factor * p;
         }
     }
 }
@@ -251,6 +223,13 @@ impl Subsystem<2> for BeamBody {
         }
     }
 
+    fn mean_load(&self, times: [f64; 2], scratch: &mut [f64], f: &mut [f64]) {
+        let n = self.beam.dofs();
+        for load in &self.loads {
+            load.add_mean(&self.beam, times, &mut scratch[..n], &mut f[..n]);
+        }
+    }
+
     fn driven(&self) -> &[usize] {
         self.supports.as_ref().map_or(&[], |supports| &supports.driven)
     }
@@ -262,6 +241,12 @@ impl Subsystem<2> for BeamBody {
     fn drive(&self, t: f64, v: &mut [f64]) {
         if let Some(supports) = &self.supports {
             v[self.beam.dofs()..].copy_from_slice(&supports.velocities(t));
+        }
+    }
+
+    fn drive_mean(&self, times: [f64; 2], v: &mut [f64]) {
+        if let Some(supports) = &self.supports {
+            v[self.beam.dofs()..].copy_from_slice(&supports.mean_velocities(times));
         }
     }
 

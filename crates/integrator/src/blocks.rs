@@ -98,6 +98,17 @@ impl Blocks {
     }
 }
 
+impl Blocks {
+    fn add_loads(&self, factor: impl Fn(&dyn Signal) -> f64, f: &mut [f64]) {
+        for load in &self.loads {
+            let (factor, first) = (factor(load.signal.as_ref()), 3 * load.block);
+            f[first] += factor * load.force.x;
+            f[first + 1] += factor * load.force.y;
+            f[first + 2] += factor * load.couple;
+        }
+    }
+}
+
 fn triple(x: &[f64], body: usize) -> Vector3<f64> {
     Vector3::new(x[3 * body], x[3 * body + 1], x[3 * body + 2])
 }
@@ -120,12 +131,11 @@ impl Subsystem<2> for Blocks {
     }
 
     fn load(&self, t: f64, f: &mut [f64]) {
-        for load in &self.loads {
-            let (factor, first) = (load.signal.value(t), 3 * load.block);
-            f[first] += factor * load.force.x;
-            f[first + 1] += factor * load.force.y;
-            f[first + 2] += factor * load.couple;
-        }
+        self.add_loads(|signal| signal.value(t), f);
+    }
+
+    fn mean_load(&self, [from, to]: [f64; 2], _scratch: &mut [f64], f: &mut [f64]) {
+        self.add_loads(|signal| signal.mean(from, to), f);
     }
 
     fn driven(&self) -> &[usize] {
@@ -135,6 +145,12 @@ impl Subsystem<2> for Blocks {
     fn drive(&self, t: f64, v: &mut [f64]) {
         for (velocity, motion) in self.driven.iter().zip(&self.motions) {
             v[*velocity] = motion.velocity(t);
+        }
+    }
+
+    fn drive_mean(&self, [from, to]: [f64; 2], v: &mut [f64]) {
+        for (velocity, motion) in self.driven.iter().zip(&self.motions) {
+            v[*velocity] = motion.mean_velocity(from, to);
         }
     }
 

@@ -189,11 +189,15 @@ impl Check<'_> {
         let mut v = wave(self.system.size().v, 0.9);
         let before = v.clone();
         self.system.drive(self.case.t, &mut v);
-        for k in 0..v.len() {
-            if self.system.driven().contains(&k) {
-                self.hold(Property::Drive, format!("velocity {k} is finite"), 0.0 * v[k], 0.0);
-            } else {
-                self.hold(Property::Drive, format!("velocity {k} is free"), (v[k] - before[k]).abs(), 0.0);
+        let mut mean = before.clone();
+        self.system.drive_mean([self.case.t, self.case.t + 0.25], &mut mean);
+        for v in [v, mean] {
+            for k in 0..v.len() {
+                if self.system.driven().contains(&k) {
+                    self.hold(Property::Drive, format!("velocity {k} is finite"), 0.0 * v[k], 0.0);
+                } else {
+                    self.hold(Property::Drive, format!("velocity {k} is free"), (v[k] - before[k]).abs(), 0.0);
+                }
             }
         }
     }
@@ -206,6 +210,15 @@ impl Check<'_> {
         let size = largest(&load);
         added.iter_mut().zip(wave(n, 0.2)).for_each(|(f, before)| *f -= before);
         self.hold(Property::Load, "adds", distance(&added, &load), ROUNDING * (size + 1.0));
+        let times = [self.case.t, self.case.t + 0.25];
+        let (mut mean, mut twice, mut scratch) = (vec![0.0; n], vec![0.0; n], vec![f64::NAN; n]);
+        self.system.mean_load(times, &mut scratch, &mut mean);
+        for _ in 0..2 {
+            self.system.mean_load(times, &mut scratch, &mut twice);
+        }
+        let size = size.max(largest(&mean));
+        mean.iter_mut().for_each(|f| *f *= 2.0);
+        self.hold(Property::Load, "the mean adds", distance(&twice, &mean), ROUNDING * (size + 1.0));
         if !self.system.is_loaded() {
             self.hold(Property::Load, "no load", size, 0.0);
         }

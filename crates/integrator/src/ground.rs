@@ -83,6 +83,14 @@ impl Subsystem<2> for Ground {
         }
     }
 
+    fn drive_mean(&self, [from, to]: [f64; 2], v: &mut [f64]) {
+        if let Form::Moving { motion, .. } = &self.0 {
+            for (v, motion) in v.iter_mut().zip(motion) {
+                *v = motion.mean_velocity(from, to);
+            }
+        }
+    }
+
     fn apply(&self, _w: Weights, _q: &[f64], _x: &[f64], _y: &mut [f64]) {}
 
     fn energy(&self, _q: &[f64], _v: &[f64]) -> Energy {

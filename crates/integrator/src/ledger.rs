@@ -3,7 +3,7 @@
 //! For every θ, up to rounding,
 //!
 //! ```text
-//! Δ(T+V) = −h v_θᵀC v_θ + h v_θᵀP_θ + Σ U_θ·p − (θ−½)(ΔvᵀM Δv + ΔqᵀK Δq)
+//! Δ(T+V) = −h v_θᵀC v_θ + h v_θᵀP̄ + Σ U_θ·p − (θ−½)(ΔvᵀM Δv + ΔqᵀK Δq)
 //! ```
 //!
 //! viscous loss, work of loads, contact and friction, numerical dissipation. What is left over is rounding, or a mistake. Where V is not quadratic, what

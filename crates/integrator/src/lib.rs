@@ -77,7 +77,7 @@ mod theta_step;
 mod workspace;
 
 pub use beam::forces::{BeamForces, SpanLoads};
-pub use beam::{BeamBody, BeamSurface, SignalLoad, WBackend};
+pub use beam::{BeamBody, BeamSurface, MovingForce, SignalLoad, WBackend};
 pub use blocks::{Block, BlockLoad, Blocks};
 pub use closings::{Closing, ClosingMonitor, Opening};
 pub use contacts::{Contact, ContactError, ContactSet, ContactState, tangential};

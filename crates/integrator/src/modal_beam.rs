@@ -37,7 +37,7 @@ pub struct ModalBeam {
     loads: Vec<Box<dyn Load>>,
     /// Loads that keep their shape, in modal coordinates.
     signals: Vec<SignalLoad>,
-    /// A load on the dofs of the beam before it is brought to modes.
+    /// A load on the dofs of the beam before it is brought to modes, and as much scratch.
     scratch: Mutex<Vec<f64>>,
     supports: Option<MovingSupports>,
     /// Gravity on each coordinate, those of moving supports at the end; empty for none.
@@ -114,7 +114,7 @@ impl ModalBeam {
             surface,
             loads: Vec::new(),
             signals: Vec::new(),
-            scratch: Mutex::new(vec![0.0; dofs]),
+            scratch: Mutex::new(vec![0.0; 2 * dofs]),
             supports: None,
             weight: Vec::new(),
         }
@@ -181,6 +181,25 @@ impl ModalBeam {
 
     fn coordinates(&self) -> usize {
         self.stiffness.len()
+    }
+
+    /// Adds the loads that are brought from the beam's dofs to modes; `add` adds one to its second argument, with the third for scratch.
+    fn add_loads(&self, f: &mut [f64], add: impl Fn(&dyn Load, &mut [f64], &mut [f64])) {
+        if self.loads.is_empty() {
+            return;
+        }
+        // A thread that panicked can only have left numbers behind, and they are overwritten.
+        let mut scratch = self.scratch.lock().unwrap_or_else(PoisonError::into_inner);
+        let (force, scratch) = scratch.split_at_mut(self.shapes.beam.dofs());
+        force.fill(0.0);
+        for load in &self.loads {
+            add(load.as_ref(), force, scratch);
+        }
+        for (dof, force) in force.iter().enumerate().filter(|(_, force)| **force != 0.0) {
+            for (f, phi) in f.iter_mut().zip(self.shapes.dof(dof)) {
+                *f += force * phi;
+            }
+        }
     }
 
     fn split<'q>(&self, q: &'q [f64]) -> (&'q [f64], Line) {
@@ -293,19 +312,14 @@ impl Subsystem<2> for ModalBeam {
         for load in &self.signals {
             load.add(self.beam(), t, f);
         }
-        if !self.loads.is_empty() {
-            // A thread that panicked can only have left numbers behind, and they are overwritten.
-            let mut force = self.scratch.lock().unwrap_or_else(PoisonError::into_inner);
-            force.fill(0.0);
-            for load in &self.loads {
-                load.add(self.beam(), t, &mut force);
-            }
-            for (dof, force) in force.iter().enumerate().filter(|(_, force)| **force != 0.0) {
-                for (f, phi) in f.iter_mut().zip(self.shapes.dof(dof)) {
-                    *f += force * phi;
-                }
-            }
+        self.add_loads(f, |load, force, _| load.add(self.beam(), t, force));
+    }
+
+    fn mean_load(&self, times: [f64; 2], scratch: &mut [f64], f: &mut [f64]) {
+        for load in &self.signals {
+            load.add_mean(self.beam(), times, scratch, f);
         }
+        self.add_loads(f, |load, force, scratch| load.add_mean(self.beam(), times, scratch, force));
     }
 
     fn driven(&self) -> &[usize] {
@@ -315,6 +329,12 @@ impl Subsystem<2> for ModalBeam {
     fn drive(&self, t: f64, v: &mut [f64]) {
         if let Some(supports) = &self.supports {
             v[self.coordinates()..].copy_from_slice(&supports.velocities(t));
+        }
+    }
+
+    fn drive_mean(&self, times: [f64; 2], v: &mut [f64]) {
+        if let Some(supports) = &self.supports {
+            v[self.coordinates()..].copy_from_slice(&supports.mean_velocities(times));
         }
     }
 

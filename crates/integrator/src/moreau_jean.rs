@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! W      = (M + hθC + h²θ²K)⁻¹
-//! v_free = v⁰ + h W [ f_int(q⁰ + hθ v⁰, v⁰) + θP¹ + (1−θ)P⁰ ]
+//! v_free = v⁰ + h W [ f_int(q⁰ + hθ v⁰, v⁰) + P̄ ]                P̄ the mean of the loads over the step
 //! v¹     = v_free + W Jᵀ p,        q¹ = q⁰ + h(θ v¹ + (1−θ) v⁰)
 //! ```
 //!

@@ -7,6 +7,7 @@
 mod formula;
 mod motion;
 mod table;
+pub(crate) mod window;
 
 pub use formula::Formula;
 pub use motion::{Given, Motion};
@@ -37,6 +38,32 @@ pub trait Signal: std::fmt::Debug + Send + Sync {
 
     /// The integral of [`Signal::integral`] from 0 to `t`, s².
     fn double_integral(&self, t: f64) -> f64;
+
+    /// Its mean over the time from `from` to `to` (s), which is later, whatever it does in between: what a load gives in a step.
+    fn mean(&self, from: f64, to: f64) -> f64 {
+        (self.integral(to) - self.integral(from)) / (to - from)
+    }
+
+    /// The mean of [`Signal::rate`] over the time from `from` to `to` (s), which is later, 1/s.
+    fn mean_rate(&self, from: f64, to: f64) -> f64 {
+        (self.value(to) - self.value(from)) / (to - from)
+    }
+
+    /// The mean of [`Signal::integral`] over the time from `from` to `to` (s), which is later, s.
+    fn mean_integral(&self, from: f64, to: f64) -> f64 {
+        (self.double_integral(to) - self.double_integral(from)) / (to - from)
+    }
+
+    /// The means of the signal times P₀ … P₃ over the time from `from` to `to` (s), which is later: Legendre's polynomials of a variable
+    /// that goes from −1 to 1. A load that moves along a beam has its mean from them.
+    ///
+    /// The default takes the first from [`Signal::mean`], the others by four Gauss points; a signal with kinks, or one that is
+    /// fast beside what it is asked for, does better.
+    fn moments(&self, from: f64, to: f64) -> [f64; 4] {
+        let mut moments = window::by_points(from, to, |t| self.value(t));
+        moments[0] = self.mean(from, to);
+        moments
+    }
 
     /// The first time after 0 at which it jumps, s: what can't be prescribed as a displacement.
     fn jump(&self) -> Option<f64> {

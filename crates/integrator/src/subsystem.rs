@@ -105,9 +105,24 @@ pub trait Subsystem<const D: usize>: Send + Sync {
         false
     }
 
-    /// Adds the external loads P(t) to `f`: all forces but weight that don't come from the motion.
+    /// Adds the external loads P(t) to `f`: all forces but weight that don't come from the motion. A static start takes those of its time;
+    /// steps take [`Subsystem::mean_load`].
     fn load(&self, t: f64, f: &mut [f64]) {
         let _ = (t, f);
+    }
+
+    /// Adds the mean of P over the time from `times[0]` to `times[1]` (s), which is later, to `f`: what a step takes, so that no impulse is
+    /// lost that falls between its ends. `scratch` is as long as the velocities, and what is in it means nothing.
+    ///
+    /// The default takes two Gauss points, exact for loads that are cubic in time; what is shorter than a step, jumps or has kinks in it
+    /// needs a mean of its own, such as [`Signal::mean`](crate::Signal::mean).
+    fn mean_load(&self, times: [f64; 2], scratch: &mut [f64], f: &mut [f64]) {
+        let (middle, away) = (0.5 * (times[0] + times[1]), 0.5 * (times[1] - times[0]) / 3.0_f64.sqrt());
+        for t in [middle - away, middle + away] {
+            scratch.fill(0.0);
+            self.load(t, scratch);
+            f.iter_mut().zip(scratch.iter()).for_each(|(f, p)| *f += 0.5 * p);
+        }
     }
 
     /// The velocities that are prescribed, by number, in rising order: no force changes their motion. The subsystem's
@@ -125,6 +140,13 @@ pub trait Subsystem<const D: usize>: Send + Sync {
     /// Writes the prescribed velocities at time `t` into their places in `v`, and leaves the others alone.
     fn drive(&self, t: f64, v: &mut [f64]) {
         let _ = (t, v);
+    }
+
+    /// Writes the means of the prescribed velocities over the time from `times[0]` to `times[1]` (s), which is later, into their places in
+    /// `v`, and leaves the others alone: a step ends with those over the time from half a step before its end to half a step after it
+    /// (`docs/signals.md`). The default takes them at the middle.
+    fn drive_mean(&self, times: [f64; 2], v: &mut [f64]) {
+        self.drive(0.5 * (times[0] + times[1]), v);
     }
 
     /// Whether C is other than zero.

@@ -3,7 +3,7 @@
 use crate::contacts::tangential;
 use crate::mismatch::Identity;
 use crate::subsystem::dot;
-use crate::{Energy, Mismatch, Model, Size, State, StepEnergy, StepError, StepReport, Subsystem, Weights, Workspace};
+use crate::{Energy, Mismatch, Model, Size, State, StepEnergy, StepError, StepReport, Weights, Workspace};
 use teeter_contact::Outcome;
 
 /// Vectors of a step: they carry nothing from one to the next.
@@ -18,7 +18,7 @@ pub(crate) struct ThetaStep {
     /// v_θ.
     v_mean: Vec<f64>,
     dv: Vec<f64>,
-    /// P_θ.
+    /// P, its mean over the step.
     load: Vec<f64>,
     product: Vec<f64>,
     /// h times the forces at the start of the step, of parts with prescribed velocities.
@@ -81,7 +81,7 @@ impl ThetaStep {
         model.move_along(q, v, tau, &mut self.q_at);
     }
 
-    /// Leaves v_free and P_θ. Prescribed velocities are those of the end of the step; what their change does to the others
+    /// Leaves v_free and P. Prescribed velocities are those about the end of the step; what their change does to the others
     /// goes to the right-hand side.
     pub(crate) fn free_velocity<const D: usize>(
         &mut self,
@@ -110,7 +110,8 @@ impl ThetaStep {
             part.system.internal_force_beside_mass_damping(q, v_start, dv);
             if part.traits.loaded {
                 let (load, scratch) = (&mut self.load[v.clone()], &mut work.scratch[..v.len()]);
-                mean_load(part.system.as_ref(), theta, [state.t, t_end], load, scratch);
+                load.fill(0.0);
+                part.system.mean_load([state.t, t_end], scratch, load);
                 add(dv, load);
             }
             dv.iter_mut().for_each(|f| *f *= h);
@@ -124,7 +125,7 @@ impl ThetaStep {
             }
             self.impulse[v.clone()].copy_from_slice(dv);
             v_end.copy_from_slice(v_start);
-            part.system.drive(t_end, v_end);
+            part.system.drive_mean([t_end - 0.5 * h, t_end + 0.5 * h], v_end);
             let (jump, pull) = (&mut work.scratch[..v.len()], &mut self.product[v]);
             for ((jump, v1), v0) in jump.iter_mut().zip(v_end.iter()).zip(v_start) {
                 *jump = v1 - v0;
@@ -268,24 +269,6 @@ impl ThetaStep {
 /// ```
 fn beside_mass_damping(alpha: f64, h: f64, theta: f64) -> f64 {
     h * alpha / (1.0 + h * theta * alpha)
-}
-
-/// θP¹ + (1−θ)P⁰ into `load`.
-fn mean_load<const D: usize>(
-    system: &dyn Subsystem<D>,
-    theta: f64,
-    t: [f64; 2],
-    load: &mut [f64],
-    scratch: &mut [f64],
-) {
-    load.fill(0.0);
-    for (t, weight) in [(t[0], 1.0 - theta), (t[1], theta)] {
-        scratch.fill(0.0);
-        system.load(t, scratch);
-        for (sum, p) in load.iter_mut().zip(scratch.iter()) {
-            *sum += weight * p;
-        }
-    }
 }
 
 fn add(x: &mut [f64], y: &[f64]) {

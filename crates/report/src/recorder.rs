@@ -15,8 +15,8 @@ use teeter_integrator::{
 };
 use teeter_scenario::diagnostic::Diagnostic;
 use teeter_scenario::scene::Scene;
-use teeter_scenario::simulation::Layout;
-use teeter_scenario::{Shapes, deflection};
+use teeter_scenario::simulation::{BlockPlace, Layout};
+use teeter_scenario::{FAR_TURN, Shapes, deflection};
 
 /// An impact as the summary lists it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -38,6 +38,9 @@ const FAR_FROM_CONSERVED: f64 = 0.02;
 
 /// A penetration over this part of the shortest side of a block is a warning.
 const DEEP: f64 = 0.1;
+
+/// What the identity of energy leaves over, as a part of the scene's scale, is rounding up to here: scenes of all kinds have 1e-15 to 1e-10.
+const UNACCOUNTED: f64 = 1e-8;
 
 /// Impacts that the summary lists; `impacts.csv` has all.
 const LISTED_IMPACTS: usize = 1000;
@@ -276,6 +279,28 @@ impl<'a> Recorder<'a> {
         self.contacts.rows(&self.line)
     }
 
+    /// Warns, once, of a block that turns far in a step.
+    fn warn_of_turns(&mut self, state: &State) {
+        let fastest = FAR_TURN / state.dt;
+        let turning = |place: &&BlockPlace| state.v[place.range.start + 2].abs() >= fastest;
+        let Some(place) = self.layout.blocks.iter().find(turning) else { return };
+        let warnings = &mut self.kept.record.warnings;
+        let known = warnings.warnings().iter().any(|warning| warning.code == "far-turn");
+        let spin = state.v[place.range.start + 2];
+        let told = warnings.enter("far-turn", Some(state.t), || {
+            format!(
+                "`{}` turns by {:.2} rad in the step to t = {} s, and is no longer followed from {FAR_TURN} on; take a step of at most {:.0e} s",
+                place.name,
+                spin.abs() * state.dt,
+                state.t,
+                FAR_TURN / spin.abs()
+            )
+        });
+        if let (Some(text), false) = (told, known) {
+            (self.tell)(&text);
+        }
+    }
+
     /// Warns where the model lacks what the run may need after all.
     fn warn_of_limits(&mut self, state: &State) {
         let Some(limits) = self.layout.required.limits.filter(|limits| !limits.hold(state)) else { return };
@@ -322,6 +347,16 @@ impl<'a> Recorder<'a> {
                      more; the step is too long for what moves, or a corner came in from the side, past the end of a beam",
                     state.t,
                     100.0 * DEEP
+                )
+            });
+        }
+        let left = ledger.relative_residual();
+        if left > UNACCOUNTED {
+            first("energy-account", &|| {
+                format!(
+                    "up to t = {} s the energy of a step is off by {left:.1e} of the scene's scale, far more than rounding: numbers of very \
+                     different size act together, and the motion is not to be trusted; check loads, signals and masses, and their units",
+                    state.t
                 )
             });
         }
@@ -436,6 +471,7 @@ impl Observer<2> for Recorder<'_> {
         self.write_impacts(model, step, state)?;
         self.warn_of(step);
         self.warn_of_limits(state);
+        self.warn_of_turns(state);
         self.kept.resolution.observe(&self.bodies, self.layout, step, state);
         let Kept { record, section_values, .. } = &mut self.kept;
         let kept = (record.beams.as_mut_slice(), section_values);

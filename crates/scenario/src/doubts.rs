@@ -5,7 +5,7 @@ use crate::diagnostic::Diagnostic;
 use crate::document::Document;
 use crate::mesh_error::{self, OfMesh};
 use crate::scene::{BeamScene, BlockScene, ContactScene, Placement, Scene, Support};
-use crate::{deflection, flexibility, outlook, rocking, stability, wording};
+use crate::{deflection, fineness, flexibility, idle, outlook, rocking, stability, wording};
 use std::f64::consts::{PI, TAU};
 use teeter_beam::{Axial, Beam, Digits, MatrixWeights};
 use teeter_integrator::ImpactLaw;
@@ -74,7 +74,10 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Doubts {
             _ => {}
         }
     }
-    doubts.warnings.extend(scene.signals.iter().filter_map(|signal| unused(&signal.name, document)));
+    let (warnings, notes) = fineness::of(scene, document);
+    doubts.warnings.extend(warnings);
+    doubts.notes.extend(notes);
+    doubts.warnings.extend(idle::of(scene, document));
     // What is too coarse for the motion of contact is so for its impacts.
     doubts.warnings.extend(step(scene, document).or_else(|| rocking::coarse(scene, document)));
     doubts.warnings.extend(loosely_solved(scene, document));
@@ -166,20 +169,6 @@ fn under_meshed(number: usize, scene: &Scene, document: &Document) -> Option<Dia
     );
     let remedy = format!("{}; `teeter tradeoff` measures what it is worth", lack.advice);
     Some(document.error(&path(key), rule, remedy).as_warning())
-}
-
-/// A signal that drives nothing.
-fn unused(name: &str, document: &Document) -> Option<Diagnostic> {
-    let uses = |path: &str| match path.rsplit('.').next() {
-        Some("signal") => document.text(path) == Some(name),
-        Some("signals") => document.text_pair(path).is_some_and(|pair| pair.contains(&name)),
-        _ => false,
-    };
-    if document.entries().any(|(path, _)| uses(path)) {
-        return None;
-    }
-    let remedy = format!("write signal = \"{name}\" where it is meant to act, or leave it out");
-    Some(document.error(&format!("signal.{name}"), "nothing uses this signal", remedy).as_warning())
 }
 
 /// The slope of the ground that a block stands on; 0 on anything else.

@@ -6,8 +6,8 @@ use nalgebra::Vector2;
 use std::sync::Arc;
 use teeter_beam::{Beam, BeamError, Load, ModalBasis, SpanLoad};
 use teeter_integrator::{
-    BeamBody, BeamSurface, Block, BlockLoad, Blocks, Ground, ModalBeam, ModelError, Signal, SignalLoad, SpanLoads,
-    Subsystem,
+    BeamBody, BeamSurface, Block, BlockLoad, Blocks, Ground, ModalBeam, ModelError, MovingForce, Signal, SignalLoad,
+    SpanLoads, Subsystem,
 };
 
 /// The blocks under their weight and forces, with what is prescribed of their motion.
@@ -158,7 +158,7 @@ fn loaded(scene: &Scene, number: usize, beam: &Beam, mut body: BeamSystem) -> Re
             }
             LoadKind::Distributed { load, from, to } => beam.add_partial_load([from, to], load, &mut pattern)?,
             LoadKind::Moving { force, at, speed } => {
-                let moving = Moving { force, at, speed, signal: load.history.signal() };
+                let moving = MovingForce { force, start: at, speed, signal: load.history.signal() };
                 body = body.with_load(Box::new(moving));
                 continue;
             }
@@ -168,56 +168,66 @@ fn loaded(scene: &Scene, number: usize, beam: &Beam, mut body: BeamSystem) -> Re
     Ok(body)
 }
 
-/// A force that moves along a beam, times a signal; none while it is off the beam.
-struct Moving {
-    force: f64,
-    at: f64,
-    speed: f64,
-    signal: Arc<dyn Signal>,
-}
-
-impl Load for Moving {
-    fn add(&self, beam: &Beam, t: f64, f: &mut [f64]) {
-        if let Some(shape) = beam.shape_at(self.at + self.speed * t) {
-            shape.add_load(self.force * self.signal.value(t), 0.0, f);
-        }
-    }
-}
-
 /// The loads of the scene on a beam, by their places: those of [`loaded`].
 #[derive(Debug)]
 pub(crate) struct PlacedLoads {
     /// Acceleration of gravity along y, where the beam has weight.
     weight: Option<f64>,
-    loads: Vec<(LoadKind, Arc<dyn Signal>)>,
-    span: f64,
+    standing: Vec<(SpanLoad, Arc<dyn Signal>)>,
+    moving: Vec<MovingForce>,
+    beam: Arc<Beam>,
 }
 
 /// The loads of the scene on a beam by their places; `None` where there are none.
-pub(crate) fn placed_loads(scene: &Scene, number: usize) -> Option<PlacedLoads> {
-    let of = &scene.beams[number];
-    let loads = scene.loads.iter().filter(|load| load.beam == number);
-    let loads: Vec<_> = loads.map(|load| (load.kind, load.history.signal())).collect();
-    let weight = of.self_weight.then(|| scene.gravity[1]);
-    (weight.is_some() || !loads.is_empty()).then_some(PlacedLoads { weight, loads, span: of.spec.span })
+pub(crate) fn placed_loads(scene: &Scene, number: usize, beam: &Arc<Beam>) -> Option<PlacedLoads> {
+    let weight = scene.beams[number].self_weight.then(|| scene.gravity[1]);
+    let mut placed = PlacedLoads { weight, standing: Vec::new(), moving: Vec::new(), beam: Arc::clone(beam) };
+    for load in scene.loads.iter().filter(|load| load.beam == number) {
+        let signal = load.history.signal();
+        match load.kind {
+            LoadKind::Point { at: x, force, couple } => {
+                placed.standing.push((SpanLoad::Point { x, force, couple }, signal));
+            }
+            LoadKind::Distributed { load, from, to } => {
+                placed.standing.push((SpanLoad::Uniform { from, to, load }, signal));
+            }
+            LoadKind::Moving { force, at: start, speed } => {
+                placed.moving.push(MovingForce { force, start, speed, signal });
+            }
+        }
+    }
+    (weight.is_some() || !placed.standing.is_empty() || !placed.moving.is_empty()).then_some(placed)
+}
+
+impl PlacedLoads {
+    /// Weight, and what doesn't move.
+    fn add_standing(&self, factor: impl Fn(&dyn Signal) -> f64, loads: &mut Vec<SpanLoad>) {
+        loads.extend(self.weight.map(|gravity| SpanLoad::Weight { gravity }));
+        loads.extend(self.standing.iter().map(|(load, signal)| {
+            let factor = factor(signal.as_ref());
+            match *load {
+                SpanLoad::Point { x, force, couple } => {
+                    SpanLoad::Point { x, force: factor * force, couple: factor * couple }
+                }
+                SpanLoad::Uniform { from, to, load } => SpanLoad::Uniform { from, to, load: factor * load },
+                other => other,
+            }
+        }));
+    }
 }
 
 impl SpanLoads for PlacedLoads {
-    fn add(&self, t: f64, factor: f64, loads: &mut Vec<SpanLoad>) {
-        loads.extend(self.weight.map(|gravity| SpanLoad::Weight { gravity: factor * gravity }));
-        loads.extend(self.loads.iter().filter_map(|(kind, signal)| {
-            let factor = factor * signal.value(t);
-            match *kind {
-                LoadKind::Point { at, force, couple } => {
-                    Some(SpanLoad::Point { x: at, force: factor * force, couple: factor * couple })
-                }
-                LoadKind::Distributed { load, from, to } => Some(SpanLoad::Uniform { from, to, load: factor * load }),
-                LoadKind::Moving { force, at, speed } => {
-                    let x = at + speed * t;
-                    (0.0..=self.span).contains(&x).then_some(SpanLoad::Point { x, force: factor * force, couple: 0.0 })
-                }
-            }
-        }));
+    fn add(&self, t: f64, loads: &mut Vec<SpanLoad>) {
+        self.add_standing(|signal| signal.value(t), loads);
+        loads.extend(self.moving.iter().filter_map(|load| load.at(&self.beam, t)));
+    }
+
+    fn add_mean(&self, [from, to]: [f64; 2], loads: &mut Vec<SpanLoad>) {
+        self.add_standing(|signal| signal.mean(from, to), loads);
+        for load in &self.moving {
+            let places = load.mean(&self.beam, [from, to]);
+            loads.extend(places.map(|(x, force)| SpanLoad::Point { x, force, couple: 0.0 }));
+        }
     }
 }
 

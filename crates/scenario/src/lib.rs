@@ -41,7 +41,9 @@ pub mod document;
 mod doubts;
 mod driven;
 mod faults;
+mod fineness;
 mod flexibility;
+mod idle;
 mod judge;
 pub mod keys;
 mod left_out;
@@ -75,6 +77,7 @@ pub mod wording;
 mod words;
 
 pub use carrier::Carrier;
+pub use fineness::FAR_TURN;
 pub use left_out::left_out;
 pub use meeting::{Meeting, Shapes};
 pub use opening::OPEN_GAP;

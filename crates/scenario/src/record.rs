@@ -2,6 +2,10 @@
 
 use std::ops::RangeInclusive;
 
+use crate::diagnostic::printable;
+use crate::dimension::Dimension;
+use crate::keys::Range;
+use crate::quantity;
 use teeter_integrator::{SignalError, Table};
 
 /// Largest file that is read, bytes.
@@ -9,6 +13,12 @@ pub const LARGEST_RECORD: usize = 64_000_000;
 
 /// Most rows: a signal takes 32 bytes for each.
 pub const MOST_ROWS: usize = 2_000_000;
+
+/// Shortest time between two rows, s: that of the keys that are times.
+const SHORTEST: f64 = 1e-15;
+
+/// What the columns of a signal's table are. Its value is multiplied by an amplitude that has the unit.
+const SIGNAL: &[Dimension] = &[Dimension::TIME, Dimension::NONE];
 
 /// A table read: its columns, and the line of each row.
 pub(crate) struct Columns {
@@ -21,9 +31,17 @@ pub(crate) struct Columns {
 /// # Errors
 /// What is wrong, and in which line.
 pub(crate) fn read(bytes: &[u8], start: f64) -> Result<Table, String> {
-    let Columns { columns, lines } = columns(bytes, 2..=2, "two, t and value")?;
+    let Columns { columns, lines } = columns(bytes, 2..=2, "two, t and value", SIGNAL)?;
     let [mut times, values] = <[Vec<f64>; 2]>::try_from(columns).unwrap_or_default();
     times.iter_mut().for_each(|t| *t += start);
+    // Shorter ones are no time that a key would take, and rates over them no number that can be computed with.
+    if let Some(row) = times.windows(2).position(|t| t[1] > t[0] && t[1] - t[0] < SHORTEST) {
+        let line = lines.get(row + 1).copied().unwrap_or_default();
+        return Err(format!(
+            "line {line}: {:e} s after the row before, below {SHORTEST:e} s, the limit of times",
+            times[row + 1] - times[row]
+        ));
+    }
     Table::new(times, values).map_err(|error| match error {
         SignalError::Row { row, what } => {
             let line = row.checked_sub(1).and_then(|row| lines.get(row)).copied().unwrap_or_default();
@@ -37,11 +55,17 @@ pub(crate) fn read(bytes: &[u8], start: f64) -> Result<Table, String> {
 }
 
 /// Reads a table of numbers: separated by commas, as many columns in each row, a first row of words is a heading, lines that
-/// start with `#` are comments. `names` are the columns in words, for messages.
+/// start with `#` are comments. `names` are the columns in words, for messages; `dimensions` what their numbers are, in SI units but where
+/// the heading gives another one, as `t [ms]`. Numbers are held to the limits of keys.
 ///
 /// # Errors
 /// What is wrong, and in which line.
-pub(crate) fn columns(bytes: &[u8], count_of: RangeInclusive<usize>, names: &str) -> Result<Columns, String> {
+pub(crate) fn columns(
+    bytes: &[u8],
+    count_of: RangeInclusive<usize>,
+    names: &str,
+    dimensions: &[Dimension],
+) -> Result<Columns, String> {
     if bytes.len() > LARGEST_RECORD {
         return Err(format!("larger than {} MB, the limit of a table", LARGEST_RECORD / 1_000_000));
     }
@@ -57,6 +81,7 @@ pub(crate) fn columns(bytes: &[u8], count_of: RangeInclusive<usize>, names: &str
     let mut count = Count { bytes, at: 0, line: 1 };
     let mut row = csv::ByteRecord::new();
     let mut first = true;
+    let mut units: Vec<Option<String>> = Vec::new();
     loop {
         match reader.read_byte_record(&mut row) {
             Ok(true) => {}
@@ -64,30 +89,40 @@ pub(crate) fn columns(bytes: &[u8], count_of: RangeInclusive<usize>, names: &str
             Err(error) => return Err(format!("can't be read: {error}")),
         }
         let line = count.line_of(row.position().map_or(0, csv::Position::byte));
-        let heading = std::mem::take(&mut first) && row.iter().all(|cell| number(cell).is_none());
+        let heading = std::mem::take(&mut first) && row.iter().all(is_word);
         if heading {
+            units = heading_units(&row, dimensions).map_err(|why| format!("line {line}: {why}"))?;
             continue;
         }
         let as_before = columns.is_empty() || row.len() == columns.len();
         if !count_of.contains(&row.len()) || !as_before {
             return Err(format!(
-                "line {line}: {} column{}, but a table has {names}, separated by a comma",
+                "line {line}: {} column{}, but a table has {names}, separated by a comma{}",
                 row.len(),
-                if row.len() == 1 { "" } else { "s" }
+                if row.len() == 1 { "" } else { "s" },
+                other_separator(&row).map_or_else(String::new, |other| format!("; these are separated by {other}"))
             ));
         }
         columns.resize_with(row.len(), Vec::new);
         if lines.len() == MOST_ROWS {
             return Err(format!("line {line}: more than {MOST_ROWS} rows, the limit of a table"));
         }
-        for (cell, column) in row.iter().zip(&mut columns) {
-            match number(cell) {
-                Some(value) => column.push(value),
-                None => {
-                    let text = crate::diagnostic::printable(&String::from_utf8_lossy(cell));
-                    return Err(format!("line {line}: `{text}` is no number"));
-                }
+        for (k, (cell, column)) in row.iter().zip(&mut columns).enumerate() {
+            let read = match (units.get(k).and_then(Option::as_deref), dimensions.get(k)) {
+                (Some(unit), Some(dimension)) => number_in(cell, unit, *dimension),
+                _ => number(cell),
+            };
+            let Some(value) = read else {
+                let text = printable(&String::from_utf8_lossy(cell));
+                return Err(format!("line {line}: `{text}` is no number"));
+            };
+            // What is not finite has its own message, which says what it is.
+            if value.is_finite()
+                && let Some(rule) = Range::ANY.check(value, Dimension::NONE)
+            {
+                return Err(format!("line {line}, column {}: {value:e} is {rule}", k + 1));
             }
+            column.push(value);
         }
         lines.push(line);
     }
@@ -124,6 +159,80 @@ impl Count<'_> {
     }
 }
 
+/// Whether a cell of the first row is a word of a heading: nothing that begins as a number.
+fn is_word(cell: &[u8]) -> bool {
+    let unsigned = cell.strip_prefix(b"-").or_else(|| cell.strip_prefix(b"+")).unwrap_or(cell);
+    let unsigned = unsigned.strip_prefix(b".").unwrap_or(unsigned);
+    number(cell).is_none() && !unsigned.first().is_some_and(u8::is_ascii_digit)
+}
+
+/// What separates the numbers of a row whose columns are too few or too many for commas, in words.
+fn other_separator(row: &csv::ByteRecord) -> Option<&'static str> {
+    let whole = row.iter().map(String::from_utf8_lossy).collect::<Vec<_>>().join(",");
+    if whole.contains(';') {
+        return Some("a semicolon");
+    }
+    let parts: Vec<&str> = whole.split_whitespace().collect();
+    let numbers = parts.len() > 1 && parts.iter().all(|part| part.replace(',', ".").parse::<f64>().is_ok());
+    numbers.then_some(if whole.contains('\t') { "a tab" } else { "blanks" })
+}
+
+/// The units that a heading gives, by column: `t [ms]`, `t (ms)`; none for the SI unit itself.
+fn heading_units(heading: &csv::ByteRecord, dimensions: &[Dimension]) -> Result<Vec<Option<String>>, String> {
+    let mut units = Vec::new();
+    for (cell, dimension) in heading.iter().zip(dimensions) {
+        let cell = String::from_utf8_lossy(cell);
+        units.push(match unit_of(&cell) {
+            None => None,
+            Some(unit) => {
+                heading_unit(unit, *dimension).map_err(|why| format!("heading `{}`: {why}", printable(&cell)))?
+            }
+        });
+    }
+    Ok(units)
+}
+
+/// What stands in brackets at the end of a heading.
+fn unit_of(cell: &str) -> Option<&str> {
+    let (open, inner) = match cell.trim_matches('"').trim_end() {
+        text if text.ends_with(']') => ('[', text.strip_suffix(']')?),
+        text if text.ends_with(')') => ('(', text.strip_suffix(')')?),
+        _ => return None,
+    };
+    Some(inner.rsplit_once(open)?.1.trim())
+}
+
+/// The unit of a column, if its numbers have to be brought to SI.
+fn heading_unit(unit: &str, dimension: Dimension) -> Result<Option<String>, String> {
+    let none = dimension == Dimension::NONE;
+    let bare = matches!(unit, "" | "-" | "1");
+    if bare && (none || dimension == Dimension::ANGLE) {
+        return Ok(None);
+    }
+    if none {
+        return Err(format!(
+            "the values of a signal have no unit, got `{}`: give the unit with the amplitude that the signal multiplies, and leave \
+             it out here",
+            printable(unit)
+        ));
+    }
+    match quantity::parse(&format!("1 {unit}"), dimension) {
+        Ok(1.0) => Ok(None),
+        Ok(_) => Ok(Some(unit.to_owned())),
+        Err(error) => Err(format!("{error}; write the unit in brackets, such as [{}]", dimension.unit())),
+    }
+}
+
+/// A number in another unit than SI's, as if it had been written in a scene.
+fn number_in(cell: &[u8], unit: &str, dimension: Dimension) -> Option<f64> {
+    let value = number(cell)?;
+    // Zeros, and what is no finite number, are the same in all units.
+    if value == 0.0 || !value.is_finite() {
+        return Some(value);
+    }
+    quantity::parse(&format!("{} {unit}", std::str::from_utf8(cell).ok()?), dimension).ok()
+}
+
 /// NaN and infinities are numbers here, so that they are named as what they are.
 fn number(cell: &[u8]) -> Option<f64> {
     std::str::from_utf8(cell).ok()?.parse().ok()
@@ -143,6 +252,24 @@ mod tests {
     }
 
     #[test]
+    fn units_of_a_heading_are_honoured_or_refused() {
+        for heading in ["t [ms], a", "t (ms), a [-]", "\"time [ms]\",\"a\""] {
+            let table = read(format!("{heading}\n0, 1\n0.3, 2\n1e1, -2\n").as_bytes(), 1.0).unwrap();
+            assert_eq!(table.ends(), [(1.0, 1.0), (1.01, -2.0)], "{heading}");
+            assert_eq!(table.value(1.0 + 0.3e-3), 2.0, "as if written in seconds");
+        }
+        assert_eq!(read(b"t [s], a (1)\n0,1\n2,3\n", 0.0).unwrap().ends(), [(0.0, 1.0), (2.0, 3.0)]);
+        let told = |text: &str| read(text.as_bytes(), 0.0).unwrap_err();
+        assert_eq!(
+            told("t [m],a\n0,1\n1,2\n"),
+            "line 1: heading `t [m]`: a time (s) is expected, got a length (m); write the unit in brackets, such as [s]"
+        );
+        assert!(told("t [fortnights],a\n0,1\n1,2\n").contains("unknown unit `fortnights`"));
+        assert!(told("t,a [m/s^2]\n0,1\n1,2\n").contains("the values of a signal have no unit, got `m/s^2`"));
+        assert_eq!(told("t [ms],a\n0,1\n1,nan\n"), "line 3: the value is NaN, but must be finite");
+    }
+
+    #[test]
     fn what_is_wrong_is_told_with_its_line() {
         let told = |text: &str| read(text.as_bytes(), 0.0).unwrap_err();
         assert_eq!(told("t,a\n0,1\n1,nan\n"), "line 3: the value is NaN, but must be finite");
@@ -152,10 +279,24 @@ mod tests {
         );
         assert_eq!(told("t,a\n0,1\n"), "it has 1 row of numbers, but a table needs two or more");
         assert_eq!(told(""), "it has 0 rows of numbers, but a table needs two or more");
-        assert!(told("t;a\n0;1\n").starts_with("line 2: 1 column, but a table has two"));
+        assert_eq!(
+            told("t;a\n0;1\n"),
+            "line 2: 1 column, but a table has two, t and value, separated by a comma; these are separated by a semicolon"
+        );
+        assert!(told("0;1\n1;2\n").starts_with("line 1: 1 column"), "no heading");
+        assert!(told("0,5;1\n1;2\n").ends_with("these are separated by a semicolon"));
+        assert!(told("0\t1\n").ends_with("these are separated by a tab"));
+        assert!(told("0 1\n").ends_with("these are separated by blanks"));
+        assert!(told("1e400x,2\n0,1\n1,2\n").starts_with("line 1: `1e400x` is no number"));
         assert_eq!(told("0,1\n1,2,3\n"), "line 2: 3 columns, but a table has two, t and value, separated by a comma");
         assert_eq!(told("0,1\n1,high\n"), "line 2: `high` is no number");
         assert!(told(&"0,1\n".repeat(MOST_ROWS + 1)).starts_with("line 2000001: more than 2000000 rows"));
+        assert_eq!(
+            told("0,1\n1,1e308\n"),
+            "line 2, column 2: 1e308 is outside the range that can be computed with: 2.2250738585072014e-308 to 1e12 in size"
+        );
+        assert!(told("0,1\n1e-320,2\n").starts_with("line 2, column 1: 1e-320 is outside"));
+        assert!(told("0,1\n1e-20,2\n").starts_with("line 2: 1e-20 s after the row before, below 1e-15 s"));
         assert!(read(&vec![b'1'; LARGEST_RECORD + 1], 0.0).unwrap_err().contains("64 MB"));
     }
 }

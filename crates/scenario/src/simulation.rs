@@ -210,7 +210,7 @@ impl Layout {
         if let Some(basis) = &place.basis {
             forces = forces.in_modes(Arc::clone(basis));
         }
-        match driven::placed_loads(scene, number) {
+        match driven::placed_loads(scene, number, &place.beam) {
             Some(loads) => forces.with_loads(Box::new(loads)),
             None => forces,
         }

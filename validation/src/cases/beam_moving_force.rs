@@ -87,12 +87,9 @@ fn midspan(crossing: &Crossing, elements: usize, steps: u32) -> Result<[f64; 3]>
     let mut told = [f64::NAN; 3];
     let last = (1.3 * f64::from(steps)).round() as u32;
     for k in 0..last {
-        // (M + hC/2 + h²K/4) Δv = h [(P⁰ + P¹)/2 − K(q + hv/2) − Cv]
+        // (M + hC/2 + h²K/4) Δv = h [P̄ − K(q + hv/2) − Cv]
         let mut right = zero.clone();
-        for t in [f64::from(k) * h, f64::from(k + 1) * h] {
-            load.add(&beam, t, &mut right);
-        }
-        right.iter_mut().for_each(|p| *p *= 0.5);
+        load.add_mean(&beam, [f64::from(k) * h, f64::from(k + 1) * h], &mut zero.clone(), &mut right);
         let predicted: Vec<f64> = q.iter().zip(&v).map(|(q, v)| q + 0.5 * h * v).collect();
         beam.add_stiffness_product(-1.0, &predicted, &mut right);
         beam.add_damping_product(-1.0, &v, &mut right);

@@ -176,7 +176,11 @@ fn vertical(runner: &mut Runner, findings: &mut Findings) -> Result<()> {
         if pressed <= 0.0 {
             open += 1;
         }
-        let rise = motion[1].velocity(step.t_end) - motion[1].velocity(step.t_start);
+        // A step ends with the mean velocity over the time about its end; the start has its own.
+        let drive = |t: f64| {
+            if t == 0.0 { motion[1].velocity(t) } else { motion[1].mean_velocity(t - 0.5 * dt, t + 0.5 * dt) }
+        };
+        let rise = drive(step.t_end) - drive(step.t_start);
         force = force.max((pressed / (FLAT_BLOCK.mass() * (GRAVITY * dt + rise)) - 1.0).abs());
         ControlFlow::Continue(())
     })?;

@@ -132,3 +132,25 @@ fn usage_errors_say_how_it_is_used() {
         assert!(message.contains(says) && message.lines().count() <= 8, "{arguments:?}: {message}");
     }
 }
+
+/// A pipe that nobody writes to would be waited for without end.
+#[cfg(unix)]
+#[test]
+#[allow(clippy::print_stderr)] // a test that is skipped says so
+fn a_pipe_as_a_signal_is_refused() {
+    let folder = folder("pipe");
+    let made = std::process::Command::new("mkfifo").arg(folder.join("push.csv")).status();
+    if !made.is_ok_and(|status| status.success()) {
+        eprintln!("skipped: no pipe can be made here");
+        return;
+    }
+    let signal = "[force.push]\non = \"rocker\"\nforce = [\"1 N\", \"0 N\"]\nsignal = \"s\"\n\
+                  [signal.s]\nshape = \"table\"\nfile = \"push.csv\"\n";
+    let start = base().replace("start         = \"static\"", "start = { file = \"push.csv\" }");
+    for text in [format!("{}\n{signal}", base()), start] {
+        std::fs::write(folder.join("scene.toml"), text).unwrap();
+        let output = teeter(&folder, &["check", "scene.toml"]);
+        assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+        assert!(stderr(&output).contains("is no regular file"), "{}", stderr(&output));
+    }
+}

@@ -3,10 +3,10 @@
 //! A θ step satisfies, with q_θ = θq¹ + (1−θ)q⁰ and v_θ alike,
 //!
 //! ```text
-//! M (v¹ − v⁰)/h + C v_θ + K q_θ = θP¹ + (1−θ)P⁰ + Jᵀp/h
+//! M (v¹ − v⁰)/h + C v_θ + K q_θ = P̄ + Jᵀp/h
 //! ```
 //!
-//! with the supports' acceleration in M's share where they move. Element by element that gives the end forces, so what is read
+//! with P̄ the mean of the loads over the step, and the supports' acceleration in M's share where they move. Element by element that gives the end forces, so what is read
 //! from them is the mean over the step, and balances to rounding. An impact's impulse p is spread over the step as p/h: its
 //! peaks grow as h shrinks.
 
@@ -19,8 +19,12 @@ use teeter_detect::{Anchor, BodyId, Frame};
 
 /// Loads on a beam by their places: the same that its [`BeamBody`](crate::BeamBody) is under, weight included.
 pub trait SpanLoads: std::fmt::Debug + Send + Sync {
-    /// Adds the loads at time `t` (s), times `factor`, to a list. Allocates nothing else.
-    fn add(&self, t: f64, factor: f64, loads: &mut Vec<SpanLoad>);
+    /// Adds the loads at time `t` (s) to a list. Allocates nothing else.
+    fn add(&self, t: f64, loads: &mut Vec<SpanLoad>);
+
+    /// Adds the means of the loads over the time from `times[0]` to `times[1]` (s) to a list, as a step takes them
+    /// ([`Subsystem::mean_load`](crate::Subsystem::mean_load)). Allocates nothing else.
+    fn add_mean(&self, times: [f64; 2], loads: &mut Vec<SpanLoad>);
 }
 
 /// The section forces of a beam, step by step. Between [`start`](Self::start) and the end of a run every step has to be
@@ -159,7 +163,7 @@ impl BeamForces {
         self.span_loads.clear();
         if let Some(pressing) = pressing {
             if let Some(loads) = &self.loads {
-                loads.add(state.t, 1.0, &mut self.span_loads);
+                loads.add(state.t, &mut self.span_loads);
             }
             self.span_loads.extend_from_slice(pressing);
         }
@@ -193,11 +197,7 @@ impl BeamForces {
         }
         self.span_loads.clear();
         if let Some(loads) = &self.loads {
-            for (t, factor) in [(step.t_start, 1.0 - theta), (step.t_end, theta)] {
-                if factor != 0.0 {
-                    loads.add(t, factor, &mut self.span_loads);
-                }
-            }
+            loads.add_mean([step.t_start, step.t_end], &mut self.span_loads);
         }
         let span = self.beam.spec().span;
         self.span_loads.extend(step.contacts.iter().flat_map(|contact| pushes(contact, self.body, span, h)));

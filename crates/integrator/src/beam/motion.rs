@@ -50,6 +50,10 @@ impl MovingSupports {
         self.motion.each_ref().map(|motion| motion.velocity(t))
     }
 
+    pub(crate) fn mean_velocities(&self, [from, to]: [f64; 2]) -> [f64; 2] {
+        self.motion.each_ref().map(|motion| motion.mean_velocity(from, to))
+    }
+
     /// y += a (M_aug − M) x.
     pub(crate) fn add_mass_product(&self, a: f64, x: &[f64], y: &mut [f64]) {
         let [across, up] = self.driven;

@@ -1,5 +1,6 @@
 //! Signals by formula, and their integrals in closed form.
 
+use super::window::{self, Moments, Pieces, sinc};
 use super::{Signal, SignalError, from_zero};
 use std::f64::consts::{PI, TAU};
 
@@ -95,8 +96,71 @@ impl Formula {
         Self::new(peak, Shape::Ricker { rate: PI * positive("the frequency", frequency)? })
     }
 
+    /// The time of one of its swings and between which times it swings, s; of a half sine twice its duration, of a Ricker wavelet the inverse of
+    /// its frequency. `None` for what doesn't swing.
+    #[must_use]
+    pub fn swings(&self) -> Option<(f64, [f64; 2])> {
+        match self.shape {
+            Shape::Constant | Shape::Ramp { .. } => None,
+            Shape::Sine { omega, end, .. } => Some((TAU / omega, [self.start, self.start + end])),
+            Shape::Ricker { rate } => Some((PI / rate, [self.start - BELL / rate, self.start + BELL / rate])),
+        }
+    }
+
+    /// Whether it is 0 from time 0 to `end` (s).
+    #[must_use]
+    pub fn is_silent_until(&self, end: f64) -> bool {
+        self.swings().map_or(self.start >= end, |(_, [from, until])| from >= end || until <= 0.0)
+    }
+
     fn new(start: f64, shape: Shape) -> Result<Self, SignalError> {
         Ok(Self { start: finite("the start", start)?, shape })
+    }
+
+    /// Hands to `each` what is not 0 of the stretch [a, b], times since the start: its pieces without a kink, each with its moments.
+    fn pieces(&self, a: f64, b: f64, mut each: impl FnMut(f64, f64, Moments)) {
+        let mut piece = |from: f64, to: f64, of: &dyn Fn(f64, f64) -> Moments| {
+            let (from, to) = (a.max(from), b.min(to));
+            if from < to {
+                each(from, to, of(from, to));
+            }
+        };
+        match self.shape {
+            Shape::Constant => piece(0.0, f64::INFINITY, &|_, _| [1.0, 0.0, 0.0, 0.0]),
+            Shape::Ramp { duration } => {
+                piece(0.0, duration, &|from, to| window::of_line(from / duration, to / duration));
+                piece(duration, f64::INFINITY, &|_, _| [1.0, 0.0, 0.0, 0.0]);
+            }
+            Shape::Sine { omega, phase, end } => piece(0.0, end, &|from, to| {
+                window::of_sine(0.5 * omega * (from + to) + phase, 0.5 * omega * (to - from))
+            }),
+            Shape::Ricker { rate } => {
+                // Beyond it is 0 to rounding; within, short pieces for the points, and the mean in closed form.
+                let (from, to) = (a.max(-BELL / rate), b.min(BELL / rate));
+                let parts = (40.0 * rate * (to - from)).max(1.0).ceil();
+                for k in 0..parts as u32 {
+                    let at = |k: u32| from + (to - from) * (f64::from(k) / parts);
+                    piece(at(k), at(k + 1), &|from, to| {
+                        let mut moments = window::by_points(from, to, |tau| wavelet(rate * tau));
+                        moments[0] = wavelet_mean(rate, from, to);
+                        moments
+                    });
+                }
+            }
+        }
+    }
+
+    /// An antiderivative of the value.
+    fn once(&self, t: f64) -> f64 {
+        let tau = t - self.start;
+        match self.shape {
+            Shape::Sine { omega, phase, end } if tau > 0.0 => {
+                // cos ψ − cos(x + ψ) as a product: no digits lost at the start.
+                let half = 0.5 * omega * tau.min(end);
+                2.0 * half.sin() * (half + phase).sin() / omega
+            }
+            _ => self.antiderivatives(t).0,
+        }
     }
 
     /// Antiderivatives: of the value, and of that.
@@ -130,10 +194,7 @@ impl Signal for Formula {
     fn value(&self, t: f64) -> f64 {
         let tau = t - self.start;
         match self.shape {
-            Shape::Ricker { rate } => {
-                let a = (rate * tau) * (rate * tau);
-                (1.0 - 2.0 * a) * (-a).exp()
-            }
+            Shape::Ricker { rate } => wavelet(rate * tau),
             _ if tau < 0.0 => 0.0,
             Shape::Constant => 1.0,
             Shape::Ramp { duration } => (tau / duration).min(1.0),
@@ -157,11 +218,67 @@ impl Signal for Formula {
     }
 
     fn integral(&self, t: f64) -> f64 {
-        from_zero(t, |t| self.antiderivatives(t)).0
+        self.once(t) - self.once(0.0)
     }
 
     fn double_integral(&self, t: f64) -> f64 {
         from_zero(t, |t| self.antiderivatives(t)).1
+    }
+
+    fn mean(&self, from: f64, to: f64) -> f64 {
+        let (a, b) = (from - self.start, to - self.start);
+        match self.shape {
+            Shape::Ricker { rate } => wavelet_mean(rate, a, b),
+            _ if b <= 0.0 => 0.0,
+            Shape::Constant => b.min(b - a) / (b - a),
+            Shape::Ramp { duration } if a >= duration => 1.0,
+            Shape::Ramp { duration } => {
+                let (rising, full) = (b.min(duration), (b - duration).max(0.0));
+                let first = a.max(0.0);
+                (0.5 * (first + rising) / duration * (rising - first) + full) / (b - a)
+            }
+            Shape::Sine { omega, phase, end } => {
+                let (first, last) = (a.max(0.0), b.min(end));
+                if first >= last {
+                    return 0.0;
+                }
+                let mean = (0.5 * omega * (first + last) + phase).sin() * sinc(0.5 * omega * (last - first));
+                mean * ((last - first) / (b - a))
+            }
+        }
+    }
+
+    fn mean_rate(&self, from: f64, to: f64) -> f64 {
+        let (a, b) = (from - self.start, to - self.start);
+        match self.shape {
+            Shape::Sine { omega, phase, end } if a >= 0.0 && b <= end => {
+                omega * (0.5 * omega * (a + b) + phase).cos() * sinc(0.5 * omega * (b - a))
+            }
+            _ => (self.value(to) - self.value(from)) / (to - from),
+        }
+    }
+
+    fn mean_integral(&self, from: f64, to: f64) -> f64 {
+        let (a, b) = (from - self.start, to - self.start);
+        let middle = 0.5 * (from + to);
+        match self.shape {
+            Shape::Constant if a >= 0.0 => self.integral(middle),
+            Shape::Sine { omega, phase, end } if a >= 0.0 && b <= end => {
+                let swing = (0.5 * omega * (a + b) + phase).cos() / omega;
+                self.integral(middle) + swing * (1.0 - sinc(0.5 * omega * (b - a)))
+            }
+            _ => {
+                let moments = self.moments(from, to);
+                self.integral(from) + 0.5 * (to - from) * (moments[0] - moments[1])
+            }
+        }
+    }
+
+    fn moments(&self, from: f64, to: f64) -> Moments {
+        let (a, b) = (from - self.start, to - self.start);
+        let mut pieces = Pieces::over(a, b);
+        self.pieces(a, b, |from, to, moments| pieces.add(from, to, &moments));
+        pieces.moments()
     }
 
     fn jump(&self) -> Option<f64> {
@@ -173,6 +290,26 @@ impl Signal for Formula {
         };
         (jumps && self.start > 0.0).then_some(self.start)
     }
+}
+
+/// Where a Ricker wavelet is over, in its own time: (1 − 2·7²) exp(−7²) is 5e-20.
+const BELL: f64 = 7.0;
+
+/// (1 − 2x²) exp(−x²).
+fn wavelet(x: f64) -> f64 {
+    (1.0 - 2.0 * x * x) * (-x * x).exp()
+}
+
+/// The mean of a wavelet over [a, b], times since its peak: that of (τ exp(−(rate τ)²))', without the loss of digits that the difference has in
+/// a short stretch.
+fn wavelet_mean(rate: f64, a: f64, b: f64) -> f64 {
+    let [x, y] = [a, b].map(|tau| (rate * tau) * (rate * tau));
+    let apart = 0.5 * rate * rate * (b - a) * (b + a);
+    if apart.abs() > 0.5 {
+        return (b * (-y).exp() - a * (-x).exp()) / (b - a);
+    }
+    // b e^(−y) − a e^(−x) = (b − a) e^(−y) + a (e^(−y) − e^(−x)), and y − x = 2·apart.
+    (-y).exp() - 2.0 * a * (-0.5 * (x + y)).exp() * apart.sinh() / (b - a)
 }
 
 fn finite(what: &'static str, value: f64) -> Result<f64, SignalError> {

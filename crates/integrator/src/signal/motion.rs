@@ -70,6 +70,16 @@ impl Motion {
         })
     }
 
+    /// The mean of the velocity over the time from `from` to `to` (s), which is later, m/s or rad/s.
+    #[must_use]
+    pub fn mean_velocity(&self, from: f64, to: f64) -> f64 {
+        self.sum(|given, signal| match given {
+            Given::Displacement => signal.mean_rate(from, to),
+            Given::Velocity => signal.mean(from, to),
+            Given::Acceleration => signal.mean_integral(from, to),
+        })
+    }
+
     fn sum(&self, of: impl Fn(Given, &dyn Signal) -> f64) -> f64 {
         self.terms.iter().map(|term| term.amplitude * of(term.given, term.signal.as_ref())).sum()
     }

@@ -1,5 +1,6 @@
 //! Signals from a table: linear between its rows.
 
+use super::window::{self, Moments, Pieces};
 use super::{Signal, SignalError, from_zero};
 
 /// A time history by rows (time, value): linear between them, the first value before and the last value after.
@@ -68,6 +69,11 @@ impl Table {
         [row(0), row(self.times.len() - 1)]
     }
 
+    /// Its rows, (time, value).
+    pub fn rows(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.times.iter().copied().zip(self.values.iter().copied())
+    }
+
     /// The row that starts the piece which `t` is in, the time since it, and the slope of the piece.
     fn piece(&self, t: f64) -> (usize, f64, f64) {
         let after = self.times.partition_point(|row| *row <= t);
@@ -78,6 +84,29 @@ impl Table {
             (self.values[after] - self.values[row]) / (self.times[after] - self.times[row])
         };
         (row, t - self.times[row], slope)
+    }
+
+    /// Hands to `each` the stretch [from, to] in its even pieces: times and values of their ends.
+    fn pieces(&self, from: f64, to: f64, mut each: impl FnMut([f64; 2], [f64; 2])) {
+        let mut after = self.times.partition_point(|row| *row <= from);
+        let mut begin = from;
+        let last = self.times.len() - 1;
+        loop {
+            let end = self.times.get(after).map_or(to, |row| row.min(to));
+            let value = |t: f64| match after {
+                0 => self.values[0],
+                _ if after > last => self.values[last],
+                _ => {
+                    let (t0, y0) = (self.times[after - 1], self.values[after - 1]);
+                    y0 + (self.values[after] - y0) / (self.times[after] - t0) * (t - t0)
+                }
+            };
+            each([begin, end], [value(begin), value(end)]);
+            if end >= to {
+                return;
+            }
+            (begin, after) = (end, after + 1);
+        }
     }
 
     fn antiderivatives(&self, t: f64) -> (f64, f64) {
@@ -103,6 +132,32 @@ impl Signal for Table {
 
     fn double_integral(&self, t: f64) -> f64 {
         from_zero(t, |t| self.antiderivatives(t)).1
+    }
+
+    fn mean(&self, from: f64, to: f64) -> f64 {
+        let mut sum = 0.0;
+        self.pieces(from, to, |[a, b], [first, last]| sum += (b - a) / (to - from) * (0.5 * (first + last)));
+        sum
+    }
+
+    fn mean_rate(&self, from: f64, to: f64) -> f64 {
+        let (first, last) = (self.piece(from), self.piece(to));
+        // Within a piece without the rounding of a difference.
+        if first.0 == last.0 && first.2 == last.2 {
+            return first.2;
+        }
+        (self.value(to) - self.value(from)) / (to - from)
+    }
+
+    fn mean_integral(&self, from: f64, to: f64) -> f64 {
+        let moments = self.moments(from, to);
+        self.integral(from) + 0.5 * (to - from) * (moments[0] - moments[1])
+    }
+
+    fn moments(&self, from: f64, to: f64) -> Moments {
+        let mut pieces = Pieces::over(from, to);
+        self.pieces(from, to, |[a, b], [first, last]| pieces.add(a, b, &window::of_line(first, last)));
+        pieces.moments()
     }
 }
 

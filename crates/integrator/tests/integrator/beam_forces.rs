@@ -23,14 +23,21 @@ fn moreau_jean(theta: f64) -> Box<dyn Scheme<2>> {
 #[derive(Debug)]
 struct Loads(Arc<dyn Signal>);
 
+fn loads(s: f64) -> [SpanLoad; 3] {
+    [
+        SpanLoad::Point { x: 0.1, force: -2.0 * s, couple: 0.05 * s },
+        SpanLoad::Uniform { from: 0.05, to: 0.25, load: -4.0 * s },
+        SpanLoad::Weight { gravity: -9.81 * s },
+    ]
+}
+
 impl SpanLoads for Loads {
-    fn add(&self, t: f64, factor: f64, loads: &mut Vec<SpanLoad>) {
-        let s = factor * self.0.value(t);
-        loads.extend([
-            SpanLoad::Point { x: 0.1, force: -2.0 * s, couple: 0.05 * s },
-            SpanLoad::Uniform { from: 0.05, to: 0.25, load: -4.0 * s },
-            SpanLoad::Weight { gravity: -9.81 * s },
-        ]);
+    fn add(&self, t: f64, to: &mut Vec<SpanLoad>) {
+        to.extend(loads(self.0.value(t)));
+    }
+
+    fn add_mean(&self, [from, until]: [f64; 2], to: &mut Vec<SpanLoad>) {
+        to.extend(loads(self.0.mean(from, until)));
     }
 }
 

@@ -27,7 +27,8 @@ fn step(model: &Model<2>, state: &mut State, theta: f64, steps: u64) {
     assert_eq!(run(model, &mut scheme, state, &mut work, &plan, &mut []).unwrap(), Ended::Complete);
 }
 
-fn reference(name: &str, damping: Damping, loads: Vec<Box<dyn teeter_beam::Load>>) {
+/// Compares with a reference case by one of its tolerances.
+fn reference(name: &str, tolerances: &str, damping: Damping, loads: Vec<Box<dyn teeter_beam::Load>>) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/reference").join(format!("{name}.json"));
     let Ok(text) = std::fs::read_to_string(&path) else {
         eprintln!("skipped: there is no {}", path.display());
@@ -44,7 +45,7 @@ fn reference(name: &str, damping: Damping, loads: Vec<Box<dyn teeter_beam::Load>
     let h = number(&case["scheme"]["h"]);
     let mut state = State::new(&model, &nodes("beam_q_nodes"), &nodes("beam_v_nodes"), h).unwrap();
     let rows = case["samples"]["rows"].as_array().unwrap();
-    for (row, tolerance) in rows.iter().zip(case["tolerance"]["same_scheme"].as_array().unwrap()) {
+    for (row, tolerance) in rows.iter().zip(case["tolerance"][tolerances].as_array().unwrap()) {
         step(&model, &mut state, number(&case["scheme"]["theta"]), (number(&row[0]) / h).round() as u64);
         let found =
             [state.t, beam.deflection_at(&state.q, 0.18).unwrap().w, beam.deflection_at(&state.v, 0.18).unwrap().w];
@@ -59,18 +60,19 @@ fn reference(name: &str, damping: Damping, loads: Vec<Box<dyn teeter_beam::Load>
 #[test]
 fn f3_damped_free_vibration() {
     let c = 0.4050832789976532;
-    reference("F3_damped_free_theta0.5_h1e-4", Damping { viscous: c, ..Damping::default() }, Vec::new());
+    reference("F3_damped_free_theta0.5_h1e-4", "same_scheme", Damping { viscous: c, ..Damping::default() }, Vec::new());
 }
 
 #[test]
 fn f4_moving_force() {
     let load = MovingLoad::new(-10.0, 2.0, 0.0).unwrap();
-    reference("F4_moving_force_h1e-4", Damping::default(), vec![Box::new(load)]);
+    // The reference takes the force at both ends of a step, this scheme its mean over the step.
+    reference("F4_moving_force_h1e-4", "other_scheme", Damping::default(), vec![Box::new(load)]);
 }
 
 #[test]
 fn f5_undamped_vibration() {
-    reference("F5_undamped_theta0.5_h1e-3", Damping::default(), Vec::new());
+    reference("F5_undamped_theta0.5_h1e-3", "same_scheme", Damping::default(), Vec::new());
 }
 
 #[test]

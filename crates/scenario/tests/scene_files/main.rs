@@ -14,6 +14,7 @@ mod resting;
 mod running;
 mod settings;
 mod together;
+mod too_fast;
 mod work;
 mod writing;
 

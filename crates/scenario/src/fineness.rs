@@ -1,0 +1,187 @@
+//! What is too fast for the step: signals with more in a step than it can show, blocks that turn
+//! far in one.
+
+use crate::diagnostic::Diagnostic;
+use crate::document::Document;
+use crate::scene::{History, MotionScene, Scene, SignalScene};
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use teeter_integrator::{Formula, Given, Signal, Table};
+
+/// Steps that a swing should get.
+const STEPS_A_SWING: f64 = 10.0;
+
+/// Of a table's largest value, by how much a row may be beyond the values at both ends of its step:
+/// what the peak of a sine of [`STEPS_A_SWING`] steps does. (A jump stays between them, and is no
+/// worse than any other.)
+const BEYOND_THE_ENDS: f64 = 0.05;
+
+/// A block that turns by more than this in a step, rad, is no longer followed.
+pub const FAR_TURN: f64 = 0.1;
+
+/// A table that goes on for so many times the run has probably another unit of time.
+const FAR_TOO_LONG: f64 = 1000.0;
+
+/// Signals of one kind that are listed; the rest is counted.
+const LISTED: usize = 20;
+
+/// Warnings, and what is worth a note.
+pub(crate) fn of(scene: &Scene, document: &Document) -> (Vec<Diagnostic>, Vec<Diagnostic>) {
+    let used = used(document);
+    let (mut warnings, mut notes) = (Vec::new(), Vec::new());
+    let end = scene.time.steps as f64 * scene.time.step;
+    let mut unused = Vec::new();
+    for signal in &scene.signals {
+        if !used.contains(signal.name.as_str()) {
+            unused.push(signal.name.as_str());
+            continue;
+        }
+        let path = format!("signal.{}", signal.name);
+        if is_silent(&signal.history, end) {
+            let rule = format!("it is 0 all through the run, which ends at {end} s: what it multiplies does nothing");
+            warnings.push(document.error(&path, rule, "check its times and their unit").as_warning());
+            continue;
+        }
+        warnings.extend(match &signal.history {
+            History::Formula(formula) => swing(&path, formula, scene, document),
+            History::Table(table) => rows(&path, table, scene, document),
+        });
+        notes.extend(too_long(signal, end, document));
+    }
+    warnings.extend(nothing_uses(&unused, document));
+    warnings.extend(turns(scene, document));
+    (warnings, notes)
+}
+
+/// The names of the signals that something uses.
+fn used(document: &Document) -> BTreeSet<&str> {
+    let mut used = BTreeSet::new();
+    for (path, _) in document.entries() {
+        match path.rsplit('.').next() {
+            Some("signal") => used.extend(document.text(path)),
+            Some("signals") => used.extend(document.text_pair(path).into_iter().flatten()),
+            _ => {}
+        }
+    }
+    used
+}
+
+fn nothing_uses(names: &[&str], document: &Document) -> Vec<Diagnostic> {
+    let listed = names.iter().take(LISTED).enumerate().map(|(k, name)| {
+        let mut rule = "nothing uses this signal".to_owned();
+        if k + 1 == LISTED && names.len() > LISTED {
+            let _ = write!(rule, ", nor {} more", names.len() - LISTED);
+        }
+        let remedy = format!("write signal = \"{name}\" where it is meant to act, or leave it out");
+        document.error(&format!("signal.{name}"), rule, remedy).as_warning()
+    });
+    listed.collect()
+}
+
+/// Whether a history is 0 from the start of the run to its end.
+fn is_silent(history: &History, end: f64) -> bool {
+    match history {
+        History::Formula(formula) => formula.is_silent_until(end),
+        History::Table(table) => {
+            table.value(0.0) == 0.0
+                && table.value(end) == 0.0
+                && table.rows().all(|(t, y)| y == 0.0 || t <= 0.0 || t >= end)
+        }
+    }
+}
+
+/// What a step that doesn't resolve a signal makes of it.
+const IN_THE_MEAN: &str = "a step takes its mean, so that no impulse is lost, but what it does in a step doesn't show";
+
+/// A signal by formula that swings with less than ten steps for it.
+fn swing(path: &str, formula: &Formula, scene: &Scene, document: &Document) -> Option<Diagnostic> {
+    let step = scene.time.step;
+    let (period, [from, until]) = formula.swings()?;
+    if period >= STEPS_A_SWING * step * (1.0 - 1e-9) {
+        return None;
+    }
+    let at = |key: &str| format!("{path}.{key}");
+    let (key, rule) = if document.has(&at("duration")) {
+        let lasts = until - from;
+        (at("duration"), format!("it lasts {lasts:.3e} s, {:.2} steps of {step:e} s: {IN_THE_MEAN}", lasts / step))
+    } else {
+        let key = if document.has(&at("period")) { at("period") } else { at("frequency") };
+        (key, format!("its period of {period:.3e} s is {:.2} steps of {step:e} s: {IN_THE_MEAN}", period / step))
+    };
+    let remedy = format!("take a step of at most {:.1e} s", period / STEPS_A_SWING);
+    Some(document.error(&key, rule, remedy).as_warning())
+}
+
+/// A table with peaks between the ends of steps.
+fn rows(path: &str, table: &Table, scene: &Scene, document: &Document) -> Option<Diagnostic> {
+    let step = scene.time.step;
+    let last = scene.time.steps as f64;
+    let largest = table.rows().map(|(_, y)| y.abs()).fold(0.0, f64::max);
+    let (mut worst, mut closest, mut before) = (0.0_f64, f64::INFINITY, None::<f64>);
+    for (t, y) in table.rows() {
+        let k = (t / step).floor();
+        if (0.0..last).contains(&k) {
+            let [a, b] = [k, k + 1.0].map(|k| k * step);
+            let [a, b] = [a, b].map(|t| table.value(t));
+            worst = worst.max((y - a.max(b)).max(a.min(b) - y) / largest);
+            closest = closest.min(before.map_or(f64::INFINITY, |before| t - before));
+        }
+        before = Some(t);
+    }
+    if worst <= BEYOND_THE_ENDS || closest >= step * (1.0 - 1e-9) {
+        return None;
+    }
+    let rule = format!(
+        "its rows are as close as {closest:.3e} s, finer than the step of {step:e} s, with peaks between the ends of steps of up to \
+         {:.0} % of its largest value: {IN_THE_MEAN}",
+        100.0 * worst
+    );
+    let remedy = format!("take a shorter step: one of {closest:.1e} s shows every row");
+    Some(document.error(&format!("{path}.file"), rule, remedy).as_warning())
+}
+
+/// A table whose times have probably another unit.
+fn too_long(signal: &SignalScene, end: f64, document: &Document) -> Option<Diagnostic> {
+    let History::Table(table) = &signal.history else { return None };
+    let [_, (last, _)] = table.ends();
+    if last <= FAR_TOO_LONG * end {
+        return None;
+    }
+    let rule = format!("the table goes on to {last} s, {:.1e} times the run of {end} s", last / end);
+    let remedy = "check the unit of its times: s, or what a heading says, such as t [ms]";
+    Some(document.error(&format!("signal.{}.file", signal.name), rule, remedy).as_note())
+}
+
+/// Blocks, and ground, that turn far in a step.
+fn turns(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
+    let step = scene.time.step;
+    let far = |path: String, rate: f64| {
+        let turn = rate.abs() * step;
+        (turn >= FAR_TURN).then(|| {
+            let rule = format!(
+                "it turns by {turn:.2} rad in a step of {step:e} s, and is no longer followed from {FAR_TURN} on"
+            );
+            let remedy = format!("take a step of at most {:.1e} s", FAR_TURN / rate.abs());
+            document.error(&path, rule, remedy).as_warning()
+        })
+    };
+    let spins = scene.blocks.iter().map(|block| far(format!("block.{}.spin", block.name), block.spin));
+    let driven = |owner: String, motion: &MotionScene| {
+        let axis = motion.0[2].as_ref()?;
+        let most = match &axis.history {
+            History::Formula(_) => 1.0,
+            History::Table(table) => table.rows().map(|(_, y)| y.abs()).fold(0.0, f64::max),
+        };
+        let (key, rate) = match (axis.given, &axis.history) {
+            (Given::Velocity, _) => ("angular_velocity", most),
+            (Given::Displacement, History::Formula(formula)) => {
+                ("angle", formula.swings().map_or(0.0, |(period, _)| std::f64::consts::TAU / period))
+            }
+            _ => return None,
+        };
+        far(format!("{owner}.motion.{key}"), axis.amplitude * rate)
+    };
+    let blocks = scene.blocks.iter().map(|block| driven(format!("block.{}", block.name), &block.motion));
+    let ground = scene.ground.iter().map(|ground| driven("ground".to_owned(), &ground.motion));
+    spins.chain(blocks).chain(ground).flatten().take(LISTED).collect()
+}
