@@ -57,7 +57,7 @@ pub trait Signal: std::fmt::Debug + Send + Sync {
     /// The means of the signal times P₀ … P₃ over the time from `from` to `to` (s), which is later: Legendre's polynomials of a variable
     /// that goes from −1 to 1. A load that moves along a beam has its mean from them.
     ///
-    /// The default takes the first from [`Signal::mean`], the others by four Gauss points; a signal with kinks, or one that is
+    /// The default takes the first from [`Signal::mean`], the others by eight Gauss points; a signal with kinks, or one that is
     /// fast beside what it is asked for, does better.
     fn moments(&self, from: f64, to: f64) -> [f64; 4] {
         let mut moments = window::by_points(from, to, |t| self.value(t));

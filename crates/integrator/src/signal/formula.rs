@@ -137,7 +137,7 @@ impl Formula {
             Shape::Ricker { rate } => {
                 // Beyond it is 0 to rounding; within, short pieces for the points, and the mean in closed form.
                 let (from, to) = (a.max(-BELL / rate), b.min(BELL / rate));
-                let parts = (40.0 * rate * (to - from)).max(1.0).ceil();
+                let parts = (4.0 * rate * (to - from)).max(1.0).ceil();
                 for k in 0..parts as u32 {
                     let at = |k: u32| from + (to - from) * (f64::from(k) / parts);
                     piece(at(k), at(k + 1), &|from, to| {
