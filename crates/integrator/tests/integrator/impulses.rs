@@ -171,12 +171,8 @@ fn a_block_gets_the_impulse_of_any_signal_whatever_the_step() {
             let end = steps * h;
             let impulse = end * quadrature(|t| signal.value(t), 0.0, end, &kinks, fine);
             let (mass, blocks) = block();
-            let model = alone(Box::new(blocks.with_load(BlockLoad {
-                block: 0,
-                force: Vector2::new(2.0, -1.0),
-                couple: 0.3,
-                signal: Arc::clone(&signal),
-            })));
+            let load = BlockLoad { block: 0, force: Vector2::new(2.0, -1.0), couple: 0.3, signal: Arc::clone(&signal) };
+            let model = alone(Box::new(blocks.with_load(load).unwrap()));
             for mut scheme in schemes() {
                 let state = state_after(&model, scheme.as_mut(), h, steps as u64);
                 for (k, part) in [2.0, -1.0, 0.3].into_iter().enumerate() {
@@ -204,7 +200,8 @@ fn pulses_and_rows_within_a_step_move_what_they_act_on() {
     {
         let (mass, blocks) = block();
         let force = Vector2::new(force, 0.0);
-        let model = alone(Box::new(blocks.with_load(BlockLoad { block: 0, force, couple: 0.0, signal })));
+        let load = BlockLoad { block: 0, force, couple: 0.0, signal };
+        let model = alone(Box::new(blocks.with_load(load).unwrap()));
         for mut scheme in schemes() {
             let state = state_after(&model, scheme.as_mut(), h, (0.5 / h).round() as u64);
             assert!((state.v[0] * mass.diagonal()[0] / impulse - 1.0).abs() < 1e-13, "{}", state.v[0]);
