@@ -310,7 +310,9 @@ fn drives_lead_where_their_signals_do() {
         let drift = 50.0 / omega * 0.5;
         let before = state.v[0];
         let plan = Plan { steps: 500, require_convergence: true };
-        run(&ground, scheme.as_mut(), &mut state, &mut crate::scenes::workspace(&ground), &plan, &mut []).unwrap();
+        let mut work = crate::scenes::workspace(&ground);
+        let ended = run(&ground, scheme.as_mut(), &mut state, &mut work, &plan, &mut []).unwrap();
+        assert_eq!(ended, Ended::Complete);
         assert!((state.q[0] / drift - 1.0).abs() < 2e-3, "{}: {} not {drift}", scheme.name(), state.q[0]);
         assert!((state.v[0] - before).abs() < 1e-12, "no ringing");
         assert_eq!(state.v[1..], zero[1..]);
