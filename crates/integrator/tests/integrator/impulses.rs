@@ -63,7 +63,7 @@ fn points(from: f64, to: f64, kinks: &[f64], fine: f64) -> Vec<(f64, f64)> {
     let (wp, wq, w0) = (0.236_926_885_056_189_08, 0.478_628_670_499_366_47, 0.568_888_888_888_888_9);
     let mut points = Vec::new();
     for piece in ends.windows(2) {
-        let parts = ((piece[1] - piece[0]) / fine).ceil().clamp(1.0, 40_000.0);
+        let parts = ((piece[1] - piece[0]) / fine).ceil().clamp(4.0, 40_000.0);
         let half = 0.5 * (piece[1] - piece[0]) / parts;
         for k in 0..parts as u32 {
             let middle = piece[0] + f64::from(2 * k + 1) * half;
