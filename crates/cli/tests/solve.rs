@@ -226,6 +226,16 @@ fn a_solver_that_fails_is_a_row_and_no_failure_of_the_program() {
     let rows = rows(&output);
     // Enumeration takes up to five contacts.
     assert_eq!((&rows[0]["outcome"], &rows[1]["outcome"]), (&"breakdown".into(), &"converged".into()));
+    let said = text(&output.stderr);
+    assert!(said.contains("it takes up to 5 contacts, and the problem has 6"), "{said}");
+    // Among all of them it is left out, with a note instead of a row.
+    let arguments = ["solve", "six.hdf5", "--json", "--time-limit", "200 ms", "--solver", "all"];
+    let output = teeter(&folder, &arguments);
+    let said = text(&output.stderr);
+    assert!(said.contains("`enumeration` is left out: it takes up to 5 contacts"), "{said}");
+    let all = self::rows(&output);
+    assert!(all.iter().all(|row| row["solver"] != "enumeration" && row["outcome"] != "breakdown"), "{all:?}");
+    assert!(all.iter().any(|row| row["solver"] == "lemke"));
     // A tolerance that no double reaches: stalled, out of time, but never converged.
     let output = teeter(
         &folder,
