@@ -232,6 +232,10 @@ impl Compliance<2> for BlockCompliance {
         Ok(())
     }
 
+    fn is_diagonal(&self) -> bool {
+        true
+    }
+
     fn solve(&mut self, f: &mut [f64]) {
         for (f, inverse) in f.iter_mut().zip(&self.inverse) {
             *f *= inverse;

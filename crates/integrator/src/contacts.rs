@@ -384,6 +384,16 @@ impl<const D: usize> ContactSet<D> {
         Ok(())
     }
 
+    /// The model's velocities that contact `i` pushes.
+    pub(crate) fn pushed(&self, i: usize) -> impl Iterator<Item = usize> {
+        self.entries(i).map(|(column, _)| column)
+    }
+
+    /// What a problem holds of contact `i` beside H, and where its rows lie.
+    pub(crate) fn posed(&self, i: usize) -> ([Span; 2], Vector<D>, f64, Vector<D>) {
+        (self.spans[i], self.q[i], self.mu[i], self.p[i])
+    }
+
     /// Gives contact `i` another shift.
     pub(crate) fn reshift(&mut self, i: usize, shift: Vector<D>) {
         self.shift[i] = shift;

@@ -46,6 +46,7 @@
 //! # Ok::<(), Box<dyn std::error::Error + Send + Sync>>(())
 //! ```
 
+mod apart;
 mod beam;
 mod blocks;
 mod clock;

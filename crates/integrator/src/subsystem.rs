@@ -281,6 +281,12 @@ pub trait Compliance<const D: usize>: Send {
         Ok(())
     }
 
+    /// Whether W is diagonal, and [`Compliance::respond`] needs no [`Compliance::couple`] of the same rows before it: contacts that share no velocity then
+    /// don't feel each other, and are coupled island by island where they are many. `false`, the default, is always right.
+    fn is_diagonal(&self) -> bool {
+        false
+    }
+
     /// `f ← W f`; zero for [driven](Subsystem::driven) and [held](Subsystem::held) velocities, whose rows and columns of W are
     /// zero.
     fn solve(&mut self, f: &mut [f64]);

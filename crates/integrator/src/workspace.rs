@@ -1,5 +1,6 @@
 //! The memory and the contact solver of one worker.
 
+use crate::apart::{Apart, MANY};
 use crate::contacts::{ContactError, ContactSet, Rule};
 use crate::laws::Laws;
 use crate::mismatch::{Identity, length};
@@ -104,6 +105,7 @@ pub struct Workspace<const D: usize> {
     /// The work of all steps so far.
     pub counts: WorkCounts,
     pub(crate) laws: Laws<D>,
+    apart: Apart<D>,
     /// The model that it was made for.
     model: Identity,
 }
@@ -135,6 +137,7 @@ impl<const D: usize> Workspace<D> {
             scratch: vec![0.0; model.size().v],
             counts: WorkCounts::default(),
             laws,
+            apart: Apart::default(),
             model: model.identity(),
         }
     }
@@ -248,9 +251,32 @@ impl<const D: usize> Workspace<D> {
     pub fn solve_contacts(&mut self, model: &Model<D>, theta: f64, v: &mut [f64]) -> Result<Outcome, ContactError> {
         self.check(model)?;
         length("the velocities", v, model.size().v)?;
-        self.assemble_contacts(model)?;
-        let outcome = self.solve_assembled(theta)?;
+        let outcome = match self.solve_apart(model)? {
+            Some(outcome) => outcome,
+            None => {
+                self.assemble_contacts(model)?;
+                self.solve_assembled(theta)?
+            }
+        };
         self.apply_impulses(model, v)?;
+        Ok(outcome)
+    }
+
+    /// Solves the problem of `contacts` by islands, if they are many that stand apart.
+    fn solve_apart(&mut self, model: &Model<D>) -> Result<Option<Outcome>, ContactError> {
+        let contacts = self.contacts.contacts().len();
+        if contacts < MANY {
+            return Ok(None);
+        }
+        self.contacts.check_laws()?;
+        length("the factors", &self.factors, model.parts().len())?;
+        let SolverSettings { tolerance, max_iterations } = self.settings;
+        let stop = Stop { tolerance, max_iterations, cancel: None };
+        let Self { apart, solver, factors, scratch, contacts: set, .. } = self;
+        let outcome = apart.solve(set, model, factors, scratch, |problem, p| solver.solve(problem, &stop, p))?;
+        if let Some(outcome) = &outcome {
+            self.counts.solved(contacts, outcome);
+        }
         Ok(outcome)
     }
 

@@ -1,6 +1,10 @@
 //! Scenes of many blocks: what they are told to cost, and when they are too many.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, Stop, Vector};
 use teeter_scenario::load;
+use teeter_scenario::simulation::Simulation;
 use teeter_scenario::volume::{MOST_OPERATOR_BYTES, accuracy_of_seconds, expected_seconds, operator_bytes};
 
 /// So many blocks of 1 cm beside each other, on the ground or on a beam.
@@ -30,8 +34,11 @@ fn many_contacts_are_told_to_cost_more_than_their_number() {
     };
     let cubes = told(20, "b", 400);
     assert!(cubes > 0.04 && cubes < 0.4, "{cubes}");
+    // On the ground each is an island of its own.
     let (few, many) = (told(30, "ground", 0), told(300, "ground", 0));
-    assert!(many > 30.0 * few, "{few} {many}");
+    assert!(many > 9.0 * few && many < 11.0 * few, "{few} {many}");
+    let (few, many) = (told(30, "b", 400), told(300, "b", 400));
+    assert!(many > 12.0 * few, "{few} {many}");
     let one = load(row_of_blocks(1, "b").as_bytes(), "f", "f", &[]).unwrap().scene;
     assert!(accuracy_of_seconds(&one).contains("three") && expected_seconds(&one, 400) < 0.01);
 }
@@ -45,4 +52,50 @@ fn more_contacts_than_memory_holds_are_refused_before_anything_is_made() {
         refused.contains("6000 contacts") && refused.contains("4.6 GB") && refused.contains("limit of 4.0 GB"),
         "{refused}"
     );
+}
+
+/// Notes the most contacts that it is given at once.
+struct Largest(Box<dyn ContactSolver<2>>, Arc<AtomicUsize>);
+
+impl ContactSolver<2> for Largest {
+    fn name(&self) -> &'static str {
+        self.0.name()
+    }
+    fn law(&self) -> Law {
+        self.0.law()
+    }
+    fn reserve(&mut self, contacts: usize, blocks: usize) {
+        self.0.reserve(contacts, blocks);
+    }
+    fn solve(&mut self, problem: &ContactProblem<'_, 2>, stop: &Stop<'_>, p: &mut [Vector<2>]) -> Outcome {
+        self.1.fetch_max(p.len(), Ordering::Relaxed);
+        self.0.solve(problem, stop, p)
+    }
+    fn fork(&self) -> Box<dyn ContactSolver<2>> {
+        Box::new(Self(self.0.fork(), Arc::clone(&self.1)))
+    }
+}
+
+/// The state at the end, and the most contacts of a problem.
+fn ran(blocks: usize) -> (Simulation, usize) {
+    let text = row_of_blocks(blocks, "ground").replace("friction = 0.3", "friction = 0.3\nrestitution = 0.0");
+    let sets = [("ground.incline".to_owned(), "10 deg".to_owned()), ("time.end".to_owned(), "5 ms".to_owned())];
+    let scene = load(text.as_bytes(), "f", "f", &sets).unwrap().scene;
+    let largest = Arc::new(AtomicUsize::new(0));
+    let mut simulation =
+        Simulation::with_solver(&scene, |solver| Box::new(Largest(solver, Arc::clone(&largest)))).unwrap();
+    assert_eq!(simulation.run(&mut []).unwrap(), teeter_integrator::Ended::Complete);
+    (simulation, largest.load(Ordering::Relaxed))
+}
+
+#[test]
+fn blocks_that_stand_apart_are_solved_one_by_one_to_the_same_bytes() {
+    let ((few, dense), (many, apart)) = (ran(20), ran(70));
+    // 40 contacts are one dense problem; of 140, each block's two are one.
+    assert_eq!((dense, apart), (40, 2));
+    assert_eq!(few.state.q[..60], many.state.q[..60]);
+    assert_eq!(few.state.v[..60], many.state.v[..60]);
+    assert_eq!((few.state.tally.max_contacts, many.state.tally.max_contacts), (40, 140));
+    assert_eq!(many.state.tally.unconverged_steps, 0);
+    assert!(many.state.tally.max_residual < 1e-14);
 }
