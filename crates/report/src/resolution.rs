@@ -65,11 +65,12 @@ impl Resolution {
     /// Takes a step in.
     pub(crate) fn observe(&mut self, bodies: &Bodies, layout: &Layout, step: &StepReport<'_, 2>, state: &State) {
         let h = step.t_end - step.t_start;
-        for contact in step.contacts.iter().filter(|contact| contact.p[0] > 0.0) {
+        for contact in step.contacts {
             let owner = bodies.owners.get(contact.id.pair() as usize);
             let Some(seen) = owner.and_then(|block| self.blocks.get_mut(*block)) else { continue };
-            seen.pressed = true;
-            // A contact with duration takes its time, and its force begins at nothing.
+            seen.pressed |= contact.p[0] > 0.0;
+            // One that closes fast and gets no impulse, as the surface is gone again by the end of the step, is as late. A contact with duration takes
+            // its time, and its force begins at nothing.
             if !contact.persisting && contact.gap_after.is_none() {
                 seen.late += h * (-contact.u_before[0]).max(0.0);
             }
