@@ -4,7 +4,7 @@
 //!     cargo bench -p teeter-benches --bench grid -- FOLDER [SCENARIO ...]
 //!
 //! writes `FOLDER/NAME.csv`, every setting with its error and cost, and `FOLDER/summary.md`, advised against cheapest. Of a combination the steps finer than the
-//! first two that are within 0.1 % in a row are left out: they cost more and no accuracy that is asked for needs them.
+//! first two that are within 0.1 % in a row, and not warned of, are left out: they cost more and no accuracy that is asked for needs them.
 
 use cpu_time::ThreadTime;
 use std::error::Error;
@@ -64,10 +64,8 @@ fn scenario(path: &Path, stem: &str, folder: &Path) -> Result<String> {
         if study.bar() >= *target || *target < FINEST {
             continue;
         }
-        let scene: Vec<&str> = study.reference.warned.iter().map(|warned| warned.kind.as_str()).collect();
-        let clean = |row: &Row| row.warned().iter().all(|warned| scene.contains(&warned.kind.as_str()));
         let cost = |row: &Row| row.modelled().unwrap_or(f64::INFINITY);
-        let meeting = held.meeting(*target, study.bar()).map(|row| &rows[row]).filter(|row| clean(row));
+        let meeting = held.meeting(*target, study.bar()).map(|row| &rows[row]).filter(|row| is_clean(row, &study));
         let cheapest = meeting.min_by(|a, b| cost(a).total_cmp(&cost(b)));
         let advised = match advice {
             Advice::Take { row, .. } => Some(&study.rows[*row]),
@@ -118,12 +116,18 @@ fn full_grid(source: &Source, resolved: &Resolved, study: &Tradeoff) -> Result<V
         let ran = study.beside(settings, source, runner::cores(), &cancel)?;
         for ((number, _), row) in jobs.iter().zip(&ran) {
             let meets = row.accuracy().is_some_and(|accuracy| accuracy + study.bar() <= FINEST);
-            within[*number] = if meets { within[*number] + 1 } else { 0 };
+            within[*number] = if meets && is_clean(row, study) { within[*number] + 1 } else { 0 };
         }
         rows.extend(ran);
     }
     open.clear();
     Ok(rows)
+}
+
+/// Whether nothing warns of a row that the reference isn't warned of too.
+fn is_clean(row: &Row, study: &Tradeoff) -> bool {
+    let of_scene = |kind: &str| study.reference.warned.iter().any(|warned| warned.kind == kind);
+    row.warned().iter().all(|warned| of_scene(&warned.kind))
 }
 
 fn combinations(axes: &Axes, all: bool) -> Vec<Setting> {
