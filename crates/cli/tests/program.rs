@@ -318,3 +318,34 @@ fn the_full_model_writes_the_same_bytes_and_the_summary_tells_what_the_other_doe
     }
     assert!(table(&folder.join("out/trajectory.csv")).0.iter().any(|column| column == "shelf.w_mid"));
 }
+
+/// What no check of the scene can see: a drive that winds a block up, and places so far off that the
+/// energy of weight has no digits left.
+#[test]
+fn a_run_warns_of_far_turns_and_of_an_account_that_does_not_hold() {
+    let scene = |block: &str| {
+        format!(
+            "[time]\nend = \"0.5 s\"\nstep = \"1 ms\"\n[material.m]\ndensity = \"1000 kg/m^3\"\n[block.b]\nmaterial = \"m\"\n\
+             width = \"10 cm\"\nheight = \"10 cm\"\ndepth = \"10 cm\"\n{block}\n"
+        )
+    };
+    for (what, block, code, says) in [
+        (
+            "wound-up",
+            "position = [\"0 m\", \"1 m\"]\nmotion = { angular_acceleration = \"1000 rad/s^2\" }",
+            "far-turn",
+            "`b` turns by 0.10 rad in the step to t = 0.1",
+        ),
+        ("far-off", "position = [\"0 m\", \"1e9 m\"]", "energy-account", "far more than rounding"),
+    ] {
+        let folder = folder(what);
+        std::fs::write(folder.join("scene.toml"), scene(block)).unwrap();
+        let output = teeter(&folder, &["run", "scene.toml", "--out", "out", "--quiet"]);
+        assert!(output.status.success(), "{what}: {}", stderr(&output));
+        let said = stderr(&output);
+        assert_eq!(said.matches(says).count(), 1, "{what}, told once: {said}");
+        let warnings = summary(&folder)["warnings"].clone();
+        assert_eq!(warnings.as_array().unwrap().len(), 1, "{what}: {warnings}");
+        assert_eq!(warnings[0]["code"], code, "{what}");
+    }
+}
