@@ -52,7 +52,7 @@ impl Observer<2> for Watcher {
     }
 }
 
-/// A cube that rests on the ground and one that bounces on it without end (over 1000 impacts, so that their list is full), its contact problems watched, a row a
+/// A cube that rests on the ground and one that bounces on it without end (over 1000 impacts a second, so that their list is full), its contact problems watched, a row a
 /// thousand steps, a checkpoint every ten thousand.
 const SCENE: &str = r#"
 time = { end = "10 s", step = "10 us" }
@@ -60,7 +60,7 @@ ground = {}
 output.every = "10 ms"
 material.wood.density = "600 kg/m^3"
 block.cube = { material = "wood", width = "10 cm", height = "10 cm", depth = "10 cm", on = "ground", at = "0 m" }
-block.ball = { material = "wood", width = "10 cm", height = "10 cm", depth = "10 cm", position = ["1 m", "5.002 cm"] }
+block.ball = { material = "wood", width = "1 cm", height = "1 cm", depth = "1 cm", position = ["1 m", "5.002 mm"] }
 contact.floor = { between = ["cube", "ground"], friction = 0.4 }
 contact.wall = { between = ["ball", "ground"], friction = 0.4, restitution = 1.0 }
 "#;
