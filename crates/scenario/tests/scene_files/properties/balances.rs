@@ -136,8 +136,7 @@ impl Drawn {
 
     /// The signal's mean over a step.
     fn mean_signal(&self, step: &StepReport<'_, 2>) -> f64 {
-        let theta = self.theta();
-        theta * self.signal.value(step.t_end) + (1.0 - theta) * self.signal.value(step.t_start)
+        self.signal.mean(step.t_start, step.t_end)
     }
 
     /// A speed that no contact point of the block exceeds, m/s.

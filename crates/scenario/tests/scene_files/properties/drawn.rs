@@ -144,8 +144,12 @@ pub(crate) struct Signal {
 }
 
 impl Signal {
-    pub(crate) fn value(&self, t: f64) -> f64 {
-        if t > self.start { (2.0 * PI * self.frequency * (t - self.start)).sin() } else { 0.0 }
+    /// Its mean from one time to another: of a sine that is 0 before its start.
+    pub(crate) fn mean(&self, from: f64, to: f64) -> f64 {
+        let [a, b] = [from, to].map(|t| (t - self.start).max(0.0));
+        let omega = 2.0 * PI * self.frequency;
+        // cos ωa − cos ωb, without the loss of digits of a difference.
+        2.0 * (0.5 * omega * (a + b)).sin() * (0.5 * omega * (b - a)).sin() / (omega * (to - from))
     }
 }
 
