@@ -340,7 +340,7 @@ fn a_run_warns_of_far_turns_and_of_an_account_that_does_not_hold() {
     ] {
         let folder = folder(what);
         std::fs::write(folder.join("scene.toml"), scene(block)).unwrap();
-        let output = teeter(&folder, &["run", "scene.toml", "--out", "out", "--quiet"]);
+        let output = teeter(&folder, &["run", "scene.toml", "--out", "out"]);
         assert!(output.status.success(), "{what}: {}", stderr(&output));
         let said = stderr(&output);
         assert_eq!(said.matches(says).count(), 1, "{what}, told once: {said}");

@@ -456,7 +456,9 @@ fn a_run_from_a_checkpoint_moves_as_the_one_that_went_on() {
     let message = place.refused(2, &with("time.step=7.77 us"), &from);
     assert!(message.contains("no whole number of steps of 0.00000777 s"), "{message}");
     assert!(place.refused(2, &with("time.end=2 ms"), &from).contains("give a later end"));
-    assert!(place.refused(2, &LONG, &["--force", "--from", "out/energy.csv"]).contains("not a state or checkpoint"));
+    assert!(place.refused(2, &LONG, &["--force", "--from", "out/energy.csv"]).contains("is read by this command"));
+    std::fs::copy(place.out().join("energy.csv"), place.at.join("rows.csv")).unwrap();
+    assert!(place.refused(2, &LONG, &["--force", "--from", "rows.csv"]).contains("not a state or checkpoint"));
     assert!(place.refused(2, &LONG, &["--force", "--from", "nowhere.bin"]).contains("nowhere.bin"));
 }
 

@@ -114,7 +114,11 @@ pub(crate) fn columns(
             };
             let Some(value) = read else {
                 let text = printable(&String::from_utf8_lossy(cell));
-                return Err(format!("line {line}: `{text}` is no number"));
+                let other = match other_separator(&row) {
+                    Some(other) => format!("; these are separated by {other}"),
+                    None => String::new(),
+                };
+                return Err(format!("line {line}: `{text}` is no number{other}"));
             };
             // What is not finite has its own message, which says what it is.
             let (size, limits) = (value.abs(), Range::ANY);

@@ -67,9 +67,9 @@ fn a_shape_that_breaks_a_support_is_refused_by_node_and_component() {
     let beam = super::beam(2, [Support::Clamped, Support::Pinned]);
     let good = [[0.0, 0.0], [1e-3, 0.1], [0.0, -0.2]];
     let table = [
-        (0, 0, 1e-4, "nodal[0][0] = 0.0001: must be 0, the support there is Clamped"),
-        (0, 1, 0.1, "nodal[0][1] = 0.1: must be 0, the support there is Clamped"),
-        (2, 0, -1e-4, "nodal[2][0] = -0.0001: must be 0, the support there is Pinned"),
+        (0, 0, 1e-4, "nodal[0][0] = 0.0001: must be 0, the support there is clamped"),
+        (0, 1, 0.1, "nodal[0][1] = 0.1: must be 0, the support there is clamped"),
+        (2, 0, -1e-4, "nodal[2][0] = -0.0001: must be 0, the support there is pinned"),
         (1, 0, f64::NAN, "nodal = NaN: must be finite"),
     ];
     for (node, component, value, expected) in table {

@@ -189,7 +189,7 @@ fn what_looks_odd_but_is_right_is_accepted() {
         "contact.feet.friction=0",
         "contact.feet.restitution=0",
         "time.theta=1",
-        "beam.table.elements=1",
+        "beam.table.elements=40",
         "block.rocker.height=3 cm",
         "block.rocker.tilt=0 deg",
         "beam.table.damping_ratio.ratio=0",

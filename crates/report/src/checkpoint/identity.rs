@@ -77,8 +77,10 @@ pub fn program_hash() -> io::Result<[u8; 32]> {
 }
 
 /// The first line in which two scenes as run differ, with its table.
-pub(super) fn difference(then: &str, now: &str) -> String {
-    let (mut then, mut now) = (then.lines(), now.lines());
+pub(super) fn difference<'a>(then: &'a str, now: &'a str) -> String {
+    // A blank line says nothing; one stands before each table.
+    let written = |text: &'a str| text.lines().filter(|line| !line.is_empty());
+    let (mut then, mut now) = (written(then), written(now));
     let mut table = "";
     loop {
         let (old, new) = match (then.next(), now.next()) {
@@ -90,7 +92,7 @@ pub(super) fn difference(then: &str, now: &str) -> String {
             pair => pair,
         };
         let shown = |line: Option<&str>| match line {
-            None | Some("") => "nothing more".to_owned(),
+            None => "nothing more".to_owned(),
             Some(line) => format!("`{line}`"),
         };
         // A table that is there or here only, or has another name, is in none.

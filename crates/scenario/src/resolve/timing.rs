@@ -81,12 +81,13 @@ impl Resolver<'_, '_> {
         let Some(given) = self.doc.quantity("time.gap_tolerance") else { return gap_tolerance(blocks) };
         let shortest = blocks.iter().flatten().map(|block| block.width.min(block.height)).fold(f64::INFINITY, f64::min);
         let part = given / shortest;
-        if part > DOUBTFUL_GAP {
+        // As products: the default of a thin block is just that.
+        if given > DOUBTFUL_GAP * shortest {
             let rule = format!(
                 "{part:.1e} of the shortest side of a block, {shortest} m: blocks would hover that far above what carries them"
             );
             let most = |part: f64| format!("take at most {:.0e} m, or leave it out", part * shortest);
-            if part > MOST_GAP {
+            if given > MOST_GAP * shortest {
                 self.error("time.gap_tolerance", rule, most(MOST_GAP));
             } else {
                 self.warnings.push(self.doc.error("time.gap_tolerance", rule, most(DOUBTFUL_GAP)).as_warning());
@@ -134,8 +135,11 @@ impl Resolver<'_, '_> {
     }
 }
 
-/// The gap tolerance that a scene without one gets: 1e-12 m, scaled for blocks outside [0.01, 1] m.
+/// The gap tolerance that a scene without one gets: 1e-12 m, scaled for blocks outside [0.01, 1] m; less beside a block so thin that it would be
+/// doubtful.
 fn gap_tolerance(blocks: &[Option<BlockScene>]) -> f64 {
     let largest = blocks.iter().flatten().map(|block| block.width.max(block.height)).fold(0.0, f64::max);
-    if largest == 0.0 || (0.01..=1.0).contains(&largest) { 1e-12 } else { 1e-11 * largest }
+    let shortest = blocks.iter().flatten().map(|block| block.width.min(block.height)).fold(f64::INFINITY, f64::min);
+    let usual = if largest == 0.0 || (0.01..=1.0).contains(&largest) { 1e-12 } else { 1e-11 * largest };
+    usual.min(DOUBTFUL_GAP * shortest)
 }

@@ -15,7 +15,7 @@ fn the_scene_as_run_reads_back_to_the_same_values_and_bytes() {
             ("world.gravity", "['0.1 m/s^2', '-9.7 m/s^2']"),
             ("beam.table.probes", "['9 cm', '0.1 m']"),
             ("beam.table.rayleigh", "{ a0 = '0.3 1/s' }"),
-            ("title", "a \"quoted\"\ttitle \\ µ\u{7f}"),
+            ("title", "a \"quoted\" title \\ µ"),
             ("block.z.material", "m"),
             ("block.z.width", "1 mm"),
             ("block.z.height", "0.3 km"),
