@@ -380,6 +380,13 @@ impl<const D: usize> Model<D> {
         }
     }
 
+    /// The means of the prescribed velocities over the time from `times[0]` to `times[1]` (s), for what is known to fit.
+    pub(crate) fn drive_mean_at(&self, times: [f64; 2], v: &mut [f64]) {
+        for part in self.parts.iter().filter(|part| part.traits.driven) {
+            part.system.drive_mean(times, &mut v[part.v.clone()]);
+        }
+    }
+
     /// The energies at (q, v).
     ///
     /// # Errors

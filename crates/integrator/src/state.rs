@@ -231,7 +231,10 @@ impl State {
         }
         let mut v = v.to_vec();
         let t = Clock::new(dt).at(step);
-        model.drive_at(t, &mut v);
+        // Those of the first half step at the beginning: with them the place after each step of θ = ½ is the drive's own, without an
+        // offset (`docs/signals.md`).
+        let before = if step == 0 { t } else { t - 0.5 * dt };
+        model.drive_mean_at([before, t + 0.5 * dt], &mut v);
         Ok(Self {
             step,
             t,

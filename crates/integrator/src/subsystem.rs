@@ -143,7 +143,7 @@ pub trait Subsystem<const D: usize>: Send + Sync {
     }
 
     /// Writes the means of the prescribed velocities over the time from `times[0]` to `times[1]` (s), which is later, into their places in
-    /// `v`, and leaves the others alone: a step ends with those over the time from half a step before its end to half a step after it
+    /// `v`, and leaves the others alone: a θ step h ends with those over the time from θh before its end to (1 − θ)h after it
     /// (`docs/signals.md`). The default takes them at the middle.
     fn drive_mean(&self, times: [f64; 2], v: &mut [f64]) {
         self.drive(0.5 * (times[0] + times[1]), v);

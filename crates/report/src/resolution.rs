@@ -27,8 +27,11 @@ const STILL: f64 = 1e-3;
 struct Seen {
     /// Least and largest angle, rad.
     angles: [f64; 2],
-    /// The way of its mass centre while nothing touched it, m.
+    /// The way of its mass centre while nothing touched it, along `normal`, m: how fast it goes along a surface says nothing of how
+    /// finely its impacts are resolved.
     flown: f64,
+    /// Normal of its last contact; upwards before the first.
+    normal: [f64; 2],
     /// Σ h |u_n| of the contacts that closed, m.
     late: f64,
     /// Whether anything pressed on it in this step.
@@ -58,7 +61,7 @@ impl Resolution {
         self.blocks.clear();
         self.blocks.extend(layout.blocks.iter().map(|place| {
             let angle = state.q[place.range.start + 2];
-            Seen { angles: [angle, angle], ..Seen::default() }
+            Seen { angles: [angle, angle], normal: [0.0, 1.0], ..Seen::default() }
         }));
     }
 
@@ -69,6 +72,7 @@ impl Resolution {
             let owner = bodies.owners.get(contact.id.pair() as usize);
             let Some(seen) = owner.and_then(|block| self.blocks.get_mut(*block)) else { continue };
             seen.pressed |= contact.p[0] > 0.0;
+            seen.normal = [contact.frame[(0, 0)], contact.frame[(0, 1)]];
             // One that closes fast and gets no impulse, as the surface is gone again by the end of the step, is as late. A contact with duration takes
             // its time, and its force begins at nothing.
             if !contact.persisting && contact.gap_after.is_none() {
@@ -80,7 +84,7 @@ impl Resolution {
             let angle = state.q[at + 2];
             seen.angles = [seen.angles[0].min(angle), seen.angles[1].max(angle)];
             if !seen.pressed {
-                seen.flown += h * state.v[at].hypot(state.v[at + 1]);
+                seen.flown += h * (seen.normal[0] * state.v[at] + seen.normal[1] * state.v[at + 1]).abs();
             }
             seen.pressed = false;
         }

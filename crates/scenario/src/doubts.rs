@@ -349,7 +349,8 @@ mod tests {
             let text = SCENE
                 .replace("[ground]\n", &format!("[ground]\nincline = '{incline}'\n"))
                 .replace("on = 'b'", &format!("on = 'ground'\ntilt = '{tilt}'"))
-                .replace("['k', 'b']", "['k', 'ground']");
+                .replace("['k', 'b']", "['k', 'ground']")
+                .replace("step = '1 ms'", "step = '100 us'");
             let found = crate::load(text.as_bytes(), "f", "f", &[]).unwrap();
             (found.warnings.len(), found.notes.len())
         };

@@ -123,10 +123,7 @@ mod tests {
         assert_eq!(renamed, "`[block.a]` there, `[block.b]` here");
         let more = difference("[beam.table]\nspan = 1\n", &named("b"));
         assert_eq!(more, "nothing more there, `[block.b]` here");
-        assert!(
-            difference("[time]\n\n[world]\n", "[time]\nstep = 2\n")
-                .ends_with("nothing more there, `step = 2` here in [time]")
-        );
+        assert!(difference("[time]\n\n[world]\n", "[time]\nstep = 2\n").ends_with("`[world]` there, `step = 2` here"));
         let text = here.text.as_str();
         assert!(refused(&run(1, text, b"1,3", "x")).contains("a file that it refers to"));
         assert!(refused(&run(1, text, b"1,2", "")).contains("(none, now x)"));

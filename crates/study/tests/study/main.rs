@@ -121,7 +121,7 @@ const TWO_SPANS: &str = "[time]\nend = '60 ms'\nstep = '1 ms'\n[material.timber]
     [material.steel]\ndensity = '7850 kg/m^3'\n[beam.joist]\nmaterial = 'timber'\nspan = '4 m'\nwidth = '8 cm'\nthickness = '16 cm'\n\
     elements = 8\nsurface = 'top'\nsupports = ['pinned', 'pinned']\ndamping_ratio = { mode = 1, ratio = 0.02 }\nprobes = ['3 m']\n\
     [beam.joist.support.mid]\nat = '2 m'\nkind = 'pinned'\n[block.cube]\nmaterial = 'steel'\nwidth = '10 cm'\nheight = '10 cm'\ndepth = '10 cm'\n\
-    position = ['1 m', '13.2 cm']\n[contact.feet]\nbetween = ['cube', 'joist']\nfriction = 0.4\n";
+    position = ['1 m', '13.2 cm']\nangle = '2 deg'\n[contact.feet]\nbetween = ['cube', 'joist']\nfriction = 0.4\n";
 
 #[test]
 fn deflection_counts_where_there_is_a_block_too() {
