@@ -46,7 +46,7 @@ pub(crate) fn print(text: &str) -> Result<(), String> {
     }
 }
 
-/// As [`print`], for a command that does nothing else.
+/// As [`print()`], for a command that does nothing else.
 pub(crate) fn print_all(text: &str) -> Exit {
     match print(text) {
         Ok(()) => Exit::Done,

@@ -76,7 +76,7 @@ impl Solves {
     /// Writes to standard output.
     ///
     /// # Errors
-    /// As [`console::print`].
+    /// As [`console::print()`].
     pub(crate) fn print(&self, text: &str) -> Result<(), String> {
         self.bar.suspend(|| console::print(text)).map_err(|why| format!("error: {why}"))
     }
