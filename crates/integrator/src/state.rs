@@ -198,6 +198,10 @@ impl Tally {
     }
 }
 
+/// A prescribed velocity at the start counts as it is, unless it is this many times the mean over the first half step: a motion that the step
+/// can show doesn't change by as much in half of it.
+const OVERSHOOT: f64 = 1.25;
+
 impl State {
     /// The state at t = 0, with step size `dt` (s). Prescribed velocities are those of t = 0, whatever `v` says.
     ///
@@ -231,10 +235,15 @@ impl State {
         }
         let mut v = v.to_vec();
         let t = Clock::new(dt).at(step);
-        // Those of the first half step at the beginning: with them the place after each step of θ = ½ is the drive's own, without an
-        // offset (`docs/signals.md`).
-        let before = if step == 0 { t } else { t - 0.5 * dt };
-        model.drive_mean_at([before, t + 0.5 * dt], &mut v);
+        let mut means = v.clone();
+        model.drive_at(t, &mut v);
+        // A velocity that lasts for less than the first half step would lead the first step past where the drive goes (`docs/signals.md`).
+        model.drive_mean_at([t, t + 0.5 * dt], &mut means);
+        for (v, mean) in v.iter_mut().zip(means) {
+            if v.abs() > OVERSHOOT * mean.abs() {
+                *v = mean;
+            }
+        }
         Ok(Self {
             step,
             t,
