@@ -197,7 +197,7 @@ impl<const D: usize> ContactSet<D> {
     }
 
     /// Whether the contacts are of this model; those of an empty set are of any.
-    fn check(&self, model: &Model<D>) -> Result<(), Mismatch> {
+    pub(crate) fn check(&self, model: &Model<D>) -> Result<(), Mismatch> {
         match self.model {
             Some((identity, _)) if identity != model.identity() => {
                 let remedy = "clear the set before contacts of this one are activated";
@@ -228,6 +228,22 @@ impl<const D: usize> ContactSet<D> {
         self.check(model)?;
         length("the coordinates", q, model.size().q)?;
         let law = model.law(candidate.id.pair())?;
+        self.enter(model, q, candidate, warm, law.friction)?;
+        if let Some(unhandled) = self.unhandled.last_mut() {
+            *unhandled = beyond_standard(&law);
+        }
+        Ok(())
+    }
+
+    /// The same for a set, a pair and coordinates that are known to fit, and a scheme that handles every law.
+    pub(crate) fn enter(
+        &mut self,
+        model: &Model<D>,
+        q: &[f64],
+        candidate: &Candidate<D>,
+        warm: &WarmStart,
+        friction: f64,
+    ) -> Result<(), Mismatch> {
         let mut spans = [Span { part: 0, start: 0, len: 0 }; 2];
         let mut start = self.ends.last().copied().unwrap_or(0);
         for (side, anchor) in candidate.sides.iter().enumerate() {
@@ -248,11 +264,13 @@ impl<const D: usize> ContactSet<D> {
             let q = &q[part.q.clone()];
             let len = part.system.rows(body, q, &anchor.point, &candidate.frame, &mut rows).min(part.row);
             let taken = start..start + len;
+            let mut last = 0;
             for (global, &column) in self.global[taken.clone()].iter_mut().zip(&self.columns[taken.clone()]) {
-                if column >= part.v.len() {
-                    return Err(Mismatch::Column { body: anchor.body, column, velocities: part.v.len() });
-                }
+                last = last.max(column);
                 *global = part.v.start + column;
+            }
+            if last >= part.v.len() && len > 0 {
+                return Err(Mismatch::Column { body: anchor.body, column: last, velocities: part.v.len() });
             }
             if side == 1 {
                 self.values[taken].iter_mut().for_each(|value| *value = -*value);
@@ -268,8 +286,8 @@ impl<const D: usize> ContactSet<D> {
         self.shift.push(Vector::zeros());
         self.rules.push(Rule::Shifted);
         self.q.push(Vector::zeros());
-        self.mu.push(law.friction);
-        self.unhandled.push(beyond_standard(&law));
+        self.mu.push(friction);
+        self.unhandled.push(None);
         self.model = Some((model.identity(), model.size().v));
         self.contacts.push(Contact {
             id: candidate.id,
@@ -312,7 +330,18 @@ impl<const D: usize> ContactSet<D> {
     /// If the contacts are of another model.
     pub fn withdraw_if_prescribed(&mut self, model: &Model<D>) -> Result<bool, Mismatch> {
         self.check(model)?;
-        let Some(sides) = self.spans.last() else { return Ok(false) };
+        Ok(self.leave_if_prescribed(model))
+    }
+
+    /// The same for a set that is known to fit.
+    #[inline]
+    pub(crate) fn leave_if_prescribed(&mut self, model: &Model<D>) -> bool {
+        let fixed = self.spans.last().is_some_and(|sides| sides.iter().all(|side| side.len == 0));
+        (fixed || model.is_driven()) && self.leave_if_its_sides_are(model)
+    }
+
+    fn leave_if_its_sides_are(&mut self, model: &Model<D>) -> bool {
+        let Some(sides) = self.spans.last() else { return false };
         let prescribed = sides.iter().filter(|side| side.len > 0).all(|side| {
             let part = &model.parts()[side.part];
             if !part.traits.driven {
@@ -337,7 +366,7 @@ impl<const D: usize> ContactSet<D> {
             self.unhandled.pop();
             self.contacts.pop();
         }
-        Ok(prescribed)
+        prescribed
     }
 
     /// The entries of contact `i`, with their columns among the model's velocities.
@@ -378,10 +407,15 @@ impl<const D: usize> ContactSet<D> {
     /// For a contact that isn't there.
     pub fn pose(&mut self, i: usize, u_before: Vector<D>, u_free: Vector<D>, shift: Vector<D>) -> Result<(), Mismatch> {
         self.check_index(i)?;
+        self.set(i, u_before, u_free, shift);
+        Ok(())
+    }
+
+    /// The same for a contact that is known to be there.
+    pub(crate) fn set(&mut self, i: usize, u_before: Vector<D>, u_free: Vector<D>, shift: Vector<D>) {
         self.contacts[i].u_before = u_before;
         self.u_free[i] = u_free;
         self.reshift(i, shift);
-        Ok(())
     }
 
     /// The model's velocities that contact `i` pushes.
@@ -454,6 +488,12 @@ impl<const D: usize> ContactSet<D> {
         self.check(model)?;
         length("the factors", factors, model.parts().len())?;
         length("the scratch", scratch, model.size().v)?;
+        self.couple(model, factors, scratch);
+        Ok(())
+    }
+
+    /// The same for what is known to fit.
+    pub(crate) fn couple(&mut self, model: &Model<D>, factors: &mut [Box<dyn Compliance<D>>], scratch: &mut [f64]) {
         let n = self.contacts.len();
         self.blocks.clear();
         self.blocks.resize(n * n, Block::zeros());
@@ -465,7 +505,6 @@ impl<const D: usize> ContactSet<D> {
             let rows = PartRows { part: index, spans: &self.spans, columns: &self.columns, values: &self.values };
             factor.couple(&rows, &mut scratch[..part.v.len()], &mut coupling);
         }
-        Ok(())
     }
 
     /// The problem, and the impulses to start from and to leave the solution in.
@@ -474,6 +513,11 @@ impl<const D: usize> ContactSet<D> {
     /// As [`ContactProblem::new`], which tells of a set that isn't [assembled](Self::assemble), too; and for a law that nobody handles.
     pub fn problem(&mut self) -> Result<(ContactProblem<'_, D>, &mut [Vector<D>]), ContactError> {
         self.check_laws()?;
+        Ok(self.posed_problem()?)
+    }
+
+    /// The same where the scheme handles every law.
+    pub(crate) fn posed_problem(&mut self) -> Result<(ContactProblem<'_, D>, &mut [Vector<D>]), ProblemError> {
         let problem = ContactProblem::new(Delassus::Dense(&self.blocks), &self.q, &self.mu)?;
         Ok((problem, &mut self.p))
     }
@@ -503,6 +547,18 @@ impl<const D: usize> ContactSet<D> {
         length("the factors", factors, model.parts().len())?;
         length("the scratch", scratch, model.size().v)?;
         length("the velocities", v, model.size().v)?;
+        self.respond(model, factors, scratch, v);
+        Ok(())
+    }
+
+    /// The same for what is known to fit.
+    pub(crate) fn respond(
+        &self,
+        model: &Model<D>,
+        factors: &mut [Box<dyn Compliance<D>>],
+        scratch: &mut [f64],
+        v: &mut [f64],
+    ) {
         for (index, (part, factor)) in model.parts().iter().zip(factors).enumerate() {
             if part.v.is_empty() {
                 continue;
@@ -512,7 +568,6 @@ impl<const D: usize> ContactSet<D> {
                 factor.respond(&rows, &self.p, &mut scratch[part.v.clone()], &mut v[part.v.clone()]);
             }
         }
-        Ok(())
     }
 
     /// Completes the contacts after a solve, with velocities after the step.
@@ -521,6 +576,12 @@ impl<const D: usize> ContactSet<D> {
     /// For too few or too many velocities.
     pub fn complete(&mut self, v: &[f64]) -> Result<(), Mismatch> {
         self.check_velocities(v)?;
+        self.settle(v);
+        Ok(())
+    }
+
+    /// The same for what is known to fit.
+    pub(crate) fn settle(&mut self, v: &[f64]) {
         let fastest = self.q.iter().map(Vector::norm_squared).fold(0.0, f64::max).sqrt();
         for i in 0..self.contacts.len() {
             let u_after = self.velocity_of(i, v);
@@ -533,7 +594,6 @@ impl<const D: usize> ContactSet<D> {
                 Rule::Shifted | Rule::Energetic => {}
             }
         }
-        Ok(())
     }
 }
 

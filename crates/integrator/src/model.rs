@@ -146,6 +146,7 @@ pub struct Model<const D: usize> {
     laws: Vec<PairLaw>,
     springs: bool,
     contacts: bool,
+    driven: bool,
     /// Whether the detector said whom it joins, so that its candidates needn't be looked at.
     wired: bool,
     detector: Box<dyn ContactDetector<D>>,
@@ -229,11 +230,13 @@ impl<const D: usize> ModelBuilder<D> {
         self.check_wiring(&wiring)?;
         let springs = self.laws.iter().any(|law| law.impact.spring().is_some());
         let contacts = detector.capacity() > 0;
+        let driven = self.parts.iter().any(|part| part.traits.driven);
         Ok(Model {
             parts: self.parts,
             bodies: self.bodies,
             laws: self.laws,
             springs,
+            driven,
             contacts,
             wired: !wiring.is_empty(),
             detector,
@@ -336,6 +339,11 @@ impl<const D: usize> Model<D> {
     /// Whether a pair has a law that can take more than one problem a step.
     pub(crate) fn has_laws(&self) -> bool {
         self.laws.iter().any(|law| law.impact != ImpactLaw::Newton || law.restitution > 0.0)
+    }
+
+    /// Whether any velocity is prescribed.
+    pub(crate) fn is_driven(&self) -> bool {
+        self.driven
     }
 
     /// Whether anything can ever touch: if not, a step need not look.

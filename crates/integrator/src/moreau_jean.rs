@@ -99,7 +99,7 @@ impl<const D: usize> Scheme<D> for MoreauJean {
         let h = state.dt;
         self.step.check(model, state, work)?;
         let t_end = state.end_of_step();
-        work.factorise(model, weights(h, theta), &state.q)?;
+        work.factorise_all(model, weights(h, theta), &state.q)?;
 
         self.step.free_velocity(model, state, work, theta, t_end);
         let margin = if model.has_springs() {
@@ -112,11 +112,11 @@ impl<const D: usize> Scheme<D> for MoreauJean {
         if model.has_contacts() {
             self.step.predict(model, &state.q, &state.v, activation_gamma * h);
         }
-        work.detect(model, &self.step.q_at, margin)?;
+        work.detect_at(model, &self.step.q_at, margin)?;
         let outcome = self.impact(model, state, work).map_err(|source| StepError::Problem { t: state.t, source })?;
         self.step.close(model, state, theta)?;
         let now = self.step.energy_at_end(model, state.t)?;
-        let penetration = work.penetration(model, &self.step.q_at)?;
+        let penetration = work.penetration_at(model, &self.step.q_at);
         let energy = self.step.work_of_forces(model, state, work, theta);
         state.warm.clear();
         for contact in work.contacts.contacts() {
@@ -145,15 +145,14 @@ impl MoreauJean {
                 continue;
             }
             let i = contacts.contacts().len();
-            contacts.activate(model, q_at, candidate, &state.warm)?;
-            if contacts.withdraw_if_prescribed(model)? {
+            contacts.enter(model, q_at, candidate, &state.warm, law.friction)?;
+            if contacts.leave_if_prescribed(model) {
                 continue;
             }
             let u_before = contacts.velocity_of(i, &state.v);
             let u_free = contacts.velocity_of(i, v_free);
             let shift = shift(contacts, i, &law, &u_before, &u_free);
-            contacts.handles_law(i)?;
-            contacts.pose(i, u_before, u_free, shift)?;
+            contacts.set(i, u_before, u_free, shift);
             if let Some(spring) = spring {
                 let gap = self.springs.gap(candidate.id, &state.warm);
                 // With θ < ½ the force at the end of the step would count for less than half, or nothing, of the work.
@@ -165,7 +164,7 @@ impl MoreauJean {
         if contacts.contacts().is_empty() {
             return Ok(None);
         }
-        work.solve_contacts(model, theta, v_free).map(Some)
+        work.solve_entered(model, theta, v_free).map(Some)
     }
 }
 

@@ -149,7 +149,7 @@ impl<const D: usize> Scheme<D> for MoreauJeanClosed<D> {
         self.step.check(model, state, work)?;
         self.resize(model);
         let t_end = state.end_of_step();
-        work.factorise(model, weights(h, THETA), &state.q)?;
+        work.factorise_all(model, weights(h, THETA), &state.q)?;
         self.step.free_velocity(model, state, work, THETA, t_end);
         self.v_free.clear();
         self.v_free.extend_from_slice(&self.step.v_end);
@@ -159,13 +159,13 @@ impl<const D: usize> Scheme<D> for MoreauJeanClosed<D> {
         let (outcome, penetration) = loop {
             // In flight there is nothing to look at.
             if looked_for < self.closed.len() {
-                self.look_ahead(model, state, work)?;
+                self.look_ahead(model, state, work);
                 looked_for = self.closed.len();
             }
             let outcome =
                 self.attempt(model, state, work).map_err(|source| StepError::Problem { t: state.t, source })?;
             self.step.close(model, state, THETA)?;
-            work.detect(model, &self.step.q_at, 0.0)?;
+            work.detect_at(model, &self.step.q_at, 0.0)?;
             let penetration = work.candidates.iter().map(|candidate| -candidate.gap).fold(0.0, f64::max);
             if !self.close_what_sinks(model, state, work)? {
                 break (outcome, penetration);
@@ -207,7 +207,7 @@ impl<const D: usize> MoreauJeanClosed<D> {
     }
 
     /// Finds frames and gaps of the closed contacts at q̃_m and q̃.
-    fn look_ahead(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>) -> Result<(), Mismatch> {
+    fn look_ahead(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>) {
         // ½(v⁰ + v_free), the mean velocity of the free motion.
         let mean = &mut self.step.v_end;
         mean.iter_mut().zip(&self.v_free).zip(&state.v).for_each(|((v, free), v0)| *v = 0.5 * (free + v0));
@@ -215,9 +215,8 @@ impl<const D: usize> MoreauJeanClosed<D> {
             [(0.5 * state.dt, &mut self.q_mid, &mut self.middle), (state.dt, &mut self.q_ahead, &mut self.ahead)];
         for (tau, q, candidates) in places {
             model.move_along(&state.q, mean, tau, q);
-            work.locate(model, q, &self.closed, candidates)?;
+            work.locate_at(model, q, &self.closed, candidates);
         }
-        Ok(())
     }
 
     /// Takes the step with the closed contacts: leaves v¹ in the step.
@@ -241,7 +240,7 @@ impl<const D: usize> MoreauJeanClosed<D> {
         if n == 0 {
             return Ok(None);
         }
-        work.assemble_contacts(model)?;
+        work.assemble_contacts(model);
         let mut outcome = work.solve_assembled(THETA)?;
         self.guarded.clear();
         self.guarded.resize(n, false);
@@ -249,7 +248,7 @@ impl<const D: usize> MoreauJeanClosed<D> {
         while self.guard(model, state, work)? {
             outcome = crate::laws::join(outcome, work.solve_assembled(THETA)?);
         }
-        work.apply_impulses(model, &mut self.step.v_end)?;
+        work.apply_impulses(model, &mut self.step.v_end);
         Ok(Some(outcome))
     }
 
@@ -263,18 +262,17 @@ impl<const D: usize> MoreauJeanClosed<D> {
         let law = model.law(candidate.id.pair())?;
         let contacts = &mut work.contacts;
         let i = contacts.contacts().len();
-        contacts.activate(model, &self.q_mid, candidate, &state.warm)?;
-        if contacts.withdraw_if_prescribed(model)? {
+        contacts.enter(model, &self.q_mid, candidate, &state.warm, law.friction)?;
+        if contacts.leave_if_prescribed(model) {
             return Ok(());
         }
-        contacts.handles_law(i)?;
         let u_before = contacts.velocity_of(i, &state.v);
         let u_free = contacts.velocity_of(i, &self.v_free);
         // Off the end of its surface by then, it has no frame there.
         let b = match find(&self.ahead, candidate.id) {
             Some(ahead) => {
                 self.rows_ahead.clear();
-                self.rows_ahead.activate(model, &self.q_ahead, ahead, &state.warm)?;
+                self.rows_ahead.enter(model, &self.q_ahead, ahead, &state.warm, law.friction)?;
                 self.rows_ahead.velocity_of(0, &state.v) - u_before
             }
             None => Vector::zeros(),
@@ -289,29 +287,23 @@ impl<const D: usize> MoreauJeanClosed<D> {
         if let Some(spring) = law.impact.spring() {
             let gap = match state.warm.gap(candidate.id) {
                 Some(gap) if gap < 0.0 => gap,
-                _ => self.gap_at_start(model, state, work, candidate.id)?.max(0.0),
+                _ => self.gap_at_start(model, state, work, candidate.id).max(0.0),
             };
             shift[0] = 0.0;
-            work.contacts.pose(i, u_before, u_free, shift)?;
+            work.contacts.set(i, u_before, u_free, shift);
             let step = SpringStep { spring, gap, u_before: u_before[0], h: state.dt, theta: THETA };
             work.contacts.follow(i, Rule::Spring(step));
         } else {
             restitute(contacts, i, &law, &u_before, &u_free, &mut shift);
-            contacts.pose(i, u_before, u_free, shift)?;
+            contacts.set(i, u_before, u_free, shift);
         }
         Ok(())
     }
 
     /// The gap of a contact at q⁰, m; 0 where it has none. Only a step with a new contact pays for looking there.
-    fn gap_at_start(
-        &mut self,
-        model: &Model<D>,
-        state: &State,
-        work: &mut Workspace<D>,
-        id: ContactId,
-    ) -> Result<f64, Mismatch> {
-        work.locate(model, &state.q, &[id], &mut self.start)?;
-        Ok(self.start.first().map_or(0.0, |candidate| candidate.gap))
+    fn gap_at_start(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>, id: ContactId) -> f64 {
+        work.locate_at(model, &state.q, &[id], &mut self.start);
+        self.start.first().map_or(0.0, |candidate| candidate.gap)
     }
 
     /// Changes what holds for contacts whose work is positive, so that it can't be; whether there are any.
@@ -397,7 +389,7 @@ impl<const D: usize> MoreauJeanClosed<D> {
             if gap >= -self.settings.gap_tolerance || self.closed[..before].binary_search(&id).is_ok() {
                 continue;
             }
-            let level = self.gap_at_start(model, state, work, id)?.min(0.0);
+            let level = self.gap_at_start(model, state, work, id).min(0.0);
             if gap < level - SINKING * self.settings.gap_tolerance {
                 self.closed.push(id);
             }

@@ -263,7 +263,20 @@ impl State {
     ///
     /// # Errors
     /// If not.
+    #[inline]
     pub fn check<const D: usize>(&self, model: &Model<D>) -> Result<(), StateError> {
+        let Self { step, t, dt, q, v, warm, .. } = self;
+        let (size, contacts) = (model.size(), warm.ids.len());
+        let lengths = q.len() == size.q && v.len() == size.v && warm.gaps.len() == contacts;
+        let time = *dt > 0.0 && *dt + t.abs() < f64::INFINITY && *step < u64::MAX;
+        if lengths && time && warm.impulses.len() == contacts * D && warm.ids.is_sorted_by(|a, b| a < b) {
+            return Ok(());
+        }
+        Err(self.what_is_wrong(model))
+    }
+
+    #[cold]
+    fn what_is_wrong<const D: usize>(&self, model: &Model<D>) -> StateError {
         let Self { step, t, dt, q, v, warm, .. } = self;
         for (what, found, expected) in [
             ("the coordinates", q.len(), model.size().q),
@@ -271,24 +284,21 @@ impl State {
             ("the spring gaps of its contacts", warm.gaps.len(), warm.ids.len()),
         ] {
             if found != expected {
-                return Err(StateError::Length { what, found, expected });
+                return StateError::Length { what, found, expected };
             }
         }
-        // Written so that NaN fails too.
+        // Written so that NaN is wrong too.
         if !(*dt > 0.0 && dt.is_finite()) {
-            return Err(StateError::StepSize(*dt));
+            return StateError::StepSize(*dt);
         }
-        if *step == u64::MAX || !t.is_finite() {
-            return Err(StateError::Time { step: *step, t: *t });
+        if *step == u64::MAX || !(*dt + t.abs() < f64::INFINITY) {
+            return StateError::Time { step: *step, t: *t };
         }
         let (contacts, impulses) = (warm.ids.len(), warm.impulses.len());
         if impulses != contacts * D {
-            return Err(StateError::Contacts { contacts, impulses, dimension: D });
+            return StateError::Contacts { contacts, impulses, dimension: D };
         }
-        if !warm.ids.is_sorted_by(|a, b| a < b) {
-            return Err(StateError::ContactOrder);
-        }
-        Ok(())
+        StateError::ContactOrder
     }
 
     /// The end of the step that begins now, s.

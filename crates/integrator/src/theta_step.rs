@@ -46,6 +46,7 @@ impl ThetaStep {
     }
 
     /// Refuses what belongs to another model than that which the scheme was started with; a scheme that never was starts with this one.
+    #[inline]
     pub(crate) fn check<const D: usize>(
         &mut self,
         model: &Model<D>,
@@ -58,15 +59,15 @@ impl ThetaStep {
         }
         state.check(model)?;
         work.check(model)?;
-        self.resize(model.size());
+        let size = model.size();
+        if (self.q_at.len(), self.v_end.len()) != (size.q, size.v) {
+            self.resize(size);
+        }
         Ok(())
     }
 
-    /// Takes the sizes of a model; allocates nothing where they are the same.
+    /// Takes the sizes of a model.
     fn resize(&mut self, size: Size) {
-        if (self.q_at.len(), self.v_end.len()) == (size.q, size.v) {
-            return;
-        }
         let Self { q_forces, q_at, v_end, v_mean, dv, load, product, impulse, .. } = self;
         for q in [q_forces, q_at] {
             q.resize(size.q, 0.0);
@@ -156,6 +157,7 @@ impl ThetaStep {
     }
 
     /// The energies at the end of the step; a step that ends without finite ones has diverged.
+    #[inline]
     pub(crate) fn energy_at_end<const D: usize>(&self, model: &Model<D>, t: f64) -> Result<Energy, StepError> {
         let energy = model.energy_at(&self.q_at, &self.v_end);
         if energy.total().is_finite() { Ok(energy) } else { Err(StepError::Diverged { t }) }
@@ -173,7 +175,7 @@ impl ThetaStep {
         let h = state.dt;
         let Self { q_forces, q_at, v_end, v_mean, dv, load, product, impulse, .. } = self;
         let mut energy = StepEnergy::default();
-        if theta != 0.5 || model.parts().iter().any(|part| part.traits.driven) {
+        if theta != 0.5 || model.is_driven() {
             for ((dv, v1), v0) in dv.iter_mut().zip(v_end.iter()).zip(&state.v) {
                 *dv = v1 - v0;
             }

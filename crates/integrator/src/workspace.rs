@@ -146,6 +146,7 @@ impl<const D: usize> Workspace<D> {
     ///
     /// # Errors
     /// If it wasn't, or doesn't.
+    #[inline]
     pub fn check(&self, model: &Model<D>) -> Result<(), Mismatch> {
         if self.model != model.identity() {
             let remedy = "make one for this model with Workspace::new";
@@ -171,6 +172,7 @@ impl<const D: usize> Workspace<D> {
     }
 
     /// The same for what is known to fit.
+    #[inline]
     pub(crate) fn factorise_all(&mut self, model: &Model<D>, w: Weights, q: &[f64]) -> Result<(), FactorError> {
         if self.factors.is_empty() {
             for part in model.parts() {
@@ -202,6 +204,12 @@ impl<const D: usize> Workspace<D> {
     /// doesn't have.
     pub fn detect(&mut self, model: &Model<D>, q: &[f64], margin: f64) -> Result<(), Mismatch> {
         self.check_at(model, q)?;
+        self.detect_at(model, q, margin)
+    }
+
+    /// The same for what is known to fit.
+    #[inline]
+    pub(crate) fn detect_at(&mut self, model: &Model<D>, q: &[f64], margin: f64) -> Result<(), Mismatch> {
         self.candidates.clear();
         if model.has_contacts() {
             self.counts.detections += 1;
@@ -224,9 +232,14 @@ impl<const D: usize> Workspace<D> {
         out: &mut Candidates<D>,
     ) -> Result<(), Mismatch> {
         self.check_at(model, q)?;
+        self.locate_at(model, q, ids, out);
+        Ok(())
+    }
+
+    /// The same for what is known to fit.
+    pub(crate) fn locate_at(&mut self, model: &Model<D>, q: &[f64], ids: &[ContactId], out: &mut Candidates<D>) {
         self.counts.detections += 1;
         model.detector().locate(&model.placed_at(q), ids, out);
-        Ok(())
     }
 
     /// Deepest penetration at coordinates `q`, m; 0 if there is none. May change `candidates`.
@@ -235,11 +248,17 @@ impl<const D: usize> Workspace<D> {
     /// As [`Workspace::detect`].
     pub fn penetration(&mut self, model: &Model<D>, q: &[f64]) -> Result<f64, Mismatch> {
         self.check_at(model, q)?;
+        Ok(self.penetration_at(model, q))
+    }
+
+    /// The same for what is known to fit.
+    #[inline]
+    pub(crate) fn penetration_at(&mut self, model: &Model<D>, q: &[f64]) -> f64 {
         if !model.has_contacts() {
-            return Ok(0.0);
+            return 0.0;
         }
         self.counts.detections += 1;
-        Ok(model.detector().deepest(&model.placed_at(q), &mut self.candidates))
+        model.detector().deepest(&model.placed_at(q), &mut self.candidates)
     }
 
     /// Assembles and solves the problem of `contacts`, and adds W Jᵀ p to `v`, which becomes the velocity after the step. θ is
@@ -251,25 +270,35 @@ impl<const D: usize> Workspace<D> {
     pub fn solve_contacts(&mut self, model: &Model<D>, theta: f64, v: &mut [f64]) -> Result<Outcome, ContactError> {
         self.check(model)?;
         length("the velocities", v, model.size().v)?;
-        let outcome = match self.solve_apart(model)? {
+        length("the factors", &self.factors, model.parts().len())?;
+        self.contacts.check(model)?;
+        self.contacts.check_laws()?;
+        self.solve_entered(model, theta, v)
+    }
+
+    /// The same for what is known to fit, by a scheme that handles every law.
+    #[inline]
+    pub(crate) fn solve_entered(
+        &mut self,
+        model: &Model<D>,
+        theta: f64,
+        v: &mut [f64],
+    ) -> Result<Outcome, ContactError> {
+        let apart = if self.contacts.contacts().len() < MANY { None } else { self.solve_apart(model)? };
+        let outcome = match apart {
             Some(outcome) => outcome,
             None => {
-                self.assemble_contacts(model)?;
+                self.assemble_contacts(model);
                 self.solve_assembled(theta)?
             }
         };
-        self.apply_impulses(model, v)?;
+        self.apply_impulses(model, v);
         Ok(outcome)
     }
 
-    /// Solves the problem of `contacts` by islands, if they are many that stand apart.
+    /// Solves the problem of `contacts`, which are many, by islands, if they stand apart.
     fn solve_apart(&mut self, model: &Model<D>) -> Result<Option<Outcome>, ContactError> {
         let contacts = self.contacts.contacts().len();
-        if contacts < MANY {
-            return Ok(None);
-        }
-        self.contacts.check_laws()?;
-        length("the factors", &self.factors, model.parts().len())?;
         let SolverSettings { tolerance, max_iterations } = self.settings;
         let stop = Stop { tolerance, max_iterations, cancel: None };
         let Self { apart, solver, factors, scratch, contacts: set, .. } = self;
@@ -281,28 +310,27 @@ impl<const D: usize> Workspace<D> {
     }
 
     /// H of `contacts`.
-    pub(crate) fn assemble_contacts(&mut self, model: &Model<D>) -> Result<(), Mismatch> {
-        self.contacts.assemble(model, &mut self.factors, &mut self.scratch)
+    pub(crate) fn assemble_contacts(&mut self, model: &Model<D>) {
+        self.contacts.couple(model, &mut self.factors, &mut self.scratch);
     }
 
     /// Solves the problem of `contacts`, whose H is there, by their rules.
     pub(crate) fn solve_assembled(&mut self, theta: f64) -> Result<Outcome, ContactError> {
-        self.contacts.check_laws()?;
         let SolverSettings { tolerance, max_iterations } = self.settings;
         let stop = Stop { tolerance, max_iterations, cancel: None };
         if self.contacts.rules.iter().any(|rule| *rule != Rule::Shifted) {
             let mut solver = Counted { solver: self.solver.as_mut(), counts: &mut self.counts };
             return Ok(self.laws.solve(&mut self.contacts, theta, &mut solver, &stop)?);
         }
-        let (problem, p) = self.contacts.problem()?;
+        let (problem, p) = self.contacts.posed_problem()?;
         let outcome = self.solver.solve(&problem, &stop, p);
         self.counts.solved(p.len(), &outcome);
         Ok(outcome)
     }
 
     /// Adds W Jᵀ p to `v`, and completes `contacts` with the velocities after the step.
-    pub(crate) fn apply_impulses(&mut self, model: &Model<D>, v: &mut [f64]) -> Result<(), Mismatch> {
-        self.contacts.add_impulses(model, &mut self.factors, &mut self.scratch, v)?;
-        self.contacts.complete(v)
+    pub(crate) fn apply_impulses(&mut self, model: &Model<D>, v: &mut [f64]) {
+        self.contacts.respond(model, &mut self.factors, &mut self.scratch, v);
+        self.contacts.settle(v);
     }
 }

@@ -19,6 +19,7 @@ mod run_recorder;
 mod schedule;
 mod sections;
 mod summary;
+mod swings;
 mod table;
 mod warnings;
 

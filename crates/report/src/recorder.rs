@@ -3,8 +3,9 @@
 use crate::contacts::{self, Impulses, Names};
 use crate::meetings::Met;
 use crate::number::{push, push_next};
-use crate::resolution::{Bodies, COARSE, Resolution};
+use crate::resolution::{Bodies, Resolution};
 use crate::sections::{BeamRecord, Sections, Values};
+use crate::swings::{Swings, Watch};
 use crate::table::Table;
 use crate::{Results, ResultsError, Schedule, WarningLog};
 use serde::{Deserialize, Serialize};
@@ -13,10 +14,12 @@ use std::ops::ControlFlow;
 use teeter_integrator::{
     Closing, ClosingMonitor, Contact, Model, Observer, ObserverError, RockingMonitor, State, StepReport,
 };
+use teeter_scenario::Shapes;
 use teeter_scenario::diagnostic::Diagnostic;
 use teeter_scenario::scene::Scene;
-use teeter_scenario::simulation::{BlockPlace, Layout};
-use teeter_scenario::{FAR_TURN, Shapes, deflection};
+use teeter_scenario::simulation::Layout;
+
+mod alarms;
 
 /// An impact as the summary lists it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -32,15 +35,6 @@ pub struct ImpactRow {
     /// Normal velocity before, m/s.
     pub u_n_before: f64,
 }
-
-/// A change of the modified energy over this part of the kinetic and elastic energy is a warning.
-const FAR_FROM_CONSERVED: f64 = 0.02;
-
-/// A penetration over this part of the shortest side of a block is a warning.
-const DEEP: f64 = 0.1;
-
-/// What the identity of energy leaves over, as a part of the scene's scale, is rounding up to here: scenes of all kinds have 1e-15 to 1e-10.
-const UNACCOUNTED: f64 = 1e-8;
 
 /// Impacts that the summary lists; `impacts.csv` has all.
 const LISTED_IMPACTS: usize = 1000;
@@ -86,6 +80,9 @@ pub(crate) struct Kept {
     /// Of the last step, for a row after the run's early end too.
     section_values: Values,
     resolution: Resolution,
+    swings: Swings,
+    /// How far anything may have moved since it was last looked who meets whom, m.
+    travelled: f64,
     record: Record,
 }
 
@@ -99,6 +96,7 @@ pub struct Recorder<'a> {
     energy: Table,
     sections: Sections,
     bodies: Bodies,
+    watch: Watch,
     line: String,
     kept: Kept,
     tell: &'a mut dyn FnMut(&str),
@@ -151,6 +149,8 @@ impl<'a> Recorder<'a> {
             row_at: 0,
             section_values,
             resolution: Resolution::default(),
+            swings: Swings::default(),
+            travelled: 0.0,
             record: Record { beams, ..Record::default() },
         };
         Self::with(|k| table(k, &headers[k]), kept, sections, scene, layout, tell)
@@ -185,6 +185,7 @@ impl<'a> Recorder<'a> {
             energy: table(3)?,
             sections,
             bodies: Bodies::of(scene),
+            watch: Watch::of(scene, layout),
             line: String::new(),
             kept,
             tell,
@@ -279,122 +280,6 @@ impl<'a> Recorder<'a> {
         self.contacts.rows(&self.line)
     }
 
-    /// Warns, once, of a block that turns far in a step.
-    fn warn_of_turns(&mut self, state: &State) {
-        let fastest = FAR_TURN / state.dt;
-        let turning = |place: &&BlockPlace| state.v[place.range.start + 2].abs() >= fastest;
-        let Some(place) = self.layout.blocks.iter().find(turning) else { return };
-        let warnings = &mut self.kept.record.warnings;
-        let known = warnings.warnings().iter().any(|warning| warning.code == "far-turn");
-        let spin = state.v[place.range.start + 2];
-        let told = warnings.enter("far-turn", Some(state.t), || {
-            format!(
-                "`{}` turns by {:.2} rad in the step to t = {} s, and is no longer followed from {FAR_TURN} on; take a step of at most {:.0e} s",
-                place.name,
-                spin.abs() * state.dt,
-                state.t,
-                FAR_TURN / spin.abs()
-            )
-        });
-        if let (Some(text), false) = (told, known) {
-            (self.tell)(&text);
-        }
-    }
-
-    /// Warns where the model lacks what the run may need after all.
-    fn warn_of_limits(&mut self, state: &State) {
-        let Some(limits) = self.layout.required.limits.filter(|limits| !limits.hold(state)) else { return };
-        let told = self.kept.record.warnings.enter("model-limits", Some(state.t), || {
-            format!(
-                "at t = {} s the energy is {:.6} J and the deepest penetration so far {:.1e} m, over the {:.6} J or the {:.1e} m up to which \
-                 the upper corners of blocks can't touch, and they are not looked at; --model full has them",
-                state.t,
-                state.ledger.current.total(),
-                state.tally.max_penetration,
-                limits.energy,
-                limits.penetration
-            )
-        });
-        if let Some(text) = told {
-            (self.tell)(&text);
-        }
-    }
-
-    /// Warns of what a row shows to be outside the model; told once each.
-    fn warn_of_row(&mut self, state: &State) {
-        let Self { layout, shapes, kept: Kept { met, record, .. }, tell, .. } = self;
-        met.look(shapes, layout, state, &mut record.warnings, tell);
-        let (ledger, warnings) = (&state.ledger, &mut self.kept.record.warnings);
-        let mut first = |code, text: &dyn Fn() -> String| {
-            let known = warnings.warnings().iter().any(|warning| warning.code == code);
-            if let (Some(text), false) = (warnings.enter(code, Some(state.t), text), known) {
-                (self.tell)(&text);
-            }
-        };
-        for place in &self.layout.beams {
-            let q = &state.q[place.range.clone()];
-            let nodal = place.basis.as_ref().map(|basis| basis.dofs(q));
-            if let Some(large) = deflection::large(&place.beam, nodal.as_deref().unwrap_or(q)) {
-                first("large-deflection", &|| format!("`{}` deflects far at t = {} s: {large}", place.name, state.t));
-            }
-        }
-        let least = self.layout.blocks.iter().map(|place| place.side).fold(f64::INFINITY, f64::min);
-        let depth = state.tally.max_penetration;
-        if depth > DEEP * least {
-            first("deep-penetration", &|| {
-                format!(
-                    "up to t = {} s a corner was {depth:.2e} m deep in a surface, more than {:.0} % of a block's shorter side: that is no contact any \
-                     more; the step is too long for what moves, or a corner came in from the side, past the end of a beam",
-                    state.t,
-                    100.0 * DEEP
-                )
-            });
-        }
-        let left = ledger.relative_residual();
-        if left > UNACCOUNTED {
-            first("energy-account", &|| {
-                format!(
-                    "up to t = {} s the energy of a step is off by {left:.1e} of the scene's scale, far more than rounding: numbers of very \
-                     different size act together, and the motion is not to be trusted; check loads, signals and masses, and their units",
-                    state.t
-                )
-            });
-        }
-        // With theta = 1/2 nothing dissipates but that what is conserved is a modified energy: `numerical` is minus its change.
-        let stirred = ledger.current.kinetic + ledger.current.elastic;
-        let share = if stirred > 0.0 { ledger.sum.numerical.abs() / stirred } else { 0.0 };
-        if share > FAR_FROM_CONSERVED && self.layout.beams.iter().any(|place| place.beam.is_stretched()) {
-            first("stretching", &|| {
-                format!(
-                    "the step is too long for the vibrations that stretch the beam: at t = {} s the energy that it conserves is off \
-                     by {:.1} % of what moves and bends, and so is the axial force it goes by; take a shorter step",
-                    state.t,
-                    100.0 * share
-                )
-            });
-        }
-    }
-
-    /// Warns where the steps were too long for the motion that the whole run showed.
-    fn warn_of_resolution(&mut self, state: &State) {
-        let Some(coarse) = self.kept.resolution.coarse(&self.bodies, state.dt) else { return };
-        let name = self.layout.blocks.get(coarse.block).map_or("a block", |place| &place.name);
-        let told = self.kept.record.warnings.enter("under-resolved", None, || {
-            format!(
-                "steps of {:e} s are too long for the impacts of `{name}`: a contact closes up to a step late, and here that adds up to {:.1} % \
-                 of its motion; above {:.0} % motions are likely off by more than 10 %; take a step of at most {:.0e} s, and let `teeter tradeoff` \
-                 measure what accuracy it gives",
-                state.dt,
-                100.0 * coarse.part,
-                100.0 * COARSE,
-                coarse.step
-            )
-        });
-        if let Some(text) = told {
-            (self.tell)(&text);
-        }
-    }
-
     /// Tells impacts from contacts that were lost for a moment, and writes the impacts.
     fn write_impacts(
         &mut self,
@@ -428,24 +313,6 @@ impl<'a> Recorder<'a> {
         (record.impact_count, record.reclosure_count) = (closings.impacts(), closings.reclosures());
         Ok(written?)
     }
-
-    fn warn_of(&mut self, step: &StepReport<'_, 2>) {
-        let Some(outcome) = step.outcome.filter(|outcome| !outcome.converged()) else { return };
-        let told = self.kept.record.warnings.enter("unconverged", Some(step.t_end), || {
-            format!(
-                "the contact problem of the step to t = {} s ({} contacts) was not solved: {} after {} iterations of {}, residual {:.1e}",
-                step.t_end,
-                step.contacts.len(),
-                outcome.status,
-                outcome.iterations,
-                outcome.used,
-                outcome.residual.global
-            )
-        });
-        if let Some(text) = told {
-            (self.tell)(&text);
-        }
-    }
 }
 
 impl Observer<2> for Recorder<'_> {
@@ -456,6 +323,7 @@ impl Observer<2> for Recorder<'_> {
         self.kept.record.rocking = self.layout.rocking_monitors(state.t, &state.q);
         self.kept.closings = ClosingMonitor::new(model, state, &self.layout.openings)?;
         self.kept.resolution.start(self.layout, state);
+        self.kept.swings.start(self.layout);
         let (record, values) = (&mut self.kept.record, &mut self.kept.section_values);
         self.sections.start(self.layout, state, &mut record.beams, values);
         Ok(self.write_row(state)?)
@@ -472,7 +340,9 @@ impl Observer<2> for Recorder<'_> {
         self.warn_of(step);
         self.warn_of_limits(state);
         self.warn_of_turns(state);
+        self.warn_of_meetings(step, state);
         self.kept.resolution.observe(&self.bodies, self.layout, step, state);
+        self.kept.swings.observe(&mut self.watch, self.layout, step.t_end - step.t_start, state);
         let Kept { record, section_values, .. } = &mut self.kept;
         let kept = (record.beams.as_mut_slice(), section_values);
         if let Some(text) = self.sections.observe(step, state, kept, &mut record.warnings) {

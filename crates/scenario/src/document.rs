@@ -297,6 +297,13 @@ impl Document {
         Ok(())
     }
 
+    /// Leaves a value out that nobody gave, so that [`Document::to_toml`] doesn't write it.
+    pub(crate) fn forget_default(&mut self, path: &str) {
+        if !self.is_given(path) {
+            self.entries.remove(path);
+        }
+    }
+
     /// The scene as it stands: every value in the order of the table of keys, defaults written out, quantities in SI units.
     /// It parses to the same values bit for bit, and writing that out again gives the same bytes.
     pub fn to_toml(&self) -> String {

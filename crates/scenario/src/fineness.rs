@@ -3,8 +3,8 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;
-use crate::scene::{History, MotionScene, Scene, SignalScene};
-use std::collections::BTreeSet;
+use crate::scene::{AxisScene, History, MotionScene, Scene, SignalScene};
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use teeter_integrator::{Formula, Given, Signal, Table};
 
@@ -15,6 +15,12 @@ const STEPS_A_SWING: f64 = 10.0;
 /// what the peak of a sine of [`STEPS_A_SWING`] steps does. (A jump stays between them, and is no
 /// worse than any other.)
 const BEYOND_THE_ENDS: f64 = 0.05;
+
+/// Steps that a displacement should take from one place to another, or its velocity shows in none of them: a pulse as long as half a swing.
+const STEPS_A_RISE: f64 = 0.5 * STEPS_A_SWING;
+
+/// Of the largest velocity of supports, the part from which on a beam that starts with them is told of.
+const STARTS_FAST: f64 = 0.01;
 
 /// A block that turns by more than this in a step, rad, is no longer followed.
 pub const FAR_TURN: f64 = 0.1;
@@ -32,10 +38,10 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> (Vec<Diagnostic>, Vec<Di
     let end = scene.time.steps as f64 * scene.time.step;
     let mut unused = Vec::new();
     for signal in &scene.signals {
-        if !used.contains(signal.name.as_str()) {
+        let Some(used) = used.get(signal.name.as_str()) else {
             unused.push(signal.name.as_str());
             continue;
-        }
+        };
         let path = format!("signal.{}", signal.name);
         if is_silent(&signal.history, end) {
             let rule = format!("it is 0 all through the run, which ends at {end} s: what it multiplies does nothing");
@@ -43,23 +49,55 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> (Vec<Diagnostic>, Vec<Di
             continue;
         }
         warnings.extend(match &signal.history {
-            History::Formula(formula) => swing(&path, formula, scene, document),
-            History::Table(table) => rows(&path, table, scene, document),
+            History::Formula(formula) => swing(&path, formula, used.in_the_mean(), scene, document),
+            History::Table(table) => rows(&path, table, used.in_the_mean(), scene, document),
         });
         notes.extend(too_long(signal, end, document));
     }
     warnings.extend(nothing_uses(&unused, document));
     warnings.extend(turns(scene, document));
+    warnings.extend(rises(scene, document));
+    warnings.extend(fast_starts(scene, document));
     (warnings, notes)
 }
 
+/// What a signal multiplies.
+#[derive(Clone, Copy, Default)]
+struct Used {
+    load: bool,
+    motion: bool,
+}
+
+impl Used {
+    /// What a step that doesn't resolve the signal makes of it.
+    fn in_the_mean(self) -> &'static str {
+        match self {
+            Self { motion: true, load: true } => {
+                "a step takes the mean of a load and of a velocity, so that no impulse is lost, but what they do in a step doesn't show"
+            }
+            Self { motion: true, .. } => {
+                "a step takes the mean of the velocity, so that the place stays right, but how fast it goes within a step doesn't show"
+            }
+            _ => "a step takes its mean, so that no impulse is lost, but what it does in a step doesn't show",
+        }
+    }
+}
+
 /// The names of the signals that something uses.
-fn used(document: &Document) -> BTreeSet<&str> {
-    let mut used = BTreeSet::new();
+fn used(document: &Document) -> BTreeMap<&str, Used> {
+    let mut used = BTreeMap::<&str, Used>::new();
     for (path, _) in document.entries() {
-        match path.rsplit('.').next() {
-            Some("signal") => used.extend(document.text(path)),
-            Some("signals") => used.extend(document.text_pair(path).into_iter().flatten()),
+        let (owner, key) = path.rsplit_once('.').unwrap_or(("", path));
+        let mut by = |name| {
+            let used = used.entry(name).or_default();
+            match owner.ends_with(".motion") {
+                true => used.motion = true,
+                false => used.load = true,
+            }
+        };
+        match key {
+            "signal" => document.text(path).into_iter().for_each(&mut by),
+            "signals" => document.text_pair(path).into_iter().flatten().for_each(&mut by),
             _ => {}
         }
     }
@@ -90,11 +128,8 @@ fn is_silent(history: &History, end: f64) -> bool {
     }
 }
 
-/// What a step that doesn't resolve a signal makes of it.
-const IN_THE_MEAN: &str = "a step takes its mean, so that no impulse is lost, but what it does in a step doesn't show";
-
 /// A signal by formula that swings with less than ten steps for it.
-fn swing(path: &str, formula: &Formula, scene: &Scene, document: &Document) -> Option<Diagnostic> {
+fn swing(path: &str, formula: &Formula, in_the_mean: &str, scene: &Scene, document: &Document) -> Option<Diagnostic> {
     let step = scene.time.step;
     let (period, [from, until]) = formula.swings()?;
     if period >= STEPS_A_SWING * step * (1.0 - 1e-9) {
@@ -103,17 +138,17 @@ fn swing(path: &str, formula: &Formula, scene: &Scene, document: &Document) -> O
     let at = |key: &str| format!("{path}.{key}");
     let (key, rule) = if document.has(&at("duration")) {
         let lasts = until - from;
-        (at("duration"), format!("it lasts {lasts:.3e} s, {:.2} steps of {step:e} s: {IN_THE_MEAN}", lasts / step))
+        (at("duration"), format!("it lasts {lasts:.3e} s, {:.2} steps of {step:e} s: {in_the_mean}", lasts / step))
     } else {
         let key = if document.has(&at("period")) { at("period") } else { at("frequency") };
-        (key, format!("its period of {period:.3e} s is {:.2} steps of {step:e} s: {IN_THE_MEAN}", period / step))
+        (key, format!("its period of {period:.3e} s is {:.2} steps of {step:e} s: {in_the_mean}", period / step))
     };
     let remedy = format!("take a step of at most {:.1e} s", period / STEPS_A_SWING);
     Some(document.error(&key, rule, remedy).as_warning())
 }
 
 /// A table with peaks between the ends of steps.
-fn rows(path: &str, table: &Table, scene: &Scene, document: &Document) -> Option<Diagnostic> {
+fn rows(path: &str, table: &Table, in_the_mean: &str, scene: &Scene, document: &Document) -> Option<Diagnostic> {
     let step = scene.time.step;
     let last = scene.time.steps as f64;
     let largest = table.rows().map(|(_, y)| y.abs()).fold(0.0, f64::max);
@@ -133,7 +168,7 @@ fn rows(path: &str, table: &Table, scene: &Scene, document: &Document) -> Option
     }
     let rule = format!(
         "its rows are as close as {closest:.3e} s, finer than the step of {step:e} s, with peaks between the ends of steps of up to \
-         {:.0} % of its largest value: {IN_THE_MEAN}",
+         {:.0} % of its largest value: {in_the_mean}",
         100.0 * worst
     );
     let remedy = format!("take a shorter step: one of {closest:.1e} s shows every row");
@@ -184,4 +219,92 @@ fn turns(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
     let blocks = scene.blocks.iter().map(|block| driven(format!("block.{}", block.name), &block.motion));
     let ground = scene.ground.iter().map(|ground| driven("ground".to_owned(), &ground.motion));
     spins.chain(blocks).chain(ground).flatten().take(LISTED).collect()
+}
+
+/// All prescribed motions, with where they are.
+fn motions(scene: &Scene) -> impl Iterator<Item = (String, &MotionScene)> {
+    let ground = scene.ground.iter().map(|ground| ("ground.motion".to_owned(), &ground.motion));
+    let beams = scene.beams.iter().map(|beam| (format!("beam.{}.motion", beam.name), &beam.motion));
+    let blocks = scene.blocks.iter().map(|block| (format!("block.{}.motion", block.name), &block.motion));
+    ground.chain(beams).chain(blocks)
+}
+
+/// Displacements that go faster from one place to another than steps can show: what a contact feels is their velocity.
+fn rises(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
+    let step = scene.time.step;
+    let of = |(path, motion): (String, &MotionScene)| {
+        let axes = ["displacement", "displacement", "angle"].into_iter().zip(&motion.0);
+        let worst = axes.filter_map(|(key, axis)| {
+            let axis = axis.as_ref().filter(|axis| axis.given == Given::Displacement)?;
+            let lasts = match &axis.history {
+                History::Formula(formula) => {
+                    formula.rises_in().filter(|lasts| *lasts < STEPS_A_RISE * step * (1.0 - 1e-9))
+                }
+                History::Table(table) => fastest_rise(table, scene),
+            };
+            Some((key, lasts?))
+        });
+        let (key, lasts) = worst.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
+        let rule = format!(
+            "it goes from one place to another in {lasts:.3e} s, {:.2} steps of {step:e} s: the place stays right, but how fast it goes, which what \
+             touches it feels, doesn't show",
+            lasts / step
+        );
+        let remedy = format!("take a step of at most {:.1e} s", lasts / STEPS_A_RISE);
+        Some(document.error(&format!("{path}.{key}"), rule, remedy).as_warning())
+    };
+    motions(scene).filter_map(of).take(LISTED).collect()
+}
+
+/// The time between two rows, shorter than a step, whose slope is the farthest from the mean ones of the steps around, if it is far from them.
+fn fastest_rise(table: &Table, scene: &Scene) -> Option<f64> {
+    let (step, last) = (scene.time.step, scene.time.steps as f64);
+    let rows = || table.rows().zip(table.rows().skip(1));
+    let slope = |((a, from), (b, to)): ((f64, f64), (f64, f64))| (to - from) / (b - a);
+    let largest = rows().map(|rows| slope(rows).abs()).fold(0.0, f64::max);
+    let mean = |k: f64| (table.value((k + 1.0) * step) - table.value(k * step)) / step;
+    let (mut worst, mut lasts) = (BEYOND_THE_ENDS * largest, None);
+    for rows in rows() {
+        let ((a, _), (b, _)) = rows;
+        let k = (0.5 * (a + b) / step).floor();
+        if b - a < step * (1.0 - 1e-9) && (0.0..last).contains(&k) {
+            let means = [k - 1.0, k, k + 1.0].map(mean);
+            let (least, most) =
+                means.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), m| (a.min(*m), b.max(*m)));
+            let beyond = (slope(rows) - most).max(least - slope(rows));
+            if beyond > worst {
+                (worst, lasts) = (beyond, Some(b - a));
+            }
+        }
+    }
+    lasts
+}
+
+/// Beams whose supports don't begin from rest.
+fn fast_starts(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
+    /// Times at which velocities are looked at, over the run.
+    const LOOKS: u32 = 1000;
+    let end = scene.time.steps as f64 * scene.time.step;
+    let of = |beam: &crate::scene::BeamScene| {
+        let axis = beam.motion.0[1].as_ref().filter(|axis| !is_uniform(axis))?;
+        let motion = axis.motion();
+        let start = motion.velocity(0.0);
+        let fastest =
+            (0..=LOOKS).map(|k| motion.velocity(end * f64::from(k) / f64::from(LOOKS)).abs()).fold(0.0, f64::max);
+        (start.abs() > STARTS_FAST * fastest).then(|| {
+            let rule = format!(
+                "the supports begin with {start:.3e} m/s, and the beam starts with them: it is at rest relative to its supports, not in the world"
+            );
+            let remedy = "where the beam is meant to be pulled along from rest, let the motion begin with a velocity of 0, as shape = \"ricker\" or a \
+                 harmonic displacement of phase = \"90 deg\" does";
+            document.error(&format!("beam.{}.motion", beam.name), rule, remedy).as_warning()
+        })
+    };
+    scene.beams.iter().filter_map(of).take(LISTED).collect()
+}
+
+/// Whether it is one velocity all the time.
+fn is_uniform(axis: &AxisScene) -> bool {
+    axis.given == Given::Velocity
+        && matches!(&axis.history, History::Formula(formula) if formula.swings().is_none() && formula.rises_in().is_none())
 }

@@ -2,6 +2,7 @@
 //!
 //! A block that rocks feels its beam through both feet: by how much they sink together, and by how much one sinks more than the other. Few modes, or
 //! an element as long as the block is wide, have the first and little of the second, and the motion is another one with every step.
+//! A load makes the beam sag everywhere, so what lacks is the largest error of that sag, relative to the largest that the load makes anywhere.
 //! Measured on the paper's scene (`docs/resolution.md`): what lacks 0.71, 0.14, 0.08, 0.04 of it (1, 3, 2, 5 elements) is off by 60, 13, 2, 1 % however
 //! fine the step.
 
@@ -36,10 +37,21 @@ pub(crate) struct Lack {
     pub(crate) advice: String,
 }
 
-/// What presses on a beam: at one place, or by the two feet of a block.
+/// What presses on a beam, and where it may.
 struct Press {
     what: String,
     at: Vec<f64>,
+    how: How,
+}
+
+#[derive(Clone, Copy)]
+enum How {
+    /// With both feet of a block that rocks, or with its only one on the beam: as much with either as it comes.
+    Rocking,
+    /// With both feet alike.
+    Standing,
+    /// At one place after the other.
+    Along,
 }
 
 /// The worst that lacks of a beam, if that is more than [`LACKING`].
@@ -60,7 +72,7 @@ pub(crate) fn lacking(scene: &Scene, number: usize) -> Option<Lack> {
     let worst = |has: &dyn Fn(&[f64]) -> Option<Matrix>| {
         let mut worst: Option<(f64, &str)> = None;
         for (press, exact) in presses.iter().zip(&exact) {
-            let part = exact.lacks(&has(&press.at)?);
+            let part = exact.lacks(&has(&press.at)?, press.how);
             if worst.is_none_or(|(most, _)| part > most) {
                 worst = Some((part, &press.what));
             }
@@ -123,14 +135,17 @@ fn presses(scene: &Scene, number: usize) -> Vec<Press> {
         let feet = [middle - 0.5 * block.width, middle + 0.5 * block.width];
         let at: Vec<f64> = feet.into_iter().filter(on).collect();
         if !at.is_empty() {
-            presses.push(Press { what: format!("the feet of `{}`", block.name), at });
+            let how = if at.len() < 2 || may_rock(scene, block, contact.block, number) {
+                How::Rocking
+            } else {
+                How::Standing
+            };
+            presses.push(Press { what: format!("the feet of `{}`", block.name), at, how });
         }
     }
     for load in scene.loads.iter().filter(|load| load.beam == number) {
-        for place in 1..PLACES {
-            let x = of.spec.span * place as f64 / PLACES as f64;
-            presses.push(Press { what: format!("the load `{}`", load.name), at: vec![x] });
-        }
+        let at = (1..PLACES).map(|place| of.spec.span * place as f64 / PLACES as f64).collect();
+        presses.push(Press { what: format!("the load `{}`", load.name), at, how: How::Along });
     }
     presses
 }
@@ -156,28 +171,53 @@ fn fine(of: &BeamScene, at: &[f64]) -> BeamSpec {
     of.spec.clone().meshed(nodes)
 }
 
-/// How far places sink under unit forces at them, m/N: of one place, or of two.
+/// Whether anything can make a block rock that stands on a beam.
+fn may_rock(scene: &Scene, block: &BlockScene, number: usize, beam: usize) -> bool {
+    let stands = matches!(block.placement, Placement::On { tilt: 0.0, .. });
+    let pushed =
+        scene.forces.iter().any(|force| force.block == number) || scene.loads.iter().any(|load| load.beam == beam);
+    let moves = block.spin != 0.0 || block.velocity != [0.0; 2] || block.motion.is_given();
+    !stands || pushed || moves || scene.beams[beam].motion.is_given()
+}
+
+/// How far places sink under unit forces at them, m/N: a row each.
 struct Matrix {
-    own: [f64; 2],
-    cross: f64,
-    two: bool,
+    places: usize,
+    entries: Vec<f64>,
 }
 
 impl Matrix {
-    fn of(at: &[f64], entry: &dyn Fn(usize, usize) -> f64) -> Self {
-        let two = at.len() > 1;
-        let last = usize::from(two);
-        Self { own: [entry(0, 0), entry(last, last)], cross: if two { entry(0, 1) } else { 0.0 }, two }
+    fn of(places: usize, entry: &dyn Fn(usize, usize) -> f64) -> Self {
+        let entries = (0..places * places).map(|k| entry(k / places, k % places)).collect();
+        Self { places, entries }
     }
 
-    /// The largest part that `has` lacks, or has too much, of this one, over all ways to press: the largest |λ| of (F − F') p = λ F p.
-    fn lacks(&self, has: &Self) -> f64 {
-        let [a, c] = self.own;
-        if !self.two {
-            return (1.0 - has.own[0] / a).abs();
+    fn at(&self, i: usize, j: usize) -> f64 {
+        self.entries[i * self.places + j]
+    }
+
+    /// The largest part that `has` lacks, or has too much, of this one, over the ways to press.
+    fn lacks(&self, has: &Self, how: How) -> f64 {
+        let sum = |entries: &[f64]| entries.iter().sum::<f64>();
+        match how {
+            How::Rocking => self.lacks_over_all(has),
+            How::Standing => (1.0 - sum(&has.entries) / sum(&self.entries)).abs(),
+            How::Along => {
+                let largest = (0..self.places).map(|i| self.at(i, i)).fold(0.0, f64::max);
+                let errors = self.entries.iter().zip(&has.entries).map(|(exact, has)| (exact - has).abs());
+                errors.fold(0.0, f64::max) / largest
+            }
         }
-        let (d, e, f) = (a - has.own[0], self.cross - has.cross, c - has.own[1]);
-        let b = self.cross;
+    }
+
+    /// The largest |λ| of (F − F') p = λ F p, for one place or two.
+    fn lacks_over_all(&self, has: &Self) -> f64 {
+        let a = self.at(0, 0);
+        if self.places < 2 {
+            return (1.0 - has.at(0, 0) / a).abs();
+        }
+        let (b, c) = (self.at(0, 1), self.at(1, 1));
+        let (d, e, f) = (a - has.at(0, 0), b - has.at(0, 1), c - has.at(1, 1));
         let determinant = a * c - b * b;
         // Feet that sink as one, as near a support, have one way to press only.
         if determinant <= 1e-9 * a * c {
@@ -202,7 +242,7 @@ fn of_mesh(beam: &Beam, at: &[f64], mass: f64) -> Option<Matrix> {
             q
         })
         .collect();
-    Some(Matrix::of(at, &|i, j| shapes[i].deflection(&sunk[j]).w))
+    Some(Matrix::of(at.len(), &|i, j| shapes[i].deflection(&sunk[j]).w))
 }
 
 fn of_modes(beam: &Beam, basis: &teeter_beam::ModalBasis, at: &[f64], mass: f64) -> Option<Matrix> {
@@ -216,7 +256,7 @@ fn of_modes(beam: &Beam, basis: &teeter_beam::ModalBasis, at: &[f64], mass: f64)
             })
             .sum()
     };
-    Some(Matrix::of(at, &entry))
+    Some(Matrix::of(at.len(), &entry))
 }
 
 #[cfg(test)]

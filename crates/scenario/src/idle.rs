@@ -3,6 +3,7 @@
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;
 use crate::scene::{LoadKind, Scene, SchemeName};
+use crate::source::Origin;
 use std::collections::BTreeSet;
 
 /// Findings of one kind that are listed.
@@ -14,7 +15,10 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
         found.push(document.error(path, rule, remedy).as_warning());
     };
     let (time, end) = (&scene.time, scene.time.steps as f64 * scene.time.step);
-    if time.scheme == SchemeName::MoreauJeanClosed && document.is_given("time.activation_gamma") {
+    // Who tries another scheme with `--set` needn't take the key of the scene's own one out.
+    let by_set = |path: &str| matches!(document.origin(path), Origin::Set { .. });
+    let tried = by_set("time.scheme") && !by_set("time.activation_gamma");
+    if time.scheme == SchemeName::MoreauJeanClosed && document.is_given("time.activation_gamma") && !tried {
         let rule = "moreau-jean-closed has no prediction for it to act on: it does nothing".to_owned();
         idle("time.activation_gamma", rule, "leave it out, or take scheme = \"moreau-jean\"");
     }

@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::document::Document;
 use crate::doubts;
-use crate::scene::{ContactScene, GroundScene, Scene, SignalScene, SolverScene, Support};
+use crate::scene::{ContactScene, GroundScene, Scene, SchemeName, SignalScene, SolverScene, Support};
 use crate::value::Value;
 use crate::words::Word;
 use crate::{volume, wording};
@@ -63,6 +63,10 @@ pub fn resolve(mut document: Document, stem: &str, read: &mut ReadFile<'_>) -> R
                 {
                     errors.push(document.error(path, error.to_string(), "give the key in the scene"));
                 }
+            }
+            // A default that does nothing is not written out as if it were meant.
+            if scene.time.scheme == SchemeName::MoreauJeanClosed {
+                document.forget_default("time.activation_gamma");
             }
             if errors.is_empty() {
                 let doubts = doubts::of(&scene, &document);

@@ -56,6 +56,17 @@ pub struct Time {
     pub gap_tolerance: f64,
 }
 
+impl Time {
+    /// The θ by which the scheme steps: the closed one has ½, whatever is given.
+    #[must_use]
+    pub fn theta_of_scheme(&self) -> f64 {
+        match self.scheme {
+            SchemeName::MoreauJean => self.theta,
+            SchemeName::MoreauJeanClosed => 0.5,
+        }
+    }
+}
+
 /// A time scheme by name.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]

@@ -10,7 +10,7 @@ use crate::scene::{Placement, Scene, SchemeName, Support, Time};
 use crate::settling::{Start, StaticStart};
 use std::ops::Range;
 use std::sync::Arc;
-use teeter_beam::{Beam, BeamError, Deflection, ModalBasis, ModalError, ShapeAt, SpanLoad};
+use teeter_beam::{Beam, BeamError, Deflection, MatrixWeights, ModalBasis, ModalError, ShapeAt, SpanLoad};
 use teeter_contact::ContactSolver;
 use teeter_detect::{BodyId, PointDetector, PointPair};
 use teeter_integrator::{
@@ -90,6 +90,8 @@ pub struct BlockPlace {
     pub range: Range<usize>,
     /// The shorter of its sides, m.
     pub side: f64,
+    /// From its mass centre to a corner, m.
+    pub reach: f64,
     /// A swing up to this angle, at which no corner is off its surface by more than counts as open, is none, rad.
     pub still: f64,
     /// What carries it: its rocking is measured from there.
@@ -122,6 +124,34 @@ impl BeamPlace {
     #[must_use]
     pub fn free_dofs(&self) -> usize {
         self.basis.as_ref().map_or_else(|| self.beam.free_dofs(), |basis| basis.len())
+    }
+
+    /// Midspan, and the middle between two supports, as midspan may be one, m from its left end.
+    #[must_use]
+    pub fn middles(&self) -> Vec<f64> {
+        let spec = self.beam.spec();
+        let mut stops: Vec<f64> = spec.inner_supports.iter().map(|(x, _)| *x).chain([0.0, spec.span]).collect();
+        stops.sort_by(f64::total_cmp);
+        let mut places = vec![0.5 * spec.span];
+        for stops in stops.windows(2) {
+            let x = 0.5 * (stops[0] + stops[1]);
+            if !places.contains(&x) {
+                places.push(x);
+            }
+        }
+        places
+    }
+
+    /// Its first circular frequency, rad/s; `None` where it can move rigidly, or none is known.
+    #[must_use]
+    pub fn first_frequency(&self) -> Option<f64> {
+        if let Some(basis) = &self.basis {
+            return basis.circular_frequencies().first().copied().filter(|omega| *omega > 0.0);
+        }
+        // Supports that hold it make its stiffness definite.
+        let statics = MatrixWeights { mass: 0.0, damping: 0.0, stiffness: 1.0 };
+        self.beam.factor(statics).ok()?;
+        crate::stability::first_frequency(self.beam.spec()).map(|(omega, _)| omega)
     }
 
     /// The deflection at a place of the beam for its own coordinates `q` (its rate for velocities); allocates nothing.
@@ -260,6 +290,7 @@ impl Simulation {
                 name: block.name.clone(),
                 range: start..start + 3,
                 side: block.width.min(block.height),
+                reach: 0.5 * block.width.hypot(block.height),
                 still: OPEN_GAP * block.width.min(block.height) / block.width,
                 carrier: Carrier::Level,
             });

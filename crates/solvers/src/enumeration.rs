@@ -32,6 +32,8 @@ pub(crate) const FEW: usize = 3;
 pub(crate) const MAX_CONTACTS: usize = 5;
 /// How far an inequality may be missed, relative to the terms that its left side is the sum of: rounding of a 10 × 10 solve.
 pub(crate) const ROUNDING: f64 = 1e-13;
+/// The same of a good solve: some units of the last digit.
+const SHARP: f64 = 16.0 * f64::EPSILON;
 
 /// The exact 2D solver for up to five contacts; see the [crate's table](crate).
 ///
@@ -94,11 +96,13 @@ impl ContactSolver<2> for Enumeration {
                         return Outcome::new(Status::Converged, Self::NAME, tried, residual);
                     }
                 }
-                let (found, searched) = table.search(p);
+                let (found, searched) = sharply(problem, stop, table, p, |table, p| table.search(p));
                 (found, tried + searched)
             }
-            4 => Table::<4>::new(problem).try_all::<8>(p),
-            MAX_CONTACTS => Table::<MAX_CONTACTS>::new(problem).try_all::<{ 2 * MAX_CONTACTS }>(p),
+            4 => sharply(problem, stop, Table::<4>::new(problem), p, |table, p| table.try_all::<8>(p)),
+            MAX_CONTACTS => sharply(problem, stop, Table::<MAX_CONTACTS>::new(problem), p, |table, p| {
+                table.try_all::<{ 2 * MAX_CONTACTS }>(p)
+            }),
             _ => (false, 0),
         };
         let residual = judge(problem, p);
@@ -112,12 +116,37 @@ impl ContactSolver<2> for Enumeration {
     }
 }
 
+/// Searches the states for impulses that obey the law to rounding; where those aren't good enough for the tolerance, for such that obey it to the
+/// last digits. Corners of one body that can't quite both stick have states that fit to rounding and others that fit.
+fn sharply<const N: usize>(
+    problem: &ContactProblem<'_, 2>,
+    stop: &Stop<'_>,
+    mut table: Table<N>,
+    p: &mut [Vector2<f64>],
+    search: impl Fn(&Table<N>, &mut [Vector2<f64>]) -> (bool, u32),
+) -> (bool, u32) {
+    let (found, tried) = search(&table, p);
+    let residual = judge(problem, p).global;
+    if !found || residual <= stop.tolerance {
+        return (found, tried);
+    }
+    table.slack = SHARP;
+    let mut sharp = [Vector2::zeros(); N];
+    let (found, more) = search(&table, &mut sharp[..problem.contacts()]);
+    if found && judge(problem, &sharp[..problem.contacts()]).global < residual {
+        p.copy_from_slice(&sharp[..problem.contacts()]);
+    }
+    (true, tried + more)
+}
+
 /// The problem with its blocks at hand.
 pub(crate) struct Table<const N: usize = FEW> {
     pub(crate) n: usize,
     pub(crate) h: [[Matrix2<f64>; N]; N],
     pub(crate) q: [Vector2<f64>; N],
     pub(crate) mu: [f64; N],
+    /// How far an inequality may be missed, relative to the terms that its left side is the sum of.
+    slack: f64,
 }
 
 /// Impulses, or velocities, of all contacts.
@@ -126,7 +155,8 @@ pub(crate) type Impulses<const N: usize = FEW> = [Vector2<f64>; N];
 impl<const N: usize> Table<N> {
     fn new(problem: &ContactProblem<'_, 2>) -> Self {
         let n = problem.contacts();
-        let mut table = Self { n, h: [[Matrix2::zeros(); N]; N], q: [Vector2::zeros(); N], mu: [0.0; N] };
+        let mut table =
+            Self { n, h: [[Matrix2::zeros(); N]; N], q: [Vector2::zeros(); N], mu: [0.0; N], slack: ROUNDING };
         table.mu[..n].copy_from_slice(problem.mu());
         table.q[..n].copy_from_slice(problem.q());
         if let Delassus::Dense(blocks) = problem.delassus() {
@@ -158,7 +188,7 @@ impl<const N: usize> Table<N> {
                 u += self.h[i][j] * p[j];
                 size += self.h[i][j].abs() * p[j].abs();
             }
-            let (slack_n, slack_t) = (ROUNDING * size[0], ROUNDING * (size[0] + size[1]));
+            let (slack_n, slack_t) = (self.slack * size[0], self.slack * (size[0] + size[1]));
             let slack_p = slack_n / self.h[i][i][(0, 0)];
             let presses = p[i][0] >= -slack_p && u[0].abs() <= slack_n;
             let fits = match states[i] {

@@ -161,17 +161,12 @@ impl<'a> Sampler<'a> {
     }
 }
 
-/// Where the deflection of a beam is watched, m from its left end: at its probes, at midspan, and in the middle between two supports, as midspan may
-/// be one.
+/// Where the deflection of a beam is watched, m from its left end: in the middles and at its probes.
 fn watched_places(place: &BeamPlace) -> Vec<f64> {
-    let spec = place.beam.spec();
-    let mut stops: Vec<f64> = spec.inner_supports.iter().map(|(x, _)| *x).chain([0.0, spec.span]).collect();
-    stops.sort_by(f64::total_cmp);
-    let mut places = vec![0.5 * spec.span];
-    let middles = stops.windows(2).map(|stops| 0.5 * (stops[0] + stops[1]));
-    for x in middles.chain(place.probes.iter().copied()) {
-        if !places.contains(&x) {
-            places.push(x);
+    let mut places = place.middles();
+    for x in &place.probes {
+        if !places.contains(x) {
+            places.push(*x);
         }
     }
     places

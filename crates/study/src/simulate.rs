@@ -3,8 +3,9 @@
 use crate::motion::Sampler;
 use crate::{Motion, Sampling, Setting, Source, Warned, Work};
 use cpu_time::ThreadTime;
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
-use teeter_integrator::Ended;
+use teeter_integrator::{Ended, Model, Observer, ObserverError, State, StepReport};
 use teeter_report::{EndedWord, Recorder, Summary};
 use teeter_scenario::diagnostic::Diagnostics;
 use teeter_scenario::resolve::Resolved;
@@ -55,6 +56,30 @@ pub(crate) fn expect(source: &Source, setting: &Setting) -> Result<Work, Failure
     Ok(Work::expected(&ready(source, setting)?.1))
 }
 
+/// Ends a run whose contact solver has used up its iterations.
+struct Limit {
+    left: u64,
+}
+
+impl Observer<2> for Limit {
+    fn observe(&mut self, _: &Model<2>, step: &StepReport<'_, 2>, _: &State) -> Result<ControlFlow<()>, ObserverError> {
+        let taken = step.outcome.map_or(0, |outcome| u64::from(outcome.iterations));
+        self.left = self.left.saturating_sub(taken);
+        Ok(if self.left == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+    }
+}
+
+/// Runs a setting as [`simulate`] does, but gives it up where its contact solver alone takes so much more than all else that it can't be the
+/// cheapest: a solver that stalls in every step would keep a study for minutes.
+pub(crate) fn simulate_unless_dear(
+    source: &Source,
+    setting: &Setting,
+    sampling: Sampling,
+    cancel: &AtomicBool,
+) -> Result<Ran, Failure> {
+    run_within(source, setting, 0.0, sampling, cancel, |work| work.most_iterations())
+}
+
 /// Runs a setting; the coordinates of the first body start greater by the share `nudge` of themselves.
 pub(crate) fn simulate(
     source: &Source,
@@ -62,6 +87,17 @@ pub(crate) fn simulate(
     nudge: f64,
     sampling: Sampling,
     cancel: &AtomicBool,
+) -> Result<Ran, Failure> {
+    run_within(source, setting, nudge, sampling, cancel, |_| u64::MAX)
+}
+
+fn run_within(
+    source: &Source,
+    setting: &Setting,
+    nudge: f64,
+    sampling: Sampling,
+    cancel: &AtomicBool,
+    most_iterations: impl Fn(&Work) -> u64,
 ) -> Result<Ran, Failure> {
     let (resolved, mut simulation) = ready(source, setting)?;
     let first = match (simulation.layout.blocks.first(), simulation.layout.beams.first()) {
@@ -76,7 +112,15 @@ pub(crate) fn simulate(
     let mut tell = |_: &str| {};
     let failed = |error: &dyn std::fmt::Display| Failure::Ended(error.to_string());
     let mut recorder = Recorder::watching(&resolved.scene, &layout, &mut tell).map_err(|error| failed(&error))?;
-    let ended = simulation.run(&mut [&mut sampler, &mut recorder]).map_err(|error| failed(&error))?;
+    let most = most_iterations(&Work::expected(&simulation));
+    let mut limit = Limit { left: most };
+    let ended = simulation.run(&mut [&mut limit, &mut sampler, &mut recorder]).map_err(|error| failed(&error))?;
+    if limit.left == 0 && ended != Ended::Complete {
+        let t = simulation.state.t;
+        return Err(Failure::Ended(format!(
+            "given up at t = {t} s: its solver took {most} iterations by then, too dear to go on"
+        )));
+    }
     let state = &simulation.state;
     match ended {
         Ended::Complete => {}

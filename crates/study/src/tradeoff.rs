@@ -5,7 +5,7 @@ use crate::recommend::{Advice, Held, TARGETS, advise, eligible};
 use crate::reference::{self, Reference};
 use crate::row::{Done, Row, front_of};
 use crate::search::{self, Known, Planned};
-use crate::simulate::{expect, simulate};
+use crate::simulate::{expect, simulate_unless_dear};
 use crate::{Failure, Sampling, Setting, Source, runner, timing};
 use std::collections::BTreeSet;
 use std::sync::atomic::AtomicBool;
@@ -253,7 +253,7 @@ impl Tradeoff {
         done: impl FnMut(usize) + Send,
     ) -> Result<Vec<Row>, Failure> {
         let one = |setting: &Setting| {
-            let ran = simulate(run.source, setting, 0.0, self.sampling, run.cancel)?;
+            let ran = simulate_unless_dear(run.source, setting, self.sampling, run.cancel)?;
             let errors = self.reference.ruler.errors(&ran.motion, &self.reference.motion);
             Ok(Done { errors, work: ran.work, unconverged: ran.unconverged, warned: ran.warned })
         };

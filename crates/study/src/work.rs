@@ -76,6 +76,13 @@ impl Work {
         }
     }
 
+    /// Iterations that cost twenty times as much as all else of this work, and a million for short runs.
+    pub(crate) fn most_iterations(&self) -> u64 {
+        const DEAR: f64 = 20.0;
+        const ALWAYS: f64 = 1e6;
+        (DEAR * self.seconds() * 1e9 / cost::ITERATION + ALWAYS) as u64
+    }
+
     /// What it should cost, s: an estimate that is good for ratios.
     #[must_use]
     pub fn seconds(&self) -> f64 {

@@ -191,6 +191,7 @@ fn what_looks_odd_but_is_right_is_accepted() {
         "time.theta=1",
         "beam.table.elements=40",
         "block.rocker.tilt=0 deg",
+        "block.rocker.height=3 cm",
         "beam.table.damping_ratio.ratio=0",
     ] {
         let output = teeter(&folder, &["check", "scene.toml", "--set", set]);
@@ -198,10 +199,9 @@ fn what_looks_odd_but_is_right_is_accepted() {
         assert!(!stderr(&output).contains("warning"), "{set}: {}", stderr(&output));
     }
     // Right too, but not what one would trust: told, and accepted.
-    for set in ["beam.table.elements=1", "block.rocker.height=3 cm"] {
-        let output = teeter(&folder, &["check", "scene.toml", "--set", set]);
-        assert!(output.status.success(), "{set}: {}", stderr(&output));
-        assert_eq!(stderr(&output).matches("warning").count(), 1, "{set}: {}", stderr(&output));
-        assert!(stderr(&output).contains("under-resolved"), "{set}: {}", stderr(&output));
-    }
+    let set = "beam.table.elements=1";
+    let output = teeter(&folder, &["check", "scene.toml", "--set", set]);
+    assert!(output.status.success(), "{set}: {}", stderr(&output));
+    assert_eq!(stderr(&output).matches("warning").count(), 1, "{set}: {}", stderr(&output));
+    assert!(stderr(&output).contains("under-resolved"), "{set}: {}", stderr(&output));
 }

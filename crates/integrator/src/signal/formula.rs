@@ -107,6 +107,15 @@ impl Formula {
         }
     }
 
+    /// How long it takes from 0 to 1, s: of a ramp its duration, `None` of all else.
+    #[must_use]
+    pub fn rises_in(&self) -> Option<f64> {
+        match self.shape {
+            Shape::Ramp { duration } => Some(duration),
+            Shape::Constant | Shape::Sine { .. } | Shape::Ricker { .. } => None,
+        }
+    }
+
     /// Whether it is 0 from time 0 to `end` (s).
     #[must_use]
     pub fn is_silent_until(&self, end: f64) -> bool {

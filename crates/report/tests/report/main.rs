@@ -7,3 +7,4 @@ mod meetings;
 mod memory;
 mod page;
 mod sections;
+mod swings;

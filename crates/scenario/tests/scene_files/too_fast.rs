@@ -158,3 +158,86 @@ fn a_table_with_numbers_beyond_the_limits_of_keys_is_refused_by_its_signal() {
         assert!(first.path == "signal.s.file" && first.rule.contains("the limit of numbers"), "{rows:?}: {first}");
     }
 }
+
+#[test]
+fn a_displacement_that_moves_faster_than_steps_show_is_warned_of() {
+    let moving = |by: &str, signal: &str| {
+        let text = BLOCK.replace("[ground]", &format!("[ground]\nmotion = {{ {by}, signal = 's' }}"));
+        format!("{text}[signal.s]\n{signal}")
+    };
+    let up = "displacement = ['0 m', '1 mm']";
+    let ramp = |lasts: &str| format!("shape = 'ramp'\nstart = '50.2 ms'\nduration = '{lasts}'\n");
+    let warned = |text: &str, file: &str| {
+        let found = resolved(text, file).warnings;
+        found.into_iter().map(|warning| (warning.path, warning.rule)).collect::<Vec<_>>()
+    };
+    // The attack's: the block is launched by 10 m/s, of which steps of 1 ms show 1 m/s.
+    let found = warned(&moving(up, &ramp("0.1 ms")), "");
+    let [(path, rule)] = found.as_slice() else { panic!("{found:?}") };
+    assert!(path == "ground.motion.displacement" && rule.contains("0.10 steps"), "{path}: {rule}");
+    assert_eq!(warned(&moving(up, &ramp("5 ms")), ""), []);
+    // As a velocity, it is an acceleration that is short: the velocity is right.
+    assert_eq!(warned(&moving("velocity = ['0 m/s', '1 m/s']", &ramp("0.1 ms")), ""), []);
+    let found = warned(&moving("angle = '1 deg'", &ramp("1 ms")), "");
+    assert!(matches!(found.as_slice(), [(path, _)] if path == "ground.motion.angle"), "{found:?}");
+    // A monotone table, whose values have no peak.
+    let file = "shape = 'table'\nfile = 's.csv'\n";
+    let steep = table([(0.0, 0.0), (0.0502, 0.0), (0.0503, 1.0), (0.5, 1.0)].into_iter());
+    let found = warned(&moving(up, file), &steep);
+    assert!(
+        matches!(found.as_slice(), [(path, rule)] if path == "ground.motion.displacement" && rule.contains("0.10 steps")),
+        "{found:?}"
+    );
+    // Fine rows of what is slow are well.
+    let slow = table((0..=5000).map(|i| 1e-4 * f64::from(i)).map(|t| (t, 1.0 - (20.0 * t).cos())));
+    assert_eq!(warned(&moving(up, file), &slow), []);
+}
+
+#[test]
+fn what_a_step_keeps_of_a_signal_is_told_by_its_use() {
+    let fast = "[signal.s]\nshape = 'harmonic'\nfrequency = '1000 Hz'\n";
+    let moving = BLOCK.replace("[ground]", "[ground]\nmotion = { velocity = ['1 m/s', '0 m/s'], signal = 's' }");
+    let rule = |text: String| resolved(&text, "").warnings.remove(0).rule;
+    let motion = rule(format!("{moving}{fast}"));
+    assert!(motion.contains("the place stays right") && !motion.contains("impulse"), "{motion}");
+    let load = rule(format!("{BLOCK}{PUSH}shape = 'harmonic'\nfrequency = '1000 Hz'\n"));
+    assert!(load.contains("no impulse is lost") && !load.contains("place"), "{load}");
+}
+
+#[test]
+fn a_beam_whose_supports_begin_fast_is_told_of() {
+    let scene = |motion: &str| {
+        format!(
+            "[time]\nend = '0.5 s'\nstep = '100 us'\n[material.m]\ndensity = '2700 kg/m^3'\nyoungs_modulus = '69 GPa'\n\
+             [beam.t]\nmaterial = 'm'\nspan = '36 cm'\nwidth = '3 cm'\nthickness = '4 mm'\nelements = 10\nstart = 'undeformed'\nmotion = {{ {motion} }}\n"
+        )
+    };
+    let warned = |motion: &str, signal: &str| {
+        let found = resolved(&format!("{}{signal}", scene(motion)), "").warnings;
+        found.into_iter().map(|warning| warning.path).collect::<Vec<_>>()
+    };
+    let swing = |phase: &str| format!("[signal.s]\nshape = 'harmonic'\nfrequency = '5 Hz'\nphase = '{phase}'\n");
+    let place = "displacement = ['0 m', '1 cm'], signal = 's'";
+    assert_eq!(warned(place, &swing("0 deg")), ["beam.t.motion"]);
+    assert_eq!(warned(place, &swing("90 deg")), Vec::<String>::new());
+    assert_eq!(warned("acceleration = ['0 m/s^2', '1 m/s^2'], signal = 's'", &swing("0 deg")), Vec::<String>::new());
+    // The same all the time is no shaking.
+    assert_eq!(warned("velocity = ['0 m/s', '1 m/s']", ""), Vec::<String>::new());
+}
+
+#[test]
+fn another_scheme_is_tried_and_a_scene_written_out_without_a_word_about_keys() {
+    let load = |text: &str, sets: &[(&str, &str)]| {
+        let sets: Vec<_> = sets.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
+        load_with(text.as_bytes(), "scene.toml", "scene", &sets, &mut |_| Ok(Vec::new())).unwrap()
+    };
+    let closed = ("time.scheme", "moreau-jean-closed");
+    let given = BLOCK.replace("step = '1 ms'", "step = '1 ms'\nactivation_gamma = 0.5");
+    let tried = load(&given, &[closed]);
+    assert_eq!(tried.warnings, []);
+    // Asked for together, the key is meant to do something.
+    let both = load(BLOCK, &[closed, ("time.activation_gamma", "0.4")]);
+    assert!(matches!(both.warnings.as_slice(), [one] if one.path == "time.activation_gamma"), "{:?}", both.warnings);
+    let written = load(BLOCK, &[closed]).document.to_toml();
+    assert_eq!(load(&written, &[]).warnings, []);
+}

@@ -53,6 +53,31 @@ fn corners_that_have_to_slide_by_the_last_digits_are_solved_at_once() {
     }
 }
 
+/// A block that rests on turning ground, a step of a run: two states of its corners fit to rounding, and only one of them to the last digits.
+#[test]
+fn of_states_that_fit_to_rounding_the_one_that_fits_to_the_last_digits_is_found() {
+    let h = [
+        [34.293554807234365, -20.576131687242707, -6.858710562414172, -20.576133682405832],
+        [-20.57613168724271, 34.293550816908315, 20.57612969207978, 34.29355281207125],
+        [-6.858710562414176, 20.57612969207978, 34.293550816908315, 20.57613168724271],
+        [-20.576133682405832, 34.29355281207124, 20.576131687242707, 34.293554807234365],
+    ];
+    let block = |i: usize, j: usize| Block::<2>::from_fn(|a, b| h[2 * i + a][2 * j + b]);
+    let q = vec![
+        Vector::<2>::new(-0.0009810004033611298, 9.15634804776408e-12),
+        Vector::<2>::new(-0.0009809995965931006, 9.158708154101216e-12),
+    ];
+    let h = vec![block(0, 0), block(0, 1), block(1, 0), block(1, 1)];
+    let case = Case { name: "turning ground", h, q, mu: vec![5.0; 2] };
+    let problem = case.problem().unwrap();
+    for tolerance in [1e-12, 1e-13, 1e-14] {
+        let mut p = vec![Vector::zeros(); 2];
+        let outcome = Auto::<2>::new().solve(&problem, &Stop { tolerance, ..Stop::default() }, &mut p);
+        // It stalled after 5898 at 5e-13.
+        assert!(outcome.converged() && outcome.iterations < 100, "{tolerance:e}: {outcome:?}");
+    }
+}
+
 /// A random problem of four or five contacts, always the same for a seed.
 fn drawn(seed: u64) -> Case<2> {
     let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;

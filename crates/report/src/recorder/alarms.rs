@@ -1,0 +1,206 @@
+//! What a recorder warns of while a run goes on, and at its end.
+
+use super::{Kept, Recorder};
+use crate::resolution::{COARSE, COARSE_ONCE};
+use teeter_integrator::{State, StepReport};
+use teeter_scenario::simulation::{BlockPlace, Layout};
+use teeter_scenario::{FAR_TURN, deflection};
+
+/// A change of the modified energy over this part of the kinetic and elastic energy is a warning.
+const FAR_FROM_CONSERVED: f64 = 0.02;
+
+/// A penetration over this part of the shortest side of a block is a warning.
+const DEEP: f64 = 0.1;
+
+/// What the identity of energy leaves over, as a part of the scene's scale, is rounding up to here: scenes of all kinds have 1e-15 to 1e-10.
+const UNACCOUNTED: f64 = 1e-8;
+
+/// Who meets whom is looked at again when a body may have moved by this part of the shortest side of a block.
+const LOOK_AFTER: f64 = 0.1;
+
+/// No corner of a block is faster than this past ground or supports, m/s.
+fn fastest(layout: &Layout, state: &State) -> f64 {
+    let blocks = layout.blocks.iter().map(|place| {
+        let [x, y, spin] = [0, 1, 2].map(|k| state.v[place.range.start + k].abs());
+        x + y + place.reach * spin
+    });
+    let supports = layout.beams.iter().filter_map(|place| place.supports.clone());
+    let supports = supports.map(|range| state.v[range].iter().map(|v| v.abs()).sum());
+    let ground = layout.ground.iter().map(|range| {
+        let far = layout.blocks.iter().map(|place| state.q[place.range.start].hypot(state.q[place.range.start + 1]));
+        let v = &state.v[range.clone()];
+        v[0].abs() + v[1].abs() + v[2].abs() * far.fold(0.0, f64::max)
+    });
+    blocks.fold(0.0, f64::max) + supports.chain(ground).fold(0.0, f64::max)
+}
+
+impl Recorder<'_> {
+    /// Warns, once, of a block that turns far in a step.
+    pub(super) fn warn_of_turns(&mut self, state: &State) {
+        let fastest = FAR_TURN / state.dt;
+        let turning = |place: &&BlockPlace| state.v[place.range.start + 2].abs() >= fastest;
+        let Some(place) = self.layout.blocks.iter().find(turning) else { return };
+        let warnings = &mut self.kept.record.warnings;
+        let known = warnings.warnings().iter().any(|warning| warning.code == "far-turn");
+        let spin = state.v[place.range.start + 2];
+        let told = warnings.enter("far-turn", Some(state.t), || {
+            format!(
+                "`{}` turns by {:.2} rad in the step to t = {} s, and is no longer followed from {FAR_TURN} on; take a step of at most {:.0e} s",
+                place.name,
+                spin.abs() * state.dt,
+                state.t,
+                FAR_TURN / spin.abs()
+            )
+        });
+        if let (Some(text), false) = (told, known) {
+            (self.tell)(&text);
+        }
+    }
+
+    /// Warns where the model lacks what the run may need after all.
+    pub(super) fn warn_of_limits(&mut self, state: &State) {
+        let Some(limits) = self.layout.required.limits.filter(|limits| !limits.hold(state)) else { return };
+        let told = self.kept.record.warnings.enter("model-limits", Some(state.t), || {
+            format!(
+                "at t = {} s the energy is {:.6} J and the deepest penetration so far {:.1e} m, over the {:.6} J or the {:.1e} m up to which \
+                 the upper corners of blocks can't touch, and they are not looked at; --model full has them",
+                state.t,
+                state.ledger.current.total(),
+                state.tally.max_penetration,
+                limits.energy,
+                limits.penetration
+            )
+        });
+        if let Some(text) = told {
+            (self.tell)(&text);
+        }
+    }
+
+    /// Looks who meets whom between rows, too, as soon as something may have come far enough to matter: nothing passes through a body unseen.
+    pub(super) fn warn_of_meetings(&mut self, step: &StepReport<'_, 2>, state: &State) {
+        let Kept { travelled, .. } = &mut self.kept;
+        *travelled += (step.t_end - step.t_start) * fastest(self.layout, state);
+        let least = self.layout.blocks.iter().map(|place| place.side).fold(f64::INFINITY, f64::min);
+        if *travelled > LOOK_AFTER * least {
+            self.look_who_meets(state);
+        }
+    }
+
+    fn look_who_meets(&mut self, state: &State) {
+        let Self { layout, shapes, kept: Kept { met, record, travelled, .. }, tell, .. } = self;
+        *travelled = 0.0;
+        met.look(shapes, layout, state, &mut record.warnings, tell);
+    }
+
+    /// Warns of what a row shows to be outside the model; told once each.
+    pub(super) fn warn_of_row(&mut self, state: &State) {
+        self.look_who_meets(state);
+        let (ledger, warnings) = (&state.ledger, &mut self.kept.record.warnings);
+        let mut first = |code, text: &dyn Fn() -> String| {
+            let known = warnings.warnings().iter().any(|warning| warning.code == code);
+            if let (Some(text), false) = (warnings.enter(code, Some(state.t), text), known) {
+                (self.tell)(&text);
+            }
+        };
+        for place in &self.layout.beams {
+            let q = &state.q[place.range.clone()];
+            let nodal = place.basis.as_ref().map(|basis| basis.dofs(q));
+            if let Some(large) = deflection::large(&place.beam, nodal.as_deref().unwrap_or(q)) {
+                first("large-deflection", &|| format!("`{}` deflects far at t = {} s: {large}", place.name, state.t));
+            }
+        }
+        let least = self.layout.blocks.iter().map(|place| place.side).fold(f64::INFINITY, f64::min);
+        let depth = state.tally.max_penetration;
+        if depth > DEEP * least {
+            first("deep-penetration", &|| {
+                format!(
+                    "up to t = {} s a corner was {depth:.2e} m deep in a surface, more than {:.0} % of a block's shorter side: that is no contact any \
+                     more; the step is too long for what moves, or a corner came in from the side, past the end of a beam",
+                    state.t,
+                    100.0 * DEEP
+                )
+            });
+        }
+        let left = ledger.relative_residual();
+        if left > UNACCOUNTED {
+            first("energy-account", &|| {
+                format!(
+                    "up to t = {} s the energy of a step is off by {left:.1e} of the scene's scale, far more than rounding: numbers of very \
+                     different size act together, and the motion is not to be trusted; check loads, signals and masses, and their units",
+                    state.t
+                )
+            });
+        }
+        // With theta = 1/2 nothing dissipates but that what is conserved is a modified energy: `numerical` is minus its change.
+        let stirred = ledger.current.kinetic + ledger.current.elastic;
+        let share = if stirred > 0.0 { ledger.sum.numerical.abs() / stirred } else { 0.0 };
+        if share > FAR_FROM_CONSERVED && self.layout.beams.iter().any(|place| place.beam.is_stretched()) {
+            first("stretching", &|| {
+                format!(
+                    "the step is too long for the vibrations that stretch the beam: at t = {} s the energy that it conserves is off \
+                     by {:.1} % of what moves and bends, and so is the axial force it goes by; take a shorter step",
+                    state.t,
+                    100.0 * share
+                )
+            });
+        }
+    }
+
+    /// Warns where the steps were too long for the motion that the whole run showed.
+    pub(super) fn warn_of_resolution(&mut self, state: &State) {
+        let Self { layout, bodies, watch, kept: Kept { resolution, swings, record, .. }, tell, .. } = self;
+        if let Some(coarse) = resolution.coarse(bodies, state.dt) {
+            let name = layout.blocks.get(coarse.block).map_or("a block", |place| &place.name);
+            let (what, limit) = if coarse.once {
+                ("at one impact that is as much as", COARSE_ONCE)
+            } else {
+                ("added up and carried on that is", COARSE)
+            };
+            let told = record.warnings.enter("under-resolved", None, || {
+                format!(
+                    "steps of {:e} s are too long for the impacts of `{name}`: a contact closes up to a step late, and {what} {:.1} % of its motion; above \
+                     {:.1} % motions are likely off by more than 10 %; take a step of at most {:.0e} s, and let `teeter tradeoff` measure what accuracy it \
+                     gives",
+                    state.dt,
+                    100.0 * coarse.part,
+                    100.0 * limit,
+                    coarse.step
+                )
+            });
+            told.into_iter().for_each(|text| tell(&text));
+        }
+        if let Some(lost) = swings.lost(watch, state.dt) {
+            let name = layout.beams.get(lost.beam).map_or("a beam", |place| &place.name);
+            let rest = if watch.conserves() { "" } else { ", or theta = 0.5, which damps nothing" };
+            let told = record.warnings.enter("under-resolved-swings", None, || {
+                format!(
+                    "steps of {:e} s are too long for the swings of `{name}`: at {:.4} Hz they come late or die out by as much as {:.0} % of its largest \
+                     deflection; take a step of at most {:.0e} s{rest}",
+                    state.dt,
+                    lost.frequency,
+                    100.0 * lost.part,
+                    lost.step
+                )
+            });
+            told.into_iter().for_each(|text| tell(&text));
+        }
+    }
+
+    pub(super) fn warn_of(&mut self, step: &StepReport<'_, 2>) {
+        let Some(outcome) = step.outcome.filter(|outcome| !outcome.converged()) else { return };
+        let told = self.kept.record.warnings.enter("unconverged", Some(step.t_end), || {
+            format!(
+                "the contact problem of the step to t = {} s ({} contacts) was not solved: {} after {} iterations of {}, residual {:.1e}",
+                step.t_end,
+                step.contacts.len(),
+                outcome.status,
+                outcome.iterations,
+                outcome.used,
+                outcome.residual.global
+            )
+        });
+        if let Some(text) = told {
+            (self.tell)(&text);
+        }
+    }
+}
