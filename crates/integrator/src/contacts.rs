@@ -1,89 +1,13 @@
 //! The active contacts of a step: their rows, their problem, and what became of them.
 
+use crate::contact::{Contact, STILL, tangential};
 use crate::mismatch::{Identity, length};
 use crate::model::Model;
 use crate::spring::SpringStep;
 use crate::subsystem::Span;
-use crate::{Compliance, Coupling, ImpactLaw, Mismatch, PairLaw, PartRows, Rows, Vector, WarmStart};
+use crate::{Compliance, Coupling, Mismatch, PartRows, Rows, Vector, WarmStart};
 use teeter_contact::{Block, ContactProblem, Delassus, ProblemError};
-use teeter_detect::{Anchor, Candidate, ContactId, Frame};
-
-/// What a contact does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ContactState {
-    /// No impulse.
-    Open,
-    /// No tangential velocity.
-    Stick,
-    /// Slides, friction at its limit.
-    Slip,
-}
-
-impl ContactState {
-    /// The word for it in tables.
-    #[must_use]
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Open => "open",
-            Self::Stick => "stick",
-            Self::Slip => "slip",
-        }
-    }
-}
-
-/// A contact that was active in a step, in its frame (normal first), with the step's Jacobian.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Contact<const D: usize> {
-    /// Who it is.
-    pub id: ContactId,
-    /// Where it acts on either side, as its rows were taken.
-    pub sides: [Anchor<D>; 2],
-    /// Its frame as its rows were taken, a direction a row.
-    pub frame: Frame<D>,
-    /// Gap where the activation was decided, m; of a contact with duration, the gap of its spring at the start of the step.
-    pub gap: f64,
-    /// Impulse on side 0, N·s.
-    pub p: Vector<D>,
-    /// Relative velocity before the step, m/s.
-    pub u_before: Vector<D>,
-    /// Relative velocity after the step, m/s.
-    pub u_after: Vector<D>,
-    /// The velocity that the law holds for, U¹ + s, m/s: after the step where the law has no shift.
-    pub u_law: Vector<D>,
-    /// Whether it was active in the step before, too.
-    pub persisting: bool,
-    /// Of a contact with duration: the gap of its spring at the end of the step, m.
-    pub gap_after: Option<f64>,
-    /// Speed below which it counts as zero, m/s: a small part of the fastest of the step's contact problem.
-    pub still: f64,
-}
-
-/// A tangential speed below this part of the problem's largest |q| is sticking: above the default solver tolerance's
-/// error, below any slide worth the name.
-const STILL: f64 = 1e-8;
-
-impl<const D: usize> Contact<D> {
-    /// What the contact does in this step.
-    #[must_use]
-    pub fn state(&self) -> ContactState {
-        if self.p[0] <= 0.0 {
-            ContactState::Open
-        } else if tangential(&self.u_law).norm() <= self.still {
-            ContactState::Stick
-        } else {
-            ContactState::Slip
-        }
-    }
-}
-
-/// The tangential part of a vector in a contact's frame: its normal component set to zero.
-#[must_use]
-pub fn tangential<const D: usize>(u: &Vector<D>) -> Vector<D> {
-    let mut t = *u;
-    t[0] = 0.0;
-    t
-}
+use teeter_detect::Candidate;
 
 /// Why contacts can't be solved.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -230,7 +154,7 @@ impl<const D: usize> ContactSet<D> {
         let law = model.law(candidate.id.pair())?;
         self.enter(model, q, candidate, warm, law.friction)?;
         if let Some(unhandled) = self.unhandled.last_mut() {
-            *unhandled = beyond_standard(&law);
+            *unhandled = law.beyond_standard();
         }
         Ok(())
     }
@@ -594,18 +518,5 @@ impl<const D: usize> ContactSet<D> {
                 Rule::Shifted | Rule::Energetic => {}
             }
         }
-    }
-}
-
-/// What a law has beyond Signorini's and Coulomb's.
-fn beyond_standard(law: &PairLaw) -> Option<&'static str> {
-    match law.impact {
-        ImpactLaw::Poisson => Some("Poisson's impact law"),
-        ImpactLaw::Energetic => Some("the energetic impact law"),
-        ImpactLaw::KelvinVoigt { .. } => Some("Kelvin and Voigt's contact law"),
-        ImpactLaw::HuntCrossley { .. } => Some("Hunt and Crossley's contact law"),
-        ImpactLaw::Newton if law.restitution > 0.0 => Some("a coefficient of restitution"),
-        ImpactLaw::Newton if law.tangential_restitution > 0.0 => Some("a tangential coefficient of restitution"),
-        ImpactLaw::Newton => None,
     }
 }

@@ -11,7 +11,7 @@
 //! its weight softens. ω² < 0 is an equilibrium that doesn't last. A vibration that would need more friction than there is, or a contact to
 //! pull, is of a larger size than these modes know.
 
-use crate::contacts::tangential;
+use crate::contact::tangential;
 use crate::mismatch::length;
 use crate::{Mismatch, Model, Rows, Vector, Weights};
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};

@@ -20,7 +20,7 @@
 //! doesn't have: τ grows until it hardly matters, then a round is one of Newton's. Forces are those at q in each round; K only
 //! leads there, and may be approximate.
 
-use crate::contacts::tangential;
+use crate::contact::tangential;
 use crate::mismatch::length;
 use crate::{ContactError, FactorError, Mismatch, Model, Vector, WarmStart, Weights, Workspace};
 use teeter_detect::{Anchor, Candidate, ContactId, Frame, Geometry};

@@ -15,7 +15,8 @@ mod rows;
 mod scaling;
 
 use crate::Vector;
-use crate::contacts::{ContactSet, Rule, tangential};
+use crate::contact::tangential;
+use crate::contacts::{ContactSet, Rule};
 use rows::Row;
 use scaling::WORKLESS;
 use teeter_contact::{Block, ContactSolver, Outcome, ProblemError, Status, Stop};

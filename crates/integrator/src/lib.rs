@@ -53,6 +53,7 @@ mod clock;
 mod closings;
 #[cfg(feature = "conformance")]
 pub mod conformance;
+mod contact;
 mod contacts;
 mod coupled_modes;
 mod equilibrium;
@@ -81,7 +82,8 @@ pub use beam::forces::{BeamForces, SpanLoads};
 pub use beam::{BeamBody, BeamSurface, MovingForce, SignalLoad, WBackend};
 pub use blocks::{Block, BlockLoad, Blocks};
 pub use closings::{Closing, ClosingMonitor, Opening};
-pub use contacts::{Contact, ContactError, ContactSet, ContactState, tangential};
+pub use contact::{Contact, ContactState, tangential};
+pub use contacts::{ContactError, ContactSet};
 pub use coupled_modes::{CoupledModes, CoupledModesError, MOST_VELOCITIES, coupled_modes};
 pub use equilibrium::{Equilibrium, EquilibriumError, SettlingLimits, settle};
 pub use ground::Ground;

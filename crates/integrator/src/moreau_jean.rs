@@ -9,7 +9,8 @@
 //! A contact is active when the gap at the predicted position q⁰ + γh v⁰ is at most `gap_tolerance`; J is taken there.
 //! The law is Signorini's at velocity level with Newton's restitution, and Coulomb's.
 
-use crate::contacts::{Rule, tangential};
+use crate::contact::tangential;
+use crate::contacts::Rule;
 use crate::laws::is_impact;
 use crate::spring::{SpringStep, Springs};
 use crate::theta_step::{ThetaStep, weights};

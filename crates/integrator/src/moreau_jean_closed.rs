@@ -21,7 +21,8 @@
 //! s_t = U_t⁰ or no friction at all, whichever ends nearer to rest; with both Ū·p ≤ 0. The problem is solved once more. So no contact
 //! gives energy in any step. (But for closed contacts with what moves as prescribed: there Ū is relative, and they are left as they are.)
 
-use crate::contacts::{Rule, tangential};
+use crate::contact::tangential;
+use crate::contacts::Rule;
 use crate::laws::is_impact;
 use crate::spring::SpringStep;
 use crate::theta_step::{ThetaStep, weights};

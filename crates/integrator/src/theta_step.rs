@@ -1,6 +1,6 @@
 //! The θ step that the schemes share: free velocities, the end of the step, the account of its forces.
 
-use crate::contacts::tangential;
+use crate::contact::tangential;
 use crate::mismatch::Identity;
 use crate::subsystem::dot;
 use crate::{Energy, Mismatch, Model, Size, State, StepEnergy, StepError, StepReport, Weights, Workspace};

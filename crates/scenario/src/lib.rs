@@ -46,6 +46,7 @@ mod flexibility;
 mod idle;
 mod judge;
 pub mod keys;
+mod layout;
 mod left_out;
 pub mod measure;
 mod meeting;

@@ -8,17 +8,18 @@ use crate::placement::{PlacementError, Standing, block_pose};
 use crate::required::{AtRest, Extent, Required};
 use crate::scene::{Placement, Scene, SchemeName, Support, Time};
 use crate::settling::{Start, StaticStart};
-use std::ops::Range;
 use std::sync::Arc;
-use teeter_beam::{Beam, BeamError, Deflection, MatrixWeights, ModalBasis, ModalError, ShapeAt, SpanLoad};
+use teeter_beam::{BeamError, ModalError};
 use teeter_contact::ContactSolver;
 use teeter_detect::{BodyId, PointDetector, PointPair};
 use teeter_integrator::{
-    BeamForces, Block, Ended, Mismatch, Model, ModelBuilder, ModelError, MoreauJean, MoreauJeanClosed,
-    MoreauJeanClosedSettings, MoreauJeanSettings, Observer, Opening, Plan, RunError, Scheme, SettingError,
-    SolverSettings, State, StateError, Subsystem, WorkCounts, Workspace, run,
+    Block, Ended, Mismatch, Model, ModelBuilder, ModelError, MoreauJean, MoreauJeanClosed, MoreauJeanClosedSettings,
+    MoreauJeanSettings, Observer, Plan, RunError, Scheme, SettingError, SolverSettings, State, StateError, Subsystem,
+    WorkCounts, Workspace, run,
 };
 use teeter_rigid::{MassProperties, Rectangle, RigidError};
+
+pub use crate::layout::{BeamPlace, BlockPlace, Layout, PairPlace};
 
 /// Why a scene can't be made into a model.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -81,131 +82,6 @@ pub enum BuildError {
     },
 }
 
-/// Where a block is in the state.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BlockPlace {
-    /// Its name.
-    pub name: String,
-    /// Its coordinates X, Y, φ; its velocities have the same places.
-    pub range: Range<usize>,
-    /// The shorter of its sides, m.
-    pub side: f64,
-    /// From its mass centre to a corner, m.
-    pub reach: f64,
-    /// A swing up to this angle, at which no corner is off its surface by more than counts as open, is none, rad.
-    pub still: f64,
-    /// What carries it: its rocking is measured from there.
-    pub carrier: Carrier,
-}
-
-/// Where a beam is in the state.
-#[derive(Debug, Clone)]
-pub struct BeamPlace {
-    /// Its name.
-    pub name: String,
-    /// The beam.
-    pub beam: Arc<Beam>,
-    /// The shapes in which it moves: its coordinates are theirs. `None`: its coordinates are its dofs.
-    pub basis: Option<Arc<ModalBasis>>,
-    /// Its coordinates; its velocities have the same places.
-    pub range: Range<usize>,
-    /// The displacements x and y of its supports, where they move; deflections are relative to them.
-    pub supports: Option<Range<usize>>,
-    /// Places whose deflection is written, m from its left end.
-    pub probes: Vec<f64>,
-    /// Its number as a body.
-    pub body: BodyId,
-    /// Where it starts in equilibrium: the forces of contacts that press on it there.
-    pub pressed: Option<Vec<SpanLoad>>,
-}
-
-impl BeamPlace {
-    /// How many velocities it has that no support holds.
-    #[must_use]
-    pub fn free_dofs(&self) -> usize {
-        self.basis.as_ref().map_or_else(|| self.beam.free_dofs(), |basis| basis.len())
-    }
-
-    /// Midspan, and the middle between two supports, as midspan may be one, m from its left end.
-    #[must_use]
-    pub fn middles(&self) -> Vec<f64> {
-        let spec = self.beam.spec();
-        let mut stops: Vec<f64> = spec.inner_supports.iter().map(|(x, _)| *x).chain([0.0, spec.span]).collect();
-        stops.sort_by(f64::total_cmp);
-        let mut places = vec![0.5 * spec.span];
-        for stops in stops.windows(2) {
-            let x = 0.5 * (stops[0] + stops[1]);
-            if !places.contains(&x) {
-                places.push(x);
-            }
-        }
-        places
-    }
-
-    /// Its first circular frequency, rad/s; `None` where it can move rigidly, or none is known.
-    #[must_use]
-    pub fn first_frequency(&self) -> Option<f64> {
-        if let Some(basis) = &self.basis {
-            return basis.circular_frequencies().first().copied().filter(|omega| *omega > 0.0);
-        }
-        // Supports that hold it make its stiffness definite.
-        let statics = MatrixWeights { mass: 0.0, damping: 0.0, stiffness: 1.0 };
-        self.beam.factor(statics).ok()?;
-        crate::stability::first_frequency(self.beam.spec()).map(|(omega, _)| omega)
-    }
-
-    /// The deflection at a place of the beam for its own coordinates `q` (its rate for velocities); allocates nothing.
-    #[must_use]
-    pub fn deflection(&self, at: &ShapeAt, q: &[f64]) -> Deflection {
-        let Some(basis) = &self.basis else { return at.deflection(q) };
-        let mut sum = Deflection { w: 0.0, slope: 0.0 };
-        for (index, coordinate) in q.iter().enumerate() {
-            let shape = at.deflection(basis.shape(index));
-            sum.w += coordinate * shape.w;
-            sum.slope += coordinate * shape.slope;
-        }
-        sum
-    }
-
-    /// The deflection at x (m, along the beam) for its own coordinates `q`; `None` off the beam.
-    #[must_use]
-    pub fn deflection_at(&self, q: &[f64], x: f64) -> Option<Deflection> {
-        Some(self.deflection(&self.beam.shape_at(x)?, q))
-    }
-
-    /// The dofs of the beam for its own coordinates `q`.
-    #[must_use]
-    pub fn dofs(&self, q: &[f64]) -> Vec<f64> {
-        self.basis.as_ref().map_or_else(|| q.to_vec(), |basis| basis.dofs(q))
-    }
-}
-
-/// The names of a contact pair.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PairPlace {
-    /// The contact's name.
-    pub name: String,
-    /// The bodies, in the order of the file.
-    pub between: [String; 2],
-}
-
-/// Who is where in model and state.
-#[derive(Debug, Clone, Default)]
-pub struct Layout {
-    /// The blocks, in the order of the file.
-    pub blocks: Vec<BlockPlace>,
-    /// The beams, in the order of the file.
-    pub beams: Vec<BeamPlace>,
-    /// The pairs, by their number in the model.
-    pub pairs: Vec<PairPlace>,
-    /// The coordinates of ground that moves: the place of its origin, x and y, and its slope.
-    pub ground: Option<Range<usize>>,
-    /// When the contacts of a pair count as truly open, by its number in the model.
-    pub openings: Vec<Opening>,
-    /// What the model does without.
-    pub required: Required,
-}
-
 /// A scene ready to run.
 pub struct Simulation {
     /// The model.
@@ -225,25 +101,6 @@ pub struct Simulation {
 impl std::fmt::Debug for Simulation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Simulation").field("layout", &self.layout).field("plan", &self.plan).finish_non_exhaustive()
-    }
-}
-
-impl Layout {
-    /// What watches the section forces of a beam, by its number, in a run of `scene`.
-    #[must_use]
-    pub fn beam_forces(&self, scene: &Scene, number: usize) -> BeamForces {
-        let place = &self.beams[number];
-        let mut forces = BeamForces::new(&place.beam, place.body, place.range.clone(), scene.time.theta);
-        if let Some(supports) = &place.supports {
-            forces = forces.with_supports(supports.start + 1);
-        }
-        if let Some(basis) = &place.basis {
-            forces = forces.in_modes(Arc::clone(basis));
-        }
-        match driven::placed_loads(scene, number, &place.beam) {
-            Some(loads) => forces.with_loads(Box::new(loads)),
-            None => forces,
-        }
     }
 }
 

@@ -2,7 +2,8 @@
 
 use super::{Laws, unsolved, with_iterations};
 use crate::Vector;
-use crate::contacts::{ContactSet, Rule, tangential};
+use crate::contact::tangential;
+use crate::contacts::{ContactSet, Rule};
 use crate::spring::SpringStep;
 use teeter_contact::{ContactProblem, ContactSolver, Delassus, Outcome, ProblemError, Stop};
 
