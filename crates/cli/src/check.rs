@@ -43,7 +43,7 @@ pub(crate) fn check(options: &Options) -> Exit {
     };
     let text = told(&resolved, &Outlook::new(&resolved, &simulation));
     let exit = print_all(&text);
-    for finding in resolved.warnings.iter().chain(&resolved.notes) {
+    for finding in resolved.warnings.iter().chain(&resolved.foreseen).chain(&resolved.notes) {
         console.note(&format!("\n{}", presenter.one(finding)));
     }
     exit

@@ -49,7 +49,22 @@ A scene with a warning runs all the same. `teeter check` and `teeter run` warn o
   for a block on a beam the beam's first period as well;
 - an `end` that is no multiple of the step: the run goes on to the first step past it;
 - a `gap_tolerance` over 1e-6 of the shortest side of a block, as blocks hover that high (over 1e-3 it is refused), and a `tolerance` of the solver over 1e-4;
-- `theta` below 0.5, with the largest stable step.
+- `theta` below 0.5, with the largest stable step;
+- signals, and displacements of prescribed motions, that are faster than the step; supports, or ground under a block at rest, that begin with a velocity
+  ([signals.md](signals.md));
+- a mesh, or modes, that lack flexibility where a block or a load presses; a key that has no effect.
+
+What a run measures it says at its end, on the terminal, on the page and among the `warnings` of `summary.json`:
+
+| code | what it says |
+|---|---|
+| `under-resolved`, `under-resolved-swings`, `under-resolved-flight` | steps too long for the impacts of a block, for the swings of a beam, for a flight with θ other than ½: motions are likely off by more than 10 % ([resolution.md](resolution.md)) |
+| `unconverged` | steps whose contact problem was not solved to tolerance |
+| `energy-made` | contacts made 1 % or more of the energy scale, or of the energy lost ([schemes.md](schemes.md)) |
+| `energy-account` | the identity of energy is off by more than rounding |
+| `deep-penetration`, `far-turn` | corners over a tenth of a block's shorter side deep; turns of more than 0.1 rad a step |
+| `passes-through`, `between-corners`, `past-the-end` | bodies inside each other where no contact is modelled ([impacts.md](impacts.md)) |
+| `large-deflection`, `stretching` | a beam out of linear theory; a step too long for its stretching |
 ";
 
 /// The page.

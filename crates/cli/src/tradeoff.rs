@@ -8,7 +8,7 @@ use crate::render::Presenter;
 use crate::run::{Exit, named, read};
 use std::error::Error;
 use std::path::{Path, PathBuf};
-use teeter_report::Results;
+use teeter_report::{Reserved, Results};
 use teeter_scenario::resolve::Resolved;
 use teeter_scenario::simulation::Simulation;
 use teeter_study::{Failure, Source, Tradeoff, runner, write};
@@ -49,13 +49,14 @@ pub(crate) fn tradeoff(options: &Options) -> Exit {
         return bad_input(&presenter.one(&error.diagnostic(&resolved.document)));
     }
     let folder = options.out.clone().unwrap_or_else(|| Path::new("runs").join(format!("{stem}-tradeoff")));
-    // An earlier study stays until there is a new one.
+    // An earlier study stays until there is a new one; the folder is ours from now on.
     let free = Results::spares(&write::FILES, &folder, &inputs)
-        .and_then(|()| Results::replaced(&write::FILES, &folder, options.force));
-    if let Err(error) = free {
-        return bad_input(&format!("error: {error}"));
-    }
-    for warning in &resolved.warnings {
+        .and_then(|()| Results::reserve(&write::FILES, &folder, options.force));
+    let reserved = match free {
+        Ok(reserved) => reserved,
+        Err(error) => return bad_input(&format!("error: {error}")),
+    };
+    for warning in resolved.warnings.iter().chain(&resolved.foreseen) {
         console.note(&presenter.one(warning));
     }
     let cancel = interrupt::listen();
@@ -65,7 +66,7 @@ pub(crate) fn tradeoff(options: &Options) -> Exit {
     });
     drop(progress);
     match study {
-        Ok(study) => match write_all(&study, &folder, &resolved, options) {
+        Ok(study) => match write_all(&study, reserved, &resolved, options) {
             Ok(()) => {
                 console.note(&format!("results in {0}, to be looked at in {0}/tradeoff.html", folder.display()));
                 Exit::Done
@@ -87,8 +88,13 @@ pub(crate) fn tradeoff(options: &Options) -> Exit {
 }
 
 /// Writes the files, and the sentences to standard output.
-fn write_all(study: &Tradeoff, folder: &Path, resolved: &Resolved, options: &Options) -> Result<(), Box<dyn Error>> {
-    let results = Results::create_of(&write::FILES, folder, options.force)?;
+fn write_all(
+    study: &Tradeoff,
+    reserved: Reserved,
+    resolved: &Resolved,
+    options: &Options,
+) -> Result<(), Box<dyn Error>> {
+    let results = reserved.create()?;
     let scene = |file: &str| companions::seen_from(results.folder(), &options.scene, file);
     results.write("scene.toml", resolved.document.to_toml_elsewhere(scene))?;
     results.write("tradeoff.csv", write::csv(study))?;

@@ -87,3 +87,30 @@ fn bad_input_exits_with_2_and_writes_nothing() {
     assert!(stderr.contains("time.stepp") && stderr.contains("did you mean"), "{stderr}");
     assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
 }
+
+#[test]
+fn a_study_leaves_the_results_of_a_run_alone_and_says_so_before_its_work() {
+    let folder = folder("of-a-run");
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/free-rocking-on-ground.toml");
+    let run = |out: &str, more: &[&str]| {
+        let mut arguments = vec!["run", scene.to_str().unwrap(), "--out", out, "--quiet", "--set", "time.end=20 ms"];
+        arguments.extend(more);
+        Command::new(env!("CARGO_BIN_EXE_teeter")).current_dir(&folder).args(arguments).output().unwrap()
+    };
+    assert!(run("out", &[]).status.success());
+    let before = std::fs::read(folder.join("out/scene.toml")).unwrap();
+    let refused = tradeoff(&folder, &[&SHORT[..], &["--out", "out", "--force"]].concat());
+    let told = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(refused.status.code() == Some(2) && told.contains("holds the results of `teeter run`"), "{told}");
+    // At once: no progress, no reference was looked for.
+    assert!(refused.stdout.is_empty() && std::fs::read(folder.join("out/scene.toml")).unwrap() == before);
+    // The other way round too.
+    std::fs::create_dir(folder.join("study")).unwrap();
+    std::fs::write(folder.join("study/tradeoff.json"), "{}").unwrap();
+    let refused = run("study", &["--force"]);
+    let told = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(refused.status.code() == Some(2) && told.contains("of `teeter tradeoff`"), "{told}");
+    // Nothing is left where nothing came of it.
+    let bad = tradeoff(&folder, &["--out", "new", "--set", "block.rocker.width=-1 m"]);
+    assert!(!bad.status.success() && !folder.join("new").exists());
+}

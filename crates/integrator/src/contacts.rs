@@ -289,6 +289,9 @@ impl<const D: usize> ContactSet<D> {
             self.mu.pop();
             self.unhandled.pop();
             self.contacts.pop();
+            if self.contacts.is_empty() {
+                self.model = None;
+            }
         }
         prescribed
     }

@@ -162,7 +162,7 @@ impl Springs {
         q_free: &[f64],
         work: &mut Workspace<D>,
     ) -> Result<(), Mismatch> {
-        work.detect(model, q_free, 0.0)?;
+        work.detect_at(model, q_free, 0.0)?;
         let spring = |c: &&Candidate<D>| model.law(c.id.pair()).is_ok_and(|law| law.impact.spring().is_some());
         let springs = work.candidates.iter().filter(spring);
         self.touched.clear();
@@ -170,7 +170,7 @@ impl Springs {
         if self.touched.is_empty() {
             return Ok(());
         }
-        work.detect(model, q, f64::INFINITY)?;
+        work.detect_at(model, q, f64::INFINITY)?;
         for (id, gap) in &mut self.touched {
             if let Ok(at) = work.candidates.binary_search_by_key(id, |candidate| candidate.id) {
                 *gap = work.candidates[at].gap;

@@ -53,12 +53,13 @@ impl ThetaStep {
         state: &State,
         work: &Workspace<D>,
     ) -> Result<(), StepError> {
-        if *self.model.get_or_insert(model.identity()) != model.identity() {
+        if self.model.is_some_and(|own| own != model.identity()) {
             let remedy = "start it with this one before its first step";
             return Err(Mismatch::OtherModel { what: "the scheme was started with that", remedy }.into());
         }
         state.check(model)?;
         work.check(model)?;
+        self.model = Some(model.identity());
         let size = model.size();
         if (self.q_at.len(), self.v_end.len()) != (size.q, size.v) {
             self.resize(size);
@@ -152,7 +153,7 @@ impl ThetaStep {
             *mean = theta * v1 + (1.0 - theta) * v0;
         }
         model.move_along(&state.q, v_mean, state.dt, q_at);
-        // A velocity that is not finite leads nowhere that is.
+        // A velocity that is not finite leaves a coordinate that isn't.
         if all_finite(q_at) { Ok(()) } else { Err(StepError::Diverged { t: state.t }) }
     }
 

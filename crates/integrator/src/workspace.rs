@@ -190,7 +190,11 @@ impl<const D: usize> Workspace<D> {
         }
         for (factor, part) in self.factors.iter_mut().zip(model.parts()) {
             if factor.weights() != w {
-                factor.refactor(w, &q[part.q.clone()])?;
+                if let Err(error) = factor.refactor(w, &q[part.q.clone()]) {
+                    // It may hold neither these weights nor those before.
+                    self.factors.clear();
+                    return Err(error);
+                }
                 self.counts.factorisations += 1;
             }
         }

@@ -30,7 +30,7 @@ pub use export::{ExportWhen, Exporter, Former, HARD, Watch};
 pub use made_energy::ENERGY_MADE;
 pub use page::{HalfCycle, PageRecorder, STYLE, escaped, figures, half_cycles, render};
 pub use recorder::{ImpactRow, Record, Recorder};
-pub use results::{FILES, Results, ResultsError};
+pub use results::{FILES, Reserved, Results, ResultsError};
 pub use run_recorder::{Origin, RunRecorder};
 pub use schedule::Schedule;
 pub use sections::{BeamRecord, LargestStress, ReactionRange, envelopes};

@@ -323,7 +323,7 @@ impl Observer<2> for Recorder<'_> {
         self.kept.record.rocking = self.layout.rocking_monitors(state.t, &state.q);
         self.kept.closings = ClosingMonitor::new(model, state, &self.layout.openings)?;
         self.kept.resolution.start(self.layout, state);
-        self.kept.swings.start(self.layout);
+        self.kept.swings.start(&self.watch);
         let (record, values) = (&mut self.kept.record, &mut self.kept.section_values);
         self.sections.start(self.layout, state, &mut record.beams, values);
         Ok(self.write_row(state)?)

@@ -15,6 +15,15 @@ pub(crate) const COARSE: f64 = 0.012;
 /// And above this part of the motion at a single impact: a block that falls flat rests where it closed, about half of it off.
 pub(crate) const COARSE_ONCE: f64 = 0.2;
 
+/// And where both feet press with gaps that differ by this part of the motion: that much the block leans without a cause.
+pub(crate) const HELD_OFF: f64 = 0.05;
+
+/// Leaning by less than [`HELD_OFF`] of this, rad, is none.
+const LEVEL: f64 = 0.01;
+
+/// A fall that is off by this part of a block's larger side is told of.
+const FALL_OFF: f64 = 0.1;
+
 /// A step that leaves this share of the limit is advised.
 const FINE: f64 = 0.25;
 
@@ -42,6 +51,12 @@ struct Seen {
     way: f64,
     /// ∫ late ds over that way, m².
     carried: f64,
+    /// By how much the gaps of its feet differ while both go on pressing, m: the largest so far.
+    held: f64,
+    /// The smallest and largest gap of those that go on pressing in this step, m.
+    gaps: Option<[f64; 2]>,
+    /// How long nothing has pressed on it, and the longest of such times, s.
+    aloft: [f64; 2],
     /// How many contacts pressed on it in this step.
     pressed: u32,
 }
@@ -59,18 +74,40 @@ pub(crate) struct Coarse {
     pub(crate) block: usize,
     /// How late its contacts closed, as a part of its motion.
     pub(crate) part: f64,
-    /// Whether one impact alone is that late.
-    pub(crate) once: bool,
+    /// What that is of.
+    pub(crate) of: Of,
     /// A step to take in its place, s.
     pub(crate) step: f64,
+}
+
+/// What of a motion is not resolved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Of {
+    /// Its impacts, all together.
+    Impacts,
+    /// A single impact.
+    Impact,
+    /// Feet that go on pressing where nothing touches, or deep inside.
+    Held,
+}
+
+impl Of {
+    /// The part of the motion from which on it is told.
+    pub(crate) fn limit(self) -> f64 {
+        match self {
+            Self::Impacts => COARSE,
+            Self::Impact => COARSE_ONCE,
+            Self::Held => HELD_OFF,
+        }
+    }
 }
 
 impl Resolution {
     /// Before the first step.
     pub(crate) fn start(&mut self, layout: &Layout, state: &State) {
         self.blocks.clear();
-        self.blocks.extend(layout.blocks.iter().map(|place| {
-            let angle = state.q[place.range.start + 2];
+        self.blocks.extend((0..layout.blocks.len()).map(|block| {
+            let angle = layout.tilt(block, &state.q);
             Seen { angles: [angle, angle], normal: [0.0, 1.0], ..Seen::default() }
         }));
     }
@@ -83,6 +120,10 @@ impl Resolution {
             let Some(seen) = owner.and_then(|block| self.blocks.get_mut(*block)) else { continue };
             seen.pressed += u32::from(contact.p[0] > 0.0);
             seen.normal = [contact.frame[(0, 0)], contact.frame[(0, 1)]];
+            if contact.persisting && contact.gap_after.is_none() && contact.p[0] > 0.0 {
+                let [least, most] = seen.gaps.unwrap_or([contact.gap; 2]);
+                seen.gaps = Some([least.min(contact.gap), most.max(contact.gap)]);
+            }
             // One that closes fast and gets no impulse, as the surface is gone again by the end of the step, is as late. A contact with duration takes
             // its time, and its force begins at nothing.
             if !contact.persisting && contact.gap_after.is_none() {
@@ -91,12 +132,17 @@ impl Resolution {
                 seen.latest = seen.latest.max(late);
             }
         }
-        for ((seen, place), width) in self.blocks.iter_mut().zip(&layout.blocks).zip(&bodies.widths) {
+        for (block, ((seen, place), width)) in
+            self.blocks.iter_mut().zip(&layout.blocks).zip(&bodies.widths).enumerate()
+        {
             let at = place.range.start;
-            let angle = state.q[at + 2];
+            // From what carries it, so that a scene that is turned as a whole is judged alike.
+            let angle = layout.tilt(block, &state.q);
             seen.angles = [seen.angles[0].min(angle), seen.angles[1].max(angle)];
             // On both feet it goes with what carries it.
             let mut way = if seen.pressed < 2 { h * width * state.v[at + 2].abs() } else { 0.0 };
+            seen.aloft[0] = if seen.pressed == 0 { seen.aloft[0] + h } else { 0.0 };
+            seen.aloft[1] = seen.aloft[1].max(seen.aloft[0]);
             if seen.pressed == 0 {
                 let flown = h * (seen.normal[0] * state.v[at] + seen.normal[1] * state.v[at + 1]).abs();
                 seen.flown += flown;
@@ -105,35 +151,48 @@ impl Resolution {
             seen.way += way;
             seen.carried += seen.late * way;
             seen.pressed = 0;
+            seen.held = seen.gaps.take().map_or(seen.held, |[least, most]| seen.held.max(most - least));
         }
     }
 
     /// The block that steps of length `step` (s) resolve worst, if that is badly.
     pub(crate) fn coarse(&self, bodies: &Bodies, step: f64) -> Option<Coarse> {
-        let parts = self.blocks.iter().zip(&bodies.widths).enumerate().map(|(block, (seen, width))| {
-            let [all, single] = seen.parts(*width);
-            // Of both, the one that is farther above its limit.
-            let once = single / COARSE_ONCE > all / COARSE;
-            let (part, limit) = if once { (single, COARSE_ONCE) } else { (all, COARSE) };
-            let step = step * (FINE * limit / part).max(SHORTEST);
-            (part / limit, Coarse { block, part, once, step })
+        let parts = self.blocks.iter().zip(&bodies.widths).enumerate().flat_map(|(block, (seen, width))| {
+            seen.parts(*width).map(|(of, part)| {
+                let limit = of.limit();
+                let step = step * (FINE * limit / part).max(SHORTEST);
+                (part / limit, Coarse { block, part, of, step })
+            })
         });
         let worst = parts.filter(|(times, _)| *times > 1.0).max_by(|(a, _), (b, _)| a.total_cmp(b));
         worst.map(|(_, coarse)| coarse)
     }
+
+    /// The block whose flight steps of length `step` (s) with this θ make slower or faster the most, and by how much, m: (θ − ½) g h t. `None` where that
+    /// is little beside the block.
+    pub(crate) fn fall(&self, bodies: &Bodies, step: f64) -> Option<(usize, f64)> {
+        let off = |seen: &Seen| (bodies.theta - 0.5).abs() * bodies.gravity * step * seen.aloft[1];
+        let all = self.blocks.iter().map(off).zip(&bodies.sides).enumerate();
+        let far = all.filter(|(_, (off, side))| *off > FALL_OFF * **side);
+        far.map(|(block, (off, _))| (block, off)).max_by(|a, b| a.1.total_cmp(&b.1))
+    }
 }
 
 impl Seen {
-    /// How late the contacts of this block of so much `width` (m) closed, as parts of its motion: all of them together, and the latest one.
+    /// What of the motion of this block of so much `width` (m) is not resolved, as parts of it.
     ///
-    /// All together is the geometric mean of their sum and of what of it was carried on through the motion: an impact after which little moves
+    /// Lateness all together is the geometric mean of the sum and of what of it was carried on through the motion: an impact after which little moves
     /// does little harm.
-    fn parts(&self, width: f64) -> [f64; 2] {
+    fn parts(&self, width: f64) -> [(Of, f64); 3] {
         let [least, most] = self.angles;
         let swing = (most - least).max(most.abs()).max(least.abs()).min(std::f64::consts::PI);
         let carried = if self.way > 0.0 { 2.0 * self.carried / self.way } else { 0.0 };
         let motion = (width * swing).max(self.flown).max(STILL * width);
-        [(carried * self.late).sqrt() / motion, self.latest / motion]
+        [
+            (Of::Impacts, (carried * self.late).sqrt() / motion),
+            (Of::Impact, self.latest / motion),
+            (Of::Held, self.held / motion.max(LEVEL * width)),
+        ]
     }
 }
 
@@ -144,6 +203,12 @@ pub(crate) struct Bodies {
     owners: Vec<usize>,
     /// How far the feet of each block are apart, m.
     widths: Vec<f64>,
+    /// The larger side of each block, m.
+    sides: Vec<f64>,
+    /// θ of the scheme.
+    theta: f64,
+    /// m/s².
+    gravity: f64,
 }
 
 impl Bodies {
@@ -151,6 +216,9 @@ impl Bodies {
         Self {
             owners: scene.contacts.iter().map(|contact| contact.block).collect(),
             widths: scene.blocks.iter().map(|block| block.width).collect(),
+            sides: scene.blocks.iter().map(|block| block.width.max(block.height)).collect(),
+            theta: scene.time.theta_of_scheme(),
+            gravity: scene.gravity[0].hypot(scene.gravity[1]),
         }
     }
 }

@@ -36,6 +36,17 @@ pub enum ResultsError {
     /// There are results already.
     #[error("{} holds results already; --force replaces them", .0.display())]
     Exists(PathBuf),
+    /// There is a run that can go on.
+    #[error("{} holds results already, and a checkpoint: --resume goes on from it, --force replaces them all", .0.display())]
+    Resumable(PathBuf),
+    /// There are results of another command, some of them in files of the same names.
+    #[error("{} holds the results of {command}, which are not to be mixed with others; take another folder (--out)", folder.display())]
+    OfAnother {
+        /// The folder.
+        folder: PathBuf,
+        /// The command.
+        command: &'static str,
+    },
     /// The name is taken by a file.
     #[error("{} is a file, not a folder", .0.display())]
     NotFolder(PathBuf),
@@ -77,6 +88,25 @@ pub struct Results {
     _lock: FolderLock,
 }
 
+/// A folder that nobody else writes to, with all that it held still there: for who takes long before there are results.
+#[derive(Debug)]
+pub struct Reserved {
+    folder: PathBuf,
+    files: &'static [&'static str],
+    force: bool,
+    /// Whether it wasn't there before.
+    new: bool,
+    lock: Option<FolderLock>,
+}
+
+/// Files that only one command writes.
+const MARKS: [(&str, &str); 4] = [
+    ("trajectory.csv", "`teeter run`"),
+    ("summary.json", "`teeter run`"),
+    (CHECKPOINT, "`teeter run`"),
+    ("tradeoff.json", "`teeter tradeoff`"),
+];
+
 /// The lock of a folder for results.
 const LOCK: &str = ".teeter.lock";
 
@@ -108,9 +138,15 @@ impl Results {
             return Ok(Vec::new());
         }
         check_inner_folders(files, folder)?;
+        let mark = MARKS.iter().find(|(file, _)| !files.contains(file) && is_there(&folder.join(file)));
+        if let Some((_, command)) = mark {
+            return Err(ResultsError::OfAnother { folder: folder.to_owned(), command });
+        }
         let old: Vec<PathBuf> = files.iter().map(|file| folder.join(file)).filter(|path| is_there(path)).collect();
         if !old.is_empty() && !force {
-            return Err(ResultsError::Exists(folder.to_owned()));
+            let resumable = old.contains(&folder.join(CHECKPOINT));
+            let error = if resumable { ResultsError::Resumable } else { ResultsError::Exists };
+            return Err(error(folder.to_owned()));
         }
         Ok(old)
     }
@@ -135,23 +171,20 @@ impl Results {
     /// # Errors
     /// As [`Results::create`].
     pub fn create_of(files: &'static [&'static str], folder: &Path, force: bool) -> Result<Self, ResultsError> {
+        Self::reserve(files, folder, force)?.create()
+    }
+
+    /// Keeps a folder for such results, so that nobody else writes there; what it holds stays until [`Reserved::create`].
+    ///
+    /// # Errors
+    /// As [`Results::create`].
+    pub fn reserve(files: &'static [&'static str], folder: &Path, force: bool) -> Result<Reserved, ResultsError> {
         Self::replaced(files, folder, force)?;
+        let new = !folder.exists();
         fs::create_dir_all(folder).map_err(|source| ResultsError::Io { path: folder.to_owned(), source })?;
-        let lock = FolderLock::take(folder, LOCK)?;
-        // Somebody may have written there before the lock was ours.
-        let old = Self::replaced(files, folder, force)?;
-        let results = Self { folder: folder.to_owned(), files, _lock: lock };
-        // Before anything old goes, it has to be sure that something new can come.
-        let trial = results.temporary("trial");
-        remove_if_there(&trial)?;
-        new_file(&trial).map_err(|source| ResultsError::Io { path: folder.to_owned(), source })?;
-        let parts = results.files.iter().map(|file| results.temporary(file));
-        let old: Vec<PathBuf> = parts.chain(old).collect();
-        // An old summary beside new tables would look like one run.
-        for path in old.into_iter().chain([trial]) {
-            remove_if_there(&path)?;
-        }
-        Ok(results)
+        let mut reserved = Reserved { folder: folder.to_owned(), files, force, new, lock: None };
+        reserved.lock = Some(FolderLock::take(folder, LOCK)?);
+        Ok(reserved)
     }
 
     /// Takes the folder of a run that goes on from a checkpoint: what it wrote at an earlier end goes, tables and checkpoint stay.
@@ -207,6 +240,39 @@ impl Results {
     /// If it can't be written.
     pub fn write(&self, name: &str, content: impl AsRef<[u8]>) -> Result<(), ResultsError> {
         write_whole(&self.folder.join(name), content.as_ref())
+    }
+}
+
+impl Reserved {
+    /// Removes the results that are there, and hands the folder over for new ones.
+    ///
+    /// # Errors
+    /// As [`Results::create`].
+    pub fn create(mut self) -> Result<Results, ResultsError> {
+        let folder = self.folder.clone();
+        // Somebody may have written there before the lock was ours.
+        let old = Results::replaced(self.files, &folder, self.force)?;
+        // Before anything old goes, it has to be sure that something new can come.
+        let trial = temporary(&folder.join("trial"));
+        remove_if_there(&trial)?;
+        new_file(&trial).map_err(|source| ResultsError::Io { path: folder.clone(), source })?;
+        let parts = self.files.iter().map(|file| temporary(&folder.join(file)));
+        let old: Vec<PathBuf> = parts.chain(old).collect();
+        // An old summary beside new tables would look like one run.
+        for path in old.into_iter().chain([trial]) {
+            remove_if_there(&path)?;
+        }
+        let Some(lock) = self.lock.take() else { return Err(ResultsError::Exists(folder)) };
+        Ok(Results { folder, files: self.files, _lock: lock })
+    }
+}
+
+impl Drop for Reserved {
+    fn drop(&mut self) {
+        // Nothing came of it: a folder that was made for it goes, if it is still empty.
+        if self.lock.take().is_some() && self.new {
+            let _ = fs::remove_dir(&self.folder);
+        }
     }
 }
 

@@ -1,46 +1,38 @@
 //! Whether steps were fine enough for the free swings of beams (`docs/resolution.md`).
 //!
-//! A step of the θ rule multiplies a free swing of circular frequency ω by λ,
+//! With ρ = exp(iωh)/λ of [`Swing::off_a_step`] a swing a exp(iωt) is off after a step by (ρ − 1) a more, and what is off goes on as a swing of its
+//! own:
 //!
 //! ```text
-//! λ² − (2 − 2θh²ω²/D) λ + 1 + (1 − 2θ)h²ω²/D = 0,        D = 1 + θ²h²ω²
+//! e ← exp((iω − ζω)h) e + (ρ − 1) a,        a = 2ẇ/(iω)
 //! ```
 //!
-//! instead of by exp(iωh): with θ = ½ it comes late, with more it dies out besides. With ρ = exp(iωh)/λ, the swing that is there after n steps, of amplitude |ẇ|/ω,
-//! is off by |ρⁿ − 1| of itself. ω is that of the first mode. What follows a load slowly has a small ẇ, and takes no harm.
+//! Of a only the part that turns with ω adds up; ẇ holds it once, and once what turns the other way, which cancels out as all that a load bends slowly.
 
 use serde::{Deserialize, Serialize};
 use teeter_beam::ShapeAt;
 use teeter_integrator::State;
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::{BeamPlace, Layout};
+use teeter_scenario::swing::{SWING_OFF, Swing, finer};
 
-/// A part of the largest deflection that is off, from which on a run is told of.
-pub(crate) const OFF: f64 = 0.1;
-
-/// What a step leaves that is advised.
-const FINE: f64 = 0.02;
+/// A deflection below this part of the span is none, and nothing of it is off.
+const STILL: f64 = 1e-9;
 
 /// What is known of a beam's swings so far.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-struct Swing {
-    /// ρⁿ, its real and imaginary part.
-    off: [f64; 2],
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Swung {
+    /// e at each place, its real and imaginary part, m.
+    off: Vec<[f64; 2]>,
     /// The largest deflection, m.
     most: f64,
-    /// The largest |ẇ| |ρⁿ − 1|, m/s.
+    /// The largest |e|, m.
     worst: f64,
-}
-
-impl Default for Swing {
-    fn default() -> Self {
-        Self { off: [1.0, 0.0], most: 0.0, worst: 0.0 }
-    }
 }
 
 /// What a run has shown so far of how well its steps resolve the swings of its beams.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Swings(Vec<Swing>);
+pub(crate) struct Swings(Vec<Swung>);
 
 /// A beam whose swings the steps don't resolve.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,7 +41,7 @@ pub(crate) struct Lost {
     pub(crate) beam: usize,
     /// How much is off, as a part of the largest deflection.
     pub(crate) part: f64,
-    /// Its first frequency, Hz.
+    /// The frequency that it was watched at, Hz.
     pub(crate) frequency: f64,
     /// A step to take in its place, s.
     pub(crate) step: f64,
@@ -62,111 +54,99 @@ pub(crate) struct Watch {
     theta: f64,
 }
 
-/// Where to look at a beam, and ρ for its first circular frequency.
+/// Where to look at a beam, and how it swings.
 #[derive(Debug)]
 struct Watched {
+    /// Quarter points and middles between supports.
     places: Vec<ShapeAt>,
-    omega: f64,
-    /// The step size that `factor` is for, s.
+    span: f64,
+    /// A beam that no frequency is known of is not watched.
+    swing: Option<Swing>,
+    /// The step size that the two below are for, s.
     step: f64,
-    factor: [f64; 2],
+    /// exp((iω − ζω)h).
+    turn: [f64; 2],
+    /// ρ − 1.
+    more: [f64; 2],
 }
 
 impl Watch {
     pub(crate) fn of(scene: &Scene, layout: &Layout) -> Self {
-        let theta = scene.time.theta_of_scheme();
         let watched = |place: &BeamPlace| {
-            // A beam that no frequency is known of is not watched.
-            let omega = place.first_frequency().unwrap_or(0.0);
-            let places = place.middles().into_iter().map(|x| place.beam.shape_clamped(x)).collect();
-            Watched { places, omega, step: 0.0, factor: [1.0, 0.0] }
+            let shape = scene.beams.iter().find(|beam| beam.name == place.name).map_or(&[][..], |beam| &beam.shape);
+            let swing = Swing::of(&place.beam, shape);
+            let places = place.quarters().into_iter().map(|x| place.beam.shape_clamped(x)).collect();
+            let span = place.beam.spec().span;
+            Watched { places, span, swing, step: 0.0, turn: [1.0, 0.0], more: [0.0, 0.0] }
         };
-        Self { beams: layout.beams.iter().map(watched).collect(), theta }
+        Self { beams: layout.beams.iter().map(watched).collect(), theta: scene.time.theta_of_scheme() }
     }
 
-    /// Whether the steps take nothing out of a swing.
-    pub(crate) fn conserves(&self) -> bool {
-        self.theta == 0.5
+    /// The largest rate of deflection of all beams at their places, m/s.
+    pub(crate) fn fastest(&self, layout: &Layout, state: &State) -> f64 {
+        let of = |(watched, place): (&Watched, &BeamPlace)| {
+            let v = &state.v[place.range.clone()];
+            watched.places.iter().map(|at| place.deflection(at, v).w.abs()).fold(0.0, f64::max)
+        };
+        self.beams.iter().zip(&layout.beams).map(of).fold(0.0, f64::max)
+    }
+
+    /// Whether the steps take something out of a swing.
+    pub(crate) fn damps(&self) -> bool {
+        self.theta > 0.5
+    }
+}
+
+impl Watched {
+    /// Takes a step size in.
+    fn with_step(&mut self, swing: Swing, theta: f64, h: f64) {
+        if self.step == h {
+            return;
+        }
+        let (size, angle) = ((-swing.decay * h).exp(), swing.omega * h);
+        (self.step, self.turn, self.more) = (h, [size * angle.cos(), size * angle.sin()], swing.off_a_step(theta, h));
     }
 }
 
 impl Swings {
     /// Before the first step.
-    pub(crate) fn start(&mut self, layout: &Layout) {
+    pub(crate) fn start(&mut self, watch: &Watch) {
         self.0.clear();
-        self.0.resize(layout.beams.len(), Swing::default());
+        self.0.extend(
+            watch.beams.iter().map(|beam| Swung { off: vec![[0.0; 2]; beam.places.len()], ..Swung::default() }),
+        );
     }
 
     /// Takes a step of length `h` (s) in that ended in `state`.
     pub(crate) fn observe(&mut self, watch: &mut Watch, layout: &Layout, h: f64, state: &State) {
-        for ((swing, watched), place) in self.0.iter_mut().zip(&mut watch.beams).zip(&layout.beams) {
-            if watched.omega == 0.0 {
-                continue;
+        for ((swung, watched), place) in self.0.iter_mut().zip(&mut watch.beams).zip(&layout.beams) {
+            let Some(swing) = watched.swing else { continue };
+            watched.with_step(swing, watch.theta, h);
+            let ([c, d], [r, s]) = (watched.turn, watched.more);
+            let mut worst = 0.0_f64;
+            for (off, at) in swung.off.iter_mut().zip(&watched.places) {
+                let [w, rate] = [&state.q, &state.v].map(|x| place.deflection(at, &x[place.range.clone()]).w);
+                // a = 2ẇ/(iω) lies on the imaginary axis.
+                let a = -2.0 * rate / swing.omega;
+                let [x, y] = *off;
+                *off = [c * x - d * y - s * a, d * x + c * y + r * a];
+                worst = worst.max(off[0] * off[0] + off[1] * off[1]);
+                swung.most = swung.most.max(w.abs());
             }
-            if watched.step != h {
-                (watched.step, watched.factor) = (h, factor(watch.theta, watched.omega * h));
-            }
-            let ([a, b], [c, d]) = (swing.off, watched.factor);
-            swing.off = [a * c - b * d, a * d + b * c];
-            let lost = (swing.off[0] - 1.0).hypot(swing.off[1]).min(MOST);
-            for at in &watched.places {
-                let [w, rate] = [&state.q, &state.v].map(|x| place.deflection(at, &x[place.range.clone()]).w.abs());
-                swing.most = swing.most.max(w);
-                swing.worst = swing.worst.max(lost * rate);
-            }
+            swung.worst = swung.worst.max(worst.sqrt());
         }
     }
 
     /// The beam whose swings steps of length `step` (s) resolve worst, if that is badly.
     pub(crate) fn lost(&self, watch: &Watch, step: f64) -> Option<Lost> {
         let all = self.0.iter().zip(&watch.beams).enumerate();
-        let parts = all.filter(|(_, (swing, watched))| swing.most > 0.0 && watched.omega > 0.0).map(
-            |(beam, (swing, watched))| {
-                let part = swing.worst / (watched.omega * swing.most);
-                // Of second order with θ = ½, else of first.
-                let order = if watch.conserves() { 2.0 } else { 1.0 };
-                let step = step * (FINE / part).powf(1.0 / order);
-                Lost { beam, part, frequency: watched.omega / std::f64::consts::TAU, step }
+        let parts = all.filter(|(_, (swung, watched))| swung.most > STILL * watched.span).filter_map(
+            |(beam, (swung, watched))| {
+                let part = swung.worst / swung.most;
+                let frequency = watched.swing?.omega / std::f64::consts::TAU;
+                Some(Lost { beam, part, frequency, step: finer(step, part, watch.theta) })
             },
         );
-        parts.filter(|lost| lost.part > OFF).max_by(|a, b| a.part.total_cmp(&b.part))
-    }
-}
-
-/// A swing in the opposite phase is off by twice itself, and one that has died out can't be by more than it was.
-const MOST: f64 = 1e3;
-
-/// ρ for a step of ωh.
-fn factor(theta: f64, x: f64) -> [f64; 2] {
-    let d = 1.0 + (theta * x).powi(2);
-    let (half, product) = (1.0 - theta * x * x / d, 1.0 + (1.0 - 2.0 * theta) * x * x / d);
-    let beneath = product - half * half;
-    if beneath <= 0.0 {
-        // No swing is left: the slower one of the two decays.
-        let decay = half + (-beneath).sqrt();
-        return [x.cos() / decay, x.sin() / decay];
-    }
-    let (re, im) = (half, beneath.sqrt());
-    // exp(ix) times the conjugate of λ, over |λ|² = product.
-    [(x.cos() * re + x.sin() * im) / product, (x.sin() * re - x.cos() * im) / product]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::factor;
-
-    #[test]
-    fn a_step_of_a_free_swing_is_off_by_the_known_phase_and_decay() {
-        // θ = ½: no decay, and a phase of x − 2 atan(x/2), which is x³/12.
-        let x = 0.1_f64;
-        let [re, im] = factor(0.5, x);
-        assert!((re.hypot(im) - 1.0).abs() < 1e-14);
-        assert!((im.atan2(re) - (x - 2.0 * (0.5 * x).atan())).abs() < 1e-14);
-        // θ = 1: backward Euler, λ = 1/(1 − ix).
-        let [re, im] = factor(1.0, x);
-        assert!(
-            (re - (x.cos() + x * x.sin())).abs() < 1e-14 && (im - (x.sin() - x * x.cos())).abs() < 1e-14,
-            "{re} {im}"
-        );
+        parts.filter(|lost| lost.part > SWING_OFF).max_by(|a, b| a.part.total_cmp(&b.part))
     }
 }

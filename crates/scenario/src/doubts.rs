@@ -5,7 +5,7 @@ use crate::diagnostic::Diagnostic;
 use crate::document::Document;
 use crate::mesh_error::{self, OfMesh};
 use crate::scene::{BeamScene, BlockScene, ContactScene, Placement, Scene, Support};
-use crate::{deflection, fineness, flexibility, idle, outlook, rocking, stability, wording};
+use crate::{deflection, fineness, flexibility, idle, outlook, rocking, stability, swing, wording};
 use std::f64::consts::{PI, TAU};
 use teeter_beam::{Axial, Beam, Digits, MatrixWeights};
 use teeter_integrator::ImpactLaw;
@@ -14,6 +14,8 @@ use teeter_integrator::ImpactLaw;
 #[derive(Debug, Default)]
 pub(crate) struct Doubts {
     pub(crate) warnings: Vec<Diagnostic>,
+    /// What a run will measure and say by itself.
+    pub(crate) foreseen: Vec<Diagnostic>,
     pub(crate) notes: Vec<Diagnostic>,
 }
 
@@ -79,7 +81,11 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Doubts {
     doubts.notes.extend(notes);
     doubts.warnings.extend(idle::of(scene, document));
     // What is too coarse for the motion of contact is so for its impacts.
-    doubts.warnings.extend(step(scene, document).or_else(|| rocking::coarse(scene, document)));
+    match step(scene, document) {
+        Some(coarse) => doubts.warnings.push(coarse),
+        None => doubts.foreseen.extend(rocking::coarse(scene, document)),
+    }
+    doubts.foreseen.extend(swing::coarse(scene, document));
     doubts.warnings.extend(loosely_solved(scene, document));
     doubts.warnings.extend(scene.contacts.iter().filter_map(|contact| resolved_in_time(contact, scene, document)));
     doubts

@@ -3,7 +3,7 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;
-use crate::scene::{AxisScene, History, MotionScene, Scene, SignalScene};
+use crate::scene::{AxisScene, ContactScene, History, MotionScene, Scene, SignalScene, Support};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use teeter_integrator::{Formula, Given, Signal, Table};
@@ -18,6 +18,9 @@ const BEYOND_THE_ENDS: f64 = 0.05;
 
 /// Steps that a displacement should take from one place to another, or its velocity shows in none of them: a pulse as long as half a swing.
 const STEPS_A_RISE: f64 = 0.5 * STEPS_A_SWING;
+
+/// A displacement that takes this part of a step is not meant to be resolved.
+const A_JUMP: f64 = 0.01;
 
 /// Of the largest velocity of supports, the part from which on a beam that starts with them is told of.
 const STARTS_FAST: f64 = 0.01;
@@ -246,11 +249,15 @@ fn rises(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
         });
         let (key, lasts) = worst.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
         let rule = format!(
-            "it goes from one place to another in {lasts:.3e} s, {:.2} steps of {step:e} s: the place stays right, but how fast it goes, which what \
-             touches it feels, doesn't show",
+            "it goes from one place to another in {lasts:.3e} s, {:.2} steps of {step:e} s: its place stays right, but not its velocity, by which it \
+             pushes what touches it",
             lasts / step
         );
-        let remedy = format!("take a step of at most {:.1e} s", lasts / STEPS_A_RISE);
+        let remedy = if lasts < A_JUMP * step {
+            "that is a jump: let it take the time that it takes in truth, and some steps at the least".to_owned()
+        } else {
+            format!("take a step of at most {:.1e} s", lasts / STEPS_A_RISE)
+        };
         Some(document.error(&format!("{path}.{key}"), rule, remedy).as_warning())
     };
     motions(scene).filter_map(of).take(LISTED).collect()
@@ -280,27 +287,45 @@ fn fastest_rise(table: &Table, scene: &Scene) -> Option<f64> {
     lasts
 }
 
-/// Beams whose supports don't begin from rest.
-fn fast_starts(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
+/// The velocity with which a motion that is not uniform begins, if that is much of its largest one.
+fn fast_start(axis: &AxisScene, end: f64) -> Option<f64> {
     /// Times at which velocities are looked at, over the run.
     const LOOKS: u32 = 1000;
+    if is_uniform(axis) {
+        return None;
+    }
+    let motion = axis.motion();
+    let velocity = |k: u32| motion.velocity(end * f64::from(k) / f64::from(LOOKS));
+    let fastest = (0..=LOOKS).map(|k| velocity(k).abs()).fold(0.0, f64::max);
+    Some(velocity(0)).filter(|start| start.abs() > STARTS_FAST * fastest)
+}
+
+/// Beams whose supports don't begin from rest, and ground that doesn't under a block that does.
+fn fast_starts(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
     let end = scene.time.steps as f64 * scene.time.step;
-    let of = |beam: &crate::scene::BeamScene| {
-        let axis = beam.motion.0[1].as_ref().filter(|axis| !is_uniform(axis))?;
-        let motion = axis.motion();
-        let start = motion.velocity(0.0);
-        let fastest =
-            (0..=LOOKS).map(|k| motion.velocity(end * f64::from(k) / f64::from(LOOKS)).abs()).fold(0.0, f64::max);
-        (start.abs() > STARTS_FAST * fastest).then(|| {
-            let rule = format!(
-                "the supports begin with {start:.3e} m/s, and the beam starts with them: it is at rest relative to its supports, not in the world"
-            );
-            let remedy = "where the beam is meant to be pulled along from rest, let the motion begin with a velocity of 0, as shape = \"ricker\" or a \
-                 harmonic displacement of phase = \"90 deg\" does";
-            document.error(&format!("beam.{}.motion", beam.name), rule, remedy).as_warning()
-        })
+    let beams = scene.beams.iter().filter_map(|beam| {
+        let start = fast_start(beam.motion.0[1].as_ref()?, end)?;
+        let rule = format!(
+            "the supports begin with {start:.3e} m/s, and the beam starts with them: it is at rest relative to its supports, not in the world"
+        );
+        let remedy = "where the beam is meant to be pulled along from rest, let the motion begin with a velocity of 0, as shape = \"ricker\" or a \
+             harmonic displacement of phase = \"90 deg\" does";
+        Some(document.error(&format!("beam.{}.motion", beam.name), rule, remedy).as_warning())
+    });
+    let at_rest = |contact: &ContactScene| {
+        let block = &scene.blocks[contact.block];
+        (contact.surface == Support::Ground && block.velocity == [0.0; 2]).then_some(block)
     };
-    scene.beams.iter().filter_map(of).take(LISTED).collect()
+    let left_behind = scene.contacts.iter().find_map(at_rest);
+    let ground = scene.ground.as_ref().zip(left_behind).and_then(|(ground, block)| {
+        let starts = ground.motion.0.iter().take(2).flatten().filter_map(|axis| fast_start(axis, end));
+        let start = starts.max_by(|a, b| a.abs().total_cmp(&b.abs()))?;
+        let rule = format!("the ground begins with {start:.3e} m/s, and `{}` on it is at rest: it begins with a jolt", block.name);
+        let remedy = "let the motion begin with a velocity of 0, as shape = \"ricker\" or a harmonic displacement of phase = \"90 deg\" does, or \
+             give the block the velocity of the ground";
+        Some(document.error("ground.motion", rule, remedy).as_warning())
+    });
+    beams.chain(ground).take(LISTED).collect()
 }
 
 /// Whether it is one velocity all the time.

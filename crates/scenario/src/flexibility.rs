@@ -23,8 +23,11 @@ const PLACES: usize = 16;
 /// Elements that stand for the exact beam, at least; nodes at the feet make them exact in statics there.
 const FINE: usize = 48;
 
-/// Most elements, and most modes, that are tried for advice.
+/// Most elements that are tried for advice.
 const MOST_TRIED: usize = 320;
+
+/// Most modes that are: more of them take longer to find than the full model to step.
+const MOST_MODES: usize = 20;
 
 /// What lacks of the flexibility of a beam.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,7 +88,7 @@ pub(crate) fn lacking(scene: &Scene, number: usize) -> Option<Lack> {
             None => worst(&|at| of_mesh(&beam, at, mass)),
             Some(reduction) => {
                 let basis = reduction.basis(&beam).ok()?;
-                worst(&|at| of_modes(&beam, &basis, at, mass))
+                worst(&|at| of_modes(&beam, &basis, basis.len(), at, mass))
             }
         }
     };
@@ -102,8 +105,15 @@ pub(crate) fn lacking(scene: &Scene, number: usize) -> Option<Lack> {
     let full = of_spec(of.spec.clone(), None)?;
     let advice = match of.reduction {
         Some(_) if full.0 <= LACKING => {
-            let modes = |count: usize| of_spec(of.spec.clone(), Some(crate::scene::Reduction::Modes(count)));
-            let count = doublings(2).find(|&count| enough(modes(count)));
+            // One basis has all the smaller ones in it.
+            let basis = Beam::new(of.spec.clone()).ok().and_then(|beam| {
+                let most = MOST_MODES.min(beam.free_dofs());
+                Some((crate::scene::Reduction::Modes(most).basis(&beam).ok()?, beam, most))
+            });
+            let count = basis.and_then(|(basis, beam, most)| {
+                let modes = |count: usize| worst(&|at| of_modes(&beam, &basis, count, at, mass));
+                doublings(2).take_while(|&count| count <= most).find(|&count| enough(modes(count)))
+            });
             match count {
                 Some(count) => format!("take modes = {{ count = {count} }} or more, or leave the number out"),
                 None => "take model = \"full\"".to_owned(),
@@ -245,10 +255,11 @@ fn of_mesh(beam: &Beam, at: &[f64], mass: f64) -> Option<Matrix> {
     Some(Matrix::of(at.len(), &|i, j| shapes[i].deflection(&sunk[j]).w))
 }
 
-fn of_modes(beam: &Beam, basis: &teeter_beam::ModalBasis, at: &[f64], mass: f64) -> Option<Matrix> {
+/// With the first `count` shapes of a basis.
+fn of_modes(beam: &Beam, basis: &teeter_beam::ModalBasis, count: usize, at: &[f64], mass: f64) -> Option<Matrix> {
     let shapes: Vec<ShapeAt> = at.iter().map(|x| beam.shape_clamped(*x)).collect();
     let entry = |i: usize, j: usize| {
-        let modes = basis.circular_frequencies().iter().enumerate();
+        let modes = basis.circular_frequencies()[..count].iter().enumerate();
         modes
             .map(|(k, omega)| {
                 let [a, b] = [i, j].map(|at: usize| shapes[at].deflection(basis.shape(k)).w);

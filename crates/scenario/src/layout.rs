@@ -6,7 +6,7 @@ use crate::required::Required;
 use crate::scene::Scene;
 use std::ops::Range;
 use std::sync::Arc;
-use teeter_beam::{Beam, Deflection, MatrixWeights, ModalBasis, ShapeAt, SpanLoad};
+use teeter_beam::{Beam, Deflection, ModalBasis, ShapeAt, SpanLoad};
 use teeter_detect::BodyId;
 use teeter_integrator::{BeamForces, Opening};
 
@@ -71,16 +71,17 @@ impl BeamPlace {
         places
     }
 
-    /// Its first circular frequency, rad/s; `None` where it can move rigidly, or none is known.
+    /// The quarters between two supports, their middles among them, m from its left end: where no one of its lower modes is 0 at all of them.
     #[must_use]
-    pub fn first_frequency(&self) -> Option<f64> {
-        if let Some(basis) = &self.basis {
-            return basis.circular_frequencies().first().copied().filter(|omega| *omega > 0.0);
-        }
-        // Supports that hold it make its stiffness definite.
-        let statics = MatrixWeights { mass: 0.0, damping: 0.0, stiffness: 1.0 };
-        self.beam.factor(statics).ok()?;
-        crate::stability::first_frequency(self.beam.spec()).map(|(omega, _)| omega)
+    pub fn quarters(&self) -> Vec<f64> {
+        let spec = self.beam.spec();
+        let mut stops: Vec<f64> = spec.inner_supports.iter().map(|(x, _)| *x).chain([0.0, spec.span]).collect();
+        stops.sort_by(f64::total_cmp);
+        let quarters = |stops: &[f64]| {
+            let (from, to) = (stops[0], stops[1]);
+            [0.25, 0.5, 0.75].map(|part| from + part * (to - from))
+        };
+        stops.windows(2).flat_map(quarters).collect()
     }
 
     /// The deflection at a place of the beam for its own coordinates `q` (its rate for velocities); allocates nothing.

@@ -67,6 +67,7 @@ pub mod simulation;
 pub mod source;
 mod stability;
 pub mod suggest;
+pub mod swing;
 mod syntax;
 mod table;
 mod tree;

@@ -84,12 +84,12 @@ impl Shapes {
             let q = &q[place.range.clone()];
             Box2::new([q[0], q[1]], q[2], *sides)
         }));
+        let allowed = |block: usize| MEETS * sides[block][0].min(sides[block][1]);
         if boxes.len() > 1 {
-            each_overlap(boxes, MEETS, MOST_PAIRS, order, |overlap| {
+            each_overlap(boxes, allowed, MOST_PAIRS, order, |overlap| {
                 each(Meeting::Blocks(overlap.first, overlap.second), overlap.depth);
             });
         }
-        let allowed = |block: usize| MEETS * sides[block][0].min(sides[block][1]);
         if let Some(incline) = *incline {
             let [x, y, slope] = match &layout.ground {
                 Some(range) => [q[range.start], q[range.start + 1], q[range.start + 2]],

@@ -64,11 +64,10 @@ fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
 /// Pairs that are looked at; past it a heap of blocks is judged by what was found.
 const MOST_PAIRS: usize = 1_000_000;
 
-/// Hands all that overlap by more than `tolerance` of the smaller one's larger side to `each`, as far as `most` pairs of neighbours along
-/// x tell; `order` is memory.
+/// Hands all that overlap by more than both allow, m, to `each`, as far as `most` pairs of neighbours along x tell; `order` is memory.
 pub(crate) fn each_overlap(
     boxes: &[Box2],
-    tolerance: f64,
+    allowed: impl Fn(usize) -> f64,
     most: usize,
     order: &mut Vec<usize>,
     mut each: impl FnMut(Overlap),
@@ -84,8 +83,7 @@ pub(crate) fn each_overlap(
         for &b in order[place + 1..].iter().take_while(|&&b| left(b) < right(a)) {
             pairs += 1;
             let depth = boxes[a].depth(&boxes[b]);
-            let allowed = tolerance * boxes[a].largest_side().min(boxes[b].largest_side());
-            if depth > allowed {
+            if depth > allowed(a).min(allowed(b)) {
                 each(Overlap { first: a.min(b), second: a.max(b), depth });
             }
             if pairs > most {
@@ -98,11 +96,17 @@ pub(crate) fn each_overlap(
 /// The two that overlap the most, of all that do by more than `tolerance` of the smaller one's larger side.
 pub(crate) fn deepest_overlap(boxes: &[Box2], tolerance: f64) -> Option<Overlap> {
     let mut deepest: Option<Overlap> = None;
-    each_overlap(boxes, tolerance, MOST_PAIRS, &mut Vec::new(), |overlap| {
-        if deepest.is_none_or(|known| overlap.depth > known.depth) {
-            deepest = Some(overlap);
-        }
-    });
+    each_overlap(
+        boxes,
+        |k| tolerance * boxes[k].largest_side(),
+        MOST_PAIRS,
+        &mut Vec::new(),
+        |overlap| {
+            if deepest.is_none_or(|known| overlap.depth > known.depth) {
+                deepest = Some(overlap);
+            }
+        },
+    );
     deepest
 }
 

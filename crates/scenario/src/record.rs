@@ -190,6 +190,18 @@ fn other_separator(row: &csv::ByteRecord) -> Option<&'static str> {
 
 /// The units that a heading gives, by column: `t [ms]`, `t (ms)`; none for the SI unit itself.
 fn heading_units(heading: &csv::ByteRecord, dimensions: &[Dimension]) -> Result<Vec<Option<String>>, String> {
+    let is_time = |cell: &[u8]| {
+        let cell = String::from_utf8_lossy(cell).to_lowercase();
+        let name = cell.split(['[', '(']).next().unwrap_or_default().trim().trim_matches('"').to_owned();
+        name == "t" || name == "time"
+    };
+    let mut cells = heading.iter();
+    if dimensions.first() == Some(&Dimension::TIME)
+        && cells.next().is_some_and(|cell| !is_time(cell))
+        && cells.any(is_time)
+    {
+        return Err("the heading has the time in another column: it has to be the first".to_owned());
+    }
     let mut units = Vec::new();
     for (cell, dimension) in heading.iter().zip(dimensions) {
         let cell = String::from_utf8_lossy(cell);

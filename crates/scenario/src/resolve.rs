@@ -34,6 +34,8 @@ pub struct Resolved {
     pub document: Document,
     /// What looks wrong but can be run.
     pub warnings: Vec<Diagnostic>,
+    /// What looks wrong beforehand of what a run measures and says by itself: for who doesn't run it.
+    pub foreseen: Vec<Diagnostic>,
     /// What is worth knowing, with nothing wrong.
     pub notes: Vec<Diagnostic>,
     /// The files that the scene names, by the path in the scene, with their bytes as they were read.
@@ -71,7 +73,8 @@ pub fn resolve(mut document: Document, stem: &str, read: &mut ReadFile<'_>) -> R
             if errors.is_empty() {
                 let doubts = doubts::of(&scene, &document);
                 warnings.extend(doubts.warnings);
-                return Ok(Resolved { scene, document, warnings, notes: doubts.notes, files });
+                let (foreseen, notes) = (doubts.foreseen, doubts.notes);
+                return Ok(Resolved { scene, document, warnings, foreseen, notes, files });
             }
         }
         _ => {}

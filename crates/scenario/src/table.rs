@@ -328,7 +328,7 @@ pub static TABLES: &[Table] = &[
             key("friction", Kind::Number(Range::NOT_NEGATIVE), Required, "0.5", "Coefficient of Coulomb friction."),
             key("restitution", Kind::Number(Range::UNIT), Default("0.0"), "0.0", "Coefficient of restitution: of the normal velocity, or with poisson of the normal impulse.").only_with("law", IMPACTS),
             key("tangential_restitution", Kind::Number(Range::UNIT), Default("0.0"), "0.0", "Part of the tangential velocity that comes back from an impact that does not slide.").only_with("law", IMPACTS),
-            key("kinematics", Kind::Choice(words::Frames::WORDS), Default("\"deformed\""), "\"deformed\"", "Whether contact frames follow the deformed beam or its undeformed axis."),
+            key("kinematics", Kind::Choice(words::Frames::WORDS), Default("\"deformed\""), "\"deformed\"", "Whether contact frames follow the deformed beam or its undeformed axis; the latter is for blocks that don't slide along a deflected beam."),
             key("law", Kind::Choice(words::Law::WORDS), Default("\"newton\""), "\"newton\"", "Law along the normal: an impact in an instant (newton, poisson, energetic), or a contact with duration (kelvin-voigt, hunt-crossley)."),
             key("stiffness", Kind::Measure(CONTACT_STIFFNESS, Range::POSITIVE.sizes(1e-12, 1e18)), Required, "\"1e6 N/m\"", "Stiffness k. In F = k d^n (hunt-crossley) its unit is N/m^n; N/m stands for that too, with the same number.").only_with("law", COMPLIANT),
             key("damping", Kind::Measure(CONTACT_DAMPING, Range::NOT_NEGATIVE), Required, "\"10 N s/m\"", "Damping: with kelvin-voigt c in N s/m; with hunt-crossley, in F = k d^n (1 + D v), D in s/m, or c = k D in N s/m^(n+1), for which N s/m stands too.").only_with("law", COMPLIANT),

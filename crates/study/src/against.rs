@@ -31,7 +31,7 @@ impl<'a> Against<'a> {
     /// Runs a setting to its end: its errors before the horizon, and what `check` and `run` warn of.
     ///
     /// # Errors
-    /// If the scene is none with it, or the run ends before its time.
+    /// If the scene can't be run with it, or the run ends before its time.
     pub fn errors(&self, setting: &Setting, cancel: &AtomicBool) -> Result<(Errors, Vec<Warned>), Failure> {
         let ran = simulate(self.source, setting, 0.0, self.sampling, cancel)?;
         Ok((self.reference.ruler.errors(&ran.motion, &self.reference.motion), ran.warned))

@@ -124,8 +124,8 @@ impl<'a> Known<'a> {
     }
 }
 
-/// All combinations that are scenes, from cheap to dear by the least that they cost; `expect` tells what a setting costs, and of those that are none
-/// nothing. A step costs the same however many there are: one of each ladder is looked at.
+/// All combinations that can be run, the cheapest first by the least that they cost; `expect` tells what a setting costs, and nothing of those that
+/// can't be run. A step costs the same however many there are: one of each ladder is looked at.
 pub(crate) fn grid(axes: &Axes, steps: &[f64], expect: &dyn Fn(&Setting) -> Option<Work>) -> Vec<Planned> {
     let mut all = Vec::new();
     for combination in axes.combinations() {

@@ -15,7 +15,7 @@ use teeter_scenario::simulation::Simulation;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Failure {
-    /// The scene is none with it.
+    /// With it the scene can't be run.
     #[error("refused: {0}")]
     Refused(String),
     /// The run ended before its time.
@@ -118,7 +118,7 @@ fn run_within(
     if limit.left == 0 && ended != Ended::Complete {
         let t = simulation.state.t;
         return Err(Failure::Ended(format!(
-            "given up at t = {t} s: its solver took {most} iterations by then, too dear to go on"
+            "stopped at t = {t} s: its contact solver needed more than {most} iterations, far more work than all else"
         )));
     }
     let state = &simulation.state;
@@ -131,7 +131,7 @@ fn run_within(
     let work = Work::of(&simulation);
     let record = recorder.into_record();
     let summary = Summary::new(&resolved.scene, &layout, state, &record, EndedWord::Complete, 0.0);
-    let warned = Warned::of(&resolved.warnings, &summary.warnings);
+    let warned = Warned::of(resolved.warnings.iter().chain(&resolved.foreseen), &summary.warnings);
     Ok(Ran { motion: sampler.finish(state, &record), work, unconverged: state.tally.unconverged_steps, warned })
 }
 

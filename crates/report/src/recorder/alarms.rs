@@ -1,9 +1,10 @@
 //! What a recorder warns of while a run goes on, and at its end.
 
 use super::{Kept, Recorder};
-use crate::resolution::{COARSE, COARSE_ONCE};
+use crate::resolution::Of;
+use crate::swings::Watch;
 use teeter_integrator::{State, StepReport};
-use teeter_scenario::simulation::{BlockPlace, Layout};
+use teeter_scenario::simulation::Layout;
 use teeter_scenario::{FAR_TURN, deflection};
 
 /// A change of the modified energy over this part of the kinetic and elastic energy is a warning.
@@ -18,35 +19,36 @@ const UNACCOUNTED: f64 = 1e-8;
 /// Who meets whom is looked at again when a body may have moved by this part of the shortest side of a block.
 const LOOK_AFTER: f64 = 0.1;
 
-/// No corner of a block is faster than this past ground or supports, m/s.
-fn fastest(layout: &Layout, state: &State) -> f64 {
+/// No corner of a block is faster than this past ground, supports and what is watched of beams, m/s.
+fn fastest(layout: &Layout, watch: &Watch, state: &State) -> f64 {
     let blocks = layout.blocks.iter().map(|place| {
         let [x, y, spin] = [0, 1, 2].map(|k| state.v[place.range.start + k].abs());
         x + y + place.reach * spin
     });
     let supports = layout.beams.iter().filter_map(|place| place.supports.clone());
+    // What a beam does at its watched places stands for what it does between them.
+    let swing = watch.fastest(layout, state);
     let supports = supports.map(|range| state.v[range].iter().map(|v| v.abs()).sum());
     let ground = layout.ground.iter().map(|range| {
         let far = layout.blocks.iter().map(|place| state.q[place.range.start].hypot(state.q[place.range.start + 1]));
         let v = &state.v[range.clone()];
         v[0].abs() + v[1].abs() + v[2].abs() * far.fold(0.0, f64::max)
     });
-    blocks.fold(0.0, f64::max) + supports.chain(ground).fold(0.0, f64::max)
+    blocks.fold(0.0, f64::max) + supports.chain(ground).fold(0.0, f64::max) + swing
 }
 
 impl Recorder<'_> {
     /// Warns, once, of a block that turns far in a step.
     pub(super) fn warn_of_turns(&mut self, state: &State) {
         let fastest = FAR_TURN / state.dt;
-        let turning = |place: &&BlockPlace| state.v[place.range.start + 2].abs() >= fastest;
-        let Some(place) = self.layout.blocks.iter().find(turning) else { return };
+        let blocks = self.layout.blocks.iter().map(|place| (place.name.as_str(), state.v[place.range.start + 2]));
+        let ground = self.layout.ground.iter().map(|range| ("ground", state.v[range.start + 2]));
+        let Some((name, spin)) = ground.chain(blocks).find(|(_, spin)| spin.abs() >= fastest) else { return };
         let warnings = &mut self.kept.record.warnings;
         let known = warnings.warnings().iter().any(|warning| warning.code == "far-turn");
-        let spin = state.v[place.range.start + 2];
         let told = warnings.enter("far-turn", Some(state.t), || {
             format!(
-                "`{}` turns by {:.2} rad in the step to t = {} s, and is no longer followed from {FAR_TURN} on; take a step of at most {:.0e} s",
-                place.name,
+                "`{name}` turns by {:.2} rad in the step to t = {} s, and is no longer followed from {FAR_TURN} on; take a step of at most {:.0e} s",
                 spin.abs() * state.dt,
                 state.t,
                 FAR_TURN / spin.abs()
@@ -76,12 +78,11 @@ impl Recorder<'_> {
         }
     }
 
-    /// Looks who meets whom between rows, too, as soon as something may have come far enough to matter: nothing passes through a body unseen.
+    /// Looks who meets whom between rows, too, as soon as something may have come far enough to matter.
     pub(super) fn warn_of_meetings(&mut self, step: &StepReport<'_, 2>, state: &State) {
-        let Kept { travelled, .. } = &mut self.kept;
-        *travelled += (step.t_end - step.t_start) * fastest(self.layout, state);
+        self.kept.travelled += (step.t_end - step.t_start) * fastest(self.layout, &self.watch, state);
         let least = self.layout.blocks.iter().map(|place| place.side).fold(f64::INFINITY, f64::min);
-        if *travelled > LOOK_AFTER * least {
+        if self.kept.travelled > LOOK_AFTER * least {
             self.look_who_meets(state);
         }
     }
@@ -151,27 +152,34 @@ impl Recorder<'_> {
         let Self { layout, bodies, watch, kept: Kept { resolution, swings, record, .. }, tell, .. } = self;
         if let Some(coarse) = resolution.coarse(bodies, state.dt) {
             let name = layout.blocks.get(coarse.block).map_or("a block", |place| &place.name);
-            let (what, limit) = if coarse.once {
-                ("at one impact that is as much as", COARSE_ONCE)
-            } else {
-                ("added up and carried on that is", COARSE)
+            let (part, limit, step) = (100.0 * coarse.part, 100.0 * coarse.of.limit(), coarse.step);
+            let what = match coarse.of {
+                Of::Impacts => "its contacts close up to a step late, all together by",
+                Of::Impact => "its contacts close up to a step late, at one of them by",
+                Of::Held => "a foot that closed above the surface, or below it, goes on pressing there, off by",
             };
             let told = record.warnings.enter("under-resolved", None, || {
                 format!(
-                    "steps of {:e} s are too long for the impacts of `{name}`: a contact closes up to a step late, and {what} {:.1} % of its motion; above \
-                     {:.1} % motions are likely off by more than 10 %; take a step of at most {:.0e} s, and let `teeter tradeoff` measure what accuracy it \
-                     gives",
+                    "steps of {:e} s are too long for the impacts of `{name}`: {what} {part:.1} % of its motion, and from {limit:.1} % on motions are \
+                     likely off by more than 10 %; take a step of at most {step:.0e} s, and let `teeter tradeoff` measure what accuracy it gives",
                     state.dt,
-                    100.0 * coarse.part,
-                    100.0 * limit,
-                    coarse.step
+                )
+            });
+            told.into_iter().for_each(|text| tell(&text));
+        }
+        if let Some((block, off)) = resolution.fall(bodies, state.dt) {
+            let name = layout.blocks.get(block).map_or("a block", |place| &place.name);
+            let told = record.warnings.enter("under-resolved-flight", None, || {
+                format!(
+                    "with this theta `{name}` is off by {off:.1e} m after its longest flight: it falls by (theta - 1/2) g h t too much or too little; take \
+                     theta = 0.5, or a shorter step"
                 )
             });
             told.into_iter().for_each(|text| tell(&text));
         }
         if let Some(lost) = swings.lost(watch, state.dt) {
             let name = layout.beams.get(lost.beam).map_or("a beam", |place| &place.name);
-            let rest = if watch.conserves() { "" } else { ", or theta = 0.5, which damps nothing" };
+            let rest = if watch.damps() { ", or theta = 0.5, which damps nothing" } else { "" };
             let told = record.warnings.enter("under-resolved-swings", None, || {
                 format!(
                     "steps of {:e} s are too long for the swings of `{name}`: at {:.4} Hz they come late or die out by as much as {:.0} % of its largest \

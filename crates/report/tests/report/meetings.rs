@@ -95,3 +95,19 @@ fn scenarios_have_no_meetings() {
         assert!(met(&found).is_empty(), "{name}: {:?}", met(&found));
     }
 }
+
+#[test]
+fn thin_plates_that_pass_through_each_other_are_told() {
+    // Their overlap is 1 mm at the most, a five hundredth of their length.
+    let plate = |name: &str, place: &str| {
+        format!(
+            "block.{name} = {{ material = \"s\", width = \"1 mm\", height = \"50 cm\", depth = \"10 cm\", {place} }}\n"
+        )
+    };
+    let scene = format!(
+        "{HEAD}world.gravity = [\"0 m/s^2\", \"0 m/s^2\"]\n{}{}",
+        plate("a", "position = [\"0 m\", \"0 m\"], velocity = [\"4 cm/s\", \"0 m/s\"]"),
+        plate("b", "position = [\"1 cm\", \"0 m\"]")
+    );
+    only(&summary("plates", &scene, &[]), "passes-through", &["`a` and `b` overlap"]);
+}

@@ -47,3 +47,52 @@ fn what_a_load_bends_slowly_takes_no_harm() {
     let found = summary("swings-slow", &scene, &[]);
     assert!(found.warnings.iter().all(|warning| warning.code != "under-resolved-swings"), "{:?}", found.warnings);
 }
+
+#[test]
+fn a_swing_in_a_higher_mode_is_watched_at_its_own_frequency() {
+    // Midspan is a node of the second mode, and its frequency four times the first.
+    let second = SCENE.replace("mode = 1", "mode = 2");
+    let told = |name: &str, step: &str| {
+        let found = summary(name, &second, &[("time.step", step), ("time.end", "1 s")]);
+        found
+            .warnings
+            .iter()
+            .find(|warning| warning.code == "under-resolved-swings")
+            .map(|warning| warning.text.clone())
+    };
+    let coarse = told("second-mode", "1.5 ms").unwrap();
+    assert!(coarse.contains(" 24.4"), "{coarse}");
+    assert_eq!(told("second-mode-fine", "200 us"), None);
+}
+
+#[test]
+fn a_blow_late_in_a_long_run_is_not_off_by_what_was_before_it() {
+    // Some 60 periods at rest, then a blow; θ = 0.6 would have damped a swing all that time.
+    let scene = format!(
+        "{}load.f = {{ on = \"t\", at = \"0.5 m\", force = \"-1 N\", signal = \"s\" }}\nsignal.s = {{ shape = \"half-sine\", start = \"9.8 s\", duration = \"50 ms\" }}\n",
+        SCENE
+            .replace("start = { mode = 1, amplitude = \"1 mm\" }", "start = \"undeformed\"")
+            .replace("1.5 s", "10 s")
+            .replace("1 ms", "500 us")
+    );
+    let found = summary("late-blow", &scene, &[("time.theta", "0.6")]);
+    assert!(found.warnings.iter().all(|warning| warning.code != "under-resolved-swings"), "{:?}", found.warnings);
+}
+
+#[test]
+fn flights_with_another_theta_than_a_half_are_told_of() {
+    let scene = "time = { end = \"1 s\", step = \"2 ms\" }\nmaterial.s = { density = \"7850 kg/m^3\" }\n\
+        block.b = { material = \"s\", width = \"3 cm\", height = \"6 cm\", depth = \"3 cm\", position = [\"0 m\", \"10 m\"] }\n";
+    let told = |name: &str, sets: &[(&str, &str)]| {
+        let found = summary(name, scene, sets);
+        found
+            .warnings
+            .iter()
+            .find(|warning| warning.code == "under-resolved-flight")
+            .map(|warning| warning.text.clone())
+    };
+    // (θ − ½) g h t = 9.8 mm, a sixth of its height.
+    assert!(told("flight", &[("time.theta", "1")]).unwrap().contains("9.8e-3 m"));
+    assert_eq!(told("flight-half", &[]), None);
+    assert_eq!(told("flight-fine", &[("time.theta", "1"), ("time.step", "200 us")]), None);
+}
