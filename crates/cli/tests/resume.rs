@@ -254,7 +254,7 @@ fn an_interrupted_run_goes_on_to_the_same_bytes() {
         while length() < begin + 1000 {
             std::thread::sleep(Duration::from_millis(1));
         }
-        assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+        assert!(Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap().success());
         let output = child.wait_with_output().unwrap();
         assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
         assert!(stderr(&output).contains("--resume goes on from there"), "{}", stderr(&output));

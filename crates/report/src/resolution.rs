@@ -38,6 +38,8 @@ const STILL: f64 = 1e-3;
 struct Seen {
     /// Least and largest angle, rad.
     angles: [f64; 2],
+    /// Its largest angle from what carries it, rad: with the range above, alike for a scene that is turned as a whole.
+    tilted: f64,
     /// The way of its mass centre while nothing touched it, along `normal`, m: how fast it goes along a surface says nothing of how
     /// finely its impacts are resolved.
     flown: f64,
@@ -106,9 +108,10 @@ impl Resolution {
     /// Before the first step.
     pub(crate) fn start(&mut self, layout: &Layout, state: &State) {
         self.blocks.clear();
-        self.blocks.extend((0..layout.blocks.len()).map(|block| {
-            let angle = layout.tilt(block, &state.q);
-            Seen { angles: [angle, angle], normal: [0.0, 1.0], ..Seen::default() }
+        self.blocks.extend(layout.blocks.iter().enumerate().map(|(block, place)| {
+            let angle = state.q[place.range.start + 2];
+            let tilted = layout.tilt(block, &state.q).abs();
+            Seen { angles: [angle, angle], tilted, normal: [0.0, 1.0], ..Seen::default() }
         }));
     }
 
@@ -136,8 +139,8 @@ impl Resolution {
             self.blocks.iter_mut().zip(&layout.blocks).zip(&bodies.widths).enumerate()
         {
             let at = place.range.start;
-            // From what carries it, so that a scene that is turned as a whole is judged alike.
-            let angle = layout.tilt(block, &state.q);
+            let angle = state.q[at + 2];
+            seen.tilted = seen.tilted.max(layout.tilt(block, &state.q).abs());
             seen.angles = [seen.angles[0].min(angle), seen.angles[1].max(angle)];
             // On both feet it goes with what carries it.
             let mut way = if seen.pressed < 2 { h * width * state.v[at + 2].abs() } else { 0.0 };
@@ -185,7 +188,7 @@ impl Seen {
     /// does little harm.
     fn parts(&self, width: f64) -> [(Of, f64); 3] {
         let [least, most] = self.angles;
-        let swing = (most - least).max(most.abs()).max(least.abs()).min(std::f64::consts::PI);
+        let swing = (most - least).max(self.tilted).min(std::f64::consts::PI);
         let carried = if self.way > 0.0 { 2.0 * self.carried / self.way } else { 0.0 };
         let motion = (width * swing).max(self.flown).max(STILL * width);
         [
