@@ -64,7 +64,8 @@ What a run measures it says at its end, on the terminal, on the page and among t
 | `energy-account` | the identity of energy is off by more than rounding |
 | `deep-penetration`, `far-turn` | corners over a tenth of a block's shorter side deep; turns of more than 0.1 rad a step |
 | `passes-through`, `between-corners`, `past-the-end` | bodies inside each other where no contact is modelled ([impacts.md](impacts.md)) |
-| `large-deflection`, `stretching` | a beam out of linear theory; a step too long for its stretching |
+| `large-deflection`, `yield`, `stretching` | a beam out of linear theory, or over its yield strength; a step too long for its stretching |
+| `model-limits` | energy or penetration over what was taken for granted where parts were left out ([required.md](required.md)) |
 ";
 
 /// The page.

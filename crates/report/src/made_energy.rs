@@ -2,7 +2,7 @@
 
 use crate::Warning;
 use teeter_integrator::{Ledger, State};
-use teeter_scenario::scene::{MotionScene, Scene, SchemeName};
+use teeter_scenario::scene::{Scene, SchemeName};
 
 /// The kind of the warning that contacts made energy: it is known at the end of a run, and in its summary only.
 pub const ENERGY_MADE: &str = "energy-made";
@@ -59,19 +59,13 @@ fn percent(part: f64) -> String {
     }
 }
 
-/// Whether a body is moved as prescribed: contacts with it may give energy in the closed scheme, too.
-fn is_driven(scene: &Scene) -> bool {
-    let ground = scene.ground.iter().map(|ground| &ground.motion);
-    let bodies = scene.beams.iter().map(|beam| &beam.motion).chain(scene.blocks.iter().map(|block| &block.motion));
-    ground.chain(bodies).any(MotionScene::is_given)
-}
-
 /// What to take instead. The closed scheme's contacts make none; that a shorter step or the energetic law helps in the other one could not be
 /// found (`docs/schemes.md`, "Energy made").
 fn remedy(scene: &Scene) -> String {
     match scene.time.scheme {
         SchemeName::MoreauJeanClosed => "take a shorter step (`time.step`)".to_owned(),
-        _ if is_driven(scene) => format!(
+        // Contacts with a body that is moved as prescribed may give energy in the closed scheme, too.
+        _ if scene.motions().any(|(_, motion)| motion.is_given()) => format!(
             "take a shorter step (`time.step`), or `time.scheme = \"{}\"` with one: where bodies are moved as prescribed neither scheme's contacts \
              are free of it",
             SchemeName::MoreauJeanClosed.word()

@@ -337,12 +337,12 @@ impl Observer<2> for Recorder<'_> {
     ) -> Result<ControlFlow<()>, ObserverError> {
         self.kept.impulses.add(step.contacts);
         self.write_impacts(model, step, state)?;
-        self.warn_of(step);
+        self.warn_of_unsolved(step);
         self.warn_of_limits(state);
         self.warn_of_turns(state);
-        self.warn_of_meetings(step, state);
+        let swing = self.kept.swings.observe(&mut self.watch, self.layout, step.t_end - step.t_start, state);
+        self.warn_of_meetings(step, state, swing);
         self.kept.resolution.observe(&self.bodies, self.layout, step, state);
-        self.kept.swings.observe(&mut self.watch, self.layout, step.t_end - step.t_start, state);
         let Kept { record, section_values, .. } = &mut self.kept;
         let kept = (record.beams.as_mut_slice(), section_values);
         if let Some(text) = self.sections.observe(step, state, kept, &mut record.warnings) {

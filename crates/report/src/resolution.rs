@@ -10,13 +10,13 @@ use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Layout;
 
 /// Above this part of the motion, a run is likely off by more than 10 %.
-pub(crate) const COARSE: f64 = 0.012;
+const COARSE: f64 = 0.012;
 
 /// And above this part of the motion at a single impact: a block that falls flat rests where it closed, about half of it off.
-pub(crate) const COARSE_ONCE: f64 = 0.2;
+const COARSE_ONCE: f64 = 0.2;
 
 /// And where both feet press with gaps that differ by this part of the motion: that much the block leans without a cause.
-pub(crate) const HELD_OFF: f64 = 0.05;
+const HELD_OFF: f64 = 0.05;
 
 /// Leaning by less than [`HELD_OFF`] of this, rad, is none.
 const LEVEL: f64 = 0.01;

@@ -82,15 +82,6 @@ impl Watch {
         Self { beams: layout.beams.iter().map(watched).collect(), theta: scene.time.theta_of_scheme() }
     }
 
-    /// The largest rate of deflection of all beams at their places, m/s.
-    pub(crate) fn fastest(&self, layout: &Layout, state: &State) -> f64 {
-        let of = |(watched, place): (&Watched, &BeamPlace)| {
-            let v = &state.v[place.range.clone()];
-            watched.places.iter().map(|at| place.deflection(at, v).w.abs()).fold(0.0, f64::max)
-        };
-        self.beams.iter().zip(&layout.beams).map(of).fold(0.0, f64::max)
-    }
-
     /// Whether the steps take something out of a swing.
     pub(crate) fn damps(&self) -> bool {
         self.theta > 0.5
@@ -117,24 +108,29 @@ impl Swings {
         );
     }
 
-    /// Takes a step of length `h` (s) in that ended in `state`.
-    pub(crate) fn observe(&mut self, watch: &mut Watch, layout: &Layout, h: f64, state: &State) {
+    /// Takes a step of length `h` (s) in that ended in `state`; returns the largest rate of deflection of all beams at their places, m/s.
+    pub(crate) fn observe(&mut self, watch: &mut Watch, layout: &Layout, h: f64, state: &State) -> f64 {
+        let mut fastest = 0.0_f64;
         for ((swung, watched), place) in self.0.iter_mut().zip(&mut watch.beams).zip(&layout.beams) {
-            let Some(swing) = watched.swing else { continue };
-            watched.with_step(swing, watch.theta, h);
+            if let Some(swing) = watched.swing {
+                watched.with_step(swing, watch.theta, h);
+            }
             let ([c, d], [r, s]) = (watched.turn, watched.more);
             let mut worst = 0.0_f64;
             for (off, at) in swung.off.iter_mut().zip(&watched.places) {
                 let [w, rate] = [&state.q, &state.v].map(|x| place.deflection(at, &x[place.range.clone()]).w);
+                fastest = fastest.max(rate.abs());
+                swung.most = swung.most.max(w.abs());
+                let Some(swing) = watched.swing else { continue };
                 // a = 2ẇ/(iω) lies on the imaginary axis.
                 let a = -2.0 * rate / swing.omega;
                 let [x, y] = *off;
                 *off = [c * x - d * y - s * a, d * x + c * y + r * a];
                 worst = worst.max(off[0] * off[0] + off[1] * off[1]);
-                swung.most = swung.most.max(w.abs());
             }
             swung.worst = swung.worst.max(worst.sqrt());
         }
+        fastest
     }
 
     /// The beam whose swings steps of length `step` (s) resolve worst, if that is badly.

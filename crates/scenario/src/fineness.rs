@@ -204,7 +204,7 @@ fn turns(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
         })
     };
     let spins = scene.blocks.iter().map(|block| far(format!("block.{}.spin", block.name), block.spin));
-    let driven = |owner: String, motion: &MotionScene| {
+    let driven = |(path, motion): (String, &MotionScene)| {
         let axis = motion.0[2].as_ref()?;
         let most = match &axis.history {
             History::Formula(_) => 1.0,
@@ -217,19 +217,9 @@ fn turns(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
             }
             _ => return None,
         };
-        far(format!("{owner}.motion.{key}"), axis.amplitude * rate)
+        far(format!("{path}.{key}"), axis.amplitude * rate)
     };
-    let blocks = scene.blocks.iter().map(|block| driven(format!("block.{}", block.name), &block.motion));
-    let ground = scene.ground.iter().map(|ground| driven("ground".to_owned(), &ground.motion));
-    spins.chain(blocks).chain(ground).flatten().take(LISTED).collect()
-}
-
-/// All prescribed motions, with where they are.
-fn motions(scene: &Scene) -> impl Iterator<Item = (String, &MotionScene)> {
-    let ground = scene.ground.iter().map(|ground| ("ground.motion".to_owned(), &ground.motion));
-    let beams = scene.beams.iter().map(|beam| (format!("beam.{}.motion", beam.name), &beam.motion));
-    let blocks = scene.blocks.iter().map(|block| (format!("block.{}.motion", block.name), &block.motion));
-    ground.chain(beams).chain(blocks)
+    spins.chain(scene.motions().map(driven)).flatten().take(LISTED).collect()
 }
 
 /// Displacements that go faster from one place to another than steps can show: what a contact feels is their velocity.
@@ -260,7 +250,7 @@ fn rises(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
         };
         Some(document.error(&format!("{path}.{key}"), rule, remedy).as_warning())
     };
-    motions(scene).filter_map(of).take(LISTED).collect()
+    scene.motions().filter_map(of).take(LISTED).collect()
 }
 
 /// The time between two rows, shorter than a step, whose slope is the farthest from the mean ones of the steps around, if it is far from them.

@@ -145,11 +145,8 @@ fn presses(scene: &Scene, number: usize) -> Vec<Press> {
         let feet = [middle - 0.5 * block.width, middle + 0.5 * block.width];
         let at: Vec<f64> = feet.into_iter().filter(on).collect();
         if !at.is_empty() {
-            let how = if at.len() < 2 || may_rock(scene, block, contact.block, number) {
-                How::Rocking
-            } else {
-                How::Standing
-            };
+            let stands = matches!(block.placement, Placement::On { tilt: 0.0, .. });
+            let how = if at.len() < 2 || !stands || scene.is_driven(contact) { How::Rocking } else { How::Standing };
             presses.push(Press { what: format!("the feet of `{}`", block.name), at, how });
         }
     }
@@ -179,15 +176,6 @@ fn fine(of: &BeamScene, at: &[f64]) -> BeamSpec {
     }
     nodes.sort_by(f64::total_cmp);
     of.spec.clone().meshed(nodes)
-}
-
-/// Whether anything can make a block rock that stands on a beam.
-fn may_rock(scene: &Scene, block: &BlockScene, number: usize, beam: usize) -> bool {
-    let stands = matches!(block.placement, Placement::On { tilt: 0.0, .. });
-    let pushed =
-        scene.forces.iter().any(|force| force.block == number) || scene.loads.iter().any(|load| load.beam == beam);
-    let moves = block.spin != 0.0 || block.velocity != [0.0; 2] || block.motion.is_given();
-    !stands || pushed || moves || scene.beams[beam].motion.is_given()
 }
 
 /// How far places sink under unit forces at them, m/N: a row each.

@@ -58,12 +58,9 @@ impl BeamPlace {
     /// Midspan, and the middle between two supports, as midspan may be one, m from its left end.
     #[must_use]
     pub fn middles(&self) -> Vec<f64> {
-        let spec = self.beam.spec();
-        let mut stops: Vec<f64> = spec.inner_supports.iter().map(|(x, _)| *x).chain([0.0, spec.span]).collect();
-        stops.sort_by(f64::total_cmp);
-        let mut places = vec![0.5 * spec.span];
-        for stops in stops.windows(2) {
-            let x = 0.5 * (stops[0] + stops[1]);
+        let mut places = vec![0.5 * self.beam.spec().span];
+        for [from, to] in self.spans() {
+            let x = 0.5 * (from + to);
             if !places.contains(&x) {
                 places.push(x);
             }
@@ -71,17 +68,19 @@ impl BeamPlace {
         places
     }
 
-    /// The quarters between two supports, their middles among them, m from its left end: where no one of its lower modes is 0 at all of them.
+    /// The quarters between two supports, their middles among them, m from its left end: none of its lower modes is 0 at all of them.
     #[must_use]
     pub fn quarters(&self) -> Vec<f64> {
+        let quarters = |[from, to]: [f64; 2]| [0.25, 0.5, 0.75].map(|part| from + part * (to - from));
+        self.spans().into_iter().flat_map(quarters).collect()
+    }
+
+    /// From where to where there is no support, m from its left end.
+    fn spans(&self) -> Vec<[f64; 2]> {
         let spec = self.beam.spec();
         let mut stops: Vec<f64> = spec.inner_supports.iter().map(|(x, _)| *x).chain([0.0, spec.span]).collect();
         stops.sort_by(f64::total_cmp);
-        let quarters = |stops: &[f64]| {
-            let (from, to) = (stops[0], stops[1]);
-            [0.25, 0.5, 0.75].map(|part| from + part * (to - from))
-        };
-        stops.windows(2).flat_map(quarters).collect()
+        stops.windows(2).map(|stops| [stops[0], stops[1]]).collect()
     }
 
     /// The deflection at a place of the beam for its own coordinates `q` (its rate for velocities); allocates nothing.

@@ -43,19 +43,14 @@ pub(crate) fn coarse(scene: &Scene, document: &Document) -> Option<Diagnostic> {
 /// Whether a block does as Housner's does: nothing but its weight moves it, on level ground or a beam that doesn't let it slide or bounce.
 fn is_housners(scene: &Scene, contact: &ContactScene) -> bool {
     let block = &scene.blocks[contact.block];
-    let carried = match contact.surface {
-        Support::Ground => {
-            scene.ground.as_ref().is_some_and(|ground| ground.motion.is_given() || ground.incline != 0.0)
-        }
-        Support::Beam(beam) => scene.beams[beam].motion.is_given() || scene.loads.iter().any(|load| load.beam == beam),
-    };
-    let pushed = scene.forces.iter().any(|force| force.block == contact.block) || scene.gravity[0] != 0.0;
+    let inclined =
+        contact.surface == Support::Ground && scene.ground.as_ref().is_some_and(|ground| ground.incline != 0.0);
+    let level = !inclined && scene.gravity[0] == 0.0;
     let law = &contact.law;
     let compliant = matches!(law.impact, ImpactLaw::KelvinVoigt { .. } | ImpactLaw::HuntCrossley { .. });
     let bounces = law.restitution > 0.0 || compliant;
     let slides = law.friction < block.width / block.height;
-    let moves = block.motion.is_given() || block.spin != 0.0 || block.velocity != [0.0; 2];
-    !(carried || pushed || bounces || slides || moves)
+    level && !(bounces || slides || scene.is_driven(contact))
 }
 
 /// The number of impacts of a block let go tilted, and how late they are, as a part of its swing: what a run measures as `under-resolved`.

@@ -56,6 +56,29 @@ pub struct Time {
     pub gap_tolerance: f64,
 }
 
+impl Scene {
+    /// The motions of all that can be moved as prescribed, whether it is or not, with their tables: blocks, beams' supports, ground.
+    pub fn motions(&self) -> impl Iterator<Item = (String, &MotionScene)> {
+        let blocks = self.blocks.iter().map(|block| (format!("block.{}.motion", block.name), &block.motion));
+        let beams = self.beams.iter().map(|beam| (format!("beam.{}.motion", beam.name), &beam.motion));
+        let ground = self.ground.iter().map(|ground| ("ground.motion".to_owned(), &ground.motion));
+        blocks.chain(beams).chain(ground)
+    }
+
+    /// Whether anything but weight moves the block of a contact: its own start or motion, a force on it, or what carries it.
+    pub(crate) fn is_driven(&self, contact: &ContactScene) -> bool {
+        let block = &self.blocks[contact.block];
+        let carried = match contact.surface {
+            Support::Ground => self.ground.as_ref().is_some_and(|ground| ground.motion.is_given()),
+            Support::Beam(beam) => {
+                self.beams[beam].motion.is_given() || self.loads.iter().any(|load| load.beam == beam)
+            }
+        };
+        let pushed = self.forces.iter().any(|force| force.block == contact.block);
+        carried || pushed || block.motion.is_given() || block.spin != 0.0 || block.velocity != [0.0; 2]
+    }
+}
+
 impl Time {
     /// The θ by which the scheme steps: the closed one has ½, whatever is given.
     #[must_use]

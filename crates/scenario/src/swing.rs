@@ -31,12 +31,12 @@ impl Swing {
     #[must_use]
     pub fn of(beam: &Beam, shape: &[f64]) -> Option<Self> {
         let statics = MatrixWeights { mass: 0.0, damping: 0.0, stiffness: 1.0 };
-        beam.factor(statics).ok()?;
+        let factor = beam.factor(statics).ok()?;
         let mut q = shape.to_vec();
         if q.len() != beam.dofs() || q.iter().all(|x| *x == 0.0) {
             q = vec![0.0; beam.dofs()];
             beam.add_partial_load([0.0, beam.spec().span], 1.0, &mut q).ok()?;
-            beam.solve_static(&mut q).ok()?;
+            factor.solve(&mut q);
         }
         let mut damping = vec![0.0; q.len()];
         beam.add_damping_product(1.0, &q, &mut damping);

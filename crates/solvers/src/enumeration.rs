@@ -24,7 +24,9 @@
 use crate::least_norm::{MAX, System};
 use crate::{likely, one_contact};
 use nalgebra::{Matrix2, Vector2};
-use teeter_contact::{ContactProblem, ContactSolver, Delassus, Law, Outcome, Status, Stop, judge, judge_velocities};
+use teeter_contact::{
+    ContactProblem, ContactSolver, Delassus, Law, Outcome, Residual, Status, Stop, judge, judge_velocities,
+};
 
 /// Up to so many contacts the states are a tree: 4³ = 64 leaves.
 pub(crate) const FEW: usize = 3;
@@ -77,15 +79,12 @@ impl ContactSolver<2> for Enumeration {
 
     fn solve(&mut self, problem: &ContactProblem<'_, 2>, stop: &Stop<'_>, p: &mut [Vector2<f64>]) -> Outcome {
         let n = problem.contacts();
-        let (found, tried) = match n {
-            0 => (true, 0),
-            1 => match one_contact::solve(&problem.diagonal(0), &problem.q()[0], problem.mu()[0]) {
-                Some(solution) => {
-                    p[0] = solution;
-                    (true, 1)
-                }
-                None => (false, 1),
-            },
+        let (found, tried, residual) = match n {
+            1 => {
+                let solution = one_contact::solve(&problem.diagonal(0), &problem.q()[0], problem.mu()[0]);
+                p[0] = solution.unwrap_or(p[0]);
+                (solution.is_some(), 1, judge(problem, p))
+            }
             2..=FEW => {
                 let table = Table::<FEW>::new(problem);
                 let (likely, tried) = likely::find(&table, p);
@@ -96,16 +95,15 @@ impl ContactSolver<2> for Enumeration {
                         return Outcome::new(Status::Converged, Self::NAME, tried, residual);
                     }
                 }
-                let (found, searched) = sharply(problem, stop, table, p, |table, p| table.search(p));
-                (found, tried + searched)
+                let (found, searched, residual) = sharply(problem, stop, table, p, |table, p| table.search(p));
+                (found, tried + searched, residual)
             }
             4 => sharply(problem, stop, Table::<4>::new(problem), p, |table, p| table.try_all::<8>(p)),
             MAX_CONTACTS => sharply(problem, stop, Table::<MAX_CONTACTS>::new(problem), p, |table, p| {
                 table.try_all::<{ 2 * MAX_CONTACTS }>(p)
             }),
-            _ => (false, 0),
+            _ => (n == 0, 0, judge(problem, p)),
         };
-        let residual = judge(problem, p);
         // Written so that a NaN counts as not solved.
         let status = if found && residual.global <= stop.tolerance { Status::Converged } else { Status::Breakdown };
         Outcome::new(status, Self::NAME, tried, residual)
@@ -117,26 +115,30 @@ impl ContactSolver<2> for Enumeration {
 }
 
 /// Searches the states for impulses that obey the law to rounding; where those aren't good enough for the tolerance, for such that obey it to the
-/// last digits. Corners of one body that can't quite both stick have states that fit to rounding and others that fit.
+/// last digits. Corners of one body that can't quite both stick have states that fit to rounding and others that fit. Returns whether there are any, how
+/// many states were tried, and the residual.
 fn sharply<const N: usize>(
     problem: &ContactProblem<'_, 2>,
     stop: &Stop<'_>,
     mut table: Table<N>,
     p: &mut [Vector2<f64>],
     search: impl Fn(&Table<N>, &mut [Vector2<f64>]) -> (bool, u32),
-) -> (bool, u32) {
+) -> (bool, u32, Residual) {
     let (found, tried) = search(&table, p);
-    let residual = judge(problem, p).global;
-    if !found || residual <= stop.tolerance {
-        return (found, tried);
+    let mut residual = judge(problem, p);
+    if !found || residual.global <= stop.tolerance {
+        return (found, tried, residual);
     }
     table.slack = SHARP;
     let mut sharp = [Vector2::zeros(); N];
-    let (found, more) = search(&table, &mut sharp[..problem.contacts()]);
-    if found && judge(problem, &sharp[..problem.contacts()]).global < residual {
-        p.copy_from_slice(&sharp[..problem.contacts()]);
+    let sharp = &mut sharp[..problem.contacts()];
+    let (found, more) = search(&table, sharp);
+    let judged = judge(problem, sharp);
+    if found && judged.global < residual.global {
+        p.copy_from_slice(sharp);
+        residual = judged;
     }
-    (true, tried + more)
+    (true, tried + more, residual)
 }
 
 /// The problem with its blocks at hand.

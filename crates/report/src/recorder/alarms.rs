@@ -2,7 +2,6 @@
 
 use super::{Kept, Recorder};
 use crate::resolution::Of;
-use crate::swings::Watch;
 use teeter_integrator::{State, StepReport};
 use teeter_scenario::simulation::Layout;
 use teeter_scenario::{FAR_TURN, deflection};
@@ -19,34 +18,51 @@ const UNACCOUNTED: f64 = 1e-8;
 /// Who meets whom is looked at again when a body may have moved by this part of the shortest side of a block.
 const LOOK_AFTER: f64 = 0.1;
 
-/// No corner of a block is faster than this past ground, supports and what is watched of beams, m/s.
-fn fastest(layout: &Layout, watch: &Watch, state: &State) -> f64 {
+/// No corner of a block is faster than this past ground and supports, m/s.
+fn fastest(layout: &Layout, state: &State) -> f64 {
     let blocks = layout.blocks.iter().map(|place| {
         let [x, y, spin] = [0, 1, 2].map(|k| state.v[place.range.start + k].abs());
         x + y + place.reach * spin
     });
     let supports = layout.beams.iter().filter_map(|place| place.supports.clone());
-    // What a beam does at its watched places stands for what it does between them.
-    let swing = watch.fastest(layout, state);
     let supports = supports.map(|range| state.v[range].iter().map(|v| v.abs()).sum());
     let ground = layout.ground.iter().map(|range| {
         let far = layout.blocks.iter().map(|place| state.q[place.range.start].hypot(state.q[place.range.start + 1]));
         let v = &state.v[range.clone()];
         v[0].abs() + v[1].abs() + v[2].abs() * far.fold(0.0, f64::max)
     });
-    blocks.fold(0.0, f64::max) + supports.chain(ground).fold(0.0, f64::max) + swing
+    blocks.fold(0.0, f64::max) + supports.chain(ground).fold(0.0, f64::max)
 }
 
 impl Recorder<'_> {
+    /// Enters a warning, and tells it if it is to be told now.
+    fn warn(&mut self, code: &'static str, t: Option<f64>, text: impl FnOnce() -> String) {
+        if let Some(text) = self.kept.record.warnings.enter(code, t, text) {
+            (self.tell)(&text);
+        }
+    }
+
+    /// Enters a warning, and tells it the first time.
+    fn warn_once(&mut self, code: &'static str, t: f64, text: impl FnOnce() -> String) {
+        let warnings = &mut self.kept.record.warnings;
+        let known = warnings.warnings().iter().any(|warning| warning.code == code);
+        if let (Some(text), false) = (warnings.enter(code, Some(t), text), known) {
+            (self.tell)(&text);
+        }
+    }
+
+    /// The shorter side of the block whose that is the shortest, m.
+    fn shortest_side(&self) -> f64 {
+        self.layout.blocks.iter().map(|place| place.side).fold(f64::INFINITY, f64::min)
+    }
+
     /// Warns, once, of a block that turns far in a step.
     pub(super) fn warn_of_turns(&mut self, state: &State) {
         let fastest = FAR_TURN / state.dt;
         let blocks = self.layout.blocks.iter().map(|place| (place.name.as_str(), state.v[place.range.start + 2]));
         let ground = self.layout.ground.iter().map(|range| ("ground", state.v[range.start + 2]));
         let Some((name, spin)) = ground.chain(blocks).find(|(_, spin)| spin.abs() >= fastest) else { return };
-        let warnings = &mut self.kept.record.warnings;
-        let known = warnings.warnings().iter().any(|warning| warning.code == "far-turn");
-        let told = warnings.enter("far-turn", Some(state.t), || {
+        self.warn_once("far-turn", state.t, || {
             format!(
                 "`{name}` turns by {:.2} rad in the step to t = {} s, and is no longer followed from {FAR_TURN} on; take a step of at most {:.0e} s",
                 spin.abs() * state.dt,
@@ -54,15 +70,12 @@ impl Recorder<'_> {
                 FAR_TURN / spin.abs()
             )
         });
-        if let (Some(text), false) = (told, known) {
-            (self.tell)(&text);
-        }
     }
 
     /// Warns where the model lacks what the run may need after all.
     pub(super) fn warn_of_limits(&mut self, state: &State) {
         let Some(limits) = self.layout.required.limits.filter(|limits| !limits.hold(state)) else { return };
-        let told = self.kept.record.warnings.enter("model-limits", Some(state.t), || {
+        self.warn("model-limits", Some(state.t), || {
             format!(
                 "at t = {} s the energy is {:.6} J and the deepest penetration so far {:.1e} m, over the {:.6} J or the {:.1e} m up to which \
                  the upper corners of blocks can't touch, and they are not looked at; --model full has them",
@@ -73,16 +86,14 @@ impl Recorder<'_> {
                 limits.penetration
             )
         });
-        if let Some(text) = told {
-            (self.tell)(&text);
-        }
     }
 
     /// Looks who meets whom between rows, too, as soon as something may have come far enough to matter.
-    pub(super) fn warn_of_meetings(&mut self, step: &StepReport<'_, 2>, state: &State) {
-        self.kept.travelled += (step.t_end - step.t_start) * fastest(self.layout, &self.watch, state);
-        let least = self.layout.blocks.iter().map(|place| place.side).fold(f64::INFINITY, f64::min);
-        if self.kept.travelled > LOOK_AFTER * least {
+    ///
+    /// `swing` is the largest rate of deflection of beams, m/s: what a beam does where it is watched stands for what it does elsewhere.
+    pub(super) fn warn_of_meetings(&mut self, step: &StepReport<'_, 2>, state: &State, swing: f64) {
+        self.kept.travelled += (step.t_end - step.t_start) * (fastest(self.layout, state) + swing);
+        if self.kept.travelled > LOOK_AFTER * self.shortest_side() {
             self.look_who_meets(state);
         }
     }
@@ -96,24 +107,18 @@ impl Recorder<'_> {
     /// Warns of what a row shows to be outside the model; told once each.
     pub(super) fn warn_of_row(&mut self, state: &State) {
         self.look_who_meets(state);
-        let (ledger, warnings) = (&state.ledger, &mut self.kept.record.warnings);
-        let mut first = |code, text: &dyn Fn() -> String| {
-            let known = warnings.warnings().iter().any(|warning| warning.code == code);
-            if let (Some(text), false) = (warnings.enter(code, Some(state.t), text), known) {
-                (self.tell)(&text);
-            }
-        };
-        for place in &self.layout.beams {
+        let (ledger, layout) = (&state.ledger, self.layout);
+        for place in &layout.beams {
             let q = &state.q[place.range.clone()];
             let nodal = place.basis.as_ref().map(|basis| basis.dofs(q));
             if let Some(large) = deflection::large(&place.beam, nodal.as_deref().unwrap_or(q)) {
-                first("large-deflection", &|| format!("`{}` deflects far at t = {} s: {large}", place.name, state.t));
+                let text = || format!("`{}` deflects far at t = {} s: {large}", place.name, state.t);
+                self.warn_once("large-deflection", state.t, text);
             }
         }
-        let least = self.layout.blocks.iter().map(|place| place.side).fold(f64::INFINITY, f64::min);
         let depth = state.tally.max_penetration;
-        if depth > DEEP * least {
-            first("deep-penetration", &|| {
+        if depth > DEEP * self.shortest_side() {
+            self.warn_once("deep-penetration", state.t, || {
                 format!(
                     "up to t = {} s a corner was {depth:.2e} m deep in a surface, more than {:.0} % of a block's shorter side: that is no contact any \
                      more; the step is too long for what moves, or a corner came in from the side, past the end of a beam",
@@ -124,7 +129,7 @@ impl Recorder<'_> {
         }
         let left = ledger.relative_residual();
         if left > UNACCOUNTED {
-            first("energy-account", &|| {
+            self.warn_once("energy-account", state.t, || {
                 format!(
                     "up to t = {} s the energy of a step is off by {left:.1e} of the scene's scale, far more than rounding: numbers of very \
                      different size act together, and the motion is not to be trusted; check loads, signals and masses, and their units",
@@ -135,8 +140,8 @@ impl Recorder<'_> {
         // With theta = 1/2 nothing dissipates but that what is conserved is a modified energy: `numerical` is minus its change.
         let stirred = ledger.current.kinetic + ledger.current.elastic;
         let share = if stirred > 0.0 { ledger.sum.numerical.abs() / stirred } else { 0.0 };
-        if share > FAR_FROM_CONSERVED && self.layout.beams.iter().any(|place| place.beam.is_stretched()) {
-            first("stretching", &|| {
+        if share > FAR_FROM_CONSERVED && layout.beams.iter().any(|place| place.beam.is_stretched()) {
+            self.warn_once("stretching", state.t, || {
                 format!(
                     "the step is too long for the vibrations that stretch the beam: at t = {} s the energy that it conserves is off \
                      by {:.1} % of what moves and bends, and so is the axial force it goes by; take a shorter step",
@@ -149,8 +154,8 @@ impl Recorder<'_> {
 
     /// Warns where the steps were too long for the motion that the whole run showed.
     pub(super) fn warn_of_resolution(&mut self, state: &State) {
-        let Self { layout, bodies, watch, kept: Kept { resolution, swings, record, .. }, tell, .. } = self;
-        if let Some(coarse) = resolution.coarse(bodies, state.dt) {
+        let layout = self.layout;
+        if let Some(coarse) = self.kept.resolution.coarse(&self.bodies, state.dt) {
             let name = layout.blocks.get(coarse.block).map_or("a block", |place| &place.name);
             let (part, limit, step) = (100.0 * coarse.part, 100.0 * coarse.of.limit(), coarse.step);
             let what = match coarse.of {
@@ -158,29 +163,27 @@ impl Recorder<'_> {
                 Of::Impact => "its contacts close up to a step late, at one of them by",
                 Of::Held => "a foot that closed above the surface, or below it, goes on pressing there, off by",
             };
-            let told = record.warnings.enter("under-resolved", None, || {
+            self.warn("under-resolved", None, || {
                 format!(
                     "steps of {:e} s are too long for the impacts of `{name}`: {what} {part:.1} % of its motion, and from {limit:.1} % on motions are \
                      likely off by more than 10 %; take a step of at most {step:.0e} s, and let `teeter tradeoff` measure what accuracy it gives",
                     state.dt,
                 )
             });
-            told.into_iter().for_each(|text| tell(&text));
         }
-        if let Some((block, off)) = resolution.fall(bodies, state.dt) {
+        if let Some((block, off)) = self.kept.resolution.fall(&self.bodies, state.dt) {
             let name = layout.blocks.get(block).map_or("a block", |place| &place.name);
-            let told = record.warnings.enter("under-resolved-flight", None, || {
+            self.warn("under-resolved-flight", None, || {
                 format!(
                     "with this theta `{name}` is off by {off:.1e} m after its longest flight: it falls by (theta - 1/2) g h t too much or too little; take \
                      theta = 0.5, or a shorter step"
                 )
             });
-            told.into_iter().for_each(|text| tell(&text));
         }
-        if let Some(lost) = swings.lost(watch, state.dt) {
+        if let Some(lost) = self.kept.swings.lost(&self.watch, state.dt) {
             let name = layout.beams.get(lost.beam).map_or("a beam", |place| &place.name);
-            let rest = if watch.damps() { ", or theta = 0.5, which damps nothing" } else { "" };
-            let told = record.warnings.enter("under-resolved-swings", None, || {
+            let rest = if self.watch.damps() { ", or theta = 0.5, which damps nothing" } else { "" };
+            self.warn("under-resolved-swings", None, || {
                 format!(
                     "steps of {:e} s are too long for the swings of `{name}`: at {:.4} Hz they come late or die out by as much as {:.0} % of its largest \
                      deflection; take a step of at most {:.0e} s{rest}",
@@ -190,13 +193,13 @@ impl Recorder<'_> {
                     lost.step
                 )
             });
-            told.into_iter().for_each(|text| tell(&text));
         }
     }
 
-    pub(super) fn warn_of(&mut self, step: &StepReport<'_, 2>) {
+    /// Warns of a step whose contact problem was not solved.
+    pub(super) fn warn_of_unsolved(&mut self, step: &StepReport<'_, 2>) {
         let Some(outcome) = step.outcome.filter(|outcome| !outcome.converged()) else { return };
-        let told = self.kept.record.warnings.enter("unconverged", Some(step.t_end), || {
+        self.warn("unconverged", Some(step.t_end), || {
             format!(
                 "the contact problem of the step to t = {} s ({} contacts) was not solved: {} after {} iterations of {}, residual {:.1e}",
                 step.t_end,
@@ -207,8 +210,5 @@ impl Recorder<'_> {
                 outcome.residual.global
             )
         });
-        if let Some(text) = told {
-            (self.tell)(&text);
-        }
     }
 }
