@@ -65,7 +65,7 @@ impl Observer<2> for Sampler {
         step: &StepReport<'_, 2>,
         state: &State,
     ) -> std::result::Result<ControlFlow<()>, ObserverError> {
-        if step.contacts.iter().any(|contact| contact.p[0] > 0.0) {
+        if step.contacts().any(|contact| contact.p[0] > 0.0) {
             self.drop_outs += u32::from((1..=3).contains(&self.without));
             self.without = 0;
         } else {

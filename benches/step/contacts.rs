@@ -8,8 +8,8 @@ use nalgebra::Vector2;
 use std::sync::Arc;
 use teeter_detect::{Kinematics, PointDetector, PointPair};
 use teeter_integrator::{
-    BeamBody, BeamSurface, Block, Blocks, ModelBuilder, PairLaw, SolverSettings, WBackend, WarmStart, Weights,
-    Workspace,
+    BeamBody, BeamSurface, Block, Blocks, ContactStage, Keep, Look, ModelBuilder, Over, PairLaw, Responses,
+    SolverSettings, State, WBackend, Weights, Workspace,
 };
 use teeter_rigid::{MassProperties, Rectangle};
 use teeter_solvers::Auto;
@@ -38,17 +38,17 @@ pub(crate) fn bench(criterion: &mut Criterion) {
             q.resize(model.size().q, 0.0);
             let mut v = vec![0.0; model.size().v];
             let w = Weights { mass: 1.0, damping: 0.5 * DT, stiffness: 0.25 * DT * DT };
-            work.factorise(&model, w, &q).expect("a factor");
-            work.detect(&model, &q, 1e-9).expect("of the model");
-            for candidate in &work.candidates {
-                work.contacts.activate(&model, &q, candidate, &WarmStart::default()).expect("of the model");
-            }
-            assert_eq!(work.contacts.contacts().len(), contacts, "all of them touch");
-            let Workspace { contacts, factors, scratch, .. } = &mut work;
+            work.factors(&model, w, &q, Keep::Pinned).expect("a factor");
+            let state = State::new(&model, &q, &v, DT).expect("a state");
+            let (over, responses) = (Over::Step { h: DT, weight: 0.5 }, Responses::Of(w));
+            let mut stage = ContactStage::new();
+            stage.find(&model, &state, &Look::new(&q, 1e-9), &mut work).expect("of the model");
+            assert_eq!(stage.len(), contacts, "all of them touch");
+            stage.pose(&model, &state, &state.v, &state.v, over).expect("of the model");
             group.bench_function(format!("{backend:?}"), |bencher| {
                 bencher.iter(|| {
-                    contacts.assemble(&model, factors, scratch).expect("of the model");
-                    contacts.add_impulses(&model, factors, scratch, &mut v).expect("of the model");
+                    stage.solve(&model, &mut work, &responses, over).expect("of the model");
+                    stage.respond(&model, &mut work, &responses, &mut v).expect("of the model");
                 });
             });
         }

@@ -30,7 +30,7 @@ pub(crate) fn bench(criterion: &mut Criterion) {
                 || start.clone(),
                 |state| {
                     for _ in 0..STEPS {
-                        scheme.advance(model, state, &mut work).expect("a step");
+                        scheme.advance(model, state, f64::INFINITY, &mut work).expect("a step");
                     }
                 },
                 BatchSize::LargeInput,

@@ -9,7 +9,7 @@ use teeter_detect::{Kinematics, PointDetector, PointPair};
 use teeter_integrator::{
     BeamBody, BeamSurface, Block, Blocks, Ended, Model, ModelBuilder, MoreauJean, MoreauJeanClosed,
     MoreauJeanClosedSettings, MoreauJeanSettings, Observer, ObserverError, PairLaw, Plan, Scheme, SolverSettings,
-    State, StepReport, Subsystem, Workspace, run,
+    State, StepReport, Subsystem, Unsolved, Workspace, run,
 };
 use teeter_rigid::{MassProperties, Rectangle};
 
@@ -104,7 +104,7 @@ impl Stepping {
     /// The name by which users choose it.
     pub(crate) fn name(self) -> &'static str {
         match self {
-            Self::MoreauJean => MoreauJean::NAME,
+            Self::MoreauJean => MoreauJean::<2>::NAME,
             Self::MoreauJeanClosed => MoreauJeanClosed::<2>::NAME,
         }
     }
@@ -171,7 +171,7 @@ impl Runner {
         let mut state = State::new(model, &start.q, &start.v, start.dt)?;
         let mut work = Workspace::new(model, Box::new(teeter_solvers::Auto::new()), SolverSettings::default());
         let mut scheme = self.stepping.scheme(start.theta)?;
-        let plan = Plan { steps, require_convergence: true };
+        let plan = Plan::steps(steps).when_unsolved(Unsolved::End);
         let mut observer = EachStep { each, gain: 0.0 };
         let ended = run(model, scheme.as_mut(), &mut state, &mut work, &plan, &mut [&mut observer])?;
         // Without an energy scale nothing moves.
@@ -214,7 +214,7 @@ impl<F: FnMut(&StepReport<'_, 2>, &State) -> ControlFlow<()>> Observer<2> for Ea
         step: &StepReport<'_, 2>,
         state: &State,
     ) -> std::result::Result<ControlFlow<()>, ObserverError> {
-        let e = &step.energy;
+        let e = &step.energy();
         self.gain = self.gain.max(e.contact + e.friction + e.viscous + e.numerical + e.residual);
         Ok((self.each)(step, state))
     }

@@ -72,7 +72,7 @@ impl<const D: usize> ClosingMonitor<D> {
         let widest = openings.iter().map(|opening| opening.gap).fold(0.0, f64::max);
         model.detector().detect(&model.placed(&state.q)?, widest, &mut monitor.candidates);
         for candidate in &monitor.candidates {
-            let carried = state.warm.ids().binary_search(&candidate.id).is_ok();
+            let carried = state.memory.is_active(candidate.id);
             if carried || candidate.gap <= opening_of(openings, candidate.id).gap {
                 monitor.held.push(Held { id: candidate.id, last: state.t, carried, opened: false });
             }
@@ -95,7 +95,7 @@ impl<const D: usize> ClosingMonitor<D> {
     ) -> Result<(), Mismatch> {
         let (t, h) = (step.t_end, step.t_end - step.t_start);
         let before = step.t_start;
-        for contact in step.contacts.iter().filter(|contact| contact.p[0] > 0.0) {
+        for contact in step.contacts().filter(|contact| contact.p[0] > 0.0) {
             let now = Held { id: contact.id, last: t, carried: true, opened: false };
             match self.held.binary_search_by_key(&contact.id, |held| held.id) {
                 Ok(at) => {

@@ -1,7 +1,7 @@
 //! A contact of a step: what it did, and in which frame.
 
 use crate::Vector;
-use teeter_detect::{Anchor, ContactId, Frame};
+use teeter_detect::{Anchor, Candidate, ContactId, Frame};
 
 /// What a contact does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,6 +59,24 @@ pub struct Contact<const D: usize> {
 pub(crate) const STILL: f64 = 1e-8;
 
 impl<const D: usize> Contact<D> {
+    /// A candidate that takes part, before anything is known of its impulse.
+    #[inline]
+    pub(crate) fn of(candidate: &Candidate<D>, persisting: bool) -> Self {
+        Self {
+            id: candidate.id,
+            sides: candidate.sides,
+            frame: candidate.frame,
+            gap: candidate.gap,
+            p: Vector::zeros(),
+            u_before: Vector::zeros(),
+            u_after: Vector::zeros(),
+            u_law: Vector::zeros(),
+            persisting,
+            gap_after: None,
+            still: 0.0,
+        }
+    }
+
     /// What the contact does in this step.
     #[must_use]
     pub fn state(&self) -> ContactState {

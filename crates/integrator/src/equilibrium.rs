@@ -22,7 +22,10 @@
 
 use crate::contact::tangential;
 use crate::mismatch::length;
-use crate::{ContactError, FactorError, Mismatch, Model, Vector, WarmStart, Weights, Workspace};
+use crate::{
+    ContactError, ContactStage, FactorError, Keep, Memory, Mismatch, Model, Over, Responses, Rule, Vector, WarmStart,
+    Weights, Workspace,
+};
 use teeter_detect::{Anchor, Candidate, ContactId, Frame, Geometry};
 
 /// What limits the search.
@@ -165,6 +168,8 @@ pub fn settle<const D: usize>(
         impulse: vec![0.0; n],
         places: Vec::new(),
         warm: WarmStart::default(),
+        nothing: Memory::default(),
+        stage: ContactStage::new(),
     };
     let (mut tau, mut longest) = (limits.tau, f64::INFINITY);
     let (mut least, mut stalled) = (f64::INFINITY, 0);
@@ -173,7 +178,7 @@ pub fn settle<const D: usize>(
     let mut size_before = f64::INFINITY;
     for round in 1..=ROUNDS {
         search.round(model, t, tau, limits, work, round)?;
-        let Step { size, change, inertia, short } = search.step(model, work);
+        let Step { size, change, inertia, short } = search.step(model);
         if !first && size > (GROWS * size_before).max(SETTLED) && inertia < 0.5 {
             // The tangent promised too much: back, and shorter.
             search.go_back();
@@ -183,7 +188,7 @@ pub fn settle<const D: usize>(
             continue;
         }
         search.check_reach(model, limits, round)?;
-        let pressing = || work.contacts.contacts().iter().filter(|contact| contact.p[0] > 0.0);
+        let pressing = || search.stage.contacts().iter().filter(|contact| contact.p[0] > 0.0);
         if first || change < SHRINKS * least {
             (least, stalled) = (change, 0);
         } else {
@@ -206,7 +211,7 @@ pub fn settle<const D: usize>(
         let grows = !first && (short || (inertia > INERT && change > SETTLED));
         let next = if grows { GROWTH * tau } else { tau }.min(longest);
         search.warm.clear();
-        for contact in work.contacts.contacts() {
+        for contact in search.stage.contacts() {
             search.warm.push(contact.id, &(contact.p * (next / tau)));
         }
         first = next != tau;
@@ -259,6 +264,8 @@ struct Search<const D: usize> {
     impulse: Vec<f64>,
     places: Vec<Place<D>>,
     warm: WarmStart,
+    nothing: Memory,
+    stage: ContactStage<D>,
 }
 
 impl<const D: usize> Search<D> {
@@ -273,23 +280,16 @@ impl<const D: usize> Search<D> {
         round: u32,
     ) -> Result<(), EquilibriumError> {
         let w = Weights { mass: 1.0, damping: 0.0, stiffness: tau * tau };
-        let fresh = work.factors.is_empty();
-        if fresh {
-            work.factorise_all(model, w, &self.q)?;
-        }
+        work.factors.make(model, w, &self.q, Keep::Once)?;
         self.v.fill(0.0);
         self.impulse.fill(0.0);
-        for (part, factor) in model.parts().iter().zip(&mut work.factors) {
+        for (index, part) in model.parts().iter().enumerate() {
             let q = &self.q[part.q.clone()];
             let f = &mut self.impulse[part.v.clone()];
-            if f.is_empty() {
-                continue;
-            }
-            if !fresh {
+            let Some(factor) = work.factors.of(index, w).filter(|_| !f.is_empty()) else { continue };
+            if part.system.follows_coordinates() {
                 // The tangent of a part that is not linear is that of q.
                 factor.refactor(w, q)?;
-            }
-            if part.system.follows_coordinates() {
                 factor.take_tangent(q)?;
             }
             let v = &mut self.v[part.v.clone()];
@@ -300,27 +300,26 @@ impl<const D: usize> Search<D> {
             factor.solve(v);
         }
         work.detect(model, &self.q, limits.margin)?;
-        work.contacts.clear();
+        self.stage.clear();
         for candidate in &work.candidates {
-            let i = work.contacts.contacts().len();
-            work.contacts.activate(model, &self.q, candidate, &self.warm)?;
-            if work.contacts.withdraw_if_prescribed(model)? {
+            let i = self.stage.len();
+            if !self.stage.add(model, &self.q, candidate, &self.warm, &self.nothing)? {
                 continue;
             }
-            // At rest all laws are Signorini's and Coulomb's.
-            work.contacts.handles_law(i)?;
             let place = place_of(model, &self.q, &mut self.places, candidate);
             let mut shift = tangential(&(candidate.frame * place.way(model, &self.q))) / tau;
             shift[0] = candidate.gap / tau;
-            let u_free = work.contacts.velocity_of(i, &self.v);
-            work.contacts.pose(i, Vector::zeros(), u_free, shift)?;
+            let u_free = self.stage.velocity(i, &self.v)?;
+            // At rest all laws are Signorini's and Coulomb's.
+            self.stage.set(i, Vector::zeros(), u_free, shift, Rule::Shifted)?;
         }
-        if !work.contacts.contacts().is_empty() {
-            work.solve_contacts(model, 1.0, &mut self.v)
-                .map_err(|source| EquilibriumError::Problem { round, source })?;
-            for (index, part) in model.parts().iter().enumerate() {
-                work.contacts.add_generalised_impulse(index, &mut self.impulse[part.v.clone()]);
-            }
+        let problem = |source| EquilibriumError::Problem { round, source };
+        let (over, responses) = (Over::Step { h: tau, weight: 1.0 }, Responses::Of(w));
+        self.stage.solve(model, work, &responses, over).map_err(problem)?;
+        self.stage.respond(model, work, &responses, &mut self.v).map_err(problem)?;
+        self.stage.complete(&self.v)?;
+        for (index, part) in model.parts().iter().enumerate() {
+            self.stage.add_generalised_impulse(index, &mut self.impulse[part.v.clone()]);
         }
         Ok(())
     }
@@ -337,14 +336,15 @@ impl<const D: usize> Search<D> {
     }
 
     /// Measures the round's step.
-    fn step(&self, model: &Model<D>, work: &Workspace<D>) -> Step {
+    fn step(&self, model: &Model<D>) -> Step {
         // ½ vᵀ(M + τ²K) v, which is ½ Δqᵀ(M/τ² + K) Δq: by how much the round lowers the potential.
         let step = 0.5 * self.v.iter().zip(&self.impulse).map(|(v, p)| v * p).sum::<f64>().abs();
         let now = model.energy_at(&self.q, &self.v);
         let scene = model.energy_scale() + now.elastic;
         // The same of what the contacts' impulses alone would do. It is small where τ is so short that gaps are rounding.
-        let pressed = work.contacts.contacts().iter().zip(&work.contacts.u_free);
-        let pressed = 0.5 * pressed.map(|(contact, u_free)| (contact.u_after - u_free).dot(&contact.p)).sum::<f64>();
+        let pressed = self.stage.contacts().iter().zip(&self.stage.problem.posed);
+        let pressed =
+            0.5 * pressed.map(|(contact, posed)| (contact.u_after - posed.u_free).dot(&contact.p)).sum::<f64>();
         let short = pressed > 0.0 && pressed < SHORT * scene;
         // Nothing to compare with yet, where the first load bends a straight beam: all of it counts.
         let over = |scale: f64| if scale > 0.0 { (step / scale).sqrt() } else { 1.0 };

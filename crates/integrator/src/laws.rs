@@ -10,13 +10,13 @@
 //!   contact whose H_nn is larger by R; scaling its normal direction keeps the problem's size what it was. Its friction never
 //!   gives energy.
 
-mod phases;
+mod expansion;
 mod rows;
 mod scaling;
 
 use crate::Vector;
 use crate::contact::tangential;
-use crate::contacts::{ContactSet, Rule};
+use crate::stage::{Problem, Rule};
 use rows::Row;
 use scaling::WORKLESS;
 use teeter_contact::{Block, ContactSolver, Outcome, ProblemError, Status, Stop};
@@ -85,19 +85,19 @@ impl<const D: usize> Laws<D> {
     /// set.
     pub(crate) fn solve(
         &mut self,
-        set: &mut ContactSet<D>,
+        set: &mut Problem<D>,
         theta: f64,
         solver: &mut dyn ContactSolver<D>,
         stop: &Stop<'_>,
     ) -> Result<Outcome, ProblemError> {
         // Springs alone have no use for them.
-        if set.rules.iter().any(|rule| matches!(rule, Rule::Poisson { .. } | Rule::Energetic)) {
+        if set.rules().any(|rule| matches!(rule, Rule::Poisson { .. } | Rule::Energetic)) {
             self.find_islands(set);
         }
         self.part.clear();
-        self.part.resize(set.rules.len(), 1.0);
+        self.part.resize(set.len(), 1.0);
         self.unreturned.clear();
-        self.unreturned.resize(set.rules.len(), 0.0);
+        self.unreturned.resize(set.len(), 0.0);
         let outcome = self.guarded_pass(set, theta, solver, stop)?;
         if !self.find_gains(set) {
             return Ok(outcome);
@@ -108,22 +108,21 @@ impl<const D: usize> Laws<D> {
     /// A pass in which friction of springs doesn't give energy: where U_θ,t·p_t > 0, Coulomb's law is made to hold for U_θ,t.
     fn guarded_pass(
         &mut self,
-        set: &mut ContactSet<D>,
+        set: &mut Problem<D>,
         theta: f64,
         solver: &mut dyn ContactSolver<D>,
         stop: &Stop<'_>,
     ) -> Result<Outcome, ProblemError> {
         let mut outcome = self.pass(set, solver, stop)?;
-        let n = set.rules.len();
+        let n = set.len();
         self.guarded.clear();
         self.guarded.resize(n, false);
         // Each round guards one contact more at least.
         loop {
             let mut found = false;
             for i in 0..n {
-                let Rule::Spring(step) = set.rules[i] else { continue };
-                let (before, after) =
-                    (tangential(&set.contacts()[i].u_before), tangential(&set.velocity_by_impulses(i)));
+                let Rule::Spring(step) = set.rule(i) else { continue };
+                let (before, after) = (tangential(&set.u_before(i)), tangential(&set.velocity_by_impulses(i)));
                 let p = tangential(&set.p[i]);
                 let gain = (after * theta + before * (1.0 - theta)).dot(&p);
                 if !self.guarded[i] && gain > WORKLESS * (after.norm() + before.norm()) * p.norm() {

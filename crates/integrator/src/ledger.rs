@@ -39,7 +39,7 @@ pub struct StepEnergy {
 }
 
 impl StepEnergy {
-    fn add(&mut self, step: &Self) {
+    pub(crate) fn add(&mut self, step: &Self) {
         self.external += step.external;
         self.contact += step.contact;
         self.friction += step.friction;

@@ -39,14 +39,13 @@
 //! let mut state = State::new(&model, &[0.0, 0.03, 0.0], &[0.0, 0.0, 0.0], 1e-3)?;
 //! let mut work = Workspace::new(&model, Box::new(teeter_solvers::Auto::new()), SolverSettings::default());
 //! let mut scheme = MoreauJean::new(MoreauJeanSettings::default())?;
-//! let ended = run(&model, &mut scheme, &mut state, &mut work, &Plan { steps: 100, require_convergence: true }, &mut [])?;
+//! let ended = run(&model, &mut scheme, &mut state, &mut work, &Plan::steps(100).when_unsolved(Unsolved::End), &mut [])?;
 //! assert_eq!(ended, Ended::Complete);
 //! assert!(state.v.iter().all(|v| v.abs() < 1e-12), "at rest");
 //! assert!((state.q[1] - 0.025).abs() < 1e-3, "on the ground");
 //! # Ok::<(), Box<dyn std::error::Error + Send + Sync>>(())
 //! ```
 
-mod apart;
 mod beam;
 mod blocks;
 mod clock;
@@ -54,12 +53,13 @@ mod closings;
 #[cfg(feature = "conformance")]
 pub mod conformance;
 mod contact;
-mod contacts;
 mod coupled_modes;
 mod equilibrium;
+mod factors;
 mod ground;
 mod laws;
 mod ledger;
+mod memory;
 mod mismatch;
 mod modal_beam;
 mod model;
@@ -67,10 +67,12 @@ mod monitor;
 mod moreau_jean;
 mod moreau_jean_closed;
 mod pair_law;
+mod phases;
 mod run;
 mod scheme;
 mod signal;
 mod spring;
+mod stage;
 mod state;
 #[cfg(feature = "serde")]
 mod stored;
@@ -83,11 +85,12 @@ pub use beam::{BeamBody, BeamSurface, MovingForce, SignalLoad, WBackend};
 pub use blocks::{Block, BlockLoad, Blocks};
 pub use closings::{Closing, ClosingMonitor, Opening};
 pub use contact::{Contact, ContactState, tangential};
-pub use contacts::{ContactError, ContactSet};
 pub use coupled_modes::{CoupledModes, CoupledModesError, MOST_VELOCITIES, coupled_modes};
 pub use equilibrium::{Equilibrium, EquilibriumError, SettlingLimits, settle};
+pub use factors::{Keep, Responses};
 pub use ground::Ground;
 pub use ledger::{Ledger, PositiveWork, StepEnergy};
+pub use memory::Memory;
 pub use mismatch::Mismatch;
 pub use modal_beam::ModalBeam;
 pub use model::{Model, ModelBuilder, ModelError, Part, Placed};
@@ -95,12 +98,15 @@ pub use monitor::{Crossing, LISTED_CROSSINGS, Peak, RockingMonitor};
 pub use moreau_jean::{MoreauJean, MoreauJeanSettings};
 pub use moreau_jean_closed::{MoreauJeanClosed, MoreauJeanClosedSettings};
 pub use pair_law::{ImpactLaw, PairLaw};
-pub use run::{Ended, Observer, ObserverError, Plan, RunError, run};
-pub use scheme::{Scheme, SettingError, StepError, StepReport};
+pub use phases::{Balance, Phase, PhaseEnd, PhaseKind, StepReport};
+pub use run::{Ended, Observer, ObserverError, Plan, RunError, Unsolved, Until, run};
+pub use scheme::{Scheme, SettingError, StepError};
 pub use signal::{Formula, Given, Motion, Signal, SignalError, Table};
-pub use state::{State, StateError, Tally, WarmStart};
+pub use spring::SpringStep;
+pub use stage::{ContactError, ContactStage, Look, Over, Rule};
+pub use state::{STEP_ROUNDING, State, StateError, StepSpan, Tally, WarmStart};
 pub use subsystem::{Compliance, Coupling, Energy, FactorError, PartRows, Rows, Size, Subsystem, Weights};
-pub use workspace::{SolverSettings, WorkCounts, Workspace};
+pub use workspace::{Account, SolverSettings, WorkCounts, Workspace};
 
 /// A point, direction, impulse or relative velocity in D dimensions.
 pub type Vector<const D: usize> = nalgebra::SVector<f64, D>;

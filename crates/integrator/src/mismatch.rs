@@ -49,6 +49,12 @@ pub enum Mismatch {
         /// How many there are.
         contacts: usize,
     },
+    /// The candidate of another contact.
+    #[error("contact {contact} is another one than the candidate")]
+    OtherContact {
+        /// Its number in the stage.
+        contact: usize,
+    },
     /// A subsystem whose row names a velocity that it doesn't have.
     #[error("a row of body {} has an entry in column {column}, but its subsystem has {velocities} velocities", body.0)]
     Column {

@@ -1,8 +1,8 @@
 //! A scene for the integrator: subsystems, who can touch whom by what law, and a detector. Immutable.
 
-use crate::contacts::ContactSet;
 use crate::mismatch::{Identity, length};
-use crate::{Energy, ImpactLaw, Mismatch, PairLaw, Size, Subsystem, Vector, WarmStart};
+use crate::stage::ContactRows;
+use crate::{Energy, ImpactLaw, Mismatch, PairLaw, Size, Subsystem, Vector};
 use std::ops::Range;
 use teeter_detect::{BodyId, Candidate, ContactDetector, Geometry, HalfSpace, Kinematics, SurfacePoint, Wiring};
 
@@ -326,7 +326,7 @@ impl<const D: usize> Model<D> {
     }
 
     /// Whether the slices are as long as the coordinates and velocities.
-    fn fits(&self, q: &[f64], v: &[f64]) -> Result<(), Mismatch> {
+    pub(crate) fn fits(&self, q: &[f64], v: &[f64]) -> Result<(), Mismatch> {
         length("the coordinates", q, self.size.q)?;
         length("the velocities", v, self.size.v)
     }
@@ -442,9 +442,11 @@ impl<const D: usize> Model<D> {
     /// # Errors
     /// If there are too few or too many coordinates or velocities, or the candidate is of a pair or a body that the model doesn't have.
     pub fn relative_velocity(&self, candidate: &Candidate<D>, q: &[f64], v: &[f64]) -> Result<Vector<D>, Mismatch> {
-        let mut set = ContactSet::with_capacity(1, self.size.row);
-        set.activate(self, q, candidate, &WarmStart::default())?;
-        set.velocity(0, v)
+        self.fits(q, v)?;
+        self.law(candidate.id.pair())?;
+        let mut rows = ContactRows::default();
+        rows.push(self, q, candidate)?;
+        Ok(rows.velocity(0, v))
     }
 
     /// The subsystems with their places in the state.

@@ -1,24 +1,10 @@
-//! Moreau–Jean's θ scheme (Jean 1999, doi 10.1016/S0045-7825(98)00383-1; `docs/theory.md` §5).
-//!
-//! ```text
-//! W      = (M + hθC + h²θ²K)⁻¹
-//! v_free = v⁰ + h W [ f_int(q⁰ + hθ v⁰, v⁰) + P̄ ]                P̄ the mean of the loads over the step
-//! v¹     = v_free + W Jᵀ p,        q¹ = q⁰ + h(θ v¹ + (1−θ) v⁰)
-//! ```
-//!
-//! A contact is active when the gap at the predicted position q⁰ + γh v⁰ is at most `gap_tolerance`; J is taken there.
-//! The law is Signorini's at velocity level with Newton's restitution, and Coulomb's.
+//! Moreau–Jean's θ scheme, `moreau-jean` (`docs/theory.md` §5).
 
-use crate::contact::tangential;
-use crate::contacts::Rule;
-use crate::laws::is_impact;
-use crate::spring::{SpringStep, Springs};
 use crate::theta_step::{ThetaStep, weights};
 use crate::{
-    ContactError, ContactSet, ImpactLaw, Model, PairLaw, Scheme, SettingError, State, StepError, StepReport, Vector,
-    Workspace,
+    Balance, ContactStage, Keep, Look, Model, Over, PhaseEnd, PhaseKind, Responses, Scheme, SettingError, State,
+    StepError, StepReport, Workspace,
 };
-use teeter_contact::Outcome;
 
 /// The settings of [`MoreauJean`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,15 +24,24 @@ impl Default for MoreauJeanSettings {
     }
 }
 
-/// The scheme; see the module's page.
-#[derive(Clone, Debug)]
-pub struct MoreauJean {
+/// Moreau and Jean's θ scheme (Jean 1999, doi 10.1016/S0045-7825(98)00383-1).
+///
+/// ```text
+/// W      = (M + hθC + h²θ²K)⁻¹
+/// v_free = v⁰ + h W [ f_int(q⁰ + hθ v⁰, v⁰) + P̄ ]                P̄ the mean of the loads over the step
+/// v¹     = v_free + W Jᵀ p,        q¹ = q⁰ + h(θ v¹ + (1−θ) v⁰)
+/// ```
+///
+/// A contact is active when the gap at the predicted position q⁰ + γh v⁰ is at most `gap_tolerance`; J is taken there. The law is Signorini's
+/// at velocity level with Newton's restitution, and Coulomb's; the others are brought to it.
+#[derive(Debug)]
+pub struct MoreauJean<const D: usize = 2> {
     settings: MoreauJeanSettings,
     step: ThetaStep,
-    springs: Springs,
+    stage: ContactStage<D>,
 }
 
-impl MoreauJean {
+impl<const D: usize> MoreauJean<D> {
     /// The name by which users choose it.
     pub const NAME: &'static str = "moreau-jean";
 
@@ -67,7 +62,7 @@ impl MoreauJean {
             "at least 0",
         )?;
         check("gap_tolerance", gap_tolerance, gap_tolerance >= 0.0 && gap_tolerance.is_finite(), "at least 0 m")?;
-        Ok(Self { settings, step: ThetaStep::default(), springs: Springs::default() })
+        Ok(Self { settings, step: ThetaStep::default(), stage: ContactStage::new() })
     }
 
     /// The settings.
@@ -77,121 +72,58 @@ impl MoreauJean {
     }
 }
 
-impl<const D: usize> Scheme<D> for MoreauJean {
+impl<const D: usize> Scheme<D> for MoreauJean<D> {
     fn name(&self) -> &'static str {
         Self::NAME
     }
 
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {
         self.step.start(model, state, work)?;
-        self.springs.reserve(model.detector().capacity());
-        state.warm.reserve(model.detector().capacity(), D);
-        work.factorise(model, weights(state.dt, self.settings.theta), &state.q)?;
-        Ok(())
+        let contacts = model.detector().capacity();
+        self.stage.reserve(model);
+        state.warm.reserve(contacts, D);
+        state.memory.reserve(contacts);
+        work.factors(model, weights(state.dt, self.settings.theta), &state.q, Keep::Pinned)
     }
 
     fn advance<'w>(
         &mut self,
         model: &Model<D>,
         state: &mut State,
+        until: f64,
         work: &'w mut Workspace<D>,
     ) -> Result<StepReport<'w, D>, StepError> {
         let MoreauJeanSettings { theta, activation_gamma, gap_tolerance } = self.settings;
-        let h = state.dt;
+        let span = state.next_step(until);
+        let (h, t) = (span.h, state.t);
         self.step.check(model, state, work)?;
-        let t_end = state.end_of_step();
-        work.factorise_all(model, weights(h, theta), &state.q)?;
+        work.begin(model, state, span)?;
+        let w = weights(h, theta);
+        work.factors(model, w, &state.q, if h == state.dt { Keep::Pinned } else { Keep::Once })?;
 
-        self.step.free_velocity(model, state, work, theta, t_end);
-        let margin = if model.has_springs() {
-            self.step.close(model, state, theta)?;
-            self.springs.look(model, &state.q, &self.step.q_at, work)?;
-            f64::INFINITY
-        } else {
-            gap_tolerance
-        };
+        self.step.free_velocity(model, state, work, theta, &span);
+        if model.has_springs() {
+            self.step.move_freely(model, state, h, theta)?;
+        }
         if model.has_contacts() {
             self.step.predict(model, &state.q, &state.v, activation_gamma * h);
         }
-        work.detect_at(model, &self.step.q_at, margin)?;
-        let outcome = self.impact(model, state, work).map_err(|source| StepError::Problem { t: state.t, source })?;
-        self.step.close(model, state, theta)?;
-        let now = self.step.energy_at_end(model, state.t)?;
-        let penetration = work.penetration_at(model, &self.step.q_at);
-        let energy = self.step.work_of_forces(model, state, work, theta);
-        state.warm.clear();
-        for contact in work.contacts.contacts() {
-            state.warm.keep(contact);
-        }
-        Ok(self.step.finish(model, state, work, theta, t_end, outcome, penetration, now, energy))
-    }
-}
+        let ThetaStep { q_at, q_free, v_end: v_free, .. } = &mut self.step;
+        self.stage.find(model, state, &Look::new(q_at, gap_tolerance).with_free_end(q_free), work)?;
+        let (over, responses) = (Over::Step { h, weight: theta }, Responses::Of(w));
+        let problem = |source| StepError::Problem { t, source };
+        self.stage.pose(model, state, &state.v, v_free, over).map_err(problem)?;
+        let outcome = self.stage.solve(model, work, &responses, over).map_err(problem)?;
+        self.stage.respond(model, work, &responses, v_free).map_err(problem)?;
+        self.stage.complete(v_free)?;
+        self.step.close(model, state, h, theta)?;
 
-impl MoreauJean {
-    /// Poses and solves the contact problem of the candidates in `work`; turns v_free into v¹.
-    fn impact<const D: usize>(
-        &mut self,
-        model: &Model<D>,
-        state: &State,
-        work: &mut Workspace<D>,
-    ) -> Result<Option<Outcome>, ContactError> {
-        let ThetaStep { q_at, v_end: v_free, .. } = &mut self.step;
-        let theta = self.settings.theta;
-        let Workspace { contacts, candidates, .. } = work;
-        contacts.clear();
-        for candidate in candidates.iter() {
-            let law = model.law(candidate.id.pair())?;
-            let spring = law.impact.spring();
-            if !self.springs.admit(spring.is_some(), candidate, &state.warm, self.settings.gap_tolerance) {
-                continue;
-            }
-            let i = contacts.contacts().len();
-            contacts.enter(model, q_at, candidate, &state.warm, law.friction)?;
-            if contacts.leave_if_prescribed(model) {
-                continue;
-            }
-            let u_before = contacts.velocity_of(i, &state.v);
-            let u_free = contacts.velocity_of(i, v_free);
-            let shift = shift(contacts, i, &law, &u_before, &u_free);
-            contacts.set(i, u_before, u_free, shift);
-            if let Some(spring) = spring {
-                let gap = self.springs.gap(candidate.id, &state.warm);
-                // With θ < ½ the force at the end of the step would count for less than half, or nothing, of the work.
-                let theta = theta.max(0.5);
-                let step = SpringStep { spring, gap, u_before: u_before[0], h: state.dt, theta };
-                contacts.follow(i, Rule::Spring(step));
-            }
-        }
-        if contacts.contacts().is_empty() {
-            return Ok(None);
-        }
-        work.solve_entered(model, theta, v_free).map(Some)
+        let energy = self.step.work_of_forces(model, state, work, &self.stage, h, theta);
+        let phase = PhaseEnd::new(PhaseKind::Step, span.end, &self.step.q_at, &self.step.v_end)
+            .with_balance(Balance::Weighted(theta))
+            .with_energy(energy)
+            .with_outcome(outcome);
+        work.phase(model, &phase, Some(&mut self.stage))?;
+        work.finish(model, state, None, |_, _| true)
     }
-}
-
-/// The shift of a contact by its law (`docs/laws.md`). Newton's restitution acts on every active contact; the other laws
-/// tell impacts from contacts that press.
-fn shift<const D: usize>(
-    contacts: &mut ContactSet<D>,
-    i: usize,
-    law: &PairLaw,
-    u_before: &Vector<D>,
-    u_free: &Vector<D>,
-) -> Vector<D> {
-    let (e, approaches) = (law.restitution, !contacts.contacts()[i].persisting && u_before[0] < 0.0);
-    let tangential_restitution = if approaches { law.tangential_restitution } else { 0.0 };
-    let mut shift = tangential(u_before) * tangential_restitution;
-    match law.impact {
-        ImpactLaw::Newton => shift[0] = e * u_before[0].min(0.0),
-        ImpactLaw::Poisson => {
-            contacts.follow(i, Rule::Poisson { e, tangential: tangential_restitution });
-            shift = Vector::zeros();
-        }
-        ImpactLaw::Energetic => {
-            contacts.follow(i, Rule::Energetic);
-            shift[0] = if is_impact(e, u_before, u_free) { e * u_before[0] } else { 0.0 };
-        }
-        ImpactLaw::KelvinVoigt { .. } | ImpactLaw::HuntCrossley { .. } => shift = Vector::zeros(),
-    }
-    shift
 }

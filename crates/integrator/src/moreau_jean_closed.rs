@@ -22,13 +22,12 @@
 //! gives energy in any step. (But for closed contacts with what moves as prescribed: there Ū is relative, and they are left as they are.)
 
 use crate::contact::tangential;
-use crate::contacts::Rule;
-use crate::laws::is_impact;
-use crate::spring::SpringStep;
+use crate::laws::{Laws, is_impact};
+use crate::stage::{Members, Problem};
 use crate::theta_step::{ThetaStep, weights};
 use crate::{
-    ContactError, ContactSet, ImpactLaw, Mismatch, Model, PairLaw, Scheme, SettingError, State, StepError, StepReport,
-    Vector, Workspace,
+    ContactError, ContactStage, ImpactLaw, Keep, Mismatch, Model, Over, PairLaw, PhaseEnd, PhaseKind, Responses, Rule,
+    Scheme, SettingError, SpringStep, State, StepError, StepReport, StepSpan, Vector, Workspace,
 };
 use teeter_contact::Outcome;
 use teeter_detect::{Candidate, Candidates, ContactId};
@@ -49,7 +48,8 @@ impl Default for MoreauJeanClosedSettings {
     }
 }
 
-/// The scheme; see the module's page.
+/// The Moreau–Jean step at θ = ½ with contacts that stay closed from step to step: no contact gives energy, gaps don't drift apart, and
+/// restitution tells impacts from contacts that press.
 #[derive(Debug)]
 pub struct MoreauJeanClosed<const D: usize> {
     settings: MoreauJeanClosedSettings,
@@ -62,14 +62,17 @@ pub struct MoreauJeanClosed<const D: usize> {
     middle: Candidates<D>,
     ahead: Candidates<D>,
     start: Candidates<D>,
+    stage: ContactStage<D>,
     /// Rows at q̃.
-    rows_ahead: ContactSet<D>,
+    ahead_rows: ContactStage<D>,
     /// The contacts that take part, in order of identity.
     closed: Vec<ContactId>,
     /// Of each contact of the step: its shift were there no restitution.
     resting_shift: Vec<f64>,
     /// Which contacts have the shift that can't give energy.
     guarded: Vec<bool>,
+    /// Which contacts stay closed.
+    stays: Vec<bool>,
 }
 
 impl<const D: usize> MoreauJeanClosed<D> {
@@ -94,10 +97,12 @@ impl<const D: usize> MoreauJeanClosed<D> {
             middle: Vec::new(),
             ahead: Vec::new(),
             start: Vec::new(),
-            rows_ahead: ContactSet::with_capacity(0, 0),
+            stage: ContactStage::new(),
+            ahead_rows: ContactStage::new(),
             closed: Vec::new(),
             resting_shift: Vec::new(),
             guarded: Vec::new(),
+            stays: Vec::new(),
         })
     }
 
@@ -125,77 +130,65 @@ impl<const D: usize> Scheme<D> for MoreauJeanClosed<D> {
     }
 
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {
-        let (contacts, row) = (model.detector().capacity(), model.size().row);
+        let contacts = model.detector().capacity();
         self.step.start(model, state, work)?;
         self.resize(model);
         for candidates in [&mut self.middle, &mut self.ahead, &mut self.start, &mut work.candidates] {
             candidates.reserve(contacts);
         }
-        self.rows_ahead = ContactSet::with_capacity(1, row);
+        self.stage.reserve(model);
+        self.ahead_rows.reserve(model);
         self.closed.reserve(contacts);
         self.resting_shift.reserve(contacts);
         self.guarded.reserve(contacts);
+        self.stays.reserve(contacts);
         state.warm.reserve(contacts, D);
-        work.factorise(model, weights(state.dt, THETA), &state.q)?;
-        Ok(())
+        state.memory.reserve(contacts);
+        work.factors(model, weights(state.dt, THETA), &state.q, Keep::Pinned)
     }
 
     fn advance<'w>(
         &mut self,
         model: &Model<D>,
         state: &mut State,
+        until: f64,
         work: &'w mut Workspace<D>,
     ) -> Result<StepReport<'w, D>, StepError> {
-        let h = state.dt;
+        let span = state.next_step(until);
+        let (h, t) = (span.h, state.t);
         self.step.check(model, state, work)?;
         self.resize(model);
-        let t_end = state.end_of_step();
-        work.factorise_all(model, weights(h, THETA), &state.q)?;
-        self.step.free_velocity(model, state, work, THETA, t_end);
+        work.begin(model, state, span)?;
+        work.factors(model, weights(h, THETA), &state.q, if h == state.dt { Keep::Pinned } else { Keep::Once })?;
+        self.step.free_velocity(model, state, work, THETA, &span);
         self.v_free.clear();
         self.v_free.extend_from_slice(&self.step.v_end);
         self.closed.clear();
-        self.closed.extend_from_slice(state.warm.ids());
+        self.closed.extend_from_slice(state.memory.active());
         let mut looked_for = 0;
         let (outcome, penetration) = loop {
             // In flight there is nothing to look at.
             if looked_for < self.closed.len() {
-                self.look_ahead(model, state, work);
+                self.look_ahead(model, state, h, work)?;
                 looked_for = self.closed.len();
             }
-            let outcome =
-                self.attempt(model, state, work).map_err(|source| StepError::Problem { t: state.t, source })?;
-            self.step.close(model, state, THETA)?;
-            work.detect_at(model, &self.step.q_at, 0.0)?;
+            let outcome = self.attempt(model, state, &span, work).map_err(|source| StepError::Problem { t, source })?;
+            self.step.close(model, state, h, THETA)?;
+            work.detect(model, &self.step.q_at, 0.0)?;
             let penetration = work.candidates.iter().map(|candidate| -candidate.gap).fold(0.0, f64::max);
             if !self.close_what_sinks(model, state, work)? {
                 break (outcome, penetration);
             }
             work.counts.refused_attempts += 1;
         };
-        let now = self.step.energy_at_end(model, state.t)?;
-        let energy = self.step.work_of_forces(model, state, work, THETA);
-        state.warm.clear();
-        for (i, contact) in work.contacts.contacts().iter().enumerate() {
-            let stays = match contact.gap_after {
-                Some(gap) => gap < 0.0,
-                None => {
-                    let leaves = match work.contacts.rules[i] {
-                        // What comes back is found in expansion.
-                        Rule::Poisson { .. } => contact.u_after[0] + self.resting_shift[i],
-                        // U_n¹ = −s_n where it presses: by s_n itself, as at rest a velocity is all rounding and solver's error.
-                        _ => self.resting_shift[i] - work.contacts.shift[i][0],
-                    };
-                    let speed = |v: &[f64]| work.contacts.speed(i, v);
-                    let still = || LEAVING * speed(&self.step.v_end).max(speed(&self.v_free));
-                    contact.p[0] > 0.0 && (leaves <= 0.0 || leaves <= still())
-                }
-            };
-            if stays {
-                state.warm.keep(contact);
-            }
-        }
-        Ok(self.step.finish(model, state, work, THETA, t_end, outcome, penetration, now, energy))
+        self.find_what_stays();
+        let energy = self.step.work_of_forces(model, state, work, &self.stage, h, THETA);
+        let phase = PhaseEnd::new(PhaseKind::Step, span.end, &self.step.q_at, &self.step.v_end)
+            .with_energy(energy)
+            .with_outcome(outcome);
+        work.phase(model, &phase, Some(&mut self.stage))?;
+        let stays = &self.stays;
+        work.finish(model, state, Some(penetration), |i, _| stays[i])
     }
 }
 
@@ -208,15 +201,37 @@ impl<const D: usize> MoreauJeanClosed<D> {
     }
 
     /// Finds frames and gaps of the closed contacts at q̃_m and q̃.
-    fn look_ahead(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>) {
+    fn look_ahead(&mut self, model: &Model<D>, state: &State, h: f64, work: &mut Workspace<D>) -> Result<(), Mismatch> {
         // ½(v⁰ + v_free), the mean velocity of the free motion.
         let mean = &mut self.step.v_end;
         mean.iter_mut().zip(&self.v_free).zip(&state.v).for_each(|((v, free), v0)| *v = 0.5 * (free + v0));
-        let places =
-            [(0.5 * state.dt, &mut self.q_mid, &mut self.middle), (state.dt, &mut self.q_ahead, &mut self.ahead)];
+        let places = [(0.5 * h, &mut self.q_mid, &mut self.middle), (h, &mut self.q_ahead, &mut self.ahead)];
         for (tau, q, candidates) in places {
             model.move_along(&state.q, mean, tau, q);
-            work.locate_at(model, q, &self.closed, candidates);
+            work.locate(model, q, &self.closed, candidates)?;
+        }
+        Ok(())
+    }
+
+    /// Finds which of the step's contacts are closed in the next.
+    fn find_what_stays(&mut self) {
+        self.stays.clear();
+        for (i, contact) in self.stage.contacts().iter().enumerate() {
+            let stays = match contact.gap_after {
+                Some(gap) => gap < 0.0,
+                None => {
+                    let leaves = match self.stage.problem.rule(i) {
+                        // What comes back is found in expansion.
+                        Rule::Poisson { .. } => contact.u_after[0] + self.resting_shift[i],
+                        // U_n¹ = −s_n where it presses: by s_n itself, as at rest a velocity is all rounding and solver's error.
+                        _ => self.resting_shift[i] - self.stage.problem.shift(i)[0],
+                    };
+                    let speed = |v: &[f64]| self.stage.speed(i, v);
+                    let still = || LEAVING * speed(&self.step.v_end).max(speed(&self.v_free));
+                    contact.p[0] > 0.0 && (leaves <= 0.0 || leaves <= still())
+                }
+            };
+            self.stays.push(stays);
         }
     }
 
@@ -225,160 +240,90 @@ impl<const D: usize> MoreauJeanClosed<D> {
         &mut self,
         model: &Model<D>,
         state: &State,
+        span: &StepSpan,
         work: &mut Workspace<D>,
     ) -> Result<Option<Outcome>, ContactError> {
         self.step.v_end.copy_from_slice(&self.v_free);
-        work.contacts.clear();
+        self.stage.clear();
         self.resting_shift.clear();
         if self.closed.is_empty() {
             return Ok(None);
         }
         for k in 0..self.middle.len() {
             let candidate = self.middle[k];
-            self.pose(model, state, work, &candidate)?;
+            self.pose(model, state, span.h, work, &candidate)?;
         }
-        let n = work.contacts.contacts().len();
-        if n == 0 {
-            return Ok(None);
-        }
-        work.assemble_contacts(model);
-        let mut outcome = work.solve_assembled(THETA)?;
+        let (over, responses) = (Over::Step { h: span.h, weight: THETA }, Responses::Of(weights(span.h, THETA)));
         self.guarded.clear();
-        self.guarded.resize(n, false);
+        self.guarded.resize(self.stage.len(), false);
+        let (guarded, v_free) = (&mut self.guarded, &self.v_free);
         // Each round guards one contact more at least, so it ends.
-        while self.guard(model, state, work)? {
-            outcome = crate::laws::join(outcome, work.solve_assembled(THETA)?);
-        }
-        work.apply_impulses(model, &mut self.step.v_end);
-        Ok(Some(outcome))
+        let outcome = self.stage.solve_guarded(model, work, &responses, over, |stage, problem, laws, members| {
+            let guard = Guard { model, stage, laws, members, v_before: &state.v, v_free };
+            Ok(guard.apply(problem, guarded)?)
+        })?;
+        self.stage.respond(model, work, &responses, &mut self.step.v_end)?;
+        self.stage.complete(&self.step.v_end)?;
+        Ok(outcome)
     }
 
     fn pose(
         &mut self,
         model: &Model<D>,
         state: &State,
+        h: f64,
         work: &mut Workspace<D>,
         candidate: &Candidate<D>,
     ) -> Result<(), Mismatch> {
         let law = model.law(candidate.id.pair())?;
-        let contacts = &mut work.contacts;
-        let i = contacts.contacts().len();
-        contacts.enter(model, &self.q_mid, candidate, &state.warm, law.friction)?;
-        if contacts.leave_if_prescribed(model) {
+        let i = self.stage.len();
+        if !self.stage.add(model, &self.q_mid, candidate, &state.warm, &state.memory)? {
             return Ok(());
         }
-        let u_before = contacts.velocity_of(i, &state.v);
-        let u_free = contacts.velocity_of(i, &self.v_free);
+        let u_before = self.stage.velocity(i, &state.v)?;
+        let u_free = self.stage.velocity(i, &self.v_free)?;
         // Off the end of its surface by then, it has no frame there.
         let b = match find(&self.ahead, candidate.id) {
             Some(ahead) => {
-                self.rows_ahead.clear();
-                self.rows_ahead.enter(model, &self.q_ahead, ahead, &state.warm, law.friction)?;
-                self.rows_ahead.velocity_of(0, &state.v) - u_before
+                self.ahead_rows.clear();
+                match self.ahead_rows.add(model, &self.q_ahead, ahead, &state.warm, &state.memory)? {
+                    true => self.ahead_rows.velocity(0, &state.v)? - u_before,
+                    false => Vector::zeros(),
+                }
             }
             None => Vector::zeros(),
         };
         let (before_t, b_t) = (tangential(&u_before), tangential(&b));
         let mut shift = if (before_t - b_t).norm() <= b_t.norm() { before_t } else { b_t };
         shift[0] = if (u_before[0] - b[0]).abs() <= b[0].abs() { u_before[0] } else { b[0].max(u_before[0]) };
-        if !contacts.contacts()[i].persisting && u_before[0] < 0.0 {
+        let persisting = self.stage.contacts()[i].persisting;
+        if !persisting && u_before[0] < 0.0 {
             shift[0] = 0.0;
         }
         self.resting_shift.push(shift[0]);
-        if let Some(spring) = law.impact.spring() {
-            let gap = match state.warm.gap(candidate.id) {
+        let rule = if law.impact.spring().is_some() {
+            let gap = match state.memory.spring_gap(candidate.id) {
                 Some(gap) if gap < 0.0 => gap,
-                _ => self.gap_at_start(model, state, work, candidate.id).max(0.0),
+                _ => self.gap_at_start(model, state, work, candidate.id)?.max(0.0),
             };
             shift[0] = 0.0;
-            work.contacts.set(i, u_before, u_free, shift);
-            let step = SpringStep { spring, gap, u_before: u_before[0], h: state.dt, theta: THETA };
-            work.contacts.follow(i, Rule::Spring(step));
+            SpringStep::new(&law.impact, gap, u_before[0], h, THETA).map_or(Rule::Shifted, Rule::Spring)
         } else {
-            restitute(contacts, i, &law, &u_before, &u_free, &mut shift);
-            contacts.set(i, u_before, u_free, shift);
-        }
-        Ok(())
+            restitute(persisting, &law, &u_before, &u_free, &mut shift)
+        };
+        self.stage.set(i, u_before, u_free, shift, rule)
     }
 
     /// The gap of a contact at q⁰, m; 0 where it has none. Only a step with a new contact pays for looking there.
-    fn gap_at_start(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>, id: ContactId) -> f64 {
-        work.locate_at(model, &state.q, &[id], &mut self.start);
-        self.start.first().map_or(0.0, |candidate| candidate.gap)
-    }
-
-    /// Changes what holds for contacts whose work is positive, so that it can't be; whether there are any.
-    ///
-    /// The usual case is a slide that turns within the step: sticking at its end would take an impulse along the slide that
-    /// was. Then either no friction, or the velocity turned about, whichever ends nearer to rest; it sticks in the next step.
-    ///
-    /// Where Poisson's law hands a blow on, what one contact gains another one has lost: there it is the sum over contacts that feel
-    /// each other that counts. The law scales what it gives back by it, so what is left is of contacts that would give energy without
-    /// any restitution, too.
-    fn guard(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>) -> Result<bool, Mismatch> {
-        let n = self.guarded.len();
-        let mut found = false;
-        for i in 0..n {
-            let (contacts, laws) = (&work.contacts, &work.laws);
-            let (u_before, p) = (contacts.contacts()[i].u_before, contacts.p[i]);
-            // A spring's law sees to it itself.
-            if self.guarded[i] || p[0] <= 0.0 || matches!(contacts.rules[i], Rule::Spring(_)) {
-                continue;
-            }
-            // What moves as prescribed gives energy anyway, and a slide that ends there is better stopped where it ends.
-            if contacts.contacts()[i].persisting && contacts.feels_drive(model, i, &state.v, &self.v_free) {
-                continue;
-            }
-            // At rest it is the free velocity whose digits are lost.
-            let rounding = |i: usize| {
-                let speed = contacts.speed(i, &state.v).max(contacts.speed(i, &self.v_free));
-                WORKLESS * contacts.p[i].norm() * speed
-            };
-            let gain = if laws.handed_on(contacts, i) {
-                let allowed: f64 = (0..n).map(rounding).sum();
-                if laws.work_around(contacts, i) > allowed { laws.work_unreturned(i) } else { 0.0 }
-            } else {
-                contacts.work(i)
-            };
-            if gain <= rounding(i) {
-                continue;
-            }
-            let contacts = &mut work.contacts;
-            let without = contacts.without_own_friction(i);
-            let mut shift = tangential(&u_before);
-            if without.norm() < shift.norm() {
-                contacts.mu[i] = 0.0;
-            }
-            let e = model.law(contacts.contacts()[i].id.pair())?.restitution;
-            let back = match contacts.rules[i] {
-                Rule::Poisson { .. } if is_impact(e, &u_before, &contacts.u_free[i]) => e * u_before[0],
-                _ => contacts.shift[i][0],
-            };
-            shift[0] = back.max(u_before[0]);
-            contacts.follow(i, Rule::Shifted);
-            contacts.reshift(i, shift);
-            self.guarded[i] = true;
-            found = true;
-        }
-        Ok(found || self.stop_handing_on(state, work))
-    }
-
-    /// The last resort where contacts that hand a blow on give energy though none does by itself, as the solver finds another one of
-    /// several solutions each time: nothing is given back there. Whether it changed anything.
-    fn stop_handing_on(&self, state: &State, work: &mut Workspace<D>) -> bool {
-        let (contacts, laws) = (&work.contacts, &work.laws);
-        let n = contacts.contacts().len();
-        let allowed = |i: usize| {
-            let speed = contacts.speed(i, &state.v).max(contacts.speed(i, &self.v_free));
-            WORKLESS * contacts.p[i].norm() * speed + laws.work_unreturned(i).max(0.0)
-        };
-        let gives = |i: usize| {
-            let phased = matches!(contacts.rules[i], Rule::Poisson { .. }) && laws.handed_on(contacts, i);
-            phased && laws.work_around(contacts, i) > (0..n).map(allowed).sum::<f64>()
-        };
-        let Some(first) = (0..n).find(|&i| gives(i)) else { return false };
-        work.contacts.follow(first, Rule::Shifted);
-        true
+    fn gap_at_start(
+        &mut self,
+        model: &Model<D>,
+        state: &State,
+        work: &mut Workspace<D>,
+        id: ContactId,
+    ) -> Result<f64, Mismatch> {
+        work.locate(model, &state.q, &[id], &mut self.start)?;
+        Ok(self.start.first().map_or(0.0, |candidate| candidate.gap))
     }
 
     /// Closes the open contacts that the attempt ends with in their surface (they are the workspace's candidates), deeper
@@ -390,7 +335,7 @@ impl<const D: usize> MoreauJeanClosed<D> {
             if gap >= -self.settings.gap_tolerance || self.closed[..before].binary_search(&id).is_ok() {
                 continue;
             }
-            let level = self.gap_at_start(model, state, work, id).min(0.0);
+            let level = self.gap_at_start(model, state, work, id)?.min(0.0);
             if gap < level - SINKING * self.settings.gap_tolerance {
                 self.closed.push(id);
             }
@@ -401,26 +346,25 @@ impl<const D: usize> MoreauJeanClosed<D> {
     }
 }
 
-/// Puts restitution into the shift of a contact that closes with an impact.
+/// Puts restitution into the shift of a contact that closes with an impact; returns its rule.
 fn restitute<const D: usize>(
-    contacts: &mut ContactSet<D>,
-    i: usize,
+    persisting: bool,
     law: &PairLaw,
     u_before: &Vector<D>,
     u_free: &Vector<D>,
     shift: &mut Vector<D>,
-) {
+) -> Rule<D> {
     let e = law.restitution;
-    let closing = !contacts.contacts()[i].persisting && u_before[0] < 0.0;
+    let closing = !persisting && u_before[0] < 0.0;
     let tangential_restitution =
         if closing && is_impact(1.0, u_before, u_free) { law.tangential_restitution } else { 0.0 };
     if law.impact == ImpactLaw::Poisson {
-        contacts.follow(i, Rule::Poisson { e, tangential: tangential_restitution });
-        return;
+        return Rule::Poisson { e, tangential: tangential_restitution };
     }
+    let mut rule = Rule::Shifted;
     if closing && is_impact(e, u_before, u_free) {
         // Newton's law too: where it would make energy, less of it, before the guard has to bend friction.
-        contacts.follow(i, Rule::Energetic);
+        rule = Rule::Energetic;
         shift[0] = e * u_before[0];
     }
     if tangential_restitution > 0.0 {
@@ -428,8 +372,92 @@ fn restitute<const D: usize>(
         *shift = tangential(u_before) * tangential_restitution;
         shift[0] = normal;
     }
+    rule
 }
 
 fn find<const D: usize>(candidates: &[Candidate<D>], id: ContactId) -> Option<&Candidate<D>> {
     candidates.binary_search_by_key(&id, |candidate| candidate.id).ok().map(|at| &candidates[at])
+}
+
+/// Sees to it that no contact of a solved problem gives energy.
+struct Guard<'a, const D: usize> {
+    model: &'a Model<D>,
+    stage: &'a ContactStage<D>,
+    laws: &'a Laws<D>,
+    members: Members<'a>,
+    v_before: &'a [f64],
+    v_free: &'a [f64],
+}
+
+impl<const D: usize> Guard<'_, D> {
+    /// Changes what holds for contacts whose work is positive, so that it can't be; whether there are any.
+    ///
+    /// The usual case is a slide that turns within the step: sticking at its end would take an impulse along the slide that
+    /// was. Then either no friction, or the velocity turned about, whichever ends nearer to rest; it sticks in the next step.
+    ///
+    /// Where Poisson's law hands a blow on, what one contact gains another one has lost: there it is the sum over contacts that feel
+    /// each other that counts. The law scales what it gives back by it, so what is left is of contacts that would give energy without
+    /// any restitution, too.
+    fn apply(&self, problem: &mut Problem<D>, guarded: &mut [bool]) -> Result<bool, Mismatch> {
+        let laws = self.laws;
+        let mut found = false;
+        for i in 0..problem.len() {
+            let (number, u_before, p) = (self.members.number(i), problem.u_before(i), problem.p[i]);
+            // A spring's law sees to it itself.
+            if guarded[number] || p[0] <= 0.0 || matches!(problem.rule(i), Rule::Spring(_)) {
+                continue;
+            }
+            // What moves as prescribed gives energy anyway, and a slide that ends there is better stopped where it ends.
+            let contact = &self.stage.contacts()[number];
+            if contact.persisting && self.stage.feels_drive(self.model, number, self.v_before, self.v_free) {
+                continue;
+            }
+            let gain = if laws.handed_on(problem, i) {
+                let allowed: f64 = (0..problem.len()).map(|i| self.rounding(problem, i)).sum();
+                if laws.work_around(problem, i) > allowed { laws.work_unreturned(i) } else { 0.0 }
+            } else {
+                problem.work(i)
+            };
+            if gain <= self.rounding(problem, i) {
+                continue;
+            }
+            let without = problem.without_own_friction(i);
+            let mut shift = tangential(&u_before);
+            if without.norm() < shift.norm() {
+                problem.mu[i] = 0.0;
+            }
+            let e = self.model.law(contact.id.pair())?.restitution;
+            let back = match problem.rule(i) {
+                Rule::Poisson { .. } if is_impact(e, &u_before, &problem.u_free(i)) => e * u_before[0],
+                _ => problem.shift(i)[0],
+            };
+            shift[0] = back.max(u_before[0]);
+            problem.posed[i].rule = Rule::Shifted;
+            problem.reshift(i, shift);
+            guarded[number] = true;
+            found = true;
+        }
+        Ok(found || self.stop_handing_on(problem))
+    }
+
+    /// What may be rounding of a contact's work, J: at rest it is the free velocity whose digits are lost.
+    fn rounding(&self, problem: &Problem<D>, i: usize) -> f64 {
+        let number = self.members.number(i);
+        let speed = self.stage.speed(number, self.v_before).max(self.stage.speed(number, self.v_free));
+        WORKLESS * problem.p[i].norm() * speed
+    }
+
+    /// The last resort where contacts that hand a blow on give energy though none does by itself, as the solver finds another one of
+    /// several solutions each time: nothing is given back there. Whether it changed anything.
+    fn stop_handing_on(&self, problem: &mut Problem<D>) -> bool {
+        let (laws, n) = (self.laws, problem.len());
+        let allowed = |i: usize| self.rounding(problem, i) + laws.work_unreturned(i).max(0.0);
+        let gives = |i: usize| {
+            let phased = matches!(problem.rule(i), Rule::Poisson { .. }) && laws.handed_on(problem, i);
+            phased && laws.work_around(problem, i) > (0..n).map(allowed).sum::<f64>()
+        };
+        let Some(first) = (0..n).find(|&i| gives(i)) else { return false };
+        problem.posed[first].rule = Rule::Shifted;
+        true
+    }
 }

@@ -54,19 +54,6 @@ pub enum ImpactLaw {
 }
 
 impl PairLaw {
-    /// What it has beyond Signorini's and Coulomb's.
-    pub(crate) fn beyond_standard(&self) -> Option<&'static str> {
-        match self.impact {
-            ImpactLaw::Poisson => Some("Poisson's impact law"),
-            ImpactLaw::Energetic => Some("the energetic impact law"),
-            ImpactLaw::KelvinVoigt { .. } => Some("Kelvin and Voigt's contact law"),
-            ImpactLaw::HuntCrossley { .. } => Some("Hunt and Crossley's contact law"),
-            ImpactLaw::Newton if self.restitution > 0.0 => Some("a coefficient of restitution"),
-            ImpactLaw::Newton if self.tangential_restitution > 0.0 => Some("a tangential coefficient of restitution"),
-            ImpactLaw::Newton => None,
-        }
-    }
-
     /// Newton's law with Coulomb's coefficient `friction` and this coefficient of restitution.
     #[must_use]
     pub const fn new(friction: f64, restitution: f64) -> Self {

@@ -1,6 +1,6 @@
 //! Steps in a row, each shown to observers.
 
-use crate::{Model, Scheme, State, StepError, StepReport, Workspace};
+use crate::{Model, STEP_ROUNDING, Scheme, State, StepError, StepReport, Workspace};
 use std::error::Error;
 use std::ops::ControlFlow;
 
@@ -39,13 +39,83 @@ pub trait Observer<const D: usize> {
     }
 }
 
+/// Where a run ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Until {
+    /// With the step of this number.
+    Step(u64),
+    /// At this time, s.
+    Time(f64),
+}
+
 /// How far a run goes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Plan {
-    /// The number of the last step.
-    pub steps: u64,
-    /// Whether a contact problem that is not solved to tolerance ends the run.
-    pub require_convergence: bool,
+    /// Where it ends.
+    pub until: Until,
+    /// What becomes of it where a contact problem is not solved to tolerance.
+    pub unsolved: Unsolved,
+}
+
+/// What becomes of a run where a contact problem is not solved to tolerance.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Unsolved {
+    /// It goes on with the best impulses that were found.
+    #[default]
+    GoOn,
+    /// It ends.
+    End,
+}
+
+impl Plan {
+    /// To the step of this number.
+    #[must_use]
+    pub const fn steps(number: u64) -> Self {
+        Self { until: Until::Step(number), unsolved: Unsolved::GoOn }
+    }
+
+    /// To this time, s: the last step is cut short where it would go past.
+    #[must_use]
+    pub const fn time(t: f64) -> Self {
+        Self { until: Until::Time(t), unsolved: Unsolved::GoOn }
+    }
+
+    /// The same, but a contact problem that is not solved to tolerance ends the run, or not.
+    #[must_use]
+    pub const fn when_unsolved(mut self, unsolved: Unsolved) -> Self {
+        self.unsolved = unsolved;
+        self
+    }
+
+    /// Whether a state is where the plan ends.
+    #[must_use]
+    pub fn is_done(&self, state: &State) -> bool {
+        match self.until {
+            Until::Step(number) => state.step >= number,
+            Until::Time(t) => state.has_reached(t),
+        }
+    }
+
+    /// How many steps of its size it takes from a state; 0 where it is done.
+    #[must_use]
+    pub fn steps_from(&self, state: &State) -> u64 {
+        match self.until {
+            Until::Step(number) => number.saturating_sub(state.step),
+            Until::Time(_) if self.is_done(state) => 0,
+            Until::Time(t) => ((t - state.t) / state.dt - STEP_ROUNDING).ceil() as u64,
+        }
+    }
+
+    /// The time that no step goes past, s.
+    #[must_use]
+    pub fn end(&self) -> f64 {
+        match self.until {
+            Until::Step(_) => f64::INFINITY,
+            Until::Time(t) => t,
+        }
+    }
 }
 
 /// How a run ended.
@@ -110,8 +180,8 @@ fn take_steps<const D: usize>(
     plan: &Plan,
     observers: &mut [&mut dyn Observer<D>],
 ) -> Result<Ended, RunError> {
-    while state.step < plan.steps {
-        let step = match scheme.advance(model, state, work) {
+    while !plan.is_done(state) {
+        let step = match scheme.advance(model, state, plan.end(), work) {
             Ok(step) => step,
             Err(error) => return Ok(Ended::Failed(error)),
         };
@@ -119,7 +189,7 @@ fn take_steps<const D: usize>(
         for observer in observers.iter_mut() {
             goes_on &= observer.observe(model, &step, state).map_err(RunError::Observer)?.is_continue();
         }
-        if plan.require_convergence && step.outcome.is_some_and(|outcome| !outcome.converged()) {
+        if plan.unsolved == Unsolved::End && step.outcome().is_some_and(|outcome| !outcome.converged()) {
             return Ok(Ended::Unconverged);
         }
         if !goes_on {

@@ -1,26 +1,6 @@
 //! What every time scheme offers.
 
-use crate::{Contact, ContactError, FactorError, Mismatch, Model, State, StateError, StepEnergy, Workspace};
-use teeter_contact::Outcome;
-
-/// What happened in a step.
-#[derive(Clone, Copy, Debug)]
-pub struct StepReport<'w, const D: usize> {
-    /// Number of the step, from 1.
-    pub step: u64,
-    /// Its start, s.
-    pub t_start: f64,
-    /// Its end, s.
-    pub t_end: f64,
-    /// The contacts that were active in it, in order of identity.
-    pub contacts: &'w [Contact<D>],
-    /// How their problem was solved; `None` without contacts.
-    pub outcome: Option<Outcome>,
-    /// Deepest penetration of a contact's point at its end, m; 0 if there is none.
-    pub penetration: f64,
-    /// Its energy account.
-    pub energy: StepEnergy,
-}
+use crate::{ContactError, FactorError, Mismatch, Model, State, StateError, StepReport, Workspace};
 
 /// Why a step can't be taken.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -43,6 +23,9 @@ pub enum StepError {
     /// Scheme, workspace or numbers are of another model.
     #[error(transparent)]
     Mismatch(#[from] Mismatch),
+    /// A scheme that ended a step without a phase in it.
+    #[error("the scheme ended a step without a phase: Workspace::phase comes before Workspace::finish")]
+    NoPhase,
     /// A coordinate, a velocity or an energy is no longer finite.
     #[error("the motion diverged in the step from t = {t} s")]
     Diverged {
@@ -57,7 +40,7 @@ impl StepError {
     pub fn t(&self) -> Option<f64> {
         match self {
             Self::Problem { t, .. } | Self::Diverged { t } => Some(*t),
-            Self::Factor(_) | Self::State(_) | Self::Mismatch(_) => None,
+            Self::Factor(_) | Self::State(_) | Self::Mismatch(_) | Self::NoPhase => None,
         }
     }
 }
@@ -75,6 +58,27 @@ pub struct SettingError {
 }
 
 /// A time scheme: it owns every formula of time integration, and decides which candidates are contacts.
+///
+/// # What a scheme owes
+///
+/// One call of [`advance`](Self::advance) is one step: it is [begun](Workspace::begin) with a span of time, has one
+/// [phase](Workspace::phase) or more (forces and impulses together, or smooth motion and impacts apart), and is
+/// [finished](Workspace::finish), which moves time, places, velocities, ledger, tally and what is remembered of contacts. A scheme changes
+/// the state by nothing else, but for numbers of its own in [`State::memory`](crate::State).
+///
+/// - **Time**: a step never ends past `until`, and loads and drives are taken at its true times: [`State::next_step`] says from when to when it
+///   goes. A scheme with a step size of its own asks [`State::step_of`].
+/// - **Contacts** come from candidates to impulses by a [`ContactStage`](crate::ContactStage), which knows every law: what can't be honoured is an
+///   error there.
+/// - **Energy**: each phase says what loads, dampers and the scheme itself did; with the work of contacts that has to explain the change of
+///   energy, and what is left over is reported as the residual.
+/// - **Memory**: what decides the next step is in the state. A scheme that is started with a state from elsewhere goes on to the same bytes;
+///   [`WarmStart`](crate::WarmStart) is a hint that may be lost.
+/// - **Errors** leave the state as it was. A contact problem that is not solved is not an error but an
+///   [outcome](crate::StepReport::outcome).
+/// - **Allocations**: none, in a step that meets no new maximum of contacts, phases or step sizes.
+///
+/// The feature `conformance` brings a harness that holds a scheme to this.
 pub trait Scheme<const D: usize>: Send {
     /// The name by which users choose it.
     fn name(&self) -> &'static str;
@@ -86,7 +90,7 @@ pub trait Scheme<const D: usize>: Send {
     /// If a matrix can't be factorised, or state or workspace are of another model.
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError>;
 
-    /// Takes one step. After an error the state is as it was before the step.
+    /// Takes one step, never past `until` (s; infinity for no end). After an error the state is as it was before the step.
     ///
     /// # Errors
     /// If the step can't be taken, or scheme, state or workspace are of another model; an unsolved contact problem is not an error here but a
@@ -95,6 +99,7 @@ pub trait Scheme<const D: usize>: Send {
         &mut self,
         model: &Model<D>,
         state: &mut State,
+        until: f64,
         work: &'w mut Workspace<D>,
     ) -> Result<StepReport<'w, D>, StepError>;
 }

@@ -18,7 +18,7 @@
 //! U_θ p + ΔV ≤ 0 in both, whatever h and k. As a function of U¹ the impulse falls, and is convex: Newton's method from the
 //! side of compression converges.
 
-use crate::{ImpactLaw, Mismatch, Model, WarmStart, Workspace};
+use crate::{ImpactLaw, Memory, Mismatch, Model, Workspace};
 use teeter_detect::{Candidate, ContactId};
 
 /// A contact's spring.
@@ -88,9 +88,9 @@ impl Spring {
     }
 }
 
-/// A spring over a step, with what doesn't depend on the velocity after it.
+/// The spring of a contact with duration over a step, with what doesn't depend on the velocity after it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct SpringStep {
+pub struct SpringStep {
     pub(crate) spring: Spring,
     /// Gap at the start of the step, m.
     pub(crate) gap: f64,
@@ -103,6 +103,13 @@ pub(crate) struct SpringStep {
 }
 
 impl SpringStep {
+    /// The spring of a law over a step of size `h` (s) that starts at `gap` (m) with normal velocity `u_before` (m/s), θ that of the step's
+    /// mean velocity, at least ½; `None` for impacts of an instant.
+    #[must_use]
+    pub fn new(law: &ImpactLaw, gap: f64, u_before: f64, h: f64, theta: f64) -> Option<Self> {
+        Some(Self { spring: law.spring()?, gap, u_before, h, theta: theta.max(0.5) })
+    }
+
     fn mean_velocity(&self, u_after: f64) -> f64 {
         self.theta * u_after + (1.0 - self.theta) * self.u_before
     }
@@ -162,7 +169,7 @@ impl Springs {
         q_free: &[f64],
         work: &mut Workspace<D>,
     ) -> Result<(), Mismatch> {
-        work.detect_at(model, q_free, 0.0)?;
+        work.detect(model, q_free, 0.0)?;
         let spring = |c: &&Candidate<D>| model.law(c.id.pair()).is_ok_and(|law| law.impact.spring().is_some());
         let springs = work.candidates.iter().filter(spring);
         self.touched.clear();
@@ -170,7 +177,7 @@ impl Springs {
         if self.touched.is_empty() {
             return Ok(());
         }
-        work.detect_at(model, q, f64::INFINITY)?;
+        work.detect(model, q, f64::INFINITY)?;
         for (id, gap) in &mut self.touched {
             if let Ok(at) = work.candidates.binary_search_by_key(id, |candidate| candidate.id) {
                 *gap = work.candidates[at].gap;
@@ -184,11 +191,11 @@ impl Springs {
         &self,
         spring: bool,
         candidate: &Candidate<D>,
-        warm: &WarmStart,
+        memory: &Memory,
         gap_tolerance: f64,
     ) -> bool {
         if spring {
-            warm.gap(candidate.id).is_some_and(|gap| gap < 0.0) || self.touches(candidate.id).is_some()
+            memory.spring_gap(candidate.id).is_some_and(|gap| gap < 0.0) || self.touches(candidate.id).is_some()
         } else {
             candidate.gap <= gap_tolerance
         }
@@ -201,8 +208,8 @@ impl Springs {
 
     /// The gap that a contact's spring starts the step with. One that was not touched before holds no energy, so it starts
     /// from zero at the deepest, wherever its point may be.
-    pub(crate) fn gap(&self, id: ContactId, warm: &WarmStart) -> f64 {
-        match warm.gap(id) {
+    pub(crate) fn gap(&self, id: ContactId, memory: &Memory) -> f64 {
+        match memory.spring_gap(id) {
             Some(gap) if gap < 0.0 => gap,
             _ => self.touches(id).unwrap_or(0.0).max(0.0),
         }

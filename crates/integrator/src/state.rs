@@ -1,12 +1,12 @@
 //! All that decides the next step, flat: clone it to reject a step, store it for a checkpoint.
 
 use crate::clock::Clock;
-use crate::{Contact, Ledger, Model, Vector};
+use crate::{Ledger, Memory, Model, Vector};
 use teeter_contact::Outcome;
 use teeter_detect::ContactId;
 
-/// The contacts of the last step with their impulses, in order of identity: where a solver starts from, and who was
-/// active.
+/// The impulses of the contacts of the last step, in order of identity: where a solver starts from. A hint: without it a step ends
+/// in the same motion, up to the solver's tolerance.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WarmStart {
@@ -14,9 +14,6 @@ pub struct WarmStart {
     /// D numbers a contact.
     #[cfg_attr(feature = "serde", serde(with = "crate::stored::list"))]
     impulses: Vec<f64>,
-    /// Gaps of the springs of contacts with duration, m; 0 for others.
-    #[cfg_attr(feature = "serde", serde(with = "crate::stored::list"))]
-    gaps: Vec<f64>,
 }
 
 impl WarmStart {
@@ -24,49 +21,31 @@ impl WarmStart {
     pub fn reserve(&mut self, contacts: usize, dimension: usize) {
         self.ids.reserve(contacts);
         self.impulses.reserve(contacts * dimension);
-        self.gaps.reserve(contacts);
     }
 
     /// Forgets all contacts.
     pub fn clear(&mut self) {
         self.ids.clear();
         self.impulses.clear();
-        self.gaps.clear();
     }
 
     /// Adds a contact with its impulse, N·s. Contacts have to come in order of identity.
     pub fn push<const D: usize>(&mut self, id: ContactId, p: &Vector<D>) {
         self.ids.push(id);
-        self.impulses.extend(p.iter());
-        self.gaps.push(0.0);
-    }
-
-    /// Adds a contact of the step with all that has to be remembered of it; in order of identity.
-    pub(crate) fn keep<const D: usize>(&mut self, contact: &Contact<D>) {
-        self.push(contact.id, &contact.p);
-        if let (Some(gap), Some(last)) = (contact.gap_after, self.gaps.last_mut()) {
-            *last = gap.min(0.0);
-        }
+        self.impulses.extend_from_slice(p.as_slice());
     }
 
     /// Becomes equal to `other`; allocates only where that holds more than ever before.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { ids, impulses, gaps } = other;
+        let Self { ids, impulses } = other;
         self.ids.clone_from(ids);
         self.impulses.clone_from(impulses);
-        self.gaps.clone_from(gaps);
     }
 
     /// The contacts of the last step.
     #[must_use]
     pub fn ids(&self) -> &[ContactId] {
         &self.ids
-    }
-
-    /// Gap of the spring of a contact with duration, m; `None` where it was not active.
-    pub(crate) fn gap(&self, id: ContactId) -> Option<f64> {
-        let at = self.ids.binary_search(&id).ok()?;
-        self.gaps.get(at).copied()
     }
 
     /// The impulse of a contact in the last step, N·s; `None` if it was not active.
@@ -119,9 +98,8 @@ pub struct State {
     #[cfg_attr(feature = "serde", serde(with = "crate::stored::list"))]
     pub v: Vec<f64>,
     /// What a scheme remembers from step to step.
-    #[cfg_attr(feature = "serde", serde(with = "crate::stored::list"))]
-    pub memory: Vec<f64>,
-    /// The contacts of the last step.
+    pub memory: Memory,
+    /// Where a contact solver starts from.
     pub warm: WarmStart,
     /// The energy account.
     pub ledger: Ledger,
@@ -179,7 +157,7 @@ pub enum StateError {
         dimension: usize,
     },
     /// The contacts of the last step aren't in order of identity.
-    #[error("the state's contacts of the last step don't rise in number")]
+    #[error("the state's contacts of the last step don't rise in number, or some lack what is to be known of them")]
     ContactOrder,
 }
 
@@ -196,6 +174,20 @@ impl Tally {
             self.unconverged_steps += u64::from(!outcome.converged());
         }
     }
+}
+
+/// A step ends at a given time if it does so within this part of its size.
+pub const STEP_ROUNDING: f64 = 1e-9;
+
+/// From when to when a step goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepSpan {
+    /// Its start, s.
+    pub start: f64,
+    /// Its end, s.
+    pub end: f64,
+    /// Its size, s: that of the matrices. `end − start` up to the rounding of times.
+    pub h: f64,
 }
 
 /// A prescribed velocity at the start counts as it is, unless it is this many times the mean over the first half step: a motion that the step
@@ -249,7 +241,7 @@ impl State {
             t,
             dt,
             q: q.to_vec(),
-            memory: Vec::new(),
+            memory: Memory::default(),
             warm: WarmStart::default(),
             ledger: Ledger::new(model.energy_at(q, &v), model.energy_scale()),
             v,
@@ -265,11 +257,12 @@ impl State {
     /// If not.
     #[inline]
     pub fn check<const D: usize>(&self, model: &Model<D>) -> Result<(), StateError> {
-        let Self { step, t, dt, q, v, warm, .. } = self;
+        let Self { step, t, dt, q, v, warm, memory, .. } = self;
         let (size, contacts) = (model.size(), warm.ids.len());
-        let lengths = q.len() == size.q && v.len() == size.v && warm.gaps.len() == contacts;
+        let lengths = q.len() == size.q && v.len() == size.v;
         let time = *dt > 0.0 && *dt + t.abs() < f64::INFINITY && *step < u64::MAX;
-        if lengths && time && warm.impulses.len() == contacts * D && warm.ids.is_sorted_by(|a, b| a < b) {
+        let ordered = warm.ids.is_sorted_by(|a, b| a < b) && memory.is_in_order();
+        if lengths && time && ordered && warm.impulses.len() == contacts * D {
             return Ok(());
         }
         Err(self.what_is_wrong(model))
@@ -278,11 +271,9 @@ impl State {
     #[cold]
     fn what_is_wrong<const D: usize>(&self, model: &Model<D>) -> StateError {
         let Self { step, t, dt, q, v, warm, .. } = self;
-        for (what, found, expected) in [
-            ("the coordinates", q.len(), model.size().q),
-            ("the velocities", v.len(), model.size().v),
-            ("the spring gaps of its contacts", warm.gaps.len(), warm.ids.len()),
-        ] {
+        for (what, found, expected) in
+            [("the coordinates", q.len(), model.size().q), ("the velocities", v.len(), model.size().v)]
+        {
             if found != expected {
                 return StateError::Length { what, found, expected };
             }
@@ -301,26 +292,50 @@ impl State {
         StateError::ContactOrder
     }
 
-    /// The end of the step that begins now, s.
+    /// The step that begins now, as long as `dt` says, but never past `until` (s; infinity for no end). A step that would end within
+    /// [`STEP_ROUNDING`] of its size of `until` is a whole one, so that times which are multiples of the step but for their rounding take
+    /// whole steps.
     #[must_use]
-    pub fn end_of_step(&self) -> f64 {
-        self.clock.going_on(self.step, self.t, self.dt).at(self.step.saturating_add(1))
+    pub fn next_step(&self, until: f64) -> StepSpan {
+        self.step_of(self.dt, until)
     }
 
-    /// Moves time and the number of steps to the end of the step that begins now: what a scheme does once a step.
-    pub fn count_step(&mut self) {
-        self.clock = self.clock.going_on(self.step, self.t, self.dt);
+    /// As [`State::next_step`], for a step of size `h` (s) in place of `dt`.
+    #[must_use]
+    pub fn step_of(&self, h: f64, until: f64) -> StepSpan {
+        let end = self.clock.going_on(self.step, self.t, h).at(self.step.saturating_add(1));
+        // Written so that NaN is no end.
+        if !(end - until > STEP_ROUNDING * h) {
+            return StepSpan { start: self.t, end, h };
+        }
+        StepSpan { start: self.t, end: until, h: until - self.t }
+    }
+
+    /// Whether time `t` (s) is reached, up to the rounding that [`State::next_step`] allows for.
+    #[must_use]
+    pub fn has_reached(&self, t: f64) -> bool {
+        t - self.t <= STEP_ROUNDING * self.dt
+    }
+
+    /// Moves time and the number of steps to the end of a step.
+    pub(crate) fn count_step(&mut self, span: &StepSpan) {
+        self.clock = self.clock.going_on(self.step, self.t, span.h);
         self.step = self.step.saturating_add(1);
         self.t = self.clock.at(self.step);
+        // A step cut short ends where it was cut.
+        if self.t != span.end {
+            self.t = span.end;
+        }
     }
 
     /// Becomes equal to `other`; allocates only where that holds more than ever before.
     pub fn copy_from(&mut self, other: &Self) {
         let Self { step, t, dt, q, v, memory, warm, ledger, tally, clock } = other;
         (self.step, self.t, self.dt, self.clock) = (*step, *t, *dt, *clock);
-        for (mine, other) in [(&mut self.q, q), (&mut self.v, v), (&mut self.memory, memory)] {
+        for (mine, other) in [(&mut self.q, q), (&mut self.v, v)] {
             mine.clone_from(other);
         }
+        self.memory.copy_from(memory);
         self.warm.copy_from(warm);
         self.ledger.clone_from(ledger);
         self.tally.clone_from(tally);

@@ -1,10 +1,8 @@
 //! The θ step that the schemes share: free velocities, the end of the step, the account of its forces.
 
-use crate::contact::tangential;
 use crate::mismatch::Identity;
 use crate::subsystem::dot;
-use crate::{Energy, Mismatch, Model, Size, State, StepEnergy, StepError, StepReport, Weights, Workspace};
-use teeter_contact::Outcome;
+use crate::{Account, ContactStage, Mismatch, Model, Size, State, StepEnergy, StepError, StepSpan, Weights, Workspace};
 
 /// Vectors of a step: they carry nothing from one to the next.
 #[derive(Clone, Debug, Default)]
@@ -13,6 +11,8 @@ pub(crate) struct ThetaStep {
     q_forces: Vec<f64>,
     /// Coordinates at which gaps are taken; at last q¹.
     pub(crate) q_at: Vec<f64>,
+    /// Coordinates at the end of the step without impulses, where a scheme asks for them.
+    pub(crate) q_free: Vec<f64>,
     /// v_free; once the impulses are known, v¹.
     pub(crate) v_end: Vec<f64>,
     /// v_θ.
@@ -69,8 +69,8 @@ impl ThetaStep {
 
     /// Takes the sizes of a model.
     fn resize(&mut self, size: Size) {
-        let Self { q_forces, q_at, v_end, v_mean, dv, load, product, impulse, .. } = self;
-        for q in [q_forces, q_at] {
+        let Self { q_forces, q_at, q_free, v_end, v_mean, dv, load, product, impulse, .. } = self;
+        for q in [q_forces, q_at, q_free] {
             q.resize(size.q, 0.0);
         }
         for v in [v_end, v_mean, dv, load, product, impulse] {
@@ -83,6 +83,20 @@ impl ThetaStep {
         model.move_along(q, v, tau, &mut self.q_at);
     }
 
+    /// Leaves the end of the step without impulses in `q_free`.
+    pub(crate) fn move_freely<const D: usize>(
+        &mut self,
+        model: &Model<D>,
+        state: &State,
+        h: f64,
+        theta: f64,
+    ) -> Result<(), StepError> {
+        self.close(model, state, h, theta)?;
+        self.q_free.clear();
+        self.q_free.extend_from_slice(&self.q_at);
+        Ok(())
+    }
+
     /// Leaves v_free and P. Prescribed velocities are those about the end of the step; what their change does to the others
     /// goes to the right-hand side.
     pub(crate) fn free_velocity<const D: usize>(
@@ -91,14 +105,14 @@ impl ThetaStep {
         state: &State,
         work: &mut Workspace<D>,
         theta: f64,
-        t_end: f64,
+        span: &StepSpan,
     ) {
-        let h = state.dt;
-        for (part, factor) in model.parts().iter().zip(&mut work.factors) {
+        let StepSpan { start: t_start, end: t_end, h } = *span;
+        let w = weights(h, theta);
+        for (index, part) in model.parts().iter().enumerate() {
             let (q, v) = (part.q.clone(), part.v.clone());
-            if v.is_empty() {
-                continue;
-            }
+            // The factors have been made.
+            let Some(factor) = work.factors.of(index, w).filter(|_| !v.is_empty()) else { continue };
             let dv = &mut self.dv[v.clone()];
             let v_start = &state.v[v.clone()];
             dv.fill(0.0);
@@ -113,7 +127,7 @@ impl ThetaStep {
             if part.traits.loaded {
                 let (load, scratch) = (&mut self.load[v.clone()], &mut work.scratch[..v.len()]);
                 load.fill(0.0);
-                part.system.mean_load([state.t, t_end], scratch, load);
+                part.system.mean_load([t_start, t_end], scratch, load);
                 add(dv, load);
             }
             dv.iter_mut().for_each(|f| *f *= h);
@@ -146,35 +160,33 @@ impl ThetaStep {
         &mut self,
         model: &Model<D>,
         state: &State,
+        h: f64,
         theta: f64,
     ) -> Result<(), StepError> {
         let Self { q_at, v_end, v_mean, .. } = self;
         for ((mean, v1), v0) in v_mean.iter_mut().zip(v_end.iter()).zip(&state.v) {
             *mean = theta * v1 + (1.0 - theta) * v0;
         }
-        model.move_along(&state.q, v_mean, state.dt, q_at);
+        model.move_along(&state.q, v_mean, h, q_at);
         // A velocity that is not finite leaves a coordinate that isn't.
         if all_finite(q_at) { Ok(()) } else { Err(StepError::Diverged { t: state.t }) }
     }
 
-    /// The energies at the end of the step; a step that ends without finite ones has diverged.
-    #[inline]
-    pub(crate) fn energy_at_end<const D: usize>(&self, model: &Model<D>, t: f64) -> Result<Energy, StepError> {
-        let energy = model.energy_at(&self.q_at, &self.v_end);
-        if energy.total().is_finite() { Ok(energy) } else { Err(StepError::Diverged { t }) }
-    }
-
     /// The terms of the energy identity that aren't contact: loads, drives, damping, the scheme itself. The impulses of the
-    /// step's contacts are in `work`.
+    /// step's contacts are in `stage`.
     pub(crate) fn work_of_forces<const D: usize>(
         &mut self,
         model: &Model<D>,
         state: &State,
         work: &mut Workspace<D>,
+        stage: &ContactStage<D>,
+        h: f64,
         theta: f64,
     ) -> StepEnergy {
-        let h = state.dt;
-        let Self { q_forces, q_at, v_end, v_mean, dv, load, product, impulse, .. } = self;
+        if work.account == Account::LeftOut {
+            return StepEnergy::default();
+        }
+        let Self { q_forces, q_at, q_free, v_end, v_mean, dv, load, product, impulse, .. } = self;
         let mut energy = StepEnergy::default();
         if theta != 0.5 || model.is_driven() {
             for ((dv, v1), v0) in dv.iter_mut().zip(v_end.iter()).zip(&state.v) {
@@ -210,7 +222,7 @@ impl ThetaStep {
                 part.system.apply(weights(h, theta), q, &dv[v.clone()], product);
                 let pushed = &mut work.scratch[..v.len()];
                 pushed.fill(0.0);
-                work.contacts.add_generalised_impulse(index, pushed);
+                stage.add_generalised_impulse(index, pushed);
                 let (impulse, mean) = (&impulse[v.clone()], &v_mean[v]);
                 for &k in part.system.driven() {
                     energy.external += mean[k] * (product[k] - impulse[k] - pushed[k]);
@@ -218,49 +230,6 @@ impl ThetaStep {
             }
         }
         energy
-    }
-
-    /// Enters the work of the contacts in `work`, moves the state to the end of the step and tells what happened. The contacts
-    /// to be remembered are in the state's warm start already.
-    #[allow(clippy::too_many_arguments)] // one call a scheme
-    pub(crate) fn finish<'w, const D: usize>(
-        &mut self,
-        model: &Model<D>,
-        state: &mut State,
-        work: &'w mut Workspace<D>,
-        theta: f64,
-        t_end: f64,
-        outcome: Option<Outcome>,
-        penetration: f64,
-        mut now: Energy,
-        mut energy: StepEnergy,
-    ) -> StepReport<'w, D> {
-        let mut stored = 0.0;
-        for contact in work.contacts.contacts() {
-            let u_theta = contact.u_after * theta + contact.u_before * (1.0 - theta);
-            energy.contact += u_theta[0] * contact.p[0];
-            energy.friction += tangential(&u_theta).dot(&contact.p);
-            let slip = tangential(&contact.u_law).dot(&contact.p);
-            state.ledger.largest_tangential_work = state.ledger.largest_tangential_work.max(slip);
-            if let Some(gap) = contact.gap_after
-                && let Ok(law) = model.law(contact.id.pair())
-                && let Some(spring) = law.impact.spring()
-            {
-                stored += spring.potential(gap);
-            }
-        }
-        energy.contact += stored - state.ledger.stored;
-        state.ledger.stored = stored;
-
-        std::mem::swap(&mut state.q, &mut self.q_at);
-        std::mem::swap(&mut state.v, &mut self.v_end);
-        let t_start = state.t;
-        state.count_step();
-        now.elastic += stored;
-        state.ledger.enter(now, &mut energy);
-        let contacts = work.contacts.contacts();
-        state.tally.count(outcome.as_ref(), contacts.len(), penetration);
-        StepReport { step: state.step, t_start, t_end, contacts, outcome, penetration, energy }
     }
 }
 

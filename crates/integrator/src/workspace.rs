@@ -1,10 +1,14 @@
 //! The memory and the contact solver of one worker.
 
-use crate::apart::{Apart, MANY};
-use crate::contacts::{ContactError, ContactSet, Rule};
+use crate::factors::Factors;
 use crate::laws::Laws;
 use crate::mismatch::{Identity, length};
-use crate::{Compliance, FactorError, Mismatch, Model, StepError, Vector, Weights};
+use crate::phases::Phases;
+use crate::stage::{Problem, RESERVED_CONTACTS};
+use crate::{
+    Compliance, Contact, ContactError, ContactStage, Keep, Mismatch, Model, PhaseEnd, State, StateError, StepError,
+    StepReport, StepSpan, Vector, Weights,
+};
 use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, Stop};
 use teeter_detect::{Candidates, ContactId};
 
@@ -24,9 +28,16 @@ impl Default for SolverSettings {
     }
 }
 
-/// Contacts that are reserved for at the most; beyond it, a step with more contacts than ever before allocates. The
-/// dense operator of this many takes 2 MB in the plane.
-const RESERVED_CONTACTS: usize = 256;
+/// Whether steps keep the account of energies, and look how deep contacts have sunk in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Account {
+    /// Every step is entered into the state's ledger.
+    #[default]
+    Kept,
+    /// Nobody reads it: energies, their terms and the penetration are not computed, and ledger and tally don't know of them. The
+    /// motion is the same.
+    LeftOut,
+}
 
 /// How much work steps have taken, by count: the same on every machine, whatever its clock says.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -94,18 +105,17 @@ pub struct Workspace<const D: usize> {
     pub solver: Box<dyn ContactSolver<D>>,
     /// When it stops.
     pub settings: SolverSettings,
-    /// The inverses of the effective mass matrices, one a subsystem.
-    pub factors: Vec<Box<dyn Compliance<D>>>,
+    /// Whether steps keep the account of energies.
+    pub account: Account,
     /// What detection found last.
     pub candidates: Candidates<D>,
-    /// The contacts of the step.
-    pub contacts: ContactSet<D>,
     /// As long as the model's velocities.
     pub scratch: Vec<f64>,
     /// The work of all steps so far.
     pub counts: WorkCounts,
+    pub(crate) factors: Factors<D>,
     pub(crate) laws: Laws<D>,
-    apart: Apart<D>,
+    phases: Phases<D>,
     /// The model that it was made for.
     model: Identity,
 }
@@ -128,16 +138,18 @@ impl<const D: usize> Workspace<D> {
         } else {
             solver.reserve(contacts, contacts * contacts);
         }
+        let mut phases = Phases::new();
+        phases.reserve(contacts, model.size());
         Self {
             solver,
             settings,
-            factors: Vec::with_capacity(model.parts().len()),
+            account: Account::Kept,
             candidates: Vec::with_capacity(contacts),
-            contacts: ContactSet::with_capacity(contacts, model.size().row),
             scratch: vec![0.0; model.size().v],
             counts: WorkCounts::default(),
+            factors: Factors::new(),
             laws,
-            apart: Apart::default(),
+            phases,
             model: model.identity(),
         }
     }
@@ -152,53 +164,33 @@ impl<const D: usize> Workspace<D> {
             let remedy = "make one for this model with Workspace::new";
             return Err(Mismatch::OtherModel { what: "the workspace is that", remedy });
         }
-        length("the workspace's scratch", &self.scratch, model.size().v)?;
-        let expected = if self.factors.is_empty() { 0 } else { model.parts().len() };
-        length("the workspace's factors", &self.factors, expected)
+        length("the workspace's scratch", &self.scratch, model.size().v)
     }
 
+    #[inline]
     fn check_at(&self, model: &Model<D>, q: &[f64]) -> Result<(), Mismatch> {
         self.check(model)?;
         length("the coordinates", q, model.size().q)
     }
 
-    /// Makes `factors` the inverses of these weights: once for a given step size.
+    /// Sees to it that there are factors of `mass·M + damping·C + stiffness·K` for all subsystems at coordinates `q`. Some combinations are
+    /// kept, so that a scheme may alternate them; see [`Keep`]. Allocates nothing once as many have been asked for as are kept.
     ///
     /// # Errors
     /// If a matrix can't be factorised, or the workspace is of another model, or there are too few or too many coordinates.
-    pub fn factorise(&mut self, model: &Model<D>, w: Weights, q: &[f64]) -> Result<(), StepError> {
+    #[inline]
+    pub fn factors(&mut self, model: &Model<D>, w: Weights, q: &[f64], keep: Keep) -> Result<(), StepError> {
         self.check_at(model, q)?;
-        Ok(self.factorise_all(model, w, q)?)
+        let made = self.factors.made();
+        let done = self.factors.make(model, w, q, keep);
+        self.counts.factorisations += self.factors.made() - made;
+        done.map_err(StepError::Factor)
     }
 
-    /// The same for what is known to fit.
+    /// The factor of a subsystem, by its number; `None` where [`Workspace::factors`] was not asked for these weights, or too long ago.
     #[inline]
-    pub(crate) fn factorise_all(&mut self, model: &Model<D>, w: Weights, q: &[f64]) -> Result<(), FactorError> {
-        if self.factors.is_empty() {
-            for part in model.parts() {
-                match part.system.factor(w, &q[part.q.clone()]) {
-                    Ok(factor) => self.factors.push(factor),
-                    Err(error) => {
-                        // All or none: some would look like those of another model.
-                        self.factors.clear();
-                        return Err(error);
-                    }
-                }
-                self.counts.factorisations += 1;
-            }
-            return Ok(());
-        }
-        for (factor, part) in self.factors.iter_mut().zip(model.parts()) {
-            if factor.weights() != w {
-                if let Err(error) = factor.refactor(w, &q[part.q.clone()]) {
-                    // It may hold neither these weights nor those before.
-                    self.factors.clear();
-                    return Err(error);
-                }
-                self.counts.factorisations += 1;
-            }
-        }
-        Ok(())
+    pub fn factor(&mut self, part: usize, w: Weights) -> Option<&mut dyn Compliance<D>> {
+        self.factors.of(part, w)
     }
 
     /// Puts the candidates with a gap of at most `margin` (m) at coordinates `q` into `candidates`, in order of identity.
@@ -206,14 +198,9 @@ impl<const D: usize> Workspace<D> {
     /// # Errors
     /// If the workspace is of another model, or there are too few or too many coordinates, or the detector finds pairs or bodies that the model
     /// doesn't have.
+    #[inline]
     pub fn detect(&mut self, model: &Model<D>, q: &[f64], margin: f64) -> Result<(), Mismatch> {
         self.check_at(model, q)?;
-        self.detect_at(model, q, margin)
-    }
-
-    /// The same for what is known to fit.
-    #[inline]
-    pub(crate) fn detect_at(&mut self, model: &Model<D>, q: &[f64], margin: f64) -> Result<(), Mismatch> {
         self.candidates.clear();
         if model.has_contacts() {
             self.counts.detections += 1;
@@ -236,105 +223,141 @@ impl<const D: usize> Workspace<D> {
         out: &mut Candidates<D>,
     ) -> Result<(), Mismatch> {
         self.check_at(model, q)?;
-        self.locate_at(model, q, ids, out);
-        Ok(())
-    }
-
-    /// The same for what is known to fit.
-    pub(crate) fn locate_at(&mut self, model: &Model<D>, q: &[f64], ids: &[ContactId], out: &mut Candidates<D>) {
         self.counts.detections += 1;
         model.detector().locate(&model.placed_at(q), ids, out);
+        Ok(())
     }
 
     /// Deepest penetration at coordinates `q`, m; 0 if there is none. May change `candidates`.
     ///
     /// # Errors
     /// As [`Workspace::detect`].
+    #[inline]
     pub fn penetration(&mut self, model: &Model<D>, q: &[f64]) -> Result<f64, Mismatch> {
         self.check_at(model, q)?;
-        Ok(self.penetration_at(model, q))
-    }
-
-    /// The same for what is known to fit.
-    #[inline]
-    pub(crate) fn penetration_at(&mut self, model: &Model<D>, q: &[f64]) -> f64 {
         if !model.has_contacts() {
-            return 0.0;
+            return Ok(0.0);
         }
         self.counts.detections += 1;
-        model.detector().deepest(&model.placed_at(q), &mut self.candidates)
+        Ok(model.detector().deepest(&model.placed_at(q), &mut self.candidates))
     }
 
-    /// Assembles and solves the problem of `contacts`, and adds W Jᵀ p to `v`, which becomes the velocity after the step. θ is
-    /// that of the step's mean velocity: by it a law knows the work of its impulses.
+    /// Solves a problem, whose H is there, by its rules; `weight` is that of the velocity after in the mean that impulses do work with.
+    #[inline]
+    pub(crate) fn solve_problem(&mut self, problem: &mut Problem<D>, weight: f64) -> Result<Outcome, ContactError> {
+        let SolverSettings { tolerance, max_iterations } = self.settings;
+        let stop = Stop { tolerance, max_iterations, ..Stop::default() };
+        if problem.is_standard() {
+            let (posed, p) = problem.pose()?;
+            let outcome = self.solver.solve(&posed, &stop, p);
+            self.counts.solved(p.len(), &outcome);
+            return Ok(outcome);
+        }
+        let mut solver = Counted { solver: self.solver.as_mut(), counts: &mut self.counts };
+        if problem.has_directions() {
+            let mut reduced = problem.with_directions()?;
+            let (posed, p) = reduced.pose()?;
+            let outcome = solver.solve(&posed, &stop, p);
+            problem.take_directed(&reduced);
+            return Ok(outcome);
+        }
+        Ok(self.laws.solve(problem, weight, &mut solver, &stop)?)
+    }
+
+    /// Begins a step of `span` from `state`. What a scheme does in every step is this, one [`phase`](Self::phase) or more, and
+    /// [`finish`](Self::finish), which alone changes the state: after an error in between it is as it was.
     ///
     /// # Errors
-    /// If the contacts don't make a problem: a number is not finite, a contact can't move, or the scheme that posed them knows nothing of
-    /// a contact's law; or if workspace, contacts or velocities are of another model.
-    pub fn solve_contacts(&mut self, model: &Model<D>, theta: f64, v: &mut [f64]) -> Result<Outcome, ContactError> {
+    /// If state or workspace are of another model, or the step has no time.
+    #[inline]
+    pub fn begin(&mut self, model: &Model<D>, state: &State, span: StepSpan) -> Result<(), StepError> {
+        state.check(model)?;
         self.check(model)?;
-        length("the velocities", v, model.size().v)?;
-        length("the factors", &self.factors, model.parts().len())?;
-        self.contacts.check(model)?;
-        self.contacts.check_laws()?;
-        self.solve_entered(model, theta, v)
+        // Written so that NaN fails too.
+        if !(span.h > 0.0 && span.start == state.t) {
+            return Err(StateError::StepSize(span.h).into());
+        }
+        self.phases.begin(state, span);
+        Ok(())
     }
 
-    /// The same for what is known to fit, by a scheme that handles every law.
+    /// Ends a phase of the step that was begun: kind, end, places and velocities there, and the contacts of `stage`, which is solved and
+    /// [complete](ContactStage::complete), and empty after it. Their work is added to the phase's energy terms.
+    ///
+    /// # Errors
+    /// If coordinates, velocities or energies are not finite, or as many as the model needs.
     #[inline]
-    pub(crate) fn solve_entered(
+    pub fn phase(
         &mut self,
         model: &Model<D>,
-        theta: f64,
-        v: &mut [f64],
-    ) -> Result<Outcome, ContactError> {
-        let apart = if self.contacts.contacts().len() < MANY { None } else { self.solve_apart(model)? };
-        let outcome = match apart {
-            Some(outcome) => outcome,
-            None => {
-                self.assemble_contacts(model);
-                self.solve_assembled(theta)?
+        phase: &PhaseEnd<'_>,
+        stage: Option<&mut ContactStage<D>>,
+    ) -> Result<(), StepError> {
+        model.fits(phase.q, phase.v)?;
+        let t = self.phases.span.start;
+        let now = match self.account {
+            Account::Kept => {
+                let now = model.energy_at(phase.q, phase.v);
+                if !now.total().is_finite() {
+                    return Err(StepError::Diverged { t });
+                }
+                Some(now)
+            }
+            Account::LeftOut => {
+                if !all_finite(phase.v) {
+                    return Err(StepError::Diverged { t });
+                }
+                None
             }
         };
-        self.apply_impulses(model, v);
-        Ok(outcome)
-    }
-
-    /// Solves the problem of `contacts`, which are many, by islands, if they stand apart.
-    fn solve_apart(&mut self, model: &Model<D>) -> Result<Option<Outcome>, ContactError> {
-        let contacts = self.contacts.contacts().len();
-        let SolverSettings { tolerance, max_iterations } = self.settings;
-        let stop = Stop { tolerance, max_iterations, cancel: None };
-        let Self { apart, solver, factors, scratch, contacts: set, .. } = self;
-        let outcome = apart.solve(set, model, factors, scratch, |problem, p| solver.solve(problem, &stop, p))?;
-        if let Some(outcome) = &outcome {
-            self.counts.solved(contacts, outcome);
+        if !all_finite(phase.q) {
+            return Err(StepError::Diverged { t });
         }
-        Ok(outcome)
+        self.phases.enter(model, phase, stage, now);
+        Ok(())
     }
 
-    /// H of `contacts`.
-    pub(crate) fn assemble_contacts(&mut self, model: &Model<D>) {
-        self.contacts.couple(model, &mut self.factors, &mut self.scratch);
-    }
-
-    /// Solves the problem of `contacts`, whose H is there, by their rules.
-    pub(crate) fn solve_assembled(&mut self, theta: f64) -> Result<Outcome, ContactError> {
-        let SolverSettings { tolerance, max_iterations } = self.settings;
-        let stop = Stop { tolerance, max_iterations, cancel: None };
-        if self.contacts.rules.iter().any(|rule| *rule != Rule::Shifted) {
-            let mut solver = Counted { solver: self.solver.as_mut(), counts: &mut self.counts };
-            return Ok(self.laws.solve(&mut self.contacts, theta, &mut solver, &stop)?);
+    /// Ends the step: the state moves to the end of the last phase and of the step's time, phases are entered into ledger and tally, the
+    /// solver's next start is kept, and those contacts of the last phase of which `stays` says so, by number and contact, count as
+    /// active from now on. `penetration` (m) is that at the end, if the scheme has looked; else it is looked for where an
+    /// [account](Account) is kept.
+    ///
+    /// # Errors
+    /// If there was no phase.
+    #[inline]
+    pub fn finish(
+        &mut self,
+        model: &Model<D>,
+        state: &mut State,
+        penetration: Option<f64>,
+        mut stays: impl FnMut(usize, &Contact<D>) -> bool,
+    ) -> Result<StepReport<'_, D>, StepError> {
+        if !self.phases.has_any() {
+            return Err(StepError::NoPhase);
         }
-        let (problem, p) = self.contacts.posed_problem()?;
-        let outcome = self.solver.solve(&problem, &stop, p);
-        self.counts.solved(p.len(), &outcome);
-        Ok(outcome)
+        let account = self.account == Account::Kept;
+        self.phases.settle(state, account);
+        let penetration = match penetration {
+            Some(penetration) => penetration,
+            None if account => self.penetration(model, &state.q)?,
+            None => 0.0,
+        };
+        state.count_step(&self.phases.span);
+        state.warm.clear();
+        state.memory.forget_contacts();
+        for (i, contact) in self.phases.last_contacts().iter().enumerate() {
+            if stays(i, contact) {
+                state.warm.push(contact.id, &contact.p);
+                state.memory.remember(contact);
+            }
+        }
+        let report = self.phases.report(state.step, penetration);
+        state.tally.count(report.outcome().as_ref(), self.phases.most_contacts(), penetration);
+        Ok(report)
     }
+}
 
-    /// Adds W Jᵀ p to `v`, and completes `contacts` with the velocities after the step.
-    pub(crate) fn apply_impulses(&mut self, model: &Model<D>, v: &mut [f64]) {
-        self.contacts.respond(model, &mut self.factors, &mut self.scratch, v);
-        self.contacts.settle(v);
-    }
+fn all_finite(x: &[f64]) -> bool {
+    // Without an early exit, so that it takes several numbers at once.
+    x.iter().fold(true, |finite, x| finite & x.is_finite())
 }

@@ -20,7 +20,7 @@ pub(crate) struct Impulses {
 }
 
 impl Impulses {
-    pub(crate) fn add(&mut self, contacts: &[Contact<2>]) {
+    pub(crate) fn add<'c>(&mut self, contacts: impl Iterator<Item = &'c Contact<2>>) {
         for contact in contacts {
             *self.sums.entry(contact.id).or_insert_with(Vector::<2>::zeros) += contact.p;
         }

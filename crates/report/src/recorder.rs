@@ -214,11 +214,6 @@ impl<'a> Recorder<'a> {
             .try_for_each(Table::flush)
     }
 
-    /// Takes the state from which a resumed run goes on.
-    pub(crate) fn go_on(&mut self, state: &State) {
-        self.sections.go_on(state);
-    }
-
     /// The values of the last step: of the columns of what beams bear, deflections left out.
     pub(crate) fn section_values(&self) -> &[f64] {
         &self.kept.section_values
@@ -335,7 +330,7 @@ impl Observer<2> for Recorder<'_> {
         step: &StepReport<'_, 2>,
         state: &State,
     ) -> Result<ControlFlow<()>, ObserverError> {
-        self.kept.impulses.add(step.contacts);
+        self.kept.impulses.add(step.contacts());
         self.write_impacts(model, step, state)?;
         self.warn_of_unsolved(step);
         self.warn_of_limits(state);
@@ -345,14 +340,14 @@ impl Observer<2> for Recorder<'_> {
         self.kept.resolution.observe(&self.bodies, self.layout, step, state);
         let Kept { record, section_values, .. } = &mut self.kept;
         let kept = (record.beams.as_mut_slice(), section_values);
-        if let Some(text) = self.sections.observe(step, state, kept, &mut record.warnings) {
+        if let Some(text) = self.sections.observe(step, kept, &mut record.warnings) {
             (self.tell)(&text);
         }
         for (block, monitor) in self.kept.record.rocking.iter_mut().enumerate() {
             monitor.enter(state.t, self.layout.tilt(block, &state.q));
         }
         self.kept.contacts_now.clear();
-        self.kept.contacts_now.extend_from_slice(step.contacts);
+        self.kept.contacts_now.extend(step.contacts());
         if self.kept.schedule.takes(state.step, state.t) {
             self.write_rows(model, state)?;
         }

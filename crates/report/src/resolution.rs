@@ -118,7 +118,7 @@ impl Resolution {
     /// Takes a step in.
     pub(crate) fn observe(&mut self, bodies: &Bodies, layout: &Layout, step: &StepReport<'_, 2>, state: &State) {
         let h = step.t_end - step.t_start;
-        for contact in step.contacts {
+        for contact in step.contacts() {
             let owner = bodies.owners.get(contact.id.pair() as usize);
             let Some(seen) = owner.and_then(|block| self.blocks.get_mut(*block)) else { continue };
             seen.pressed += u32::from(contact.p[0] > 0.0);

@@ -192,7 +192,6 @@ impl Observer<2> for RunRecorder<'_> {
             dump.before = (state.tally.unconverged_steps == 0).then(|| state.clone());
         }
         if self.resumed {
-            self.recorder.go_on(state);
             return Ok(());
         }
         self.recorder.start(model, state)?;
@@ -213,7 +212,7 @@ impl Observer<2> for RunRecorder<'_> {
         if let Some(exporter) = &mut self.exporter {
             let _ = exporter.observe(model, step, state)?;
         }
-        let solved = step.outcome.is_none_or(|outcome| outcome.converged());
+        let solved = step.outcome().is_none_or(|outcome| outcome.converged());
         if let Some(dump) = &mut self.dump {
             dump.see(self.layout, state, solved)?;
         }

@@ -252,32 +252,28 @@ impl Sections {
         }
     }
 
-    /// Takes the state from which a run goes on.
-    pub(crate) fn go_on(&mut self, state: &State) {
-        for watched in &mut self.watched {
-            // It is the state that counts; what a deflection that is not finite bears, nobody asks.
-            let _ = watched.forces.start(state, None);
-        }
-    }
-
     /// Takes a step in. Returns what is to be told of yielding.
     pub(crate) fn observe(
         &mut self,
         step: &StepReport<'_, 2>,
-        state: &State,
         (records, values): (&mut [BeamRecord], &mut Values),
         warnings: &mut WarningLog,
     ) -> Option<String> {
         let mut told = None;
-        for (watched, record) in self.watched.iter_mut().zip(records) {
+        let beams = self.watched.len().min(records.len());
+        for (phase, beam) in step.phases().flat_map(|phase| (0..beams).map(move |beam| (phase, beam))) {
+            let (watched, record) = (&mut self.watched[beam], &mut records[beam]);
             // A motion that goes beyond all bounds is about to end the run: its forces are no numbers, and no reason to end it.
-            let fine = watched.forces.enter(step, state).is_ok();
-            watched.fill(fine, values);
-            if !fine {
+            let entered = watched.forces.enter(&phase).map(|forces| forces.is_some());
+            if entered == Ok(false) {
+                continue;
+            }
+            watched.fill(entered.is_ok(), values);
+            if entered.is_err() {
                 continue;
             }
             let forces = watched.forces.forces();
-            let largest = record.take(watched.forces.beam(), watched.forces.dofs(), forces, state.t);
+            let largest = record.take(watched.forces.beam(), watched.forces.dofs(), forces, phase.end);
             if let (Some(LargestStress { stress, x, t }), Some(strength)) = (largest, watched.yield_strength)
                 && stress > strength
             {

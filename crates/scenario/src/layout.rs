@@ -140,7 +140,7 @@ impl Layout {
     #[must_use]
     pub fn beam_forces(&self, scene: &Scene, number: usize) -> BeamForces {
         let place = &self.beams[number];
-        let mut forces = BeamForces::new(&place.beam, place.body, place.range.clone(), scene.time.theta);
+        let mut forces = BeamForces::new(&place.beam, place.body, place.range.clone());
         if let Some(supports) = &place.supports {
             forces = forces.with_supports(supports.start + 1);
         }

@@ -106,7 +106,7 @@ impl SchemeName {
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
-            Self::MoreauJean => teeter_integrator::MoreauJean::NAME,
+            Self::MoreauJean => teeter_integrator::MoreauJean::<2>::NAME,
             Self::MoreauJeanClosed => teeter_integrator::MoreauJeanClosed::<2>::NAME,
         }
     }

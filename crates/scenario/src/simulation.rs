@@ -15,7 +15,7 @@ use teeter_detect::{BodyId, PointDetector, PointPair};
 use teeter_integrator::{
     Block, Ended, Mismatch, Model, ModelBuilder, ModelError, MoreauJean, MoreauJeanClosed, MoreauJeanClosedSettings,
     MoreauJeanSettings, Observer, Plan, RunError, Scheme, SettingError, SolverSettings, State, StateError, Subsystem,
-    WorkCounts, Workspace, run,
+    Unsolved, WorkCounts, Workspace, run,
 };
 use teeter_rigid::{MassProperties, Rectangle, RigidError};
 
@@ -238,7 +238,11 @@ impl Simulation {
             SolverSettings { tolerance: scene.solver.tolerance, max_iterations: scene.solver.max_iterations };
         let work = Workspace::new(&model, wrap(solver), settings);
         let scheme = scheme(&scene.time)?;
-        let plan = Plan { steps: scene.time.steps, require_convergence: scene.solver.require_convergence };
+        let plan = Plan::steps(scene.time.steps).when_unsolved(if scene.solver.require_convergence {
+            Unsolved::End
+        } else {
+            Unsolved::GoOn
+        });
         Ok(Self { model, state, layout, plan, static_start, scheme, work })
     }
 

@@ -71,7 +71,7 @@ words! {
 }
 
 /// The words of the schemes.
-pub(crate) const SCHEMES: &[&str] = &[MoreauJean::NAME, MoreauJeanClosed::<2>::NAME];
+pub(crate) const SCHEMES: &[&str] = &[MoreauJean::<2>::NAME, MoreauJeanClosed::<2>::NAME];
 
 impl Word for SchemeName {
     const ALL: &'static [(&'static str, Self)] =

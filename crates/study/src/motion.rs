@@ -198,7 +198,7 @@ impl Observer<2> for Sampler<'_> {
         step: &StepReport<'_, 2>,
         state: &State,
     ) -> Result<ControlFlow<()>, ObserverError> {
-        for contact in step.contacts {
+        for contact in step.contacts() {
             self.before.now[contact.id.pair() as usize] += contact.p[0];
         }
         let h = state.t - self.before.t;

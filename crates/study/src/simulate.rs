@@ -63,7 +63,7 @@ struct Limit {
 
 impl Observer<2> for Limit {
     fn observe(&mut self, _: &Model<2>, step: &StepReport<'_, 2>, _: &State) -> Result<ControlFlow<()>, ObserverError> {
-        let taken = step.outcome.map_or(0, |outcome| u64::from(outcome.iterations));
+        let taken = step.outcome().map_or(0, |outcome| u64::from(outcome.iterations));
         self.left = self.left.saturating_sub(taken);
         Ok(if self.left == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     }

@@ -55,7 +55,7 @@ impl Work {
         };
         Self {
             scheme: simulation.scheme(),
-            steps: simulation.plan.steps,
+            steps: simulation.plan.steps_from(&simulation.state),
             blocks: layout.blocks.len() as u64,
             nodal_dofs: dofs(false),
             shapes: dofs(true),

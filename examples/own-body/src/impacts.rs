@@ -42,14 +42,14 @@ impl Impacts {
 
 impl Observer<2> for Impacts {
     fn observe(&mut self, _: &Model<2>, step: &StepReport<'_, 2>, _: &State) -> Result<ControlFlow<()>, ObserverError> {
-        for contact in step.contacts.iter().filter(|contact| contact.id.pair() == self.pair) {
+        for contact in step.contacts().filter(|contact| contact.id.pair() == self.pair) {
             if !contact.persisting && contact.p[0] > 0.0 {
                 self.found.push(Impact {
                     t: step.t_end,
                     point: contact.id.point(),
                     p: contact.p.into(),
                     u_n: [contact.u_before[0], contact.u_after[0]],
-                    work: step.energy.contact + step.energy.friction,
+                    work: step.energy().contact + step.energy().friction,
                 });
             }
         }

@@ -15,7 +15,7 @@ use std::error::Error;
 use teeter_detect::{Kinematics, PointDetector, PointPair};
 use teeter_integrator::{
     Block, Blocks, Ended, Ground, Model, ModelBuilder, MoreauJean, MoreauJeanSettings, Observer, PairLaw, Plan,
-    SolverSettings, State, Workspace, run,
+    SolverSettings, State, Unsolved, Workspace, run,
 };
 use teeter_rigid::{MassProperties, Rectangle, RigidError};
 
@@ -73,7 +73,7 @@ fn simulate(scene: &mut Scene, steps: u64, observer: &mut dyn Observer<2>) -> Do
     let settings = SolverSettings { tolerance: 1e-12, ..SolverSettings::default() };
     let mut work = Workspace::new(model, Box::new(GaussSeidel), settings);
     let mut scheme = MoreauJean::new(MoreauJeanSettings::default())?;
-    let plan = Plan { steps, require_convergence: true };
+    let plan = Plan::steps(steps).when_unsolved(Unsolved::End);
     match run(model, &mut scheme, state, &mut work, &plan, &mut [observer])? {
         Ended::Complete | Ended::Interrupted => Ok(()),
         ended => Err(format!("the run ended after {} steps: {ended:?}", state.step).into()),

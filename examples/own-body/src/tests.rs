@@ -11,10 +11,10 @@ struct UntilHit(Vec<Contact<2>>);
 
 impl Observer<2> for UntilHit {
     fn observe(&mut self, _: &Model<2>, step: &StepReport<'_, 2>, _: &State) -> Result<ControlFlow<()>, ObserverError> {
-        if !step.contacts.iter().any(|contact| contact.id.pair() == HIT) {
+        if !step.contacts().any(|contact| contact.id.pair() == HIT) {
             return Ok(ControlFlow::Continue(()));
         }
-        self.0 = step.contacts.to_vec();
+        self.0 = step.contacts().copied().collect();
         Ok(ControlFlow::Break(()))
     }
 }

@@ -12,7 +12,7 @@ use teeter_contact::ContactSolver;
 use teeter_detect::{Kinematics, PointDetector, PointPair};
 use teeter_integrator::{
     Block, Blocks, Ended, Ground, Model, ModelBuilder, MoreauJean, MoreauJeanSettings, Observer, ObserverError,
-    PairLaw, Plan, SolverSettings, State, StepReport, Tally, Workspace, run,
+    PairLaw, Plan, SolverSettings, State, Unsolved, StepReport, Tally, Workspace, run,
 };
 use teeter_rigid::{MassProperties, Rectangle};
 use teeter_solvers::Auto;
@@ -66,7 +66,7 @@ fn rock(solver: Box<dyn ContactSolver<2>>) -> Result<Motion, Box<dyn Error + Sen
     let mut work = Workspace::new(&model, solver, settings);
     let mut scheme = MoreauJean::new(MoreauJeanSettings::default())?;
     let mut motion = Motion { path: Vec::new(), impacts: Vec::new(), tally: Tally::default() };
-    let plan = Plan { steps: STEPS, require_convergence: true };
+    let plan = Plan::steps(STEPS).when_unsolved(Unsolved::End);
     let ended = run(&model, &mut scheme, &mut state, &mut work, &plan, &mut [&mut motion])?;
     if ended != Ended::Complete {
         return Err(format!("the run ended after {} steps: {ended:?}", state.step).into());

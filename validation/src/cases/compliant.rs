@@ -175,11 +175,9 @@ fn loops() -> Result<Figure> {
         let (model, start) = dropped(impact, 0.0, 0.0, SPEED, 1e-5)?;
         let mut points = vec![(0.0, 0.0)];
         Runner::new(Stepping::MoreauJean).run(&model, &start, 400, |step, _| {
-            let Some(after) = step.contacts.first().and_then(|contact| contact.gap_after) else {
-                return ControlFlow::Break(());
-            };
-            let before = step.contacts[0].gap;
-            let force: f64 = step.contacts.iter().map(|contact| contact.p[0]).sum::<f64>() / 1e-5;
+            let gaps = step.contacts().next().and_then(|contact| Some((contact.gap, contact.gap_after?)));
+            let Some((before, after)) = gaps else { return ControlFlow::Break(()) };
+            let force: f64 = step.contacts().map(|contact| contact.p[0]).sum::<f64>() / 1e-5;
             points.push((-0.5e3 * (before + after), 1e-3 * force));
             if after >= 0.0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })?;

@@ -172,7 +172,7 @@ fn vertical(runner: &mut Runner, findings: &mut Findings) -> Result<()> {
     let (mut gap, mut force, mut open) = (0.0_f64, 0.0_f64, 0);
     runner.run(&model, &start, 3000, |step, state| {
         gap = gap.max((state.q[1] - state.q[4] - 0.5 * FLAT_BLOCK.height).abs());
-        let pressed: f64 = step.contacts.iter().map(|contact| contact.p[0]).sum();
+        let pressed: f64 = step.contacts().map(|contact| contact.p[0]).sum();
         if pressed <= 0.0 {
             open += 1;
         }

@@ -77,7 +77,7 @@ fn on_beam(runner: &mut Runner, findings: &mut Findings) -> Result<()> {
     let mut pressed: Vec<Contact<2>> = Vec::new();
     let end = runner.run(&model, &start, STEPS, |step, _| {
         if step.step == STEPS {
-            pressed.extend_from_slice(step.contacts);
+            pressed.extend(step.contacts());
         }
         ControlFlow::Continue(())
     })?;

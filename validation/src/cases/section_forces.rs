@@ -156,20 +156,23 @@ fn in_motion(runner: &mut Runner, dt: f64) -> Result<Leftover> {
     let mut q = PAPER_BLOCK.on_left_corner(Vector2::new(x, w), 5.0_f64.to_radians()).to_vec();
     q.extend(deflected);
     let start = Start { v: vec![0.0; q.len()], q, dt, theta: 0.5 };
-    let mut forces = BeamForces::new(&beam, BodyId(1), 3..start.q.len(), start.theta);
+    let mut forces = BeamForces::new(&beam, BodyId(1), 3..start.q.len());
     forces.start(&State::new(&model, &start.q, &start.v, dt)?, None)?;
     let mut left = Leftover::default();
     let mut failed = None;
-    runner.run(&model, &start, (0.5 / dt).round() as u64, |step, state| {
-        left.contacts = left.contacts.max(step.contacts.len());
-        match forces.enter(step, state) {
-            Ok(found) => left.take(found),
-            Err(error) => {
-                failed = Some(error);
-                return ControlFlow::Break(());
+    runner.run(&model, &start, (0.5 / dt).round() as u64, |step, _| {
+        left.contacts = left.contacts.max(step.contacts().count());
+        for phase in step.phases() {
+            match forces.enter(&phase) {
+                Ok(None) => continue,
+                Ok(Some(found)) => left.take(found),
+                Err(error) => {
+                    failed = Some(error);
+                    return ControlFlow::Break(());
+                }
             }
+            left.balance(&beam, &forces);
         }
-        left.balance(&beam, &forces);
         ControlFlow::Continue(())
     })?;
     failed.map_or(Ok(left), |error| Err(error.into()))

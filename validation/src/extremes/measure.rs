@@ -217,7 +217,7 @@ impl Observer<2> for Seen {
         step: &StepReport<'_, 2>,
         state: &State,
     ) -> std::result::Result<ControlFlow<()>, ObserverError> {
-        let e = &step.energy;
+        let e = &step.energy();
         let gain = e.contact + e.friction + e.viscous + e.numerical + e.residual;
         self.finite &= gain.is_finite() && step.penetration.is_finite();
         self.gain = self.gain.max(gain);
@@ -225,14 +225,14 @@ impl Observer<2> for Seen {
         self.solves = self.solves.max(solves);
         self.iterations = self.iterations.max(iterations);
         self.see_spin(state);
-        for contact in step.contacts {
+        for contact in step.contacts() {
             self.approach = self.approach.max(-contact.u_before[0]);
             self.slide = self.slide.max(contact.u_before[1].abs()).max(contact.u_after[1].abs());
             self.slope = self.slope.max(contact.frame[(0, 0)].abs());
             self.impacts += u64::from(!contact.persisting && contact.u_before[0] < 0.0 && contact.p[0] > 0.0);
         }
         self.depth = self.depth.max(self.waiting);
-        if step.contacts.is_empty() {
+        if step.contacts().next().is_none() {
             self.waiting = step.penetration;
         } else {
             self.waiting = 0.0;

@@ -1,17 +1,17 @@
 //! What a beam bears in a step: its section forces and reactions, from the equilibrium that the step solved.
 //!
-//! A θ step satisfies, with q_θ = θq¹ + (1−θ)q⁰ and v_θ alike,
+//! A phase of a step satisfies, with the means q̄ and v̄ that its [balance](crate::Balance) says,
 //!
 //! ```text
-//! M (v¹ − v⁰)/h + C v_θ + K q_θ = P̄ + Jᵀp/h
+//! M (v¹ − v⁰)/τ + C v̄ + K q̄ = P̄ + Jᵀp/τ
 //! ```
 //!
-//! with P̄ the mean of the loads over the step, and the supports' acceleration in M's share where they move. Element by element that gives the end forces, so what is read
-//! from them is the mean over the step, and balances to rounding. An impact's impulse p is spread over the step as p/h: its
-//! peaks grow as h shrinks.
+//! with P̄ the mean of the loads over the phase, and the supports' acceleration in M's share where they move. Element by element that gives
+//! the end forces, so what is read from them is the mean over the phase, and balances to rounding. Where a step takes forces and
+//! impulses together, an impact's impulse p is spread over it as p/τ: its peaks grow as the step shrinks.
 
 use super::line::lift_and_turn;
-use crate::{Contact, State, StepReport, Vector};
+use crate::{Contact, Phase, State, Vector};
 use std::ops::Range;
 use std::sync::Arc;
 use teeter_beam::{Actions, Beam, BeamError, ModalBasis, SectionForces, SpanLoad};
@@ -27,8 +27,7 @@ pub trait SpanLoads: std::fmt::Debug + Send + Sync {
     fn add_mean(&self, times: [f64; 2], loads: &mut Vec<SpanLoad>);
 }
 
-/// The section forces of a beam, step by step. Between [`start`](Self::start) and the end of a run every step has to be
-/// [entered](Self::enter), as they follow from the change of the state.
+/// The section forces of a beam, phase by phase of its steps, whatever the scheme.
 #[derive(Debug)]
 pub struct BeamForces {
     beam: Arc<Beam>,
@@ -37,18 +36,13 @@ pub struct BeamForces {
     range: Range<usize>,
     /// Where in the state the supports' displacement y is, if they move.
     lifted: Option<usize>,
-    theta: f64,
     loads: Option<Box<dyn SpanLoads>>,
     /// What its coordinates are, where they are not its dofs.
     basis: Option<Arc<ModalBasis>>,
-    /// The dofs of the state before the step, and their rates.
-    q: Vec<f64>,
-    v: Vec<f64>,
-    lift: f64,
-    /// Those of the state after it.
-    q_next: Vec<f64>,
-    v_next: Vec<f64>,
-    /// q_θ, v_θ, the acceleration, and q⁰ + hθv⁰.
+    /// The dofs before the phase, and their rates; and after it.
+    q: [Vec<f64>; 2],
+    v: [Vec<f64>; 2],
+    /// q̄, v̄, the acceleration, and q⁰ + wτv⁰.
     q_mean: Vec<f64>,
     v_mean: Vec<f64>,
     acceleration: Vec<f64>,
@@ -61,22 +55,18 @@ pub struct BeamForces {
 const LOADS: usize = 32;
 
 impl BeamForces {
-    /// Of the beam that is `body`, with its coordinates at `range` of the state, in steps with this θ.
+    /// Of the beam that is `body`, with its coordinates at `range` of the state.
     #[must_use]
-    pub fn new(beam: &Arc<Beam>, body: BodyId, range: Range<usize>, theta: f64) -> Self {
+    pub fn new(beam: &Arc<Beam>, body: BodyId, range: Range<usize>) -> Self {
         let none = vec![0.0; beam.dofs()];
         Self {
             body,
             range,
             lifted: None,
-            theta,
             loads: None,
             basis: None,
-            q: none.clone(),
-            v: none.clone(),
-            lift: 0.0,
-            q_next: none.clone(),
-            v_next: none.clone(),
+            q: [none.clone(), none.clone()],
+            v: [none.clone(), none.clone()],
             q_mean: none.clone(),
             v_mean: none.clone(),
             acceleration: none.clone(),
@@ -115,31 +105,31 @@ impl BeamForces {
         &self.beam
     }
 
-    /// The section forces of the last step entered.
+    /// The section forces of the last phase entered.
     #[must_use]
     pub fn forces(&self) -> &SectionForces {
         &self.forces
     }
 
-    /// The loads of the last step entered, contacts among them, as means over the step.
+    /// The loads of the last phase entered, contacts among them, as means over it.
     #[must_use]
     pub fn loads(&self) -> &[SpanLoad] {
         &self.span_loads
     }
 
-    /// The acceleration of the last step entered, that of the supports in it.
+    /// The acceleration of the last phase entered, that of the supports in it.
     #[must_use]
     pub fn acceleration(&self) -> &[f64] {
         &self.acceleration
     }
 
-    /// The dofs of the beam in the last state started from or entered.
+    /// The dofs of the beam in the last state started from, or at the end of the last phase entered.
     #[must_use]
     pub fn dofs(&self) -> &[f64] {
-        &self.q
+        &self.q[1]
     }
 
-    /// The velocity v_θ of the last step entered, relative to the supports.
+    /// The mean velocity of the last phase entered, relative to the supports.
     #[must_use]
     pub fn velocity(&self) -> &[f64] {
         &self.v_mean
@@ -152,14 +142,13 @@ impl BeamForces {
         SpanLoad::Point { x: side.point.x.clamp(0.0, span), force: up.dot(force), couple: turn.dot(force) }
     }
 
-    /// Takes the state from which the next step starts. Its own section forces are those of a beam at rest in equilibrium under its
-    /// loads and the forces `pressing` of contacts; without these, of the deflection alone.
+    /// The section forces of a state itself: those of a beam at rest in equilibrium under its loads and the forces `pressing` of contacts;
+    /// without these, of the deflection alone.
     ///
     /// # Errors
     /// As [`SectionForces::update`]; and for a state without the coordinates that these are of.
     pub fn start(&mut self, state: &State, pressing: Option<&[SpanLoad]>) -> Result<&SectionForces, BeamError> {
-        self.read(state)?;
-        self.keep(state);
+        self.read(1, &state.q, &state.v)?;
         self.span_loads.clear();
         if let Some(pressing) = pressing {
             if let Some(loads) = &self.loads {
@@ -167,41 +156,45 @@ impl BeamForces {
             }
             self.span_loads.extend_from_slice(pressing);
         }
-        let actions = Actions { q: &self.q, loads: &self.span_loads, ..Actions::default() };
+        let actions = Actions { q: &self.q[1], loads: &self.span_loads, ..Actions::default() };
         self.forces.update(&self.beam, &actions)?;
         Ok(&self.forces)
     }
 
-    /// The section forces of a step that led to `state`; allocates nothing unless there are more loads than ever before.
+    /// The section forces of a phase; `None` for an instant, over which a mean has no meaning. Allocates nothing unless there are more
+    /// loads than ever before.
     ///
     /// # Errors
-    /// As [`SectionForces::update`], such as for a state that is not finite; and for a state without the coordinates that these are of.
-    pub fn enter(&mut self, step: &StepReport<'_, 2>, state: &State) -> Result<&SectionForces, BeamError> {
-        let (h, theta) = (state.dt, self.theta);
-        self.read(state)?;
-        let (q1, v1) = (&self.q_next, &self.v_next);
-        let mean = |out: &mut [f64], x0: &[f64], x1: &[f64]| {
-            out.iter_mut().zip(x0.iter().zip(x1)).for_each(|(out, (x0, x1))| *out = theta * x1 + (1.0 - theta) * x0);
+    /// As [`SectionForces::update`], such as for a state that is not finite; and for a phase without the coordinates that these are of.
+    pub fn enter(&mut self, phase: &Phase<'_, 2>) -> Result<Option<&SectionForces>, BeamError> {
+        let (tau, weight) = (phase.duration, phase.balance.weight());
+        for end in 0..2 {
+            self.read(end, phase.q[end], phase.v[end])?;
+        }
+        if tau <= 0.0 {
+            return Ok(None);
+        }
+        let mean = |out: &mut [f64], [x0, x1]: &[Vec<f64>; 2]| {
+            out.iter_mut().zip(x0.iter().zip(x1)).for_each(|(out, (x0, x1))| *out = weight * x1 + (1.0 - weight) * x0);
         };
-        mean(&mut self.q_mean, &self.q, q1);
-        mean(&mut self.v_mean, &self.v, v1);
-        for (a, (v0, v1)) in self.acceleration.iter_mut().zip(self.v.iter().zip(v1)) {
-            *a = (v1 - v0) / h;
+        mean(&mut self.q_mean, &self.q);
+        mean(&mut self.v_mean, &self.v);
+        for (a, (v0, v1)) in self.acceleration.iter_mut().zip(self.v[0].iter().zip(&self.v[1])) {
+            *a = (v1 - v0) / tau;
         }
         if let Some(y) = self.lifted {
-            let lift = (state.v[y] - self.lift) / h;
+            let lift = (phase.v[1][y] - phase.v[0][y]) / tau;
             self.acceleration[..2 * self.beam.nodes()].iter_mut().step_by(2).for_each(|a| *a += lift);
         }
-        for (predicted, (q0, v0)) in self.predicted.iter_mut().zip(self.q.iter().zip(&self.v)) {
-            *predicted = q0 + h * theta * v0;
+        for (predicted, (q0, v0)) in self.predicted.iter_mut().zip(self.q[0].iter().zip(&self.v[0])) {
+            *predicted = q0 + tau * weight * v0;
         }
         self.span_loads.clear();
         if let Some(loads) = &self.loads {
-            loads.add_mean([step.t_start, step.t_end], &mut self.span_loads);
+            loads.add_mean([phase.start, phase.end], &mut self.span_loads);
         }
         let span = self.beam.spec().span;
-        self.span_loads.extend(step.contacts.iter().flat_map(|contact| pushes(contact, self.body, span, h)));
-        self.keep(state);
+        self.span_loads.extend(phase.contacts.iter().flat_map(|contact| pushes(contact, self.body, span, tau)));
         let actions = Actions {
             q: &self.q_mean,
             velocity: &self.v_mean,
@@ -210,24 +203,24 @@ impl BeamForces {
             stretched_at: &self.predicted,
         };
         self.forces.update(&self.beam, &actions)?;
-        Ok(&self.forces)
+        Ok(Some(&self.forces))
     }
 
-    /// The dofs of the state.
-    fn read(&mut self, state: &State) -> Result<(), BeamError> {
+    /// The dofs of an end of a phase.
+    fn read(&mut self, end: usize, q: &[f64], v: &[f64]) -> Result<(), BeamError> {
         let coordinates = self.basis.as_ref().map_or(self.beam.dofs(), |basis| basis.len());
         let last = self.lifted.map_or(0, |y| y + 1).max(self.range.end);
         for (field, expected, found) in [
             ("the range of the beam's coordinates", coordinates, self.range.len()),
             ("the shapes of the beam's basis", self.beam.dofs(), self.basis_dofs()),
-            ("the coordinates of the state, at the least", last, state.q.len().min(last)),
-            ("the velocities of the state, at the least", last, state.v.len().min(last)),
+            ("the coordinates of the state, at the least", last, q.len().min(last)),
+            ("the velocities of the state, at the least", last, v.len().min(last)),
         ] {
             if expected != found {
                 return Err(BeamError::Length { field, expected, found });
             }
         }
-        for (dofs, of) in [(&mut self.q_next, &state.q), (&mut self.v_next, &state.v)] {
+        for (dofs, of) in [(&mut self.q[end], q), (&mut self.v[end], v)] {
             let own = &of[self.range.clone()];
             match &self.basis {
                 Some(basis) => basis.expand(own, dofs),
@@ -239,12 +232,6 @@ impl BeamForces {
 
     fn basis_dofs(&self) -> usize {
         self.basis.as_ref().map_or(self.beam.dofs(), |basis| basis.shape(0).len())
-    }
-
-    fn keep(&mut self, state: &State) {
-        std::mem::swap(&mut self.q, &mut self.q_next);
-        std::mem::swap(&mut self.v, &mut self.v_next);
-        self.lift = self.lifted.map_or(0.0, |y| state.v[y]);
     }
 }
 

@@ -3,8 +3,8 @@
 use super::{Laws, unsolved, with_iterations};
 use crate::Vector;
 use crate::contact::tangential;
-use crate::contacts::{ContactSet, Rule};
 use crate::spring::SpringStep;
+use crate::stage::{Problem, Rule};
 use teeter_contact::{ContactProblem, ContactSolver, Delassus, Outcome, ProblemError, Stop};
 
 /// A contact of a problem to be solved on the way.
@@ -50,16 +50,16 @@ const UNTOUCHED: f64 = 1e8;
 
 impl<const D: usize> Laws<D> {
     /// The contact of the problem for contact `i` on top of the base impulses.
-    pub(super) fn row(&self, set: &ContactSet<D>, i: usize, expansion: bool) -> Row<D> {
-        let n = set.rules.len();
+    pub(super) fn row(&self, set: &Problem<D>, i: usize, expansion: bool) -> Row<D> {
+        let n = set.len();
         let blocks = &set.blocks[i * n..(i + 1) * n];
-        let mut u = blocks.iter().zip(&self.base).fold(set.u_free[i], |u, (block, p)| u + block * p);
-        u += set.shift[i];
-        if let (Rule::Poisson { tangential: e, .. }, true) = (set.rules[i], expansion) {
-            u += tangential(&set.contacts()[i].u_before) * e;
+        let mut u = blocks.iter().zip(&self.base).fold(set.u_free(i), |u, (block, p)| u + block * p);
+        u += set.shift(i);
+        if let (Rule::Poisson { tangential: e, .. }, true) = (set.rule(i), expansion) {
+            u += tangential(&set.u_before(i)) * e;
         }
-        let kind = match set.rules[i] {
-            Rule::Spring(step) => Kind::Spring(step, u[0].min(set.u_free[i][0])),
+        let kind = match set.rule(i) {
+            Rule::Spring(step) => Kind::Spring(step, u[0].min(set.u_free(i)[0])),
             _ => Kind::Standard,
         };
         Row { contact: i, kind, u, p: set.p[i], scale: 1.0, normal: blocks[i][(0, 0)] }
@@ -68,7 +68,7 @@ impl<const D: usize> Laws<D> {
     /// Solves the problem of the rows, springs on their law.
     pub(super) fn settle(
         &mut self,
-        set: &ContactSet<D>,
+        set: &Problem<D>,
         solver: &mut dyn ContactSolver<D>,
         stop: &Stop<'_>,
     ) -> Result<Outcome, ProblemError> {
@@ -94,7 +94,7 @@ impl<const D: usize> Laws<D> {
 
     /// Moves the springs' tangents to where the last problem ended. Returns how far their impulses are off the law, and how
     /// far rounding can put them, both relative to the largest impulse.
-    fn retouch(&mut self, set: &ContactSet<D>) -> (f64, f64) {
+    fn retouch(&mut self, set: &Problem<D>) -> (f64, f64) {
         let (mut off, mut noise, mut largest) = (0.0_f64, 0.0_f64, f64::MIN_POSITIVE);
         for r in 0..self.rows.len() {
             largest = largest.max(self.rows[r].p[0]);
@@ -111,8 +111,8 @@ impl<const D: usize> Laws<D> {
     }
 
     /// The true normal velocity of a row's contact after the problem.
-    pub(super) fn normal_velocity(&self, set: &ContactSet<D>, r: usize) -> f64 {
-        let n = set.rules.len();
+    pub(super) fn normal_velocity(&self, set: &Problem<D>, r: usize) -> f64 {
+        let n = set.len();
         let row = &self.rows[r];
         let others = self.rows.iter().map(|other| {
             let mut p = other.p;
@@ -125,8 +125,8 @@ impl<const D: usize> Laws<D> {
     }
 
     /// The sum of the sizes of what [`Laws::normal_velocity`] adds up, m/s.
-    fn size_of_velocity(&self, set: &ContactSet<D>, r: usize) -> f64 {
-        let n = set.rules.len();
+    fn size_of_velocity(&self, set: &Problem<D>, r: usize) -> f64 {
+        let n = set.len();
         let row = &self.rows[r];
         let others = self.rows.iter().map(|other| {
             let h = &set.blocks[row.contact * n + other.contact];
@@ -138,11 +138,11 @@ impl<const D: usize> Laws<D> {
     /// Poses and solves the standard problem of the rows.
     fn solve_rows(
         &mut self,
-        set: &ContactSet<D>,
+        set: &Problem<D>,
         solver: &mut dyn ContactSolver<D>,
         stop: &Stop<'_>,
     ) -> Result<Outcome, ProblemError> {
-        let n = set.rules.len();
+        let n = set.len();
         self.q.clear();
         self.mu.clear();
         self.p.clear();
@@ -202,7 +202,7 @@ impl<const D: usize> Laws<D> {
     }
 
     /// Brings base and rows together as the impulses of the set.
-    pub(super) fn take(&mut self, set: &mut ContactSet<D>) {
+    pub(super) fn take(&mut self, set: &mut Problem<D>) {
         set.p.copy_from_slice(&self.base);
         for row in &self.rows {
             let mut p = row.p;

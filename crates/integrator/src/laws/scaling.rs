@@ -1,7 +1,7 @@
 //! Restitution that makes no energy: what is given back is scaled, by one f for all contacts that feel each other.
 
 use super::{Laws, join};
-use crate::contacts::{ContactSet, Rule};
+use crate::stage::{Problem, Rule};
 use teeter_contact::{Block, ContactSolver, Outcome, ProblemError, Stop};
 
 /// Halvings of the range of f.
@@ -12,8 +12,8 @@ pub(super) const WORKLESS: f64 = 1e-14;
 
 impl<const D: usize> Laws<D> {
     /// Looks for islands whose contacts gave energy in the last pass, where restitution may have done it; whether there are any.
-    pub(super) fn find_gains(&mut self, set: &ContactSet<D>) -> bool {
-        let n = set.rules.len();
+    pub(super) fn find_gains(&mut self, set: &Problem<D>) -> bool {
+        let n = set.len();
         self.range.clear();
         self.range.resize(n, [1.0, 1.0]);
         for i in 0..n {
@@ -29,11 +29,11 @@ impl<const D: usize> Laws<D> {
     }
 
     /// Whether a contact gave something back in the last pass that can be scaled.
-    fn returns(&self, set: &ContactSet<D>, i: usize) -> bool {
-        match set.rules[i] {
-            Rule::Energetic => set.shift[i][0] != 0.0,
+    fn returns(&self, set: &Problem<D>, i: usize) -> bool {
+        match set.rule(i) {
+            Rule::Energetic => set.shift(i)[0] != 0.0,
             Rule::Poisson { .. } => self.given[i] > 0.0,
-            Rule::Shifted | Rule::Spring(_) => false,
+            _ => false,
         }
     }
 
@@ -43,14 +43,14 @@ impl<const D: usize> Laws<D> {
     /// is not restitution's to pay for, so what there is with f = 0 is allowed.
     pub(super) fn scale_restitution(
         &mut self,
-        set: &mut ContactSet<D>,
+        set: &mut Problem<D>,
         theta: f64,
         solver: &mut dyn ContactSolver<D>,
         stop: &Stop<'_>,
     ) -> Result<Outcome, ProblemError> {
-        let n = set.rules.len();
+        let n = set.len();
         self.shift.clear();
-        self.shift.extend_from_slice(&set.shift);
+        self.shift.extend(set.posed.iter().map(|posed| posed.shift));
         self.scale(set, |_| 0.0);
         let mut outcome = self.guarded_pass(set, theta, solver, stop)?;
         self.floor.clear();
@@ -79,12 +79,12 @@ impl<const D: usize> Laws<D> {
     }
 
     /// Scales what is given back by f of each island's range; f = 1 where the range is one point.
-    fn scale(&mut self, set: &mut ContactSet<D>, f: impl Fn([f64; 2]) -> f64) {
-        for i in 0..set.rules.len() {
+    fn scale(&mut self, set: &mut Problem<D>, f: impl Fn([f64; 2]) -> f64) {
+        for i in 0..set.len() {
             let range = self.range[self.island[i]];
             if range[0] < 1.0 {
                 self.part[i] = f(range);
-                if matches!(set.rules[i], Rule::Energetic) {
+                if matches!(set.rule(i), Rule::Energetic) {
                     let mut shift = self.shift[i];
                     shift[0] *= self.part[i];
                     set.reshift(i, shift);
@@ -94,8 +94,8 @@ impl<const D: usize> Laws<D> {
     }
 
     /// Contacts that feel each other through H, directly or by others.
-    pub(super) fn find_islands(&mut self, set: &ContactSet<D>) {
-        let n = set.rules.len();
+    pub(super) fn find_islands(&mut self, set: &Problem<D>) {
+        let n = set.len();
         self.island.clear();
         self.island.extend(0..n);
         let mut changed = true;
@@ -116,13 +116,13 @@ impl<const D: usize> Laws<D> {
 
     /// Whether the contacts that contact `i` feels gave something back in two phases, in the last solve. What one of them gains
     /// another one may have handed on then, so it is their sum that counts.
-    pub(crate) fn handed_on(&self, set: &ContactSet<D>, i: usize) -> bool {
-        let given = |j: usize| matches!(set.rules[j], Rule::Poisson { .. }) && self.given[j] > 0.0;
-        (0..set.rules.len()).any(|j| given(j) && self.island[j] == self.island[i])
+    pub(crate) fn handed_on(&self, set: &Problem<D>, i: usize) -> bool {
+        let given = |j: usize| matches!(set.rule(j), Rule::Poisson { .. }) && self.given[j] > 0.0;
+        (0..set.len()).any(|j| given(j) && self.island[j] == self.island[i])
     }
 
     /// The work Ū·p of the contacts that contact `i` feels, itself among them, J; only after [`Laws::handed_on`] said so.
-    pub(crate) fn work_around(&self, set: &ContactSet<D>, i: usize) -> f64 {
+    pub(crate) fn work_around(&self, set: &Problem<D>, i: usize) -> f64 {
         self.work(set, self.island[i]).0
     }
 
@@ -133,13 +133,13 @@ impl<const D: usize> Laws<D> {
 
     /// The work Ū·p of an island's contacts, Ū the mean of U⁰ and U¹ whatever θ is: that is what an impact changes of the kinetic
     /// energy. And how much of it is rounding. Both in J.
-    fn work(&self, set: &ContactSet<D>, first: usize) -> (f64, f64) {
+    fn work(&self, set: &Problem<D>, first: usize) -> (f64, f64) {
         let (mut work, mut size) = (0.0, 0.0);
-        for i in (0..set.rules.len()).filter(|&i| self.island[i] == first) {
-            let (before, after) = (set.contacts()[i].u_before, set.velocity_by_impulses(i));
+        for i in (0..set.len()).filter(|&i| self.island[i] == first) {
+            let (before, after) = (set.u_before(i), set.velocity_by_impulses(i));
             work += ((after + before) * 0.5).dot(&set.p[i]);
             size += (after.norm() + before.norm()) * set.p[i].norm();
-            if let Rule::Spring(spring) = set.rules[i] {
+            if let Rule::Spring(spring) = set.rule(i) {
                 work += spring.spring.potential(spring.gap_after(after[0])) - spring.spring.potential(spring.gap);
             }
         }

@@ -47,7 +47,7 @@ fn count(surface: Box<dyn Subsystem<2>>, dofs: usize, mut scheme: Box<dyn Scheme
     let before = ALLOCATIONS.with(Cell::get);
     let mut most = 0;
     for _ in 0..3000 {
-        most = most.max(scheme.advance(&model, &mut state, &mut work).unwrap().contacts.len());
+        most = most.max(scheme.advance(&model, &mut state, f64::INFINITY, &mut work).unwrap().contacts().count());
     }
     assert_eq!(most, 2, "the run is meant to meet two contacts");
     ALLOCATIONS.with(Cell::get) - before
@@ -147,14 +147,15 @@ fn the_section_forces_of_a_step_allocate_nothing() {
     let mut state = State::new(&model, &q, &vec![0.0; q.len()], 1e-4).unwrap();
     let mut work = workspace(&model);
     let mut scheme = MoreauJean::new(MoreauJeanSettings::default()).unwrap();
-    let mut forces = BeamForces::new(&beam, teeter_detect::BodyId(1), 3..q.len(), 0.5);
+    let mut forces = BeamForces::new(&beam, teeter_detect::BodyId(1), 3..q.len());
     scheme.start(&model, &mut state, &mut work).unwrap();
     forces.start(&state, None).unwrap();
     let before = ALLOCATIONS.with(Cell::get);
     let mut most = 0.0_f64;
     for _ in 0..3000 {
-        let step = scheme.advance(&model, &mut state, &mut work).unwrap();
-        most = most.max(forces.enter(&step, &state).unwrap().largest_stress(&beam).unwrap().0);
+        let step = scheme.advance(&model, &mut state, f64::INFINITY, &mut work).unwrap();
+        most =
+            most.max(forces.enter(&step.phases().next().unwrap()).unwrap().unwrap().largest_stress(&beam).unwrap().0);
     }
     assert_eq!(ALLOCATIONS.with(Cell::get) - before, 0);
     assert!(most > 1e6, "it bends: {most}");
@@ -189,7 +190,7 @@ fn a_copy_of_the_state_allocates_where_there_are_more_contacts_than_ever_before(
     let mut copy = state.clone();
     let (mut before, mut most) = (ALLOCATIONS.with(Cell::get), 0);
     for _ in 0..3000 {
-        let contacts = scheme.advance(&model, &mut state, &mut work).unwrap().contacts.len();
+        let contacts = scheme.advance(&model, &mut state, f64::INFINITY, &mut work).unwrap().contacts().count();
         copy.copy_from(&state);
         if contacts > most {
             most = contacts;

@@ -23,15 +23,15 @@ struct Seen {
 
 impl Observer<2> for Seen {
     fn observe(&mut self, _: &Model<2>, step: &StepReport<'_, 2>, _: &State) -> Result<ControlFlow<()>, ObserverError> {
-        for contact in step.contacts {
+        for contact in step.contacts() {
             let mean = (contact.u_before + contact.u_after) * 0.5;
             let size = contact.p.norm() * (contact.u_before.norm() + contact.u_after.norm()).max(1e-6);
             if size > 0.0 {
                 self.largest_work = self.largest_work.max(mean.dot(&contact.p) / size);
             }
         }
-        self.slips += step.contacts.iter().filter(|contact| contact.state() == ContactState::Slip).count() as u32;
-        if step.contacts.iter().any(|contact| contact.p[0] > 0.0) {
+        self.slips += step.contacts().filter(|contact| contact.state() == ContactState::Slip).count() as u32;
+        if step.contacts().any(|contact| contact.p[0] > 0.0) {
             if self.had && (1..=3).contains(&self.without) {
                 self.drop_outs += 1;
             }
@@ -46,7 +46,7 @@ impl Observer<2> for Seen {
 fn take(model: &Model<2>, q: &[f64], v: &[f64], h: f64, steps: u64, closed: bool) -> (State, Seen) {
     let mut state = State::new(model, q, v, h).unwrap();
     let mut work = workspace(model);
-    let plan = Plan { steps, require_convergence: true };
+    let plan = Plan::steps(steps).when_unsolved(Unsolved::End);
     let mut seen = Seen::default();
     let mut scheme: Box<dyn Scheme<2>> = if closed {
         Box::new(MoreauJeanClosed::new(MoreauJeanClosedSettings::default()).unwrap())

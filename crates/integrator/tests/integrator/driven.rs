@@ -254,7 +254,7 @@ fn the_energy_account_holds_the_work_of_the_drives() {
             q.resize(model.size().q, 0.0);
             let mut state = State::new(&model, &q, &vec![0.0; model.size().v], 1e-4).unwrap();
             let mut work = crate::scenes::workspace(&model);
-            let plan = Plan { steps: 5000, require_convergence: true };
+            let plan = Plan::steps(5000).when_unsolved(Unsolved::End);
             let ended = run(&model, scheme.as_mut(), &mut state, &mut work, &plan, &mut []).unwrap();
             assert_eq!(ended, Ended::Complete);
             let (residual, external) = (state.ledger.relative_residual(), state.ledger.sum.external);
@@ -290,7 +290,7 @@ fn a_block_on_rails_goes_through_the_ground() {
                 q.resize(model.size().q, 0.0);
                 let mut state = State::new(&model, &q, &vec![0.0; model.size().v], 1e-3).unwrap();
                 let mut work = crate::scenes::workspace(&model);
-                let plan = Plan { steps: 500, require_convergence: true };
+                let plan = Plan::steps(500).when_unsolved(Unsolved::End);
                 let ended = run(&model, scheme.as_mut(), &mut state, &mut work, &plan, &mut []).unwrap();
                 assert_eq!((ended, state.tally.contact_steps), (Ended::Complete, 0), "{}", scheme.name());
                 assert!(state.ledger.relative_residual() <= 1e-14);

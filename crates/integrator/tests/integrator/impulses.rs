@@ -157,7 +157,7 @@ fn alone(part: Box<dyn Subsystem<2>>) -> Model<2> {
 fn state_after(model: &Model<2>, scheme: &mut dyn Scheme<2>, h: f64, steps: u64) -> State {
     let zero = vec![0.0; model.size().v];
     let mut state = State::new(model, &zero, &zero, h).unwrap();
-    let plan = Plan { steps, require_convergence: true };
+    let plan = Plan::steps(steps).when_unsolved(Unsolved::End);
     let ended = run(model, scheme, &mut state, &mut crate::scenes::workspace(model), &plan, &mut []).unwrap();
     assert_eq!(ended, Ended::Complete);
     state
@@ -311,7 +311,7 @@ fn drives_lead_where_their_signals_do() {
         let (mut state, zero) = (state_after(&ground, scheme.as_mut(), 1e-3, 499), vec![0.0; 3]);
         let drift = 50.0 / omega * 0.5;
         let before = state.v[0];
-        let plan = Plan { steps: 500, require_convergence: true };
+        let plan = Plan::steps(500).when_unsolved(Unsolved::End);
         let mut work = crate::scenes::workspace(&ground);
         let ended = run(&ground, scheme.as_mut(), &mut state, &mut work, &plan, &mut []).unwrap();
         assert_eq!(ended, Ended::Complete);

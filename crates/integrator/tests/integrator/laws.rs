@@ -79,8 +79,8 @@ fn step<T>(model: &Model<2>, q: &[f64], v: &[f64], closed: bool, get: impl Fn(&S
     let mut work = workspace(model);
     let mut scheme = scheme(closed);
     scheme.start(model, &mut state, &mut work).unwrap();
-    let report = scheme.advance(model, &mut state, &mut work).unwrap();
-    assert!(report.outcome.is_some_and(|outcome| outcome.converged()), "{:?}", report.outcome);
+    let report = scheme.advance(model, &mut state, f64::INFINITY, &mut work).unwrap();
+    assert!(report.outcome().is_some_and(|outcome| outcome.converged()), "{:?}", report.outcome());
     (get(&state), state)
 }
 
@@ -220,8 +220,8 @@ fn work_in_a_heap(dice: &mut Dice, laws: &[ImpactLaw]) -> Option<f64> {
     let mut scheme = scheme(true);
     let (mut state, mut work) = (State::new(&model, &q, &v, 1e-12).unwrap(), workspace(&model));
     scheme.start(&model, &mut state, &mut work).unwrap();
-    let report = scheme.advance(&model, &mut state, &mut work).unwrap();
-    let solved = report.outcome.is_none_or(|outcome| outcome.converged());
+    let report = scheme.advance(&model, &mut state, f64::INFINITY, &mut work).unwrap();
+    let solved = report.outcome().is_none_or(|outcome| outcome.converged());
     let sum = state.ledger.sum;
     solved.then_some((sum.contact + sum.friction) / state.ledger.initial.kinetic)
 }
@@ -308,7 +308,7 @@ fn bouncing(impact: ImpactLaw, e: f64, theta: f64, closed: bool, seconds: f64, h
     } else {
         Box::new(MoreauJean::new(MoreauJeanSettings { theta, ..MoreauJeanSettings::default() }).unwrap())
     };
-    let plan = Plan { steps: (seconds / h) as u64, require_convergence: true };
+    let plan = Plan::steps((seconds / h) as u64).when_unsolved(Unsolved::End);
     let ended = run(&model, scheme.as_mut(), &mut state, &mut work, &plan, &mut []).unwrap();
     assert_eq!(ended, Ended::Complete);
     let weight = 2700.0 * 0.03 * 0.135 * 0.03 * 9.81;

@@ -67,7 +67,6 @@ proptest! {
     fn steps(
         q in length(SIZE),
         v in length(SIZE),
-        memory in 0_usize..5,
         contacts in prop::collection::vec((0_u32..3, 0_u32..6), 0..4),
         space in any::<bool>(),
         step in prop_oneof![Just(0), Just(u64::MAX), any::<u64>()],
@@ -87,7 +86,7 @@ proptest! {
         for mut scheme in schemes {
             let fresh = State::new(&model, &numbers(SIZE), &[0.0; SIZE], 1e-4).unwrap();
             let mut state = fresh.clone();
-            (state.q, state.v, state.memory) = (numbers(q), numbers(v), numbers(memory));
+            (state.q, state.v) = (numbers(q), numbers(v));
             (state.step, state.t, state.dt) = (step, t, dt);
             for (pair, point) in &contacts {
                 let id = ContactId::new(*pair, *point);
@@ -107,12 +106,12 @@ proptest! {
             prop_assert_eq!(state.check(&model).is_ok(), fits);
             let before = format!("{state:?}");
             let mut work = workspace(&model);
-            let result = scheme.advance(&model, &mut state, &mut work);
+            let result = scheme.advance(&model, &mut state, f64::INFINITY, &mut work);
             if !fits {
                 prop_assert!(matches!(result, Err(StepError::State(_))), "{result:?}");
                 prop_assert_eq!(format!("{state:?}"), before, "the state is as before");
                 prop_assert!(matches!(scheme.start(&model, &mut state, &mut work), Err(StepError::State(_))));
-                let plan = Plan { steps: 3, require_convergence: false };
+                let plan = Plan::steps(3);
                 state.step = state.step.min(1);
                 if state.check(&model).is_err() {
                     let ended = run(&model, scheme.as_mut(), &mut state, &mut work, &plan, &mut []).unwrap();
@@ -121,7 +120,7 @@ proptest! {
             }
             // And it goes on with a state that fits.
             let mut state = fresh;
-            prop_assert!(scheme.advance(&model, &mut state, &mut work).is_ok());
+            prop_assert!(scheme.advance(&model, &mut state, f64::INFINITY, &mut work).is_ok());
         }
     }
 
@@ -129,7 +128,6 @@ proptest! {
     fn workspaces_and_contact_sets(
         q in length(SIZE),
         v in length(SIZE),
-        factors in length(2),
         scratch in length(SIZE),
         contact in 0_usize..4,
         pair in 0_u32..2,
@@ -141,40 +139,40 @@ proptest! {
         let (q, mut v) = (numbers(q), numbers(v));
         let w = Weights { mass: 1.0, damping: 1e-4, stiffness: 1e-8 };
         let mut out = Vec::new();
-        prop_assert_eq!(work.factorise(&model, w, &q).is_ok(), right);
+        prop_assert_eq!(work.factors(&model, w, &q, Keep::Pinned).is_ok(), right);
         prop_assert_eq!(work.detect(&model, &q, 0.1).is_ok(), right);
         prop_assert_eq!(work.locate(&model, &q, &[ContactId::new(pair, 9)], &mut out).is_ok(), right);
         prop_assert_eq!(work.penetration(&model, &q).is_ok(), right);
-        let warm = WarmStart::default();
-        work.contacts.clear();
+        let (warm, memory, mut stage) = (WarmStart::default(), Memory::default(), ContactStage::new());
         let known = pair == 0 && bodies.iter().all(|body| *body < 2);
-        let activated = work.contacts.activate(&model, &q, &candidate(pair, bodies), &warm).is_ok();
-        prop_assert_eq!(activated, right && known);
-        let there = activated && contact == 0;
-        prop_assert_eq!(work.contacts.velocity(contact, &v).is_ok(), there && v.len() == SIZE);
+        let added = stage.add(&model, &q, &candidate(pair, bodies), &warm, &memory).is_ok();
+        prop_assert_eq!(added, right && known);
+        let there = added && contact == 0;
+        prop_assert_eq!(stage.velocity(contact, &v).is_ok(), there && v.len() == SIZE);
         let zero = Vector2::zeros();
-        prop_assert_eq!(work.contacts.pose(contact, zero, Vector2::new(-1.0, 0.0), zero).is_ok(), there);
-        prop_assert_eq!(work.contacts.handles_law(contact).is_ok(), there);
-        prop_assert!(work.contacts.withdraw_if_prescribed(&model).is_ok());
-        // Not assembled yet: only without contacts there is nothing to assemble.
-        prop_assert_eq!(work.contacts.problem().is_ok(), !activated);
-        prop_assert_eq!(work.contacts.complete(&v).is_ok(), !activated || v.len() == SIZE);
+        let state = State::new(&model, &numbers(SIZE), &numbers(SIZE), 1e-4).unwrap();
+        let over = Over::Step { h: 1e-4, weight: 0.5 };
+        prop_assert_eq!(stage.pose(&model, &state, &v, &v, over).is_ok(), !added || v.len() == SIZE);
+        let set = stage.set(contact, zero, Vector2::new(-1.0, 0.0), zero, Rule::Shifted).is_ok();
+        prop_assert_eq!(set, there);
+        prop_assert_eq!(stage.update_row(contact, 0.0, &v).is_ok(), there && v.len() == SIZE);
+        prop_assert_eq!(stage.rows_at(contact, &model, &q, &candidate(pair, bodies)).is_ok(), there);
+        prop_assert_eq!(stage.add_compliance(contact, Default::default()).is_ok(), there);
+        prop_assert_eq!(stage.complete(&v).is_ok(), !added || v.len() == SIZE);
 
         // Its memory was meddled with.
-        work.factorise(&model, w, &numbers(SIZE)).unwrap();
-        work.factors.truncate(factors);
+        work.factors(&model, w, &numbers(SIZE), Keep::Pinned).unwrap();
         work.scratch.resize(scratch, 0.0);
-        let whole = work.factors.len() == 2 && scratch == SIZE;
-        let assembled = {
-            let Workspace { contacts, factors, scratch, .. } = &mut work;
-            contacts.assemble(&model, factors, scratch).is_ok()
-        };
-        prop_assert_eq!(assembled, whole);
-        let solved = work.solve_contacts(&model, 0.5, &mut v);
+        let responses = Responses::Of(w);
+        let solved = stage.solve(&model, &mut work, &responses, over);
         // Between a body and itself there is nothing to solve.
-        let solvable = whole && activated && v.len() == SIZE && bodies[0] != bodies[1];
-        if activated {
+        let posed = set || v.len() == SIZE;
+        let solvable = scratch == SIZE && posed && bodies[0] != bodies[1];
+        if added {
             prop_assert_eq!(solved.is_ok(), solvable, "{:?}", solved);
+            if solvable {
+                prop_assert_eq!(stage.respond(&model, &mut work, &responses, &mut v).is_ok(), v.len() == SIZE);
+            }
         }
     }
 
@@ -184,7 +182,7 @@ proptest! {
         let mut state = State::new(&model, &numbers(SIZE), &[0.0; SIZE], 1e-4).unwrap();
         (state.q, state.v) = (numbers(q), numbers(v));
         for lifted in [None, Some(y)] {
-            let mut forces = BeamForces::new(&beam(), BodyId(1), start..start + len, 0.5);
+            let mut forces = BeamForces::new(&beam(), BodyId(1), start..start + len);
             if let Some(y) = lifted {
                 forces = forces.with_supports(y);
             }

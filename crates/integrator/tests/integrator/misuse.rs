@@ -44,15 +44,15 @@ fn a_workspace_of_another_model_of_the_same_sizes_is_refused() {
     for mut scheme in schemes() {
         let (mut state, mut work) = (start(&one), workspace(&one));
         scheme.start(&one, &mut state, &mut work).unwrap();
-        scheme.advance(&one, &mut state, &mut work).unwrap();
+        scheme.advance(&one, &mut state, f64::INFINITY, &mut work).unwrap();
         let before = state.clone();
-        let error = scheme.advance(&other, &mut state, &mut work).unwrap_err();
+        let error = scheme.advance(&other, &mut state, f64::INFINITY, &mut work).unwrap_err();
         assert!(matches!(error, StepError::Mismatch(Mismatch::OtherModel { .. })), "{error}");
         assert_eq!(state, before, "the state is as before");
 
         // A workspace of its own, but the scheme was started with the other.
         let mut own = workspace(&other);
-        let error = scheme.advance(&other, &mut state, &mut own).unwrap_err().to_string();
+        let error = scheme.advance(&other, &mut state, f64::INFINITY, &mut own).unwrap_err().to_string();
         assert_eq!(
             error,
             "the scheme was started with that of another model: start it with this one before its first step"
@@ -61,11 +61,11 @@ fn a_workspace_of_another_model_of_the_same_sizes_is_refused() {
         let error = scheme.start(&other, &mut state, &mut work).unwrap_err().to_string();
         assert!(error.starts_with("the workspace is that of another model"), "{error}");
         scheme.start(&other, &mut state, &mut own).unwrap();
-        scheme.advance(&other, &mut state, &mut own).unwrap();
+        scheme.advance(&other, &mut state, f64::INFINITY, &mut own).unwrap();
     }
     let (mut state, mut work) = (start(&other), workspace(&one));
     let mut scheme = MoreauJean::new(MoreauJeanSettings::default()).unwrap();
-    let plan = Plan { steps: 5, require_convergence: true };
+    let plan = Plan::steps(5).when_unsolved(Unsolved::End);
     let ended = run(&other, &mut scheme, &mut state, &mut work, &plan, &mut []).unwrap();
     assert!(matches!(ended, Ended::Failed(StepError::Mismatch(Mismatch::OtherModel { .. }))), "{ended:?}");
     let limits = SettlingLimits { reach: &[], margin: 0.0, tau: SettlingLimits::FIRST_TAU };
@@ -77,16 +77,19 @@ fn a_workspace_of_another_model_of_the_same_sizes_is_refused() {
 fn contacts_of_one_model_are_not_solved_in_another() {
     let (one, other) = (on_ground(PairLaw::new(0.5, 0.0)), on_ground(PairLaw::new(0.5, 0.0)));
     let (state, mut of_one, mut of_other) = (start(&one), workspace(&one), workspace(&other));
-    of_one.detect(&one, &state.q, 1.0).unwrap();
-    of_one.contacts.activate(&one, &state.q, &of_one.candidates[0], &state.warm).unwrap();
-    std::mem::swap(&mut of_one.contacts, &mut of_other.contacts);
-    let w = Weights { mass: 1.0, ..Weights::default() };
-    of_other.factorise(&other, w, &state.q).unwrap();
-    let error = of_other.solve_contacts(&other, 0.5, &mut state.v.clone()).unwrap_err();
+    let mut stage = ContactStage::new();
+    stage.find(&one, &state, &Look::new(&state.q, 1.0), &mut of_one).unwrap();
+    let (over, w) = (Over::Step { h: 1e-4, weight: 0.5 }, Weights { mass: 1.0, ..Weights::default() });
+    stage.pose(&one, &state, &state.v, &state.v, over).unwrap();
+    of_other.factors(&other, w, &state.q, Keep::Pinned).unwrap();
+    let error = stage.solve(&other, &mut of_other, &Responses::Of(w), over).unwrap_err();
     assert!(matches!(error, ContactError::Mismatch(Mismatch::OtherModel { .. })), "{error}");
     let candidate = of_one.candidates[0];
-    let error = of_other.contacts.activate(&other, &state.q, &candidate, &state.warm).unwrap_err();
+    let error = stage.add(&other, &state.q, &candidate, &state.warm, &state.memory).unwrap_err();
     assert!(matches!(error, Mismatch::OtherModel { .. }), "{error}");
+    // Nor with factors that nobody asked for.
+    let error = stage.solve(&one, &mut of_one, &Responses::Of(w), over).unwrap_err();
+    assert_eq!(error, ContactError::Factors { part: 0 });
 }
 
 /// A block, and a block or the ground.
@@ -187,7 +190,10 @@ fn candidates_of_pairs_and_bodies_that_are_not_there_end_the_step() {
         for mut scheme in schemes() {
             let mut state = State::new(&model, &[0.0; 3], &[0.0, -1.0, 0.0], 1e-3).unwrap();
             let mut work = workspace(&model);
-            let error = (0..3).find_map(|_| scheme.advance(&model, &mut state, &mut work).err()).unwrap().to_string();
+            let error = (0..3)
+                .find_map(|_| scheme.advance(&model, &mut state, f64::INFINITY, &mut work).err())
+                .unwrap()
+                .to_string();
             assert!(error.ends_with(expected), "{}: {error}", scheme.name());
         }
     }

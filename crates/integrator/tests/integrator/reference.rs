@@ -115,7 +115,7 @@ fn compare(name: &str) {
     .unwrap();
     let mut comparer = Comparer { case: &case, beam, next: 0, worst: 0.0 };
     let steps = (number(&scheme["T"]) / state.dt).round() as u64;
-    let plan = Plan { steps, require_convergence: true };
+    let plan = Plan::steps(steps).when_unsolved(Unsolved::End);
     let ended = run(&model, &mut integrator, &mut state, &mut work, &plan, &mut [&mut comparer]).unwrap();
     assert_eq!(ended, Ended::Complete);
     assert_eq!(comparer.next, case["samples"]["rows"].as_array().unwrap().len());

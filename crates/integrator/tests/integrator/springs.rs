@@ -37,7 +37,7 @@ fn drop(impact: ImpactLaw, v: f64, h: f64, closed: bool) -> (f64, f64) {
     let (mut touch, mut last) = (None, state.q[1] - 0.0675);
     loop {
         let t = state.t;
-        scheme.advance(&model, &mut state, &mut work).unwrap();
+        scheme.advance(&model, &mut state, f64::INFINITY, &mut work).unwrap();
         let gap = state.q[1] - 0.0675;
         let zero = t + h * last / (last - gap);
         if touch.is_none() && gap < 0.0 {
@@ -120,11 +120,11 @@ fn any_stiffness_is_stable_at_any_step() {
                         scheme.start(&model, &mut state, &mut work).unwrap();
                         let mut highest = f64::MIN;
                         for _ in 0..2000 {
-                            let report = scheme.advance(&model, &mut state, &mut work).unwrap();
+                            let report = scheme.advance(&model, &mut state, f64::INFINITY, &mut work).unwrap();
                             assert!(
-                                report.outcome.is_none_or(|outcome| outcome.converged()),
+                                report.outcome().is_none_or(|outcome| outcome.converged()),
                                 "{impact:?} {h} {phi} {:?} {}",
-                                report.outcome,
+                                report.outcome(),
                                 state.t
                             );
                             highest = highest.max(state.ledger.current.total());

@@ -21,7 +21,7 @@ fn alone(beam: &Arc<Beam>) -> Model<2> {
 fn advance(model: &Model<2>, state: &mut State, steps: u64) {
     let mut work = crate::scenes::workspace(model);
     let mut scheme = MoreauJean::new(MoreauJeanSettings::default()).unwrap();
-    let plan = Plan { steps, require_convergence: true };
+    let plan = Plan::steps(steps).when_unsolved(Unsolved::End);
     assert_eq!(run(model, &mut scheme, state, &mut work, &plan, &mut []).unwrap(), Ended::Complete);
 }
 

@@ -39,14 +39,14 @@ fn a_changed_step_size_goes_on_from_the_time_that_it_is() {
         let mut work = workspace(&model);
         scheme.start(&model, &mut state, &mut work).unwrap();
         for _ in 0..100 {
-            scheme.advance(&model, &mut state, &mut work).unwrap();
+            scheme.advance(&model, &mut state, f64::INFINITY, &mut work).unwrap();
         }
         assert_eq!(state.t, 100.0 * 1e-5);
         state.dt = 2e-5;
-        let step = scheme.advance(&model, &mut state, &mut work).unwrap();
+        let step = scheme.advance(&model, &mut state, f64::INFINITY, &mut work).unwrap();
         assert_eq!((step.step, step.t_start, step.t_end), (101, 1e-3, 1e-3 + 2e-5));
         for k in 2..=1000 {
-            let step = scheme.advance(&model, &mut state, &mut work).unwrap();
+            let step = scheme.advance(&model, &mut state, f64::INFINITY, &mut work).unwrap();
             assert_eq!(step.t_end, 1e-3 + f64::from(k) * 2e-5, "counted, not summed");
         }
     }
@@ -69,7 +69,7 @@ proptest! {
                 state.dt = dt;
                 for _ in 0..count {
                     let before = state.t;
-                    let step = scheme.advance(&model, &mut state, &mut work).unwrap();
+                    let step = scheme.advance(&model, &mut state, f64::INFINITY, &mut work).unwrap();
                     (elapsed, steps) = (elapsed + dt, steps + 1);
                     prop_assert_eq!((step.step, step.t_start, step.t_end), (steps, before, state.t));
                     prop_assert!((state.t - elapsed).abs() <= 1e-14, "{} instead of {elapsed}", state.t);
@@ -89,12 +89,12 @@ proptest! {
             let mut state = State::new(&model, &[0.0; 3], &[0.0; 3], dt).unwrap();
             let mut work = workspace(&model);
             for k in 1..=steps {
-                scheme.advance(&model, &mut state, &mut work).unwrap();
+                scheme.advance(&model, &mut state, f64::INFINITY, &mut work).unwrap();
                 prop_assert_eq!(state.t, k as f64 * dt);
             }
             // And a state taken up at a later step counts as if it had come there.
             let mut later = State::at(&model, steps, &state.q, &state.v, dt).unwrap();
-            scheme.advance(&model, &mut later, &mut work).unwrap();
+            scheme.advance(&model, &mut later, f64::INFINITY, &mut work).unwrap();
             prop_assert_eq!(later.t, (steps + 1) as f64 * dt);
         }
     }

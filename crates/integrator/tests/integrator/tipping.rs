@@ -68,7 +68,7 @@ fn grown_in_a_run(tilt: f64, h: f64, closed: bool, tops: usize) -> Vec<f64> {
     scheme.start(&model, &mut state, &mut work).unwrap();
     let (mut rising, mut grown) = (false, Vec::new());
     while grown.len() < tops {
-        scheme.advance(&model, &mut state, &mut work).unwrap();
+        scheme.advance(&model, &mut state, f64::INFINITY, &mut work).unwrap();
         if rising && state.v[1] <= 0.0 {
             // Back to the top, which was within the step.
             grown.push((state.q[2] - state.v[2] * -state.v[1] / GRAVITY) / tilt);

@@ -9,7 +9,7 @@ use std::path::Path;
 use teeter_integrator::State;
 
 /// Version of the format. Whatever changes the bytes of a [`Moment`] is a new one; the test below knows.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 const MAGIC: [u8; 8] = *b"teeterCP";
 
@@ -174,11 +174,13 @@ fn opened<'a>(bytes: &'a [u8], path: &Path, wanted: &'static str) -> Result<&'a 
 mod tests {
     use super::*;
     use teeter_detect::ContactId;
-    use teeter_integrator::{Vector, WarmStart};
+    use teeter_integrator::{Memory, Vector, WarmStart};
 
     fn file() -> Vec<u8> {
         let mut warm = WarmStart::default();
         warm.push(ContactId::new(0, 1), &Vector::<2>::new(0.5, -0.25));
+        let mut memory = Memory::default();
+        memory.set_numbers(&[7.0]);
         let moment = Moment {
             scheme: "moreau-jean".to_owned(),
             step: 300,
@@ -188,7 +190,7 @@ mod tests {
             contacts: vec!["feet".to_owned()],
             q: vec![1.0, -0.0, f64::MIN_POSITIVE],
             v: vec![f64::NEG_INFINITY, f64::from_bits(0x7ff8_0000_0000_0001), 5e-324],
-            memory: vec![7.0],
+            memory,
             warm,
         };
         let identity = Identity::new([7; 32], "title = \"t\"\n", &[], "");
@@ -208,6 +210,7 @@ mod tests {
         assert_eq!(bits(&read.moment.q), bits(&[1.0, -0.0, f64::MIN_POSITIVE]));
         assert_eq!(bits(&read.moment.v), [f64::NEG_INFINITY.to_bits(), 0x7ff8_0000_0000_0001, 1]);
         assert_eq!(read.moment.warm.impulse(ContactId::new(0, 1)), Some(Vector::<2>::new(0.5, -0.25)));
+        assert_eq!(read.moment.memory.numbers(), Some([7.0]));
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::CheckpointError;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
-use teeter_integrator::{Model, State, WarmStart};
+use teeter_integrator::{Memory, Model, State, WarmStart};
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Layout;
 
@@ -20,7 +20,7 @@ pub struct Moment {
     pub(crate) contacts: Vec<String>,
     pub(crate) q: Vec<f64>,
     pub(crate) v: Vec<f64>,
-    pub(crate) memory: Vec<f64>,
+    pub(crate) memory: Memory,
     pub(crate) warm: WarmStart,
 }
 
@@ -86,10 +86,13 @@ impl Moment {
             .map_err(|source| CheckpointError::State { path: path(), source })?;
         if contacts(layout) == self.contacts {
             state.warm.copy_from(&self.warm);
+            state.memory.copy_from(&self.memory);
         }
         if same_steps {
             state.t = t;
-            state.memory.clone_from(&self.memory);
+        } else {
+            // They mean nothing to another scheme, or in steps of another size.
+            state.memory.set_numbers(&[]);
         }
         Ok(state)
     }

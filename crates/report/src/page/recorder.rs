@@ -209,7 +209,7 @@ impl PageRecorder {
     ) -> Result<(), ObserverError> {
         let Self { scenery, kept, layout, .. } = self;
         let Kept { curves, impacts, closings, omega: [now, before], .. } = kept;
-        for contact in step.contacts {
+        for contact in step.contacts() {
             let (pair, point) = (contact.id.pair() as usize, contact.id.point() as usize);
             curves.add(CORNERS * pair + point, [contact.p[0], contact.p[1]], contact.state());
         }

@@ -198,12 +198,12 @@ impl Recorder<'_> {
 
     /// Warns of a step whose contact problem was not solved.
     pub(super) fn warn_of_unsolved(&mut self, step: &StepReport<'_, 2>) {
-        let Some(outcome) = step.outcome.filter(|outcome| !outcome.converged()) else { return };
+        let Some(outcome) = step.outcome().filter(|outcome| !outcome.converged()) else { return };
         self.warn("unconverged", Some(step.t_end), || {
             format!(
                 "the contact problem of the step to t = {} s ({} contacts) was not solved: {} after {} iterations of {}, residual {:.1e}",
                 step.t_end,
-                step.contacts.len(),
+                step.contacts().count(),
                 outcome.status,
                 outcome.iterations,
                 outcome.used,

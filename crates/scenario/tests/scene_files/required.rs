@@ -37,9 +37,9 @@ impl Observer<2> for Seen {
     ) -> Result<ControlFlow<()>, ObserverError> {
         self.steps += 1;
         let energy = state.ledger.current;
-        let account = [energy.kinetic, energy.elastic, energy.gravity, step.energy.contact, step.penetration];
+        let account = [energy.kinetic, energy.elastic, energy.gravity, step.energy().contact, step.penetration];
         state.q.iter().chain(&state.v).chain(&account).for_each(|x| self.mix(*x));
-        for contact in step.contacts {
+        for contact in step.contacts() {
             contact.p.iter().chain(contact.u_after.iter()).for_each(|x| self.mix(*x));
             self.mix(contact.id.pair() as f64 + 0.1 * contact.id.point() as f64);
         }

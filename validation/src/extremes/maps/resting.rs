@@ -45,7 +45,7 @@ fn left(base: Base, scheme: Scheme, dt: f64, e: f64) -> Result<f64> {
             // With half the block's width for its spin.
             fastest = fastest.max(state.v[0].abs()).max(state.v[1].abs()).max(0.015 * state.v[2].abs());
         }
-        for contact in step.contacts.iter().filter(|contact| !contact.persisting && contact.p[0] > 0.0) {
+        for contact in step.contacts().filter(|contact| !contact.persisting && contact.p[0] > 0.0) {
             fastest = fastest.max(-contact.u_before[0]);
         }
     })?;

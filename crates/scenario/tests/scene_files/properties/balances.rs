@@ -158,8 +158,8 @@ fn friction_opposes_the_slide_and_stays_in_its_cone() {
         steps(drawn, |_, _| {
             |step: &Step<'_>| {
                 // In its impacts every contact has two phases, and friction in each.
-                let phased = step.report.contacts.iter().any(|contact| drawn.law_of(contact).2.is_poisson());
-                for contact in step.report.contacts {
+                let phased = step.report.contacts().any(|contact| drawn.law_of(contact).2.is_poisson());
+                for contact in step.report.contacts() {
                     let (block, mu, law) = drawn.law_of(contact);
                     let [p_n, p_t] = [contact.p[0], contact.p[1]];
                     let open = step.open.impulse + ROUNDING * contact.p.norm();
@@ -229,7 +229,7 @@ fn blocks_balance(drawn: &Drawn, step: &Step<'_>) -> Result<(), String> {
                 Scheme::Closed => 0.25 * h * (spin + spin + load[2] / inertia),
             };
         let (sin, cos) = angle.sin_cos();
-        for contact in step.report.contacts.iter().filter(|contact| drawn.law_of(contact).0 == k) {
+        for contact in step.report.contacts().filter(|contact| drawn.law_of(contact).0 == k) {
             let impulse = contact.frame.transpose() * contact.p;
             let point = contact.sides[0].point;
             let lever = [cos * point.x - sin * point.y, sin * point.x + cos * point.y];
@@ -272,7 +272,9 @@ fn a_beam_gains_the_momentum_that_supports_and_contacts_give() {
             }
             move |step: &Step<'_>| {
                 for (k, (place, forces, viscous, heavy)) in beams.iter_mut().enumerate() {
-                    forces.enter(step.report, step.state).map_err(|error| error.to_string())?;
+                    for phase in step.report.phases() {
+                        forces.enter(&phase).map_err(|error| error.to_string())?;
+                    }
                     let reactions: Vec<f64> =
                         forces.forces().reactions().iter().map(|reaction| reaction.force).collect();
                     beam_balance(drawn, k, place, *viscous, *heavy, &reactions, step)?;
@@ -341,7 +343,7 @@ fn beam_balance(
         give(own(h * weight * drawn.gravity[1]));
     }
     reactions.iter().for_each(|force| give(own(h * force)));
-    for contact in step.report.contacts.iter().filter(|contact| contact.sides[1].body == place.body) {
+    for contact in step.report.contacts().filter(|contact| contact.sides[1].body == place.body) {
         give(own(-(contact.frame.transpose() * contact.p).y));
     }
     if !(gained.abs() <= BEAM_ROUNDING * sizes) {
@@ -361,7 +363,7 @@ fn energy_is_accounted_for_and_never_made() {
         steps(drawn, |_, simulation| {
             let beams = simulation.layout.beams.clone();
             move |step: &Step<'_>| {
-                let (energy, ledger) = (step.report.energy, &step.state.ledger);
+                let (energy, ledger) = (step.report.energy(), &step.state.ledger);
                 // Heights count from the origin.
                 let weights = (0..drawn.blocks.len()).map(|k| {
                     let (g, q) = (drawn.gravity, &step.state.q[3 * k..3 * k + 2]);

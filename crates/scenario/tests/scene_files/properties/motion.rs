@@ -102,11 +102,11 @@ impl Observer<2> for Recorder {
     ) -> Result<ControlFlow<()>, ObserverError> {
         let row = self.row(state);
         let motion = &mut self.motion;
-        if motion.solved == motion.rows.len() && step.outcome.is_none_or(|outcome| outcome.converged()) {
+        if motion.solved == motion.rows.len() && step.outcome().is_none_or(|outcome| outcome.converged()) {
             motion.solved += 1;
         }
         motion.rows.push(row);
-        motion.contacts = motion.contacts.max(step.contacts.len());
+        motion.contacts = motion.contacts.max(step.contacts().count());
         Ok(ControlFlow::Continue(()))
     }
 }

@@ -58,7 +58,7 @@ impl Observer<2> for Trace<'_> {
         state: &State,
     ) -> Result<ControlFlow<()>, ObserverError> {
         let energy = state.ledger.current;
-        let account = [energy.kinetic, energy.elastic, energy.gravity, step.energy.contact];
+        let account = [energy.kinetic, energy.elastic, energy.gravity, step.energy().contact];
         account.iter().for_each(|x| mix(&mut self.hash[0], *x));
         let rests = |k: usize| self.resting.iter().any(|(place, ..)| place.range.contains(&k));
         for (k, (q, v)) in state.q.iter().zip(&state.v).enumerate() {
@@ -69,7 +69,7 @@ impl Observer<2> for Trace<'_> {
                 }
             }
         }
-        for contact in step.contacts {
+        for contact in step.contacts() {
             let id = contact.id.pair() as f64 + 0.1 * contact.id.point() as f64;
             let numbers = contact.p.iter().chain(contact.u_after.iter()).chain([&step.penetration, &id]);
             numbers.for_each(|x| self.hash.iter_mut().for_each(|hash| mix(hash, *x)));

@@ -3,7 +3,7 @@
 use super::rows::{Kind, Row};
 use super::{Laws, is_impact, join, with_iterations};
 use crate::Vector;
-use crate::contacts::{ContactSet, Rule};
+use crate::stage::{Problem, Rule};
 use teeter_contact::{ContactSolver, Outcome, ProblemError, Stop};
 
 /// Velocities and impulses of expansion that are wrong by this part of the largest velocity before and of the impulse
@@ -14,11 +14,11 @@ impl<const D: usize> Laws<D> {
     /// Compression, and expansion where an impact asks for it.
     pub(super) fn pass(
         &mut self,
-        set: &mut ContactSet<D>,
+        set: &mut Problem<D>,
         solver: &mut dyn ContactSolver<D>,
         stop: &Stop<'_>,
     ) -> Result<Outcome, ProblemError> {
-        let n = set.rules.len();
+        let n = set.len();
         self.base.clear();
         self.base.resize(n, Vector::zeros());
         self.rows.clear();
@@ -42,13 +42,13 @@ impl<const D: usize> Laws<D> {
         self.rows.clear();
         for i in 0..n {
             let mut row = self.row(set, i, false);
-            row.u += set.contacts()[i].u_before - set.u_free[i];
+            row.u += set.u_before(i) - set.u_free(i);
             self.rows.push(row);
         }
         let blow = self.settle(set, solver, stop)?;
         let outcome = join(outcome, blow);
         for i in 0..n {
-            if let (Rule::Poisson { e, .. }, true) = (set.rules[i], self.given[i] > 0.0) {
+            if let (Rule::Poisson { e, .. }, true) = (set.rule(i), self.given[i] > 0.0) {
                 self.given[i] = self.part[i] * e * self.rows[i].p[0];
             }
         }
@@ -59,12 +59,12 @@ impl<const D: usize> Laws<D> {
     /// stays at rest under a larger one: which, is found by trial, from all parting.
     fn expand(
         &mut self,
-        set: &mut ContactSet<D>,
+        set: &mut Problem<D>,
         solver: &mut dyn ContactSolver<D>,
         stop: &Stop<'_>,
     ) -> Result<Outcome, ProblemError> {
-        let n = set.rules.len();
-        let fastest = set.contacts().iter().map(|contact| contact.u_before.norm()).fold(0.0, f64::max);
+        let n = set.len();
+        let fastest = set.posed.iter().map(|posed| posed.u_before.norm()).fold(0.0, f64::max);
         self.parts.clear();
         self.parts.extend(self.given.iter().map(|given| *given > 0.0));
         let mut sum: Option<Outcome> = None;
@@ -100,14 +100,14 @@ impl<const D: usize> Laws<D> {
     /// beside what they take themselves.
     fn try_expansion(
         &mut self,
-        set: &mut ContactSet<D>,
+        set: &mut Problem<D>,
         solver: &mut dyn ContactSolver<D>,
         stop: &Stop<'_>,
         both: bool,
     ) -> Result<Outcome, ProblemError> {
-        let n = set.rules.len();
+        let n = set.len();
         for i in 0..n {
-            self.base[i] = match set.rules[i] {
+            self.base[i] = match set.rule(i) {
                 Rule::Spring(_) => Vector::zeros(),
                 _ => self.compression[i],
             };
@@ -118,7 +118,7 @@ impl<const D: usize> Laws<D> {
         self.rows.clear();
         for i in 0..n {
             let mut row = self.row(set, i, true);
-            if !matches!(set.rules[i], Rule::Spring(_)) {
+            if !matches!(set.rule(i), Rule::Spring(_)) {
                 row.p = Vector::zeros();
             }
             if self.parts[i] {
@@ -135,10 +135,10 @@ impl<const D: usize> Laws<D> {
 
     /// The part e of its impulse of compression that a contact gives back: it obeys Poisson's law, was compressed, and feels
     /// an impact, its own or another's.
-    fn expands(&self, set: &ContactSet<D>, i: usize) -> Option<f64> {
-        let Rule::Poisson { e, .. } = set.rules[i] else { return None };
-        let impact = |j: usize| is_impact(1.0, &set.contacts()[j].u_before, &set.u_free[j]);
-        let felt = || (0..set.rules.len()).any(|j| self.island[j] == self.island[i] && impact(j));
+    fn expands(&self, set: &Problem<D>, i: usize) -> Option<f64> {
+        let Rule::Poisson { e, .. } = set.rule(i) else { return None };
+        let impact = |j: usize| is_impact(1.0, &set.u_before(j), &set.u_free(j));
+        let felt = || (0..set.len()).any(|j| self.island[j] == self.island[i] && impact(j));
         (e > 0.0 && set.p[i][0] > 0.0 && felt()).then_some(e)
     }
 }

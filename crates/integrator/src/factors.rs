@@ -1,0 +1,131 @@
+//! W of every subsystem, for as many combinations of weights as a scheme has use for.
+
+use crate::{Compliance, FactorError, Model, Weights};
+
+/// How long the factors of a combination are wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Keep {
+    /// Over steps: W of the step size, M⁻¹.
+    Pinned,
+    /// For now: W of a part of a step. Such factors share one place, and never take that of a pinned one.
+    Once,
+}
+
+/// Combinations that are kept of each subsystem, the one for now not among them: the one asked for the longest ago makes place.
+const PINNED: usize = 4;
+
+struct Entry<const D: usize> {
+    factor: Box<dyn Compliance<D>>,
+    keep: Keep,
+    /// When it was last asked for.
+    asked: u64,
+}
+
+/// The factors of a model's subsystems by their weights: bounded, and without an allocation once as many combinations have been asked for as
+/// are kept.
+pub(crate) struct Factors<const D: usize> {
+    parts: Vec<Vec<Entry<D>>>,
+    round: u64,
+    /// How many matrices were factorised.
+    made: u64,
+}
+
+/// Which factors to take for each subsystem.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Responses<'a> {
+    /// Those of one combination.
+    Of(Weights),
+    /// One combination for each subsystem, in the order in which they were added to the model.
+    Each(&'a [Weights]),
+}
+
+impl Responses<'_> {
+    /// The combination of a subsystem, by its number.
+    #[must_use]
+    pub fn of(&self, part: usize) -> Option<Weights> {
+        match self {
+            Self::Of(weights) => Some(*weights),
+            Self::Each(weights) => weights.get(part).copied(),
+        }
+    }
+}
+
+impl<const D: usize> Factors<D> {
+    pub(crate) fn new() -> Self {
+        Self { parts: Vec::new(), round: 0, made: 0 }
+    }
+
+    pub(crate) fn made(&self) -> u64 {
+        self.made
+    }
+
+    /// Sees to it that there are factors of these weights for all subsystems.
+    #[inline]
+    pub(crate) fn make(&mut self, model: &Model<D>, w: Weights, q: &[f64], keep: Keep) -> Result<(), FactorError> {
+        if self.parts.len() != model.parts().len() {
+            self.parts.clear();
+            self.parts.resize_with(model.parts().len(), Vec::new);
+        }
+        self.round += 1;
+        for index in 0..self.parts.len() {
+            match self.parts[index].first_mut() {
+                Some(first) if first.factor.weights() == w => first.asked = self.round,
+                _ => self.fetch(model, index, w, q, keep)?,
+            }
+        }
+        Ok(())
+    }
+
+    /// Brings the factor of a subsystem to the front of its list.
+    #[cold]
+    fn fetch(&mut self, model: &Model<D>, index: usize, w: Weights, q: &[f64], keep: Keep) -> Result<(), FactorError> {
+        let (part, entries, asked) = (&model.parts()[index], &mut self.parts[index], self.round);
+        let q = &q[part.q.clone()];
+        if let Some(at) = entries.iter().position(|entry| entry.factor.weights() == w) {
+            entries[at].asked = asked;
+            if keep == Keep::Pinned {
+                entries[at].keep = keep;
+            }
+            entries.swap(0, at);
+            return Ok(());
+        }
+        self.made += 1;
+        let of_kind = || entries.iter().enumerate().filter(|(_, entry)| entry.keep == keep);
+        let room = if keep == Keep::Pinned { PINNED } else { 1 };
+        let longest_ago = of_kind().min_by_key(|(_, entry)| entry.asked).map(|(at, _)| at);
+        match longest_ago.filter(|_| of_kind().count() >= room) {
+            None => {
+                let factor = part.system.factor(w, q)?;
+                entries.insert(0, Entry { factor, keep, asked });
+            }
+            Some(at) => {
+                if let Err(error) = entries[at].factor.refactor(w, q) {
+                    // It may hold neither these weights nor those before.
+                    entries.remove(at);
+                    return Err(error);
+                }
+                entries[at].asked = asked;
+                entries.swap(0, at);
+            }
+        }
+        Ok(())
+    }
+
+    /// The factor of a subsystem; `None` where it was not made.
+    #[inline]
+    pub(crate) fn of(&mut self, part: usize, w: Weights) -> Option<&mut dyn Compliance<D>> {
+        let entries = self.parts.get_mut(part)?;
+        let at = match entries.first() {
+            Some(first) if first.factor.weights() == w => 0,
+            _ => entries.iter().position(|entry| entry.factor.weights() == w)?,
+        };
+        Some(entries[at].factor.as_mut())
+    }
+
+    /// The first subsystem that lacks the factor asked for.
+    #[inline]
+    pub(crate) fn missing(&mut self, model: &Model<D>, responses: &Responses<'_>) -> Option<usize> {
+        (0..model.parts().len()).find(|part| responses.of(*part).is_none_or(|w| self.of(*part, w).is_none()))
+    }
+}

@@ -1,0 +1,99 @@
+//! What decides the next step beside places and velocities.
+
+use crate::Contact;
+use teeter_detect::ContactId;
+
+/// What a scheme remembers from step to step: part of the [`State`](crate::State), as it decides what comes next. (Where a solver
+/// starts from is a hint only, and stands in [`WarmStart`](crate::WarmStart).)
+///
+/// Contacts that were active decide restitution: what was active before doesn't strike. Springs of contacts with duration keep their gaps.
+/// What else a scheme has to remember, it puts into its own numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Memory {
+    /// The contacts that count as active, in order of identity.
+    active: Vec<ContactId>,
+    /// Gaps of the springs of contacts with duration, m; 0 for others.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored::list"))]
+    gaps: Vec<f64>,
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored::list"))]
+    numbers: Vec<f64>,
+}
+
+impl Memory {
+    /// Makes room for so many contacts.
+    pub fn reserve(&mut self, contacts: usize) {
+        self.active.reserve(contacts);
+        self.gaps.reserve(contacts);
+    }
+
+    /// Forgets all contacts; a scheme's own numbers stay.
+    pub fn forget_contacts(&mut self) {
+        self.active.clear();
+        self.gaps.clear();
+    }
+
+    /// Remembers a contact as active. Contacts have to come in order of identity.
+    pub fn remember<const D: usize>(&mut self, contact: &Contact<D>) {
+        self.active.push(contact.id);
+        self.gaps.push(contact.gap_after.map_or(0.0, |gap| gap.min(0.0)));
+    }
+
+    /// The contacts that count as active, in order of identity.
+    #[must_use]
+    pub fn active(&self) -> &[ContactId] {
+        &self.active
+    }
+
+    /// Whether a contact counts as active.
+    #[must_use]
+    pub fn is_active(&self, id: ContactId) -> bool {
+        self.active.binary_search(&id).is_ok()
+    }
+
+    /// Gap of the spring of an active contact with duration, m: negative while it is compressed; `None` for a contact that is not
+    /// active.
+    #[must_use]
+    pub fn spring_gap(&self, id: ContactId) -> Option<f64> {
+        let at = self.active.binary_search(&id).ok()?;
+        self.gaps.get(at).copied()
+    }
+
+    /// The numbers that a scheme has put here last; `None` where there are others, or none yet.
+    ///
+    /// ```
+    /// let mut memory = teeter_integrator::Memory::default();
+    /// assert_eq!(memory.numbers::<2>(), None);
+    /// memory.set_numbers(&[1e-4, 0.5]);
+    /// assert_eq!(memory.numbers(), Some([1e-4, 0.5]));
+    /// ```
+    #[must_use]
+    pub fn numbers<const N: usize>(&self) -> Option<[f64; N]> {
+        self.numbers.as_slice().try_into().ok()
+    }
+
+    /// The numbers that a scheme has put here last, however many they are.
+    #[must_use]
+    pub fn all_numbers(&self) -> &[f64] {
+        &self.numbers
+    }
+
+    /// Keeps a scheme's own numbers in place of those before; allocates only where there are more than ever before.
+    pub fn set_numbers(&mut self, numbers: &[f64]) {
+        self.numbers.clear();
+        self.numbers.extend_from_slice(numbers);
+    }
+
+    /// Becomes equal to `other`; allocates only where that holds more than ever before.
+    pub fn copy_from(&mut self, other: &Self) {
+        let Self { active, gaps, numbers } = other;
+        self.active.clone_from(active);
+        self.gaps.clone_from(gaps);
+        self.numbers.clone_from(numbers);
+    }
+
+    /// Whether contacts rise, and each has a gap.
+    pub(crate) fn is_in_order(&self) -> bool {
+        self.active.is_sorted_by(|a, b| a < b) && self.gaps.len() == self.active.len()
+    }
+}

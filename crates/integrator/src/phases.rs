@@ -1,0 +1,381 @@
+//! What a step did, phase by phase: what observers read, whatever the scheme.
+
+use crate::contact::tangential;
+use crate::{Contact, ContactStage, Energy, ImpactLaw, Model, Size, State, StepEnergy, StepSpan};
+use teeter_contact::Outcome;
+
+/// What happens in a phase of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum PhaseKind {
+    /// Forces and impulses together over a time: a step of a time-stepping scheme.
+    Step,
+    /// Motion under forces; contacts that press do so with finite forces, and nothing strikes.
+    Smooth,
+    /// An instant in which velocities jump.
+    Impact,
+}
+
+/// By which means of its ends a phase satisfies the balance of momentum: with q̄ = (1−w)q⁰ + w q¹, and v̄ alike,
+///
+/// ```text
+/// M (v¹ − v⁰)/τ + C v̄ + f_elastic(q̄) = P̄ + Jᵀp/τ
+/// ```
+///
+/// P̄ the mean of the loads over the phase; an elastic force that isn't linear is linearised at q⁰ ⊕ wτ v⁰.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Balance {
+    /// By the weight w of the end, θ of a θ step.
+    Weighted(f64),
+}
+
+impl Balance {
+    /// The weight of the end of the phase.
+    #[must_use]
+    pub fn weight(self) -> f64 {
+        match self {
+            Self::Weighted(w) => w,
+        }
+    }
+}
+
+/// A phase as a scheme hands it in: how it ended, and the terms of the energy identity that only the scheme knows.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct PhaseEnd<'a> {
+    /// What happened in it.
+    pub kind: PhaseKind,
+    /// Its end, s; it begins where the one before it ended, the first at the start of the step.
+    pub end: f64,
+    /// Coordinates at its end.
+    pub q: &'a [f64],
+    /// Velocities at its end.
+    pub v: &'a [f64],
+    /// By which means it satisfies the balance of momentum.
+    pub balance: Balance,
+    /// Work of loads, dampers, the scheme itself; what contacts did is added.
+    pub energy: StepEnergy,
+    /// How its contact problems were solved; `None` without contacts.
+    pub outcome: Option<Outcome>,
+}
+
+impl<'a> PhaseEnd<'a> {
+    /// A phase that ended at time `end` (s) with these coordinates and velocities.
+    #[must_use]
+    pub fn new(kind: PhaseKind, end: f64, q: &'a [f64], v: &'a [f64]) -> Self {
+        Self { kind, end, q, v, balance: Balance::Weighted(0.5), energy: StepEnergy::default(), outcome: None }
+    }
+
+    /// With these means in the balance of momentum; halves of both ends without.
+    #[must_use]
+    pub fn with_balance(mut self, balance: Balance) -> Self {
+        self.balance = balance;
+        self
+    }
+
+    /// With these terms of the energy identity.
+    #[must_use]
+    pub fn with_energy(mut self, energy: StepEnergy) -> Self {
+        self.energy = energy;
+        self
+    }
+
+    /// With contacts whose problem was solved so.
+    #[must_use]
+    pub fn with_outcome(mut self, outcome: Option<Outcome>) -> Self {
+        self.outcome = outcome;
+        self
+    }
+}
+
+/// A phase of the step, kept.
+#[derive(Clone, Debug)]
+struct Kept<const D: usize> {
+    kind: PhaseKind,
+    end: f64,
+    balance: Balance,
+    contacts: Vec<Contact<D>>,
+    outcome: Option<Outcome>,
+    energy: StepEnergy,
+    /// Energies at its end, with what springs of contacts hold.
+    now: Energy,
+    stored: f64,
+    largest_slip_work: f64,
+    q: Vec<f64>,
+    v: Vec<f64>,
+}
+
+impl<const D: usize> Kept<D> {
+    fn new() -> Self {
+        Self {
+            kind: PhaseKind::Step,
+            end: 0.0,
+            balance: Balance::Weighted(0.5),
+            contacts: Vec::new(),
+            outcome: None,
+            energy: StepEnergy::default(),
+            now: Energy::default(),
+            stored: 0.0,
+            largest_slip_work: f64::NEG_INFINITY,
+            q: Vec::new(),
+            v: Vec::new(),
+        }
+    }
+}
+
+/// The phases of a step, in memory that is kept over steps.
+#[derive(Clone, Debug)]
+pub(crate) struct Phases<const D: usize> {
+    kept: Vec<Kept<D>>,
+    used: usize,
+    /// Coordinates and velocities at the start of the step.
+    q: Vec<f64>,
+    v: Vec<f64>,
+    pub(crate) span: StepSpan,
+}
+
+impl<const D: usize> Phases<D> {
+    pub(crate) fn new() -> Self {
+        let span = StepSpan { start: 0.0, end: 0.0, h: 0.0 };
+        Self { kept: vec![Kept::new()], used: 0, q: Vec::new(), v: Vec::new(), span }
+    }
+
+    /// Makes room for so many contacts in states of this size.
+    pub(crate) fn reserve(&mut self, contacts: usize, size: Size) {
+        self.q.reserve(size.q);
+        self.v.reserve(size.v);
+        for kept in &mut self.kept {
+            kept.contacts.reserve(contacts);
+            kept.q.reserve(size.q);
+            kept.v.reserve(size.v);
+        }
+    }
+
+    /// Begins a step.
+    pub(crate) fn begin(&mut self, state: &State, span: StepSpan) {
+        self.used = 0;
+        self.span = span;
+        self.q.clear();
+        self.q.extend_from_slice(&state.q);
+        self.v.clear();
+        self.v.extend_from_slice(&state.v);
+    }
+
+    pub(crate) fn has_any(&self) -> bool {
+        self.used > 0
+    }
+
+    /// Takes a phase in; the contacts of `stage` go over to it. `now` are the energies at its end, without those of contacts; `None` where
+    /// no account is kept.
+    pub(crate) fn enter(
+        &mut self,
+        model: &Model<D>,
+        phase: &PhaseEnd<'_>,
+        stage: Option<&mut ContactStage<D>>,
+        now: Option<Energy>,
+    ) {
+        if self.kept.len() == self.used {
+            self.kept.push(Kept::new());
+        }
+        let kept = &mut self.kept[self.used];
+        self.used += 1;
+        (kept.kind, kept.end, kept.balance, kept.outcome) = (phase.kind, phase.end, phase.balance, phase.outcome);
+        (kept.energy, kept.stored, kept.largest_slip_work) = (phase.energy, 0.0, f64::NEG_INFINITY);
+        kept.now = now.unwrap_or_default();
+        for (mine, other) in [(&mut kept.q, phase.q), (&mut kept.v, phase.v)] {
+            mine.clear();
+            mine.extend_from_slice(other);
+        }
+        kept.contacts.clear();
+        if let Some(stage) = stage {
+            stage.hand_over(&mut kept.contacts);
+        }
+        if now.is_some() {
+            kept.account_for_contacts(model);
+        }
+    }
+}
+
+impl<const D: usize> Kept<D> {
+    /// The work of contacts, Σ Ū·p with Ū the mean velocity of the phase, and what their springs hold.
+    fn account_for_contacts(&mut self, model: &Model<D>) {
+        let weight = self.balance.weight();
+        for contact in &self.contacts {
+            let mean = contact.u_after * weight + contact.u_before * (1.0 - weight);
+            self.energy.contact += mean[0] * contact.p[0];
+            self.energy.friction += tangential(&mean).dot(&contact.p);
+            let slip = tangential(&contact.u_law).dot(&contact.p);
+            self.largest_slip_work = self.largest_slip_work.max(slip);
+            if let Some(gap) = contact.gap_after
+                && let Some(spring) =
+                    model.law(contact.id.pair()).ok().map(|law| law.impact).as_ref().and_then(ImpactLaw::spring)
+            {
+                self.stored += spring.potential(gap);
+            }
+        }
+    }
+}
+
+impl<const D: usize> Phases<D> {
+    /// Enters the phases into the state's account, and moves places and velocities to the end of the last.
+    pub(crate) fn settle(&mut self, state: &mut State, account: bool) {
+        for kept in &mut self.kept[..self.used] {
+            if account {
+                kept.energy.contact += kept.stored - state.ledger.stored;
+                state.ledger.stored = kept.stored;
+                let largest = &mut state.ledger.largest_tangential_work;
+                *largest = largest.max(kept.largest_slip_work);
+                kept.now.elastic += kept.stored;
+                state.ledger.enter(kept.now, &mut kept.energy);
+            }
+        }
+        if let Some(last) = self.kept[..self.used].last() {
+            state.q.copy_from_slice(&last.q);
+            state.v.copy_from_slice(&last.v);
+        }
+    }
+
+    /// The contacts of the last phase.
+    pub(crate) fn last_contacts(&self) -> &[Contact<D>] {
+        self.kept[..self.used].last().map_or(&[], |kept| &kept.contacts)
+    }
+
+    /// The contacts of the phase that has most.
+    pub(crate) fn most_contacts(&self) -> usize {
+        self.kept[..self.used].iter().map(|kept| kept.contacts.len()).max().unwrap_or(0)
+    }
+
+    pub(crate) fn report(&self, step: u64, penetration: f64) -> StepReport<'_, D> {
+        StepReport { step, t_start: self.span.start, t_end: self.span.end, h: self.span.h, penetration, phases: self }
+    }
+}
+
+/// A phase of a step, as observers see it.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct Phase<'w, const D: usize> {
+    /// What happened in it.
+    pub kind: PhaseKind,
+    /// Its start, s.
+    pub start: f64,
+    /// Its end, s; that is its start for an impact.
+    pub end: f64,
+    /// How long it took, s: of a step's only phase the size of the step, without the rounding of times.
+    pub duration: f64,
+    /// By which means it satisfies the balance of momentum.
+    pub balance: Balance,
+    /// The contacts that were active in it, in order of identity.
+    pub contacts: &'w [Contact<D>],
+    /// How their problem was solved; `None` without contacts.
+    pub outcome: Option<Outcome>,
+    /// Its energy account.
+    pub energy: StepEnergy,
+    /// Coordinates at its start and at its end.
+    pub q: [&'w [f64]; 2],
+    /// Velocities at its start and at its end.
+    pub v: [&'w [f64]; 2],
+}
+
+/// What happened in a step.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct StepReport<'w, const D: usize> {
+    /// Number of the step, from 1.
+    pub step: u64,
+    /// Its start, s.
+    pub t_start: f64,
+    /// Its end, s.
+    pub t_end: f64,
+    /// Its size, s.
+    pub h: f64,
+    /// Deepest penetration of a contact's point at its end, m; 0 if there is none, or nobody [asked](crate::Account).
+    pub penetration: f64,
+    phases: &'w Phases<D>,
+}
+
+impl<'w, const D: usize> StepReport<'w, D> {
+    /// Its phases, in order of time.
+    pub fn phases(&self) -> impl Iterator<Item = Phase<'w, D>> + use<'w, D> {
+        let Phases { kept, used, q, v, span } = self.phases;
+        let (start_q, start_v, span) = (q.as_slice(), v.as_slice(), *span);
+        (0..*used).map(move |k| {
+            let (q, v, start) = match k.checked_sub(1).map(|before| &kept[before]) {
+                Some(before) => (before.q.as_slice(), before.v.as_slice(), before.end),
+                None => (start_q, start_v, span.start),
+            };
+            let own = &kept[k];
+            let whole = start == span.start && own.end == span.end;
+            Phase {
+                kind: own.kind,
+                start,
+                end: own.end,
+                duration: if whole { span.h } else { own.end - start },
+                balance: own.balance,
+                contacts: &own.contacts,
+                outcome: own.outcome,
+                energy: own.energy,
+                q: [q, own.q.as_slice()],
+                v: [v, own.v.as_slice()],
+            }
+        })
+    }
+
+    /// The contacts of all phases: a contact that was active in several comes several times.
+    pub fn contacts(&self) -> impl Iterator<Item = &'w Contact<D>> + use<'w, D> {
+        let Phases { kept, used, .. } = self.phases;
+        kept[..*used].iter().flat_map(|kept| &kept.contacts)
+    }
+
+    /// How its contact problems were solved: that of the last phase which has one, or the first that was not solved; `None` without
+    /// contacts.
+    #[must_use]
+    pub fn outcome(&self) -> Option<Outcome> {
+        let Phases { kept, used, .. } = self.phases;
+        let outcomes = || kept[..*used].iter().filter_map(|kept| kept.outcome);
+        outcomes().find(|outcome| !outcome.converged()).or_else(|| outcomes().next_back())
+    }
+
+    /// Its energy account: that of its phases, added up.
+    #[must_use]
+    pub fn energy(&self) -> StepEnergy {
+        let Phases { kept, used, .. } = self.phases;
+        let mut sum = StepEnergy::default();
+        match &kept[..*used] {
+            [only] => return only.energy,
+            several => several.iter().for_each(|kept| sum.add(&kept.energy)),
+        }
+        sum
+    }
+
+    /// Writes places and velocities at a time within the step (s) into `q` and `v`; whether it could: not outside the step, nor for
+    /// slices of another length. Within a [`PhaseKind::Step`] coordinates move with the mean velocity and velocities change evenly, as the scheme has them;
+    /// within a smooth phase coordinates are the cubic with the places and velocities of its ends. At an impact it is the state after it.
+    #[must_use]
+    pub fn sample(&self, t: f64, q: &mut [f64], v: &mut [f64]) -> bool {
+        let lengths = q.len() == self.phases.q.len() && v.len() == self.phases.v.len();
+        if !(lengths && (self.t_start..=self.t_end).contains(&t)) {
+            return false;
+        }
+        let at_end = |phase: &Phase<'_, D>| phase.end <= t;
+        let Some(phase) = self.phases().find(|phase| !at_end(phase)).or_else(|| self.phases().last()) else {
+            return false;
+        };
+        let tau = phase.end - phase.start;
+        let s = if tau > 0.0 { ((t - phase.start) / tau).clamp(0.0, 1.0) } else { 1.0 };
+        let between = |[a, b]: [f64; 2]| if s < 1.0 { a + s * (b - a) } else { b };
+        let pairs = |x: [&'w [f64]; 2]| x[0].iter().zip(x[1]).map(|(a, b)| [*a, *b]);
+        v.iter_mut().zip(pairs(phase.v)).for_each(|(v, ends)| *v = between(ends));
+        // Without as many velocities as coordinates there are no slopes.
+        if phase.kind != PhaseKind::Smooth || q.len() != v.len() || s == 1.0 {
+            q.iter_mut().zip(pairs(phase.q)).for_each(|(q, ends)| *q = between(ends));
+            return true;
+        }
+        let (r, s2) = (1.0 - s, s * s);
+        for ((q, [q0, q1]), [v0, v1]) in q.iter_mut().zip(pairs(phase.q)).zip(pairs(phase.v)) {
+            let ends = (1.0 + 2.0 * s) * r * r * q0 + s2 * (3.0 - 2.0 * s) * q1;
+            *q = ends + tau * (s * r * r * v0 - s2 * r * v1);
+        }
+        true
+    }
+}

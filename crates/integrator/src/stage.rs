@@ -1,0 +1,523 @@
+//! The contact stage: the way from candidates to impulses, for every scheme.
+
+mod islands;
+mod posed;
+mod rows;
+mod solve;
+
+use crate::contact::{Contact, STILL, tangential};
+use crate::laws::is_impact;
+use crate::mismatch::{Identity, length};
+use crate::spring::Springs;
+use crate::{ImpactLaw, Memory, Mismatch, Model, PairLaw, SpringStep, State, Vector, WarmStart, Workspace};
+use islands::Islands;
+pub(crate) use posed::Problem;
+pub(crate) use rows::ContactRows;
+pub(crate) use solve::Members;
+use teeter_contact::{Block, ProblemError};
+use teeter_detect::Candidate;
+
+/// Why contacts can't be solved.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ContactError {
+    /// They don't make a problem.
+    #[error(transparent)]
+    Problem(#[from] ProblemError),
+    /// What was given doesn't belong to them.
+    #[error(transparent)]
+    Mismatch(#[from] Mismatch),
+    /// A law that has no meaning over such a time.
+    #[error("pair {pair} has {law}, which has no meaning {over}: leave its contacts out of this stage")]
+    Law {
+        /// The pair.
+        pair: u32,
+        /// The law.
+        law: &'static str,
+        /// Over what time.
+        over: &'static str,
+    },
+    /// A contact that was not posed.
+    #[error(
+        "contact {contact} of the stage was not posed: ContactStage::pose does that for all, ContactStage::set for one"
+    )]
+    Unposed {
+        /// Its number.
+        contact: usize,
+    },
+    /// Rules that can't be solved together.
+    #[error("contact {contact} slides in a given direction, which goes with contacts of the standard law only")]
+    Rules {
+        /// The contact that slides.
+        contact: usize,
+    },
+    /// No factors of the weights asked for.
+    #[error("subsystem {part} has no factors of these weights: ask Workspace::factors for them first")]
+    Factors {
+        /// Number of the subsystem.
+        part: usize,
+    },
+}
+
+/// What velocities and impulses of a stage are of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Over {
+    /// A step of size h (s), its mean velocity with the weight w of the end: by it laws know the work of their impulses.
+    Step {
+        /// h, s.
+        h: f64,
+        /// w, θ of a θ step.
+        weight: f64,
+    },
+    /// An instant: velocities jump. Restitution is that of an impact; laws with duration have no meaning.
+    Instant,
+    /// Forces and accelerations in place of impulses and velocities: 0 ≤ a_n ⊥ f_n ≥ 0, and Coulomb's law on accelerations. There is no
+    /// restitution; laws with duration have no meaning.
+    Acceleration,
+}
+
+/// How a contact answers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Rule<const D: usize> {
+    /// Nobody has said yet; a stage with such a contact is not solved.
+    Unposed,
+    /// Signorini's and Coulomb's law on U¹ + s.
+    Shifted,
+    /// Signorini's law on U¹ + s alone, as in a projection.
+    Frictionless,
+    /// Signorini's law on U¹ + s, with friction −μ p_n d: of a contact that slides in the direction d (a unit vector without normal part),
+    /// whatever its velocity becomes.
+    SlidesAlong(Vector<D>),
+    /// In two phases by Poisson's law; the coefficients of restitution act in the second.
+    Poisson {
+        /// The part of the impulse of compression that is given back.
+        e: f64,
+        /// The tangential coefficient of restitution.
+        tangential: f64,
+    },
+    /// As shifted, with the normal shift made smaller where the impact would make energy.
+    Energetic,
+    /// By a force law over the step.
+    Spring(SpringStep),
+}
+
+/// Where contacts are looked for.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct Look<'a> {
+    /// Coordinates at which gaps and rows are taken.
+    pub at: &'a [f64],
+    /// Largest gap there of a contact that takes part, m.
+    pub within: f64,
+    /// Where the motion without contacts ends: contacts with duration take part if that is inside their surface. Without it, `at` stands
+    /// for it.
+    pub free: Option<&'a [f64]>,
+}
+
+impl<'a> Look<'a> {
+    /// At these coordinates, for contacts with a gap of at most `within` (m).
+    #[must_use]
+    pub fn new(at: &'a [f64], within: f64) -> Self {
+        Self { at, within, free: None }
+    }
+
+    /// With the end of the motion without contacts, for those with duration.
+    #[must_use]
+    pub fn with_free_end(mut self, q: &'a [f64]) -> Self {
+        self.free = Some(q);
+        self
+    }
+}
+
+/// The contacts of one configuration with their rows, their problem, and what became of it: the only way from candidates to impulses.
+/// A scheme owns as many stages as it has use for; each keeps its memory, so that it allocates only where there are more contacts
+/// than ever before.
+///
+/// [`find`](Self::find) takes the candidates in ([`add`](Self::add) takes one); [`pose`](Self::pose) gives each what its pair's law asks
+/// for, whatever law that is ([`set`](Self::set) something else); [`solve`](Self::solve) finds the impulses, and
+/// [`respond`](Self::respond) turns free velocities into those after them. All of it can be done again: other
+/// [rows](Self::rows_at), another rule, one contact more. What doesn't fit is an error, never left out.
+#[derive(Debug)]
+pub struct ContactStage<const D: usize> {
+    contacts: Vec<Contact<D>>,
+    pub(crate) rows: ContactRows<D>,
+    pub(crate) problem: Problem<D>,
+    /// Compliance beside J W Jᵀ of some contacts.
+    extra: Vec<(usize, Block<D>)>,
+    springs: Springs,
+    islands: Islands<D>,
+    /// Whether the last solve was by islands.
+    apart: bool,
+    model: Option<Identity>,
+    velocities: usize,
+}
+
+impl<const D: usize> Default for ContactStage<D> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<const D: usize> ContactStage<D> {
+    /// No contacts.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            contacts: Vec::new(),
+            rows: ContactRows::default(),
+            problem: Problem::default(),
+            extra: Vec::new(),
+            springs: Springs::default(),
+            islands: Islands::default(),
+            apart: false,
+            model: None,
+            velocities: 0,
+        }
+    }
+
+    /// Makes room for what a step of the model can need, but for more contacts than some hundred at once.
+    pub fn reserve(&mut self, model: &Model<D>) {
+        let contacts = model.detector().capacity().min(RESERVED_CONTACTS);
+        self.contacts.reserve(contacts.saturating_sub(self.contacts.len()));
+        self.rows.reserve(contacts, model.size().row);
+        self.problem.reserve(contacts);
+        self.springs.reserve(if model.has_springs() { model.detector().capacity() } else { 0 });
+    }
+
+    /// The contacts, in the order in which they were added.
+    #[must_use]
+    pub fn contacts(&self) -> &[Contact<D>] {
+        &self.contacts
+    }
+
+    /// How many contacts there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.contacts.len()
+    }
+
+    /// Whether there are no contacts.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.contacts.is_empty()
+    }
+
+    /// Drops all contacts.
+    pub fn clear(&mut self) {
+        self.contacts.clear();
+        self.rows.clear();
+        self.problem.clear();
+        self.extra.clear();
+        self.model = None;
+        self.apart = false;
+    }
+
+    fn check(&self, model: &Model<D>) -> Result<(), Mismatch> {
+        match self.model {
+            Some(identity) if identity != model.identity() => {
+                let remedy = "clear the stage before contacts of this one are added";
+                Err(Mismatch::OtherModel { what: "the contacts are those", remedy })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn check_index(&self, i: usize) -> Result<(), Mismatch> {
+        let contacts = self.contacts.len();
+        if i < contacts { Ok(()) } else { Err(Mismatch::Contact { contact: i, contacts }) }
+    }
+
+    fn check_velocities(&self, v: &[f64]) -> Result<(), Mismatch> {
+        if self.model.is_some() { length("the velocities", v, self.velocities) } else { Ok(()) }
+    }
+
+    /// Finds the contacts that take part in a step from `state`, in place of those before. Impulses start from those of the state's warm
+    /// start, and what was active before is known from its memory.
+    ///
+    /// # Errors
+    /// If coordinates don't fit the model, the workspace is of another one, or the detector finds pairs or bodies that the model doesn't
+    /// have.
+    #[inline]
+    pub fn find(
+        &mut self,
+        model: &Model<D>,
+        state: &State,
+        look: &Look<'_>,
+        work: &mut Workspace<D>,
+    ) -> Result<(), Mismatch> {
+        self.clear();
+        if !model.has_contacts() {
+            return Ok(());
+        }
+        if !model.has_springs() {
+            work.detect(model, look.at, look.within)?;
+            for k in 0..work.candidates.len() {
+                let candidate = work.candidates[k];
+                self.add(model, look.at, &candidate, &state.warm, &state.memory)?;
+            }
+            return Ok(());
+        }
+        self.springs.look(model, &state.q, look.free.unwrap_or(look.at), work)?;
+        work.detect(model, look.at, f64::INFINITY)?;
+        for k in 0..work.candidates.len() {
+            let candidate = work.candidates[k];
+            let spring = model.law(candidate.id.pair())?.impact.spring().is_some();
+            if self.springs.admit(spring, &candidate, &state.memory, look.within) {
+                self.add(model, look.at, &candidate, &state.warm, &state.memory)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes a candidate in, with its rows at coordinates `q`; side 1 enters with a minus, for u = v_0 − v_1. Its impulse starts from that
+    /// in `warm`, and `memory` says whether it was active before. Returns whether it is a contact: not if all that could part its sides is prescribed, for then no impulse changes
+    /// its normal velocity, and there is none to be found.
+    ///
+    /// # Errors
+    /// If there are too few or too many coordinates, or the candidate is of a pair or a body that the model doesn't have, or the contacts
+    /// before it are of another model. The stage is as it was, then.
+    #[inline]
+    pub fn add(
+        &mut self,
+        model: &Model<D>,
+        q: &[f64],
+        candidate: &Candidate<D>,
+        warm: &WarmStart,
+        memory: &Memory,
+    ) -> Result<bool, Mismatch> {
+        self.check(model)?;
+        length("the coordinates", q, model.size().q)?;
+        let law = model.law(candidate.id.pair())?;
+        self.rows.push(model, q, candidate)?;
+        if self.rows.last_is_prescribed(model) {
+            self.rows.pop();
+            return Ok(false);
+        }
+        self.model = Some(model.identity());
+        self.velocities = model.size().v;
+        let before = warm.impulse::<D>(candidate.id);
+        self.problem.push(law.friction, before.unwrap_or_else(Vector::zeros));
+        self.contacts.push(Contact::of(candidate, memory.is_active(candidate.id)));
+        Ok(true)
+    }
+
+    /// The relative velocity J_i v of contact `i`, m/s, for velocities of the whole model.
+    ///
+    /// # Errors
+    /// For a contact that isn't there, or too few or too many velocities.
+    pub fn velocity(&self, i: usize, v: &[f64]) -> Result<Vector<D>, Mismatch> {
+        self.check_index(i)?;
+        self.check_velocities(v)?;
+        Ok(self.rows.velocity(i, v))
+    }
+
+    /// Gives every contact what the law of its pair asks for (`docs/laws.md`): velocity before `v_before` (m/s), free velocity `v_free`,
+    /// shift and rule. Newton's restitution acts on every contact; the other laws tell impacts from contacts that press.
+    ///
+    /// # Errors
+    /// For too few or too many velocities, or a law that has no meaning over such a time.
+    #[inline]
+    pub fn pose(
+        &mut self,
+        model: &Model<D>,
+        state: &State,
+        v_before: &[f64],
+        v_free: &[f64],
+        over: Over,
+    ) -> Result<(), ContactError> {
+        self.check_velocities(v_before)?;
+        self.check_velocities(v_free)?;
+        for i in 0..self.contacts.len() {
+            let law = model.law(self.contacts[i].id.pair())?;
+            let u_before = self.rows.velocity(i, v_before);
+            let u_free = self.rows.velocity(i, v_free);
+            let (shift, rule) = match over {
+                Over::Acceleration => (Vector::zeros(), self.without_duration(i, &law, over).map(|()| Rule::Shifted)?),
+                Over::Instant => {
+                    self.without_duration(i, &law, over)?;
+                    by_law(&law, &self.contacts[i], &u_before, &u_free)
+                }
+                Over::Step { h, weight } => match law.impact.spring() {
+                    None => by_law(&law, &self.contacts[i], &u_before, &u_free),
+                    Some(spring) => {
+                        let gap = self.springs.gap(self.contacts[i].id, &state.memory);
+                        // With w < ½ the force at the end of the step would count for less than half, or nothing, of the work.
+                        let step = SpringStep { spring, gap, u_before: u_before[0], h, theta: weight.max(0.5) };
+                        (Vector::zeros(), Rule::Spring(step))
+                    }
+                },
+            };
+            self.put(i, u_before, u_free, shift, rule);
+        }
+        Ok(())
+    }
+
+    fn without_duration(&self, i: usize, law: &PairLaw, over: Over) -> Result<(), ContactError> {
+        let over = if over == Over::Instant { "in an instant" } else { "for accelerations" };
+        match law.impact {
+            ImpactLaw::KelvinVoigt { .. } | ImpactLaw::HuntCrossley { .. } => {
+                Err(ContactError::Law { pair: self.contacts[i].id.pair(), law: "a law with duration", over })
+            }
+            ImpactLaw::Newton | ImpactLaw::Poisson | ImpactLaw::Energetic => Ok(()),
+        }
+    }
+
+    /// Gives contact `i` its velocity before, its free velocity (m/s), the shift s of its law, which then holds for U¹ + s, and its rule,
+    /// in place of what [`pose`](Self::pose) gives: the scheme answers for its law, then.
+    ///
+    /// # Errors
+    /// For a contact that isn't there.
+    pub fn set(
+        &mut self,
+        i: usize,
+        u_before: Vector<D>,
+        u_free: Vector<D>,
+        shift: Vector<D>,
+        rule: Rule<D>,
+    ) -> Result<(), Mismatch> {
+        self.check_index(i)?;
+        self.put(i, u_before, u_free, shift, rule);
+        Ok(())
+    }
+
+    #[inline]
+    fn put(&mut self, i: usize, u_before: Vector<D>, u_free: Vector<D>, shift: Vector<D>, rule: Rule<D>) {
+        let posed = &mut self.problem.posed[i];
+        (posed.u_before, posed.u_free, posed.rule) = (u_before, u_free, rule);
+        self.problem.reshift(i, shift);
+        self.contacts[i].u_before = u_before;
+        if let Rule::Spring(spring) = rule {
+            self.contacts[i].gap = spring.gap;
+        }
+        if rule == Rule::Frictionless {
+            self.problem.mu[i] = 0.0;
+        }
+    }
+
+    /// Takes the rows of contact `i`, and its frame and gap, anew from a candidate of the same contact at coordinates `q`: the same contact
+    /// at another place.
+    ///
+    /// # Errors
+    /// For a contact that isn't there, another contact's candidate, or coordinates that don't fit.
+    pub fn rows_at(&mut self, i: usize, model: &Model<D>, q: &[f64], candidate: &Candidate<D>) -> Result<(), Mismatch> {
+        self.check(model)?;
+        self.check_index(i)?;
+        length("the coordinates", q, model.size().q)?;
+        let contact = &mut self.contacts[i];
+        if contact.id != candidate.id {
+            return Err(Mismatch::OtherContact { contact: i });
+        }
+        self.rows.renew(model, q, candidate, i)?;
+        (contact.sides, contact.frame, contact.gap) = (candidate.sides, candidate.frame, candidate.gap);
+        Ok(())
+    }
+
+    /// Adds `normal` · xᵀ to the normal rows of contact `i` where these have entries: J_n += a xᵀ, x as long as the model's velocities. With
+    /// x = MΔq this makes J a discrete gradient of its gap.
+    ///
+    /// # Errors
+    /// For a contact that isn't there, or too few or too many entries.
+    pub fn update_row(&mut self, i: usize, a: f64, x: &[f64]) -> Result<(), Mismatch> {
+        self.check_index(i)?;
+        self.check_velocities(x)?;
+        for (column, value) in self.rows.entries_mut(i) {
+            value[0] += a * x[column];
+        }
+        Ok(())
+    }
+
+    /// Adds a compliance κ (1/kg) beside J W Jᵀ to contact `i`: what the model's W leaves out.
+    ///
+    /// # Errors
+    /// For a contact that isn't there.
+    pub fn add_compliance(&mut self, i: usize, kappa: Block<D>) -> Result<(), Mismatch> {
+        self.check_index(i)?;
+        self.extra.push((i, kappa));
+        Ok(())
+    }
+
+    /// The impulse of contact `i` after [`solve`](Self::solve), N·s; before it, where the solver starts.
+    #[must_use]
+    pub fn impulse(&self, i: usize) -> Option<Vector<D>> {
+        self.problem.p.get(i).copied()
+    }
+
+    /// Completes the contacts after [`respond`](Self::respond), with velocities `v` at the end (m/s).
+    ///
+    /// # Errors
+    /// For too few or too many velocities.
+    #[inline]
+    pub fn complete(&mut self, v: &[f64]) -> Result<(), Mismatch> {
+        self.check_velocities(v)?;
+        let fastest = self.problem.q.iter().map(Vector::norm_squared).fold(0.0, f64::max).sqrt();
+        for i in 0..self.contacts.len() {
+            let u_after = self.rows.velocity(i, v);
+            let contact = &mut self.contacts[i];
+            (contact.p, contact.u_after, contact.still) = (self.problem.p[i], u_after, STILL * fastest);
+            contact.u_law = u_after + self.problem.shift(i);
+            match self.problem.rule(i) {
+                Rule::Spring(spring) => contact.gap_after = Some(spring.gap_after(u_after[0])),
+                Rule::Poisson { tangential: e, .. } => contact.u_law += tangential(&contact.u_before) * e,
+                Rule::Unposed | Rule::Shifted | Rule::Frictionless | Rule::SlidesAlong(_) | Rule::Energetic => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// The contacts go over to a phase; the stage is empty then.
+    pub(crate) fn hand_over(&mut self, to: &mut Vec<Contact<D>>) {
+        std::mem::swap(&mut self.contacts, to);
+        self.clear();
+    }
+
+    /// Whether one of the bodies of contact `i` is accelerated as prescribed, in full or in part, between velocities `v0` and `v1`: a frame
+    /// that only travels must change nothing.
+    pub(crate) fn feels_drive(&self, model: &Model<D>, i: usize, v0: &[f64], v1: &[f64]) -> bool {
+        self.rows.spans[i].iter().filter(|side| side.len > 0).any(|side| {
+            let part = &model.parts()[side.part];
+            let (v0, v1) = (&v0[part.v.clone()], &v1[part.v.clone()]);
+            part.system.driven().iter().any(|&k| v0[k] != v1[k])
+        })
+    }
+
+    /// Σ |J_i v| of contact `i`, m/s: what rounding of its velocity is measured by.
+    pub(crate) fn speed(&self, i: usize, v: &[f64]) -> f64 {
+        self.rows.entries(i).map(|(column, value)| value.norm() * v[column].abs()).sum()
+    }
+
+    /// Adds Jᵀ p of one part to `f`, as long as its velocities, N·s.
+    pub(crate) fn add_generalised_impulse(&self, part: usize, f: &mut [f64]) {
+        self.rows.of_part(part).add_generalised_impulse(&self.problem.p, f);
+    }
+}
+
+/// Contacts that are reserved for at the most; beyond it, a step with more contacts than ever before allocates. The
+/// dense operator of this many takes 2 MB in the plane.
+pub(crate) const RESERVED_CONTACTS: usize = 256;
+
+/// Shift and rule of a contact by an impact law.
+#[inline]
+fn by_law<const D: usize>(
+    law: &PairLaw,
+    contact: &Contact<D>,
+    u_before: &Vector<D>,
+    u_free: &Vector<D>,
+) -> (Vector<D>, Rule<D>) {
+    let (e, approaches) = (law.restitution, !contact.persisting && u_before[0] < 0.0);
+    let tangential_restitution = if approaches { law.tangential_restitution } else { 0.0 };
+    let mut shift = tangential(u_before) * tangential_restitution;
+    match law.impact {
+        ImpactLaw::Newton => {
+            shift[0] = e * u_before[0].min(0.0);
+            (shift, Rule::Shifted)
+        }
+        ImpactLaw::Poisson => (Vector::zeros(), Rule::Poisson { e, tangential: tangential_restitution }),
+        ImpactLaw::Energetic => {
+            shift[0] = if is_impact(e, u_before, u_free) { e * u_before[0] } else { 0.0 };
+            (shift, Rule::Energetic)
+        }
+        ImpactLaw::KelvinVoigt { .. } | ImpactLaw::HuntCrossley { .. } => (Vector::zeros(), Rule::Shifted),
+    }
+}

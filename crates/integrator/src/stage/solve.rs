@@ -1,0 +1,221 @@
+//! From posed contacts to impulses, and to velocities.
+
+use super::{ContactError, ContactStage, Over, Problem, Rule};
+use crate::laws::{Laws, join};
+use crate::mismatch::length;
+use crate::subsystem::{Span, respond_by_solving};
+use crate::{Model, Responses, Workspace};
+use teeter_contact::Outcome;
+
+/// Which contacts of a stage a problem is of.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Members<'a> {
+    /// All, in their order.
+    All,
+    /// These.
+    Of(&'a [usize]),
+}
+
+impl Members<'_> {
+    /// The number in the stage of contact `k` of the problem.
+    pub(crate) fn number(&self, k: usize) -> usize {
+        match self {
+            Self::All => k,
+            Self::Of(members) => members[k],
+        }
+    }
+}
+
+impl Over {
+    /// The weight of the velocity after in the mean that impulses do work with.
+    pub(super) fn weight(self) -> f64 {
+        match self {
+            Self::Step { weight, .. } => weight,
+            Self::Instant | Self::Acceleration => 0.5,
+        }
+    }
+}
+
+impl<const D: usize> ContactStage<D> {
+    /// Finds the impulses (forces over [`Over::Acceleration`]) of all contacts, which have been posed. `None` without contacts.
+    ///
+    /// Contacts of bodies that stand apart are problems of their own where there are many, so that time and memory grow with their number;
+    /// the laws that are more than a shift are brought to a few problems of the solver. An unsolved problem is not an error but an outcome.
+    ///
+    /// # Errors
+    /// If the contacts don't make a problem: a number is not finite, a contact can't move; if one was not posed, or the factors weren't
+    /// made; or if stage, workspace and model don't belong together.
+    pub fn solve(
+        &mut self,
+        model: &Model<D>,
+        work: &mut Workspace<D>,
+        responses: &Responses<'_>,
+        over: Over,
+    ) -> Result<Option<Outcome>, ContactError> {
+        self.solve_guarded(model, work, responses, over, |_, _, _, _| Ok(false))
+    }
+
+    /// As [`ContactStage::solve`]; after each solve `guard` may change the problem, and says whether it is to be solved again.
+    #[inline]
+    pub(crate) fn solve_guarded(
+        &mut self,
+        model: &Model<D>,
+        work: &mut Workspace<D>,
+        responses: &Responses<'_>,
+        over: Over,
+        mut guard: impl FnMut(&Self, &mut Problem<D>, &Laws<D>, Members<'_>) -> Result<bool, ContactError>,
+    ) -> Result<Option<Outcome>, ContactError> {
+        self.apart = false;
+        if self.is_empty() {
+            return Ok(None);
+        }
+        self.check(model)?;
+        work.check(model)?;
+        if let Some(contact) = self.problem.rules().position(|rule| *rule == Rule::Unposed) {
+            return Err(ContactError::Unposed { contact });
+        }
+        if let Some(part) = work.factors.missing(model, responses) {
+            return Err(ContactError::Factors { part });
+        }
+        if let Some(outcome) = self.solve_apart(model, work, responses, over, &mut guard)? {
+            self.apart = true;
+            return Ok(Some(outcome));
+        }
+        let mut problem = std::mem::take(&mut self.problem);
+        let outcome = self.solve_whole(model, &mut problem, work, responses, over, guard);
+        self.problem = problem;
+        outcome.map(Some)
+    }
+
+    fn solve_whole(
+        &self,
+        model: &Model<D>,
+        problem: &mut Problem<D>,
+        work: &mut Workspace<D>,
+        responses: &Responses<'_>,
+        over: Over,
+        mut guard: impl FnMut(&Self, &mut Problem<D>, &Laws<D>, Members<'_>) -> Result<bool, ContactError>,
+    ) -> Result<Outcome, ContactError> {
+        self.couple(model, work, responses, &self.rows.spans, problem);
+        for (i, kappa) in &self.extra {
+            problem.blocks[i * self.len() + i] += kappa;
+        }
+        let mut outcome = work.solve_problem(problem, over.weight())?;
+        // Whoever guards guards one contact more each time, so it ends.
+        while guard(self, problem, &work.laws, Members::All)? {
+            outcome = join(outcome, work.solve_problem(problem, over.weight())?);
+        }
+        Ok(outcome)
+    }
+
+    /// H = Σ J W Jᵀ over the subsystems, of the contacts with these rows.
+    #[inline]
+    pub(super) fn couple(
+        &self,
+        model: &Model<D>,
+        work: &mut Workspace<D>,
+        responses: &Responses<'_>,
+        spans: &[[Span; 2]],
+        problem: &mut Problem<D>,
+    ) {
+        let mut coupling = problem.coupling();
+        let Workspace { factors, scratch, .. } = work;
+        for (index, part) in model.parts().iter().enumerate().filter(|(_, part)| !part.v.is_empty()) {
+            if let Some(factor) = responses.of(index).and_then(|w| factors.of(index, w)) {
+                let rows = self.rows.of_island(index, spans);
+                factor.couple(&rows, &mut scratch[..part.v.len()], &mut coupling);
+            }
+        }
+    }
+
+    /// Adds W Jᵀ p to velocities `v`, after [`solve`](Self::solve) with the same responses; `v` become those after the impulses (added accelerations over
+    /// [`Over::Acceleration`]).
+    ///
+    /// # Errors
+    /// If stage, workspace, model and velocities don't belong together.
+    #[inline]
+    pub fn respond(
+        &self,
+        model: &Model<D>,
+        work: &mut Workspace<D>,
+        responses: &Responses<'_>,
+        v: &mut [f64],
+    ) -> Result<(), ContactError> {
+        if self.is_empty() {
+            return Ok(());
+        }
+        self.check(model)?;
+        length("the velocities", v, model.size().v)?;
+        let Workspace { factors, scratch, .. } = work;
+        for (index, part) in model.parts().iter().enumerate().filter(|(_, part)| !part.v.is_empty()) {
+            let rows = self.rows.of_part(index);
+            if rows.is_empty() {
+                continue;
+            }
+            let Some(factor) = responses.of(index).and_then(|w| factors.of(index, w)) else {
+                return Err(ContactError::Factors { part: index });
+            };
+            let (scratch, v) = (&mut scratch[part.v.clone()], &mut v[part.v.clone()]);
+            // What was kept in coupling is of the last island, and numbered within it.
+            if self.apart && !factor.is_diagonal() {
+                respond_by_solving(&rows, &self.problem.p, scratch, v, |f| factor.solve(f));
+            } else {
+                factor.respond(&rows, &self.problem.p, scratch, v);
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<const D: usize> Problem<D> {
+    /// The problem in which contacts that slide in a given direction d have one unknown, p_n: p = p_n (n − μ d).
+    pub(crate) fn with_directions(&self) -> Result<Self, ContactError> {
+        let n = self.len();
+        let mut reduced = self.clone();
+        for (j, posed) in self.posed.iter().enumerate() {
+            let Rule::SlidesAlong(d) = posed.rule else {
+                if matches!(posed.rule, Rule::Shifted | Rule::Frictionless) {
+                    continue;
+                }
+                let slides = |rule: &Rule<D>| matches!(rule, Rule::SlidesAlong(_));
+                return Err(ContactError::Rules { contact: self.rules().position(slides).unwrap_or(j) });
+            };
+            let direction = Self::direction(&d, self.mu[j]);
+            for i in 0..n {
+                let block = &mut reduced.blocks[i * n + j];
+                let normal = *block * direction;
+                block.fill(0.0);
+                block.set_column(0, &normal);
+            }
+            for i in 0..n {
+                let block = &mut reduced.blocks[j * n + i];
+                (1..D).for_each(|k| block.row_mut(k).fill(0.0));
+            }
+            // Tangents that nothing pushes, and that push nothing.
+            let own = self.blocks[j * n + j].trace();
+            (1..D).for_each(|k| reduced.blocks[j * n + j][(k, k)] = own);
+            let normal = self.q[j][0];
+            reduced.q[j].fill(0.0);
+            reduced.q[j][0] = normal;
+            reduced.mu[j] = 0.0;
+        }
+        Ok(reduced)
+    }
+
+    /// n − μ d.
+    fn direction(d: &crate::Vector<D>, mu: f64) -> crate::Vector<D> {
+        let mut direction = -crate::contact::tangential(d) * mu;
+        direction[0] = 1.0;
+        direction
+    }
+
+    /// Takes the impulses of [`Problem::with_directions`].
+    pub(crate) fn take_directed(&mut self, reduced: &Self) {
+        for (i, posed) in self.posed.iter().enumerate() {
+            self.p[i] = match posed.rule {
+                Rule::SlidesAlong(d) => Self::direction(&d, self.mu[i]) * reduced.p[i][0],
+                _ => reduced.p[i],
+            };
+        }
+    }
+}
