@@ -1,4 +1,5 @@
-//! `teeter run`: arguments to a job, what the job tells to the console, how it ends to an exit code.
+//! `teeter run`: arguments to a job, what the job tells to the console, how it ends to an exit
+//! code.
 
 use crate::console::Console;
 use crate::interrupt::{self, INTERRUPTED};
@@ -153,7 +154,8 @@ fn refuse(console: Console, error: &PrepareError) -> Exit {
     Exit::BadInput
 }
 
-/// What is told before a run: where it starts, if that needs a word, and what looks wrong in the scene.
+/// What is told before a run: where it starts, if that needs a word, and what looks wrong in the
+/// scene.
 fn notes(prepared: &Prepared) -> Vec<String> {
     let place = prepared.folder().display();
     let start = match prepared.start() {

@@ -5,7 +5,8 @@ use std::path::Path;
 use teeter_run::{LoadError, SceneFileError, SceneSource};
 use teeter_scenario::decode::LARGEST_FILE;
 
-/// The scene file of that path, or the scene on standard input for `-`: of one too large, no more than shows that.
+/// The scene file of that path, or the scene on standard input for `-`: of one too large, no more
+/// than shows that.
 pub(crate) fn source(path: &Path) -> Result<SceneSource, LoadError> {
     if path != Path::new("-") {
         return Ok(SceneSource::file(path));

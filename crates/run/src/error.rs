@@ -115,12 +115,13 @@ fn ended_how(ended: EndedWord) -> String {
     }
 }
 
-/// Why a run has no results, or not all of them. How its motion ended is no error, but [`Done::ended`](crate::Done::ended).
+/// Why a run has no results, or not all of them. How its motion ended is no error, but
+/// [`Done::ended`](crate::Done::ended).
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RunError {
-    /// A folder can't be taken for results or contact problems, such as one that another run is writing to. Nothing was
-    /// simulated.
+    /// A folder can't be taken for results or contact problems, such as one that another run is
+    /// writing to. Nothing was simulated.
     #[error(transparent)]
     Folder(ResultsError),
     /// A file can't be written, for another reason than a full disk.

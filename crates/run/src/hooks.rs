@@ -17,14 +17,16 @@ pub struct Progress {
     pub t: f64,
 }
 
-/// Progress is told once in this many steps: less often than a screen needs it, more often than a person does.
+/// Progress is told once in this many steps: less often than a screen needs it, more often than a
+/// person does.
 pub const PROGRESS_STEPS: u64 = 256;
 
 type OnStart<'a> = Box<dyn FnOnce() + 'a>;
 type OnProgress<'a> = Box<dyn FnMut(Progress) + 'a>;
 type OnWarning<'a> = Box<dyn FnMut(&str) + 'a>;
 
-/// What to call while a run runs, all on the thread of [`Prepared::run`](crate::Prepared::run); by default nothing.
+/// What to call while a run runs, all on the thread of [`Prepared::run`](crate::Prepared::run); by
+/// default nothing.
 #[derive(Default)]
 pub struct Hooks<'a> {
     pub(crate) start: Option<OnStart<'a>>,
@@ -47,24 +49,26 @@ impl<'a> Hooks<'a> {
         self
     }
 
-    /// Called before the first step, after each step whose number is a multiple of [`PROGRESS_STEPS`], and after the last
-    /// step, however the run ended. Step numbers increase from call to call.
+    /// Called before the first step, after each step whose number is a multiple of
+    /// [`PROGRESS_STEPS`], and after the last step, however the run ended. Step numbers increase
+    /// from call to call.
     #[must_use]
     pub fn on_progress(mut self, hook: impl FnMut(Progress) + 'a) -> Self {
         self.progress = Some(Box::new(hook));
         self
     }
 
-    /// Called with the text of each warning as it comes; of many of one kind, with a few of them. All are counted in
-    /// [`Summary::warnings`](crate::Summary::warnings).
+    /// Called with the text of each warning as it comes; of many of one kind, with a few of them.
+    /// All are counted in [`Summary::warnings`](crate::Summary::warnings).
     #[must_use]
     pub fn on_warning(mut self, hook: impl FnMut(&str) + 'a) -> Self {
         self.warning = Some(Box::new(hook));
         self
     }
 
-    /// Ends the run after the step in which `flag` is set, with its rows complete, a summary that says so, and a checkpoint
-    /// if checkpoints are written. Any thread or signal handler may set it.
+    /// Ends the run after the step in which `flag` is set, with its rows complete, a summary that
+    /// says so, and a checkpoint if checkpoints are written. Any thread or signal handler may set
+    /// it.
     #[must_use]
     pub fn cancelled_by(mut self, flag: &'a AtomicBool) -> Self {
         self.cancel = Some(flag);

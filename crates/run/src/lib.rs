@@ -1,8 +1,10 @@
-//! Runs a scene of teeter to a folder: tables, summary, page and figures, with checkpoints from which a run goes on to the same
-//! bytes, and hooks by which a front end shows its progress or ends it.
+//! Runs a scene of teeter to a folder: tables, summary, page and figures, with checkpoints from
+//! which a run goes on to the same bytes, and hooks by which a front end shows its progress or ends
+//! it.
 //!
-//! A [`RunJob`] says what is to be run, where to and how. [`RunJob::prepare`] finds all bad input while nothing is written yet;
-//! [`Prepared::run`] runs and returns what was done. Nothing here prints, listens to signals or decides by a clock.
+//! A [`RunJob`] says what is to be run, where to and how. [`RunJob::prepare`] finds all bad input
+//! while nothing is written yet; [`Prepared::run`] runs and returns what was done. Nothing here
+//! prints, listens to signals or decides by a clock.
 //!
 //! ```
 //! use teeter_run::{EndedWord, Hooks, RunJob, SceneSource};
@@ -23,7 +25,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A run that is cancelled by a flag goes on later, to the same files byte for byte (but for the times that the steps took):
+//! A run that is cancelled by a flag goes on later, to the same files byte for byte (but for the
+//! times that the steps took):
 //!
 //! ```
 //! use std::sync::atomic::{AtomicBool, Ordering};

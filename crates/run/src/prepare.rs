@@ -10,7 +10,9 @@ use teeter_scenario::resolve::Resolved;
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Simulation;
 
-/// A job with its scene read, its model built and its start found. Nothing was written so far, and dropping it leaves no trace.
+/// A job with its scene read, its model built and its start found. Nothing was written so far, and
+/// dropping it leaves no trace. Its folder is taken by [`run`](Self::run) only: until then nobody
+/// else should write there.
 #[derive(Debug)]
 pub struct Prepared {
     pub(crate) job: RunJob,
@@ -25,13 +27,14 @@ pub struct Prepared {
 }
 
 impl RunJob {
-    /// Reads the scene and the files that it names, builds the model, finds where to start, and checks that the results can go
-    /// to their folder. Writes nothing, with the exception that [`PrepareError::AlreadyEnded`] may clean up after a run that was
-    /// killed at its very end.
+    /// Reads the scene and the files that it names, builds the model, finds where to start, and
+    /// checks that the results can go to their folder. Writes nothing, with the exception that
+    /// [`PrepareError::AlreadyEnded`] may clean up after a run that was killed at its very end.
     ///
     /// # Errors
-    /// Whatever is wrong with the job and its scene. What only shows when the folders are taken, such as another run
-    /// that is writing there, is a [`RunError::Folder`](crate::RunError::Folder).
+    /// Whatever is wrong with the job and its scene. What only shows when the folders are taken,
+    /// such as another run that is writing there, is a
+    /// [`RunError::Folder`](crate::RunError::Folder).
     pub fn prepare(self) -> Result<Prepared, PrepareError> {
         if let Some(every) = self.checkpoint_every.filter(|every| !(*every > 0.0 && every.is_finite())) {
             return Err(PrepareError::Interval(every));
@@ -63,7 +66,8 @@ impl RunJob {
         Ok(Prepared { job: self, folder, resolved, simulation, watch, identity, start, checkpoint })
     }
 
-    /// The scene with every override and default, with the files that it names as seen from the folder, if that exists.
+    /// The scene with every override and default, with the files that it names as seen from the
+    /// folder, if that exists.
     pub(crate) fn scene_as_run(&self, folder: &Path, resolved: &Resolved) -> String {
         resolved.document.to_toml_elsewhere(|file| self.scene.seen_from(folder, file))
     }
@@ -112,7 +116,8 @@ impl Prepared {
         &self.resolved
     }
 
-    /// What looks wrong with the scene, but can be run; the spans count in the source of [`resolved`](Self::resolved)'s document.
+    /// What looks wrong with the scene, but can be run; the spans count in the source of
+    /// [`resolved`](Self::resolved)'s document.
     #[must_use]
     pub fn warnings(&self) -> &[Diagnostic] {
         &self.resolved.warnings

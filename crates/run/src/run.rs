@@ -21,7 +21,8 @@ pub struct Done {
     pub folder: PathBuf,
     /// The contact problems that were saved; `None` if none were asked for.
     pub exported: Option<Exported>,
-    /// What became of the file for the state before the first unsolved step; `None` if it was not asked for.
+    /// What became of the file for the state before the first unsolved step; `None` if it was not
+    /// asked for.
     pub dump: Option<Dump>,
 }
 
@@ -39,8 +40,9 @@ pub struct Exported {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Dump {
-    /// Steps were not solved: the state before the first of them is in this file. That of a resumed run whose steps before
-    /// the checkpoint were not all solved is as the earlier part of the run left it.
+    /// Steps were not solved: the state before the first of them is in this file. That of a resumed
+    /// run whose steps before the checkpoint were not all solved is as the earlier part of the run
+    /// left it.
     Written(PathBuf),
     /// Every step was solved: this file was not written.
     NotNeeded(PathBuf),
@@ -65,9 +67,9 @@ struct Recorded {
 }
 
 impl Prepared {
-    /// Takes the folders, runs to the end of the scene, and writes the results. The summary is written last: a folder without
-    /// one holds a run that didn't end. A run that is cancelled, diverges, or finds the disk full has ended too, with all
-    /// that it could write.
+    /// Takes the folders, runs to the end of the scene, and writes the results. The summary is
+    /// written last: a folder without one holds a run that didn't end. A run that is cancelled,
+    /// diverges, or finds the disk full has ended too, with all that it could write.
     ///
     /// # Errors
     /// If a folder can't be taken, or a file can't be written for another reason than a full disk.

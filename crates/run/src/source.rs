@@ -10,7 +10,8 @@ use teeter_scenario::diagnostic::steers;
 use teeter_scenario::record::LARGEST_RECORD;
 use teeter_scenario::resolve::Resolved;
 
-/// A scene file or the bytes of one, with its name in messages and the stem of the names of its results.
+/// A scene file or the bytes of one, with its name in messages and the stem of the names of its
+/// results.
 #[derive(Clone, Debug)]
 pub struct SceneSource {
     content: Content,
@@ -27,8 +28,8 @@ enum Content {
 }
 
 impl SceneSource {
-    /// The scene file `path`, read when it is needed. Messages call it by its path, results by its file stem; the files
-    /// that it names are relative to its folder.
+    /// The scene file `path`, read when it is needed. Messages call it by its path, results by its
+    /// file stem; the files that it names are relative to its folder.
     #[must_use]
     pub fn file(path: impl Into<PathBuf>) -> Self {
         let path = path.into();
@@ -39,9 +40,10 @@ impl SceneSource {
         Self { content: Content::File(path), name, stem, folder }
     }
 
-    /// The text of a scene file, in UTF-8. `name` stands for the file in messages; `stem` is the title of a scene that has
-    /// none, and names the default folder for results and saved contact problems, so it should be a valid file name.
-    /// The files that the scene names are relative to the working directory unless [`beside`](Self::beside) says otherwise.
+    /// The text of a scene file, in UTF-8. `name` stands for the file in messages; `stem` is the
+    /// title of a scene that has none, and names the default folder for results and saved contact
+    /// problems, so it should be a valid file name. The files that the scene names are relative to
+    /// the working directory unless [`beside`](Self::beside) says otherwise.
     #[must_use]
     pub fn bytes(bytes: impl Into<Vec<u8>>, name: impl Into<String>, stem: impl Into<String>) -> Self {
         Self { content: Content::Bytes(bytes.into()), name: name.into(), stem: stem.into(), folder: PathBuf::new() }
@@ -92,7 +94,8 @@ impl SceneSource {
         read.map(Cow::Owned).map_err(|error| LoadError::Unreadable { name: self.name.clone(), error })
     }
 
-    /// Reads and resolves the scene with `sets`, overrides of keys by their paths; and the files that it names.
+    /// Reads and resolves the scene with `sets`, overrides of keys by their paths; and the files
+    /// that it names.
     ///
     /// # Errors
     /// If the file can't be read, or all that is wrong with the scene.
@@ -105,8 +108,8 @@ impl SceneSource {
         })
     }
 
-    /// Reads the files that the scene names, for [`teeter_scenario::load_with`]. Of one that is too large, only as many
-    /// bytes as show that.
+    /// Reads the files that the scene names, for [`teeter_scenario::load_with`]. Of one that is too
+    /// large, only as many bytes as show that.
     pub fn companions(&self) -> impl FnMut(&str) -> Result<Vec<u8>, String> + use<> {
         let folder = self.folder.clone();
         move |file| {
@@ -140,8 +143,9 @@ impl SceneSource {
         self.path().map(Path::to_owned).into_iter().chain(named).collect()
     }
 
-    /// The path of a file that the scene names, relative to `folder` and with `/` between its parts, for a copy of the
-    /// scene in that folder. Where `folder` doesn't exist, or there is no relative path, it is that of [`place`](Self::place).
+    /// The path of a file that the scene names, relative to `folder` and with `/` between its
+    /// parts, for a copy of the scene in that folder. Where `folder` doesn't exist, or there is no
+    /// relative path, it is that of [`place`](Self::place).
     #[must_use]
     pub fn seen_from(&self, folder: &Path, file: &str) -> String {
         if Path::new(file).is_absolute() {

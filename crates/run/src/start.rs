@@ -16,7 +16,8 @@ pub enum Start {
     Beginning,
     /// At the beginning, as there is no run in the folder that could be resumed.
     NothingToResume,
-    /// At the beginning, as the run in the folder was ended before its first checkpoint; its files are replaced.
+    /// At the beginning, as the run in the folder was ended before its first checkpoint; its files
+    /// are replaced.
     NoCheckpoint,
     /// At the checkpoint in the folder.
     Checkpoint {
@@ -26,8 +27,8 @@ pub enum Start {
 }
 
 impl Start {
-    /// Looks where the job starts, and changes nothing but this: a checkpoint beside the summary of a run that has ended is
-    /// removed, as that run was killed while it was about to do so.
+    /// Looks where the job starts, and changes nothing but this: a checkpoint beside the summary of
+    /// a run that has ended is removed, as that run was killed while it was about to do so.
     pub(crate) fn find(
         job: &RunJob,
         folder: &Path,
@@ -69,13 +70,15 @@ pub(crate) fn take(folder: &Path, former: Former) -> Result<Results, ResultsErro
     }
 }
 
-/// Program, scene with the contents of its files, and options of the run; `None` where no file has to know them.
+/// Program, scene with the contents of its files, and options of the run; `None` where no file has
+/// to know them.
 pub(crate) fn identity(job: &RunJob, resolved: &Resolved) -> Result<Option<Identity>, PrepareError> {
     if !job.is_identified() {
         return Ok(None);
     }
     let program = job.program.map_or_else(program_hash, Ok).map_err(PrepareError::Program)?;
-    // The words of the program's options: two runs of which one is resumed as the other must be told apart.
+    // The words of the program's options: two runs of which one is resumed as the other must be
+    // told apart.
     let mut deciding = Vec::new();
     if let Some((_, when)) = &job.export {
         let when = match when {
