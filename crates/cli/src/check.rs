@@ -1,9 +1,9 @@
 //! `teeter check`: what a run would model, cost and write, and what looks wrong; runs nothing, writes nothing.
 
-use crate::companions;
 use crate::console::{Console, print_all};
-use crate::render::Presenter;
-use crate::run::{Exit, named, read};
+use crate::render::{Presenter, refusal};
+use crate::run::Exit;
+use crate::scene;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use teeter_scenario::outlook::{BeamOutlook, BlockOutlook, FEW_DIGITS, Outlook, ShapesOutlook};
@@ -22,19 +22,13 @@ pub(crate) struct Options {
 
 pub(crate) fn check(options: &Options) -> Exit {
     let console = Console::new(false);
-    let (name, stem) = named(&options.scene);
     let refuse = |text: &str| {
         console.error(text);
         Exit::BadInput
     };
-    let bytes = match read(&options.scene) {
-        Ok(bytes) => bytes,
-        Err(why) => return refuse(&format!("error: {name}: {why}")),
-    };
-    let mut companions = companions::reader(&options.scene);
-    let resolved = match teeter_scenario::load_with(&bytes, &name, &stem, &options.set, &mut companions) {
+    let resolved = match scene::source(&options.scene).and_then(|source| source.load(&options.set)) {
         Ok(resolved) => resolved,
-        Err(errors) => return refuse(&Presenter::of_bytes(&bytes).all(&errors)),
+        Err(error) => return refuse(&refusal(&error)),
     };
     let presenter = Presenter::new(resolved.document.source());
     let simulation = match Simulation::with_extent(&resolved.scene, options.extent, |solver| solver) {

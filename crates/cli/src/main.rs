@@ -1,16 +1,15 @@
 //! The program `teeter`.
 
 mod check;
-mod companions;
 mod console;
 mod interrupt;
 mod progress;
 mod render;
 mod run;
+mod scene;
 mod scene_page;
 mod schema;
 mod solve;
-mod start;
 mod tradeoff;
 
 use clap::{Parser, Subcommand};
@@ -19,7 +18,7 @@ use run::Exit;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
-use teeter_scenario::Extent;
+use teeter_run::{Existing, ExportWhen, Extent};
 
 /// Simulates rigid blocks that rock, slide and bounce on elastic beams and on rigid ground.
 #[derive(Debug, Parser)]
@@ -57,9 +56,9 @@ enum Command {
         /// Which: `hard` (over ten times the median number of iterations, solved by a fallback, or not solved) or every:N steps
         #[arg(long, value_name = "hard|every:N", default_value = "hard", value_parser = run::export_when)]
         #[arg(requires = "export_problems")]
-        export_when: teeter_report::ExportWhen,
+        export_when: ExportWhen,
         /// Write a checkpoint each time that so much simulated time has passed, with its unit; and one at Ctrl-C
-        #[arg(long, value_name = "T", value_parser = start::interval)]
+        #[arg(long, value_name = "T", value_parser = run::interval)]
         checkpoint_every: Option<f64>,
         /// Go on from the checkpoint in the folder for results; without one, start at the beginning
         #[arg(long, conflicts_with = "force")]
@@ -195,15 +194,19 @@ fn main() -> ExitCode {
             dump_unconverged,
         } => {
             let export = export_problems.map(|folder| (folder, export_when));
+            let existing = match (resume, force) {
+                (true, _) => Existing::Resume,
+                (false, true) => Existing::Replace,
+                (false, false) => Existing::Refuse,
+            };
             let options = run::Options {
                 scene,
                 out,
                 set,
                 quiet,
-                force,
+                existing,
                 export,
                 checkpoint_every,
-                resume,
                 extent: model,
                 from,
                 dump_unconverged,

@@ -2,15 +2,10 @@
 
 use crate::console::{self, Console};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
-use teeter_integrator::{Model, Observer, ObserverError, State, StepReport};
 
 /// A run shorter than this shows no bar.
 const PATIENCE: Duration = Duration::from_secs(1);
-
-/// The clock is looked at once in so many steps: it costs some per cent of a step.
-const STEPS: u64 = 256;
 
 /// Draws a bar with rate and time left, on a terminal only.
 pub(crate) struct Progress {
@@ -32,6 +27,16 @@ impl Progress {
         Self { console, begin: Instant::now(), bar }
     }
 
+    /// The run is at this step.
+    pub(crate) fn at(&self, step: u64) {
+        if self.console.is_watched() {
+            if self.bar.is_hidden() && self.begin.elapsed() > PATIENCE {
+                self.bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(10));
+            }
+            self.bar.set_position(step);
+        }
+    }
+
     /// A console whose lines stand above the bar.
     pub(crate) fn tell(&self) -> impl Fn(&str) + use<> {
         let (console, bar) = (self.console, self.bar.clone());
@@ -42,18 +47,6 @@ impl Progress {
 impl Drop for Progress {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
-    }
-}
-
-impl Observer<2> for Progress {
-    fn observe(&mut self, _: &Model<2>, step: &StepReport<'_, 2>, _: &State) -> Result<ControlFlow<()>, ObserverError> {
-        if self.console.is_watched() && step.step.is_multiple_of(STEPS) {
-            if self.bar.is_hidden() && self.begin.elapsed() > PATIENCE {
-                self.bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(10));
-            }
-            self.bar.set_position(step.step);
-        }
-        Ok(ControlFlow::Continue(()))
     }
 }
 

@@ -4,7 +4,16 @@ use crate::console::clean;
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 use std::io::IsTerminal;
 use std::ops::Range;
+use teeter_run::LoadError;
 use teeter_scenario::diagnostic::{Diagnostic, Diagnostics, MOST_PRINTED, Severity};
+
+/// What is told of a scene that can't be loaded.
+pub(crate) fn refusal(error: &LoadError) -> String {
+    match error {
+        LoadError::Invalid { text, found } => Presenter::new(text).all(found),
+        error => format!("error: {error}"),
+    }
+}
 
 /// Shows findings about one scene.
 #[derive(Debug)]
@@ -17,11 +26,6 @@ impl<'a> Presenter<'a> {
     /// For findings whose spans count in `source`, with colours if a person is looking at standard error.
     pub(crate) fn new(source: &'a str) -> Self {
         Self::with_colours(source, wants_colours())
-    }
-
-    /// For findings about a file that may be no text at all: then none of them has a place in it.
-    pub(crate) fn of_bytes(bytes: &'a [u8]) -> Self {
-        Self::new(std::str::from_utf8(bytes).unwrap_or_default())
     }
 
     fn with_colours(source: &'a str, colours: bool) -> Self {

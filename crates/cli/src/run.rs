@@ -1,24 +1,20 @@
-//! `teeter run`.
+//! `teeter run`: arguments to a job, what the job tells to the console, how it ends to an exit
+//! code.
 
-use crate::companions;
-use crate::console::{Console, clean};
+use crate::console::Console;
 use crate::interrupt::{self, INTERRUPTED};
 use crate::progress::Progress;
-use crate::render::Presenter;
-use crate::start::{self, Start};
-use std::error::Error;
-use std::io::Read;
+use crate::render::{Presenter, refusal};
+use crate::scene;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use teeter_integrator::{Ended, RunError};
-use teeter_report::{
-    CHECKPOINT, Checkpoint, ENERGY_MADE, EndedWord, ExportWhen, Exporter, Former, Identity, Origin, PageRecorder,
-    Results, ResultsError, RunRecorder, Summary, Watch, envelopes, figures, render,
+use teeter_report::ENERGY_MADE;
+use teeter_run::{
+    Done, Dump, EndedWord, Existing, ExportWhen, Extent, Hooks, LoadError, PrepareError, Prepared, RunError, RunJob,
+    Start, Summary,
 };
-use teeter_scenario::Extent;
-use teeter_scenario::decode::LARGEST_FILE;
-use teeter_scenario::resolve::Resolved;
-use teeter_scenario::simulation::Simulation;
+use teeter_scenario::dimension::Dimension;
+use teeter_scenario::quantity;
 
 /// How the command ended; the exit code of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,12 +45,11 @@ pub(crate) struct Options {
     pub(crate) out: Option<PathBuf>,
     pub(crate) set: Vec<(String, String)>,
     pub(crate) quiet: bool,
-    pub(crate) force: bool,
+    pub(crate) existing: Existing,
     /// Where to save contact problems, and which.
     pub(crate) export: Option<(PathBuf, ExportWhen)>,
     /// Simulated time between checkpoints, s.
     pub(crate) checkpoint_every: Option<f64>,
-    pub(crate) resume: bool,
     /// How much of the scene is modelled.
     pub(crate) extent: Extent,
     /// A state to start from.
@@ -64,9 +59,27 @@ pub(crate) struct Options {
 }
 
 impl Options {
-    /// How much of the scene is modelled. What a scene can't need is known of its own start only: from another state, all is.
-    pub(crate) fn extent(&self) -> Extent {
-        if self.from.is_some() { Extent::Full } else { self.extent }
+    fn job(&self) -> Result<RunJob, LoadError> {
+        let mut job = RunJob::new(scene::source(&self.scene)?).existing(self.existing).extent(self.extent);
+        for (path, value) in &self.set {
+            job = job.set(path, value);
+        }
+        if let Some(folder) = &self.out {
+            job = job.folder(folder);
+        }
+        if let Some((folder, when)) = &self.export {
+            job = job.export_problems(folder, *when);
+        }
+        if let Some(seconds) = self.checkpoint_every {
+            job = job.checkpoint_every(seconds);
+        }
+        if let Some(path) = &self.from {
+            job = job.from_state(path);
+        }
+        if let Some(path) = &self.dump_unconverged {
+            job = job.dump_unconverged(path);
+        }
+        Ok(job)
     }
 }
 
@@ -86,265 +99,99 @@ pub(crate) fn export_when(text: &str) -> Result<ExportWhen, String> {
     }
 }
 
+/// `0.1 s` and the like.
+pub(crate) fn interval(text: &str) -> Result<f64, String> {
+    match quantity::parse(text, Dimension::TIME) {
+        Ok(seconds) if seconds > 0.0 => Ok(seconds),
+        Ok(_) => Err("a time greater than 0 is wanted, such as \"0.1 s\"".to_owned()),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
 pub(crate) fn run(options: &Options) -> Exit {
     let console = Console::new(options.quiet);
-    let (name, stem) = named(&options.scene);
-    let bytes = match read(&options.scene) {
-        Ok(bytes) => bytes,
-        Err(why) => return bad_input(console, &format!("error: {name}: {why}")),
+    let prepared = match options.job().map_err(PrepareError::Load).and_then(RunJob::prepare) {
+        Ok(prepared) => prepared,
+        Err(error) => return refuse(console, &error),
     };
-    let (mut files, mut inputs) = (Vec::new(), inputs(options));
-    let mut companions = companions::reader(&options.scene);
-    let mut read_file = |file: &str| {
-        let bytes = companions(file)?;
-        inputs.push(companions::place(&options.scene, file));
-        files.extend(start::is_identified(options).then(|| bytes.clone()));
-        Ok(bytes)
-    };
-    let resolved = match teeter_scenario::load_with(&bytes, &name, &stem, &options.set, &mut read_file) {
-        Ok(resolved) => resolved,
-        Err(errors) => return bad_input(console, &Presenter::of_bytes(&bytes).all(&errors)),
-    };
-    let presenter = Presenter::new(resolved.document.source());
-    let watch = Watch::default();
-    let wrap = |solver| if options.export.is_some() { watch.around(solver) } else { solver };
-    let mut simulation = match Simulation::with_extent(&resolved.scene, options.extent(), wrap) {
-        Ok(simulation) => simulation,
-        Err(error) => return bad_input(console, &presenter.one(&error.diagnostic(&resolved.document))),
-    };
-    let folder = options.out.clone().unwrap_or_else(|| Path::new("runs").join(&stem));
-    let begun = start::spare(&inputs, options, &folder)
-        .map_err(Into::into)
-        .and_then(|()| begin(options, console, &resolved, &files, &stem, &folder, &watch, &mut simulation));
-    match begun {
-        Ok(Begun::Ready(job)) => {
-            for warning in &resolved.warnings {
-                console.note(&presenter.one(warning));
-            }
-            job.carry_out(console, options, &folder, &resolved, &mut simulation)
+    let notes = notes(&prepared);
+    let progress = Progress::new(console, prepared.first_step(), prepared.steps());
+    let tell = progress.tell();
+    let hooks = Hooks::new()
+        .on_start(|| notes.iter().for_each(|note| console.note(note)))
+        .on_progress(|at| progress.at(at.step))
+        .on_warning(|text| tell(&format!("warning: {text}")))
+        // From here on files are touched: a signal ends the run in order, not the process.
+        .cancelled_by(interrupt::listen());
+    let ran = prepared.run(hooks);
+    drop(progress);
+    match ran {
+        Ok(done) => conclude(console, options, &done),
+        Err(error) => {
+            console.error(&format!("error: {error}"));
+            if matches!(error, RunError::Folder(_)) { Exit::BadInput } else { Exit::Failed }
         }
-        Ok(Begun::Ended(exit)) => exit,
-        Err(error) => bad_input(console, &format!("error: {error}")),
     }
 }
 
-/// The files that the command line names to be read; those that the scene names come to them.
-fn inputs(options: &Options) -> Vec<PathBuf> {
-    let scene = Some(&options.scene).filter(|scene| scene.as_path() != Path::new("-"));
-    scene.into_iter().chain(&options.from).cloned().collect()
-}
-
-/// What is settled before anything is simulated.
-struct Job {
-    scene_as_run: String,
-    identity: Option<Identity>,
-    results: Results,
-    exporter: Option<Exporter>,
-    checkpoint: Option<Checkpoint>,
-}
-
-enum Begun {
-    Ready(Box<Job>),
-    /// There was nothing to do.
-    Ended(Exit),
-}
-
-/// Finds where to start, and takes the folders: until then, nothing is changed.
-fn begin(
-    options: &Options,
-    console: Console,
-    resolved: &Resolved,
-    files: &[Vec<u8>],
-    stem: &str,
-    folder: &Path,
-    watch: &Watch,
-    simulation: &mut Simulation,
-) -> Result<Begun, Box<dyn Error>> {
-    // Before its whole content is hashed: it may be of another kind.
-    if let Some(path) = &options.from {
-        simulation.state = start::state_from(path, &resolved.scene, simulation)?;
+fn refuse(console: Console, error: &PrepareError) -> Exit {
+    match error {
+        PrepareError::AlreadyEnded { ended: EndedWord::Complete, .. } => {
+            console.note(&error.to_string());
+            return Exit::Done;
+        }
+        PrepareError::AlreadyEnded { .. } => {
+            console.error(&format!("error: {error}"));
+            return Exit::Failed;
+        }
+        PrepareError::Load(error) => console.error(&refusal(error)),
+        PrepareError::Resume(_) => {
+            console.error(&format!("error: {error}\nhelp: --force in place of --resume starts over"));
+        }
+        PrepareError::DumpExists(_) => console.error(&format!("error: {error}; --force replaces it")),
+        error => console.error(&format!("error: {error}")),
     }
-    let identity = start::identity(options, stem, &resolved.document.to_toml(), files)?;
-    start::check_dump(options)?;
-    // Paths in it hold from the folder, which is to be there.
-    let scene_as_run =
-        || resolved.document.to_toml_elsewhere(|file| companions::seen_from(folder, &options.scene, file));
-    let start = Start::find(options, folder, identity.as_ref(), &scene_as_run())?;
-    if let Start::Ended { word } = &start {
-        let text = start::told_of_ended(word, folder);
-        if word == "complete" {
-            console.note(&text);
-            return Ok(Begun::Ended(Exit::Done));
-        }
-        console.error(&format!("error: {text}"));
-        return Ok(Begun::Ended(Exit::Failed));
-    }
-    // From here on files are touched: a signal ends the run in order, not the process.
-    interrupt::listen();
-    let exporter = exporter(options, watch, resolved, stem, start.former())?;
-    let results = start.take(folder)?;
-    let checkpoint = match start {
-        Start::Checkpoint(checkpoint) => {
-            simulation.state = checkpoint.state().clone();
-            console.note(&format!("going on from t = {} s", simulation.state.t));
-            Some(*checkpoint)
-        }
-        Start::Beginning { note: Some(note), .. } => {
-            console.note(&note);
-            None
-        }
+    Exit::BadInput
+}
+
+/// What is told before a run: where it starts, if that needs a word, and what looks wrong in the
+/// scene.
+fn notes(prepared: &Prepared) -> Vec<String> {
+    let place = prepared.folder().display();
+    let start = match prepared.start() {
+        Start::Checkpoint { t } => Some(format!("going on from t = {t} s")),
+        Start::NoCheckpoint => Some(format!("{place} holds no checkpoint: the run starts again from its beginning")),
+        Start::NothingToResume => Some(format!("{place} holds no run to resume: it starts from its beginning")),
         _ => None,
     };
-    let job = Job { scene_as_run: scene_as_run(), identity, results, exporter, checkpoint };
-    Ok(Begun::Ready(Box::new(job)))
+    let presenter = Presenter::new(prepared.resolved().document.source());
+    start.into_iter().chain(prepared.warnings().iter().map(|warning| presenter.one(warning))).collect()
 }
 
-fn exporter(
-    options: &Options,
-    watch: &Watch,
-    resolved: &Resolved,
-    stem: &str,
-    former: Former,
-) -> Result<Option<Exporter>, ResultsError> {
-    let Some((folder, when)) = &options.export else { return Ok(None) };
-    let scene = &resolved.scene;
-    let (steps, tolerance) = (scene.time.steps, scene.solver.tolerance);
-    Exporter::create(watch, folder, stem, &scene.title, steps, *when, tolerance, former).map(Some)
-}
-
-/// The name of a scene in messages, and that of its results.
-pub(crate) fn named(scene: &Path) -> (String, String) {
-    if scene == Path::new("-") {
-        return ("<stdin>".to_owned(), "stdin".to_owned());
+/// Tells how a run ended and what it wrote beside its results.
+fn conclude(console: Console, options: &Options, done: &Done) -> Exit {
+    let exit = tell_end(console, &done.summary, &done.folder, options.checkpoint_every.is_some());
+    if let Some(exported) = &done.exported {
+        let count = exported.count;
+        let problems = if count == 1 { "problem" } else { "problems" };
+        console.note(&format!("  {count} contact {problems} in {}", exported.folder.display()));
     }
-    let stem = scene.file_stem().map_or("scene".into(), |stem| stem.to_string_lossy().into_owned());
-    (clean(&scene.display().to_string(), ""), stem)
-}
-
-impl Job {
-    fn carry_out(
-        self,
-        console: Console,
-        options: &Options,
-        folder: &Path,
-        resolved: &Resolved,
-        simulation: &mut Simulation,
-    ) -> Exit {
-        match self.simulate(console, options, resolved, simulation) {
-            Ok(done) => {
-                let exit = conclude(console, &done.summary, folder, options.checkpoint_every.is_some());
-                if let (Some(exporter), Some((folder, _))) = (&done.exporter, &options.export) {
-                    let count = exporter.written();
-                    let problems = if count == 1 { "problem" } else { "problems" };
-                    console.note(&format!("  {count} contact {problems} in {}", folder.display()));
-                }
-                if let Some(path) = &options.dump_unconverged {
-                    let unsolved = done.summary.contact.unconverged_steps > 0;
-                    let path = path.display();
-                    console.note(&if unsolved {
-                        format!("  the state before the first step not solved is in {path}; --from {path} starts there")
-                    } else {
-                        format!("  every step was solved: {path} is not written")
-                    });
-                }
-                exit
-            }
-            Err(error) => {
-                console.error(&format!("error: {error}"));
-                Exit::Failed
-            }
+    match &done.dump {
+        Some(Dump::Written(path)) => {
+            let path = path.display();
+            console.note(&format!(
+                "  the state before the first step not solved is in {path}; --from {path} starts there"
+            ));
         }
+        Some(Dump::NotNeeded(path)) => {
+            console.note(&format!("  every step was solved: {} is not written", path.display()));
+        }
+        _ => {}
     }
-
-    /// Runs and writes. The summary comes last: a folder without one holds a run that didn't end.
-    fn simulate(
-        self,
-        console: Console,
-        options: &Options,
-        resolved: &Resolved,
-        simulation: &mut Simulation,
-    ) -> Result<Done, Box<dyn Error>> {
-        let Self { scene_as_run, identity, results, exporter, checkpoint } = self;
-        let scene = &resolved.scene;
-        let layout = simulation.layout.clone();
-        let mut progress = Progress::new(console, simulation.state.step, scene.time.steps);
-        let tell = progress.tell();
-        let mut tell_warning = |text: &str| tell(&format!("warning: {text}"));
-        // Before the tables: it says whose they are.
-        results.write("scene.toml", &scene_as_run)?;
-        let mut recorder = RunRecorder::new(&results, scene, &layout, exporter, checkpoint, &mut tell_warning)?;
-        recorder.note(&resolved.warnings);
-        if let Some(identity) = &identity {
-            let origin = Origin { identity, scheme: simulation.scheme() };
-            if let Some(every) = options.checkpoint_every {
-                recorder = recorder.with_checkpoints(&results, origin, every);
-            }
-            if let Some(path) = &options.dump_unconverged {
-                recorder = recorder.with_dump(path, origin);
-            }
-        }
-        let mut recorder = recorder.until(interrupt::listen());
-        let ran = simulation.run(&mut [&mut recorder, &mut progress]);
-        drop(progress);
-        let seconds = recorder.seconds();
-
-        let (mut record, page, exporter) = recorder.into_parts();
-        let ended = match ran {
-            Ok(ended) => {
-                if let Ended::Failed(error) = &ended {
-                    record.warnings.enter("ended", error.t(), || error.to_string());
-                }
-                EndedWord::from(&ended)
-            }
-            Err(RunError::Observer(error)) => {
-                if !is_disk_full(error.as_ref()) {
-                    return Err(error);
-                }
-                record.warnings.enter("ended", Some(simulation.state.t), || error.to_string());
-                EndedWord::DiskFull
-            }
-            Err(error) => return Err(error.into()),
-        };
-        let summary = Summary::new(scene, &layout, &simulation.state, &record, ended, seconds);
-        let envelopes = envelopes(&layout, &record.beams);
-        let written = envelopes.map_or(Ok(()), |text| results.write("envelopes.csv", text).map_err(Into::into));
-        let written = written.and_then(|()| write_pages(&results, &page, &summary, &scene_as_run));
-        let written = written.and_then(|()| Ok(results.write("summary.json", summary.to_json()?)?));
-        match written {
-            // No room for these either; the reason is told all the same.
-            Err(error) if ended == EndedWord::DiskFull && is_disk_full(error.as_ref()) => {}
-            written => written?,
-        }
-        if !matches!(ended, EndedWord::Interrupted | EndedWord::DiskFull) {
-            results.remove(CHECKPOINT)?;
-        }
-        Ok(Done { summary, exporter })
-    }
+    exit
 }
 
-struct Done {
-    summary: Summary,
-    exporter: Option<Exporter>,
-}
-
-fn write_pages(
-    results: &Results,
-    page: &PageRecorder,
-    summary: &Summary,
-    scene_as_run: &str,
-) -> Result<(), Box<dyn Error>> {
-    results.write("report.html", render(page, summary, scene_as_run))?;
-    for (name, svg) in figures(page) {
-        results.write(&format!("figures/{name}"), &svg)?;
-    }
-    Ok(())
-}
-
-fn is_disk_full(error: &(dyn Error + 'static)) -> bool {
-    error.downcast_ref::<ResultsError>().is_some_and(ResultsError::is_disk_full)
-}
-
-fn conclude(console: Console, summary: &Summary, folder: &Path, resumable: bool) -> Exit {
+fn tell_end(console: Console, summary: &Summary, folder: &Path, resumable: bool) -> Exit {
     // All others have been told as they came.
     for warning in summary.warnings.iter().filter(|warning| warning.code == ENERGY_MADE) {
         console.note(&format!("warning: {}", warning.text));
@@ -367,31 +214,6 @@ fn conclude(console: Console, summary: &Summary, folder: &Path, resumable: bool)
             Exit::Failed
         }
     }
-}
-
-/// A scene's bytes; of a file too large for one, no more than shows that.
-pub(crate) fn read(path: &Path) -> Result<Vec<u8>, String> {
-    let most = LARGEST_FILE as u64 + 1;
-    if path == Path::new("-") {
-        let mut bytes = Vec::new();
-        std::io::stdin().take(most).read_to_end(&mut bytes).map_err(|error| format!("can't be read: {error}"))?;
-        return Ok(bytes);
-    }
-    if path.is_dir() {
-        return Err("is a folder, not a scene file".to_owned());
-    }
-    let mut bytes = Vec::new();
-    let read = std::fs::File::open(path).and_then(|file| file.take(most).read_to_end(&mut bytes));
-    read.map(|_| bytes).map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound => "no such file".to_owned(),
-        std::io::ErrorKind::PermissionDenied => "no permission to read it".to_owned(),
-        _ => format!("can't be read: {error}"),
-    })
-}
-
-fn bad_input(console: Console, text: &str) -> Exit {
-    console.error(text);
-    Exit::BadInput
 }
 
 fn how_it_ended(summary: &Summary, why: &str) -> String {

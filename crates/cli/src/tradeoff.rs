@@ -1,14 +1,15 @@
 //! `teeter tradeoff`.
 
-use crate::companions;
 use crate::console::{Console, print};
 use crate::interrupt;
 use crate::progress::Phases;
-use crate::render::Presenter;
-use crate::run::{Exit, named, read};
+use crate::render::{Presenter, refusal};
+use crate::run::Exit;
+use crate::scene;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use teeter_report::{Reserved, Results};
+use teeter_run::{LoadError, SceneSource};
 use teeter_scenario::resolve::Resolved;
 use teeter_scenario::simulation::Simulation;
 use teeter_study::{Failure, Source, Tradeoff, runner, write};
@@ -24,33 +25,21 @@ pub(crate) struct Options {
 
 pub(crate) fn tradeoff(options: &Options) -> Exit {
     let console = Console::new(options.quiet);
-    let (name, stem) = named(&options.scene);
     let bad_input = |text: &str| {
         console.error(text);
         Exit::BadInput
     };
-    let bytes = match read(&options.scene) {
-        Ok(bytes) => bytes,
-        Err(why) => return bad_input(&format!("error: {name}: {why}")),
-    };
-    let mut inputs: Vec<PathBuf> =
-        Some(&options.scene).filter(|scene| *scene != Path::new("-")).into_iter().cloned().collect();
-    let mut companions = companions::reader(&options.scene);
-    let mut files = |file: &str| {
-        inputs.push(companions::place(&options.scene, file));
-        companions(file)
-    };
-    let (source, resolved) = match Source::new(bytes.clone(), &name, &stem, &options.set, &mut files) {
+    let (scene, source, resolved) = match load(options) {
         Ok(loaded) => loaded,
-        Err(errors) => return bad_input(&Presenter::of_bytes(&bytes).all(&errors)),
+        Err(error) => return bad_input(&refusal(&error)),
     };
     let presenter = Presenter::new(resolved.document.source());
     if let Err(error) = Simulation::new(&resolved.scene) {
         return bad_input(&presenter.one(&error.diagnostic(&resolved.document)));
     }
-    let folder = options.out.clone().unwrap_or_else(|| Path::new("runs").join(format!("{stem}-tradeoff")));
+    let folder = options.out.clone().unwrap_or_else(|| Path::new("runs").join(format!("{}-tradeoff", scene.stem())));
     // An earlier study stays until there is a new one; the folder is ours from now on.
-    let free = Results::spares(&write::FILES, &folder, &inputs)
+    let free = Results::spares(&write::FILES, &folder, &scene.inputs(&resolved))
         .and_then(|()| Results::reserve(&write::FILES, &folder, options.force));
     let reserved = match free {
         Ok(reserved) => reserved,
@@ -66,7 +55,7 @@ pub(crate) fn tradeoff(options: &Options) -> Exit {
     });
     drop(progress);
     match study {
-        Ok(study) => match write_all(&study, reserved, &resolved, options) {
+        Ok(study) => match write_all(&study, reserved, &resolved, &scene) {
             Ok(()) => {
                 console.note(&format!("results in {0}, to be looked at in {0}/tradeoff.html", folder.display()));
                 Exit::Done
@@ -87,16 +76,26 @@ pub(crate) fn tradeoff(options: &Options) -> Exit {
     }
 }
 
+/// The scene that the command line names: where it is from, as the study runs it, and as it is.
+fn load(options: &Options) -> Result<(SceneSource, Source, Resolved), LoadError> {
+    let scene = scene::source(&options.scene)?;
+    let bytes = scene.read()?.into_owned();
+    let text = String::from_utf8(bytes.clone()).unwrap_or_default();
+    let (source, resolved) = Source::new(bytes, scene.name(), scene.stem(), &options.set, &mut scene.companions())
+        .map_err(|found| LoadError::Invalid { text, found })?;
+    Ok((scene, source, resolved))
+}
+
 /// Writes the files, and the sentences to standard output.
 fn write_all(
     study: &Tradeoff,
     reserved: Reserved,
     resolved: &Resolved,
-    options: &Options,
+    scene: &SceneSource,
 ) -> Result<(), Box<dyn Error>> {
     let results = reserved.create()?;
-    let scene = |file: &str| companions::seen_from(results.folder(), &options.scene, file);
-    results.write("scene.toml", resolved.document.to_toml_elsewhere(scene))?;
+    let file = |file: &str| scene.seen_from(results.folder(), file);
+    results.write("scene.toml", resolved.document.to_toml_elsewhere(file))?;
     results.write("tradeoff.csv", write::csv(study))?;
     for (name, svg) in write::figures(study) {
         results.write(&format!("figures/{name}"), svg)?;

@@ -24,6 +24,26 @@ pub enum EndedWord {
     DiskFull,
 }
 
+impl EndedWord {
+    /// The word that stands for it in `summary.json`.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Complete => "complete",
+            Self::Diverged => "diverged",
+            Self::Unconverged => "unconverged",
+            Self::Interrupted => "interrupted",
+            Self::DiskFull => "disk-full",
+        }
+    }
+}
+
+impl std::fmt::Display for EndedWord {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.word())
+    }
+}
+
 impl From<&Ended> for EndedWord {
     fn from(ended: &Ended) -> Self {
         match ended {
@@ -364,6 +384,18 @@ impl ModelSummary {
                     accuracy: removed.accuracy.clone(),
                 })
                 .collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::EndedWord::{self, Complete, DiskFull, Diverged, Interrupted, Unconverged};
+
+    #[test]
+    fn how_a_run_ended_is_written_by_its_word() {
+        for ended in [Complete, Diverged, Unconverged, Interrupted, DiskFull] {
+            assert_eq!(serde_json::to_string(&ended).unwrap(), format!("\"{}\"", EndedWord::word(ended)));
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use super::identity::difference;
 use super::{CHECKPOINT, Checkpoint, CheckpointError, Identity};
-use crate::FILES;
 use crate::recorder::TABLES;
+use crate::{EndedWord, FILES};
 use std::fs;
 use std::io;
 use std::path::Path;
@@ -17,12 +17,12 @@ pub enum Found {
     Unfinished,
     /// A checkpoint of this program, scene and options, with its tables.
     Checkpoint(Box<Checkpoint>),
-    /// The run came to its end; the word for it is that of `summary.json`.
-    Ended(String),
+    /// The run came to its end, as its `summary.json` says.
+    Ended(EndedWord),
 }
 
 /// Ends after which there is nothing to go on with: the run is complete, or would end the same way again.
-const FINAL: [&str; 3] = ["complete", "diverged", "unconverged"];
+const FINAL: [EndedWord; 3] = [EndedWord::Complete, EndedWord::Diverged, EndedWord::Unconverged];
 
 impl Found {
     /// Looks into the folder of a run; `scene_as_run` is what its `scene.toml` holds.
@@ -35,9 +35,9 @@ impl Found {
         if !has_results {
             return Ok(Self::Nothing);
         }
-        if let Some(word) = ended(folder) {
+        if let Some(ended) = ended(folder) {
             same_scene(folder, scene_as_run)?;
-            return Ok(Self::Ended(word));
+            return Ok(Self::Ended(ended));
         }
         if !checkpoint.exists() {
             same_scene(folder, scene_as_run)?;
@@ -59,9 +59,10 @@ impl Found {
 }
 
 /// How the run of a folder ended, if that was for good.
-fn ended(folder: &Path) -> Option<String> {
+fn ended(folder: &Path) -> Option<EndedWord> {
     let summary: serde_json::Value = serde_json::from_slice(&fs::read(folder.join("summary.json")).ok()?).ok()?;
-    summary.get("ended")?.as_str().filter(|word| FINAL.contains(word)).map(str::to_owned)
+    let word = summary.get("ended")?.as_str()?;
+    FINAL.into_iter().find(|ended| ended.word() == word)
 }
 
 fn same_scene(folder: &Path, scene_as_run: &str) -> Result<(), CheckpointError> {

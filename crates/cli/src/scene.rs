@@ -1,0 +1,19 @@
+//! The scene that the command line names.
+
+use std::io::Read;
+use std::path::Path;
+use teeter_run::{LoadError, SceneFileError, SceneSource};
+use teeter_scenario::decode::LARGEST_FILE;
+
+/// The scene file of that path, or the scene on standard input for `-`: of one too large, no more
+/// than shows that.
+pub(crate) fn source(path: &Path) -> Result<SceneSource, LoadError> {
+    if path != Path::new("-") {
+        return Ok(SceneSource::file(path));
+    }
+    let (name, mut bytes) = ("<stdin>", Vec::new());
+    match std::io::stdin().take(LARGEST_FILE as u64 + 1).read_to_end(&mut bytes) {
+        Ok(_) => Ok(SceneSource::bytes(bytes, name, "stdin")),
+        Err(error) => Err(LoadError::Unreadable { name: name.to_owned(), error: SceneFileError::Io(error) }),
+    }
+}

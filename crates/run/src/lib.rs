@@ -1,0 +1,74 @@
+//! Runs a scene of teeter to a folder: tables, summary, page and figures, with checkpoints from
+//! which a run goes on to the same bytes, and hooks by which a front end shows its progress or ends
+//! it.
+//!
+//! A [`RunJob`] says what is to be run, where to and how. [`RunJob::prepare`] finds all bad input
+//! while nothing is written yet; [`Prepared::run`] runs and returns what was done. Nothing here
+//! prints, listens to signals or decides by a clock.
+//!
+//! ```
+//! use teeter_run::{EndedWord, Hooks, RunJob, SceneSource};
+//!
+//! let scene = r#"
+//!     time = { end = "0.1 s", step = "1 ms" }
+//!     ground = {}
+//!     material.wood = { density = "600 kg/m^3" }
+//!     block.cube = { material = "wood", width = "10 cm", height = "10 cm", depth = "10 cm", position = ["0 m", "6 cm"] }
+//!     contact.floor = { between = ["cube", "ground"], friction = 0.4 }
+//! "#;
+//! let folder = std::env::temp_dir().join(format!("teeter-cube-{}", std::process::id()));
+//! let job = RunJob::new(SceneSource::bytes(scene, "cube.toml", "cube")).set("time.end", "0.2 s").folder(&folder);
+//! let done = job.prepare()?.run(Hooks::new().on_progress(|progress| assert!(progress.step <= progress.of)))?;
+//! assert_eq!((done.ended(), done.summary.steps), (EndedWord::Complete, 200));
+//! assert!(folder.join("trajectory.csv").exists() && folder.join("report.html").exists());
+//! # std::fs::remove_dir_all(folder)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! A run that is cancelled by a flag goes on later, to the same files byte for byte (but for the
+//! times that the steps took):
+//!
+//! ```
+//! use std::sync::atomic::{AtomicBool, Ordering};
+//! use teeter_run::{EndedWord, Existing, Hooks, RunJob, SceneSource, Start};
+//!
+//! # let scene = r#"
+//! #     time = { end = "1 s", step = "1 ms" }
+//! #     ground = {}
+//! #     material.wood = { density = "600 kg/m^3" }
+//! #     block.cube = { material = "wood", width = "10 cm", height = "10 cm", depth = "10 cm", position = ["0 m", "6 cm"] }
+//! #     contact.floor = { between = ["cube", "ground"], friction = 0.4 }
+//! # "#;
+//! # let folder = std::env::temp_dir().join(format!("teeter-cancel-{}", std::process::id()));
+//! let job = RunJob::new(SceneSource::bytes(scene, "cube.toml", "cube"))
+//!     .folder(&folder)
+//!     .checkpoint_every(0.1)
+//!     .existing(Existing::Resume);
+//! let cancel = AtomicBool::new(false);
+//! let hooks = Hooks::new().cancelled_by(&cancel).on_progress(|progress| cancel.store(progress.step > 0, Ordering::Relaxed));
+//! assert_eq!(job.clone().prepare()?.run(hooks)?.ended(), EndedWord::Interrupted);
+//!
+//! let prepared = job.prepare()?;
+//! assert!(matches!(prepared.start(), Start::Checkpoint { t } if t > 0.0));
+//! assert_eq!(prepared.run(Hooks::new())?.ended(), EndedWord::Complete);
+//! # std::fs::remove_dir_all(folder)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod error;
+mod hooks;
+mod job;
+mod prepare;
+mod run;
+mod source;
+mod start;
+
+pub use error::{LoadError, PrepareError, RunError, SceneFileError};
+pub use hooks::{Hooks, PROGRESS_STEPS, Progress};
+pub use job::{Existing, RunJob};
+pub use prepare::Prepared;
+pub use run::{Done, Dump, Exported};
+pub use source::SceneSource;
+pub use start::Start;
+pub use teeter_report::{EndedWord, ExportWhen, Summary};
+pub use teeter_scenario::Extent;

@@ -1,0 +1,149 @@
+//! All that is settled before anything is written.
+
+use crate::start::{self, Start};
+use crate::{LoadError, PrepareError, RunJob};
+use std::path::{Path, PathBuf};
+use teeter_integrator::State;
+use teeter_report::{Checkpoint, FILES, Former, Identity, Moment, Results, Watch};
+use teeter_scenario::diagnostic::Diagnostic;
+use teeter_scenario::resolve::Resolved;
+use teeter_scenario::scene::Scene;
+use teeter_scenario::simulation::Simulation;
+
+/// A job with its scene read, its model built and its start found. Nothing was written so far, and
+/// dropping it leaves no trace. Its folder is taken by [`run`](Self::run) only: until then nobody
+/// else should write there.
+#[derive(Debug)]
+pub struct Prepared {
+    pub(crate) job: RunJob,
+    pub(crate) folder: PathBuf,
+    pub(crate) resolved: Resolved,
+    pub(crate) simulation: Simulation,
+    /// Sees the contact problems, if they are to be saved.
+    pub(crate) watch: Option<Watch>,
+    pub(crate) identity: Option<Identity>,
+    pub(crate) start: Start,
+    pub(crate) checkpoint: Option<Checkpoint>,
+}
+
+impl RunJob {
+    /// Reads the scene and the files that it names, builds the model, finds where to start, and
+    /// checks that the results can go to their folder. Writes nothing, with the exception that
+    /// [`PrepareError::AlreadyEnded`] may clean up after a run that was killed at its very end.
+    ///
+    /// # Errors
+    /// Whatever is wrong with the job and its scene. What only shows when the folders are taken,
+    /// such as another run that is writing there, is a
+    /// [`RunError::Folder`](crate::RunError::Folder).
+    pub fn prepare(self) -> Result<Prepared, PrepareError> {
+        if let Some(every) = self.checkpoint_every.filter(|every| !(*every > 0.0 && every.is_finite())) {
+            return Err(PrepareError::Interval(every));
+        }
+        let resolved = self.scene.load(&self.sets)?;
+        let watch = self.export.is_some().then(Watch::default);
+        let mut simulation = Simulation::with_extent(&resolved.scene, self.modelled(), |solver| match &watch {
+            Some(watch) => watch.around(solver),
+            None => solver,
+        })
+        .map_err(|error| LoadError::of_build(&error, &resolved))?;
+        let folder = self.results_folder();
+        self.spare_inputs(&folder, &resolved)?;
+        // Before its whole content is hashed: it may be of another kind.
+        if let Some(path) = &self.from {
+            simulation.state = state_from(path, &resolved.scene, &simulation)?;
+        }
+        let identity = start::identity(&self, &resolved)?;
+        self.check_dump()?;
+        let scene = self.scene_as_run(&folder, &resolved);
+        let (start, checkpoint) = Start::find(&self, &folder, identity.as_ref(), &scene)?;
+        let former = start.former(self.existing);
+        if former != Former::Keep {
+            Results::replaced(&FILES, &folder, former == Former::Remove)?;
+        }
+        if let Some(checkpoint) = &checkpoint {
+            simulation.state = checkpoint.state().clone();
+        }
+        Ok(Prepared { job: self, folder, resolved, simulation, watch, identity, start, checkpoint })
+    }
+
+    /// The scene with every override and default, with the files that it names as seen from the
+    /// folder, if that exists.
+    pub(crate) fn scene_as_run(&self, folder: &Path, resolved: &Resolved) -> String {
+        resolved.document.to_toml_elsewhere(|file| self.scene.seen_from(folder, file))
+    }
+
+    /// Refuses to replace what the run reads: scene, files that it names, a state to start from.
+    fn spare_inputs(&self, folder: &Path, resolved: &Resolved) -> Result<(), PrepareError> {
+        let mut inputs = self.scene.inputs(resolved);
+        inputs.extend(self.from.clone());
+        Results::spares(&FILES, folder, &inputs)?;
+        if let Some(dump) = self.dump.as_ref().and_then(|path| path.to_str()) {
+            Results::spares(&[dump], Path::new(""), &inputs)?;
+        }
+        Ok(())
+    }
+
+    /// Refuses a file for a state where there is one, or no folder for it.
+    fn check_dump(&self) -> Result<(), PrepareError> {
+        let Some(path) = &self.dump else { return Ok(()) };
+        if path.is_dir() {
+            return Err(PrepareError::DumpIsFolder(path.clone()));
+        }
+        if path.exists() && self.existing == crate::Existing::Refuse {
+            return Err(PrepareError::DumpExists(path.clone()));
+        }
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        if folder.is_dir() { Ok(()) } else { Err(PrepareError::NoDumpFolder(folder.to_owned())) }
+    }
+}
+
+fn state_from(path: &Path, scene: &Scene, simulation: &Simulation) -> Result<State, PrepareError> {
+    let moment = Moment::read(path).map_err(PrepareError::State)?;
+    let state = moment.start(path, scene, &simulation.layout, &simulation.model, simulation.scheme());
+    state.map_err(PrepareError::State)
+}
+
+impl Prepared {
+    /// The folder for the results.
+    #[must_use]
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// The scene, with its document and what was found on the way.
+    #[must_use]
+    pub fn resolved(&self) -> &Resolved {
+        &self.resolved
+    }
+
+    /// What looks wrong with the scene, but can be run; the spans count in the source of
+    /// [`resolved`](Self::resolved)'s document.
+    #[must_use]
+    pub fn warnings(&self) -> &[Diagnostic] {
+        &self.resolved.warnings
+    }
+
+    /// The model, with the state from which the run starts.
+    #[must_use]
+    pub fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    /// Where the run starts.
+    #[must_use]
+    pub fn start(&self) -> Start {
+        self.start
+    }
+
+    /// The number of the step at which the run starts, counted from t = 0.
+    #[must_use]
+    pub fn first_step(&self) -> u64 {
+        self.simulation.state.step
+    }
+
+    /// The number of the step with which the run is complete.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        self.resolved.scene.time.steps
+    }
+}

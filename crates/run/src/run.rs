@@ -1,0 +1,201 @@
+//! From a prepared job to results in a folder.
+
+use crate::hooks::Teller;
+use crate::{Hooks, Prepared, RunError, start};
+use std::path::PathBuf;
+use teeter_integrator::{Ended, State};
+use teeter_report::{
+    CHECKPOINT, EndedWord, Exporter, Former, Origin, PageRecorder, Record, Results, ResultsError, RunRecorder, Summary,
+    envelopes, figures, render,
+};
+use teeter_scenario::scene::Scene;
+use teeter_scenario::simulation::Layout;
+
+/// A run that has ended, with what it wrote.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Done {
+    /// What `summary.json` holds.
+    pub summary: Summary,
+    /// The folder of the results.
+    pub folder: PathBuf,
+    /// The contact problems that were saved; `None` if none were asked for.
+    pub exported: Option<Exported>,
+    /// What became of the file for the state before the first unsolved step; `None` if it was not
+    /// asked for.
+    pub dump: Option<Dump>,
+}
+
+/// Contact problems that a run saved.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Exported {
+    /// Their folder.
+    pub folder: PathBuf,
+    /// How many they are.
+    pub count: u64,
+}
+
+/// What became of the file for the state before the first unsolved step.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Dump {
+    /// Steps were not solved: the state before the first of them is in this file. That of a resumed
+    /// run whose steps before the checkpoint were not all solved is as the earlier part of the run
+    /// left it.
+    Written(PathBuf),
+    /// Every step was solved: this file was not written.
+    NotNeeded(PathBuf),
+}
+
+impl Done {
+    /// How the run ended.
+    #[must_use]
+    pub fn ended(&self) -> EndedWord {
+        self.summary.ended
+    }
+}
+
+/// What a run leaves in memory.
+struct Recorded {
+    record: Record,
+    page: PageRecorder,
+    exporter: Option<Exporter>,
+    ended: EndedWord,
+    /// Time that its steps took, s.
+    seconds: f64,
+}
+
+impl Prepared {
+    /// Takes the folders, runs to the end of the scene, and writes the results. The summary is
+    /// written last: a folder without one holds a run that didn't end. A run that is cancelled,
+    /// diverges, or finds the disk full has ended too, with all that it could write.
+    ///
+    /// # Errors
+    /// If a folder can't be taken, or a file can't be written for another reason than a full disk.
+    pub fn run(mut self, hooks: Hooks<'_>) -> Result<Done, RunError> {
+        let former = self.start.former(self.job.existing);
+        let exporter = self.exporter(former).map_err(RunError::Folder)?;
+        let results = start::take(&self.folder, former).map_err(RunError::Folder)?;
+        // The folder exists from here on: paths in the scene are relative to it.
+        let scene_as_run = self.job.scene_as_run(&self.folder, &self.resolved);
+        let layout = self.simulation.layout.clone();
+        let recorded = self.simulate(&results, &scene_as_run, exporter, &layout, hooks)?;
+        let exporter = recorded.exporter.as_ref().map(Exporter::written);
+        let summary = write(&results, recorded, &self.resolved.scene, &layout, &self.simulation.state, &scene_as_run)?;
+        let unsolved = summary.contact.unconverged_steps > 0;
+        Ok(Done {
+            exported: exporter.zip(self.job.export).map(|(count, (folder, _))| Exported { folder, count }),
+            dump: self.job.dump.map(|path| if unsolved { Dump::Written(path) } else { Dump::NotNeeded(path) }),
+            folder: self.folder,
+            summary,
+        })
+    }
+
+    /// Takes the folder for contact problems, if they are to be saved.
+    fn exporter(&self, former: Former) -> Result<Option<Exporter>, ResultsError> {
+        let (Some((folder, when)), Some(watch)) = (&self.job.export, &self.watch) else { return Ok(None) };
+        let (scene, stem) = (&self.resolved.scene, self.job.scene.stem());
+        let (steps, tolerance) = (scene.time.steps, scene.solver.tolerance);
+        Exporter::create(watch, folder, stem, &scene.title, steps, *when, tolerance, former).map(Some)
+    }
+
+    /// Runs, and writes the tables on the way.
+    fn simulate(
+        &mut self,
+        results: &Results,
+        scene_as_run: &str,
+        exporter: Option<Exporter>,
+        layout: &Layout,
+        hooks: Hooks<'_>,
+    ) -> Result<Recorded, RunError> {
+        let Hooks { start, progress, warning, cancel } = hooks;
+        if let Some(start) = start {
+            start();
+        }
+        let mut warning = warning.unwrap_or_else(|| Box::new(|_| ()));
+        let mut teller = Teller::new(progress, self.steps());
+        // Before the tables: it says whose they are.
+        results.write("scene.toml", scene_as_run).map_err(RunError::Write)?;
+        let scene = &self.resolved.scene;
+        let mut recorder = RunRecorder::new(results, scene, layout, exporter, self.checkpoint.take(), warning.as_mut())
+            .map_err(RunError::Write)?;
+        recorder.note(&self.resolved.warnings);
+        if let Some(identity) = &self.identity {
+            let origin = Origin { identity, scheme: self.simulation.scheme() };
+            if let Some(every) = self.job.checkpoint_every {
+                recorder = recorder.with_checkpoints(results, origin, every);
+            }
+            if let Some(path) = &self.job.dump {
+                recorder = recorder.with_dump(path, origin);
+            }
+        }
+        if let Some(cancel) = cancel {
+            recorder = recorder.until(cancel);
+        }
+        let ran = self.simulation.run(&mut [&mut recorder, &mut teller]);
+        teller.tell(&self.simulation.state);
+        let seconds = recorder.seconds();
+        let (mut record, page, exporter) = recorder.into_parts();
+        let ended = match ran {
+            Ok(ended) => {
+                if let Ended::Failed(error) = &ended {
+                    record.warnings.enter("ended", error.t(), || error.to_string());
+                }
+                EndedWord::from(&ended)
+            }
+            Err(teeter_integrator::RunError::Observer(error)) => match error.downcast::<ResultsError>() {
+                Ok(error) if error.is_disk_full() => {
+                    record.warnings.enter("ended", Some(self.simulation.state.t), || error.to_string());
+                    EndedWord::DiskFull
+                }
+                Ok(error) => return Err(RunError::Write(*error)),
+                Err(error) => return Err(RunError::Observer(error)),
+            },
+            Err(error) => return Err(RunError::Steps(error)),
+        };
+        Ok(Recorded { record, page, exporter, ended, seconds })
+    }
+}
+
+/// Writes what is written at the end of a run, the summary last.
+fn write(
+    results: &Results,
+    recorded: Recorded,
+    scene: &Scene,
+    layout: &Layout,
+    state: &State,
+    scene_as_run: &str,
+) -> Result<Summary, RunError> {
+    let Recorded { record, page, ended, seconds, .. } = recorded;
+    let summary = Summary::new(scene, layout, state, &record, ended, seconds);
+    let written = write_files(results, &record, layout, &page, &summary, scene_as_run);
+    match written {
+        // No room for these either; the reason is told all the same.
+        Err(RunError::Write(error)) if ended == EndedWord::DiskFull && error.is_disk_full() => {}
+        written => written?,
+    }
+    if !matches!(ended, EndedWord::Interrupted | EndedWord::DiskFull) {
+        results.remove(CHECKPOINT).map_err(RunError::Write)?;
+    }
+    Ok(summary)
+}
+
+fn write_files(
+    results: &Results,
+    record: &Record,
+    layout: &Layout,
+    page: &PageRecorder,
+    summary: &Summary,
+    scene_as_run: &str,
+) -> Result<(), RunError> {
+    let file = |name: &str, text: &str| results.write(name, text).map_err(RunError::Write);
+    if let Some(text) = envelopes(layout, &record.beams) {
+        file("envelopes.csv", &text)?;
+    }
+    file("report.html", &render(page, summary, scene_as_run))?;
+    for (name, svg) in figures(page) {
+        file(&format!("figures/{name}"), &svg)?;
+    }
+    file("summary.json", &summary.to_json().map_err(RunError::Summary)?)
+}

@@ -1,0 +1,105 @@
+//! Where a run starts: at its beginning, or from its own checkpoint.
+
+use crate::{Existing, PrepareError, RunJob};
+use std::path::Path;
+use teeter_report::{
+    CHECKPOINT, Checkpoint, CheckpointError, ExportWhen, Former, Found, Identity, Results, ResultsError, program_hash,
+};
+use teeter_scenario::Extent;
+use teeter_scenario::resolve::Resolved;
+
+/// Where a run starts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Start {
+    /// At the beginning: of the scene, or at the state that was given.
+    Beginning,
+    /// At the beginning, as there is no run in the folder that could be resumed.
+    NothingToResume,
+    /// At the beginning, as the run in the folder was ended before its first checkpoint; its files
+    /// are replaced.
+    NoCheckpoint,
+    /// At the checkpoint in the folder.
+    Checkpoint {
+        /// Its time, s.
+        t: f64,
+    },
+}
+
+impl Start {
+    /// Looks where the job starts, and changes nothing but this: a checkpoint beside the summary of
+    /// a run that has ended is removed, as that run was killed while it was about to do so.
+    pub(crate) fn find(
+        job: &RunJob,
+        folder: &Path,
+        identity: Option<&Identity>,
+        scene_as_run: &str,
+    ) -> Result<(Self, Option<Checkpoint>), PrepareError> {
+        let Some(identity) = identity.filter(|_| job.existing == Existing::Resume) else {
+            return Ok((Self::Beginning, None));
+        };
+        match Found::look(folder, identity, scene_as_run).map_err(PrepareError::Resume)? {
+            Found::Nothing => Ok((Self::NothingToResume, None)),
+            Found::Unfinished => Ok((Self::NoCheckpoint, None)),
+            Found::Checkpoint(checkpoint) => Ok((Self::Checkpoint { t: checkpoint.state().t }, Some(*checkpoint))),
+            Found::Ended(ended) => {
+                let _ = std::fs::remove_file(folder.join(CHECKPOINT));
+                Err(PrepareError::AlreadyEnded { folder: folder.to_owned(), ended })
+            }
+        }
+    }
+
+    /// What becomes of the files of an earlier run.
+    pub(crate) fn former(self, existing: Existing) -> Former {
+        match self {
+            Self::Checkpoint { .. } => Former::Keep,
+            Self::NoCheckpoint => Former::Remove,
+            Self::NothingToResume => Former::Refuse,
+            Self::Beginning if existing == Existing::Replace => Former::Remove,
+            Self::Beginning => Former::Refuse,
+        }
+    }
+}
+
+/// Takes the folder for results.
+pub(crate) fn take(folder: &Path, former: Former) -> Result<Results, ResultsError> {
+    match former {
+        Former::Keep => Results::reopen(folder),
+        Former::Remove => Results::create(folder, true),
+        Former::Refuse => Results::create(folder, false),
+    }
+}
+
+/// Program, scene with the contents of its files, and options of the run; `None` where no file has
+/// to know them.
+pub(crate) fn identity(job: &RunJob, resolved: &Resolved) -> Result<Option<Identity>, PrepareError> {
+    if !job.is_identified() {
+        return Ok(None);
+    }
+    let program = job.program.map_or_else(program_hash, Ok).map_err(PrepareError::Program)?;
+    // The words of the program's options: two runs of which one is resumed as the other must be
+    // told apart.
+    let mut deciding = Vec::new();
+    if let Some((_, when)) = &job.export {
+        let when = match when {
+            ExportWhen::Hard => "hard".to_owned(),
+            ExportWhen::Every(n) => format!("every:{n}"),
+        };
+        deciding.push(format!("--export-problems of {}, --export-when {when}", job.scene.stem()));
+    }
+    if job.modelled() == Extent::Full {
+        deciding.push("--model full".to_owned());
+    }
+    let mut files: Vec<&[u8]> = resolved.files.iter().map(|(_, bytes)| bytes.as_slice()).collect();
+    let from = match &job.from {
+        None => Vec::new(),
+        Some(path) => {
+            deciding.push("--from".to_owned());
+            let failed = |source| PrepareError::State(CheckpointError::Read { path: path.clone(), source });
+            std::fs::read(path).map_err(failed)?
+        }
+    };
+    files.push(&from);
+    let scene = resolved.document.to_toml();
+    Ok(Some(Identity::new(program, &scene, &files, &deciding.join(", "))))
+}
