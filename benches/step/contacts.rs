@@ -25,13 +25,13 @@ pub(crate) fn bench(criterion: &mut Criterion) {
             let shape = Rectangle::new(0.36, 0.02).expect("a rectangle");
             let mass = MassProperties::rectangle(&shape, 0.03, 2700.0).expect("a mass");
             let mut parts = ModelBuilder::new();
-            let body = parts.add(Box::new(Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -9.81))));
+            let body = parts.add(Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -9.81))).body();
             let body_of_beam = BeamBody::new(beam, Vector2::zeros(), BeamSurface::Axis).with_backend(backend);
-            let surface = parts.add(Box::new(body_of_beam));
-            let pair = parts.pair(PairLaw::new(0.5, 0.0));
+            let surface = parts.add(body_of_beam).body();
+            let law = parts.law(PairLaw::new(0.5, 0.0));
             let place = |k: usize| Vector2::new(0.36 * ((k as f64 + 0.4) / contacts as f64 - 0.5), -0.01);
             let points = (0..contacts).map(place).collect();
-            let pairs = vec![PointPair { pair, points, body, surface, kinematics: Kinematics::Deformed }];
+            let pairs = vec![PointPair { pair: 0, law, points, body, surface, kinematics: Kinematics::Deformed }];
             let model = parts.build(Box::new(PointDetector::new(pairs))).expect("a model");
             let mut work = Workspace::new(&model, Box::new(Auto::new()), SolverSettings::default());
             let mut q = vec![0.18, 0.01, 0.0];

@@ -25,7 +25,7 @@ pub(crate) fn bench(criterion: &mut Criterion) {
         beam.add_point_load(0.1, -1.0, &mut q).expect("a load on the beam");
         beam.solve_static(&mut q).expect("a supported beam");
         let mut parts = ModelBuilder::new();
-        parts.add(Box::new(BeamBody::new(beam, Vector2::zeros(), BeamSurface::Axis)));
+        parts.add(BeamBody::new(beam, Vector2::zeros(), BeamSurface::Axis));
         let model = parts.build(Box::new(PointDetector::new(Vec::new()))).expect("a model");
         let mut scheme = MoreauJean::new(MoreauJeanSettings::default()).expect("default settings");
         let mut work = Workspace::new(&model, Box::new(Auto::new()), SolverSettings::default());

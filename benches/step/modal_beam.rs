@@ -44,7 +44,7 @@ pub(crate) fn bench(criterion: &mut Criterion) {
     };
     for modes in [5, 10, 20] {
         let mut parts = ModelBuilder::new();
-        parts.add(body(ModalBasis::new(&beam, modes, &[]).expect("modes")));
+        parts.add_boxed(body(ModalBasis::new(&beam, modes, &[]).expect("modes")));
         let model = parts.build(Box::new(PointDetector::new(Vec::new()))).expect("a model");
         let q: Vec<f64> = (0..modes).map(|i| 1e-3 / (1 + i * i) as f64).collect();
         measure(format!("alone, {modes} modes"), &model, &q);

@@ -65,12 +65,12 @@ pub(crate) fn model(surface: Box<dyn Subsystem<2>>) -> Model<2> {
     let shape = Rectangle::new(0.03, 0.135).expect("a rectangle");
     let mass = MassProperties::rectangle(&shape, 0.03, 2700.0).expect("a mass");
     let mut parts = ModelBuilder::new();
-    let body = parts.add(Box::new(Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -9.81))));
-    let surface = parts.add(surface);
-    let pair = parts.pair(PairLaw::new(0.5, 0.0));
+    let body = parts.add(Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -9.81))).body();
+    let surface = parts.add_boxed(surface).body();
+    let law = parts.law(PairLaw::new(0.5, 0.0));
     let (points, kinematics) = (shape.corners().to_vec(), Kinematics::Deformed);
     parts
-        .build(Box::new(PointDetector::new(vec![PointPair { pair, points, body, surface, kinematics }])))
+        .build(Box::new(PointDetector::new(vec![PointPair { pair: 0, law, points, body, surface, kinematics }])))
         .expect("a model")
 }
 

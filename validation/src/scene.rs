@@ -55,12 +55,19 @@ pub(crate) fn block_over(
     let shape = Rectangle::new(spec.width, spec.height)?;
     let mass = MassProperties::rectangle(&shape, spec.depth, spec.density)?;
     let mut parts = ModelBuilder::new();
-    let body = parts.add(Box::new(Blocks::new(vec![Block::new(mass, &shape)], gravity)));
-    let surface = parts.add(surface);
-    let pair = parts.pair(law);
+    let body = parts.add(Blocks::new(vec![Block::new(mass, &shape)], gravity)).body();
+    let surface = parts.add_boxed(surface).body();
+    let law = parts.law(law);
     let points = shape.corners().to_vec();
     let kinematics = Kinematics::Deformed;
-    Ok(parts.build(Box::new(PointDetector::new(vec![PointPair { pair, points, body, surface, kinematics }])))?)
+    Ok(parts.build(Box::new(PointDetector::new(vec![PointPair {
+        pair: 0,
+        law,
+        points,
+        body,
+        surface,
+        kinematics,
+    }])))?)
 }
 
 /// The beam of the source paper (`docs/theory.md` §8) with this damping ratio of its first mode.

@@ -38,18 +38,18 @@ fn main() -> Result<(), Box<dyn Error>> {
     if rocking {
         let shape = Rectangle::new(0.03, 0.135)?;
         let mass = MassProperties::rectangle(&shape, 0.03, 2700.0)?;
-        let block = parts.add(Box::new(Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -9.81))));
-        let surface = parts.add(Box::new(body));
+        let block = parts.add(Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -9.81))).body();
+        let surface = parts.add(body).body();
         let points: Vec<_> = shape.corners().iter().filter(|corner| corner.y < 0.0).copied().collect();
         // Its lower left corner at x = 0.165 on the straight axis, tilted by 5°.
         let tilt = 5.0_f64.to_radians();
         let ((sin, cos), corner) = (tilt.sin_cos(), Vector2::new(-0.015, -0.0675));
         let centre = [0.165 - (cos * corner.x - sin * corner.y), -(sin * corner.x + cos * corner.y)];
         q.extend([centre[0], centre[1], tilt]);
-        let pair = parts.pair(PairLaw::new(0.5, 0.0));
-        pairs.push(PointPair { pair, points, body: block, surface, kinematics: Kinematics::Deformed });
+        let law = parts.law(PairLaw::new(0.5, 0.0));
+        pairs.push(PointPair { pair: 0, law, points, body: block, surface, kinematics: Kinematics::Deformed });
     } else {
-        parts.add(Box::new(body));
+        parts.add(body);
     }
     let model = parts.build(Box::new(PointDetector::new(pairs)))?;
     let at_beam = q.len();

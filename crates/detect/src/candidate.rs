@@ -7,7 +7,13 @@ use crate::Vector;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyId(pub u32);
 
-/// Who a contact is, the same from step to step: the pair, and the point of its first side.
+/// The law of a contact, apart from who it is: many pairs can have the same one. Its owner gives the numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct LawId(pub u32);
+
+/// Who a contact is, the same from step to step: the pair, and the feature that touches, such as a point of the first side. A detector
+/// numbers features so that they keep their numbers as bodies move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactId(u64);
@@ -62,6 +68,8 @@ pub fn plane_frame(n: &Vector<2>) -> Frame<2> {
 pub struct Candidate<const D: usize> {
     /// Its identity over time.
     pub id: ContactId,
+    /// By which law it answers.
+    pub law: LawId,
     /// The point, and the foot on the surface.
     pub sides: [Anchor<D>; 2],
     /// Normal and tangents, rows.

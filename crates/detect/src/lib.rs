@@ -27,21 +27,24 @@
 //!
 //! let detector = PointDetector::new(vec![PointPair {
 //!     pair: 0,
+//!     law: LawId(0),
 //!     points: vec![Vector2::new(-1.0, 0.0), Vector2::new(1.0, 0.5)],
 //!     body: BodyId(0),
 //!     surface: BodyId(1),
 //!     kinematics: Kinematics::Deformed,
 //! }]);
 //! let mut found = Candidates::new();
-//! detector.detect(&Scene(0.1), 0.2, &mut found);
+//! detector.detect(&Scene(0.1), 0.2, &mut DetectorMemory::default(), &mut found);
 //! assert_eq!(found.len(), 1);
 //! assert_eq!((found[0].gap, found[0].id.point()), (0.1, 0));
 //! ```
 
 mod candidate;
+mod memory;
 mod points;
 
-pub use candidate::{Anchor, BodyId, Candidate, Candidates, ContactId, Frame, plane_frame};
+pub use candidate::{Anchor, BodyId, Candidate, Candidates, ContactId, Frame, LawId, plane_frame};
+pub use memory::DetectorMemory;
 pub use points::{PointDetector, PointPair};
 
 /// A point or direction of the world, or of a body.
@@ -96,6 +99,8 @@ impl<const D: usize> HalfSpace<D> {
 pub struct Wiring {
     /// The number of their pair.
     pub pair: u32,
+    /// The law of its contacts.
+    pub law: LawId,
     /// The bodies of side 0 and of side 1.
     pub bodies: [BodyId; 2],
     /// Whether the detector asks for the [surface](Geometry::surface) of the body of side 1.
@@ -124,17 +129,20 @@ pub trait Geometry<const D: usize> {
 pub trait ContactDetector<const D: usize>: Send + Sync {
     /// Puts all candidates with a gap of at most `margin` (m) into `out`, which is cleared first, in an order that
     /// depends on nothing but the detector. Allocates only where there are more than ever before.
-    fn detect(&self, at: &dyn Geometry<D>, margin: f64, out: &mut Candidates<D>);
+    ///
+    /// `memory` is what the detector kept of the configurations before, for its own use: a hint. With an empty one it finds the same
+    /// candidates, with the same identities, in the same order.
+    fn detect(&self, at: &dyn Geometry<D>, margin: f64, memory: &mut DetectorMemory, out: &mut Candidates<D>);
     /// The deepest penetration of any candidate, m; 0 where there is none. `scratch` is what [`ContactDetector::detect`] would fill; its content
     /// is lost. The default detects with a margin of 0.
     fn deepest(&self, at: &dyn Geometry<D>, scratch: &mut Candidates<D>) -> f64 {
-        self.detect(at, 0.0, scratch);
+        self.detect(at, 0.0, &mut DetectorMemory::default(), scratch);
         scratch.iter().map(|candidate| -candidate.gap).fold(0.0, f64::max)
     }
     /// Puts those of the contacts `ids` that there are now into `out`, which is cleared first, however large their gaps. `ids` rise, and
     /// so do those of `out`. The default detects all.
     fn locate(&self, at: &dyn Geometry<D>, ids: &[ContactId], out: &mut Candidates<D>) {
-        self.detect(at, f64::INFINITY, out);
+        self.detect(at, f64::INFINITY, &mut DetectorMemory::default(), out);
         out.retain(|candidate| ids.binary_search(&candidate.id).is_ok());
         out.sort_unstable_by_key(|candidate| candidate.id);
     }

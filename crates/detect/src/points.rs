@@ -2,8 +2,8 @@
 
 use crate::plane_frame;
 use crate::{
-    Anchor, BodyId, Candidate, Candidates, ContactDetector, ContactId, Geometry, Kinematics, SurfacePoint, Vector,
-    Wiring,
+    Anchor, BodyId, Candidate, Candidates, ContactDetector, ContactId, DetectorMemory, Geometry, Kinematics, LawId,
+    SurfacePoint, Vector, Wiring,
 };
 
 /// Points of a body that can touch a surface of another.
@@ -11,6 +11,8 @@ use crate::{
 pub struct PointPair<const D: usize> {
     /// The pair's number, first part of the identity of its contacts.
     pub pair: u32,
+    /// The law of its contacts.
+    pub law: LawId,
     /// The points, in the body's own coordinates; their order is the second part.
     pub points: Vec<Vector<D>>,
     /// The body that has the points.
@@ -57,6 +59,7 @@ impl PointPair<2> {
     fn candidate(&self, k: usize, foot: &SurfacePoint<2>, gap: f64) -> Candidate<2> {
         Candidate {
             id: ContactId::new(self.pair, k as u32),
+            law: self.law,
             sides: [
                 Anchor { body: self.body, point: self.points[k] },
                 Anchor { body: self.surface, point: foot.material },
@@ -85,7 +88,7 @@ impl PointPair<2> {
 }
 
 impl ContactDetector<2> for PointDetector<2> {
-    fn detect(&self, at: &dyn Geometry<2>, margin: f64, out: &mut Candidates<2>) {
+    fn detect(&self, at: &dyn Geometry<2>, margin: f64, _memory: &mut DetectorMemory, out: &mut Candidates<2>) {
         out.clear();
         for pair in &self.pairs {
             pair.near(at, margin, |k, place| {
@@ -131,6 +134,7 @@ impl ContactDetector<2> for PointDetector<2> {
     fn wiring(&self) -> Vec<Wiring> {
         let of = |pair: &PointPair<2>| Wiring {
             pair: pair.pair,
+            law: pair.law,
             bodies: [pair.body, pair.surface],
             on_surface: true,
             contacts: pair.points.len(),

@@ -6,7 +6,9 @@ pub(crate) mod line;
 pub(crate) mod loads;
 pub(crate) mod motion;
 
-use crate::{Compliance, Energy, FactorError, Motion, Rows, Size, Subsystem, Weights};
+use crate::{
+    Bodies, Compliance, Dynamics, Energy, FactorError, Linearised, Motion, Rows, Size, Traits, Vector, Weights,
+};
 use compliance::BeamCompliance;
 pub use compliance::WBackend;
 use line::{Deflecting, Line};
@@ -115,6 +117,11 @@ impl BeamBody {
         self.supports.as_ref().map_or_else(Vec::new, |supports| supports.displacements(t).to_vec())
     }
 
+    /// Its prescribed velocities.
+    fn driven(&self) -> &[usize] {
+        self.supports.as_ref().map_or(&[], |supports| &supports.driven)
+    }
+
     /// The coordinates of the beam alone, and where its supports have moved it.
     fn split<'q>(&self, q: &'q [f64]) -> (&'q [f64], Line) {
         let (q, displaced) = q.split_at(self.beam.dofs());
@@ -186,12 +193,21 @@ impl Deflecting for Beam {
     }
 }
 
-impl Subsystem<2> for BeamBody {
+impl Dynamics<2> for BeamBody {
     fn size(&self) -> Size {
         let driven = self.driven().len();
         let dofs = self.beam.dofs() + driven;
         let axial = if self.beam.has_axial_dofs() { 2 } else { 0 };
         Size { q: dofs, v: dofs, bodies: 1, row: 4 + axial + driven }
+    }
+
+    fn traits(&self) -> Traits {
+        Traits::free()
+            .loaded(!self.loads.is_empty())
+            .damped(self.beam.is_damped())
+            .following_coordinates(self.beam.is_stretched())
+            .driven(self.driven())
+            .held(self.held.clone())
     }
 
     fn internal_force(&self, q: &[f64], v: &[f64], f: &mut [f64]) {
@@ -200,21 +216,6 @@ impl Subsystem<2> for BeamBody {
         if self.beam.is_damped() {
             self.beam.add_damping_product(-1.0, &v[..n], &mut f[..n]);
         }
-    }
-
-    fn mass_damping(&self) -> f64 {
-        if self.supports.is_some() || self.beam.is_stretched() { 0.0 } else { self.beam.mass_damping() }
-    }
-
-    fn internal_force_beside_mass_damping(&self, q: &[f64], v: &[f64], f: &mut [f64]) {
-        if self.mass_damping() == 0.0 {
-            return self.internal_force(q, v, f);
-        }
-        self.add_conservative_force(q, f);
-    }
-
-    fn is_loaded(&self) -> bool {
-        !self.loads.is_empty()
     }
 
     fn load(&self, t: f64, f: &mut [f64]) {
@@ -230,14 +231,6 @@ impl Subsystem<2> for BeamBody {
         }
     }
 
-    fn driven(&self) -> &[usize] {
-        self.supports.as_ref().map_or(&[], |supports| &supports.driven)
-    }
-
-    fn held(&self) -> &[usize] {
-        &self.held
-    }
-
     fn drive(&self, t: f64, v: &mut [f64]) {
         if let Some(supports) = &self.supports {
             v[self.beam.dofs()..].copy_from_slice(&supports.velocities(t));
@@ -250,21 +243,8 @@ impl Subsystem<2> for BeamBody {
         }
     }
 
-    fn is_damped(&self) -> bool {
-        self.beam.is_damped()
-    }
-
     fn damping_power(&self, _q: &[f64], v: &[f64], _scratch: &mut [f64]) -> f64 {
         self.beam.damping_power(&v[..self.beam.dofs()])
-    }
-
-    fn follows_coordinates(&self) -> bool {
-        self.beam.is_stretched()
-    }
-
-    fn modified_energy(&self, h: f64, q: &[f64], v: &[f64]) -> f64 {
-        let n = self.beam.dofs();
-        if self.beam.is_stretched() { self.beam.modified_energy(h, &q[..n], &v[..n]) } else { 0.0 }
     }
 
     fn apply(&self, w: Weights, _q: &[f64], x: &[f64], y: &mut [f64]) {
@@ -292,6 +272,16 @@ impl Subsystem<2> for BeamBody {
         Energy { kinetic, elastic: self.beam.elastic_energy(&q[..n]), gravity: 0.0 - along }
     }
 
+    fn factor(&self, w: Weights, _q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
+        Ok(Box::new(BeamCompliance::new(&self.beam, w, self.backend)?))
+    }
+
+    fn linearised(&self) -> Option<&dyn Linearised> {
+        Some(self)
+    }
+}
+
+impl Bodies<2> for BeamBody {
     fn place(&self, _body: u32, q: &[f64], local: &[Vector2<f64>], out: &mut [Vector2<f64>]) {
         let (q, line) = self.split(q);
         line.place(&*self.beam, q, local, out);
@@ -311,12 +301,28 @@ impl Subsystem<2> for BeamBody {
         Some(line.reach(self.beam.deflection_bounds(q), margin))
     }
 
+    fn bias(&self, _: u32, q: &[f64], v: &[f64], point: &Vector2<f64>, frame: &Frame<2>) -> Option<Vector<2>> {
+        let n = self.split(q).0.len();
+        line::bias(&*self.beam, [&q[..n], &v[..n]], point, frame)
+    }
+
     fn rows(&self, _: u32, _q: &[f64], point: &Vector2<f64>, frame: &Frame<2>, out: &mut Rows<'_, 2>) -> usize {
         line::rows(&*self.beam, point, frame, self.driven(), out)
     }
+}
 
-    fn factor(&self, w: Weights, _q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
-        Ok(Box::new(BeamCompliance::new(&self.beam, w, self.backend)?))
+impl Linearised for BeamBody {
+    fn mass_damping(&self) -> f64 {
+        if self.supports.is_some() || self.beam.is_stretched() { 0.0 } else { self.beam.mass_damping() }
+    }
+
+    fn conservative_force(&self, q: &[f64], f: &mut [f64]) {
+        self.add_conservative_force(q, f);
+    }
+
+    fn modified_energy(&self, h: f64, q: &[f64], v: &[f64]) -> f64 {
+        let n = self.beam.dofs();
+        if self.beam.is_stretched() { self.beam.modified_energy(h, &q[..n], &v[..n]) } else { 0.0 }
     }
 }
 

@@ -2,8 +2,8 @@
 
 use crate::subsystem::respond_by_diagonal;
 use crate::{
-    Compliance, Coupling, Energy, FactorError, ModelError, Motion, PartRows, Rows, Signal, Size, Subsystem, Vector,
-    Weights,
+    Bodies, Compliance, Coupling, Dynamics, Energy, FactorError, ModelError, Motion, PartRows, Rows, Signal, Size,
+    Traits, Vector, Weights,
 };
 use nalgebra::{Matrix2, Vector2, Vector3};
 use std::sync::Arc;
@@ -23,6 +23,17 @@ impl Block {
     pub fn new(mass: MassProperties, shape: &Rectangle) -> Self {
         Self { mass, radius: shape.radius() }
     }
+}
+
+/// A coordinate of a block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BlockCoordinate {
+    /// X of its mass centre, m.
+    X,
+    /// Y of its mass centre, m.
+    Y,
+    /// φ, counter-clockwise positive, rad.
+    Turn,
 }
 
 /// A load on a block: a force through its mass centre, in world axes, and a couple. (A force through another point of the
@@ -75,18 +86,20 @@ impl Blocks {
         if block < blocks { Ok(()) } else { Err(ModelError::Block { block, blocks }) }
     }
 
-    /// The same with one coordinate of a block (0: X, 1: Y, 2: φ) prescribed; its others stay free. It starts from where
+    /// The same with one coordinate of a block prescribed; its others stay free. It starts from where
     /// the state has it, so of a given displacement only the changes count. A later motion of the same coordinate takes the place of the
     /// earlier.
     ///
     /// # Errors
-    /// If the block or the coordinate isn't there.
-    pub fn with_motion(mut self, block: usize, coordinate: usize, motion: Motion) -> Result<Self, ModelError> {
+    /// If the block isn't there.
+    pub fn with_motion(
+        mut self,
+        block: usize,
+        coordinate: BlockCoordinate,
+        motion: Motion,
+    ) -> Result<Self, ModelError> {
         self.check_block(block)?;
-        if coordinate >= 3 {
-            return Err(ModelError::Coordinate { coordinate });
-        }
-        let velocity = 3 * block + coordinate;
+        let velocity = 3 * block + coordinate as usize;
         match self.driven.binary_search(&velocity) {
             Ok(at) => self.motions[at] = motion,
             Err(at) => {
@@ -113,10 +126,16 @@ fn triple(x: &[f64], body: usize) -> Vector3<f64> {
     Vector3::new(x[3 * body], x[3 * body + 1], x[3 * body + 2])
 }
 
-impl Subsystem<2> for Blocks {
+impl Dynamics<2> for Blocks {
     fn size(&self) -> Size {
         let n = self.blocks.len();
         Size { q: 3 * n, v: 3 * n, bodies: n, row: 3 }
+    }
+
+    fn traits(&self) -> Traits {
+        let g = self.gravity.norm();
+        let scale = self.blocks.iter().map(|block| block.mass.mass * g * block.radius).sum();
+        Traits::free().loaded(!self.loads.is_empty()).driven(self.driven.clone()).energy_scale(scale)
     }
 
     fn internal_force(&self, _q: &[f64], _v: &[f64], f: &mut [f64]) {
@@ -126,20 +145,12 @@ impl Subsystem<2> for Blocks {
         }
     }
 
-    fn is_loaded(&self) -> bool {
-        !self.loads.is_empty()
-    }
-
     fn load(&self, t: f64, f: &mut [f64]) {
         self.add_loads(|signal| signal.value(t), f);
     }
 
     fn mean_load(&self, [from, to]: [f64; 2], _scratch: &mut [f64], f: &mut [f64]) {
         self.add_loads(|signal| signal.mean(from, to), f);
-    }
-
-    fn driven(&self) -> &[usize] {
-        &self.driven
     }
 
     fn drive(&self, t: f64, v: &mut [f64]) {
@@ -174,9 +185,18 @@ impl Subsystem<2> for Blocks {
         energy
     }
 
-    fn energy_scale(&self) -> f64 {
-        let g = self.gravity.norm();
-        self.blocks.iter().map(|block| block.mass.mass * g * block.radius).sum()
+    fn factor(&self, w: Weights, _q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
+        let mass = self.blocks.iter().flat_map(|block| block.mass.diagonal().data.0[0]).collect();
+        let (inverse, driven) = (vec![0.0; 3 * self.blocks.len()], self.driven.clone());
+        let mut compliance = BlockCompliance { weights: w, mass, inverse, driven };
+        compliance.refactor(w, &[])?;
+        Ok(Box::new(compliance))
+    }
+}
+
+impl Bodies<2> for Blocks {
+    fn bias(&self, body: u32, q: &[f64], v: &[f64], point: &Vector2<f64>, frame: &Frame<2>) -> Option<Vector<2>> {
+        Some(frame * turning_bias(&triple(q, body as usize), v.get(3 * body as usize + 2)?, point))
     }
 
     fn place(&self, body: u32, q: &[f64], local: &[Vector2<f64>], out: &mut [Vector2<f64>]) {
@@ -194,14 +214,11 @@ impl Subsystem<2> for Blocks {
         }
         3
     }
+}
 
-    fn factor(&self, w: Weights, _q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
-        let mass = self.blocks.iter().flat_map(|block| block.mass.diagonal().data.0[0]).collect();
-        let (inverse, driven) = (vec![0.0; 3 * self.blocks.len()], self.driven.clone());
-        let mut compliance = BlockCompliance { weights: w, mass, inverse, driven };
-        compliance.refactor(w, &[])?;
-        Ok(Box::new(compliance))
-    }
+/// The acceleration of a point of a body that turns at a constant rate ω about its centre, −ω² r, m/s².
+pub(crate) fn turning_bias(pose: &Vector3<f64>, omega: &f64, point: &Vector2<f64>) -> Vector2<f64> {
+    Pose::new(pose).rotate(point) * -(omega * omega)
 }
 
 /// diag(1/m, 1/m, 1/I) of every block, 0 where the velocity is prescribed.

@@ -70,7 +70,7 @@ impl<const D: usize> ClosingMonitor<D> {
         let mut monitor =
             Self { held: Vec::new(), impacts: 0, reclosures: 0, lost: Vec::new(), candidates: Vec::new() };
         let widest = openings.iter().map(|opening| opening.gap).fold(0.0, f64::max);
-        model.detector().detect(&model.placed(&state.q)?, widest, &mut monitor.candidates);
+        model.candidates(&state.q, widest, &mut monitor.candidates)?;
         for candidate in &monitor.candidates {
             let carried = state.memory.is_active(candidate.id);
             if carried || candidate.gap <= opening_of(openings, candidate.id).gap {

@@ -22,7 +22,7 @@
 //! ```
 
 use crate::subsystem::{Span, dot};
-use crate::{Compliance, Coupling, PartRows, Rows, Subsystem, Vector, Weights};
+use crate::{Compliance, Coupling, PartRows, Rows, Subsystem, Traits, Vector, Weights};
 use teeter_contact::Block;
 use teeter_detect::{Frame, Kinematics, plane_frame};
 
@@ -57,6 +57,8 @@ pub enum Property {
     Foot,
     /// Rows are the derivative of places.
     Rows,
+    /// Where [`Bodies::bias`](crate::Bodies::bias) is known, it is the second derivative of places at constant velocities.
+    Bias,
     /// M, C and K are symmetric, and a combination is their sum, added to what is there.
     Product,
     /// C is zero where there is said to be no damping, and vᵀC v is the damping's power.
@@ -97,6 +99,8 @@ const SOLVED: f64 = 1e-8;
 const DIFFERENCE: f64 = 1e-7;
 /// Times a unit velocity, the distance of those points, s.
 const STEP: f64 = 1e-5;
+/// As [`STEP`], of second derivatives.
+const BEND: f64 = 1e-3;
 
 /// Holds a subsystem to all [properties](Property), and returns those that fail.
 #[must_use]
@@ -158,10 +162,10 @@ impl Check<'_> {
     }
 
     fn sizes(&mut self) -> bool {
-        let (size, driven, held) = (self.system.size(), self.system.driven(), self.system.held());
+        let (size, Traits { driven, held, .. }) = (self.system.size(), self.system.traits());
         let count = |is: bool| f64::from(u8::from(!is));
         self.hold(Property::Sizes, "coordinates of the case", self.case.q.len().abs_diff(size.q) as f64, 0.0);
-        for (which, numbers) in [("driven", driven), ("held", held)] {
+        for (which, numbers) in [("driven", &driven), ("held", &held)] {
             let good = numbers.is_sorted_by(|a, b| a < b) && numbers.iter().all(|k| *k < size.v);
             self.hold(Property::Sizes, format!("{which} velocities ascend and are there"), count(good), 0.0);
         }
@@ -186,6 +190,7 @@ impl Check<'_> {
     }
 
     fn drive(&mut self) {
+        let Traits { driven, .. } = self.system.traits();
         let mut v = wave(self.system.size().v, 0.9);
         let before = v.clone();
         self.system.drive(self.case.t, &mut v);
@@ -193,7 +198,7 @@ impl Check<'_> {
         self.system.drive_mean([self.case.t, self.case.t + 0.25], &mut mean);
         for v in [v, mean] {
             for k in 0..v.len() {
-                if self.system.driven().contains(&k) {
+                if driven.contains(&k) {
                     self.hold(Property::Drive, format!("velocity {k} is finite"), 0.0 * v[k], 0.0);
                 } else {
                     self.hold(Property::Drive, format!("velocity {k} is free"), (v[k] - before[k]).abs(), 0.0);
@@ -219,7 +224,7 @@ impl Check<'_> {
         let size = size.max(largest(&mean));
         mean.iter_mut().for_each(|f| *f *= 2.0);
         self.hold(Property::Load, "the mean adds", distance(&twice, &mean), ROUNDING * (size + 1.0));
-        if !self.system.is_loaded() {
+        if !self.system.traits().loaded {
             self.hold(Property::Load, "no load", size, 0.0);
         }
     }
@@ -239,7 +244,7 @@ impl Check<'_> {
                 return self.hold(Property::Inverse, error.to_string(), f64::INFINITY, 0.0);
             }
         };
-        let (driven, held) = (self.system.driven(), self.system.held());
+        let Traits { driven, held, .. } = self.system.traits();
         let moves = |k: usize| !held.contains(&k);
         let free = |k: usize| moves(k) && !driven.contains(&k);
         let masked = |phase: f64, keep: &dyn Fn(usize) -> bool| -> Vec<f64> {
@@ -257,6 +262,7 @@ impl Check<'_> {
         self.refactor(&inner);
         if let Some(touches) = self.touches() {
             touches.iter().for_each(|touch| self.rows(touch, &moving));
+            touches.iter().for_each(|touch| self.bias(touch));
             self.contacts(factor.as_mut(), &touches);
         }
     }
@@ -277,7 +283,7 @@ impl Check<'_> {
             if damping != 0.0 {
                 let power = self.system.damping_power(&self.case.q, x, &mut vec![0.0; x.len()]);
                 self.hold(Property::Damping, "power", (power - dot(&a, x)).abs(), allowed);
-                if !self.system.is_damped() {
+                if !self.system.traits().damped {
                     self.hold(Property::Damping, "none is said to be there", largest(&a), 0.0);
                 }
             }
@@ -347,7 +353,7 @@ impl Check<'_> {
         let wanted = solved(fresh.as_mut());
         let allowed = ROUNDING * largest(&wanted);
         self.hold(Property::Refactor, "renewed", distance(&solved(renewed.as_mut()), &wanted), allowed);
-        if self.system.follows_coordinates() {
+        if self.system.traits().follows_coordinates {
             fresh.update(q);
             let wanted = solved(fresh.as_mut());
             updated.update(&elsewhere);
@@ -412,6 +418,23 @@ impl Check<'_> {
             let what = format!("velocity {k} at {:?}", touch.point);
             self.hold(Property::Rows, what, (slope - row).norm(), DIFFERENCE * size + 4.0 * rounding);
         }
+    }
+
+    fn bias(&mut self, touch: &Touch) {
+        // Slow, so that the second difference sees the second derivative alone.
+        let v: Vec<f64> = wave(self.system.size().v, 0.2).iter().map(|v| 0.02 * v).collect();
+        let Some(bias) = self.system.bias(touch.body, &self.case.q, &v, &touch.point, &touch.frame) else { return };
+        let place = |tau: f64| {
+            let mut at = [Vector::<2>::zeros()];
+            self.system.place(touch.body, &self.moved(&v, tau), &[touch.point], &mut at);
+            at[0]
+        };
+        let second = |step: f64| (place(step) - place(0.0) * 2.0 + place(-step)) / (step * step);
+        let found = second(BEND) * (4.0 / 3.0) - second(2.0 * BEND) * (1.0 / 3.0);
+        let rounding = 16.0 * f64::EPSILON * (place(0.0).norm() + 1.0) / (BEND * BEND);
+        let what = format!("at {:?}", touch.point);
+        let allowed = DIFFERENCE * (bias.norm() + touch.point.norm()) + rounding;
+        self.hold(Property::Bias, what, (touch.frame * found - bias).norm(), allowed);
     }
 
     fn contacts(&mut self, factor: &mut dyn Compliance<2>, touches: &[Touch]) {

@@ -1,7 +1,7 @@
 //! A contact of a step: what it did, and in which frame.
 
 use crate::Vector;
-use teeter_detect::{Anchor, Candidate, ContactId, Frame};
+use teeter_detect::{Anchor, Candidate, ContactId, Frame, LawId};
 
 /// What a contact does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,6 +32,8 @@ impl ContactState {
 pub struct Contact<const D: usize> {
     /// Who it is.
     pub id: ContactId,
+    /// By which law it answers.
+    pub law: LawId,
     /// Where it acts on either side, as its rows were taken.
     pub sides: [Anchor<D>; 2],
     /// Its frame as its rows were taken, a direction a row.
@@ -64,6 +66,7 @@ impl<const D: usize> Contact<D> {
     pub(crate) fn of(candidate: &Candidate<D>, persisting: bool) -> Self {
         Self {
             id: candidate.id,
+            law: candidate.law,
             sides: candidate.sides,
             frame: candidate.frame,
             gap: candidate.gap,

@@ -92,7 +92,7 @@ pub fn coupled_modes(
     // Differences make it symmetric to half of the digits only.
     stiffness = (&stiffness + stiffness.transpose()) * 0.5;
     for part in model.parts() {
-        for k in part.system.driven().iter().chain(part.system.held()) {
+        for k in part.traits.driven.iter().chain(&part.traits.held) {
             let mut row = DVector::zeros(n);
             row[part.v.start + k] = 1.0;
             constraints.push(row);
@@ -132,7 +132,7 @@ fn matrix(model: &Model<2>, q: &[f64], weights: Weights) -> DMatrix<f64> {
         let (start, len) = (part.v.start, part.v.len());
         let q = &q[part.q.clone()];
         // What follows the coordinates has a tangent that `apply` doesn't know: by differences of its force.
-        let differences = weights.stiffness != 0.0 && part.system.follows_coordinates();
+        let differences = weights.stiffness != 0.0 && part.traits.follows_coordinates;
         let step = DIFFERENCE * q.iter().fold(1e-6_f64, |size, q| size.max(q.abs()));
         let (mut x, mut y) = (vec![0.0; len], vec![0.0; len]);
         let (rest, mut at) = (vec![0.0; len], q.to_vec());
@@ -168,17 +168,15 @@ struct Touching {
 
 fn touching(model: &Model<2>, q: &[f64], forces: &[(ContactId, Vector<2>)]) -> Result<Vec<Touching>, Mismatch> {
     let mut candidates = Vec::new();
-    model.detector().detect(&model.placed_at(q), f64::INFINITY, &mut candidates);
+    model.candidates(q, f64::INFINITY, &mut candidates)?;
     let pressing = forces.iter().filter(|(_, force)| force[0] > 0.0);
     pressing
-        .filter_map(|(id, force)| {
-            let friction = match model.law(id.pair()) {
-                Ok(law) => law.friction,
-                Err(unknown) => return Some(Err(unknown)),
-            };
-            let candidate = candidates.iter().find(|candidate| candidate.id == *id)?;
+        .map(|(id, force)| {
+            let found = candidates.iter().find(|candidate| candidate.id == *id);
+            let candidate = found.ok_or(Mismatch::NotThere { id: *id })?;
+            let friction = model.law(candidate.law)?.friction;
             let force = if friction > 0.0 { *force } else { *force - tangential(force) };
-            Some(Ok(Touching { sides: candidate.sides, frame: candidate.frame, force, friction }))
+            Ok(Touching { sides: candidate.sides, frame: candidate.frame, force, friction })
         })
         .collect()
 }

@@ -8,7 +8,7 @@
 //!
 //! Signorini's condition holds for gaps and not for velocities, Coulomb's law for the slip from the place where the foot of the
 //! contact was when it was put there: the friction is that of the way as a whole, whatever came on it. Velocities that
-//! are [driven](crate::Subsystem::driven) are held at zero by whatever force that takes.
+//! are [driven](crate::Traits) are held at zero by whatever force that takes.
 //!
 //! It is found by proximal points. A round is an implicit step of length τ from rest,
 //!
@@ -287,7 +287,7 @@ impl<const D: usize> Search<D> {
             let q = &self.q[part.q.clone()];
             let f = &mut self.impulse[part.v.clone()];
             let Some(factor) = work.factors.of(index, w).filter(|_| !f.is_empty()) else { continue };
-            if part.system.follows_coordinates() {
+            if part.traits.follows_coordinates {
                 // The tangent of a part that is not linear is that of q.
                 factor.refactor(w, q)?;
                 factor.take_tangent(q)?;
@@ -382,7 +382,7 @@ fn place_of<const D: usize>(
     places: &mut Vec<Place<D>>,
     candidate: &Candidate<D>,
 ) -> Place<D> {
-    let Candidate { id, sides, frame, gap } = *candidate;
+    let Candidate { id, sides, frame, gap, .. } = *candidate;
     if let Some(place) = places.iter().find(|place| place.id == id) {
         return *place;
     }

@@ -1,6 +1,8 @@
 //! Rigid ground: a half plane that stands still, and has no velocities, or moves as prescribed, and has three.
 
-use crate::{Compliance, Coupling, Energy, FactorError, Motion, PartRows, Rows, Size, Subsystem, Weights};
+use crate::{
+    Bodies, Compliance, Coupling, Dynamics, Energy, FactorError, Motion, PartRows, Rows, Size, Traits, Vector, Weights,
+};
 use nalgebra::{Vector2, Vector3};
 use teeter_detect::{Frame, HalfSpace, Kinematics, SurfacePoint};
 use teeter_rigid::Pose;
@@ -49,6 +51,13 @@ impl Ground {
         vec![x, y, incline + turn]
     }
 
+    fn driven(&self) -> &'static [usize] {
+        match self.0 {
+            Form::Moving { .. } => &[0, 1, 2],
+            _ => &[],
+        }
+    }
+
     /// Where the body frame of its surface is: along the surface, and out of it.
     fn pose(&self, q: &[f64]) -> Pose {
         match (&self.0, q) {
@@ -60,20 +69,17 @@ impl Ground {
     }
 }
 
-impl Subsystem<2> for Ground {
+impl Dynamics<2> for Ground {
     fn size(&self) -> Size {
         let n = self.driven().len();
         Size { q: n, v: n, bodies: 1, row: n }
     }
 
-    fn internal_force(&self, _q: &[f64], _v: &[f64], _f: &mut [f64]) {}
-
-    fn driven(&self) -> &[usize] {
-        match self.0 {
-            Form::Moving { .. } => &[0, 1, 2],
-            _ => &[],
-        }
+    fn traits(&self) -> Traits {
+        Traits::free().driven(self.driven())
     }
+
+    fn internal_force(&self, _q: &[f64], _v: &[f64], _f: &mut [f64]) {}
 
     fn drive(&self, t: f64, v: &mut [f64]) {
         if let Form::Moving { motion, .. } = &self.0 {
@@ -95,6 +101,19 @@ impl Subsystem<2> for Ground {
 
     fn energy(&self, _q: &[f64], _v: &[f64]) -> Energy {
         Energy::default()
+    }
+
+    fn factor(&self, w: Weights, _q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
+        Ok(Box::new(Immovable(w)))
+    }
+}
+
+impl Bodies<2> for Ground {
+    fn bias(&self, _: u32, q: &[f64], v: &[f64], point: &Vector2<f64>, frame: &Frame<2>) -> Option<Vector<2>> {
+        Some(match v {
+            &[_, _, omega] => frame * (self.pose(q).rotate(point) * -(omega * omega)),
+            _ => Vector::zeros(),
+        })
     }
 
     fn place(&self, _body: u32, q: &[f64], local: &[Vector2<f64>], out: &mut [Vector2<f64>]) {
@@ -142,10 +161,6 @@ impl Subsystem<2> for Ground {
             out.values[k] = jacobian.column(k).into();
         }
         3
-    }
-
-    fn factor(&self, w: Weights, _q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
-        Ok(Box::new(Immovable(w)))
     }
 }
 

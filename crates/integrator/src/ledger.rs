@@ -7,7 +7,7 @@
 //! ```
 //!
 //! viscous loss, work of loads, contact and friction, numerical dissipation. What is left over is rounding, or a mistake. Where V is not quadratic, what
-//! a step conserves is T + V plus the parts' [modified energy](crate::Subsystem::modified_energy), and minus the change of that is numerical too.
+//! a step conserves is T + V plus the parts' [modified energy](crate::Linearised::modified_energy), and minus the change of that is numerical too.
 
 use crate::Energy;
 

@@ -25,9 +25,9 @@
 //! let shape = Rectangle::new(0.1, 0.05)?;
 //! let mass = MassProperties::rectangle(&shape, 0.1, 2700.0)?;
 //! let mut parts = ModelBuilder::new();
-//! let block = parts.add(Box::new(Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -9.81))));
-//! let ground = parts.add(Box::new(Ground::flat(0.0)));
-//! let pair = parts.pair(PairLaw::new(0.5, 0.0));
+//! let block = parts.add(Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -9.81))).body();
+//! let ground = parts.add(Ground::flat(0.0)).body();
+//! let law = parts.law(PairLaw::new(0.5, 0.0));
 //! let model = parts.build(Box::new(PointDetector::new(vec![PointPair {
 //!     pair,
 //!     points: shape.corners().to_vec(),
@@ -82,7 +82,7 @@ mod workspace;
 
 pub use beam::forces::{BeamForces, SpanLoads};
 pub use beam::{BeamBody, BeamSurface, MovingForce, SignalLoad, WBackend};
-pub use blocks::{Block, BlockLoad, Blocks};
+pub use blocks::{Block, BlockCoordinate, BlockLoad, Blocks};
 pub use closings::{Closing, ClosingMonitor, Opening};
 pub use contact::{Contact, ContactState, tangential};
 pub use coupled_modes::{CoupledModes, CoupledModesError, MOST_VELOCITIES, coupled_modes};
@@ -93,7 +93,7 @@ pub use ledger::{Ledger, PositiveWork, StepEnergy};
 pub use memory::Memory;
 pub use mismatch::Mismatch;
 pub use modal_beam::ModalBeam;
-pub use model::{Model, ModelBuilder, ModelError, Part, Placed};
+pub use model::{Model, ModelBuilder, ModelError, Part, PartPlace, Placed};
 pub use monitor::{Crossing, LISTED_CROSSINGS, Peak, RockingMonitor};
 pub use moreau_jean::{MoreauJean, MoreauJeanSettings};
 pub use moreau_jean_closed::{MoreauJeanClosed, MoreauJeanClosedSettings};
@@ -105,7 +105,10 @@ pub use signal::{Formula, Given, Motion, Signal, SignalError, Table};
 pub use spring::SpringStep;
 pub use stage::{ContactError, ContactStage, Look, Over, Rule};
 pub use state::{STEP_ROUNDING, State, StateError, StepSpan, Tally, WarmStart};
-pub use subsystem::{Compliance, Coupling, Energy, FactorError, PartRows, Rows, Size, Subsystem, Weights};
+pub use subsystem::{
+    Bodies, Compliance, Coupling, Dynamics, Energy, FactorError, Linearised, PartRows, Rows, Size, Subsystem, Traits,
+    Weights,
+};
 pub use workspace::{Account, SolverSettings, WorkCounts, Workspace};
 
 /// A point, direction, impulse or relative velocity in D dimensions.

@@ -1,7 +1,7 @@
 //! What is told to who joins parts that don't belong together.
 
 use std::sync::atomic::{AtomicU64, Ordering};
-use teeter_detect::BodyId;
+use teeter_detect::{BodyId, ContactId, LawId};
 
 /// Things that don't belong together: slices of another length, a workspace of another model, a pair that isn't there.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -25,13 +25,13 @@ pub enum Mismatch {
         /// What to do.
         remedy: &'static str,
     },
-    /// A pair number that the model didn't give.
-    #[error("there is no pair {pair}: the model has {pairs}, numbered from 0")]
-    Pair {
-        /// The number.
-        pair: u32,
+    /// A law that the model doesn't have.
+    #[error("there is no law {}: the model has {laws}, numbered from 0", law.0)]
+    Law {
+        /// Its number.
+        law: LawId,
         /// How many there are.
-        pairs: usize,
+        laws: usize,
     },
     /// A body that the model doesn't have.
     #[error("there is no body {}: the model has {bodies}, numbered from 0", body.0)]
@@ -48,6 +48,12 @@ pub enum Mismatch {
         contact: usize,
         /// How many there are.
         contacts: usize,
+    },
+    /// A contact whose point has no foot on its surface.
+    #[error("point {} of pair {} touches nothing at these coordinates", id.point(), id.pair())]
+    NotThere {
+        /// The contact.
+        id: ContactId,
     },
     /// The candidate of another contact.
     #[error("contact {contact} is another one than the candidate")]

@@ -12,8 +12,8 @@ use crate::beam::line::{self, Deflecting, Line};
 use crate::beam::motion::MovingSupports;
 use crate::subsystem::{couple_by_solving, dot, respond_by_diagonal};
 use crate::{
-    BeamSurface, Compliance, Coupling, Energy, FactorError, Motion, PartRows, Rows, SignalLoad, Size, Subsystem,
-    Vector, Weights,
+    BeamSurface, Bodies, Compliance, Coupling, Dynamics, Energy, FactorError, Motion, PartRows, Rows, SignalLoad, Size,
+    Traits, Vector, Weights,
 };
 use nalgebra::{Matrix2, Vector2};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -179,6 +179,11 @@ impl ModalBeam {
         self.shapes.deflection_at(&q[..self.coordinates()], x)
     }
 
+    /// Its prescribed velocities.
+    fn driven(&self) -> &[usize] {
+        self.supports.as_ref().map_or(&[], |supports| &supports.driven)
+    }
+
     fn coordinates(&self) -> usize {
         self.stiffness.len()
     }
@@ -289,11 +294,16 @@ impl Deflecting for Shapes {
     }
 }
 
-impl Subsystem<2> for ModalBeam {
+impl Dynamics<2> for ModalBeam {
     fn size(&self) -> Size {
         let all = self.coordinates() + self.driven().len();
         let axial = if self.shapes.has_axial_dofs() { self.coordinates() } else { 0 };
         Size { q: all, v: all, bodies: 1, row: all + axial }
+    }
+
+    fn traits(&self) -> Traits {
+        let loaded = !(self.loads.is_empty() && self.signals.is_empty());
+        Traits::free().loaded(loaded).damped(self.damped).driven(self.driven())
     }
 
     fn internal_force(&self, q: &[f64], v: &[f64], f: &mut [f64]) {
@@ -302,10 +312,6 @@ impl Subsystem<2> for ModalBeam {
         }
         // Coordinates of supports are there only where these move.
         f.iter_mut().zip(&self.weight).for_each(|(f, weight)| *f += weight);
-    }
-
-    fn is_loaded(&self) -> bool {
-        !(self.loads.is_empty() && self.signals.is_empty())
     }
 
     fn load(&self, t: f64, f: &mut [f64]) {
@@ -322,10 +328,6 @@ impl Subsystem<2> for ModalBeam {
         self.add_loads(f, |load, force, scratch| load.add_mean(self.beam(), times, scratch, force));
     }
 
-    fn driven(&self) -> &[usize] {
-        self.supports.as_ref().map_or(&[], |supports| &supports.driven)
-    }
-
     fn drive(&self, t: f64, v: &mut [f64]) {
         if let Some(supports) = &self.supports {
             v[self.coordinates()..].copy_from_slice(&supports.velocities(t));
@@ -336,10 +338,6 @@ impl Subsystem<2> for ModalBeam {
         if let Some(supports) = &self.supports {
             v[self.coordinates()..].copy_from_slice(&supports.mean_velocities(times));
         }
-    }
-
-    fn is_damped(&self) -> bool {
-        self.damped
     }
 
     fn damping_power(&self, _q: &[f64], v: &[f64], _scratch: &mut [f64]) -> f64 {
@@ -366,6 +364,19 @@ impl Subsystem<2> for ModalBeam {
         Energy { kinetic, elastic, gravity: 0.0 - along }
     }
 
+    fn factor(&self, w: Weights, _q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
+        let mut compliance = Box::new(ModalCompliance {
+            stiffness: self.stiffness.clone(),
+            damping: self.damping.clone(),
+            weights: w,
+            inverse: vec![0.0; self.coordinates()],
+        });
+        compliance.refactor(w, &[])?;
+        Ok(compliance)
+    }
+}
+
+impl Bodies<2> for ModalBeam {
     fn place(&self, _body: u32, q: &[f64], local: &[Vector2<f64>], out: &mut [Vector2<f64>]) {
         let (q, line) = self.split(q);
         line.place(&self.shapes, q, local, out);
@@ -385,19 +396,13 @@ impl Subsystem<2> for ModalBeam {
         Some(line.reach(self.shapes.deflection_bounds(q), margin))
     }
 
-    fn rows(&self, _: u32, _q: &[f64], point: &Vector2<f64>, frame: &Frame<2>, out: &mut Rows<'_, 2>) -> usize {
-        line::rows(&self.shapes, point, frame, self.driven(), out)
+    fn bias(&self, _: u32, q: &[f64], v: &[f64], point: &Vector2<f64>, frame: &Frame<2>) -> Option<Vector<2>> {
+        let n = self.split(q).0.len();
+        line::bias(&self.shapes, [&q[..n], &v[..n]], point, frame)
     }
 
-    fn factor(&self, w: Weights, _q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
-        let mut compliance = Box::new(ModalCompliance {
-            stiffness: self.stiffness.clone(),
-            damping: self.damping.clone(),
-            weights: w,
-            inverse: vec![0.0; self.coordinates()],
-        });
-        compliance.refactor(w, &[])?;
-        Ok(compliance)
+    fn rows(&self, _: u32, _q: &[f64], point: &Vector2<f64>, frame: &Frame<2>, out: &mut Rows<'_, 2>) -> usize {
+        line::rows(&self.shapes, point, frame, self.driven(), out)
     }
 }
 

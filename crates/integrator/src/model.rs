@@ -2,36 +2,42 @@
 
 use crate::mismatch::{Identity, length};
 use crate::stage::ContactRows;
-use crate::{Energy, ImpactLaw, Mismatch, PairLaw, Size, Subsystem, Vector};
+use crate::{Energy, ImpactLaw, Linearised, Mismatch, PairLaw, Size, Subsystem, Traits, Vector};
+use std::collections::HashSet;
 use std::ops::Range;
-use teeter_detect::{BodyId, Candidate, ContactDetector, Geometry, HalfSpace, Kinematics, SurfacePoint, Wiring};
+use teeter_detect::{
+    BodyId, Candidate, Candidates, ContactDetector, DetectorMemory, Geometry, HalfSpace, Kinematics, LawId,
+    SurfacePoint, Wiring,
+};
 
 /// What is wrong with a model.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ModelError {
     /// A coefficient outside its range.
-    #[error("{what} of pair {pair} is {value}, but must be {rule}")]
+    #[error("{what} of law {} is {value}, but must be {rule}", law.0)]
     Law {
         /// Which coefficient.
         what: &'static str,
-        /// Number of the pair.
-        pair: u32,
+        /// The law.
+        law: LawId,
         /// Its value.
         value: f64,
         /// The range.
         rule: &'static str,
     },
-    /// A detector with a pair that wasn't added.
-    #[error("the detector has pair {pair}, but the model has {pairs}: use the number that ModelBuilder::pair returned")]
-    Pair {
-        /// The number.
+    /// A pair with a law that wasn't added.
+    #[error("pair {pair} has law {}, but the model has {laws}: use what ModelBuilder::law returned", law.0)]
+    NoLaw {
+        /// The pair.
         pair: u32,
-        /// How many pairs there are.
-        pairs: usize,
+        /// The law.
+        law: LawId,
+        /// How many laws there are.
+        laws: usize,
     },
     /// A detector that gives two pairs the same number: their contacts could not be told apart.
-    #[error("the detector has pair {pair} twice: add a pair for each")]
+    #[error("the detector has pair {pair} twice: number each in its own way")]
     PairTwice {
         /// The number.
         pair: u32,
@@ -84,12 +90,6 @@ pub enum ModelError {
         /// How many there are.
         blocks: usize,
     },
-    /// A motion of a coordinate that a block doesn't have.
-    #[error("a block has no coordinate {coordinate}: they are 0 for X, 1 for Y and 2 for φ")]
-    Coordinate {
-        /// Its number.
-        coordinate: usize,
-    },
     /// A load that is not finite.
     #[error("a load of block {block} is not finite")]
     Load {
@@ -118,18 +118,52 @@ pub struct Part<const D: usize> {
     /// Its velocities.
     pub v: Range<usize>,
     pub(crate) traits: Traits,
+    /// α of C = αM, 1/s; else 0.
+    pub(crate) mass_damping: f64,
     /// Most columns of a row.
     pub(crate) row: usize,
 }
 
-/// What a subsystem says of itself once and for all, so that a step needn't ask.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Traits {
-    pub(crate) loaded: bool,
-    pub(crate) damped: bool,
-    pub(crate) driven: bool,
-    pub(crate) follows_coordinates: bool,
-    pub(crate) mass_damping: f64,
+/// Where a subsystem is in the model and in its states.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct PartPlace {
+    /// Its number, in the order of adding.
+    pub part: usize,
+    /// The numbers of its bodies.
+    pub bodies: Range<u32>,
+    /// Its coordinates.
+    pub q: Range<usize>,
+    /// Its velocities.
+    pub v: Range<usize>,
+}
+
+impl PartPlace {
+    /// Its first body: the only one of a beam or of the ground. A model without that body refuses pairs with it.
+    #[must_use]
+    pub fn body(&self) -> BodyId {
+        BodyId(self.bodies.start)
+    }
+
+    /// Its body of this number within it. One that it doesn't have is a body of another subsystem, or none: see
+    /// [`PartPlace::bodies`](Self#structfield.bodies).
+    #[must_use]
+    pub fn nth_body(&self, number: u32) -> BodyId {
+        BodyId(self.bodies.start.saturating_add(number))
+    }
+}
+
+impl<const D: usize> Part<D> {
+    /// What the subsystem said of itself when the model was built.
+    #[must_use]
+    pub fn traits(&self) -> &Traits {
+        &self.traits
+    }
+
+    /// Whether any of its velocities is prescribed.
+    pub(crate) fn is_driven(&self) -> bool {
+        !self.traits.driven.is_empty()
+    }
 }
 
 impl<const D: usize> std::fmt::Debug for Part<D> {
@@ -187,33 +221,34 @@ impl<const D: usize> ModelBuilder<D> {
         Self { parts: Vec::new(), bodies: Vec::new(), laws: Vec::new(), size: Size::default() }
     }
 
-    /// Adds a subsystem. Returns its first body; its others follow in number.
-    pub fn add(&mut self, system: Box<dyn Subsystem<D>>) -> BodyId {
+    /// Adds a subsystem. What is returned says where its bodies, coordinates and velocities are.
+    pub fn add(&mut self, system: impl Subsystem<D> + 'static) -> PartPlace {
+        self.add_boxed(Box::new(system))
+    }
+
+    /// As [`ModelBuilder::add`], for a subsystem that is in a box.
+    pub fn add_boxed(&mut self, system: Box<dyn Subsystem<D>>) -> PartPlace {
         let (size, part) = (system.size(), self.parts.len());
         let first = self.bodies.len() as u32;
         self.bodies.extend((0..size.bodies as u32).map(|local| (part, local)));
         let (q, v) = (self.size.q..self.size.q + size.q, self.size.v..self.size.v + size.v);
-        let traits = Traits {
-            loaded: system.is_loaded(),
-            damped: system.is_damped(),
-            driven: !system.driven().is_empty(),
-            follows_coordinates: system.follows_coordinates(),
-            mass_damping: system.mass_damping(),
-        };
-        self.parts.push(Part { system, q, v, traits, row: size.row });
+        let (place_q, place_v) = (q.clone(), v.clone());
+        let traits = system.traits();
+        let mass_damping = system.linearised().map_or(0.0, Linearised::mass_damping);
+        self.parts.push(Part { system, q, v, traits, mass_damping, row: size.row });
         self.size = Size {
             q: self.size.q + size.q,
             v: self.size.v + size.v,
             bodies: self.size.bodies + size.bodies,
             row: self.size.row.max(size.row),
         };
-        BodyId(first)
+        PartPlace { part, bodies: first..self.bodies.len() as u32, q: place_q, v: place_v }
     }
 
-    /// Adds a pair of bodies that can touch; the detector refers to it by the number returned.
-    pub fn pair(&mut self, law: PairLaw) -> u32 {
+    /// Adds a contact law; the detector refers to it by what is returned.
+    pub fn law(&mut self, law: PairLaw) -> LawId {
         self.laws.push(law);
-        (self.laws.len() - 1) as u32
+        LawId((self.laws.len() - 1) as u32)
     }
 
     /// The model.
@@ -222,15 +257,16 @@ impl<const D: usize> ModelBuilder<D> {
     /// If a coefficient of a pair is out of its range, or the detector joins what can't touch: pairs or bodies that weren't added, the surface
     /// of a body that has none, a body and itself. Of a detector that doesn't [say](ContactDetector::wiring) whom it joins, the steps tell.
     pub fn build(self, detector: Box<dyn ContactDetector<D>>) -> Result<Model<D>, ModelError> {
-        for (pair, law) in self.laws.iter().enumerate() {
-            law.check().map_err(|(what, value, rule)| ModelError::Law { what, pair: pair as u32, value, rule })?;
+        for (number, law) in self.laws.iter().enumerate() {
+            let law_id = LawId(number as u32);
+            law.check().map_err(|(what, value, rule)| ModelError::Law { what, law: law_id, value, rule })?;
         }
         self.check_parts()?;
         let wiring = detector.wiring();
         self.check_wiring(&wiring)?;
         let springs = self.laws.iter().any(|law| law.impact.spring().is_some());
         let contacts = detector.capacity() > 0;
-        let driven = self.parts.iter().any(|part| part.traits.driven);
+        let driven = self.parts.iter().any(Part::is_driven);
         Ok(Model {
             parts: self.parts,
             bodies: self.bodies,
@@ -250,7 +286,7 @@ impl<const D: usize> ModelBuilder<D> {
     fn check_parts(&self) -> Result<(), ModelError> {
         for (number, part) in self.parts.iter().enumerate() {
             let velocities = part.v.len();
-            for (what, given) in [("prescribed", part.system.driven()), ("held", part.system.held())] {
+            for (what, given) in [("prescribed", &part.traits.driven), ("held", &part.traits.held)] {
                 if !given.is_sorted_by(|a, b| a < b) || given.last().is_some_and(|last| *last >= velocities) {
                     return Err(ModelError::Velocities { what, part: number, velocities });
                 }
@@ -260,12 +296,13 @@ impl<const D: usize> ModelBuilder<D> {
     }
 
     fn check_wiring(&self, wiring: &[Wiring]) -> Result<(), ModelError> {
-        let mut seen = vec![false; self.laws.len()];
-        for &Wiring { pair, bodies: [first, second], on_surface, contacts, not_finite } in wiring {
-            match seen.get_mut(pair as usize) {
-                None => return Err(ModelError::Pair { pair, pairs: self.laws.len() }),
-                Some(true) => return Err(ModelError::PairTwice { pair }),
-                Some(seen) => *seen = true,
+        let mut seen = HashSet::with_capacity(wiring.len());
+        for &Wiring { pair, law, bodies: [first, second], on_surface, contacts, not_finite } in wiring {
+            if !seen.insert(pair) {
+                return Err(ModelError::PairTwice { pair });
+            }
+            if law.0 as usize >= self.laws.len() {
+                return Err(ModelError::NoLaw { pair, law, laws: self.laws.len() });
             }
             for body in [first, second] {
                 if body.0 as usize >= self.bodies.len() {
@@ -297,12 +334,23 @@ impl<const D: usize> Model<D> {
         self.size
     }
 
-    /// The law of a pair.
+    /// A law.
     ///
     /// # Errors
-    /// For a pair that the model doesn't have.
-    pub fn law(&self, pair: u32) -> Result<PairLaw, Mismatch> {
-        self.laws.get(pair as usize).copied().ok_or(Mismatch::Pair { pair, pairs: self.laws.len() })
+    /// For one that the model doesn't have.
+    #[inline]
+    pub fn law(&self, law: LawId) -> Result<PairLaw, Mismatch> {
+        self.laws.get(law.0 as usize).copied().ok_or(Mismatch::Law { law, laws: self.laws.len() })
+    }
+
+    /// Puts the candidates with a gap of at most `margin` (m) at coordinates `q` into `out`, in the detector's order, without anything kept
+    /// from before: for who looks once. Steps look by [`Workspace::detect`](crate::Workspace::detect).
+    ///
+    /// # Errors
+    /// If there are too few or too many coordinates.
+    pub fn candidates(&self, q: &[f64], margin: f64, out: &mut Candidates<D>) -> Result<(), Mismatch> {
+        self.detector.detect(&self.placed(q)?, margin, &mut DetectorMemory::default(), out);
+        Ok(())
     }
 
     /// Refuses candidates of pairs and bodies that the model doesn't have.
@@ -311,7 +359,7 @@ impl<const D: usize> Model<D> {
             return Ok(());
         }
         for candidate in candidates {
-            self.law(candidate.id.pair())?;
+            self.law(candidate.law)?;
             for side in &candidate.sides {
                 if side.body.0 as usize >= self.bodies.len() {
                     return Err(Mismatch::Body { body: side.body, bodies: self.bodies.len() });
@@ -383,14 +431,14 @@ impl<const D: usize> Model<D> {
 
     /// The same for what is known to fit.
     pub(crate) fn drive_at(&self, t: f64, v: &mut [f64]) {
-        for part in self.parts.iter().filter(|part| part.traits.driven) {
+        for part in self.parts.iter().filter(|part| part.is_driven()) {
             part.system.drive(t, &mut v[part.v.clone()]);
         }
     }
 
     /// The means of the prescribed velocities over the time from `times[0]` to `times[1]` (s), for what is known to fit.
     pub(crate) fn drive_mean_at(&self, times: [f64; 2], v: &mut [f64]) {
-        for part in self.parts.iter().filter(|part| part.traits.driven) {
+        for part in self.parts.iter().filter(|part| part.is_driven()) {
             part.system.drive_mean(times, &mut v[part.v.clone()]);
         }
     }
@@ -416,7 +464,7 @@ impl<const D: usize> Model<D> {
     /// The least energy scale of the scene, J: the sum of m g R over its blocks.
     #[must_use]
     pub fn energy_scale(&self) -> f64 {
-        self.parts.iter().map(|part| part.system.energy_scale()).sum()
+        self.parts.iter().map(|part| part.traits.energy_scale).sum()
     }
 
     /// `out = q ⊕ τ v`: where velocities `v` lead in the time `tau` (s).
@@ -443,7 +491,7 @@ impl<const D: usize> Model<D> {
     /// If there are too few or too many coordinates or velocities, or the candidate is of a pair or a body that the model doesn't have.
     pub fn relative_velocity(&self, candidate: &Candidate<D>, q: &[f64], v: &[f64]) -> Result<Vector<D>, Mismatch> {
         self.fits(q, v)?;
-        self.law(candidate.id.pair())?;
+        self.law(candidate.law)?;
         let mut rows = ContactRows::default();
         rows.push(self, q, candidate)?;
         Ok(rows.velocity(0, v))

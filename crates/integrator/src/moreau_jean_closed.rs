@@ -275,7 +275,7 @@ impl<const D: usize> MoreauJeanClosed<D> {
         work: &mut Workspace<D>,
         candidate: &Candidate<D>,
     ) -> Result<(), Mismatch> {
-        let law = model.law(candidate.id.pair())?;
+        let law = model.law(candidate.law)?;
         let i = self.stage.len();
         if !self.stage.add(model, &self.q_mid, candidate, &state.warm, &state.memory)? {
             return Ok(());
@@ -426,7 +426,7 @@ impl<const D: usize> Guard<'_, D> {
             if without.norm() < shift.norm() {
                 problem.mu[i] = 0.0;
             }
-            let e = self.model.law(contact.id.pair())?.restitution;
+            let e = self.model.law(contact.law)?.restitution;
             let back = match problem.rule(i) {
                 Rule::Poisson { .. } if is_impact(e, &u_before, &problem.u_free(i)) => e * u_before[0],
                 _ => problem.shift(i)[0],

@@ -209,7 +209,7 @@ impl<const D: usize> Kept<D> {
             self.largest_slip_work = self.largest_slip_work.max(slip);
             if let Some(gap) = contact.gap_after
                 && let Some(spring) =
-                    model.law(contact.id.pair()).ok().map(|law| law.impact).as_ref().and_then(ImpactLaw::spring)
+                    model.law(contact.law).ok().map(|law| law.impact).as_ref().and_then(ImpactLaw::spring)
             {
                 self.stored += spring.potential(gap);
             }

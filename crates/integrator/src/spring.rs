@@ -170,7 +170,7 @@ impl Springs {
         work: &mut Workspace<D>,
     ) -> Result<(), Mismatch> {
         work.detect(model, q_free, 0.0)?;
-        let spring = |c: &&Candidate<D>| model.law(c.id.pair()).is_ok_and(|law| law.impact.spring().is_some());
+        let spring = |c: &&Candidate<D>| model.law(c.law).is_ok_and(|law| law.impact.spring().is_some());
         let springs = work.candidates.iter().filter(spring);
         self.touched.clear();
         self.touched.extend(springs.map(|candidate| (candidate.id, 0.0)));

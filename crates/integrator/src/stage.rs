@@ -263,7 +263,7 @@ impl<const D: usize> ContactStage<D> {
         work.detect(model, look.at, f64::INFINITY)?;
         for k in 0..work.candidates.len() {
             let candidate = work.candidates[k];
-            let spring = model.law(candidate.id.pair())?.impact.spring().is_some();
+            let spring = model.law(candidate.law)?.impact.spring().is_some();
             if self.springs.admit(spring, &candidate, &state.memory, look.within) {
                 self.add(model, look.at, &candidate, &state.warm, &state.memory)?;
             }
@@ -289,7 +289,7 @@ impl<const D: usize> ContactStage<D> {
     ) -> Result<bool, Mismatch> {
         self.check(model)?;
         length("the coordinates", q, model.size().q)?;
-        let law = model.law(candidate.id.pair())?;
+        let law = model.law(candidate.law)?;
         self.rows.push(model, q, candidate)?;
         if self.rows.last_is_prescribed(model) {
             self.rows.pop();
@@ -330,7 +330,7 @@ impl<const D: usize> ContactStage<D> {
         self.check_velocities(v_before)?;
         self.check_velocities(v_free)?;
         for i in 0..self.contacts.len() {
-            let law = model.law(self.contacts[i].id.pair())?;
+            let law = model.law(self.contacts[i].law)?;
             let u_before = self.rows.velocity(i, v_before);
             let u_free = self.rows.velocity(i, v_free);
             let (shift, rule) = match over {
@@ -478,7 +478,7 @@ impl<const D: usize> ContactStage<D> {
         self.rows.spans[i].iter().filter(|side| side.len > 0).any(|side| {
             let part = &model.parts()[side.part];
             let (v0, v1) = (&v0[part.v.clone()], &v1[part.v.clone()]);
-            part.system.driven().iter().any(|&k| v0[k] != v1[k])
+            part.traits.driven.iter().any(|&k| v0[k] != v1[k])
         })
     }
 

@@ -77,36 +77,100 @@ impl<'a, const D: usize> Rows<'a, D> {
     }
 }
 
+/// What a subsystem says of itself once and for all: a model asks when it is built, and never again.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Traits {
+    /// Whether [`Dynamics::load`] adds anything.
+    pub loaded: bool,
+    /// Whether C is other than zero.
+    pub damped: bool,
+    /// Whether M, C or K change with the coordinates, so that a step has to call [`Compliance::update`].
+    pub follows_coordinates: bool,
+    /// The velocities that are prescribed, by number, in rising order: no force changes their motion. The subsystem's mass, damping and
+    /// stiffness couple them to the others as [`Dynamics::apply`] says.
+    pub driven: Vec<usize>,
+    /// The velocities that are always 0, by number, in rising order: of what a support holds, say. Rows and columns of W are 0 there,
+    /// whatever [`Dynamics::apply`] gives.
+    pub held: Vec<usize>,
+    /// The least that counts as the scene's energy scale on account of it, J; m g R for a block.
+    pub energy_scale: f64,
+}
+
+impl Traits {
+    /// Neither loaded nor damped, with constant matrices, and all velocities free.
+    #[must_use]
+    pub fn free() -> Self {
+        Self::default()
+    }
+
+    /// With loads.
+    #[must_use]
+    pub fn loaded(mut self, loaded: bool) -> Self {
+        self.loaded = loaded;
+        self
+    }
+
+    /// With damping.
+    #[must_use]
+    pub fn damped(mut self, damped: bool) -> Self {
+        self.damped = damped;
+        self
+    }
+
+    /// With matrices that change with the coordinates.
+    #[must_use]
+    pub fn following_coordinates(mut self, follows: bool) -> Self {
+        self.follows_coordinates = follows;
+        self
+    }
+
+    /// With these prescribed velocities.
+    #[must_use]
+    pub fn driven(mut self, velocities: impl Into<Vec<usize>>) -> Self {
+        self.driven = velocities.into();
+        self
+    }
+
+    /// With these velocities held at 0.
+    #[must_use]
+    pub fn held(mut self, velocities: impl Into<Vec<usize>>) -> Self {
+        self.held = velocities.into();
+        self
+    }
+
+    /// With this energy scale, J.
+    #[must_use]
+    pub fn energy_scale(mut self, scale: f64) -> Self {
+        self.energy_scale = scale;
+        self
+    }
+}
+
 /// A model of something with velocities that can be hit: blocks, a beam, a frame of someone else's. It has no state:
 /// `q` and `v` are its own slices of the [`State`](crate::State).
 ///
-/// Bodies are numbered within the subsystem. Methods that add into their last argument say so. What a method without arguments answers
-/// never changes: a model asks once.
-pub trait Subsystem<const D: usize>: Send + Sync {
+/// It plays two roles: [`Dynamics`] says how it moves, [`Bodies`] where its bodies are. Whoever plays both is a subsystem.
+pub trait Subsystem<const D: usize>: Dynamics<D> + Bodies<D> {}
+
+impl<const D: usize, S: Dynamics<D> + Bodies<D> + ?Sized> Subsystem<D> for S {}
+
+/// How a subsystem moves: forces, products with M, C and K, energies, a factor. What it offers are values at the coordinates that a scheme
+/// asks for; formulas of time integration are the scheme's. Methods that add into their last argument say so.
+pub trait Dynamics<const D: usize>: Send + Sync {
     /// Its sizes; they never change.
     fn size(&self) -> Size;
+
+    /// What it says of itself once and for all.
+    fn traits(&self) -> Traits {
+        Traits::free()
+    }
 
     /// Adds the internal forces at (q, v) to `f`: elastic, viscous and weight, `−∂V/∂q − C v`. N (N·m for couples).
     fn internal_force(&self, q: &[f64], v: &[f64], f: &mut [f64]);
 
-    /// α, 1/s, where C is αM and nothing else, and K doesn't change with the coordinates; else 0. A θ step has αM in its
-    /// matrix and can do without the product: it then asks for [`Subsystem::internal_force_beside_mass_damping`].
-    fn mass_damping(&self) -> f64 {
-        0.0
-    }
-
-    /// As [`Subsystem::internal_force`], without the viscous force if [`Subsystem::mass_damping`] is not 0.
-    fn internal_force_beside_mass_damping(&self, q: &[f64], v: &[f64], f: &mut [f64]) {
-        self.internal_force(q, v, f);
-    }
-
-    /// Whether [`Subsystem::load`] adds anything.
-    fn is_loaded(&self) -> bool {
-        false
-    }
-
     /// Adds the external loads P(t) to `f`: all forces but weight that don't come from the motion. A static start takes those of its time;
-    /// steps take [`Subsystem::mean_load`].
+    /// steps take [`Dynamics::mean_load`].
     fn load(&self, t: f64, f: &mut [f64]) {
         let _ = (t, f);
     }
@@ -125,33 +189,15 @@ pub trait Subsystem<const D: usize>: Send + Sync {
         }
     }
 
-    /// The velocities that are prescribed, by number, in rising order: no force changes their motion. The subsystem's
-    /// mass, damping and stiffness couple them to the others as [`Subsystem::apply`] says.
-    fn driven(&self) -> &[usize] {
-        &[]
-    }
-
-    /// The velocities that are always 0, by number, in rising order: of what a support holds, say. Rows and columns of W are 0 there,
-    /// whatever [`Subsystem::apply`] gives.
-    fn held(&self) -> &[usize] {
-        &[]
-    }
-
     /// Writes the prescribed velocities at time `t` into their places in `v`, and leaves the others alone.
     fn drive(&self, t: f64, v: &mut [f64]) {
         let _ = (t, v);
     }
 
     /// Writes the means of the prescribed velocities over the time from `times[0]` to `times[1]` (s), which is later, into their places in
-    /// `v`, and leaves the others alone: a θ step h ends with those over the time from θh before its end to (1 − θ)h after it
-    /// (`docs/signals.md`). The default takes them at the middle.
+    /// `v`, and leaves the others alone. The default takes them at the middle.
     fn drive_mean(&self, times: [f64; 2], v: &mut [f64]) {
         self.drive(0.5 * (times[0] + times[1]), v);
-    }
-
-    /// Whether C is other than zero.
-    fn is_damped(&self) -> bool {
-        false
     }
 
     /// vᵀC v, the power that damping takes, W. The default takes the product, in `scratch`, as long as the velocities; a subsystem that can
@@ -160,11 +206,6 @@ pub trait Subsystem<const D: usize>: Send + Sync {
         scratch.fill(0.0);
         self.apply(Weights { damping: 1.0, ..Weights::default() }, q, v, scratch);
         dot(v, scratch)
-    }
-
-    /// Whether M, C or K change with the coordinates, so that a step has to call [`Compliance::update`].
-    fn follows_coordinates(&self) -> bool {
-        false
     }
 
     /// Adds `(mass·M + damping·C + stiffness·K) x` to `y`.
@@ -180,19 +221,43 @@ pub trait Subsystem<const D: usize>: Send + Sync {
     /// The energies at (q, v).
     fn energy(&self, q: &[f64], v: &[f64]) -> Energy;
 
-    /// What a θ step of length `h` (s) conserves on top of [`Subsystem::energy`] where no force but its own acts, J: 0 for a
-    /// potential that is quadratic and whose K is in W. For any other, what the step keeps constant is an energy that differs from
-    /// the true one by something of order h²; the account books the change of that as numerical.
+    /// Factorises `mass·M + damping·C + stiffness·K`, without the rows and columns of the [driven and held](Traits) velocities.
+    ///
+    /// # Errors
+    /// If the matrix is not positive definite.
+    fn factor(&self, w: Weights, q: &[f64]) -> Result<Box<dyn Compliance<D>>, FactorError>;
+
+    /// What a linearly implicit step, such as that of the θ schemes, can make use of. `None`, the default, is always right for a potential
+    /// that is quadratic.
+    fn linearised(&self) -> Option<&dyn Linearised> {
+        None
+    }
+}
+
+/// What a subsystem offers to steps that have (M + hθC + h²θ²K)⁻¹ in them, K that at q⁰ + hθv⁰.
+pub trait Linearised: Send + Sync {
+    /// α, 1/s, where C is αM and nothing else, and K doesn't change with the coordinates; else 0. Such a step has αM in its matrix and can do
+    /// without the product: it then asks for [`Linearised::conservative_force`].
+    fn mass_damping(&self) -> f64 {
+        0.0
+    }
+
+    /// Adds the internal forces without the viscous one: asked for only where [`Linearised::mass_damping`] is not 0.
+    fn conservative_force(&self, q: &[f64], f: &mut [f64]) {
+        let _ = (q, f);
+    }
+
+    /// What such a step of length `h` (s) with θ = ½ conserves on top of [`Dynamics::energy`] where no force but its own acts, J: 0 for a
+    /// potential that is quadratic. For any other, what the step keeps constant is an energy that differs from the true one by something
+    /// of order h²; the account books the change of that as numerical.
     fn modified_energy(&self, h: f64, q: &[f64], v: &[f64]) -> f64 {
         let _ = (h, q, v);
         0.0
     }
+}
 
-    /// The least that counts as the scene's energy scale on account of this subsystem, J; m g R for a block.
-    fn energy_scale(&self) -> f64 {
-        0.0
-    }
-
+/// Where a subsystem's bodies are, and how their points move with its velocities. Bodies are numbered within the subsystem.
+pub trait Bodies<const D: usize>: Send + Sync {
     /// Places points fixed in a body of its: `out[k]` is where `local[k]` is in the world.
     fn place(&self, body: u32, q: &[f64], local: &[Vector<D>], out: &mut [Vector<D>]);
 
@@ -203,7 +268,7 @@ pub trait Subsystem<const D: usize>: Send + Sync {
         None
     }
 
-    /// Whether a body has a surface, so that [`Subsystem::surface`] ever finds a point. The default has none: a model is refused whose detector
+    /// Whether a body has a surface, so that [`Bodies::surface`] ever finds a point. The default has none: a model is refused whose detector
     /// looks for one.
     fn has_surface(&self, body: u32) -> bool {
         let _ = body;
@@ -217,15 +282,16 @@ pub trait Subsystem<const D: usize>: Send + Sync {
     }
 
     /// Fills the Jacobian rows of a body's point (in the coordinates that detection used for it) in `frame`, and returns
-    /// how many columns it took; what it finds in the places that it is to fill means nothing.
+    /// how many columns it took; what it finds in the places that it is to fill means nothing. The point's velocity is rows · v, those that are
+    /// prescribed among them.
     fn rows(&self, body: u32, q: &[f64], point: &Vector<D>, frame: &Frame<D>, out: &mut Rows<'_, D>) -> usize;
 
-    /// Factorises `mass·M + damping·C + stiffness·K`, without the rows and columns of the [driven](Subsystem::driven) and
-    /// [held](Subsystem::held) velocities.
-    ///
-    /// # Errors
-    /// If the matrix is not positive definite.
-    fn factor(&self, w: Weights, q: &[f64]) -> Result<Box<dyn Compliance<D>>, FactorError>;
+    /// J̇ v of a body's point, in `frame` held still, m/s²: the part of its acceleration that comes from the velocities, rows · v̇ being the
+    /// other. `None`, the default, where it isn't known: a scheme that needs accelerations refuses the subsystem then.
+    fn bias(&self, body: u32, q: &[f64], v: &[f64], point: &Vector<D>, frame: &Frame<D>) -> Option<Vector<D>> {
+        let _ = (body, q, v, point, frame);
+        None
+    }
 }
 
 /// xᵀy, in four sums at once: one after the other they would wait for each addition.
@@ -265,7 +331,7 @@ pub trait Compliance<const D: usize>: Send {
 
     /// Becomes the inverse of the same combination at coordinates `q`, whatever it was updated to before; allocates nothing. A θ step
     /// calls it once, with the coordinates q⁰ + hθv⁰ at which it takes the internal forces, if the subsystem
-    /// [follows its coordinates](Subsystem::follows_coordinates). Where the matrix is not positive definite there, solutions have to be
+    /// [follows its coordinates](Traits). Where the matrix is not positive definite there, solutions have to be
     /// NaN: the step then ends as diverged.
     fn update(&mut self, q: &[f64]) {
         let _ = q;
@@ -287,7 +353,7 @@ pub trait Compliance<const D: usize>: Send {
         false
     }
 
-    /// `f ← W f`; zero for [driven](Subsystem::driven) and [held](Subsystem::held) velocities, whose rows and columns of W are
+    /// `f ← W f`; zero for [driven and held](Traits) velocities, whose rows and columns of W are
     /// zero.
     fn solve(&mut self, f: &mut [f64]);
 

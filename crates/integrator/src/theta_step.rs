@@ -116,14 +116,17 @@ impl ThetaStep {
             let dv = &mut self.dv[v.clone()];
             let v_start = &state.v[v.clone()];
             dv.fill(0.0);
-            let kept = beside_mass_damping(part.traits.mass_damping, h, theta);
+            let kept = beside_mass_damping(part.mass_damping, h, theta);
             let ahead = h * theta * (1.0 - kept * theta);
             part.system.retract(&state.q[q.clone()], v_start, ahead, &mut self.q_forces[q.clone()]);
             let q = &self.q_forces[q];
             if part.traits.follows_coordinates {
                 factor.update(q);
             }
-            part.system.internal_force_beside_mass_damping(q, v_start, dv);
+            match part.system.linearised() {
+                Some(linearised) if part.mass_damping != 0.0 => linearised.conservative_force(q, dv),
+                _ => part.system.internal_force(q, v_start, dv),
+            }
             if part.traits.loaded {
                 let (load, scratch) = (&mut self.load[v.clone()], &mut work.scratch[..v.len()]);
                 load.fill(0.0);
@@ -132,7 +135,7 @@ impl ThetaStep {
             }
             dv.iter_mut().for_each(|f| *f *= h);
             let v_end = &mut self.v_end[v.clone()];
-            if !part.traits.driven {
+            if !part.is_driven() {
                 factor.solve(dv);
                 for ((free, v0), dv) in v_end.iter_mut().zip(v_start).zip(dv.iter()) {
                     *free = (1.0 - kept) * v0 + dv;
@@ -186,7 +189,7 @@ impl ThetaStep {
         if work.account == Account::LeftOut {
             return StepEnergy::default();
         }
-        let Self { q_forces, q_at, q_free, v_end, v_mean, dv, load, product, impulse, .. } = self;
+        let Self { q_forces, q_at, v_end, v_mean, dv, load, product, impulse, .. } = self;
         let mut energy = StepEnergy::default();
         if theta != 0.5 || model.is_driven() {
             for ((dv, v1), v0) in dv.iter_mut().zip(v_end.iter()).zip(&state.v) {
@@ -195,10 +198,12 @@ impl ThetaStep {
         }
         for (index, part) in model.parts().iter().enumerate().filter(|(_, part)| !part.v.is_empty()) {
             let (q, v) = (&q_forces[part.q.clone()], part.v.clone());
-            let modified = |q: &[f64], velocity: &[f64]| {
-                part.system.modified_energy(h, &q[part.q.clone()], &velocity[part.v.clone()])
-            };
-            energy.numerical -= modified(q_at, v_end) - modified(&state.q, &state.v);
+            if let Some(linearised) = part.system.linearised() {
+                let modified = |q: &[f64], velocity: &[f64]| {
+                    linearised.modified_energy(h, &q[part.q.clone()], &velocity[part.v.clone()])
+                };
+                energy.numerical -= modified(q_at, v_end) - modified(&state.q, &state.v);
+            }
             let product = &mut product[v.clone()];
             if part.traits.damped {
                 energy.viscous -= h * part.system.damping_power(q, &v_mean[v.clone()], product);
@@ -216,7 +221,7 @@ impl ThetaStep {
             if part.traits.loaded {
                 energy.external += h * dot(&v_mean[v.clone()], &load[v.clone()]);
             }
-            if part.traits.driven {
+            if part.is_driven() {
                 // What the drives give: momentum gained less the impulses of all other forces.
                 product.fill(0.0);
                 part.system.apply(weights(h, theta), q, &dv[v.clone()], product);
@@ -224,7 +229,7 @@ impl ThetaStep {
                 pushed.fill(0.0);
                 stage.add_generalised_impulse(index, pushed);
                 let (impulse, mean) = (&impulse[v.clone()], &v_mean[v]);
-                for &k in part.system.driven() {
+                for &k in &part.traits.driven {
                     energy.external += mean[k] * (product[k] - impulse[k] - pushed[k]);
                 }
             }

@@ -10,7 +10,7 @@ use crate::{
     StepReport, StepSpan, Vector, Weights,
 };
 use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, Stop};
-use teeter_detect::{Candidates, ContactId};
+use teeter_detect::{Candidates, ContactId, DetectorMemory};
 
 /// When the contact solver of a run stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,6 +115,7 @@ pub struct Workspace<const D: usize> {
     pub counts: WorkCounts,
     pub(crate) factors: Factors<D>,
     pub(crate) laws: Laws<D>,
+    detection: DetectorMemory,
     phases: Phases<D>,
     /// The model that it was made for.
     model: Identity,
@@ -149,6 +150,7 @@ impl<const D: usize> Workspace<D> {
             counts: WorkCounts::default(),
             factors: Factors::new(),
             laws,
+            detection: DetectorMemory::default(),
             phases,
             model: model.identity(),
         }
@@ -204,7 +206,7 @@ impl<const D: usize> Workspace<D> {
         self.candidates.clear();
         if model.has_contacts() {
             self.counts.detections += 1;
-            model.detector().detect(&model.placed_at(q), margin, &mut self.candidates);
+            model.detector().detect(&model.placed_at(q), margin, &mut self.detection, &mut self.candidates);
             self.candidates.sort_unstable_by_key(|candidate| candidate.id);
             model.check_candidates(&self.candidates)?;
         }

@@ -38,8 +38,9 @@ impl Impulses {
         if self.sums.is_empty() {
             return;
         }
-        let Ok(placed) = model.placed(&state.q) else { return };
-        model.detector().detect(&placed, f64::INFINITY, &mut self.candidates);
+        if model.candidates(&state.q, f64::INFINITY, &mut self.candidates).is_err() {
+            return;
+        }
         for (id, p) in &self.sums {
             let Some(names) = Names::of(layout, *id) else { continue };
             let now = self.candidates.iter().find(|candidate| candidate.id == *id);

@@ -6,8 +6,8 @@ use nalgebra::Vector2;
 use std::sync::Arc;
 use teeter_beam::{Beam, BeamError, Load, ModalBasis, SpanLoad};
 use teeter_integrator::{
-    BeamBody, BeamSurface, Block, BlockLoad, Blocks, Ground, ModalBeam, ModelError, MovingForce, Signal, SignalLoad,
-    SpanLoads, Subsystem,
+    BeamBody, BeamSurface, Block, BlockCoordinate, BlockLoad, Blocks, Ground, ModalBeam, ModelError, MovingForce,
+    Signal, SignalLoad, SpanLoads, Subsystem,
 };
 
 /// The blocks under their weight and forces, with what is prescribed of their motion.
@@ -17,7 +17,8 @@ pub(crate) fn blocks(scene: &Scene, blocks: Vec<Block>) -> Result<Blocks, ModelE
         system = system.with_load(block_load(force, force.block))?;
     }
     for (number, block) in scene.blocks.iter().enumerate() {
-        for (coordinate, axis) in block.motion.0.iter().enumerate() {
+        let coordinates = [BlockCoordinate::X, BlockCoordinate::Y, BlockCoordinate::Turn];
+        for (coordinate, axis) in coordinates.into_iter().zip(&block.motion.0) {
             if let Some(axis) = axis {
                 system = system.with_motion(number, coordinate, axis.motion())?;
             }

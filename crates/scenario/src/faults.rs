@@ -172,10 +172,11 @@ fn placement(error: &PlacementError, document: &Document) -> Diagnostic {
 }
 
 fn law(error: &ModelError, document: &Document) -> Diagnostic {
-    let ModelError::Law { pair, .. } = error else {
+    let ModelError::Law { law, .. } = error else {
         return document.error("contact", error.to_string(), "check the keys of the contacts");
     };
     let names = document.names("contact");
-    let contact = usize::try_from(*pair).ok().and_then(|pair| names.get(pair).copied()).unwrap_or_default();
+    // Each contact of a scene has a law of its own.
+    let contact = usize::try_from(law.0).ok().and_then(|law| names.get(law).copied()).unwrap_or_default();
     document.error(&format!("contact.{contact}"), error.to_string(), "check the numbers of its law")
 }

@@ -13,8 +13,8 @@ use nalgebra::{Vector2, Vector3};
 use teeter_beam::SpanLoad;
 use teeter_detect::{BodyId, PointDetector, PointPair};
 use teeter_integrator::{
-    BeamForces, Block, Blocks, Equilibrium, EquilibriumError, Mismatch, Model, ModelBuilder, Motion, PairLaw,
-    SettlingLimits, SolverSettings, Workspace, settle,
+    BeamForces, Block, BlockCoordinate, Blocks, Equilibrium, EquilibriumError, Mismatch, Model, ModelBuilder, Motion,
+    PairLaw, SettlingLimits, SolverSettings, Workspace, settle,
 };
 use teeter_rigid::{Pose, Rectangle};
 use teeter_solvers::Auto;
@@ -210,19 +210,21 @@ impl TakingPart {
             }
             // What is prescribed stays where it is put, but for the height: the block rests on the beam.
             let [x, _, angle] = scene.blocks[k].motion.0.each_ref().map(Option::is_some);
-            for (coordinate, stays) in [(0, x), (2, angle || foot_of(scene, k).is_some())] {
+            for (coordinate, stays) in
+                [(BlockCoordinate::X, x), (BlockCoordinate::Turn, angle || foot_of(scene, k).is_some())]
+            {
                 if stays {
                     blocks = blocks.with_motion(number, coordinate, Motion::still())?;
                 }
             }
         }
-        let first = parts.add(Box::new(blocks));
+        let first = parts.add(blocks).body();
         let mut surfaces: Vec<(Support, BodyId)> = Vec::new();
         for &k in &self.beams {
-            surfaces.push((Support::Beam(k), parts.add(start.beams[k].loaded(scene, k)?.boxed())));
+            surfaces.push((Support::Beam(k), parts.add_boxed(start.beams[k].loaded(scene, k)?.boxed()).body()));
         }
         if let Some(ground) = &scene.ground {
-            surfaces.push((Support::Ground, parts.add(Box::new(driven::ground(ground)))));
+            surfaces.push((Support::Ground, parts.add(driven::ground(ground)).body()));
         }
         let (mut pairs, mut contacts) = (Vec::new(), Vec::new());
         for (number, contact) in scene.contacts.iter().enumerate() {
@@ -237,7 +239,8 @@ impl TakingPart {
             };
             for (friction, numbers) in groups {
                 pairs.push(PointPair {
-                    pair: parts.pair(PairLaw::new(friction, 0.0)),
+                    pair: pairs.len() as u32,
+                    law: parts.law(PairLaw::new(friction, 0.0)),
                     points: numbers.iter().map(|&k| corners[k]).collect(),
                     body,
                     surface,
@@ -277,7 +280,7 @@ impl TakingPart {
         found: &Equilibrium<2>,
     ) -> Result<Vec<(usize, Vec<SpanLoad>)>, Mismatch> {
         let mut candidates = Vec::new();
-        model.detector().detect(&model.placed(&found.q)?, f64::INFINITY, &mut candidates);
+        model.candidates(&found.q, f64::INFINITY, &mut candidates)?;
         let on = |body: BodyId, span: f64| {
             let loads = candidates.iter().flat_map(|candidate| {
                 let force = found.forces.iter().find(|(id, _)| *id == candidate.id).map(|(_, force)| *force);

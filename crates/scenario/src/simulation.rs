@@ -286,16 +286,16 @@ fn assemble(
 ) -> Result<Model<2>, BuildError> {
     let mut parts = ModelBuilder::new();
     let bodies = blocks.iter().map(|(body, _)| *body).collect();
-    let first_block = parts.add(Box::new(driven::blocks(scene, bodies)?));
+    let first_block = parts.add(driven::blocks(scene, bodies)?).body();
     let mut surfaces = Vec::with_capacity(beams.len());
     for (number, model) in beams.iter().enumerate() {
         let body: Box<dyn Subsystem<2>> = match layout.required.rests(number) {
             Some(energy) => Box::new(AtRest::new(layout.beams[number].range.len(), energy)),
             None => model.body(scene, number)?.boxed(),
         };
-        surfaces.push(parts.add(body));
+        surfaces.push(parts.add_boxed(body).body());
     }
-    let ground = scene.ground.as_ref().map(|ground| parts.add(Box::new(driven::ground(ground))));
+    let ground = scene.ground.as_ref().map(|ground| parts.add(driven::ground(ground)).body());
     let mut pairs = Vec::new();
     for (number, contact) in scene.contacts.iter().enumerate() {
         let surface = match contact.surface {
@@ -305,11 +305,12 @@ fn assemble(
                 None => continue, // the resolver refuses a contact with ground that isn't there
             },
         };
-        let pair = parts.pair(contact.law);
+        let law = parts.law(contact.law);
         let points = layout.required.points(number);
         if points > 0 {
             pairs.push(PointPair {
-                pair,
+                pair: number as u32,
+                law,
                 points: blocks[contact.block].1.corners()[..points].to_vec(),
                 body: BodyId(first_block.0 + contact.block as u32),
                 surface,
@@ -355,7 +356,7 @@ const START_TOLERANCE: f64 = 1e-9;
 /// Refuses a start with a corner inside a surface.
 fn check_start(scene: &Scene, model: &Model<2>, layout: &Layout, q: &[f64]) -> Result<(), BuildError> {
     let mut candidates = Vec::new();
-    model.detector().detect(&model.placed(q)?, 0.0, &mut candidates);
+    model.candidates(q, 0.0, &mut candidates)?;
     for candidate in &candidates {
         let pair = candidate.id.pair() as usize;
         let contact = &scene.contacts[pair];

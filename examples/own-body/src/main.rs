@@ -47,14 +47,15 @@ fn block() -> Result<(Rectangle, MassProperties), RigidError> {
 fn scene(rod: &Pendulum, laws: [PairLaw; 2], speed: f64, step: f64) -> Done<Scene> {
     let (shape, mass) = block()?;
     let mut parts = ModelBuilder::new();
-    let body = parts.add(Box::new(Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -rod.gravity))));
-    let hanging = parts.add(Box::new(rod.clone()));
-    let ground = parts.add(Box::new(Ground::flat(0.0)));
+    let body = parts.add(Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -rod.gravity))).body();
+    let hanging = parts.add(rod.clone()).body();
+    let ground = parts.add(Ground::flat(0.0)).body();
     let mut pairs = Vec::new();
     for (law, surface) in laws.into_iter().zip([ground, hanging]) {
-        let pair = parts.pair(law);
+        let law = parts.law(law);
         pairs.push(PointPair {
-            pair,
+            pair: 0,
+ law,
             points: shape.corners().to_vec(),
             body,
             surface,

@@ -23,7 +23,7 @@
 
 use nalgebra::Vector2;
 use teeter_detect::{Frame, Kinematics, SurfacePoint};
-use teeter_integrator::{Compliance, Energy, FactorError, Rows, Size, Subsystem, Weights};
+use teeter_integrator::{Bodies, Compliance, Dynamics, Energy, FactorError, Rows, Size, Traits, Weights};
 
 /// A homogeneous rod that hangs from its upper end.
 #[derive(Clone, Debug)]
@@ -57,9 +57,13 @@ impl Pendulum {
     }
 }
 
-impl Subsystem<2> for Pendulum {
+impl Dynamics<2> for Pendulum {
     fn size(&self) -> Size {
         Size { q: 1, v: 1, bodies: 1, row: 1 }
+    }
+
+    fn traits(&self) -> Traits {
+        Traits::free().energy_scale(self.stiffness())
     }
 
     fn internal_force(&self, q: &[f64], _v: &[f64], f: &mut [f64]) {
@@ -75,21 +79,26 @@ impl Subsystem<2> for Pendulum {
         Energy { kinetic: 0.5 * self.inertia() * v[0] * v[0], elastic: 0.0, gravity }
     }
 
-    fn energy_scale(&self) -> f64 {
-        self.stiffness()
+    fn factor(&self, w: Weights, q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
+        let (inertia, stiffness) = (self.inertia(), self.stiffness());
+        let mut compliance = PendulumCompliance { inertia, stiffness, weights: w, inverse: 0.0 };
+        compliance.refactor(w, q)?;
+        Ok(Box::new(compliance))
     }
+}
 
+impl Bodies<2> for Pendulum {
     fn place(&self, _body: u32, q: &[f64], local: &[Vector2<f64>], out: &mut [Vector2<f64>]) {
         for (x, local) in out.iter_mut().zip(local) {
             *x = self.pivot + Self::rotate(q, local);
         }
     }
 
-    /// The foot of the perpendicular from `at` on the nearer face; none beyond the pivot or the tip.
     fn has_surface(&self, _body: u32) -> bool {
         true
     }
 
+    /// The foot of the perpendicular from `at` on the nearer face; none beyond the pivot or the tip.
     fn surface(&self, _body: u32, q: &[f64], _: Kinematics, at: &Vector2<f64>) -> Option<SurfacePoint<2>> {
         let local = Self::rotate(&[-q[0]], &(at - self.pivot));
         if !(-self.length..=0.0).contains(&local.y) {
@@ -107,13 +116,6 @@ impl Subsystem<2> for Pendulum {
         out.columns[0] = 0;
         out.values[0] = frame * Vector2::new(-r.y, r.x);
         1
-    }
-
-    fn factor(&self, w: Weights, q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
-        let (inertia, stiffness) = (self.inertia(), self.stiffness());
-        let mut compliance = PendulumCompliance { inertia, stiffness, weights: w, inverse: 0.0 };
-        compliance.refactor(w, q)?;
-        Ok(Box::new(compliance))
     }
 }
 

@@ -50,11 +50,12 @@ fn rock(solver: Box<dyn ContactSolver<2>>) -> Result<Motion, Box<dyn Error + Sen
     let shape = Rectangle::new(SIDES[0], SIDES[1])?;
     let mass = MassProperties::rectangle(&shape, 0.03, 2700.0)?;
     let mut parts = ModelBuilder::new();
-    let body = parts.add(Box::new(Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -9.81))));
-    let surface = parts.add(Box::new(Ground::flat(0.0)));
-    let pair = parts.pair(PairLaw::new(0.5, 0.0));
+    let body = parts.add(Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -9.81))).body();
+    let surface = parts.add(Ground::flat(0.0)).body();
+    let law = parts.law(PairLaw::new(0.5, 0.0));
     let points = shape.corners().to_vec();
-    let touching = PointPair { pair, points, body, surface, kinematics: Kinematics::Deformed };
+    let touching = PointPair { pair: 0,
+ law, points, body, surface, kinematics: Kinematics::Deformed };
     let model = parts.build(Box::new(PointDetector::new(vec![touching])))?;
 
     // Held on its left bottom corner, let go at rest.

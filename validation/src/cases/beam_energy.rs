@@ -67,7 +67,7 @@ impl Case for BeamEnergy {
 /// The largest drift of the energy, and what is left of it at the end, relative to the start.
 fn energies(runner: &mut Runner, beam: &Arc<Beam>, q: Vec<f64>, theta: f64, steps: u64) -> Result<[f64; 2]> {
     let mut parts = ModelBuilder::new();
-    parts.add(Box::new(beam_body(beam)));
+    parts.add(beam_body(beam));
     let model = parts.build(Box::new(PointDetector::new(Vec::new())))?;
     let start = Start { v: vec![0.0; beam.dofs()], q, dt: DT, theta };
     let initial = model.energy(&start.q, &start.v)?.total();

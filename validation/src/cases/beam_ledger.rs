@@ -106,7 +106,7 @@ fn swing(
 ) -> Result<(State, f64)> {
     let mut parts = ModelBuilder::new();
     let body = loads.into_iter().fold(beam_body(beam), teeter_integrator::BeamBody::with_load);
-    parts.add(Box::new(body));
+    parts.add(body);
     let model = parts.build(Box::new(PointDetector::new(Vec::new())))?;
     let mut largest = 0.0_f64;
     let mut runner = Runner::new(Stepping::MoreauJean);

@@ -108,7 +108,7 @@ fn swing_errors(known: &Swing, elements: usize) -> Result<Vec<(f64, f64)>> {
     let start =
         beam.from_nodes(&nodes.iter().map(|(s, c)| [s * AMPLITUDE, c * slope * AMPLITUDE]).collect::<Vec<_>>())?;
     let mut parts = ModelBuilder::<2>::new();
-    parts.add(Box::new(beam_body(&beam)));
+    parts.add(beam_body(&beam));
     let model = parts.build(Box::new(PointDetector::new(Vec::new())))?;
     let mut errors = Vec::new();
     for steps in STEPS {

@@ -6,7 +6,9 @@ use crate::figure::{Axes, Corner, Figure, Series};
 use crate::scene::{PAPER_BLOCK, Runner, Start, Stepping, block_over};
 use nalgebra::{Matrix2, Rotation2, Vector2};
 use std::ops::ControlFlow;
-use teeter_detect::{Anchor, BodyId, Candidate, Candidates, ContactDetector, ContactId, Geometry, plane_frame};
+use teeter_detect::{
+    Anchor, BodyId, Candidate, Candidates, ContactDetector, ContactId, DetectorMemory, Geometry, LawId, plane_frame,
+};
 use teeter_integrator::{Block, Blocks, Ground, ImpactLaw, Model, ModelBuilder, PairLaw};
 use teeter_rigid::{MassProperties, Rectangle};
 
@@ -47,16 +49,16 @@ impl Case for ImpactLaws {
 /// Contacts between neighbours in a row along x.
 #[derive(Debug)]
 struct Row {
-    pairs: Vec<u32>,
+    laws: Vec<LawId>,
 }
 
 /// Half the width of a ball, m.
 const HALF: f64 = 0.5;
 
 impl ContactDetector<2> for Row {
-    fn detect(&self, at: &dyn Geometry<2>, margin: f64, out: &mut Candidates<2>) {
+    fn detect(&self, at: &dyn Geometry<2>, margin: f64, _: &mut DetectorMemory, out: &mut Candidates<2>) {
         out.clear();
-        for (k, &pair) in self.pairs.iter().enumerate() {
+        for (k, &law) in self.laws.iter().enumerate() {
             let k = k as u32;
             // Of the right one on the left one: a velocity > 0 parts them.
             let sides =
@@ -68,13 +70,13 @@ impl ContactDetector<2> for Row {
             });
             let gap = right - left;
             if gap <= margin {
-                out.push(Candidate { id: ContactId::new(pair, 0), sides, frame: plane_frame(&Vector2::x()), gap });
+                out.push(Candidate { id: ContactId::new(k, 0), law, sides, frame: plane_frame(&Vector2::x()), gap });
             }
         }
     }
 
     fn capacity(&self) -> usize {
-        self.pairs.len()
+        self.laws.len()
     }
 }
 
@@ -83,9 +85,9 @@ fn row(laws: [PairLaw; 2]) -> Result<Model<2>> {
     let shape = Rectangle::new(2.0 * HALF, 2.0 * HALF)?;
     let mass = MassProperties::rectangle(&shape, 1.0, 1.0)?;
     let mut parts = ModelBuilder::new();
-    parts.add(Box::new(Blocks::new(vec![Block::new(mass, &shape); 3], Vector2::zeros())));
-    let pairs = laws.map(|law| parts.pair(law)).to_vec();
-    Ok(parts.build(Box::new(Row { pairs }))?)
+    parts.add(Blocks::new(vec![Block::new(mass, &shape); 3], Vector2::zeros()));
+    let laws = laws.map(|law| parts.law(law)).to_vec();
+    Ok(parts.build(Box::new(Row { laws }))?)
 }
 
 /// Velocities after everything is over, with gaps between the balls.

@@ -169,6 +169,28 @@ pub(crate) fn rows(
     taken
 }
 
+/// J̇ v of a point fixed in the beam, `state` its own coordinates and velocities: with ψ̇ = ẇ' cos²ψ the point at height y above the axis moves
+/// at (−y cos ψ·ψ̇, ẇ − y sin ψ·ψ̇); what is left of the derivative of that without ẅ and ẅ'. `None` off the beam.
+pub(crate) fn bias(
+    beam: &impl Deflecting,
+    state: [&[f64]; 2],
+    point: &Vector2<f64>,
+    frame: &Frame<2>,
+) -> Option<Vector2<f64>> {
+    if point.y == 0.0 {
+        return Some(Vector2::zeros());
+    }
+    let x = point.x.clamp(0.0, beam.span());
+    let [slope, rate] = [beam.deflection_at(state[0], x)?.slope, beam.deflection_at(state[1], x)?.slope];
+    let cos = (1.0 + slope * slope).sqrt().recip();
+    let sin = slope * cos;
+    let turn = rate * cos * cos;
+    let turn_bias = -2.0 * turn * turn * slope;
+    let along = sin * turn * turn - cos * turn_bias;
+    let up = -cos * turn * turn - sin * turn_bias;
+    Some(frame * (Vector2::new(along, up) * point.y))
+}
+
 /// The velocities of a surface point in a contact's frame for a unit of ẇ and of ẇ' there. So an impulse p on the beam is the
 /// vertical one up·p and the couple turn·p about the axis.
 pub(crate) fn lift_and_turn(point: &Vector2<f64>, frame: &Frame<2>) -> [Vector2<f64>; 2] {

@@ -120,10 +120,10 @@ impl<const D: usize> ContactRows<D> {
         let Some(sides) = self.spans.last() else { return false };
         sides.iter().filter(|side| side.len > 0).all(|side| {
             let part = &model.parts()[side.part];
-            if !part.traits.driven {
+            let driven = &part.traits.driven;
+            if driven.is_empty() {
                 return false;
             }
-            let driven = part.system.driven();
             let range = side.start..side.start + side.len;
             self.columns[range.clone()]
                 .iter()

@@ -75,7 +75,7 @@ fn run(beam: Beam, surface: BeamSurface, mut scheme: Box<dyn Scheme<2>>, driven:
         body = loaded(body, &signal).with_motion([motion(), motion()]);
         forces = forces.with_loads(Box::new(Loads(signal))).with_supports(3 + beam.dofs() + 1);
     }
-    let size = 3 + Subsystem::size(&body).q;
+    let size = 3 + body.size().q;
     let law = PairLaw::new(0.5, 0.2);
     let model = model(&PAPER_BLOCK, Vector2::new(0.0, -9.81), law, Kinematics::Deformed, Box::new(body));
     let mut q = vec![0.17405990783590924, 0.0685504782624077 + surface_height(surface), 0.08726646259971647];

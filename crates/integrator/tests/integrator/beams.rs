@@ -16,7 +16,7 @@ fn model(damping: Damping, loads: Vec<Box<dyn teeter_beam::Load>>) -> (Arc<Beam>
         .into_iter()
         .fold(BeamBody::new(Arc::clone(&beam), Vector2::zeros(), BeamSurface::Axis), BeamBody::with_load);
     let mut parts = ModelBuilder::new();
-    parts.add(Box::new(body));
+    parts.add(body);
     (beam, parts.build(Box::new(PointDetector::new(Vec::new()))).unwrap())
 }
 

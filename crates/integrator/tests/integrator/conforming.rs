@@ -34,9 +34,9 @@ fn blocks_conform() {
             &blocks
                 .with_load(load)
                 .unwrap()
-                .with_motion(0, 2, motion(0.1))
+                .with_motion(0, BlockCoordinate::Turn, motion(0.1))
                 .unwrap()
-                .with_motion(1, 0, motion(0.2))
+                .with_motion(1, BlockCoordinate::X, motion(0.2))
                 .unwrap(),
             &case
         ),
@@ -121,9 +121,13 @@ struct WrongCompliance {
     coupled: u32,
 }
 
-impl Subsystem<2> for Wrong {
+impl Dynamics<2> for Wrong {
     fn size(&self) -> Size {
         Size { q: 2, v: 2, bodies: 1, row: 2 }
+    }
+
+    fn traits(&self) -> Traits {
+        Traits::free().driven(if self.0 == Property::Sizes { vec![2] } else { vec![] })
     }
 
     fn internal_force(&self, q: &[f64], v: &[f64], f: &mut [f64]) {
@@ -157,10 +161,12 @@ impl Subsystem<2> for Wrong {
         v[0] *= if self.0 == Property::Drive { 2.0 } else { 1.0 };
     }
 
-    fn driven(&self) -> &[usize] {
-        if self.0 == Property::Sizes { &[2] } else { &[] }
+    fn factor(&self, w: Weights, _q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
+        Ok(Box::new(WrongCompliance { weights: w, wrong: self.0, coupled: 0 }))
     }
+}
 
+impl Bodies<2> for Wrong {
     fn place(&self, _: u32, q: &[f64], local: &[Vector2<f64>], out: &mut [Vector2<f64>]) {
         for (x, l) in out.iter_mut().zip(local) {
             *x = l + Vector2::new(q[0], q[1]);
@@ -177,6 +183,10 @@ impl Subsystem<2> for Wrong {
         Some(SurfacePoint { place, normal: Vector2::y(), material: Vector2::new(at.x - q[0] + off, 0.0) })
     }
 
+    fn bias(&self, _: u32, _: &[f64], _: &[f64], _: &Vector2<f64>, _: &Frame<2>) -> Option<Vector2<f64>> {
+        Some(Vector2::new(0.0, if self.0 == Property::Bias { 1e-3 } else { 0.0 }))
+    }
+
     fn rows(&self, _: u32, _: &[f64], _: &Vector2<f64>, frame: &Frame<2>, out: &mut Rows<'_, 2>) -> usize {
         for k in 0..2 {
             out.columns[k] = k;
@@ -184,10 +194,6 @@ impl Subsystem<2> for Wrong {
         }
         out.values[1] *= if self.0 == Property::Rows { 1.001 } else { 1.0 };
         2
-    }
-
-    fn factor(&self, w: Weights, _q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
-        Ok(Box::new(WrongCompliance { weights: w, wrong: self.0, coupled: 0 }))
     }
 }
 
@@ -250,6 +256,7 @@ fn the_harness_finds_what_is_wrong_and_nothing_else() {
         Load,
         Foot,
         Rows,
+        Bias,
         Product,
         Damping,
         KineticEnergy,

@@ -21,12 +21,12 @@ fn standing(width: f64, height: f64, friction: f64) -> (Model<2>, Equilibrium<2>
     let shape = Rectangle::new(width, height).unwrap();
     let mass = MassProperties::rectangle(&shape, 0.03, 2700.0).unwrap();
     let mut parts = ModelBuilder::new();
-    let body = parts.add(Box::new(Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -G))));
+    let body = parts.add(Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -G))).body();
     let beam = Arc::new(Beam::new(spec()).unwrap());
-    let surface = parts.add(Box::new(BeamBody::new(beam, Vector2::zeros(), BeamSurface::Axis)));
-    let pair = parts.pair(PairLaw::new(friction, 0.0));
+    let surface = parts.add(BeamBody::new(beam, Vector2::zeros(), BeamSurface::Axis)).body();
+    let law = parts.law(PairLaw::new(friction, 0.0));
     let points = shape.corners().to_vec();
-    let pairs = vec![PointPair { pair, points, body, surface, kinematics: Kinematics::Deformed }];
+    let pairs = vec![PointPair { pair: 0, law, points, body, surface, kinematics: Kinematics::Deformed }];
     let model = parts.build(Box::new(PointDetector::new(pairs))).unwrap();
     let mut q = vec![0.0; model.size().q];
     (q[0], q[1]) = (0.5 * SPAN, 0.5 * height);
@@ -99,7 +99,7 @@ fn the_stretching_of_a_held_beam_is_in_its_tangent() {
     let section = Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap();
     let beam = Arc::new(Beam::new(BeamSpec::new(SPAN, 20, section).axial(axial)).unwrap());
     let mut parts = ModelBuilder::new();
-    parts.add(Box::new(BeamBody::new(Arc::clone(&beam), Vector2::zeros(), BeamSurface::Axis)));
+    parts.add(BeamBody::new(Arc::clone(&beam), Vector2::zeros(), BeamSurface::Axis));
     let model = parts.build(Box::new(PointDetector::new(Vec::new()))).unwrap();
     let under = |force: f64| {
         let mut q = vec![0.0; beam.dofs()];

@@ -30,8 +30,8 @@ fn driven_blocks() -> Blocks {
     let shape = Rectangle::new(0.2, 0.3).unwrap();
     let mass = MassProperties::rectangle(&shape, 0.1, 900.0).unwrap();
     Blocks::new(vec![Block::new(mass, &shape); 2], Vector2::new(0.0, -9.81))
-        .with_motion(1, 2, sine(Given::Velocity, 0.1))
-        .and_then(|blocks| blocks.with_motion(0, 1, sine(Given::Displacement, 0.2)))
+        .with_motion(1, BlockCoordinate::Turn, sine(Given::Velocity, 0.1))
+        .and_then(|blocks| blocks.with_motion(0, BlockCoordinate::Y, sine(Given::Displacement, 0.2)))
         .unwrap()
 }
 
@@ -141,7 +141,7 @@ fn the_compliance_is_the_inverse_for_the_free_velocities_and_zero_for_the_others
         let mut back = vec![0.0; n];
         system.apply(w, &q, &x, &mut back);
         for k in 0..n {
-            if system.driven().contains(&k) || system.held().contains(&k) {
+            if system.traits().driven.contains(&k) || system.traits().held.contains(&k) {
                 assert_eq!(x[k], 0.0);
             } else {
                 assert!((back[k] - f[k]).abs() < 1e-14, "{k}: {} {}", back[k], f[k]);
@@ -153,11 +153,12 @@ fn the_compliance_is_the_inverse_for_the_free_velocities_and_zero_for_the_others
 #[test]
 fn only_driven_velocities_are_written_and_they_are_those_of_the_motion() {
     for system in all() {
-        assert!(system.driven().is_sorted() && !system.driven().is_empty());
+        let driven = system.traits().driven;
+        assert!(driven.is_sorted() && !driven.is_empty());
         let mut v = vec![f64::NAN; system.size().v];
         system.drive(0.3, &mut v);
         for (k, v) in v.iter().enumerate() {
-            assert_eq!(v.is_finite(), system.driven().contains(&k));
+            assert_eq!(v.is_finite(), driven.contains(&k));
         }
     }
     let mut v = [0.0; 6];
@@ -193,7 +194,7 @@ fn loads_on_blocks_and_beams_follow_their_signal() {
     let mut f = [0.0; 6];
     blocks.load(0.5, &mut f);
     blocks.load(2.0, &mut f);
-    assert!(blocks.is_loaded() && f == [0.0, 0.0, 0.0, 2.0, -3.0, 0.5]);
+    assert!(blocks.traits().loaded && f == [0.0, 0.0, 0.0, 2.0, -3.0, 0.5]);
 
     let beam = beam([Support::Pinned; 2]);
     let mut pattern = vec![0.0; beam.dofs()];
@@ -242,11 +243,11 @@ fn the_energy_account_holds_the_work_of_the_drives() {
             let mass = MassProperties::rectangle(&shape, block.depth, block.density).unwrap();
             let mut parts = ModelBuilder::new();
             let pulled = Blocks::new(vec![Block::new(mass, &shape)], gravity);
-            let body = parts.add(Box::new(pulled.with_motion(0, 0, sine(Given::Velocity, 0.3)).unwrap()));
-            let surface = parts.add(surface());
-            let pair = parts.pair(law);
+            let body = parts.add(pulled.with_motion(0, BlockCoordinate::X, sine(Given::Velocity, 0.3)).unwrap()).body();
+            let surface = parts.add_boxed(surface()).body();
+            let law = parts.law(law);
             let (points, kinematics) = (shape.corners().to_vec(), Kinematics::Deformed);
-            let pairs = vec![teeter_detect::PointPair { pair, points, body, surface, kinematics }];
+            let pairs = vec![teeter_detect::PointPair { pair: 0, law, points, body, surface, kinematics }];
             parts.build(Box::new(teeter_detect::PointDetector::new(pairs))).unwrap()
         };
         for mut scheme in schemes() {
@@ -270,20 +271,24 @@ fn a_block_on_rails_goes_through_the_ground() {
     let block = crate::scenes::PAPER_BLOCK;
     let shape = Rectangle::new(block.width, block.height).unwrap();
     let mass = MassProperties::rectangle(&shape, block.depth, block.density).unwrap();
-    for first in [0, 1] {
+    for coordinates in [
+        &[BlockCoordinate::X, BlockCoordinate::Y, BlockCoordinate::Turn][..],
+        &[BlockCoordinate::Y, BlockCoordinate::Turn],
+    ] {
         // With x left free nothing but the normal velocity is prescribed.
-        let blocks = (first..3)
+        let blocks = coordinates
+            .iter()
             .fold(Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -9.81)), |blocks, axis| {
-                blocks.with_motion(0, axis, sine(Given::Velocity, 0.1)).unwrap()
+                blocks.with_motion(0, *axis, sine(Given::Velocity, 0.1)).unwrap()
             });
         let level = Ground::moving(0.0, [0.4, 0.2, 0.0].map(|a| sine(Given::Velocity, a)));
         for ground in [Ground::flat(0.0), level] {
             let mut parts = ModelBuilder::new();
-            let body = parts.add(Box::new(blocks.clone()));
-            let surface = parts.add(Box::new(ground));
-            let pair = parts.pair(PairLaw::new(0.5, 0.0));
+            let body = parts.add(blocks.clone()).body();
+            let surface = parts.add(ground).body();
+            let law = parts.law(PairLaw::new(0.5, 0.0));
             let (points, kinematics) = (shape.corners().to_vec(), Kinematics::Deformed);
-            let pairs = vec![teeter_detect::PointPair { pair, points, body, surface, kinematics }];
+            let pairs = vec![teeter_detect::PointPair { pair: 0, law, points, body, surface, kinematics }];
             let model = parts.build(Box::new(teeter_detect::PointDetector::new(pairs))).unwrap();
             for mut scheme in schemes() {
                 let mut q = vec![0.0, 0.0675, 0.0];

@@ -24,18 +24,20 @@ fn pinned() -> Arc<Beam> {
     beam([Support::Pinned, Support::Pinned])
 }
 
-/// The paper's block over a surface, its coordinates `held` (0: X, 1: Y, 2: φ) held.
-fn over(surface: Box<dyn Subsystem<2>>, friction: f64, kinematics: Kinematics, held: &[usize]) -> Model<2> {
+/// The paper's block over a surface, its coordinates `held` held.
+fn over(surface: Box<dyn Subsystem<2>>, friction: f64, kinematics: Kinematics, held: &[BlockCoordinate]) -> Model<2> {
     let shape = Rectangle::new(B, H).unwrap();
     let mass = MassProperties::rectangle(&shape, 0.03, 2700.0).unwrap();
     let blocks = Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -G));
     let blocks = held.iter().fold(blocks, |blocks, &k| blocks.with_motion(0, k, Motion::still()).unwrap());
     let mut parts = ModelBuilder::new();
-    let body = parts.add(Box::new(blocks));
-    let surface = parts.add(surface);
-    let pair = parts.pair(PairLaw::new(friction, 0.0));
+    let body = parts.add(blocks).body();
+    let surface = parts.add_boxed(surface).body();
+    let law = parts.law(PairLaw::new(friction, 0.0));
     let points = shape.corners().to_vec();
-    parts.build(Box::new(PointDetector::new(vec![PointPair { pair, points, body, surface, kinematics }]))).unwrap()
+    parts
+        .build(Box::new(PointDetector::new(vec![PointPair { pair: 0, law, points, body, surface, kinematics }])))
+        .unwrap()
 }
 
 fn search(model: &Model<2>, q: &[f64]) -> Result<Equilibrium<2>, EquilibriumError> {
@@ -82,7 +84,7 @@ fn a_tilted_block_bends_the_beam_by_its_weight_under_its_foot() {
         ([Support::Clamped, Support::Clamped], Kinematics::Deformed),
     ] {
         let beam = beam(supports);
-        let model = over(Box::new(crate::scenes::beam_body(&beam)), 1e3, kinematics, &[2]);
+        let model = over(Box::new(crate::scenes::beam_body(&beam)), 1e3, kinematics, &[BlockCoordinate::Turn]);
         let tilt = 5.0_f64.to_radians();
         let mut q = vec![0.0; model.size().q];
         let foot = 0.165;
@@ -223,14 +225,14 @@ fn feet_on_a_top_fibre_hold_it_together_as_far_as_friction_goes() {
 #[test]
 fn a_block_held_level_on_a_slope_stands_on_one_foot_and_the_other_is_clear() {
     let beam = pinned();
-    let model = over(Box::new(crate::scenes::beam_body(&beam)), 0.5, Kinematics::Deformed, &[2]);
+    let model = over(Box::new(crate::scenes::beam_body(&beam)), 0.5, Kinematics::Deformed, &[BlockCoordinate::Turn]);
     let found = flat(&model, 0.1, 0.0).unwrap();
     // The beam falls to the right there, so the left foot is the one.
     let exact = deflected(&beam, &[(0.085, -WEIGHT, 0.0)]);
     assert!(off(&beam, &found.q[3..], &exact) < 1e-12 && found.q[2] == 0.0);
     assert_eq!(found.forces.len(), 1);
     let mut candidates = Vec::new();
-    model.detector().detect(&model.placed(&found.q).unwrap(), 0.05, &mut candidates);
+    model.candidates(&found.q, 0.05, &mut candidates).unwrap();
     let gap = |corner| candidates.iter().find(|c| c.id == ContactId::new(0, corner)).unwrap().gap;
     let w = |x| beam.deflection_at(&exact, x).unwrap();
     let clear = (w(0.085).w - w(0.115).w) / (1.0 + w(0.115).slope.powi(2)).sqrt();
@@ -274,7 +276,7 @@ fn loads_count_as_they_are_at_the_time_and_a_beam_may_carry_nothing_else() {
     beam.add_point_load(0.1, -3.0, &mut pattern).unwrap();
     let ramp = Arc::new(Table::new(vec![0.0, 1.0], vec![0.0, 2.0]).unwrap());
     let mut parts = ModelBuilder::new();
-    parts.add(Box::new(crate::scenes::beam_body(&beam).with_load(Box::new(SignalLoad::new(pattern, ramp)))));
+    parts.add(crate::scenes::beam_body(&beam).with_load(Box::new(SignalLoad::new(pattern, ramp))));
     let model = parts.build(Box::new(PointDetector::new(Vec::new()))).unwrap();
     for (t, force) in [(0.0, 0.0), (0.5, -3.0)] {
         let mut work = crate::scenes::workspace(&model);

@@ -29,9 +29,13 @@ impl Spring {
     }
 }
 
-impl Subsystem<2> for Spring {
+impl Dynamics<2> for Spring {
     fn size(&self) -> Size {
         Size { q: 1, v: 1, bodies: 0, row: 0 }
+    }
+
+    fn traits(&self) -> Traits {
+        Traits::free().following_coordinates(self.implicit && self.c != 0.0)
     }
 
     fn internal_force(&self, q: &[f64], _v: &[f64], f: &mut [f64]) {
@@ -47,25 +51,29 @@ impl Subsystem<2> for Spring {
         Energy { kinetic: 0.5 * v[0] * v[0], elastic, gravity: 0.0 }
     }
 
-    fn follows_coordinates(&self) -> bool {
-        self.implicit && self.c != 0.0
+    fn factor(&self, w: Weights, q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
+        let matrix = w.mass + w.stiffness * self.stiffness(q[0]);
+        let spring = if self.implicit { [self.k, self.c] } else { [0.0; 2] };
+        Ok(Box::new(SpringCompliance { weights: w, spring, matrix, updates: Arc::clone(&self.updates) }))
     }
 
-    /// With θ = ½ and M alone in W the step is the leapfrog, which keeps ½ k q² + ½ (1 − h²k/4) v².
-    fn modified_energy(&self, h: f64, _q: &[f64], v: &[f64]) -> f64 {
-        if self.implicit { 0.0 } else { -h * h * self.k * v[0] * v[0] / 8.0 }
+    fn linearised(&self) -> Option<&dyn Linearised> {
+        Some(self)
     }
+}
 
+impl Bodies<2> for Spring {
     fn place(&self, _: u32, _: &[f64], _: &[Vector2<f64>], _: &mut [Vector2<f64>]) {}
 
     fn rows(&self, _: u32, _: &[f64], _: &Vector2<f64>, _: &Frame<2>, _: &mut Rows<'_, 2>) -> usize {
         0
     }
+}
 
-    fn factor(&self, w: Weights, q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
-        let matrix = w.mass + w.stiffness * self.stiffness(q[0]);
-        let spring = if self.implicit { [self.k, self.c] } else { [0.0; 2] };
-        Ok(Box::new(SpringCompliance { weights: w, spring, matrix, updates: Arc::clone(&self.updates) }))
+impl Linearised for Spring {
+    /// With θ = ½ and M alone in W the step is the leapfrog, which keeps ½ k q² + ½ (1 − h²k/4) v².
+    fn modified_energy(&self, h: f64, _q: &[f64], v: &[f64]) -> f64 {
+        if self.implicit { 0.0 } else { -h * h * self.k * v[0] * v[0] / 8.0 }
     }
 }
 
@@ -102,7 +110,7 @@ fn schemes(theta: f64) -> Vec<Box<dyn Scheme<2>>> {
 
 fn model(spring: Spring) -> Model<2> {
     let mut parts = ModelBuilder::new();
-    parts.add(Box::new(spring));
+    parts.add(spring);
     parts.build(Box::new(PointDetector::new(vec![]))).unwrap()
 }
 
@@ -155,7 +163,7 @@ fn a_beam_held_along_its_axis_keeps_the_energy_identity_where_it_is_stretched() 
     for backend in [WBackend::Auto, WBackend::CachedColumns] {
         for mut scheme in schemes(0.5) {
             let mut parts = ModelBuilder::new();
-            parts.add(Box::new(crate::scenes::beam_body(&beam).with_backend(backend)));
+            parts.add(crate::scenes::beam_body(&beam).with_backend(backend));
             let model = parts.build(Box::new(PointDetector::new(vec![]))).unwrap();
             let mut state = State::new(&model, &q, &vec![0.0; q.len()], 1e-4).unwrap();
             let mut work = crate::scenes::workspace(&model);

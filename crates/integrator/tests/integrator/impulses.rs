@@ -150,7 +150,7 @@ fn block() -> (MassProperties, Blocks) {
 
 fn alone(part: Box<dyn Subsystem<2>>) -> Model<2> {
     let mut parts = ModelBuilder::new();
-    parts.add(part);
+    parts.add_boxed(part);
     parts.build(Box::new(PointDetector::new(Vec::new()))).unwrap()
 }
 

@@ -3,8 +3,8 @@
 use crate::scenes::workspace;
 use nalgebra::Vector2;
 use teeter_detect::{
-    Anchor, BodyId, Candidate, Candidates, ContactDetector, ContactId, Frame, Geometry, Kinematics, PointDetector,
-    PointPair, plane_frame,
+    Anchor, BodyId, Candidate, Candidates, ContactDetector, ContactId, DetectorMemory, Frame, Geometry, Kinematics,
+    LawId, PointDetector, PointPair, plane_frame,
 };
 use teeter_integrator::*;
 use teeter_rigid::{MassProperties, Rectangle};
@@ -14,7 +14,7 @@ use teeter_rigid::{MassProperties, Rectangle};
 struct Touching(Vec<Candidate<2>>);
 
 impl ContactDetector<2> for Touching {
-    fn detect(&self, at: &dyn Geometry<2>, margin: f64, out: &mut Candidates<2>) {
+    fn detect(&self, at: &dyn Geometry<2>, margin: f64, _: &mut DetectorMemory, out: &mut Candidates<2>) {
         out.clear();
         for candidate in &self.0 {
             let [a, b] = candidate.sides.map(|side| {
@@ -34,10 +34,10 @@ impl ContactDetector<2> for Touching {
     }
 }
 
-fn touching(pair: u32, sides: [(u32, Vector2<f64>); 2], normal: Vector2<f64>) -> Candidate<2> {
+fn touching(law: LawId, sides: [(u32, Vector2<f64>); 2], normal: Vector2<f64>) -> Candidate<2> {
     let sides = sides.map(|(body, point)| Anchor { body: BodyId(body), point });
     let frame: Frame<2> = plane_frame(&normal);
-    Candidate { id: ContactId::new(pair, 0), sides, frame, gap: 0.0 }
+    Candidate { id: ContactId::new(law.0, 0), law, sides, frame, gap: 0.0 }
 }
 
 /// Equal bodies of mass 1 in a row that touch, without gravity; a law for each contact.
@@ -45,13 +45,13 @@ fn row(laws: &[PairLaw]) -> Model<2> {
     let shape = Rectangle::new(1.0, 1.0).unwrap();
     let mass = MassProperties::rectangle(&shape, 1.0, 1.0).unwrap();
     let mut parts = ModelBuilder::new();
-    parts.add(Box::new(Blocks::new(vec![Block::new(mass, &shape); laws.len() + 1], Vector2::zeros())));
+    parts.add(Blocks::new(vec![Block::new(mass, &shape); laws.len() + 1], Vector2::zeros()));
     let mut candidates = Vec::new();
     for (k, &law) in laws.iter().enumerate() {
         let k = k as u32;
-        let pair = parts.pair(law);
+        let law = parts.law(law);
         // Of the right one on the left one: u > 0 parts them.
-        candidates.push(touching(pair, [(k + 1, Vector2::new(-0.5, 0.0)), (k, Vector2::new(0.5, 0.0))], Vector2::x()));
+        candidates.push(touching(law, [(k + 1, Vector2::new(-0.5, 0.0)), (k, Vector2::new(0.5, 0.0))], Vector2::x()));
     }
     parts.build(Box::new(Touching(candidates))).unwrap()
 }
@@ -126,12 +126,14 @@ fn on_ground(law: PairLaw, phi: f64, height: f64, places: &[f64]) -> Model<2> {
     let shape = Rectangle::new(0.2, 1.0).unwrap();
     let mass = MassProperties::rectangle(&shape, 1.0, 5.0).unwrap();
     let mut parts = ModelBuilder::new();
-    let body = parts.add(Box::new(Blocks::new(vec![Block::new(mass, &shape)], Vector2::zeros())));
-    let surface = parts.add(Box::new(Ground::flat(0.0)));
-    let pair = parts.pair(law);
+    let body = parts.add(Blocks::new(vec![Block::new(mass, &shape)], Vector2::zeros())).body();
+    let surface = parts.add(Ground::flat(0.0)).body();
+    let law = parts.law(law);
     let points = places.iter().map(|&x| nalgebra::Rotation2::new(-phi) * Vector2::new(x, -height)).collect();
     let kinematics = Kinematics::Deformed;
-    parts.build(Box::new(PointDetector::new(vec![PointPair { pair, points, body, surface, kinematics }]))).unwrap()
+    parts
+        .build(Box::new(PointDetector::new(vec![PointPair { pair: 0, law, points, body, surface, kinematics }])))
+        .unwrap()
 }
 
 /// Numbers in [−1, 1], the same in every run.
@@ -202,7 +204,7 @@ fn work_in_a_heap(dice: &mut Dice, laws: &[ImpactLaw]) -> Option<f64> {
         Block::new(mass, &shape)
     });
     let mut parts = ModelBuilder::new();
-    parts.add(Box::new(Blocks::new(blocks.collect(), Vector2::zeros())));
+    parts.add(Blocks::new(blocks.collect(), Vector2::zeros()));
     let mut touch = Vec::new();
     let q: Vec<f64> = (0..3 * bodies).map(|k| if k % 3 == 2 { 0.0 } else { dice.roll() }).collect();
     for ([a, b], impact) in ends.into_iter().zip(chosen) {
@@ -213,7 +215,7 @@ fn work_in_a_heap(dice: &mut Dice, laws: &[ImpactLaw]) -> Option<f64> {
         let turn = 3.2 * dice.roll();
         let place = Vector2::new(dice.roll(), dice.roll());
         let points = [a, b].map(|body| (body as u32, place - Vector2::new(q[3 * body], q[3 * body + 1])));
-        touch.push(touching(parts.pair(law), points, Vector2::new(turn.cos(), turn.sin())));
+        touch.push(touching(parts.law(law), points, Vector2::new(turn.cos(), turn.sin())));
     }
     let model = parts.build(Box::new(Touching(touch))).unwrap();
     let v: Vec<f64> = (0..3 * bodies).map(|_| dice.roll()).collect();

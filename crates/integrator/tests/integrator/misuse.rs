@@ -5,8 +5,8 @@ use nalgebra::Vector2;
 use std::sync::Arc;
 use teeter_beam::{Beam, BeamSpec, Section};
 use teeter_detect::{
-    Anchor, BodyId, Candidate, Candidates, ContactDetector, ContactId, Geometry, Kinematics, PointDetector, PointPair,
-    plane_frame,
+    Anchor, BodyId, Candidate, Candidates, ContactDetector, ContactId, DetectorMemory, Geometry, Kinematics, LawId,
+    PointDetector, PointPair, plane_frame,
 };
 use teeter_integrator::*;
 use teeter_rigid::{MassProperties, Rectangle};
@@ -97,17 +97,18 @@ fn wired(change: impl Fn(&mut Vec<PointPair<2>>)) -> Result<Model<2>, ModelError
     let shape = Rectangle::new(0.1, 0.1).unwrap();
     let mass = MassProperties::rectangle(&shape, 0.1, 1000.0).unwrap();
     let mut parts = ModelBuilder::new();
-    let body = parts.add(Box::new(Blocks::new(vec![Block::new(mass, &shape); 2], Vector2::zeros())));
-    let surface = parts.add(Box::new(Ground::flat(0.0)));
-    let (first, second) = (parts.pair(PairLaw::new(0.5, 0.0)), parts.pair(PairLaw::new(0.1, 0.0)));
-    let pair = |pair, body| PointPair {
+    let body = parts.add(Blocks::new(vec![Block::new(mass, &shape); 2], Vector2::zeros())).body();
+    let surface = parts.add(Ground::flat(0.0)).body();
+    let (first, second) = (parts.law(PairLaw::new(0.5, 0.0)), parts.law(PairLaw::new(0.1, 0.0)));
+    let pair = |pair, law, body| PointPair {
         pair,
+        law,
         points: shape.corners().to_vec(),
         body,
         surface,
         kinematics: Kinematics::Deformed,
     };
-    let mut pairs = vec![pair(first, body), pair(second, BodyId(1))];
+    let mut pairs = vec![pair(0, first, body), pair(1, second, BodyId(1))];
     change(&mut pairs);
     parts.build(Box::new(PointDetector::new(pairs)))
 }
@@ -116,7 +117,7 @@ fn wired(change: impl Fn(&mut Vec<PointPair<2>>)) -> Result<Model<2>, ModelError
 fn wiring_that_cannot_work_is_refused_when_the_model_is_built() {
     assert!(wired(|_| {}).is_ok());
     let refused = |change: &dyn Fn(&mut Vec<PointPair<2>>)| wired(change).unwrap_err();
-    assert_eq!(refused(&|pairs| pairs[0].pair = 7), ModelError::Pair { pair: 7, pairs: 2 });
+    assert_eq!(refused(&|pairs| pairs[0].law = LawId(7)), ModelError::NoLaw { pair: 0, law: LawId(7), laws: 2 });
     assert_eq!(refused(&|pairs| pairs[1].pair = 0), ModelError::PairTwice { pair: 0 });
     assert_eq!(refused(&|pairs| pairs[0].body = BodyId(3)), ModelError::Body { pair: 0, body: BodyId(3), bodies: 3 });
     assert_eq!(
@@ -140,24 +141,23 @@ fn loads_and_motions_of_blocks_that_are_not_there_are_refused() {
     assert_eq!(blocks().with_load(load(2, Vector2::zeros())).unwrap_err(), ModelError::Block { block: 2, blocks: 2 });
     let infinite = Vector2::new(0.0, f64::INFINITY);
     assert_eq!(blocks().with_load(load(0, infinite)).unwrap_err(), ModelError::Load { block: 0 });
-    assert!(blocks().with_motion(1, 2, Motion::still()).is_ok());
-    let refused = |block, coordinate| blocks().with_motion(block, coordinate, Motion::still()).unwrap_err();
-    assert_eq!(refused(usize::MAX, 0), ModelError::Block { block: usize::MAX, blocks: 2 });
-    assert_eq!(refused(0, 3), ModelError::Coordinate { coordinate: 3 });
+    assert!(blocks().with_motion(1, BlockCoordinate::Turn, Motion::still()).is_ok());
+    let refused = blocks().with_motion(usize::MAX, BlockCoordinate::X, Motion::still()).unwrap_err();
+    assert_eq!(refused, ModelError::Block { block: usize::MAX, blocks: 2 });
 }
 
 #[test]
-fn the_law_of_a_pair_that_is_not_there_is_an_error() {
+fn a_law_that_is_not_there_is_an_error() {
     let model = on_ground(PairLaw::new(0.5, 0.25));
-    assert_eq!(model.law(0), Ok(PairLaw::new(0.5, 0.25)));
-    assert_eq!(model.law(1), Err(Mismatch::Pair { pair: 1, pairs: 1 }));
+    assert_eq!(model.law(LawId(0)), Ok(PairLaw::new(0.5, 0.25)));
+    assert_eq!(model.law(LawId(1)), Err(Mismatch::Law { law: LawId(1), laws: 1 }));
 }
 
 /// A detector from outside that doesn't say whom it joins.
 struct Fixed(Candidate<2>);
 
 impl ContactDetector<2> for Fixed {
-    fn detect(&self, _: &dyn Geometry<2>, _: f64, out: &mut Candidates<2>) {
+    fn detect(&self, _: &dyn Geometry<2>, _: f64, _: &mut DetectorMemory, out: &mut Candidates<2>) {
         out.clear();
         out.push(self.0);
     }
@@ -171,21 +171,22 @@ impl ContactDetector<2> for Fixed {
 fn candidates_of_pairs_and_bodies_that_are_not_there_end_the_step() {
     let candidate = |pair, bodies: [u32; 2]| Candidate {
         id: ContactId::new(pair, 0),
+        law: LawId(pair),
         sides: bodies.map(|body| Anchor { body: BodyId(body), point: Vector2::new(0.0, -0.05) }),
         frame: plane_frame(&Vector2::y()),
         gap: -1e-3,
     };
     for (candidate, expected) in [
-        (candidate(3, [0, 1]), "there is no pair 3: the model has 1, numbered from 0"),
+        (candidate(3, [0, 1]), "there is no law 3: the model has 1, numbered from 0"),
         (candidate(0, [5, 1]), "there is no body 5: the model has 2, numbered from 0"),
         (candidate(0, [0, 2]), "there is no body 2: the model has 2, numbered from 0"),
     ] {
         let shape = Rectangle::new(0.1, 0.1).unwrap();
         let mass = MassProperties::rectangle(&shape, 0.1, 1000.0).unwrap();
         let mut parts = ModelBuilder::new();
-        parts.add(Box::new(Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -9.81))));
-        parts.add(Box::new(Ground::flat(0.0)));
-        parts.pair(PairLaw::new(0.5, 0.0));
+        parts.add(Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -9.81)));
+        parts.add(Ground::flat(0.0));
+        parts.law(PairLaw::new(0.5, 0.0));
         let model = parts.build(Box::new(Fixed(candidate))).unwrap();
         for mut scheme in schemes() {
             let mut state = State::new(&model, &[0.0; 3], &[0.0, -1.0, 0.0], 1e-3).unwrap();

@@ -52,7 +52,7 @@ fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
 fn alone(body: Box<dyn Subsystem<2>>, start: &[f64]) -> State {
     let mut parts = ModelBuilder::new();
     let size = body.size();
-    parts.add(body);
+    parts.add_boxed(body);
     let model = parts.build(Box::new(PointDetector::new(Vec::new()))).unwrap();
     let mut q = start.to_vec();
     q.resize(size.q, 0.0);
@@ -203,7 +203,7 @@ fn points_of_the_section_are_placed_as_on_elements() {
     let elements = BeamBody::new(Arc::clone(&beam), Vector2::new(0.1, 0.2), top);
     let modes = ModalBeam::new(Arc::clone(&beam), all_modes(&beam), Vector2::new(0.1, 0.2), top).unwrap();
     let mut q: Vec<f64> = (0..beam.dofs()).map(|i| 0.01 * (0.9 * i as f64).sin()).collect();
-    elements.held().iter().for_each(|dof| q[*dof] = 0.0);
+    elements.traits().held.iter().for_each(|dof| q[*dof] = 0.0);
     let eta = modes.basis().coordinates(&beam, &q);
     let local = [0.0, 0.11, 0.25, 0.36].map(|x| Vector2::new(x, 0.00075));
     let (mut a, mut b) = ([Vector2::zeros(); 4], [Vector2::zeros(); 4]);

@@ -21,7 +21,7 @@ struct PlateCompliance {
     stiffness: f64,
 }
 
-impl Subsystem<2> for Plate {
+impl Dynamics<2> for Plate {
     fn size(&self) -> Size {
         Size { q: 1, v: 1, bodies: 1, row: 1 }
     }
@@ -39,6 +39,14 @@ impl Subsystem<2> for Plate {
         Energy { kinetic: 0.5 * self.mass * v[0] * v[0], elastic, gravity: 0.0 }
     }
 
+    fn factor(&self, w: Weights, q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
+        let mut compliance = PlateCompliance { weights: w, mass: self.mass, stiffness: self.stiffness };
+        compliance.refactor(w, q)?;
+        Ok(Box::new(compliance))
+    }
+}
+
+impl Bodies<2> for Plate {
     fn place(&self, _body: u32, q: &[f64], local: &[Vector2<f64>], out: &mut [Vector2<f64>]) {
         for (x, l) in out.iter_mut().zip(local) {
             *x = l + Vector2::new(0.0, q[0]);
@@ -58,12 +66,6 @@ impl Subsystem<2> for Plate {
         out.columns[0] = 0;
         out.values[0] = frame.column(1).into();
         1
-    }
-
-    fn factor(&self, w: Weights, q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
-        let mut compliance = PlateCompliance { weights: w, mass: self.mass, stiffness: self.stiffness };
-        compliance.refactor(w, q)?;
-        Ok(Box::new(compliance))
     }
 }
 
@@ -259,11 +261,11 @@ fn bad_settings_and_states_are_refused_by_name() {
     let shape = Rectangle::new(0.1, 0.1).unwrap();
     let mass = MassProperties::rectangle(&shape, 0.1, 1000.0).unwrap();
     let mut parts = ModelBuilder::new();
-    let body = parts.add(Box::new(Blocks::new(vec![Block::new(mass, &shape)], Vector2::zeros())));
-    let pair = parts.pair(PairLaw::new(-0.1, 0.0));
-    let points = PointPair { pair, points: vec![], body, surface: body, kinematics: Kinematics::Linear };
+    let body = parts.add(Blocks::new(vec![Block::new(mass, &shape)], Vector2::zeros())).body();
+    let law = parts.law(PairLaw::new(-0.1, 0.0));
+    let points = PointPair { pair: 0, law, points: vec![], body, surface: body, kinematics: Kinematics::Linear };
     let error = parts.build(Box::new(PointDetector::new(vec![points]))).unwrap_err();
-    assert_eq!(error.to_string(), "the friction coefficient of pair 0 is -0.1, but must be at least 0 and finite");
+    assert_eq!(error.to_string(), "the friction coefficient of law 0 is -0.1, but must be at least 0 and finite");
 }
 
 #[test]

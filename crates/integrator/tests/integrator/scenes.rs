@@ -32,11 +32,13 @@ pub(crate) fn model(
     let shape = Rectangle::new(spec.width, spec.height).unwrap();
     let mass = MassProperties::rectangle(&shape, spec.depth, spec.density).unwrap();
     let mut parts = ModelBuilder::new();
-    let body = parts.add(Box::new(Blocks::new(vec![Block::new(mass, &shape)], gravity)));
-    let surface = parts.add(surface);
-    let pair = parts.pair(law);
+    let body = parts.add(Blocks::new(vec![Block::new(mass, &shape)], gravity)).body();
+    let surface = parts.add_boxed(surface).body();
+    let law = parts.law(law);
     let points = shape.corners().to_vec();
-    parts.build(Box::new(PointDetector::new(vec![PointPair { pair, points, body, surface, kinematics }]))).unwrap()
+    parts
+        .build(Box::new(PointDetector::new(vec![PointPair { pair: 0, law, points, body, surface, kinematics }])))
+        .unwrap()
 }
 
 /// A beam at the origin, contact on its axis.

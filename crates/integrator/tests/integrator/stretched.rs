@@ -14,7 +14,7 @@ fn beam(elements: usize, axial: Axial, damping: Damping) -> Arc<Beam> {
 
 fn alone(beam: &Arc<Beam>) -> Model<2> {
     let mut parts = ModelBuilder::new();
-    parts.add(Box::new(BeamBody::new(Arc::clone(beam), Vector2::zeros(), BeamSurface::Axis)));
+    parts.add(BeamBody::new(Arc::clone(beam), Vector2::zeros(), BeamSurface::Axis));
     parts.build(Box::new(PointDetector::new(Vec::new()))).unwrap()
 }
 
@@ -131,7 +131,7 @@ fn a_held_beam_settles_where_its_statics_says() {
             let load = SignalLoad::new(pattern, signal);
             let body = BeamBody::new(Arc::clone(&beam), Vector2::zeros(), BeamSurface::Axis).with_load(Box::new(load));
             let mut parts = ModelBuilder::new();
-            parts.add(Box::new(body));
+            parts.add(body);
             let model = parts.build(Box::new(PointDetector::new(Vec::new()))).unwrap();
             let limits = SettlingLimits { reach: &[], margin: 0.0, tau: SettlingLimits::FIRST_TAU };
             let found =
@@ -160,7 +160,7 @@ fn a_beam_at_rest_under_its_weight_stays_at_rest_however_it_is_damped() {
         beam.solve_static(&mut q).unwrap();
         let body = BeamBody::new(Arc::clone(&beam), Vector2::zeros(), BeamSurface::Axis);
         let mut parts = ModelBuilder::new();
-        parts.add(Box::new(body.with_weight(Vector2::new(0.0, -9.81))));
+        parts.add(body.with_weight(Vector2::new(0.0, -9.81)));
         let model = parts.build(Box::new(PointDetector::new(Vec::new()))).unwrap();
         let mut state = State::new(&model, &q, &vec![0.0; beam.dofs()], 1e-3).unwrap();
         advance(&model, &mut state, 200);

@@ -25,7 +25,7 @@ fn driven() -> (Model<2>, Motion) {
     let motion = sine(Given::Velocity, 0.5);
     let blocks = Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -9.81));
     let mut parts = ModelBuilder::new();
-    parts.add(Box::new(blocks.with_motion(0, 0, motion.clone()).unwrap()));
+    parts.add(blocks.with_motion(0, BlockCoordinate::X, motion.clone()).unwrap());
     (parts.build(Box::new(PointDetector::new(Vec::new()))).unwrap(), motion)
 }
 

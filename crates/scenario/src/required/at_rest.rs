@@ -4,7 +4,7 @@ use super::{Removed, Start};
 use nalgebra::Vector2;
 use teeter_beam::{Beam, DeflectionExtremes};
 use teeter_detect::Frame;
-use teeter_integrator::{Compliance, Energy, FactorError, Rows, Size, Subsystem, Weights};
+use teeter_integrator::{Bodies, Compliance, Dynamics, Energy, FactorError, Rows, Size, Traits, Weights};
 
 /// A beam that stays as it starts unless something touches it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,12 +31,13 @@ impl Rest {
         let (_, part, _) = start.model.owner(place.body)?;
         let system = &part.system;
         let (q, v) = (&start.q[part.q.clone()], &start.v[part.v.clone()]);
-        if system.is_loaded() || !system.driven().is_empty() || v.iter().any(|v| *v != 0.0) {
+        let Traits { loaded, driven, held, .. } = system.traits();
+        if loaded || !driven.is_empty() || v.iter().any(|v| *v != 0.0) {
             return None;
         }
         let mut force = vec![0.0; v.len()];
         system.internal_force(q, v, &mut force);
-        system.held().iter().for_each(|k| force[*k] = 0.0);
+        held.iter().for_each(|k| force[*k] = 0.0);
         let energy = system.energy(q, v);
         if force.iter().all(|f| *f == 0.0) && q.iter().all(|q| *q == 0.0) {
             return Some(Self { energy, trembles: 0.0, shape: DeflectionExtremes::default() });
@@ -94,16 +95,12 @@ impl AtRest {
     }
 }
 
-impl Subsystem<2> for AtRest {
+impl Dynamics<2> for AtRest {
     fn size(&self) -> Size {
         Size { q: self.held.len(), v: self.held.len(), bodies: 1, row: 0 }
     }
 
     fn internal_force(&self, _q: &[f64], _v: &[f64], _f: &mut [f64]) {}
-
-    fn held(&self) -> &[usize] {
-        &self.held
-    }
 
     fn apply(&self, _w: Weights, _q: &[f64], _x: &[f64], _y: &mut [f64]) {}
 
@@ -111,6 +108,12 @@ impl Subsystem<2> for AtRest {
         self.energy
     }
 
+    fn factor(&self, w: Weights, _q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
+        Ok(Box::new(Immovable(w)))
+    }
+}
+
+impl Bodies<2> for AtRest {
     /// Nothing refers to its points.
     fn place(&self, _body: u32, _q: &[f64], local: &[Vector2<f64>], out: &mut [Vector2<f64>]) {
         out.copy_from_slice(local);
@@ -118,10 +121,6 @@ impl Subsystem<2> for AtRest {
 
     fn rows(&self, _: u32, _: &[f64], _: &Vector2<f64>, _: &Frame<2>, _: &mut Rows<'_, 2>) -> usize {
         0
-    }
-
-    fn factor(&self, w: Weights, _q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
-        Ok(Box::new(Immovable(w)))
     }
 }
 

@@ -101,8 +101,7 @@ fn a_static_start_is_in_balance_under_any_placement() {
                 let missing = unbalanced(&simulation, surface == "top", kinematics == "deformed");
                 assert!(missing < 1e-9, "{what}: {missing:e}");
                 let mut candidates = Vec::new();
-                let placed = simulation.model.placed(&simulation.state.q).unwrap();
-                simulation.model.detector().detect(&placed, 1e-12, &mut candidates);
+                simulation.model.candidates(&simulation.state.q, 1e-12, &mut candidates).unwrap();
                 assert_eq!(candidates.len(), found.forces.len(), "what touches presses: {what}");
                 assert!(candidates.iter().all(|c| c.gap.abs() < 1e-14), "{what}: {candidates:?}");
             }

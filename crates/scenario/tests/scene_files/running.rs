@@ -264,8 +264,7 @@ fn a_static_start_stays_in_equilibrium_while_the_block_is_upright() {
             &[("block.rocker.tilt", "0 deg"), ("beam.table.surface", surface), ("contact.feet.kinematics", kinematics)],
         );
         let mut candidates = Vec::new();
-        let placed = simulation.model.placed(&simulation.state.q).unwrap();
-        simulation.model.detector().detect(&placed, 1e-12, &mut candidates);
+        simulation.model.candidates(&simulation.state.q, 1e-12, &mut candidates).unwrap();
         assert_eq!(candidates.len(), 2, "both feet touch ({surface}, {kinematics})");
         assert!(candidates.iter().all(|c| c.gap.abs() < 1e-14), "{candidates:?}");
         // Symmetric: half the weight under each foot, and the beam's strain energy is half the work of the weight.
