@@ -1,6 +1,6 @@
 //! What can be wrong with a beam, a factorisation, a static solve.
 
-use crate::factor::MatrixWeights;
+use crate::factor::{Backend, MatrixWeights};
 use crate::support::Support;
 
 /// A value that a beam cannot be built from, or cannot be asked.
@@ -85,6 +85,14 @@ pub enum FactorError {
         weights: MatrixWeights,
         /// The degree of freedom at which the elimination, from both ends to the middle, stopped.
         dof: usize,
+    },
+    /// A backend that is not in this build.
+    #[error("the backend {backend:?} is not in this build: it needs the feature `{feature}` of teeter-beam")]
+    MissingFeature {
+        /// The backend asked for.
+        backend: Backend,
+        /// The feature of this crate that brings it.
+        feature: &'static str,
     },
     /// Too little memory for the analysis of the pattern.
     #[error("too little memory to analyse the pattern of the matrices")]

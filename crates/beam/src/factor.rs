@@ -8,6 +8,7 @@ use crate::beam::Beam;
 use crate::blocks::Blocks;
 use crate::error::FactorError;
 use crate::modal_damping::{LowRank, ModalDamping};
+#[cfg(feature = "faer")]
 use crate::sparse::SparseFactor;
 
 /// The weights of `mass M + damping C + stiffness K`.
@@ -51,7 +52,7 @@ impl MatrixWeights {
     }
 }
 
-/// How a matrix is factorised. Both need the same memory up to a factor and give the same solutions up to rounding.
+/// How a matrix is factorised. Both need memory linear in the number of elements and give the same solutions up to rounding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Backend {
@@ -59,13 +60,32 @@ pub enum Backend {
     /// the general way at every size.
     #[default]
     Banded,
-    /// A general sparse Cholesky factorisation (faer), symbolic once.
+    /// A general sparse Cholesky factorisation, symbolic once: an independent way to the same numbers. By faer, so with the
+    /// feature `faer` (default) only; without it [`Beam::factor_with`] says so ([`FactorError::MissingFeature`]).
     Sparse,
+}
+
+impl Backend {
+    /// The backends of this build: without the feature `faer` there is no [`Backend::Sparse`] among them.
+    ///
+    /// ```
+    /// use teeter_beam::Backend;
+    /// assert!(Backend::available().contains(&Backend::default()));
+    /// ```
+    #[must_use]
+    pub fn available() -> &'static [Self] {
+        if cfg!(feature = "faer") { &[Self::Banded, Self::Sparse] } else { &[Self::Banded] }
+    }
 }
 
 #[derive(Debug)]
 enum Kind {
-    Banded { bend: Twisted, bar: Option<BarFactor>, sum: Blocks },
+    Banded {
+        bend: Twisted,
+        bar: Option<BarFactor>,
+        sum: Blocks,
+    },
+    #[cfg(feature = "faer")]
     Sparse(SparseFactor),
 }
 
@@ -108,6 +128,7 @@ impl Factor {
     pub fn backend(&self) -> Backend {
         match self.kind {
             Kind::Banded { .. } => Backend::Banded,
+            #[cfg(feature = "faer")]
             Kind::Sparse(_) => Backend::Sparse,
         }
     }
@@ -150,6 +171,7 @@ impl Factor {
                     bar.solve(f_bar);
                 }
             }
+            #[cfg(feature = "faer")]
             Kind::Sparse(sparse) => sparse.solve(f),
         }
     }
@@ -172,6 +194,7 @@ impl Factor {
                     factor.factorise(bar, mass, stiffness).map_err(|node| not_definite(2 * nodes + node))?;
                 }
             }
+            #[cfg(feature = "faer")]
             Kind::Sparse(sparse) => sparse.update(beam, weights, tension).map_err(not_definite)?,
         }
         if let (Some(mut modal), Some(damping)) = (self.modal.take(), &beam.modal) {
@@ -228,7 +251,7 @@ impl Beam {
     /// As [`Beam::factor`], factorised as one chooses.
     ///
     /// # Errors
-    /// As there.
+    /// As there; [`FactorError::MissingFeature`] for a backend that is not in this build ([`Backend::available`]).
     pub fn factor_with(&self, weights: MatrixWeights, backend: Backend) -> Result<Factor, FactorError> {
         let nodes = self.nodes();
         let kind = match backend {
@@ -237,7 +260,10 @@ impl Beam {
                 bar: self.bar.as_ref().map(|_| BarFactor::new(nodes)),
                 sum: Blocks::zero(nodes),
             },
+            #[cfg(feature = "faer")]
             Backend::Sparse => Kind::Sparse(SparseFactor::new(self)?),
+            #[cfg(not(feature = "faer"))]
+            Backend::Sparse => return Err(FactorError::MissingFeature { backend, feature: "faer" }),
         };
         let zero = vec![0.0; self.dofs()];
         let stretch = self.membrane.is_some().then(|| RankOne { g: zero.clone(), u: zero, scale: 0.0 });
@@ -334,7 +360,7 @@ mod tests {
             beam.add_mass_product(STEP.mass, &x, &mut f);
             beam.add_damping_product(STEP.damping, &x, &mut f);
             beam.add_stiffness_product(STEP.stiffness, &x, &mut f);
-            for backend in [Backend::Banded, Backend::Sparse] {
+            for &backend in Backend::available() {
                 let mut f = f.clone();
                 let factor = beam.factor_with(STEP, backend).unwrap();
                 assert_eq!(factor.backend(), backend);
@@ -348,7 +374,7 @@ mod tests {
 
     #[test]
     fn a_renewed_factor_is_bitwise_a_new_one() {
-        for backend in [Backend::Banded, Backend::Sparse] {
+        for &backend in Backend::available() {
             let beam = furnished();
             let rigid = MatrixWeights { mass: 1.0, damping: 0.0, stiffness: 0.0 };
             let mut renewed = beam.factor_with(rigid, backend).unwrap();
@@ -364,7 +390,7 @@ mod tests {
 
     #[test]
     fn bad_weights_are_refused_and_leave_no_half_factor() {
-        for backend in [Backend::Banded, Backend::Sparse] {
+        for &backend in Backend::available() {
             let beam = beam(6, [Clamped, Free]);
             let mut factor = beam.factor_with(STEP, backend).unwrap();
             let negative = MatrixWeights { mass: -1.0, ..STEP };
@@ -389,6 +415,22 @@ mod tests {
     }
 
     #[test]
+    fn every_backend_is_there_or_says_which_feature_it_needs() {
+        let beam = beam(6, [Clamped, Free]);
+        for backend in [Backend::Banded, Backend::Sparse] {
+            match beam.factor_with(STEP, backend) {
+                Ok(factor) => assert!(factor.backend() == backend && Backend::available().contains(&backend)),
+                Err(error) => {
+                    assert!(!cfg!(feature = "faer") && !Backend::available().contains(&backend));
+                    assert_eq!(error, FactorError::MissingFeature { backend: Backend::Sparse, feature: "faer" });
+                    let text = "the backend Sparse is not in this build: it needs the feature `faer` of teeter-beam";
+                    assert_eq!(error.to_string(), text);
+                }
+            }
+        }
+    }
+
+    #[test]
     fn the_factor_of_another_beam_is_refused() {
         let mut factor = beam(6, [Clamped, Free]).factor(STEP).unwrap();
         for other in [beam(7, [Clamped, Free]), beam(6, [Pinned, Pinned]), beam(6, [Free, Free])] {
@@ -402,7 +444,7 @@ mod tests {
         let spec = crate::BeamSpec { section, ..spec(6, [Pinned, Clamped]) };
         let beam = Beam::new(spec.axial(Axial::Held)).unwrap();
         let q: Vec<f64> = wave(&beam).iter().map(|q| 0.1 * q).collect();
-        for backend in [Backend::Banded, Backend::Sparse] {
+        for &backend in Backend::available() {
             let mut factor = beam.factor_with(STEP, backend).unwrap();
             beam.follow(&q, &mut factor);
             let x = wave(&beam);

@@ -68,6 +68,8 @@
 //!   built to lose less than that; [`Factor::solve`] with little mass in its weights is not. [`Beam::digits`] tells how much.
 //! - A vector of the wrong length is the caller's error: functions that return no `Result` panic on it, and say so.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 mod band;
 mod bar;
 mod basis;
@@ -83,6 +85,7 @@ mod factor;
 mod field;
 mod forces;
 mod load;
+mod matrix;
 mod membrane;
 mod mesh;
 mod modal_damping;
@@ -90,6 +93,7 @@ mod modes;
 mod product;
 mod section;
 mod shape;
+#[cfg(feature = "faer")]
 mod sparse;
 mod spec;
 mod statics;
@@ -104,8 +108,11 @@ pub use envelope::Envelope;
 pub use error::{BeamError, FactorError, ModalError, ModesError, StaticError};
 pub use extremes::DeflectionExtremes;
 pub use factor::{Backend, Factor, MatrixWeights};
+#[cfg(feature = "faer")]
+pub use faer;
 pub use forces::{Actions, Reaction, SectionForce, SectionForces, SpanLoad};
 pub use load::{DistributedLoad, Load, MovingLoad, NodalLoad};
+pub use matrix::MatrixEntry;
 pub use section::{Profile, Section};
 pub use shape::{AxialShape, Deflection, DeflectionBounds, ShapeAt};
 pub use spec::{Axial, BeamSpec, Damping, Foundation, Lump, MAX_ELEMENTS, Segment};

@@ -258,19 +258,22 @@ impl Beam {
 #[cfg(test)]
 mod tests {
     use crate::beam::tests::{all_supports, beam, damped, furnished, wave};
-    use crate::{Beam, BeamSpec};
-    use faer::sparse::SparseColMat;
+    use crate::{Beam, BeamSpec, MatrixWeights};
+
+    const M: MatrixWeights = MatrixWeights { mass: 1.0, damping: 0.0, stiffness: 0.0 };
+    const C: MatrixWeights = MatrixWeights { mass: 0.0, damping: 1.0, stiffness: 0.0 };
+    const K: MatrixWeights = MatrixWeights { mass: 0.0, damping: 0.0, stiffness: 1.0 };
 
     /// Of the assembled upper triangle, in the free dofs, with all dofs to go by.
-    fn form(beam: &Beam, matrix: &SparseColMat<usize, f64>, x: &[f64]) -> (Vec<f64>, f64) {
+    fn form(beam: &Beam, matrix: MatrixWeights, x: &[f64]) -> (Vec<f64>, f64) {
         let free: Vec<usize> = (0..beam.dofs()).filter(|dof| !beam.is_held(*dof)).collect();
         let mut y = vec![0.0; beam.dofs()];
-        for entry in matrix.triplet_iter() {
-            assert!(entry.row <= entry.col);
-            let (i, j) = (free[entry.row], free[entry.col]);
-            y[i] += entry.val * x[j];
+        for entry in beam.matrix_entries(matrix) {
+            assert!(entry.row <= entry.column);
+            let (i, j) = (free[entry.row], free[entry.column]);
+            y[i] += entry.value * x[j];
             if i != j {
-                y[j] += entry.val * x[i];
+                y[j] += entry.value * x[i];
             }
         }
         let twice = y.iter().zip(x).map(|(y, x)| y * x).sum();
@@ -287,11 +290,11 @@ mod tests {
             .chain([furnished()]);
         for beam in beams {
             let x = wave(&beam);
-            let check = |matrix: SparseColMat<usize, f64>, product: &dyn Fn(&mut [f64])| {
+            let check = |matrix: MatrixWeights, product: &dyn Fn(&mut [f64])| {
                 let mut y = vec![1.0; beam.dofs()];
                 product(&mut y);
-                let (expected, twice) = form(&beam, &matrix, &x);
-                let size = matrix.val().iter().fold(1.0_f64, |m, a| m.max(a.abs()));
+                let (expected, twice) = form(&beam, matrix, &x);
+                let size = beam.matrix_entries(matrix).fold(1.0_f64, |m, entry| m.max(entry.value.abs()));
                 for (dof, (y, e)) in y.iter().zip(&expected).enumerate() {
                     assert!(
                         beam.is_held(dof) || (y - 1.0 - 2.0 * e).abs() < 1e-14 * size,
@@ -301,9 +304,9 @@ mod tests {
                 }
                 twice
             };
-            let twice_kinetic = check(beam.mass_matrix(), &|y| beam.add_mass_product(2.0, &x, y));
-            let power = check(beam.damping_matrix(), &|y| beam.add_damping_product(2.0, &x, y));
-            let twice_elastic = check(beam.stiffness_matrix(), &|y| beam.add_stiffness_product(2.0, &x, y));
+            let twice_kinetic = check(M, &|y| beam.add_mass_product(2.0, &x, y));
+            let power = check(C, &|y| beam.add_damping_product(2.0, &x, y));
+            let twice_elastic = check(K, &|y| beam.add_stiffness_product(2.0, &x, y));
             assert!((2.0 * beam.kinetic_energy(&x) / twice_kinetic - 1.0).abs() < 1e-13);
             assert!((2.0 * beam.elastic_energy(&x) / twice_elastic - 1.0).abs() < 1e-12);
             assert!((beam.damping_power(&x) / power - 1.0).abs() < 1e-13);
@@ -330,7 +333,7 @@ mod tests {
         let q = beam.from_nodes(&nodes).unwrap();
         let mut natural = vec![0.0; beam.dofs()];
         beam.add_stiffness_product(1.0, &q, &mut natural);
-        let (matrix, _) = form(&beam, &beam.stiffness_matrix(), &q);
+        let (matrix, _) = form(&beam, K, &q);
         let worst = |f: &[f64]| f[2..2 * n].iter().fold(0.0_f64, |m, f| m.max(f.abs()));
         let (by_modes, by_matrix) = (worst(&natural), worst(&matrix));
         assert!(by_modes < 1e-12 && by_matrix > 1e-9, "{by_modes:e} {by_matrix:e}");
