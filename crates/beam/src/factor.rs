@@ -86,7 +86,7 @@ enum Kind {
         sum: Blocks,
     },
     #[cfg(feature = "faer")]
-    Sparse(SparseFactor),
+    Sparse(Box<SparseFactor>),
 }
 
 /// What the stretching of a beam held along its axis adds to the matrix: `weight` g gᵀ.
@@ -261,7 +261,7 @@ impl Beam {
                 sum: Blocks::zero(nodes),
             },
             #[cfg(feature = "faer")]
-            Backend::Sparse => Kind::Sparse(SparseFactor::new(self)?),
+            Backend::Sparse => Kind::Sparse(Box::new(SparseFactor::new(self)?)),
             #[cfg(not(feature = "faer"))]
             Backend::Sparse => return Err(FactorError::MissingFeature { backend, feature: "faer" }),
         };
