@@ -4,6 +4,7 @@ use crate::beam::Beam;
 
 /// What deflection and slope of a beam reach, made by [`Beam::deflection_extremes`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub struct DeflectionExtremes {
     /// Least w, m.
     pub lowest: f64,

@@ -59,6 +59,7 @@ pub struct Actions<'a> {
 
 /// What a support bears: the force and the couple of the support on the beam.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Reaction {
     /// Where, m.
     pub x: f64,
@@ -70,11 +71,22 @@ pub struct Reaction {
 
 /// Moment and shear at a place.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct SectionForce {
     /// Bending moment M, N m.
     pub moment: f64,
     /// Transverse force V, N.
     pub shear: f64,
+}
+
+/// A normal stress with its place, from [`SectionForces::largest_stress`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct PeakStress {
+    /// Where, m.
+    pub x: f64,
+    /// |M|/(I/c) + |N|/A, Pa.
+    pub stress: f64,
 }
 
 /// The section forces of a beam, in memory that is kept: [`SectionForces::update`] allocates nothing unless there are more
@@ -157,8 +169,8 @@ impl SectionForces {
         self.ends.resize(beam.elements(), [0.0; 4]);
         for (e, end) in self.ends.iter_mut().enumerate() {
             *end = beam.bending.on_nodes(e, q);
-            if let Some(bed) = &beam.bed {
-                add(end, 1.0, bed.on_nodes(e, q));
+            if let Some(foundation) = &beam.foundation {
+                add(end, 1.0, foundation.on_nodes(e, q));
             }
             if let Some((membrane, force)) = stretching {
                 add(end, force, membrane.slopes.on_nodes(e, stretched));
@@ -166,13 +178,13 @@ impl SectionForces {
             if !actions.velocity.is_empty() && beam.is_damped() {
                 let v = beam.bend(actions.velocity);
                 add(end, beam.damping_of_mass, beam.mass.on_nodes(e, v));
-                if let Some(bath) = &beam.bath {
-                    add(end, 1.0, bath.on_nodes(e, v));
+                if let Some(residual) = &beam.residual_damping {
+                    add(end, 1.0, residual.on_nodes(e, v));
                 }
                 if damping.rayleigh_stiffness != 0.0 {
                     add(end, damping.rayleigh_stiffness, beam.bending.on_nodes(e, v));
-                    if let Some(bed) = &beam.bed {
-                        add(end, damping.rayleigh_stiffness, bed.on_nodes(e, v));
+                    if let Some(foundation) = &beam.foundation {
+                        add(end, damping.rayleigh_stiffness, foundation.on_nodes(e, v));
                     }
                 }
             }
@@ -346,16 +358,16 @@ impl SectionForces {
         self.axial.get(e).copied().unwrap_or(0.0)
     }
 
-    /// The largest normal stress, Pa, with its place: over the nodes and the places of point loads, on either side of each.
-    /// `None` where no section knows its modulus.
+    /// The largest normal stress over the nodes and the places of point loads, on either side of each. `None` where no section
+    /// has a modulus.
     #[must_use]
-    pub fn largest_stress(&self, beam: &Beam) -> Option<(f64, f64)> {
-        let mut largest: Option<(f64, f64)> = None;
+    pub fn largest_stress(&self, beam: &Beam) -> Option<PeakStress> {
+        let mut largest: Option<PeakStress> = None;
         let mut see = |e: usize, x: f64, moment: f64| {
             if let Some(stress) = self.stress_in(beam, e, moment)
-                && largest.is_none_or(|(most, _)| stress > most)
+                && largest.is_none_or(|largest| stress > largest.stress)
             {
-                largest = Some((stress, x));
+                largest = Some(PeakStress { x, stress });
             }
         };
         for e in 0..beam.elements() {
@@ -373,8 +385,7 @@ impl SectionForces {
         largest
     }
 
-    /// Largest normal stress |M|/(I/c) + |N|/A at a place with this bending moment, Pa; `None` where the section doesn't know its
-    /// modulus.
+    /// Largest normal stress |M|/(I/c) + |N|/A at a place with this bending moment, Pa; `None` where the section has no modulus.
     #[must_use]
     pub fn stress(&self, beam: &Beam, x: f64, moment: f64) -> Option<f64> {
         let (e, _) = beam.mesh.locate(x.clamp(0.0, beam.spec.span));
@@ -384,8 +395,8 @@ impl SectionForces {
     fn stress_in(&self, beam: &Beam, e: usize, moment: f64) -> Option<f64> {
         let section = &beam.elements[e].section;
         let axial = self.axial.get(e).copied().unwrap_or(0.0).abs();
-        let pulled = if section.area > 0.0 { axial / section.area } else { 0.0 };
-        (section.section_modulus > 0.0).then(|| moment.abs() / section.section_modulus + pulled)
+        let pulled = section.area.map_or(0.0, |area| axial / area);
+        section.section_modulus.map(|modulus| moment.abs() / modulus + pulled)
     }
 }
 

@@ -70,6 +70,7 @@
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
+mod assembly;
 mod band;
 mod bar;
 mod basis;
@@ -110,10 +111,11 @@ pub use extremes::DeflectionExtremes;
 pub use factor::{Backend, Factor, MatrixWeights};
 #[cfg(feature = "faer")]
 pub use faer;
-pub use forces::{Actions, Reaction, SectionForce, SectionForces, SpanLoad};
+pub use forces::{Actions, PeakStress, Reaction, SectionForce, SectionForces, SpanLoad};
 pub use load::{DistributedLoad, Load, MovingLoad, NodalLoad};
 pub use matrix::MatrixEntry;
 pub use section::{Profile, Section};
 pub use shape::{AxialShape, Deflection, DeflectionBounds, ShapeAt};
-pub use spec::{Axial, BeamSpec, Damping, Foundation, Lump, MAX_ELEMENTS, Segment};
+pub use spec::{Axial, BeamSpec, Damping, DampingRatio, Foundation, InnerSupport, Lump, MAX_ELEMENTS, Segment};
+pub use statics::RigidMotion;
 pub use support::{Hold, Support};

@@ -84,8 +84,8 @@ impl Beam {
         if a1 != 0.0 {
             self.add_stiffness_product(a * a1, x, y);
         }
-        if let Some(bath) = &self.bath {
-            bath.add_product(a, self.bend(x), self.split_mut(y).0);
+        if let Some(residual) = &self.residual_damping {
+            residual.add_product(a, self.bend(x), self.split_mut(y).0);
         }
         add_diagonal(a, &self.dashpots, x, y);
         if let Some(modal) = &self.modal {
@@ -115,8 +115,8 @@ impl Beam {
     pub fn add_stiffness_product(&self, a: f64, x: &[f64], y: &mut [f64]) {
         let (bend, axial) = self.split_mut(y);
         self.bending.add_product(a, self.bend(x), bend);
-        if let Some(bed) = &self.bed {
-            bed.add_product(a, self.bend(x), bend);
+        if let Some(foundation) = &self.foundation {
+            foundation.add_product(a, self.bend(x), bend);
         }
         if let Some(bar) = &self.bar {
             bar.add_stiffness_product(a, &x[2 * self.nodes()..], axial);
@@ -170,8 +170,8 @@ impl Beam {
         if a1 != 0.0 {
             power += a1 * self.stiffness_form(v);
         }
-        if let Some(bath) = &self.bath {
-            power += bath.form(self.bend(v));
+        if let Some(residual) = &self.residual_damping {
+            power += residual.form(self.bend(v));
         }
         if let Some(modal) = &self.modal {
             power += modal.form(v);
@@ -181,8 +181,8 @@ impl Beam {
 
     pub(crate) fn stiffness_form(&self, q: &[f64]) -> f64 {
         let mut form = self.bending.form(self.bend(q));
-        if let Some(bed) = &self.bed {
-            form += bed.form(self.bend(q));
+        if let Some(foundation) = &self.foundation {
+            form += foundation.form(self.bend(q));
         }
         if let Some(bar) = &self.bar {
             form += bar.stiffness_form(&q[2 * self.nodes()..]);

@@ -133,12 +133,12 @@ pub struct Section {
     pub shear_stiffness: f64,
     /// Rotatory inertia per length ρI, kg m; 0 to leave it out.
     pub rotatory_inertia: f64,
-    /// Axial stiffness EA, N; 0 where it isn't known. A beam that is held along its axis, or has axial dofs, needs it.
-    pub axial_stiffness: f64,
-    /// Area A, m²; 0 where it isn't known.
-    pub area: f64,
-    /// Elastic section modulus I/c, m³, by which a bending moment makes the largest stress; 0 where it isn't known.
-    pub section_modulus: f64,
+    /// Axial stiffness EA, N, if known. A beam that is held along its axis, or has axial dofs, needs it.
+    pub axial_stiffness: Option<f64>,
+    /// Area A, m², if known: by it an axial force adds to the stress.
+    pub area: Option<f64>,
+    /// Elastic section modulus I/c, m³, if known: by it a bending moment makes the largest stress.
+    pub section_modulus: Option<f64>,
 }
 
 impl Section {
@@ -158,9 +158,9 @@ impl Section {
             mass_per_length,
             shear_stiffness: f64::INFINITY,
             rotatory_inertia: 0.0,
-            axial_stiffness: 0.0,
-            area: 0.0,
-            section_modulus: 0.0,
+            axial_stiffness: None,
+            area: None,
+            section_modulus: None,
         };
         section.validate()?;
         Ok(section)
@@ -196,9 +196,9 @@ impl Section {
             _ => density * profile.area(),
         };
         let section = Self {
-            axial_stiffness: youngs_modulus * profile.area(),
-            area: profile.area(),
-            section_modulus: second_moment / profile.fibre(),
+            axial_stiffness: Some(youngs_modulus * profile.area()),
+            area: Some(profile.area()),
+            section_modulus: Some(second_moment / profile.fibre()),
             ..Self::new(bending_stiffness, mass_per_length)?
         };
         section.validate()?;
@@ -261,7 +261,12 @@ impl Section {
     /// [`BeamError::Value`] for one that is not finite and positive.
     pub fn with_axial_stiffness(self, axial_stiffness: f64) -> Result<Self, BeamError> {
         positive("section.axial_stiffness", axial_stiffness)?;
-        Ok(Self { axial_stiffness, ..self })
+        Ok(Self { axial_stiffness: Some(axial_stiffness), ..self })
+    }
+
+    /// EA, N; of a beam that needs it [`BeamSpec::validate`](crate::BeamSpec) has seen that it is there.
+    pub(crate) fn axial(&self) -> f64 {
+        self.axial_stiffness.unwrap_or(0.0)
     }
 
     /// Φ = 12 EI/(GA_s l²) of an element of length l: the share of shear in its flexibility; 0 for Euler–Bernoulli.
@@ -276,9 +281,12 @@ impl Section {
             check("section.shear_stiffness", self.shear_stiffness, self.shear_stiffness > 0.0, "> 0")?;
         }
         not_negative("section.rotatory_inertia", self.rotatory_inertia)?;
-        not_negative("section.axial_stiffness", self.axial_stiffness)?;
-        not_negative("section.area", self.area)?;
-        not_negative("section.section_modulus", self.section_modulus)
+        let known = [
+            ("section.axial_stiffness", self.axial_stiffness),
+            ("section.area", self.area),
+            ("section.section_modulus", self.section_modulus),
+        ];
+        known.into_iter().try_for_each(|(field, value)| value.map_or(Ok(()), |value| positive(field, value)))
     }
 }
 

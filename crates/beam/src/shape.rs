@@ -7,6 +7,7 @@ use crate::beam::Beam;
 ///
 /// What lies beyond `len` is 0 (column 0, value 0), so a sum over all four is the same where the beam has any dof.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct ShapeAt {
     /// How many of the four places are in use.
     pub len: usize,
@@ -48,6 +49,7 @@ impl ShapeAt {
 
 /// The axial shape functions at a point of a beam with axial dofs, held ones left out: `u = Σ n[i] q[columns[i]]` over `i < len`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub struct AxialShape {
     /// How many of the two places are in use; 0 for a beam without axial dofs.
     pub len: usize,

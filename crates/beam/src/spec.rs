@@ -36,24 +36,26 @@ pub struct Damping {
 }
 
 impl Damping {
-    /// Rayleigh's factors that give two circular frequencies (rad/s) their damping ratios: ζ_i = a₀/(2ω_i) + a₁ω_i/2.
+    /// Rayleigh's factors that give two circular frequencies their damping ratios: ζ_i = a₀/(2ω_i) + a₁ω_i/2.
     ///
     /// # Errors
     /// [`BeamError::Value`] for frequencies that are not positive and different, ratios that are negative, and pairs that
     /// only a negative factor would give (one of the two ratios too large for the other).
     ///
     /// ```
-    /// let damping = teeter_beam::Damping::rayleigh([(100.0, 0.02), (400.0, 0.02)])?;
+    /// use teeter_beam::{Damping, DampingRatio};
+    /// let damping = Damping::rayleigh([DampingRatio::new(100.0, 0.02), DampingRatio::new(400.0, 0.02)])?;
     /// assert!((damping.rayleigh_mass - 3.2).abs() < 1e-12);
     /// assert!((damping.rayleigh_stiffness - 8e-5).abs() < 1e-17);
     /// # Ok::<(), teeter_beam::BeamError>(())
     /// ```
-    pub fn rayleigh(ratios: [(f64, f64); 2]) -> Result<Self, BeamError> {
-        let [(w1, z1), (w2, z2)] = ratios;
-        for (omega, zeta) in ratios {
-            positive("circular_frequency", omega)?;
-            not_negative("ratio", zeta)?;
+    pub fn rayleigh(ratios: [DampingRatio; 2]) -> Result<Self, BeamError> {
+        for DampingRatio { circular_frequency, ratio } in ratios {
+            positive("circular_frequency", circular_frequency)?;
+            not_negative("ratio", ratio)?;
         }
+        let [w1, w2] = ratios.map(|at| at.circular_frequency);
+        let [z1, z2] = ratios.map(|at| at.ratio);
         check("circular_frequency", w2, w1 != w2, "other than the first one")?;
         let (low, high) = (w1 / w2, w2 / w1);
         // ζ₁ω₂ − ζ₂ω₁ and ζ₂ω₂ − ζ₁ω₁ over ω₂² − ω₁², in quotients that neither overflow nor underflow.
@@ -80,8 +82,27 @@ impl Damping {
     }
 }
 
+/// A damping ratio and the frequency that is to have it, for [`Damping::rayleigh`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct DampingRatio {
+    /// Circular frequency ω, rad/s.
+    pub circular_frequency: f64,
+    /// Damping ratio ζ, of the critical damping; without unit.
+    pub ratio: f64,
+}
+
+impl DampingRatio {
+    /// ζ at ω, rad/s.
+    #[must_use]
+    pub fn new(circular_frequency: f64, ratio: f64) -> Self {
+        Self { circular_frequency, ratio }
+    }
+}
+
 /// A part of the span with a section of its own.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Segment {
     /// Its left end, m.
     pub from: f64,
@@ -91,8 +112,35 @@ pub struct Segment {
     pub section: Section,
 }
 
+impl Segment {
+    /// From one place to another, m.
+    #[must_use]
+    pub fn new(from: f64, to: f64, section: Section) -> Self {
+        Self { from, to, section }
+    }
+}
+
+/// A support between the ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct InnerSupport {
+    /// Where, m.
+    pub x: f64,
+    /// How the beam is held there.
+    pub support: Support,
+}
+
+impl InnerSupport {
+    /// At x, m.
+    #[must_use]
+    pub fn new(x: f64, support: Support) -> Self {
+        Self { x, support }
+    }
+}
+
 /// A mass that the beam carries.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Lump {
     /// Where, m.
     pub x: f64,
@@ -102,8 +150,23 @@ pub struct Lump {
     pub inertia: f64,
 }
 
+impl Lump {
+    /// A point mass: x in m, mass in kg.
+    #[must_use]
+    pub fn new(x: f64, mass: f64) -> Self {
+        Self { x, mass, inertia: 0.0 }
+    }
+
+    /// With a rotatory inertia about the axis, kg m².
+    #[must_use]
+    pub fn with_inertia(self, inertia: f64) -> Self {
+        Self { inertia, ..self }
+    }
+}
+
 /// Winkler's foundation under a part of the span: a force per length −k w − c ẇ.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Foundation {
     /// Its left end, m.
     pub from: f64,
@@ -113,6 +176,20 @@ pub struct Foundation {
     pub stiffness: f64,
     /// Damping c per length, N s/m².
     pub damping: f64,
+}
+
+impl Foundation {
+    /// An elastic one from one place to another, m, with its stiffness k per length, N/m².
+    #[must_use]
+    pub fn new(from: f64, to: f64, stiffness: f64) -> Self {
+        Self { from, to, stiffness, damping: 0.0 }
+    }
+
+    /// With a damping c per length, N s/m².
+    #[must_use]
+    pub fn with_damping(self, damping: f64) -> Self {
+        Self { damping, ..self }
+    }
 }
 
 /// What happens along the axis.
@@ -149,8 +226,8 @@ pub struct BeamSpec {
     pub damping: Damping,
     /// Parts with sections of their own; the last one that covers a place holds there.
     pub segments: Vec<Segment>,
-    /// Supports between the ends, by their place, m.
-    pub inner_supports: Vec<(f64, Support)>,
+    /// Supports between the ends.
+    pub inner_supports: Vec<InnerSupport>,
     /// Masses that it carries.
     pub lumps: Vec<Lump>,
     /// What it rests on.
@@ -207,21 +284,21 @@ impl BeamSpec {
     /// With another section between two places, m.
     #[must_use]
     pub fn segment(mut self, from: f64, to: f64, section: Section) -> Self {
-        self.segments.push(Segment { from, to, section });
+        self.segments.push(Segment::new(from, to, section));
         self
     }
 
     /// With one more support, at x (m).
     #[must_use]
     pub fn support_at(mut self, x: f64, support: Support) -> Self {
-        self.inner_supports.push((x, support));
+        self.inner_supports.push(InnerSupport::new(x, support));
         self
     }
 
     /// With a mass (kg) and a rotatory inertia (kg m²) at x (m).
     #[must_use]
     pub fn lump(mut self, x: f64, mass: f64, inertia: f64) -> Self {
-        self.lumps.push(Lump { x, mass, inertia });
+        self.lumps.push(Lump::new(x, mass).with_inertia(inertia));
         self
     }
 
@@ -280,7 +357,7 @@ impl BeamSpec {
         for support in self.supports {
             support.validate()?;
         }
-        for &(x, support) in &self.inner_supports {
+        for &InnerSupport { x, support } in &self.inner_supports {
             check("support.x", x, x > 0.0 && x < self.span, "between the ends; these have supports of their own")?;
             support.validate()?;
         }
@@ -292,8 +369,8 @@ impl BeamSpec {
         check("axial_force", self.axial_force, true, "finite")?;
         if self.axial != Axial::Free {
             for section in self.segments.iter().map(|segment| &segment.section).chain([&self.section]) {
-                let ea = section.axial_stiffness;
-                check("section.axial_stiffness", ea, ea > 0.0, "> 0 where the axis is held or has dofs")?;
+                let (field, reason) = ("section.axial_stiffness", "where the axis is held or has dofs");
+                section.axial_stiffness.ok_or(BeamError::Missing { field, reason })?;
             }
         }
         // l³ and EI/l³ enter the matrices: a span that is a valid number can still overflow them.

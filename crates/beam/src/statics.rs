@@ -1,10 +1,11 @@
 //! Static equilibrium, K q = f.
 
+use std::fmt;
+
 use crate::beam::Beam;
 use crate::error::{FactorError, StaticError};
 use crate::factor::{Factor, MatrixWeights};
 use crate::membrane::Membrane;
-use crate::support::Hold;
 
 /// Steps of iterative refinement at most.
 const MAX_REFINEMENTS: usize = 20;
@@ -52,8 +53,8 @@ impl Beam {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn solve_static(&self, load: &mut [f64]) -> Result<(), StaticError> {
-        if let Some(missing) = self.rigid_motion() {
-            return Err(StaticError::RigidMotion { supports: Box::new(self.spec.supports), missing });
+        if let Some(motion) = self.rigid_motion() {
+            return Err(StaticError::RigidMotion { supports: Box::new(self.spec.supports), motion });
         }
         if load.len() != self.dofs() {
             return Err(StaticError::Length { expected: self.dofs(), found: load.len() });
@@ -170,8 +171,8 @@ impl Beam {
         !(places >= 2 || places == 1 && turned)
     }
 
-    /// The rigid motion that supports, springs and foundations leave, with what would take it.
-    pub fn rigid_motion(&self) -> Option<&'static str> {
+    /// The rigid motion that supports, springs and foundations leave, if they do: then there is no static equilibrium.
+    pub fn rigid_motion(&self) -> Option<RigidMotion> {
         let mut places: Vec<f64> = Vec::new();
         let mut turned = false;
         let supports = self.mesh.x.iter().zip(&self.held);
@@ -185,30 +186,74 @@ impl Beam {
             }
             turned |= dof % 2 == 1;
         }
-        if self.bed.is_some() {
+        if self.foundation.is_some() {
             places.extend([0.0, self.spec.span]);
         }
         if self.bar.as_ref().is_some_and(|bar| !bar.held.iter().any(|held| *held)) {
-            return Some("neither end is held along the axis, along which the beam can move as a whole; hold one");
+            return Some(RigidMotion::AlongAxis);
         }
         let two = places.iter().any(|x| (x - places[0]).abs() > 0.0);
-        let free = |k: usize| self.spec.supports[k].holds() == [Hold::Free; 2];
         match (places.is_empty(), two || turned) {
             (false, true) => None,
-            (true, true) => {
-                Some("nothing holds the beam across its axis, it can move up and down as a whole; pin it somewhere")
-            }
-            (true, false) => {
-                Some("both ends are free, the beam can move and turn as a whole; clamp one end or pin both")
-            }
-            (false, false) if free(1) => {
-                Some("the beam can turn about its pinned left end; support the right end or clamp the left")
-            }
-            (false, false) if free(0) => {
-                Some("the beam can turn about its pinned right end; support the left end or clamp the right")
-            }
-            (false, false) => Some("the beam can turn about its one support; support it elsewhere or clamp it"),
+            (true, true) => Some(RigidMotion::AcrossAxis),
+            (true, false) => Some(RigidMotion::Any),
+            (false, false) if places[0] == 0.0 => Some(RigidMotion::AboutLeftEnd),
+            (false, false) if places[0] == self.spec.span => Some(RigidMotion::AboutRightEnd),
+            (false, false) => Some(RigidMotion::AboutSupport),
         }
+    }
+}
+
+/// A rigid motion that nothing takes, from [`Beam::rigid_motion`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum RigidMotion {
+    /// Along the axis: the beam has axial dofs, and neither end is held.
+    AlongAxis,
+    /// Up and down as a whole.
+    AcrossAxis,
+    /// Up and down, and turning.
+    Any,
+    /// Turning about the left end.
+    AboutLeftEnd,
+    /// Turning about the right end.
+    AboutRightEnd,
+    /// Turning about the one support between the ends.
+    AboutSupport,
+}
+
+impl RigidMotion {
+    /// What can move, as a clause.
+    #[must_use]
+    pub fn description(self) -> &'static str {
+        match self {
+            Self::AlongAxis => "neither end is held along the axis, along which the beam can move as a whole",
+            Self::AcrossAxis => "nothing holds the beam across its axis, it can move up and down as a whole",
+            Self::Any => "both ends are free, the beam can move and turn as a whole",
+            Self::AboutLeftEnd => "the beam can turn about its pinned left end",
+            Self::AboutRightEnd => "the beam can turn about its pinned right end",
+            Self::AboutSupport => "the beam can turn about its one support",
+        }
+    }
+
+    /// What would hold it, as an imperative.
+    #[must_use]
+    pub fn remedy(self) -> &'static str {
+        match self {
+            Self::AlongAxis => "hold one",
+            Self::AcrossAxis => "pin it somewhere",
+            Self::Any => "clamp one end or pin both",
+            Self::AboutLeftEnd => "support the right end or clamp the left",
+            Self::AboutRightEnd => "support the left end or clamp the right",
+            Self::AboutSupport => "support it elsewhere or clamp it",
+        }
+    }
+}
+
+/// Description and remedy.
+impl fmt::Display for RigidMotion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}; {}", self.description(), self.remedy())
     }
 }
 
@@ -220,6 +265,8 @@ mod tests {
 
     #[test]
     fn a_rigid_motion_is_refused_with_the_missing_support() {
+        let on_one = Beam::new(crate::beam::tests::spec(4, [Free, Free]).support_at(0.5, Pinned)).unwrap();
+        assert_eq!(on_one.rigid_motion(), Some(RigidMotion::AboutSupport));
         for (supports, words) in [([Free, Free], "both"), ([Pinned, Free], "right end"), ([Free, Pinned], "left end")] {
             let beam = beam(4, supports);
             let text = beam.solve_static(&mut vec![1.0; beam.dofs()]).unwrap_err().to_string();

@@ -105,7 +105,7 @@ fn the_estimate_is_true_on_a_foundation_and_under_an_axial_force() {
     let euler = 0.5821875 * (std::f64::consts::PI / 0.36).powi(2);
     for n in [20, 200, 1000] {
         let spec: BeamSpec = super::spec(n, [Support::Pinned; 2]);
-        let bed = |stiffness| Foundation { from: 0.0, to: 0.36, stiffness, damping: 0.0 };
+        let bed = |stiffness| Foundation::new(0.0, 0.36, stiffness);
         for spec in [
             spec.clone().axial_force(1e3 * euler),
             spec.clone().axial_force(-0.9 * euler),

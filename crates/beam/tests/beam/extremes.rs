@@ -99,7 +99,7 @@ fn spec() -> impl Strategy<Value = BeamSpec> {
                 spec = spec.lump(x * span, mass, inertia);
             }
             if let Some([from, to, stiffness]) = bed {
-                spec = spec.foundation(Foundation { from: from * span, to: to * span, stiffness, damping: 1.0 });
+                spec = spec.foundation(Foundation::new(from * span, to * span, stiffness).with_damping(1.0));
             }
             if let Some(times) = other {
                 spec = spec.segment(

@@ -208,7 +208,7 @@ fn springs_and_axial_dofs_leave_the_rigid_motions_that_they_leave() {
         (free.clone().support_at(0.3, spring(20.0)).support_at(0.9, spring(5.0)), 0),
         (free.clone().axial(Axial::Elastic { held: [false; 2] }), 3),
         (free.clone().axial(Axial::Elastic { held: [true, false] }), 2),
-        (free.clone().foundation(Foundation { from: 0.2, to: 0.4, stiffness: 1.0, damping: 0.0 }), 0),
+        (free.clone().foundation(Foundation::new(0.2, 0.4, 1.0)), 0),
     ] {
         let beam = Beam::new(spec).unwrap();
         let modes = beam.modes(6).unwrap();
@@ -233,7 +233,7 @@ fn a_beam_with_everything_has_the_modes_of_a_dense_solve() {
         .segment(0.3, 0.5, thick)
         .support_at(0.75, Support::Pinned)
         .lump(0.4, 0.5, 0.01)
-        .foundation(Foundation { from: 0.1, to: 0.65, stiffness: 80.0, damping: 0.0 })
+        .foundation(Foundation::new(0.1, 0.65, 80.0))
         .axial(Axial::Elastic { held: [true, false] })
         .axial_force(3.0);
     let beam = Beam::new(spec).unwrap();
