@@ -1,4 +1,4 @@
-//! One two-node element: cubic Hermite for Euler–Bernoulli (`docs/theory.md` §1), and its extension by shear.
+//! One two-node element: cubic Hermite for Euler–Bernoulli, and its extension by shear.
 //!
 //! With Φ = 12 EI/(GA_s l²) the shape functions of Friedman and Kosmatka (1993, doi 10.1016/0045-7949(93)90243-7) solve the
 //! static equations of Timoshenko's beam without load, so the element doesn't lock and is exact at its nodes. Φ = 0 is the cubic

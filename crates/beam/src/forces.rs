@@ -52,8 +52,8 @@ pub struct Actions<'a> {
     pub acceleration: &'a [f64],
     /// All loads but those of supports.
     pub loads: &'a [SpanLoad],
-    /// Of a beam held along its axis, in a time step: the deflection at which the step took the stretching, q⁰ + hθv⁰ (see
-    /// `membrane.rs`). Empty: `q` itself.
+    /// Of a beam held along its axis, in a time step: the deflection at which the step took the stretching, q⁰ + hθv⁰
+    /// ([`Beam::follow`]). Empty: `q` itself.
     pub stretched_at: &'a [f64],
 }
 
@@ -505,7 +505,7 @@ mod tests {
         beam.add_self_weight(-9.81, &mut f).unwrap();
         beam.add_elastic_force(&q, &mut f);
         beam.add_damping_product(-1.0, &v, &mut f);
-        beam.factor(crate::MatrixWeights { mass: 1.0, damping: 0.0, stiffness: 0.0 }).unwrap().solve(&mut f);
+        beam.factor(crate::MatrixWeights::MASS).unwrap().solve(&mut f);
         let actions = Actions { q: &q, velocity: &v, acceleration: &f, loads: &loads, ..Actions::default() };
         let forces = beam.section_forces(&actions).unwrap();
         // Reactions by the residual of the held dofs, independently.

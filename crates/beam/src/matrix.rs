@@ -40,8 +40,7 @@ impl Beam {
     /// # use teeter_beam::{Beam, BeamSpec, MatrixWeights, Section, Support};
     /// let spec = BeamSpec::new(2.0, 1, Section::new(5.0, 1.0)?).supported([Support::Clamped, Support::Free]);
     /// let beam = Beam::new(spec)?;
-    /// let stiffness = MatrixWeights { mass: 0.0, damping: 0.0, stiffness: 1.0 };
-    /// let found: Vec<_> = beam.matrix_entries(stiffness).map(|e| (e.row, e.column, e.value)).collect();
+    /// let found: Vec<_> = beam.matrix_entries(MatrixWeights::STIFFNESS).map(|e| (e.row, e.column, e.value)).collect();
     /// assert_eq!(found, [(0, 0, 7.5), (0, 1, -7.5), (1, 1, 10.0)]); // 12 EI/l³, −6 EI/l², 4 EI/l
     /// # Ok::<(), teeter_beam::BeamError>(())
     /// ```

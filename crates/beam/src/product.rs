@@ -224,8 +224,9 @@ impl Beam {
         }
     }
 
-    /// What a θ step of size `h` (θ = ½) keeps in place of the stretching energy, less that energy, J: 0 for a beam that isn't
-    /// held along its axis. O(h²). See the module's page, `membrane.rs`.
+    /// What a θ step of size `h` (θ = ½) with [`Beam::follow`] keeps in place of the stretching energy EA/(8L) s², less that
+    /// energy, J: EA/(8L) (σ² − s²) with s = ∫w'² dx = qᵀG q and σ = s − ¼h² vᵀG v. O(h²); 0 for a beam that isn't held along
+    /// its axis.
     ///
     /// # Panics
     /// If `q` or `v` has not [`Beam::dofs`] entries.
@@ -259,10 +260,6 @@ impl Beam {
 mod tests {
     use crate::beam::tests::{all_supports, beam, damped, furnished, wave};
     use crate::{Beam, BeamSpec, MatrixWeights};
-
-    const M: MatrixWeights = MatrixWeights { mass: 1.0, damping: 0.0, stiffness: 0.0 };
-    const C: MatrixWeights = MatrixWeights { mass: 0.0, damping: 1.0, stiffness: 0.0 };
-    const K: MatrixWeights = MatrixWeights { mass: 0.0, damping: 0.0, stiffness: 1.0 };
 
     /// Of the assembled upper triangle, in the free dofs, with all dofs to go by.
     fn form(beam: &Beam, matrix: MatrixWeights, x: &[f64]) -> (Vec<f64>, f64) {
@@ -304,9 +301,9 @@ mod tests {
                 }
                 twice
             };
-            let twice_kinetic = check(M, &|y| beam.add_mass_product(2.0, &x, y));
-            let power = check(C, &|y| beam.add_damping_product(2.0, &x, y));
-            let twice_elastic = check(K, &|y| beam.add_stiffness_product(2.0, &x, y));
+            let twice_kinetic = check(MatrixWeights::MASS, &|y| beam.add_mass_product(2.0, &x, y));
+            let power = check(MatrixWeights::DAMPING, &|y| beam.add_damping_product(2.0, &x, y));
+            let twice_elastic = check(MatrixWeights::STIFFNESS, &|y| beam.add_stiffness_product(2.0, &x, y));
             assert!((2.0 * beam.kinetic_energy(&x) / twice_kinetic - 1.0).abs() < 1e-13);
             assert!((2.0 * beam.elastic_energy(&x) / twice_elastic - 1.0).abs() < 1e-12);
             assert!((beam.damping_power(&x) / power - 1.0).abs() < 1e-13);
@@ -333,7 +330,7 @@ mod tests {
         let q = beam.from_nodes(&nodes).unwrap();
         let mut natural = vec![0.0; beam.dofs()];
         beam.add_stiffness_product(1.0, &q, &mut natural);
-        let (matrix, _) = form(&beam, K, &q);
+        let (matrix, _) = form(&beam, MatrixWeights::STIFFNESS, &q);
         let worst = |f: &[f64]| f[2..2 * n].iter().fold(0.0_f64, |m, f| m.max(f.abs()));
         let (by_modes, by_matrix) = (worst(&natural), worst(&matrix));
         assert!(by_modes < 1e-12 && by_matrix > 1e-9, "{by_modes:e} {by_matrix:e}");

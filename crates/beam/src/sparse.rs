@@ -28,19 +28,19 @@ impl Beam {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn mass_matrix(&self) -> SparseColMat<usize, f64> {
-        self.matrix(MatrixWeights { mass: 1.0, damping: 0.0, stiffness: 0.0 })
+        self.matrix(MatrixWeights::MASS)
     }
 
     /// The damping matrix of the free dofs, upper triangle, on the pattern of [`Beam::mass_matrix`]; without the damping ratios
     /// of single modes ([`Damping::modal`](crate::Damping::modal)), which would fill it.
     pub fn damping_matrix(&self) -> SparseColMat<usize, f64> {
-        self.matrix(MatrixWeights { mass: 0.0, damping: 1.0, stiffness: 0.0 })
+        self.matrix(MatrixWeights::DAMPING)
     }
 
     /// The stiffness matrix of the free dofs, upper triangle, on the pattern of [`Beam::mass_matrix`]: of the straight beam, with
     /// its given axial force.
     pub fn stiffness_matrix(&self) -> SparseColMat<usize, f64> {
-        self.matrix(MatrixWeights { mass: 0.0, damping: 0.0, stiffness: 1.0 })
+        self.matrix(MatrixWeights::STIFFNESS)
     }
 
     fn matrix(&self, weights: MatrixWeights) -> SparseColMat<usize, f64> {

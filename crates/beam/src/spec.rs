@@ -9,8 +9,7 @@ use crate::support::Support;
 
 /// The finest mesh that a beam may have.
 ///
-/// cond(K) grows like the fourth power of the element count (`docs/theory.md` §1, *Conditioning*): beyond this, K has no
-/// correct digit left in double precision.
+/// cond(K) grows like the fourth power of the element count: beyond this, K has no correct digit left in double precision.
 pub const MAX_ELEMENTS: usize = 10_000;
 
 /// Linear damping: `C = c ∫NᵀN dx + a₀M + a₁K`, and ratios of single modes.
@@ -200,7 +199,8 @@ pub enum Axial {
     #[default]
     Free,
     /// Both ends are held along the axis. A deflection stretches the beam and with it grows an axial force, the same all along
-    /// (axial inertia left out): N = N₀ + (EA)/(2L) ∫w'² dx, with 1/EA the mean over the span. Woinowsky-Krieger (1950).
+    /// (axial inertia left out): N = N₀ + (EA)/(2L) ∫w'² dx, with 1/EA the mean over the span. Woinowsky-Krieger (1950,
+    /// J. Appl. Mech. 17, 35–36).
     Held,
     /// Axial dofs u with their inertia; which ends are held along the axis. Linear: they don't feel the deflection.
     Elastic {

@@ -31,7 +31,7 @@ pub(crate) struct Refined {
 impl Beam {
     /// Turns a load (N and N m per dof) into the deflection under it: f ← K⁻¹ f.
     ///
-    /// One Cholesky solve of K loses about ε n⁴ (`docs/theory.md` §1, *Conditioning*). Iterative refinement, with the
+    /// One Cholesky solve of K on n elements loses about ε n⁴, its condition number. Iterative refinement, with the
     /// residual by [`Beam::add_stiffness_product`], takes the conditioning out without extended precision: what that
     /// residual gets wrong is a natural deformation of single elements, which moves the beam by rounding only. Measured
     /// against closed forms, worst of all supports: 3e-12, 5e-9, 1e-7 for 20, 100, 300 elements without it, 1e-14 with it;
@@ -40,7 +40,8 @@ impl Beam {
     /// # Errors
     /// [`StaticError::RigidMotion`] where the supports leave one; [`StaticError::Length`] and [`StaticError::Load`] for a
     /// load of another length or not finite; [`StaticError::Buckled`] under too much compression; [`StaticError::NotSettled`] for a mesh
-    /// too fine for double precision (a cantilever of 10 000 elements), [`StaticError::Soft`] for springs too soft for it. After an error `load` is as it was.
+    /// too fine for double precision (a cantilever of 10 000 elements), [`StaticError::Soft`] for springs too soft for it. After an
+    /// error `load` is as it was.
     ///
     /// ```
     /// # use teeter_beam::{Beam, BeamSpec, Section};
@@ -72,8 +73,8 @@ impl Beam {
 
     /// (K + N G)⁻¹ f, N an axial force beside that of the beam, by refinement to rounding.
     fn solve_refined(&self, load: &[f64], n: f64) -> Result<Vec<f64>, StaticError> {
-        let (stiffness, slopes) = (MatrixWeights { mass: 0.0, damping: 0.0, stiffness: 1.0 }, self.membrane.as_ref());
-        let factor = self.factor_under(stiffness, n).map_err(|error| match error {
+        let slopes = self.membrane.as_ref();
+        let factor = self.factor_under(MatrixWeights::STIFFNESS, n).map_err(|error| match error {
             FactorError::NotPositiveDefinite { .. } if self.spec.axial_force < 0.0 => {
                 StaticError::Buckled { axial_force: self.spec.axial_force }
             }

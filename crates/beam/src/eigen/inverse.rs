@@ -30,7 +30,7 @@ pub(crate) struct Inverse<'a> {
 
 impl<'a> Inverse<'a> {
     pub(crate) fn new(beam: &'a Beam) -> Result<Self, FactorError> {
-        let mass = beam.factor(MatrixWeights { mass: 1.0, damping: 0.0, stiffness: 0.0 })?;
+        let mass = beam.factor(MatrixWeights::MASS)?;
         let mut x = noise(beam, &mass, 0);
         let mut highest = 0.0_f64;
         for _ in 0..POWER_STEPS {

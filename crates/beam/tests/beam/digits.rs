@@ -3,7 +3,7 @@
 use crate::double_double::{Dd, Exact, error, rounded};
 use teeter_beam::{Beam, BeamSpec, Digits, Foundation, MatrixWeights, Support};
 
-const STATICS: MatrixWeights = MatrixWeights { mass: 0.0, damping: 0.0, stiffness: 1.0 };
+const STATICS: MatrixWeights = MatrixWeights::STIFFNESS;
 
 /// A θ step with θ = ½.
 fn step(h: f64) -> MatrixWeights {
