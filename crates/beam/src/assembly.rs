@@ -161,7 +161,8 @@ impl Elasticity {
     }
 }
 
-/// C in bending but for Rayleigh's part and ratios of modes: viscous damping, foundations, dashpots of supports.
+/// C in bending but for Rayleigh's part and ratios of modes: viscous damping, foundations, dashpots
+/// of supports.
 struct Viscosity {
     /// The part that is a multiple of M, 1/s.
     of_mass: f64,
@@ -190,7 +191,8 @@ impl Viscosity {
     }
 }
 
-/// p ∫NᵀN dx element by element, with p the sum of what all foundations under it have and what is everywhere.
+/// p ∫NᵀN dx element by element, with p the sum of what all foundations under it have and what is
+/// everywhere.
 struct Layer {
     matrices: Vec<Matrix4>,
     is_zero: bool,

@@ -12,8 +12,8 @@ use crate::modal_damping::ModalDamping;
 use crate::spec::BeamSpec;
 use crate::support::Support;
 
-/// What a support lets pass as "zero" in a nodal shape, relative to the largest such value of the shape: nine digits, so
-/// that sin(π) = 1.2e-16 or a value from a text file is one.
+/// What a support lets pass as "zero" in a nodal shape, relative to the largest such value of the
+/// shape: nine digits, so that sin(π) = 1.2e-16 or a value from a text file is one.
 const SUPPORT_TOLERANCE: f64 = 1e-9;
 
 /// One of the degrees of freedom of a node.
@@ -36,11 +36,13 @@ impl Dof {
     }
 }
 
-/// A straight beam by finite elements. Immutable: all that moves is in the caller's vectors of [`Beam::dofs`] entries.
+/// A straight beam by finite elements. Immutable: all that moves is in the caller's vectors of
+/// [`Beam::dofs`] entries.
 ///
-/// Every node has its two dofs in every vector, w and the rotation, node by node; axial dofs follow after them all. What a
-/// support holds is there too and stays 0: [`Factor::solve`](crate::Factor::solve) returns 0 there, products write there what the
-/// support has to bear.
+/// Every node has its two dofs in every vector, w and the rotation, node by node; axial dofs follow
+/// after them all. What a support holds is there too and stays 0:
+/// [`Factor::solve`](crate::Factor::solve) returns 0 there, products write there what the support
+/// has to bear.
 #[derive(Debug, Clone)]
 pub struct Beam {
     pub(crate) spec: BeamSpec,
@@ -144,7 +146,8 @@ impl Beam {
         self.membrane.is_some()
     }
 
-    /// Index of a dof in the vectors; `None` where the support holds it, or where there is no such node.
+    /// Index of a dof in the vectors; `None` where the support holds it, or where there is no such
+    /// node.
     ///
     /// ```
     /// # use teeter_beam::{Beam, BeamSpec, Dof, Section};
@@ -158,11 +161,13 @@ impl Beam {
         (!self.held.get(node)?[component]).then_some(2 * node + component)
     }
 
-    /// The vector of a nodal shape: w (m) and rotation (rad) of every node, or their rates. Axial dofs are 0.
+    /// The vector of a nodal shape: w (m) and rotation (rad) of every node, or their rates. Axial
+    /// dofs are 0.
     ///
     /// # Errors
-    /// [`BeamError::Length`]; [`BeamError::Value`] for an entry that is not finite; [`BeamError::BrokenSupport`] for one
-    /// that is not zero where a support holds it (to 1e-9 of the largest such value of the shape).
+    /// [`BeamError::Length`]; [`BeamError::Value`] for an entry that is not finite;
+    /// [`BeamError::BrokenSupport`] for one that is not zero where a support holds it (to 1e-9 of
+    /// the largest such value of the shape).
     ///
     /// ```
     /// # use teeter_beam::{Beam, BeamSpec, Section, Support};
@@ -266,7 +271,8 @@ pub(crate) mod tests {
         Beam::new(spec(elements, supports).damped(damping)).unwrap()
     }
 
-    /// A beam with everything: shear, segments, an inner support, springs, a lump, a foundation, axial dofs under tension.
+    /// A beam with everything: shear, segments, an inner support, springs, a lump, a foundation,
+    /// axial dofs under tension.
     pub(crate) fn furnished() -> Beam {
         let plain = Section::new(2.0, 3.0).unwrap().with_axial_stiffness(50.0).unwrap();
         let thick = Section::new(5.0, 4.0).unwrap().with_shear(40.0, 0.02).unwrap().with_axial_stiffness(70.0).unwrap();

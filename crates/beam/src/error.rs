@@ -165,7 +165,8 @@ pub enum StaticError {
         /// The last correction, relative to the solution.
         correction: f64,
     },
-    /// Held by springs or foundations alone, and these leave the solve no digits: rounding of the beam's own stiffness hides them.
+    /// Held by springs or foundations alone, and these leave the solve no digits: rounding of the
+    /// beam's own stiffness hides them.
     #[error(
         "the springs or foundations that hold the beam are too soft beside its own stiffness for double precision; take stiffer ones, a support, or a coarser mesh"
     )]

@@ -13,8 +13,8 @@ use crate::sparse::SparseFactor;
 
 /// The weights of `mass M + damping C + stiffness K`.
 ///
-/// A θ step of length h wants `{ mass: 1, damping: hθ, stiffness: h²θ² }`, a static solve [`MatrixWeights::STIFFNESS`], an impact
-/// [`MatrixWeights::MASS`].
+/// A θ step of length h wants `{ mass: 1, damping: hθ, stiffness: h²θ² }`, a static solve
+/// [`MatrixWeights::STIFFNESS`], an impact [`MatrixWeights::MASS`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MatrixWeights {
     /// Weight of M.
@@ -59,21 +59,24 @@ impl MatrixWeights {
     }
 }
 
-/// How a matrix is factorised. Both need memory linear in the number of elements and give the same solutions up to rounding.
+/// How a matrix is factorised. Both need memory linear in the number of elements and give the same
+/// solutions up to rounding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Backend {
-    /// In blocks of a node, from both ends to the middle: what suits a chain of elements best, two to four times faster than
-    /// the general way at every size.
+    /// In blocks of a node, from both ends to the middle: what suits a chain of elements best, two
+    /// to four times faster than the general way at every size.
     #[default]
     Banded,
-    /// A general sparse Cholesky factorisation, symbolic once: an independent way to the same numbers. By faer, so with the
-    /// feature `faer` (default) only; without it [`Beam::factor_with`] says so ([`FactorError::MissingFeature`]).
+    /// A general sparse Cholesky factorisation, symbolic once: an independent way to the same
+    /// numbers. By faer, so with the feature `faer` (default) only; without it
+    /// [`Beam::factor_with`] says so ([`FactorError::MissingFeature`]).
     Sparse,
 }
 
 impl Backend {
-    /// The backends of this build: without the feature `faer` there is no [`Backend::Sparse`] among them.
+    /// The backends of this build: without the feature `faer` there is no [`Backend::Sparse`] among
+    /// them.
     ///
     /// ```
     /// use teeter_beam::Backend;
@@ -145,7 +148,8 @@ impl Factor {
         self.dofs
     }
 
-    /// f ← (mass M + damping C + stiffness K)⁻¹ f, in place, without allocation; 0 for what supports hold.
+    /// f ← (mass M + damping C + stiffness K)⁻¹ f, in place, without allocation; 0 for what
+    /// supports hold.
     ///
     /// # Panics
     /// If `f` has not [`Factor::dofs`] entries.
@@ -183,7 +187,8 @@ impl Factor {
         }
     }
 
-    /// Fills in the numbers of a factor whose memory is there, with N G in K of an axial force beside that of the beam.
+    /// Fills in the numbers of a factor whose memory is there, with N G in K of an axial force
+    /// beside that of the beam.
     fn update(&mut self, beam: &Beam, weights: MatrixWeights, tension: f64) -> Result<(), FactorError> {
         weights.validate()?;
         self.weights = weights;
@@ -235,7 +240,8 @@ impl Beam {
         }
     }
 
-    /// The factor of `mass M + damping C + stiffness K`, in blocks from both ends ([`Backend::Banded`]).
+    /// The factor of `mass M + damping C + stiffness K`, in blocks from both ends
+    /// ([`Backend::Banded`]).
     ///
     /// # Errors
     /// [`FactorError`] for weights that are not finite, or whose sum is not positive definite.
@@ -258,7 +264,8 @@ impl Beam {
     /// As [`Beam::factor`], factorised as one chooses.
     ///
     /// # Errors
-    /// As there; [`FactorError::MissingFeature`] for a backend that is not in this build ([`Backend::available`]).
+    /// As there; [`FactorError::MissingFeature`] for a backend that is not in this build
+    /// ([`Backend::available`]).
     pub fn factor_with(&self, weights: MatrixWeights, backend: Backend) -> Result<Factor, FactorError> {
         let nodes = self.nodes();
         let kind = match backend {
@@ -292,8 +299,9 @@ impl Beam {
     /// Makes `factor` that of other weights, in its own memory: no symbolic work, no allocation.
     ///
     /// # Errors
-    /// As [`Beam::factor`], and [`FactorError::OtherBeam`] for the factor of a beam with other dofs.
-    /// After [`FactorError::NotPositiveDefinite`] the factor's solutions are NaN until it is renewed with success.
+    /// As [`Beam::factor`], and [`FactorError::OtherBeam`] for the factor of a beam with other
+    /// dofs. After [`FactorError::NotPositiveDefinite`] the factor's solutions are NaN until it is
+    /// renewed with success.
     ///
     /// ```
     /// # use teeter_beam::{Beam, BeamSpec, MatrixWeights, Section};
@@ -304,7 +312,8 @@ impl Beam {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn refactor(&self, weights: MatrixWeights, factor: &mut Factor) -> Result<(), FactorError> {
-        // By what is held, not by identity: a beam of another section or span may take over the memory.
+        // By what is held, not by identity: a beam of another section or span may take over the
+        // memory.
         let same = self.dofs() == factor.dofs
             && self.held == factor.held
             && self.membrane.is_some() == factor.stretch.is_some()
@@ -315,9 +324,9 @@ impl Beam {
         factor.update(self, weights, 0.0)
     }
 
-    /// Makes `factor` that of the tangent at `q`, with its own weights: of a beam held along its axis K + N(q) G + EA/L (Gq)(Gq)ᵀ in
-    /// place of K, the derivative of its elastic force; of other beams what it is already. For equilibria; a time step wants
-    /// [`Beam::follow`].
+    /// Makes `factor` that of the tangent at `q`, with its own weights: of a beam held along its
+    /// axis K + N(q) G + EA/L (Gq)(Gq)ᵀ in place of K, the derivative of its elastic force; of
+    /// other beams what it is already. For equilibria; a time step wants [`Beam::follow`].
     ///
     /// # Errors
     /// As [`Beam::refactor`].
@@ -331,12 +340,13 @@ impl Beam {
         Ok(())
     }
 
-    /// Takes the stretching at `q` into the factor of a beam that is held along its axis: K + EA/L (Gq)(Gq)ᵀ in place of K, with
-    /// G the matrix of ∫w'² dx = qᵀG q. Nothing for other beams. One solve, no allocation.
+    /// Takes the stretching at `q` into the factor of a beam that is held along its axis: K + EA/L
+    /// (Gq)(Gq)ᵀ in place of K, with G the matrix of ∫w'² dx = qᵀG q. Nothing for other beams. One
+    /// solve, no allocation.
     ///
-    /// A θ step with θ = ½ that follows at q⁰ + ½h v⁰, and takes the elastic force there, keeps an energy: that of the beam with
-    /// what [`Beam::modified_energy`] adds. It stays linear in the new velocity, and needs no iteration. After Yang (2016, doi
-    /// 10.1016/j.jcp.2016.09.029).
+    /// A θ step with θ = ½ that follows at q⁰ + ½h v⁰, and takes the elastic force there, keeps an
+    /// energy: that of the beam with what [`Beam::modified_energy`] adds. It stays linear in the
+    /// new velocity, and needs no iteration. After Yang (2016, doi 10.1016/j.jcp.2016.09.029).
     ///
     /// # Panics
     /// If `q` has not [`Beam::dofs`] entries.
@@ -461,7 +471,8 @@ mod tests {
             let mut f = vec![0.0; beam.dofs()];
             beam.add_mass_product(STEP.mass, &x, &mut f);
             beam.add_stiffness_product(STEP.stiffness, &x, &mut f);
-            // EA/L (Gq)(Gq)ᵀ, with G q by the derivative of s = ∫w'² dx: force − linear force = −½ EA/L s G q.
+            // EA/L (Gq)(Gq)ᵀ, with G q by the derivative of s = ∫w'² dx: force − linear force = −½
+            // EA/L s G q.
             let (mut force, mut linear) = (vec![0.0; beam.dofs()], vec![0.0; beam.dofs()]);
             beam.add_elastic_force(&q, &mut force);
             beam.add_stiffness_product(-1.0, &q, &mut linear);

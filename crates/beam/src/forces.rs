@@ -1,13 +1,16 @@
-//! What the beam has to bear inside: bending moment, shear force, stress, and what its supports bear.
+//! What the beam has to bear inside: bending moment, shear force, stress, and what its supports
+//! bear.
 //!
-//! Not from derivatives of the deflection, which lose two orders, but from equilibrium: an element's end forces are
-//! K_e q_e + C_e v_e + M_e a_e − P_e with all that acts on it, and between the ends the load itself is integrated. In statics that is
-//! exact at every place; in a time step of the θ scheme, with q_θ, v_θ and a = Δv/h, the end forces of all elements, the loads and the reactions
-//! balance to rounding.
+//! Not from derivatives of the deflection, which lose two orders, but from equilibrium: an
+//! element's end forces are K_e q_e + C_e v_e + M_e a_e − P_e with all that acts on it, and between
+//! the ends the load itself is integrated. In statics that is exact at every place; in a time step
+//! of the θ scheme, with q_θ, v_θ and a = Δv/h, the end forces of all elements, the loads and the
+//! reactions balance to rounding.
 //!
-//! Signs: M = EI w'' (with shear EI ψ'), positive where the lower fibre is pulled; V = M', positive where the part to the left of
-//! a cut pushes the part to the right upwards. So V' = f for a load f upwards, and a clamped beam under its weight has M < 0 at its ends. Of a beam
-//! under an axial force N the transverse force V includes N w'.
+//! Signs: M = EI w'' (with shear EI ψ'), positive where the lower fibre is pulled; V = M', positive
+//! where the part to the left of a cut pushes the part to the right upwards. So V' = f for a load f
+//! upwards, and a clamped beam under its weight has M < 0 at its ends. Of a beam under an axial
+//! force N the transverse force V includes N w'.
 
 mod stress;
 
@@ -38,7 +41,8 @@ pub enum SpanLoad {
         /// Load per length, N/m.
         load: f64,
     },
-    /// The weight of the beam and of what it carries, by the acceleration of gravity in the direction of w, m/s².
+    /// The weight of the beam and of what it carries, by the acceleration of gravity in the
+    /// direction of w, m/s².
     Weight {
         /// Upwards positive.
         gravity: f64,
@@ -56,8 +60,8 @@ pub struct Actions<'a> {
     pub acceleration: &'a [f64],
     /// All loads but those of supports.
     pub loads: &'a [SpanLoad],
-    /// Of a beam held along its axis, in a time step: the deflection at which the step took the stretching, q⁰ + hθv⁰
-    /// ([`Beam::follow`]). Empty: `q` itself.
+    /// Of a beam held along its axis, in a time step: the deflection at which the step took the
+    /// stretching, q⁰ + hθv⁰ ([`Beam::follow`]). Empty: `q` itself.
     pub stretched_at: &'a [f64],
 }
 
@@ -83,8 +87,8 @@ pub struct SectionForce {
     pub shear: f64,
 }
 
-/// The section forces of a beam, in memory that is kept: [`SectionForces::update`] allocates nothing unless there are more
-/// point loads than ever before.
+/// The section forces of a beam, in memory that is kept: [`SectionForces::update`] allocates
+/// nothing unless there are more point loads than ever before.
 #[derive(Debug, Clone, Default)]
 pub struct SectionForces {
     /// By elements: V and M at the left end, V and M at the right end.
@@ -120,7 +124,8 @@ impl SectionForces {
     /// Becomes the section forces of a beam in a state.
     ///
     /// # Errors
-    /// [`BeamError::Length`] for vectors of another length; [`BeamError::OutsideSpan`] for a load that is not on the beam.
+    /// [`BeamError::Length`] for vectors of another length; [`BeamError::OutsideSpan`] for a load
+    /// that is not on the beam.
     pub fn update(&mut self, beam: &Beam, actions: &Actions<'_>) -> Result<(), BeamError> {
         let dofs = beam.dofs();
         check_len("q", dofs, actions.q.len())?;
@@ -139,7 +144,8 @@ impl SectionForces {
             self.take_off(beam, load)?;
         }
         self.react(beam, actions);
-        // From forces on the ends to section forces: V and −M on the left one, −V and M on the right one.
+        // From forces on the ends to section forces: V and −M on the left one, −V and M on the
+        // right one.
         for end in &mut self.ends {
             *end = [end[0], -end[1], -end[2], end[3]];
         }
@@ -277,7 +283,8 @@ impl SectionForces {
         &self.reactions
     }
 
-    /// The section forces at both ends of an element: just right of its left node, and just left of its right node.
+    /// The section forces at both ends of an element: just right of its left node, and just left of
+    /// its right node.
     ///
     /// # Panics
     /// If there is no such element.
@@ -287,7 +294,8 @@ impl SectionForces {
         [SectionForce { moment: m0, shear: v0 }, SectionForce { moment: m1, shear: v1 }]
     }
 
-    /// The section forces at x; right of it where a load or a support at x makes them jump, left of it at the right end.
+    /// The section forces at x; right of it where a load or a support at x makes them jump, left of
+    /// it at the right end.
     ///
     /// # Errors
     /// [`BeamError::OutsideSpan`].
@@ -325,15 +333,16 @@ impl SectionForces {
         self.inside.iter().filter(move |(element, at, ..)| *element == e && *at <= xi)
     }
 
-    /// By how much the transverse force changes over an element other than by jumps at point loads and by loads on a part of it: by
-    /// loads all along it and inertia.
+    /// By how much the transverse force changes over an element other than by jumps at point loads
+    /// and by loads on a part of it: by loads all along it and inertia.
     fn spread(&self, beam: &Beam, e: usize) -> f64 {
         let [v0, _, v1, _] = self.ends[e];
         v1 - v0 - self.passed(e, 1.0).map(|(_, _, force, _)| force).sum::<f64>() - self.carried(beam, e, 1.0)[0]
     }
 
-    /// The bending moment in an element at ξ. That the rest of the transverse force is spread evenly is exact for uniform loads; what
-    /// other loads and inertia make of it is shared out over the element.
+    /// The bending moment in an element at ξ. That the rest of the transverse force is spread
+    /// evenly is exact for uniform loads; what other loads and inertia make of it is shared out
+    /// over the element.
     fn moment_in(&self, beam: &Beam, e: usize, xi: f64) -> f64 {
         let [v0, m0, _, m1] = self.ends[e];
         let (length, spread) = (beam.elements[e].length, self.spread(beam, e));
@@ -437,7 +446,8 @@ mod tests {
         assert!((wall.couple - (2.8 * 0.55 - 3.0 * 0.55 + 0.7)).abs() < 1e-12, "{}", wall.couple);
     }
 
-    /// Any state at all of a beam with everything, at any velocity and acceleration: what acts on the whole balances.
+    /// Any state at all of a beam with everything, at any velocity and acceleration: what acts on
+    /// the whole balances.
     #[test]
     fn reactions_balance_loads_inertia_and_damping() {
         let beam = furnished();

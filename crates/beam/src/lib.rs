@@ -1,4 +1,5 @@
-//! Plane beams by finite elements: statics, dynamics, modes, and the effective inverse mass of a time step.
+//! Plane beams by finite elements: statics, dynamics, modes, and the effective inverse mass of a
+//! time step.
 //!
 //! The model, with w the deflection, positive upwards:
 //!
@@ -6,22 +7,24 @@
 //! EI w'''' + c ẇ + ρA ẅ = f(x, t)        semi-discrete:  M q̈ + C q̇ + K q = P(t) + r(t)
 //! ```
 //!
-//! Two-node elements with two dofs a node: w in m, and the rotation of the section in rad, which is w' for Euler–Bernoulli beams
-//! (cubic Hermite elements, consistent mass) and a motion of its own for Timoshenko's (exact at the nodes in statics, so without
-//! locking). Sections, supports, springs, lumped masses and Winkler foundations anywhere along the span; axial dofs, a given axial
-//! force, or ends held along the axis where asked for. x runs from 0 to the span along the beam's own axis: where the beam stands
-//! in the world is not its business, nor is contact. SI units throughout.
+//! Two-node elements with two dofs a node: w in m, and the rotation of the section in rad, which is
+//! w' for Euler–Bernoulli beams (cubic Hermite elements, consistent mass) and a motion of its own
+//! for Timoshenko's (exact at the nodes in statics, so without locking). Sections, supports,
+//! springs, lumped masses and Winkler foundations anywhere along the span; axial dofs, a given
+//! axial force, or ends held along the axis where asked for. x runs from 0 to the span along the
+//! beam's own axis: where the beam stands in the world is not its business, nor is contact. SI
+//! units throughout.
 //!
-//! Every vector has [`Beam::dofs`] entries: w and rotation of each node, node by node, then axial dofs if there are any. What a
-//! support holds is among them and stays 0.
+//! Every vector has [`Beam::dofs`] entries: w and rotation of each node, node by node, then axial
+//! dofs if there are any. What a support holds is among them and stays 0.
 //!
-//! A [`Beam`] is immutable and can be shared by threads. The calls of a time step (products, energies, shape functions,
-//! [`Factor::solve`], [`Beam::refactor`]) allocate nothing.
+//! A [`Beam`] is immutable and can be shared by threads. The calls of a time step (products,
+//! energies, shape functions, [`Factor::solve`], [`Beam::refactor`]) allocate nothing.
 //!
 //! # A beam
 //!
-//! [`BeamSpec`] has its numbers, [`Beam::new`] checks and assembles them. Here a steel tube, clamped at the left, on a spring at
-//! the right, with a mass on it:
+//! [`BeamSpec`] has its numbers, [`Beam::new`] checks and assembles them. Here a steel tube,
+//! clamped at the left, on a spring at the right, with a mass on it:
 //!
 //! ```
 //! use teeter_beam::{Beam, BeamSpec, Hold, Profile, Section, Support};
@@ -38,8 +41,9 @@
 //!
 //! # Its deflection under a load
 //!
-//! Loads are added to a vector of nodal loads, which [`Beam::solve_static`] turns into the deflection under them. Bending moment,
-//! transverse force, stress and reactions follow by equilibrium from [`Beam::section_forces`].
+//! Loads are added to a vector of nodal loads, which [`Beam::solve_static`] turns into the
+//! deflection under them. Bending moment, transverse force, stress and reactions follow by
+//! equilibrium from [`Beam::section_forces`].
 //!
 //! ```
 //! use teeter_beam::{Actions, Beam, BeamSpec, Section, SpanLoad};
@@ -59,8 +63,8 @@
 //!
 //! # Its frequencies
 //!
-//! [`Beam::modes`] finds the lowest modes of any beam, [`BeamSpec::circular_frequency`] the exact frequencies of a plain one;
-//! [`ModalBasis`] describes a beam by a few of its modes.
+//! [`Beam::modes`] finds the lowest modes of any beam, [`BeamSpec::circular_frequency`] the exact
+//! frequencies of a plain one; [`ModalBasis`] describes a beam by a few of its modes.
 //!
 //! ```
 //! use teeter_beam::{Beam, BeamSpec, Section, Support};
@@ -76,8 +80,9 @@
 //!
 //! # Its factor
 //!
-//! [`Beam::factor`] factorises any weighted sum of M, C and K. That of a θ step of length h gives W = (M + hθC + h²θ²K)⁻¹, the
-//! effective inverse mass, which turns impulses into velocities. Steps under a moving force:
+//! [`Beam::factor`] factorises any weighted sum of M, C and K. That of a θ step of length h gives
+//! W = (M + hθC + h²θ²K)⁻¹, the effective inverse mass, which turns impulses into velocities. Steps
+//! under a moving force:
 //!
 //! ```
 //! use teeter_beam::{Beam, BeamSpec, Load, MatrixWeights, MovingLoad, Section};
@@ -110,36 +115,45 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The examples of the package draw what they find: a beam over two spans (`two_span`), the first five modes of a cantilever
-//! (`modes`), a force that crosses a bridge with the envelope of the bending moment (`moving_load`).
+//! The examples of the package draw what they find: a beam over two spans (`two_span`), the first
+//! five modes of a cantilever (`modes`), a force that crosses a bridge with the envelope of the
+//! bending moment (`moving_load`).
 //!
 //! # Features
 //!
-//! - `faer` (default): M, C and K as sparse matrices of [faer](https://docs.rs/faer) (`Beam::mass_matrix`, `damping_matrix`,
-//!   `stiffness_matrix`), and [`Backend::Sparse`], its Cholesky factorisation. The version of faer is `teeter_beam::faer`.
+//! - `faer` (default): M, C and K as sparse matrices of [faer](https://docs.rs/faer)
+//!   (`Beam::mass_matrix`, `damping_matrix`, `stiffness_matrix`), and [`Backend::Sparse`], its
+//!   Cholesky factorisation. The version of faer is `teeter_beam::faer`.
 //!
-//! Without it the crate needs thiserror only, and builds in about a seventh of the time. All else is there, with the banded
-//! factor, which is the faster one at every size; [`Beam::matrix_entries`] gives the matrices entry by entry to any other library.
+//! Without it the crate needs thiserror only, and builds in about a seventh of the time. All else
+//! is there, with the banded factor, which is the faster one at every size;
+//! [`Beam::matrix_entries`] gives the matrices entry by entry to any other library.
 //!
 //! # Limits
 //!
-//! - Small deflections: the slope should stay below a few hundredths. Stretching is left out but for [`Axial::Held`].
-//! - The error of the assembled matrices grows with the mesh: cond(K) ~ n⁴. [`Beam::solve_static`] and the products are
-//!   built to lose less than that; [`Factor::solve`] with little mass in its weights is not. [`Beam::digits`] tells how much.
-//! - A vector of the wrong length is the caller's error: functions that return no `Result` panic on it, and say so.
+//! - Small deflections: the slope should stay below a few hundredths. Stretching is left out but
+//!   for [`Axial::Held`].
+//! - The error of the assembled matrices grows with the mesh: cond(K) ~ n⁴. [`Beam::solve_static`]
+//!   and the products are built to lose less than that; [`Factor::solve`] with little mass in its
+//!   weights is not. [`Beam::digits`] tells how much.
+//! - A vector of the wrong length is the caller's error: functions that return no `Result` panic on
+//!   it, and say so.
 //!
 //! # Sources
 //!
 //! - The equation of motion and the θ step: Tutić, Mudrić, Čeh and Arnold 2025, doi
 //!   [10.32762/zt.2025.20](https://doi.org/10.32762/zt.2025.20).
-//! - The consistent mass: Archer 1963, doi [10.1061/JSDEAG.0000939](https://doi.org/10.1061/JSDEAG.0000939).
+//! - The consistent mass: Archer 1963, doi
+//!   [10.1061/JSDEAG.0000939](https://doi.org/10.1061/JSDEAG.0000939).
 //! - The elements with and without shear: Friedman and Kosmatka 1993, doi
-//!   [10.1016/0045-7949(93)90243-7](https://doi.org/10.1016/0045-7949(93)90243-7); shear coefficients: Cowper 1966, doi
-//!   [10.1115/1.3625046](https://doi.org/10.1115/1.3625046).
-//! - Stretching of a beam held along its axis: Woinowsky-Krieger 1950, J. Appl. Mech. 17, 35–36; how a time step keeps its energy:
-//!   after Yang 2016, doi [10.1016/j.jcp.2016.09.029](https://doi.org/10.1016/j.jcp.2016.09.029).
-//! - Modes by subspace iteration: Bathe and Wilson 1973, doi [10.1002/nme.1620060207](https://doi.org/10.1002/nme.1620060207);
-//!   static corrections of a modal basis: MacNeal 1971, doi
+//!   [10.1016/0045-7949(93)90243-7](https://doi.org/10.1016/0045-7949(93)90243-7); shear
+//!   coefficients: Cowper 1966, doi [10.1115/1.3625046](https://doi.org/10.1115/1.3625046).
+//! - Stretching of a beam held along its axis: Woinowsky-Krieger 1950, J. Appl. Mech. 17, 35–36;
+//!   how a time step keeps its energy: after Yang 2016, doi
+//!   [10.1016/j.jcp.2016.09.029](https://doi.org/10.1016/j.jcp.2016.09.029).
+//! - Modes by subspace iteration: Bathe and Wilson 1973, doi
+//!   [10.1002/nme.1620060207](https://doi.org/10.1002/nme.1620060207); static corrections of a
+//!   modal basis: MacNeal 1971, doi
 //!   [10.1016/0045-7949(71)90031-9](https://doi.org/10.1016/0045-7949(71)90031-9).
 
 #![cfg_attr(docsrs, feature(doc_cfg))]

@@ -1,7 +1,7 @@
 //! The assembled matrices of the free dofs, entry by entry.
 //!
-//! M, C and K have one pattern, that of the mesh and not of the values: their values can be combined entry by entry, and a
-//! symbolic factorisation of one serves them all.
+//! M, C and K have one pattern, that of the mesh and not of the values: their values can be
+//! combined entry by entry, and a symbolic factorisation of one serves them all.
 
 use crate::bar::Tridiagonal;
 use crate::beam::Beam;
@@ -16,7 +16,8 @@ pub struct MatrixEntry {
     pub row: usize,
     /// Column, counted in free dofs.
     pub column: usize,
-    /// Value: N/m, N or N m for forces per displacement, by the units of row and column; for M and C per acceleration and velocity.
+    /// Value: N/m, N or N m for forces per displacement, by the units of row and column; for M and
+    /// C per acceleration and velocity.
     pub value: f64,
 }
 
@@ -29,12 +30,13 @@ pub(crate) struct Upper {
 }
 
 impl Beam {
-    /// The upper triangle of `mass M + damping C + stiffness K` in the free dofs, column by column with ascending rows: for linear
-    /// algebra of one's own. Rows and columns are counted in free dofs, those of which [`Beam::is_held`] is false, in their
-    /// order. All weights give the same places; entries that are 0 are among them.
+    /// The upper triangle of `mass M + damping C + stiffness K` in the free dofs, column by column
+    /// with ascending rows: for linear algebra of one's own. Rows and columns are counted in free
+    /// dofs, those of which [`Beam::is_held`] is false, in their order. All weights give the same
+    /// places; entries that are 0 are among them.
     ///
-    /// C is without the damping ratios of single modes ([`Damping::modal`](crate::Damping::modal)), which would fill it. K is
-    /// that of the straight beam, with its given axial force.
+    /// C is without the damping ratios of single modes ([`Damping::modal`](crate::Damping::modal)),
+    /// which would fill it. K is that of the straight beam, with its given axial force.
     ///
     /// ```
     /// # use teeter_beam::{Beam, BeamSpec, MatrixWeights, Section, Support};
@@ -73,8 +75,8 @@ impl Beam {
         Upper { starts, rows, values }
     }
 
-    /// Row and column of all entries between free dofs, in all dofs, column by column. A column's rows are its node's and those
-    /// of the node before.
+    /// Row and column of all entries between free dofs, in all dofs, column by column. A column's
+    /// rows are its node's and those of the node before.
     fn places(&self) -> impl Iterator<Item = (usize, usize)> {
         let bending = 2 * self.nodes();
         let bend = (0..bending).flat_map(|column| {
@@ -88,7 +90,8 @@ impl Beam {
         bend.chain(axial).filter(|(row, column)| !self.is_held(*row) && !self.is_held(*column))
     }
 
-    /// The values of `mass M + damping C + stiffness K` at its places, where `sum` is its bending part.
+    /// The values of `mass M + damping C + stiffness K` at its places, where `sum` is its bending
+    /// part.
     pub(crate) fn gather(&self, weights: MatrixWeights, sum: &Blocks, out: &mut Vec<f64>) {
         let bending = 2 * self.nodes();
         let (mass, stiffness) = self.axial_weights(weights);

@@ -3,7 +3,8 @@
 use crate::error::BeamError;
 use crate::spec::{BeamSpec, MAX_ELEMENTS};
 
-/// A place within this part of the span of a node is at the node: nine digits, so that 0.1 + 0.2 is 0.3.
+/// A place within this part of the span of a node is at the node: nine digits, so that 0.1 + 0.2 is
+/// 0.3.
 const SAME_PLACE: f64 = 1e-9;
 
 /// The shortest element, as a part of the span.

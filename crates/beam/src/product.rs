@@ -93,12 +93,14 @@ impl Beam {
         }
     }
 
-    /// y += a K x, element by element through the two natural deformations ψ₂ − ψ₁ and ψ₁ + ψ₂ − 2(w₂ − w₁)/l.
+    /// y += a K x, element by element through the two natural deformations ψ₂ − ψ₁ and
+    /// ψ₁ + ψ₂ − 2(w₂ − w₁)/l.
     ///
-    /// A row of the assembled K cancels the rigid motion of the neighbourhood only after it was multiplied by EI/l³: the
-    /// force of a smooth shape on n elements gets a relative error of about ε n⁴. Here the differences are taken first,
-    /// which leaves about ε n². (That is the product's own rounding. Rounding the entries of `x` changes the exact
-    /// product by up to ε n⁴ too, and no formula can undo that.)
+    /// A row of the assembled K cancels the rigid motion of the neighbourhood only after it was
+    /// multiplied by EI/l³: the force of a smooth shape on n elements gets a relative error of
+    /// about ε n⁴. Here the differences are taken first, which leaves about ε n². (That is the
+    /// product's own rounding. Rounding the entries of `x` changes the exact product by up to ε n⁴
+    /// too, and no formula can undo that.)
     ///
     /// # Panics
     /// If `x` or `y` has not [`Beam::dofs`] entries.
@@ -190,9 +192,9 @@ impl Beam {
         form + diagonal_form(&self.springs, q)
     }
 
-    /// The elastic energy, J: ½ qᵀK q from the natural deformations, EI/(2l) Σ (d₁² + 3 d₂²/(1 + Φ)) and springs, foundation
-    /// and axial force; exactly 0 for no deformation (see [`Beam::add_stiffness_product`]). Of a beam held along its axis also
-    /// EA/(8L) (∫w'² dx)².
+    /// The elastic energy, J: ½ qᵀK q from the natural deformations, EI/(2l) Σ (d₁² + 3
+    /// d₂²/(1 + Φ)) and springs, foundation and axial force; exactly 0 for no deformation (see
+    /// [`Beam::add_stiffness_product`]). Of a beam held along its axis also EA/(8L) (∫w'² dx)².
     ///
     /// # Panics
     /// If `q` has not [`Beam::dofs`] entries.
@@ -211,8 +213,8 @@ impl Beam {
         0.5 * self.stiffness_form(q) + stretching
     }
 
-    /// Adds the elastic force −K q to `f`, and of a beam held along its axis −N(q) G q, with N what the deflection adds to the axial
-    /// force.
+    /// Adds the elastic force −K q to `f`, and of a beam held along its axis −N(q) G q, with N what
+    /// the deflection adds to the axial force.
     ///
     /// # Panics
     /// If `q` or `f` has not [`Beam::dofs`] entries.
@@ -224,9 +226,9 @@ impl Beam {
         }
     }
 
-    /// What a θ step of size `h` (θ = ½) with [`Beam::follow`] keeps in place of the stretching energy EA/(8L) s², less that
-    /// energy, J: EA/(8L) (σ² − s²) with s = ∫w'² dx = qᵀG q and σ = s − ¼h² vᵀG v. O(h²); 0 for a beam that isn't held along
-    /// its axis.
+    /// What a θ step of size `h` (θ = ½) with [`Beam::follow`] keeps in place of the stretching
+    /// energy EA/(8L) s², less that energy, J: EA/(8L) (σ² − s²) with s = ∫w'² dx = qᵀG q and
+    /// σ = s − ¼h² vᵀG v. O(h²); 0 for a beam that isn't held along its axis.
     ///
     /// # Panics
     /// If `q` or `v` has not [`Beam::dofs`] entries.
@@ -234,8 +236,9 @@ impl Beam {
         self.membrane.as_ref().map_or(0.0, |membrane| membrane.modification(h, self.bend(q), self.bend(v)))
     }
 
-    /// The axial force, N, tension positive: N₀, and of a beam held along its axis what its deflection adds. Axial dofs have a
-    /// force of their own in every element: [`Beam::axial_forces`].
+    /// The axial force, N, tension positive: N₀, and of a beam held along its axis what its
+    /// deflection adds. Axial dofs have a force of their own in every element:
+    /// [`Beam::axial_forces`].
     ///
     /// # Panics
     /// If `q` has not [`Beam::dofs`] entries.
@@ -318,8 +321,8 @@ mod tests {
         assert!(!beam.is_damped() && y.iter().all(|y| *y == 0.0) && beam.damping_power(&wave(&beam)) == 0.0);
     }
 
-    /// A shape whose nodal values have no rounding error, and no inner forces: w = x³ − x on 512 elements. What is left is
-    /// the product's own error.
+    /// A shape whose nodal values have no rounding error, and no inner forces: w = x³ − x on 512
+    /// elements. What is left is the product's own error.
     #[test]
     fn the_stiffness_product_loses_less_than_the_assembled_matrix() {
         let n = 512;

@@ -81,8 +81,9 @@ impl Profile {
         }
     }
 
-    /// Shear coefficient κ of Timoshenko's theory for Poisson's ratio ν, without unit: A_s = κ A. Cowper (1966, doi
-    /// 10.1115/1.3625046) for rectangle, circle and tube; the area of the web for an I-section.
+    /// Shear coefficient κ of Timoshenko's theory for Poisson's ratio ν, without unit: A_s = κ A.
+    /// Cowper (1966, doi 10.1115/1.3625046) for rectangle, circle and tube; the area of the web for
+    /// an I-section.
     #[must_use]
     pub fn shear_coefficient(&self, poisson_ratio: f64) -> f64 {
         let nu = poisson_ratio;
@@ -121,7 +122,8 @@ impl Profile {
 
 /// What a cross-section contributes to the equation of motion.
 ///
-/// [`Section::new`] is an Euler–Bernoulli beam without rotatory inertia; the `with_…` methods add what a model asks for.
+/// [`Section::new`] is an Euler–Bernoulli beam without rotatory inertia; the `with_…` methods add
+/// what a model asks for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Section {
@@ -133,7 +135,8 @@ pub struct Section {
     pub shear_stiffness: f64,
     /// Rotatory inertia per length ρI, kg m; 0 to leave it out.
     pub rotatory_inertia: f64,
-    /// Axial stiffness EA, N, if known. A beam that is held along its axis, or has axial dofs, needs it.
+    /// Axial stiffness EA, N, if known. A beam that is held along its axis, or has axial dofs,
+    /// needs it.
     pub axial_stiffness: Option<f64>,
     /// Area A, m², if known: by it an axial force adds to the stress.
     pub area: Option<f64>,
@@ -169,8 +172,8 @@ impl Section {
     /// A profile of one material, Young's modulus in Pa and density in kg/m³: EI, ρA, EA and I/c.
     ///
     /// # Errors
-    /// [`BeamError::Value`] where a number, or a product of them, is not finite and positive, or the walls of a profile
-    /// don't fit into it.
+    /// [`BeamError::Value`] where a number, or a product of them, is not finite and positive, or
+    /// the walls of a profile don't fit into it.
     ///
     /// ```
     /// use teeter_beam::{Profile, Section};
@@ -184,7 +187,8 @@ impl Section {
         positive("youngs_modulus", youngs_modulus)?;
         positive("density", density)?;
         let second_moment = profile.second_moment();
-        // E first: E b t³/12 in this order is what the closed form of a rectangle has always been rounded to.
+        // E first: E b t³/12 in this order is what the closed form of a rectangle has always been
+        // rounded to.
         let bending_stiffness = match profile {
             Profile::Rectangle { width, thickness } => {
                 youngs_modulus * width * thickness * thickness * thickness / 12.0
@@ -205,8 +209,8 @@ impl Section {
         Ok(section)
     }
 
-    /// A solid rectangle of `width` and `thickness` (m; the beam bends across its thickness), Young's modulus (Pa) and
-    /// density (kg/m³): EI = E b t³/12, ρA = ρ b t.
+    /// A solid rectangle of `width` and `thickness` (m; the beam bends across its thickness),
+    /// Young's modulus (Pa) and density (kg/m³): EI = E b t³/12, ρA = ρ b t.
     ///
     /// # Errors
     /// As [`Section::of`].
@@ -220,17 +224,20 @@ impl Section {
         Self::of(Profile::Rectangle { width, thickness }, youngs_modulus, density)
     }
 
-    /// The same section with Timoshenko's shear flexibility and rotatory inertia: GA_s in N, ρI in kg m.
+    /// The same section with Timoshenko's shear flexibility and rotatory inertia: GA_s in N, ρI in
+    /// kg m.
     ///
     /// # Errors
-    /// [`BeamError::Value`] for a shear stiffness that is not positive, or an inertia that is negative or not finite.
+    /// [`BeamError::Value`] for a shear stiffness that is not positive, or an inertia that is
+    /// negative or not finite.
     pub fn with_shear(self, shear_stiffness: f64, rotatory_inertia: f64) -> Result<Self, BeamError> {
         let section = Self { shear_stiffness, rotatory_inertia, ..self };
         section.validate()?;
         Ok(section)
     }
 
-    /// [`Section::with_shear`] of a profile of one material: κ by [`Profile::shear_coefficient`], G = E/(2(1 + ν)).
+    /// [`Section::with_shear`] of a profile of one material: κ by [`Profile::shear_coefficient`],
+    /// G = E/(2(1 + ν)).
     ///
     /// # Errors
     /// As [`Section::of`]; [`BeamError::Value`] for a Poisson's ratio outside (−1, ½].
@@ -264,12 +271,14 @@ impl Section {
         Ok(Self { axial_stiffness: Some(axial_stiffness), ..self })
     }
 
-    /// EA, N; of a beam that needs it [`BeamSpec::validate`](crate::BeamSpec) has seen that it is there.
+    /// EA, N; of a beam that needs it [`BeamSpec::validate`](crate::BeamSpec) has seen that it is
+    /// there.
     pub(crate) fn axial(&self) -> f64 {
         self.axial_stiffness.unwrap_or(0.0)
     }
 
-    /// Φ = 12 EI/(GA_s l²) of an element of length l: the share of shear in its flexibility; 0 for Euler–Bernoulli.
+    /// Φ = 12 EI/(GA_s l²) of an element of length l: the share of shear in its flexibility; 0 for
+    /// Euler–Bernoulli.
     pub(crate) fn shear_parameter(&self, length: f64) -> f64 {
         12.0 * self.bending_stiffness / (self.shear_stiffness * length * length)
     }

@@ -1,4 +1,5 @@
-//! What faer brings: the assembled matrices in its format, and their factorisation by its sparse Cholesky method.
+//! What faer brings: the assembled matrices in its format, and their factorisation by its sparse
+//! Cholesky method.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
@@ -14,8 +15,9 @@ use crate::factor::MatrixWeights;
 use crate::matrix::Upper;
 
 impl Beam {
-    /// The consistent mass matrix of the free dofs, upper triangle: those of which [`Beam::is_held`] is false, in their order. M,
-    /// C and K have one pattern; entries that are 0 are kept.
+    /// The consistent mass matrix of the free dofs, upper triangle: those of which
+    /// [`Beam::is_held`] is false, in their order. M, C and K have one pattern; entries that are 0
+    /// are kept.
     ///
     /// ```
     /// use teeter_beam::faer::{Mat, Side, prelude::Solve};
@@ -31,14 +33,15 @@ impl Beam {
         self.matrix(MatrixWeights::MASS)
     }
 
-    /// The damping matrix of the free dofs, upper triangle, on the pattern of [`Beam::mass_matrix`]; without the damping ratios
-    /// of single modes ([`Damping::modal`](crate::Damping::modal)), which would fill it.
+    /// The damping matrix of the free dofs, upper triangle, on the pattern of
+    /// [`Beam::mass_matrix`]; without the damping ratios of single modes
+    /// ([`Damping::modal`](crate::Damping::modal)), which would fill it.
     pub fn damping_matrix(&self) -> SparseColMat<usize, f64> {
         self.matrix(MatrixWeights::DAMPING)
     }
 
-    /// The stiffness matrix of the free dofs, upper triangle, on the pattern of [`Beam::mass_matrix`]: of the straight beam, with
-    /// its given axial force.
+    /// The stiffness matrix of the free dofs, upper triangle, on the pattern of
+    /// [`Beam::mass_matrix`]: of the straight beam, with its given axial force.
     pub fn stiffness_matrix(&self) -> SparseColMat<usize, f64> {
         self.matrix(MatrixWeights::STIFFNESS)
     }
@@ -102,7 +105,8 @@ impl SparseFactor {
         })
     }
 
-    /// By substitution along the columns of L: faer's own needs scratch, and a vector of the free dofs alone.
+    /// By substitution along the columns of L: faer's own needs scratch, and a vector of the free
+    /// dofs alone.
     pub(crate) fn solve(&self, f: &mut [f64]) {
         let (start, rows) = (self.symbolic.col_ptr(), self.symbolic.row_idx());
         let n = self.free.len();

@@ -9,14 +9,15 @@ use crate::support::Support;
 
 /// The finest mesh that a beam may have.
 ///
-/// cond(K) grows like the fourth power of the element count: beyond this, K has no correct digit left in double precision.
+/// cond(K) grows like the fourth power of the element count: beyond this, K has no correct digit
+/// left in double precision.
 pub const MAX_ELEMENTS: usize = 10_000;
 
 /// Linear damping: `C = c ∫NᵀN dx + a₀M + a₁K`, and ratios of single modes.
 ///
-/// What each does to high modes: viscous damping gives mode i the ratio c/(2ρA ω_i), ever less; a₀ likewise, a₀/(2ω_i); a₁ gives
-/// a₁ω_i/2, ever more: a high mode of a fine mesh is overdamped by it. Ratios of single modes damp those and leave the others
-/// alone.
+/// What each does to high modes: viscous damping gives mode i the ratio c/(2ρA ω_i), ever less; a₀
+/// likewise, a₀/(2ω_i); a₁ gives a₁ω_i/2, ever more: a high mode of a fine mesh is overdamped by
+/// it. Ratios of single modes damp those and leave the others alone.
 ///
 /// ```
 /// let damping = teeter_beam::Damping { viscous: 0.4, ..Default::default() };
@@ -35,11 +36,13 @@ pub struct Damping {
 }
 
 impl Damping {
-    /// Rayleigh's factors that give two circular frequencies their damping ratios: ζ_i = a₀/(2ω_i) + a₁ω_i/2.
+    /// Rayleigh's factors that give two circular frequencies their damping ratios:
+    /// ζ_i = a₀/(2ω_i) + a₁ω_i/2.
     ///
     /// # Errors
-    /// [`BeamError::Value`] for frequencies that are not positive and different, ratios that are negative, and pairs that
-    /// only a negative factor would give (one of the two ratios too large for the other).
+    /// [`BeamError::Value`] for frequencies that are not positive and different, ratios that are
+    /// negative, and pairs that only a negative factor would give (one of the two ratios too large
+    /// for the other).
     ///
     /// ```
     /// use teeter_beam::{Damping, DampingRatio};
@@ -57,7 +60,8 @@ impl Damping {
         let [z1, z2] = ratios.map(|at| at.ratio);
         check("circular_frequency", w2, w1 != w2, "other than the first one")?;
         let (low, high) = (w1 / w2, w2 / w1);
-        // ζ₁ω₂ − ζ₂ω₁ and ζ₂ω₂ − ζ₁ω₁ over ω₂² − ω₁², in quotients that neither overflow nor underflow.
+        // ζ₁ω₂ − ζ₂ω₁ and ζ₂ω₂ − ζ₁ω₁ over ω₂² − ω₁², in quotients that neither overflow nor
+        // underflow.
         let stiffness = 2.0 * (z2 - z1 * low) / (w2 * (1.0 - low * low));
         let mass = 2.0 * w1 * (z1 - z2 * low) / (1.0 - low * low);
         let rule =
@@ -198,25 +202,27 @@ pub enum Axial {
     /// The supports leave it free: no axial motion is modelled, and none costs anything.
     #[default]
     Free,
-    /// Both ends are held along the axis. A deflection stretches the beam and with it grows an axial force, the same all along
-    /// (axial inertia left out): N = N₀ + (EA)/(2L) ∫w'² dx, with 1/EA the mean over the span. Woinowsky-Krieger (1950,
-    /// J. Appl. Mech. 17, 35–36).
+    /// Both ends are held along the axis. A deflection stretches the beam and with it grows an
+    /// axial force, the same all along (axial inertia left out): N = N₀ + (EA)/(2L) ∫w'² dx, with
+    /// 1/EA the mean over the span. Woinowsky-Krieger (1950, J. Appl. Mech. 17, 35–36).
     Held,
-    /// Axial dofs u with their inertia; which ends are held along the axis. Linear: they don't feel the deflection.
+    /// Axial dofs u with their inertia; which ends are held along the axis. Linear: they don't feel
+    /// the deflection.
     Elastic {
         /// Whether u = 0 at the left and at the right end.
         held: [bool; 2],
     },
 }
 
-/// All that [`crate::Beam::new`] needs. Made by [`BeamSpec::new`] and the methods that follow it; every field may be written to.
+/// All that [`crate::Beam::new`] needs. Made by [`BeamSpec::new`] and the methods that follow it;
+/// every field may be written to.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct BeamSpec {
     /// Length between the ends, m.
     pub span: f64,
-    /// Number of elements, of one length as far as nodes at supports, lumps and ends of segments allow; these may take a few
-    /// more. See [`BeamSpec::nodes`].
+    /// Number of elements, of one length as far as nodes at supports, lumps and ends of segments
+    /// allow; these may take a few more. See [`BeamSpec::nodes`].
     pub elements: usize,
     /// The cross-section, where no segment has another one.
     pub section: Section,
@@ -234,10 +240,11 @@ pub struct BeamSpec {
     pub foundations: Vec<Foundation>,
     /// What happens along its axis.
     pub axial: Axial,
-    /// Axial force N₀ that is there whatever the beam does, N; tension is positive. It stiffens the beam against bending by
-    /// N₀ ∫N'ᵀN' dx.
+    /// Axial force N₀ that is there whatever the beam does, N; tension is positive. It stiffens the
+    /// beam against bending by N₀ ∫N'ᵀN' dx.
     pub axial_force: f64,
-    /// Nodes of a mesh of one's own, m, rising from 0 to the span; replaces `elements` where it isn't empty.
+    /// Nodes of a mesh of one's own, m, rising from 0 to the span; replaces `elements` where it
+    /// isn't empty.
     pub nodes: Vec<f64>,
 }
 
@@ -400,7 +407,8 @@ impl BeamSpec {
         self.section.validate()
     }
 
-    /// Whether this is the uniform Euler–Bernoulli beam between two ends that the frequency equations are for.
+    /// Whether this is the uniform Euler–Bernoulli beam between two ends that the frequency
+    /// equations are for.
     fn is_elementary(&self) -> bool {
         let s = &self.section;
         self.segments.is_empty()
@@ -412,16 +420,17 @@ impl BeamSpec {
             && s.rotatory_inertia == 0.0
     }
 
-    /// Exact circular frequency, rad/s, of elastic mode `mode` (from 1) of the continuous, undamped Euler–Bernoulli beam
-    /// between free, pinned, clamped or guided ends: `(β/L)² √(EI/ρA)`. The rigid motions of a beam that its supports leave
-    /// free are not counted.
+    /// Exact circular frequency, rad/s, of elastic mode `mode` (from 1) of the continuous, undamped
+    /// Euler–Bernoulli beam between free, pinned, clamped or guided ends: `(β/L)² √(EI/ρA)`. The
+    /// rigid motions of a beam that its supports leave free are not counted.
     ///
     /// The finite elements reproduce it from above, with an error of order n⁻⁴.
     ///
     /// # Errors
-    /// [`BeamError`] for a span or section that is not finite and positive, or a mode outside 1..=1 000 000;
-    /// [`BeamError::NoFrequencyEquation`] for a beam with springs, inner supports, lumps, a foundation, segments, shear or an
-    /// axial force: its modes are those of [`crate::Beam::modes`].
+    /// [`BeamError`] for a span or section that is not finite and positive, or a mode outside 1..=1
+    /// 000 000; [`BeamError::NoFrequencyEquation`] for a beam with springs, inner supports, lumps,
+    /// a foundation, segments, shear or an axial force: its modes are those of
+    /// [`crate::Beam::modes`].
     ///
     /// ```
     /// use teeter_beam::{BeamSpec, Section};
@@ -443,7 +452,8 @@ impl BeamSpec {
     /// The viscous damping c = 2ζω ρA (N s/m²) that gives mode `mode` the damping ratio `ratio`.
     ///
     /// # Errors
-    /// As [`BeamSpec::circular_frequency`]; [`BeamError::Value`] for a ratio that is not finite and ≥ 0.
+    /// As [`BeamSpec::circular_frequency`]; [`BeamError::Value`] for a ratio that is not finite and
+    /// ≥ 0.
     ///
     /// ```
     /// # use teeter_beam::{BeamSpec, Section};

@@ -10,10 +10,12 @@ use crate::membrane::Membrane;
 /// Steps of iterative refinement at most.
 const MAX_REFINEMENTS: usize = 20;
 
-/// A last correction above this, relative to the largest deflection, is no solution: the refinement has not settled.
+/// A last correction above this, relative to the largest deflection, is no solution: the refinement
+/// has not settled.
 const SETTLED: f64 = 1e-10;
 
-/// Rounds at most for the axial force of a beam held along its axis; bisection every third one makes 53 digits of them.
+/// Rounds at most for the axial force of a beam held along its axis; bisection every third one
+/// makes 53 digits of them.
 const MAX_ROUNDS: usize = 200;
 
 /// The axial force is found where it changes, or is out of balance, by no more than this part.
@@ -31,17 +33,19 @@ pub(crate) struct Refined {
 impl Beam {
     /// Turns a load (N and N m per dof) into the deflection under it: f ← K⁻¹ f.
     ///
-    /// One Cholesky solve of K on n elements loses about ε n⁴, its condition number. Iterative refinement, with the
-    /// residual by [`Beam::add_stiffness_product`], takes the conditioning out without extended precision: what that
-    /// residual gets wrong is a natural deformation of single elements, which moves the beam by rounding only. Measured
-    /// against closed forms, worst of all supports: 3e-12, 5e-9, 1e-7 for 20, 100, 300 elements without it, 1e-14 with it;
-    /// 2e-14 up to 3000 elements.
+    /// One Cholesky solve of K on n elements loses about ε n⁴, its condition number. Iterative
+    /// refinement, with the residual by [`Beam::add_stiffness_product`], takes the conditioning out
+    /// without extended precision: what that residual gets wrong is a natural deformation of single
+    /// elements, which moves the beam by rounding only. Measured against closed forms, worst of all
+    /// supports: 3e-12, 5e-9, 1e-7 for 20, 100, 300 elements without it, 1e-14 with it; 2e-14 up to
+    /// 3000 elements.
     ///
     /// # Errors
-    /// [`StaticError::RigidMotion`] where the supports leave one; [`StaticError::Length`] and [`StaticError::Load`] for a
-    /// load of another length or not finite; [`StaticError::Buckled`] under too much compression; [`StaticError::NotSettled`] for a mesh
-    /// too fine for double precision (a cantilever of 10 000 elements), [`StaticError::Soft`] for springs too soft for it. After an
-    /// error `load` is as it was.
+    /// [`StaticError::RigidMotion`] where the supports leave one; [`StaticError::Length`] and
+    /// [`StaticError::Load`] for a load of another length or not finite; [`StaticError::Buckled`]
+    /// under too much compression; [`StaticError::NotSettled`] for a mesh too fine for double
+    /// precision (a cantilever of 10 000 elements), [`StaticError::Soft`] for springs too soft for
+    /// it. After an error `load` is as it was.
     ///
     /// ```
     /// # use teeter_beam::{Beam, BeamSpec, Section};
@@ -97,8 +101,8 @@ impl Beam {
         }
     }
 
-    /// Solves A x = f by a factor of A, with iterative refinement until corrections no longer shrink; `take_off` takes A x off a
-    /// residual.
+    /// Solves A x = f by a factor of A, with iterative refinement until corrections no longer
+    /// shrink; `take_off` takes A x off a residual.
     pub(crate) fn refine(&self, factor: &Factor, f: &[f64], take_off: impl Fn(&[f64], &mut [f64])) -> Refined {
         let mut residual = f.to_vec();
         let mut solution = vec![0.0; f.len()];
@@ -125,8 +129,9 @@ impl Beam {
         Refined { plain, solution, correction }
     }
 
-    /// The deflection whose stretching makes the axial force that it is in equilibrium with. That force is the root of
-    /// r(N) = EA/(2L) s(q(N)) − N, q(N) = (K + N G)⁻¹ f, which falls with N: one root, between 0 and r(0).
+    /// The deflection whose stretching makes the axial force that it is in equilibrium with. That
+    /// force is the root of r(N) = EA/(2L) s(q(N)) − N, q(N) = (K + N G)⁻¹ f, which falls with N:
+    /// one root, between 0 and r(0).
     fn solve_stretched(&self, membrane: &Membrane, load: &[f64]) -> Result<Vec<f64>, StaticError> {
         let mut q = self.solve_refined(load, 0.0)?;
         let (mut low, mut high) = (0.0, membrane.force(self.bend(&q)));
@@ -172,7 +177,8 @@ impl Beam {
         !(places >= 2 || places == 1 && turned)
     }
 
-    /// The rigid motion that supports, springs and foundations leave, if they do: then there is no static equilibrium.
+    /// The rigid motion that supports, springs and foundations leave, if they do: then there is no
+    /// static equilibrium.
     pub fn rigid_motion(&self) -> Option<RigidMotion> {
         let mut places: Vec<f64> = Vec::new();
         let mut turned = false;

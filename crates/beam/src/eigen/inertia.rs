@@ -8,10 +8,11 @@ pub(crate) fn unknowns(beam: &Beam) -> usize {
     beam.free_dofs()
 }
 
-/// The number of eigenvalues of (K, M) below `bound` (1/s²): that of the negative pivots of L D Lᵀ = K − bound·M.
+/// The number of eigenvalues of (K, M) below `bound` (1/s²): that of the negative pivots of L D
+/// Lᵀ = K − bound·M.
 ///
-/// Column by column within the envelope, without pivoting. The rounding of K's entries alone moves an eigenvalue by up to
-/// ε ω²_max, so nearer to the bound than that it may fall on either side.
+/// Column by column within the envelope, without pivoting. The rounding of K's entries alone moves
+/// an eigenvalue by up to ε ω²_max, so nearer to the bound than that it may fall on either side.
 pub(crate) fn eigenvalues_below(beam: &Beam, bound: f64) -> usize {
     let shifted = beam.upper(MatrixWeights { mass: -bound, damping: 0.0, stiffness: 1.0 });
     let n = shifted.starts.len() - 1;
@@ -60,7 +61,8 @@ mod tests {
                 let held = |component| supports.iter().filter(|s| s.holds()[component] == crate::Hold::Fixed).count();
                 let rigid = usize::from(held(0) == 0) + usize::from(held(0) < 2 && held(1) == 0);
                 for mode in 1..=8 {
-                    // ω² in the middle between this one and the next; the finite elements' are less than 1 % above.
+                    // ω² in the middle between this one and the next; the finite elements' are less
+                    // than 1 % above.
                     let [below, above] = [mode, mode + 1].map(|mode| beam.circular_frequency(mode).unwrap());
                     let count = eigenvalues_below(&beam, below * above);
                     assert_eq!(count, rigid + mode, "{supports:?} {elements}");

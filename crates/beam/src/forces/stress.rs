@@ -14,8 +14,8 @@ pub struct PeakStress {
 }
 
 impl SectionForces {
-    /// The largest normal stress over the nodes and the places of point loads, on either side of each. `None` where no section
-    /// has a modulus.
+    /// The largest normal stress over the nodes and the places of point loads, on either side of
+    /// each. `None` where no section has a modulus.
     #[must_use]
     pub fn largest_stress(&self, beam: &Beam) -> Option<PeakStress> {
         let mut largest: Option<PeakStress> = None;
@@ -41,7 +41,8 @@ impl SectionForces {
         largest
     }
 
-    /// Largest normal stress |M|/(I/c) + |N|/A at a place with this bending moment, Pa; `None` where the section has no modulus.
+    /// Largest normal stress |M|/(I/c) + |N|/A at a place with this bending moment, Pa; `None`
+    /// where the section has no modulus.
     #[must_use]
     pub fn stress(&self, beam: &Beam, x: f64, moment: f64) -> Option<f64> {
         let (e, _) = beam.mesh.locate(x.clamp(0.0, beam.spec.span));
