@@ -1,7 +1,8 @@
 //! L D Lᵀ of a block tridiagonal matrix, from both ends to the middle.
 //!
-//! A substitution is a chain: each node waits for its neighbour. Eliminating from both ends at once (a *twisted*
-//! factorisation) makes two chains of half the length that don't wait for each other, and takes little more than half the time.
+//! A substitution is a chain: each node waits for its neighbour. Eliminating from both ends at once
+//! (a *twisted* factorisation) makes two chains of half the length that don't wait for each other,
+//! and takes little more than half the time.
 
 use crate::blocks::{Blocks, Node};
 
@@ -29,8 +30,8 @@ impl Twisted {
         Self { pivots: vec![UNKNOWN; nodes], middle: nodes / 2 }
     }
 
-    /// Factorises A; `held` says which dofs are left out. The number of the dof, from 0, whose pivot is not positive is the
-    /// error: the factor is then NaN throughout.
+    /// Factorises A; `held` says which dofs are left out. The number of the dof, from 0, whose
+    /// pivot is not positive is the error: the factor is then NaN throughout.
     pub(crate) fn factorise(&mut self, a: &Blocks, held: &[[bool; 2]]) -> Result<(), usize> {
         let done = self.eliminate(a, held);
         if done.is_err() {
@@ -58,8 +59,8 @@ impl Twisted {
         Ok(())
     }
 
-    /// Eliminates a node; `inward` is its block with its inner neighbour, rows that neighbour's. Returns what the neighbour's
-    /// own block loses.
+    /// Eliminates a node; `inward` is its block with its inner neighbour, rows that neighbour's.
+    /// Returns what the neighbour's own block loses.
     fn take(
         &mut self,
         k: usize,

@@ -32,7 +32,8 @@ pub(crate) struct Bar {
 }
 
 impl Bar {
-    /// From EA and ρA of each element, its length, the masses of nodes and whether the ends are held.
+    /// From EA and ρA of each element, its length, the masses of nodes and whether the ends are
+    /// held.
     pub(crate) fn new(elements: &[(f64, f64, f64)], lumps: Vec<(usize, f64)>, ends: [bool; 2]) -> Self {
         let stiffness: Vec<f64> = elements.iter().map(|(ea, _, l)| ea / l).collect();
         let mass: Vec<f64> = elements.iter().map(|(_, rho_a, l)| rho_a * l / 6.0).collect();
@@ -100,7 +101,8 @@ impl BarFactor {
         Self(vec![[f64::NAN; 2]; nodes])
     }
 
-    /// Factorises mass·M + stiffness·K; the error is the number of the node whose pivot is not positive.
+    /// Factorises mass·M + stiffness·K; the error is the number of the node whose pivot is not
+    /// positive.
     pub(crate) fn factorise(&mut self, bar: &Bar, mass: f64, stiffness: f64) -> Result<(), usize> {
         let mut less = 0.0;
         for k in 0..self.0.len() {

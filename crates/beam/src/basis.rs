@@ -4,20 +4,21 @@
 //! q ≈ Φ η,   ΦᵀM Φ = 1,   ΦᵀK Φ = diag ω²        Φ from the first modes and, for points x_r, ψ_r = K⁻¹(1 − M Φ Φᵀ) N(x_r)ᵀ
 //! ```
 //!
-//! ψ_r is what the modes leave out of the deflection under a force at x_r (residual flexibility: MacNeal 1971, doi
-//! 10.1016/0045-7949(71)90031-9; as basis vectors: Rose 1991, "Using residual vectors in MSC/NASTRAN dynamic analysis to improve
-//! accuracy"). The ψ_r are orthonormalised and diagonalised in (M, K) with the modes, so that all coordinates stay uncoupled: the
-//! eigenmodes are as they were, and the corrections are pseudo-modes above them.
+//! ψ_r is what the modes leave out of the deflection under a force at x_r (residual flexibility:
+//! MacNeal 1971, doi 10.1016/0045-7949(71)90031-9; as basis vectors: Rose 1991, "Using residual
+//! vectors in MSC/NASTRAN dynamic analysis to improve accuracy"). The ψ_r are orthonormalised and
+//! diagonalised in (M, K) with the modes, so that all coordinates stay uncoupled: the eigenmodes
+//! are as they were, and the corrections are pseudo-modes above them.
 //!
-//! How good such a basis is for a contact region is measured by the point flexibility F(x, x), the static deflection at x under a
-//! unit force at x, of which a smaller space never has more:
+//! How good such a basis is for a contact region is measured by the point flexibility F(x, x), the
+//! static deflection at x under a unit force at x, of which a smaller space never has more:
 //!
 //! ```text
 //! e = max over x in [x0, x1] of (F(x, x) − F_Φ(x, x)) / F(x, x),     F_Φ(x, x) = Σ_{ω_i > 0} φ_i(x)²/ω_i²
 //! ```
 //!
-//! x runs over 65 points of equal distance, the region's ends among them. Of a beam that can move rigidly F is that of its elastic
-//! modes. Where F is 0, on a support, nothing is asked.
+//! x runs over 65 points of equal distance, the region's ends among them. Of a beam that can move
+//! rigidly F is that of its elastic modes. Where F is 0, on a support, nothing is asked.
 
 use crate::beam::Beam;
 use crate::eigen::block::{Block, Orthonormal, add, dot, mass_product, orthonormalised, ritz};
@@ -32,10 +33,12 @@ const SAMPLES: usize = 65;
 /// Modes that are worked out at first; twice as many while they are too few.
 const FIRST_POOL: usize = 16;
 
-/// Off-diagonal damping that counts as none, relative to the diagonal: far above rounding, far below what would be felt.
+/// Off-diagonal damping that counts as none, relative to the diagonal: far above rounding, far
+/// below what would be felt.
 const UNCOUPLED: f64 = 1e-8;
 
-/// Rounds for a static correction: each divides its error by (ω² + σ)/σ of the first mode that is left out.
+/// Rounds for a static correction: each divides its error by (ω² + σ)/σ of the first mode that is
+/// left out.
 const MAX_ROUNDS: usize = 60;
 
 /// A correction of which no more than this is new is one that the others contain.
@@ -63,9 +66,11 @@ pub struct ModalBasis {
 }
 
 impl ModalBasis {
-    /// The first `modes` modes, rigid motions included, and a static correction for a force at each of `points` (m).
+    /// The first `modes` modes, rigid motions included, and a static correction for a force at each
+    /// of `points` (m).
     ///
-    /// A correction that the others already contain (of a point on a support, of a point twice) is left out.
+    /// A correction that the others already contain (of a point on a support, of a point twice) is
+    /// left out.
     ///
     /// # Errors
     /// [`ModalError`]: as [`Beam::modes`]; for a point that is not on the beam.
@@ -78,10 +83,12 @@ impl ModalBasis {
         pool.basis(modes, points)
     }
 
-    /// The fewest shapes with [`ModalBasis::truncation_error`] ≤ `tolerance` over the contact region `[x0, x1]` (m).
+    /// The fewest shapes with [`ModalBasis::truncation_error`] ≤ `tolerance` over the contact
+    /// region `[x0, x1]` (m).
     ///
     /// # Errors
-    /// [`ModalError`]: as [`Beam::modes`]; for a region that is not on the beam, or a tolerance outside [1e-8, 1).
+    /// [`ModalError`]: as [`Beam::modes`]; for a region that is not on the beam, or a tolerance
+    /// outside [1e-8, 1).
     pub fn for_tolerance(beam: &Beam, region: [f64; 2], tolerance: f64) -> Result<Self, ModalError> {
         // The digits of the flexibilities that are compared.
         if !(1e-8..1.0).contains(&tolerance) {
@@ -114,7 +121,8 @@ impl ModalBasis {
         self.frequencies.len()
     }
 
-    /// How many of them are eigenmodes of the beam, rigid motions included; the others are static corrections.
+    /// How many of them are eigenmodes of the beam, rigid motions included; the others are static
+    /// corrections.
     #[must_use]
     pub fn modes(&self) -> usize {
         self.modes
@@ -141,7 +149,8 @@ impl ModalBasis {
         self.shapes.column(index)
     }
 
-    /// The modal coordinates ΦᵀM q (m √kg) of the motion in this basis that is nearest to `q` in kinetic energy.
+    /// The modal coordinates ΦᵀM q (m √kg) of the motion in this basis that is nearest to `q` in
+    /// kinetic energy.
     ///
     /// # Panics
     /// If `q` has not [`Beam::dofs`] entries.
@@ -176,7 +185,8 @@ impl ModalBasis {
     /// The diagonal of ΦᵀC Φ, 1/s: 2ζω of each coordinate.
     ///
     /// # Errors
-    /// [`ModalError::CoupledDamping`] where C couples the coordinates: it does not if it is a combination of M and K.
+    /// [`ModalError::CoupledDamping`] where C couples the coordinates: it does not if it is a
+    /// combination of M and K.
     pub fn damping(&self, beam: &Beam) -> Result<Vec<f64>, ModalError> {
         let mut diagonal = Vec::with_capacity(self.len());
         let mut upper = Vec::with_capacity(self.len());
@@ -197,8 +207,9 @@ impl ModalBasis {
         Ok(diagonal)
     }
 
-    /// The largest relative error e of the static point flexibility over the contact region `[x0, x1]` (m) of the beam that the
-    /// basis was made of: (F(x, x) − F_Φ(x, x))/F(x, x) at 65 points of equal distance.
+    /// The largest relative error e of the static point flexibility over the contact region
+    /// `[x0, x1]` (m) of the beam that the basis was made of: (F(x, x) − F_Φ(x, x))/F(x, x) at 65
+    /// points of equal distance.
     ///
     /// # Errors
     /// [`ModalError`]: as [`Beam::modes`]; for a region that is not on the beam.
@@ -218,14 +229,16 @@ impl ModalBasis {
 }
 
 impl ModalBasis {
-    /// As [`ModalBasis::truncation_error`], for what decides an impact: the largest relative error over the region of N W Nᵀ, the
-    /// velocity at x after a unit impulse at x in a step with W = (mass M + damping C + stiffness K)⁻¹.
+    /// As [`ModalBasis::truncation_error`], for what decides an impact: the largest relative error
+    /// over the region of N W Nᵀ, the velocity at x after a unit impulse at x in a step with
+    /// W = (mass M + damping C + stiffness K)⁻¹.
     ///
-    /// It falls off only past the modes with ω above the reciprocal of the step, so a basis for impacts is larger than one for
-    /// contact that lasts.
+    /// It falls off only past the modes with ω above the reciprocal of the step, so a basis for
+    /// impacts is larger than one for contact that lasts.
     ///
     /// # Errors
-    /// [`ModalError`]: for a region that is not on the beam, weights without an inverse, coupled damping.
+    /// [`ModalError`]: for a region that is not on the beam, weights without an inverse, coupled
+    /// damping.
     pub fn impact_error(&self, beam: &Beam, region: [f64; 2], weights: MatrixWeights) -> Result<f64, ModalError> {
         let factor = beam.factor(weights)?;
         let damping = self.damping(beam)?;
@@ -386,10 +399,12 @@ impl Flexibility {
         self.rest[s * self.full.len() + t] + self.waves[modes..].iter().map(|wave| wave[s] * wave[t]).sum::<f64>()
     }
 
-    /// The samples, at most as many as there are modes, whose corrections bring the first `modes` modes to the tolerance.
+    /// The samples, at most as many as there are modes, whose corrections bring the first `modes`
+    /// modes to the tolerance.
     ///
-    /// What corrections for the samples R leave of the flexibility G that the modes left out is the Schur complement
-    /// G − G_·R G_RR⁻¹ G_R·, for ψ_rᵀK ψ_s = G_rs; so this is a pivoted Cholesky factorisation of G.
+    /// What corrections for the samples R leave of the flexibility G that the modes left out is the
+    /// Schur complement G − G_·R G_RR⁻¹ G_R·, for ψ_rᵀK ψ_s = G_rs; so this is a pivoted Cholesky
+    /// factorisation of G.
     fn corrections(&self, modes: usize, tolerance: f64) -> Option<Vec<usize>> {
         let count = self.full.len();
         let mut missing: Vec<f64> = (0..count).map(|s| self.left_out(modes, s, s)).collect();

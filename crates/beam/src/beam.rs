@@ -1,22 +1,24 @@
 //! The beam: an immutable model, and the map between its dofs and its nodes.
 
+use crate::assembly::supports;
 use crate::bar::Bar;
 use crate::blocks::Blocks;
-use crate::element::{Element, Matrix4};
+use crate::element::Element;
 use crate::error::{BeamError, check_len};
 use crate::field::{Field, Natural};
 use crate::membrane::Membrane;
 use crate::mesh::Mesh;
 use crate::modal_damping::ModalDamping;
-use crate::spec::{Axial, BeamSpec, Foundation};
-use crate::support::{Hold, Support};
+use crate::spec::BeamSpec;
+use crate::support::Support;
 
-/// What a support lets pass as "zero" in a nodal shape, relative to the largest such value of the shape: nine digits, so
-/// that sin(π) = 1.2e-16 or a value from a text file is one.
+/// What a support lets pass as "zero" in a nodal shape, relative to the largest such value of the
+/// shape: nine digits, so that sin(π) = 1.2e-16 or a value from a text file is one.
 const SUPPORT_TOLERANCE: f64 = 1e-9;
 
-/// One of the two degrees of freedom of a node that bend the beam.
+/// One of the degrees of freedom of a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Dof {
     /// w, m.
     Deflection,
@@ -24,11 +26,23 @@ pub enum Dof {
     Slope,
 }
 
-/// A straight beam by finite elements. Immutable: all that moves is in the caller's vectors of [`Beam::dofs`] entries.
+impl Dof {
+    /// Its place in the values of a node.
+    pub(crate) fn component(self) -> usize {
+        match self {
+            Self::Deflection => 0,
+            Self::Slope => 1,
+        }
+    }
+}
+
+/// A straight beam by finite elements. Immutable: all that moves is in the caller's vectors of
+/// [`Beam::dofs`] entries.
 ///
-/// Every node has its two dofs in every vector, w and the rotation, node by node; axial dofs follow after them all. What a
-/// support holds is there too and stays 0: [`Factor::solve`](crate::Factor::solve) returns 0 there, products write there what the
-/// support has to bear.
+/// Every node has its two dofs in every vector, w and the rotation, node by node; axial dofs follow
+/// after them all. What a support holds is there too and stays 0:
+/// [`Factor::solve`](crate::Factor::solve) returns 0 there, products write there what the support
+/// has to bear.
 #[derive(Debug, Clone)]
 pub struct Beam {
     pub(crate) spec: BeamSpec,
@@ -38,7 +52,7 @@ pub struct Beam {
     /// Bending, shear and N₀.
     pub(crate) bending: Natural,
     /// Winkler's foundation.
-    pub(crate) bed: Option<Field>,
+    pub(crate) foundation: Option<Field>,
     /// Springs and dashpots of supports, by dof.
     pub(crate) springs: Vec<(usize, f64)>,
     pub(crate) dashpots: Vec<(usize, f64)>,
@@ -48,7 +62,7 @@ pub struct Beam {
     /// The part of C in bending that is a multiple of M.
     pub(crate) damping_of_mass: f64,
     /// What of C is no multiple of M or K, by elements.
-    pub(crate) bath: Option<Field>,
+    pub(crate) residual_damping: Option<Field>,
     pub(crate) bar: Option<Bar>,
     pub(crate) membrane: Option<Membrane>,
     pub(crate) modal: Option<ModalDamping>,
@@ -59,125 +73,6 @@ pub struct Beam {
 }
 
 impl Beam {
-    /// Checks every value of `spec`, then assembles.
-    ///
-    /// # Errors
-    /// [`BeamError`] that names the field, its value and the rule.
-    ///
-    /// ```
-    /// use teeter_beam::{Beam, BeamSpec, Section};
-    /// let spec = BeamSpec::new(0.36, 20, Section::rectangle(0.03, 0.0015, 69e9, 2700.0)?);
-    /// let beam = Beam::new(spec.clone())?;
-    /// assert_eq!((beam.dofs(), beam.free_dofs()), (42, 40));
-    ///
-    /// let mut wrong = spec;
-    /// wrong.span = -1.0;
-    /// assert_eq!(Beam::new(wrong).unwrap_err().to_string(), "span = -1: must be finite and > 0");
-    /// # Ok::<(), teeter_beam::BeamError>(())
-    /// ```
-    pub fn new(spec: BeamSpec) -> Result<Self, BeamError> {
-        spec.validate()?;
-        let mesh = Mesh::new(&spec)?;
-        let nodes = mesh.x.len();
-        let elements: Vec<Element> = (0..mesh.elements())
-            .map(|k| Element::new(mesh.length(k), section_at(&spec, 0.5 * (mesh.x[k] + mesh.x[k + 1]))))
-            .collect();
-
-        let supports = supports(&spec, &mesh);
-        let mut held = vec![[false; 2]; nodes];
-        let (mut springs, mut dashpots) = (Vec::new(), Vec::new());
-        for (node, support) in supports {
-            for (i, hold) in support.holds().into_iter().enumerate() {
-                match hold {
-                    Hold::Free => {}
-                    Hold::Fixed => held[node][i] = true,
-                    Hold::Spring { stiffness, damping } => {
-                        springs.extend((stiffness > 0.0).then_some((2 * node + i, stiffness)));
-                        dashpots.extend((damping > 0.0).then_some((2 * node + i, damping)));
-                    }
-                }
-            }
-        }
-        if held.iter().all(|node| *node == [true; 2]) {
-            let rule = "at least 2 between two clamped ends, else nothing can move";
-            return Err(BeamError::Count { field: "elements", value: spec.elements, rule });
-        }
-
-        let masses: Vec<Matrix4> = elements.iter().map(Element::mass).collect();
-        let mut m = Blocks::assemble(nodes, masses.iter().copied());
-        let mut lumps = Vec::new();
-        for lump in &spec.lumps {
-            let node = mesh.node(lump.x).ok_or(BeamError::OutsideSpan { x: lump.x, span: spec.span })?;
-            m.add_own(node, [lump.mass, 0.0, lump.inertia]);
-            lumps.extend([(2 * node, lump.mass), (2 * node + 1, lump.inertia)]);
-        }
-
-        let mut bending = Natural::bending(&elements);
-        let slopes = Natural::geometric(&elements);
-        if spec.axial_force != 0.0 {
-            bending.add_scaled(spec.axial_force, &slopes);
-        }
-        let (bed_matrices, bed) = layer(&spec, &mesh, &elements, |foundation| foundation.stiffness, 0.0);
-        let mut k = Blocks::assemble(nodes, bending.matrices());
-        if bed.is_some() {
-            let sum = [(1.0, &k.clone()), (1.0, &Blocks::assemble(nodes, bed_matrices.iter().copied()))];
-            k.combine(&sum);
-        }
-        add_by_dof(&mut k, &springs);
-
-        // c ∫NᵀN dx is a multiple of M where M is ρA ∫NᵀN dx with one ρA and nothing else.
-        let rho_a = elements[0].section.mass_per_length;
-        let plain = |e: &Element| e.section.mass_per_length == rho_a && e.section.rotatory_inertia == 0.0;
-        let proportional = elements.iter().all(plain) && spec.lumps.is_empty();
-        let viscous = spec.damping.viscous;
-        let (of_mass, beside) = if proportional { (viscous / rho_a, 0.0) } else { (0.0, viscous) };
-        let (bath_matrices, bath) = layer(&spec, &mesh, &elements, |foundation| foundation.damping, beside);
-        let c = (bath.is_some() || !dashpots.is_empty()).then(|| {
-            let mut c = Blocks::assemble(nodes, bath_matrices.iter().copied());
-            add_by_dof(&mut c, &dashpots);
-            c
-        });
-
-        let flexibility: f64 = elements.iter().map(|e| e.length / e.section.axial_stiffness).sum();
-        let membrane = (spec.axial == Axial::Held).then(|| {
-            let matrix = Blocks::assemble(nodes, slopes.matrices());
-            Membrane { slopes, matrix, stiffness: 1.0 / flexibility }
-        });
-        let bar = if let Axial::Elastic { held } = spec.axial {
-            let parts: Vec<_> =
-                elements.iter().map(|e| (e.section.axial_stiffness, e.section.mass_per_length, e.length)).collect();
-            let masses = lumps.iter().step_by(2).map(|(dof, mass)| (dof / 2, *mass)).collect();
-            Some(Bar::new(&parts, masses, held))
-        } else {
-            None
-        };
-        let ratios = spec.damping.modal.clone();
-        let mut beam = Self {
-            damping_of_mass: of_mass + spec.damping.rayleigh_mass,
-            mass: Field::new(masses.iter()),
-            spec,
-            mesh,
-            elements,
-            held,
-            bending,
-            bed,
-            springs,
-            dashpots,
-            lumps,
-            bath,
-            bar,
-            membrane,
-            modal: None,
-            m,
-            k,
-            c,
-        };
-        if ratios.iter().any(|ratio| *ratio > 0.0) {
-            beam.modal = Some(ModalDamping::new(&beam, &ratios)?);
-        }
-        Ok(beam)
-    }
-
     /// The numbers it was made from.
     pub fn spec(&self) -> &BeamSpec {
         &self.spec
@@ -251,7 +146,8 @@ impl Beam {
         self.membrane.is_some()
     }
 
-    /// Index of a dof in the vectors; `None` where the support holds it, or where there is no such node.
+    /// Index of a dof in the vectors; `None` where the support holds it, or where there is no such
+    /// node.
     ///
     /// ```
     /// # use teeter_beam::{Beam, BeamSpec, Dof, Section};
@@ -261,15 +157,17 @@ impl Beam {
     /// # Ok::<(), teeter_beam::BeamError>(())
     /// ```
     pub fn dof(&self, node: usize, kind: Dof) -> Option<usize> {
-        let component = usize::from(kind == Dof::Slope);
+        let component = kind.component();
         (!self.held.get(node)?[component]).then_some(2 * node + component)
     }
 
-    /// The vector of a nodal shape: w (m) and rotation (rad) of every node, or their rates. Axial dofs are 0.
+    /// The vector of a nodal shape: w (m) and rotation (rad) of every node, or their rates. Axial
+    /// dofs are 0.
     ///
     /// # Errors
-    /// [`BeamError::Length`]; [`BeamError::Value`] for an entry that is not finite; [`BeamError::BrokenSupport`] for one
-    /// that is not zero where a support holds it (to 1e-9 of the largest such value of the shape).
+    /// [`BeamError::Length`]; [`BeamError::Value`] for an entry that is not finite;
+    /// [`BeamError::BrokenSupport`] for one that is not zero where a support holds it (to 1e-9 of
+    /// the largest such value of the shape).
     ///
     /// ```
     /// # use teeter_beam::{Beam, BeamSpec, Section, Support};
@@ -289,11 +187,11 @@ impl Beam {
         let zero = [largest(0), largest(1)].map(|size| SUPPORT_TOLERANCE * size);
         let mut q = Vec::with_capacity(self.dofs());
         for (node, (pair, held)) in nodal.iter().zip(&self.held).enumerate() {
-            for component in 0..2 {
+            for (component, dof) in [Dof::Deflection, Dof::Slope].into_iter().enumerate() {
                 let value = pair[component];
                 if held[component] && value.abs() > zero[component] {
                     let support = self.support_of(node);
-                    return Err(BeamError::BrokenSupport { node, component, value, support });
+                    return Err(BeamError::BrokenSupport { node, dof, value, support });
                 }
                 q.push(if held[component] { 0.0 } else { value });
             }
@@ -350,49 +248,10 @@ impl Beam {
     }
 }
 
-/// The supports by their nodes, the ends first.
-fn supports<'a>(spec: &'a BeamSpec, mesh: &'a Mesh) -> impl Iterator<Item = (usize, Support)> + use<'a> {
-    let ends = [(0, spec.supports[0]), (mesh.elements(), spec.supports[1])];
-    let inner = spec.inner_supports.iter().filter_map(|(x, support)| Some((mesh.node(*x)?, *support)));
-    ends.into_iter().chain(inner)
-}
-
-/// The section at a place that is no end of a segment.
-fn section_at(spec: &BeamSpec, x: f64) -> crate::Section {
-    let own = spec.segments.iter().rev().find(|segment| segment.from < x && x < segment.to);
-    own.map_or(spec.section, |segment| segment.section)
-}
-
-/// What all foundations and `everywhere` give to each element, as matrices and as a field; none where it is zero.
-fn layer(
-    spec: &BeamSpec,
-    mesh: &Mesh,
-    elements: &[Element],
-    of: impl Fn(&Foundation) -> f64,
-    everywhere: f64,
-) -> (Vec<Matrix4>, Option<Field>) {
-    let under = |k: usize| {
-        let x = 0.5 * (mesh.x[k] + mesh.x[k + 1]);
-        let covering = spec.foundations.iter().filter(|f| f.from < x && x < f.to);
-        everywhere + covering.map(&of).sum::<f64>()
-    };
-    let values: Vec<f64> = (0..elements.len()).map(under).collect();
-    let matrices: Vec<Matrix4> = elements.iter().zip(&values).map(|(e, value)| e.foundation(*value)).collect();
-    let field = values.iter().any(|value| *value != 0.0).then(|| Field::new(matrices.iter()));
-    (matrices, field)
-}
-
-fn add_by_dof(blocks: &mut Blocks, values: &[(usize, f64)]) {
-    for &(dof, value) in values {
-        blocks.add_own(dof / 2, if dof % 2 == 0 { [value, 0.0, 0.0] } else { [0.0, 0.0, value] });
-    }
-}
-
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::spec::Damping;
-    use crate::{MatrixWeights, Section};
+    use crate::{Axial, Damping, Foundation, Hold, MatrixWeights, Section};
 
     pub(crate) fn all_supports() -> Vec<[Support; 2]> {
         let kinds = [Support::Free, Support::Pinned, Support::Clamped, Support::Guided];
@@ -412,13 +271,14 @@ pub(crate) mod tests {
         Beam::new(spec(elements, supports).damped(damping)).unwrap()
     }
 
-    /// A beam with everything: shear, segments, an inner support, springs, a lump, a foundation, axial dofs under tension.
+    /// A beam with everything: shear, segments, an inner support, springs, a lump, a foundation,
+    /// axial dofs under tension.
     pub(crate) fn furnished() -> Beam {
         let plain = Section::new(2.0, 3.0).unwrap().with_axial_stiffness(50.0).unwrap();
         let thick = Section::new(5.0, 4.0).unwrap().with_shear(40.0, 0.02).unwrap().with_axial_stiffness(70.0).unwrap();
         let spring = |stiffness, damping| Hold::Spring { stiffness, damping };
         let end = Support::Elastic { deflection: spring(30.0, 0.4), rotation: spring(1.5, 0.0) };
-        let foundation = Foundation { from: 0.1, to: 0.65, stiffness: 80.0, damping: 0.3 };
+        let foundation = Foundation::new(0.1, 0.65, 80.0).with_damping(0.3);
         let spec = spec(7, [Support::Clamped, end])
             .segment(0.3, 0.5, thick)
             .support_at(0.75, Support::Pinned)

@@ -4,11 +4,12 @@ use crate::beam::Beam;
 use crate::error::FactorError;
 use crate::factor::MatrixWeights;
 
-/// Where the loads act that are solved for, in parts of the span: no node of a coarse mesh, no symmetry.
+/// Where the loads act that are solved for, in parts of the span: no node of a coarse mesh, no
+/// symmetry.
 const PLACES: [f64; 2] = [0.37, 0.82];
 
-/// What rounding takes of solves with `mass M + damping C + stiffness K`, made by [`Beam::digits`]: estimated errors, relative to
-/// the largest deflection, 1 where no digit is left.
+/// What rounding takes of solves with `mass M + damping C + stiffness K`, made by [`Beam::digits`]:
+/// estimated errors, relative to the largest deflection, 1 where no digit is left.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Digits {
@@ -19,7 +20,8 @@ pub struct Digits {
 }
 
 impl Digits {
-    /// With fewer digits a result is no longer good for what people do with it, and one should be told.
+    /// With fewer digits a result is no longer good for what people do with it, and one should be
+    /// told.
     pub const FEW: f64 = 6.0;
 
     /// Correct decimal digits of [`Factor::solve`](crate::Factor::solve).
@@ -36,12 +38,15 @@ impl Digits {
 }
 
 impl Beam {
-    /// Estimates the digits of solves with these weights, by solving for two smooth loads, a force and a couple.
+    /// Estimates the digits of solves with these weights, by solving for two smooth loads, a force
+    /// and a couple.
     ///
-    /// The error of the plain solve is its distance from the refined one; that of the refined one is its last correction, or
-    /// what rounds the moments at the nodes; the largest of the loads each. Against solves in double-double arithmetic (2 to 2000 elements,
-    /// `tests/beam/digits.rs`) the first is at least half the error wherever more than two digits are lost and at most ten times it, the second
-    /// never less than the error. It is an estimate for [`Backend::Banded`](crate::Backend::Banded); the sparse factor has errors of the same order.
+    /// The error of the plain solve is its distance from the refined one; that of the refined one
+    /// is its last correction, or what rounds the moments at the nodes; the largest of the loads
+    /// each. Against solves in double-double arithmetic (2 to 2000 elements) the first is at least
+    /// half the error wherever more than two digits are lost and at most ten times it, the second
+    /// never less than the error. It is an estimate for
+    /// [`Backend::Banded`](crate::Backend::Banded); the sparse factor has errors of the same order.
     ///
     /// The stretching of a beam held along its axis is not in it.
     ///
@@ -51,7 +56,7 @@ impl Beam {
     /// ```
     /// use teeter_beam::{Beam, BeamSpec, Digits, MatrixWeights, Section};
     /// let beam = Beam::new(BeamSpec::new(0.36, 400, Section::rectangle(0.03, 0.0015, 69e9, 2700.0)?))?;
-    /// let statics = beam.digits(MatrixWeights { mass: 0.0, damping: 0.0, stiffness: 1.0 })?;
+    /// let statics = beam.digits(MatrixWeights::STIFFNESS)?;
     /// assert!(statics.of_solve() < 11.0 && statics.of_refined() > 13.0);
     /// let h = 1e-4; // a step with θ = ½
     /// let step = beam.digits(MatrixWeights { mass: 1.0, damping: 0.5 * h, stiffness: 0.25 * h * h })?;
@@ -60,7 +65,8 @@ impl Beam {
     /// ```
     pub fn digits(&self, weights: MatrixWeights) -> Result<Digits, FactorError> {
         let factor = self.factor(weights)?;
-        // Moments at the nodes are rounded one by one, as many as there are nodes: a random walk. And the solution itself is.
+        // Moments at the nodes are rounded one by one, as many as there are nodes: a random walk.
+        // And the solution itself is.
         let rounding = f64::EPSILON * (4.0 + 2.0 * (self.nodes() as f64).sqrt());
         let mut digits = Digits { solve: rounding, refined: rounding };
         for load in self.probes() {
@@ -88,8 +94,8 @@ impl Beam {
         for (node, element) in self.elements.iter().enumerate() {
             even[2 * node..].iter_mut().zip(element.uniform_load()).for_each(|(f, share)| *f += share);
         }
-        // A bump that no end feels: near a support that holds back what an even load moves, slopes are steep in a short step, and
-        // beside them the error looks small.
+        // A bump that no end feels: near a support that holds back what an even load moves, slopes
+        // are steep in a short step, and beside them the error looks small.
         for (f, x) in smooth.iter_mut().step_by(2).zip(self.node_positions()) {
             let s = x / self.spec.span;
             *f = (s * (1.0 - s)).powi(2);

@@ -1,7 +1,8 @@
 //! Frequencies and mode shapes of the finite-element beam.
 //!
-//! The lowest pairs of K φ = ω² M φ, undamped, by subspace iteration on the shifted inverse (Bathe & Wilson, "Solution
-//! methods for eigenvalue problems in structural mechanics", 1973, doi 10.1002/nme.1620060207):
+//! The lowest pairs of K φ = ω² M φ, undamped, by subspace iteration on the shifted inverse (Bathe
+//! & Wilson, "Solution methods for eigenvalue problems in structural mechanics", 1973, doi
+//! 10.1002/nme.1620060207):
 //!
 //! ```text
 //! y_j = A x_j,  A = (K + σM)⁻¹M        orthonormalise Y in M        Rayleigh–Ritz: YᵀK Y = U Λ Uᵀ,  X ← Y U
@@ -9,18 +10,21 @@
 //!
 //! What double precision would take, and where it is taken back:
 //!
-//! - **The solves.** σ = 100 ε ω²_max, so that K + σM has a condition number of 1/(100 ε) at the most, whatever the mesh and
-//!   whether or not the beam can move rigidly; iterative refinement with [`Beam::add_stiffness_product`] takes that out
-//!   again. Up to some hundred elements σ is far below the first ω².
-//! - **The small eigenproblem** spans many decades. Jacobi's method finds all of them to the digits that they have
-//!   (Demmel & Veselić 1992, doi 10.1137/0613074); a QR method would leave ε ω²_max on the lowest.
-//! - **The frequencies** are Rayleigh quotients of two sums of squares, [`Beam::elastic_energy`] and
-//!   [`Beam::kinetic_energy`]. Their error is the square of the shape's.
+//! - **The solves.** σ = 100 ε ω²_max, so that K + σM has a condition number of 1/(100 ε) at the
+//!   most, whatever the mesh and whether or not the beam can move rigidly; iterative refinement
+//!   with [`Beam::add_stiffness_product`] takes that out again. Up to some hundred elements σ is
+//!   far below the first ω².
+//! - **The small eigenproblem** spans many decades. Jacobi's method finds all of them to the digits
+//!   that they have (Demmel & Veselić 1992, doi 10.1137/0613074); a QR method would leave ε ω²_max
+//!   on the lowest.
+//! - **The frequencies** are Rayleigh quotients of two sums of squares, [`Beam::elastic_energy`]
+//!   and [`Beam::kinetic_energy`]. Their error is the square of the shape's.
 //!
-//! Rigid motions are known in closed form: they are set apart at the start, and the iteration stays M-orthogonal to them.
+//! Rigid motions are known in closed form: they are set apart at the start, and the iteration stays
+//! M-orthogonal to them.
 //!
-//! No mode is missed: below a bound μ between two Ritz values as many eigenvalues are counted as Ritz values lie there, by
-//! the negative pivots of LDLᵀ = K − μM (Sylvester's law of inertia).
+//! No mode is missed: below a bound μ between two Ritz values as many eigenvalues are counted as
+//! Ritz values lie there, by the negative pivots of LDLᵀ = K − μM (Sylvester's law of inertia).
 
 pub(crate) mod block;
 mod inertia;
@@ -33,13 +37,16 @@ use block::{Block, Orthonormal, orthonormalised, ritz};
 pub(crate) use inertia::unknowns;
 use inverse::Inverse;
 
-/// The residual at which a mode is done: shapes to ten digits, frequencies to all that the energies give.
+/// The residual at which a mode is done: shapes to ten digits, frequencies to all that the energies
+/// give.
 const DONE: f64 = 1e-10;
 
-/// The residual that a mode must have where rounding ends the descent; its square is the frequency's error.
+/// The residual that a mode must have where rounding ends the descent; its square is the
+/// frequency's error.
 const SETTLED: f64 = 1e-7;
 
-/// Rounds at the most. Each divides the residual of mode i by (ω²_{p+1} + σ)/(ω²_i + σ), p the size of the block: by 2 and more.
+/// Rounds at the most. Each divides the residual of mode i by (ω²_{p+1} + σ)/(ω²_i + σ), p the size
+/// of the block: by 2 and more.
 const MAX_ROUNDS: usize = 100;
 
 /// Rounds without a new least residual after which rounding is taken to rule.
@@ -48,10 +55,12 @@ const PATIENCE: usize = 4;
 /// How far apart two Ritz values must be, relative to the upper, for a bound between them.
 const CLEAR_GAP: f64 = 1e-3;
 
-/// How often the block may grow: where no bound fits into it, as in a cluster of equal spans, or where a mode is missing.
+/// How often the block may grow: where no bound fits into it, as in a cluster of equal spans, or
+/// where a mode is missing.
 const MAX_GROWTHS: usize = 3;
 
-/// The lowest modes of a beam, made by [`Beam::modes`]: circular frequencies, ascending, and mass-orthonormal shapes.
+/// The lowest modes of a beam, made by [`Beam::modes`]: circular frequencies, ascending, and
+/// mass-orthonormal shapes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Modes {
     frequencies: Vec<f64>,
@@ -80,7 +89,8 @@ impl Modes {
         &self.frequencies
     }
 
-    /// Shape number `mode` from 0, of [`Beam::dofs`] entries, 1/√kg (1/(m √kg) for slopes): φᵢᵀM φⱼ = δᵢⱼ, φᵢᵀK φⱼ = ωᵢ² δᵢⱼ.
+    /// Shape number `mode` from 0, of [`Beam::dofs`] entries, 1/√kg (1/(m √kg) for slopes): φᵢᵀM
+    /// φⱼ = δᵢⱼ, φᵢᵀK φⱼ = ωᵢ² δᵢⱼ.
     ///
     /// # Panics
     /// If there is no such mode.
@@ -89,8 +99,9 @@ impl Modes {
         self.shapes.column(mode)
     }
 
-    /// The relative residual of each mode, ‖(ω² + σ)(K + σM)⁻¹M φ − φ‖ in the norm of M. It bounds the relative distance of
-    /// ω² + σ from an eigenvalue; the error of ω² itself is of the order of its square. 0 for rigid motions.
+    /// The relative residual of each mode, ‖(ω² + σ)(K + σM)⁻¹M φ − φ‖ in the norm of M. It bounds
+    /// the relative distance of ω² + σ from an eigenvalue; the error of ω² itself is of the order
+    /// of its square. 0 for rigid motions.
     #[must_use]
     pub fn residuals(&self) -> &[f64] {
         &self.residuals
@@ -109,7 +120,8 @@ impl Beam {
     /// The work is linear in the number of elements and about quadratic in `count`.
     ///
     /// # Errors
-    /// [`ModesError`]: for a count that is 0 or more than the beam has, or an iteration that does not settle.
+    /// [`ModesError`]: for a count that is 0 or more than the beam has, or an iteration that does
+    /// not settle.
     ///
     /// ```
     /// # use teeter_beam::{Beam, BeamSpec, Section};
@@ -223,21 +235,23 @@ impl Search<'_> {
         Err(ModesError::NotSettled { count: wanted, residual: best })
     }
 
-    /// Counts the eigenvalues below a bound in the widest gap between two Ritz values from number `wanted` on.
+    /// Counts the eigenvalues below a bound in the widest gap between two Ritz values from number
+    /// `wanted` on.
     fn verdict(&self, found: &Found, wanted: usize) -> Verdict {
         let (values, size) = (&found.eigenvalues, found.eigenvalues.len());
         if size == self.others {
             return Verdict::Complete;
         }
-        // An eigenvalue lies within the residual of the upper one; so the bound has to keep that far from it.
+        // An eigenvalue lies within the residual of the upper one; so the bound has to keep that
+        // far from it.
         let gap = |k: usize| (values[k] - values[k - 1]) / values[k];
         let clear = |k: &usize| gap(*k) >= CLEAR_GAP.max(4.0 * found.residuals[*k]);
         let Some(k) = (wanted..size).filter(clear).max_by(|a, b| gap(*a).total_cmp(&gap(*b))) else {
             return Verdict::NoBound;
         };
         let bound = 0.5 * (values[k - 1] + values[k]);
-        // k vectors whose quotients are below the bound prove that there are k such eigenvalues (Courant and Fischer), so a
-        // count of fewer is the rounding of the count.
+        // k vectors whose quotients are below the bound prove that there are k such eigenvalues
+        // (Courant and Fischer), so a count of fewer is the rounding of the count.
         if inertia::eigenvalues_below(self.beam, bound) <= k + self.rigid.vectors.columns() {
             Verdict::Complete
         } else {

@@ -1,8 +1,9 @@
-//! One two-node element: cubic Hermite for Euler–Bernoulli (`docs/theory.md` §1), and its extension by shear.
+//! One two-node element: cubic Hermite for Euler–Bernoulli, and its extension by shear.
 //!
-//! With Φ = 12 EI/(GA_s l²) the shape functions of Friedman and Kosmatka (1993, doi 10.1016/0045-7949(93)90243-7) solve the
-//! static equations of Timoshenko's beam without load, so the element doesn't lock and is exact at its nodes. Φ = 0 is the cubic
-//! Hermite element. The dofs of a node are w and the rotation ψ of the section; ψ = w' for Φ = 0.
+//! With Φ = 12 EI/(GA_s l²) the shape functions of Friedman and Kosmatka (1993, doi
+//! 10.1016/0045-7949(93)90243-7) solve the static equations of Timoshenko's beam without load, so
+//! the element doesn't lock and is exact at its nodes. Φ = 0 is the cubic Hermite element. The dofs
+//! of a node are w and the rotation ψ of the section; ψ = w' for Φ = 0.
 
 use std::array;
 
@@ -21,8 +22,8 @@ pub(crate) struct Element {
 /// A 4 × 4 element matrix in the dofs (w₁, ψ₁, w₂, ψ₂).
 pub(crate) type Matrix4 = [[f64; 4]; 4];
 
-/// Four-point Gauss–Legendre on [−1, 1]: exact to degree 7, so for products of two cubics, and for loads up to degree 4
-/// against one.
+/// Four-point Gauss–Legendre on [−1, 1]: exact to degree 7, so for products of two cubics, and for
+/// loads up to degree 4 against one.
 pub(crate) const GAUSS: [(f64, f64); 4] = [
     (-0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
     (-0.339_981_043_584_856_26, 0.652_145_154_862_546_1),
@@ -35,8 +36,8 @@ impl Element {
         Self { length, shear: section.shear_parameter(length), section }
     }
 
-    /// The stiffness of the two natural deformations d₁ = ψ₂ − ψ₁ and d₂ = ψ₁ + ψ₂ − 2(w₂ − w₁)/l, N m:
-    /// EI/l and 3 EI/(l (1 + Φ)).
+    /// The stiffness of the two natural deformations d₁ = ψ₂ − ψ₁ and d₂ = ψ₁ + ψ₂ − 2(w₂ − w₁)/l,
+    /// N m: EI/l and 3 EI/(l (1 + Φ)).
     pub(crate) fn natural(&self) -> [f64; 2] {
         let bend = self.section.bending_stiffness / self.length;
         [bend, 3.0 * bend / (1.0 + self.shear)]
@@ -91,7 +92,8 @@ impl Element {
     #[inline]
     pub(crate) fn shape(&self, xi: f64) -> [f64; 4] {
         let (l, eta) = (self.length, 1.0 - xi);
-        // 1 − 3ξ² + 2ξ³ = (1−ξ)²(1+2ξ) and so on: products keep small values accurate near the far node.
+        // 1 − 3ξ² + 2ξ³ = (1−ξ)²(1+2ξ) and so on: products keep small values accurate near the far
+        // node.
         let n = [eta * eta * (1.0 + 2.0 * xi), l * xi * eta * eta, xi * xi * (1.0 + 2.0 * eta), -l * xi * xi * eta];
         if self.shear == 0.0 {
             return n;
@@ -193,7 +195,8 @@ mod tests {
         }
     }
 
-    /// The static equations without load, by central differences: EI ψ'' + GA_s(w' − ψ) = 0 and GA_s(w' − ψ) constant.
+    /// The static equations without load, by central differences: EI ψ'' + GA_s(w' − ψ) = 0 and
+    /// GA_s(w' − ψ) constant.
     #[test]
     fn with_shear_the_shape_functions_are_static_solutions() {
         let e = with_shear();
@@ -216,7 +219,8 @@ mod tests {
         }
     }
 
-    /// The stiffness by its definition, ∫ EI κ² + GA_s γ² dx, against that of the natural deformations.
+    /// The stiffness by its definition, ∫ EI κ² + GA_s γ² dx, against that of the natural
+    /// deformations.
     #[test]
     fn the_natural_stiffness_is_the_integral_of_the_strain_energy() {
         for e in [element(), with_shear()] {

@@ -34,7 +34,7 @@ impl Envelope {
             widen(range, *w);
         }
         for e in 0..beam.elements() {
-            let middle = 0.5 * (beam.mesh.x[e] + beam.mesh.x[e + 1]);
+            let middle = beam.mesh.middle(e);
             for (side, SectionForce { moment, shear }) in forces.ends(e).into_iter().enumerate() {
                 widen(&mut self.moment[e + side], moment);
                 widen(&mut self.shear[e + side], shear);

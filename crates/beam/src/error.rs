@@ -1,6 +1,8 @@
 //! What can be wrong with a beam, a factorisation, a static solve.
 
-use crate::factor::MatrixWeights;
+use crate::beam::Dof;
+use crate::factor::{Backend, MatrixWeights};
+use crate::statics::RigidMotion;
 use crate::support::Support;
 
 /// A value that a beam cannot be built from, or cannot be asked.
@@ -29,6 +31,14 @@ pub enum BeamError {
         /// What it must be.
         rule: &'static str,
     },
+    /// A number that the section doesn't have and the beam needs.
+    #[error("{field}: missing, but needed {reason}")]
+    Missing {
+        /// The field, e.g. `section.axial_stiffness`.
+        field: &'static str,
+        /// Where it is needed.
+        reason: &'static str,
+    },
     /// A slice of the wrong length.
     #[error("{field}: has {found} entries, must have {expected}")]
     Length {
@@ -40,12 +50,12 @@ pub enum BeamError {
         found: usize,
     },
     /// A nodal shape that moves where the support holds it.
-    #[error("nodal[{node}][{component}] = {value}: must be 0, the support there is {support}")]
+    #[error("nodal[{node}][{}] = {value}: must be 0, the support there is {support}", dof.component())]
     BrokenSupport {
         /// The node.
         node: usize,
-        /// 0 for the deflection w, 1 for the rotation.
-        component: usize,
+        /// Which of its two values.
+        dof: Dof,
         /// The value found there, m or rad.
         value: f64,
         /// The support there.
@@ -86,6 +96,14 @@ pub enum FactorError {
         /// The degree of freedom at which the elimination, from both ends to the middle, stopped.
         dof: usize,
     },
+    /// A backend that is not in this build.
+    #[error("the backend {backend:?} is not in this build: it needs the feature `{feature}` of teeter-beam")]
+    MissingFeature {
+        /// The backend asked for.
+        backend: Backend,
+        /// The feature of this crate that brings it.
+        feature: &'static str,
+    },
     /// Too little memory for the analysis of the pattern.
     #[error("too little memory to analyse the pattern of the matrices")]
     Memory,
@@ -106,12 +124,12 @@ pub enum FactorError {
 #[non_exhaustive]
 pub enum StaticError {
     /// The supports leave a rigid motion, so no static equilibrium is unique.
-    #[error("supports = [{}, {}]: {missing}", supports[0], supports[1])]
+    #[error("supports = [{}, {}]: {motion}", supports[0], supports[1])]
     RigidMotion {
         /// The supports of the left and the right end.
         supports: Box<[Support; 2]>,
-        /// The motion that is left, and the support that would take it.
-        missing: &'static str,
+        /// The motion that is left.
+        motion: RigidMotion,
     },
     /// A compressive axial force at or beyond the buckling load.
     #[error(
@@ -147,7 +165,8 @@ pub enum StaticError {
         /// The last correction, relative to the solution.
         correction: f64,
     },
-    /// Held by springs or foundations alone, and these leave the solve no digits: rounding of the beam's own stiffness hides them.
+    /// Held by springs or foundations alone, and these leave the solve no digits: rounding of the
+    /// beam's own stiffness hides them.
     #[error(
         "the springs or foundations that hold the beam are too soft beside its own stiffness for double precision; take stiffer ones, a support, or a coarser mesh"
     )]

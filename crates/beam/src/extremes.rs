@@ -4,6 +4,7 @@ use crate::beam::Beam;
 
 /// What deflection and slope of a beam reach, made by [`Beam::deflection_extremes`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub struct DeflectionExtremes {
     /// Least w, m.
     pub lowest: f64,
@@ -22,9 +23,10 @@ impl DeflectionExtremes {
 }
 
 impl Beam {
-    /// The extremes of w and w' along the whole beam for the dofs `q`. In an element w is a cubic, which may rise above both of its
-    /// nodes: its extremes are at the nodes and where the quadratic w' is 0, and those of w' at the nodes and where w'' is 0. Exact
-    /// but for rounding; [`Beam::deflection_bounds`] is a cheaper bound.
+    /// The extremes of w and w' along the whole beam for the dofs `q`. In an element w is a cubic,
+    /// which may rise above both of its nodes: its extremes are at the nodes and where the
+    /// quadratic w' is 0, and those of w' at the nodes and where w'' is 0. Exact but for rounding;
+    /// [`Beam::deflection_bounds`] is a cheaper bound.
     ///
     /// # Panics
     /// If `q` has not [`Beam::dofs`] entries.
@@ -56,7 +58,8 @@ impl Beam {
                 extremes.highest = extremes.highest.max(w);
                 extremes.steepest = extremes.steepest.max(slope(xi).abs());
             };
-            // The roots by the formula that doesn't cancel; what is not a number is no place in the element.
+            // The roots by the formula that doesn't cancel; what is not a number is no place in the
+            // element.
             let half = -0.5 * (b + (b * b - 4.0 * a * c).sqrt().copysign(b));
             let places = [0.0, 1.0, half / c, a / half, -0.5 * b / c];
             places.into_iter().filter(|xi| (0.0..=1.0).contains(xi)).for_each(&mut take);
@@ -90,7 +93,8 @@ mod tests {
                     }
                     assert!(found.lowest <= low + 1e-14 && found.highest >= high - 1e-14, "{nodes:?} {draw}");
                     assert!(found.steepest >= steep - 1e-13, "{nodes:?} {draw}");
-                    // A place is within 0.25 mm of each; w'' is at most some 1e3 in the shortest element.
+                    // A place is within 0.25 mm of each; w'' is at most some 1e3 in the shortest
+                    // element.
                     assert!(found.lowest > low - 1e-4 && found.highest < high + 1e-4, "{nodes:?} {draw}");
                     assert!(found.steepest < steep + 1e-2, "{nodes:?} {draw}");
                     assert!(beam.deflection_bounds(&q).highest >= found.highest);

@@ -8,12 +8,13 @@ use crate::beam::Beam;
 use crate::blocks::Blocks;
 use crate::error::FactorError;
 use crate::modal_damping::{LowRank, ModalDamping};
+#[cfg(feature = "faer")]
 use crate::sparse::SparseFactor;
 
 /// The weights of `mass M + damping C + stiffness K`.
 ///
-/// A θ step of length h wants `{ mass: 1, damping: hθ, stiffness: h²θ² }` (`docs/theory.md` §5), a static solve
-/// `{ 0, 0, 1 }`, an impact `{ 1, 0, 0 }`.
+/// A θ step of length h wants `{ mass: 1, damping: hθ, stiffness: h²θ² }`, a static solve
+/// [`MatrixWeights::STIFFNESS`], an impact [`MatrixWeights::MASS`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MatrixWeights {
     /// Weight of M.
@@ -41,6 +42,13 @@ impl fmt::Display for MatrixWeights {
 }
 
 impl MatrixWeights {
+    /// M alone.
+    pub const MASS: Self = Self { mass: 1.0, damping: 0.0, stiffness: 0.0 };
+    /// C alone.
+    pub const DAMPING: Self = Self { mass: 0.0, damping: 1.0, stiffness: 0.0 };
+    /// K alone.
+    pub const STIFFNESS: Self = Self { mass: 0.0, damping: 0.0, stiffness: 1.0 };
+
     fn validate(&self) -> Result<(), FactorError> {
         for (field, value) in [("mass", self.mass), ("damping", self.damping), ("stiffness", self.stiffness)] {
             if !value.is_finite() {
@@ -51,22 +59,44 @@ impl MatrixWeights {
     }
 }
 
-/// How a matrix is factorised. Both need the same memory up to a factor and give the same solutions up to rounding.
+/// How a matrix is factorised. Both need memory linear in the number of elements and give the same
+/// solutions up to rounding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Backend {
-    /// In blocks of a node, from both ends to the middle: what suits a chain of elements best, two to four times faster than
-    /// the general way at every size.
+    /// In blocks of a node, from both ends to the middle: what suits a chain of elements best, two
+    /// to four times faster than the general way at every size.
     #[default]
     Banded,
-    /// A general sparse Cholesky factorisation (faer), symbolic once.
+    /// A general sparse Cholesky factorisation, symbolic once: an independent way to the same
+    /// numbers. By faer, so with the feature `faer` (default) only; without it
+    /// [`Beam::factor_with`] says so ([`FactorError::MissingFeature`]).
     Sparse,
+}
+
+impl Backend {
+    /// The backends of this build: without the feature `faer` there is no [`Backend::Sparse`] among
+    /// them.
+    ///
+    /// ```
+    /// use teeter_beam::Backend;
+    /// assert!(Backend::available().contains(&Backend::default()));
+    /// ```
+    #[must_use]
+    pub fn available() -> &'static [Self] {
+        if cfg!(feature = "faer") { &[Self::Banded, Self::Sparse] } else { &[Self::Banded] }
+    }
 }
 
 #[derive(Debug)]
 enum Kind {
-    Banded { bend: Twisted, bar: Option<BarFactor>, sum: Blocks },
-    Sparse(SparseFactor),
+    Banded {
+        bend: Twisted,
+        bar: Option<BarFactor>,
+        sum: Blocks,
+    },
+    #[cfg(feature = "faer")]
+    Sparse(Box<SparseFactor>),
 }
 
 /// What the stretching of a beam held along its axis adds to the matrix: `weight` g gᵀ.
@@ -108,6 +138,7 @@ impl Factor {
     pub fn backend(&self) -> Backend {
         match self.kind {
             Kind::Banded { .. } => Backend::Banded,
+            #[cfg(feature = "faer")]
             Kind::Sparse(_) => Backend::Sparse,
         }
     }
@@ -117,7 +148,8 @@ impl Factor {
         self.dofs
     }
 
-    /// f ← (mass M + damping C + stiffness K)⁻¹ f, in place, without allocation; 0 for what supports hold.
+    /// f ← (mass M + damping C + stiffness K)⁻¹ f, in place, without allocation; 0 for what
+    /// supports hold.
     ///
     /// # Panics
     /// If `f` has not [`Factor::dofs`] entries.
@@ -150,11 +182,13 @@ impl Factor {
                     bar.solve(f_bar);
                 }
             }
+            #[cfg(feature = "faer")]
             Kind::Sparse(sparse) => sparse.solve(f),
         }
     }
 
-    /// Fills in the numbers of a factor whose memory is there, with N G in K of an axial force beside that of the beam.
+    /// Fills in the numbers of a factor whose memory is there, with N G in K of an axial force
+    /// beside that of the beam.
     fn update(&mut self, beam: &Beam, weights: MatrixWeights, tension: f64) -> Result<(), FactorError> {
         weights.validate()?;
         self.weights = weights;
@@ -172,6 +206,7 @@ impl Factor {
                     factor.factorise(bar, mass, stiffness).map_err(|node| not_definite(2 * nodes + node))?;
                 }
             }
+            #[cfg(feature = "faer")]
             Kind::Sparse(sparse) => sparse.update(beam, weights, tension).map_err(not_definite)?,
         }
         if let (Some(mut modal), Some(damping)) = (self.modal.take(), &beam.modal) {
@@ -205,7 +240,8 @@ impl Beam {
         }
     }
 
-    /// The factor of `mass M + damping C + stiffness K`, in blocks from both ends ([`Backend::Banded`]).
+    /// The factor of `mass M + damping C + stiffness K`, in blocks from both ends
+    /// ([`Backend::Banded`]).
     ///
     /// # Errors
     /// [`FactorError`] for weights that are not finite, or whose sum is not positive definite.
@@ -228,7 +264,8 @@ impl Beam {
     /// As [`Beam::factor`], factorised as one chooses.
     ///
     /// # Errors
-    /// As there.
+    /// As there; [`FactorError::MissingFeature`] for a backend that is not in this build
+    /// ([`Backend::available`]).
     pub fn factor_with(&self, weights: MatrixWeights, backend: Backend) -> Result<Factor, FactorError> {
         let nodes = self.nodes();
         let kind = match backend {
@@ -237,7 +274,10 @@ impl Beam {
                 bar: self.bar.as_ref().map(|_| BarFactor::new(nodes)),
                 sum: Blocks::zero(nodes),
             },
-            Backend::Sparse => Kind::Sparse(SparseFactor::new(self)?),
+            #[cfg(feature = "faer")]
+            Backend::Sparse => Kind::Sparse(Box::new(SparseFactor::new(self)?)),
+            #[cfg(not(feature = "faer"))]
+            Backend::Sparse => return Err(FactorError::MissingFeature { backend, feature: "faer" }),
         };
         let zero = vec![0.0; self.dofs()];
         let stretch = self.membrane.is_some().then(|| RankOne { g: zero.clone(), u: zero, scale: 0.0 });
@@ -259,19 +299,21 @@ impl Beam {
     /// Makes `factor` that of other weights, in its own memory: no symbolic work, no allocation.
     ///
     /// # Errors
-    /// As [`Beam::factor`], and [`FactorError::OtherBeam`] for the factor of a beam with other dofs.
-    /// After [`FactorError::NotPositiveDefinite`] the factor's solutions are NaN until it is renewed with success.
+    /// As [`Beam::factor`], and [`FactorError::OtherBeam`] for the factor of a beam with other
+    /// dofs. After [`FactorError::NotPositiveDefinite`] the factor's solutions are NaN until it is
+    /// renewed with success.
     ///
     /// ```
     /// # use teeter_beam::{Beam, BeamSpec, MatrixWeights, Section};
     /// # let beam = Beam::new(BeamSpec::new(0.36, 20, Section::rectangle(0.03, 0.0015, 69e9, 2700.0)?))?;
-    /// let mut w = beam.factor(MatrixWeights { mass: 1.0, damping: 0.0, stiffness: 0.0 })?;
+    /// let mut w = beam.factor(MatrixWeights::MASS)?;
     /// beam.refactor(MatrixWeights { mass: 1.0, damping: 0.0, stiffness: 2.5e-9 }, &mut w)?;
     /// assert_eq!(w.weights().stiffness, 2.5e-9);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn refactor(&self, weights: MatrixWeights, factor: &mut Factor) -> Result<(), FactorError> {
-        // By what is held, not by identity: a beam of another section or span may take over the memory.
+        // By what is held, not by identity: a beam of another section or span may take over the
+        // memory.
         let same = self.dofs() == factor.dofs
             && self.held == factor.held
             && self.membrane.is_some() == factor.stretch.is_some()
@@ -282,9 +324,9 @@ impl Beam {
         factor.update(self, weights, 0.0)
     }
 
-    /// Makes `factor` that of the tangent at `q`, with its own weights: of a beam held along its axis K + N(q) G + EA/L (Gq)(Gq)ᵀ in
-    /// place of K, the derivative of its elastic force; of other beams what it is already. For equilibria; a time step wants
-    /// [`Beam::follow`].
+    /// Makes `factor` that of the tangent at `q`, with its own weights: of a beam held along its
+    /// axis K + N(q) G + EA/L (Gq)(Gq)ᵀ in place of K, the derivative of its elastic force; of
+    /// other beams what it is already. For equilibria; a time step wants [`Beam::follow`].
     ///
     /// # Errors
     /// As [`Beam::refactor`].
@@ -298,8 +340,13 @@ impl Beam {
         Ok(())
     }
 
-    /// Takes the stretching at `q` into the factor of a beam that is held along its axis: K + EA/L (Gq)(Gq)ᵀ in place of K,
-    /// which makes a θ step with θ = ½ keep its energy (see `membrane.rs`). Nothing for other beams. One solve, no allocation.
+    /// Takes the stretching at `q` into the factor of a beam that is held along its axis: K + EA/L
+    /// (Gq)(Gq)ᵀ in place of K, with G the matrix of ∫w'² dx = qᵀG q. Nothing for other beams. One
+    /// solve, no allocation.
+    ///
+    /// A θ step with θ = ½ that follows at q⁰ + ½h v⁰, and takes the elastic force there, keeps an
+    /// energy: that of the beam with what [`Beam::modified_energy`] adds. It stays linear in the
+    /// new velocity, and needs no iteration. After Yang (2016, doi 10.1016/j.jcp.2016.09.029).
     ///
     /// # Panics
     /// If `q` has not [`Beam::dofs`] entries.
@@ -334,7 +381,7 @@ mod tests {
             beam.add_mass_product(STEP.mass, &x, &mut f);
             beam.add_damping_product(STEP.damping, &x, &mut f);
             beam.add_stiffness_product(STEP.stiffness, &x, &mut f);
-            for backend in [Backend::Banded, Backend::Sparse] {
+            for &backend in Backend::available() {
                 let mut f = f.clone();
                 let factor = beam.factor_with(STEP, backend).unwrap();
                 assert_eq!(factor.backend(), backend);
@@ -348,10 +395,9 @@ mod tests {
 
     #[test]
     fn a_renewed_factor_is_bitwise_a_new_one() {
-        for backend in [Backend::Banded, Backend::Sparse] {
+        for &backend in Backend::available() {
             let beam = furnished();
-            let rigid = MatrixWeights { mass: 1.0, damping: 0.0, stiffness: 0.0 };
-            let mut renewed = beam.factor_with(rigid, backend).unwrap();
+            let mut renewed = beam.factor_with(MatrixWeights::MASS, backend).unwrap();
             beam.refactor(STEP, &mut renewed).unwrap();
             let fresh = beam.factor_with(STEP, backend).unwrap();
             let (mut a, mut b) = (wave(&beam), wave(&beam));
@@ -364,7 +410,7 @@ mod tests {
 
     #[test]
     fn bad_weights_are_refused_and_leave_no_half_factor() {
-        for backend in [Backend::Banded, Backend::Sparse] {
+        for &backend in Backend::available() {
             let beam = beam(6, [Clamped, Free]);
             let mut factor = beam.factor_with(STEP, backend).unwrap();
             let negative = MatrixWeights { mass: -1.0, ..STEP };
@@ -389,6 +435,22 @@ mod tests {
     }
 
     #[test]
+    fn every_backend_is_there_or_says_which_feature_it_needs() {
+        let beam = beam(6, [Clamped, Free]);
+        for backend in [Backend::Banded, Backend::Sparse] {
+            match beam.factor_with(STEP, backend) {
+                Ok(factor) => assert!(factor.backend() == backend && Backend::available().contains(&backend)),
+                Err(error) => {
+                    assert!(!cfg!(feature = "faer") && !Backend::available().contains(&backend));
+                    assert_eq!(error, FactorError::MissingFeature { backend: Backend::Sparse, feature: "faer" });
+                    let text = "the backend Sparse is not in this build: it needs the feature `faer` of teeter-beam";
+                    assert_eq!(error.to_string(), text);
+                }
+            }
+        }
+    }
+
+    #[test]
     fn the_factor_of_another_beam_is_refused() {
         let mut factor = beam(6, [Clamped, Free]).factor(STEP).unwrap();
         for other in [beam(7, [Clamped, Free]), beam(6, [Pinned, Pinned]), beam(6, [Free, Free])] {
@@ -402,14 +464,15 @@ mod tests {
         let spec = crate::BeamSpec { section, ..spec(6, [Pinned, Clamped]) };
         let beam = Beam::new(spec.axial(Axial::Held)).unwrap();
         let q: Vec<f64> = wave(&beam).iter().map(|q| 0.1 * q).collect();
-        for backend in [Backend::Banded, Backend::Sparse] {
+        for &backend in Backend::available() {
             let mut factor = beam.factor_with(STEP, backend).unwrap();
             beam.follow(&q, &mut factor);
             let x = wave(&beam);
             let mut f = vec![0.0; beam.dofs()];
             beam.add_mass_product(STEP.mass, &x, &mut f);
             beam.add_stiffness_product(STEP.stiffness, &x, &mut f);
-            // EA/L (Gq)(Gq)ᵀ, with G q by the derivative of s = ∫w'² dx: force − linear force = −½ EA/L s G q.
+            // EA/L (Gq)(Gq)ᵀ, with G q by the derivative of s = ∫w'² dx: force − linear force = −½
+            // EA/L s G q.
             let (mut force, mut linear) = (vec![0.0; beam.dofs()], vec![0.0; beam.dofs()]);
             beam.add_elastic_force(&q, &mut force);
             beam.add_stiffness_product(-1.0, &q, &mut linear);

@@ -1,14 +1,16 @@
-//! The two kinds of element terms that time steps sum over: quadratic forms of the deflection (mass, foundation, viscous
-//! damping) and of the natural deformations (stiffness). Both are kept as sums of squares, so that energies are never negative and a
-//! rigid motion costs exactly nothing.
+//! The two kinds of element terms that time steps sum over: quadratic forms of the deflection
+//! (mass, foundation, viscous damping) and of the natural deformations (stiffness). Both are kept
+//! as sums of squares, so that energies are never negative and a rigid motion costs exactly
+//! nothing.
 
 use crate::element::{Element, Matrix4};
 
-/// One element's symmetric quadratic form of the deflection, mirrored onto itself by its middle. In the sums and differences
-/// S = w₁ + w₂, Q = ψ₁ − ψ₂ (symmetric), D = w₁ − w₂, P = ψ₁ + ψ₂ (antisymmetric) it falls apart:
-/// qᵀM q = a(S + bQ)² + cQ² + d(D + eP)² + fP².
+/// One element's symmetric quadratic form of the deflection, mirrored onto itself by its middle. In
+/// the sums and differences S = w₁ + w₂, Q = ψ₁ − ψ₂ (symmetric), D = w₁ − w₂, P = ψ₁ + ψ₂
+/// (antisymmetric) it falls apart: qᵀM q = a(S + bQ)² + cQ² + d(D + eP)² + fP².
 ///
-/// Symmetric and antisymmetric part stand side by side in pairs, so that the compiler can take both at once.
+/// Symmetric and antisymmetric part stand side by side in pairs, so that the compiler can take both
+/// at once.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Squares {
     /// a and d.
@@ -83,8 +85,8 @@ impl Field {
     }
 }
 
-/// One element's stiffness in its natural deformations d₁ = ψ₂ − ψ₁, d₂ = ψ₁ + ψ₂ − s and the rise s = 2(w₂ − w₁)/l:
-/// qᵀK q = k₁d₁² + k₂d₂² + k₃s², k₃ of an axial force only.
+/// One element's stiffness in its natural deformations d₁ = ψ₂ − ψ₁, d₂ = ψ₁ + ψ₂ − s and the rise
+/// s = 2(w₂ − w₁)/l: qᵀK q = k₁d₁² + k₂d₂² + k₃s², k₃ of an axial force only.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Springs {
     two_per_length: f64,
@@ -130,7 +132,8 @@ impl Natural {
         Self(elements.iter().map(springs).collect())
     }
 
-    /// ∫w'² dx = l (s²/4 + d₁²/12 + d₂²/(20(1 + Φ)²)): the slope in Legendre polynomials of the element.
+    /// ∫w'² dx = l (s²/4 + d₁²/12 + d₂²/(20(1 + Φ)²)): the slope in Legendre polynomials of the
+    /// element.
     pub(crate) fn geometric(elements: &[Element]) -> Self {
         let springs = |e: &Element| {
             let (l, stiff) = (e.length, 1.0 + e.shear);
@@ -148,9 +151,9 @@ impl Natural {
 
     /// y += a K x.
     ///
-    /// A row of the assembled K cancels the rigid motion of the neighbourhood only after it was multiplied by EI/l³: the
-    /// force of a smooth shape on n elements gets a relative error of about ε n⁴. Here the differences are taken first, which
-    /// leaves about ε n².
+    /// A row of the assembled K cancels the rigid motion of the neighbourhood only after it was
+    /// multiplied by EI/l³: the force of a smooth shape on n elements gets a relative error of
+    /// about ε n⁴. Here the differences are taken first, which leaves about ε n².
     pub(crate) fn add_product(&self, a: f64, x: &[[f64; 2]], y: &mut [[f64; 2]]) {
         sweep(&self.0, x, y, |k, p, q| k.product(a, p, q));
     }
@@ -213,7 +216,8 @@ fn sweep<E>(
     *store = on_left;
 }
 
-/// Sums over elements, in pairs and every other one apart, so that a sum needn't wait for the one before.
+/// Sums over elements, in pairs and every other one apart, so that a sum needn't wait for the one
+/// before.
 #[inline]
 fn sum<E>(elements: &[E], x: &[[f64; 2]], form: impl Fn(&E, [f64; 2], [f64; 2]) -> [f64; 2]) -> f64 {
     let (mut even, mut odd) = ([0.0; 2], [0.0; 2]);

@@ -1,13 +1,20 @@
-//! What the beam has to bear inside: bending moment, shear force, stress, and what its supports bear.
+//! What the beam has to bear inside: bending moment, shear force, stress, and what its supports
+//! bear.
 //!
-//! Not from derivatives of the deflection, which lose two orders, but from equilibrium: an element's end forces are
-//! K_e q_e + C_e v_e + M_e a_e − P_e with all that acts on it, and between the ends the load itself is integrated. In statics that is
-//! exact at every place; in a time step of the θ scheme, with q_θ, v_θ and a = Δv/h, the end forces of all elements, the loads and the reactions
-//! balance to rounding.
+//! Not from derivatives of the deflection, which lose two orders, but from equilibrium: an
+//! element's end forces are K_e q_e + C_e v_e + M_e a_e − P_e with all that acts on it, and between
+//! the ends the load itself is integrated. In statics that is exact at every place; in a time step
+//! of the θ scheme, with q_θ, v_θ and a = Δv/h, the end forces of all elements, the loads and the
+//! reactions balance to rounding.
 //!
-//! Signs: M = EI w'' (with shear EI ψ'), positive where the lower fibre is pulled; V = M', positive where the part to the left of
-//! a cut pushes the part to the right upwards. So V' = f for a load f upwards, and a clamped beam under its weight has M < 0 at its ends. Of a beam
-//! under an axial force N the transverse force V includes N w'.
+//! Signs: M = EI w'' (with shear EI ψ'), positive where the lower fibre is pulled; V = M', positive
+//! where the part to the left of a cut pushes the part to the right upwards. So V' = f for a load f
+//! upwards, and a clamped beam under its weight has M < 0 at its ends. Of a beam under an axial
+//! force N the transverse force V includes N w'.
+
+mod stress;
+
+pub use stress::PeakStress;
 
 use crate::beam::Beam;
 use crate::error::{BeamError, check, check_len};
@@ -34,7 +41,8 @@ pub enum SpanLoad {
         /// Load per length, N/m.
         load: f64,
     },
-    /// The weight of the beam and of what it carries, by the acceleration of gravity in the direction of w, m/s².
+    /// The weight of the beam and of what it carries, by the acceleration of gravity in the
+    /// direction of w, m/s².
     Weight {
         /// Upwards positive.
         gravity: f64,
@@ -52,13 +60,14 @@ pub struct Actions<'a> {
     pub acceleration: &'a [f64],
     /// All loads but those of supports.
     pub loads: &'a [SpanLoad],
-    /// Of a beam held along its axis, in a time step: the deflection at which the step took the stretching, q⁰ + hθv⁰ (see
-    /// `membrane.rs`). Empty: `q` itself.
+    /// Of a beam held along its axis, in a time step: the deflection at which the step took the
+    /// stretching, q⁰ + hθv⁰ ([`Beam::follow`]). Empty: `q` itself.
     pub stretched_at: &'a [f64],
 }
 
 /// What a support bears: the force and the couple of the support on the beam.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Reaction {
     /// Where, m.
     pub x: f64,
@@ -70,6 +79,7 @@ pub struct Reaction {
 
 /// Moment and shear at a place.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct SectionForce {
     /// Bending moment M, N m.
     pub moment: f64,
@@ -77,8 +87,8 @@ pub struct SectionForce {
     pub shear: f64,
 }
 
-/// The section forces of a beam, in memory that is kept: [`SectionForces::update`] allocates nothing unless there are more
-/// point loads than ever before.
+/// The section forces of a beam, in memory that is kept: [`SectionForces::update`] allocates
+/// nothing unless there are more point loads than ever before.
 #[derive(Debug, Clone, Default)]
 pub struct SectionForces {
     /// By elements: V and M at the left end, V and M at the right end.
@@ -114,7 +124,8 @@ impl SectionForces {
     /// Becomes the section forces of a beam in a state.
     ///
     /// # Errors
-    /// [`BeamError::Length`] for vectors of another length; [`BeamError::OutsideSpan`] for a load that is not on the beam.
+    /// [`BeamError::Length`] for vectors of another length; [`BeamError::OutsideSpan`] for a load
+    /// that is not on the beam.
     pub fn update(&mut self, beam: &Beam, actions: &Actions<'_>) -> Result<(), BeamError> {
         let dofs = beam.dofs();
         check_len("q", dofs, actions.q.len())?;
@@ -133,7 +144,8 @@ impl SectionForces {
             self.take_off(beam, load)?;
         }
         self.react(beam, actions);
-        // From forces on the ends to section forces: V and −M on the left one, −V and M on the right one.
+        // From forces on the ends to section forces: V and −M on the left one, −V and M on the
+        // right one.
         for end in &mut self.ends {
             *end = [end[0], -end[1], -end[2], end[3]];
         }
@@ -157,8 +169,8 @@ impl SectionForces {
         self.ends.resize(beam.elements(), [0.0; 4]);
         for (e, end) in self.ends.iter_mut().enumerate() {
             *end = beam.bending.on_nodes(e, q);
-            if let Some(bed) = &beam.bed {
-                add(end, 1.0, bed.on_nodes(e, q));
+            if let Some(foundation) = &beam.foundation {
+                add(end, 1.0, foundation.on_nodes(e, q));
             }
             if let Some((membrane, force)) = stretching {
                 add(end, force, membrane.slopes.on_nodes(e, stretched));
@@ -166,13 +178,13 @@ impl SectionForces {
             if !actions.velocity.is_empty() && beam.is_damped() {
                 let v = beam.bend(actions.velocity);
                 add(end, beam.damping_of_mass, beam.mass.on_nodes(e, v));
-                if let Some(bath) = &beam.bath {
-                    add(end, 1.0, bath.on_nodes(e, v));
+                if let Some(residual) = &beam.residual_damping {
+                    add(end, 1.0, residual.on_nodes(e, v));
                 }
                 if damping.rayleigh_stiffness != 0.0 {
                     add(end, damping.rayleigh_stiffness, beam.bending.on_nodes(e, v));
-                    if let Some(bed) = &beam.bed {
-                        add(end, damping.rayleigh_stiffness, bed.on_nodes(e, v));
+                    if let Some(foundation) = &beam.foundation {
+                        add(end, damping.rayleigh_stiffness, foundation.on_nodes(e, v));
                     }
                 }
             }
@@ -271,7 +283,8 @@ impl SectionForces {
         &self.reactions
     }
 
-    /// The section forces at both ends of an element: just right of its left node, and just left of its right node.
+    /// The section forces at both ends of an element: just right of its left node, and just left of
+    /// its right node.
     ///
     /// # Panics
     /// If there is no such element.
@@ -281,7 +294,8 @@ impl SectionForces {
         [SectionForce { moment: m0, shear: v0 }, SectionForce { moment: m1, shear: v1 }]
     }
 
-    /// The section forces at x; right of it where a load or a support at x makes them jump, left of it at the right end.
+    /// The section forces at x; right of it where a load or a support at x makes them jump, left of
+    /// it at the right end.
     ///
     /// # Errors
     /// [`BeamError::OutsideSpan`].
@@ -319,15 +333,16 @@ impl SectionForces {
         self.inside.iter().filter(move |(element, at, ..)| *element == e && *at <= xi)
     }
 
-    /// By how much the transverse force changes over an element other than by jumps at point loads and by loads on a part of it: by
-    /// loads all along it and inertia.
+    /// By how much the transverse force changes over an element other than by jumps at point loads
+    /// and by loads on a part of it: by loads all along it and inertia.
     fn spread(&self, beam: &Beam, e: usize) -> f64 {
         let [v0, _, v1, _] = self.ends[e];
         v1 - v0 - self.passed(e, 1.0).map(|(_, _, force, _)| force).sum::<f64>() - self.carried(beam, e, 1.0)[0]
     }
 
-    /// The bending moment in an element at ξ. That the rest of the transverse force is spread evenly is exact for uniform loads; what
-    /// other loads and inertia make of it is shared out over the element.
+    /// The bending moment in an element at ξ. That the rest of the transverse force is spread
+    /// evenly is exact for uniform loads; what other loads and inertia make of it is shared out
+    /// over the element.
     fn moment_in(&self, beam: &Beam, e: usize, xi: f64) -> f64 {
         let [v0, m0, _, m1] = self.ends[e];
         let (length, spread) = (beam.elements[e].length, self.spread(beam, e));
@@ -344,48 +359,6 @@ impl SectionForces {
     pub fn axial_force(&self, beam: &Beam, x: f64) -> f64 {
         let (e, _) = beam.mesh.locate(x.clamp(0.0, beam.spec.span));
         self.axial.get(e).copied().unwrap_or(0.0)
-    }
-
-    /// The largest normal stress, Pa, with its place: over the nodes and the places of point loads, on either side of each.
-    /// `None` where no section knows its modulus.
-    #[must_use]
-    pub fn largest_stress(&self, beam: &Beam) -> Option<(f64, f64)> {
-        let mut largest: Option<(f64, f64)> = None;
-        let mut see = |e: usize, x: f64, moment: f64| {
-            if let Some(stress) = self.stress_in(beam, e, moment)
-                && largest.is_none_or(|(most, _)| stress > most)
-            {
-                largest = Some((stress, x));
-            }
-        };
-        for e in 0..beam.elements() {
-            let [left, right] = self.ends(e);
-            see(e, beam.mesh.x[e], left.moment);
-            see(e, beam.mesh.x[e + 1], right.moment);
-        }
-        for &(e, xi, _, couple) in &self.inside {
-            let moment = self.moment_in(beam, e, xi);
-            let x = beam.mesh.x[e] + xi * beam.elements[e].length;
-            // Left of a couple it has not come on yet.
-            see(e, x, moment);
-            see(e, x, moment + couple);
-        }
-        largest
-    }
-
-    /// Largest normal stress |M|/(I/c) + |N|/A at a place with this bending moment, Pa; `None` where the section doesn't know its
-    /// modulus.
-    #[must_use]
-    pub fn stress(&self, beam: &Beam, x: f64, moment: f64) -> Option<f64> {
-        let (e, _) = beam.mesh.locate(x.clamp(0.0, beam.spec.span));
-        self.stress_in(beam, e, moment)
-    }
-
-    fn stress_in(&self, beam: &Beam, e: usize, moment: f64) -> Option<f64> {
-        let section = &beam.elements[e].section;
-        let axial = self.axial.get(e).copied().unwrap_or(0.0).abs();
-        let pulled = if section.area > 0.0 { axial / section.area } else { 0.0 };
-        (section.section_modulus > 0.0).then(|| moment.abs() / section.section_modulus + pulled)
     }
 }
 
@@ -473,7 +446,8 @@ mod tests {
         assert!((wall.couple - (2.8 * 0.55 - 3.0 * 0.55 + 0.7)).abs() < 1e-12, "{}", wall.couple);
     }
 
-    /// Any state at all of a beam with everything, at any velocity and acceleration: what acts on the whole balances.
+    /// Any state at all of a beam with everything, at any velocity and acceleration: what acts on
+    /// the whole balances.
     #[test]
     fn reactions_balance_loads_inertia_and_damping() {
         let beam = furnished();
@@ -494,7 +468,7 @@ mod tests {
         beam.add_self_weight(-9.81, &mut f).unwrap();
         beam.add_elastic_force(&q, &mut f);
         beam.add_damping_product(-1.0, &v, &mut f);
-        beam.factor(crate::MatrixWeights { mass: 1.0, damping: 0.0, stiffness: 0.0 }).unwrap().solve(&mut f);
+        beam.factor(crate::MatrixWeights::MASS).unwrap().solve(&mut f);
         let actions = Actions { q: &q, velocity: &v, acceleration: &f, loads: &loads, ..Actions::default() };
         let forces = beam.section_forces(&actions).unwrap();
         // Reactions by the residual of the held dofs, independently.

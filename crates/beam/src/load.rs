@@ -11,7 +11,8 @@ impl Beam {
     /// f += N(x)ᵀ force: a force (N, upwards) at x.
     ///
     /// # Errors
-    /// [`BeamError::OutsideSpan`], [`BeamError::Value`] for a force that is not finite, [`BeamError::Length`].
+    /// [`BeamError::OutsideSpan`], [`BeamError::Value`] for a force that is not finite,
+    /// [`BeamError::Length`].
     ///
     /// ```
     /// # use teeter_beam::{Beam, BeamSpec, Section, Support};
@@ -65,11 +66,12 @@ impl Beam {
         })
     }
 
-    /// f += ∫ Nᵀ p dx for a distributed load p(x), N/m, upwards: four Gauss points an element, exact where p is a
-    /// polynomial of degree 4 on each element.
+    /// f += ∫ Nᵀ p dx for a distributed load p(x), N/m, upwards: four Gauss points an element,
+    /// exact where p is a polynomial of degree 4 on each element.
     ///
     /// # Errors
-    /// [`BeamError::Length`]; [`BeamError::Value`] for a load that is not finite (f then holds part of the load).
+    /// [`BeamError::Length`]; [`BeamError::Value`] for a load that is not finite (f then holds part
+    /// of the load).
     ///
     /// ```
     /// # use teeter_beam::{Beam, BeamSpec, Section, Support};
@@ -117,8 +119,8 @@ impl Beam {
     /// f += ∫ Nᵀ dx · p for a load p, N/m, upwards, the same from one place to another (m); exact.
     ///
     /// # Errors
-    /// [`BeamError::Length`]; [`BeamError::OutsideSpan`]; [`BeamError::Value`] for a load that is not finite, or a part that ends
-    /// where or before it begins.
+    /// [`BeamError::Length`]; [`BeamError::OutsideSpan`]; [`BeamError::Value`] for a load that is
+    /// not finite, or a part that ends where or before it begins.
     pub fn add_partial_load(&self, part: [f64; 2], load: f64, f: &mut [f64]) -> Result<(), BeamError> {
         check_len("f", self.dofs(), f.len())?;
         check("load", load, true, "finite")?;
@@ -147,8 +149,8 @@ impl Beam {
         }
     }
 
-    /// f += g M 1: the beam's own weight and that of the masses that it carries, by the acceleration of gravity in the
-    /// direction of w (m/s², upwards positive), section by section.
+    /// f += g M 1: the beam's own weight and that of the masses that it carries, by the
+    /// acceleration of gravity in the direction of w (m/s², upwards positive), section by section.
     ///
     /// # Errors
     /// [`BeamError::Length`]; [`BeamError::Value`] for an acceleration that is not finite.
@@ -170,14 +172,16 @@ impl Beam {
 }
 
 impl Beam {
-    /// What the way of a point is in time that moves at x = `start` + `speed` t (m, m/s): the stretches of the time from
-    /// `times[0]` to `times[1]` in each of which it stays within one element, in their order; none while it is off the beam.
-    /// Deflections at the point are smooth in each. Allocates nothing.
+    /// What the way of a point is in time that moves at x = `start` + `speed` t (m, m/s): the
+    /// stretches of the time from `times[0]` to `times[1]` in each of which it stays within one
+    /// element, in their order; none while it is off the beam. Deflections at the point are smooth
+    /// in each. Allocates nothing.
     pub fn passages(&self, start: f64, speed: f64, times: [f64; 2]) -> impl Iterator<Item = [f64; 2]> {
         let nodes = &self.mesh.x;
         let (at, span) = (move |t: f64| start + speed * t, self.spec.span);
         let (first, last) = (at(times[0]), at(times[1]));
-        // The nodes strictly between its first and last place, by number; and whether it is on the beam before the first of them.
+        // The nodes strictly between its first and last place, by number; and whether it is on the
+        // beam before the first of them.
         let (low, high) = (first.min(last), first.max(last));
         let between = nodes.partition_point(|x| *x <= low)..nodes.partition_point(|x| *x < high);
         let n = between.len();
@@ -201,11 +205,11 @@ pub trait Load: Send + Sync {
     /// The implementations of this crate do if `f` has not [`Beam::dofs`] entries.
     fn add(&self, beam: &Beam, t: f64, f: &mut [f64]);
 
-    /// f += the mean of P over the time from `times[0]` to `times[1]` (s), which is later: what a step takes. `scratch` is as long as `f`, and
-    /// what is in it means nothing.
+    /// f += the mean of P over the time from `times[0]` to `times[1]` (s), which is later: what a
+    /// step takes. `scratch` is as long as `f`, and what is in it means nothing.
     ///
-    /// The default takes four Gauss points, exact for a polynomial of degree 7; what is shorter than the stretch, jumps or has kinks
-    /// in it needs a mean of its own.
+    /// The default takes four Gauss points, exact for a polynomial of degree 7; what is shorter
+    /// than the stretch, jumps or has kinks in it needs a mean of its own.
     ///
     /// # Panics
     /// As [`Load::add`].
@@ -238,7 +242,8 @@ pub struct NodalLoad {
 }
 
 impl NodalLoad {
-    /// A force `history(t)` (N, upwards) at x, which must be on `beam`. The history must return finite values.
+    /// A force `history(t)` (N, upwards) at x, which must be on `beam`. The history must return
+    /// finite values.
     ///
     /// # Errors
     /// [`BeamError::OutsideSpan`].

@@ -1,23 +1,26 @@
-//! Stretching of a beam whose ends are held along its axis (von Kármán's membrane term, Woinowsky-Krieger 1950).
+//! Stretching of a beam whose ends are held along its axis (von Kármán's membrane term,
+//! Woinowsky-Krieger 1950).
 //!
-//! With the axial inertia left out the axial force is the same all along, N = N₀ + EA/(2L) s with s = ∫w'² dx = qᵀG q. N₀ is
-//! in K; what is left has the potential and force
+//! With the axial inertia left out the axial force is the same all along, N = N₀ + EA/(2L) s with
+//! s = ∫w'² dx = qᵀG q. N₀ is in K; what is left has the potential and force
 //!
 //! ```text
 //! V = EA/(8L) s²        −∂V/∂q = −EA/(2L) s G q
 //! ```
 //!
-//! A θ step with θ = ½ takes the force at q* = q⁰ + ½h v⁰ and adds EA/L (Gq*)(Gq*)ᵀ, a matrix of rank one, to K. That is linear
-//! in v¹, so a contact problem stays one. And it keeps an energy exactly: with σ = s − ¼h² vᵀG v,
+//! A θ step with θ = ½ takes the force at q* = q⁰ + ½h v⁰ and adds EA/L (Gq*)(Gq*)ᵀ, a matrix of
+//! rank one, to K. That is linear in v¹, so a contact problem stays one. And it keeps an energy
+//! exactly: with σ = s − ¼h² vᵀG v,
 //!
 //! ```text
 //! σ¹ − σ⁰ = 2 (Gq*)ᵀΔq        force on the step: −EA/(4L) (σ⁰ + σ¹) Gq*        its work: −Δ(EA/(8L) σ²)
 //! ```
 //!
-//! because q̄ − q* = ¼h Δv and Δq = ½h(v⁰ + v¹). So EA/(8L) σ², never negative, takes the place of V, from which it differs
-//! by O(h²); no iteration, and bounded for every h. Not accurate for every h: modes with ωh ≫ 1 that ring, v changing its sign in
-//! every step, take from σ and so from N. (Auxiliary variables of this kind: Yang 2016, doi
-//! 10.1016/j.jcp.2016.09.029; that this one is a function of q and v, and so can't drift, is peculiar to the quartic potential.)
+//! because q̄ − q* = ¼h Δv and Δq = ½h(v⁰ + v¹). So EA/(8L) σ², never negative, takes the place of
+//! V, from which it differs by O(h²); no iteration, and bounded for every h. Not accurate for every
+//! h: modes with ωh ≫ 1 that ring, v changing its sign in every step, take from σ and so from N.
+//! (Auxiliary variables of this kind: Yang 2016, doi 10.1016/j.jcp.2016.09.029; that this one is a
+//! function of q and v, and so can't drift, is peculiar to the quartic potential.)
 
 use crate::blocks::Blocks;
 use crate::field::Natural;
@@ -39,8 +42,8 @@ impl Membrane {
         0.5 * self.stiffness * self.slopes.form(q)
     }
 
-    /// The force of a θ step that takes it at `taken` and its matrix of rank one from there to `q`, N: to be applied with the slopes
-    /// of `taken`, EA/(2L) q*ᵀG(2q − q*).
+    /// The force of a θ step that takes it at `taken` and its matrix of rank one from there to `q`,
+    /// N: to be applied with the slopes of `taken`, EA/(2L) q*ᵀG(2q − q*).
     pub(crate) fn force_towards(&self, taken: &[[f64; 2]], q: &[[f64; 2]]) -> f64 {
         0.5 * self.stiffness * (2.0 * self.slopes.between(taken, q) - self.slopes.form(taken))
     }

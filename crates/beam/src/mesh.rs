@@ -3,7 +3,8 @@
 use crate::error::BeamError;
 use crate::spec::{BeamSpec, MAX_ELEMENTS};
 
-/// A place within this part of the span of a node is at the node: nine digits, so that 0.1 + 0.2 is 0.3.
+/// A place within this part of the span of a node is at the node: nine digits, so that 0.1 + 0.2 is
+/// 0.3.
 const SAME_PLACE: f64 = 1e-9;
 
 /// The shortest element, as a part of the span.
@@ -62,6 +63,11 @@ impl Mesh {
         self.x[self.x.len() - 1]
     }
 
+    /// The middle of an element, m.
+    pub(crate) fn middle(&self, element: usize) -> f64 {
+        0.5 * (self.x[element] + self.x[element + 1])
+    }
+
     /// Length of an element, m.
     pub(crate) fn length(&self, element: usize) -> f64 {
         // Of a uniform mesh all the same, not differences of rounded places.
@@ -90,7 +96,7 @@ impl Mesh {
 
 /// Where something changes or acts at a point: nodes must be there.
 fn breaks(spec: &BeamSpec) -> Vec<f64> {
-    let mut places: Vec<f64> = spec.inner_supports.iter().map(|(x, _)| *x).collect();
+    let mut places: Vec<f64> = spec.inner_supports.iter().map(|inner| inner.x).collect();
     places.extend(spec.lumps.iter().map(|lump| lump.x));
     places.extend(spec.segments.iter().flat_map(|segment| [segment.from, segment.to]));
     places.extend(spec.foundations.iter().flat_map(|foundation| [foundation.from, foundation.to]));

@@ -1,7 +1,8 @@
-//! Damping ratios of single modes on the elements: C = Σ 2ζ_i ω_i (Mφ_i)(Mφ_i)ᵀ, a matrix of low rank.
+//! Damping ratios of single modes on the elements: C = Σ 2ζ_i ω_i (Mφ_i)(Mφ_i)ᵀ, a matrix of low
+//! rank.
 //!
-//! It damps the modes that it names and no other one. In a factor it is carried by Woodbury's identity: with A = B + U D Uᵀ, U = (Mφ_i),
-//! D = diag(c·2ζ_i ω_i) and Y = B⁻¹U,
+//! It damps the modes that it names and no other one. In a factor it is carried by Woodbury's
+//! identity: with A = B + U D Uᵀ, U = (Mφ_i), D = diag(c·2ζ_i ω_i) and Y = B⁻¹U,
 //!
 //! ```text
 //! A⁻¹f = x − Y (D⁻¹ + UᵀY)⁻¹ Uᵀx,        x = B⁻¹f
@@ -114,7 +115,8 @@ impl LowRank {
         self.momenta.copy_from_slice(&damping.momenta);
         self.responses.copy_from_slice(&damping.momenta);
         self.responses.chunks_exact_mut(n).for_each(&solve);
-        // Scaled by √D on both sides: 1 + √D UᵀY √D is as well conditioned as can be, whatever the ratios.
+        // Scaled by √D on both sides: 1 + √D UᵀY √D is as well conditioned as can be, whatever the
+        // ratios.
         let root = |i: usize| (weight * damping.rates[i]).sqrt();
         let matrix = &mut self.work;
         for i in 0..k {
@@ -147,7 +149,8 @@ impl LowRank {
         if self.core.first().is_none_or(|first| *first == 0.0) {
             return;
         }
-        // Y C (Uᵀx) by symmetry as U's products first, one response at a time; nothing is allocated for at most MOST modes.
+        // Y C (Uᵀx) by symmetry as U's products first, one response at a time; nothing is allocated
+        // for at most MOST modes.
         let mut along = [0.0; MOST];
         let k = self.modes();
         for (along, momentum) in along.iter_mut().zip(self.momenta.chunks_exact(n)) {
@@ -199,7 +202,7 @@ mod tests {
             beam.add_mass_product(w.mass, &x, &mut f);
             beam.add_damping_product(w.damping, &x, &mut f);
             beam.add_stiffness_product(w.stiffness, &x, &mut f);
-            for backend in [Backend::Banded, Backend::Sparse] {
+            for &backend in Backend::available() {
                 let mut f = f.clone();
                 beam.factor_with(w, backend).unwrap().solve(&mut f);
                 assert!(f.iter().zip(&x).all(|(f, x)| (f - x).abs() < 1e-9), "{backend:?} {damping}");

@@ -43,7 +43,8 @@ pub(crate) fn beta(supports: [Support; 2], mode: usize) -> Result<f64, BeamError
     Ok(root(equation, near))
 }
 
-/// Newton's method inside a bracket of ±π/4 that every step narrows; a step that leaves the bracket is a bisection.
+/// Newton's method inside a bracket of ±π/4 that every step narrows; a step that leaves the bracket
+/// is a bisection.
 fn root(equation: Equation, near: f64) -> f64 {
     let (mut low, mut high) = (near - FRAC_PI_4, near + FRAC_PI_4);
     let rising = equation(low).0 < 0.0;
@@ -57,7 +58,8 @@ fn root(equation: Equation, near: f64) -> f64 {
             high = x;
         }
         let newton = x - value / derivative;
-        // Asked before the bracket is: at the root Newton's step may round onto the bracket's own end.
+        // Asked before the bracket is: at the root Newton's step may round onto the bracket's own
+        // end.
         if (newton - x).abs() <= f64::EPSILON * x {
             return newton;
         }
@@ -90,7 +92,8 @@ fn tan_is_minus_tanh(b: f64) -> (f64, f64) {
 mod tests {
     use super::*;
 
-    /// Blevins, *Formulas for natural frequency and mode shape*, table 8-1, to the digits of double precision.
+    /// Blevins, *Formulas for natural frequency and mode shape*, table 8-1, to the digits of double
+    /// precision.
     #[test]
     fn published_roots_of_all_nine_pairs() {
         let cc = [4.730040744862704, 7.853204624095838, 10.99560783800167, 14.137165491257464, 17.278759657399483];

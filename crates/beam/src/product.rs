@@ -84,8 +84,8 @@ impl Beam {
         if a1 != 0.0 {
             self.add_stiffness_product(a * a1, x, y);
         }
-        if let Some(bath) = &self.bath {
-            bath.add_product(a, self.bend(x), self.split_mut(y).0);
+        if let Some(residual) = &self.residual_damping {
+            residual.add_product(a, self.bend(x), self.split_mut(y).0);
         }
         add_diagonal(a, &self.dashpots, x, y);
         if let Some(modal) = &self.modal {
@@ -93,12 +93,14 @@ impl Beam {
         }
     }
 
-    /// y += a K x, element by element through the two natural deformations ψ₂ − ψ₁ and ψ₁ + ψ₂ − 2(w₂ − w₁)/l.
+    /// y += a K x, element by element through the two natural deformations ψ₂ − ψ₁ and
+    /// ψ₁ + ψ₂ − 2(w₂ − w₁)/l.
     ///
-    /// A row of the assembled K cancels the rigid motion of the neighbourhood only after it was multiplied by EI/l³: the
-    /// force of a smooth shape on n elements gets a relative error of about ε n⁴. Here the differences are taken first,
-    /// which leaves about ε n². (That is the product's own rounding. Rounding the entries of `x` changes the exact
-    /// product by up to ε n⁴ too, and no formula can undo that.)
+    /// A row of the assembled K cancels the rigid motion of the neighbourhood only after it was
+    /// multiplied by EI/l³: the force of a smooth shape on n elements gets a relative error of
+    /// about ε n⁴. Here the differences are taken first, which leaves about ε n². (That is the
+    /// product's own rounding. Rounding the entries of `x` changes the exact product by up to ε n⁴
+    /// too, and no formula can undo that.)
     ///
     /// # Panics
     /// If `x` or `y` has not [`Beam::dofs`] entries.
@@ -115,8 +117,8 @@ impl Beam {
     pub fn add_stiffness_product(&self, a: f64, x: &[f64], y: &mut [f64]) {
         let (bend, axial) = self.split_mut(y);
         self.bending.add_product(a, self.bend(x), bend);
-        if let Some(bed) = &self.bed {
-            bed.add_product(a, self.bend(x), bend);
+        if let Some(foundation) = &self.foundation {
+            foundation.add_product(a, self.bend(x), bend);
         }
         if let Some(bar) = &self.bar {
             bar.add_stiffness_product(a, &x[2 * self.nodes()..], axial);
@@ -170,8 +172,8 @@ impl Beam {
         if a1 != 0.0 {
             power += a1 * self.stiffness_form(v);
         }
-        if let Some(bath) = &self.bath {
-            power += bath.form(self.bend(v));
+        if let Some(residual) = &self.residual_damping {
+            power += residual.form(self.bend(v));
         }
         if let Some(modal) = &self.modal {
             power += modal.form(v);
@@ -181,8 +183,8 @@ impl Beam {
 
     pub(crate) fn stiffness_form(&self, q: &[f64]) -> f64 {
         let mut form = self.bending.form(self.bend(q));
-        if let Some(bed) = &self.bed {
-            form += bed.form(self.bend(q));
+        if let Some(foundation) = &self.foundation {
+            form += foundation.form(self.bend(q));
         }
         if let Some(bar) = &self.bar {
             form += bar.stiffness_form(&q[2 * self.nodes()..]);
@@ -190,9 +192,9 @@ impl Beam {
         form + diagonal_form(&self.springs, q)
     }
 
-    /// The elastic energy, J: ½ qᵀK q from the natural deformations, EI/(2l) Σ (d₁² + 3 d₂²/(1 + Φ)) and springs, foundation
-    /// and axial force; exactly 0 for no deformation (see [`Beam::add_stiffness_product`]). Of a beam held along its axis also
-    /// EA/(8L) (∫w'² dx)².
+    /// The elastic energy, J: ½ qᵀK q from the natural deformations, EI/(2l) Σ (d₁² + 3
+    /// d₂²/(1 + Φ)) and springs, foundation and axial force; exactly 0 for no deformation (see
+    /// [`Beam::add_stiffness_product`]). Of a beam held along its axis also EA/(8L) (∫w'² dx)².
     ///
     /// # Panics
     /// If `q` has not [`Beam::dofs`] entries.
@@ -211,8 +213,8 @@ impl Beam {
         0.5 * self.stiffness_form(q) + stretching
     }
 
-    /// Adds the elastic force −K q to `f`, and of a beam held along its axis −N(q) G q, with N what the deflection adds to the axial
-    /// force.
+    /// Adds the elastic force −K q to `f`, and of a beam held along its axis −N(q) G q, with N what
+    /// the deflection adds to the axial force.
     ///
     /// # Panics
     /// If `q` or `f` has not [`Beam::dofs`] entries.
@@ -224,8 +226,9 @@ impl Beam {
         }
     }
 
-    /// What a θ step of size `h` (θ = ½) keeps in place of the stretching energy, less that energy, J: 0 for a beam that isn't
-    /// held along its axis. O(h²). See the module's page, `membrane.rs`.
+    /// What a θ step of size `h` (θ = ½) with [`Beam::follow`] keeps in place of the stretching
+    /// energy EA/(8L) s², less that energy, J: EA/(8L) (σ² − s²) with s = ∫w'² dx = qᵀG q and
+    /// σ = s − ¼h² vᵀG v. O(h²); 0 for a beam that isn't held along its axis.
     ///
     /// # Panics
     /// If `q` or `v` has not [`Beam::dofs`] entries.
@@ -233,8 +236,9 @@ impl Beam {
         self.membrane.as_ref().map_or(0.0, |membrane| membrane.modification(h, self.bend(q), self.bend(v)))
     }
 
-    /// The axial force, N, tension positive: N₀, and of a beam held along its axis what its deflection adds. Axial dofs have a
-    /// force of their own in every element: [`Beam::axial_forces`].
+    /// The axial force, N, tension positive: N₀, and of a beam held along its axis what its
+    /// deflection adds. Axial dofs have a force of their own in every element:
+    /// [`Beam::axial_forces`].
     ///
     /// # Panics
     /// If `q` has not [`Beam::dofs`] entries.
@@ -258,19 +262,18 @@ impl Beam {
 #[cfg(test)]
 mod tests {
     use crate::beam::tests::{all_supports, beam, damped, furnished, wave};
-    use crate::{Beam, BeamSpec};
-    use faer::sparse::SparseColMat;
+    use crate::{Beam, BeamSpec, MatrixWeights};
 
     /// Of the assembled upper triangle, in the free dofs, with all dofs to go by.
-    fn form(beam: &Beam, matrix: &SparseColMat<usize, f64>, x: &[f64]) -> (Vec<f64>, f64) {
+    fn form(beam: &Beam, matrix: MatrixWeights, x: &[f64]) -> (Vec<f64>, f64) {
         let free: Vec<usize> = (0..beam.dofs()).filter(|dof| !beam.is_held(*dof)).collect();
         let mut y = vec![0.0; beam.dofs()];
-        for entry in matrix.triplet_iter() {
-            assert!(entry.row <= entry.col);
-            let (i, j) = (free[entry.row], free[entry.col]);
-            y[i] += entry.val * x[j];
+        for entry in beam.matrix_entries(matrix) {
+            assert!(entry.row <= entry.column);
+            let (i, j) = (free[entry.row], free[entry.column]);
+            y[i] += entry.value * x[j];
             if i != j {
-                y[j] += entry.val * x[i];
+                y[j] += entry.value * x[i];
             }
         }
         let twice = y.iter().zip(x).map(|(y, x)| y * x).sum();
@@ -287,11 +290,11 @@ mod tests {
             .chain([furnished()]);
         for beam in beams {
             let x = wave(&beam);
-            let check = |matrix: SparseColMat<usize, f64>, product: &dyn Fn(&mut [f64])| {
+            let check = |matrix: MatrixWeights, product: &dyn Fn(&mut [f64])| {
                 let mut y = vec![1.0; beam.dofs()];
                 product(&mut y);
-                let (expected, twice) = form(&beam, &matrix, &x);
-                let size = matrix.val().iter().fold(1.0_f64, |m, a| m.max(a.abs()));
+                let (expected, twice) = form(&beam, matrix, &x);
+                let size = beam.matrix_entries(matrix).fold(1.0_f64, |m, entry| m.max(entry.value.abs()));
                 for (dof, (y, e)) in y.iter().zip(&expected).enumerate() {
                     assert!(
                         beam.is_held(dof) || (y - 1.0 - 2.0 * e).abs() < 1e-14 * size,
@@ -301,9 +304,9 @@ mod tests {
                 }
                 twice
             };
-            let twice_kinetic = check(beam.mass_matrix(), &|y| beam.add_mass_product(2.0, &x, y));
-            let power = check(beam.damping_matrix(), &|y| beam.add_damping_product(2.0, &x, y));
-            let twice_elastic = check(beam.stiffness_matrix(), &|y| beam.add_stiffness_product(2.0, &x, y));
+            let twice_kinetic = check(MatrixWeights::MASS, &|y| beam.add_mass_product(2.0, &x, y));
+            let power = check(MatrixWeights::DAMPING, &|y| beam.add_damping_product(2.0, &x, y));
+            let twice_elastic = check(MatrixWeights::STIFFNESS, &|y| beam.add_stiffness_product(2.0, &x, y));
             assert!((2.0 * beam.kinetic_energy(&x) / twice_kinetic - 1.0).abs() < 1e-13);
             assert!((2.0 * beam.elastic_energy(&x) / twice_elastic - 1.0).abs() < 1e-12);
             assert!((beam.damping_power(&x) / power - 1.0).abs() < 1e-13);
@@ -318,8 +321,8 @@ mod tests {
         assert!(!beam.is_damped() && y.iter().all(|y| *y == 0.0) && beam.damping_power(&wave(&beam)) == 0.0);
     }
 
-    /// A shape whose nodal values have no rounding error, and no inner forces: w = x³ − x on 512 elements. What is left is
-    /// the product's own error.
+    /// A shape whose nodal values have no rounding error, and no inner forces: w = x³ − x on 512
+    /// elements. What is left is the product's own error.
     #[test]
     fn the_stiffness_product_loses_less_than_the_assembled_matrix() {
         let n = 512;
@@ -330,7 +333,7 @@ mod tests {
         let q = beam.from_nodes(&nodes).unwrap();
         let mut natural = vec![0.0; beam.dofs()];
         beam.add_stiffness_product(1.0, &q, &mut natural);
-        let (matrix, _) = form(&beam, &beam.stiffness_matrix(), &q);
+        let (matrix, _) = form(&beam, MatrixWeights::STIFFNESS, &q);
         let worst = |f: &[f64]| f[2..2 * n].iter().fold(0.0_f64, |m, f| m.max(f.abs()));
         let (by_modes, by_matrix) = (worst(&natural), worst(&matrix));
         assert!(by_modes < 1e-12 && by_matrix > 1e-9, "{by_modes:e} {by_matrix:e}");

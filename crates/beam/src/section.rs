@@ -81,8 +81,9 @@ impl Profile {
         }
     }
 
-    /// Shear coefficient κ of Timoshenko's theory for Poisson's ratio ν, without unit: A_s = κ A. Cowper (1966, doi
-    /// 10.1115/1.3625046) for rectangle, circle and tube; the area of the web for an I-section.
+    /// Shear coefficient κ of Timoshenko's theory for Poisson's ratio ν, without unit: A_s = κ A.
+    /// Cowper (1966, doi 10.1115/1.3625046) for rectangle, circle and tube; the area of the web for
+    /// an I-section.
     #[must_use]
     pub fn shear_coefficient(&self, poisson_ratio: f64) -> f64 {
         let nu = poisson_ratio;
@@ -121,7 +122,8 @@ impl Profile {
 
 /// What a cross-section contributes to the equation of motion.
 ///
-/// [`Section::new`] is an Euler–Bernoulli beam without rotatory inertia; the `with_…` methods add what a model asks for.
+/// [`Section::new`] is an Euler–Bernoulli beam without rotatory inertia; the `with_…` methods add
+/// what a model asks for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Section {
@@ -133,12 +135,13 @@ pub struct Section {
     pub shear_stiffness: f64,
     /// Rotatory inertia per length ρI, kg m; 0 to leave it out.
     pub rotatory_inertia: f64,
-    /// Axial stiffness EA, N; 0 where it isn't known. A beam that is held along its axis, or has axial dofs, needs it.
-    pub axial_stiffness: f64,
-    /// Area A, m²; 0 where it isn't known.
-    pub area: f64,
-    /// Elastic section modulus I/c, m³, by which a bending moment makes the largest stress; 0 where it isn't known.
-    pub section_modulus: f64,
+    /// Axial stiffness EA, N, if known. A beam that is held along its axis, or has axial dofs,
+    /// needs it.
+    pub axial_stiffness: Option<f64>,
+    /// Area A, m², if known: by it an axial force adds to the stress.
+    pub area: Option<f64>,
+    /// Elastic section modulus I/c, m³, if known: by it a bending moment makes the largest stress.
+    pub section_modulus: Option<f64>,
 }
 
 impl Section {
@@ -158,9 +161,9 @@ impl Section {
             mass_per_length,
             shear_stiffness: f64::INFINITY,
             rotatory_inertia: 0.0,
-            axial_stiffness: 0.0,
-            area: 0.0,
-            section_modulus: 0.0,
+            axial_stiffness: None,
+            area: None,
+            section_modulus: None,
         };
         section.validate()?;
         Ok(section)
@@ -169,8 +172,8 @@ impl Section {
     /// A profile of one material, Young's modulus in Pa and density in kg/m³: EI, ρA, EA and I/c.
     ///
     /// # Errors
-    /// [`BeamError::Value`] where a number, or a product of them, is not finite and positive, or the walls of a profile
-    /// don't fit into it.
+    /// [`BeamError::Value`] where a number, or a product of them, is not finite and positive, or
+    /// the walls of a profile don't fit into it.
     ///
     /// ```
     /// use teeter_beam::{Profile, Section};
@@ -184,7 +187,8 @@ impl Section {
         positive("youngs_modulus", youngs_modulus)?;
         positive("density", density)?;
         let second_moment = profile.second_moment();
-        // E first: E b t³/12 in this order is what the closed form of a rectangle has always been rounded to.
+        // E first: E b t³/12 in this order is what the closed form of a rectangle has always been
+        // rounded to.
         let bending_stiffness = match profile {
             Profile::Rectangle { width, thickness } => {
                 youngs_modulus * width * thickness * thickness * thickness / 12.0
@@ -196,17 +200,17 @@ impl Section {
             _ => density * profile.area(),
         };
         let section = Self {
-            axial_stiffness: youngs_modulus * profile.area(),
-            area: profile.area(),
-            section_modulus: second_moment / profile.fibre(),
+            axial_stiffness: Some(youngs_modulus * profile.area()),
+            area: Some(profile.area()),
+            section_modulus: Some(second_moment / profile.fibre()),
             ..Self::new(bending_stiffness, mass_per_length)?
         };
         section.validate()?;
         Ok(section)
     }
 
-    /// A solid rectangle of `width` and `thickness` (m; the beam bends across its thickness), Young's modulus (Pa) and
-    /// density (kg/m³): EI = E b t³/12, ρA = ρ b t.
+    /// A solid rectangle of `width` and `thickness` (m; the beam bends across its thickness),
+    /// Young's modulus (Pa) and density (kg/m³): EI = E b t³/12, ρA = ρ b t.
     ///
     /// # Errors
     /// As [`Section::of`].
@@ -220,17 +224,20 @@ impl Section {
         Self::of(Profile::Rectangle { width, thickness }, youngs_modulus, density)
     }
 
-    /// The same section with Timoshenko's shear flexibility and rotatory inertia: GA_s in N, ρI in kg m.
+    /// The same section with Timoshenko's shear flexibility and rotatory inertia: GA_s in N, ρI in
+    /// kg m.
     ///
     /// # Errors
-    /// [`BeamError::Value`] for a shear stiffness that is not positive, or an inertia that is negative or not finite.
+    /// [`BeamError::Value`] for a shear stiffness that is not positive, or an inertia that is
+    /// negative or not finite.
     pub fn with_shear(self, shear_stiffness: f64, rotatory_inertia: f64) -> Result<Self, BeamError> {
         let section = Self { shear_stiffness, rotatory_inertia, ..self };
         section.validate()?;
         Ok(section)
     }
 
-    /// [`Section::with_shear`] of a profile of one material: κ by [`Profile::shear_coefficient`], G = E/(2(1 + ν)).
+    /// [`Section::with_shear`] of a profile of one material: κ by [`Profile::shear_coefficient`],
+    /// G = E/(2(1 + ν)).
     ///
     /// # Errors
     /// As [`Section::of`]; [`BeamError::Value`] for a Poisson's ratio outside (−1, ½].
@@ -261,10 +268,17 @@ impl Section {
     /// [`BeamError::Value`] for one that is not finite and positive.
     pub fn with_axial_stiffness(self, axial_stiffness: f64) -> Result<Self, BeamError> {
         positive("section.axial_stiffness", axial_stiffness)?;
-        Ok(Self { axial_stiffness, ..self })
+        Ok(Self { axial_stiffness: Some(axial_stiffness), ..self })
     }
 
-    /// Φ = 12 EI/(GA_s l²) of an element of length l: the share of shear in its flexibility; 0 for Euler–Bernoulli.
+    /// EA, N; of a beam that needs it [`BeamSpec::validate`](crate::BeamSpec) has seen that it is
+    /// there.
+    pub(crate) fn axial(&self) -> f64 {
+        self.axial_stiffness.unwrap_or(0.0)
+    }
+
+    /// Φ = 12 EI/(GA_s l²) of an element of length l: the share of shear in its flexibility; 0 for
+    /// Euler–Bernoulli.
     pub(crate) fn shear_parameter(&self, length: f64) -> f64 {
         12.0 * self.bending_stiffness / (self.shear_stiffness * length * length)
     }
@@ -276,9 +290,12 @@ impl Section {
             check("section.shear_stiffness", self.shear_stiffness, self.shear_stiffness > 0.0, "> 0")?;
         }
         not_negative("section.rotatory_inertia", self.rotatory_inertia)?;
-        not_negative("section.axial_stiffness", self.axial_stiffness)?;
-        not_negative("section.area", self.area)?;
-        not_negative("section.section_modulus", self.section_modulus)
+        let known = [
+            ("section.axial_stiffness", self.axial_stiffness),
+            ("section.area", self.area),
+            ("section.section_modulus", self.section_modulus),
+        ];
+        known.into_iter().try_for_each(|(field, value)| value.map_or(Ok(()), |value| positive(field, value)))
     }
 }
 

@@ -2,11 +2,13 @@
 
 use crate::beam::Beam;
 
-/// The shape functions at a point of the beam, constrained columns left out: `w = Σ n[i] q[columns[i]]` and
-/// `w' = Σ dn[i] q[columns[i]]` over `i < len`.
+/// The shape functions at a point of the beam, constrained columns left out:
+/// `w = Σ n[i] q[columns[i]]` and `w' = Σ dn[i] q[columns[i]]` over `i < len`.
 ///
-/// What lies beyond `len` is 0 (column 0, value 0), so a sum over all four is the same where the beam has any dof.
+/// What lies beyond `len` is 0 (column 0, value 0), so a sum over all four is the same where the
+/// beam has any dof.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct ShapeAt {
     /// How many of the four places are in use.
     pub len: usize,
@@ -34,7 +36,8 @@ impl ShapeAt {
         d
     }
 
-    /// f += force Nᵀ + couple N'ᵀ: the consistent nodal load of a force (N) and a couple (N m, counter-clockwise) there.
+    /// f += force Nᵀ + couple N'ᵀ: the consistent nodal load of a force (N) and a couple (N m,
+    /// counter-clockwise) there.
     ///
     /// # Panics
     /// If `f` is shorter than the beam's vectors.
@@ -46,8 +49,10 @@ impl ShapeAt {
     }
 }
 
-/// The axial shape functions at a point of a beam with axial dofs, held ones left out: `u = Σ n[i] q[columns[i]]` over `i < len`.
+/// The axial shape functions at a point of a beam with axial dofs, held ones left out:
+/// `u = Σ n[i] q[columns[i]]` over `i < len`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub struct AxialShape {
     /// How many of the two places are in use; 0 for a beam without axial dofs.
     pub len: usize,
@@ -98,9 +103,9 @@ pub struct DeflectionBounds {
 }
 
 impl Beam {
-    /// Bounds of the deflection for the dofs `q`, from its nodes alone: in an element of length l the shape functions of the two w are not
-    /// negative and sum to 1, those of the two ψ sum to at most l/4; of their derivatives the first are at most 3/(2l), the
-    /// second sum to at most 1.
+    /// Bounds of the deflection for the dofs `q`, from its nodes alone: in an element of length l
+    /// the shape functions of the two w are not negative and sum to 1, those of the two ψ sum to at
+    /// most l/4; of their derivatives the first are at most 3/(2l), the second sum to at most 1.
     ///
     /// # Panics
     /// If `q` has not [`Beam::dofs`] entries.
@@ -164,7 +169,8 @@ impl Beam {
         self.shape_in(element, xi)
     }
 
-    /// The axial shape functions at the point of [0, span] nearest to x; empty for a beam without axial dofs.
+    /// The axial shape functions at the point of [0, span] nearest to x; empty for a beam without
+    /// axial dofs.
     #[inline]
     pub fn axial_shape_clamped(&self, x: f64) -> AxialShape {
         let Some(bar) = &self.bar else { return AxialShape::default() };
@@ -180,8 +186,8 @@ impl Beam {
         shape
     }
 
-    /// The shape functions in an element, at ξ in [0, 1], those of held dofs among them: what a load gives to a support is
-    /// part of the reaction.
+    /// The shape functions in an element, at ξ in [0, 1], those of held dofs among them: what a
+    /// load gives to a support is part of the reaction.
     #[inline]
     pub(crate) fn whole_shape(&self, element: usize, xi: f64) -> ShapeAt {
         let (e, first) = (&self.elements[element], 2 * element);
@@ -206,8 +212,9 @@ impl Beam {
 
     /// Deflection and slope at x; `None` outside [0, span]. For rates give the rates of `q`.
     ///
-    /// That is the shape functions', as contacts and time steps have it. Between nodes it lacks what a load there bends its element by;
-    /// [`deflection_under`](Self::deflection_under) adds that.
+    /// That is the shape functions', as contacts and time steps have it. Between nodes it lacks
+    /// what a load there bends its element by; [`deflection_under`](Self::deflection_under) adds
+    /// that.
     ///
     /// # Panics
     /// If `q` has not [`Beam::dofs`] entries.

@@ -1,9 +1,5 @@
-//! The assembled matrices of the free dofs, and their factorisation by a general sparse Cholesky method.
-//!
-//! M, C and K have one pattern, that of the mesh and not of the values: they share one symbolic factorisation, and their
-//! values can be combined entry by entry.
-
-use std::sync::Arc;
+//! What faer brings: the assembled matrices in its format, and their factorisation by its sparse
+//! Cholesky method.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
@@ -12,90 +8,54 @@ use faer::sparse::linalg::cholesky::simplicial::{
 };
 use faer::sparse::{SparseColMat, SymbolicSparseColMat};
 
-use crate::bar::Tridiagonal;
 use crate::beam::Beam;
 use crate::blocks::Blocks;
 use crate::error::FactorError;
 use crate::factor::MatrixWeights;
-
-/// An entry of the upper triangle in all dofs: row, column.
-type Entry = (usize, usize);
+use crate::matrix::Upper;
 
 impl Beam {
-    /// The consistent mass matrix of the free dofs, upper triangle; M, C and K have one pattern, entries that are 0 are kept.
+    /// The consistent mass matrix of the free dofs, upper triangle: those of which
+    /// [`Beam::is_held`] is false, in their order. M, C and K have one pattern; entries that are 0
+    /// are kept.
+    ///
+    /// ```
+    /// use teeter_beam::faer::{Mat, Side, prelude::Solve};
+    /// # use teeter_beam::{Beam, BeamSpec, Section};
+    /// # let beam = Beam::new(BeamSpec::new(2.0, 4, Section::new(5.0, 3.0)?))?;
+    /// let mass = beam.mass_matrix();
+    /// assert_eq!(mass.nrows(), beam.free_dofs());
+    /// let acceleration = mass.sp_cholesky(Side::Upper)?.solve(Mat::<f64>::ones(mass.nrows(), 1));
+    /// assert!(acceleration[(0, 0)].is_finite());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn mass_matrix(&self) -> SparseColMat<usize, f64> {
-        self.matrix(MatrixWeights { mass: 1.0, damping: 0.0, stiffness: 0.0 })
+        self.matrix(MatrixWeights::MASS)
     }
 
-    /// The damping matrix of the free dofs, upper triangle, on the pattern of [`Beam::mass_matrix`].
+    /// The damping matrix of the free dofs, upper triangle, on the pattern of
+    /// [`Beam::mass_matrix`]; without the damping ratios of single modes
+    /// ([`Damping::modal`](crate::Damping::modal)), which would fill it.
     pub fn damping_matrix(&self) -> SparseColMat<usize, f64> {
-        self.matrix(MatrixWeights { mass: 0.0, damping: 1.0, stiffness: 0.0 })
+        self.matrix(MatrixWeights::DAMPING)
     }
 
-    /// The stiffness matrix of the free dofs, upper triangle, on the pattern of [`Beam::mass_matrix`].
+    /// The stiffness matrix of the free dofs, upper triangle, on the pattern of
+    /// [`Beam::mass_matrix`]: of the straight beam, with its given axial force.
     pub fn stiffness_matrix(&self) -> SparseColMat<usize, f64> {
-        self.matrix(MatrixWeights { mass: 0.0, damping: 0.0, stiffness: 1.0 })
+        self.matrix(MatrixWeights::STIFFNESS)
     }
 
     fn matrix(&self, weights: MatrixWeights) -> SparseColMat<usize, f64> {
-        let mut values = Vec::new();
-        self.values(weights, &mut values);
-        SparseColMat::new(self.pattern(), values)
-    }
-
-    /// The upper triangle by columns, in all dofs. A column's rows are its node's and those of the node before.
-    fn entries(&self) -> impl Iterator<Item = Entry> {
-        let bending = 2 * self.nodes();
-        let bend = (0..bending).flat_map(|column| {
-            let first = (column / 2).saturating_sub(1) * 2;
-            (first..=column).map(move |row| (row, column))
-        });
-        let axial = (bending..self.dofs()).flat_map(move |column| {
-            let first = if column > bending { column - 1 } else { column };
-            (first..=column).map(move |row| (row, column))
-        });
-        bend.chain(axial).filter(|(row, column)| !self.is_held(*row) && !self.is_held(*column))
-    }
-
-    fn pattern(&self) -> SymbolicSparseColMat<usize> {
-        let mut number = vec![0; self.dofs()];
-        let mut free = 0;
-        for (dof, number) in number.iter_mut().enumerate() {
-            *number = free;
-            free += usize::from(!self.is_held(dof));
-        }
-        let mut column_start = vec![0; free + 1];
-        let mut rows = Vec::new();
-        for (row, column) in self.entries() {
-            rows.push(number[row]);
-            column_start[number[column] + 1] = rows.len();
-        }
-        SymbolicSparseColMat::new_checked(free, free, column_start, None, rows)
-    }
-
-    /// The values of `mass M + damping C + stiffness K` on the pattern.
-    fn values(&self, weights: MatrixWeights, out: &mut Vec<f64>) {
-        let mut sum = Blocks::zero(self.nodes());
-        self.combine(weights, 0.0, &mut sum);
-        self.gather(weights, &sum, out);
-    }
-
-    fn gather(&self, weights: MatrixWeights, sum: &Blocks, out: &mut Vec<f64>) {
-        let bending = 2 * self.nodes();
-        let (mass, stiffness) = self.axial_weights(weights);
-        let tri = |t: &Tridiagonal, row: usize, column: usize| t.0[row - bending][column - row];
-        out.clear();
-        out.extend(self.entries().map(|(row, column)| match &self.bar {
-            Some(bar) if column >= bending => mass * tri(&bar.m, row, column) + stiffness * tri(&bar.k, row, column),
-            _ if row / 2 == column / 2 => sum.0[row / 2].own[row % 2 + column % 2],
-            _ => sum.0[row / 2].next[row % 2][column % 2],
-        }));
+        let Upper { starts, rows, values } = self.upper(weights);
+        let free = starts.len() - 1;
+        SparseColMat::new(SymbolicSparseColMat::new_checked(free, free, starts, None, rows), values)
     }
 }
 
 /// L Lᵀ by faer, in the order of the dofs: nothing fills in outside the band.
 pub(crate) struct SparseFactor {
-    symbolic: Arc<SymbolicSimplicialCholesky<usize>>,
+    symbolic: SymbolicSimplicialCholesky<usize>,
     matrix: SparseColMat<usize, f64>,
     gathered: Vec<f64>,
     sum: Blocks,
@@ -120,7 +80,7 @@ impl SparseFactor {
             values: vec![0.0; symbolic.len_val()],
             gathered: matrix.val().to_vec(),
             matrix,
-            symbolic: Arc::new(symbolic),
+            symbolic,
             sum: Blocks::zero(beam.nodes()),
             scratch: MemBuffer::new(factorize_simplicial_numeric_llt_scratch::<usize, f64>(beam.free_dofs())),
             free: (0..beam.dofs()).filter(|dof| !beam.is_held(*dof)).collect(),
@@ -145,7 +105,8 @@ impl SparseFactor {
         })
     }
 
-    /// By substitution along the columns of L: faer's own needs scratch, and a vector of the free dofs alone.
+    /// By substitution along the columns of L: faer's own needs scratch, and a vector of the free
+    /// dofs alone.
     pub(crate) fn solve(&self, f: &mut [f64]) {
         let (start, rows) = (self.symbolic.col_ptr(), self.symbolic.row_idx());
         let n = self.free.len();

@@ -9,15 +9,15 @@ use crate::support::Support;
 
 /// The finest mesh that a beam may have.
 ///
-/// cond(K) grows like the fourth power of the element count (`docs/theory.md` §1, *Conditioning*): beyond this, K has no
-/// correct digit left in double precision.
+/// cond(K) grows like the fourth power of the element count: beyond this, K has no correct digit
+/// left in double precision.
 pub const MAX_ELEMENTS: usize = 10_000;
 
 /// Linear damping: `C = c ∫NᵀN dx + a₀M + a₁K`, and ratios of single modes.
 ///
-/// What each does to high modes: viscous damping gives mode i the ratio c/(2ρA ω_i), ever less; a₀ likewise, a₀/(2ω_i); a₁ gives
-/// a₁ω_i/2, ever more: a high mode of a fine mesh is overdamped by it. Ratios of single modes damp those and leave the others
-/// alone.
+/// What each does to high modes: viscous damping gives mode i the ratio c/(2ρA ω_i), ever less; a₀
+/// likewise, a₀/(2ω_i); a₁ gives a₁ω_i/2, ever more: a high mode of a fine mesh is overdamped by
+/// it. Ratios of single modes damp those and leave the others alone.
 ///
 /// ```
 /// let damping = teeter_beam::Damping { viscous: 0.4, ..Default::default() };
@@ -36,27 +36,32 @@ pub struct Damping {
 }
 
 impl Damping {
-    /// Rayleigh's factors that give two circular frequencies (rad/s) their damping ratios: ζ_i = a₀/(2ω_i) + a₁ω_i/2.
+    /// Rayleigh's factors that give two circular frequencies their damping ratios:
+    /// ζ_i = a₀/(2ω_i) + a₁ω_i/2.
     ///
     /// # Errors
-    /// [`BeamError::Value`] for frequencies that are not positive and different, ratios that are negative, and pairs that
-    /// only a negative factor would give (one of the two ratios too large for the other).
+    /// [`BeamError::Value`] for frequencies that are not positive and different, ratios that are
+    /// negative, and pairs that only a negative factor would give (one of the two ratios too large
+    /// for the other).
     ///
     /// ```
-    /// let damping = teeter_beam::Damping::rayleigh([(100.0, 0.02), (400.0, 0.02)])?;
+    /// use teeter_beam::{Damping, DampingRatio};
+    /// let damping = Damping::rayleigh([DampingRatio::new(100.0, 0.02), DampingRatio::new(400.0, 0.02)])?;
     /// assert!((damping.rayleigh_mass - 3.2).abs() < 1e-12);
     /// assert!((damping.rayleigh_stiffness - 8e-5).abs() < 1e-17);
     /// # Ok::<(), teeter_beam::BeamError>(())
     /// ```
-    pub fn rayleigh(ratios: [(f64, f64); 2]) -> Result<Self, BeamError> {
-        let [(w1, z1), (w2, z2)] = ratios;
-        for (omega, zeta) in ratios {
-            positive("circular_frequency", omega)?;
-            not_negative("ratio", zeta)?;
+    pub fn rayleigh(ratios: [DampingRatio; 2]) -> Result<Self, BeamError> {
+        for DampingRatio { circular_frequency, ratio } in ratios {
+            positive("circular_frequency", circular_frequency)?;
+            not_negative("ratio", ratio)?;
         }
+        let [w1, w2] = ratios.map(|at| at.circular_frequency);
+        let [z1, z2] = ratios.map(|at| at.ratio);
         check("circular_frequency", w2, w1 != w2, "other than the first one")?;
         let (low, high) = (w1 / w2, w2 / w1);
-        // ζ₁ω₂ − ζ₂ω₁ and ζ₂ω₂ − ζ₁ω₁ over ω₂² − ω₁², in quotients that neither overflow nor underflow.
+        // ζ₁ω₂ − ζ₂ω₁ and ζ₂ω₂ − ζ₁ω₁ over ω₂² − ω₁², in quotients that neither overflow nor
+        // underflow.
         let stiffness = 2.0 * (z2 - z1 * low) / (w2 * (1.0 - low * low));
         let mass = 2.0 * w1 * (z1 - z2 * low) / (1.0 - low * low);
         let rule =
@@ -80,8 +85,27 @@ impl Damping {
     }
 }
 
+/// A damping ratio and the frequency that is to have it, for [`Damping::rayleigh`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct DampingRatio {
+    /// Circular frequency ω, rad/s.
+    pub circular_frequency: f64,
+    /// Damping ratio ζ, of the critical damping; without unit.
+    pub ratio: f64,
+}
+
+impl DampingRatio {
+    /// ζ at ω, rad/s.
+    #[must_use]
+    pub fn new(circular_frequency: f64, ratio: f64) -> Self {
+        Self { circular_frequency, ratio }
+    }
+}
+
 /// A part of the span with a section of its own.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Segment {
     /// Its left end, m.
     pub from: f64,
@@ -91,8 +115,35 @@ pub struct Segment {
     pub section: Section,
 }
 
+impl Segment {
+    /// From one place to another, m.
+    #[must_use]
+    pub fn new(from: f64, to: f64, section: Section) -> Self {
+        Self { from, to, section }
+    }
+}
+
+/// A support between the ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct InnerSupport {
+    /// Where, m.
+    pub x: f64,
+    /// How the beam is held there.
+    pub support: Support,
+}
+
+impl InnerSupport {
+    /// At x, m.
+    #[must_use]
+    pub fn new(x: f64, support: Support) -> Self {
+        Self { x, support }
+    }
+}
+
 /// A mass that the beam carries.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Lump {
     /// Where, m.
     pub x: f64,
@@ -102,8 +153,23 @@ pub struct Lump {
     pub inertia: f64,
 }
 
+impl Lump {
+    /// A point mass: x in m, mass in kg.
+    #[must_use]
+    pub fn new(x: f64, mass: f64) -> Self {
+        Self { x, mass, inertia: 0.0 }
+    }
+
+    /// With a rotatory inertia about the axis, kg m².
+    #[must_use]
+    pub fn with_inertia(self, inertia: f64) -> Self {
+        Self { inertia, ..self }
+    }
+}
+
 /// Winkler's foundation under a part of the span: a force per length −k w − c ẇ.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Foundation {
     /// Its left end, m.
     pub from: f64,
@@ -115,6 +181,20 @@ pub struct Foundation {
     pub damping: f64,
 }
 
+impl Foundation {
+    /// An elastic one from one place to another, m, with its stiffness k per length, N/m².
+    #[must_use]
+    pub fn new(from: f64, to: f64, stiffness: f64) -> Self {
+        Self { from, to, stiffness, damping: 0.0 }
+    }
+
+    /// With a damping c per length, N s/m².
+    #[must_use]
+    pub fn with_damping(self, damping: f64) -> Self {
+        Self { damping, ..self }
+    }
+}
+
 /// What happens along the axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
@@ -122,24 +202,27 @@ pub enum Axial {
     /// The supports leave it free: no axial motion is modelled, and none costs anything.
     #[default]
     Free,
-    /// Both ends are held along the axis. A deflection stretches the beam and with it grows an axial force, the same all along
-    /// (axial inertia left out): N = N₀ + (EA)/(2L) ∫w'² dx, with 1/EA the mean over the span. Woinowsky-Krieger (1950).
+    /// Both ends are held along the axis. A deflection stretches the beam and with it grows an
+    /// axial force, the same all along (axial inertia left out): N = N₀ + (EA)/(2L) ∫w'² dx, with
+    /// 1/EA the mean over the span. Woinowsky-Krieger (1950, J. Appl. Mech. 17, 35–36).
     Held,
-    /// Axial dofs u with their inertia; which ends are held along the axis. Linear: they don't feel the deflection.
+    /// Axial dofs u with their inertia; which ends are held along the axis. Linear: they don't feel
+    /// the deflection.
     Elastic {
         /// Whether u = 0 at the left and at the right end.
         held: [bool; 2],
     },
 }
 
-/// All that [`crate::Beam::new`] needs. Made by [`BeamSpec::new`] and the methods that follow it; every field may be written to.
+/// All that [`crate::Beam::new`] needs. Made by [`BeamSpec::new`] and the methods that follow it;
+/// every field may be written to.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct BeamSpec {
     /// Length between the ends, m.
     pub span: f64,
-    /// Number of elements, of one length as far as nodes at supports, lumps and ends of segments allow; these may take a few
-    /// more. See [`BeamSpec::nodes`].
+    /// Number of elements, of one length as far as nodes at supports, lumps and ends of segments
+    /// allow; these may take a few more. See [`BeamSpec::nodes`].
     pub elements: usize,
     /// The cross-section, where no segment has another one.
     pub section: Section,
@@ -149,18 +232,19 @@ pub struct BeamSpec {
     pub damping: Damping,
     /// Parts with sections of their own; the last one that covers a place holds there.
     pub segments: Vec<Segment>,
-    /// Supports between the ends, by their place, m.
-    pub inner_supports: Vec<(f64, Support)>,
+    /// Supports between the ends.
+    pub inner_supports: Vec<InnerSupport>,
     /// Masses that it carries.
     pub lumps: Vec<Lump>,
     /// What it rests on.
     pub foundations: Vec<Foundation>,
     /// What happens along its axis.
     pub axial: Axial,
-    /// Axial force N₀ that is there whatever the beam does, N; tension is positive. It stiffens the beam against bending by
-    /// N₀ ∫N'ᵀN' dx.
+    /// Axial force N₀ that is there whatever the beam does, N; tension is positive. It stiffens the
+    /// beam against bending by N₀ ∫N'ᵀN' dx.
     pub axial_force: f64,
-    /// Nodes of a mesh of one's own, m, rising from 0 to the span; replaces `elements` where it isn't empty.
+    /// Nodes of a mesh of one's own, m, rising from 0 to the span; replaces `elements` where it
+    /// isn't empty.
     pub nodes: Vec<f64>,
 }
 
@@ -207,21 +291,21 @@ impl BeamSpec {
     /// With another section between two places, m.
     #[must_use]
     pub fn segment(mut self, from: f64, to: f64, section: Section) -> Self {
-        self.segments.push(Segment { from, to, section });
+        self.segments.push(Segment::new(from, to, section));
         self
     }
 
     /// With one more support, at x (m).
     #[must_use]
     pub fn support_at(mut self, x: f64, support: Support) -> Self {
-        self.inner_supports.push((x, support));
+        self.inner_supports.push(InnerSupport::new(x, support));
         self
     }
 
     /// With a mass (kg) and a rotatory inertia (kg m²) at x (m).
     #[must_use]
     pub fn lump(mut self, x: f64, mass: f64, inertia: f64) -> Self {
-        self.lumps.push(Lump { x, mass, inertia });
+        self.lumps.push(Lump::new(x, mass).with_inertia(inertia));
         self
     }
 
@@ -280,7 +364,7 @@ impl BeamSpec {
         for support in self.supports {
             support.validate()?;
         }
-        for &(x, support) in &self.inner_supports {
+        for &InnerSupport { x, support } in &self.inner_supports {
             check("support.x", x, x > 0.0 && x < self.span, "between the ends; these have supports of their own")?;
             support.validate()?;
         }
@@ -292,8 +376,8 @@ impl BeamSpec {
         check("axial_force", self.axial_force, true, "finite")?;
         if self.axial != Axial::Free {
             for section in self.segments.iter().map(|segment| &segment.section).chain([&self.section]) {
-                let ea = section.axial_stiffness;
-                check("section.axial_stiffness", ea, ea > 0.0, "> 0 where the axis is held or has dofs")?;
+                let (field, reason) = ("section.axial_stiffness", "where the axis is held or has dofs");
+                section.axial_stiffness.ok_or(BeamError::Missing { field, reason })?;
             }
         }
         // l³ and EI/l³ enter the matrices: a span that is a valid number can still overflow them.
@@ -323,7 +407,8 @@ impl BeamSpec {
         self.section.validate()
     }
 
-    /// Whether this is the uniform Euler–Bernoulli beam between two ends that the frequency equations are for.
+    /// Whether this is the uniform Euler–Bernoulli beam between two ends that the frequency
+    /// equations are for.
     fn is_elementary(&self) -> bool {
         let s = &self.section;
         self.segments.is_empty()
@@ -335,16 +420,17 @@ impl BeamSpec {
             && s.rotatory_inertia == 0.0
     }
 
-    /// Exact circular frequency, rad/s, of elastic mode `mode` (from 1) of the continuous, undamped Euler–Bernoulli beam
-    /// between free, pinned, clamped or guided ends: `(β/L)² √(EI/ρA)`. The rigid motions of a beam that its supports leave
-    /// free are not counted.
+    /// Exact circular frequency, rad/s, of elastic mode `mode` (from 1) of the continuous, undamped
+    /// Euler–Bernoulli beam between free, pinned, clamped or guided ends: `(β/L)² √(EI/ρA)`. The
+    /// rigid motions of a beam that its supports leave free are not counted.
     ///
     /// The finite elements reproduce it from above, with an error of order n⁻⁴.
     ///
     /// # Errors
-    /// [`BeamError`] for a span or section that is not finite and positive, or a mode outside 1..=1 000 000;
-    /// [`BeamError::NoFrequencyEquation`] for a beam with springs, inner supports, lumps, a foundation, segments, shear or an
-    /// axial force: its modes are those of [`crate::Beam::modes`].
+    /// [`BeamError`] for a span or section that is not finite and positive, or a mode outside 1..=1
+    /// 000 000; [`BeamError::NoFrequencyEquation`] for a beam with springs, inner supports, lumps,
+    /// a foundation, segments, shear or an axial force: its modes are those of
+    /// [`crate::Beam::modes`].
     ///
     /// ```
     /// use teeter_beam::{BeamSpec, Section};
@@ -366,7 +452,8 @@ impl BeamSpec {
     /// The viscous damping c = 2ζω ρA (N s/m²) that gives mode `mode` the damping ratio `ratio`.
     ///
     /// # Errors
-    /// As [`BeamSpec::circular_frequency`]; [`BeamError::Value`] for a ratio that is not finite and ≥ 0.
+    /// As [`BeamSpec::circular_frequency`]; [`BeamError::Value`] for a ratio that is not finite and
+    /// ≥ 0.
     ///
     /// ```
     /// # use teeter_beam::{BeamSpec, Section};

@@ -1,18 +1,21 @@
 //! Static equilibrium, K q = f.
 
+use std::fmt;
+
 use crate::beam::Beam;
 use crate::error::{FactorError, StaticError};
 use crate::factor::{Factor, MatrixWeights};
 use crate::membrane::Membrane;
-use crate::support::Hold;
 
 /// Steps of iterative refinement at most.
 const MAX_REFINEMENTS: usize = 20;
 
-/// A last correction above this, relative to the largest deflection, is no solution: the refinement has not settled.
+/// A last correction above this, relative to the largest deflection, is no solution: the refinement
+/// has not settled.
 const SETTLED: f64 = 1e-10;
 
-/// Rounds at most for the axial force of a beam held along its axis; bisection every third one makes 53 digits of them.
+/// Rounds at most for the axial force of a beam held along its axis; bisection every third one
+/// makes 53 digits of them.
 const MAX_ROUNDS: usize = 200;
 
 /// The axial force is found where it changes, or is out of balance, by no more than this part.
@@ -30,16 +33,19 @@ pub(crate) struct Refined {
 impl Beam {
     /// Turns a load (N and N m per dof) into the deflection under it: f ← K⁻¹ f.
     ///
-    /// One Cholesky solve of K loses about ε n⁴ (`docs/theory.md` §1, *Conditioning*). Iterative refinement, with the
-    /// residual by [`Beam::add_stiffness_product`], takes the conditioning out without extended precision: what that
-    /// residual gets wrong is a natural deformation of single elements, which moves the beam by rounding only. Measured
-    /// against closed forms, worst of all supports: 3e-12, 5e-9, 1e-7 for 20, 100, 300 elements without it, 1e-14 with it;
-    /// 2e-14 up to 3000 elements.
+    /// One Cholesky solve of K on n elements loses about ε n⁴, its condition number. Iterative
+    /// refinement, with the residual by [`Beam::add_stiffness_product`], takes the conditioning out
+    /// without extended precision: what that residual gets wrong is a natural deformation of single
+    /// elements, which moves the beam by rounding only. Measured against closed forms, worst of all
+    /// supports: 3e-12, 5e-9, 1e-7 for 20, 100, 300 elements without it, 1e-14 with it; 2e-14 up to
+    /// 3000 elements.
     ///
     /// # Errors
-    /// [`StaticError::RigidMotion`] where the supports leave one; [`StaticError::Length`] and [`StaticError::Load`] for a
-    /// load of another length or not finite; [`StaticError::Buckled`] under too much compression; [`StaticError::NotSettled`] for a mesh
-    /// too fine for double precision (a cantilever of 10 000 elements), [`StaticError::Soft`] for springs too soft for it. After an error `load` is as it was.
+    /// [`StaticError::RigidMotion`] where the supports leave one; [`StaticError::Length`] and
+    /// [`StaticError::Load`] for a load of another length or not finite; [`StaticError::Buckled`]
+    /// under too much compression; [`StaticError::NotSettled`] for a mesh too fine for double
+    /// precision (a cantilever of 10 000 elements), [`StaticError::Soft`] for springs too soft for
+    /// it. After an error `load` is as it was.
     ///
     /// ```
     /// # use teeter_beam::{Beam, BeamSpec, Section};
@@ -52,8 +58,8 @@ impl Beam {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn solve_static(&self, load: &mut [f64]) -> Result<(), StaticError> {
-        if let Some(missing) = self.rigid_motion() {
-            return Err(StaticError::RigidMotion { supports: Box::new(self.spec.supports), missing });
+        if let Some(motion) = self.rigid_motion() {
+            return Err(StaticError::RigidMotion { supports: Box::new(self.spec.supports), motion });
         }
         if load.len() != self.dofs() {
             return Err(StaticError::Length { expected: self.dofs(), found: load.len() });
@@ -71,8 +77,8 @@ impl Beam {
 
     /// (K + N G)⁻¹ f, N an axial force beside that of the beam, by refinement to rounding.
     fn solve_refined(&self, load: &[f64], n: f64) -> Result<Vec<f64>, StaticError> {
-        let (stiffness, slopes) = (MatrixWeights { mass: 0.0, damping: 0.0, stiffness: 1.0 }, self.membrane.as_ref());
-        let factor = self.factor_under(stiffness, n).map_err(|error| match error {
+        let slopes = self.membrane.as_ref();
+        let factor = self.factor_under(MatrixWeights::STIFFNESS, n).map_err(|error| match error {
             FactorError::NotPositiveDefinite { .. } if self.spec.axial_force < 0.0 => {
                 StaticError::Buckled { axial_force: self.spec.axial_force }
             }
@@ -95,8 +101,8 @@ impl Beam {
         }
     }
 
-    /// Solves A x = f by a factor of A, with iterative refinement until corrections no longer shrink; `take_off` takes A x off a
-    /// residual.
+    /// Solves A x = f by a factor of A, with iterative refinement until corrections no longer
+    /// shrink; `take_off` takes A x off a residual.
     pub(crate) fn refine(&self, factor: &Factor, f: &[f64], take_off: impl Fn(&[f64], &mut [f64])) -> Refined {
         let mut residual = f.to_vec();
         let mut solution = vec![0.0; f.len()];
@@ -123,8 +129,9 @@ impl Beam {
         Refined { plain, solution, correction }
     }
 
-    /// The deflection whose stretching makes the axial force that it is in equilibrium with. That force is the root of
-    /// r(N) = EA/(2L) s(q(N)) − N, q(N) = (K + N G)⁻¹ f, which falls with N: one root, between 0 and r(0).
+    /// The deflection whose stretching makes the axial force that it is in equilibrium with. That
+    /// force is the root of r(N) = EA/(2L) s(q(N)) − N, q(N) = (K + N G)⁻¹ f, which falls with N:
+    /// one root, between 0 and r(0).
     fn solve_stretched(&self, membrane: &Membrane, load: &[f64]) -> Result<Vec<f64>, StaticError> {
         let mut q = self.solve_refined(load, 0.0)?;
         let (mut low, mut high) = (0.0, membrane.force(self.bend(&q)));
@@ -170,8 +177,9 @@ impl Beam {
         !(places >= 2 || places == 1 && turned)
     }
 
-    /// The rigid motion that supports, springs and foundations leave, with what would take it.
-    pub fn rigid_motion(&self) -> Option<&'static str> {
+    /// The rigid motion that supports, springs and foundations leave, if they do: then there is no
+    /// static equilibrium.
+    pub fn rigid_motion(&self) -> Option<RigidMotion> {
         let mut places: Vec<f64> = Vec::new();
         let mut turned = false;
         let supports = self.mesh.x.iter().zip(&self.held);
@@ -185,30 +193,74 @@ impl Beam {
             }
             turned |= dof % 2 == 1;
         }
-        if self.bed.is_some() {
+        if self.foundation.is_some() {
             places.extend([0.0, self.spec.span]);
         }
         if self.bar.as_ref().is_some_and(|bar| !bar.held.iter().any(|held| *held)) {
-            return Some("neither end is held along the axis, along which the beam can move as a whole; hold one");
+            return Some(RigidMotion::AlongAxis);
         }
         let two = places.iter().any(|x| (x - places[0]).abs() > 0.0);
-        let free = |k: usize| self.spec.supports[k].holds() == [Hold::Free; 2];
         match (places.is_empty(), two || turned) {
             (false, true) => None,
-            (true, true) => {
-                Some("nothing holds the beam across its axis, it can move up and down as a whole; pin it somewhere")
-            }
-            (true, false) => {
-                Some("both ends are free, the beam can move and turn as a whole; clamp one end or pin both")
-            }
-            (false, false) if free(1) => {
-                Some("the beam can turn about its pinned left end; support the right end or clamp the left")
-            }
-            (false, false) if free(0) => {
-                Some("the beam can turn about its pinned right end; support the left end or clamp the right")
-            }
-            (false, false) => Some("the beam can turn about its one support; support it elsewhere or clamp it"),
+            (true, true) => Some(RigidMotion::AcrossAxis),
+            (true, false) => Some(RigidMotion::Any),
+            (false, false) if places[0] == 0.0 => Some(RigidMotion::AboutLeftEnd),
+            (false, false) if places[0] == self.spec.span => Some(RigidMotion::AboutRightEnd),
+            (false, false) => Some(RigidMotion::AboutSupport),
         }
+    }
+}
+
+/// A rigid motion that nothing takes, from [`Beam::rigid_motion`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum RigidMotion {
+    /// Along the axis: the beam has axial dofs, and neither end is held.
+    AlongAxis,
+    /// Up and down as a whole.
+    AcrossAxis,
+    /// Up and down, and turning.
+    Any,
+    /// Turning about the left end.
+    AboutLeftEnd,
+    /// Turning about the right end.
+    AboutRightEnd,
+    /// Turning about the one support between the ends.
+    AboutSupport,
+}
+
+impl RigidMotion {
+    /// What can move, as a clause.
+    #[must_use]
+    pub fn description(self) -> &'static str {
+        match self {
+            Self::AlongAxis => "neither end is held along the axis, along which the beam can move as a whole",
+            Self::AcrossAxis => "nothing holds the beam across its axis, it can move up and down as a whole",
+            Self::Any => "both ends are free, the beam can move and turn as a whole",
+            Self::AboutLeftEnd => "the beam can turn about its pinned left end",
+            Self::AboutRightEnd => "the beam can turn about its pinned right end",
+            Self::AboutSupport => "the beam can turn about its one support",
+        }
+    }
+
+    /// What would hold it, as an imperative.
+    #[must_use]
+    pub fn remedy(self) -> &'static str {
+        match self {
+            Self::AlongAxis => "hold one",
+            Self::AcrossAxis => "pin it somewhere",
+            Self::Any => "clamp one end or pin both",
+            Self::AboutLeftEnd => "support the right end or clamp the left",
+            Self::AboutRightEnd => "support the left end or clamp the right",
+            Self::AboutSupport => "support it elsewhere or clamp it",
+        }
+    }
+}
+
+/// Description and remedy.
+impl fmt::Display for RigidMotion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}; {}", self.description(), self.remedy())
     }
 }
 
@@ -220,6 +272,8 @@ mod tests {
 
     #[test]
     fn a_rigid_motion_is_refused_with_the_missing_support() {
+        let on_one = Beam::new(crate::beam::tests::spec(4, [Free, Free]).support_at(0.5, Pinned)).unwrap();
+        assert_eq!(on_one.rigid_motion(), Some(RigidMotion::AboutSupport));
         for (supports, words) in [([Free, Free], "both"), ([Pinned, Free], "right end"), ([Free, Pinned], "left end")] {
             let beam = beam(4, supports);
             let text = beam.solve_static(&mut vec![1.0; beam.dofs()]).unwrap_err().to_string();

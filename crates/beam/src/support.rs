@@ -14,7 +14,8 @@ pub enum Hold {
     Free,
     /// It can't move.
     Fixed,
-    /// By a spring and a dashpot to the ground: N/m and N s/m for the deflection, N m/rad and N m s/rad for the rotation.
+    /// By a spring and a dashpot to the ground: N/m and N s/m for the deflection, N m/rad and N m
+    /// s/rad for the rotation.
     Spring {
         /// Stiffness.
         stiffness: f64,

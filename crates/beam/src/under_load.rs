@@ -1,8 +1,10 @@
 //! The deflection between nodes of a beam that bears loads there.
 //!
-//! A static solution is exact at the nodes, wherever the loads are; between them the shape functions leave out what a load bends its own
-//! element by with both nodes held. That is the element's particular solution. It is that of the element cut free at its right end, by
-//! singularity functions ⟨s − a⟩ⁿ, and on top of it the shape functions that take the right node back to where it was:
+//! A static solution is exact at the nodes, wherever the loads are; between them the shape
+//! functions leave out what a load bends its own element by with both nodes held. That is the
+//! element's particular solution. It is that of the element cut free at its right end, by
+//! singularity functions ⟨s − a⟩ⁿ, and on top of it the shape functions that take the right node
+//! back to where it was:
 //!
 //! ```text
 //! EI ψ' = M,   w' = ψ − V/(GA_s)
@@ -17,7 +19,8 @@ use crate::error::{BeamError, check};
 use crate::forces::SpanLoad;
 use crate::shape::Deflection;
 
-/// Deflection, rotation of the section and slope of the axis of an element cut free at its right end.
+/// Deflection, rotation of the section and slope of the axis of an element cut free at its right
+/// end.
 #[derive(Debug, Clone, Copy, Default)]
 struct Free {
     w: f64,
@@ -84,17 +87,19 @@ impl Own {
 }
 
 impl Beam {
-    /// Deflection and slope at x of the beam in the shape `q` under these loads, those between nodes with what they bend their own elements
-    /// by: exact between the nodes where it is at them, as after [`solve_static`](Self::solve_static) with the same loads, Euler–Bernoulli's or
-    /// Timoshenko's. [`deflection_at`](Self::deflection_at) leaves that part out: for a force P in the middle of an element of length l it is
-    /// Pl³/(192 EI) (and Pl/(4 GA_s)).
+    /// Deflection and slope at x of the beam in the shape `q` under these loads, those between
+    /// nodes with what they bend their own elements by: exact between the nodes where it is at
+    /// them, as after [`solve_static`](Self::solve_static) with the same loads, Euler–Bernoulli's
+    /// or Timoshenko's. [`deflection_at`](Self::deflection_at) leaves that part out: for a force P
+    /// in the middle of an element of length l it is Pl³/(192 EI) (and Pl/(4 GA_s)).
     ///
-    /// Of a beam on a foundation or under an axial force nodes are not exact either; there the part that is added is that of the element
-    /// without them. The slope is that of the axis; where shear makes it jump, at a force, that on one
-    /// side or the other.
+    /// Of a beam on a foundation or under an axial force nodes are not exact either; there the part
+    /// that is added is that of the element without them. The slope is that of the axis; where
+    /// shear makes it jump, at a force, that on one side or the other.
     ///
     /// # Errors
-    /// [`BeamError::OutsideSpan`] for a place or a load that is not on the beam; [`BeamError::Value`] for a load that is not finite.
+    /// [`BeamError::OutsideSpan`] for a place or a load that is not on the beam;
+    /// [`BeamError::Value`] for a load that is not finite.
     ///
     /// # Panics
     /// If `q` has not [`Beam::dofs`] entries.

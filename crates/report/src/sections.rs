@@ -75,7 +75,7 @@ fn supports(beam: &Beam) -> Vec<f64> {
 /// A support's place as the scene has it, 0.342 and not 0.34199999999999997 as the mesh may: names of columns hang on it.
 fn as_given(beam: &Beam, x: f64) -> f64 {
     let span = beam.spec().span;
-    let given = beam.spec().inner_supports.iter().map(|(place, _)| *place).chain([0.0, span]);
+    let given = beam.spec().inner_supports.iter().map(|inner| inner.x).chain([0.0, span]);
     given.into_iter().find(|place| (place - x).abs() <= 1e-9 * span).unwrap_or(x)
 }
 
@@ -330,9 +330,9 @@ impl BeamRecord {
             widen(&mut range.force, reaction.force);
             widen(&mut range.couple, reaction.couple);
         }
-        let (stress, x) = forces.largest_stress(beam)?;
-        let found = LargestStress { stress, x, t };
-        if self.largest.is_none_or(|largest| stress > largest.stress) {
+        let peak = forces.largest_stress(beam)?;
+        let found = LargestStress { stress: peak.stress, x: peak.x, t };
+        if self.largest.is_none_or(|largest| found.stress > largest.stress) {
             self.largest = Some(found);
         }
         Some(found)

@@ -78,7 +78,7 @@ impl BeamPlace {
     /// From where to where there is no support, m from its left end.
     fn spans(&self) -> Vec<[f64; 2]> {
         let spec = self.beam.spec();
-        let mut stops: Vec<f64> = spec.inner_supports.iter().map(|(x, _)| *x).chain([0.0, spec.span]).collect();
+        let mut stops: Vec<f64> = spec.inner_supports.iter().map(|inner| inner.x).chain([0.0, spec.span]).collect();
         stops.sort_by(f64::total_cmp);
         stops.windows(2).map(|stops| [stops[0], stops[1]]).collect()
     }

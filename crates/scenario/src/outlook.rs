@@ -220,6 +220,5 @@ pub(crate) fn step_digits(model: &Beam, theta: f64, step: f64) -> Option<f64> {
 
 /// σ_y I/c; none of a section given directly.
 fn yield_moment(beam: &BeamScene) -> Option<f64> {
-    let modulus = beam.spec.section.section_modulus;
-    beam.yield_strength.map(|strength| strength * modulus).filter(|moment| *moment > 0.0)
+    beam.yield_strength.zip(beam.spec.section.section_modulus).map(|(strength, modulus)| strength * modulus)
 }

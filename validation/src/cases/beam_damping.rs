@@ -5,7 +5,7 @@ use crate::exact::beams::Uniform;
 use crate::exact::beams::decay::{rayleigh, rayleigh_through, viscous};
 use crate::modes::lowest_modes;
 use std::f64::consts::PI;
-use teeter_beam::{Beam, BeamSpec, Damping, Section};
+use teeter_beam::{Beam, BeamSpec, Damping, DampingRatio, Section};
 
 pub(crate) struct BeamDamping;
 
@@ -33,7 +33,7 @@ impl Case for BeamDamping {
         }
         let ratios = [(omegas[0], 0.02), (omegas[3], 0.05)];
         let [a0, a1] = rayleigh_through(ratios);
-        let found = rates(Damping::rayleigh(ratios)?, omegas[0])?;
+        let found = rates(Damping::rayleigh(ratios.map(|(omega, zeta)| DampingRatio::new(omega, zeta)))?, omegas[0])?;
         for ((mode, found), omega) in (1..).zip(found).zip(omegas) {
             let quantity = format!("Rayleigh, mode {mode}: decay rate, 1/s, relative");
             let bound = (f64::from(mode) * PI / ELEMENTS as f64).powi(4) / 720.0;

@@ -80,7 +80,7 @@ fn furnished(section: Section, damping: Damping) -> Result<BeamSpec> {
         .segment(0.1, 0.2, thick)
         .support_at(0.24, Support::Pinned)
         .lump(0.15, 0.02, 1e-6)
-        .foundation(Foundation { from: 0.05, to: 0.3, stiffness: 2e3, damping: 0.2 })
+        .foundation(Foundation::new(0.05, 0.3, 2e3).with_damping(0.2))
         .axial(Axial::Elastic { held: [true, false] })
         .axial_force(40.0)
         .damped(damping))

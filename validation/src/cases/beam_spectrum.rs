@@ -148,7 +148,7 @@ fn others() -> Result<Vec<Known>> {
     add("two spans, 0.4 and 0.6", by_beta(two_spans::wave_numbers(0.4, COUNT)), Box::new(third));
 
     let stiffness = 3e4 * bending / span.powi(4);
-    let bed = Foundation { from: 0.0, to: span, stiffness, damping: 0.0 };
+    let bed = Foundation::new(0.0, span, stiffness);
     let exact = sines().map(|beta| winkler::frequency(BEAM, stiffness, beta)).collect();
     add("Winkler's foundation", exact, Box::new(move |elements| Ok(plain(elements)?.foundation(bed))));
 

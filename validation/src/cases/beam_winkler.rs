@@ -62,7 +62,7 @@ impl Case for BeamWinkler {
 /// Deflection and moment in the middle.
 fn bent(span: f64, elements: usize, support: Support, load: SpanLoad) -> Result<[f64; 2]> {
     let section = Section::new(BEAM.bending, BEAM.mass)?;
-    let foundation = Foundation { from: 0.0, to: span, stiffness: STIFFNESS, damping: 0.0 };
+    let foundation = Foundation::new(0.0, span, STIFFNESS);
     let beam = Beam::new(BeamSpec::new(span, elements, section).supported([support; 2]).foundation(foundation))?;
     let mut q = vec![0.0; beam.dofs()];
     match load {

@@ -68,8 +68,8 @@ impl Orthonormal {
 
     /// Adds what is new in `x`, normalised, if it is more than `least` of it.
     ///
-    /// Gram–Schmidt twice: once leaves what rounding of the removed part was, a second time what rounding of that was (Giraud
-    /// et al. 2005, doi 10.1007/s00211-005-0615-4).
+    /// Gram–Schmidt twice: once leaves what rounding of the removed part was, a second time what
+    /// rounding of that was (Giraud et al. 2005, doi 10.1007/s00211-005-0615-4).
     pub(crate) fn add(&mut self, beam: &Beam, x: &[f64], least: f64) {
         let mut new = x.to_vec();
         let size = norm(beam, &new);
@@ -91,15 +91,16 @@ impl Orthonormal {
     }
 }
 
-/// The columns of `x` made orthonormal in M, in their order, and M-orthogonal to `others`, which are orthonormal; without those of
-/// which no more than `least` is new.
+/// The columns of `x` made orthonormal in M, in their order, and M-orthogonal to `others`, which
+/// are orthonormal; without those of which no more than `least` is new.
 pub(crate) fn orthonormalised(beam: &Beam, others: &Orthonormal, x: &Block, least: f64) -> Block {
     let mut all = others.clone();
     x.iter().for_each(|x| all.add(beam, x, least));
     all.into_vectors_from(others.vectors.columns())
 }
 
-/// The Ritz values and vectors of the space of `y`, M-orthonormal and roughly in rising order; ascending.
+/// The Ritz values and vectors of the space of `y`, M-orthonormal and roughly in rising order;
+/// ascending.
 pub(crate) fn ritz(beam: &Beam, y: &Block) -> (Vec<f64>, Block) {
     let p = y.columns();
     let mut s = vec![0.0; p * p];
@@ -133,9 +134,10 @@ pub(crate) fn ritz(beam: &Beam, y: &Block) -> (Vec<f64>, Block) {
 /// Sweeps of Jacobi's method at the most; some six do.
 const MAX_SWEEPS: usize = 40;
 
-/// Cyclic Jacobi on the symmetric p × p matrix `s`, which becomes diagonal: the columns of what is returned are its
-/// eigenvectors, all by rows. An entry counts as 0 relative to the two diagonal ones of its row and column, which is what
-/// keeps the digits of the small eigenvalues beside large ones.
+/// Cyclic Jacobi on the symmetric p × p matrix `s`, which becomes diagonal: the columns of what is
+/// returned are its eigenvectors, all by rows. An entry counts as 0 relative to the two diagonal
+/// ones of its row and column, which is what keeps the digits of the small eigenvalues beside large
+/// ones.
 fn jacobi(s: &mut [f64], p: usize) -> Vec<f64> {
     let mut u = vec![0.0; p * p];
     for i in 0..p {

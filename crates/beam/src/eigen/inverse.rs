@@ -1,4 +1,5 @@
-//! The shifted inverse A = (K + σM)⁻¹M of the subspace iteration, solved to rounding, and its start vectors.
+//! The shifted inverse A = (K + σM)⁻¹M of the subspace iteration, solved to rounding, and its start
+//! vectors.
 
 use super::block::{Block, Orthonormal, norm, normalise};
 use crate::beam::Beam;
@@ -15,8 +16,8 @@ const POWER_STEPS: usize = 10;
 /// Rounds of iterative refinement at the most.
 const MAX_REFINEMENTS: usize = 12;
 
-/// A last correction above this, relative to the solution, is no solution. Not less, for rounding leaves ε λ_j/λ_1 of the lowest
-/// modes on the solution for mode j.
+/// A last correction above this, relative to the solution, is no solution. Not less, for rounding
+/// leaves ε λ_j/λ_1 of the lowest modes on the solution for mode j.
 const SOLVED: f64 = 1e-3;
 
 pub(crate) struct Inverse<'a> {
@@ -30,14 +31,15 @@ pub(crate) struct Inverse<'a> {
 
 impl<'a> Inverse<'a> {
     pub(crate) fn new(beam: &'a Beam) -> Result<Self, FactorError> {
-        let mass = beam.factor(MatrixWeights { mass: 1.0, damping: 0.0, stiffness: 0.0 })?;
+        let mass = beam.factor(MatrixWeights::MASS)?;
         let mut x = noise(beam, &mass, 0);
         let mut highest = 0.0_f64;
         for _ in 0..POWER_STEPS {
             normalise(beam, &mut x);
             let mut force = vec![0.0; x.len()];
-            // Of the elements alone: a spring is one entry on the diagonal, which no elimination loses digits by however stiff it is, and
-            // the frequency of a stiff one would hide those of the beam behind the shift.
+            // Of the elements alone: a spring is one entry on the diagonal, which no elimination
+            // loses digits by however stiff it is, and the frequency of a stiff one would hide
+            // those of the beam behind the shift.
             let (bend, axial) = beam.split_mut(&mut force);
             beam.bending.add_product(1.0, beam.bend(&x), bend);
             if let Some(bar) = &beam.bar {
@@ -67,11 +69,12 @@ impl<'a> Inverse<'a> {
         block
     }
 
-    /// (λ_j + σ) A x_j for every Ritz pair, M-orthogonal to the rigid motions; and how far that is from x_j in M's norm, less
-    /// the part along the columns below j: 0 for an eigenpair.
+    /// (λ_j + σ) A x_j for every Ritz pair, M-orthogonal to the rigid motions; and how far that is
+    /// from x_j in M's norm, less the part along the columns below j: 0 for an eigenpair.
     ///
-    /// That part is left out because it carries no news: the Rayleigh–Ritz step has made it vanish (to second order in the
-    /// residuals), and what a solve leaves there is ε (λ_j + σ)/(λ_i + σ), its rounding.
+    /// That part is left out because it carries no news: the Rayleigh–Ritz step has made it vanish
+    /// (to second order in the residuals), and what a solve leaves there is ε (λ_j + σ)/(λ_i + σ),
+    /// its rounding.
     pub(crate) fn apply(
         &self,
         rigid: &Orthonormal,
@@ -120,8 +123,8 @@ impl<'a> Inverse<'a> {
     }
 }
 
-/// M⁻¹ of a random force of M's diagonal size, by number: the velocities of a beam hit at all dofs at once. What a support
-/// holds stays at 0.
+/// M⁻¹ of a random force of M's diagonal size, by number: the velocities of a beam hit at all dofs
+/// at once. What a support holds stays at 0.
 fn noise(beam: &Beam, mass: &Factor, number: usize) -> Vec<f64> {
     let mut force: Vec<f64> = (0..beam.dofs())
         .map(|i| {
@@ -133,7 +136,8 @@ fn noise(beam: &Beam, mass: &Factor, number: usize) -> Vec<f64> {
     force
 }
 
-/// Number `index` of a fixed sequence without a pattern, in [−1, 1): SplitMix64 (Steele et al. 2014, doi 10.1145/2714064.2660195).
+/// Number `index` of a fixed sequence without a pattern, in [−1, 1): SplitMix64 (Steele et al.
+/// 2014, doi 10.1145/2714064.2660195).
 fn uniform(index: u64) -> f64 {
     let mut z = index.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

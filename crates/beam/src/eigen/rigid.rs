@@ -4,7 +4,8 @@ use super::block::{Block, Orthonormal, orthonormalised, ritz};
 use crate::Dof;
 use crate::beam::Beam;
 
-/// An M-orthonormal basis of the motions a + b x that no support holds and whose ω² is at most `unmoved`.
+/// An M-orthonormal basis of the motions a + b x that no support holds and whose ω² is at most
+/// `unmoved`.
 pub(crate) fn motions(beam: &Beam, unmoved: f64) -> Block {
     let mut block = Block::new(beam.dofs());
     let x = beam.node_positions();

@@ -1,6 +1,6 @@
 //! Modal bases: what static corrections add, and what the error of truncation says.
 
-use crate::frequencies::{ALL, rigid};
+use crate::{ALL, rigid};
 use teeter_beam::{Beam, BeamSpec, Damping, MatrixWeights, ModalBasis, ModalError, Support};
 
 const REGION: [f64; 2] = [0.15, 0.21];

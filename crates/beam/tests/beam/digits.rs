@@ -3,7 +3,7 @@
 use crate::double_double::{Dd, Exact, error, rounded};
 use teeter_beam::{Beam, BeamSpec, Digits, Foundation, MatrixWeights, Support};
 
-const STATICS: MatrixWeights = MatrixWeights { mass: 0.0, damping: 0.0, stiffness: 1.0 };
+const STATICS: MatrixWeights = MatrixWeights::STIFFNESS;
 
 /// A θ step with θ = ½.
 fn step(h: f64) -> MatrixWeights {
@@ -105,7 +105,7 @@ fn the_estimate_is_true_on_a_foundation_and_under_an_axial_force() {
     let euler = 0.5821875 * (std::f64::consts::PI / 0.36).powi(2);
     for n in [20, 200, 1000] {
         let spec: BeamSpec = super::spec(n, [Support::Pinned; 2]);
-        let bed = |stiffness| Foundation { from: 0.0, to: 0.36, stiffness, damping: 0.0 };
+        let bed = |stiffness| Foundation::new(0.0, 0.36, stiffness);
         for spec in [
             spec.clone().axial_force(1e3 * euler),
             spec.clone().axial_force(-0.9 * euler),

@@ -1,7 +1,8 @@
 //! Eigenvalues of the assembled pair (K, M) against the continuous beam.
 
-use faer::sparse::SparseColMat;
-use faer::{Mat, Side};
+use super::{ALL, rigid};
+use teeter_beam::faer::sparse::SparseColMat;
+use teeter_beam::faer::{Mat, Side};
 use teeter_beam::{Beam, Support};
 
 fn dense(upper: &SparseColMat<usize, f64>) -> Mat<f64> {
@@ -24,21 +25,6 @@ pub(crate) fn circular_frequencies(beam: &Beam) -> Vec<f64> {
     }
     let values = a.self_adjoint_eigenvalues(Side::Lower).unwrap();
     values.into_iter().map(|value| value.max(0.0).sqrt()).collect()
-}
-
-pub(crate) const ALL: [Support; 3] = [Support::Free, Support::Pinned, Support::Clamped];
-
-/// How many rigid motions the supports leave.
-pub(crate) fn rigid(supports: [Support; 2]) -> usize {
-    let held: usize = supports
-        .iter()
-        .map(|support| match support {
-            Support::Free => 0,
-            Support::Pinned => 1,
-            _ => 2,
-        })
-        .sum();
-    2_usize.saturating_sub(held)
 }
 
 #[test]

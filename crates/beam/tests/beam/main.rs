@@ -11,6 +11,7 @@ mod basis;
 mod digits;
 mod double_double;
 mod extremes;
+#[cfg(feature = "faer")]
 mod frequencies;
 mod modes;
 mod reference;
@@ -28,4 +29,19 @@ fn spec(elements: usize, supports: [Support; 2]) -> BeamSpec {
 
 fn beam(elements: usize, supports: [Support; 2]) -> Beam {
     Beam::new(spec(elements, supports)).unwrap()
+}
+
+const ALL: [Support; 3] = [Support::Free, Support::Pinned, Support::Clamped];
+
+/// How many rigid motions the supports leave.
+fn rigid(supports: [Support; 2]) -> usize {
+    let held: usize = supports
+        .iter()
+        .map(|support| match support {
+            Support::Free => 0,
+            Support::Pinned => 1,
+            _ => 2,
+        })
+        .sum();
+    2_usize.saturating_sub(held)
 }

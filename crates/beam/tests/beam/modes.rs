@@ -1,6 +1,8 @@
 //! Frequencies and shapes of the finite elements: against the continuous beam, against a dense eigen-solve, and their digits.
 
-use crate::frequencies::{ALL, circular_frequencies, rigid};
+#[cfg(feature = "faer")]
+use crate::frequencies::circular_frequencies;
+use crate::{ALL, rigid};
 use teeter_beam::{Axial, Beam, BeamSpec, Foundation, Hold, ModesError, Section, Support};
 
 fn all_supports() -> impl Iterator<Item = [Support; 2]> {
@@ -18,6 +20,7 @@ fn dot(x: &[f64], y: &[f64]) -> f64 {
     x.iter().zip(y).map(|(x, y)| x * y).sum()
 }
 
+#[cfg(feature = "faer")]
 #[test]
 fn all_modes_are_those_of_a_dense_solve() {
     for elements in [1, 2, 3, 4, 7, 12] {
@@ -205,19 +208,20 @@ fn springs_and_axial_dofs_leave_the_rigid_motions_that_they_leave() {
         (free.clone().support_at(0.3, spring(20.0)).support_at(0.9, spring(5.0)), 0),
         (free.clone().axial(Axial::Elastic { held: [false; 2] }), 3),
         (free.clone().axial(Axial::Elastic { held: [true, false] }), 2),
-        (free.clone().foundation(Foundation { from: 0.2, to: 0.4, stiffness: 1.0, damping: 0.0 }), 0),
+        (free.clone().foundation(Foundation::new(0.2, 0.4, 1.0)), 0),
     ] {
         let beam = Beam::new(spec).unwrap();
         let modes = beam.modes(6).unwrap();
         assert_eq!(modes.rigid(), rigid, "{:?}", beam.spec());
-        let dense = circular_frequencies(&beam);
-        for (found, dense) in modes.circular_frequencies().iter().zip(&dense).skip(rigid) {
+        #[cfg(feature = "faer")]
+        for (found, dense) in modes.circular_frequencies().iter().zip(&circular_frequencies(&beam)).skip(rigid) {
             assert!((found / dense - 1.0).abs() < 1e-7, "{found} {dense}");
         }
         assert!(modes.circular_frequencies()[..rigid].iter().all(|omega| *omega == 0.0));
     }
 }
 
+#[cfg(feature = "faer")]
 #[test]
 fn a_beam_with_everything_has_the_modes_of_a_dense_solve() {
     let plain = Section::new(2.0, 3.0).unwrap().with_axial_stiffness(50.0).unwrap();
@@ -229,7 +233,7 @@ fn a_beam_with_everything_has_the_modes_of_a_dense_solve() {
         .segment(0.3, 0.5, thick)
         .support_at(0.75, Support::Pinned)
         .lump(0.4, 0.5, 0.01)
-        .foundation(Foundation { from: 0.1, to: 0.65, stiffness: 80.0, damping: 0.0 })
+        .foundation(Foundation::new(0.1, 0.65, 80.0))
         .axial(Axial::Elastic { held: [true, false] })
         .axial_force(3.0);
     let beam = Beam::new(spec).unwrap();

@@ -4,6 +4,7 @@
 use serde_json::Value;
 use teeter_beam::{Beam, BeamSpec, Load, MovingLoad, Section, Support};
 
+#[cfg(feature = "faer")]
 use crate::frequencies::circular_frequencies;
 use crate::stepping::Stepper;
 
@@ -39,6 +40,7 @@ fn supports(name: &str) -> [Support; 2] {
     }
 }
 
+#[cfg(feature = "faer")]
 #[test]
 fn f1_frequencies() {
     let Some(case) = case("F1_frequencies") else {

@@ -21,7 +21,8 @@ pub enum WBackend {
     Auto,
     /// A banded substitution for each contact and direction in a step.
     Banded,
-    /// The same with a general sparse factor: slower, and an independent way to the same numbers.
+    /// The same with a general sparse factor: slower, and an independent way to the same numbers. Only with the feature `sparse`
+    /// (default); without it the factor is refused with a [`FactorError`] that says so.
     Sparse,
     /// Columns of W, each solved for when a contact first touches its dof and kept until the step size changes: at most
     /// 64 columns and 16 MiB, but 16 columns of any beam; a step that touches more dofs at once goes by substitutions. Which columns
@@ -76,7 +77,11 @@ impl BeamCompliance {
 }
 
 fn refusal(weights: Weights, error: &teeter_beam::FactorError) -> FactorError {
-    FactorError { weights, reason: error.to_string() }
+    let mut reason = error.to_string();
+    if let teeter_beam::FactorError::MissingFeature { .. } = error {
+        reason += ", which the feature `sparse` of teeter-integrator switches on";
+    }
+    FactorError { weights, reason }
 }
 
 /// `f ← W f`.
@@ -401,6 +406,14 @@ mod tests {
         let mut fresh = BeamCompliance::new(&beam, half, WBackend::CachedColumns).unwrap();
         let after = answer(&mut used, &[10]);
         assert!(after == answer(&mut fresh, &[10]) && after != before);
+    }
+
+    /// The tests have the feature, so the error is that of a beam without.
+    #[test]
+    fn a_missing_backend_is_refused_with_the_feature_that_brings_it() {
+        let error = teeter_beam::FactorError::MissingFeature { backend: Backend::Sparse, feature: "faer" };
+        let text = refusal(WEIGHTS, &error).to_string();
+        assert!(["Sparse", "`faer` of teeter-beam", "`sparse` of teeter-integrator"].iter().all(|s| text.contains(s)));
     }
 
     #[test]

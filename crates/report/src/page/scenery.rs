@@ -95,7 +95,12 @@ impl Scenery {
                 thickness: drawn.thickness,
                 top: drawn.top,
                 supports: drawn.spec.supports.map(wording::support),
-                inner: drawn.spec.inner_supports.iter().map(|(x, support)| (*x, wording::support(*support))).collect(),
+                inner: drawn
+                    .spec
+                    .inner_supports
+                    .iter()
+                    .map(|inner| (inner.x, wording::support(inner.support)))
+                    .collect(),
                 held: matches!(drawn.spec.axial, Axial::Held | Axial::Elastic { held: [_, true] }),
                 points: pieces + 1,
                 shapes: (0..=pieces).map(at).collect(),

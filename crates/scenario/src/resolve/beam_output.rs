@@ -30,7 +30,9 @@ impl Resolver<'_, '_> {
             let rule = format!("{} is written at probes, and the beam has none", quantity.word());
             self.error(&at("record"), rule, "add probes = [\"9 cm\"], places along the beam");
         }
-        if output.quantities.contains(&BeamQuantity::Stress) && sections.any(|section| section.section_modulus <= 0.0) {
+        if output.quantities.contains(&BeamQuantity::Stress)
+            && sections.any(|section| section.section_modulus.is_none())
+        {
             let rule = "a section that is given directly has no section modulus, and so no stress";
             self.error(&at("record"), rule, "give it a profile, or leave stress out");
         }

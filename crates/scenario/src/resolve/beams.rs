@@ -1,7 +1,8 @@
 //! Beams: what they are made of, how they are held and damped, where they start.
 
 use teeter_beam::{
-    Axial, Beam, BeamError, BeamSpec, Damping, Foundation, Hold, MAX_ELEMENTS, ModesError, StaticError, Support,
+    Axial, Beam, BeamError, BeamSpec, Damping, DampingRatio, Foundation, Hold, MAX_ELEMENTS, ModesError, StaticError,
+    Support,
 };
 use teeter_integrator::WBackend;
 
@@ -196,9 +197,9 @@ impl Resolver<'_, '_> {
             }
         };
         if let (true, Some(motion)) = (beam.static_start, model.rigid_motion()) {
-            let (motion, missing) = motion.split_once("; ").unwrap_or((motion, "support it"));
+            let (motion, remedy) = (motion.description(), motion.remedy());
             let rule = format!("the beam can move as a rigid body, so it has no static equilibrium: {motion}");
-            self.error(&start, rule, format!("{missing} (supports), or start undeformed"));
+            self.error(&start, rule, format!("{remedy} (supports), or start undeformed"));
         }
         // Whatever the start. Its modes would only say the same again, of keys that are not to blame.
         if !self.bears(&path, &model) {
@@ -311,7 +312,7 @@ impl Resolver<'_, '_> {
         let mut alone = beam.spec().clone();
         alone.damping = Damping { viscous: 1.0, ..Damping::default() };
         alone.supports = alone.supports.map(undamped);
-        alone.inner_supports.iter_mut().for_each(|(_, support)| *support = undamped(*support));
+        alone.inner_supports.iter_mut().for_each(|inner| inner.support = undamped(inner.support));
         alone.foundations.iter_mut().for_each(|foundation| foundation.damping = 0.0);
         let mut damped = vec![0.0; shape.len()];
         Beam::new(alone).ok()?.add_damping_product(1.0, &shape, &mut damped);
@@ -398,7 +399,7 @@ impl Resolver<'_, '_> {
             return None;
         };
         let [low, high] = frequencies.map(|frequency| std::f64::consts::TAU * frequency);
-        match Damping::rayleigh([(low, first), (high, second)]) {
+        match Damping::rayleigh([DampingRatio::new(low, first), DampingRatio::new(high, second)]) {
             Ok(damping) => Some(damping),
             Err(BeamError::Value { field, rule, .. }) => {
                 let key = if field == "ratio" { "ratios" } else { "frequencies" };
@@ -446,7 +447,7 @@ impl Resolver<'_, '_> {
             let stiffness = resolver.quantity(&format!("{path}.stiffness"));
             let damping = resolver.quantity(&format!("{path}.damping"));
             let [from, to] = part?;
-            Some(Foundation { from, to, stiffness: stiffness?, damping: damping? })
+            Some(Foundation::new(from, to, stiffness?).with_damping(damping?))
         };
         let all: Vec<_> = doc.names(&group).into_iter().map(|name| of(self, name)).collect();
         all.into_iter().collect()

@@ -154,6 +154,6 @@ impl Resolver<'_, '_> {
         let material = own.unwrap_or_else(|| material.map(str::to_owned));
         let profiled = self.section(path, material.as_deref(), beam);
         let [from, to] = part?;
-        Some(Segment { from, to, section: profiled?.section })
+        Some(Segment::new(from, to, profiled?.section))
     }
 }

@@ -1,6 +1,6 @@
 //! The shape of a beam at the start, from a file: a row for each node.
 
-use teeter_beam::{Beam, BeamError, Hold};
+use teeter_beam::{Beam, BeamError, Dof, Hold};
 
 use super::Resolver;
 use crate::dimension::Dimension;
@@ -58,8 +58,8 @@ fn read(bytes: &[u8], beam: &Beam) -> Result<Vec<f64>, String> {
     };
     let nodal: Vec<[f64; 2]> = w.iter().zip(slopes).map(|(w, slope)| [*w, slope]).collect();
     beam.from_nodes(&nodal).map_err(|error| match error {
-        BeamError::BrokenSupport { node, component, value, support } => {
-            let (what, unit) = if component == 0 { ("w", " m") } else { ("slope", "") };
+        BeamError::BrokenSupport { node, dof, value, support } => {
+            let (what, unit) = if dof == Dof::Deflection { ("w", " m") } else { ("slope", "") };
             let word = wording::support(support);
             format!(
                 "it breaks the {word} support at x = {} m: {what} = {value}{unit}, but must be 0 there",
@@ -76,12 +76,12 @@ fn slopes(beam: &Beam, w: &[f64]) -> Vec<f64> {
     let x = beam.node_positions();
     let last = x.len() - 1;
     let spec = beam.spec();
-    let inner = |at: f64| spec.inner_supports.iter().find(|(place, _)| (place - at).abs() <= SAME_PLACE * spec.span);
+    let inner = |at: f64| spec.inner_supports.iter().find(|inner| (inner.x - at).abs() <= SAME_PLACE * spec.span);
     let turns = |node: usize| {
         let support = match node {
             0 => Some(spec.supports[0]),
             node if node == last => Some(spec.supports[1]),
-            node => inner(x[node]).map(|(_, support)| *support),
+            node => inner(x[node]).map(|inner| inner.support),
         };
         support.is_none_or(|support| support.holds()[1] != Hold::Fixed)
     };

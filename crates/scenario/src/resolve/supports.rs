@@ -1,6 +1,6 @@
 //! How beams are held, what they carry, and where their nodes are.
 
-use teeter_beam::{Hold, Lump, Support};
+use teeter_beam::{Hold, InnerSupport, Lump, Support};
 
 use super::Resolver;
 use crate::value::Item;
@@ -55,7 +55,7 @@ impl Resolver<'_, '_> {
     }
 
     /// The supports between the ends, with their places.
-    pub(super) fn inner_supports(&mut self, beam: &str, span: Option<f64>) -> Option<Vec<(f64, Support)>> {
+    pub(super) fn inner_supports(&mut self, beam: &str, span: Option<f64>) -> Option<Vec<InnerSupport>> {
         let group = format!("{beam}.support");
         let mut places: Vec<(f64, String)> = Vec::new();
         let mut of = |resolver: &mut Self, name: &str| {
@@ -68,7 +68,7 @@ impl Resolver<'_, '_> {
                 format!("the support `{other}` is there already")
             } else {
                 places.push((at, name.to_owned()));
-                return Some((at, support?));
+                return Some(InnerSupport::new(at, support?));
             };
             resolver.error(&format!("{path}.at"), rule, "give another place along the beam, from its left end");
             None
@@ -120,7 +120,7 @@ impl Resolver<'_, '_> {
             let x = resolver.place(&path, span);
             let mass = resolver.quantity(&format!("{path}.mass"));
             let inertia = resolver.quantity(&format!("{path}.inertia"));
-            Some(Lump { x: x?, mass: mass?, inertia: inertia? })
+            Some(Lump::new(x?, mass?).with_inertia(inertia?))
         };
         let all: Vec<_> = self.doc.names(&group).into_iter().map(|name| of(self, name)).collect();
         all.into_iter().collect()

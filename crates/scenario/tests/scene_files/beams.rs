@@ -1,7 +1,7 @@
 //! The keys of beams: what each makes of the beam, and what is refused with which words.
 
 use crate::sets;
-use teeter_beam::{Axial, Beam, Hold, Profile, Section, Support};
+use teeter_beam::{Axial, Beam, Hold, InnerSupport, Profile, Section, Support};
 use teeter_integrator::WBackend;
 use teeter_scenario::resolve::Resolved;
 use teeter_scenario::scene::{BeamScene, LoadKind};
@@ -79,7 +79,7 @@ fn each_section_has_its_own_keys() {
         ("beam.b.axial_stiffness", "3 MN"),
     ];
     let section = resolve(direct, &sheared).unwrap().scene.beams[0].spec.section;
-    assert_eq!((section.shear_stiffness, section.rotatory_inertia, section.axial_stiffness), (1e3, 0.01, 3e6));
+    assert_eq!((section.shear_stiffness, section.rotatory_inertia, section.axial_stiffness), (1e3, 0.01, Some(3e6)));
     let message = |pairs: &[(&str, &str)]| resolve(direct, pairs).map(drop).unwrap_err();
     assert!(message(&sheared[..1]).contains("missing, where theory = timoshenko"));
     assert!(message(&sheared[1..2]).contains("has no meaning with theory = euler-bernoulli"));
@@ -129,7 +129,7 @@ fn supports_stand_between_the_ends_as_well() {
     let beam = beam(&plain(more), &[]);
     let turns = Hold::Spring { stiffness: 5.0, damping: 0.0 };
     let prop = Support::Elastic { deflection: Hold::Fixed, rotation: turns };
-    assert_eq!(beam.spec.inner_supports, [(0.8, Support::Pinned), (1.5, prop)]);
+    assert_eq!(beam.spec.inner_supports, [InnerSupport::new(0.8, Support::Pinned), InnerSupport::new(1.5, prop)]);
     for (keys, says) in [
         ("at = '0 m'\nkind = 'pinned'", "must lie between the ends"),
         ("at = '2.5 m'\nkind = 'pinned'", "outside the span [0, 2] m"),
