@@ -43,17 +43,25 @@
 //! # Ok::<(), teeter_contact::ProblemError>(())
 //! ```
 
+mod block_sparse;
 mod cone;
 #[cfg(feature = "conformance")]
 pub mod conformance;
 mod delassus;
+mod incidence;
+mod islands;
 mod judge;
+mod owned;
 mod problem;
 mod solver;
 
+pub use block_sparse::{BlockSparse, BlockSparseError};
 pub use cone::{de_saxce, project};
-pub use delassus::{BlockSparse, BlockSparseError, Delassus, DelassusOperator};
+pub use delassus::{Delassus, DelassusOperator};
+pub use incidence::Incidence;
+pub use islands::Islands;
 pub use judge::{Residual, judge, judge_velocities};
+pub use owned::OwnedProblem;
 pub use problem::{ContactProblem, ProblemError};
 pub use solver::{ContactSolver, Law, Outcome, Status, Stop};
 
