@@ -21,8 +21,6 @@ use crate::ending::ended;
 use crate::memory::reserve;
 use crate::pairs::{Pairs, Small};
 use crate::{Newton, Pgs, Prox, Smoothing};
-#[cfg(feature = "sparse")]
-use teeter_contact::Delassus;
 use teeter_contact::{ContactProblem, ContactSolver, Outcome, Status, Stop, Vector, judge};
 
 /// Up to so many contacts a solution is polished, to this residual.
@@ -225,10 +223,6 @@ impl<const D: usize> Chain<D> {
 #[cfg(feature = "sparse")]
 fn has_long_rows<const D: usize>(problem: &ContactProblem<'_, D>) -> bool {
     let n = problem.contacts();
-    let blocks = match problem.delassus() {
-        Delassus::Blocks(h) => h.blocks().len(),
-        Delassus::Dense(blocks) => blocks.iter().filter(|block| block.iter().any(|&c| c != 0.0)).count(),
-        _ => 0,
-    };
+    let blocks = problem.nonzero_blocks().unwrap_or(0);
     n >= MANY && blocks >= LONG_ROW * n
 }
