@@ -31,6 +31,9 @@ pub struct Islands {
     /// The contacts, island by island, and where those of each island start.
     members: Vec<usize>,
     start: Vec<usize>,
+    /// Steps from a contact to its root, counted.
+    #[cfg(test)]
+    steps: usize,
 }
 
 impl Islands {
@@ -98,6 +101,10 @@ impl Islands {
         while self.parent[i] != i {
             self.parent[i] = self.parent[self.parent[i]];
             i = self.parent[i];
+            #[cfg(test)]
+            {
+                self.steps += 1;
+            }
         }
         i
     }
@@ -195,5 +202,35 @@ impl Islands {
             list.reserve(contacts.saturating_sub(list.len()));
         }
         start.reserve((contacts + 1).saturating_sub(start.len()));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Steps of the union-find for contacts that touch keys; as many keys a contact in every case.
+    fn steps(contacts: usize, touched: impl Fn(usize) -> [usize; 2]) -> f64 {
+        let (mut incidence, mut islands) = (Incidence::default(), Islands::default());
+        incidence.load(contacts, touched);
+        islands.find_shared(&incidence);
+        islands.steps as f64
+    }
+
+    #[test]
+    fn work_grows_with_contacts_whatever_their_order() {
+        // A number that is odd, so that multiples of it reach every contact: far from any order.
+        const JUMBLE: usize = 40_503;
+        for contacts in [1 << 10, 1 << 16] {
+            let of = |touched: &dyn Fn(usize) -> [usize; 2]| steps(contacts, touched) / contacts as f64;
+            let pairs = of(&|i| [i / 2, i / 2]);
+            let chain = of(&|i| [i, i + 1]);
+            let backwards = of(&|i| [contacts - i, contacts - i - 1]);
+            let jumbled = of(&|i| [i * JUMBLE % contacts, (i * JUMBLE + 1) % contacts]);
+            let tree = of(&|i| [i, i / 2]);
+            for steps in [pairs, chain, backwards, jumbled, tree] {
+                assert!(steps < 6.0, "{contacts} contacts: {steps} steps each");
+            }
+        }
     }
 }

@@ -54,6 +54,26 @@ impl<const D: usize> OwnedProblem<D> {
         Ok(Self { storage: Storage::Sparse, dense: Vec::new(), sparse: h, q, mu })
     }
 
+    /// The same problem with `shift` added to q, contact by contact; m/s. Newton's impact law with restitution e adds e times the normal
+    /// velocity before the impact where that is an approach.
+    ///
+    /// # Errors
+    /// If there isn't one vector a contact, or a sum is not finite.
+    pub fn shifted(mut self, shift: &[Vector<D>]) -> Result<Self, ProblemError> {
+        let contacts = self.contacts();
+        if shift.len() != contacts {
+            let (what, found, expected) = ("the shift", shift.len(), contacts);
+            return Err(ProblemError::Size { what, found, expected, contacts });
+        }
+        for (contact, (q, shift)) in self.q.iter_mut().zip(shift).enumerate() {
+            *q += shift;
+            if let Some(&value) = q.iter().find(|x| !x.is_finite()) {
+                return Err(ProblemError::NotFinite { what: "q", contact, value });
+            }
+        }
+        Ok(self)
+    }
+
     /// The problem that borrows this data.
     #[must_use]
     pub fn problem(&self) -> ContactProblem<'_, D> {

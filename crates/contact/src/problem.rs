@@ -55,6 +55,27 @@ pub enum ProblemError {
         /// Its tangential compliance.
         value: f64,
     },
+    /// A column of a Jacobian beyond the velocities that are given.
+    #[error("the Jacobian of contact {contact} has column {column}, but there are {velocities} velocities")]
+    NoSuchVelocity {
+        /// The contact.
+        contact: usize,
+        /// The column.
+        column: usize,
+        /// Number of velocities.
+        velocities: usize,
+    },
+    /// A diagonal of the inverse mass that doesn't belong to the velocities.
+    #[error("the inverse mass has {found} entries, but there are {velocities} velocities")]
+    InverseMassSize {
+        /// Entries found.
+        found: usize,
+        /// Number of velocities.
+        velocities: usize,
+    },
+    /// Blocks that make no matrix.
+    #[error(transparent)]
+    Blocks(#[from] crate::BlockSparseError),
     /// A contact along whose normal nothing can move, or moves against the impulse.
     #[error("the normal compliance H_NN of contact {contact} is {value} 1/kg, but must be greater than 0")]
     NotCompliant {

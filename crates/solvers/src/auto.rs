@@ -15,7 +15,7 @@ use crate::enumeration::{FEW, MAX_CONTACTS};
 use crate::memory::reserve;
 use crate::pairs::Small;
 use teeter_contact::{
-    ContactProblem, ContactSolver, Delassus, Islands, Law, Outcome, OwnedProblem, Status, Stop, Vector, judge,
+    ContactProblem, ContactSolver, Delassus, Islands, Law, Outcome, OwnedProblem, Stop, Vector, judge,
 };
 
 /// The exact methods of a dimension: for islands of a few contacts, and for those that the chain doesn't solve.
