@@ -6,7 +6,7 @@ use teeter_contact::conformance::{Case, body_on_floor, box_on_floor, check_law};
 use teeter_contact::{
     BlockSparse, ContactProblem, ContactSolver, Delassus, Incidence, Islands, Outcome, Stop, Vector, judge,
 };
-use teeter_solvers::Auto;
+use teeter_solvers::{Auto, SOLVERS, plane_solver, space_solver};
 
 /// The problem of several bodies that stand apart, its contacts in any order: contact k of the result is `order[k]` of those in a row.
 fn together<const D: usize>(bodies: &[Case<D>], order: &[usize]) -> Case<D> {
@@ -168,6 +168,44 @@ fn ten_thousand_contacts_in_islands_of_two_take_memory_that_grows_with_them() {
     let (half, all) = (bytes(2500), bytes(5000));
     assert!(all as f64 <= 2.2 * half as f64, "{half} bytes for 5000 contacts, {all} for 10 000");
     assert!(all < 50_000_000, "{all} bytes");
+}
+
+/// Bytes that a solver allocates for a block-sparse problem of many boxes that stand apart.
+fn bytes_of<const D: usize>(solver: &mut dyn ContactSolver<D>, boxes: usize, one: &Case<D>) -> u64 {
+    let m = one.q.len();
+    let mut h = BlockSparse::default();
+    h.set_rows(boxes * m, |i| (0..m).map(move |j| (i / m * m + j, one.h[i % m * m + j]))).unwrap();
+    let q: Vec<_> = (0..boxes).flat_map(|_| one.q.iter().copied()).collect();
+    let mu = vec![one.mu[0]; boxes * m];
+    let problem = ContactProblem::new(Delassus::Blocks(&h), &q, &mu).unwrap();
+    let mut p = vec![Vector::zeros(); boxes * m];
+    let before = bytes_so_far();
+    solver.solve(&problem, &Stop { max_iterations: 12, ..Stop::default() }, &mut p);
+    bytes_so_far() - before
+}
+
+#[test]
+fn no_solver_makes_room_for_zero_blocks() {
+    let plane = feet(4, [0.3, -1.0, 0.2], 0.4);
+    let corners = [[-0.5, -0.3, -1.0], [0.5, -0.3, -1.0], [0.5, 0.3, -1.0], [-0.5, 0.3, -1.0]];
+    let space = box_on_floor("box", [0.4, 0.5, 0.1], &corners, [0.3, 0.2, -1.0, 0.1, 0.0, 0.3], 0.4);
+    let check = |name: &str, bytes: &dyn Fn(usize) -> u64| {
+        let (half, all) = (bytes(400), bytes(800));
+        assert!(all as f64 <= 2.2 * half as f64, "{name}: {half} bytes for 1600 contacts, {all} for 3200");
+    };
+    let mut checked = 0;
+    // Those that take some contacts only have no use for a block-sparse problem.
+    for info in SOLVERS.iter().filter(|info| !["enumeration", "lemke"].contains(&info.name)) {
+        if plane_solver(info.name).is_some() {
+            check(info.name, &|boxes| bytes_of(plane_solver(info.name).unwrap().as_mut(), boxes, &plane));
+            checked += 1;
+        }
+        if space_solver(info.name).is_some() {
+            check(info.name, &|boxes| bytes_of(space_solver(info.name).unwrap().as_mut(), boxes, &space));
+            checked += 1;
+        }
+    }
+    assert!(checked >= 14, "{checked} solvers");
 }
 
 #[test]
