@@ -50,6 +50,8 @@
 //! # Ok::<(), teeter_contact::ProblemError>(())
 //! ```
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 mod block_sparse;
 mod cone;
 #[cfg(feature = "conformance")]

@@ -304,7 +304,7 @@ impl<const D: usize> Workspace<D> {
     fn solve_apart(&mut self, model: &Model<D>) -> Result<Option<Outcome>, ContactError> {
         let contacts = self.contacts.contacts().len();
         let SolverSettings { tolerance, max_iterations } = self.settings;
-        let stop = Stop { tolerance, max_iterations, cancel: None };
+        let stop = Stop::new(tolerance, max_iterations);
         let Self { apart, solver, factors, scratch, contacts: set, .. } = self;
         let outcome = apart.solve(set, model, factors, scratch, |problem, p| solver.solve(problem, &stop, p))?;
         if let Some(outcome) = &outcome {
@@ -321,7 +321,7 @@ impl<const D: usize> Workspace<D> {
     /// Solves the problem of `contacts`, whose H is there, by their rules.
     pub(crate) fn solve_assembled(&mut self, theta: f64) -> Result<Outcome, ContactError> {
         let SolverSettings { tolerance, max_iterations } = self.settings;
-        let stop = Stop { tolerance, max_iterations, cancel: None };
+        let stop = Stop::new(tolerance, max_iterations);
         if self.contacts.rules.iter().any(|rule| *rule != Rule::Shifted) {
             let mut solver = Counted { solver: self.solver.as_mut(), counts: &mut self.counts };
             return Ok(self.laws.solve(&mut self.contacts, theta, &mut solver, &stop)?);

@@ -26,8 +26,30 @@ struct Exact<const D: usize> {
 }
 
 /// The solver that chooses; see the [crate's table](crate). `used` of the outcome says which method gave the result;
-/// `iterations` are those of all methods tried; of a
-/// problem in islands, those of the island that took most.
+/// `iterations` are those of all methods tried; of a problem in islands, those of the island that took most.
+///
+/// ```
+/// use teeter_contact::nalgebra::Vector2;
+/// use teeter_contact::{ContactSolver, InverseMass, Jacobian, OwnedProblem, Stop};
+/// use teeter_solvers::Auto;
+///
+/// // A thousand blocks of 1 kg and 0.5 kg m² that stand apart and fall on two corners each: islands of two contacts.
+/// let mut jacobian = Jacobian::new();
+/// for block in 0..1000 {
+///     for x in [-0.4, 0.4] {
+///         let [along, up, turn] = [3 * block, 3 * block + 1, 3 * block + 2];
+///         jacobian.push([(along, Vector2::new(0.0, 1.0)), (up, Vector2::new(1.0, 0.0)), (turn, Vector2::new(x, 1.0))]);
+///     }
+/// }
+/// let inverse_mass = [1.0, 1.0, 2.0].repeat(1000);
+/// let velocity = [0.1, -1.0, 0.0].repeat(1000);
+/// let mass = InverseMass::Diagonal(&inverse_mass);
+/// let owned = OwnedProblem::from_jacobian(&jacobian, mass, &velocity, vec![0.5; 2000])?;
+/// let mut p = vec![Vector2::zeros(); 2000];
+/// let outcome = Auto::new().solve(&owned.problem(), &Stop::default(), &mut p);
+/// assert!(outcome.converged() && outcome.used == "enumeration");
+/// # Ok::<(), teeter_contact::ProblemError>(())
+/// ```
 #[derive(Debug, Default)]
 pub struct Auto<const D: usize> {
     chain: Chain<D>,
@@ -120,7 +142,7 @@ impl<const D: usize> Auto<D> {
         if anew {
             p.swap_with_slice(&mut self.start);
         }
-        let rest = Stop { max_iterations: stop.max_iterations.saturating_sub(apart.iterations), ..*stop };
+        let rest = stop.with_max_iterations(stop.max_iterations.saturating_sub(apart.iterations));
         let mut outcome = self.chain.solve(problem, exact.first, &rest, p);
         outcome.iterations = outcome.iterations.saturating_add(apart.iterations);
         if anew && !(outcome.residual.global <= apart.residual.global) {

@@ -119,7 +119,7 @@ impl<const D: usize> Chain<D> {
             self.best.clear();
             self.best.extend_from_slice(p);
             let left = stop.max_iterations.saturating_sub(outcome.iterations);
-            let polish = Stop { tolerance: POLISHED, max_iterations: left, ..*stop };
+            let polish = stop.with_tolerance(POLISHED).with_max_iterations(left);
             self.newton.prepare(problem);
             let polished = self.newton.round(problem, &polish, p);
             outcome.iterations = outcome.iterations.saturating_add(polished.iterations);
@@ -139,7 +139,7 @@ impl<const D: usize> Chain<D> {
         stop: &Stop<'_>,
         p: &mut [Vector<D>],
     ) -> Outcome {
-        let within = |left: u32, most: u32| Stop { max_iterations: left.min(most), ..*stop };
+        let within = |left: u32, most: u32| stop.with_max_iterations(left.min(most));
         let first = self.pgs.solve(problem, &within(stop.max_iterations, FIRST), p);
         let mut progress = Progress { best: first, iterations: first.iterations };
         if !progress.over(stop)
@@ -182,7 +182,7 @@ impl<const D: usize> Chain<D> {
         p: &mut [Vector<D>],
         progress: &mut Progress,
     ) {
-        let within = |left: u32, most: u32| Stop { max_iterations: left.min(most), ..*stop };
+        let within = |left: u32, most: u32| stop.with_max_iterations(left.min(most));
         // Sweeps that cost as much as a Newton step.
         let mut ratio = None;
         let mut batch = FIRST;

@@ -479,7 +479,7 @@ mod tests {
     fn solve(case: &teeter_contact::conformance::Case<2>) -> Vec<Vector2<f64>> {
         let mut p = vec![Vector2::zeros(); case.q.len()];
         let outcome =
-            Enumeration::new().solve(&case.problem().unwrap(), &Stop { tolerance: 1e-14, ..Stop::default() }, &mut p);
+            Enumeration::new().solve(&case.problem().unwrap(), &Stop::default().with_tolerance(1e-14), &mut p);
         assert!(outcome.converged(), "{outcome:?}");
         p
     }

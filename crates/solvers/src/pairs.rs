@@ -100,7 +100,7 @@ impl<const D: usize> Pairs<D> {
     }
 
     fn sweep(&self, problem: &ContactProblem<'_, D>, small: Small<D>, p: &mut [Vector<D>]) {
-        let exact = Stop { tolerance: EXACT, ..Stop::default() };
+        let exact = Stop::default().with_tolerance(EXACT);
         for (i, &j) in self.partner.iter().enumerate().filter(|(i, j)| i <= *j) {
             let (Some(h_ij), Some(h_ji)) = (problem.block(i, j), problem.block(j, i)) else { return };
             let h = [problem.diagonal(i), h_ij, h_ji, problem.diagonal(j)];

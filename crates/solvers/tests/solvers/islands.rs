@@ -180,7 +180,7 @@ fn bytes_of<const D: usize>(solver: &mut dyn ContactSolver<D>, boxes: usize, one
     let problem = ContactProblem::new(Delassus::Blocks(&h), &q, &mu).unwrap();
     let mut p = vec![Vector::zeros(); boxes * m];
     let before = bytes_so_far();
-    solver.solve(&problem, &Stop { max_iterations: 12, ..Stop::default() }, &mut p);
+    solver.solve(&problem, &Stop::default().with_max_iterations(12), &mut p);
     bytes_so_far() - before
 }
 
