@@ -116,7 +116,7 @@ fn main() {
         });
         let mut solver = Pgs::new();
         let mut sweeps = |max_iterations, p: &mut [Vector3<f64>]| {
-            let outcome = solver.solve(&posed, &Stop { tolerance: 0.0, max_iterations, cancel: None }, p);
+            let outcome = solver.solve(&posed, &Stop::new(0.0, max_iterations), p);
             assert_eq!(outcome.iterations, max_iterations, "{outcome:?}");
         };
         let mut settled = vec![Vector3::zeros(); contacts];

@@ -5,6 +5,7 @@ use crate::{ContactProblem, Vector};
 
 /// How far impulses are from solving a contact problem; 0 is exact. Both numbers are without unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Residual {
     /// `‖p − Π(p − ρû)‖ / max(‖p‖, ρ‖q‖)` over all contacts together, ρ = 1/mean(diag H).
     pub global: f64,
@@ -12,6 +13,14 @@ pub struct Residual {
     pub worst: f64,
     /// The contact with that residual (0 if there is none).
     pub worst_contact: usize,
+}
+
+impl Residual {
+    /// A residual; taken as given.
+    #[must_use]
+    pub fn new(global: f64, worst: f64, worst_contact: usize) -> Self {
+        Self { global, worst, worst_contact }
+    }
 }
 
 /// The floor of a scale, so that the residual of "nothing moves, nothing presses" is 0, not 0/0.

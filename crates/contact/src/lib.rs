@@ -22,6 +22,13 @@
 //! A solver that wants the blocks, whatever the shape, takes them by [`BlockSparse::gather`] into memory that it keeps. H may be
 //! singular, as with two corners of one body, and asymmetric: [`ContactProblem::asymmetry`] reports it, nothing refuses it.
 //!
+//! # Many contacts
+//!
+//! Contacts feel each other through what they share. Whoever assembles H for many of them names what each touches
+//! ([`Incidence`]), takes the pattern from that ([`BlockSparse::set_pattern`]) and adds blocks to it, in memory that is kept from step to
+//! step. [`Islands`] are the parts that don't feel each other. An [`OwnedProblem`] holds its data itself: it is made from a [`Jacobian`],
+//! masses and velocities, or is an island of another problem.
+//!
 //! A solver implements [`ContactSolver`]. Iterative ones that have the velocities at hand ask [`judge_velocities`], which
 //! spares a product with H. The feature `conformance` brings a harness that any solver can be run through.
 //!
@@ -43,19 +50,35 @@
 //! # Ok::<(), teeter_contact::ProblemError>(())
 //! ```
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
+mod block_sparse;
 mod cone;
 #[cfg(feature = "conformance")]
 pub mod conformance;
 mod delassus;
+mod incidence;
+mod islands;
+mod jacobian;
 mod judge;
+mod owned;
 mod problem;
 mod solver;
 
+pub use block_sparse::{BlockSparse, BlockSparseError};
 pub use cone::{de_saxce, project};
-pub use delassus::{BlockSparse, BlockSparseError, Delassus, DelassusOperator};
+pub use delassus::{Delassus, DelassusOperator};
+pub use incidence::Incidence;
+pub use islands::Islands;
+pub use jacobian::{InverseMass, Jacobian};
 pub use judge::{Residual, judge, judge_velocities};
+pub use owned::OwnedProblem;
 pub use problem::{ContactProblem, ProblemError};
 pub use solver::{ContactSolver, Law, Outcome, Status, Stop};
+
+/// The linear algebra that [`Vector`] and [`Block`] are types of. Its version is part of this crate's interface: take it from here, and
+/// yours is the same.
+pub use nalgebra;
 
 /// One contact's impulse or relative velocity: normal component first. N·s or m/s.
 pub type Vector<const D: usize> = nalgebra::SVector<f64, D>;

@@ -55,6 +55,27 @@ pub enum ProblemError {
         /// Its tangential compliance.
         value: f64,
     },
+    /// A column of a Jacobian beyond the velocities that are given.
+    #[error("the Jacobian of contact {contact} has column {column}, but there are {velocities} velocities")]
+    NoSuchVelocity {
+        /// The contact.
+        contact: usize,
+        /// The column.
+        column: usize,
+        /// Number of velocities.
+        velocities: usize,
+    },
+    /// A diagonal of the inverse mass that doesn't belong to the velocities.
+    #[error("the inverse mass has {found} entries, but there are {velocities} velocities")]
+    InverseMassSize {
+        /// Entries found.
+        found: usize,
+        /// Number of velocities.
+        velocities: usize,
+    },
+    /// Blocks that make no matrix.
+    #[error(transparent)]
+    Blocks(#[from] crate::BlockSparseError),
     /// A contact along whose normal nothing can move, or moves against the impulse.
     #[error("the normal compliance H_NN of contact {contact} is {value} 1/kg, but must be greater than 0")]
     NotCompliant {
@@ -83,7 +104,7 @@ impl<'a, const D: usize> ContactProblem<'a, D> {
             }
             Delassus::Blocks(sparse) => {
                 size("the block-sparse Delassus operator (rows)", sparse.contacts(), contacts)?;
-                check_blocks(sparse.blocks(), |k| row_of_block(sparse, k))?;
+                check_blocks(sparse.blocks(), |k| sparse.row_of(k))?;
             }
             Delassus::Operator(operator) => size("the Delassus operator", operator.contacts(), contacts)?,
         }
@@ -112,6 +133,11 @@ impl<'a, const D: usize> ContactProblem<'a, D> {
             }
         }
         Ok(Self { h, q, mu })
+    }
+
+    /// A problem of data that were checked by [`Self::new`] before.
+    pub(crate) fn checked_before(h: Delassus<'a, D>, q: &'a [Vector<D>], mu: &'a [f64]) -> Self {
+        Self { h, q, mu }
     }
 
     /// Number of contacts.
@@ -161,6 +187,65 @@ impl<'a, const D: usize> ContactProblem<'a, D> {
         h.asymmetry()
     }
 
+    /// The stored blocks of row `i`: (column, block), ascending; for a dense operator all of them, zeros included. `None` for an operator
+    /// that is given by what it does.
+    ///
+    /// # Panics
+    /// If there is no contact `i`: a mistake of the calling code.
+    #[inline]
+    #[must_use]
+    pub fn row(&self, i: usize) -> Option<impl ExactSizeIterator<Item = (usize, &'a Block<D>)> + use<'a, D>> {
+        let (columns, blocks) = match self.h {
+            Delassus::Dense(blocks) => (None, &blocks[i * self.q.len()..(i + 1) * self.q.len()]),
+            Delassus::Blocks(h) => (Some(&h.columns()[h.range(i)]), &h.blocks()[h.range(i)]),
+            Delassus::Operator(_) => return None,
+        };
+        let column = move |k: usize| columns.map_or(k, |columns| columns[k]);
+        Some(blocks.iter().enumerate().map(move |(k, block)| (column(k), block)))
+    }
+
+    /// The block (i, j), zero where it isn't stored. `None` for an operator that is given by what it does.
+    ///
+    /// # Panics
+    /// If there is no contact `i` or, for a dense operator, no contact `j`: a mistake of the calling code.
+    #[inline]
+    #[must_use]
+    pub fn block(&self, i: usize, j: usize) -> Option<Block<D>> {
+        match self.h {
+            Delassus::Dense(blocks) => Some(blocks[i * self.q.len()..(i + 1) * self.q.len()][j]),
+            Delassus::Blocks(h) => Some(h.block(i, j).copied().unwrap_or_else(Block::zeros)),
+            Delassus::Operator(_) => None,
+        }
+    }
+
+    /// How many blocks of H are not zero: what a sweep over the problem costs. `None` for an operator that is given by what it does.
+    #[must_use]
+    pub fn nonzero_blocks(&self) -> Option<usize> {
+        let blocks = match self.h {
+            Delassus::Dense(blocks) => blocks,
+            Delassus::Blocks(h) => h.blocks(),
+            Delassus::Operator(_) => return None,
+        };
+        Some(blocks.iter().filter(|block| block.iter().any(|&c| c != 0.0)).count())
+    }
+
+    /// `‖q‖`, Euclidean, over all contacts; m/s.
+    #[must_use]
+    pub fn q_norm(&self) -> f64 {
+        self.q.iter().map(Vector::norm_squared).sum::<f64>().sqrt()
+    }
+
+    /// `‖H‖` in Frobenius' norm, 1/kg. `None` for an operator that is given by what it does.
+    #[must_use]
+    pub fn h_norm(&self) -> Option<f64> {
+        let blocks = match self.h {
+            Delassus::Dense(blocks) => blocks,
+            Delassus::Blocks(h) => h.blocks(),
+            Delassus::Operator(_) => return None,
+        };
+        Some(blocks.iter().map(Block::norm_squared).sum::<f64>().sqrt())
+    }
+
     /// The diagonal block of contact `i`.
     #[inline]
     #[must_use]
@@ -178,6 +263,17 @@ impl<'a, const D: usize> ContactProblem<'a, D> {
         assert_eq!(p.len(), self.q.len(), "one impulse a contact");
         self.h.row_product(i, p) + self.q[i]
     }
+
+    /// All velocities: `u = H p + q`.
+    ///
+    /// # Panics
+    /// If `p` or `u` doesn't hold one vector a contact: a mistake of the calling code.
+    pub fn velocities(&self, p: &[Vector<D>], u: &mut [Vector<D>]) {
+        assert_eq!(u.len(), self.q.len(), "one velocity a contact");
+        for (i, u) in u.iter_mut().enumerate() {
+            *u = self.velocity(i, p);
+        }
+    }
 }
 
 /// The first number that isn't finite. 0 · x is 0 for all that are, so one sum tells whether to look for it.
@@ -194,10 +290,6 @@ fn check_blocks<const D: usize>(blocks: &[Block<D>], row: impl Fn(usize) -> usiz
         }
     }
     Ok(())
-}
-
-fn row_of_block<const D: usize>(h: &crate::BlockSparse<D>, k: usize) -> usize {
-    (0..h.contacts()).find(|&i| h.range(i).contains(&k)).unwrap_or(h.contacts())
 }
 
 #[cfg(test)]

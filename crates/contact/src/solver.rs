@@ -13,7 +13,15 @@ pub enum Law {
 }
 
 /// When a solver stops.
+///
+/// ```
+/// use teeter_contact::Stop;
+///
+/// let stop = Stop::default().with_tolerance(1e-12);
+/// assert_eq!((stop.tolerance, stop.max_iterations), (1e-12, 10_000));
+/// ```
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Stop<'a> {
     /// Largest global residual of [`judge()`](crate::judge()) that counts as solved; without unit.
     pub tolerance: f64,
@@ -23,7 +31,31 @@ pub struct Stop<'a> {
     pub cancel: Option<&'a AtomicBool>,
 }
 
-impl Stop<'_> {
+impl<'a> Stop<'a> {
+    /// At this global residual or after so many iterations, whichever comes first.
+    #[must_use]
+    pub fn new(tolerance: f64, max_iterations: u32) -> Self {
+        Self { tolerance, max_iterations, cancel: None }
+    }
+
+    /// The same with another tolerance.
+    #[must_use]
+    pub fn with_tolerance(self, tolerance: f64) -> Self {
+        Self { tolerance, ..self }
+    }
+
+    /// The same with another number of iterations.
+    #[must_use]
+    pub fn with_max_iterations(self, max_iterations: u32) -> Self {
+        Self { max_iterations, ..self }
+    }
+
+    /// The same with a flag that ends the solve early when it is set.
+    #[must_use]
+    pub fn with_cancel(self, cancel: &'a AtomicBool) -> Self {
+        Self { cancel: Some(cancel), ..self }
+    }
+
     /// Whether the caller wants the solve to end.
     #[must_use]
     pub fn cancelled(&self) -> bool {
@@ -34,7 +66,7 @@ impl Stop<'_> {
 impl Default for Stop<'_> {
     /// The program's defaults: 1e-10 and 10 000 iterations.
     fn default() -> Self {
-        Self { tolerance: 1e-10, max_iterations: 10_000, cancel: None }
+        Self::new(1e-10, 10_000)
     }
 }
 
@@ -113,6 +145,43 @@ impl Outcome {
 }
 
 /// A solver of frictional contact problems in D dimensions.
+///
+/// ```
+/// use teeter_contact::nalgebra::{Matrix2, Vector2};
+/// use teeter_contact::{ContactProblem, ContactSolver, Delassus, Law, Outcome, Status, Stop, judge};
+///
+/// /// One plane contact without friction.
+/// struct Single;
+///
+/// impl ContactSolver<2> for Single {
+///     fn name(&self) -> &'static str {
+///         "single"
+///     }
+///     fn law(&self) -> Law {
+///         Law::Exact
+///     }
+///     fn reserve(&mut self, _contacts: usize, _blocks: usize) {}
+///     fn solve(&mut self, problem: &ContactProblem<'_, 2>, stop: &Stop<'_>, p: &mut [Vector2<f64>]) -> Outcome {
+///         if let [p] = p {
+///             *p = Vector2::new((-problem.q()[0][0] / problem.diagonal(0)[(0, 0)]).max(0.0), 0.0);
+///         }
+///         let residual = judge(problem, p);
+///         let status = if residual.global <= stop.tolerance { Status::Converged } else { Status::Breakdown };
+///         Outcome::new(status, self.name(), 1, residual)
+///     }
+///     fn fork(&self) -> Box<dyn ContactSolver<2>> {
+///         Box::new(Single)
+///     }
+/// }
+///
+/// let (h, q) = ([Matrix2::identity()], [Vector2::new(-1.0, 2.0)]);
+/// let mut p = [Vector2::zeros()];
+/// let problem = ContactProblem::new(Delassus::Dense(&h), &q, &[0.0])?;
+/// assert!(Single.solve(&problem, &Stop::default(), &mut p).converged());
+/// let problem = ContactProblem::new(Delassus::Dense(&h), &q, &[0.5])?;
+/// assert!(!Single.solve(&problem, &Stop::default(), &mut p).converged());
+/// # Ok::<(), teeter_contact::ProblemError>(())
+/// ```
 ///
 /// A solver may keep what it learns between calls (memory, analysis), but what it returns depends on the problem and
 /// on the start only, so that equal runs give equal bytes.

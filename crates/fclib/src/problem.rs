@@ -1,6 +1,6 @@
 //! A local problem in memory.
 
-use teeter_contact::{BlockSparse, ContactProblem, Delassus, ProblemError, Vector};
+use teeter_contact::{BlockSparse, ContactProblem, Delassus, OwnedProblem, ProblemError, Vector};
 
 /// A problem of either dimension.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,6 +58,22 @@ pub struct LocalProblem<const D: usize> {
 }
 
 impl<const D: usize> LocalProblem<D> {
+    /// A problem as it is written to a file, with nothing beside it. Zero blocks are left out.
+    #[must_use]
+    pub fn of(problem: &ContactProblem<'_, D>) -> Self {
+        let mut local = Self { q: problem.q().to_vec(), mu: problem.mu().to_vec(), ..Self::default() };
+        local.h.gather(problem);
+        local
+    }
+
+    /// The problem that owns this data, without what FCLIB keeps beside it.
+    ///
+    /// # Errors
+    /// As [`ContactProblem::new`]; not for a problem as read.
+    pub fn into_owned(self) -> Result<OwnedProblem<D>, ProblemError> {
+        OwnedProblem::sparse(self.h, self.q, self.mu)
+    }
+
     /// The problem that borrows this data.
     ///
     /// # Errors

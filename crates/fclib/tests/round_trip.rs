@@ -4,7 +4,7 @@
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use proptest::prelude::*;
 use std::path::Path;
-use teeter_contact::{Block, BlockSparse, Vector};
+use teeter_contact::{Block, BlockSparse, OwnedProblem, Vector};
 use teeter_fclib::{FclibError, FclibProblem, Info, LocalProblem, Solution, from_bytes};
 
 fn bits<const D: usize>(local: &LocalProblem<D>) -> Vec<u64> {
@@ -67,6 +67,26 @@ fn doubles_signs_of_zero_texts_guesses_and_solutions_come_back() {
     let q = vec![Vector2::new(-1e-300, -0.0), Vector2::new(4.3e-18, 2.0)];
     let guesses = vec![some.clone(), other];
     back(&LocalProblem { h, q, mu: vec![0.0, 1e200], info, guesses, solution: Some(some) }, plane);
+}
+
+#[test]
+fn a_problem_in_memory_goes_to_a_file_and_back() {
+    let h = vec![Matrix2::identity(), Matrix2::zeros(), Matrix2::repeat(0.1), Matrix2::identity() * 2.0];
+    let owned = OwnedProblem::dense(h, vec![Vector2::new(-1.0, 0.5), Vector2::new(0.3, -0.0)], vec![0.5, 0.0]).unwrap();
+    let read = back(&LocalProblem::of(&owned.problem()), plane);
+    assert_eq!(read.h.columns(), [0, 0, 1], "without the zero block");
+    let again = read.into_owned().unwrap();
+    for i in 0..2 {
+        assert_eq!(
+            (again.problem().q()[i], again.problem().mu()[i]),
+            (owned.problem().q()[i], owned.problem().mu()[i])
+        );
+        for j in 0..2 {
+            assert_eq!(again.problem().block(i, j), owned.problem().block(i, j));
+        }
+    }
+    let bad = LocalProblem { mu: vec![-0.5, 0.0], ..LocalProblem::of(&owned.problem()) };
+    assert!(bad.into_owned().is_err());
 }
 
 #[test]

@@ -248,7 +248,7 @@ impl<const D: usize> Workspace<D> {
     #[inline]
     pub(crate) fn solve_problem(&mut self, problem: &mut Problem<D>, weight: f64) -> Result<Outcome, ContactError> {
         let SolverSettings { tolerance, max_iterations } = self.settings;
-        let stop = Stop { tolerance, max_iterations, ..Stop::default() };
+        let stop = Stop::new(tolerance, max_iterations);
         if problem.is_standard() {
             let (posed, p) = problem.pose()?;
             let outcome = self.solver.solve(&posed, &stop, p);

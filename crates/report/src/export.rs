@@ -320,9 +320,7 @@ mod tests {
 
     #[test]
     fn hard_is_ten_times_the_median_a_fallback_or_a_failure() {
-        let outcome = |status, used, iterations| {
-            Outcome::new(status, used, iterations, Residual { global: 0.0, worst: 0.0, worst_contact: 0 })
-        };
+        let outcome = |status, used, iterations| Outcome::new(status, used, iterations, Residual::new(0.0, 0.0, 0));
         let solved = |used, iterations| outcome(Status::Converged, used, iterations);
         let mut seen = Seen::default();
         assert_eq!(seen.median(), None);

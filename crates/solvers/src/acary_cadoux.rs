@@ -174,7 +174,7 @@ impl<const D: usize> ContactSolver<D> for AcaryCadoux<D> {
             let close = residual.global <= CLOSE && residual.global > stop.tolerance;
             if (close || poor >= PATIENCE) && iterations < stop.max_iterations {
                 poor = 0;
-                let rest = Stop { max_iterations: POLISH.min(stop.max_iterations - iterations), ..*stop };
+                let rest = stop.with_max_iterations(POLISH.min(stop.max_iterations - iterations));
                 iterations += self.polish(problem, &rest, p, &mut residual);
                 if close && residual.global > stop.tolerance {
                     // Neither the fixed point, so near, nor the polish gets there.

@@ -44,16 +44,46 @@ const PATIENCE: u32 = 8000;
 #[derive(Clone, Debug, Default)]
 pub struct Apgd<const D: usize> {
     gathered: BlockSparse<D>,
+    at: Iterate<D>,
+    best: Vec<Vector<D>>,
+}
+
+/// What is solved: the problem, with its operator in the form for many products.
+struct Posed<'a, const D: usize> {
+    problem: &'a ContactProblem<'a, D>,
+    h: Operator<'a, D>,
+    law: Law,
+    rho: f64,
+    /// ρ‖q‖: what residuals are relative to where the impulses are smaller.
+    q_norm: f64,
+}
+
+/// Where the iteration is.
+#[derive(Clone, Debug, Default)]
+struct Iterate<const D: usize> {
+    /// The step that suits each contact on its own, and the factor on all of them.
     own: Vec<f64>,
+    step: f64,
+    /// Nesterov's θ, from which the momentum follows.
+    theta: f64,
     shift: Vec<f64>,
     p: Vec<Vector<D>>,
     u: Vec<Vector<D>>,
     /// The extrapolated point, and its velocities.
     y: Vec<Vector<D>>,
     u_y: Vec<Vector<D>>,
+    /// The point that the gradient at y leads to, and its velocities.
     next: Vec<Vector<D>>,
     u_next: Vec<Vector<D>>,
-    best: Vec<Vector<D>>,
+}
+
+/// How far the iterate is from the solution, relative to the size of its impulses.
+struct Distance {
+    size: f64,
+    /// From that of the convex problem with the shift held.
+    convex: f64,
+    /// From that of the law that is solved.
+    law: f64,
 }
 
 impl<const D: usize> Apgd<D> {
@@ -66,7 +96,7 @@ impl<const D: usize> Apgd<D> {
         Self::default()
     }
 
-    /// Iterates from `p` and leaves the best in it; with the convex law the shift stays 0 and the convex residual counts.
+    /// Iterates from `start` and leaves the best in it; with the convex law the shift stays 0 and the convex residual counts.
     pub(crate) fn iterate(
         &mut self,
         problem: &ContactProblem<'_, D>,
@@ -74,43 +104,25 @@ impl<const D: usize> Apgd<D> {
         start: &mut [Vector<D>],
         law: Law,
     ) -> (Status, u32) {
-        let Self { gathered, own, shift, p, u, y, u_y, next, u_next, best } = self;
-        let h = Operator::new(problem, gathered);
-        let (n, q, mu, rho) = (problem.contacts(), problem.q(), problem.mu(), problem.scale());
-        own.clear();
-        own.extend((0..n).map(|i| own_step(problem, i)));
-        for vectors in [&mut *p, u, y, u_y, next, u_next, best] {
-            vectors.clear();
-            vectors.extend_from_slice(start);
-        }
-        for i in 0..n {
-            u[i] = h.velocity(i, q, p);
-        }
-        u_y.copy_from_slice(u);
-        let slip = |p: &Vector<D>, u: &Vector<D>, mu: f64| {
-            if law == Law::Convex { 0.0 } else { slip_shift(p, u, mu) }
-        };
-        shift.clear();
-        // A very large μ on a contact without impulse would hold it open: there the convex law comes first.
-        shift.extend((0..n).map(|i| if mu[i] > STEEP && p[i][0] <= 0.0 { 0.0 } else { slip(&p[i], &u[i], mu[i]) }));
-        let q_norm = rho * q.iter().map(Vector::norm_squared).sum::<f64>().sqrt();
-        let (mut step, mut theta) = (1.0, 1.0_f64);
+        let Self { gathered, at, best } = self;
+        let rho = problem.scale();
+        let q_norm = rho * problem.q_norm();
+        let posed = Posed { problem, h: Operator::new(problem, gathered), law, rho, q_norm };
+        at.start(&posed, start);
+        best.clear();
+        best.extend_from_slice(start);
         let (mut best_residual, mut best_at, mut iterations) = (f64::INFINITY, 0, 0);
         let ended = loop {
             if iterations % CHECK == 0 || iterations >= stop.max_iterations {
-                let size = p.iter().map(Vector::norm_squared).sum::<f64>().sqrt().max(q_norm).max(f64::MIN_POSITIVE);
-                let convex = convex_map(p, u, shift, mu, rho) / size;
-                let residual = if law == Law::Convex { convex } else { natural_map(p, u, mu, rho) / size };
-                if residual < best_residual {
-                    (best_residual, best_at) = (residual, iterations);
-                    best.copy_from_slice(p);
+                let distance = at.distance(&posed);
+                if distance.law < best_residual {
+                    (best_residual, best_at) = (distance.law, iterations);
+                    best.copy_from_slice(&at.p);
                 }
-                let small = residual <= stop.tolerance
-                    || (law == Law::Exact && is_steep(mu) && disk_map(p, u, mu, rho) <= stop.tolerance * size);
-                if small && (law == Law::Convex || judge(problem, p).global <= stop.tolerance) {
+                if at.solves(&posed, &distance, stop.tolerance) {
                     break Status::Converged;
                 }
-                if !residual.is_finite() {
+                if !distance.law.is_finite() {
                     break Status::Breakdown;
                 }
                 if iterations >= stop.max_iterations {
@@ -122,59 +134,132 @@ impl<const D: usize> Apgd<D> {
                 if stop.cancelled() {
                     break Status::Cancelled;
                 }
-                // A large μ inflates the residual by the smallest slip: there the law taken apart is compared with.
-                let exact = if is_steep(mu) { disk_map(p, u, mu, rho) / size } else { residual };
-                if law == Law::Exact && convex <= ENOUGH * exact {
-                    for i in 0..n {
-                        shift[i] = slip(&p[i], &u[i], mu[i]);
-                    }
-                }
+                at.renew_shift(&posed, &distance);
             }
             iterations += 1;
-            for _ in 0..MOST_CUTS {
-                let (mut curvature, mut way) = (0.0, 0.0);
-                for i in 0..n {
-                    let mut gradient = u_y[i];
-                    gradient[0] += shift[i];
-                    next[i] = project(&(y[i] - gradient * (step * own[i])), mu[i]);
-                }
-                for i in 0..n {
-                    u_next[i] = h.velocity(i, q, next);
-                    let d = next[i] - y[i];
-                    curvature += d.dot(&(u_next[i] - u_y[i]));
-                    way += d.norm_squared() / own[i];
-                }
-                if step * curvature <= way {
-                    break;
-                }
-                step *= SHRINK;
-            }
-            // The gradient at y along the step taken: uphill, the momentum is forgotten.
-            let mut uphill = 0.0;
-            for i in 0..n {
-                let mut gradient = u_y[i];
-                gradient[0] += shift[i];
-                uphill += gradient.dot(&(next[i] - p[i]));
-            }
-            let squared = theta * theta;
-            let mut theta_next = 0.5 * (-squared + theta * (squared + 4.0).sqrt());
-            let mut momentum = theta * (1.0 - theta) / (squared + theta_next);
-            if uphill > 0.0 {
-                (theta_next, momentum) = (1.0, 0.0);
-            }
-            theta = theta_next;
-            for i in 0..n {
-                y[i] = next[i] + (next[i] - p[i]) * momentum;
-                u_y[i] = u_next[i] + (u_next[i] - u[i]) * momentum;
-            }
-            std::mem::swap(p, next);
-            std::mem::swap(u, u_next);
-            step *= GROW;
+            at.descend(&posed);
+            at.accelerate();
         };
         if ended != Status::Breakdown || best_residual.is_finite() {
-            start.copy_from_slice(if ended == Status::Converged { p } else { best });
+            start.copy_from_slice(if ended == Status::Converged { &at.p } else { best });
         }
         (ended, iterations)
+    }
+}
+
+impl<const D: usize> Posed<'_, D> {
+    fn velocities(&self, p: &[Vector<D>], u: &mut [Vector<D>]) {
+        for (i, u) in u.iter_mut().enumerate() {
+            *u = self.h.velocity(i, self.problem.q(), p);
+        }
+    }
+
+    /// De Saxcé's shift of a contact.
+    fn slip(&self, p: &Vector<D>, u: &Vector<D>, mu: f64) -> f64 {
+        if self.law == Law::Convex { 0.0 } else { slip_shift(p, u, mu) }
+    }
+}
+
+impl<const D: usize> Iterate<D> {
+    fn vectors(&mut self) -> [&mut Vec<Vector<D>>; 6] {
+        [&mut self.p, &mut self.u, &mut self.y, &mut self.u_y, &mut self.next, &mut self.u_next]
+    }
+
+    /// All points at `start`, with the shift of its slips.
+    fn start(&mut self, posed: &Posed<'_, D>, start: &[Vector<D>]) {
+        let (n, mu) = (start.len(), posed.problem.mu());
+        self.own.clear();
+        self.own.extend((0..n).map(|i| own_step(posed.problem, i)));
+        for vectors in self.vectors() {
+            vectors.clear();
+            vectors.extend_from_slice(start);
+        }
+        posed.velocities(&self.p, &mut self.u);
+        self.u_y.copy_from_slice(&self.u);
+        let (p, u) = (&self.p, &self.u);
+        self.shift.clear();
+        // A very large μ on a contact without impulse would hold it open: there the convex law comes first.
+        let shift = |i: usize| if mu[i] > STEEP && p[i][0] <= 0.0 { 0.0 } else { posed.slip(&p[i], &u[i], mu[i]) };
+        self.shift.extend((0..n).map(shift));
+        (self.step, self.theta) = (1.0, 1.0);
+    }
+
+    fn distance(&self, posed: &Posed<'_, D>) -> Distance {
+        let (p, u, mu, rho) = (&self.p, &self.u, posed.problem.mu(), posed.rho);
+        let size = p.iter().map(Vector::norm_squared).sum::<f64>().sqrt().max(posed.q_norm).max(f64::MIN_POSITIVE);
+        let convex = convex_map(p, u, &self.shift, mu, rho) / size;
+        let law = if posed.law == Law::Convex { convex } else { natural_map(p, u, mu, rho) / size };
+        Distance { size, convex, law }
+    }
+
+    /// Whether the law is solved to the tolerance; of the exact law the judge has the last word.
+    fn solves(&self, posed: &Posed<'_, D>, distance: &Distance, tolerance: f64) -> bool {
+        let (mu, exact) = (posed.problem.mu(), posed.law == Law::Exact);
+        let small = distance.law <= tolerance
+            || (exact && is_steep(mu) && disk_map(&self.p, &self.u, mu, posed.rho) <= tolerance * distance.size);
+        small && (!exact || judge(posed.problem, &self.p).global <= tolerance)
+    }
+
+    /// Renews the shift where the convex problem is solved as well as is worth while with the one held.
+    fn renew_shift(&mut self, posed: &Posed<'_, D>, distance: &Distance) {
+        let mu = posed.problem.mu();
+        // A large μ inflates the residual by the smallest slip: there the law taken apart is compared with.
+        let exact = if is_steep(mu) { disk_map(&self.p, &self.u, mu, posed.rho) / distance.size } else { distance.law };
+        if posed.law == Law::Exact && distance.convex <= ENOUGH * exact {
+            for i in 0..self.p.len() {
+                self.shift[i] = posed.slip(&self.p[i], &self.u[i], mu[i]);
+            }
+        }
+    }
+
+    /// The gradient of the convex problem at y.
+    #[inline]
+    fn gradient(&self, i: usize) -> Vector<D> {
+        let mut gradient = self.u_y[i];
+        gradient[0] += self.shift[i];
+        gradient
+    }
+
+    /// From y along the gradient onto the cones, by a step that is cut until the curvature on the way allows it.
+    fn descend(&mut self, posed: &Posed<'_, D>) {
+        let (q, mu) = (posed.problem.q(), posed.problem.mu());
+        for _ in 0..MOST_CUTS {
+            for i in 0..self.p.len() {
+                self.next[i] = project(&(self.y[i] - self.gradient(i) * (self.step * self.own[i])), mu[i]);
+            }
+            let (mut curvature, mut way) = (0.0, 0.0);
+            for i in 0..self.p.len() {
+                self.u_next[i] = posed.h.velocity(i, q, &self.next);
+                let d = self.next[i] - self.y[i];
+                curvature += d.dot(&(self.u_next[i] - self.u_y[i]));
+                way += d.norm_squared() / self.own[i];
+            }
+            if self.step * curvature <= way {
+                break;
+            }
+            self.step *= SHRINK;
+        }
+    }
+
+    /// Goes to the point found, and extrapolates beyond it by Nesterov's momentum.
+    fn accelerate(&mut self) {
+        let n = self.p.len();
+        // The gradient at y along the step taken: uphill, the momentum is forgotten.
+        let uphill = (0..n).fold(0.0, |sum, i| sum + self.gradient(i).dot(&(self.next[i] - self.p[i])));
+        let squared = self.theta * self.theta;
+        let mut theta_next = 0.5 * (-squared + self.theta * (squared + 4.0).sqrt());
+        let mut momentum = self.theta * (1.0 - self.theta) / (squared + theta_next);
+        if uphill > 0.0 {
+            (theta_next, momentum) = (1.0, 0.0);
+        }
+        self.theta = theta_next;
+        for i in 0..n {
+            self.y[i] = self.next[i] + (self.next[i] - self.p[i]) * momentum;
+            self.u_y[i] = self.u_next[i] + (self.u_next[i] - self.u[i]) * momentum;
+        }
+        std::mem::swap(&mut self.p, &mut self.next);
+        std::mem::swap(&mut self.u, &mut self.u_next);
+        self.step *= GROW;
     }
 }
 
@@ -189,12 +274,12 @@ impl<const D: usize> ContactSolver<D> for Apgd<D> {
 
     fn reserve(&mut self, contacts: usize, blocks: usize) {
         self.gathered.reserve(contacts, blocks);
-        reserve(&mut self.own, contacts);
-        reserve(&mut self.shift, contacts);
-        let Self { p, u, y, u_y, next, u_next, best, .. } = self;
-        for vectors in [p, u, y, u_y, next, u_next, best] {
+        reserve(&mut self.at.own, contacts);
+        reserve(&mut self.at.shift, contacts);
+        for vectors in self.at.vectors() {
             reserve(vectors, contacts);
         }
+        reserve(&mut self.best, contacts);
     }
 
     fn solve(&mut self, problem: &ContactProblem<'_, D>, stop: &Stop<'_>, p: &mut [Vector<D>]) -> Outcome {

@@ -1,18 +1,24 @@
 //! The choice for those who don't want to choose.
 //!
-//! Contacts that don't feel each other (blocks that stand apart on the ground) are problems of their own: a dense problem is
-//! split along the zero blocks of H. Up to three plane contacts are enumerated; the rest goes along a chain (`chain.rs`)
-//! of methods until the judge is satisfied. If it never is, four and five plane contacts are enumerated too: that takes
-//! milliseconds, but it has the solution if there is one.
+//! Contacts that don't feel each other (blocks that stand apart on the ground) are problems of their own: a problem is
+//! split into its [`Islands`], along the zero blocks of H, whether these are stored or not. Up to three plane contacts are
+//! enumerated; the rest goes along a chain (`chain.rs`) of methods until the judge is satisfied. If it never is, four and
+//! five plane contacts are enumerated too: that takes milliseconds, but it has the solution if there is one.
+//!
+//! Of a block-sparse problem of many small islands, time and memory grow with the number of contacts. An operator that is
+//! given by what it does is not split: nothing is known of its blocks.
 
 use crate::Enumeration;
 use crate::chain::Chain;
+use crate::ending::ended;
 use crate::enumeration::{FEW, MAX_CONTACTS};
 use crate::memory::reserve;
 use crate::pairs::Small;
-use teeter_contact::{Block, ContactProblem, ContactSolver, Delassus, Law, Outcome, Status, Stop, Vector, judge};
+use teeter_contact::{
+    ContactProblem, ContactSolver, Delassus, Islands, Law, Outcome, OwnedProblem, Stop, Vector, judge,
+};
 
-/// The exact methods of a dimension: for parts of a few contacts, and for those that the chain doesn't solve.
+/// The exact methods of a dimension: for islands of a few contacts, and for those that the chain doesn't solve.
 #[derive(Clone, Copy)]
 struct Exact<const D: usize> {
     first: Small<D>,
@@ -20,19 +26,39 @@ struct Exact<const D: usize> {
 }
 
 /// The solver that chooses; see the [crate's table](crate). `used` of the outcome says which method gave the result;
-/// `iterations` are those of all methods tried; of a
-/// problem in parts, those of the part that took most.
+/// `iterations` are those of all methods tried; of a problem in islands, those of the island that took most.
+///
+/// ```
+/// use teeter_contact::nalgebra::Vector2;
+/// use teeter_contact::{ContactSolver, InverseMass, Jacobian, OwnedProblem, Stop};
+/// use teeter_solvers::Auto;
+///
+/// // A thousand blocks of 1 kg and 0.5 kg m² that stand apart and fall on two corners each: islands of two contacts.
+/// let mut jacobian = Jacobian::new();
+/// for block in 0..1000 {
+///     for x in [-0.4, 0.4] {
+///         let [along, up, turn] = [3 * block, 3 * block + 1, 3 * block + 2];
+///         jacobian.push([(along, Vector2::new(0.0, 1.0)), (up, Vector2::new(1.0, 0.0)), (turn, Vector2::new(x, 1.0))]);
+///     }
+/// }
+/// let inverse_mass = [1.0, 1.0, 2.0].repeat(1000);
+/// let velocity = [0.1, -1.0, 0.0].repeat(1000);
+/// let mass = InverseMass::Diagonal(&inverse_mass);
+/// let owned = OwnedProblem::from_jacobian(&jacobian, mass, &velocity, vec![0.5; 2000])?;
+/// let mut p = vec![Vector2::zeros(); 2000];
+/// let outcome = Auto::new().solve(&owned.problem(), &Stop::default(), &mut p);
+/// assert!(outcome.converged() && outcome.used == "enumeration");
+/// # Ok::<(), teeter_contact::ProblemError>(())
+/// ```
 #[derive(Debug, Default)]
 pub struct Auto<const D: usize> {
     chain: Chain<D>,
-    /// The part that each contact belongs to.
-    part: Vec<usize>,
-    /// The contacts of the part at hand, and its problem.
-    members: Vec<usize>,
-    h: Vec<Block<D>>,
-    q: Vec<Vector<D>>,
-    mu: Vec<f64>,
+    islands: Islands,
+    /// The island at hand, as a problem of its own, and its impulses.
+    own: OwnedProblem<D>,
     p: Vec<Vector<D>>,
+    /// The impulses to start from, of all.
+    start: Vec<Vector<D>>,
 }
 
 impl<const D: usize> Auto<D> {
@@ -45,64 +71,27 @@ impl<const D: usize> Auto<D> {
         Self::default()
     }
 
-    /// Numbers the parts of a dense problem: contacts coupled by a non-zero block, either way, belong together. Returns
-    /// how many there are.
-    fn split(&mut self, blocks: &[Block<D>], n: usize) -> usize {
-        const NONE: usize = usize::MAX;
-        self.part.clear();
-        self.part.resize(n, NONE);
-        let mut parts = 0;
-        for seed in 0..n {
-            if self.part[seed] != NONE {
-                continue;
-            }
-            self.part[seed] = parts;
-            self.members.clear();
-            self.members.push(seed);
-            while let Some(i) = self.members.pop() {
-                for j in 0..n {
-                    let zero = Block::<D>::zeros();
-                    let coupled = blocks[i * n + j] != zero || blocks[j * n + i] != zero;
-                    if self.part[j] == NONE && coupled {
-                        self.part[j] = parts;
-                        self.members.push(j);
-                    }
-                }
-            }
-            parts += 1;
-        }
-        parts
-    }
-
-    /// Solves one part on its own, from and into the impulses of all.
-    fn solve_part(
+    /// Solves one island on its own, from and into the impulses of all.
+    fn solve_island(
         &mut self,
         problem: &ContactProblem<'_, D>,
-        blocks: &[Block<D>],
-        part: usize,
+        island: usize,
         exact: Exact<D>,
         stop: &Stop<'_>,
         all: &mut [Vector<D>],
     ) -> Option<Outcome> {
-        let n = all.len();
-        self.members.clear();
-        self.members.extend((0..n).filter(|&i| self.part[i] == part));
-        self.h.clear();
-        self.q.clear();
-        self.mu.clear();
-        self.p.clear();
-        for &i in &self.members {
-            self.h.extend(self.members.iter().map(|&j| blocks[i * n + j]));
-            self.q.push(problem.q()[i]);
-            self.mu.push(problem.mu()[i]);
-            self.p.push(all[i]);
+        if !self.own.take_island(problem, &self.islands, island) {
+            return None;
         }
-        let own = ContactProblem::new(Delassus::Dense(&self.h), &self.q, &self.mu).ok()?;
+        let members = self.islands.members(island);
+        self.p.clear();
+        self.p.extend(members.iter().map(|&i| all[i]));
+        let own = self.own.problem();
         let outcome = match (exact.first)(&own, stop, &mut self.p) {
             Some(outcome) => outcome,
             None => along(&mut self.chain, exact, &own, stop, &mut self.p),
         };
-        for (&i, p) in self.members.iter().zip(&self.p) {
+        for (&i, p) in members.iter().zip(&self.p) {
             all[i] = *p;
         }
         Some(outcome)
@@ -118,43 +107,58 @@ impl<const D: usize> Auto<D> {
         if let Some(outcome) = (exact.first)(problem, stop, p) {
             return outcome;
         }
-        let n = problem.contacts();
-        let Delassus::Dense(blocks) = problem.delassus() else {
-            return along(&mut self.chain, exact, problem, stop, p);
-        };
-        let parts = self.split(blocks, n);
-        if parts <= 1 {
+        self.islands.find(problem);
+        if self.islands.len() <= 1 {
             return along(&mut self.chain, exact, problem, stop, p);
         }
+        self.start.clear();
+        self.start.extend_from_slice(p);
         let (mut used, mut iterations) = (Enumeration::NAME, 0);
-        for part in 0..parts {
-            let Some(outcome) = self.solve_part(problem, blocks, part, exact, stop, p) else { continue };
+        for island in 0..self.islands.len() {
+            let Some(outcome) = self.solve_island(problem, island, exact, stop, p) else { continue };
             iterations = iterations.max(outcome.iterations);
             if outcome.used != Enumeration::NAME {
                 used = outcome.used;
             }
         }
-        // Each part is judged in its own scale; what counts is the whole.
+        // Each island is judged in its own scale; what counts is the whole.
         let residual = judge(problem, p);
-        if residual.global <= stop.tolerance {
-            return Outcome::new(Status::Converged, used, iterations, residual);
+        let apart = Outcome::new(ended(stop, iterations, &residual), used, iterations, residual);
+        if apart.converged() { apart } else { self.solve_whole(problem, exact, stop, apart, p) }
+    }
+
+    /// The whole problem along the chain, after its islands, solved each for itself, have not satisfied the judge: `apart` is what came of
+    /// that. A dense problem goes on from there. A block-sparse one is solved as if it had not been split, and keeps the better result:
+    /// of a hard problem (RockPile of the published ones) some ways to the solution exist for the whole only, and where they start matters.
+    fn solve_whole(
+        &mut self,
+        problem: &ContactProblem<'_, D>,
+        exact: Exact<D>,
+        stop: &Stop<'_>,
+        apart: Outcome,
+        p: &mut [Vector<D>],
+    ) -> Outcome {
+        let anew = matches!(problem.delassus(), Delassus::Blocks(_));
+        if anew {
+            p.swap_with_slice(&mut self.start);
         }
-        let rest = Stop { max_iterations: stop.max_iterations.saturating_sub(iterations), ..*stop };
+        let rest = stop.with_max_iterations(stop.max_iterations.saturating_sub(apart.iterations));
         let mut outcome = self.chain.solve(problem, exact.first, &rest, p);
-        outcome.iterations = outcome.iterations.saturating_add(iterations);
+        outcome.iterations = outcome.iterations.saturating_add(apart.iterations);
+        if anew && !(outcome.residual.global <= apart.residual.global) {
+            p.copy_from_slice(&self.start);
+            return Outcome::new(outcome.status, apart.used, outcome.iterations, apart.residual);
+        }
         outcome
     }
 
     fn reserve_all(&mut self, contacts: usize, blocks: usize) {
         self.chain.reserve(contacts, blocks);
-        // Parts are copied out of dense problems only, and the largest is no larger than what is there.
-        let dense = contacts.saturating_mul(contacts).min(blocks);
-        reserve(&mut self.part, contacts);
-        reserve(&mut self.members, contacts);
-        reserve(&mut self.h, dense);
-        reserve(&mut self.q, contacts);
-        reserve(&mut self.mu, contacts);
+        // The largest island is no larger than the problem.
+        self.islands.reserve(contacts);
+        self.own.reserve(contacts, blocks);
         reserve(&mut self.p, contacts);
+        reserve(&mut self.start, contacts);
     }
 }
 

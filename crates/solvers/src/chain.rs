@@ -21,8 +21,6 @@ use crate::ending::ended;
 use crate::memory::reserve;
 use crate::pairs::{Pairs, Small};
 use crate::{Newton, Pgs, Prox, Smoothing};
-#[cfg(feature = "sparse")]
-use teeter_contact::Delassus;
 use teeter_contact::{ContactProblem, ContactSolver, Outcome, Status, Stop, Vector, judge};
 
 /// Up to so many contacts a solution is polished, to this residual.
@@ -121,7 +119,7 @@ impl<const D: usize> Chain<D> {
             self.best.clear();
             self.best.extend_from_slice(p);
             let left = stop.max_iterations.saturating_sub(outcome.iterations);
-            let polish = Stop { tolerance: POLISHED, max_iterations: left, ..*stop };
+            let polish = stop.with_tolerance(POLISHED).with_max_iterations(left);
             self.newton.prepare(problem);
             let polished = self.newton.round(problem, &polish, p);
             outcome.iterations = outcome.iterations.saturating_add(polished.iterations);
@@ -141,7 +139,7 @@ impl<const D: usize> Chain<D> {
         stop: &Stop<'_>,
         p: &mut [Vector<D>],
     ) -> Outcome {
-        let within = |left: u32, most: u32| Stop { max_iterations: left.min(most), ..*stop };
+        let within = |left: u32, most: u32| stop.with_max_iterations(left.min(most));
         let first = self.pgs.solve(problem, &within(stop.max_iterations, FIRST), p);
         let mut progress = Progress { best: first, iterations: first.iterations };
         if !progress.over(stop)
@@ -184,7 +182,7 @@ impl<const D: usize> Chain<D> {
         p: &mut [Vector<D>],
         progress: &mut Progress,
     ) {
-        let within = |left: u32, most: u32| Stop { max_iterations: left.min(most), ..*stop };
+        let within = |left: u32, most: u32| stop.with_max_iterations(left.min(most));
         // Sweeps that cost as much as a Newton step.
         let mut ratio = None;
         let mut batch = FIRST;
@@ -225,10 +223,6 @@ impl<const D: usize> Chain<D> {
 #[cfg(feature = "sparse")]
 fn has_long_rows<const D: usize>(problem: &ContactProblem<'_, D>) -> bool {
     let n = problem.contacts();
-    let blocks = match problem.delassus() {
-        Delassus::Blocks(h) => h.blocks().len(),
-        Delassus::Dense(blocks) => blocks.iter().filter(|block| block.iter().any(|&c| c != 0.0)).count(),
-        _ => 0,
-    };
+    let blocks = problem.nonzero_blocks().unwrap_or(0);
     n >= MANY && blocks >= LONG_ROW * n
 }

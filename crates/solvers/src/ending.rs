@@ -26,8 +26,8 @@ mod tests {
     #[test]
     fn each_end_has_its_word() {
         let flag = AtomicBool::new(false);
-        let stop = Stop { tolerance: 1e-8, max_iterations: 10, cancel: Some(&flag) };
-        let of = |iterations, global| ended(&stop, iterations, &Residual { global, worst: global, worst_contact: 0 });
+        let stop = Stop::new(1e-8, 10).with_cancel(&flag);
+        let of = |iterations, global| ended(&stop, iterations, &Residual::new(global, global, 0));
         assert_eq!(of(10, 1e-9), Status::Converged);
         assert_eq!(of(3, f64::NAN), Status::Breakdown);
         assert_eq!(of(10, 1e-7), Status::MaxIterations);

@@ -161,20 +161,30 @@ impl<const N: usize> Table<N> {
             Self { n, h: [[Matrix2::zeros(); N]; N], q: [Vector2::zeros(); N], mu: [0.0; N], slack: ROUNDING };
         table.mu[..n].copy_from_slice(problem.mu());
         table.q[..n].copy_from_slice(problem.q());
-        if let Delassus::Dense(blocks) = problem.delassus() {
-            for i in 0..n {
-                table.h[i][..n].copy_from_slice(&blocks[i * n..(i + 1) * n]);
+        match problem.delassus() {
+            Delassus::Dense(blocks) => {
+                for i in 0..n {
+                    table.h[i][..n].copy_from_slice(&blocks[i * n..(i + 1) * n]);
+                }
             }
-        } else {
-            // Any other shape, column by column: H e_k = (velocity of e_k) − q.
-            let mut unit = [Vector2::zeros(); N];
-            for j in 0..n {
-                for c in 0..2 {
-                    unit[j][c] = 1.0;
-                    for i in 0..n {
-                        table.h[i][j].set_column(c, &(problem.velocity(i, &unit[..n]) - problem.q()[i]));
+            Delassus::Operator(h) => {
+                // Column by column, by products with unit vectors.
+                let mut unit = [Vector2::zeros(); N];
+                for j in 0..n {
+                    for c in 0..2 {
+                        unit[j][c] = 1.0;
+                        for i in 0..n {
+                            table.h[i][j].set_column(c, &h.row_product(i, &unit[..n]));
+                        }
+                        unit[j][c] = 0.0;
                     }
-                    unit[j][c] = 0.0;
+                }
+            }
+            _ => {
+                for i in 0..n {
+                    for (j, block) in problem.row(i).into_iter().flatten() {
+                        table.h[i][j] = *block;
+                    }
                 }
             }
         }
@@ -469,7 +479,7 @@ mod tests {
     fn solve(case: &teeter_contact::conformance::Case<2>) -> Vec<Vector2<f64>> {
         let mut p = vec![Vector2::zeros(); case.q.len()];
         let outcome =
-            Enumeration::new().solve(&case.problem().unwrap(), &Stop { tolerance: 1e-14, ..Stop::default() }, &mut p);
+            Enumeration::new().solve(&case.problem().unwrap(), &Stop::default().with_tolerance(1e-14), &mut p);
         assert!(outcome.converged(), "{outcome:?}");
         p
     }

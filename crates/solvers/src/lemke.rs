@@ -427,7 +427,7 @@ mod tests {
         for velocity in [[3.0, -1.0, 0.0], [0.1, -1.0, 0.3], [0.0, -1.0, 0.0]] {
             let case = body_on_floor("forty", 0.3, &feet, velocity, 0.2);
             let mut p = vec![Vector2::zeros(); 40];
-            let stop = Stop { tolerance: 1e-12, ..Stop::default() };
+            let stop = Stop::default().with_tolerance(1e-12);
             let outcome = Lemke::new().solve(&case.problem().unwrap(), &stop, &mut p);
             assert!(outcome.converged(), "{outcome:?}");
         }
@@ -451,7 +451,7 @@ mod tests {
         let feet = [(-0.5, -1.0), (-0.1, -1.0), (0.2, -1.0), (0.5, -1.0)];
         let case = body_on_floor("four", 0.3, &feet, [0.3, -1.0, 0.2], 0.5);
         let mut p = vec![Vector2::zeros(); 4];
-        let stop = Stop { max_iterations: 2, ..Stop::default() };
+        let stop = Stop::default().with_max_iterations(2);
         let outcome = Lemke::new().solve(&case.problem().unwrap(), &stop, &mut p);
         assert_eq!((outcome.status, outcome.iterations), (Status::MaxIterations, 2));
     }

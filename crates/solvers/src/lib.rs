@@ -45,6 +45,8 @@
 //! # Ok::<(), teeter_contact::ProblemError>(())
 //! ```
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 #[cfg(feature = "clarabel")]
 pub mod acary_cadoux;
 #[cfg(feature = "sparse")]

@@ -130,7 +130,7 @@ impl<const D: usize> ContactSolver<D> for Newton<D> {
         let mut used = Self::NAME;
         for round in 0..ROUNDS {
             let left = stop.max_iterations - iterations;
-            let swept = self.pgs.solve(problem, &Stop { max_iterations: left.min(SWEEPS << round), ..*stop }, p);
+            let swept = self.pgs.solve(problem, &stop.with_max_iterations(left.min(SWEEPS << round)), p);
             iterations += swept.iterations;
             if swept.residual.global < best {
                 best = swept.residual.global;

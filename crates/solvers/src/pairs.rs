@@ -9,7 +9,7 @@
 use crate::Pgs;
 use crate::ending::ended;
 use crate::memory::{refill, reserve};
-use teeter_contact::{Block, ContactProblem, Delassus, Outcome, Stop, Vector, judge};
+use teeter_contact::{ContactProblem, Delassus, Outcome, Stop, Vector, judge};
 
 /// An exact method for a few contacts: what it found, if the judge is satisfied.
 pub(crate) type Small<const D: usize> = fn(&ContactProblem<'_, D>, &Stop<'_>, &mut [Vector<D>]) -> Option<Outcome>;
@@ -44,12 +44,12 @@ impl<const D: usize> Pairs<D> {
         let own = |i: usize| problem.diagonal(i)[(1, 1)];
         for i in 0..n {
             let (mut least, mut partner) = (HELD_TWICE, i);
-            each_of_row(problem, i, |j, h| {
+            for (j, h) in problem.row(i).into_iter().flatten() {
                 let left = 1.0 - h[(1, 1)] * h[(1, 1)] / (own(i) * own(j));
                 if j != i && left < least {
                     (least, partner) = (left, j);
                 }
-            });
+            }
             self.partner[i] = partner;
         }
         let mut any = false;
@@ -100,9 +100,10 @@ impl<const D: usize> Pairs<D> {
     }
 
     fn sweep(&self, problem: &ContactProblem<'_, D>, small: Small<D>, p: &mut [Vector<D>]) {
-        let exact = Stop { tolerance: EXACT, ..Stop::default() };
+        let exact = Stop::default().with_tolerance(EXACT);
         for (i, &j) in self.partner.iter().enumerate().filter(|(i, j)| i <= *j) {
-            let h = [problem.diagonal(i), block(problem, i, j), block(problem, j, i), problem.diagonal(j)];
+            let (Some(h_ij), Some(h_ji)) = (problem.block(i, j), problem.block(j, i)) else { return };
+            let h = [problem.diagonal(i), h_ij, h_ji, problem.diagonal(j)];
             let (u_i, u_j) = (problem.velocity(i, p), problem.velocity(j, p));
             let mu = [problem.mu()[i], problem.mu()[j]];
             let mut own = [p[i], p[j]];
@@ -122,25 +123,5 @@ impl<const D: usize> Pairs<D> {
                 (p[i], p[j]) = (own[0], own[1]);
             }
         }
-    }
-}
-
-/// Hands the blocks of row `i` that are stored to `each`, with their columns.
-fn each_of_row<const D: usize>(problem: &ContactProblem<'_, D>, i: usize, mut each: impl FnMut(usize, &Block<D>)) {
-    let n = problem.contacts();
-    match problem.delassus() {
-        Delassus::Dense(blocks) => {
-            blocks[i * n..(i + 1) * n].iter().enumerate().for_each(|(j, h)| each(j, h));
-        }
-        Delassus::Blocks(h) => h.row(i).for_each(|(j, h)| each(j, h)),
-        _ => {}
-    }
-}
-
-fn block<const D: usize>(problem: &ContactProblem<'_, D>, i: usize, j: usize) -> Block<D> {
-    match problem.delassus() {
-        Delassus::Dense(blocks) => blocks[i * problem.contacts() + j],
-        Delassus::Blocks(h) => h.block(i, j).copied().unwrap_or_else(Block::zeros),
-        _ => Block::zeros(),
     }
 }

@@ -136,7 +136,7 @@ impl<const D: usize> Pgs<D> {
                 *x = Vector::zeros();
             }
         }
-        let unknown = Residual { global: f64::INFINITY, worst: f64::INFINITY, worst_contact: 0 };
+        let unknown = Residual::new(f64::INFINITY, f64::INFINITY, 0);
         let mut residual = unknown;
         // Nothing at all solves a problem only if no contact approaches: else it isn't worth judging.
         let is_zero = |p: &[Vector<D>]| p.iter().all(|x| x.iter().all(|&c| c == 0.0));
@@ -321,13 +321,13 @@ mod tests {
         let feet = [(-0.5, -1.0), (-0.1, -1.0), (0.2, -1.0), (0.5, -1.0)];
         let case = body_on_floor("four", 0.3, &feet, [0.3, -1.0, 0.2], 0.5);
         let mut p = vec![Vector::zeros(); 4];
-        let stop = Stop { tolerance: 1e-14, max_iterations: 2, ..Stop::default() };
+        let stop = Stop::new(1e-14, 2);
         let outcome = Pgs::new().solve(&case.problem().unwrap(), &stop, &mut p);
         assert_eq!((outcome.status, outcome.iterations), (Status::MaxIterations, 2));
         assert!(outcome.residual.global > 1e-14);
-        let outcome = Pgs::new().solve(&case.problem().unwrap(), &Stop { tolerance: 1e-12, ..stop }, &mut p);
+        let outcome = Pgs::new().solve(&case.problem().unwrap(), &stop.with_tolerance(1e-12), &mut p);
         assert_eq!(outcome.status, Status::MaxIterations);
-        let outcome = Pgs::new().solve(&case.problem().unwrap(), &Stop { tolerance: 1e-12, ..Stop::default() }, &mut p);
+        let outcome = Pgs::new().solve(&case.problem().unwrap(), &Stop::default().with_tolerance(1e-12), &mut p);
         assert_eq!(outcome.status, Status::Converged);
     }
 
@@ -336,7 +336,7 @@ mod tests {
         let case = body_on_floor("two", 0.3, &[(-0.5, -1.0), (0.5, -1.0)], [0.3, -1.0, 0.2], 0.5);
         let flag = std::sync::atomic::AtomicBool::new(true);
         let mut p = vec![Vector::zeros(); 2];
-        let stop = Stop { cancel: Some(&flag), ..Stop::default() };
+        let stop = Stop::default().with_cancel(&flag);
         assert_eq!(Pgs::new().solve(&case.problem().unwrap(), &stop, &mut p).status, Status::Cancelled);
     }
 

@@ -85,7 +85,7 @@ impl<const D: usize> ContactSolver<D> for Prox<D> {
             refill(x, n, Vector::zeros());
         }
         self.best.copy_from_slice(p);
-        let sweeps = |left: u32| Stop { max_iterations: left.min(SWEEPS), ..*stop };
+        let sweeps = |left: u32| stop.with_max_iterations(left.min(SWEEPS));
         let swept = self.pgs.solve(problem, &sweeps(stop.max_iterations), p);
         let mut iterations = swept.iterations;
         let (mut residual, mut best, mut alpha) = (swept.residual.global, f64::INFINITY, ALPHA);

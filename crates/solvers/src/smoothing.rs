@@ -82,6 +82,75 @@ enum Correction {
     Over,
 }
 
+/// Where on the path a correction stands.
+#[derive(Clone, Copy, PartialEq)]
+enum Stage {
+    /// At its start, which may lie far from it.
+    Start,
+    OnPath,
+    /// Where the path folds: damped steps at a smaller τ.
+    Fold,
+}
+
+/// How τ is lowered along the path.
+struct Path {
+    /// The τ to correct to, that of the last centre, and the factor between them.
+    tau: f64,
+    centre_tau: f64,
+    factor: f64,
+    stage: Stage,
+    folds: u32,
+}
+
+impl Path {
+    fn new(tau: f64) -> Self {
+        Self { tau, centre_tau: tau, factor: FACTOR, stage: Stage::Start, folds: 0 }
+    }
+
+    /// Most Newton steps of a correction, and how short they may become.
+    fn effort(&self) -> (u32, f64) {
+        match self.stage {
+            Stage::Start => (FIRST_STEPS, SHORTEST_FOLD),
+            Stage::OnPath => (STEPS, SHORTEST),
+            Stage::Fold => (FOLD_STEPS, SHORTEST_FOLD),
+        }
+    }
+
+    /// A correction that took few steps lowers τ by more.
+    fn centred(&mut self, steps: u32) {
+        self.centre_tau = self.tau;
+        self.factor = match steps {
+            _ if self.stage == Stage::Fold => 0.5,
+            0..=2 => (self.factor * self.factor).max(LEAST_FACTOR),
+            3 => self.factor,
+            _ => self.factor.sqrt(),
+        };
+        self.stage = Stage::OnPath;
+    }
+
+    /// Takes a point that is not on the path for its centre; false if that was done too often.
+    fn cross(&mut self) -> bool {
+        self.folds += 1;
+        self.centre_tau = self.tau;
+        self.factor = 0.5;
+        self.stage = Stage::OnPath;
+        self.folds <= FOLDS
+    }
+
+    /// Back at the last centre, τ is lowered by less; where that is next to nothing, over the fold.
+    fn fall_back(&mut self) {
+        self.factor = self.factor.sqrt().sqrt();
+        if self.factor > FOLDED {
+            self.stage = Stage::Fold;
+            self.factor = ACROSS_FOLD;
+        }
+    }
+
+    fn lower(&mut self) {
+        self.tau = self.centre_tau * self.factor;
+    }
+}
+
 impl<const D: usize> Smoothing<D> {
     /// The name by which users choose it.
     pub const NAME: &'static str = "smoothing";
@@ -104,56 +173,36 @@ impl<const D: usize> Smoothing<D> {
         ]
     }
 
-    /// Follows the path with one regularisation; `p` is where the first correction starts.
+    /// Follows the path with one regularisation; `p` is where the first correction starts. Whether the judge is satisfied, or the solve has
+    /// to end.
     fn follow(&mut self, epsilon: f64, stop: &Stop<'_>, p: &mut [Vector<D>]) -> bool {
         let size = self.scaled.size(p);
         let until = self.iterations.saturating_add(PATIENCE).min(stop.max_iterations);
-        let (mut tau, mut factor) = (START * size, FACTOR);
-        let (mut centre_tau, mut first, mut folds) = (tau, true, 0);
-        let mut over_fold = false;
+        let mut path = Path::new(START * size);
         self.center.copy_from_slice(p);
         loop {
-            let (most, shortest) = match (over_fold, first) {
-                (true, _) => (FOLD_STEPS, SHORTEST_FOLD),
-                (false, true) => (FIRST_STEPS, SHORTEST_FOLD),
-                (false, false) => (STEPS, SHORTEST),
-            };
-            match self.correct(tau, epsilon, most, shortest, stop, p) {
+            let (most, shortest) = path.effort();
+            match self.correct(path.tau, epsilon, most, shortest, stop, p) {
                 Correction::Over => return true,
                 Correction::Centred(steps) => {
                     self.center.copy_from_slice(p);
-                    centre_tau = tau;
-                    factor = match steps {
-                        _ if over_fold => 0.5,
-                        0..=2 => (factor * factor).max(LEAST_FACTOR),
-                        3 => factor,
-                        _ => factor.sqrt(),
-                    };
-                    over_fold = false;
+                    path.centred(steps);
                 }
-                Correction::Missed if first || over_fold => {
-                    folds += 1;
-                    if folds > FOLDS {
+                // Where there is no centre to go back to, the path goes on from here, a few times.
+                Correction::Missed if path.stage != Stage::OnPath => {
+                    self.center.copy_from_slice(p);
+                    if !path.cross() {
                         return false;
                     }
-                    self.center.copy_from_slice(p);
-                    centre_tau = tau;
-                    factor = 0.5;
-                    over_fold = false;
                 }
                 Correction::Missed => {
                     p.copy_from_slice(&self.center);
-                    factor = factor.sqrt().sqrt();
-                    if factor > FOLDED {
-                        over_fold = true;
-                        factor = ACROSS_FOLD;
-                    }
+                    path.fall_back();
                 }
             }
-            first = false;
-            tau = centre_tau * factor;
+            path.lower();
             // Below rounding nothing is left to follow.
-            if self.iterations >= until || tau < 1e-18 * size {
+            if self.iterations >= until || path.tau < 1e-18 * size {
                 return false;
             }
         }

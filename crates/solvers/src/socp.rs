@@ -127,7 +127,7 @@ impl<const D: usize> ContactSolver<D> for Socp<D> {
                 break;
             }
         }
-        let rest = Stop { max_iterations: stop.max_iterations - iterations, ..*stop };
+        let rest = stop.with_max_iterations(stop.max_iterations - iterations);
         let (status, more) = self.apgd.iterate(problem, &rest, p, Law::Convex);
         ended(status, iterations + more, p)
     }
@@ -148,7 +148,7 @@ mod tests {
         for case in cases {
             let problem = case.problem().unwrap();
             let mut p = vec![Vector::<D>::zeros(); case.q.len()];
-            let outcome = Socp::new().solve(&problem, &Stop { tolerance: 1e-9, ..Stop::default() }, &mut p);
+            let outcome = Socp::new().solve(&problem, &Stop::default().with_tolerance(1e-9), &mut p);
             assert!(outcome.solved_its_own_law(), "{}: {outcome:?}", case.name);
             assert_eq!(outcome.converged(), judge(&problem, &p).global <= 1e-9, "{}: {outcome:?}", case.name);
             assert!((outcome.residual.global - judge(&problem, &p).global).abs() < 1e-15);

@@ -86,7 +86,7 @@ fn solve_with_all(thrown: &Thrown) -> Result<Vec<Answer>, Box<dyn Error>> {
     let Posed { h, q, mu } = thrown.pose();
     // Sizes, finiteness, μ ≥ 0 and H_NN > 0 are checked here, once.
     let problem = ContactProblem::new(Delassus::Dense(&h), &q, &mu)?;
-    let stop = Stop { tolerance: 1e-12, ..Stop::default() };
+    let stop = Stop::default().with_tolerance(1e-12);
     let mut answers = Vec::new();
     for info in SOLVERS {
         let Some(mut solver) = space_solver(info.name) else { continue };

@@ -89,8 +89,8 @@ mod tests {
             assert_eq!(outcome.residual, judge(&case.problem().unwrap(), &p));
             (outcome.status, outcome.iterations)
         };
-        assert_eq!(solve(&Stop { max_iterations: 1, ..Stop::default() }), (Status::MaxIterations, 1));
+        assert_eq!(solve(&Stop::default().with_max_iterations(1)), (Status::MaxIterations, 1));
         let flag = AtomicBool::new(true);
-        assert_eq!(solve(&Stop { cancel: Some(&flag), ..Stop::default() }), (Status::Cancelled, 0));
+        assert_eq!(solve(&Stop::default().with_cancel(&flag)), (Status::Cancelled, 0));
     }
 }

@@ -95,7 +95,7 @@ mod tests {
     fn says_when_it_ran_out_of_iterations() {
         for case in plane_cases().iter().filter(|case| case.name.starts_with("two feet, slide")) {
             let mut p = vec![Vector::<2>::zeros(); case.q.len()];
-            let stop = Stop { max_iterations: 1, ..Stop::default() };
+            let stop = Stop::default().with_max_iterations(1);
             let outcome = Jacobi::default().solve(&case.problem().unwrap(), &stop, &mut p);
             assert_eq!((outcome.status, outcome.iterations), (Status::MaxIterations, 1));
         }

@@ -47,7 +47,7 @@ pub(super) fn measure<const D: usize>(
     solver.reserve(contacts, blocks);
     let mut p = vec![Vector::<D>::zeros(); contacts];
     let cancel = AtomicBool::new(false);
-    let stop = Stop { tolerance, max_iterations: MAX_ITERATIONS, cancel: Some(&cancel) };
+    let stop = Stop::new(tolerance, MAX_ITERATIONS).with_cancel(&cancel);
 
     let (outcome, first) = within(limit, &cancel, || {
         let begin = Instant::now();
@@ -174,7 +174,7 @@ mod tests {
         }
         fn reserve(&mut self, _: usize, _: usize) {}
         fn solve(&mut self, _: &ContactProblem<'_, 2>, _: &Stop<'_>, _: &mut [Vector<2>]) -> Outcome {
-            Outcome::new(Status::Converged, "boaster", 1, Residual { global: 0.0, worst: 0.0, worst_contact: 0 })
+            Outcome::new(Status::Converged, "boaster", 1, Residual::new(0.0, 0.0, 0))
         }
         fn fork(&self) -> Box<dyn ContactSolver<2>> {
             Box::new(Self)

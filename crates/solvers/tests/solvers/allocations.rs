@@ -7,6 +7,7 @@ use std::cell::Cell;
 thread_local! {
     // Per thread, so that tests beside this one don't count; const, so that the counter itself allocates nothing.
     static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+    static BYTES: Cell<u64> = const { Cell::new(0) };
 }
 
 struct Counting;
@@ -15,6 +16,7 @@ struct Counting;
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         ALLOCATIONS.with(|count| count.set(count.get() + 1));
+        BYTES.with(|bytes| bytes.set(bytes.get() + layout.size() as u64));
         unsafe { System.alloc(layout) }
     }
 
@@ -29,4 +31,9 @@ static ALLOCATOR: Counting = Counting;
 /// Allocations of this thread so far.
 pub(crate) fn so_far() -> u64 {
     ALLOCATIONS.with(Cell::get)
+}
+
+/// Bytes that this thread has allocated so far, those that it gave back included.
+pub(crate) fn bytes_so_far() -> u64 {
+    BYTES.with(Cell::get)
 }

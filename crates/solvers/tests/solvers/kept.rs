@@ -29,7 +29,7 @@ fn allocations<const D: usize>(solver: &mut dyn ContactSolver<D>, cases: &[Case<
         let p = &mut p[..case.q.len()];
         p.fill(Vector::zeros());
         let before = so_far();
-        solver.solve(&problem, &Stop { tolerance: 1e-9, max_iterations: 2000, ..Stop::default() }, p);
+        solver.solve(&problem, &Stop::new(1e-9, 2000), p);
         if k > 0 {
             count += so_far() - before;
         }

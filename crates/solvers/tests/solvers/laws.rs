@@ -70,7 +70,7 @@ fn solve<const D: usize>(
     tolerance: f64,
 ) -> (Outcome, Vec<Vector<D>>) {
     let mut p = vec![Vector::zeros(); case.q.len()];
-    let stop = Stop { tolerance, max_iterations: 3000, ..Stop::default() };
+    let stop = Stop::new(tolerance, 3000);
     let outcome = solver.solve(&case.problem().unwrap(), &stop, &mut p);
     (outcome, p)
 }

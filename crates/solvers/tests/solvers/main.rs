@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr)]
 
 mod allocations;
+mod islands;
 mod kept;
 mod laws;
 mod many;

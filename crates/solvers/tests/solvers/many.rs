@@ -41,7 +41,7 @@ fn solve<const D: usize>(
 ) -> (Status, u32, Vec<Vector<D>>) {
     let mut p = vec![Vector::<D>::zeros(); case.q.len()];
     let problem = case.problem().unwrap();
-    let outcome = solver.solve(&problem, &Stop { tolerance, ..Stop::default() }, &mut p);
+    let outcome = solver.solve(&problem, &Stop::default().with_tolerance(tolerance), &mut p);
     let residual = judge(&problem, &p).global;
     assert_eq!(outcome.converged(), residual <= tolerance, "{outcome:?} {residual:e}");
     (outcome.status, outcome.iterations, p)

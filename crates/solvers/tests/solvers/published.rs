@@ -24,7 +24,7 @@ fn solve_one<const D: usize>(
     tolerance: f64,
 ) {
     let mut p = vec![Vector::<D>::zeros(); problem.contacts()];
-    let stop = Stop { tolerance, max_iterations: 100_000, ..Stop::default() };
+    let stop = Stop::new(tolerance, 100_000);
     let outcome = solver.solve(problem, &stop, &mut p);
     assert!(outcome.converged() && judge(problem, &p).global <= tolerance, "{name}: {} {outcome:?}", solver.name());
     if tolerance <= 1e-8 {
@@ -151,7 +151,7 @@ fn a_solver_kept_over_steps_allocates_nothing() {
     #[cfg(feature = "sparse")]
     solvers.push(Box::new(teeter_solvers::Admm::new()));
     for solver in &mut solvers {
-        let stop = Stop { tolerance: 1e-4, ..Stop::default() };
+        let stop = Stop::default().with_tolerance(1e-4);
         let mut p = vec![Vector::<3>::zeros(); problem.contacts()];
         assert!(solver.solve(&problem, &stop, &mut p).converged());
         p.fill(Vector::zeros());
@@ -187,7 +187,7 @@ fn auto_solves_what_any_siconos_solver_solves() {
     let (mut plane, mut space) = (plane_solver("auto").unwrap(), space_solver("auto").unwrap());
     for (written, tolerance) in [("1e-04", 1e-4), ("1e-08", 1e-8), ("1e-12", 1e-12)] {
         for name in solved_by_siconos(written) {
-            let stop = Stop { tolerance, ..Stop::default() };
+            let stop = Stop::default().with_tolerance(tolerance);
             let outcome = match read(&name) {
                 Some(FclibProblem::Plane(local)) => {
                     let mut p = vec![Vector::zeros(); local.q.len()];

@@ -35,7 +35,7 @@ fn cases() -> impl Strategy<Value = Case<2>> {
 
 fn solve(solver: &mut dyn ContactSolver<2>, case: &Case<2>, tolerance: f64) -> (Status, Vec<Vector2<f64>>) {
     let mut p = vec![Vector2::zeros(); case.q.len()];
-    let outcome = solver.solve(&case.problem().unwrap(), &Stop { tolerance, ..Stop::default() }, &mut p);
+    let outcome = solver.solve(&case.problem().unwrap(), &Stop::default().with_tolerance(tolerance), &mut p);
     (outcome.status, p)
 }
 

@@ -43,7 +43,7 @@ fn corners_that_have_to_slide_by_the_last_digits_are_solved_at_once() {
             let mut p = vec![Vector::zeros(); case.q.len()];
             for tolerance in [1e-9, 1e-10, 1e-12] {
                 p.fill(Vector::zeros());
-                let outcome = Auto::<2>::new().solve(&problem, &Stop { tolerance, ..Stop::default() }, &mut p);
+                let outcome = Auto::<2>::new().solve(&problem, &Stop::default().with_tolerance(tolerance), &mut p);
                 assert!(outcome.converged(), "{blocks} blocks, {lower:e}: {outcome:?}");
                 assert!(judge(&problem, &p).global <= tolerance);
                 // It stalled after some 6000.
@@ -72,7 +72,7 @@ fn of_states_that_fit_to_rounding_the_one_that_fits_to_the_last_digits_is_found(
     let problem = case.problem().unwrap();
     for tolerance in [1e-12, 1e-13, 1e-14] {
         let mut p = vec![Vector::zeros(); 2];
-        let outcome = Auto::<2>::new().solve(&problem, &Stop { tolerance, ..Stop::default() }, &mut p);
+        let outcome = Auto::<2>::new().solve(&problem, &Stop::default().with_tolerance(tolerance), &mut p);
         // It stalled after 5898 at 5e-13.
         assert!(outcome.converged() && outcome.iterations < 100, "{tolerance:e}: {outcome:?}");
     }

@@ -49,7 +49,7 @@ pub(super) fn map() -> Result<Map> {
             let (h, q) = tower(ratio, n);
             let problem = ContactProblem::new(Delassus::Dense(&h), &q, &mu)?;
             let mut p = vec![Vector::<2>::zeros(); n];
-            let stop = Stop { tolerance: TOLERANCE, max_iterations: 100_000, cancel: None };
+            let stop = Stop::new(TOLERANCE, 100_000);
             let outcome = solver.solve(&problem, &stop, &mut p);
             if outcome.converged() && judge(&problem, &p).global > 2.0 * TOLERANCE {
                 return Err(format!("{} says it solved the ratio {ratio:e}, and did not", info.name).into());
