@@ -72,10 +72,10 @@ impl Panel {
         self
     }
 
-    /// With a note above its right end.
+    /// With a note above its right end, or without.
     #[must_use]
-    pub fn note(mut self, note: impl Into<String>) -> Self {
-        self.note = Some(note.into());
+    pub fn note(mut self, note: impl Into<Option<String>>) -> Self {
+        self.note = note.into();
         self
     }
 
