@@ -23,6 +23,9 @@ enum Scale {
 /// Values beyond are drawn there, so that no width overflows.
 const LARGEST: f64 = 1e300;
 
+/// Powers of ten of the ends of a logarithmic axis, at most: those of [`LARGEST`].
+const MOST_DECADES: f64 = 300.0;
+
 /// What differs by less than this part of its size is drawn as constant.
 const CONSTANT: f64 = 1e-9;
 
@@ -43,21 +46,23 @@ impl Axis {
         Ok(Self::between(label, if from_zero { 0.0 } else { low - margin }, high + margin))
     }
 
-    /// A logarithmic axis from 1, 2 or 5 times a power of ten to another such number, around all of the values. Of no
-    /// values at all, from 1 to 10. The axis ends at 1e±300, even if values are beyond.
+    /// A logarithmic axis around all of the values with a margin of 3 %, up to the next 1, 2 or 5 times a power of ten. Of
+    /// no values at all, from 1 to 10. The axis ends at 1e±300, even if values are beyond.
     ///
     /// # Errors
     /// [`AxisError::NotFinite`] if a value is not finite, [`AxisError::NotPositive`] if one is zero or negative.
     pub fn logarithmic(label: impl Into<String>, values: impl IntoIterator<Item = f64>) -> Result<Self, AxisError> {
         let label = label.into();
-        let (low, high) = extent(&label, values)?.unwrap_or((1.0, 10.0));
-        if low <= 0.0 {
-            return Err(AxisError::NotPositive { axis: label, value: low });
-        }
-        let clamped = |x: f64| x.clamp(1.0 / LARGEST, LARGEST).log10();
-        let (low, high) = (round_down(clamped(low)), round_up(clamped(high)));
-        // A single round value: the decade above it.
-        let high = if high - low < 0.1 { low + 1.0 } else { high };
+        let (low, high) = match extent(&label, values)? {
+            None => (0.0, 1.0),
+            Some((low, _)) if low <= 0.0 => return Err(AxisError::NotPositive { axis: label, value: low }),
+            Some((low, high)) => {
+                let (low, high) = (low.log10(), high.log10());
+                // Of values that are about the same, half a decade.
+                let margin = (0.03 * (high - low)).max(0.5 * (0.5 - (high - low)));
+                (round_down(low - margin).max(-MOST_DECADES), round_up(high + margin).min(MOST_DECADES))
+            }
+        };
         Ok(Self { label, scale: Scale::Logarithmic, low, high })
     }
 
@@ -73,13 +78,21 @@ impl Axis {
     /// but for rounding), the axis is one [around](Axis::around) them.
     #[must_use]
     pub fn between(label: impl Into<String>, low: f64, high: f64) -> Self {
-        let width = high - low;
-        let drawable = width.is_finite() && width > f64::MIN_POSITIVE.max(NARROWEST * low.abs().max(high.abs()));
-        if drawable {
+        if is_drawable(low, high) {
             Self { label: label.into(), scale: Scale::Linear, low, high }
         } else {
             Self::around(label, [low, high], 0.0)
         }
+    }
+
+    /// The axis from another low end on, if that is below its high end and, on a logarithmic axis, positive.
+    #[must_use]
+    pub fn starting_at(mut self, low: f64) -> Self {
+        let low = self.scaled(low);
+        if is_drawable(low, self.high) {
+            self.low = low;
+        }
+        self
     }
 
     /// The ends of the axis, ascending.
@@ -126,6 +139,12 @@ impl Axis {
             Scale::Logarithmic => x.log10(),
         }
     }
+}
+
+/// Whether there are numbers between the ends, and the distance of two of them is a number.
+fn is_drawable(low: f64, high: f64) -> bool {
+    let width = high - low;
+    width.is_finite() && width > f64::MIN_POSITIVE.max(NARROWEST * low.abs().max(high.abs()))
 }
 
 /// Least and largest value, if there are any.
@@ -227,10 +246,9 @@ mod tests {
             [low, high].map(|x| format!("{x:.6e}").parse::<f64>().unwrap())
         };
         assert_eq!(ends(&[0.3, 40.0]), [0.2, 50.0]);
-        assert_eq!(ends(&[1e-5, 1e-3]), [1e-5, 1e-3]);
-        assert_eq!(ends(&[2e-5 * (1.0 - 1e-15), 5e4 * (1.0 + 1e-15)]), [2e-5, 5e4]);
-        assert_eq!(ends(&[6.0, 11.0]), [5.0, 20.0]);
-        assert_eq!(ends(&[2.0, 2.0]), [2.0, 20.0]);
+        assert_eq!(ends(&[1e-5, 1e-3]), [5e-6, 2e-3]);
+        assert_eq!(ends(&[6.0, 11.0]), [2.0, 20.0]);
+        assert_eq!(ends(&[2.0, 2.0]), [1.0, 5.0]);
         assert_eq!(ends(&[]), [1.0, 10.0]);
         assert_eq!(ends(&[5e-324, f64::MAX]), [1e-300, 1e300]);
         for value in [0.0, -1.0] {
@@ -241,11 +259,26 @@ mod tests {
     }
 
     #[test]
+    fn round_numbers_stay_what_they_are() {
+        for x in [1e-5, 2e-5 * (1.0 - 1e-15), 5e4 * (1.0 + 1e-15), 1.0] {
+            let power = f64::log10(x);
+            assert!((round_down(power) - power).abs() < 1e-9 && (round_up(power) - power).abs() < 1e-9, "{x}");
+        }
+        assert_eq!((round_down(7f64.log10()), round_up(7f64.log10())), (5f64.log10(), 1.0));
+    }
+
+    #[test]
     fn places_on_a_logarithmic_axis_go_by_powers() {
-        let axis = Axis::logarithmic("x", [0.1, 100.0]).unwrap();
-        assert!(
-            (axis.above_low(1.0, 300.0) - 100.0).abs() < 1e-9 && (axis.below_high(1.0, 300.0) - 200.0).abs() < 1e-9
-        );
+        let axis = Axis::logarithmic("x", [0.3, 80.0]).unwrap().starting_at(0.1);
+        let (above, below) = (axis.above_low(1.0, 300.0), axis.below_high(1.0, 300.0));
+        assert!((above - 100.0).abs() < 1e-9 && (below - 200.0).abs() < 1e-9, "{above} {below}");
         assert!(axis.holds(0.1) && axis.holds(100.0) && !axis.holds(0.09) && !axis.holds(0.0) && !axis.holds(-1.0));
+    }
+
+    #[test]
+    fn a_low_end_that_leaves_no_axis_is_ignored() {
+        let axis = Axis::logarithmic("x", [0.3, 80.0]).unwrap();
+        assert!([0.0, -1.0, f64::NAN, 100.0, 1e9].into_iter().all(|low| axis.clone().starting_at(low) == axis));
+        assert_eq!(Axis::between("x", 1.0, 2.0).starting_at(0.0).ends(), (0.0, 2.0));
     }
 }

@@ -162,13 +162,14 @@ pub(crate) fn stroke(number: usize, theme: Theme) -> String {
     format!("stroke=\"{}\" stroke-dasharray=\"{dash}\"", colour.value(theme))
 }
 
-/// Colours of marks: filled ones have a thin edge of the background, so that marks that overlap can be told apart.
+/// Colours of marks: hollow ones are open, filled ones have a thin edge of the background, so that neither hides what it
+/// overlaps.
 pub(crate) fn mark_style(number: usize, hollow: bool, theme: Theme) -> String {
-    let (colour, paper) = (Colour::Series(number).value(theme), Colour::Paper.value(theme));
+    let colour = Colour::Series(number).value(theme);
     if hollow {
-        format!("fill=\"{paper}\" stroke=\"{colour}\"")
+        format!("fill=\"none\" stroke=\"{colour}\"")
     } else {
-        format!("fill=\"{colour}\" stroke=\"{paper}\" stroke-width=\".5\"")
+        format!("fill=\"{colour}\" stroke=\"{}\" stroke-width=\".4\"", Colour::Paper.value(theme))
     }
 }
 

@@ -186,7 +186,9 @@ impl Panel {
             let Drawn::Marks { mark, hollow } = marks.drawn else { continue };
             let shown = marks.points().iter().filter(|point| frame.x.holds(point.0) && y.holds(point.1));
             let path: String = shown.map(|&(x, y)| mark_path(mark, frame.px(x), py(y))).collect();
-            let _ = writeln!(svg, "<path d=\"{path}\" {}/>", mark_style(marks.number_at(k), hollow, theme));
+            if !path.is_empty() {
+                let _ = writeln!(svg, "<path d=\"{path}\" {}/>", mark_style(marks.number_at(k), hollow, theme));
+            }
         }
         let ticks = self.ticks_at.iter().filter(|x| frame.x.holds(**x));
         let ticks: String = ticks.map(|&x| format!("M{:.2} {top:.2}v5", frame.px(x))).collect();

@@ -70,7 +70,7 @@ impl Series {
         self
     }
 
-    /// With hollow marks instead of filled ones; a line stays as it is.
+    /// With hollow marks instead of filled ones, through which others can be seen; a line stays as it is.
     #[must_use]
     pub fn hollow(mut self) -> Self {
         if let Drawn::Marks { hollow, .. } = &mut self.drawn {
