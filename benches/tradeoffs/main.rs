@@ -25,7 +25,7 @@ fn main() -> Result<()> {
             continue;
         }
         let study = studied(&path, &stem)?;
-        let figures = write::figures(&study);
+        let figures = write::figures(&study)?;
         let figure = figures.iter().find(|(name, _)| name == "accuracy.svg").map(|(_, svg)| svg);
         if let Some(svg) = figure {
             std::fs::write(root.join(format!("docs/figures/tradeoff-{stem}.svg")), svg)?;

@@ -4,12 +4,11 @@
 
 #![allow(clippy::print_stdout, reason = "a program")]
 
-mod svg;
-
 use std::error::Error;
 use teeter_beam::{
     Actions, Beam, BeamSpec, Envelope, Load, MatrixWeights, MovingLoad, Section, SectionForces, SpanLoad,
 };
+use teeter_plot::{Axis, Figure, Panel, Series};
 
 const SPAN: f64 = 30.0;
 const FORCE: f64 = -100e3;
@@ -62,14 +61,20 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("{x:6.2} {:14.2} {:14.2} {:14.2}", 1e-3 * least, 1e-3 * largest, 1e-3 * creeping(*x));
     }
 
-    let line = |of: &dyn Fn(f64, [f64; 2]) -> f64| nodes().map(|(x, range)| [*x, 1e-3 * of(*x, *range)]).collect();
+    let line = |name: &str, of: &dyn Fn(f64, [f64; 2]) -> f64| {
+        Series::line(name, nodes().map(|(x, range)| (*x, 1e-3 * of(*x, *range))))
+    };
     let lines = [
-        ("largest".into(), line(&|_, [_, largest]| largest)),
-        ("least".into(), line(&|_, [least, _]| least)),
-        ("creeping".into(), line(&|x, _| creeping(x))),
+        line("largest", &|_, [_, largest]| largest),
+        line("least", &|_, [least, _]| least),
+        line("creeping", &|x, _| creeping(x)),
     ];
+    let values = lines.iter().flat_map(Series::points).map(|point| point.1);
+    let y = Axis::linear("Bending moment M (kN m)", values)?;
+    let x = Axis::between("Place along the bridge x (m)", 0.0, SPAN);
+    let title = "100 kN at 60 m/s over a bridge: envelope of the bending moment";
+    let figure = Figure::new("moving_load", title, x).headed().panel(Panel::new(y).with(lines));
     let folder = std::env::args().nth(1).unwrap_or_else(|| ".".into());
-    let page = svg::plot("100 kN at 60 m/s over a bridge: envelope of the bending moment", ["x, m", "kN m"], &lines);
-    std::fs::write(format!("{folder}/moving_load.svg"), page)?;
+    std::fs::write(format!("{folder}/moving_load.svg"), figure.to_svg())?;
     Ok(())
 }

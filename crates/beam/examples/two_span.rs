@@ -4,10 +4,9 @@
 
 #![allow(clippy::print_stdout, reason = "a program")]
 
-mod svg;
-
 use std::error::Error;
 use teeter_beam::{Actions, Beam, BeamSpec, Profile, Section, SpanLoad, Support};
+use teeter_plot::{Axis, Figure, Panel, Series};
 
 const SPAN: f64 = 4.0;
 const LOAD: f64 = -10e3;
@@ -36,16 +35,20 @@ fn main() -> Result<(), Box<dyn Error>> {
     row("deflection at 2 m, mm", 1e3 * middle.w, 1e3 * sag);
 
     let places: Vec<f64> = (0..=160).map(|k| 2.0 * SPAN * f64::from(k) / 160.0).collect();
-    let deflection = places.iter().filter_map(|x| Some([*x, 1e3 * beam.deflection_at(&q, *x)?.w])).collect();
-    let moment: Result<Vec<_>, _> =
-        places.iter().map(|x| Ok::<_, Box<dyn Error>>([*x, 1e-3 * forces.at(&beam, *x)?.moment])).collect();
+    let deflection: Vec<_> = places.iter().filter_map(|x| Some((*x, 1e3 * beam.deflection_at(&q, *x)?.w))).collect();
+    let moment: Result<Vec<_>, Box<dyn Error>> =
+        places.iter().map(|x| Ok((*x, 1e-3 * forces.at(&beam, *x)?.moment))).collect();
 
     let folder = std::env::args().nth(1).unwrap_or_else(|| ".".into());
-    for (file, title, axis, line) in [
-        ("two_span_deflection.svg", "Two spans, the left one loaded: deflection", "mm", deflection),
-        ("two_span_moment.svg", "Two spans, the left one loaded: bending moment", "kN m", moment?),
+    for (name, what, label, line) in [
+        ("two_span_deflection", "deflection", "Deflection w (mm)", deflection),
+        ("two_span_moment", "bending moment", "Bending moment M (kN m)", moment?),
     ] {
-        std::fs::write(format!("{folder}/{file}"), svg::plot(title, ["x, m", axis], &[(String::new(), line)]))?;
+        let x = Axis::between("Place along the beam x (m)", 0.0, 2.0 * SPAN);
+        let y = Axis::linear(label, line.iter().map(|point| point.1))?;
+        let title = format!("Two spans, the left one loaded: {what}");
+        let figure = Figure::new(name, title, x).headed().panel(Panel::new(y).with([Series::line("", line)]));
+        std::fs::write(format!("{folder}/{name}.svg"), figure.to_svg())?;
     }
     Ok(())
 }

@@ -97,10 +97,10 @@ fn write_all(
     let file = |file: &str| scene.seen_from(results.folder(), file);
     results.write("scene.toml", resolved.document.to_toml_elsewhere(file))?;
     results.write("tradeoff.csv", write::csv(study))?;
-    for (name, svg) in write::figures(study) {
+    for (name, svg) in write::figures(study)? {
         results.write(&format!("figures/{name}"), svg)?;
     }
-    results.write("tradeoff.html", write::page(study))?;
+    results.write("tradeoff.html", write::page(study)?)?;
     results.write("tradeoff.json", write::json(study))?;
     let findings = write::findings(study);
     let lines = write::advice(study).into_iter().chain(findings.iter().map(|line| format!("  {line}")));

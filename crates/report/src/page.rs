@@ -8,17 +8,16 @@ mod data;
 mod figures;
 mod frames;
 mod html;
-mod plot;
 mod recorder;
 mod rocking;
 mod scenery;
 
 pub use figures::figures;
 pub use html::{STYLE, render};
-pub use plot::escaped;
 pub(crate) use recorder::Kept;
 pub use recorder::PageRecorder;
 pub use rocking::{HalfCycle, half_cycles};
+pub use teeter_plot::escaped;
 
 /// A number with so many significant digits: what the page shows needs no more, and a shorter page loads faster.
 fn rounded(x: f64, digits: usize) -> f64 {

@@ -2,7 +2,7 @@
 
 use crate::case::{Case, Check, Depth, Findings, Result};
 use crate::exact::beam::{SUPPORTS, wave_numbers};
-use crate::figure::{Axes, Corner, Figure, Series};
+use crate::figure::{Axes, Figure, Series};
 use crate::fit::power_law;
 use crate::scene::paper_beam;
 use teeter_beam::{Beam, BeamSpec, Section};
@@ -68,10 +68,9 @@ impl Case for BeamFrequencies {
         findings.figures.push(Figure {
             file: "beam_frequencies.svg",
             title: "Frequencies of the finite elements",
-            x: "element length / span",
+            x: "Element length / span",
             axes: Axes::Logarithmic,
-            legend: Corner::LowerRight,
-            y: "relative error of the frequency",
+            y: "Relative error of the frequency",
             caption: "Relative error of the first three frequencies against the element length, with fitted lines.",
             series,
         });

@@ -2,7 +2,7 @@
 
 use crate::case::{Case, Check, Depth, Findings, Result};
 use crate::exact::bouncing_point::BouncingPoint;
-use crate::figure::{Axes, Corner, Figure, Series};
+use crate::figure::{Axes, Figure, Series};
 use crate::fit::power_law;
 use crate::scene::{FLAT_BLOCK, GRAVITY, Runner, Start, Stepping, block_over};
 use nalgebra::Vector2;
@@ -69,10 +69,9 @@ impl Case for Bouncing {
         findings.figures.push(Figure {
             file: "bouncing.svg",
             title: "Bouncing block, e = 0.8: error against step size",
-            x: "step size h / s",
-            y: "error of the impact times / s",
+            x: "Step size h (s)",
+            y: "Error of the impact times (s)",
             axes: Axes::Logarithmic,
-            legend: Corner::LowerRight,
             caption: "Worst error of the first ten impact times, with fitted lines.",
             series,
         });

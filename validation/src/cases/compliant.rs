@@ -2,7 +2,7 @@
 
 use crate::case::{Case, Check, Depth, Findings, Result};
 use crate::exact::compliant_impact::{HuntCrossley, KelvinVoigt};
-use crate::figure::{Axes, Corner, Figure, Series};
+use crate::figure::{Axes, Figure, Series};
 use crate::fit::power_law;
 use crate::scene::{GAIN, GRAVITY, PAPER_BLOCK, Runner, Start, Stepping, block_over};
 use nalgebra::Vector2;
@@ -186,10 +186,9 @@ fn loops() -> Result<Figure> {
     Ok(Figure {
         file: "compliant_loops.svg",
         title: "Contacts with duration: force over penetration",
-        x: "penetration / mm",
-        y: "force of both corners / kN",
+        x: "Penetration (mm)",
+        y: "Force of both corners (kN)",
         axes: Axes::Linear,
-        legend: Corner::LowerRight,
         caption: "The slender block falls flat at 1 m/s on two springs of 1e6 N/m, steps of 1e-5 s: the loop is the energy lost. Kelvin–Voigt's \
                   force jumps at first touch and ends before the surfaces part; Hunt–Crossley's goes from zero to zero.",
         series,

@@ -1,7 +1,7 @@
 //! What the convex (associated) law does to a sliding contact, and that the fixed point over it is exact.
 
 use crate::case::{Case, Check, Depth, Findings, Result};
-use crate::figure::{Axes, Corner, Figure, Series};
+use crate::figure::{Axes, Figure, Series};
 use nalgebra::{Matrix2, Vector2};
 use teeter_contact::{ContactProblem, ContactSolver, Delassus, Stop};
 use teeter_solvers::{AcaryCadoux, Enumeration, Socp};
@@ -53,10 +53,9 @@ impl Case for ConvexLaw {
         let figure = Figure {
             file: "convex-law.svg",
             title: "A sliding contact: separation against friction times slip",
-            x: "μ‖u_T‖, m/s",
+            x: "μ‖u_T‖ (m/s)",
             axes: Axes::Logarithmic,
-            legend: Corner::LowerRight,
-            y: "u_N, m/s",
+            y: "u_N (m/s)",
             caption: "`socp` lies on the line u_N = μ‖u_T‖; the other two have no separation but rounding (velocities below \
                       1e-17 m/s are drawn there).",
             series: vec![

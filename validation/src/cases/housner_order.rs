@@ -2,7 +2,7 @@
 
 use crate::case::{Case, Check, Depth, Findings, Result};
 use crate::exact::housner::{Excursion, HousnerBlock};
-use crate::figure::{Axes, Corner, Figure, Series};
+use crate::figure::{Axes, Figure, Series};
 use crate::fit::power_law;
 use crate::scene::{GRAVITY, PAPER_BLOCK, Runner, Start, Stepping, block_over};
 use nalgebra::Vector2;
@@ -73,10 +73,9 @@ impl Case for HousnerOrder {
         findings.figures.push(Figure {
             file: "housner_order.svg",
             title: "Housner's block: error against step size",
-            x: "step size h / s",
+            x: "Step size h (s)",
             axes: Axes::Logarithmic,
-            legend: Corner::LowerRight,
-            y: "error: time / s, peak relative",
+            y: "Error of times (s) and peaks (relative)",
             caption: "Worst error of the first six impact times and of the first six peaks, with their fitted lines.",
             series: vec![
                 Series::marks("peaks, relative", peaks),

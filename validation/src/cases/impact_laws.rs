@@ -2,7 +2,7 @@
 
 use crate::case::{Case, Check, Depth, Findings, Result};
 use crate::exact::three_balls::{HERTZ, ONE_AFTER_THE_OTHER, at_once, linear_springs};
-use crate::figure::{Axes, Corner, Figure, Series};
+use crate::figure::{Axes, Figure, Series};
 use crate::scene::{PAPER_BLOCK, Runner, Start, Stepping, block_over};
 use nalgebra::{Matrix2, Rotation2, Vector2};
 use std::ops::ControlFlow;
@@ -205,10 +205,9 @@ fn gain([page, closed]: &mut [Runner; 2], findings: &mut Findings) -> Result<()>
     findings.figures.push(Figure {
         file: "kane_levinson.svg",
         title: "Energy of an impact with friction, e = 1",
-        x: "tangential velocity before / m/s",
-        y: "energy after / energy before",
+        x: "Tangential velocity before (m/s)",
+        y: "Energy after / energy before",
         axes: Axes::Linear,
-        legend: Corner::LowerLeft,
         caption: "The slender block, tilted by 20°, hits the ground with a corner at 1 m/s, e = 1, μ = 0.5: Newton's law makes energy where the \
                   curve is above 1. There the energetic law and `moreau-jean-closed` keep it: their marks coincide.",
         series: vec![

@@ -2,7 +2,7 @@
 
 use crate::case::{Case, Check, Depth, Findings, Result};
 use crate::exact::shaken_block::ShakenBlock;
-use crate::figure::{Axes, Corner, Figure, Series};
+use crate::figure::{Axes, Figure, Series};
 use crate::fit::power_law;
 use crate::scene::{FLAT_BLOCK, GRAVITY, PAPER_BLOCK, Runner, Start, Stepping, beam_body, block_over, paper_beam};
 use nalgebra::Vector2;
@@ -74,10 +74,9 @@ impl Case for MovingGround {
         findings.figures.push(Figure {
             file: "shaken_block.svg",
             title: "Block on a shaken floor: error against step size",
-            x: "step size h / s",
-            y: "largest error of the position / m",
+            x: "Step size h (s)",
+            y: "Largest error of the position (m)",
             axes: Axes::Logarithmic,
-            legend: Corner::LowerRight,
             caption: "Largest error of the block's position in 2.7 s, with fitted lines: with more friction (0.8) the block sticks in between, and \
                       its velocity is right again; with less (0.4) it never does.",
             series,

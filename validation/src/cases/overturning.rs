@@ -3,7 +3,7 @@
 use crate::case::{Case, Check, Depth, Findings, Result};
 use crate::exact::overturning::{Fate, PulsedBlock, RANGES};
 use crate::exact::root::boundary as boundary_between;
-use crate::figure::{Axes, Corner, Figure, Series};
+use crate::figure::{Axes, Figure, Series};
 use crate::scene::{BlockSpec, GRAVITY, Runner, Start, Stepping, block_over};
 use nalgebra::Vector2;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -90,7 +90,6 @@ impl Case for Overturning {
             x: "ω_p / p",
             y: "A / (g tan α)",
             axes: Axes::Linear,
-            legend: Corner::UpperLeft,
             caption: "Amplitudes at which the fate of the block changes, α = 0.25: it overturns after one impact between the two lower curves, \
                       without impact above the upper one. Curves by integration of the rocking equation, marks by the program.",
             series,

@@ -1,12 +1,12 @@
 //! The plots of the page as figures for a paper.
 
-use super::plot::{Band, Figure, KEY_WIDTH, Line, Panel, key_width, range_of, text_width};
 use super::recorder::{BLOCK_COLUMNS, ENERGIES, ImpactMark, PageRecorder};
 use super::rounded;
 use super::scenery::CORNERS;
 use crate::sections::Kind;
 use teeter_beam::Envelope;
 use teeter_integrator::ContactState;
+use teeter_plot::{Axis, Band, Colour, Figure, LEGEND_WIDTH, Panel, Series, legend_width, text_width};
 
 /// File names and SVG text of the figures that the scene has: `phi.svg`, `omega.svg` and `phase.svg` with blocks,
 /// `w_mid.svg` with beams, `section_forces.svg` and `envelopes.svg` where the scene asks for what beams bear, `contact_forces.svg` where contacts carried something, `energy.svg` always.
@@ -38,8 +38,8 @@ pub fn figures(recorder: &PageRecorder) -> Vec<(String, String)> {
 }
 
 /// Colours of sticking and slipping; an open contact has none.
-const STICK: &str = "#56B4E9";
-const SLIP: &str = "#D55E00";
+const STICK: Colour = Colour::Series(5);
+const SLIP: Colour = Colour::Series(1);
 
 /// Least range of angles (°) and angular velocities (rad/s).
 const STILL: f64 = 2e-3;
@@ -50,79 +50,75 @@ struct Plots<'a> {
 }
 
 impl<'a> Plots<'a> {
-    fn over_time(&self, id: &'static str, title: &str, panels: Vec<Panel>) -> Figure {
+    fn over_time(&self, id: &str, title: &str, panels: Vec<Panel>) -> Figure {
         let (start, end) = (self.t[0], self.t[self.t.len() - 1]);
-        Figure {
-            id,
-            title: title.to_owned(),
-            x_label: "Time t (s)".to_owned(),
-            x_range: (start, if end > start { end } else { start + 1.0 }),
-            panels,
-            marks: self.recorder.kept.impacts.iter().map(|impact| impact.t).collect(),
-        }
+        let x = Axis::between("Time t (s)", start, if end > start { end } else { start + 1.0 });
+        panels.into_iter().fold(Figure::new(id, title, x), Figure::panel)
     }
 
-    fn line(&self, label: &str, number: usize, column: usize, factor: f64) -> Line {
-        let y = self.recorder.kept.curves.curve(column).into_iter().map(|y| factor * y).collect();
-        Line { label: label.to_owned(), number, x: self.t.clone(), y }
+    /// A panel of lines over time, with the impacts marked.
+    fn panel(&self, y: Axis, lines: Vec<Series>) -> Panel {
+        let impacts = self.recorder.kept.impacts.iter().map(|impact| impact.t);
+        Panel::new(y).with(lines).ticks_at(impacts.collect())
+    }
+
+    fn curve(&self, column: usize, factor: f64) -> impl Iterator<Item = f64> {
+        self.recorder.kept.curves.curve(column).into_iter().map(move |y| factor * y)
+    }
+
+    fn line(&self, label: &str, number: usize, column: usize, factor: f64) -> Series {
+        Series::line(label, self.t.iter().copied().zip(self.curve(column, factor))).number(number)
     }
 
     /// A line for each block, from the column that is `offset` after its first.
-    fn by_block(&self, offset: usize, factor: f64) -> Vec<Line> {
+    fn by_block(&self, offset: usize, factor: f64) -> Vec<Series> {
+        let line = |k: usize| self.line(self.block_label(k), k, BLOCK_COLUMNS * k + offset, factor);
+        (0..self.recorder.scenery.blocks.len()).map(line).collect()
+    }
+
+    /// A block's name, if there are others.
+    fn block_label(&self, k: usize) -> &'a str {
         let blocks = &self.recorder.scenery.blocks;
-        let label = |name: &'a str| if blocks.len() > 1 { name } else { "" };
-        blocks
-            .iter()
-            .enumerate()
-            .map(|(k, block)| self.line(label(&block.name), k, BLOCK_COLUMNS * k + offset, factor))
-            .collect()
+        if blocks.len() > 1 { &blocks[k].name } else { "" }
     }
 
     fn phi(&self) -> Figure {
         let lines = self.by_block(0, 1f64.to_degrees());
-        let panel = Panel { y_label: "Angle φ (°)".to_owned(), lines, least: STILL, ..Panel::default() };
-        self.over_time("phi", "Angle of the blocks over time", vec![panel])
+        let y = Axis::around("Angle φ (°)", values(&lines), STILL);
+        self.over_time("phi", "Angle of the blocks over time", vec![self.panel(y, lines)])
     }
 
     fn omega(&self) -> Figure {
         let lines = self.by_block(1, 1.0);
-        let panel =
-            Panel { y_label: "Angular velocity φ̇ (rad/s)".to_owned(), lines, least: STILL, ..Panel::default() };
-        self.over_time("omega", "Angular velocity of the blocks over time", vec![panel])
+        let y = Axis::around("Angular velocity φ̇ (rad/s)", values(&lines), STILL);
+        self.over_time("omega", "Angular velocity of the blocks over time", vec![self.panel(y, lines)])
     }
 
     fn phase(&self) -> Figure {
         let blocks = &self.recorder.scenery.blocks;
-        let mut lines = self.by_block(1, 1.0);
-        for (k, line) in lines.iter_mut().enumerate() {
-            line.x = self.line("", k, BLOCK_COLUMNS * k, 1f64.to_degrees()).y;
-        }
-        let x_range = range_of(lines.iter().flat_map(|line| &line.x).copied(), STILL);
+        let line = |k: usize| {
+            let column = BLOCK_COLUMNS * k;
+            let points = self.curve(column, 1f64.to_degrees()).zip(self.curve(column + 1, 1.0));
+            Series::line(self.block_label(k), points).number(k)
+        };
+        let lines: Vec<Series> = (0..blocks.len()).map(line).collect();
+        let angles = lines.iter().flat_map(Series::points).map(|point| point.0);
+        let x = Axis::around("Angle φ (°)", angles, STILL);
+        let y = Axis::around("Angular velocity φ̇ (rad/s)", values(&lines), STILL);
         // A block's critical angles, where one of them is reached: beyond, it overturns.
         let guides = blocks.iter().flat_map(|block| [-block.alpha.to_degrees(), block.alpha.to_degrees()]).collect();
-        let panel =
-            Panel {
-                y_label: "Angular velocity φ̇ (rad/s)".to_owned(), lines, guides, least: STILL, ..Panel::default()
-            };
-        Figure {
-            id: "phase",
-            title: "Phase portrait of the blocks".to_owned(),
-            x_label: "Angle φ (°)".to_owned(),
-            x_range,
-            panels: vec![panel],
-            marks: Vec::new(),
-        }
+        Figure::new("phase", "Phase portrait of the blocks", x).panel(Panel::new(y).with(lines).guides(guides))
     }
 
     fn w_mid(&self) -> Figure {
         let first = BLOCK_COLUMNS * self.recorder.scenery.blocks.len();
         let beams = &self.recorder.scenery.beams;
         let label = |name: &'a str| if beams.len() > 1 { name } else { "" };
-        let lines = beams.iter().enumerate().map(|(k, beam)| self.line(label(&beam.name), k, first + k, 1e3)).collect();
+        let line = |(k, name): (usize, &'a str)| self.line(label(name), k, first + k, 1e3);
+        let lines: Vec<Series> = beams.iter().map(|beam| beam.name.as_str()).enumerate().map(line).collect();
         let span = beams.iter().fold(0.0, |longest, beam| beam.span.max(longest));
-        let panel =
-            Panel { y_label: "Midspan deflection w (mm)".to_owned(), lines, least: 1e-6 * span, ..Panel::default() };
-        self.over_time("w_mid", "Deflection of the beams at midspan over time", vec![panel])
+        let y = Axis::around("Midspan deflection w (mm)", values(&lines), 1e-6 * span);
+        self.over_time("w_mid", "Deflection of the beams at midspan over time", vec![self.panel(y, lines)])
     }
 
     /// What beams bear at their probes and supports; the largest curves, as many as can be named.
@@ -138,18 +134,18 @@ impl<'a> Plots<'a> {
         ] {
             let columns = self.recorder.sections.iter().zip(self.recorder.first_section()..);
             let lines = columns.filter(|(column, _)| column.kind == kind).enumerate();
-            let mut lines: Vec<Line> = lines
+            let mut lines: Vec<Series> = lines
                 .map(|(number, (column, k))| self.line(&self.recorder.section_label(column), number, k, factor))
-                .filter(|line| largest(std::slice::from_ref(line)) > 0.0)
+                .filter(|line| largest([line]) > 0.0)
                 .collect();
             if lines.is_empty() {
                 continue;
             }
             let least = 1e-6 * largest(&lines);
             let (range, note) = cut(&lines, least, y_label.rsplit(['(', ')']).nth(1).unwrap_or_default());
-            let room = KEY_WIDTH - note.as_deref().map_or(0.0, text_width);
-            keep_named(&mut lines, room);
-            panels.push(Panel { y_label: y_label.to_owned(), lines, range, note, least, ..Panel::default() });
+            keep_named(&mut lines, LEGEND_WIDTH - note.as_deref().map_or(0.0, text_width));
+            let y = cut_axis(y_label, range, &lines, least);
+            panels.push(self.panel(y, lines).note(note));
         }
         (!panels.is_empty()).then(|| self.over_time("section_forces", "What beams bear over time", panels))
     }
@@ -168,12 +164,12 @@ impl<'a> Plots<'a> {
                 let Some(forces) = &curves[CORNERS * pair + point] else { continue };
                 let label = scenery.corners[point].replace('-', " ");
                 let step = |y: &[f64]| {
-                    let (x, y) = steps(&borders, y);
-                    Line { label: label.clone(), number: point, x, y }
+                    let end = borders.last().copied().unwrap_or_default();
+                    Series::staircase(&label, borders.iter().copied().zip(y.iter().copied()), end).number(point)
                 };
                 normal.push(step(&forces.normal));
                 tangential.push(step(&forces.tangential));
-                bands.push(Band { label: label.clone(), stretches: stretches(&borders, &forces.state) });
+                bands.push(Band::new(&label, stretches(&borders, &forces.state)));
             }
             if normal.is_empty() {
                 continue;
@@ -184,18 +180,11 @@ impl<'a> Plots<'a> {
                 let (range, cut) = cut(&lines, least, "N");
                 let name = (scenery.contacts.len() > 1).then(|| contact.name.clone());
                 let note = [name, cut].into_iter().flatten().collect::<Vec<_>>().join(": ");
-                panels.push(Panel {
-                    y_label: format!("{what} force (N)"),
-                    lines,
-                    range,
-                    note: Some(note).filter(|note| !note.is_empty()),
-                    least,
-                    marks: Some(marks.clone()),
-                    ..Panel::default()
-                });
+                let y = cut_axis(&format!("{what} force (N)"), range, &lines, least);
+                let note = Some(note).filter(|note| !note.is_empty());
+                panels.push(Panel::new(y).with(lines).ticks_at(marks.clone()).note(note));
             }
-            let band_key = vec![(STICK, "stick"), (SLIP, "slip"), ("#fff", "open")];
-            panels.push(Panel { bands, band_key, ..Panel::default() });
+            panels.push(Panel::bands(bands, [(STICK, "stick"), (SLIP, "slip"), (Colour::Paper, "open")]));
         }
         (!panels.is_empty()).then(|| self.over_time("contact_forces", "Contact forces on the blocks over time", panels))
     }
@@ -204,26 +193,28 @@ impl<'a> Plots<'a> {
         let scenery = &self.recorder.scenery;
         let first = BLOCK_COLUMNS * scenery.blocks.len() + scenery.beams.len();
         let column = |name: &str| first + ENERGIES.iter().position(|known| *known == name).unwrap_or(0);
-        let named = |name: &'static str, label: &str, number: usize| self.line(label, number, column(name), 1.0);
-        let mut energies = vec![named("kinetic", "kinetic", 0)];
+        let line =
+            |&(name, label, number): &(&str, &str, usize), factor: f64| self.line(label, number, column(name), factor);
+        let mut energies = vec![("kinetic", "kinetic", 0)];
         if !scenery.beams.is_empty() {
-            energies.push(named("elastic", "elastic", 1));
+            energies.push(("elastic", "elastic", 1));
         }
-        energies.extend([named("gravity", "gravity (change)", 2), named("total", "total", 6)]);
-        let scale = largest(&energies);
+        energies.extend([("gravity", "gravity (change)", 2), ("total", "total", 6)]);
+        let scale = largest(&energies.iter().map(|energy| line(energy, 1.0)).collect::<Vec<_>>());
         let works = ["contact", "friction", "viscous", "numerical", "external", "projection"].into_iter().enumerate();
-        let mut works: Vec<Line> = works.map(|(k, name)| named(name, name, k)).collect();
+        let mut works: Vec<_> = works.map(|(k, name)| (name, name, k)).collect();
         // A work that is nothing but rounding is a line on the axis: chart junk.
-        works.retain(|line| largest(std::slice::from_ref(line)) > 1e-9 * scale);
-        let panel = |what: &str, mut lines: Vec<Line>| {
-            let (prefix, factor) = prefix(largest(&lines));
-            lines.iter_mut().flat_map(|line| &mut line.y).for_each(|y| *y *= factor);
-            let least = 1e-6 * largest(&lines);
-            Panel { y_label: format!("{what} ({prefix}J)"), lines, least, ..Panel::default() }
+        works.retain(|work| largest([&line(work, 1.0)]) > 1e-9 * scale);
+        let panel = |what: &str, quantities: &[(&str, &str, usize)]| {
+            let lines = |factor: f64| quantities.iter().map(|of| line(of, factor)).collect::<Vec<_>>();
+            let (prefix, factor) = prefix(largest(&lines(1.0)));
+            let lines = lines(factor);
+            let y = Axis::around(format!("{what} ({prefix}J)"), values(&lines), 1e-6 * largest(&lines));
+            self.panel(y, lines)
         };
-        let mut panels = vec![panel("Energy", energies)];
+        let mut panels = vec![panel("Energy", &energies)];
         if !works.is_empty() {
-            panels.push(panel("Work since t = 0", works));
+            panels.push(panel("Work since t = 0", &works));
         }
         self.over_time("energy", "Energies and works over time", panels)
     }
@@ -243,36 +234,29 @@ pub(super) fn envelopes(recorder: &PageRecorder) -> Option<Figure> {
         for (record, x, envelope) in drawn() {
             for (side, word) in [(1, "largest"), (0, "least")] {
                 let label = if several { format!("{} {word}", record.beam) } else { word.to_owned() };
-                let y = pick(envelope).iter().map(|range| range[side]).collect();
-                lines.push(Line { label, number: lines.len(), x: x.to_vec(), y });
+                let y = pick(envelope).into_iter().map(|range| range[side]);
+                lines.push(Series::line(label, x.iter().copied().zip(y)).number(lines.len()));
             }
         }
-        keep_named(&mut lines, KEY_WIDTH);
-        let least = 1e-6 * largest(&lines);
-        Panel { y_label: y_label.to_owned(), lines, least, ..Panel::default() }
+        keep_named(&mut lines, LEGEND_WIDTH);
+        Panel::new(Axis::around(y_label, values(&lines), 1e-6 * largest(&lines))).with(lines)
     };
     let span = drawn().filter_map(|(_, x, _)| x.last().copied()).fold(0.0, f64::max);
-    (span > 0.0).then(|| Figure {
-        id: "envelopes",
-        title: "Bending moment and transverse force over the span, least and largest of all steps".to_owned(),
-        x_label: "Place along the beam x (m)".to_owned(),
-        x_range: (0.0, span),
-        panels: vec![
-            panel("Bending moment M (N m)", &|envelope| envelope.moment.clone()),
-            panel("Transverse force V (N)", &|envelope| envelope.shear.clone()),
-        ],
-        marks: Vec::new(),
+    (span > 0.0).then(|| {
+        let title = "Bending moment and transverse force over the span, least and largest of all steps";
+        Figure::new("envelopes", title, Axis::between("Place along the beam x (m)", 0.0, span))
+            .panel(panel("Bending moment M (N m)", &|envelope| envelope.moment.clone()))
+            .panel(panel("Transverse force V (N)", &|envelope| envelope.shear.clone()))
     })
 }
 
 /// Keeps the lines with the largest values, as many as can be named in this width, and their order.
-fn keep_named(lines: &mut Vec<Line>, width: f64) {
-    let mut by_size: Vec<(usize, f64)> =
-        lines.iter().enumerate().map(|(k, line)| (k, largest(std::slice::from_ref(line)))).collect();
+fn keep_named(lines: &mut Vec<Series>, width: f64) {
+    let mut by_size: Vec<(usize, f64)> = lines.iter().enumerate().map(|(k, line)| (k, largest([line]))).collect();
     by_size.sort_by(|a, b| b.1.total_cmp(&a.1));
     let mut left = width;
     let named = by_size.iter().take_while(|(k, _)| {
-        left -= key_width(&lines[*k].label);
+        left -= legend_width(lines[*k].label());
         left >= 0.0
     });
     let kept: Vec<usize> = named.map(|(k, _)| *k).collect();
@@ -283,8 +267,13 @@ fn keep_named(lines: &mut Vec<Line>, width: f64) {
     });
 }
 
-fn largest(lines: &[Line]) -> f64 {
-    lines.iter().flat_map(|line| &line.y).fold(0.0, |largest, y| y.abs().max(largest))
+/// The y of all points.
+fn values<'a>(lines: impl IntoIterator<Item = &'a Series>) -> impl Iterator<Item = f64> {
+    lines.into_iter().flat_map(Series::points).map(|point| point.1)
+}
+
+fn largest<'a>(lines: impl IntoIterator<Item = &'a Series>) -> f64 {
+    values(lines).fold(0.0, |largest, y| y.abs().max(largest))
 }
 
 /// The prefix of a unit, with its factor, that makes the largest of some values a handy number.
@@ -293,14 +282,9 @@ fn prefix(largest: f64) -> (&'static str, f64) {
     prefixes.into_iter().find(|(_, factor)| largest * factor >= 0.5).unwrap_or(("", 1.0))
 }
 
-/// A value a bucket as a line of steps.
-fn steps(borders: &[f64], y: &[f64]) -> (Vec<f64>, Vec<f64>) {
-    borders.windows(2).zip(y).flat_map(|(ends, &y)| [(ends[0], y), (ends[1], y)]).unzip()
-}
-
 /// Neighbours in one state as one stretch; the open ones left out.
-fn stretches(borders: &[f64], states: &[ContactState]) -> Vec<(f64, f64, &'static str)> {
-    let mut stretches: Vec<(f64, f64, &'static str)> = Vec::new();
+fn stretches(borders: &[f64], states: &[ContactState]) -> Vec<(f64, f64, Colour)> {
+    let mut stretches: Vec<(f64, f64, Colour)> = Vec::new();
     for (ends, state) in borders.windows(2).zip(states) {
         let colour = match state {
             ContactState::Open => continue,
@@ -320,16 +304,23 @@ fn stretches(borders: &[f64], states: &[ContactState]) -> Vec<(f64, f64, &'stati
 const PEAK: f64 = 6.0;
 
 /// The range that shows the forces between impacts, where those would dwarf them.
-fn cut(lines: &[Line], least: f64, unit: &str) -> (Option<(f64, f64)>, Option<String>) {
-    let mut sizes: Vec<f64> =
-        lines.iter().flat_map(|line| &line.y).map(|y| y.abs()).filter(|y| *y > least && y.is_finite()).collect();
+fn cut(lines: &[Series], least: f64, unit: &str) -> (Option<(f64, f64)>, Option<String>) {
+    let mut sizes: Vec<f64> = values(lines).map(f64::abs).filter(|y| *y > least && y.is_finite()).collect();
     sizes.sort_by(f64::total_cmp);
     let (Some(&usual), Some(&largest)) = (sizes.get(sizes.len() * 9 / 10), sizes.last()) else { return (None, None) };
     if largest <= PEAK * usual {
         return (None, None);
     }
     let limit = 0.5 * PEAK * usual;
-    let negative = lines.iter().flat_map(|line| &line.y).any(|y| *y < -0.01 * limit);
+    let negative = values(lines).any(|y| y < -0.01 * limit);
     let low = if negative { -limit } else { -0.06 * limit };
     (Some((low, limit)), Some(format!("peaks cut, up to {} {unit}", rounded(largest, 3))))
+}
+
+/// The y axis of lines that may have been cut to a range.
+fn cut_axis(label: &str, range: Option<(f64, f64)>, lines: &[Series], least: f64) -> Axis {
+    match range {
+        Some((low, high)) => Axis::between(label, low, high),
+        None => Axis::around(label, values(lines), least),
+    }
 }

@@ -1,7 +1,6 @@
 //! The page itself: text and numbers as HTML here, pictures by the script from the data.
 
 use super::figures::envelopes;
-use super::plot::escaped;
 use super::recorder::PageRecorder;
 use super::rocking::{HalfCycle, half_cycles};
 use super::{data, rounded};
@@ -10,6 +9,7 @@ use crate::summary::{BeamSummary, RemovedSummary};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fmt::Write;
+use teeter_plot::escaped;
 
 const TEMPLATE: &str = include_str!("../../assets/report.html");
 /// The style of the pages.

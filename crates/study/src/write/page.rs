@@ -1,20 +1,25 @@
 //! `tradeoff.html`: one page that loads nothing, in the style of a run's report.
 
-use super::{advice, duration, figures, findings, percent, pruning, short};
+use super::figure::themed;
+use super::{advice, duration, findings, percent, pruning, short};
 use crate::{Quantity, Tradeoff};
 use std::fmt::Write;
-use teeter_report::{STYLE, escaped};
+use teeter_plot::{AxisError, Theme, escaped};
+use teeter_report::STYLE;
 
 const OWN_STYLE: &str = "\
 main { display: block; }\nmain > section { margin-top: 1.5rem; }\n\
 #front { display: grid; grid-template-columns: repeat(auto-fit, minmax(20rem, 1fr)); gap: 1rem; }\n\
+#front svg { display: block; width: 100%; height: auto; max-width: 40rem; margin: 0 auto; }\n\
 #advice li { margin: .3rem 0; overflow-wrap: anywhere; }\ncode { font-size: .9em; }\n\
 tbody tr.on { background: var(--soft); font-weight: 600; }\n\
 td:first-child, td:last-child { text-align: left; }\n";
 
 /// The page.
-#[must_use]
-pub fn page(study: &Tradeoff) -> String {
+///
+/// # Errors
+/// As of [`figures`](super::figures).
+pub fn page(study: &Tradeoff) -> Result<String, AxisError> {
     let title = escaped(&format!("Speed against accuracy: {}", study.title));
     let mut html = format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
@@ -39,8 +44,8 @@ pub fn page(study: &Tradeoff) -> String {
         "</ul></section>\n<section class=\"panel\"><h3>Error over CPU time</h3>\n<p class=\"note\">A point is a candidate whose time was measured, the line the least error within a time; grey: \
          below what the reference is known to.</p>\n<div id=\"front\">\n",
     );
-    for (_, svg) in figures(study) {
-        let _ = writeln!(html, "<div class=\"paper\">{svg}</div>");
+    for (_, svg) in themed(study, Theme::Page)? {
+        html.push_str(&svg);
     }
     html.push_str("</div></section>\n");
     checks(&mut html, study);
@@ -60,7 +65,7 @@ pub fn page(study: &Tradeoff) -> String {
          counted work, so that it is the same in every run.</p></section>\n</main>\n</body>\n</html>",
         study.sampling.every
     );
-    html
+    Ok(html)
 }
 
 /// The settings in a sentence, which stand between backquotes, as code.

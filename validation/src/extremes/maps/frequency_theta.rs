@@ -3,7 +3,7 @@
 use super::super::row::{Base, Scheme, Sets};
 use super::{Map, run, set};
 use crate::case::Result;
-use crate::figure::{Axes, Corner, Figure, Series};
+use crate::figure::{Axes, Figure, Series};
 use teeter_integrator::State;
 
 /// First frequency of the base scene's beam, Hz.
@@ -120,9 +120,8 @@ pub(super) fn map() -> Result<Map> {
             file: "extremes-frequency-theta.svg",
             title: "Where a run of the paper's scene is still good",
             x: "f dt",
-            y: "theta",
+            y: "θ",
             axes: Axes::LogarithmicX,
-            legend: Corner::LowerLeft,
             caption: "",
             series,
         }],

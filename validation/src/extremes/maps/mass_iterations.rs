@@ -2,7 +2,7 @@
 
 use super::Map;
 use crate::case::Result;
-use crate::figure::{Axes, Corner, Figure, Series};
+use crate::figure::{Axes, Figure, Series};
 use teeter_contact::{Block, ContactProblem, Delassus, Law, Stop, Vector, judge};
 use teeter_solvers::{SOLVERS, plane_solver};
 
@@ -82,10 +82,9 @@ pub(super) fn map() -> Result<Map> {
     let figure = |file, title, part: &[(&str, Vec<(f64, f64)>)]| Figure {
         file,
         title,
-        x: "mass of the topmost over that of the others",
-        y: "iterations",
+        x: "Mass of the topmost over that of the others",
+        y: "Iterations",
         axes: Axes::Logarithmic,
-        legend: Corner::UpperLeft,
         caption: "",
         series: part
             .iter()

@@ -3,7 +3,7 @@
 use super::Map;
 use crate::case::Result;
 use crate::exact::beam::under_force;
-use crate::figure::{Axes, Corner, Figure, Series};
+use crate::figure::{Axes, Figure, Series};
 use teeter_beam::{Beam, BeamSpec, Digits, MatrixWeights, Section, Support};
 
 const MESHES: [usize; 12] = [2, 3, 5, 10, 20, 50, 100, 200, 500, 1000, 1500, 2000];
@@ -113,10 +113,9 @@ pub(super) fn map() -> Result<Map> {
         figures: vec![Figure {
             file: "extremes-mesh-digits.svg",
             title: "What rounding takes of a solve",
-            x: "elements",
-            y: "error / largest deflection",
+            x: "Elements",
+            y: "Error / largest deflection",
             axes: Axes::Logarithmic,
-            legend: Corner::UpperLeft,
             caption: "",
             series,
         }],

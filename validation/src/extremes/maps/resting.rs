@@ -3,7 +3,7 @@
 use super::super::row::{Base, Scheme, Sets};
 use super::{Map, run, set};
 use crate::case::Result;
-use crate::figure::{Axes, Corner, Figure, Series};
+use crate::figure::{Axes, Figure, Series};
 
 /// Upwards at the start, m/s.
 const THROWN: f64 = 0.05;
@@ -98,10 +98,9 @@ pub(super) fn map() -> Result<Map> {
         figures.push(Figure {
             file,
             title,
-            x: "dt / s",
-            y: "restitution",
+            x: "dt (s)",
+            y: "Restitution",
             axes: Axes::LogarithmicX,
-            legend: Corner::LowerLeft,
             caption: "",
             series: series.map(|(name, points)| Series::marks(name, points)).collect(),
         });

@@ -1,0 +1,172 @@
+//! A figure: panels above each other with one x axis, as SVG.
+
+use crate::legend::Legend;
+use crate::theme::{Colour, Theme};
+use crate::ticks::Ticks;
+use crate::{Axis, Panel, escaped};
+use std::fmt::Write;
+
+/// Panels above each other with one x axis.
+///
+/// ```
+/// use teeter_plot::{Axis, Figure, Panel, Series};
+///
+/// let angle: Vec<(f64, f64)> = (0..=100).map(|k| 0.01 * f64::from(k)).map(|t| (t, (9.0 * t).cos())).collect();
+/// let x = Axis::between("Time t (s)", 0.0, 1.0);
+/// let y = Axis::linear("Angle φ (°)", angle.iter().map(|point| point.1))?;
+/// let panel = Panel::new(y).with([Series::line("", angle)]).ticks_at(vec![0.175, 0.524]);
+/// let svg = Figure::new("phi", "Angle over time", x).panel(panel).to_svg();
+/// assert!(svg.contains("<title>Angle over time</title>"));
+/// # Ok::<(), teeter_plot::AxisError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
+    id: String,
+    title: String,
+    x: Axis,
+    panels: Vec<Panel>,
+    legend: Legend,
+    theme: Theme,
+    headed: bool,
+}
+
+/// 4 units are a millimetre: 480 fill a page's column of 12 cm, and type of 11 is 2.75 mm or 7.8 pt.
+pub(crate) const WIDTH: f64 = 480.0;
+const UNITS_PER_MM: f64 = 4.0;
+pub(crate) const LEFT: f64 = 64.0;
+pub(crate) const RIGHT: f64 = 12.0;
+const HEADING: f64 = 18.0;
+const HEADER: f64 = 24.0;
+/// Above a panel that has nothing above it.
+const BARE_HEADER: f64 = 12.0;
+const FOOTER: f64 = 40.0;
+/// Height of a panel alone, and of one of several.
+const HEIGHTS: [f64; 2] = [210.0, 140.0];
+
+/// Where a panel is in the figure.
+pub(crate) struct Frame<'a> {
+    pub(crate) top: f64,
+    pub(crate) height: f64,
+    pub(crate) x: &'a Axis,
+}
+
+impl Frame<'_> {
+    pub(crate) fn width(&self) -> f64 {
+        WIDTH - LEFT - RIGHT
+    }
+
+    pub(crate) fn px(&self, x: f64) -> f64 {
+        LEFT + self.x.above_low(x, self.width())
+    }
+
+    pub(crate) fn x_ticks(&self) -> Ticks {
+        self.x.ticks(6)
+    }
+}
+
+impl Figure {
+    /// A figure without panels. The `id` tells it from others in the same document; the title is what readers of the
+    /// document without eyes or pictures get, and a [heading](Figure::headed) if wanted.
+    #[must_use]
+    pub fn new(id: &str, title: impl Into<String>, x: Axis) -> Self {
+        let id = id.chars().map(|c| if c.is_ascii_alphanumeric() || c == '_' { c } else { '-' }).collect();
+        let (legend, theme) = (Legend::default(), Theme::default());
+        Self { id, title: title.into(), x, panels: Vec::new(), legend, theme, headed: false }
+    }
+
+    /// With another panel below the others.
+    #[must_use]
+    pub fn panel(mut self, panel: Panel) -> Self {
+        self.panels.push(panel);
+        self
+    }
+
+    /// With the names of series elsewhere. Default: in a row above each panel.
+    #[must_use]
+    pub fn legend(mut self, legend: Legend) -> Self {
+        self.legend = legend;
+        self
+    }
+
+    /// With the colours of another place. Default: of paper.
+    #[must_use]
+    pub fn theme(mut self, theme: Theme) -> Self {
+        self.theme = theme;
+        self
+    }
+
+    /// With its title above it. Default: without, as papers and pages have captions.
+    #[must_use]
+    pub fn headed(mut self) -> Self {
+        self.headed = true;
+        self
+    }
+
+    /// The figure as an SVG document, which can stand inside an HTML page too.
+    #[must_use]
+    pub fn to_svg(&self) -> String {
+        let heights: Vec<(f64, f64)> = self.panels.iter().map(|panel| self.heights(panel)).collect();
+        let above = if self.headed { HEADING } else { 0.0 };
+        let total = above + heights.iter().map(|(header, inner)| header + inner).sum::<f64>() + FOOTER;
+        let beside = self.panels.iter().map(|panel| self.legend.beside(&panel.entries()).0).fold(0.0, f64::max);
+        let width = WIDTH + beside;
+        let mut svg = String::new();
+        let _ = writeln!(
+            svg,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {width} {total}\" \
+             font-family=\"Helvetica, Arial, sans-serif\" font-size=\"11\" fill=\"{}\" role=\"img\">",
+            width / UNITS_PER_MM,
+            total / UNITS_PER_MM,
+            Colour::Ink.value(self.theme)
+        );
+        let title = escaped(&self.title);
+        let _ = writeln!(svg, "<title>{title}</title>");
+        let paper = Colour::Paper.value(self.theme);
+        let _ = writeln!(svg, "<rect width=\"{width}\" height=\"{total}\" fill=\"{paper}\"/>");
+        if self.headed {
+            let _ = writeln!(svg, "<text x=\"{LEFT}\" y=\"16\" font-size=\"13\">{title}</text>");
+        }
+        let mut top = above;
+        for (number, (panel, (header, height))) in self.panels.iter().zip(heights).enumerate() {
+            top += header;
+            let frame = Frame { top, height, x: &self.x };
+            panel.draw(&mut svg, &frame, &format!("{}-{number}", self.id), self.legend, self.theme);
+            top += height;
+        }
+        self.draw_x_axis(&mut svg, top);
+        svg.push_str("</svg>\n");
+        svg
+    }
+
+    /// Heights of what is above a panel's frame, and of the frame.
+    fn heights(&self, panel: &Panel) -> (f64, f64) {
+        let (entries, note) = (panel.entries(), panel.note_text());
+        let bare = self.legend == Legend::Beside && note.is_none();
+        let header = if bare { BARE_HEADER } else { HEADER + self.legend.more_height(&entries, note) };
+        let several = self.panels.iter().filter(|panel| panel.is_plot()).count() > 1;
+        let own = panel.own_height_mm().map_or(HEIGHTS[usize::from(several)], |height| UNITS_PER_MM * height);
+        let inner = panel.bands_height().unwrap_or(own);
+        (header, inner.max(self.legend.beside(&entries).1))
+    }
+
+    fn draw_x_axis(&self, svg: &mut String, y: f64) {
+        let frame = Frame { top: y, height: 0.0, x: &self.x };
+        for (x, label) in frame.x_ticks().major {
+            let px = frame.px(x);
+            let _ = writeln!(
+                svg,
+                "<path d=\"M{px:.2} {y:.2}v4\" stroke=\"{}\" stroke-width=\".8\"/><text x=\"{px:.2}\" y=\"{:.2}\" \
+                 text-anchor=\"middle\">{label}</text>",
+                Colour::Ink.value(self.theme),
+                y + 15.0
+            );
+        }
+        let _ = writeln!(
+            svg,
+            "<text x=\"{:.2}\" y=\"{:.2}\" text-anchor=\"middle\">{}</text>",
+            0.5 * (LEFT + WIDTH - RIGHT),
+            y + 31.0,
+            escaped(&self.x.label)
+        );
+    }
+}

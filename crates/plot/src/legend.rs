@@ -1,0 +1,211 @@
+//! The names of what a panel shows, and where they stand.
+
+use crate::figure::{LEFT, RIGHT, WIDTH};
+use crate::series::{Drawn, Mark};
+use crate::theme::{Colour, Theme};
+use crate::{Series, escaped};
+use std::fmt::Write;
+
+/// Where the names of the series stand. Never on the plot: they can't hide what it shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Legend {
+    /// In a row above each panel. Names for which there is no room run out of the figure: [`LEGEND_WIDTH`] is what there
+    /// is, [`legend_width`] what a name takes.
+    #[default]
+    Row,
+    /// Above each panel in as many rows as the names need.
+    Rows,
+    /// In a column at the right of each panel; the figure is wider by it.
+    Beside,
+}
+
+/// Room for the names of series in a row above a panel, in the figure's units (a quarter of a millimetre).
+pub const LEGEND_WIDTH: f64 = WIDTH - LEFT - RIGHT;
+
+/// What a name takes of [`LEGEND_WIDTH`], with its symbol and the gap to the next.
+#[must_use]
+pub fn legend_width(label: &str) -> f64 {
+    text_width(label) + SYMBOL + GAP
+}
+
+/// About the width of a text at the size of the labels, in the figure's units (a quarter of a millimetre).
+#[must_use]
+pub fn text_width(text: &str) -> f64 {
+    5.6 * text.chars().count() as f64
+}
+
+/// From the left of a symbol to its name, and from a name to the next symbol.
+const SYMBOL: f64 = 18.0;
+const GAP: f64 = 14.0;
+
+/// Distance of the rows above a panel, and of those beside it.
+const ROW: f64 = 14.0;
+const ROW_BESIDE: f64 = 15.0;
+
+/// From the lowest row of names to the panel below.
+const ABOVE: f64 = 8.0;
+
+/// A symbol with its name.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Entry<'a> {
+    pub(crate) symbol: Symbol,
+    pub(crate) name: &'a str,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Symbol {
+    Line(usize),
+    Marks { mark: Mark, hollow: bool, number: usize },
+    Swatch(Colour),
+}
+
+impl<'a> Entry<'a> {
+    /// The entry of a series that has a name.
+    pub(crate) fn of(series: &'a Series, number: usize) -> Option<Self> {
+        let symbol = match series.drawn {
+            Drawn::Line => Symbol::Line(number),
+            Drawn::Marks { mark, hollow } => Symbol::Marks { mark, hollow, number },
+        };
+        (!series.label().is_empty()).then_some(Self { symbol, name: series.label() })
+    }
+
+    fn draw(&self, svg: &mut String, theme: Theme, x: f64, y: f64) {
+        let _ = match self.symbol {
+            Symbol::Line(number) => {
+                write!(svg, "<path d=\"M{x:.2} {:.2}h14\" {} stroke-width=\"1.6\"/>", y - 3.5, stroke(number, theme))
+            }
+            Symbol::Marks { mark, hollow, number } => {
+                let place = mark_path(mark, x + 7.0, y - 3.5);
+                write!(svg, "<path d=\"{place}\" {}/>", mark_style(number, hollow, theme))
+            }
+            Symbol::Swatch(colour) => write!(
+                svg,
+                "<rect x=\"{x:.2}\" y=\"{:.2}\" width=\"14\" height=\"8\" fill=\"{}\" stroke=\"{}\" stroke-width=\".4\"/>",
+                y - 8.0,
+                colour.value(theme),
+                Colour::Ink.value(theme)
+            ),
+        };
+        let _ = writeln!(svg, "<text x=\"{:.2}\" y=\"{y:.2}\">{}</text>", x + SYMBOL, escaped(self.name));
+    }
+}
+
+impl Legend {
+    /// Row and left end of each entry above a panel; a note at the right takes its part of the first row.
+    fn rows(self, entries: &[Entry], note: Option<&str>) -> Vec<(usize, f64)> {
+        let (mut row, mut x) = (0, LEFT);
+        let noted = note.map_or(0.0, |note| text_width(note) + GAP);
+        let place = |entry: &Entry| {
+            let right = LEFT + LEGEND_WIDTH - if row == 0 { noted } else { 0.0 };
+            let full = x + SYMBOL + text_width(entry.name) > right;
+            if self == Self::Rows && full && (x > LEFT || noted > 0.0) {
+                (row, x) = (row + 1, LEFT);
+            }
+            let place = (row, x);
+            x += legend_width(entry.name);
+            place
+        };
+        entries.iter().map(place).collect()
+    }
+
+    /// What the legend takes above a panel beyond a single row.
+    pub(crate) fn more_height(self, entries: &[Entry], note: Option<&str>) -> f64 {
+        ROW * self.last_row(entries, note) as f64
+    }
+
+    fn last_row(self, entries: &[Entry], note: Option<&str>) -> usize {
+        match self {
+            Self::Row | Self::Beside => 0,
+            Self::Rows => self.rows(entries, note).last().map_or(0, |last| last.0),
+        }
+    }
+
+    /// What the legend takes at the right of a panel: width and height.
+    pub(crate) fn beside(self, entries: &[Entry]) -> (f64, f64) {
+        if self != Self::Beside || entries.is_empty() {
+            return (0.0, 0.0);
+        }
+        let widest = entries.iter().map(|entry| text_width(entry.name)).fold(0.0, f64::max);
+        (SYMBOL + widest + RIGHT, ROW_BESIDE * entries.len() as f64)
+    }
+
+    /// Draws the entries and a note for the panel whose frame starts at `top`.
+    pub(crate) fn draw(self, svg: &mut String, theme: Theme, top: f64, entries: &[Entry], note: Option<&str>) {
+        let first = top - ABOVE - self.more_height(entries, note);
+        if let Some(note) = note {
+            let _ = writeln!(
+                svg,
+                "<text x=\"{}\" y=\"{first:.2}\" text-anchor=\"end\" fill=\"{}\">{}</text>",
+                WIDTH - RIGHT,
+                Colour::Muted.value(theme),
+                escaped(note)
+            );
+        }
+        if self == Self::Beside {
+            for (k, entry) in entries.iter().enumerate() {
+                entry.draw(svg, theme, WIDTH, top + 9.0 + ROW_BESIDE * k as f64);
+            }
+            return;
+        }
+        for (entry, (row, x)) in entries.iter().zip(self.rows(entries, note)) {
+            entry.draw(svg, theme, x, first + ROW * row as f64);
+        }
+    }
+}
+
+/// Dashes that tell lines of one colour apart.
+const DASHES: [&str; 3] = ["none", "5 2.5", "1.5 2"];
+
+/// Colour and dash of a line.
+pub(crate) fn stroke(number: usize, theme: Theme) -> String {
+    let (colour, dash) = (Colour::Series(number), DASHES[number / crate::theme::SERIES_COLOURS % DASHES.len()]);
+    format!("stroke=\"{}\" stroke-dasharray=\"{dash}\"", colour.value(theme))
+}
+
+/// Colours of marks: hollow ones are open, filled ones have a thin edge of the background, so that neither hides what it
+/// overlaps.
+pub(crate) fn mark_style(number: usize, hollow: bool, theme: Theme) -> String {
+    let colour = Colour::Series(number).value(theme);
+    if hollow {
+        format!("fill=\"none\" stroke=\"{colour}\"")
+    } else {
+        format!("fill=\"{colour}\" stroke=\"{}\" stroke-width=\".4\"", Colour::Paper.value(theme))
+    }
+}
+
+/// The outline of a mark. All shapes have about the same area.
+pub(crate) fn mark_path(mark: Mark, x: f64, y: f64) -> String {
+    match mark {
+        Mark::Circle => format!("M{:.2} {y:.2}a2.6 2.6 0 1 0 5.2 0a2.6 2.6 0 1 0 -5.2 0z", x - 2.6),
+        Mark::Square => format!("M{:.2} {:.2}h4.6v4.6h-4.6z", x - 2.3, y - 2.3),
+        Mark::Triangle => format!("M{x:.2} {:.2}l3.4 5.9h-6.8z", y - 3.7),
+        Mark::Diamond => format!("M{x:.2} {:.2}l3.3 3.3l-3.3 3.3l-3.3 -3.3z", y - 3.3),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn entries<'a>(names: &[&'a str]) -> Vec<Entry<'a>> {
+        names.iter().map(|name| Entry { symbol: Symbol::Line(0), name }).collect()
+    }
+
+    #[test]
+    fn names_go_to_the_next_row_where_there_is_no_room() {
+        let long = "n".repeat(30);
+        let entries = entries(&["a", &long, &long, "b"]);
+        let rows = |legend: Legend, note| legend.rows(&entries, note).iter().map(|place| place.0).collect::<Vec<_>>();
+        assert_eq!(rows(Legend::Rows, None), [0, 0, 1, 1]);
+        assert_eq!(rows(Legend::Rows, Some("a note that takes half of the row")), [0, 1, 1, 2]);
+        assert_eq!(rows(Legend::Row, None), [0; 4]);
+        assert!(Legend::Rows.more_height(&entries, None) > 0.0 && Legend::Row.more_height(&entries, None) == 0.0);
+    }
+
+    #[test]
+    fn a_name_that_fits_in_no_row_has_one_of_its_own() {
+        let endless = "n".repeat(300);
+        let places = Legend::Rows.rows(&entries(&[&endless, &endless]), None);
+        assert_eq!(places, [(0, LEFT), (1, LEFT)]);
+    }
+}

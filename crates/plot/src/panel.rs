@@ -1,0 +1,302 @@
+//! A panel: axes with series, or rows of bands.
+
+use crate::figure::{Frame, LEFT};
+use crate::legend::{Entry, Legend, Symbol, mark_path, mark_style, stroke};
+use crate::series::Drawn;
+use crate::theme::{Colour, Theme};
+use crate::{Axis, Series, escaped};
+use std::fmt::Write;
+
+/// A row of coloured stretches along the x axis, such as the states of a contact.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Band {
+    /// The name at its left.
+    pub label: String,
+    /// From, to, colour.
+    pub stretches: Vec<(f64, f64, Colour)>,
+}
+
+impl Band {
+    /// A band with its stretches: from, to, colour.
+    #[must_use]
+    pub fn new(label: impl Into<String>, stretches: Vec<(f64, f64, Colour)>) -> Self {
+        Self { label: label.into(), stretches }
+    }
+}
+
+/// One of the plots above each other in a [`Figure`](crate::Figure), whose x axis it shares.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Panel {
+    content: Content,
+    note: Option<String>,
+    ticks_at: Vec<f64>,
+    guides: Vec<f64>,
+    shaded: Option<(f64, String)>,
+    height: Option<f64>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Content {
+    Plot { y: Axis, series: Vec<Series> },
+    Bands { bands: Vec<Band>, key: Vec<(Colour, String)> },
+}
+
+/// Height of a band with the gap to the next.
+const ROW: f64 = 16.0;
+
+impl Panel {
+    /// A panel with this y axis.
+    #[must_use]
+    pub fn new(y: Axis) -> Self {
+        Self::with_content(Content::Plot { y, series: Vec::new() })
+    }
+
+    /// A panel of bands, with the meaning of their colours.
+    #[must_use]
+    pub fn bands(bands: Vec<Band>, key: impl IntoIterator<Item = (Colour, impl Into<String>)>) -> Self {
+        let key = key.into_iter().map(|(colour, word)| (colour, word.into())).collect();
+        Self::with_content(Content::Bands { bands, key })
+    }
+
+    fn with_content(content: Content) -> Self {
+        Self { content, note: None, ticks_at: Vec::new(), guides: Vec::new(), shaded: None, height: None }
+    }
+
+    /// With more series, later ones above earlier ones, marks above lines; a panel of bands has none.
+    #[must_use]
+    pub fn with(mut self, more: impl IntoIterator<Item = Series>) -> Self {
+        if let Content::Plot { series, .. } = &mut self.content {
+            series.extend(more);
+        }
+        self
+    }
+
+    /// With a note above its right end, or without.
+    #[must_use]
+    pub fn note(mut self, note: impl Into<Option<String>>) -> Self {
+        self.note = note.into();
+        self
+    }
+
+    /// With short ticks at its top, such as at the times of impacts.
+    #[must_use]
+    pub fn ticks_at(mut self, x: Vec<f64>) -> Self {
+        self.ticks_at = x;
+        self
+    }
+
+    /// With dashed vertical lines at these x.
+    #[must_use]
+    pub fn guides(mut self, x: Vec<f64>) -> Self {
+        self.guides = x;
+        self
+    }
+
+    /// With all below this y shaded, and what that means in the legend.
+    #[must_use]
+    pub fn shaded_below(mut self, y: f64, label: impl Into<String>) -> Self {
+        self.shaded = Some((y, label.into()));
+        self
+    }
+
+    /// With a frame of this height, mm. Default: 52.5 mm for a panel alone, 35 mm for one of several; bands have a
+    /// height of their own.
+    #[must_use]
+    pub fn height_mm(mut self, height: f64) -> Self {
+        self.height = Some(height);
+        self
+    }
+
+    pub(crate) fn is_plot(&self) -> bool {
+        matches!(self.content, Content::Plot { .. })
+    }
+
+    /// Height of the frame in mm, if it is not the default.
+    pub(crate) fn own_height_mm(&self) -> Option<f64> {
+        self.height.filter(|height| height.is_finite() && *height > 0.0)
+    }
+
+    /// Height of the rows of bands.
+    pub(crate) fn bands_height(&self) -> Option<f64> {
+        match &self.content {
+            Content::Plot { .. } => None,
+            Content::Bands { bands, .. } => Some(ROW * bands.len() as f64),
+        }
+    }
+
+    pub(crate) fn note_text(&self) -> Option<&str> {
+        self.note.as_deref()
+    }
+
+    /// The names of its legend.
+    pub(crate) fn entries(&self) -> Vec<Entry<'_>> {
+        match &self.content {
+            Content::Plot { series, .. } => {
+                let named = series.iter().enumerate().filter_map(|(k, series)| Entry::of(series, series.number_at(k)));
+                let shaded = self.shaded.iter().map(|(_, name)| Entry { symbol: Symbol::Swatch(Colour::Shade), name });
+                named.chain(shaded).collect()
+            }
+            Content::Bands { key, .. } => {
+                key.iter().map(|(colour, name)| Entry { symbol: Symbol::Swatch(*colour), name }).collect()
+            }
+        }
+    }
+
+    pub(crate) fn draw(&self, svg: &mut String, frame: &Frame, id: &str, legend: Legend, theme: Theme) {
+        legend.draw(svg, theme, frame.top, &self.entries(), self.note_text());
+        match &self.content {
+            Content::Plot { y, series } => self.draw_plot(svg, frame, id, theme, y, series),
+            Content::Bands { bands, .. } => draw_bands(svg, frame, theme, bands),
+        }
+    }
+
+    fn draw_plot(&self, svg: &mut String, frame: &Frame, id: &str, theme: Theme, y: &Axis, series: &[Series]) {
+        let (top, height, width) = (frame.top, frame.height, frame.width());
+        let py = |value: f64| top + y.below_high(value, height);
+        if let Some((below, _)) = &self.shaded {
+            let depth = (height - y.below_high(*below, height)).clamp(0.0, height);
+            let _ = writeln!(
+                svg,
+                "<rect x=\"{LEFT}\" y=\"{:.2}\" width=\"{width}\" height=\"{depth:.2}\" fill=\"{}\"/>",
+                top + height - depth,
+                Colour::Shade.value(theme)
+            );
+        }
+        draw_grid(svg, frame, theme, y);
+        let _ = writeln!(
+            svg,
+            "<clipPath id=\"{id}\"><rect x=\"{LEFT}\" y=\"{top:.2}\" width=\"{width}\" height=\"{height}\"/>\
+             </clipPath>\n<g clip-path=\"url(#{id})\" fill=\"none\" stroke-linejoin=\"round\">"
+        );
+        for &x in self.guides.iter().filter(|x| frame.x.holds(**x)) {
+            let _ = writeln!(
+                svg,
+                "<path d=\"M{:.2} {top:.2}v{height}\" stroke=\"{}\" stroke-dasharray=\"4 3\" stroke-width=\".8\"/>",
+                frame.px(x),
+                Colour::Guide.value(theme)
+            );
+        }
+        for (k, line) in series.iter().enumerate().filter(|(_, series)| series.drawn == Drawn::Line) {
+            let path = line_path(line.points(), |x| frame.px(x), py);
+            let _ = writeln!(svg, "<path d=\"{path}\" {} stroke-width=\"1.1\"/>", stroke(line.number_at(k), theme));
+        }
+        svg.push_str("</g>\n");
+        for (k, marks) in series.iter().enumerate() {
+            let Drawn::Marks { mark, hollow } = marks.drawn else { continue };
+            let shown = marks.points().iter().filter(|point| frame.x.holds(point.0) && y.holds(point.1));
+            let path: String = shown.map(|&(x, y)| mark_path(mark, frame.px(x), py(y))).collect();
+            if !path.is_empty() {
+                let _ = writeln!(svg, "<path d=\"{path}\" {}/>", mark_style(marks.number_at(k), hollow, theme));
+            }
+        }
+        let ticks = self.ticks_at.iter().filter(|x| frame.x.holds(**x));
+        let ticks: String = ticks.map(|&x| format!("M{:.2} {top:.2}v5", frame.px(x))).collect();
+        let ink = Colour::Ink.value(theme);
+        if !ticks.is_empty() {
+            let _ = writeln!(svg, "<path d=\"{ticks}\" stroke=\"{ink}\" stroke-width=\".8\"/>");
+        }
+        let _ = writeln!(
+            svg,
+            "<rect x=\"{LEFT}\" y=\"{top:.2}\" width=\"{width}\" height=\"{height}\" fill=\"none\" stroke=\"{ink}\" \
+             stroke-width=\".8\"/><text transform=\"translate(13 {:.2}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
+            top + 0.5 * height,
+            escaped(&y.label)
+        );
+    }
+}
+
+/// Lines across the frame at the round numbers of both axes, of x only where it is logarithmic; labels of y.
+fn draw_grid(svg: &mut String, frame: &Frame, theme: Theme, y: &Axis) {
+    let (top, height, width) = (frame.top, frame.height, frame.width());
+    let y_ticks = y.ticks(if height > 180.0 { 6 } else { 4 });
+    let py = |value: f64| top + y.below_high(value, height);
+    let [grid, fine] = [Colour::Grid, Colour::FineGrid].map(|colour| colour.value(theme));
+    let x_ticks = frame.x.is_logarithmic().then(|| frame.x_ticks());
+    let vertical = |x: f64| format!("M{:.2} {top:.2}v{height}", frame.px(x));
+    let across = x_ticks.iter().flat_map(|ticks| &ticks.minor).map(|&x| vertical(x));
+    let lines: String = across.chain(y_ticks.minor.iter().map(|&y| format!("M{LEFT} {:.2}h{width}", py(y)))).collect();
+    if !lines.is_empty() {
+        let _ = writeln!(svg, "<path d=\"{lines}\" stroke=\"{fine}\" stroke-width=\".4\"/>");
+    }
+    let lines: String = x_ticks.iter().flat_map(|ticks| &ticks.major).map(|(x, _)| vertical(*x)).collect();
+    if !lines.is_empty() {
+        let _ = writeln!(svg, "<path d=\"{lines}\" stroke=\"{grid}\" stroke-width=\".6\"/>");
+    }
+    for (value, label) in &y_ticks.major {
+        let at = py(*value);
+        let _ = writeln!(
+            svg,
+            "<path d=\"M{LEFT} {at:.2}h{width}\" stroke=\"{}\" stroke-width=\".6\"/><text x=\"{:.2}\" y=\"{:.2}\" \
+             text-anchor=\"end\">{label}</text>",
+            if *value == 0.0 { Colour::Guide.value(theme) } else { grid },
+            LEFT - 6.0,
+            at + 4.0
+        );
+    }
+}
+
+fn draw_bands(svg: &mut String, frame: &Frame, theme: Theme, bands: &[Band]) {
+    for (k, band) in bands.iter().enumerate() {
+        let top = frame.top + ROW * k as f64;
+        let _ = writeln!(
+            svg,
+            "<text x=\"{:.2}\" y=\"{:.2}\" text-anchor=\"end\" font-size=\"9\">{}</text>",
+            LEFT - 5.0,
+            top + 11.0,
+            escaped(&band.label)
+        );
+        for (from, to, colour) in &band.stretches {
+            let (a, b) = (frame.px(*from), frame.px(*to));
+            if !(a.is_finite() && b >= a) {
+                continue;
+            }
+            let _ = writeln!(
+                svg,
+                "<rect x=\"{a:.2}\" y=\"{:.2}\" width=\"{:.2}\" height=\"10\" fill=\"{}\"/>",
+                top + 2.0,
+                b - a,
+                colour.value(theme)
+            );
+        }
+        let _ = writeln!(
+            svg,
+            "<rect x=\"{LEFT}\" y=\"{:.2}\" width=\"{}\" height=\"10\" fill=\"none\" stroke=\"{}\" stroke-width=\".6\"/>",
+            top + 2.0,
+            frame.width(),
+            Colour::Ink.value(theme)
+        );
+    }
+}
+
+/// A line through all points that are finite, broken where one isn't; steps that no printer resolves are left out.
+fn line_path(points: &[(f64, f64)], px: impl Fn(f64) -> f64, py: impl Fn(f64) -> f64) -> String {
+    let mut path = String::new();
+    let mut last: Option<(f64, f64)> = None;
+    for &(x, y) in points {
+        // Far beyond the panel a coordinate would only cost digits.
+        let (a, b) = (px(x), py(y).clamp(-1e4, 1e4));
+        if !(a.is_finite() && b.is_finite()) {
+            last = None;
+            continue;
+        }
+        match last {
+            Some((c, d)) if (a - c).abs() < 0.02 && (b - d).abs() < 0.02 => continue,
+            Some(_) => _ = write!(path, "L{a:.2} {b:.2}"),
+            None => _ = write!(path, "M{a:.2} {b:.2}"),
+        }
+        last = Some((a, b));
+    }
+    path
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_breaks_where_it_is_not_finite() {
+        let points = [(0.0, 0.0), (1.0, 1.0), (2.0, f64::NAN), (3.0, 2.0)];
+        assert_eq!(line_path(&points, |x| x, |y| y), "M0.00 0.00L1.00 1.00M3.00 2.00");
+    }
+}
