@@ -1,4 +1,5 @@
-//! One harness that every plane [`Subsystem`] runs through, with its [`Compliance`] (feature `conformance`), ours and yours.
+//! Harnesses for what others can bring (feature `conformance`): one that every plane [`Subsystem`] runs through, with its
+//! [`Compliance`], and one for [schemes](check_scheme).
 //!
 //! It holds a subsystem to what the traits' pages say, by finite differences and by products written out here. What doesn't hold
 //! comes back as a list, with numbers:
@@ -20,6 +21,10 @@
 //! assert_eq!(failures, []);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+
+mod scheme;
+
+pub use scheme::{Made, SchemeFailure, SchemeProperty, check_scheme};
 
 use crate::subsystem::{Span, dot};
 use crate::{Compliance, Coupling, PartRows, Rows, Subsystem, Traits, Vector, Weights};

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use std::sync::Arc;
 use teeter_beam::{Axial, Beam, BeamSpec, Damping, Section, Support};
 use teeter_detect::{Frame, Kinematics, SurfacePoint};
-use teeter_integrator::conformance::{Case, Property, check};
+use teeter_integrator::conformance::{Case, Property, check, check_scheme};
 use teeter_integrator::*;
 use teeter_rigid::{MassProperties, Rectangle};
 
@@ -268,5 +268,16 @@ fn the_harness_finds_what_is_wrong_and_nothing_else() {
     ] {
         let found: Vec<Property> = check(&Wrong(wrong), &case).iter().map(|failure| failure.property).collect();
         assert!(!found.is_empty() && found.contains(&wrong), "{wrong:?}: {found:?}");
+    }
+}
+
+#[test]
+fn schemes_conform() {
+    for entry in schemes() {
+        let made = (
+            || entry.make().unwrap(),
+            || -> Box<dyn teeter_contact::ContactSolver<2>> { Box::new(teeter_solvers::Auto::new()) },
+        );
+        assert_eq!(check_scheme(&made).unwrap(), [], "{}", entry.name);
     }
 }

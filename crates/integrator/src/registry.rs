@@ -1,0 +1,44 @@
+//! The schemes by name: the one list that programs, tests and benches share.
+
+use crate::{MoreauJean, MoreauJeanClosed, MoreauJeanClosedSettings, MoreauJeanSettings, Scheme};
+
+/// A scheme of the list.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct SchemeEntry {
+    /// The name by which users choose it.
+    pub name: &'static str,
+    /// What it is, in a sentence.
+    pub about: &'static str,
+    make: fn() -> Option<Box<dyn Scheme<2>>>,
+}
+
+impl SchemeEntry {
+    /// The scheme with its default settings.
+    #[must_use]
+    pub fn make(&self) -> Option<Box<dyn Scheme<2>>> {
+        (self.make)()
+    }
+}
+
+/// All schemes, for plane models.
+///
+/// ```
+/// let names: Vec<_> = teeter_integrator::schemes().iter().map(|scheme| scheme.name).collect();
+/// assert_eq!(names, ["moreau-jean", "moreau-jean-closed"]);
+/// ```
+#[must_use]
+pub fn schemes() -> &'static [SchemeEntry] {
+    &[
+        SchemeEntry {
+            name: MoreauJean::<2>::NAME,
+            about: "Moreau and Jean's θ scheme: contacts by the gap at a predicted position, impacts at velocity level",
+            make: || Some(Box::new(MoreauJean::new(MoreauJeanSettings::default()).ok()?)),
+        },
+        SchemeEntry {
+            name: MoreauJeanClosed::<2>::NAME,
+            about: "the same step with contacts that stay closed: no contact gives energy, and gaps don't drift apart",
+            make: || Some(Box::new(MoreauJeanClosed::new(MoreauJeanClosedSettings::default()).ok()?)),
+        },
+    ]
+}
