@@ -185,7 +185,7 @@ impl Outcome {
 ///
 /// A solver may keep what it learns between calls (memory, analysis), but what it returns depends on the problem and
 /// on the start only, so that equal runs give equal bytes.
-pub trait ContactSolver<const D: usize>: Send {
+pub trait ContactSolver<const D: usize>: Send + Sync {
     /// The name by which users choose it.
     fn name(&self) -> &'static str;
     /// The law of its results.

@@ -319,7 +319,7 @@ pub struct FactorError {
 
 /// `W = (mass·M + damping·C + stiffness·K)⁻¹` of one subsystem: W_be of the source paper for a beam, diag(1/m, 1/m, 1/I)
 /// for a block.
-pub trait Compliance<const D: usize>: Send {
+pub trait Compliance<const D: usize>: Send + Sync {
     /// The combination that it is the inverse of.
     fn weights(&self) -> Weights;
 
