@@ -11,11 +11,11 @@ use crate::settling::{Start, StaticStart};
 use std::sync::Arc;
 use teeter_beam::{BeamError, ModalError};
 use teeter_contact::ContactSolver;
-use teeter_detect::{BodyId, PointDetector, PointPair};
+use teeter_detect::{PointDetector, PointPair};
 use teeter_integrator::{
     Account, Block, Ended, Mismatch, Model, ModelBuilder, ModelError, MoreauJean, MoreauJeanClosed,
-    MoreauJeanClosedSettings, MoreauJeanSettings, Observer, Plan, RunError, Scheme, SettingError, SolverSettings,
-    State, StateError, StepError, StepReport, Subsystem, Unsolved, WorkCounts, Workspace, run,
+    MoreauJeanClosedSettings, MoreauJeanSettings, Observer, PartPlace, Plan, RunError, Scheme, SettingError,
+    SolverSettings, State, StateError, StepError, StepReport, Subsystem, Unsolved, WorkCounts, Workspace, run,
 };
 use teeter_rigid::{MassProperties, Rectangle, RigidError};
 
@@ -137,52 +137,29 @@ impl Simulation {
         extent: Extent,
         wrap: impl FnOnce(Box<dyn ContactSolver<2>>) -> Box<dyn ContactSolver<2>>,
     ) -> Result<Self, BuildError> {
-        let mut layout = Layout { required: Required::all(scene), ..Layout::default() };
-
         let mut blocks = Vec::new();
         for block in &scene.blocks {
             let named = |error| BuildError::Block(block.name.clone(), error);
             let shape = Rectangle::new(block.width, block.height).map_err(named)?;
             let mass = MassProperties::rectangle(&shape, block.depth, block.density).map_err(named)?;
-            let start = 3 * blocks.len();
-            layout.blocks.push(BlockPlace {
-                name: block.name.clone(),
-                range: start..start + 3,
-                side: block.width.min(block.height),
-                reach: 0.5 * block.width.hypot(block.height),
-                still: OPEN_GAP * block.width.min(block.height) / block.width,
-                carrier: Carrier::Level,
-            });
             blocks.push((Block::new(mass, &shape), shape));
         }
         let mut beams = Vec::new();
-        let mut dofs = 3 * blocks.len();
         for (number, scene_beam) in scene.beams.iter().enumerate() {
             let mut model = BeamModel::new(scene_beam)?;
-            let body = model.body(scene, number)?;
-            model.displaced = body.displacements(0.0);
-            let range = dofs..dofs + model.coordinates(&[]).len();
-            dofs = range.end + model.displaced.len();
-            layout.beams.push(BeamPlace {
-                name: scene_beam.name.clone(),
-                beam: Arc::clone(&model.beam),
-                basis: model.basis.clone(),
-                supports: (!model.displaced.is_empty()).then_some(range.end..dofs),
-                range,
-                probes: scene_beam.probes.clone(),
-                body: BodyId((blocks.len() + number) as u32),
-                pressed: None,
-            });
+            model.displaced = model.body(scene, number)?.displacements(0.0);
             beams.push(model);
         }
         let ground = scene.ground.as_ref().map(driven::ground);
         let ground_start = ground.as_ref().map(|ground| ground.coordinates(0.0)).unwrap_or_default();
-        layout.ground = (!ground_start.is_empty()).then_some(dofs..dofs + ground_start.len());
+        let required = Required::all(scene);
+        let mut assembled = assemble(scene, &blocks, &beams, &required)?;
+        let mut layout = lay_out(scene, &beams, &assembled, required);
         let slope = layout.ground.as_ref().map(|ground| ground.start + 2);
         for (place, carrier) in layout.blocks.iter_mut().zip(carriers(scene, slope)) {
             place.carrier = carrier;
         }
-        dofs += ground_start.len();
+        let dofs = assembled.model.size().q;
         let incline = scene.ground.as_ref().map_or(0.0, |ground| ground.incline);
         let line = if let [x, y, slope] = *ground_start { [x, y, slope] } else { [0.0, 0.0, incline] };
 
@@ -217,21 +194,16 @@ impl Simulation {
         q.extend(&ground_start);
         v.resize(dofs, 0.0);
 
-        layout.pairs = scene
-            .contacts
-            .iter()
-            .map(|contact| PairPlace { name: contact.name.clone(), between: contact.between.clone() })
-            .collect();
-        layout.openings = openings(scene);
-        let mut model = assemble(scene, &blocks, &beams, &layout)?;
-        check_start(scene, &model, &layout, &q)?;
+        check_start(scene, &assembled.model, &layout, &q)?;
         check_apart(scene, &q)?;
         if extent == Extent::Required {
-            layout.required = Required::of(scene, &layout, &model, &q, &v);
+            layout.required = Required::of(scene, &layout, &assembled.model, &q, &v);
             if !layout.required.removed.is_empty() {
-                model = assemble(scene, &blocks, &beams, &layout)?;
+                // With everything in the same place.
+                assembled = assemble(scene, &blocks, &beams, &layout.required)?;
             }
         }
+        let model = assembled.model;
 
         let state = State::new(&model, &q, &v, scene.time.step)?;
         let solver = teeter_solvers::plane_solver(&scene.solver.method)
@@ -339,48 +311,93 @@ impl Simulation {
     }
 }
 
-/// The model, of what `layout` has as required.
+/// A model, and where in it everything is.
+struct Assembled {
+    model: Model<2>,
+    blocks: PartPlace,
+    beams: Vec<PartPlace>,
+    ground: Option<PartPlace>,
+}
+
+/// Who is where, by the places that the builder gave.
+fn lay_out(scene: &Scene, beams: &[BeamModel], assembled: &Assembled, required: Required) -> Layout {
+    let blocks = scene.blocks.iter().zip(assembled.blocks.q.clone().step_by(3)).map(|(block, start)| BlockPlace {
+        name: block.name.clone(),
+        range: start..start + 3,
+        side: block.width.min(block.height),
+        reach: 0.5 * block.width.hypot(block.height),
+        still: OPEN_GAP * block.width.min(block.height) / block.width,
+        carrier: Carrier::Level,
+    });
+    let beams = scene.beams.iter().zip(beams).zip(&assembled.beams).map(|((of, model), place)| {
+        // The displacements of supports that move come last.
+        let end = place.q.end - model.displaced.len();
+        BeamPlace {
+            name: of.name.clone(),
+            beam: Arc::clone(&model.beam),
+            basis: model.basis.clone(),
+            range: place.q.start..end,
+            supports: (!model.displaced.is_empty()).then_some(end..place.q.end),
+            probes: of.probes.clone(),
+            body: place.body(),
+            pressed: None,
+        }
+    });
+    let pairs = scene.contacts.iter();
+    let pairs = pairs.map(|contact| PairPlace { name: contact.name.clone(), between: contact.between.clone() });
+    Layout {
+        blocks: blocks.collect(),
+        beams: beams.collect(),
+        pairs: pairs.collect(),
+        ground: assembled.ground.as_ref().map(|place| place.q.clone()).filter(|q| !q.is_empty()),
+        openings: openings(scene),
+        required,
+    }
+}
+
+/// The model of a scene, of what is required of it.
 fn assemble(
     scene: &Scene,
     blocks: &[(Block, Rectangle)],
     beams: &[BeamModel],
-    layout: &Layout,
-) -> Result<Model<2>, BuildError> {
+    required: &Required,
+) -> Result<Assembled, BuildError> {
     let mut parts = ModelBuilder::new();
     let bodies = blocks.iter().map(|(body, _)| *body).collect();
-    let first_block = parts.add(driven::blocks(scene, bodies)?).body();
+    let all_blocks = parts.add(driven::blocks(scene, bodies)?);
     let mut surfaces = Vec::with_capacity(beams.len());
     for (number, model) in beams.iter().enumerate() {
-        let body: Box<dyn Subsystem<2>> = match layout.required.rests(number) {
-            Some(energy) => Box::new(AtRest::new(layout.beams[number].range.len(), energy)),
+        let body: Box<dyn Subsystem<2>> = match required.rests(number) {
+            Some(energy) => Box::new(AtRest::new(model.coordinates(&[]).len(), energy)),
             None => model.body(scene, number)?.boxed(),
         };
-        surfaces.push(parts.add_boxed(body).body());
+        surfaces.push(parts.add_boxed(body));
     }
-    let ground = scene.ground.as_ref().map(|ground| parts.add(driven::ground(ground)).body());
+    let ground = scene.ground.as_ref().map(|ground| parts.add(driven::ground(ground)));
     let mut pairs = Vec::new();
     for (number, contact) in scene.contacts.iter().enumerate() {
         let surface = match contact.surface {
-            Support::Beam(k) => surfaces[k],
-            Support::Ground => match ground {
-                Some(body) => body,
+            Support::Beam(k) => surfaces[k].body(),
+            Support::Ground => match &ground {
+                Some(ground) => ground.body(),
                 None => continue, // the resolver refuses a contact with ground that isn't there
             },
         };
         let law = parts.law(contact.law);
-        let points = layout.required.points(number);
+        let points = required.points(number);
         if points > 0 {
             pairs.push(PointPair {
                 pair: number as u32,
                 law,
                 points: blocks[contact.block].1.corners()[..points].to_vec(),
-                body: BodyId(first_block.0 + contact.block as u32),
+                body: all_blocks.nth_body(contact.block as u32),
                 surface,
                 kinematics: contact.kinematics,
             });
         }
     }
-    Ok(parts.build(Box::new(PointDetector::new(pairs)))?)
+    let model = parts.build(Box::new(PointDetector::new(pairs)))?;
+    Ok(Assembled { model, blocks: all_blocks, beams: surfaces, ground })
 }
 
 fn scheme(time: &Time) -> Result<Box<dyn Scheme<2>>, SettingError> {
