@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let folder = std::env::args().nth(1).unwrap_or_else(|| ".".into());
     let x = Axis::between("Place along the ruler x (mm)", 0.0, 300.0);
-    let panel = Panel::new(Axis::linear("Deflection, of the tip's", values)?).with(lines);
+    let panel = Panel::new(Axis::linear("Deflection / that of the tip", values)?).with(lines);
     let figure = Figure::new("modes", "Modes of a steel ruler, clamped at the left", x).headed().legend(Legend::Rows);
     std::fs::write(format!("{folder}/modes.svg"), figure.panel(panel).to_svg())?;
     Ok(())

@@ -189,7 +189,7 @@ impl Outcome {
 ///
 /// A solver may keep memory and analyses between calls, but its result must depend on the problem
 /// and the start only, so that equal runs give equal bytes.
-pub trait ContactSolver<const D: usize>: Send {
+pub trait ContactSolver<const D: usize>: Send + Sync {
     /// The name by which users choose it.
     fn name(&self) -> &'static str;
     /// The law of its results.

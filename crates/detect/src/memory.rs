@@ -12,11 +12,11 @@ use std::any::Any;
 /// assert_eq!(*memory.of(Vec::<u32>::new), [3]);
 /// ```
 #[derive(Default)]
-pub struct DetectorMemory(Option<Box<dyn Any + Send>>);
+pub struct DetectorMemory(Option<Box<dyn Any + Send + Sync>>);
 
 impl DetectorMemory {
     /// What is kept, if it is of this type; otherwise what `fresh` returns, which replaces it.
-    pub fn of<T: Any + Send>(&mut self, fresh: impl FnOnce() -> T) -> &mut T {
+    pub fn of<T: Any + Send + Sync>(&mut self, fresh: impl FnOnce() -> T) -> &mut T {
         if !self.0.as_ref().is_some_and(|kept| kept.is::<T>()) {
             self.0 = None;
         }

@@ -24,7 +24,10 @@ struct Entry<const D: usize> {
 /// The factors of a model's subsystems by their weights: bounded, and without an allocation once as many combinations have been asked for as
 /// are kept.
 pub(crate) struct Factors<const D: usize> {
+    /// Of each subsystem, the factors that are kept; what was asked for last stands first.
     parts: Vec<Vec<Entry<D>>>,
+    /// The weights that stand first in all lists.
+    front: Option<Weights>,
     round: u64,
     /// How many matrices were factorised.
     made: u64,
@@ -53,7 +56,7 @@ impl Responses<'_> {
 
 impl<const D: usize> Factors<D> {
     pub(crate) fn new() -> Self {
-        Self { parts: Vec::new(), round: 0, made: 0 }
+        Self { parts: Vec::new(), front: None, round: 0, made: 0 }
     }
 
     pub(crate) fn made(&self) -> u64 {
@@ -63,22 +66,25 @@ impl<const D: usize> Factors<D> {
     /// Sees to it that there are factors of these weights for all subsystems.
     #[inline]
     pub(crate) fn make(&mut self, model: &Model<D>, w: Weights, q: &[f64], keep: Keep) -> Result<(), FactorError> {
+        if self.front == Some(w) { Ok(()) } else { self.bring_to_front(model, w, q, keep) }
+    }
+
+    #[cold]
+    fn bring_to_front(&mut self, model: &Model<D>, w: Weights, q: &[f64], keep: Keep) -> Result<(), FactorError> {
+        self.front = None;
         if self.parts.len() != model.parts().len() {
             self.parts.clear();
             self.parts.resize_with(model.parts().len(), Vec::new);
         }
         self.round += 1;
         for index in 0..self.parts.len() {
-            match self.parts[index].first_mut() {
-                Some(first) if first.factor.weights() == w => first.asked = self.round,
-                _ => self.fetch(model, index, w, q, keep)?,
-            }
+            self.fetch(model, index, w, q, keep)?;
         }
+        self.front = Some(w);
         Ok(())
     }
 
     /// Brings the factor of a subsystem to the front of its list.
-    #[cold]
     fn fetch(&mut self, model: &Model<D>, index: usize, w: Weights, q: &[f64], keep: Keep) -> Result<(), FactorError> {
         let (part, entries, asked) = (&model.parts()[index], &mut self.parts[index], self.round);
         let q = &q[part.q.clone()];
@@ -116,16 +122,17 @@ impl<const D: usize> Factors<D> {
     #[inline]
     pub(crate) fn of(&mut self, part: usize, w: Weights) -> Option<&mut dyn Compliance<D>> {
         let entries = self.parts.get_mut(part)?;
-        let at = match entries.first() {
-            Some(first) if first.factor.weights() == w => 0,
-            _ => entries.iter().position(|entry| entry.factor.weights() == w)?,
-        };
-        Some(entries[at].factor.as_mut())
+        let at =
+            if self.front == Some(w) { 0 } else { entries.iter().position(|entry| entry.factor.weights() == w)? };
+        Some(entries.get_mut(at)?.factor.as_mut())
     }
 
     /// The first subsystem that lacks the factor asked for.
     #[inline]
     pub(crate) fn missing(&mut self, model: &Model<D>, responses: &Responses<'_>) -> Option<usize> {
+        if self.front.is_some_and(|front| *responses == Responses::Of(front)) {
+            return None;
+        }
         (0..model.parts().len()).find(|part| responses.of(*part).is_none_or(|w| self.of(*part, w).is_none()))
     }
 }

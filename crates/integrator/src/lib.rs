@@ -12,11 +12,16 @@
 //! - a [`Workspace`] is the memory and the contact solver of one worker;
 //! - [`run`] takes steps and shows each to [`Observer`]s.
 //!
-//! The feature `conformance` brings a harness that any subsystem can be run through.
+//! # Features
+//!
+//! `bodies` (default) brings [`Blocks`] and [`Ground`], `beam` (default) [`BeamBody`] and [`ModalBeam`], `sparse` (default) a general
+//! sparse factor for beams; without them this crate needs neither `teeter-rigid` nor `teeter-beam`, and a scheme or a body of one's own can
+//! be built on it. `serde` stores states; `conformance` brings harnesses for subsystems and schemes of one's own.
 //!
 //! # Example: a block dropped on the ground
 //!
 //! ```
+//! # #[cfg(feature = "bodies")] {
 //! use nalgebra::{Vector2, Vector3};
 //! use teeter_detect::{Kinematics, PointDetector, PointPair};
 //! use teeter_integrator::*;
@@ -29,7 +34,8 @@
 //! let ground = parts.add(Ground::flat(0.0)).body();
 //! let law = parts.law(PairLaw::new(0.5, 0.0));
 //! let model = parts.build(Box::new(PointDetector::new(vec![PointPair {
-//!     pair,
+//!     pair: 0,
+//!     law,
 //!     points: shape.corners().to_vec(),
 //!     body: block,
 //!     surface: ground,
@@ -43,11 +49,13 @@
 //! assert_eq!(ended, Ended::Complete);
 //! assert!(state.v.iter().all(|v| v.abs() < 1e-12), "at rest");
 //! assert!((state.q[1] - 0.025).abs() < 1e-3, "on the ground");
+//! # }
 //! # Ok::<(), Box<dyn std::error::Error + Send + Sync>>(())
 //! ```
 
-mod beam;
-mod blocks;
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
+mod adapters;
 mod clock;
 mod closings;
 #[cfg(feature = "conformance")]
@@ -56,12 +64,10 @@ mod contact;
 mod coupled_modes;
 mod equilibrium;
 mod factors;
-mod ground;
 mod laws;
 mod ledger;
 mod memory;
 mod mismatch;
-mod modal_beam;
 mod model;
 mod monitor;
 mod moreau_jean;
@@ -81,19 +87,24 @@ mod subsystem;
 mod theta_step;
 mod workspace;
 
-pub use beam::forces::{BeamForces, SpanLoads};
-pub use beam::{BeamBody, BeamSurface, MovingForce, SignalLoad, WBackend};
-pub use blocks::{Block, BlockCoordinate, BlockLoad, Blocks};
+#[cfg(feature = "beam")]
+pub use adapters::beam::forces::{BeamForces, SpanLoads};
+#[cfg(feature = "beam")]
+pub use adapters::beam::{BeamBody, BeamSurface, MovingForce, SignalLoad, WBackend};
+#[cfg(feature = "bodies")]
+pub use adapters::blocks::{Block, BlockCoordinate, BlockLoad, Blocks};
+#[cfg(feature = "bodies")]
+pub use adapters::ground::Ground;
+#[cfg(feature = "beam")]
+pub use adapters::modal_beam::ModalBeam;
 pub use closings::{Closing, ClosingMonitor, Opening};
 pub use contact::{Contact, ContactState, tangential};
 pub use coupled_modes::{CoupledModes, CoupledModesError, MOST_VELOCITIES, coupled_modes};
 pub use equilibrium::{Equilibrium, EquilibriumError, SettlingLimits, settle};
 pub use factors::{Keep, Responses};
-pub use ground::Ground;
 pub use ledger::{Ledger, PositiveWork, StepEnergy};
 pub use memory::Memory;
 pub use mismatch::Mismatch;
-pub use modal_beam::ModalBeam;
 pub use model::{Model, ModelBuilder, ModelError, Part, PartPlace, Placed};
 pub use monitor::{Crossing, LISTED_CROSSINGS, Peak, RockingMonitor};
 pub use moreau_jean::{MoreauJean, MoreauJeanSettings};

@@ -153,6 +153,7 @@ impl<const D: usize> Phases<D> {
     }
 
     /// Begins a step.
+    #[inline]
     pub(crate) fn begin(&mut self, state: &State, span: StepSpan) {
         self.used = 0;
         self.span = span;
@@ -168,6 +169,7 @@ impl<const D: usize> Phases<D> {
 
     /// Takes a phase in; the contacts of `stage` go over to it. `now` are the energies at its end, without those of contacts; `None` where
     /// no account is kept.
+    #[inline]
     pub(crate) fn enter(
         &mut self,
         model: &Model<D>,
@@ -199,6 +201,7 @@ impl<const D: usize> Phases<D> {
 
 impl<const D: usize> Kept<D> {
     /// The work of contacts, Σ Ū·p with Ū the mean velocity of the phase, and what their springs hold.
+    #[inline]
     fn account_for_contacts(&mut self, model: &Model<D>) {
         let weight = self.balance.weight();
         for contact in &self.contacts {
@@ -219,6 +222,7 @@ impl<const D: usize> Kept<D> {
 
 impl<const D: usize> Phases<D> {
     /// Enters the phases into the state's account, and moves places and velocities to the end of the last.
+    #[inline]
     pub(crate) fn settle(&mut self, state: &mut State, account: bool) {
         for kept in &mut self.kept[..self.used] {
             if account {
@@ -241,11 +245,25 @@ impl<const D: usize> Phases<D> {
         self.kept[..self.used].last().map_or(&[], |kept| &kept.contacts)
     }
 
+    /// As [`StepReport::outcome`].
+    #[inline]
+    pub(crate) fn outcome(&self) -> Option<Outcome> {
+        match &self.kept[..self.used] {
+            [only] => only.outcome,
+            several => {
+                let outcomes = || several.iter().filter_map(|kept| kept.outcome);
+                outcomes().find(|outcome| !outcome.converged()).or_else(|| outcomes().next_back())
+            }
+        }
+    }
+
     /// The contacts of the phase that has most.
+    #[inline]
     pub(crate) fn most_contacts(&self) -> usize {
         self.kept[..self.used].iter().map(|kept| kept.contacts.len()).max().unwrap_or(0)
     }
 
+    #[inline]
     pub(crate) fn report(&self, step: u64, penetration: f64) -> StepReport<'_, D> {
         StepReport { step, t_start: self.span.start, t_end: self.span.end, h: self.span.h, penetration, phases: self }
     }
@@ -331,9 +349,7 @@ impl<'w, const D: usize> StepReport<'w, D> {
     /// contacts.
     #[must_use]
     pub fn outcome(&self) -> Option<Outcome> {
-        let Phases { kept, used, .. } = self.phases;
-        let outcomes = || kept[..*used].iter().filter_map(|kept| kept.outcome);
-        outcomes().find(|outcome| !outcome.converged()).or_else(|| outcomes().next_back())
+        self.phases.outcome()
     }
 
     /// Its energy account: that of its phases, added up.

@@ -79,7 +79,7 @@ pub struct SettingError {
 /// - **Allocations**: none, in a step that meets no new maximum of contacts, phases or step sizes.
 ///
 /// The feature `conformance` brings a harness that holds a scheme to this.
-pub trait Scheme<const D: usize>: Send {
+pub trait Scheme<const D: usize>: Send + Sync {
     /// The name by which users choose it.
     fn name(&self) -> &'static str;
 

@@ -319,7 +319,7 @@ pub struct FactorError {
 
 /// `W = (mass·M + damping·C + stiffness·K)⁻¹` of one subsystem: W_be of the source paper for a beam, diag(1/m, 1/m, 1/I)
 /// for a block.
-pub trait Compliance<const D: usize>: Send {
+pub trait Compliance<const D: usize>: Send + Sync {
     /// The combination that it is the inverse of.
     fn weights(&self) -> Weights;
 
@@ -417,23 +417,6 @@ pub(crate) fn respond_by_solving<const D: usize>(
     v.iter_mut().zip(scratch.iter()).for_each(|(v, dv)| *v += dv);
 }
 
-/// Adds W Jᵀ p to `v` where W is diagonal, and 0 beyond its entries.
-pub(crate) fn respond_by_diagonal<const D: usize>(
-    inverse: &[f64],
-    rows: &PartRows<'_, D>,
-    p: &[Vector<D>],
-    v: &mut [f64],
-) {
-    for (contact, columns, values) in rows.iter() {
-        let p = &p[contact];
-        for (&c, value) in columns.iter().zip(values) {
-            if let Some(inverse) = inverse.get(c) {
-                v[c] += inverse * value.dot(p);
-            }
-        }
-    }
-}
-
 /// The one direction in which a point can be pushed, if its entries are all parallel: so for a beam that is touched on its
 /// axis, which moves up and down only, whatever the contact's frame.
 fn common_direction<const D: usize>(values: &[Vector<D>]) -> Option<Vector<D>> {
@@ -499,6 +482,18 @@ impl<const D: usize> PartRows<'_, D> {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.iter().next().is_none()
+    }
+
+    /// Adds W Jᵀ p to `v` where W is diagonal, `inverse` its entries, and 0 beyond them: what [`Compliance::respond`] is then.
+    pub fn add_diagonal_response(&self, inverse: &[f64], p: &[Vector<D>], v: &mut [f64]) {
+        for (contact, columns, values) in self.iter() {
+            let p = &p[contact];
+            for (&c, value) in columns.iter().zip(values) {
+                if let Some(inverse) = inverse.get(c) {
+                    v[c] += inverse * value.dot(p);
+                }
+            }
+        }
     }
 
     /// Adds Jᵀ p to `f`, as long as the subsystem's velocities, with p the impulses of all contacts of the model, N·s.

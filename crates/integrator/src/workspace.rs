@@ -341,7 +341,10 @@ impl<const D: usize> Workspace<D> {
         self.phases.settle(state, account);
         let penetration = match penetration {
             Some(penetration) => penetration,
-            None if account => self.penetration(model, &state.q)?,
+            None if account && model.has_contacts() => {
+                self.counts.detections += 1;
+                model.detector().deepest(&model.placed_at(&state.q), &mut self.candidates)
+            }
             None => 0.0,
         };
         state.count_step(&self.phases.span);
@@ -353,9 +356,9 @@ impl<const D: usize> Workspace<D> {
                 state.memory.remember(contact);
             }
         }
-        let report = self.phases.report(state.step, penetration);
-        state.tally.count(report.outcome().as_ref(), self.phases.most_contacts(), penetration);
-        Ok(report)
+        let outcome = self.phases.outcome();
+        state.tally.count(outcome.as_ref(), self.phases.most_contacts(), penetration);
+        Ok(self.phases.report(state.step, penetration))
     }
 }
 

@@ -141,7 +141,8 @@ impl Figure {
     /// Heights of what is above a panel's frame, and of the frame.
     fn heights(&self, panel: &Panel) -> (f64, f64) {
         let (entries, note) = (panel.entries(), panel.note_text());
-        let bare = self.legend == Legend::Beside && note.is_none();
+        let named = self.legend != Legend::Beside && (!entries.is_empty() || !self.headed);
+        let bare = !named && note.is_none();
         let header = if bare { BARE_HEADER } else { HEADER + self.legend.more_height(&entries, note) };
         let several = self.panels.iter().filter(|panel| panel.is_plot()).count() > 1;
         let own = panel.own_height_mm().map_or(HEIGHTS[usize::from(several)], |height| UNITS_PER_MM * height);

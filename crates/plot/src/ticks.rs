@@ -33,7 +33,11 @@ impl Ticks {
         let label = |x: f64| {
             let text = match powers {
                 true if x == 0.0 => "0".to_owned(),
-                true => format!("{x:.*e}", ((x.abs() / step).log10() + 1e-9).max(0.0) as usize),
+                // As many digits as the step has, however large the number is.
+                true => {
+                    let digits = (x.abs().log10() + 1e-9).floor() - (step.log10() + 1e-9).floor();
+                    format!("{x:.*e}", digits.max(0.0) as usize)
+                }
                 false => format!("{x:.decimals$}"),
             };
             text.replace('-', "\u{2212}")
@@ -100,6 +104,8 @@ mod tests {
     #[test]
     fn linear_ticks_are_round_and_inside() {
         assert_eq!(labels(&Ticks::linear(-0.031, 0.52, 6)), ["0.0", "0.1", "0.2", "0.3", "0.4", "0.5"]);
+        assert_eq!(labels(&Ticks::linear(0.0, 2.1e-6, 4)), ["0", "5e−7", "1.0e−6", "1.5e−6", "2.0e−6"]);
+        assert_eq!(labels(&Ticks::linear(0.0, 1.3e-5, 6)).last(), Some(&"1.2e−5"));
         assert_eq!(labels(&Ticks::linear(-4.2, 5.1, 6)), ["\u{2212}4", "\u{2212}2", "0", "2", "4"]);
     }
 

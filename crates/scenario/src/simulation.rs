@@ -13,9 +13,9 @@ use teeter_beam::{BeamError, ModalError};
 use teeter_contact::ContactSolver;
 use teeter_detect::{BodyId, PointDetector, PointPair};
 use teeter_integrator::{
-    Block, Ended, Mismatch, Model, ModelBuilder, ModelError, MoreauJean, MoreauJeanClosed, MoreauJeanClosedSettings,
-    MoreauJeanSettings, Observer, Plan, RunError, Scheme, SettingError, SolverSettings, State, StateError, Subsystem,
-    Unsolved, WorkCounts, Workspace, run,
+    Account, Block, Ended, Mismatch, Model, ModelBuilder, ModelError, MoreauJean, MoreauJeanClosed,
+    MoreauJeanClosedSettings, MoreauJeanSettings, Observer, Plan, RunError, Scheme, SettingError, SolverSettings,
+    State, StateError, StepError, StepReport, Subsystem, Unsolved, WorkCounts, Workspace, run,
 };
 use teeter_rigid::{MassProperties, Rectangle, RigidError};
 
@@ -96,6 +96,8 @@ pub struct Simulation {
     pub static_start: Option<StaticStart>,
     scheme: Box<dyn Scheme<2>>,
     work: Workspace<2>,
+    /// Whether the scheme has been started.
+    started: bool,
 }
 
 impl std::fmt::Debug for Simulation {
@@ -243,7 +245,7 @@ impl Simulation {
         } else {
             Unsolved::GoOn
         });
-        Ok(Self { model, state, layout, plan, static_start, scheme, work })
+        Ok(Self { model, state, layout, plan, static_start, scheme, work, started: false })
     }
 
     /// The name of the time scheme.
@@ -273,7 +275,67 @@ impl Simulation {
     /// # Errors
     /// If an observer fails.
     pub fn run(&mut self, observers: &mut [&mut dyn Observer<2>]) -> Result<Ended, RunError> {
-        run(&self.model, self.scheme.as_mut(), &mut self.state, &mut self.work, &self.plan, observers)
+        let plan = self.plan;
+        self.run_by(&plan, observers)
+    }
+
+    /// As [`Simulation::run`], but to time `t` (s) in place of the plan's end: the last step is cut short where it would go past.
+    ///
+    /// # Errors
+    /// If an observer fails.
+    pub fn run_until(&mut self, t: f64, observers: &mut [&mut dyn Observer<2>]) -> Result<Ended, RunError> {
+        self.run_by(&Plan::time(t).when_unsolved(self.plan.unsolved), observers)
+    }
+
+    fn run_by(&mut self, plan: &Plan, observers: &mut [&mut dyn Observer<2>]) -> Result<Ended, RunError> {
+        self.started = true;
+        run(&self.model, self.scheme.as_mut(), &mut self.state, &mut self.work, plan, observers)
+    }
+
+    /// Takes one step, whatever the plan says, and tells what happened in it.
+    ///
+    /// ```
+    /// # use teeter_scenario::simulation::Simulation;
+    /// # let text = r#"
+    /// #     [time]
+    /// #     end = "0.1 s"
+    /// #     step = "1 ms"
+    /// #     [ground]
+    /// #     [material.wood]
+    /// #     density = "600 kg/m^3"
+    /// #     [block.cube]
+    /// #     material = "wood"
+    /// #     width = "10 cm"
+    /// #     height = "10 cm"
+    /// #     depth = "10 cm"
+    /// #     position = ["0 m", "6 cm"]
+    /// #     [contact.floor]
+    /// #     between = ["cube", "ground"]
+    /// #     friction = 0.4
+    /// # "#;
+    /// # let resolved = teeter_scenario::load(text.as_bytes(), "cube.toml", "cube", &[])?;
+    /// let mut simulation = Simulation::new(&resolved.scene)?;
+    /// while simulation.step()?.contacts().next().is_none() {}
+    /// let fall = (2.0_f64 * 0.01 / 9.81).sqrt();
+    /// assert!((simulation.state.t - fall).abs() < 2e-3, "it touches after {fall} s");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If the step can't be taken: the state is as it was.
+    pub fn step(&mut self) -> Result<StepReport<'_, 2>, StepError> {
+        let Self { model, state, scheme, work, started, .. } = self;
+        if !*started {
+            scheme.start(model, state, work)?;
+            *started = true;
+        }
+        scheme.advance(model, state, f64::INFINITY, work)
+    }
+
+    /// Says whether steps keep the account of energies; they do unless told otherwise. Without it they are faster, and
+    /// `state.ledger` and the penetration in `state.tally` know nothing of them.
+    pub fn keep_account(&mut self, account: Account) {
+        self.work.account = account;
     }
 }
 
@@ -375,4 +437,18 @@ fn check_start(scene: &Scene, model: &Model<2>, layout: &Layout, q: &[f64]) -> R
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sweeps share models among threads, and front ends simulations.
+    #[test]
+    fn a_simulation_can_be_sent_and_shared() {
+        fn shared<T: Send + Sync>() {}
+        shared::<Simulation>();
+        shared::<Model<2>>();
+        shared::<State>();
+    }
 }

@@ -3,6 +3,7 @@
 //! Contacts feel each other through the bodies that they share. Where W of a subsystem is diagonal, as that of blocks, those that share a velocity
 //! do; of any other subsystem all that push it. Memory and time then grow with the number of islands, not with its square.
 
+use super::solve::couple;
 use super::{ContactError, ContactStage, Members, Over, Problem};
 use crate::laws::{Laws, join};
 use crate::subsystem::Span;
@@ -91,6 +92,7 @@ impl<const D: usize> ContactStage<D> {
         let mut islands = std::mem::take(&mut self.islands);
         let outcome = self.solve_islands(&mut islands, model, work, responses, over, guard);
         self.islands = islands;
+        self.apart = matches!(outcome, Ok(Some(_)));
         outcome
     }
 
@@ -123,7 +125,7 @@ impl<const D: usize> ContactStage<D> {
             spans.clear();
             spans.extend(members.iter().map(|i| self.rows.spans[*i]));
             problem.take_part(&self.problem, members);
-            self.couple(model, work, responses, spans, problem);
+            couple(&self.rows, model, work, responses, spans, problem);
             for (k, i) in members.iter().enumerate() {
                 let from = self.extra.partition_point(|(other, _)| other < i);
                 for (_, kappa) in self.extra[from..].iter().take_while(|(other, _)| other == i) {

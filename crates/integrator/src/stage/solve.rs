@@ -1,11 +1,11 @@
 //! From posed contacts to impulses, and to velocities.
 
-use super::{ContactError, ContactStage, Over, Problem, Rule};
+use super::{ContactError, ContactRows, ContactStage, Over, Problem, Rule};
 use crate::laws::{Laws, join};
 use crate::mismatch::length;
 use crate::subsystem::{Span, respond_by_solving};
 use crate::{Model, Responses, Workspace};
-use teeter_contact::Outcome;
+use teeter_contact::{Block, Outcome};
 
 /// Which contacts of a stage a problem is of.
 #[derive(Clone, Copy, Debug)]
@@ -52,7 +52,39 @@ impl<const D: usize> ContactStage<D> {
         responses: &Responses<'_>,
         over: Over,
     ) -> Result<Option<Outcome>, ContactError> {
-        self.solve_guarded(model, work, responses, over, |_, _, _, _| Ok(false))
+        if !self.is_ready(model, work, responses)? {
+            return Ok(None);
+        }
+        if let Some(outcome) = self.solve_apart(model, work, responses, over, &mut |_, _, _, _| Ok(false))? {
+            return Ok(Some(outcome));
+        }
+        let Self { rows, problem, extra, .. } = self;
+        couple(rows, model, work, responses, &rows.spans, problem);
+        add_compliances(extra, problem);
+        Ok(Some(work.solve_problem(problem, over.weight())?))
+    }
+
+    /// Checks what is to be solved; whether there is anything.
+    #[inline]
+    fn is_ready(
+        &mut self,
+        model: &Model<D>,
+        work: &mut Workspace<D>,
+        responses: &Responses<'_>,
+    ) -> Result<bool, ContactError> {
+        self.apart = false;
+        if self.is_empty() {
+            return Ok(false);
+        }
+        self.check(model)?;
+        work.check(model)?;
+        if let Some(contact) = self.problem.rules().position(|rule| *rule == Rule::Unposed) {
+            return Err(ContactError::Unposed { contact });
+        }
+        match work.factors.missing(model, responses) {
+            Some(part) => Err(ContactError::Factors { part }),
+            None => Ok(true),
+        }
     }
 
     /// As [`ContactStage::solve`]; after each solve `guard` may change the problem, and says whether it is to be solved again.
@@ -65,20 +97,10 @@ impl<const D: usize> ContactStage<D> {
         over: Over,
         mut guard: impl FnMut(&Self, &mut Problem<D>, &Laws<D>, Members<'_>) -> Result<bool, ContactError>,
     ) -> Result<Option<Outcome>, ContactError> {
-        self.apart = false;
-        if self.is_empty() {
+        if !self.is_ready(model, work, responses)? {
             return Ok(None);
         }
-        self.check(model)?;
-        work.check(model)?;
-        if let Some(contact) = self.problem.rules().position(|rule| *rule == Rule::Unposed) {
-            return Err(ContactError::Unposed { contact });
-        }
-        if let Some(part) = work.factors.missing(model, responses) {
-            return Err(ContactError::Factors { part });
-        }
         if let Some(outcome) = self.solve_apart(model, work, responses, over, &mut guard)? {
-            self.apart = true;
             return Ok(Some(outcome));
         }
         let mut problem = std::mem::take(&mut self.problem);
@@ -96,36 +118,14 @@ impl<const D: usize> ContactStage<D> {
         over: Over,
         mut guard: impl FnMut(&Self, &mut Problem<D>, &Laws<D>, Members<'_>) -> Result<bool, ContactError>,
     ) -> Result<Outcome, ContactError> {
-        self.couple(model, work, responses, &self.rows.spans, problem);
-        for (i, kappa) in &self.extra {
-            problem.blocks[i * self.len() + i] += kappa;
-        }
+        couple(&self.rows, model, work, responses, &self.rows.spans, problem);
+        add_compliances(&self.extra, problem);
         let mut outcome = work.solve_problem(problem, over.weight())?;
         // Whoever guards guards one contact more each time, so it ends.
         while guard(self, problem, &work.laws, Members::All)? {
             outcome = join(outcome, work.solve_problem(problem, over.weight())?);
         }
         Ok(outcome)
-    }
-
-    /// H = Σ J W Jᵀ over the subsystems, of the contacts with these rows.
-    #[inline]
-    pub(super) fn couple(
-        &self,
-        model: &Model<D>,
-        work: &mut Workspace<D>,
-        responses: &Responses<'_>,
-        spans: &[[Span; 2]],
-        problem: &mut Problem<D>,
-    ) {
-        let mut coupling = problem.coupling();
-        let Workspace { factors, scratch, .. } = work;
-        for (index, part) in model.parts().iter().enumerate().filter(|(_, part)| !part.v.is_empty()) {
-            if let Some(factor) = responses.of(index).and_then(|w| factors.of(index, w)) {
-                let rows = self.rows.of_island(index, spans);
-                factor.couple(&rows, &mut scratch[..part.v.len()], &mut coupling);
-            }
-        }
     }
 
     /// Adds W Jᵀ p to velocities `v`, after [`solve`](Self::solve) with the same responses; `v` become those after the impulses (added accelerations over
@@ -164,6 +164,36 @@ impl<const D: usize> ContactStage<D> {
             }
         }
         Ok(())
+    }
+}
+
+/// H = Σ J W Jᵀ over the subsystems, of the contacts with these rows.
+#[inline]
+pub(super) fn couple<const D: usize>(
+    rows: &ContactRows<D>,
+    model: &Model<D>,
+    work: &mut Workspace<D>,
+    responses: &Responses<'_>,
+    spans: &[[Span; 2]],
+    problem: &mut Problem<D>,
+) {
+    let mut coupling = problem.coupling();
+    let Workspace { factors, scratch, .. } = work;
+    for (index, part) in model.parts().iter().enumerate() {
+        if part.v.is_empty() {
+            continue;
+        }
+        if let Some(factor) = responses.of(index).and_then(|w| factors.of(index, w)) {
+            factor.couple(&rows.of_island(index, spans), &mut scratch[..part.v.len()], &mut coupling);
+        }
+    }
+}
+
+/// κ beside H.
+fn add_compliances<const D: usize>(extra: &[(usize, Block<D>)], problem: &mut Problem<D>) {
+    let n = problem.len();
+    for (i, kappa) in extra {
+        problem.blocks[i * n + i] += kappa;
     }
 }
 

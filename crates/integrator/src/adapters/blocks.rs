@@ -1,6 +1,5 @@
 //! Rigid blocks as a subsystem: the adapter above `teeter-rigid`.
 
-use crate::subsystem::respond_by_diagonal;
 use crate::{
     Bodies, Compliance, Coupling, Dynamics, Energy, FactorError, ModelError, Motion, PartRows, Rows, Signal, Size,
     Traits, Vector, Weights,
@@ -275,6 +274,6 @@ impl Compliance<2> for BlockCompliance {
     }
 
     fn respond(&mut self, rows: &PartRows<'_, 2>, p: &[Vector<2>], _scratch: &mut [f64], v: &mut [f64]) {
-        respond_by_diagonal(&self.inverse, rows, p, v);
+        rows.add_diagonal_response(&self.inverse, p, v);
     }
 }

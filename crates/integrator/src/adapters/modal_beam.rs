@@ -7,10 +7,10 @@
 //! The shapes Φ are those of a [`ModalBasis`], modes and static corrections alike. Contact kinematics, loads and moving supports are
 //! those of [`BeamBody`](crate::BeamBody); a step costs some N operations for N coordinates and 8 N for each point that is touched.
 
-use crate::beam;
-use crate::beam::line::{self, Deflecting, Line};
-use crate::beam::motion::MovingSupports;
-use crate::subsystem::{couple_by_solving, dot, respond_by_diagonal};
+use super::beam;
+use super::beam::line::{self, Deflecting, Line};
+use super::beam::motion::MovingSupports;
+use crate::subsystem::{couple_by_solving, dot};
 use crate::{
     BeamSurface, Bodies, Compliance, Coupling, Dynamics, Energy, FactorError, Motion, PartRows, Rows, SignalLoad, Size,
     Traits, Vector, Weights,
@@ -472,6 +472,6 @@ impl Compliance<2> for ModalCompliance {
     }
 
     fn respond(&mut self, rows: &PartRows<'_, 2>, p: &[Vector<2>], _scratch: &mut [f64], v: &mut [f64]) {
-        respond_by_diagonal(&self.inverse, rows, p, v);
+        rows.add_diagonal_response(&self.inverse, p, v);
     }
 }
