@@ -179,7 +179,7 @@ impl Tally {
     }
 }
 
-/// A step that ends within this fraction of its size of a given time ends at that time.
+/// A step that ends within this fraction of its size of a given time counts as ending at that time.
 pub const STEP_ROUNDING: f64 = 1e-9;
 
 /// Start, end and size of a step.
