@@ -3,6 +3,7 @@
 mod beam;
 mod contacts;
 mod free_beam;
+mod many;
 mod modal_beam;
 mod scenes;
 mod solvers;
@@ -18,6 +19,7 @@ fn main() {
     scenes::bench(&mut criterion);
     free_beam::bench(&mut criterion);
     contacts::bench(&mut criterion);
+    many::bench(&mut criterion);
     modal_beam::bench(&mut criterion);
     solvers::bench(&mut criterion);
     beam::bench(&mut criterion);

@@ -462,7 +462,7 @@ impl Check<'_> {
             let arena = Arena::new(some);
             let mut blocks = vec![Block::<2>::zeros(); some.len() * some.len()];
             let (mut scratch, mut v) = (vec![f64::NAN; n], vec![0.0; n]);
-            factor.couple(&arena.rows(), &mut scratch, &mut Coupling { contacts: some.len(), blocks: &mut blocks });
+            factor.couple(&arena.rows(), &mut scratch, &mut Coupling::dense(some.len(), &mut blocks));
             scratch.fill(f64::NAN);
             factor.respond(&arena.rows(), &p[..some.len()], &mut scratch, &mut v);
             if some.len() != touches.len() {

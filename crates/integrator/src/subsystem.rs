@@ -1,7 +1,7 @@
 //! What a subsystem offers to a time scheme.
 
 use crate::Vector;
-use teeter_contact::Block;
+use teeter_contact::{Block, BlockSparse};
 use teeter_detect::{Frame, HalfSpace, Kinematics, SurfacePoint};
 
 /// The sizes of a subsystem.
@@ -501,6 +501,20 @@ impl<'a, const D: usize> Iterator for RowIter<'a, D> {
 }
 
 impl<const D: usize> PartRows<'_, D> {
+    /// The row of a side of a contact, if it acts on the subsystem: columns and entries.
+    #[must_use]
+    pub fn get(&self, contact: usize, side: usize) -> Option<(&[usize], &[Vector<D>])> {
+        let span = self.spans.get(contact)?.get(side)?;
+        let range = span.start..span.start + span.len;
+        (span.part == self.part && span.len > 0).then(|| (&self.columns[range.clone()], &self.values[range]))
+    }
+
+    /// How many contacts there are, those that don't act on the subsystem among them: numbers of contacts are below it.
+    #[must_use]
+    pub fn contacts(&self) -> usize {
+        self.spans.len()
+    }
+
     /// Whether no contact acts on the subsystem.
     #[must_use]
     pub fn is_empty(&self) -> bool {
@@ -533,15 +547,38 @@ impl<const D: usize> PartRows<'_, D> {
 
 /// The Delassus operator while subsystems add to it.
 #[derive(Debug)]
-pub struct Coupling<'a, const D: usize> {
-    pub(crate) contacts: usize,
-    pub(crate) blocks: &'a mut [Block<D>],
+pub struct Coupling<'a, const D: usize>(Blocks<'a, D>);
+
+#[derive(Debug)]
+enum Blocks<'a, const D: usize> {
+    Dense { contacts: usize, blocks: &'a mut [Block<D>] },
+    Sparse(&'a mut BlockSparse<D>),
+}
+
+impl<'a, const D: usize> Coupling<'a, D> {
+    /// All blocks of so many contacts, by rows.
+    pub(crate) fn dense(contacts: usize, blocks: &'a mut [Block<D>]) -> Self {
+        Self(Blocks::Dense { contacts, blocks })
+    }
+
+    /// The blocks of contacts that share a body.
+    pub(crate) fn sparse(blocks: &'a mut BlockSparse<D>) -> Self {
+        Self(Blocks::Sparse(blocks))
+    }
 }
 
 impl<const D: usize> Coupling<'_, D> {
     /// Adds to the block of contacts (i, j).
     #[inline]
     pub fn add(&mut self, i: usize, j: usize, block: &Block<D>) {
-        self.blocks[i * self.contacts + j] += block;
+        match &mut self.0 {
+            Blocks::Dense { contacts, blocks } => blocks[i * *contacts + j] += block,
+            // Contacts that share nothing have no place in the pattern, and what they feel of each other is 0.
+            Blocks::Sparse(sparse) => {
+                if let Some(sum) = sparse.block_mut(i, j) {
+                    *sum += block;
+                }
+            }
+        }
     }
 }

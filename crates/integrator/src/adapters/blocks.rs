@@ -189,7 +189,7 @@ impl Dynamics<2> for Blocks {
     fn factor(&self, w: Weights, _q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
         let mass = self.blocks.iter().flat_map(|block| block.mass.diagonal().data.0[0]).collect();
         let (inverse, driven) = (vec![0.0; 3 * self.blocks.len()], self.driven.clone());
-        let mut compliance = BlockCompliance { weights: w, mass, inverse, driven };
+        let mut compliance = BlockCompliance { touched: Vec::new(), weights: w, mass, inverse, driven };
         compliance.refactor(w, &[])?;
         Ok(Box::new(compliance))
     }
@@ -223,12 +223,47 @@ pub(crate) fn turning_bias(pose: &Vector3<f64>, omega: &f64, point: &Vector2<f64
     Pose::new(pose).rotate(point) * -(omega * omega)
 }
 
+/// Up to so many contacts all pairs are looked at.
+const FEW: usize = 16;
+
 /// diag(1/m, 1/m, 1/I) of every block, 0 where the velocity is prescribed.
 struct BlockCompliance {
+    /// Block, contact and side of each row, where there are many.
+    touched: Vec<(usize, usize, usize)>,
     weights: Weights,
     mass: Vec<f64>,
     inverse: Vec<f64>,
     driven: Vec<usize>,
+}
+
+impl BlockCompliance {
+    /// What the contacts of each block feel of each other, block by block.
+    fn couple_neighbours(&mut self, rows: &PartRows<'_, 2>, h: &mut Coupling<'_, 2>) {
+        let Self { touched, inverse, .. } = self;
+        touched.clear();
+        for contact in 0..rows.contacts() {
+            for side in 0..2 {
+                if let Some((columns, _)) = rows.get(contact, side) {
+                    touched.push((columns[0], contact, side));
+                }
+            }
+        }
+        touched.sort_unstable();
+        for of_block in touched.chunk_by(|a, b| a.0 == b.0) {
+            for &(_, i, side_i) in of_block {
+                for &(_, j, side_j) in of_block {
+                    let (Some((columns, a)), Some((_, b))) = (rows.get(i, side_i), rows.get(j, side_j)) else {
+                        continue;
+                    };
+                    let mut block = Matrix2::zeros();
+                    for ((&c, a), b) in columns.iter().zip(a).zip(b) {
+                        block += a * (b * inverse[c]).transpose();
+                    }
+                    h.add(i, j, &block);
+                }
+            }
+        }
+    }
 }
 
 impl Compliance<2> for BlockCompliance {
@@ -262,6 +297,9 @@ impl Compliance<2> for BlockCompliance {
     }
 
     fn couple(&mut self, rows: &PartRows<'_, 2>, _scratch: &mut [f64], h: &mut Coupling<'_, 2>) {
+        if rows.contacts() > FEW {
+            return self.couple_neighbours(rows, h);
+        }
         for (i, columns_i, values_i) in rows.iter() {
             for (j, columns_j, values_j) in rows.iter() {
                 // Contacts of different blocks aren't coupled: W is diagonal.

@@ -3,72 +3,43 @@
 //! Contacts feel each other through the bodies that they share. Where W of a subsystem is diagonal, as that of blocks, those that share a velocity
 //! do; of any other subsystem all that push it. Memory and time then grow with the number of islands, not with its square.
 
-use super::solve::couple;
-use super::{ContactError, ContactStage, Members, Over, Problem};
+use super::solve::{couple, couple_into};
+use super::{ContactError, ContactRows, ContactStage, Members, Over, Problem};
 use crate::laws::{Laws, join};
 use crate::subsystem::Span;
 use crate::{Model, Responses, Workspace};
-use teeter_contact::Outcome;
+use teeter_contact::{Incidence, Outcome};
 
-/// From so many contacts on. Below it the dense operator of all costs next to nothing, and the solver finds the islands in it.
+/// From so many contacts on. Below it the dense operator of all costs next to nothing, and the solver finds the islands in it. An island of so
+/// many is coupled by neighbours, if most of its contacts are none.
 const MANY: usize = 64;
-
-const NONE: usize = usize::MAX;
 
 /// Memory for the islands.
 #[derive(Debug, Default)]
 pub(super) struct Islands<const D: usize> {
-    /// Of each velocity, the first contact that pushes it.
-    first: Vec<usize>,
-    /// Of each contact, one before it of the same island, or itself.
-    parent: Vec<usize>,
-    /// The contacts, island by island, and the numbers of their islands' first.
-    order: Vec<(usize, usize)>,
-    members: Vec<usize>,
+    /// Whether W of each subsystem is diagonal.
+    diagonal: Vec<bool>,
+    /// What each contact shares with others: of all contacts, and of those of an island.
+    shared: Incidence,
+    own: Incidence,
+    found: teeter_contact::Islands,
     spans: Vec<[Span; 2]>,
     problem: Problem<D>,
 }
 
-impl<const D: usize> Islands<D> {
-    fn root(&mut self, mut i: usize) -> usize {
-        while self.parent[i] != i {
-            self.parent[i] = self.parent[self.parent[i]];
-            i = self.parent[i];
-        }
-        i
-    }
-
-    /// Finds the islands of the stage's contacts; `false` where there is one only.
-    fn find(&mut self, stage: &ContactStage<D>, model: &Model<D>, mut is_diagonal: impl FnMut(usize) -> bool) -> bool {
-        let n = stage.len();
-        self.first.clear();
-        self.first.resize(model.size().v, NONE);
-        self.parent.clear();
-        self.parent.extend(0..n);
-        for (i, sides) in stage.rows.spans.iter().enumerate() {
-            let mut join = |key: usize| match self.first[key] {
-                NONE => self.first[key] = i,
-                other => {
-                    let (a, b) = (self.root(i), self.root(other));
-                    self.parent[a.max(b)] = a.min(b);
-                }
-            };
-            for side in sides.iter().filter(|side| side.len > 0) {
-                if is_diagonal(side.part) {
-                    stage.rows.columns_of(side).for_each(&mut join);
-                } else {
-                    join(model.parts()[side.part].v.start);
-                }
-            }
-        }
-        self.order.clear();
-        for i in 0..n {
-            let root = self.root(i);
-            self.order.push((root, i));
-        }
-        self.order.sort_unstable();
-        self.order.iter().any(|(root, _)| *root != 0)
-    }
+/// What a contact shares with others: the velocities that it pushes where W is diagonal, else the subsystem.
+fn keys<'a, const D: usize>(
+    rows: &'a ContactRows<D>,
+    model: &'a Model<D>,
+    diagonal: &'a [bool],
+    sides: &'a [Span; 2],
+) -> impl Iterator<Item = usize> + 'a {
+    sides.iter().filter(|side| side.len > 0).flat_map(move |side| {
+        let apart = diagonal[side.part];
+        let all = model.parts()[side.part].v.start;
+        let columns = rows.columns_of(side).take(if apart { side.len } else { 1 });
+        columns.map(move |column| if apart { column } else { all })
+    })
 }
 
 impl<const D: usize> ContactStage<D> {
@@ -106,30 +77,40 @@ impl<const D: usize> ContactStage<D> {
         over: Over,
         guard: &mut impl FnMut(&Self, &mut Problem<D>, &Laws<D>, Members<'_>) -> Result<bool, ContactError>,
     ) -> Result<Option<Outcome>, ContactError> {
-        let factors = &mut work.factors;
-        let mut is_diagonal = |part: usize| {
-            responses.of(part).and_then(|w| factors.of(part, w)).is_some_and(|factor| factor.is_diagonal())
-        };
-        if !islands.find(self, model, &mut is_diagonal) {
+        let Islands { diagonal, shared, own, found, spans, problem } = islands;
+        diagonal.clear();
+        for part in 0..model.parts().len() {
+            let factor = responses.of(part).and_then(|w| work.factors.of(part, w));
+            diagonal.push(factor.is_some_and(|factor| factor.is_diagonal()));
+        }
+        shared.load(self.len(), |i| keys(&self.rows, model, diagonal, &self.rows.spans[i]));
+        found.find_shared(shared);
+        if found.len() == 1 && !self.problem.is_standard() {
             return Ok(None);
         }
         self.extra.sort_by_key(|(i, _)| *i);
         let mut all: Option<Outcome> = None;
-        let mut start = 0;
-        while let Some(&(root, _)) = islands.order.get(start) {
-            let island = islands.order[start..].iter().take_while(|(other, _)| *other == root);
-            islands.members.clear();
-            islands.members.extend(island.map(|(_, i)| *i));
-            start += islands.members.len();
-            let Islands { members, spans, problem, .. } = islands;
+        for members in found.iter() {
             spans.clear();
             spans.extend(members.iter().map(|i| self.rows.spans[*i]));
             problem.take_part(&self.problem, members);
-            couple(&self.rows, model, work, responses, spans, problem);
+            own.load(if members.len() < MANY || !problem.is_standard() { 0 } else { members.len() }, |k| {
+                keys(&self.rows, model, diagonal, &spans[k])
+            });
+            let sparse = own.contacts() > 0 && {
+                let coupling = problem.sparse_coupling(own);
+                coupling.map(|mut h| couple_into(&mut h, &self.rows, model, work, responses, spans)).is_some()
+            };
+            if !sparse {
+                if found.len() == 1 {
+                    return Ok(None);
+                }
+                couple(&self.rows, model, work, responses, spans, problem);
+            }
             for (k, i) in members.iter().enumerate() {
                 let from = self.extra.partition_point(|(other, _)| other < i);
                 for (_, kappa) in self.extra[from..].iter().take_while(|(other, _)| other == i) {
-                    problem.blocks[k * members.len() + k] += kappa;
+                    problem.add_own(k, kappa);
                 }
             }
             let mut outcome = work.solve_problem(problem, over.weight())?;

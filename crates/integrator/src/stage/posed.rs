@@ -3,7 +3,7 @@
 use super::Rule;
 use crate::contact::tangential;
 use crate::{Coupling, Vector};
-use teeter_contact::{Block, ContactProblem, Delassus, ProblemError};
+use teeter_contact::{Block, BlockSparse, ContactProblem, Delassus, Incidence, ProblemError};
 
 /// What the law of a contact acts on, beside what the solver sees.
 #[derive(Clone, Copy, Debug)]
@@ -17,8 +17,11 @@ pub(crate) struct Posed<const D: usize> {
 /// A contact problem with its rules. Impulses stand where a solver starts, and at last where it ended.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Problem<const D: usize> {
-    /// H, all blocks by rows.
+    /// H, all blocks by rows, unless it is sparse.
     pub(crate) blocks: Vec<Block<D>>,
+    /// H of many contacts that feel few others; then the rules are the standard one.
+    sparse: BlockSparse<D>,
+    is_sparse: bool,
     pub(crate) posed: Vec<Posed<D>>,
     /// U_free + s.
     pub(crate) q: Vec<Vector<D>>,
@@ -78,14 +81,36 @@ impl<const D: usize> Problem<D> {
     /// H as zeros, to be added to.
     pub(crate) fn coupling(&mut self) -> Coupling<'_, D> {
         let n = self.len();
+        self.is_sparse = false;
         self.blocks.clear();
         self.blocks.resize(n * n, Block::zeros());
-        Coupling { contacts: n, blocks: &mut self.blocks }
+        Coupling::dense(n, &mut self.blocks)
+    }
+
+    /// The same for contacts that feel those with which they share a key; `None` where that are so many that H is dense.
+    pub(crate) fn sparse_coupling(&mut self, incidence: &Incidence) -> Option<Coupling<'_, D>> {
+        self.sparse.set_pattern(incidence);
+        self.is_sparse = 2 * self.sparse.blocks().len() < self.len() * self.len();
+        self.is_sparse.then(|| Coupling::sparse(&mut self.sparse))
+    }
+
+    /// Adds to the block of a contact itself.
+    pub(crate) fn add_own(&mut self, i: usize, block: &Block<D>) {
+        let n = self.len();
+        let own = if self.is_sparse { self.sparse.block_mut(i, i) } else { self.blocks.get_mut(i * n + i) };
+        if let Some(own) = own {
+            *own += block;
+        }
+    }
+
+    fn own(&self, i: usize) -> Block<D> {
+        if self.is_sparse { self.sparse.diagonal(i) } else { self.blocks[i * self.len() + i] }
     }
 
     /// The problem, and the impulses to start from and to leave the solution in.
     pub(crate) fn pose(&mut self) -> Result<(ContactProblem<'_, D>, &mut [Vector<D>]), ProblemError> {
-        let problem = ContactProblem::new(Delassus::Dense(&self.blocks), &self.q, &self.mu)?;
+        let h = if self.is_sparse { Delassus::Blocks(&self.sparse) } else { Delassus::Dense(&self.blocks) };
+        let problem = ContactProblem::new(h, &self.q, &self.mu)?;
         Ok((problem, &mut self.p))
     }
 
@@ -129,6 +154,9 @@ impl<const D: usize> Problem<D> {
 
     /// U¹ of contact `i` by the impulses, m/s.
     pub(crate) fn velocity_by_impulses(&self, i: usize) -> Vector<D> {
+        if self.is_sparse {
+            return self.sparse.row(i).fold(self.posed[i].u_free, |u, (j, block)| u + block * self.p[j]);
+        }
         let n = self.len();
         let row = &self.blocks[i * n..(i + 1) * n];
         row.iter().zip(&self.p).fold(self.posed[i].u_free, |u, (block, p)| u + block * p)
@@ -141,7 +169,7 @@ impl<const D: usize> Problem<D> {
 
     /// U_t¹ of contact `i` had it no friction of its own, m/s; the others' impulses as they are.
     pub(crate) fn without_own_friction(&self, i: usize) -> Vector<D> {
-        let own = &self.blocks[i * self.len() + i];
+        let own = self.own(i);
         tangential(&(self.velocity_by_impulses(i) - own * tangential(&self.p[i])))
     }
 }

@@ -4,7 +4,7 @@ use super::{ContactError, ContactRows, ContactStage, Over, Problem, Rule};
 use crate::laws::{Laws, join};
 use crate::mismatch::length;
 use crate::subsystem::{Span, respond_by_solving};
-use crate::{Model, Responses, Workspace};
+use crate::{Coupling, Model, Responses, Workspace};
 use teeter_contact::{Block, Outcome};
 
 /// Which contacts of a stage a problem is of.
@@ -178,22 +178,34 @@ pub(super) fn couple<const D: usize>(
     problem: &mut Problem<D>,
 ) {
     let mut coupling = problem.coupling();
+    couple_into(&mut coupling, rows, model, work, responses, spans);
+}
+
+/// The same, added to an H that is there.
+#[inline]
+pub(super) fn couple_into<const D: usize>(
+    coupling: &mut Coupling<'_, D>,
+    rows: &ContactRows<D>,
+    model: &Model<D>,
+    work: &mut Workspace<D>,
+    responses: &Responses<'_>,
+    spans: &[[Span; 2]],
+) {
     let Workspace { factors, scratch, .. } = work;
     for (index, part) in model.parts().iter().enumerate() {
         if part.v.is_empty() {
             continue;
         }
         if let Some(factor) = responses.of(index).and_then(|w| factors.of(index, w)) {
-            factor.couple(&rows.of_island(index, spans), &mut scratch[..part.v.len()], &mut coupling);
+            factor.couple(&rows.of_island(index, spans), &mut scratch[..part.v.len()], coupling);
         }
     }
 }
 
 /// κ beside H.
 fn add_compliances<const D: usize>(extra: &[(usize, Block<D>)], problem: &mut Problem<D>) {
-    let n = problem.len();
     for (i, kappa) in extra {
-        problem.blocks[i * n + i] += kappa;
+        problem.add_own(*i, kappa);
     }
 }
 

@@ -375,7 +375,7 @@ mod tests {
         let n = compliance.factor.dofs();
         let mut blocks = vec![Block::zeros(); first.len() * first.len()];
         let (mut scratch, mut v) = (vec![f64::NAN; n], vec![0.0; n]);
-        compliance.couple(&rows, &mut scratch, &mut Coupling { contacts: first.len(), blocks: &mut blocks });
+        compliance.couple(&rows, &mut scratch, &mut Coupling::dense(first.len(), &mut blocks));
         compliance.respond(&rows, &vec![Vector::<2>::new(1.0, 0.5); first.len()], &mut scratch, &mut v);
         (blocks, v)
     }
