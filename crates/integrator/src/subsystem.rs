@@ -509,7 +509,8 @@ impl<const D: usize> PartRows<'_, D> {
         (span.part == self.part && span.len > 0).then(|| (&self.columns[range.clone()], &self.values[range]))
     }
 
-    /// How many contacts there are, those that don't act on the subsystem among them: numbers of contacts are below it.
+    /// How many contacts there are, those that don't act on the subsystem among them: numbers of
+    /// contacts are below it.
     #[must_use]
     pub fn contacts(&self) -> usize {
         self.spans.len()
@@ -573,7 +574,8 @@ impl<const D: usize> Coupling<'_, D> {
     pub fn add(&mut self, i: usize, j: usize, block: &Block<D>) {
         match &mut self.0 {
             Blocks::Dense { contacts, blocks } => blocks[i * *contacts + j] += block,
-            // Contacts that share nothing have no place in the pattern, and what they feel of each other is 0.
+            // Contacts that share nothing have no place in the pattern, and what they feel of each
+            // other is 0.
             Blocks::Sparse(sparse) => {
                 if let Some(sum) = sparse.block_mut(i, j) {
                     *sum += block;
