@@ -1,8 +1,9 @@
-//! A block-sparse Delassus operator, whose pattern is kept while its blocks change.
+//! A block-sparse Delassus operator; its pattern can be kept while its blocks change.
 
 use crate::{Block, Delassus, Incidence, Vector};
 
-/// A block-sparse matrix by rows (BSR): the columns of a row ascend, the diagonal block is always present.
+/// A block-sparse matrix by rows (BSR): the columns of a row ascend, the diagonal block is always
+/// present.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BlockSparse<const D: usize> {
     /// Where each row ends in `columns` and `blocks`; it starts where the one before it ends.
@@ -13,7 +14,7 @@ pub struct BlockSparse<const D: usize> {
     diagonal: Vec<usize>,
 }
 
-/// Why a block-sparse matrix can't be made of the given rows.
+/// Why a block-sparse matrix can't be made or filled.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BlockSparseError {
@@ -33,7 +34,7 @@ pub enum BlockSparseError {
         /// Row with the disorder.
         row: usize,
     },
-    /// A block that the matrix has no place for.
+    /// A block outside the pattern.
     #[error("the pattern has no block ({row}, {column})")]
     NotInPattern {
         /// Row of the block.
@@ -60,7 +61,8 @@ impl<const D: usize> BlockSparse<D> {
         Ok(h)
     }
 
-    /// Makes this the matrix of `contacts` rows, each a list of (column, block), in memory that is kept.
+    /// Makes this the matrix of `contacts` rows, each a list of (column, block), in memory that is
+    /// kept.
     ///
     /// # Errors
     /// As [`Self::from_rows`]; the matrix is then that of no contacts.
@@ -104,8 +106,8 @@ impl<const D: usize> BlockSparse<D> {
         Ok(())
     }
 
-    /// Makes this the matrix of zero blocks between all contacts that share a key, to be filled by [`Self::add`]. Memory is kept, and
-    /// time grows with the pairs of contacts that share a key, whatever the number of contacts.
+    /// Makes this a matrix of zero blocks between all contacts that share a key, to be filled by
+    /// [`Self::add`]. Memory is kept; time grows with the number of pairs that share a key.
     ///
     /// ```
     /// use nalgebra::Matrix2;
@@ -128,7 +130,8 @@ impl<const D: usize> BlockSparse<D> {
     pub fn set_pattern(&mut self, incidence: &Incidence) {
         self.clear();
         let n = incidence.contacts();
-        // Until all columns are known, `diagonal` holds the last row in which each contact was seen.
+        // Until all columns are known, `diagonal` holds the last row in which each contact was
+        // seen.
         self.diagonal.resize(n, usize::MAX);
         for i in 0..n {
             let start = self.columns.len();
@@ -150,8 +153,9 @@ impl<const D: usize> BlockSparse<D> {
         self.blocks.resize(self.columns.len(), Block::zeros());
     }
 
-    /// Makes this the matrix of an island of another one: its rows and columns `members`, in that order. `place` says where a contact
-    /// stands in `members`, and is `None` for all others: their blocks are left out.
+    /// Makes this the matrix of an island of another one: its rows and columns `members`, in that
+    /// order. `place` gives the position of a contact in `members`; blocks of contacts for which it
+    /// is `None` are left out.
     pub(crate) fn take_island(&mut self, of: &Self, members: &[usize], place: impl Fn(usize) -> Option<usize>) {
         self.clear();
         for &i in members {
@@ -167,7 +171,7 @@ impl<const D: usize> BlockSparse<D> {
         }
     }
 
-    /// Takes all contacts away; memory is kept.
+    /// Removes all contacts; memory is kept.
     pub fn clear(&mut self) {
         self.row_end.clear();
         self.columns.clear();
@@ -229,14 +233,15 @@ impl<const D: usize> BlockSparse<D> {
         self.row_end.partition_point(|&end| end <= k)
     }
 
-    /// Whether both matrices have their non-zero blocks at the same places, so that an analysis of one serves the other.
+    /// Whether both matrices have their non-zero blocks at the same places, so that an analysis of
+    /// one serves the other.
     #[must_use]
     pub fn same_pattern(&self, other: &Self) -> bool {
         self.row_end == other.row_end && self.columns == other.columns
     }
 
-    /// Takes the matrix out of a problem, zero blocks left out, in memory that is kept. Of an operator that is given by
-    /// what it does, each column is the product with a unit vector: D n² row products.
+    /// Copies the non-zero blocks of a problem's operator, in memory that is kept. The columns of a
+    /// matrix-free operator are found as products with unit vectors: D n² row products.
     pub fn gather(&mut self, problem: &crate::ContactProblem<'_, D>) {
         let n = problem.contacts();
         self.clear();
@@ -298,7 +303,7 @@ impl<const D: usize> BlockSparse<D> {
                 all += block.norm_squared();
                 match self.block(j, i) {
                     Some(mirror) => skew += (block - mirror.transpose()).norm_squared(),
-                    // Counted for both places, as the other one isn't stored.
+                    // Counted twice, as the mirrored block isn't stored.
                     None => skew += 2.0 * block.norm_squared(),
                 }
             }

@@ -2,7 +2,8 @@
 
 use crate::Vector;
 
-/// Euclidean norm of the tangential part. For D = 2 this is an absolute value, exact and free of a square root.
+/// Euclidean norm of the tangential part. For D = 2 this is an absolute value, exact and free of a
+/// square root.
 #[inline]
 pub(crate) fn tangential_norm<const D: usize>(x: &Vector<D>) -> f64 {
     if D == 2 {
@@ -19,8 +20,8 @@ pub(crate) fn tangential_norm<const D: usize>(x: &Vector<D>) -> f64 {
 
 /// Euclidean projection of `x` onto the cone `K_μ = { p : ‖p_T‖ ≤ μ p_N }`.
 ///
-/// `mu` ≥ 0; for `mu` = 0 the cone is the half line `p_N ≥ 0, p_T = 0`. Large `mu` is safe: the formulas divide by
-/// 1 + μ² in a form that doesn't overflow.
+/// `mu` ≥ 0; for `mu` = 0 the cone is the half line `p_N ≥ 0, p_T = 0`. Large `mu` is safe: the
+/// formulas divide by 1 + μ² in a form that doesn't overflow.
 ///
 /// ```
 /// use nalgebra::Vector2;
@@ -35,7 +36,7 @@ pub(crate) fn tangential_norm<const D: usize>(x: &Vector<D>) -> f64 {
 pub fn project<const D: usize>(x: &Vector<D>, mu: f64) -> Vector<D> {
     let x_n = x[0];
     let x_t = tangential_norm(x);
-    // The polar cone first: with mu = 0 the other test can't tell p_N < 0 from inside.
+    // The polar cone first: for mu = 0 the other test would take p_N < 0 for inside.
     if mu * x_t <= -x_n {
         return Vector::zeros();
     }
@@ -48,7 +49,8 @@ pub fn project<const D: usize>(x: &Vector<D>, mu: f64) -> Vector<D> {
     } else {
         let inverse = mu.recip();
         let foot = (x_n * inverse + x_t) * inverse / (1.0 + inverse * inverse);
-        // Next to the polar cone rounding can make this negative. Not `max`, which would take a NaN for zero.
+        // Next to the polar cone rounding can make this negative. Not `max`, which would take a NaN
+        // for zero.
         if foot < 0.0 { 0.0 } else { foot }
     };
     let mut p = *x;

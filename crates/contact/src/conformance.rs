@@ -1,7 +1,7 @@
 //! One harness that every solver runs through (feature `conformance`), shared by tests and benches.
 //!
-//! It holds problems whose law is easy to check contact by contact, and checks a solver's result by Coulomb's law
-//! written out in its cases, independently of [`judge()`](crate::judge()).
+//! Its problems are small enough to check contact by contact: a solver's result is held against
+//! Coulomb's law, written out case by case and independently of [`judge()`](crate::judge()).
 
 use crate::{Block, ContactProblem, ContactSolver, Delassus, Status, Stop, Vector, judge};
 
@@ -28,8 +28,9 @@ impl<const D: usize> Case<D> {
     }
 }
 
-/// A plane rigid body of mass 1 and moment of inertia `inertia` touched at `points` (x, y) from its mass centre by a
-/// floor below: `H = Σ J M⁻¹ Jᵀ` of hyperstatic contacts, singular from two contacts on.
+/// A plane rigid body of mass 1 and moment of inertia `inertia` touched at `points` (x, y) from its
+/// mass centre by a floor below: `H = Σ J M⁻¹ Jᵀ` of hyperstatic contacts, singular from two
+/// contacts on.
 #[must_use]
 pub fn body_on_floor(name: &'static str, inertia: f64, points: &[(f64, f64)], velocity: [f64; 3], mu: f64) -> Case<2> {
     let inverse = [1.0, 1.0, inertia.recip()];
@@ -76,8 +77,9 @@ pub fn plane_cases() -> Vec<Case<2>> {
     ]
 }
 
-/// A body of mass 1 in space with moments of inertia `inertia`, touched at `points` from its mass centre by a floor below
-/// (normal z, tangents x and y): hyperstatic from two contacts on. `velocity` is linear, then angular.
+/// A body of mass 1 in space with moments of inertia `inertia`, touched at `points` from its mass
+/// centre by a floor below (normal z, tangents x and y): hyperstatic from two contacts on.
+/// `velocity` is linear, then angular.
 #[must_use]
 pub fn box_on_floor(
     name: &'static str,
@@ -157,8 +159,8 @@ pub fn space_cases() -> Vec<Case<3>> {
     cases
 }
 
-/// Checks Signorini's and Coulomb's law contact by contact, with `slack` relative to the problem's own speed and
-/// impulse scales.
+/// Checks Signorini's and Coulomb's laws contact by contact, with `slack` relative to the problem's
+/// own scales of speed and impulse.
 ///
 /// # Errors
 /// A sentence that says which part of the law fails, at which contact, by how much.
@@ -194,7 +196,8 @@ pub fn check_law<const D: usize>(problem: &ContactProblem<'_, D>, p: &[Vector<D>
     Ok(())
 }
 
-/// Runs a solver over cases: it must converge to `tolerance`, report the judge's residual, and obey the law.
+/// Runs a solver over cases: it must converge to `tolerance`, report the judge's residual, and obey
+/// the law.
 ///
 /// # Errors
 /// A sentence that names the case and what failed.

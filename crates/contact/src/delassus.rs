@@ -1,8 +1,8 @@
-//! The Delassus operator `H = J W Jᵀ`, in the shapes in which it comes.
+//! The Delassus operator `H = J W Jᵀ`: dense, block-sparse or matrix-free.
 
 use crate::{Block, BlockSparse, Vector};
 
-/// A Delassus operator given by what it does, for those who never form it.
+/// A matrix-free Delassus operator: one that is never formed.
 pub trait DelassusOperator<const D: usize>: Send + Sync {
     /// Number of contacts.
     fn contacts(&self) -> usize;
@@ -12,7 +12,7 @@ pub trait DelassusOperator<const D: usize>: Send + Sync {
     fn row_product(&self, i: usize, p: &[Vector<D>]) -> Vector<D>;
 }
 
-/// The Delassus operator of a problem; borrowed, so that posing a problem copies nothing.
+/// The Delassus operator of a problem; borrowed, so that nothing is copied to pose one.
 #[derive(Clone, Copy)]
 #[non_exhaustive]
 pub enum Delassus<'a, const D: usize> {
@@ -59,9 +59,9 @@ impl<const D: usize> Delassus<'_, D> {
         }
     }
 
-    /// `Σ_j ‖H_ij,T‖ ‖p_j‖` over the tangential rows of contact `i`, and how many numbers its sum has: what rounding of the
-    /// tangential part of [`Self::row_product`] is measured by. Of an operator that is given by what it does, the product stands for the blocks that
-    /// can't be seen.
+    /// `Σ_j ‖H_ij,T‖ ‖p_j‖` over the tangential rows of contact `i`, and its number of terms: a
+    /// measure for the rounding of the tangential part of [`Self::row_product`]. For a matrix-free
+    /// operator the norm of the product is used, as its blocks aren't known.
     pub(crate) fn tangential_size(&self, i: usize, p: &[Vector<D>]) -> (f64, usize) {
         let of = |h: &Block<D>, p: &Vector<D>| {
             let rows: f64 = (1..D).map(|r| (0..D).map(|c| (h[(r, c)] * p[c]).abs()).sum::<f64>()).sum();

@@ -1,14 +1,15 @@
-//! Which contacts touch the same thing: a body, a velocity.
+//! Which contacts act on the same body or velocity.
 
 /// No entry.
 const NONE: usize = usize::MAX;
 
-/// The things that contacts touch, each a number (a key), and for each key the contacts that touch it.
+/// Which bodies or velocities contacts act on, each a number (a key), and for each key the contacts
+/// that act on it.
 ///
-/// Whoever assembles `H = J W Jᵀ` names for each contact what it pushes: the columns of J, where W is diagonal, or the bodies, where W
-/// couples all velocities of a body. Contacts that share a key are neighbours: they have a block in
-/// [`BlockSparse::set_pattern`](crate::BlockSparse::set_pattern), and belong to one island of
-/// [`Islands::find_shared`](crate::Islands::find_shared).
+/// The code that assembles `H = J W Jᵀ` names the keys of each contact: the columns of J where W is
+/// diagonal, or the bodies where W couples all velocities of a body. Contacts that share a key are
+/// neighbours: they have a block in [`BlockSparse::set_pattern`](crate::BlockSparse::set_pattern),
+/// and belong to one island of [`Islands::find_shared`](crate::Islands::find_shared).
 ///
 /// ```
 /// use teeter_contact::Incidence;
@@ -40,10 +41,12 @@ struct Entry {
 }
 
 impl Incidence {
-    /// Takes the keys that each of `contacts` contacts touches, in memory that is kept: linear in the number of keys named. A key that a
-    /// contact names twice counts once. Memory grows with the largest key, so keys are to be numbered without large gaps.
+    /// Takes the keys of each of `contacts` contacts, in memory that is kept; time is linear in the
+    /// number of keys. A key that a contact names twice counts once. Memory grows with the largest
+    /// key, so number keys without large gaps.
     pub fn load<I: IntoIterator<Item = usize>>(&mut self, contacts: usize, mut touched: impl FnMut(usize) -> I) {
-        // Only lists that were in use are emptied, so that few contacts among many bodies cost little.
+        // Only lists that were in use are cleared, so that few contacts among many bodies cost
+        // little.
         for entry in self.entries.drain(..) {
             self.lists[entry.key] = [NONE; 2];
         }
@@ -98,7 +101,7 @@ impl Incidence {
         })
     }
 
-    /// Each contact with the first one that touches the same key: these pairs join all that belong together.
+    /// Each contact with the first one that touches the same key: these pairs connect every island.
     pub(crate) fn joints(&self) -> impl Iterator<Item = (usize, usize)> {
         self.entries.iter().map(|entry| (self.entries[self.lists[entry.key][0]].contact, entry.contact))
     }

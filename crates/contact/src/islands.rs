@@ -2,10 +2,12 @@
 
 use crate::{Block, BlockSparse, ContactProblem, Delassus, Incidence};
 
-/// The islands of a problem: its contacts, taken apart so that no impulse of one island changes a velocity of another.
+/// The islands of a problem: groups of contacts such that no impulse in one changes a velocity in
+/// another.
 ///
-/// Islands stand in the order of their first contacts, and the contacts of an island ascend; both depend on nothing but the problem. Time
-/// and memory are near-linear in contacts and blocks (union-find), and memory is kept from one problem to the next.
+/// Islands are in the order of their first contacts, and the contacts of an island ascend; both
+/// depend on the problem only. Time and memory are near-linear in contacts and blocks (union-find),
+/// and memory is kept from one problem to the next.
 ///
 /// ```
 /// use nalgebra::Matrix2;
@@ -22,23 +24,23 @@ use crate::{Block, BlockSparse, ContactProblem, Delassus, Incidence};
 pub struct Islands {
     /// Of each contact, one before it in the same island, or itself: the union-find.
     parent: Vec<usize>,
-    /// How many islands are left of as many as there are contacts.
+    /// Number of islands; it starts at the number of contacts and falls with each join.
     count: usize,
     /// Of each contact, its island.
     island: Vec<usize>,
-    /// Of each contact, its place among those of its island.
+    /// Of each contact, its position within its island.
     place: Vec<usize>,
     /// The contacts, island by island, and where those of each island start.
     members: Vec<usize>,
     start: Vec<usize>,
-    /// Steps from a contact to its root, counted.
+    /// Steps from contacts to their roots, counted for a test.
     #[cfg(test)]
     steps: usize,
 }
 
 impl Islands {
-    /// Finds the islands of a problem: contacts with a non-zero block between them, (i, j) or (j, i), belong together. All contacts of an
-    /// operator that is given by what it does count as one island.
+    /// Finds the islands of a problem: contacts with a non-zero block between them, (i, j) or (j,
+    /// i), belong together. All contacts of a matrix-free operator count as one island.
     pub fn find<const D: usize>(&mut self, problem: &ContactProblem<'_, D>) {
         match problem.delassus() {
             Delassus::Dense(blocks) => self.find_dense(blocks, problem.contacts()),
@@ -65,7 +67,7 @@ impl Islands {
         self.finish();
     }
 
-    /// Finds the islands of contacts that share keys, before there is an operator.
+    /// Finds the islands of contacts that share keys, before an operator is assembled.
     pub fn find_shared(&mut self, incidence: &Incidence) {
         self.begin(incidence.contacts());
         incidence.joints().for_each(|(i, j)| self.join(i, j));
@@ -77,7 +79,7 @@ impl Islands {
         let zero = Block::<D>::zeros();
         for i in 0..n {
             for j in i + 1..n {
-                // Many contacts of one body are one island after the first row.
+                // One island already, as with many contacts of one body: nothing left to join.
                 if self.count == 1 {
                     break;
                 }
@@ -96,7 +98,7 @@ impl Islands {
         self.count = contacts;
     }
 
-    /// The first contact known to be of the same island.
+    /// The first contact of the island, as far as it is known.
     fn root(&mut self, mut i: usize) -> usize {
         while self.parent[i] != i {
             self.parent[i] = self.parent[self.parent[i]];
@@ -123,7 +125,8 @@ impl Islands {
         for list in [&mut self.island, &mut self.place, &mut self.members, &mut self.start] {
             list.clear();
         }
-        // First the sizes, in `start`. A root is the first contact of its island, so it has its number before the others.
+        // First `start` holds the sizes. A root is the first contact of its island, so it is
+        // numbered before the others.
         for i in 0..n {
             let root = self.root(i);
             let island = if root == i { self.start.len() } else { self.island[root] };
@@ -186,7 +189,7 @@ impl Islands {
         self.island[contact]
     }
 
-    /// Where a contact stands among the members of its island.
+    /// The position of a contact among the members of its island.
     ///
     /// # Panics
     /// If there is no such contact: a mistake of the calling code.
@@ -209,7 +212,7 @@ impl Islands {
 mod tests {
     use super::*;
 
-    /// Steps of the union-find for contacts that touch keys; as many keys a contact in every case.
+    /// Steps of the union-find for contacts with two keys each.
     fn steps(contacts: usize, touched: impl Fn(usize) -> [usize; 2]) -> f64 {
         let (mut incidence, mut islands) = (Incidence::default(), Islands::default());
         incidence.load(contacts, touched);
@@ -219,7 +222,7 @@ mod tests {
 
     #[test]
     fn work_grows_with_contacts_whatever_their_order() {
-        // A number that is odd, so that multiples of it reach every contact: far from any order.
+        // Odd, so that its multiples reach every contact, in an order without pattern.
         const JUMBLE: usize = 40_503;
         for contacts in [1 << 10, 1 << 16] {
             let of = |touched: &dyn Fn(usize) -> [usize; 2]| steps(contacts, touched) / contacts as f64;

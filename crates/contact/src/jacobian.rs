@@ -1,10 +1,12 @@
-//! Contact problems from what they are made of: `H = J M⁻¹ Jᵀ`, `q = J v`.
+//! Contact problems from Jacobian, masses and velocities: `H = J M⁻¹ Jᵀ`, `q = J v`.
 
 use crate::{Block, BlockSparse, Incidence, OwnedProblem, ProblemError, Vector};
 
-/// The Jacobian J of contacts: how their relative velocities follow from the velocities of bodies, `u_i = Σ_c J_ic v_c`.
+/// The Jacobian J of contacts, which gives their relative velocities from the velocities of bodies:
+/// `u_i = Σ_c J_ic v_c`.
 ///
-/// A contact's rows are held by columns: for each velocity c that moves it a vector in `R^D`, normal component first.
+/// A contact's rows are stored by columns: for each velocity c that moves it, a vector in `R^D`,
+/// normal component first.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Jacobian<const D: usize> {
     /// Where the entries of each contact end.
@@ -19,8 +21,8 @@ impl<const D: usize> Jacobian<D> {
         Self::default()
     }
 
-    /// Adds a contact, by its non-zero columns in any order: (number of the velocity, what 1 of it moves the contact by). A column that is
-    /// named twice counts with the sum.
+    /// Adds a contact by its non-zero columns, in any order: (number of the velocity, the contact's
+    /// relative velocity per unit of it). Entries of a column that is given twice are added.
     pub fn push(&mut self, columns: impl IntoIterator<Item = (usize, Vector<D>)>) {
         self.entries.extend(columns);
         self.end.push(self.entries.len());
@@ -32,7 +34,7 @@ impl<const D: usize> Jacobian<D> {
         self.end.len()
     }
 
-    /// The columns of a contact, as they were given.
+    /// The columns of a contact, in the order given.
     ///
     /// # Panics
     /// If there is no such contact: a mistake of the calling code.
@@ -45,7 +47,8 @@ impl<const D: usize> Jacobian<D> {
     /// The velocity `J v` of a contact.
     ///
     /// # Panics
-    /// If there is no such contact, or `v` is shorter than a column's number: a mistake of the calling code.
+    /// If there is no such contact, or `v` is shorter than a column's number: a mistake of the
+    /// calling code.
     #[must_use]
     pub fn velocity(&self, contact: usize, v: &[f64]) -> Vector<D> {
         self.row(contact).iter().fold(Vector::zeros(), |sum, (column, entry)| sum + entry * v[*column])
@@ -65,7 +68,7 @@ impl<const D: usize> Jacobian<D> {
         Ok(())
     }
 
-    /// `H = J M⁻¹ Jᵀ` of a diagonal mass: the sum over the velocities of what each couples.
+    /// `H = J M⁻¹ Jᵀ` for a diagonal mass matrix: the sum of what each velocity contributes.
     fn with_diagonal(&self, inverse: &[f64]) -> Result<BlockSparse<D>, ProblemError> {
         let mut incidence = Incidence::default();
         incidence.load(self.contacts(), |i| self.row(i).iter().map(|(column, _)| *column));
@@ -86,7 +89,8 @@ impl<const D: usize> Jacobian<D> {
         Ok(h)
     }
 
-    /// `H = J M⁻¹ Jᵀ` by a solve with M for each column of Jᵀ; blocks that come out zero are not stored.
+    /// `H = J M⁻¹ Jᵀ` by a solve with M for each column of Jᵀ; blocks that come out zero are not
+    /// stored.
     fn with_solver(
         &self,
         solve: &mut dyn FnMut(&mut [f64]),
@@ -118,14 +122,16 @@ impl<const D: usize> Jacobian<D> {
     }
 }
 
-/// The inverse of the mass matrix M, or of whatever turns an impulse into a change of velocity (a time scheme's M + hθC + h²θ²K).
+/// The inverse of the mass matrix M, or of what takes its place in a time scheme, such as M + hθC +
+/// h²θ²K.
 #[non_exhaustive]
 pub enum InverseMass<'a> {
-    /// Of a diagonal M, as rigid bodies in the plane have: the inverse of each of its numbers, 1/kg or 1/(kg m²). Time and memory grow
-    /// with the pairs of contacts that share a velocity.
+    /// The inverse of a diagonal M, as of rigid bodies in the plane: one number a velocity, 1/kg or
+    /// 1/(kg m²). Time and memory grow with the pairs of contacts that share a velocity.
     Diagonal(&'a [f64]),
-    /// Overwrites x by M⁻¹ x. Called D times a contact, with one number a velocity; then time grows with the square of the number of
-    /// contacts, memory with the number of non-zero blocks.
+    /// A function that overwrites x by M⁻¹ x; x has one number a velocity. It is called D times a
+    /// contact. Time grows with the square of the number of contacts, memory with the number of
+    /// non-zero blocks.
     Solver(&'a mut dyn FnMut(&mut [f64])),
 }
 
@@ -139,11 +145,13 @@ impl std::fmt::Debug for InverseMass<'_> {
 }
 
 impl<const D: usize> OwnedProblem<D> {
-    /// The problem of contacts with the Jacobian J between bodies of mass M that would move with the velocities `v` without contact:
-    /// `H = J M⁻¹ Jᵀ` block-sparse, `q = J v`. [`Self::shifted`] adds what an impact law asks for.
+    /// The problem of contacts with Jacobian J between bodies of mass matrix M, where `v` are the
+    /// velocities without contact: `H = J M⁻¹ Jᵀ`, block-sparse, and `q = J v`. [`Self::shifted`]
+    /// adds the shift of an impact law.
     ///
     /// # Errors
-    /// If J has a column that `v` hasn't, sizes differ or a number is not finite, and as [`ContactProblem::new`](crate::ContactProblem::new).
+    /// If J has a column beyond the length of `v`, sizes differ or a number is not finite; and as
+    /// [`ContactProblem::new`](crate::ContactProblem::new).
     ///
     /// ```
     /// use nalgebra::Vector2;

@@ -9,40 +9,44 @@ use crate::{ContactProblem, Vector};
 pub struct Residual {
     /// `‖p − Π(p − ρû)‖ / max(‖p‖, ρ‖q‖)` over all contacts together, ρ = 1/mean(diag H).
     pub global: f64,
-    /// The largest single contact's residual, each in its own scale: a light contact beside a heavy one can't hide.
+    /// The largest residual of a single contact, each in its own scale, so that a light contact
+    /// can't hide beside a heavy one.
     pub worst: f64,
     /// The contact with that residual (0 if there is none).
     pub worst_contact: usize,
 }
 
 impl Residual {
-    /// A residual; taken as given.
+    /// A residual with these values.
     #[must_use]
     pub fn new(global: f64, worst: f64, worst_contact: usize) -> Self {
         Self { global, worst, worst_contact }
     }
 }
 
-/// The floor of a scale, so that the residual of "nothing moves, nothing presses" is 0, not 0/0.
+/// Smallest scale, so that the residual of a problem in which nothing moves or presses is 0, not
+/// 0/0.
 const SCALE_FLOOR: f64 = 1e-300;
 
-/// Above this coefficient of friction, rounding of a sticking contact's velocity is not taken for slip. Below it, it
-/// doesn't show: 1e3 times some rounding errors are less than any tolerance that makes sense.
+/// Above this friction coefficient, rounding of a sticking contact's velocity is not taken for
+/// slip. Below it that isn't needed: 1e3 rounding errors are less than any sensible tolerance.
 const MUCH_FRICTION: f64 = 1e3;
 
-/// Rounding of a velocity is at most so much of the terms that it is the sum of, for each of them: what the sum and a solver's
-/// elimination leave.
+/// Bound on the rounding of a velocity, per term of its sum and relative to that term: that of the
+/// sum itself and of a solver's elimination.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Judges `p` against the exact Coulomb law, whatever a solver minimised inside (`docs/theory.md` §6):
+/// Judges `p` against the exact Coulomb law, whatever a solver minimised inside (`docs/theory.md`
+/// §6):
 ///
 /// ```text
 /// err(p) = ‖p − Π_{K_μ}(p − ρ û)‖ / max(‖p‖, ρ‖q‖, 1e-300),   ρ = 1/mean(diag H)
 /// ```
 ///
-/// With friction beyond 1e3 the shift μ‖u_T‖ of û would magnify the rounding of a sticking contact's velocity (at 1e7 to 1e-9 of the
-/// whole): there, what rounding makes of ‖u_T‖ is left out of the shift. In other words, of all velocities within rounding of
-/// H p + q the one that slips least is judged. A slip beyond rounding counts as ever.
+/// For μ > 1e3 the shift μ‖u_T‖ of û would magnify the rounding of a sticking contact's velocity
+/// (to a residual of 1e-9 at μ = 1e7). There the part of ‖u_T‖ that rounding can explain is left
+/// out of the shift: of all velocities within rounding of H p + q, the one that slips least is
+/// judged. A slip beyond rounding counts in full.
 ///
 /// # Panics
 /// If `p` doesn't hold one impulse a contact: a mistake of the calling code.
@@ -52,7 +56,8 @@ pub fn judge<const D: usize>(problem: &ContactProblem<'_, D>, p: &[Vector<D>]) -
     judge_with(problem, p, |i| problem.velocity(i, p))
 }
 
-/// As [`judge()`], for a caller that has the velocities `u = H p + q` at hand already: it spares the product with H.
+/// As [`judge()`], for a caller that already has the velocities `u = H p + q`: this saves the
+/// product with H.
 ///
 /// # Panics
 /// If `p` or `u` doesn't hold one vector a contact: a mistake of the calling code.
@@ -85,9 +90,9 @@ fn judge_with<const D: usize>(
         map_norm += squared;
 
         let rho_i = D as f64 / problem.diagonal(i).trace();
-        // Squares, so that a contact costs one division and no root.
+        // Squared norms: one division a contact, and no root.
         let scale = p[i].norm_squared().max(rho_i * rho_i * q.norm_squared()).max(SCALE_FLOOR);
-        // A single contact's scale is the problem's.
+        // With a single contact both scales are the same.
         let own = if rho_i == rho { squared } else { map(rho_i).norm_squared() } / scale;
         // NaN counts as worst: `!(own <= worst)` is true for it.
         if !(own <= residual.worst) {
@@ -100,7 +105,7 @@ fn judge_with<const D: usize>(
     residual
 }
 
-/// û with the shift of the part of ‖u_T‖ that rounding can't have made.
+/// û, shifted by the part of ‖u_T‖ that rounding can't explain.
 #[cold]
 fn shifted_beyond_rounding<const D: usize>(
     problem: &ContactProblem<'_, D>,
@@ -112,7 +117,7 @@ fn shifted_beyond_rounding<const D: usize>(
     let rounding = ROUNDING * (terms + 1) as f64 * (size + tangential_norm(&problem.q()[i]));
     let slip = tangential_norm(u) - rounding;
     let mut shifted = *u;
-    // Written so that a NaN stays one.
+    // Written so that NaN stays NaN.
     if !(slip <= 0.0) {
         shifted[0] += problem.mu()[i] * slip;
     }

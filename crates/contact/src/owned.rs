@@ -2,12 +2,15 @@
 
 use crate::{Block, BlockSparse, ContactProblem, Delassus, Islands, ProblemError, Vector};
 
-/// Up to so many contacts an island of a block-sparse problem is taken with all its blocks: they are less than its lists would be.
+/// Islands of block-sparse problems of up to this many contacts are stored dense, which takes less
+/// memory than index lists.
 const DENSE_UP_TO: usize = 16;
 
-/// A frictional contact problem with its data, dense or block-sparse; [`OwnedProblem::problem`] is what solvers take.
+/// A frictional contact problem with its data, dense or block-sparse; [`OwnedProblem::problem`] is
+/// what solvers take.
 ///
-/// What makes a [`ContactProblem`] fail is refused when this is made, so borrowing it can't. The default has no contacts.
+/// Its data are checked when it is made, as by [`ContactProblem::new`], so borrowing it can't fail.
+/// The default has no contacts.
 ///
 /// ```
 /// use nalgebra::{Matrix2, Vector2};
@@ -20,7 +23,7 @@ const DENSE_UP_TO: usize = 16;
 #[derive(Clone, Debug, Default)]
 pub struct OwnedProblem<const D: usize> {
     storage: Storage,
-    /// Each storage keeps its memory while the other one is used.
+    /// Both storages are kept, so that switching between them allocates nothing.
     dense: Vec<Block<D>>,
     sparse: BlockSparse<D>,
     q: Vec<Vector<D>>,
@@ -54,8 +57,8 @@ impl<const D: usize> OwnedProblem<D> {
         Ok(Self { storage: Storage::Sparse, dense: Vec::new(), sparse: h, q, mu })
     }
 
-    /// The same problem with `shift` added to q, contact by contact; m/s. Newton's impact law with restitution e adds e times the normal
-    /// velocity before the impact where that is an approach.
+    /// The same problem with `shift` added to q, contact by contact; m/s. Newton's impact law with
+    /// restitution e adds e times the normal velocity before the impact where that is an approach.
     ///
     /// # Errors
     /// If there isn't one vector a contact, or a sum is not finite.
@@ -74,7 +77,7 @@ impl<const D: usize> OwnedProblem<D> {
         Ok(self)
     }
 
-    /// The problem that borrows this data.
+    /// The problem, borrowing this data.
     #[must_use]
     pub fn problem(&self) -> ContactProblem<'_, D> {
         let h = match self.storage {
@@ -90,13 +93,15 @@ impl<const D: usize> OwnedProblem<D> {
         self.q.len()
     }
 
-    /// Takes one island out of a problem, in memory that is kept: its contacts in the order of [`Islands::members`], its H dense if the
-    /// problem's is or if it is small, else block-sparse. `islands` must be those of `problem`.
+    /// Copies one island of a problem, in memory that is kept: its contacts in the order of
+    /// [`Islands::members`], its H dense if the problem's is or if it is small, else block-sparse.
+    /// `islands` must be those of `problem`.
     ///
-    /// Of an operator that is given by what it does there is one island only, and nothing to take: `false`, and this is left as it was.
+    /// A matrix-free operator can't be taken apart: returns `false`, and leaves this as it was.
     ///
     /// # Panics
-    /// If there is no such island, or `islands` are those of another number of contacts: a mistake of the calling code.
+    /// If there is no such island, or `islands` are those of another number of contacts: a mistake
+    /// of the calling code.
     pub fn take_island(&mut self, problem: &ContactProblem<'_, D>, islands: &Islands, island: usize) -> bool {
         assert_eq!(islands.contacts(), problem.contacts(), "the islands of this problem");
         let members = islands.members(island);
@@ -135,7 +140,8 @@ impl<const D: usize> OwnedProblem<D> {
         true
     }
 
-    /// Makes room for problems of up to `contacts` contacts and `blocks` blocks, however they are stored.
+    /// Makes room for problems of up to `contacts` contacts and `blocks` blocks, however they are
+    /// stored.
     pub fn reserve(&mut self, contacts: usize, blocks: usize) {
         let small = contacts.min(DENSE_UP_TO).pow(2);
         let dense = contacts.saturating_mul(contacts).min(blocks).max(small);

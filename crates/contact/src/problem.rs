@@ -1,11 +1,13 @@
-//! The contact problem: a Delassus operator, a constant vector, friction coefficients; checked once.
+//! The contact problem: a Delassus operator, a constant vector, friction coefficients; checked
+//! once.
 
 use crate::{Block, Delassus, Vector};
 
 /// A frictional contact problem of `n` contacts in D dimensions; see the crate's page for the law.
 ///
-/// Sizes, finiteness, `μ ≥ 0` and a positive normal and no negative tangential compliance of each contact are checked by
-/// [`ContactProblem::new`], so a solver can rely on them. Symmetry and definiteness of `H` are not required.
+/// [`ContactProblem::new`] checks sizes, finiteness, `μ ≥ 0`, and that each contact has a positive
+/// normal and no negative tangential compliance, so a solver can rely on them. Symmetry and
+/// definiteness of `H` are not required.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactProblem<'a, const D: usize> {
     h: Delassus<'a, D>,
@@ -47,7 +49,7 @@ pub enum ProblemError {
         /// Its coefficient.
         value: f64,
     },
-    /// A contact that a tangential impulse moves against the impulse.
+    /// A negative tangential compliance: the contact would move against a tangential impulse.
     #[error("the tangential compliance H_TT of contact {contact} is {value} 1/kg, but must not be negative")]
     TangentPushesBack {
         /// The contact.
@@ -55,7 +57,7 @@ pub enum ProblemError {
         /// Its tangential compliance.
         value: f64,
     },
-    /// A column of a Jacobian beyond the velocities that are given.
+    /// A Jacobian's column beyond the given velocities.
     #[error("the Jacobian of contact {contact} has column {column}, but there are {velocities} velocities")]
     NoSuchVelocity {
         /// The contact.
@@ -65,7 +67,7 @@ pub enum ProblemError {
         /// Number of velocities.
         velocities: usize,
     },
-    /// A diagonal of the inverse mass that doesn't belong to the velocities.
+    /// A diagonal inverse mass of another length than the velocities.
     #[error("the inverse mass has {found} entries, but there are {velocities} velocities")]
     InverseMassSize {
         /// Entries found.
@@ -73,10 +75,11 @@ pub enum ProblemError {
         /// Number of velocities.
         velocities: usize,
     },
-    /// Blocks that make no matrix.
+    /// Blocks that don't form a matrix.
     #[error(transparent)]
     Blocks(#[from] crate::BlockSparseError),
-    /// A contact along whose normal nothing can move, or moves against the impulse.
+    /// A normal compliance that is not positive: nothing can move along the contact's normal, or it
+    /// would move against the impulse.
     #[error("the normal compliance H_NN of contact {contact} is {value} 1/kg, but must be greater than 0")]
     NotCompliant {
         /// The contact.
@@ -90,7 +93,8 @@ impl<'a, const D: usize> ContactProblem<'a, D> {
     /// Poses the problem of `q.len()` contacts: `h` in 1/kg, `q` in m/s, `mu` without unit.
     ///
     /// # Errors
-    /// If sizes differ, a number is not finite, a friction coefficient is negative, `H_NN ≤ 0` for a contact, or `H_TT < 0`.
+    /// If sizes differ, a number is not finite, a friction coefficient is negative, `H_NN ≤ 0` for
+    /// a contact, or `H_TT < 0`.
     pub fn new(h: Delassus<'a, D>, q: &'a [Vector<D>], mu: &'a [f64]) -> Result<Self, ProblemError> {
         let contacts = q.len();
         let size = |what, found, expected| {
@@ -135,7 +139,7 @@ impl<'a, const D: usize> ContactProblem<'a, D> {
         Ok(Self { h, q, mu })
     }
 
-    /// A problem of data that were checked by [`Self::new`] before.
+    /// A problem whose data [`Self::new`] has checked before.
     pub(crate) fn checked_before(h: Delassus<'a, D>, q: &'a [Vector<D>], mu: &'a [f64]) -> Self {
         Self { h, q, mu }
     }
@@ -168,15 +172,16 @@ impl<'a, const D: usize> ContactProblem<'a, D> {
         self.mu
     }
 
-    /// `ρ = 1/mean(diag H)`, the mass that turns a velocity into an impulse of the problem's size; kg. 1 without contacts.
+    /// `ρ = 1/mean(diag H)`, the mass that turns a velocity into an impulse of the problem's size;
+    /// kg. 1 without contacts.
     #[must_use]
     pub fn scale(&self) -> f64 {
         let trace: f64 = (0..self.contacts()).map(|i| self.diagonal(i).trace()).sum();
         if trace > 0.0 { (self.contacts() * D) as f64 / trace } else { 1.0 }
     }
 
-    /// `‖H − Hᵀ‖ / ‖H‖` in Frobenius' norm. Asymmetry is reported, never refused: two in five of the published problems
-    /// have some.
+    /// `‖H − Hᵀ‖ / ‖H‖` in Frobenius' norm. Asymmetry is reported, never refused: two fifths of the
+    /// published problems have some.
     #[must_use]
     pub fn asymmetry(&self) -> f64 {
         if let Delassus::Blocks(h) = self.h {
@@ -187,8 +192,8 @@ impl<'a, const D: usize> ContactProblem<'a, D> {
         h.asymmetry()
     }
 
-    /// The stored blocks of row `i`: (column, block), ascending; for a dense operator all of them, zeros included. `None` for an operator
-    /// that is given by what it does.
+    /// The stored blocks of row `i`: (column, block), ascending; for a dense operator all of them,
+    /// zeros included. `None` for a [matrix-free](crate::DelassusOperator) operator.
     ///
     /// # Panics
     /// If there is no contact `i`: a mistake of the calling code.
@@ -204,10 +209,12 @@ impl<'a, const D: usize> ContactProblem<'a, D> {
         Some(blocks.iter().enumerate().map(move |(k, block)| (column(k), block)))
     }
 
-    /// The block (i, j), zero where it isn't stored. `None` for an operator that is given by what it does.
+    /// The block (i, j), zero where it isn't stored. `None` for a
+    /// [matrix-free](crate::DelassusOperator) operator.
     ///
     /// # Panics
-    /// If there is no contact `i` or, for a dense operator, no contact `j`: a mistake of the calling code.
+    /// If there is no contact `i` or, for a dense operator, no contact `j`: a mistake of the
+    /// calling code.
     #[inline]
     #[must_use]
     pub fn block(&self, i: usize, j: usize) -> Option<Block<D>> {
@@ -218,7 +225,8 @@ impl<'a, const D: usize> ContactProblem<'a, D> {
         }
     }
 
-    /// How many blocks of H are not zero: what a sweep over the problem costs. `None` for an operator that is given by what it does.
+    /// Number of non-zero blocks of H: the cost of a sweep over the problem. `None` for a
+    /// [matrix-free](crate::DelassusOperator) operator.
     #[must_use]
     pub fn nonzero_blocks(&self) -> Option<usize> {
         let blocks = match self.h {
@@ -235,7 +243,8 @@ impl<'a, const D: usize> ContactProblem<'a, D> {
         self.q.iter().map(Vector::norm_squared).sum::<f64>().sqrt()
     }
 
-    /// `‖H‖` in Frobenius' norm, 1/kg. `None` for an operator that is given by what it does.
+    /// `‖H‖` in Frobenius' norm, 1/kg. `None` for a [matrix-free](crate::DelassusOperator)
+    /// operator.
     #[must_use]
     pub fn h_norm(&self) -> Option<f64> {
         let blocks = match self.h {
@@ -256,7 +265,8 @@ impl<'a, const D: usize> ContactProblem<'a, D> {
     /// The velocity `u_i = Σ_j H_ij p_j + q_i` at contact `i`; `p` holds all impulses.
     ///
     /// # Panics
-    /// If `p` doesn't hold one impulse a contact, or there is no contact `i`: a mistake of the calling code.
+    /// If `p` doesn't hold one impulse a contact, or there is no contact `i`: a mistake of the
+    /// calling code.
     #[inline]
     #[must_use]
     pub fn velocity(&self, i: usize, p: &[Vector<D>]) -> Vector<D> {
@@ -276,7 +286,8 @@ impl<'a, const D: usize> ContactProblem<'a, D> {
     }
 }
 
-/// The first number that isn't finite. 0 · x is 0 for all that are, so one sum tells whether to look for it.
+/// The first number that isn't finite. 0 · x is 0 for finite x, so one sum tells whether there is
+/// one to look for.
 #[inline]
 fn not_finite(values: &[f64]) -> Option<f64> {
     let nothing: f64 = values.iter().map(|x| 0.0 * x).sum();

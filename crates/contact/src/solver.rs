@@ -1,4 +1,4 @@
-//! What every contact solver offers, and how it says how it ended.
+//! The interface of contact solvers, and how a solve ends.
 
 use crate::{ContactProblem, Residual, Vector};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -25,14 +25,14 @@ pub enum Law {
 pub struct Stop<'a> {
     /// Largest global residual of [`judge()`](crate::judge()) that counts as solved; without unit.
     pub tolerance: f64,
-    /// Most iterations; what one is, each solver says.
+    /// Most iterations; each solver's page says what it counts as one.
     pub max_iterations: u32,
-    /// Set by someone else to end the solve early.
+    /// A flag by which another thread or a signal handler ends the solve early.
     pub cancel: Option<&'a AtomicBool>,
 }
 
 impl<'a> Stop<'a> {
-    /// At this global residual or after so many iterations, whichever comes first.
+    /// Stops at this global residual or after this many iterations, whichever comes first.
     #[must_use]
     pub fn new(tolerance: f64, max_iterations: u32) -> Self {
         Self { tolerance, max_iterations, cancel: None }
@@ -76,13 +76,14 @@ impl Default for Stop<'_> {
 pub enum Status {
     /// The residual is within the tolerance.
     Converged,
-    /// A method of the convex law has solved that to the tolerance; by Coulomb's, which the residual is of, the impulses are wrong.
+    /// A method for the convex law has solved that law to the tolerance, but the impulses violate
+    /// Coulomb's, to which the residual refers.
     ConvexLaw,
-    /// The iterations ran out.
+    /// The iteration limit was reached.
     MaxIterations,
     /// The residual no longer falls.
     Stalled,
-    /// The method can't go on with this problem: a singular system, no state that fits, too many contacts.
+    /// The method can't continue: a singular system, no contact state that fits, too many contacts.
     Breakdown,
     /// The caller cancelled.
     Cancelled,
@@ -109,17 +110,18 @@ impl std::fmt::Display for Status {
     }
 }
 
-/// The result of a solve beside the impulses.
+/// The result of a solve, apart from the impulses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Outcome {
     /// How it ended.
     pub status: Status,
-    /// Name of the method that gave the impulses (one of a chain names the one that did it).
+    /// Name of the method that gave the impulses; a chain of methods names the one that succeeded.
     pub used: &'static str,
-    /// Iterations taken; what one is, each solver says.
+    /// Iterations taken; each solver's page says what it counts as one.
     pub iterations: u32,
-    /// What [`judge()`](crate::judge()) says of the impulses returned; `converged` is about the global one.
+    /// The residual of the returned impulses by [`judge()`](crate::judge()); `converged` refers to
+    /// the global one.
     pub residual: Residual,
 }
 
@@ -130,14 +132,16 @@ impl Outcome {
         Self { status, used, iterations, residual }
     }
 
-    /// Whether the impulses obey Coulomb's law to the tolerance. Not so where a method of the convex law ends on a sliding contact, however
-    /// well it solved its own program: that is [`Self::solved_its_own_law`].
+    /// Whether the impulses obey Coulomb's law to the tolerance. A method for the convex law
+    /// doesn't achieve that where a contact slides, however well it solved its own program; for
+    /// that, see [`Self::solved_its_own_law`].
     #[must_use]
     pub fn converged(&self) -> bool {
         self.status == Status::Converged
     }
 
-    /// Whether the method arrived at what it looks for, be that Coulomb's law or the convex one ([`ContactSolver::law`]).
+    /// Whether the method solved the law that it is for, Coulomb's or the convex one
+    /// ([`ContactSolver::law`]).
     #[must_use]
     pub fn solved_its_own_law(&self) -> bool {
         matches!(self.status, Status::Converged | Status::ConvexLaw)
@@ -183,15 +187,15 @@ impl Outcome {
 /// # Ok::<(), teeter_contact::ProblemError>(())
 /// ```
 ///
-/// A solver may keep what it learns between calls (memory, analysis), but what it returns depends on the problem and
-/// on the start only, so that equal runs give equal bytes.
+/// A solver may keep memory and analyses between calls, but its result must depend on the problem
+/// and the start only, so that equal runs give equal bytes.
 pub trait ContactSolver<const D: usize>: Send + Sync {
     /// The name by which users choose it.
     fn name(&self) -> &'static str;
     /// The law of its results.
     fn law(&self) -> Law;
-    /// Prepares for problems of up to `contacts` contacts and `blocks` non-zero blocks, so that no later solve within
-    /// them allocates.
+    /// Prepares for problems of up to `contacts` contacts and `blocks` non-zero blocks, so that no
+    /// later solve within them allocates.
     fn reserve(&mut self, contacts: usize, blocks: usize);
     /// Starts from `p` (warm start) and leaves the impulses in it. `p` holds one impulse a contact.
     fn solve(&mut self, problem: &ContactProblem<'_, D>, stop: &Stop<'_>, p: &mut [Vector<D>]) -> Outcome;

@@ -2,18 +2,20 @@
 
 use crate::Vector;
 
-/// A body of the scene; its owner gives the numbers.
+/// A body of the scene, by a number that the model gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyId(pub u32);
 
-/// The law of a contact, apart from who it is: many pairs can have the same one. Its owner gives the numbers.
+/// The law of a contact, by a number that the model gives. It is apart from the contact's identity:
+/// many pairs can have the same law.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LawId(pub u32);
 
-/// Who a contact is, the same from step to step: the pair, and the feature that touches, such as a point of the first side. A detector
-/// numbers features so that they keep their numbers as bodies move.
+/// The identity of a contact, the same from step to step: the pair, and the feature that touches,
+/// such as a point of the first side. A detector numbers features such that they keep their numbers
+/// as bodies move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactId(u64);
@@ -68,7 +70,7 @@ pub fn plane_frame(n: &Vector<2>) -> Frame<2> {
 pub struct Candidate<const D: usize> {
     /// Its identity over time.
     pub id: ContactId,
-    /// By which law it answers.
+    /// The law of the contact.
     pub law: LawId,
     /// The point, and the foot on the surface.
     pub sides: [Anchor<D>; 2],

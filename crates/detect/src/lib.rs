@@ -1,11 +1,14 @@
-//! Contact detection: which points of bodies are near which surfaces, how far, in what frame, and who is who over time.
+//! Contact detection: which points of bodies are near which surfaces, at what gap, in what frame,
+//! and with an identity that lasts from step to step.
 //!
-//! A detector sees bodies through [`Geometry`] only, so it knows nothing of blocks, beams, or states. What it finds are
-//! [`Candidate`]s: all within a margin; whether one is a contact, the time scheme decides.
+//! A detector sees bodies through [`Geometry`] only, so it knows nothing of blocks, beams or
+//! states. It finds [`Candidate`]s: all points within a margin. Which of them are contacts, the
+//! time scheme decides.
 //!
-//! Conventions (`docs/theory.md` §3): a point of one body, side 0, against the surface of another, side 1. The normal `n`
-//! points out of the surface; in the plane `t = (n_y, −n_x)`, so `t` points to the right where `n` points up. The gap
-//! is `n · (x_point − x_foot)`, negative in penetration. `u = v_0 − v_1`, and an impulse `p` acts on side 0.
+//! Conventions (`docs/theory.md` §3): a point of one body, side 0, against the surface of another,
+//! side 1. The normal `n` points out of the surface; in the plane `t = (n_y, −n_x)`, so `t` points
+//! to the right where `n` points up. The gap is `n · (x_point − x_foot)`, negative in penetration.
+//! `u = v_0 − v_1`, and an impulse `p` acts on side 0.
 //!
 //! ```
 //! use nalgebra::Vector2;
@@ -61,14 +64,14 @@ pub enum Kinematics {
     Linear,
 }
 
-/// The point of a surface that answers to a point of the world.
+/// The point of a surface that belongs to a point of the world: its foot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint<const D: usize> {
     /// The foot point, in the world.
     pub place: Vector<D>,
     /// The unit normal there, out of the body.
     pub normal: Vector<D>,
-    /// The foot in coordinates fixed in the body, for its owner to find it again.
+    /// The foot in coordinates fixed in the body, by which the body's owner can find it again.
     pub material: Vector<D>,
 }
 
@@ -82,7 +85,7 @@ pub struct HalfSpace<const D: usize> {
 }
 
 impl<const D: usize> HalfSpace<D> {
-    /// Whether a point is outside, and not by rounding only.
+    /// Whether a point is outside by more than rounding.
     #[inline]
     #[must_use]
     pub fn excludes(&self, x: &Vector<D>) -> bool {
@@ -94,7 +97,7 @@ impl<const D: usize> HalfSpace<D> {
     }
 }
 
-/// Two bodies that a detector joins.
+/// A pair of bodies that a detector looks at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wiring {
     /// The number of their pair.
@@ -103,7 +106,7 @@ pub struct Wiring {
     pub law: LawId,
     /// The bodies of side 0 and of side 1.
     pub bodies: [BodyId; 2],
-    /// Whether the detector asks for the [surface](Geometry::surface) of the body of side 1.
+    /// Whether the detector needs the [surface](Geometry::surface) of the body of side 1.
     pub on_surface: bool,
     /// How many contacts the pair can have.
     pub contacts: usize,
@@ -113,12 +116,14 @@ pub struct Wiring {
 
 /// What a detector may ask of the bodies in one configuration.
 pub trait Geometry<const D: usize> {
-    /// Places points fixed in a body: `out[k]` is where `local[k]` is in the world. Both have the same length.
+    /// Places points fixed in a body: `out[k]` is where `local[k]` is in the world. Both have the
+    /// same length.
     fn place(&self, body: BodyId, local: &[Vector<D>], out: &mut [Vector<D>]);
-    /// The point of the body's surface that answers to the world's point `at`; `None` where the surface doesn't reach.
+    /// The point of the body's surface that belongs to the world's point `at`, its foot; `None`
+    /// where the surface doesn't extend that far.
     fn surface(&self, body: BodyId, kinematics: Kinematics, at: &Vector<D>) -> Option<SurfacePoint<D>>;
-    /// A half space that holds all points whose gap to the body's surface is at most `margin` (m): what a detector needs to look at. `None`,
-    /// the default, says nothing.
+    /// A half space that contains all points whose gap to the body's surface is at most `margin`
+    /// (m), so that a detector can skip all others. `None`, the default, if there is no such bound.
     fn reach(&self, body: BodyId, margin: f64) -> Option<HalfSpace<D>> {
         let _ = (body, margin);
         None
@@ -127,30 +132,34 @@ pub trait Geometry<const D: usize> {
 
 /// Finds candidates for contact.
 pub trait ContactDetector<const D: usize>: Send + Sync {
-    /// Puts all candidates with a gap of at most `margin` (m) into `out`, which is cleared first, in an order that
-    /// depends on nothing but the detector. Allocates only where there are more than ever before.
+    /// Puts all candidates with a gap of at most `margin` (m) into `out`, which is cleared first,
+    /// in an order that depends on the detector only. Allocates only if there are more than ever
+    /// before.
     ///
-    /// `memory` is what the detector kept of the configurations before, for its own use: a hint. With an empty one it finds the same
-    /// candidates, with the same identities, in the same order.
+    /// `memory` is what the detector has kept from earlier configurations for its own use. It is a
+    /// hint: with an empty one the detector finds the same candidates, with the same identities, in
+    /// the same order.
     fn detect(&self, at: &dyn Geometry<D>, margin: f64, memory: &mut DetectorMemory, out: &mut Candidates<D>);
-    /// The deepest penetration of any candidate, m; 0 where there is none. `scratch` is what [`ContactDetector::detect`] would fill; its content
-    /// is lost. The default detects with a margin of 0.
+    /// The deepest penetration of any candidate, m; 0 if there is none. `scratch` is memory for
+    /// candidates; its content is lost. The default detects with a margin of 0.
     fn deepest(&self, at: &dyn Geometry<D>, scratch: &mut Candidates<D>) -> f64 {
         self.detect(at, 0.0, &mut DetectorMemory::default(), scratch);
         scratch.iter().map(|candidate| -candidate.gap).fold(0.0, f64::max)
     }
-    /// Puts those of the contacts `ids` that there are now into `out`, which is cleared first, however large their gaps. `ids` rise, and
-    /// so do those of `out`. The default detects all.
+    /// Puts those of the contacts `ids` that have a foot now into `out`, which is cleared first,
+    /// however large their gaps. `ids` must ascend, and `out` ascends by identity. The default
+    /// detects everything and keeps these.
     fn locate(&self, at: &dyn Geometry<D>, ids: &[ContactId], out: &mut Candidates<D>) {
         self.detect(at, f64::INFINITY, &mut DetectorMemory::default(), out);
         out.retain(|candidate| ids.binary_search(&candidate.id).is_ok());
         out.sort_unstable_by_key(|candidate| candidate.id);
     }
-    /// Whom it joins, as far as that is known before anything moves, so that a model can refuse what can't work when it is built. The default,
-    /// nothing, leaves that to the candidates that come.
+    /// The pairs that it looks at, as far as they are known before anything moves, so that a model
+    /// can refuse what can't work when it is built. By default none are listed, and candidates are
+    /// checked as they come.
     fn wiring(&self) -> Vec<Wiring> {
         Vec::new()
     }
-    /// Most candidates that there can ever be.
+    /// The largest number of candidates that there can ever be.
     fn capacity(&self) -> usize;
 }

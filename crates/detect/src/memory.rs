@@ -2,8 +2,9 @@
 
 use std::any::Any;
 
-/// What a detector keeps from one configuration to the next, such as the order of bodies along an axis: its own to fill, and a hint. What
-/// decides anything belongs into the state of a run.
+/// What a detector keeps from one configuration to the next, such as the order of bodies along an
+/// axis. The detector decides what is in it. It is a hint only: whatever decides a result belongs
+/// in the state of a run.
 ///
 /// ```
 /// let mut memory = teeter_detect::DetectorMemory::default();
@@ -14,7 +15,7 @@ use std::any::Any;
 pub struct DetectorMemory(Option<Box<dyn Any + Send + Sync>>);
 
 impl DetectorMemory {
-    /// What is kept, if it is of this type; else what `fresh` makes, in its place.
+    /// What is kept, if it is of this type; otherwise what `fresh` returns, which replaces it.
     pub fn of<T: Any + Send + Sync>(&mut self, fresh: impl FnOnce() -> T) -> &mut T {
         if !self.0.as_ref().is_some_and(|kept| kept.is::<T>()) {
             self.0 = None;

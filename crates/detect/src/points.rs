@@ -13,13 +13,14 @@ pub struct PointPair<const D: usize> {
     pub pair: u32,
     /// The law of its contacts.
     pub law: LawId,
-    /// The points, in the body's own coordinates; their order is the second part.
+    /// The points, in the body's own coordinates; a point's position in this list is the second
+    /// part of the identity.
     pub points: Vec<Vector<D>>,
     /// The body that has the points.
     pub body: BodyId,
     /// The body that has the surface.
     pub surface: BodyId,
-    /// How the surface's deformation enters.
+    /// How the surface's deformation enters gap and frame.
     pub kinematics: Kinematics,
 }
 
@@ -47,7 +48,8 @@ impl<const D: usize> PointDetector<D> {
 }
 
 impl PointPair<2> {
-    /// The foot of a point of the pair that is at `place`, and its gap; `None` where the surface doesn't reach.
+    /// The foot and the gap of a point of the pair that is at `place`; `None` where the surface
+    /// doesn't extend that far.
     #[inline]
     fn foot(&self, at: &dyn Geometry<2>, place: &Vector<2>) -> Option<(SurfacePoint<2>, f64)> {
         let foot = at.surface(self.surface, self.kinematics, place)?;
@@ -72,7 +74,7 @@ impl PointPair<2> {
     /// Hands the points that may have a gap of at most `margin` to `each`, with their places.
     #[inline]
     fn near(&self, at: &dyn Geometry<2>, margin: f64, mut each: impl FnMut(usize, &Vector<2>)) {
-        // Most corners are far above the surface, and it is dear to look there.
+        // Most corners are far above the surface, and finding their foot is expensive.
         let reach = if margin < f64::INFINITY { at.reach(self.surface, margin) } else { None };
         let mut places = [Vector::<2>::zeros(); BATCH];
         for (batch, local) in self.points.chunks(BATCH).enumerate() {
@@ -116,7 +118,7 @@ impl ContactDetector<2> for PointDetector<2> {
     fn locate(&self, at: &dyn Geometry<2>, ids: &[ContactId], out: &mut Candidates<2>) {
         out.clear();
         for id in ids {
-            // As a rule pairs stand in the order of their numbers.
+            // Usually the pairs are in the order of their numbers.
             let here = self.pairs.get(id.pair() as usize).filter(|pair| pair.pair == id.pair());
             let k = id.point() as usize;
             let Some(pair) = here.or_else(|| self.pairs.iter().find(|pair| pair.pair == id.pair())) else { continue };

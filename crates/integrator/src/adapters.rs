@@ -1,5 +1,5 @@
-//! Beams, blocks and ground as subsystems: the room above the layers that know nothing of each other. Who brings bodies of his own
-//! leaves its features out, and with them the layers.
+//! Beams, blocks and ground as subsystems: the adapters above layers that know nothing of each
+//! other. With bodies of your own, leave the features out, and with them the layers.
 
 #[cfg(feature = "beam")]
 pub(crate) mod beam;

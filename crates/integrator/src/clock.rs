@@ -1,6 +1,7 @@
-//! Time over steps: counted, not summed, while the step size stays.
+//! Time as a count of steps, not a sum, as long as the step size stays the same.
 
-/// The steps of one size so far: t = base + (step − from) · dt. A fixed step from 0 so gives t_k = k·dt exactly.
+/// The steps of one size so far: t = base + (step − from) · dt. So a fixed step from 0 gives t_k =
+/// k·dt exactly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Clock {
@@ -15,7 +16,7 @@ pub(crate) struct Clock {
 }
 
 impl Clock {
-    /// That of steps of size `dt` (s) from t = 0.
+    /// The clock of steps of size `dt` (s) from t = 0.
     pub(crate) fn new(dt: f64) -> Self {
         Self { base: 0.0, from: 0, dt }
     }
@@ -25,8 +26,9 @@ impl Clock {
         self.base + (step - self.from) as f64 * self.dt
     }
 
-    /// The clock of a step that begins at `t` (s), as step number `step`, and is `dt` long: the same as long as these are what it
-    /// says, else one that begins there. So it is right whoever changed them.
+    /// The clock for a step that begins at `t` (s) as step number `step` and takes `dt`: this one
+    /// as long as it agrees with these, otherwise one that begins there. So time is right even if a
+    /// caller has changed them.
     #[must_use]
     pub(crate) fn going_on(self, step: u64, t: f64, dt: f64) -> Self {
         if step >= self.from && dt == self.dt && self.at(step) == t { self } else { Self { base: t, from: step, dt } }

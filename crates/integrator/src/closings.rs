@@ -1,39 +1,42 @@
-//! Contacts that close: impacts, told from contacts that were lost for a moment and found again (`docs/impacts.md`).
+//! Contacts that close: impacts, told from contacts that were lost for a moment and found again
+//! (`docs/impacts.md`).
 
 use crate::{Contact, Mismatch, Model, State, StepReport};
 use teeter_detect::{Candidate, ContactId};
 
-/// When a contact counts as truly open: since it last carried, its gap has been above `gap` **and** longer than `time` has
-/// passed. Both are physical and don't depend on the step; what a step can make by itself comes on top, see
-/// [`ClosingMonitor`].
+/// When a contact counts as truly open: since it last carried, its gap has exceeded `gap` **and**
+/// more than `time` has passed. Both are physical and don't depend on the step; [`ClosingMonitor`]
+/// adds what the step itself can cause.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Opening {
     /// Least gap, m.
     pub gap: f64,
     /// Least time without an impulse, s.
     pub time: f64,
-    /// Acceleration with which what is let go falls, m/s².
+    /// Acceleration of free fall, m/s².
     pub fall: f64,
 }
 
-/// What the closing of a contact is.
+/// The kind of a contact's closing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Closing {
     /// It was truly open and approached.
     Impact,
-    /// It was lost for a moment, by the scheme or in chatter below what counts as open, and is found again.
+    /// It was lost for a moment, by the scheme or by chatter too small to count as open, and has
+    /// closed again.
     Reclosure,
 }
 
-/// A scheme can lose a contact for a step or two: what carries again sooner than after so many steps wasn't open.
+/// A scheme can lose a contact for a step or two: one that carries again within this many steps
+/// wasn't open.
 const STEPS: f64 = 3.0;
 
-/// A contact that carries, or has not been truly open since it last did.
+/// A contact that carries, or hasn't been truly open since it last did.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Held {
     id: ContactId,
-    /// End of the last step in which it carried, s; the start of the run for one that hasn't yet.
+    /// End of the last step in which it carried, s; the start of the run if it hasn't yet.
     last: f64,
     carried: bool,
     /// Whether its gap has been large enough since.
@@ -42,15 +45,17 @@ struct Held {
 
 /// Tells impacts from re-closures, step by step.
 ///
-/// A contact *carries* in a step with a normal impulse. It is truly open once, since it last carried, its gap has been
-/// above [`Opening::gap`] and above the free fall of two steps, 2·`fall`·h², and longer than [`Opening::time`] and than three
-/// steps has passed. A truly open contact that approaches and carries is an [impact](Closing::Impact); one that did not carry for a step
-/// at least, and wasn't truly open or doesn't approach, is a [re-closure](Closing::Reclosure). A contact that starts with no more than that gap and carries for the
-/// first time is neither.
+/// A contact *carries* in a step in which it has a normal impulse. It is truly open once, since it
+/// last carried, its gap has exceeded both [`Opening::gap`] and the free fall of two steps,
+/// 2·`fall`·h², and more than both [`Opening::time`] and three steps have passed. If a truly open
+/// contact approaches and then carries, that is an [impact](Closing::Impact). If a contact carries
+/// again after at least one step without, but wasn't truly open or doesn't approach, that is a
+/// [re-closure](Closing::Reclosure). A contact that starts with a gap of at most [`Opening::gap`]
+/// and carries for the first time is neither.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ClosingMonitor<const D: usize> {
-    /// In order of identity; all others are truly open.
+    /// In order of identity; contacts not listed are truly open.
     held: Vec<Held>,
     impacts: u64,
     reclosures: u64,
@@ -81,7 +86,8 @@ impl<const D: usize> ClosingMonitor<D> {
         Ok(monitor)
     }
 
-    /// Enters a step, `state` being that at its end; tells `each` contact that closes in it.
+    /// Enters a step with the state at its end, and calls `each` for every contact that closes in
+    /// it.
     ///
     /// # Errors
     /// If the state is not one of the model.
@@ -107,7 +113,7 @@ impl<const D: usize> ClosingMonitor<D> {
                 }
                 Err(at) => {
                     self.held.insert(at, now);
-                    // One that is laid on, with nothing to stop, is no blow.
+                    // A contact that closes without approaching is no impact.
                     let approaches = contact.u_before[0] < 0.0;
                     *if approaches { &mut self.impacts } else { &mut self.reclosures } += 1;
                     each(contact, if approaches { Closing::Impact } else { Closing::Reclosure });
@@ -127,11 +133,11 @@ impl<const D: usize> ClosingMonitor<D> {
             let opening = opening_of(openings, held.id);
             if !held.opened {
                 let found = candidates.binary_search_by_key(&held.id, |candidate| candidate.id);
-                // Where the surface doesn't reach, nothing is in the way.
+                // Beyond the end of the surface there is nothing to touch.
                 let gap = found.map_or(f64::INFINITY, |at| candidates[at].gap);
                 held.opened = gap > opening.gap.max(2.0 * opening.fall * h * h);
             }
-            // Half a step of room for the rounding of times.
+            // Half a step of margin for the rounding of times.
             !(held.opened && t - held.last > opening.time.max((STEPS - 0.5) * h))
         });
         Ok(())
@@ -143,7 +149,7 @@ impl<const D: usize> ClosingMonitor<D> {
         self.impacts
     }
 
-    /// How often a contact was lost for a moment and found again so far.
+    /// How often a contact was lost for a moment and closed again so far.
     #[must_use]
     pub fn reclosures(&self) -> u64 {
         self.reclosures

@@ -1,8 +1,8 @@
-//! Harnesses for what others can bring (feature `conformance`): one that every plane [`Subsystem`] runs through, with its
-//! [`Compliance`], and one for [schemes](check_scheme).
+//! Harnesses for implementations from outside (feature `conformance`): one for every plane
+//! [`Subsystem`] with its [`Compliance`], and one for [schemes](check_scheme).
 //!
-//! It holds a subsystem to what the traits' pages say, by finite differences and by products written out here. What doesn't hold
-//! comes back as a list, with numbers:
+//! A subsystem is checked against the documentation of its traits, by finite differences and by
+//! products written out here. Properties that fail are returned as a list, with numbers:
 //!
 //! ```
 //! use nalgebra::Vector2;
@@ -31,54 +31,59 @@ use crate::{Compliance, Coupling, PartRows, Rows, Subsystem, Traits, Vector, Wei
 use teeter_contact::Block;
 use teeter_detect::{Frame, Kinematics, plane_frame};
 
-/// Where a subsystem is looked at.
+/// Where a subsystem is checked.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Case {
-    /// Coordinates; of elastic bodies such that they are deformed.
+    /// Coordinates; deformed ones for elastic bodies.
     pub q: Vec<f64>,
     /// A time, s, for loads and prescribed velocities.
     pub t: f64,
     /// The combination that a step would ask for.
     pub weights: Weights,
-    /// Points of bodies in their own coordinates that can be touched in any frame: corners.
+    /// Points of bodies in their own coordinates that can touch in any frame, such as corners.
     pub points: Vec<(u32, Vector<2>)>,
-    /// Places of the world whose foot on a body's surface can be touched, in the frame of the surface.
+    /// Places in the world whose foot on a body's surface can touch, in the frame of the surface.
     pub places: Vec<(u32, Vector<2>)>,
 }
 
-/// What has to hold of a subsystem.
+/// What must hold for a subsystem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Property {
-    /// Vectors and rows are as long as [`Subsystem::size`] says, numbers of velocities ascend and are within it.
+    /// Vectors and rows are as long as [`Dynamics::size`](crate::Dynamics::size) says, numbers of
+    /// velocities ascend and are within it.
     Sizes,
     /// `q ⊕ 0` is q, and `⊕ −τ v` undoes `⊕ τ v`.
     Retract,
-    /// Only driven velocities are written, with finite numbers.
+    /// Only driven velocities are written, and with finite numbers.
     Drive,
-    /// A load only where there is said to be one, added to what is there.
+    /// Loads only if its [traits](Traits) say so, and added to the previous content.
     Load,
-    /// The foot of a place is where [`Subsystem::place`] puts its material point.
+    /// The foot of a place is where [`Bodies::place`](crate::Bodies::place) puts its material
+    /// point.
     Foot,
     /// Rows are the derivative of places.
     Rows,
-    /// Where [`Bodies::bias`](crate::Bodies::bias) is known, it is the second derivative of places at constant velocities.
+    /// Where [`Bodies::bias`](crate::Bodies::bias) is known, it is the second derivative of places
+    /// at constant velocities.
     Bias,
-    /// M, C and K are symmetric, and a combination is their sum, added to what is there.
+    /// M, C and K are symmetric, and a combination is their weighted sum, added to the previous
+    /// content.
     Product,
-    /// C is zero where there is said to be no damping, and vᵀC v is the damping's power.
+    /// C is zero unless its [traits](Traits) say that it is damped, and vᵀC v is the damping's
+    /// power.
     Damping,
     /// T is ½ vᵀM v.
     KineticEnergy,
     /// The internal force is minus the derivative of V, and minus C v.
     Force,
-    /// The matrix can be factorised, and W undoes its product; driven and held velocities get nothing.
+    /// The matrix can be factorised, and W is its inverse; driven and held velocities get 0.
     Inverse,
-    /// A factor renewed is that factor made anew; one updated knows nothing of what it was updated to before.
+    /// A refactored factor equals a new one; an update doesn't depend on earlier updates.
     Refactor,
-    /// What rows feel of each other is J W Jᵀ, the same whatever was coupled before.
+    /// The coupling of rows is J W Jᵀ, whatever was coupled before.
     Couple,
-    /// What impulses do is W Jᵀ p.
+    /// The response to impulses is W Jᵀ p.
     Respond,
 }
 
@@ -90,24 +95,26 @@ pub struct Failure {
     pub property: Property,
     /// Where.
     pub what: String,
-    /// How far off, in the unit of what is compared.
+    /// The error, in the unit of the compared quantity.
     pub error: f64,
-    /// How far off rounding or a finite difference may put it.
+    /// The error that rounding or a finite difference may cause.
     pub allowed: f64,
 }
 
-/// Rounding, relative to the largest number that is added up.
+/// Rounding, relative to the largest term.
 const ROUNDING: f64 = 1e-12;
-/// The same through a factor, times the matrix's condition: 1e7 and less for a step's.
+/// The same after a solve, which multiplies it by the matrix's condition: up to 1e7 for that of a
+/// step.
 const SOLVED: f64 = 1e-8;
-/// Differences over four points, relative to the largest slope: of fourth order, as a short element's slope changes fast.
+/// Error of finite differences over four points, relative to the largest slope; of fourth order, as
+/// slopes change fast in a short element.
 const DIFFERENCE: f64 = 1e-7;
-/// Times a unit velocity, the distance of those points, s.
+/// Spacing of those points: the time for which a unit velocity acts, s.
 const STEP: f64 = 1e-5;
 /// As [`STEP`], of second derivatives.
 const BEND: f64 = 1e-3;
 
-/// Holds a subsystem to all [properties](Property), and returns those that fail.
+/// Checks all [properties](Property) of a subsystem, and returns those that fail.
 #[must_use]
 pub fn check(system: &dyn Subsystem<2>, case: &Case) -> Vec<Failure> {
     let mut check = Check { system, case, failures: Vec::new() };
@@ -120,7 +127,7 @@ pub fn check(system: &dyn Subsystem<2>, case: &Case) -> Vec<Failure> {
     check.failures
 }
 
-/// Numbers without a pattern that symmetry could hide, of size 1.
+/// Numbers of size 1 without a symmetry that could hide errors.
 fn wave(length: usize, phase: f64) -> Vec<f64> {
     (0..length).map(|k| (1.3 * k as f64 + phase).sin()).collect()
 }
@@ -159,7 +166,7 @@ struct Touch {
 }
 
 impl Check<'_> {
-    /// Notes a failure where `error` is more than `allowed`, or NaN.
+    /// Records a failure if `error` is more than `allowed`, or NaN.
     fn hold(&mut self, property: Property, what: impl Into<String>, error: f64, allowed: f64) {
         if !(error <= allowed) {
             self.failures.push(Failure { property, what: what.into(), error, allowed });
@@ -240,7 +247,7 @@ impl Check<'_> {
         y
     }
 
-    /// What M, C, K and W have to do with each other.
+    /// Checks M, C, K and W against each other.
     fn matrices(&mut self) {
         let (w, n) = (self.case.weights, self.system.size().v);
         let mut factor = match self.system.factor(w, &self.case.q) {
@@ -426,7 +433,7 @@ impl Check<'_> {
     }
 
     fn bias(&mut self, touch: &Touch) {
-        // Slow, so that the second difference sees the second derivative alone.
+        // Slow, so that the second difference is the second derivative to the tolerance.
         let v: Vec<f64> = wave(self.system.size().v, 0.2).iter().map(|v| 0.02 * v).collect();
         let Some(bias) = self.system.bias(touch.body, &self.case.q, &v, &touch.point, &touch.frame) else { return };
         let place = |tau: f64| {
@@ -448,7 +455,8 @@ impl Check<'_> {
         let size = wanted.iter().map(Block::norm).fold(0.0, f64::max);
         let p = impulses(touches.len());
         let mut first: Option<(Vec<Block<2>>, Vec<f64>)> = None;
-        // All, then one by one from the last, then all again: memory must not show.
+        // All, then one by one from the last, then all again: what a factor keeps must not change
+        // results.
         let singles = (0..touches.len()).rev().map(|k| &touches[k..=k]);
         for some in std::iter::once(touches).chain(singles).chain(std::iter::once(touches)) {
             let arena = Arena::new(some);
@@ -478,7 +486,7 @@ fn impulses(contacts: usize) -> Vec<Vector<2>> {
     (0..contacts).map(|k| Vector::<2>::new(1.0 + 0.3 * k as f64, 0.4 - 0.2 * k as f64)).collect()
 }
 
-/// J W Jᵀ and W Jᵀ p, by a solution for each direction of each contact.
+/// J W Jᵀ and W Jᵀ p, by one solve for each direction of each contact.
 fn by_products(factor: &mut dyn Compliance<2>, touches: &[Touch], n: usize) -> (Vec<Block<2>>, Vec<f64>) {
     let (count, p) = (touches.len(), impulses(touches.len()));
     let mut blocks = vec![Block::<2>::zeros(); count * count];
@@ -502,7 +510,7 @@ fn by_products(factor: &mut dyn Compliance<2>, touches: &[Touch], n: usize) -> (
     (blocks, response)
 }
 
-/// Rows one after the other, as the contacts of a step have them.
+/// Rows stored one after the other, as for the contacts of a step.
 struct Arena {
     spans: Vec<[Span; 2]>,
     columns: Vec<usize>,

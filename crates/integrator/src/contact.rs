@@ -1,4 +1,4 @@
-//! A contact of a step: what it did, and in which frame.
+//! A contact of a step: its frame, velocities and impulse.
 
 use crate::Vector;
 use teeter_detect::{Anchor, Candidate, ContactId, Frame, LawId};
@@ -30,15 +30,16 @@ impl ContactState {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Contact<const D: usize> {
-    /// Who it is.
+    /// Its identity.
     pub id: ContactId,
-    /// By which law it answers.
+    /// Its law.
     pub law: LawId,
-    /// Where it acts on either side, as its rows were taken.
+    /// Its points on either side, where its Jacobian rows were taken.
     pub sides: [Anchor<D>; 2],
-    /// Its frame as its rows were taken, a direction a row.
+    /// Its frame where its rows were taken, one direction a row.
     pub frame: Frame<D>,
-    /// Gap where the activation was decided, m; of a contact with duration, the gap of its spring at the start of the step.
+    /// Gap at the position where its activation was decided, m; for a contact with duration, the
+    /// gap of its spring at the start of the step.
     pub gap: f64,
     /// Impulse on side 0, N·s.
     pub p: Vector<D>,
@@ -46,22 +47,24 @@ pub struct Contact<const D: usize> {
     pub u_before: Vector<D>,
     /// Relative velocity after the step, m/s.
     pub u_after: Vector<D>,
-    /// The velocity that the law holds for, U¹ + s, m/s: after the step where the law has no shift.
+    /// The velocity for which the law holds, U¹ + s, m/s: that after the step if the law has no
+    /// shift.
     pub u_law: Vector<D>,
     /// Whether it was active in the step before, too.
     pub persisting: bool,
-    /// Of a contact with duration: the gap of its spring at the end of the step, m.
+    /// For a contact with duration: the gap of its spring at the end of the step, m.
     pub gap_after: Option<f64>,
-    /// Speed below which it counts as zero, m/s: a small part of the fastest of the step's contact problem.
+    /// Speed that counts as zero, m/s: a small fraction of the largest in the step's contact
+    /// problem.
     pub still: f64,
 }
 
-/// A tangential speed below this part of the problem's largest |q| is sticking: above the default solver tolerance's
-/// error, below any slide worth the name.
+/// A tangential speed below this fraction of the problem's largest |q| counts as sticking: above
+/// the error at the default solver tolerance, below any real slide.
 pub(crate) const STILL: f64 = 1e-8;
 
 impl<const D: usize> Contact<D> {
-    /// A candidate that takes part, before anything is known of its impulse.
+    /// A candidate that takes part, before its impulse is known.
     #[inline]
     pub(crate) fn of(candidate: &Candidate<D>, persisting: bool) -> Self {
         Self {

@@ -1,15 +1,18 @@
-//! Small vibrations of all that rests together: modes of blocks and beams about an equilibrium.
+//! Small vibrations about an equilibrium: coupled modes of blocks and beams that rest on each
+//! other.
 //!
-//! Contacts that press are taken to stay closed and to stick, so each is a joint between a point of one body and a point of the other:
-//! C ẋ = 0 with C the contacts' Jacobian. With C's null space N,
+//! Contacts under pressure are assumed to stay closed and to stick, so each is a joint between a
+//! point of one body and a point of the other: C ẋ = 0 with C the contacts' Jacobian. With C's null
+//! space N,
 //!
 //! ```text
 //! Nᵀ K' N y = ω² NᵀM N y        K' = K − ∂(J(q)ᵀλ)/∂q        x = N y
 //! ```
 //!
-//! The second part of K' is what the contact forces λ do where points turn: a block that stands on its feet is an inverted pendulum, and
-//! its weight softens. ω² < 0 is an equilibrium that doesn't last. A vibration that would need more friction than there is, or a contact to
-//! pull, is of a larger size than these modes know.
+//! The second term of K' is the effect of the contact forces λ when contact points rotate: a block
+//! that stands on its feet is an inverted pendulum, and its weight lowers the stiffness. ω² < 0
+//! means an unstable equilibrium. Vibrations so large that a contact would slip or open are beyond
+//! these modes.
 
 use crate::contact::tangential;
 use crate::mismatch::length;
@@ -17,34 +20,35 @@ use crate::{Mismatch, Model, Rows, Vector, Weights};
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 use teeter_detect::{Anchor, ContactId, Frame};
 
-/// The most velocities: dense matrices of this many take a second.
+/// Most velocities of the model: dense matrices of this size take a second.
 pub const MOST_VELOCITIES: usize = 1000;
 
-/// A constraint of which no more than this part is new (in units of mass) is one that the others imply: two feet that both hold a block
-/// in x.
+/// A constraint whose independent part is no larger than this (in units of mass) follows from the
+/// others, as when two feet both hold a block in x.
 const DEPENDENT: f64 = 1e-9;
 
-/// Step of the central difference of J, relative to the size of what moves: half of the digits.
+/// Step of the central difference of J, relative to the size of the moving body: half of the digits
+/// are kept.
 const DIFFERENCE: f64 = 1e-5;
 
 /// Modes about an equilibrium, made by [`coupled_modes`].
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct CoupledModes {
-    /// ω², 1/s², ascending; negative where the equilibrium doesn't last.
+    /// ω², 1/s², ascending; negative for an unstable equilibrium.
     pub eigenvalues: Vec<f64>,
     /// The velocities of each mode, as long as the model's; xᵀM x = 1.
     pub shapes: Vec<Vec<f64>>,
 }
 
 impl CoupledModes {
-    /// Circular frequencies, rad/s, of the modes that vibrate, ascending.
+    /// Circular frequencies of the modes with ω² > 0, rad/s, ascending.
     pub fn circular_frequencies(&self) -> impl Iterator<Item = f64> {
         self.eigenvalues.iter().filter(|squared| **squared > 0.0).map(|squared| squared.sqrt())
     }
 }
 
-/// Why there are no modes.
+/// Why modes can't be found.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CoupledModesError {
@@ -53,7 +57,7 @@ pub enum CoupledModesError {
         "{velocities} velocities: more than {MOST_VELOCITIES} are not taken into dense matrices; put beams into modes"
     )]
     TooMany {
-        /// How many there are.
+        /// How many the model has.
         velocities: usize,
     },
     /// A mass matrix that is not positive definite.
@@ -64,12 +68,13 @@ pub enum CoupledModesError {
     Mismatch(#[from] Mismatch),
 }
 
-/// The first `count` modes of a model about an equilibrium `q`, the contacts with these forces (on side 0, N, normal first: those of
-/// [`Equilibrium`](crate::Equilibrium)) closed and sticking; closed only, without friction.
+/// The first `count` modes of a model about an equilibrium `q`. Contacts with the given forces (on
+/// side 0, N, normal first: those of [`Equilibrium`](crate::Equilibrium)) stay closed and stick;
+/// those without friction only stay closed.
 ///
 /// # Errors
-/// If the model is too large, or its mass matrix not positive definite; or if there are too few or too many coordinates, or forces of a pair
-/// that the model doesn't have.
+/// If the model is too large, or its mass matrix not positive definite; or if there are too few or
+/// too many coordinates, or forces of a pair that the model doesn't have.
 pub fn coupled_modes(
     model: &Model<2>,
     q: &[f64],
@@ -89,7 +94,7 @@ pub fn coupled_modes(
         let directions = if touching.friction > 0.0 { 2 } else { 1 };
         constraints.extend(touching.rows(model, q).into_iter().take(directions));
     }
-    // Differences make it symmetric to half of the digits only.
+    // Finite differences make it symmetric to half of the digits only.
     stiffness = (&stiffness + stiffness.transpose()) * 0.5;
     for part in model.parts() {
         for k in part.traits.driven.iter().chain(&part.traits.held) {
@@ -131,7 +136,8 @@ fn matrix(model: &Model<2>, q: &[f64], weights: Weights) -> DMatrix<f64> {
     for part in model.parts() {
         let (start, len) = (part.v.start, part.v.len());
         let q = &q[part.q.clone()];
-        // What follows the coordinates has a tangent that `apply` doesn't know: by differences of its force.
+        // If matrices follow the coordinates, `apply` doesn't give the tangent: take differences of
+        // the force.
         let differences = weights.stiffness != 0.0 && part.traits.follows_coordinates;
         let step = DIFFERENCE * q.iter().fold(1e-6_f64, |size, q| size.max(q.abs()));
         let (mut x, mut y) = (vec![0.0; len], vec![0.0; len]);
@@ -158,7 +164,7 @@ fn matrix(model: &Model<2>, q: &[f64], weights: Weights) -> DMatrix<f64> {
     matrix
 }
 
-/// A contact that presses.
+/// A contact under pressure.
 struct Touching {
     sides: [Anchor<2>; 2],
     frame: Frame<2>,
@@ -182,7 +188,7 @@ fn touching(model: &Model<2>, q: &[f64], forces: &[(ContactId, Vector<2>)]) -> R
 }
 
 impl Touching {
-    /// J, a row a direction, in all velocities.
+    /// J, one row a direction, over all velocities.
     fn rows(&self, model: &Model<2>, q: &[f64]) -> [DVector<f64>; 2] {
         let mut rows = [DVector::zeros(model.size().v), DVector::zeros(model.size().v)];
         for (side, anchor) in self.sides.iter().enumerate() {
@@ -208,7 +214,8 @@ impl Touching {
         let moved: Vec<usize> = (0..n).filter(|k| rows.iter().any(|row| row[*k] != 0.0)).collect();
         let (mut v, mut at) = (vec![0.0; n], q.to_vec());
         for &column in &moved {
-            // By how much the velocity moves the point per unit: a metre's worth of it is too much, a part of it is the step.
+            // How far the velocity moves the point per unit; the step is a small fraction of the
+            // body's size divided by this.
             let size = rows.iter().map(|row| row[column].abs()).fold(0.0, f64::max);
             let step = DIFFERENCE * self.reach() / size;
             v[column] = 1.0;
@@ -225,13 +232,14 @@ impl Touching {
         }
     }
 
-    /// How far the contact's point is from the middle of what owns it, m.
+    /// Distance of the contact's point from the middle of its body, m.
     fn reach(&self) -> f64 {
         self.sides[0].point.norm().max(f64::MIN_POSITIVE)
     }
 }
 
-/// A basis of all x with C x = 0: each pivot column expressed by the others, pivots the largest entries in units of mass.
+/// A basis of all x with C x = 0: each pivot column is expressed by the others; pivots are the
+/// largest entries in units of mass.
 fn null_space(mut rows: Vec<DVector<f64>>, mass: &DMatrix<f64>) -> DMatrix<f64> {
     let n = mass.ncols();
     let scale: Vec<f64> = (0..n).map(|k| mass[(k, k)].sqrt().recip()).collect();

@@ -1,4 +1,5 @@
-//! Static equilibrium of a model with contacts: where it can start and stay (`docs/theory.md` §8).
+//! Static equilibrium of a model with contacts, from which it can start at rest (`docs/theory.md`
+//! §8).
 //!
 //! Coordinates q and contact forces λ are sought with
 //!
@@ -6,19 +7,20 @@
 //! F(q) + P(t) + Jᵀλ = 0,     0 ≤ g(q) ⊥ λ_n ≥ 0,     ‖λ_t‖ ≤ μ λ_n, against the slip s(q) where it slips
 //! ```
 //!
-//! Signorini's condition holds for gaps and not for velocities, Coulomb's law for the slip from the place where the foot of the
-//! contact was when it was put there: the friction is that of the way as a whole, whatever came on it. Velocities that
-//! are [driven](crate::Traits) are held at zero by whatever force that takes.
+//! Here Signorini's condition is imposed on gaps, not on velocities, and Coulomb's law on the slip
+//! from where the foot of the contact was at first: friction depends on the total slip, not on its
+//! path. [Driven](crate::Traits) velocities are held at zero by whatever force that takes.
 //!
-//! It is found by proximal points. A round is an implicit step of length τ from rest,
+//! It is found by a proximal-point iteration. A round is an implicit step of length τ from rest,
 //!
 //! ```text
 //! v = (M + τ²K)⁻¹ (τ (F(q) + P) + Jᵀp),     q ← q ⊕ τ v,     p = τ λ
 //! ```
 //!
-//! whose law holds for u + (g, s)/τ, so for the gap and the slip at its end. Mass stands in for the stiffness that a rigid block
-//! doesn't have: τ grows until it hardly matters, then a round is one of Newton's. Forces are those at q in each round; K only
-//! leads there, and may be approximate.
+//! whose law holds for u + (g, s)/τ, and so for the gap and the slip at its end. Mass stands in for
+//! the stiffness that a rigid block lacks: τ grows until mass hardly matters, and a round is then a
+//! step of Newton's method. Each round takes the forces at q; K only guides the iteration, and may
+//! be approximate.
 
 use crate::contact::tangential;
 use crate::mismatch::length;
@@ -28,20 +30,21 @@ use crate::{
 };
 use teeter_detect::{Anchor, Candidate, ContactId, Frame, Geometry};
 
-/// What limits the search.
+/// Limits of the search.
 #[derive(Clone, Copy, Debug)]
 pub struct SettlingLimits<'a> {
-    /// By pair: how far (m) a point that touched at first may get from where it touched. Farther it is on its way, and what
-    /// it belongs to has no equilibrium there. Pairs beyond the slice have no limit.
+    /// By pair: how far (m) a point that touched at first may move from where it touched. If it
+    /// moves farther, its body has no equilibrium there. Pairs beyond the slice have no limit.
     pub reach: &'a [f64],
-    /// Candidates with a gap up to this are looked at, m: what may touch in the end.
+    /// Candidates with a gap up to this take part, m: those that may touch in the end.
     pub margin: f64,
-    /// τ of the first round, s: [`FIRST_TAU`](Self::FIRST_TAU), or that in which a search ended from which this one goes on.
+    /// τ of the first round, s: [`FIRST_TAU`](Self::FIRST_TAU), or the last τ of an earlier search
+    /// that this one continues.
     pub tau: f64,
 }
 
 impl SettlingLimits<'_> {
-    /// Shorter than the period of what is worth simulating, s.
+    /// Shorter than any period worth simulating, s.
     pub const FIRST_TAU: f64 = 1e-5;
 }
 
@@ -55,8 +58,8 @@ pub struct Equilibrium<const D: usize> {
     pub forces: Vec<(ContactId, Vector<D>)>,
     /// Rounds taken.
     pub rounds: u32,
-    /// Size of the last round's step, and of the impulses that it lacked to balance, relative to the scene and to the contacts'
-    /// impulses, whichever is larger; both in the norm of energy.
+    /// Size of the last round's step relative to the scene, or of its imbalance of impulses
+    /// relative to the contacts' impulses, whichever is larger; both in the energy norm.
     pub change: f64,
     /// τ of the last round, s.
     pub tau: f64,
@@ -75,14 +78,14 @@ pub enum EquilibriumError {
     Leaves {
         /// The contact that went farthest beyond its reach.
         contact: ContactId,
-        /// How far, at most, a contact of its pair is along the normal that it had, m.
+        /// Largest distance of a contact of its pair along its original normal, m.
         lifted: f64,
-        /// How far across it, m.
+        /// Largest distance across that normal, m.
         slid: f64,
-        /// The round that found it there.
+        /// The round that found it.
         round: u32,
     },
-    /// The rounds ran out.
+    /// The limit of rounds was reached.
     #[error(
         "no equilibrium after {rounds} rounds: the last one still moved by {change:e} (relative, in the norm of energy)"
     )]
@@ -108,49 +111,53 @@ pub enum EquilibriumError {
     Mismatch(#[from] Mismatch),
 }
 
-/// τ grows by this factor as long as mass takes part in a round by more than [`INERT`].
+/// τ grows by this factor as long as the share of mass in a round is more than [`INERT`].
 const GROWTH: f64 = 4.0;
 
-/// Part of a step's energy norm that may come from M before τ grows: the error falls by about as much each round. With a
-/// larger τ gaps lose digits, ε g τ².
+/// Share of a step's energy norm that may come from M without τ growing: the error falls by about
+/// this factor each round. With a larger τ, gaps lose digits, ε g τ².
 const INERT: f64 = 0.1;
 
-/// While contacts alone would do less than this part of the scene's energy in a round, τ grows in any case.
+/// While the contacts' impulses alone would change less than this fraction of the scene's energy in
+/// a round, τ grows in any case.
 const SHORT: f64 = 1e-2;
 
 /// Most rounds; twenty is usual.
 const ROUNDS: u32 = 200;
 
-/// Steps up to this size, relative to the scene in the norm of energy, may end the search where they no longer shrink. What
-/// rounding of the coordinates themselves leaves is ε n² for a beam of n elements: 1e-13 for 20, 1e-9 for 3000, all of it in
-/// deformations of single elements.
+/// Steps up to this size, relative to the scene in the energy norm, end the search once they no
+/// longer shrink. Rounding of the coordinates alone leaves ε n² for a beam of n elements: 1e-13 for
+/// 20, 1e-9 for 3000, all of it in deformations of single elements.
 const SETTLED: f64 = 1e-8;
 
-/// Such a step ends it in any case.
+/// A step of this size ends the search in any case.
 const ROUNDING: f64 = 1e-16;
 
-/// Steps that aren't smaller than the least by this factor no longer shrink.
+/// Steps shrink if they are smaller than the smallest so far by this factor.
 const SHRINKS: f64 = 0.9;
 
-/// Rounds without a smaller step that end the search, once steps are small.
+/// Rounds without shrinking that end the search, once steps are small.
 const STALLED: u32 = 2;
 
-/// A step that is larger than the last of the same τ by this factor, and no fall, says that the tangent is too soft for τ.
+/// If a step is larger than the last one with the same τ by this factor, and nothing is falling,
+/// the tangent is too soft for τ.
 const GROWS: f64 = 1.1;
 
-/// Rounds without a smaller step that say that steps go in a circle, as a tangent too soft makes them.
+/// After this many rounds without shrinking the steps are taken to go in a circle, because the
+/// tangent is too soft.
 const CIRCLES: u32 = 8;
 
-/// Finds the static equilibrium near coordinates `q`, where the contacts were put, under the loads of time `t` (s). `work` may be
-/// fresh, and must be made fresh before it serves a scheme; its solver should solve tightly, as the forces are no more
-/// exact than its tolerance.
+/// Finds the static equilibrium near coordinates `q`, from which slip is counted, under the loads
+/// at time `t` (s). Don't use `work` for a scheme afterwards: make a new one. Its solver should
+/// have a tight tolerance, as that limits the accuracy of the forces.
 ///
-/// With friction there can be many equilibria, or none: this is the one reached in one go from `q`. Where contacts are
-/// hyperstatic (both feet of a rigid block stick), λ_t is one of many, q is not.
+/// With friction there can be many equilibria, or none: this is the one reached from `q` in a
+/// single load step. If contacts are hyperstatic (both feet of a rigid block stick), λ_t is one of
+/// many, but q is unique.
 ///
 /// # Errors
-/// If something slides, tips, or falls, or the rounds don't come to rest; or if there are too few or too many coordinates, or the workspace
-/// is of another model.
+/// If something slides, tips or falls, or the iteration doesn't converge; or if there are too few
+/// or too many coordinates, or the workspace is of another model.
 pub fn settle<const D: usize>(
     model: &Model<D>,
     t: f64,
@@ -173,14 +180,15 @@ pub fn settle<const D: usize>(
     };
     let (mut tau, mut longest) = (limits.tau, f64::INFINITY);
     let (mut least, mut stalled) = (f64::INFINITY, 0);
-    // Whether the round is the first with its τ: others tell by comparison whether the rounds converge.
+    // Whether the round is the first with its τ: only later ones can be compared to see
+    // convergence.
     let mut first = true;
     let mut size_before = f64::INFINITY;
     for round in 1..=ROUNDS {
         search.round(model, t, tau, limits, work, round)?;
         let Step { size, change, inertia, short } = search.step(model);
         if !first && size > (GROWS * size_before).max(SETTLED) && inertia < 0.5 {
-            // The tangent promised too much: back, and shorter.
+            // The tangent was too soft: go back, and take a shorter τ.
             search.go_back();
             tau *= 0.25;
             (longest, first) = (tau, true);
@@ -220,21 +228,22 @@ pub fn settle<const D: usize>(
     Err(EquilibriumError::Unsettled { rounds: ROUNDS, change: least })
 }
 
-/// Where a contact was put.
+/// Where a contact was at first.
 #[derive(Clone, Copy, Debug)]
 struct Place<const D: usize> {
     id: ContactId,
     /// The point of side 0, and the point of side 1 that was its foot.
     sides: [Anchor<D>; 2],
     frame: Frame<D>,
-    /// What was between the two, m: a gap, and what a model's surface and its points differ by.
+    /// The vector between the two, m: a gap, and the difference between the model's surface and its
+    /// points.
     apart: Vector<D>,
     /// Whether it touched there.
     touched: bool,
 }
 
 impl<const D: usize> Place<D> {
-    /// How far side 0 has got from it, seen from side 1, m.
+    /// How far side 0 has moved from it relative to side 1, m.
     fn way(&self, model: &Model<D>, q: &[f64]) -> Vector<D> {
         between(model, q, &self.sides) - self.apart
     }
@@ -251,7 +260,7 @@ struct Step {
     change: f64,
     /// The part of M in it.
     inertia: f64,
-    /// Whether τ is shorter than it takes for gaps to outdo rounding.
+    /// Whether τ is so short that gaps are lost in rounding.
     short: bool,
 }
 
@@ -260,7 +269,7 @@ struct Search<const D: usize> {
     /// The coordinates before the last step.
     other: Vec<f64>,
     v: Vec<f64>,
-    /// All impulses of a round, (M + τ²K) v but for what holds driven velocities.
+    /// All impulses of a round: (M + τ²K) v, except those that hold driven velocities.
     impulse: Vec<f64>,
     places: Vec<Place<D>>,
     warm: WarmStart,
@@ -288,7 +297,7 @@ impl<const D: usize> Search<D> {
             let f = &mut self.impulse[part.v.clone()];
             let Some(factor) = work.factors.of(index, w).filter(|_| !f.is_empty()) else { continue };
             if part.traits.follows_coordinates {
-                // The tangent of a part that is not linear is that of q.
+                // A non-linear part has its tangent at q.
                 factor.refactor(w, q)?;
                 factor.take_tangent(q)?;
             }
@@ -337,16 +346,18 @@ impl<const D: usize> Search<D> {
 
     /// Measures the round's step.
     fn step(&self, model: &Model<D>) -> Step {
-        // ½ vᵀ(M + τ²K) v, which is ½ Δqᵀ(M/τ² + K) Δq: by how much the round lowers the potential.
+        // ½ vᵀ(M + τ²K) v = ½ Δqᵀ(M/τ² + K) Δq: how much the round lowers the potential.
         let step = 0.5 * self.v.iter().zip(&self.impulse).map(|(v, p)| v * p).sum::<f64>().abs();
         let now = model.energy_at(&self.q, &self.v);
         let scene = model.energy_scale() + now.elastic;
-        // The same of what the contacts' impulses alone would do. It is small where τ is so short that gaps are rounding.
+        // The same for the contacts' impulses alone. It is small if τ is so short that gaps are
+        // lost in rounding.
         let pressed = self.stage.contacts().iter().zip(&self.stage.problem.posed);
         let pressed =
             0.5 * pressed.map(|(contact, posed)| (contact.u_after - posed.u_free).dot(&contact.p)).sum::<f64>();
         let short = pressed > 0.0 && pressed < SHORT * scene;
-        // Nothing to compare with yet, where the first load bends a straight beam: all of it counts.
+        // When the first load bends a straight beam, there is nothing to compare with yet: count
+        // all of it.
         let over = |scale: f64| if scale > 0.0 { (step / scale).sqrt() } else { 1.0 };
         if step == 0.0 {
             return Step { size: 0.0, change: 0.0, inertia: 0.0, short };
@@ -355,20 +366,20 @@ impl<const D: usize> Search<D> {
         Step { size: over(scene), change, inertia: now.kinetic / step, short }
     }
 
-    /// Refuses contacts that have left their place.
+    /// Returns an error if a contact has left its place.
     fn check_reach(&self, model: &Model<D>, limits: &SettlingLimits<'_>, round: u32) -> Result<(), EquilibriumError> {
         let mut farthest: Option<(f64, f64, ContactId)> = None;
         for place in self.places.iter().filter(|place| place.touched) {
             let Some(reach) = limits.reach.get(place.id.pair() as usize) else { continue };
             let moved = place.frame * place.way(model, &self.q);
             let excess = moved.norm() / reach;
-            // Written so that NaN has left, too.
+            // Written so that NaN counts as having left.
             if !(excess <= 1.0) && !farthest.is_some_and(|(most, ..)| most >= excess) {
                 farthest = Some((excess, tangential(&moved).norm(), place.id));
             }
         }
         let Some((_, slid, contact)) = farthest else { return Ok(()) };
-        // What tips lifts another foot, too.
+        // A tipping body also lifts another foot.
         let same = self.places.iter().filter(|place| place.touched && place.id.pair() == contact.pair());
         let lifted = same.map(|place| (place.frame * place.way(model, &self.q))[0].abs()).fold(0.0, f64::max);
         Err(EquilibriumError::Leaves { contact, lifted, slid, round })
@@ -391,7 +402,7 @@ fn place_of<const D: usize>(
     place
 }
 
-/// The way from the point of side 1 to that of side 0, m.
+/// The vector from the point of side 1 to that of side 0, m.
 fn between<const D: usize>(model: &Model<D>, q: &[f64], sides: &[Anchor<D>; 2]) -> Vector<D> {
     let placed = model.placed_at(q);
     let at = |anchor: &Anchor<D>| {

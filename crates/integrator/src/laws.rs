@@ -1,14 +1,16 @@
-//! Contact laws beyond the standard one, each brought to standard problems, 0 ≤ u_n ⊥ p_n ≥ 0 with Coulomb's friction, so
-//! that any contact solver serves (`docs/laws.md`).
+//! Contact laws beyond the standard one, each reduced to standard problems, 0 ≤ u_n ⊥ p_n ≥ 0 with
+//! Coulomb's friction, so that any contact solver can be used (`docs/laws.md`).
 //!
-//! - **Poisson**: a problem of compression; then one of expansion, in which a contact parts under the normal impulse e p_C,
-//!   or stays under a larger one. Friction of an imposed normal impulse N is a standard contact too: its normal part touches
-//!   nothing and is made to be N, its tangential part is the real one.
-//! - **Restitution that makes no energy** (`scaling.rs`): by the energetic law and by Poisson's, what is given back is scaled, for contacts
-//!   that feel each other alike, by the largest f ∈ [0, 1] with which their work Ū·p is not positive: bisection.
-//! - **Springs**: Newton's method on the force law p = φ(U¹). Its tangent, U¹ + R p = U_k + R p_k with R = −1/φ', is a standard
-//!   contact whose H_nn is larger by R; scaling its normal direction keeps the problem's size what it was. Its friction never
-//!   gives energy.
+//! - **Poisson**: a problem of compression, then one of expansion, in which a contact separates
+//!   under the normal impulse e p_C, or stays closed under a larger one. Friction under an imposed
+//!   normal impulse N is a standard contact too: its normal part is decoupled and made to equal N,
+//!   its tangential part is the real one.
+//! - **Restitution that creates no energy** (`scaling.rs`): in the energetic law and in Poisson's,
+//!   restitution is scaled by the largest f ∈ [0, 1] for which the work Ū·p of the coupled contacts
+//!   is not positive, with one f for all of them, found by bisection.
+//! - **Springs**: Newton's method on the force law p = φ(U¹). Its tangent, U¹ + R p = U_k + R p_k
+//!   with R = −1/φ', is a standard contact whose H_nn is larger by R; scaling its normal direction
+//!   keeps the size of the problem. Its friction never adds energy.
 
 mod expansion;
 mod rows;
@@ -21,8 +23,9 @@ use rows::Row;
 use scaling::WORKLESS;
 use teeter_contact::{Block, ContactSolver, Outcome, ProblemError, Status, Stop};
 
-/// Whether a contact's approach is an impact that e sends back, not the approach that its free acceleration makes within a
-/// step: what ends a bounce, so that a resting contact doesn't hop.
+/// Whether a contact's approach is an impact, rather than the approach that its free acceleration
+/// causes within a step: e times the approach must exceed that. This ends bouncing, so that a
+/// resting contact doesn't hop.
 pub(crate) fn is_impact<const D: usize>(e: f64, u_before: &Vector<D>, u_free: &Vector<D>) -> bool {
     let by_acceleration = (u_before[0] - u_free[0]).max(0.0);
     -e * u_before[0] > by_acceleration
@@ -39,30 +42,30 @@ pub(crate) struct Laws<const D: usize> {
     base: Vec<Vector<D>>,
     /// Impulses of compression.
     compression: Vec<Vector<D>>,
-    /// Normal impulses that expansion gives back at the least.
+    /// Least normal impulses of expansion.
     given: Vec<f64>,
-    /// Which contacts part in the expansion tried.
+    /// Which contacts separate in the expansion being tried.
     parts: Vec<bool>,
-    /// For each contact the first contact that it feels, through others or directly.
+    /// For each contact, the first contact of those coupled with it, directly or through others.
     island: Vec<usize>,
-    /// Of each island, by its first contact: a range that holds the largest f.
+    /// Of each island, by its first contact: an interval that contains the largest f.
     range: Vec<[f64; 2]>,
-    /// The f of each contact's island: the part of Poisson's expansion that takes place.
+    /// The f of each contact's island: the fraction of Poisson's expansion that takes place.
     part: Vec<f64>,
-    /// The work of each contact were nothing given back; 0 where that was not looked at.
+    /// The work of each contact without restitution; 0 where it wasn't computed.
     unreturned: Vec<f64>,
-    /// Which springs' friction can't give energy.
+    /// Springs whose friction has been changed so that it can't add energy.
     guarded: Vec<bool>,
-    /// Work of each island with f = 0, if positive.
+    /// Work of each island for f = 0, if positive.
     floor: Vec<f64>,
-    /// The shifts that the scheme asked for.
+    /// The shifts as the scheme set them.
     shift: Vec<Vector<D>>,
 }
 
 impl<const D: usize> Laws<D> {
     /// Makes room for so many contacts.
     pub(crate) fn reserve(&mut self, contacts: usize) {
-        // An expansion can hold two of each.
+        // An expansion can have two rows for each.
         self.rows.reserve(2 * contacts);
         self.blocks.reserve(4 * contacts * contacts);
         self.q.reserve(2 * contacts);
@@ -81,8 +84,8 @@ impl<const D: usize> Laws<D> {
         self.shift.reserve(contacts);
     }
 
-    /// Solves the problem of the set's contacts by their rules, θ that of the step's mean velocity. The impulses stay in the
-    /// set.
+    /// Solves the problem of the set's contacts by their rules; θ is the weight of the step's mean
+    /// velocity. The impulses are left in the set.
     pub(crate) fn solve(
         &mut self,
         set: &mut Problem<D>,
@@ -90,7 +93,7 @@ impl<const D: usize> Laws<D> {
         solver: &mut dyn ContactSolver<D>,
         stop: &Stop<'_>,
     ) -> Result<Outcome, ProblemError> {
-        // Springs alone have no use for them.
+        // Springs alone don't need them.
         if set.rules().any(|rule| matches!(rule, Rule::Poisson { .. } | Rule::Energetic)) {
             self.find_islands(set);
         }
@@ -105,7 +108,8 @@ impl<const D: usize> Laws<D> {
         Ok(join(outcome, self.scale_restitution(set, theta, solver, stop)?))
     }
 
-    /// A pass in which friction of springs doesn't give energy: where U_θ,t·p_t > 0, Coulomb's law is made to hold for U_θ,t.
+    /// A pass in which friction of springs adds no energy: where U_θ,t·p_t > 0, Coulomb's law is
+    /// imposed on U_θ,t instead.
     fn guarded_pass(
         &mut self,
         set: &mut Problem<D>,
@@ -117,7 +121,7 @@ impl<const D: usize> Laws<D> {
         let n = set.len();
         self.guarded.clear();
         self.guarded.resize(n, false);
-        // Each round guards one contact more at least.
+        // Each round changes at least one more contact, so this ends.
         loop {
             let mut found = false;
             for i in 0..n {
@@ -139,7 +143,7 @@ impl<const D: usize> Laws<D> {
     }
 }
 
-/// The later of two outcomes with the iterations of both; an unsolved one is not forgotten.
+/// The later of two outcomes, or the earlier if that is unsolved, with the iterations of both.
 pub(crate) fn join(first: Outcome, second: Outcome) -> Outcome {
     let iterations = first.iterations + second.iterations;
     let kept = if first.converged() { second } else { first };

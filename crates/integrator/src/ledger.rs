@@ -6,8 +6,10 @@
 //! Δ(T+V) = −h v_θᵀC v_θ + h v_θᵀP̄ + Σ U_θ·p − (θ−½)(ΔvᵀM Δv + ΔqᵀK Δq)
 //! ```
 //!
-//! viscous loss, work of loads, contact and friction, numerical dissipation. What is left over is rounding, or a mistake. Where V is not quadratic, what
-//! a step conserves is T + V plus the parts' [modified energy](crate::Linearised::modified_energy), and minus the change of that is numerical too.
+//! viscous loss, work of loads, contact and friction, numerical dissipation. What is left over is
+//! rounding, or a mistake. If V is not quadratic, a step conserves T + V plus the parts' [modified
+//! energy](crate::Linearised::modified_energy), whose change, with a minus, counts as numerical
+//! too.
 
 use crate::Energy;
 
@@ -18,7 +20,8 @@ pub struct StepEnergy {
     /// Work of external loads.
     #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub external: f64,
-    /// Normal contact: Σ U_θ,n p_n; of a contact with duration the loss alone, what its spring takes counted as stored.
+    /// Normal contact: Σ U_θ,n p_n; for a contact with duration the loss alone, as its spring's
+    /// energy counts as stored.
     #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub contact: f64,
     /// Friction: Σ U_θ,t·p_t.
@@ -27,7 +30,7 @@ pub struct StepEnergy {
     /// Viscous loss.
     #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub viscous: f64,
-    /// Numerical dissipation, and minus the change of the modified energy.
+    /// Numerical dissipation, less the change of the modified energy.
     #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub numerical: f64,
     /// Work of a projection of the positions.
@@ -54,7 +57,7 @@ impl StepEnergy {
     }
 }
 
-/// Steps in which contact and friction together gave energy to the bodies.
+/// Steps in which contact and friction together added energy to the bodies.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PositiveWork {
@@ -68,7 +71,7 @@ pub struct PositiveWork {
     pub sum: f64,
 }
 
-/// The account of a run.
+/// The energy account of a run.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ledger {
@@ -84,17 +87,19 @@ pub struct Ledger {
     /// The scene's energy scale so far, J: max |T| + |V_elastic| + |ΔV_gravity|, at least Σ m g R.
     #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub scale: f64,
-    /// Elastic energy held by contacts with duration, J; part of the current one's.
+    /// Elastic energy of contacts with duration, J; included in `current`.
     #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub stored: f64,
-    /// Gains by contact.
+    /// Energy gained by contact.
     pub positive_contact_work: PositiveWork,
-    /// Largest (U¹ + s)_t·p_t of a contact in a step, J, s the shift of its law; the law makes it ≤ 0 up to rounding.
+    /// Largest (U¹ + s)_t·p_t of a contact in a step, J, with s the shift of its law; by the law it
+    /// is ≤ 0 up to rounding.
     #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub largest_tangential_work: f64,
 }
 
-/// A step's contact work above this part of the energy scale counts as a gain; below, it is rounding.
+/// Contact work of a step above this fraction of the energy scale counts as a gain; below, it is
+/// rounding.
 const ROUNDING: f64 = 1e-15;
 
 impl Ledger {
@@ -118,10 +123,11 @@ impl Ledger {
         self.scale = self.scale.max(kinetic.abs() + elastic.abs() + (gravity - self.initial.gravity).abs());
     }
 
-    /// Enters a step that ends with energies `now`; completes `step` with its residual.
+    /// Enters a step or a phase of one that ends with energies `now`, and fills in the residual of
+    /// `step`.
     pub fn enter(&mut self, now: Energy, step: &mut StepEnergy) {
         let before = self.current;
-        // Part by part: the sum of large and small energies would lose digits of the difference.
+        // Term by term, as the difference of sums of large and small energies would lose digits.
         let change = (now.kinetic - before.kinetic) + (now.elastic - before.elastic) + (now.gravity - before.gravity);
         step.residual = change - step.explained();
         self.current = now;

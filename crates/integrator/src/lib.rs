@@ -1,22 +1,26 @@
-//! Non-smooth time integration: subsystems with velocities that can be hit, schemes that step them, the energy
-//! ledger that checks every step.
+//! Non-smooth time integration: subsystems that contacts can act on, schemes that step them, and an
+//! energy ledger that checks every step.
 //!
 //! The layers below know nothing of each other; this crate composes them behind traits:
 //!
-//! - a [`Subsystem`] is a model of something with velocities: [`Blocks`], a [`BeamBody`], a [`ModalBeam`], the [`Ground`], or yours;
-//!   it offers forces, products, Jacobian rows and a [`Compliance`], and owns no state;
-//! - a [`Model`] is subsystems, contact pairs and a detector: immutable;
-//! - a [`State`] is all that decides the next step: flat, to be cloned or stored;
+//! - a [`Subsystem`] is a mechanical model with velocities: [`Blocks`], a [`BeamBody`], a
+//!   [`ModalBeam`], the [`Ground`], or yours; it offers forces, products, Jacobian rows and a
+//!   [`Compliance`], and owns no state;
+//! - a [`Model`] is subsystems, contact laws and a detector, and immutable;
+//! - a [`State`] holds all that decides the next step; it is flat, so that it can be cloned and
+//!   stored;
 //! - a [`Scheme`] owns every formula of time integration and decides which candidates are contacts:
 //!   [`MoreauJean`];
-//! - a [`Workspace`] is the memory and the contact solver of one worker;
-//! - [`run`] takes steps and shows each to [`Observer`]s.
+//! - a [`Workspace`] holds the memory, the factors and the contact solver of one worker;
+//! - [`run`] takes steps and reports each to [`Observer`]s.
 //!
 //! # Features
 //!
-//! `bodies` (default) brings [`Blocks`] and [`Ground`], `beam` (default) [`BeamBody`] and [`ModalBeam`], `sparse` (default) a general
-//! sparse factor for beams; without them this crate needs neither `teeter-rigid` nor `teeter-beam`, and a scheme or a body of one's own can
-//! be built on it. `serde` stores states; `conformance` brings harnesses for subsystems and schemes of one's own.
+//! `bodies` (default) brings [`Blocks`] and [`Ground`], `beam` (default) [`BeamBody`] and
+//! [`ModalBeam`], `sparse` (default) a general sparse factor for beams; without them this crate
+//! needs neither `teeter-rigid` nor `teeter-beam`, and still serves schemes and bodies of your own.
+//! `serde` makes states serialisable; `conformance` brings harnesses for subsystems and schemes of
+//! your own.
 //!
 //! # Example: a block dropped on the ground
 //!

@@ -1,13 +1,14 @@
-//! What decides the next step beside places and velocities.
+//! What decides the next step beside coordinates and velocities.
 
 use crate::Contact;
 use teeter_detect::ContactId;
 
-/// What a scheme remembers from step to step: part of the [`State`](crate::State), as it decides what comes next. (Where a solver
-/// starts from is a hint only, and stands in [`WarmStart`](crate::WarmStart).)
+/// What a scheme remembers from step to step. It is part of the [`State`](crate::State), as it
+/// decides the next step; what only speeds up the solver is in [`WarmStart`](crate::WarmStart).
 ///
-/// Contacts that were active decide restitution: what was active before doesn't strike. Springs of contacts with duration keep their gaps.
-/// What else a scheme has to remember, it puts into its own numbers.
+/// The active contacts decide restitution: a contact that was active before doesn't impact. Springs
+/// of contacts with duration keep their gaps. Whatever else a scheme has to remember goes into its
+/// own numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Memory {
@@ -33,7 +34,7 @@ impl Memory {
         self.gaps.clear();
     }
 
-    /// Remembers a contact as active. Contacts have to come in order of identity.
+    /// Remembers a contact as active. Add contacts in order of identity.
     pub fn remember<const D: usize>(&mut self, contact: &Contact<D>) {
         self.active.push(contact.id);
         self.gaps.push(contact.gap_after.map_or(0.0, |gap| gap.min(0.0)));
@@ -51,15 +52,15 @@ impl Memory {
         self.active.binary_search(&id).is_ok()
     }
 
-    /// Gap of the spring of an active contact with duration, m: negative while it is compressed; `None` for a contact that is not
-    /// active.
+    /// Gap of the spring of an active contact with duration, m: negative while it is compressed;
+    /// `None` for a contact that is not active.
     #[must_use]
     pub fn spring_gap(&self, id: ContactId) -> Option<f64> {
         let at = self.active.binary_search(&id).ok()?;
         self.gaps.get(at).copied()
     }
 
-    /// The numbers that a scheme has put here last; `None` where there are others, or none yet.
+    /// The numbers that a scheme stored last; `None` if there are none yet, or not as many.
     ///
     /// ```
     /// let mut memory = teeter_integrator::Memory::default();
@@ -72,19 +73,20 @@ impl Memory {
         self.numbers.as_slice().try_into().ok()
     }
 
-    /// The numbers that a scheme has put here last, however many they are.
+    /// The numbers that a scheme stored last, however many.
     #[must_use]
     pub fn all_numbers(&self) -> &[f64] {
         &self.numbers
     }
 
-    /// Keeps a scheme's own numbers in place of those before; allocates only where there are more than ever before.
+    /// Stores a scheme's own numbers in place of earlier ones; allocates only if there are more
+    /// than ever before.
     pub fn set_numbers(&mut self, numbers: &[f64]) {
         self.numbers.clear();
         self.numbers.extend_from_slice(numbers);
     }
 
-    /// Becomes equal to `other`; allocates only where that holds more than ever before.
+    /// Becomes equal to `other`; allocates only if `other` holds more than this ever has.
     pub fn copy_from(&mut self, other: &Self) {
         let Self { active, gaps, numbers } = other;
         self.active.clone_from(active);
@@ -92,7 +94,7 @@ impl Memory {
         self.numbers.clone_from(numbers);
     }
 
-    /// Whether contacts rise, and each has a gap.
+    /// Whether contacts ascend, and each has a gap.
     pub(crate) fn is_in_order(&self) -> bool {
         self.active.is_sorted_by(|a, b| a < b) && self.gaps.len() == self.active.len()
     }

@@ -1,9 +1,10 @@
-//! What is told to who joins parts that don't belong together.
+//! Errors for parts that don't belong together.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use teeter_detect::{BodyId, ContactId, LawId};
 
-/// Things that don't belong together: slices of another length, a workspace of another model, a pair that isn't there.
+/// Things that don't belong together: slices of another length, a workspace of another model, a
+/// pair that isn't there.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Mismatch {
@@ -17,7 +18,7 @@ pub enum Mismatch {
         /// Numbers needed.
         expected: usize,
     },
-    /// A workspace, a scheme or contacts of another model, be it of the same sizes.
+    /// A workspace, a scheme or contacts of another model, even one of the same sizes.
     #[error("{what} of another model: {remedy}")]
     OtherModel {
         /// What is used.
@@ -49,13 +50,13 @@ pub enum Mismatch {
         /// How many there are.
         contacts: usize,
     },
-    /// A contact whose point has no foot on its surface.
+    /// A contact whose point has no foot on the surface.
     #[error("point {} of pair {} touches nothing at these coordinates", id.point(), id.pair())]
     NotThere {
         /// The contact.
         id: ContactId,
     },
-    /// The candidate of another contact.
+    /// A candidate of another contact.
     #[error("contact {contact} is another one than the candidate")]
     OtherContact {
         /// Its number in the stage.
@@ -78,8 +79,8 @@ pub(crate) fn length<T>(what: &'static str, x: &[T], expected: usize) -> Result<
     if x.len() == expected { Ok(()) } else { Err(Mismatch::Length { what, found: x.len(), expected }) }
 }
 
-/// Who a model is: no two that were built in one process are the same. It is compared for equality and nothing else, and is stored nowhere,
-/// so that no result depends on how many models were built before.
+/// Identity of a model: no two models built in one process have the same. It is compared for
+/// equality only and never stored, so that no result depends on how many models were built before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Identity(u64);
 

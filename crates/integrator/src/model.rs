@@ -1,4 +1,4 @@
-//! A scene for the integrator: subsystems, who can touch whom by what law, and a detector. Immutable.
+//! An immutable scene: subsystems, contact laws, and the detector that says which bodies can touch.
 
 use crate::mismatch::{Identity, length};
 use crate::stage::ContactRows;
@@ -26,7 +26,7 @@ pub enum ModelError {
         /// The range.
         rule: &'static str,
     },
-    /// A pair with a law that wasn't added.
+    /// A pair whose law wasn't added.
     #[error("pair {pair} has law {}, but the model has {laws}: use what ModelBuilder::law returned", law.0)]
     NoLaw {
         /// The pair.
@@ -36,7 +36,7 @@ pub enum ModelError {
         /// How many laws there are.
         laws: usize,
     },
-    /// A detector that gives two pairs the same number: their contacts could not be told apart.
+    /// Two pairs with the same number: their contacts could not be told apart.
     #[error("the detector has pair {pair} twice: number each in its own way")]
     PairTwice {
         /// The number.
@@ -56,7 +56,7 @@ pub enum ModelError {
         /// Which point.
         point: usize,
     },
-    /// A body that wasn't added.
+    /// A pair with a body that wasn't added.
     #[error("pair {pair} is of body {}, but the model has {bodies}: use the body that ModelBuilder::add returned", body.0)]
     Body {
         /// The pair.
@@ -66,7 +66,7 @@ pub enum ModelError {
         /// How many bodies there are.
         bodies: usize,
     },
-    /// A body whose surface is to be touched, but that has none.
+    /// A pair on the surface of a body that has none.
     #[error("pair {pair} is on the surface of body {}, which has none", body.0)]
     NoSurface {
         /// The pair.
@@ -74,7 +74,7 @@ pub enum ModelError {
         /// The body.
         body: BodyId,
     },
-    /// A body that is to touch itself.
+    /// A pair of a body with itself.
     #[error("pair {pair} is of body {} against itself", body.0)]
     Itself {
         /// The pair.
@@ -82,7 +82,7 @@ pub enum ModelError {
         /// The body.
         body: BodyId,
     },
-    /// A load or a motion of a block that isn't there.
+    /// A load on, or a motion of, a block that doesn't exist.
     #[error("there is no block {block}: there are {blocks}, numbered from 0")]
     Block {
         /// Its number.
@@ -96,7 +96,7 @@ pub enum ModelError {
         /// Number of the block.
         block: usize,
     },
-    /// A subsystem whose prescribed or held velocities aren't numbers of velocities, in rising order.
+    /// A subsystem whose prescribed or held velocities aren't ascending numbers of its velocities.
     #[error("the {what} velocities of subsystem {part} must be rising numbers below {velocities}")]
     Velocities {
         /// Prescribed or held ones.
@@ -139,14 +139,15 @@ pub struct PartPlace {
 }
 
 impl PartPlace {
-    /// Its first body: the only one of a beam or of the ground. A model without that body refuses pairs with it.
+    /// Its first body: the only one of a beam or of the ground. If the subsystem has no bodies, the
+    /// model refuses pairs with it.
     #[must_use]
     pub fn body(&self) -> BodyId {
         BodyId(self.bodies.start)
     }
 
-    /// Its body of this number within it. One that it doesn't have is a body of another subsystem, or none: see
-    /// [`PartPlace::bodies`](Self#structfield.bodies).
+    /// The body with this number within the subsystem. A number beyond its bodies gives a body of
+    /// another subsystem, or none: see [`PartPlace::bodies`](Self#structfield.bodies).
     #[must_use]
     pub fn nth_body(&self, number: u32) -> BodyId {
         BodyId(self.bodies.start.saturating_add(number))
@@ -154,7 +155,7 @@ impl PartPlace {
 }
 
 impl<const D: usize> Part<D> {
-    /// What the subsystem said of itself when the model was built.
+    /// The subsystem's properties, as they were when the model was built.
     #[must_use]
     pub fn traits(&self) -> &Traits {
         &self.traits
@@ -172,7 +173,7 @@ impl<const D: usize> std::fmt::Debug for Part<D> {
     }
 }
 
-/// The subsystems, bodies, pairs and the detector of a scene.
+/// The subsystems, bodies, laws and the detector of a scene.
 pub struct Model<const D: usize> {
     parts: Vec<Part<D>>,
     /// Part and number within it of each body.
@@ -181,7 +182,7 @@ pub struct Model<const D: usize> {
     springs: bool,
     contacts: bool,
     driven: bool,
-    /// Whether the detector said whom it joins, so that its candidates needn't be looked at.
+    /// Whether the detector listed its pairs, so that its candidates needn't be checked.
     wired: bool,
     detector: Box<dyn ContactDetector<D>>,
     size: Size,
@@ -221,12 +222,12 @@ impl<const D: usize> ModelBuilder<D> {
         Self { parts: Vec::new(), bodies: Vec::new(), laws: Vec::new(), size: Size::default() }
     }
 
-    /// Adds a subsystem. What is returned says where its bodies, coordinates and velocities are.
+    /// Adds a subsystem, and returns where its bodies, coordinates and velocities are.
     pub fn add(&mut self, system: impl Subsystem<D> + 'static) -> PartPlace {
         self.add_boxed(Box::new(system))
     }
 
-    /// As [`ModelBuilder::add`], for a subsystem that is in a box.
+    /// As [`ModelBuilder::add`], for a boxed subsystem.
     pub fn add_boxed(&mut self, system: Box<dyn Subsystem<D>>) -> PartPlace {
         let (size, part) = (system.size(), self.parts.len());
         let first = self.bodies.len() as u32;
@@ -245,7 +246,7 @@ impl<const D: usize> ModelBuilder<D> {
         PartPlace { part, bodies: first..self.bodies.len() as u32, q: place_q, v: place_v }
     }
 
-    /// Adds a contact law; the detector refers to it by what is returned.
+    /// Adds a contact law, and returns the handle by which the detector refers to it.
     pub fn law(&mut self, law: PairLaw) -> LawId {
         self.laws.push(law);
         LawId((self.laws.len() - 1) as u32)
@@ -254,8 +255,10 @@ impl<const D: usize> ModelBuilder<D> {
     /// The model.
     ///
     /// # Errors
-    /// If a coefficient of a pair is out of its range, or the detector joins what can't touch: pairs or bodies that weren't added, the surface
-    /// of a body that has none, a body and itself. Of a detector that doesn't [say](ContactDetector::wiring) whom it joins, the steps tell.
+    /// If a coefficient of a law is out of its range, or the detector has pairs that can't work:
+    /// with laws or bodies that weren't added, on a surface that a body doesn't have, of a body
+    /// with itself. Pairs that a detector doesn't [list](ContactDetector::wiring) are checked in
+    /// the steps.
     pub fn build(self, detector: Box<dyn ContactDetector<D>>) -> Result<Model<D>, ModelError> {
         for (number, law) in self.laws.iter().enumerate() {
             let law_id = LawId(number as u32);
@@ -343,8 +346,9 @@ impl<const D: usize> Model<D> {
         self.laws.get(law.0 as usize).copied().ok_or(Mismatch::Law { law, laws: self.laws.len() })
     }
 
-    /// Puts the candidates with a gap of at most `margin` (m) at coordinates `q` into `out`, in the detector's order, without anything kept
-    /// from before: for who looks once. Steps look by [`Workspace::detect`](crate::Workspace::detect).
+    /// Puts the candidates with a gap of at most `margin` (m) at coordinates `q` into `out`, in the
+    /// detector's order, without a detector's memory: for a single look. Steps use
+    /// [`Workspace::detect`](crate::Workspace::detect).
     ///
     /// # Errors
     /// If there are too few or too many coordinates.
@@ -379,12 +383,12 @@ impl<const D: usize> Model<D> {
         length("the velocities", v, self.size.v)
     }
 
-    /// Whether a pair has a law with duration.
+    /// Whether there is a law with duration.
     pub(crate) fn has_springs(&self) -> bool {
         self.springs
     }
 
-    /// Whether a pair has a law that can take more than one problem a step.
+    /// Whether a law can take more than one problem a step.
     pub(crate) fn has_laws(&self) -> bool {
         self.laws.iter().any(|law| law.impact != ImpactLaw::Newton || law.restitution > 0.0)
     }
@@ -394,7 +398,7 @@ impl<const D: usize> Model<D> {
         self.driven
     }
 
-    /// Whether anything can ever touch: if not, a step need not look.
+    /// Whether anything can ever touch: if not, steps don't look.
     pub(crate) fn has_contacts(&self) -> bool {
         self.contacts
     }
@@ -414,7 +418,7 @@ impl<const D: usize> Model<D> {
         Ok(self.placed_at(q))
     }
 
-    /// The same for what is known to fit.
+    /// The same without checks of lengths.
     pub(crate) fn placed_at<'a>(&'a self, q: &'a [f64]) -> Placed<'a, D> {
         Placed { model: self, q }
     }
@@ -429,14 +433,15 @@ impl<const D: usize> Model<D> {
         Ok(())
     }
 
-    /// The same for what is known to fit.
+    /// The same without checks of lengths.
     pub(crate) fn drive_at(&self, t: f64, v: &mut [f64]) {
         for part in self.parts.iter().filter(|part| part.is_driven()) {
             part.system.drive(t, &mut v[part.v.clone()]);
         }
     }
 
-    /// The means of the prescribed velocities over the time from `times[0]` to `times[1]` (s), for what is known to fit.
+    /// The means of the prescribed velocities over the time from `times[0]` to `times[1]` (s),
+    /// without checks of lengths.
     pub(crate) fn drive_mean_at(&self, times: [f64; 2], v: &mut [f64]) {
         for part in self.parts.iter().filter(|part| part.is_driven()) {
             part.system.drive_mean(times, &mut v[part.v.clone()]);
@@ -452,7 +457,7 @@ impl<const D: usize> Model<D> {
         Ok(self.energy_at(q, v))
     }
 
-    /// The same for what is known to fit.
+    /// The same without checks of lengths.
     pub(crate) fn energy_at(&self, q: &[f64], v: &[f64]) -> Energy {
         let mut energy = Energy::default();
         for part in &self.parts {
@@ -467,7 +472,7 @@ impl<const D: usize> Model<D> {
         self.parts.iter().map(|part| part.traits.energy_scale).sum()
     }
 
-    /// `out = q ⊕ τ v`: where velocities `v` lead in the time `tau` (s).
+    /// `out = q ⊕ τ v`: the coordinates after moving with velocities `v` for the time `tau` (s).
     ///
     /// # Errors
     /// If there are too few or too many coordinates or velocities.
@@ -478,17 +483,19 @@ impl<const D: usize> Model<D> {
         Ok(())
     }
 
-    /// The same for what is known to fit.
+    /// The same without checks of lengths.
     pub(crate) fn move_along(&self, q: &[f64], v: &[f64], tau: f64, out: &mut [f64]) {
         for part in self.parts.iter().filter(|part| !part.q.is_empty()) {
             part.system.retract(&q[part.q.clone()], &v[part.v.clone()], tau, &mut out[part.q.clone()]);
         }
     }
 
-    /// The relative velocity u = v_0 − v_1 of a candidate in its frame, with its rows taken at `q`.
+    /// The relative velocity u = v_0 − v_1 of a candidate in its frame, by its Jacobian rows at
+    /// `q`, m/s.
     ///
     /// # Errors
-    /// If there are too few or too many coordinates or velocities, or the candidate is of a pair or a body that the model doesn't have.
+    /// If there are too few or too many coordinates or velocities, or the candidate is of a pair or
+    /// a body that the model doesn't have.
     pub fn relative_velocity(&self, candidate: &Candidate<D>, q: &[f64], v: &[f64]) -> Result<Vector<D>, Mismatch> {
         self.fits(q, v)?;
         self.law(candidate.law)?;
@@ -503,8 +510,8 @@ impl<const D: usize> Model<D> {
         &self.parts
     }
 
-    /// The number of a body's part, the part, and the body's number within it; `None` for a body that the model doesn't
-    /// have.
+    /// The number of a body's part, the part, and the body's number within it; `None` for a body
+    /// that the model doesn't have.
     #[must_use]
     pub fn owner(&self, body: BodyId) -> Option<(usize, &Part<D>, u32)> {
         let &(part, local) = self.bodies.get(body.0 as usize)?;

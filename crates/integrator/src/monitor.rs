@@ -1,5 +1,5 @@
-//! The numbers of rocking: zero crossings of an angle and the peaks between them (`docs/theory.md` §9, `docs/impacts.md`). The angle is
-//! the caller's: that of a block from what carries it.
+//! Rocking: zero crossings of an angle and the peaks between them (`docs/theory.md` §9,
+//! `docs/impacts.md`). The caller gives the angle: that of a block relative to what carries it.
 
 /// A zero crossing of an angle: on a rigid base, the impact of a rocking block.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,13 +19,14 @@ pub struct Peak {
     pub phi: f64,
 }
 
-/// An excursion smaller than this is rounding, not rocking; rad.
+/// A smaller excursion is rounding, not rocking; rad.
 const STILL: f64 = 1e-12;
 
-/// Crossings that a monitor lists, and as many peaks: some 2 MB for a block that never stops, however long the run is.
+/// Most crossings that a monitor lists, and as many peaks: some 2 MB, however long the run is.
 pub const LISTED_CROSSINGS: usize = 100_000;
 
-/// Finds the crossings and peaks of one angle, step by step. It lists the first [`LISTED_CROSSINGS`] and counts all.
+/// Finds the crossings and peaks of one angle, step by step. It lists the first
+/// [`LISTED_CROSSINGS`] and counts all.
 ///
 /// ```
 /// use teeter_integrator::RockingMonitor;
@@ -42,10 +43,11 @@ pub const LISTED_CROSSINGS: usize = 100_000;
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RockingMonitor {
-    /// An excursion up to this is none, rad.
+    /// Excursions up to this are ignored, rad.
     least: f64,
     last: (f64, f64),
-    /// Where the sign last changed, until the excursion beyond it shows that it was more than rounding.
+    /// Time of the last change of sign, until the excursion after it shows that it was more than
+    /// rounding.
     pending: Option<f64>,
     extreme: Peak,
     crossings: Vec<Crossing>,
@@ -70,7 +72,7 @@ impl RockingMonitor {
         }
     }
 
-    /// Takes excursions up to `least` (rad) for none; otherwise those up to 1e-12, which is rounding.
+    /// Ignores excursions up to `least` (rad); without this, up to 1e-12, which is rounding.
     #[must_use]
     pub fn with_least(mut self, least: f64) -> Self {
         self.least = least.max(STILL);
@@ -81,7 +83,7 @@ impl RockingMonitor {
     pub fn enter(&mut self, t: f64, phi: f64) {
         let (t0, phi0) = self.last;
         self.last = (t, phi);
-        // The side that the current excursion is on; none before the angle has left zero for the first time.
+        // The sign of the current excursion; 0 until the angle has left zero for the first time.
         let side = if self.extreme.phi.abs() > self.least { self.extreme.phi.signum() } else { 0.0 };
         if side == 0.0 {
             if phi.abs() > self.extreme.phi.abs() {
@@ -123,7 +125,7 @@ impl RockingMonitor {
         &self.crossings
     }
 
-    /// The peaks so far, the release being the first; each crossing of the list has one.
+    /// The peaks so far, the first being the release; there is one before each crossing listed.
     #[must_use]
     pub fn peaks(&self) -> &[Peak] {
         &self.peaks

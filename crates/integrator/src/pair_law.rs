@@ -1,4 +1,5 @@
-//! The contact law of a pair of bodies: friction, and what happens along the normal (`docs/laws.md`).
+//! The contact law of a pair of bodies: friction, and what happens along the normal
+//! (`docs/laws.md`).
 
 /// The contact law of a pair of bodies.
 ///
@@ -13,10 +14,10 @@
 pub struct PairLaw {
     /// Coulomb's coefficient μ ≥ 0.
     pub friction: f64,
-    /// Coefficient of restitution e in [0, 1]; without meaning for a law with duration.
+    /// Coefficient of restitution e in [0, 1]; unused by a law with duration.
     pub restitution: f64,
-    /// Tangential coefficient of restitution in [0, 1]: of an impact that doesn't slide, this part of the tangential velocity
-    /// comes back.
+    /// Tangential coefficient of restitution in [0, 1]: the fraction of the tangential velocity
+    /// that is reversed in an impact that doesn't slide.
     pub tangential_restitution: f64,
     /// What happens along the normal.
     pub impact: ImpactLaw,
@@ -26,23 +27,24 @@ pub struct PairLaw {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum ImpactLaw {
-    /// An instant; e is the ratio of the normal velocities after and before.
+    /// Instantaneous; e is the ratio of the normal velocities after and before.
     #[default]
     Newton,
-    /// An instant of two phases; e is the ratio of the normal impulses of expansion and compression.
+    /// Instantaneous, in two phases; e is the ratio of the normal impulses of expansion and
+    /// compression.
     Poisson,
-    /// Newton's law with e made smaller, for all contacts that feel each other alike, by as much as it takes for the impact not
-    /// to make energy.
+    /// Newton's law with e reduced as far as is needed for the impact not to create energy, by the
+    /// same factor for all contacts that are coupled.
     Energetic,
-    /// A contact with duration: force k δ + c δ̇ while the penetration δ > 0, and never a pull.
+    /// A contact with duration: force k δ + c δ̇ while the penetration δ > 0, never tensile.
     KelvinVoigt {
         /// k, N/m.
         stiffness: f64,
         /// c, N·s/m.
         damping: f64,
     },
-    /// A contact with duration: force k δⁿ (1 + d δ̇) for a penetration δ > 0, and never a pull (Hunt & Crossley 1975, doi
-    /// 10.1115/1.3423596).
+    /// A contact with duration: force k δⁿ (1 + d δ̇) for a penetration δ > 0, never tensile (Hunt
+    /// & Crossley 1975, doi 10.1115/1.3423596).
     HuntCrossley {
         /// k, N/mⁿ.
         stiffness: f64,
@@ -74,7 +76,7 @@ impl PairLaw {
         self
     }
 
-    /// What is out of its range, its value, and the range.
+    /// The first coefficient out of its range, its value, and the range.
     pub(crate) fn check(&self) -> Result<(), (&'static str, f64, &'static str)> {
         let check = |what, value, good, rule| if good { Ok(()) } else { Err((what, value, rule)) };
         let not_negative = |what, x: f64| check(what, x, x >= 0.0 && x.is_finite(), "at least 0 and finite");

@@ -1,8 +1,8 @@
-//! The schemes by name: the one list that programs, tests and benches share.
+//! The list of schemes by name.
 
 use crate::{MoreauJean, MoreauJeanClosed, MoreauJeanClosedSettings, MoreauJeanSettings, Scheme};
 
-/// A scheme of the list.
+/// A scheme in the list.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct SchemeEntry {
@@ -14,7 +14,8 @@ pub struct SchemeEntry {
 }
 
 impl SchemeEntry {
-    /// The scheme with its default settings.
+    /// The scheme with its default settings; `None` only if they are out of range, which is a fault
+    /// of this crate.
     #[must_use]
     pub fn make(&self) -> Option<Box<dyn Scheme<2>>> {
         (self.make)()

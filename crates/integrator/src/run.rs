@@ -1,4 +1,4 @@
-//! Steps in a row, each shown to observers.
+//! The loop over steps, each reported to observers.
 
 use crate::{Model, STEP_ROUNDING, Scheme, State, StepError, StepReport, Workspace};
 use std::error::Error;
@@ -29,7 +29,7 @@ pub trait Observer<const D: usize> {
         state: &State,
     ) -> Result<ControlFlow<()>, ObserverError>;
 
-    /// Called once, after the last step of a run, whatever ended it but an observer's error.
+    /// Called once, after the last step of a run, unless an observer's error ended it.
     ///
     /// # Errors
     /// The observer's own.
@@ -55,14 +55,14 @@ pub enum Until {
 pub struct Plan {
     /// Where it ends.
     pub until: Until,
-    /// What becomes of it where a contact problem is not solved to tolerance.
+    /// What happens if a contact problem is not solved to tolerance.
     pub unsolved: Unsolved,
 }
 
-/// What becomes of a run where a contact problem is not solved to tolerance.
+/// What happens to a run if a contact problem is not solved to tolerance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Unsolved {
-    /// It goes on with the best impulses that were found.
+    /// It continues with the best impulses found.
     #[default]
     GoOn,
     /// It ends.
@@ -82,14 +82,14 @@ impl Plan {
         Self { until: Until::Time(t), unsolved: Unsolved::GoOn }
     }
 
-    /// The same, but a contact problem that is not solved to tolerance ends the run, or not.
+    /// The same, with this choice for contact problems that are not solved to tolerance.
     #[must_use]
     pub const fn when_unsolved(mut self, unsolved: Unsolved) -> Self {
         self.unsolved = unsolved;
         self
     }
 
-    /// Whether a state is where the plan ends.
+    /// Whether a state has reached the plan's end.
     #[must_use]
     pub fn is_done(&self, state: &State) -> bool {
         match self.until {
@@ -98,7 +98,7 @@ impl Plan {
         }
     }
 
-    /// How many steps of its size it takes from a state; 0 where it is done.
+    /// How many steps of the state's size are left; 0 if it is done.
     #[must_use]
     pub fn steps_from(&self, state: &State) -> u64 {
         match self.until {
@@ -127,7 +127,7 @@ pub enum Ended {
     Complete,
     /// An observer wanted it to end.
     Interrupted,
-    /// A step was not solved to tolerance, and the plan requires it.
+    /// A step was not solved to tolerance, and the plan ends the run there.
     Unconverged,
     /// A step could not be taken.
     Failed(StepError),
@@ -142,8 +142,9 @@ pub enum RunError {
     Observer(ObserverError),
 }
 
-/// Takes steps up to the plan's last. The state is left at the last step taken, whatever ended the run. A state or a workspace of another model
-/// ends it before observers see anything.
+/// Takes steps up to the end of the plan. The state is left at the last step taken, whatever ended
+/// the run. If the state or the workspace is of another model, the run fails before observers are
+/// called.
 ///
 /// # Errors
 /// If an observer fails.

@@ -1,8 +1,8 @@
-//! Time histories: of loads and of prescribed motion (`docs/signals.md`).
+//! Time histories of loads and of prescribed motion (`docs/signals.md`).
 //!
-//! A [`Signal`] is a number without unit that depends on time, with its rate and its first two integrals, each in closed
-//! form: from whichever of displacement, velocity and acceleration is given, a [`Motion`] has the other two without adding up
-//! steps.
+//! A [`Signal`] is a number without unit that depends on time, with its rate and its first two
+//! integrals, each in closed form: whichever of displacement, velocity and acceleration is given, a
+//! [`Motion`] has the others without summing over steps.
 
 mod formula;
 mod motion;
@@ -13,9 +13,9 @@ pub use formula::Formula;
 pub use motion::{Given, Motion};
 pub use table::Table;
 
-/// A time history without unit; the amplitude that multiplies it has one.
+/// A time history without unit; the amplitude by which it is multiplied has one.
 ///
-/// At a jump it has the value after the jump, and no rate of its own.
+/// At a jump it has the value after the jump; the jump doesn't enter the rate.
 ///
 /// ```
 /// use teeter_integrator::{Formula, Signal};
@@ -39,33 +39,36 @@ pub trait Signal: std::fmt::Debug + Send + Sync {
     /// The integral of [`Signal::integral`] from 0 to `t`, s².
     fn double_integral(&self, t: f64) -> f64;
 
-    /// Its mean over the time from `from` to `to` (s), which is later, whatever it does in between: what a load gives in a step.
+    /// Its exact mean over the time from `from` to the later `to` (s): what a load contributes to a
+    /// step.
     fn mean(&self, from: f64, to: f64) -> f64 {
         (self.integral(to) - self.integral(from)) / (to - from)
     }
 
-    /// The mean of [`Signal::rate`] over the time from `from` to `to` (s), which is later, 1/s.
+    /// The mean of [`Signal::rate`] over the time from `from` to the later `to` (s), 1/s.
     fn mean_rate(&self, from: f64, to: f64) -> f64 {
         (self.value(to) - self.value(from)) / (to - from)
     }
 
-    /// The mean of [`Signal::integral`] over the time from `from` to `to` (s), which is later, s.
+    /// The mean of [`Signal::integral`] over the time from `from` to the later `to` (s), s.
     fn mean_integral(&self, from: f64, to: f64) -> f64 {
         (self.double_integral(to) - self.double_integral(from)) / (to - from)
     }
 
-    /// The means of the signal times P₀ … P₃ over the time from `from` to `to` (s), which is later: Legendre's polynomials of a variable
-    /// that goes from −1 to 1. A load that moves along a beam has its mean from them.
+    /// The means of the signal times P₀ … P₃, Legendre's polynomials of a variable that goes from
+    /// −1 to 1 over the time from `from` to the later `to` (s). The mean of a load that moves along
+    /// a beam is computed from them.
     ///
-    /// The default takes the first from [`Signal::mean`], the others by eight Gauss points; a signal with kinks, or one that is
-    /// fast beside what it is asked for, does better.
+    /// The default takes the first from [`Signal::mean`], the others by eight Gauss points;
+    /// override it for a signal with kinks, or one that varies fast over such times.
     fn moments(&self, from: f64, to: f64) -> [f64; 4] {
         let mut moments = window::by_points(from, to, |t| self.value(t));
         moments[0] = self.mean(from, to);
         moments
     }
 
-    /// The first time after 0 at which it jumps, s: what can't be prescribed as a displacement.
+    /// The first time after 0 at which it jumps, s; such a signal can't be prescribed as a
+    /// displacement.
     fn jump(&self) -> Option<f64> {
         None
     }
@@ -85,10 +88,10 @@ pub enum SignalError {
         /// The range.
         rule: &'static str,
     },
-    /// Fewer rows than make a history.
+    /// Too few rows.
     #[error("{0} rows, but a table needs two or more")]
     Rows(usize),
-    /// Not as many values as times.
+    /// Different numbers of times and values.
     #[error("{times} times, but {values} values")]
     Lengths {
         /// Times.
@@ -106,7 +109,7 @@ pub enum SignalError {
     },
 }
 
-/// From antiderivatives F₁ of f and F₂ of F₁: the integrals of f that start at 0.
+/// The integrals of f from 0, from antiderivatives F₁ of f and F₂ of F₁.
 ///
 /// `at(t)` returns (F₁, F₂).
 fn from_zero(t: f64, at: impl Fn(f64) -> (f64, f64)) -> (f64, f64) {

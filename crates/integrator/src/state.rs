@@ -1,12 +1,13 @@
-//! All that decides the next step, flat: clone it to reject a step, store it for a checkpoint.
+//! All that decides the next step, in one flat struct: clone it to reject a step, store it for a
+//! checkpoint.
 
 use crate::clock::Clock;
 use crate::{Ledger, Memory, Model, Vector};
 use teeter_contact::Outcome;
 use teeter_detect::ContactId;
 
-/// The impulses of the contacts of the last step, in order of identity: where a solver starts from. A hint: without it a step ends
-/// in the same motion, up to the solver's tolerance.
+/// The impulses of the last step's contacts, in order of identity, from which the contact solver
+/// starts. It is a hint: without it a step ends in the same motion, up to the solver's tolerance.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WarmStart {
@@ -35,7 +36,7 @@ impl WarmStart {
         self.impulses.extend_from_slice(p.as_slice());
     }
 
-    /// Becomes equal to `other`; allocates only where that holds more than ever before.
+    /// Becomes equal to `other`; allocates only if `other` holds more than this ever has.
     pub fn copy_from(&mut self, other: &Self) {
         let Self { ids, impulses } = other;
         self.ids.clone_from(ids);
@@ -85,7 +86,8 @@ pub struct Tally {
 pub struct State {
     /// Steps taken.
     pub step: u64,
-    /// Time, s: `step · dt` from t = 0 while dt doesn't change, and from where it changed counted on in the same way.
+    /// Time, s: `step · dt` as long as dt doesn't change; after a change, steps are counted in the
+    /// same way from there.
     #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub t: f64,
     /// Step size, s; may be changed between steps.
@@ -99,7 +101,7 @@ pub struct State {
     pub v: Vec<f64>,
     /// What a scheme remembers from step to step.
     pub memory: Memory,
-    /// Where a contact solver starts from.
+    /// The impulses from which the contact solver starts.
     pub warm: WarmStart,
     /// The energy account.
     pub ledger: Ledger,
@@ -109,7 +111,7 @@ pub struct State {
     clock: Clock,
 }
 
-/// What is wrong with an initial state.
+/// What is wrong with a state.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StateError {
@@ -144,7 +146,7 @@ pub enum StateError {
         /// Time, s.
         t: f64,
     },
-    /// The contacts of the last step aren't those of a state in so many dimensions.
+    /// The contacts of the last step have too few or too many numbers for the model's dimension.
     #[error(
         "the state has {impulses} numbers for the impulses of its {contacts} contacts, but needs {dimension} for each"
     )]
@@ -162,7 +164,8 @@ pub enum StateError {
 }
 
 impl Tally {
-    /// Counts a step in: how its contact problem was solved, its number of contacts, the penetration (m) at its end.
+    /// Counts a step: how its contact problem was solved, its number of contacts, the penetration
+    /// (m) at its end.
     pub fn count(&mut self, outcome: Option<&Outcome>, contacts: usize, penetration: f64) {
         self.max_penetration = self.max_penetration.max(penetration);
         self.max_contacts = self.max_contacts.max(contacts);
@@ -176,26 +179,27 @@ impl Tally {
     }
 }
 
-/// A step ends at a given time if it does so within this part of its size.
+/// A step that ends within this fraction of its size of a given time counts as ending at that time.
 pub const STEP_ROUNDING: f64 = 1e-9;
 
-/// From when to when a step goes.
+/// Start, end and size of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepSpan {
     /// Its start, s.
     pub start: f64,
     /// Its end, s.
     pub end: f64,
-    /// Its size, s: that of the matrices. `end − start` up to the rounding of times.
+    /// Its size, s, by which matrices are made: `end − start` without the rounding of times.
     pub h: f64,
 }
 
-/// A prescribed velocity at the start counts as it is, unless it is this many times the mean over the first half step: a motion that the step
-/// can show doesn't change by as much in half of it.
+/// A prescribed velocity at the start is taken as it is unless it exceeds its mean over the first
+/// half step by this factor: a motion that the step resolves doesn't change as much in half a step.
 const OVERSHOOT: f64 = 1.25;
 
 impl State {
-    /// The state at t = 0, with step size `dt` (s). Prescribed velocities are those of t = 0, whatever `v` says.
+    /// The state at t = 0, with step size `dt` (s). Prescribed velocities are those of t = 0,
+    /// whatever `v` says.
     ///
     /// # Errors
     /// If a length doesn't fit the model, a number is not finite, or `dt` is not positive.
@@ -203,9 +207,9 @@ impl State {
         Self::at(model, 0, q, v, dt)
     }
 
-    /// The state after `step` steps of size `dt` (s), so at t = step · dt, of a run that is not known before: its energy
-    /// account and its counts begin here, no contact was active, and a scheme remembers nothing. Prescribed velocities are
-    /// those of that time, whatever `v` says.
+    /// The state after `step` steps of size `dt` (s), at t = step · dt, without the history of a
+    /// run: its energy account and its counts begin here, no contact was active, and the scheme's
+    /// memory is empty. Prescribed velocities are those of that time, whatever `v` says.
     ///
     /// # Errors
     /// As [`State::new`].
@@ -229,7 +233,8 @@ impl State {
         let t = Clock::new(dt).at(step);
         let mut means = v.clone();
         model.drive_at(t, &mut v);
-        // A velocity that lasts for less than the first half step would lead the first step past where the drive goes (`docs/signals.md`).
+        // A velocity that lasts for less than half a step would carry the first step past the
+        // prescribed position (`docs/signals.md`).
         model.drive_mean_at([t, t + 0.5 * dt], &mut means);
         for (v, mean) in v.iter_mut().zip(means) {
             if v.abs() > OVERSHOOT * mean.abs() {
@@ -250,8 +255,9 @@ impl State {
         })
     }
 
-    /// Whether steps of this model can start from it: its numbers are as many as the model needs, there is a next time, and its contacts are in
-    /// order. (That they are finite shows when a step doesn't end in finite numbers.)
+    /// Whether steps of this model can start from it: it has as many numbers as the model needs,
+    /// there is a next time, and its contacts are in order. (Numbers that are not finite show at
+    /// the end of a step.)
     ///
     /// # Errors
     /// If not.
@@ -292,9 +298,9 @@ impl State {
         StateError::ContactOrder
     }
 
-    /// The step that begins now, as long as `dt` says, but never past `until` (s; infinity for no end). A step that would end within
-    /// [`STEP_ROUNDING`] of its size of `until` is a whole one, so that times which are multiples of the step but for their rounding take
-    /// whole steps.
+    /// The step that begins now: of size `dt`, but never past `until` (s; infinity for no end). A
+    /// step that would end within [`STEP_ROUNDING`] times its size of `until` keeps its full size,
+    /// so that times which are multiples of the step up to rounding take whole steps.
     #[must_use]
     pub fn next_step(&self, until: f64) -> StepSpan {
         self.step_of(self.dt, until)
@@ -322,13 +328,13 @@ impl State {
         self.clock = self.clock.going_on(self.step, self.t, span.h);
         self.step = self.step.saturating_add(1);
         self.t = self.clock.at(self.step);
-        // A step cut short ends where it was cut.
+        // A step that was cut short ends there.
         if self.t != span.end {
             self.t = span.end;
         }
     }
 
-    /// Becomes equal to `other`; allocates only where that holds more than ever before.
+    /// Becomes equal to `other`; allocates only if `other` holds more than this ever has.
     pub fn copy_from(&mut self, other: &Self) {
         let Self { step, t, dt, q, v, memory, warm, ledger, tally, clock } = other;
         (self.step, self.t, self.dt, self.clock) = (*step, *t, *dt, *clock);

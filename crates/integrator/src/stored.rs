@@ -1,5 +1,5 @@
-//! How numbers of a state are stored: as they are, but in a format for people (JSON) those that aren't finite by their names, as such
-//! formats have no numbers for them and would lose them without a word.
+//! How the numbers of a state are serialised: as they are, except that formats for people (JSON)
+//! get names for numbers that are not finite, which they would otherwise silently lose.
 
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::ser::SerializeSeq;
@@ -97,7 +97,7 @@ impl<'de> Visitor<'de> for List {
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Self::Value, A::Error> {
-        // A length from outside asks for no more room than a page.
+        // A length from outside must not make us reserve much memory.
         let mut numbers = Vec::with_capacity(items.size_hint().unwrap_or(0).min(512));
         while let Some(Number(x)) = items.next_element()? {
             numbers.push(x);

@@ -1,4 +1,4 @@
-//! What a model of something with velocities offers to a time scheme.
+//! What a subsystem offers to a time scheme.
 
 use crate::Vector;
 use teeter_contact::{Block, BlockSparse};
@@ -17,7 +17,8 @@ pub struct Size {
     pub row: usize,
 }
 
-/// The combination `mass·M + damping·C + stiffness·K` that a scheme asks for; the key of a factorisation.
+/// The combination `mass·M + damping·C + stiffness·K` that a scheme asks for: the key by which
+/// factors are kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Weights {
     /// Factor of M; without unit.
@@ -35,10 +36,10 @@ pub struct Energy {
     /// ½ vᵀM v.
     #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub kinetic: f64,
-    /// Stored in deformation.
+    /// Energy stored in deformation.
     #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub elastic: f64,
-    /// Of weight, from the origin's level.
+    /// Potential energy of weight, from the origin's level.
     #[cfg_attr(feature = "serde", serde(with = "crate::stored"))]
     pub gravity: f64,
 }
@@ -59,8 +60,8 @@ impl std::ops::AddAssign for Energy {
     }
 }
 
-/// The Jacobian rows of one point, to be filled: the point's velocity in the contact's frame is
-/// `Σ_k values[k] · v[columns[k]]`.
+/// The Jacobian rows of one point, for a subsystem to fill: the point's velocity in the contact's
+/// frame is `Σ_k values[k] · v[columns[k]]`.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Rows<'a, const D: usize> {
@@ -71,29 +72,30 @@ pub struct Rows<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Rows<'a, D> {
-    /// Rows to be filled, as long as [`Size::row`].
+    /// Rows to fill, as long as [`Size::row`].
     pub fn new(columns: &'a mut [usize], values: &'a mut [Vector<D>]) -> Self {
         Self { columns, values }
     }
 }
 
-/// What a subsystem says of itself once and for all: a model asks when it is built, and never again.
+/// Properties of a subsystem that never change: a model asks for them once, when it is built.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Traits {
     /// Whether [`Dynamics::load`] adds anything.
     pub loaded: bool,
-    /// Whether C is other than zero.
+    /// Whether C is not zero.
     pub damped: bool,
-    /// Whether M, C or K change with the coordinates, so that a step has to call [`Compliance::update`].
+    /// Whether M, C or K change with the coordinates, so that a step has to call
+    /// [`Compliance::update`].
     pub follows_coordinates: bool,
-    /// The velocities that are prescribed, by number, in rising order: no force changes their motion. The subsystem's mass, damping and
-    /// stiffness couple them to the others as [`Dynamics::apply`] says.
+    /// Numbers of the prescribed velocities, ascending: no force changes their motion.
+    /// [`Dynamics::apply`] gives their coupling to the others by mass, damping and stiffness.
     pub driven: Vec<usize>,
-    /// The velocities that are always 0, by number, in rising order: of what a support holds, say. Rows and columns of W are 0 there,
-    /// whatever [`Dynamics::apply`] gives.
+    /// Numbers of the velocities that are always 0, ascending, such as those that a support holds.
+    /// Rows and columns of W are 0 there, whatever [`Dynamics::apply`] gives.
     pub held: Vec<usize>,
-    /// The least that counts as the scene's energy scale on account of it, J; m g R for a block.
+    /// Its share of the smallest energy scale of the scene, J; m g R for a block.
     pub energy_scale: f64,
 }
 
@@ -147,39 +149,44 @@ impl Traits {
     }
 }
 
-/// A model of something with velocities that can be hit: blocks, a beam, a frame of someone else's. It has no state:
-/// `q` and `v` are its own slices of the [`State`](crate::State).
+/// A mechanical model that contacts can act on: blocks, a beam, or a body of your own. It has no
+/// state: `q` and `v` are its own slices of the [`State`](crate::State).
 ///
-/// It plays two roles: [`Dynamics`] says how it moves, [`Bodies`] where its bodies are. Whoever plays both is a subsystem.
+/// It has two roles: [`Dynamics`] says how it moves, [`Bodies`] where its bodies are. Every type
+/// that implements both is a subsystem.
 pub trait Subsystem<const D: usize>: Dynamics<D> + Bodies<D> {}
 
 impl<const D: usize, S: Dynamics<D> + Bodies<D> + ?Sized> Subsystem<D> for S {}
 
-/// How a subsystem moves: forces, products with M, C and K, energies, a factor. What it offers are values at the coordinates that a scheme
-/// asks for; formulas of time integration are the scheme's. Methods that add into their last argument say so.
+/// How a subsystem moves: forces, products with M, C and K, energies, a factor. It gives values at
+/// the coordinates that a scheme asks for; formulas of time integration belong to the scheme.
+/// Methods that add to their last argument say so.
 pub trait Dynamics<const D: usize>: Send + Sync {
     /// Its sizes; they never change.
     fn size(&self) -> Size;
 
-    /// What it says of itself once and for all.
+    /// Its properties; they never change.
     fn traits(&self) -> Traits {
         Traits::free()
     }
 
-    /// Adds the internal forces at (q, v) to `f`: elastic, viscous and weight, `−∂V/∂q − C v`. N (N·m for couples).
+    /// Adds the internal forces at (q, v) to `f`: elastic, viscous and weight, `−∂V/∂q − C v`. N
+    /// (N·m for couples).
     fn internal_force(&self, q: &[f64], v: &[f64], f: &mut [f64]);
 
-    /// Adds the external loads P(t) to `f`: all forces but weight that don't come from the motion. A static start takes those of its time;
-    /// steps take [`Dynamics::mean_load`].
+    /// Adds the external loads P(t) to `f`: all forces but weight that don't depend on the motion.
+    /// A static start takes those at its time; steps take [`Dynamics::mean_load`].
     fn load(&self, t: f64, f: &mut [f64]) {
         let _ = (t, f);
     }
 
-    /// Adds the mean of P over the time from `times[0]` to `times[1]` (s), which is later, to `f`: what a step takes, so that no impulse is
-    /// lost that falls between its ends. `scratch` is as long as the velocities, and what is in it means nothing.
+    /// Adds the mean of P over the time from `times[0]` to the later `times[1]` (s) to `f`. Steps
+    /// use this, so that no impulse between their ends is lost. `scratch` is as long as the
+    /// velocities, with arbitrary content.
     ///
-    /// The default takes two Gauss points, exact for loads that are cubic in time; what is shorter than a step, jumps or has kinks in it
-    /// needs a mean of its own, such as [`Signal::mean`](crate::Signal::mean).
+    /// The default takes two Gauss points, which is exact for loads that are cubic in time. A load
+    /// that jumps, has kinks or is shorter than a step needs a mean of its own, such as
+    /// [`Signal::mean`](crate::Signal::mean).
     fn mean_load(&self, times: [f64; 2], scratch: &mut [f64], f: &mut [f64]) {
         let (middle, away) = (0.5 * (times[0] + times[1]), 0.5 * (times[1] - times[0]) / 3.0_f64.sqrt());
         for t in [middle - away, middle + away] {
@@ -189,19 +196,21 @@ pub trait Dynamics<const D: usize>: Send + Sync {
         }
     }
 
-    /// Writes the prescribed velocities at time `t` into their places in `v`, and leaves the others alone.
+    /// Writes the prescribed velocities at time `t` (s) into their places in `v`, and leaves the
+    /// others unchanged.
     fn drive(&self, t: f64, v: &mut [f64]) {
         let _ = (t, v);
     }
 
-    /// Writes the means of the prescribed velocities over the time from `times[0]` to `times[1]` (s), which is later, into their places in
-    /// `v`, and leaves the others alone. The default takes them at the middle.
+    /// Writes the means of the prescribed velocities over the time from `times[0]` to the later
+    /// `times[1]` (s) into their places in `v`, and leaves the others unchanged. The default takes
+    /// the velocities at the middle of that time.
     fn drive_mean(&self, times: [f64; 2], v: &mut [f64]) {
         self.drive(0.5 * (times[0] + times[1]), v);
     }
 
-    /// vᵀC v, the power that damping takes, W. The default takes the product, in `scratch`, as long as the velocities; a subsystem that can
-    /// sum it up as it goes does better.
+    /// vᵀC v, the power that damping dissipates, W. The default multiplies by C, in `scratch`,
+    /// which is as long as the velocities; override it if the sum can be had for less.
     fn damping_power(&self, q: &[f64], v: &[f64], scratch: &mut [f64]) -> f64 {
         scratch.fill(0.0);
         self.apply(Weights { damping: 1.0, ..Weights::default() }, q, v, scratch);
@@ -211,7 +220,9 @@ pub trait Dynamics<const D: usize>: Send + Sync {
     /// Adds `(mass·M + damping·C + stiffness·K) x` to `y`.
     fn apply(&self, w: Weights, q: &[f64], x: &[f64], y: &mut [f64]);
 
-    /// `out = q ⊕ τ v`: where velocities `v` lead in the time `tau` (s); not finite where a velocity isn't. The default is the sum.
+    /// `out = q ⊕ τ v`: the coordinates after moving with velocities `v` for the time `tau` (s). A
+    /// velocity that is not finite must give a coordinate that isn't. The default is the sum q + τ
+    /// v.
     fn retract(&self, q: &[f64], v: &[f64], tau: f64, out: &mut [f64]) {
         for ((out, q), v) in out.iter_mut().zip(q).zip(v) {
             *out = q + tau * v;
@@ -221,80 +232,88 @@ pub trait Dynamics<const D: usize>: Send + Sync {
     /// The energies at (q, v).
     fn energy(&self, q: &[f64], v: &[f64]) -> Energy;
 
-    /// Factorises `mass·M + damping·C + stiffness·K`, without the rows and columns of the [driven and held](Traits) velocities.
+    /// Factorises `mass·M + damping·C + stiffness·K`, without the rows and columns of the [driven
+    /// and held](Traits) velocities.
     ///
     /// # Errors
     /// If the matrix is not positive definite.
     fn factor(&self, w: Weights, q: &[f64]) -> Result<Box<dyn Compliance<D>>, FactorError>;
 
-    /// What a linearly implicit step, such as that of the θ schemes, can make use of. `None`, the default, is always right for a potential
-    /// that is quadratic.
+    /// Extra information for a linearly implicit step, such as that of the θ schemes. `None`, the
+    /// default, is always right for a quadratic potential.
     fn linearised(&self) -> Option<&dyn Linearised> {
         None
     }
 }
 
-/// What a subsystem offers to steps that have (M + hθC + h²θ²K)⁻¹ in them, K that at q⁰ + hθv⁰.
+/// Extra information for steps that use (M + hθC + h²θ²K)⁻¹, with K at q⁰ + hθv⁰.
 pub trait Linearised: Send + Sync {
-    /// α, 1/s, where C is αM and nothing else, and K doesn't change with the coordinates; else 0. Such a step has αM in its matrix and can do
-    /// without the product: it then asks for [`Linearised::conservative_force`].
+    /// α, 1/s, if C is αM and nothing else, and K doesn't change with the coordinates; else 0. Such
+    /// a step has αM in its matrix and needs no product with C: it asks for
+    /// [`Linearised::conservative_force`] instead.
     fn mass_damping(&self) -> f64 {
         0.0
     }
 
-    /// Adds the internal forces without the viscous one: asked for only where [`Linearised::mass_damping`] is not 0.
+    /// Adds the internal forces without the viscous one to `f`, N; called only if
+    /// [`Linearised::mass_damping`] is not 0.
     fn conservative_force(&self, q: &[f64], f: &mut [f64]) {
         let _ = (q, f);
     }
 
-    /// What such a step of length `h` (s) with θ = ½ conserves on top of [`Dynamics::energy`] where no force but its own acts, J: 0 for a
-    /// potential that is quadratic. For any other, what the step keeps constant is an energy that differs from the true one by something
-    /// of order h²; the account books the change of that as numerical.
+    /// The difference between the energy that such a step of length `h` (s) with θ = ½ conserves,
+    /// where only the subsystem's own forces act, and [`Dynamics::energy`], J. It is 0 for a
+    /// quadratic potential and of order h² for any other; the energy account enters its change as
+    /// numerical.
     fn modified_energy(&self, h: f64, q: &[f64], v: &[f64]) -> f64 {
         let _ = (h, q, v);
         0.0
     }
 }
 
-/// Where a subsystem's bodies are, and how their points move with its velocities. Bodies are numbered within the subsystem.
+/// Where a subsystem's bodies are, and how their points move with its velocities. Bodies are
+/// numbered within the subsystem.
 pub trait Bodies<const D: usize>: Send + Sync {
-    /// Places points fixed in a body of its: `out[k]` is where `local[k]` is in the world.
+    /// Places points that are fixed in one of its bodies: `out[k]` is where `local[k]` is in the
+    /// world.
     fn place(&self, body: u32, q: &[f64], local: &[Vector<D>], out: &mut [Vector<D>]);
 
-    /// The point of a body's surface that answers to the world's point `at`; `None` where the body has no surface or it
-    /// doesn't reach. See [`teeter_detect::Geometry`].
+    /// The point of a body's surface that belongs to the world's point `at`, its foot; `None` where
+    /// the body has no surface, or it doesn't extend that far. See [`teeter_detect::Geometry`].
     fn surface(&self, body: u32, q: &[f64], kinematics: Kinematics, at: &Vector<D>) -> Option<SurfacePoint<D>> {
         let _ = (body, q, kinematics, at);
         None
     }
 
-    /// Whether a body has a surface, so that [`Bodies::surface`] ever finds a point. The default has none: a model is refused whose detector
-    /// looks for one.
+    /// Whether a body has a surface, so that [`Bodies::surface`] can find points. The default is
+    /// `false`: a model whose detector looks for one is refused then.
     fn has_surface(&self, body: u32) -> bool {
         let _ = body;
         false
     }
 
-    /// A half space that holds all points whose gap to a body's surface is at most `margin` (m); `None`, the default, where none is known.
+    /// A half space that contains all points whose gap to a body's surface is at most `margin` (m);
+    /// `None`, the default, if none is known.
     fn reach(&self, body: u32, q: &[f64], margin: f64) -> Option<HalfSpace<D>> {
         let _ = (body, q, margin);
         None
     }
 
-    /// Fills the Jacobian rows of a body's point (in the coordinates that detection used for it) in `frame`, and returns
-    /// how many columns it took; what it finds in the places that it is to fill means nothing. The point's velocity is rows · v, those that are
-    /// prescribed among them.
+    /// Fills the Jacobian rows of a body's point (in the body coordinates that detection uses) in
+    /// `frame`, and returns the number of columns used. The previous content of `out` is arbitrary.
+    /// The point's velocity is rows · v, with prescribed velocities included in v.
     fn rows(&self, body: u32, q: &[f64], point: &Vector<D>, frame: &Frame<D>, out: &mut Rows<'_, D>) -> usize;
 
-    /// J̇ v of a body's point, in `frame` held still, m/s²: the part of its acceleration that comes from the velocities, rows · v̇ being the
-    /// other. `None`, the default, where it isn't known: a scheme that needs accelerations refuses the subsystem then.
+    /// J̇ v of a body's point, with `frame` held fixed, m/s²: the part of its acceleration that
+    /// comes from the velocities; rows · v̇ is the other. `None`, the default, if it isn't known: a
+    /// scheme that needs accelerations then refuses the subsystem.
     fn bias(&self, body: u32, q: &[f64], v: &[f64], point: &Vector<D>, frame: &Frame<D>) -> Option<Vector<D>> {
         let _ = (body, q, v, point, frame);
         None
     }
 }
 
-/// xᵀy, in four sums at once: one after the other they would wait for each addition.
+/// xᵀy in four independent sums: in a single one each addition would wait for the last.
 pub(crate) fn dot(x: &[f64], y: &[f64]) -> f64 {
     let ((x, x_rest), (y, y_rest)) = (x.as_chunks::<4>(), y.as_chunks::<4>());
     let mut sums = [0.0; 4];
@@ -307,7 +326,7 @@ pub(crate) fn dot(x: &[f64], y: &[f64]) -> f64 {
     (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
-/// A matrix that can't be factorised.
+/// Why a matrix can't be factorised.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{mass} M + {damping} C + {stiffness} K can't be factorised: {reason}", mass = weights.mass, damping = weights.damping, stiffness = weights.stiffness)]
 pub struct FactorError {
@@ -317,10 +336,10 @@ pub struct FactorError {
     pub reason: String,
 }
 
-/// `W = (mass·M + damping·C + stiffness·K)⁻¹` of one subsystem: W_be of the source paper for a beam, diag(1/m, 1/m, 1/I)
-/// for a block.
+/// `W = (mass·M + damping·C + stiffness·K)⁻¹` of one subsystem: W_be of the source paper for a
+/// beam, diag(1/m, 1/m, 1/I) for a block.
 pub trait Compliance<const D: usize>: Send + Sync {
-    /// The combination that it is the inverse of.
+    /// The combination whose inverse this is.
     fn weights(&self) -> Weights;
 
     /// Becomes the inverse of another combination; allocates nothing.
@@ -329,16 +348,18 @@ pub trait Compliance<const D: usize>: Send + Sync {
     /// If the matrix is not positive definite.
     fn refactor(&mut self, w: Weights, q: &[f64]) -> Result<(), FactorError>;
 
-    /// Becomes the inverse of the same combination at coordinates `q`, whatever it was updated to before; allocates nothing. A θ step
-    /// calls it once, with the coordinates q⁰ + hθv⁰ at which it takes the internal forces, if the subsystem
-    /// [follows its coordinates](Traits). Where the matrix is not positive definite there, solutions have to be
-    /// NaN: the step then ends as diverged.
+    /// Becomes the inverse of the same combination at coordinates `q`, whatever earlier updates
+    /// there were; allocates nothing. A scheme calls it before it solves, with the coordinates at
+    /// which it takes the internal forces, if the subsystem's matrices [follow its
+    /// coordinates](Traits). If the matrix is not positive definite there, solutions must be NaN:
+    /// the step then ends as diverged.
     fn update(&mut self, q: &[f64]) {
         let _ = q;
     }
 
-    /// Becomes the inverse with the tangent at `q` for K, the derivative of the internal force: what a search for an
-    /// equilibrium goes by, where a step's [`Compliance::update`] serves its energy. The default is that.
+    /// Becomes the inverse with K the tangent at `q`, the derivative of the internal force. The
+    /// search for an equilibrium needs this, while [`Compliance::update`] may take another K for
+    /// the sake of a step's energy. The default calls that.
     ///
     /// # Errors
     /// If the matrix is not positive definite.
@@ -347,32 +368,34 @@ pub trait Compliance<const D: usize>: Send + Sync {
         Ok(())
     }
 
-    /// Whether W is diagonal, and [`Compliance::respond`] needs no [`Compliance::couple`] of the same rows before it: contacts that share no velocity then
-    /// don't feel each other, and are coupled island by island where they are many. `false`, the default, is always right.
+    /// Whether W is diagonal, and [`Compliance::respond`] works without a [`Compliance::couple`] of
+    /// the same rows before it. Contacts that share no velocity are then uncoupled, and many of
+    /// them are solved island by island. `false`, the default, is always right.
     fn is_diagonal(&self) -> bool {
         false
     }
 
-    /// `f ← W f`; zero for [driven and held](Traits) velocities, whose rows and columns of W are
+    /// `f ← W f`; zero for [driven and held](Traits) velocities, as their rows and columns of W are
     /// zero.
     fn solve(&mut self, f: &mut [f64]);
 
-    /// Adds `J_i W J_jᵀ` for all pairs of rows to the Delassus operator. `scratch` is as long as the subsystem's
-    /// velocities. The default solves once for each direction in which a contact can push; a subsystem whose W is known in
-    /// closed form does better.
+    /// Adds `J_i W J_jᵀ` for all pairs of rows to the Delassus operator. `scratch` is as long as
+    /// the subsystem's velocities. The default solves once for each direction in which a contact
+    /// can push; override it if W is known in closed form.
     fn couple(&mut self, rows: &PartRows<'_, D>, scratch: &mut [f64], h: &mut Coupling<'_, D>) {
         couple_by_solving(rows, scratch, h, |f| self.solve(f), |_, _, _| {});
     }
 
-    /// Adds `W Jᵀ p` to the subsystem's velocities `v`, with p the impulses of all contacts of the model (N·s), and the rows those that
-    /// were [coupled](Compliance::couple) last. `scratch` is as long as `v`. The default solves once; who keeps
-    /// what was solved for in coupling need not.
+    /// Adds `W Jᵀ p` to the subsystem's velocities `v`, where p are the impulses of all contacts of
+    /// the model (N·s), and the rows those that were [coupled](Compliance::couple) last. `scratch`
+    /// is as long as `v`. The default solves once; override it if `couple` keeps its solutions.
     fn respond(&mut self, rows: &PartRows<'_, D>, p: &[Vector<D>], scratch: &mut [f64], v: &mut [f64]) {
         respond_by_solving(rows, p, scratch, v, |f| self.solve(f));
     }
 }
 
-/// Couples the rows by one solution for each direction in which a contact can push; shows each to `keep`, with contact and direction.
+/// Couples the rows by one solve for each direction in which a contact can push, and passes each
+/// solution to `keep`, with contact and direction.
 pub(crate) fn couple_by_solving<const D: usize>(
     rows: &PartRows<'_, D>,
     scratch: &mut [f64],
@@ -403,7 +426,7 @@ pub(crate) fn couple_by_solving<const D: usize>(
     }
 }
 
-/// Adds W Jᵀ p to `v` by one solution.
+/// Adds W Jᵀ p to `v` by one solve.
 pub(crate) fn respond_by_solving<const D: usize>(
     rows: &PartRows<'_, D>,
     p: &[Vector<D>],
@@ -417,8 +440,8 @@ pub(crate) fn respond_by_solving<const D: usize>(
     v.iter_mut().zip(scratch.iter()).for_each(|(v, dv)| *v += dv);
 }
 
-/// The one direction in which a point can be pushed, if its entries are all parallel: so for a beam that is touched on its
-/// axis, which moves up and down only, whatever the contact's frame.
+/// The only direction in which a point can be pushed, if all its entries are parallel. So it is for
+/// a beam touched on its axis, which moves up and down only, whatever the contact's frame.
 fn common_direction<const D: usize>(values: &[Vector<D>]) -> Option<Vector<D>> {
     let longest = values.iter().max_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()))?;
     let direction = longest.try_normalize(0.0)?;
@@ -426,7 +449,7 @@ fn common_direction<const D: usize>(values: &[Vector<D>]) -> Option<Vector<D>> {
     values.iter().all(|value| (value - direction * value.dot(&direction)).norm() <= rounding).then_some(direction)
 }
 
-/// Where the rows of one side of a contact lie in the arena.
+/// Where the rows of one side of a contact are stored.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Span {
     pub(crate) part: usize,
@@ -444,15 +467,15 @@ pub struct PartRows<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> PartRows<'a, D> {
-    /// The rows: (contact, columns within the subsystem, entries); twice for a contact within the subsystem. The entries
-    /// carry the sign of their side.
+    /// The rows: (contact, columns within the subsystem, entries). A contact between two bodies of
+    /// the subsystem comes twice. Entries have the sign of their side.
     #[inline]
     pub fn iter(&self) -> impl Iterator<Item = (usize, &'a [usize], &'a [Vector<D>])> + use<'a, D> {
         RowIter { rows: *self, side: 0 }
     }
 }
 
-/// By hand: `flat_map` over contacts and sides took a tenth of a step.
+/// Written by hand, as `flat_map` over contacts and sides took a tenth of a step's time.
 struct RowIter<'a, const D: usize> {
     rows: PartRows<'a, D>,
     /// Twice the contact's number, and 1 for its second side.
@@ -486,7 +509,8 @@ impl<const D: usize> PartRows<'_, D> {
         (span.part == self.part && span.len > 0).then(|| (&self.columns[range.clone()], &self.values[range]))
     }
 
-    /// How many contacts there are, those that don't act on the subsystem among them: numbers of contacts are below it.
+    /// How many contacts there are, those that don't act on the subsystem among them: numbers of
+    /// contacts are below it.
     #[must_use]
     pub fn contacts(&self) -> usize {
         self.spans.len()
@@ -498,7 +522,8 @@ impl<const D: usize> PartRows<'_, D> {
         self.iter().next().is_none()
     }
 
-    /// Adds W Jᵀ p to `v` where W is diagonal, `inverse` its entries, and 0 beyond them: what [`Compliance::respond`] is then.
+    /// Adds W Jᵀ p to `v` for a diagonal W with entries `inverse`, and 0 beyond them:
+    /// [`Compliance::respond`] of such a W.
     pub fn add_diagonal_response(&self, inverse: &[f64], p: &[Vector<D>], v: &mut [f64]) {
         for (contact, columns, values) in self.iter() {
             let p = &p[contact];
@@ -510,7 +535,8 @@ impl<const D: usize> PartRows<'_, D> {
         }
     }
 
-    /// Adds Jᵀ p to `f`, as long as the subsystem's velocities, with p the impulses of all contacts of the model, N·s.
+    /// Adds Jᵀ p to `f`, as long as the subsystem's velocities, with p the impulses of all contacts
+    /// of the model, N·s.
     pub fn add_generalised_impulse(&self, p: &[Vector<D>], f: &mut [f64]) {
         for (contact, columns, values) in self.iter() {
             for (&c, value) in columns.iter().zip(values) {
@@ -520,7 +546,7 @@ impl<const D: usize> PartRows<'_, D> {
     }
 }
 
-/// The Delassus operator of a step while its subsystems add to it.
+/// The Delassus operator while subsystems add to it.
 #[derive(Debug)]
 pub struct Coupling<'a, const D: usize>(Blocks<'a, D>);
 
@@ -548,7 +574,8 @@ impl<const D: usize> Coupling<'_, D> {
     pub fn add(&mut self, i: usize, j: usize, block: &Block<D>) {
         match &mut self.0 {
             Blocks::Dense { contacts, blocks } => blocks[i * *contacts + j] += block,
-            // Contacts that share nothing have no place in the pattern, and what they feel of each other is 0.
+            // Contacts that share nothing have no place in the pattern, and what they feel of each
+            // other is 0.
             Blocks::Sparse(sparse) => {
                 if let Some(sum) = sparse.block_mut(i, j) {
                     *sum += block;

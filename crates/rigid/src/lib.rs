@@ -1,7 +1,8 @@
-//! Plane rigid bodies: mass properties, pose, velocity, and the motion and Jacobian of a point fixed in the body.
+//! Plane rigid bodies: mass properties, pose, velocity, and the motion and Jacobian of a point
+//! fixed in the body.
 //!
-//! Configuration `q = (X, Y, φ)`: mass centre in the world (m) and angle (rad, counter-clockwise); velocity
-//! `v = (Ẋ, Ẏ, φ̇)`. The mass matrix `diag(m, m, I)` is constant (`docs/theory.md` §2).
+//! Configuration `q = (X, Y, φ)`: mass centre in the world (m) and angle (rad, counter-clockwise);
+//! velocity `v = (Ẋ, Ẏ, φ̇)`. The mass matrix `diag(m, m, I)` is constant (`docs/theory.md` §2).
 //!
 //! ```
 //! use nalgebra::{Vector2, Vector3};
@@ -47,7 +48,7 @@ pub struct Rectangle {
 }
 
 impl Rectangle {
-    /// Names of the corners, in the order of [`Rectangle::corners`], of the body as drawn upright.
+    /// Names of the corners of the upright body, in the order of [`Rectangle::corners`].
     pub const CORNER_NAMES: [&'static str; 4] = ["bottom-left", "bottom-right", "top-right", "top-left"];
 
     /// A rectangle of width b and height H, m.
@@ -83,7 +84,7 @@ impl Rectangle {
         0.5 * self.width.hypot(self.height)
     }
 
-    /// The critical angle α = atan(b/H), rad: tilted further, the rectangle overturns.
+    /// The critical angle α = atan(b/H), rad: beyond it the rectangle overturns.
     #[must_use]
     pub fn critical_angle(&self) -> f64 {
         self.width.atan2(self.height)
@@ -100,7 +101,7 @@ pub struct MassProperties {
 }
 
 impl MassProperties {
-    /// Mass and moment of inertia as given.
+    /// The given mass (kg) and moment of inertia (kg·m²).
     ///
     /// # Errors
     /// If one is not positive and finite.
@@ -108,7 +109,8 @@ impl MassProperties {
         Ok(Self { mass: positive("the mass", mass)?, inertia: positive("the moment of inertia", inertia)? })
     }
 
-    /// Of a homogeneous cuboid: m = ρbHd, I = m(b² + H²)/12; depth d in m, density ρ in kg/m³.
+    /// Mass and moment of inertia of a homogeneous cuboid: m = ρbHd, I = m(b² + H²)/12; depth d in
+    /// m, density ρ in kg/m³.
     ///
     /// # Errors
     /// If depth or density (or a result that over- or underflows) is not positive and finite.
@@ -133,7 +135,7 @@ impl MassProperties {
     }
 }
 
-/// Where a body is: its mass centre and its rotation, the sine and cosine taken once.
+/// The pose of a body: its mass centre and its rotation, with sine and cosine computed once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     centre: Vector2<f64>,

@@ -1,4 +1,5 @@
-//! A beam as a subsystem: the adapter above `teeter-beam`, with the contact kinematics of `docs/theory.md` §3.
+//! A beam as a subsystem: the adapter above `teeter-beam`, with the contact kinematics of
+//! `docs/theory.md` §3.
 
 mod compliance;
 pub(crate) mod forces;
@@ -19,10 +20,10 @@ use std::sync::Arc;
 use teeter_beam::{Beam, Deflection, Load, MatrixWeights};
 use teeter_detect::{Frame, HalfSpace, Kinematics, SurfacePoint};
 
-/// Which fibre of a beam is its contact surface.
+/// The fibre of a beam that is its contact surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BeamSurface {
-    /// The axis: contact forces do no work on the rotation of the section.
+    /// The axis: contact forces do no work on the rotation of sections.
     Axis,
     /// The top fibre, half a thickness (m) above the axis.
     Top {
@@ -42,8 +43,9 @@ impl BeamSurface {
 
 /// A straight level beam in the world.
 ///
-/// Its coordinates are those of [`Beam`]; where its supports [move](Self::with_motion), deflections are relative to
-/// them, and the displacements x and y of the supports follow as two more, prescribed ones.
+/// Its coordinates are those of [`Beam`]. If its supports [move](Self::with_motion), deflections
+/// are relative to them, and the displacements x and y of the supports follow as two more,
+/// prescribed coordinates.
 pub struct BeamBody {
     beam: Arc<Beam>,
     position: Vector2<f64>,
@@ -78,23 +80,25 @@ impl BeamBody {
         Self { beam, position, surface, loads: Vec::new(), supports: None, held, backend: WBackend::Auto, weight: None }
     }
 
-    /// The same beam under one more load.
+    /// Adds a load.
     #[must_use]
     pub fn with_load(mut self, load: Box<dyn Load>) -> Self {
         self.loads.push(load);
         self
     }
 
-    /// The same beam on supports that move together, by these displacements in x and y. Its damping acts on the motion
-    /// relative to them, and the force that moves them carries their share of all loads on the beam.
+    /// Makes the supports move together, by these motions in x and y. The beam's damping acts on
+    /// the motion relative to them, and the force that moves them carries the supports' share of
+    /// all loads on the beam.
     #[must_use]
     pub fn with_motion(mut self, motion: [Motion; 2]) -> Self {
         self.supports = Some(MovingSupports::new(&self.beam, motion));
         self
     }
 
-    /// The same beam with gravity (m/s², x and y) acting on it and on the masses that it carries: its deflections then count
-    /// from the straight axis. The potential belongs to the beam ([`Energy::gravity`]), so that no load does work.
+    /// Lets gravity (m/s², x and y) act on the beam and on the masses that it carries; deflections
+    /// then count from the straight axis. Weight enters as a potential ([`Energy::gravity`]), not
+    /// as a load that does work.
     #[must_use]
     pub fn with_weight(mut self, gravity: Vector2<f64>) -> Self {
         let (mut force, supports) = weight(&self.beam, gravity);
@@ -103,15 +107,15 @@ impl BeamBody {
         self
     }
 
-    /// The same beam with its W held in another way.
+    /// Chooses how W is stored.
     #[must_use]
     pub fn with_backend(mut self, backend: WBackend) -> Self {
         self.backend = backend;
         self
     }
 
-    /// The displacements of its supports at time `t` (s) in closed form, m; at t = 0 those to start from. None for supports
-    /// that stand still.
+    /// The displacements of its supports at time `t` (s) in closed form, m; at t = 0 those to start
+    /// from. Empty for supports that stand still.
     #[must_use]
     pub fn displacements(&self, t: f64) -> Vec<f64> {
         self.supports.as_ref().map_or_else(Vec::new, |supports| supports.displacements(t).to_vec())
@@ -133,7 +137,7 @@ impl BeamBody {
         let n = self.beam.dofs();
         self.beam.add_elastic_force(&q[..n], &mut f[..n]);
         if let Some(weight) = &self.weight {
-            // Coordinates of supports are there only where these move.
+            // The supports have coordinates only if they move.
             f.iter_mut().zip(&weight.force).for_each(|(f, weight)| *f += weight);
         }
     }
@@ -149,8 +153,8 @@ impl BeamBody {
 pub(crate) fn weight(beam: &Beam, gravity: Vector2<f64>) -> (Vec<f64>, [f64; 2]) {
     let n = beam.dofs();
     let mut force = vec![0.0; n];
-    // Finite and as long as it must be, so there is no error to pass on; of a gravity that isn't finite, the state's check
-    // tells.
+    // The vector has the right length, so there is no error to pass on; the state's check reports a
+    // gravity that isn't finite.
     let _ = beam.add_self_weight(gravity.y, &mut force);
     if beam.has_axial_dofs() {
         let mut along = vec![0.0; n];

@@ -35,8 +35,9 @@ pub enum BlockCoordinate {
     Turn,
 }
 
-/// A load on a block: a force through its mass centre, in world axes, and a couple. (A force through another point of the
-/// block is this force and a couple that depends on the block's angle, so no load P(t).)
+/// A load on a block: a force through its mass centre, in world axes, and a couple. (A force
+/// through another point also gives a couple that depends on the block's angle, so it isn't a load
+/// P(t).)
 #[derive(Clone, Debug)]
 pub struct BlockLoad {
     /// Number of the block.
@@ -45,17 +46,18 @@ pub struct BlockLoad {
     pub force: Vector2<f64>,
     /// The couple, N·m, counter-clockwise positive.
     pub couple: f64,
-    /// What both are multiplied by.
+    /// The signal by which both are multiplied.
     pub signal: Arc<dyn Signal>,
 }
 
-/// All blocks of a scene: three coordinates each, (X, Y, φ), under their weight, loads, and prescribed motion.
+/// All blocks of a scene, with three coordinates each, (X, Y, φ), under weight, loads and
+/// prescribed motion.
 #[derive(Clone, Debug)]
 pub struct Blocks {
     blocks: Vec<Block>,
     gravity: Vector2<f64>,
     loads: Vec<BlockLoad>,
-    /// The prescribed velocities in rising order, and how they move.
+    /// Numbers of the prescribed velocities, ascending, and their motions.
     driven: Vec<usize>,
     motions: Vec<Motion>,
 }
@@ -67,10 +69,10 @@ impl Blocks {
         Self { blocks, gravity, loads: Vec::new(), driven: Vec::new(), motions: Vec::new() }
     }
 
-    /// The same with one more load.
+    /// Adds a load.
     ///
     /// # Errors
-    /// If the block isn't there, or force or couple are not finite.
+    /// If there is no such block, or force or couple are not finite.
     pub fn with_load(mut self, load: BlockLoad) -> Result<Self, ModelError> {
         self.check_block(load.block)?;
         if !(load.force.iter().all(|f| f.is_finite()) && load.couple.is_finite()) {
@@ -85,12 +87,12 @@ impl Blocks {
         if block < blocks { Ok(()) } else { Err(ModelError::Block { block, blocks }) }
     }
 
-    /// The same with one coordinate of a block prescribed; its others stay free. It starts from where
-    /// the state has it, so of a given displacement only the changes count. A later motion of the same coordinate takes the place of the
-    /// earlier.
+    /// Prescribes the motion of one coordinate of a block; the others stay free. The motion starts
+    /// from the coordinate's value in the state, so only changes of a given displacement count. A
+    /// later motion of the same coordinate replaces an earlier one.
     ///
     /// # Errors
-    /// If the block isn't there.
+    /// If there is no such block.
     pub fn with_motion(
         mut self,
         block: usize,
@@ -215,7 +217,8 @@ impl Bodies<2> for Blocks {
     }
 }
 
-/// The acceleration of a point of a body that turns at a constant rate ω about its centre, −ω² r, m/s².
+/// The acceleration of a point of a body that turns at a constant rate ω about its centre, −ω² r,
+/// m/s².
 pub(crate) fn turning_bias(pose: &Vector3<f64>, omega: &f64, point: &Vector2<f64>) -> Vector2<f64> {
     Pose::new(pose).rotate(point) * -(omega * omega)
 }
@@ -299,7 +302,7 @@ impl Compliance<2> for BlockCompliance {
         }
         for (i, columns_i, values_i) in rows.iter() {
             for (j, columns_j, values_j) in rows.iter() {
-                // Contacts of different blocks don't meet here: W is diagonal.
+                // Contacts of different blocks aren't coupled: W is diagonal.
                 if columns_i[0] == columns_j[0] {
                     let mut block = Matrix2::zeros();
                     for ((&c, a), b) in columns_i.iter().zip(values_i).zip(values_j) {

@@ -1,4 +1,5 @@
-//! Rigid ground: a half plane that stands still, and has no velocities, or moves as prescribed, and has three.
+//! Rigid ground: a half plane that stands still, without velocities, or moves as prescribed, with
+//! three.
 
 use crate::{
     Bodies, Compliance, Coupling, Dynamics, Energy, FactorError, Motion, PartRows, Rows, Size, Traits, Vector, Weights,
@@ -9,9 +10,10 @@ use teeter_rigid::Pose;
 
 /// The half plane below a straight line.
 ///
-/// Its distance from a point is the perpendicular one, and the foot the orthogonal projection. Moving ground has the
-/// coordinates (x, y, β): the place of the point that is the origin when nothing is displaced, and its slope. Their
-/// velocities are prescribed; they have no mass, so all that moves the ground is what its contacts ask for.
+/// Distances from it are perpendicular, and the foot is the orthogonal projection. Moving ground
+/// has the coordinates (x, y, β): the place of the point that is at the origin when nothing is
+/// displaced, and its slope. Their velocities are prescribed. The ground has no mass, so the forces
+/// that move it are those of its contacts alone.
 #[derive(Clone, Debug)]
 pub struct Ground(Form);
 
@@ -29,21 +31,22 @@ impl Ground {
         Self(Form::Level(level))
     }
 
-    /// Ground through the origin with slope `incline` (rad, counter-clockwise positive): y = x tan β.
+    /// Ground through the origin with slope `incline` (rad, counter-clockwise positive): y = x tan
+    /// β.
     #[must_use]
     pub fn inclined(incline: f64) -> Self {
         Self(Form::Inclined(Pose::new(&Vector3::new(0.0, 0.0, incline))))
     }
 
-    /// Ground with slope `incline` (rad) through the origin that moves: displacements x and y (m), and a turn about that
-    /// point (rad, counter-clockwise positive) on top of the incline.
+    /// Ground with slope `incline` (rad) through the origin that moves: displacements x and y (m),
+    /// and a turn about that point (rad, counter-clockwise positive) on top of the incline.
     #[must_use]
     pub fn moving(incline: f64, motion: [Motion; 3]) -> Self {
         Self(Form::Moving { incline, motion })
     }
 
-    /// Its coordinates at time `t` (s) by the given displacements in closed form; at t = 0 those to start from. None for
-    /// ground that stands still.
+    /// Its coordinates at time `t` (s) by the given displacements, in closed form; at t = 0 those
+    /// to start from. Empty for ground that stands still.
     #[must_use]
     pub fn coordinates(&self, t: f64) -> Vec<f64> {
         let Form::Moving { incline, motion } = &self.0 else { return Vec::new() };
@@ -58,7 +61,7 @@ impl Ground {
         }
     }
 
-    /// Where the body frame of its surface is: along the surface, and out of it.
+    /// The pose of its body frame, whose axes point along the surface and out of it.
     fn pose(&self, q: &[f64]) -> Pose {
         match (&self.0, q) {
             (Form::Inclined(pose), _) => *pose,
@@ -164,7 +167,7 @@ impl Bodies<2> for Ground {
     }
 }
 
-/// The compliance of what no force moves.
+/// The compliance of a body that no force moves: zero.
 struct Immovable(Weights);
 
 impl<const D: usize> Compliance<D> for Immovable {

@@ -4,8 +4,9 @@
 //! q = Φ η:   η̈_i + d_i η̇_i + ω_i² η_i = φ_iᵀ P + φ_i-rows of the contacts        w(x) = Σ φ_i(x) η_i
 //! ```
 //!
-//! The shapes Φ are those of a [`ModalBasis`], modes and static corrections alike. Contact kinematics, loads and moving supports are
-//! those of [`BeamBody`](crate::BeamBody); a step costs some N operations for N coordinates and 8 N for each point that is touched.
+//! The shapes Φ are those of a [`ModalBasis`], modes and static corrections alike. Contact
+//! kinematics, loads and moving supports are those of [`BeamBody`](crate::BeamBody); a step costs
+//! some N operations for N coordinates, and 8 N for each contact point.
 
 use super::beam;
 use super::beam::line::{self, Deflecting, Line};
@@ -22,8 +23,8 @@ use teeter_detect::{Frame, HalfSpace, Kinematics, SurfacePoint};
 
 /// A straight level beam in the world, in modal coordinates η (m √kg).
 ///
-/// Where its supports [move](Self::with_motion), deflections are relative to them, and the displacements x and y of the supports
-/// follow as two more, prescribed coordinates.
+/// If its supports [move](Self::with_motion), deflections are relative to them, and the
+/// displacements x and y of the supports follow as two more, prescribed coordinates.
 pub struct ModalBeam {
     shapes: Shapes,
     basis: ModalBasis,
@@ -35,12 +36,12 @@ pub struct ModalBeam {
     position: Vector2<f64>,
     surface: BeamSurface,
     loads: Vec<Box<dyn Load>>,
-    /// Loads that keep their shape, in modal coordinates.
+    /// Loads with a fixed pattern, in modal coordinates.
     signals: Vec<SignalLoad>,
     /// A load on the dofs of the beam before it is brought to modes, and as much scratch.
     scratch: Mutex<Vec<f64>>,
     supports: Option<MovingSupports>,
-    /// Gravity on each coordinate, those of moving supports at the end; empty for none.
+    /// Gravity on each coordinate, those of moving supports at the end; empty without gravity.
     weight: Vec<f64>,
 }
 
@@ -56,10 +57,11 @@ impl std::fmt::Debug for ModalBeam {
 }
 
 impl ModalBeam {
-    /// The beam in the coordinates of `basis`, which was made of it, with its left end at `position` (m) and its own damping.
+    /// The beam in the coordinates of `basis`, which must have been made from it, with its left end
+    /// at `position` (m) and its own damping.
     ///
     /// # Errors
-    /// [`ModalError::CoupledDamping`] for damping that is no combination of mass and stiffness.
+    /// [`ModalError::CoupledDamping`] if its damping isn't a combination of mass and stiffness.
     pub fn new(
         beam: Arc<Beam>,
         basis: ModalBasis,
@@ -70,8 +72,8 @@ impl ModalBeam {
         Ok(Self::damped(beam, basis, damping, position, surface))
     }
 
-    /// The same with given damping ratios ζ in place of the beam's damping, one for each coordinate: d = 2ζω. What moves
-    /// rigidly is not damped by any.
+    /// As [`ModalBeam::new`], with given damping ratios ζ in place of the beam's damping, one for
+    /// each coordinate: d = 2ζω. Rigid motions are not damped.
     ///
     /// # Errors
     /// [`ModalError::Ratios`] for another number of ratios, or one that is not finite and ≥ 0.
@@ -120,22 +122,22 @@ impl ModalBeam {
         }
     }
 
-    /// The same beam under one more load, which every step brings from the beam's dofs to modes; one that keeps its shape is
-    /// cheaper by [`ModalBeam::with_signal_load`].
+    /// Adds a load, which is transformed from the beam's dofs to modes in every step; for a load
+    /// with a fixed pattern [`ModalBeam::with_signal_load`] costs less.
     #[must_use]
     pub fn with_load(mut self, load: Box<dyn Load>) -> Self {
         self.loads.push(load);
         self
     }
 
-    /// The same beam under one more load that keeps its shape, given for the beam's dofs.
+    /// Adds a load with a fixed pattern, given for the beam's dofs.
     #[must_use]
     pub fn with_signal_load(mut self, load: SignalLoad) -> Self {
         self.signals.push(load.in_basis(&self.basis));
         self
     }
 
-    /// The same beam on supports that move together, by these displacements in x and y; as
+    /// Makes the supports move together, by these motions in x and y; as
     /// [`BeamBody::with_motion`](crate::BeamBody::with_motion).
     #[must_use]
     pub fn with_motion(mut self, motion: [Motion; 2]) -> Self {
@@ -143,7 +145,7 @@ impl ModalBeam {
         self
     }
 
-    /// The same beam with gravity (m/s², x and y) acting on it and on the masses that it carries, as
+    /// Lets gravity (m/s², x and y) act on the beam and on the masses that it carries, as
     /// [`BeamBody::with_weight`](crate::BeamBody::with_weight): Φᵀ of its weight.
     #[must_use]
     pub fn with_weight(mut self, gravity: Vector2<f64>) -> Self {
@@ -153,8 +155,8 @@ impl ModalBeam {
         self
     }
 
-    /// The displacements of its supports at time `t` (s) in closed form, m; at t = 0 those to start from. None for supports
-    /// that stand still.
+    /// The displacements of its supports at time `t` (s) in closed form, m; at t = 0 those to start
+    /// from. Empty for supports that stand still.
     #[must_use]
     pub fn displacements(&self, t: f64) -> Vec<f64> {
         self.supports.as_ref().map_or_else(Vec::new, |supports| supports.displacements(t).to_vec())
@@ -172,8 +174,8 @@ impl ModalBeam {
         &self.shapes.beam
     }
 
-    /// Deflection and slope at x (m, along the beam) for its own coordinates `q` (their rates for velocities), relative to its
-    /// supports; `None` off the beam.
+    /// Deflection and slope at x (m, along the beam) for its own coordinates `q` (their rates for
+    /// velocities), relative to its supports; `None` off the beam.
     #[must_use]
     pub fn deflection_at(&self, q: &[f64], x: f64) -> Option<Deflection> {
         self.shapes.deflection_at(&q[..self.coordinates()], x)
@@ -188,12 +190,13 @@ impl ModalBeam {
         self.stiffness.len()
     }
 
-    /// Adds the loads that are brought from the beam's dofs to modes; `add` adds one to its second argument, with the third for scratch.
+    /// Adds the loads that are transformed from the beam's dofs to modes; `add` adds one to its
+    /// second argument, with the third as scratch memory.
     fn add_loads(&self, f: &mut [f64], add: impl Fn(&dyn Load, &mut [f64], &mut [f64])) {
         if self.loads.is_empty() {
             return;
         }
-        // A thread that panicked can only have left numbers behind, and they are overwritten.
+        // A thread that panicked can only have left numbers behind, which are overwritten.
         let mut scratch = self.scratch.lock().unwrap_or_else(PoisonError::into_inner);
         let (force, scratch) = scratch.split_at_mut(self.shapes.beam.dofs());
         force.fill(0.0);
@@ -213,7 +216,8 @@ impl ModalBeam {
     }
 }
 
-/// Φ row by row: what one dof of the beam is in all coordinates stands together, for a point is moved by few dofs.
+/// Φ row by row: the entries of one dof of the beam are contiguous, as a point is moved by few
+/// dofs.
 struct Shapes {
     beam: Arc<Beam>,
     coordinates: usize,
@@ -255,7 +259,7 @@ impl Deflecting for Shapes {
     fn deflection_at(&self, q: &[f64], x: f64) -> Option<Deflection> {
         let shape = self.beam.shape_at(x)?;
         let mut d = Deflection { w: 0.0, slope: 0.0 };
-        // Places that are not in use count for nothing.
+        // Unused places don't count.
         let [a, b, c, e] = shape.columns.map(|dof| self.dof(dof));
         for ((((q, a), b), c), e) in q.iter().zip(a).zip(b).zip(c).zip(e) {
             let [n, dn] = [shape.n, shape.dn].map(|n| (n[0] * a + n[1] * b) + (n[2] * c + n[3] * e));
@@ -267,7 +271,7 @@ impl Deflecting for Shapes {
 
     fn shape(&self, x: f64, mut each: impl FnMut(usize, f64, f64)) {
         let shape = self.beam.shape_clamped(x);
-        // Places that are not in use count for nothing.
+        // Unused places don't count.
         let [a, b, c, d] = shape.columns.map(|dof| self.dof(dof));
         for (i, (((a, b), c), d)) in a.iter().zip(b).zip(c).zip(d).enumerate() {
             let [n, dn] = [shape.n, shape.dn].map(|n| (n[0] * a + n[1] * b) + (n[2] * c + n[3] * d));
@@ -310,7 +314,7 @@ impl Dynamics<2> for ModalBeam {
         for (((f, q), v), (k, d)) in f.iter_mut().zip(q).zip(v).zip(self.stiffness.iter().zip(&self.damping)) {
             *f -= k * q + d * v;
         }
-        // Coordinates of supports are there only where these move.
+        // The supports have coordinates only if they move.
         f.iter_mut().zip(&self.weight).for_each(|(f, weight)| *f += weight);
     }
 

@@ -1,6 +1,7 @@
-//! The harness for schemes: it holds one to what [`Scheme`]'s page says that it owes.
+//! The harness for schemes: it checks the contract that the documentation of [`Scheme`] states.
 //!
-//! Scenes are a block over rigid ground, and a mass on a spring. What doesn't hold comes back as a list, with numbers.
+//! Its scenes are a block over rigid ground, and a mass on a spring. Properties that fail are
+//! returned as a list, with numbers.
 
 use crate::{
     Block, Blocks, Bodies, Compliance, Dynamics, Energy, FactorError, Ground, ImpactLaw, Model, ModelBuilder, PairLaw,
@@ -12,15 +13,15 @@ use teeter_contact::ContactSolver;
 use teeter_detect::{Frame, Kinematics, PointDetector, PointPair};
 use teeter_rigid::{MassProperties, Rectangle};
 
-/// What has to hold of a scheme.
+/// What must hold for a scheme.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SchemeProperty {
-    /// Errors of a smooth motion fall with the step, at first order at least.
+    /// Errors of a smooth motion fall with the step, at least at first order.
     Order,
-    /// The account explains every change of energy.
+    /// The energy account explains every change of energy.
     EnergyIdentity,
-    /// Momentum changes by weight and reported impulses, phase by phase.
+    /// Momentum changes by weight and the reported impulses, phase by phase.
     Momentum,
     /// Phases follow each other from the step's start to its end.
     Phases,
@@ -28,9 +29,9 @@ pub enum SchemeProperty {
     Until,
     /// After an error the state is as before.
     Errors,
-    /// Every law sends a body back as far as it should, or is refused.
+    /// Every law gives the right rebound, or is refused.
     Laws,
-    /// A run that goes on from a state, by a scheme made anew, ends in the same bytes.
+    /// A run that continues from a state with a new scheme ends in the same bytes.
     Resume,
     /// Without the warm start a run ends in the same motion.
     WarmStart,
@@ -46,9 +47,9 @@ pub struct SchemeFailure {
     pub what: String,
 }
 
-/// Makes the scheme to be held to its contract, and a contact solver for it.
+/// Makes the scheme to be checked, and a contact solver for it.
 pub trait Made {
-    /// The scheme, fresh.
+    /// A new scheme.
     fn scheme(&self) -> Box<dyn Scheme<2>>;
     /// A solver.
     fn solver(&self) -> Box<dyn ContactSolver<2>>;
@@ -64,7 +65,7 @@ impl<S: Fn() -> Box<dyn Scheme<2>>, C: Fn() -> Box<dyn ContactSolver<2>>> Made f
     }
 }
 
-/// Holds a scheme to all [properties](SchemeProperty), and returns those that fail.
+/// Checks all [properties](SchemeProperty) of a scheme, and returns those that fail.
 ///
 /// # Errors
 /// If a scene of the harness can't be made, which is a fault of this crate.
@@ -220,7 +221,7 @@ impl<M: Made> Check<'_, M> {
         Ok(())
     }
 
-    /// A block falls flat by 1 mm.
+    /// A block falls flat from a height of 1 mm.
     fn laws(&mut self) -> Result<(), Box<dyn Error>> {
         let arrival = (2.0 * GRAVITY * 1e-3_f64).sqrt();
         let contact = 1.0 / GRAVITY * arrival;

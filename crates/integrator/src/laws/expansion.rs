@@ -1,4 +1,4 @@
-//! Compression and expansion: Poisson's law, and for the others one problem.
+//! Compression and expansion: Poisson's law; for other laws there is one problem only.
 
 use super::rows::{Kind, Row};
 use super::{Laws, is_impact, join, with_iterations};
@@ -6,12 +6,12 @@ use crate::Vector;
 use crate::stage::{Problem, Rule};
 use teeter_contact::{ContactSolver, Outcome, ProblemError, Stop};
 
-/// Velocities and impulses of expansion that are wrong by this part of the largest velocity before and of the impulse
-/// itself decide nothing.
+/// Violations in expansion below this fraction, of the largest velocity before or of the impulse
+/// itself, are ignored.
 const UNDECIDED: f64 = 1e-11;
 
 impl<const D: usize> Laws<D> {
-    /// Compression, and expansion where an impact asks for it.
+    /// Compression, and expansion if there is an impact.
     pub(super) fn pass(
         &mut self,
         set: &mut Problem<D>,
@@ -37,7 +37,8 @@ impl<const D: usize> Laws<D> {
         }
         self.compression.clear();
         self.compression.extend_from_slice(&set.p);
-        // What comes back is of the blow alone, not of the weight that acts in the step: with it a bounce with e = 1 would rise.
+        // Restitution applies to the impact alone, not to the weight that acts within the step:
+        // with that, a bounce with e = 1 would gain height.
         self.base.fill(Vector::zeros());
         self.rows.clear();
         for i in 0..n {
@@ -55,8 +56,9 @@ impl<const D: usize> Laws<D> {
         Ok(join(outcome, self.expand(set, solver, stop)?))
     }
 
-    /// Expansion after the compression kept in `compression`. Either a contact gets the impulse given back and parts, or it
-    /// stays at rest under a larger one: which, is found by trial, from all parting.
+    /// Expansion after the compression kept in `compression`. A contact either gets the impulse of
+    /// restitution and separates, or stays closed under a larger one. Which of them separate is
+    /// found by trial, starting with all.
     fn expand(
         &mut self,
         set: &mut Problem<D>,
@@ -68,7 +70,8 @@ impl<const D: usize> Laws<D> {
         self.parts.clear();
         self.parts.extend(self.given.iter().map(|given| *given > 0.0));
         let mut sum: Option<Outcome> = None;
-        // A row of contacts takes as many rounds as it is long; with friction none may fit.
+        // A chain of contacts takes as many rounds as it is long; with friction there may be no
+        // solution.
         for _ in 0..2 * n + 10 {
             let outcome = self.try_expansion(set, solver, stop, false)?;
             let outcome = sum.map_or(outcome, |sum| join(sum, outcome));
@@ -88,16 +91,16 @@ impl<const D: usize> Laws<D> {
                 return Ok(outcome);
             }
         }
-        // The impulse given back, and what it takes beyond it, as two contacts at one point: solvable always, but two that
-        // stick there share their friction in no one way.
+        // The impulse of restitution and what is needed beyond it, as two contacts at one point.
+        // This always has a solution, but if both stick, how they share friction isn't unique.
         self.parts.fill(false);
         let outcome = self.try_expansion(set, solver, stop, true)?;
         self.take(set);
         Ok(sum.map_or(outcome, |sum| with_iterations(outcome, sum.iterations + outcome.iterations)))
     }
 
-    /// Solves an expansion in which the contacts of `parts` get what is given back and no more. `both`: the others get it too,
-    /// beside what they take themselves.
+    /// Solves an expansion in which the contacts of `parts` get the impulse of restitution and no
+    /// more. With `both`, the others get it as well, beside their own impulse.
     fn try_expansion(
         &mut self,
         set: &mut Problem<D>,
@@ -133,8 +136,8 @@ impl<const D: usize> Laws<D> {
         self.settle(set, solver, stop)
     }
 
-    /// The part e of its impulse of compression that a contact gives back: it obeys Poisson's law, was compressed, and feels
-    /// an impact, its own or another's.
+    /// The fraction e of its impulse of compression that a contact returns; `None` unless it obeys
+    /// Poisson's law, was compressed, and is coupled with an impact, its own or another's.
     fn expands(&self, set: &Problem<D>, i: usize) -> Option<f64> {
         let Rule::Poisson { e, .. } = set.rule(i) else { return None };
         let impact = |j: usize| is_impact(1.0, &set.u_before(j), &set.u_free(j));

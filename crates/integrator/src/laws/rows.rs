@@ -1,4 +1,5 @@
-//! The standard problems that the laws come down to, and how springs find their place on their law.
+//! The standard problems to which the laws are reduced, and the iteration of springs on their force
+//! law.
 
 use super::{Laws, unsolved, with_iterations};
 use crate::Vector;
@@ -7,13 +8,13 @@ use crate::spring::SpringStep;
 use crate::stage::{Problem, Rule};
 use teeter_contact::{ContactProblem, ContactSolver, Delassus, Outcome, ProblemError, Stop};
 
-/// A contact of a problem to be solved on the way.
+/// A contact of an intermediate problem.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row<const D: usize> {
     /// The contact of the set.
     pub(super) contact: usize,
     pub(super) kind: Kind,
-    /// Its velocity without the impulses of the problem, and shifted, m/s.
+    /// Its velocity without the impulses of the problem, including the shift, m/s.
     pub(super) u: Vector<D>,
     /// Its impulse, N·s.
     pub(super) p: Vector<D>,
@@ -28,28 +29,29 @@ pub(super) enum Kind {
     Standard,
     /// The friction of an imposed normal impulse.
     Friction(f64),
-    /// A spring, at the velocity of its tangent.
+    /// A spring, linearised at this velocity.
     Spring(SpringStep, f64),
 }
 
-/// Most tangents of the springs in a solve.
+/// Most linearisations of the springs in a solve.
 const TANGENTS: u32 = 100;
 
-/// Springs whose impulses are this part of the largest off their law count as solved; rounding allows less where they are
-/// stiff, so where it no longer falls [`ROUNDED`] is enough.
+/// Springs count as solved if their impulses are off their law by at most this fraction of the
+/// largest impulse. Stiff springs can't get that close because of rounding: once the error no
+/// longer falls, [`ROUNDED`] is enough.
 const ON_LAW: f64 = 1e-13;
 
 /// See [`ON_LAW`].
 const ROUNDED: f64 = 1e-9;
 
-/// Units in the last place that a spring's velocity may be off.
+/// Rounding errors of a spring's velocity, in units in the last place.
 const ROUNDING: f64 = 8.0;
 
-/// A spring that isn't touched is softer than its contact by this factor.
+/// A spring that isn't in contact is taken as softer than its contact by this factor.
 const UNTOUCHED: f64 = 1e8;
 
 impl<const D: usize> Laws<D> {
-    /// The contact of the problem for contact `i` on top of the base impulses.
+    /// The row of contact `i`, on top of the base impulses.
     pub(super) fn row(&self, set: &Problem<D>, i: usize, expansion: bool) -> Row<D> {
         let n = set.len();
         let blocks = &set.blocks[i * n..(i + 1) * n];
@@ -65,7 +67,7 @@ impl<const D: usize> Laws<D> {
         Row { contact: i, kind, u, p: set.p[i], scale: 1.0, normal: blocks[i][(0, 0)] }
     }
 
-    /// Solves the problem of the rows, springs on their law.
+    /// Solves the problem of the rows, with springs on their force law.
     pub(super) fn settle(
         &mut self,
         set: &Problem<D>,
@@ -85,15 +87,15 @@ impl<const D: usize> Laws<D> {
             }
             last = off;
         }
-        // Every problem was solved, but the springs didn't come to rest.
+        // Every problem was solved, but the springs didn't converge.
         match sum {
             Some(outcome) => Ok(unsolved(outcome)),
             None => self.solve_rows(set, solver, stop).map(unsolved),
         }
     }
 
-    /// Moves the springs' tangents to where the last problem ended. Returns how far their impulses are off the law, and how
-    /// far rounding can put them, both relative to the largest impulse.
+    /// Linearises the springs anew at the last solution. Returns the error of their impulses by the
+    /// force law, and the error that rounding can cause, both relative to the largest impulse.
     fn retouch(&mut self, set: &Problem<D>) -> (f64, f64) {
         let (mut off, mut noise, mut largest) = (0.0_f64, 0.0_f64, f64::MIN_POSITIVE);
         for r in 0..self.rows.len() {
@@ -101,7 +103,7 @@ impl<const D: usize> Laws<D> {
             let Kind::Spring(step, _) = self.rows[r].kind else { continue };
             let u = self.normal_velocity(set, r);
             let (impulse, slope) = step.impulse(u);
-            // A stiff spring makes much of the last digits of its velocity.
+            // A stiff spring magnifies the rounding of its velocity.
             let rounding = ROUNDING * f64::EPSILON * slope.abs() * self.size_of_velocity(set, r);
             off = off.max((self.rows[r].p[0] - impulse).abs());
             noise = noise.max(rounding);
@@ -124,7 +126,7 @@ impl<const D: usize> Laws<D> {
         row.u[0] + others.sum::<f64>()
     }
 
-    /// The sum of the sizes of what [`Laws::normal_velocity`] adds up, m/s.
+    /// The sum of the magnitudes of the terms of [`Laws::normal_velocity`], m/s.
     fn size_of_velocity(&self, set: &Problem<D>, r: usize) -> f64 {
         let n = set.len();
         let row = &self.rows[r];
@@ -152,13 +154,15 @@ impl<const D: usize> Laws<D> {
             match row.kind {
                 Kind::Standard => {}
                 Kind::Friction(normal) => {
-                    // Any positive number does; one of the size of the others keeps the problem's scale.
+                    // Any positive number will do; one of the size of the others keeps the
+                    // problem's scale.
                     (row.scale, row.normal) = (0.0, own.trace());
                     q[0] = -row.normal * normal;
                 }
                 Kind::Spring(step, at) => {
                     let (impulse, slope) = step.impulse(at);
-                    // Where it doesn't touch, hardly anything: as soft as it takes to be found if others push it in.
+                    // Not in contact: almost no force, but some, so that it is noticed if others
+                    // push it in.
                     let (softness, impulse, at) = if slope < 0.0 {
                         (-slope.recip(), impulse, at)
                     } else {
@@ -201,7 +205,7 @@ impl<const D: usize> Laws<D> {
         Ok(outcome)
     }
 
-    /// Brings base and rows together as the impulses of the set.
+    /// Adds base and rows to the impulses of the set.
     pub(super) fn take(&mut self, set: &mut Problem<D>) {
         set.p.copy_from_slice(&self.base);
         for row in &self.rows {

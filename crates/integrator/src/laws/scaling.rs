@@ -1,17 +1,18 @@
-//! Restitution that makes no energy: what is given back is scaled, by one f for all contacts that feel each other.
+//! Restitution that creates no energy: it is scaled by one f for all contacts that are coupled.
 
 use super::{Laws, join};
 use crate::stage::{Problem, Rule};
 use teeter_contact::{Block, ContactSolver, Outcome, ProblemError, Stop};
 
-/// Halvings of the range of f.
+/// Bisections of the interval of f.
 const HALVINGS: u32 = 40;
 
-/// Work below this part of Σ‖U‖‖p‖ is rounding.
+/// Work below this fraction of Σ‖U‖‖p‖ is rounding.
 pub(super) const WORKLESS: f64 = 1e-14;
 
 impl<const D: usize> Laws<D> {
-    /// Looks for islands whose contacts gave energy in the last pass, where restitution may have done it; whether there are any.
+    /// Finds islands whose contacts added energy in the last pass, possibly by restitution; returns
+    /// whether there are any.
     pub(super) fn find_gains(&mut self, set: &Problem<D>) -> bool {
         let n = set.len();
         self.range.clear();
@@ -28,7 +29,7 @@ impl<const D: usize> Laws<D> {
         self.range.iter().any(|range| range[0] < 1.0)
     }
 
-    /// Whether a contact gave something back in the last pass that can be scaled.
+    /// Whether a contact had restitution in the last pass that can be scaled.
     fn returns(&self, set: &Problem<D>, i: usize) -> bool {
         match set.rule(i) {
             Rule::Energetic => set.shift(i)[0] != 0.0,
@@ -37,10 +38,12 @@ impl<const D: usize> Laws<D> {
         }
     }
 
-    /// Finds the largest part f of restitution that makes no energy, for each island whose range says that f = 1 does.
+    /// Finds the largest fraction f of restitution that creates no energy, for each island in which
+    /// f = 1 does.
     ///
-    /// Beside an impact there can be contacts that give energy by themselves, as one that has sunk in and is on its way out; that
-    /// is not restitution's to pay for, so what there is with f = 0 is allowed.
+    /// Beside an impact there can be contacts that add energy by themselves, such as one that has
+    /// penetrated and is separating. Restitution isn't the cause of that, so the work with f = 0 is
+    /// allowed.
     pub(super) fn scale_restitution(
         &mut self,
         set: &mut Problem<D>,
@@ -62,7 +65,7 @@ impl<const D: usize> Laws<D> {
             self.unreturned[i] = set.work(i);
         }
         for halving in 0..=HALVINGS {
-            // At last the largest f that is known to make none.
+            // Finally the largest f that is known to create none.
             let at = move |[low, high]: [f64; 2]| if halving < HALVINGS { 0.5 * (low + high) } else { low };
             self.scale(set, at);
             outcome = join(outcome, self.guarded_pass(set, theta, solver, stop)?);
@@ -78,7 +81,7 @@ impl<const D: usize> Laws<D> {
         Ok(outcome)
     }
 
-    /// Scales what is given back by f of each island's range; f = 1 where the range is one point.
+    /// Scales restitution by f of each island's interval; f = 1 where the interval is a point.
     fn scale(&mut self, set: &mut Problem<D>, f: impl Fn([f64; 2]) -> f64) {
         for i in 0..set.len() {
             let range = self.range[self.island[i]];
@@ -93,7 +96,7 @@ impl<const D: usize> Laws<D> {
         }
     }
 
-    /// Contacts that feel each other through H, directly or by others.
+    /// Finds the contacts that are coupled by H, directly or through others.
     pub(super) fn find_islands(&mut self, set: &Problem<D>) {
         let n = set.len();
         self.island.clear();
@@ -114,25 +117,28 @@ impl<const D: usize> Laws<D> {
         }
     }
 
-    /// Whether the contacts that contact `i` feels gave something back in two phases, in the last solve. What one of them gains
-    /// another one may have handed on then, so it is their sum that counts.
+    /// Whether contacts coupled with contact `i` had restitution by Poisson's law in the last
+    /// solve. Then one of them may have gained what another has passed on, so only the sum of their
+    /// work counts.
     pub(crate) fn handed_on(&self, set: &Problem<D>, i: usize) -> bool {
         let given = |j: usize| matches!(set.rule(j), Rule::Poisson { .. }) && self.given[j] > 0.0;
         (0..set.len()).any(|j| given(j) && self.island[j] == self.island[i])
     }
 
-    /// The work Ū·p of the contacts that contact `i` feels, itself among them, J; only after [`Laws::handed_on`] said so.
+    /// The work Ū·p of contact `i` and those coupled with it, J; only after [`Laws::handed_on`]
+    /// returned `true`.
     pub(crate) fn work_around(&self, set: &Problem<D>, i: usize) -> f64 {
         self.work(set, self.island[i]).0
     }
 
-    /// The work Ū·p of contact `i` had none of those that it feels given anything back, J; 0 where they gave no energy.
+    /// The work Ū·p of contact `i` without restitution in its island, J; 0 where the island added
+    /// no energy.
     pub(crate) fn work_unreturned(&self, i: usize) -> f64 {
         self.unreturned[i]
     }
 
-    /// The work Ū·p of an island's contacts, Ū the mean of U⁰ and U¹ whatever θ is: that is what an impact changes of the kinetic
-    /// energy. And how much of it is rounding. Both in J.
+    /// The work Ū·p of an island's contacts, with Ū the mean of U⁰ and U¹ whatever θ is, which is
+    /// the change of kinetic energy by an impact; and how much of it may be rounding. Both in J.
     fn work(&self, set: &Problem<D>, first: usize) -> (f64, f64) {
         let (mut work, mut size) = (0.0, 0.0);
         for i in (0..set.len()).filter(|&i| self.island[i] == first) {

@@ -4,7 +4,8 @@ use super::window::{self, Moments, Pieces, sinc};
 use super::{Signal, SignalError, from_zero};
 use std::f64::consts::{PI, TAU};
 
-/// A time history by formula; its peak is 1 (of a Ricker wavelet too), and before its start it is 0.
+/// A time history by formula; its peak is 1 (also that of a Ricker wavelet), and before its start
+/// it is 0.
 ///
 /// With τ the time since the start:
 ///
@@ -44,12 +45,12 @@ impl Formula {
     /// 1 from `start` (s) on.
     ///
     /// # Errors
-    /// If a number is not finite; so for all formulas.
+    /// If a number is not finite, as for all formulas.
     pub fn constant(start: f64) -> Result<Self, SignalError> {
         Self::new(start, Shape::Constant)
     }
 
-    /// From 0 at `start` (s) evenly to 1 after `duration` (s), and 1 from then on.
+    /// Linear from 0 at `start` (s) to 1 after `duration` (s), and 1 from then on.
     ///
     /// # Errors
     /// If the duration is not positive.
@@ -66,7 +67,8 @@ impl Formula {
         Self::new(start, Shape::Sine { omega, phase: finite("the phase", phase)?, end: f64::INFINITY })
     }
 
-    /// One sine of `frequency` (Hz) from `start` (s) on: it starts at `phase` (rad) and ends where its argument is 2π.
+    /// One sine of `frequency` (Hz) from `start` (s) on: it starts at `phase` (rad) and ends where
+    /// its argument is 2π.
     ///
     /// # Errors
     /// If the frequency is not positive, or the phase not in [0, 2π).
@@ -87,8 +89,8 @@ impl Formula {
         Self::new(start, Shape::Sine { omega: PI / end, phase: 0.0, end })
     }
 
-    /// Ricker's wavelet (Ricker 1953, doi 10.1190/1.1437843) with the peak of its spectrum at `frequency` (Hz) and its own at
-    /// `peak` (s).
+    /// Ricker's wavelet (Ricker 1953, doi 10.1190/1.1437843) with the peak of its spectrum at
+    /// `frequency` (Hz), and its own peak at `peak` (s).
     ///
     /// # Errors
     /// If the frequency is not positive.
@@ -96,8 +98,9 @@ impl Formula {
         Self::new(peak, Shape::Ricker { rate: PI * positive("the frequency", frequency)? })
     }
 
-    /// The time of one of its swings and between which times it swings, s; of a half sine twice its duration, of a Ricker wavelet the inverse of
-    /// its frequency. `None` for what doesn't swing.
+    /// The period of its oscillation, and between which times it oscillates, s; for a half sine
+    /// twice its duration, for a Ricker wavelet the inverse of its frequency. `None` if it doesn't
+    /// oscillate.
     #[must_use]
     pub fn swings(&self) -> Option<(f64, [f64; 2])> {
         match self.shape {
@@ -107,7 +110,7 @@ impl Formula {
         }
     }
 
-    /// How long it takes from 0 to 1, s: of a ramp its duration, `None` of all else.
+    /// How long it rises from 0 to 1, s: the duration of a ramp; `None` for all others.
     #[must_use]
     pub fn rises_in(&self) -> Option<f64> {
         match self.shape {
@@ -126,7 +129,8 @@ impl Formula {
         Ok(Self { start: finite("the start", start)?, shape })
     }
 
-    /// Hands to `each` what is not 0 of the stretch [a, b], times since the start: its pieces without a kink, each with its moments.
+    /// Calls `each` for the smooth pieces of [a, b] (times since the start) in which it isn't 0,
+    /// with their moments.
     fn pieces(&self, a: f64, b: f64, mut each: impl FnMut(f64, f64, Moments)) {
         let mut piece = |from: f64, to: f64, of: &dyn Fn(f64, f64) -> Moments| {
             let (from, to) = (a.max(from), b.min(to));
@@ -144,7 +148,8 @@ impl Formula {
                 window::of_sine(0.5 * omega * (from + to) + phase, 0.5 * omega * (to - from))
             }),
             Shape::Ricker { rate } => {
-                // Beyond it is 0 to rounding; within, short pieces for the points, and the mean in closed form.
+                // Outside it is 0 to rounding; inside take short pieces for the quadrature, and the
+                // mean in closed form.
                 let (from, to) = (a.max(-BELL / rate), b.min(BELL / rate));
                 let parts = (4.0 * rate * (to - from)).max(1.0).ceil();
                 for k in 0..parts as u32 {
@@ -183,10 +188,11 @@ impl Formula {
             Shape::Ramp { duration: d } if tau < d => (0.5 * tau * tau / d, tau * tau * tau / (6.0 * d)),
             Shape::Ramp { duration: d } => (tau - 0.5 * d, d * d / 6.0 + 0.5 * tau * (tau - d)),
             Shape::Sine { omega, phase, end } => {
-                // After its end the first integral stays, and the second goes on evenly.
+                // After its end the first integral is constant, and the second linear.
                 let (inside, after) = if tau < end { (tau, 0.0) } else { (end, tau - end) };
                 let half = 0.5 * omega * inside;
-                // cos ψ − cos(x + ψ) and sin(x + ψ) − sin ψ as products: no digits lost at the start.
+                // cos ψ − cos(x + ψ) and sin(x + ψ) − sin ψ as products: no digits lost at the
+                // start.
                 let once = 2.0 * half.sin() * (half + phase).sin() / omega;
                 let rise = 2.0 * half.sin() * (half + phase).cos() / omega;
                 (once, (inside * phase.cos() - rise) / omega + after * once)
@@ -293,7 +299,7 @@ impl Signal for Formula {
     fn jump(&self) -> Option<f64> {
         let jumps = match self.shape {
             Shape::Constant => true,
-            // π is no double, so neither is its sine zero.
+            // π is not a double, so its sine is not zero.
             Shape::Sine { phase, .. } => phase.sin().abs() > 1e-12,
             Shape::Ramp { .. } | Shape::Ricker { .. } => false,
         };
@@ -301,7 +307,7 @@ impl Signal for Formula {
     }
 }
 
-/// Where a Ricker wavelet is over, in its own time: (1 − 2·7²) exp(−7²) is 5e-20.
+/// Where a Ricker wavelet has vanished, in its own time: (1 − 2·7²) exp(−7²) is 5e-20.
 const BELL: f64 = 7.0;
 
 /// (1 − 2x²) exp(−x²).
@@ -309,8 +315,8 @@ fn wavelet(x: f64) -> f64 {
     (1.0 - 2.0 * x * x) * (-x * x).exp()
 }
 
-/// The mean of a wavelet over [a, b], times since its peak: that of (τ exp(−(rate τ)²))', without the loss of digits that the difference has in
-/// a short stretch.
+/// The mean of a wavelet over [a, b], times since its peak: that of (τ exp(−(rate τ)²))', computed
+/// without the cancellation that the difference suffers for short intervals.
 fn wavelet_mean(rate: f64, a: f64, b: f64) -> f64 {
     let [x, y] = [a, b].map(|tau| (rate * tau) * (rate * tau));
     let apart = 0.5 * rate * rate * (b - a) * (b + a);

@@ -3,7 +3,7 @@
 use super::Signal;
 use std::sync::Arc;
 
-/// Which of the three a signal gives.
+/// Which quantity a signal gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Given {
     /// Displacement, m or rad.
@@ -14,7 +14,8 @@ pub enum Given {
     Acceleration,
 }
 
-/// The prescribed motion of one coordinate: a sum of signals with their amplitudes; without any it stands still.
+/// The prescribed motion of one coordinate: a sum of signals with their amplitudes; with none, it
+/// stands still.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -43,14 +44,14 @@ impl Motion {
         Self::default()
     }
 
-    /// The same and one more term: `amplitude` (in the unit of what is given) times a signal.
+    /// Adds a term: `amplitude` (in the unit of the given quantity) times a signal.
     #[must_use]
     pub fn with(mut self, given: Given, amplitude: f64, signal: Arc<dyn Signal>) -> Self {
         self.terms.push(Term { given, amplitude, signal });
         self
     }
 
-    /// Displacement at time `t` (s), m or rad: what is given, otherwise the integral from 0.
+    /// Displacement at time `t` (s), m or rad: as given, otherwise integrated from 0.
     #[must_use]
     pub fn displacement(&self, t: f64) -> f64 {
         self.sum(|given, signal| match given {
@@ -70,7 +71,7 @@ impl Motion {
         })
     }
 
-    /// The mean of the velocity over the time from `from` to `to` (s), which is later, m/s or rad/s.
+    /// The mean of the velocity over the time from `from` to the later `to` (s), m/s or rad/s.
     #[must_use]
     pub fn mean_velocity(&self, from: f64, to: f64) -> f64 {
         self.sum(|given, signal| match given {

@@ -1,9 +1,10 @@
-//! Signals from a table: linear between its rows.
+//! Signals by a table, linear between its rows.
 
 use super::window::{self, Moments, Pieces};
 use super::{Signal, SignalError, from_zero};
 
-/// A time history by rows (time, value): linear between them, the first value before and the last value after.
+/// A time history by rows (time, value): linear between them, the first value before and the last
+/// value after.
 ///
 /// ```
 /// use teeter_integrator::{Signal, Table};
@@ -18,16 +19,17 @@ use super::{Signal, SignalError, from_zero};
 pub struct Table {
     times: Vec<f64>,
     values: Vec<f64>,
-    /// The integral from the first row to each, and the integral of that.
+    /// The integral from the first row to each row, and the integral of that.
     once: Vec<f64>,
     twice: Vec<f64>,
 }
 
 impl Table {
-    /// A history of these rows; times in s.
+    /// The history with these rows; times in s.
     ///
     /// # Errors
-    /// If there are fewer than two rows, if a number is not finite, or if a time is not later than the one before.
+    /// If there are fewer than two rows, if a number is not finite, or if a time is not later than
+    /// the one before.
     pub fn new(times: Vec<f64>, values: Vec<f64>) -> Result<Self, SignalError> {
         if times.len() != values.len() {
             return Err(SignalError::Lengths { times: times.len(), values: values.len() });
@@ -74,7 +76,7 @@ impl Table {
         self.times.iter().copied().zip(self.values.iter().copied())
     }
 
-    /// The row that starts the piece which `t` is in, the time since it, and the slope of the piece.
+    /// The row at which the piece with `t` starts, the time since then, and the slope of the piece.
     fn piece(&self, t: f64) -> (usize, f64, f64) {
         let after = self.times.partition_point(|row| *row <= t);
         let row = after.saturating_sub(1);
@@ -86,7 +88,7 @@ impl Table {
         (row, t - self.times[row], slope)
     }
 
-    /// Hands to `each` the stretch [from, to] in its even pieces: times and values of their ends.
+    /// Calls `each` for the linear pieces of [from, to], with times and values at their ends.
     fn pieces(&self, from: f64, to: f64, mut each: impl FnMut([f64; 2], [f64; 2])) {
         let mut after = self.times.partition_point(|row| *row <= from);
         let mut begin = from;
@@ -142,7 +144,7 @@ impl Signal for Table {
 
     fn mean_rate(&self, from: f64, to: f64) -> f64 {
         let (first, last) = (self.piece(from), self.piece(to));
-        // Within a piece without the rounding of a difference.
+        // Within a single piece avoid the rounding of a difference.
         if first.0 == last.0 && first.2 == last.2 {
             return first.2;
         }
@@ -179,7 +181,7 @@ mod tests {
         let sine = crate::Formula::one_sine(0.0, 2.0, 0.0).unwrap();
         let times: Vec<f64> = (0..=2000).map(|k| f64::from(k) * 2.5e-4).collect();
         let table = Table::new(times.clone(), times.iter().map(|t| sine.value(*t)).collect()).unwrap();
-        // Between its rows it is low by ω²h²/8 at the most; its integral by the part ω²h²/12.
+        // Between rows it is too low by at most ω²h²/8, its integral by a fraction ω²h²/12.
         let low = (4.0 * std::f64::consts::PI * 2.5e-4_f64).powi(2);
         for t in [0.1, 0.3, 0.45] {
             assert!((table.value(t + 1e-4) - sine.value(t + 1e-4)).abs() < low / 8.0);

@@ -1,8 +1,8 @@
-//! Means of signals over a stretch of time, alone and times Legendre polynomials.
+//! Means of signals over an interval of time, alone and times Legendre polynomials.
 //!
 //! The moments of f over [a, b] are the means of f(t) P_k(s) for k = 0 … 3, with s = −1 at a and 1
-//! at b. The first is the mean. Whatever is cubic in time has an exact mean product with f from
-//! them: by the four Gauss points of the stretch, with [`weights`] that hold f.
+//! at b. The first is the mean. For any g that is cubic in time they give the exact mean of f g: by
+//! the four Gauss points of the interval, with [`weights`] that contain f.
 
 /// The first four moments of a signal over a stretch of time.
 pub(crate) type Moments = [f64; 4];
@@ -32,8 +32,8 @@ pub(crate) fn weights(from: f64, to: f64, moments: &Moments) -> [(f64, f64); 4] 
     })
 }
 
-/// The moments over [from, to] of a signal that is 0 but in pieces, put together from the pieces'
-/// own.
+/// The moments over [from, to] of a signal that is 0 outside some pieces, from the moments of the
+/// pieces.
 #[derive(Debug)]
 pub(crate) struct Pieces {
     from: f64,
@@ -64,7 +64,7 @@ impl Pieces {
     }
 }
 
-/// The moments of what goes evenly from `first` to `last`.
+/// The moments of a line from `first` to `last`.
 pub(crate) fn of_line(first: f64, last: f64) -> Moments {
     [0.5 * (first + last), (last - first) / 6.0, 0.0, 0.0]
 }
@@ -100,10 +100,10 @@ pub(crate) fn sinc(x: f64) -> f64 {
     if x < 1e-4 { 1.0 - x * x / 6.0 } else { x.sin() / x }
 }
 
-/// Below it j_k go by their series; from there on upwards from j₀ and j₁.
+/// Below it j_k are summed by their series; above by recurrence from j₀ and j₁.
 const SERIES: f64 = 2.0;
 
-/// Terms that take the series to rounding: the last is 2²⁴/(24! …).
+/// Terms after which the series is exact to rounding: the last is 2²⁴/(24! …).
 const TERMS: u32 = 14;
 
 /// j₀ … j₃ at x ≥ 0.

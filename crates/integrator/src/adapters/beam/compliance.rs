@@ -1,8 +1,9 @@
-//! W_be of the source paper: how the impulses of contacts reach the velocities of a beam.
+//! W_be of the source paper: the response of a beam's velocities to the impulses of contacts.
 //!
-//! The free velocity always takes one substitution with the banded factor. What contacts need of W is little: a contact pushes at
-//! the dofs of one element. Either each contact's response W Jᵀ is solved for once a step, and kept for the end of the step
-//! ([`WBackend::Banded`]); or the columns of W of the dofs that contacts touch are solved for once a factor, and combined
+//! The free velocity always takes one substitution with the banded factor. Contacts need little of
+//! W, as a contact acts on the dofs of one element. Either each contact's response W Jᵀ is solved
+//! for once a step, and kept for the end of the step ([`WBackend::Banded`]); or the columns of W
+//! for the dofs that contacts act on are solved for once per factor, and combined
 //! ([`WBackend::CachedColumns`]).
 
 use super::matrix_weights;
@@ -12,40 +13,43 @@ use nalgebra::Matrix2;
 use std::sync::Arc;
 use teeter_beam::{Backend, Beam, Factor};
 
-/// How W answers contacts on a beam. The results differ by rounding.
+/// How W of a beam is applied to contacts. The results differ by rounding only.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum WBackend {
-    /// The faster one for the beam's dofs and the step's contacts, by measurement.
+    /// The faster one for the beam's number of dofs and the step's contacts, by measurement.
     #[default]
     Auto,
     /// A banded substitution for each contact and direction in a step.
     Banded,
-    /// The same with a general sparse factor: slower, and an independent way to the same numbers. Only with the feature `sparse`
-    /// (default); without it the factor is refused with a [`FactorError`] that says so.
+    /// The same with a general sparse factor: slower, and an independent way to the same numbers.
+    /// Only with the feature `sparse` (default); without it the factor is refused with a
+    /// [`FactorError`] that says so.
     Sparse,
-    /// Columns of W, each solved for when a contact first touches its dof and kept until the step size changes: at most
-    /// 64 columns and 16 MiB, but 16 columns of any beam; a step that touches more dofs at once goes by substitutions. Which columns
-    /// are there changes the time of a step, never its numbers.
+    /// Columns of W, each solved for when a contact first acts on its dof, and kept as long as the
+    /// factor: at most 64 columns and 16 MiB, but 16 columns of any beam. A step whose contacts act
+    /// on more dofs uses substitutions. Which columns are kept changes the time of a step, never
+    /// its numbers.
     CachedColumns,
 }
 
-/// Unless told otherwise, columns are used in steps that touch at most this part of the dofs: a contact alone on 10 elements takes 40 % fewer
-/// instructions by columns than by a substitution (callgrind), and the gain grows with the beam. With many contacts H from columns
+/// By default, columns are used in steps whose contacts act on at most the number of dofs divided
+/// by this: a single contact on 10 elements takes 40 % fewer instructions by columns than by a
+/// substitution (callgrind), and the gain grows with the beam. With many contacts H from columns
 /// takes longer.
 const TOUCHED: usize = 2;
 
-/// Most columns of W that are kept: the dofs of 16 contacts that stand apart.
+/// Most columns of W that are kept: the dofs of 16 separate contacts.
 const COLUMNS: usize = 64;
 
-/// Bytes of columns beyond which there are fewer.
+/// Most bytes of columns, unless [`FEWEST_COLUMNS`] take more.
 const MEMORY: usize = 16 << 20;
 
-/// Columns that are kept of beams of any size: the dofs of a block's four corners.
+/// Columns that are kept for beams of any size: the dofs of a block's four corners.
 const FEWEST_COLUMNS: usize = 16;
 
-/// Most responses of contacts that are kept over a step. A substitution takes the time of some ten combinations of a column, so
-/// that with more of them one more substitution is the better way.
+/// Most responses of contacts that are kept over a step. A substitution takes as long as combining
+/// some ten columns, so with more of them one more substitution is faster.
 const RESPONSES: usize = 8;
 
 /// W of a beam, zero for its prescribed coordinates.
@@ -67,7 +71,7 @@ impl BeamCompliance {
         let factor = beam.factor_with(matrix_weights(w), kind).map_err(|error| refusal(w, &error))?;
         let dofs = beam.dofs();
         let memory = match backend {
-            // A stretched beam has other columns in every step.
+            // The columns of a stretched beam change in every step.
             WBackend::Auto if !beam.is_stretched() => Memory::Columns(Columns::new(dofs, dofs / TOUCHED)),
             WBackend::CachedColumns => Memory::Columns(Columns::new(dofs, dofs)),
             WBackend::Auto | WBackend::Banded | WBackend::Sparse => Memory::Responses(Responses::new(dofs)),
@@ -178,7 +182,7 @@ impl Responses {
             if let Some(kept) = values.chunks_exact_mut(*dofs).nth(pushes.len()) {
                 kept.copy_from_slice(&response[..*dofs]);
             }
-            // One more than there is room for says that they aren't all there.
+            // One more than there is room for marks that not all are kept.
             if pushes.len() <= RESPONSES {
                 pushes.push((contact, *direction));
             }
@@ -186,7 +190,7 @@ impl Responses {
         couple_by_solving(rows, scratch, h, |f| solve(factor, f), keep);
     }
 
-    /// Adds W Jᵀ p to `v`; whether it could.
+    /// Adds W Jᵀ p to `v`; returns whether it could.
     fn respond(&self, p: &[Vector<2>], v: &mut [f64]) -> bool {
         if self.pushes.len() > RESPONSES {
             return false;
@@ -201,7 +205,7 @@ impl Responses {
 /// Columns of W, kept from step to step.
 struct Columns {
     dofs: usize,
-    /// Most dofs that a step may touch.
+    /// Most dofs that the contacts of a step may act on.
     most: usize,
     values: Vec<f64>,
     /// The dof that each place holds the column of.
@@ -213,19 +217,19 @@ struct Columns {
     round: u64,
     /// The dofs asked for in this round.
     touched: Vec<usize>,
-    /// Whether the columns of all dofs that were touched last are there.
+    /// Whether the columns of all dofs asked for last are there.
     ready: bool,
 }
 
 const NOWHERE: usize = usize::MAX;
 
 impl Columns {
-    /// How many columns are kept of a beam.
+    /// How many columns of a beam are kept.
     fn room(dofs: usize) -> usize {
         COLUMNS.min(MEMORY / (size_of::<f64>() * dofs.max(1))).max(FEWEST_COLUMNS).min(dofs)
     }
 
-    /// For steps that touch at most so many dofs.
+    /// For steps whose contacts act on at most this many dofs.
     fn new(dofs: usize, most: usize) -> Self {
         let room = Self::room(dofs);
         Self {
@@ -247,8 +251,8 @@ impl Columns {
         self.places.fill(None);
     }
 
-    /// Makes sure that the columns of all dofs that the rows touch are there, in the place of those that were not asked for the
-    /// longest; whether they aren't too many.
+    /// Makes sure that the columns of all dofs that the rows act on are there, in place of those
+    /// asked for least recently; returns `false` if they are too many.
     fn fetch(&mut self, factor: &Factor, rows: &PartRows<'_, 2>) -> bool {
         self.round += 1;
         self.touched.clear();
@@ -314,7 +318,7 @@ impl Columns {
         }
     }
 
-    /// The beam's own dofs of a row: the prescribed ones of its supports come last.
+    /// The beam's own dofs in a row: the prescribed ones of its supports come last.
     fn own<'r>(&self, mut dofs: &'r [usize]) -> &'r [usize] {
         while let [rest @ .., last] = dofs
             && *last >= self.dofs
@@ -328,7 +332,7 @@ impl Columns {
     fn respond(&self, rows: &PartRows<'_, 2>, p: &[Vector<2>], scratch: &mut [f64], v: &mut [f64]) -> bool {
         self.touched.iter().for_each(|dof| scratch[*dof] = 0.0);
         rows.add_generalised_impulse(p, scratch);
-        // By four: the columns are read as fast as memory gives them, and v then only once for all four.
+        // Four at a time: memory limits the speed, and v is then read once for four columns.
         let (fours, rest) = self.touched.as_chunks::<4>();
         for dofs in fours {
             let f = dofs.map(|dof| scratch[dof]);
@@ -384,7 +388,8 @@ mod tests {
     #[test]
     fn which_columns_are_kept_changes_no_bit() {
         let (_, mut used) = columns();
-        // Along the whole beam, so that columns have to make room for others; then a step with too many dofs at once.
+        // Along the whole beam, so that columns have to make room for others; then a step with too
+        // many dofs at once.
         for first in 2..98 {
             answer(&mut used, &[first]);
             assert_eq!(kept(&used), (first + 2).min(COLUMNS));

@@ -1,14 +1,15 @@
-//! What a beam bears in a step: its section forces and reactions, from the equilibrium that the step solved.
+//! Section forces and reactions of a beam in a step, from the equilibrium that the step has solved.
 //!
-//! A phase of a step satisfies, with the means q̄ and v̄ that its [balance](crate::Balance) says,
+//! A phase of a step satisfies, with the means q̄ and v̄ of its [balance](crate::Balance),
 //!
 //! ```text
 //! M (v¹ − v⁰)/τ + C v̄ + K q̄ = P̄ + Jᵀp/τ
 //! ```
 //!
-//! with P̄ the mean of the loads over the phase, and the supports' acceleration in M's share where they move. Element by element that gives
-//! the end forces, so what is read from them is the mean over the phase, and balances to rounding. Where a step takes forces and
-//! impulses together, an impact's impulse p is spread over it as p/τ: its peaks grow as the step shrinks.
+//! with P̄ the mean of the loads over the phase, and the acceleration of moving supports included
+//! in the term of M. Element by element this gives the end forces; so they are means over the
+//! phase, and balance to rounding. If a step takes forces and impulses together, the impulse p of
+//! an impact is spread over it as p/τ: its peaks grow as the step shrinks.
 
 use super::line::lift_and_turn;
 use crate::{Contact, Phase, State, Vector};
@@ -17,13 +18,15 @@ use std::sync::Arc;
 use teeter_beam::{Actions, Beam, BeamError, ModalBasis, SectionForces, SpanLoad};
 use teeter_detect::{Anchor, BodyId, Frame};
 
-/// Loads on a beam by their places: the same that its [`BeamBody`](crate::BeamBody) is under, weight included.
+/// Loads on a beam with their places: the same ones that act on its [`BeamBody`](crate::BeamBody),
+/// weight included.
 pub trait SpanLoads: std::fmt::Debug + Send + Sync {
-    /// Adds the loads at time `t` (s) to a list. Allocates nothing else.
+    /// Adds the loads at time `t` (s) to a list. Must allocate nothing else.
     fn add(&self, t: f64, loads: &mut Vec<SpanLoad>);
 
-    /// Adds the means of the loads over the time from `times[0]` to `times[1]` (s) to a list, as a step takes them
-    /// ([`Subsystem::mean_load`](crate::Subsystem::mean_load)). Allocates nothing else.
+    /// Adds the means of the loads over the time from `times[0]` to `times[1]` (s) to a list, as a
+    /// step takes them ([`Dynamics::mean_load`](crate::Dynamics::mean_load)). Must allocate nothing
+    /// else.
     fn add_mean(&self, times: [f64; 2], loads: &mut Vec<SpanLoad>);
 }
 
@@ -34,12 +37,12 @@ pub struct BeamForces {
     body: BodyId,
     /// Its coordinates in the state.
     range: Range<usize>,
-    /// Where in the state the supports' displacement y is, if they move.
+    /// Position of the supports' displacement y in the state, if they move.
     lifted: Option<usize>,
     loads: Option<Box<dyn SpanLoads>>,
-    /// What its coordinates are, where they are not its dofs.
+    /// The basis of its coordinates, if they are not its dofs.
     basis: Option<Arc<ModalBasis>>,
-    /// The dofs before the phase, and their rates; and after it.
+    /// The dofs before and after the phase, and their rates.
     q: [Vec<f64>; 2],
     v: [Vec<f64>; 2],
     /// q̄, v̄, the acceleration, and q⁰ + wτv⁰.
@@ -51,11 +54,11 @@ pub struct BeamForces {
     forces: SectionForces,
 }
 
-/// Room for loads and contacts before a list has to grow.
+/// Loads and contacts for which memory is reserved.
 const LOADS: usize = 32;
 
 impl BeamForces {
-    /// Of the beam that is `body`, with its coordinates at `range` of the state.
+    /// For the beam that is `body`, with its coordinates at `range` of the state.
     #[must_use]
     pub fn new(beam: &Arc<Beam>, body: BodyId, range: Range<usize>) -> Self {
         let none = vec![0.0; beam.dofs()];
@@ -77,22 +80,23 @@ impl BeamForces {
         }
     }
 
-    /// The same for supports that move, their displacement y at this place of the state.
+    /// With moving supports, whose displacement y is at this position of the state.
     #[must_use]
     pub fn with_supports(mut self, y: usize) -> Self {
         self.lifted = Some(y);
         self
     }
 
-    /// The same under loads.
+    /// With loads.
     #[must_use]
     pub fn with_loads(mut self, loads: Box<dyn SpanLoads>) -> Self {
         self.loads = Some(loads);
         self
     }
 
-    /// The same for a beam whose coordinates are those of `basis`. What is read balances up to what the basis leaves out: loads
-    /// and contacts act on the elements, while deflections and inertia have the basis' shapes only.
+    /// For a beam whose coordinates are those of `basis`. The forces then balance up to what the
+    /// basis leaves out: loads and contacts act on the elements, while deflections and inertia have
+    /// the shapes of the basis only.
     #[must_use]
     pub fn in_modes(mut self, basis: Arc<ModalBasis>) -> Self {
         self.basis = Some(basis);
@@ -111,19 +115,20 @@ impl BeamForces {
         &self.forces
     }
 
-    /// The loads of the last phase entered, contacts among them, as means over it.
+    /// The loads of the last phase entered, contacts included, as means over it.
     #[must_use]
     pub fn loads(&self) -> &[SpanLoad] {
         &self.span_loads
     }
 
-    /// The acceleration of the last phase entered, that of the supports in it.
+    /// The acceleration in the last phase entered, that of the supports included.
     #[must_use]
     pub fn acceleration(&self) -> &[f64] {
         &self.acceleration
     }
 
-    /// The dofs of the beam in the last state started from, or at the end of the last phase entered.
+    /// The dofs of the beam in the state that was last started from, or at the end of the last
+    /// phase entered.
     #[must_use]
     pub fn dofs(&self) -> &[f64] {
         &self.q[1]
@@ -135,18 +140,19 @@ impl BeamForces {
         &self.v_mean
     }
 
-    /// A force on a point of a beam's surface, in a contact's frame (N), as a load on the axis of a beam of this span (m).
+    /// A force on a point of a beam's surface, in a contact's frame (N), as a load on the axis of a
+    /// beam of this span (m).
     #[must_use]
     pub fn surface_load(side: &Anchor<2>, frame: &Frame<2>, force: &Vector<2>, span: f64) -> SpanLoad {
         let [up, turn] = lift_and_turn(&side.point, frame);
         SpanLoad::Point { x: side.point.x.clamp(0.0, span), force: up.dot(force), couple: turn.dot(force) }
     }
 
-    /// The section forces of a state itself: those of a beam at rest in equilibrium under its loads and the forces `pressing` of contacts;
-    /// without these, of the deflection alone.
+    /// The section forces of a state: those of a beam at rest in equilibrium under its loads and
+    /// the contact forces `pressing`; with `None`, those of the deflection alone.
     ///
     /// # Errors
-    /// As [`SectionForces::update`]; and for a state without the coordinates that these are of.
+    /// As [`SectionForces::update`]; and if the state doesn't have the beam's coordinates.
     pub fn start(&mut self, state: &State, pressing: Option<&[SpanLoad]>) -> Result<&SectionForces, BeamError> {
         self.read(1, &state.q, &state.v)?;
         self.span_loads.clear();
@@ -161,11 +167,12 @@ impl BeamForces {
         Ok(&self.forces)
     }
 
-    /// The section forces of a phase; `None` for an instant, over which a mean has no meaning. Allocates nothing unless there are more
-    /// loads than ever before.
+    /// The section forces of a phase, as means over it; `None` for an impact, which takes no time.
+    /// Allocates only if there are more loads than ever before.
     ///
     /// # Errors
-    /// As [`SectionForces::update`], such as for a state that is not finite; and for a phase without the coordinates that these are of.
+    /// As [`SectionForces::update`], such as for a state that is not finite; and if the phase
+    /// doesn't have the beam's coordinates.
     pub fn enter(&mut self, phase: &Phase<'_, 2>) -> Result<Option<&SectionForces>, BeamError> {
         let (tau, weight) = (phase.duration, phase.balance.weight());
         for end in 0..2 {
@@ -206,7 +213,7 @@ impl BeamForces {
         Ok(Some(&self.forces))
     }
 
-    /// The dofs of an end of a phase.
+    /// Reads the dofs at one end of a phase.
     fn read(&mut self, end: usize, q: &[f64], v: &[f64]) -> Result<(), BeamError> {
         let coordinates = self.basis.as_ref().map_or(self.beam.dofs(), |basis| basis.len());
         let last = self.lifted.map_or(0, |y| y + 1).max(self.range.end);
@@ -235,7 +242,7 @@ impl BeamForces {
     }
 }
 
-/// What a contact's impulse, spread over h, is on a beam: on either side if both are the beam's.
+/// The loads on a beam by a contact's impulse, spread over h: one for each side that is the beam's.
 fn pushes(contact: &Contact<2>, body: BodyId, span: f64, h: f64) -> impl Iterator<Item = SpanLoad> {
     let Contact { sides, frame, p, .. } = *contact;
     sides

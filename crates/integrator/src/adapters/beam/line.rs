@@ -1,4 +1,5 @@
-//! The contact kinematics of a straight beam (`docs/theory.md` §3), whatever its coordinates: elements or modes.
+//! The contact kinematics of a straight beam (`docs/theory.md` §3), whatever its coordinates:
+//! elements or modes.
 
 use super::BeamSurface;
 use crate::Rows;
@@ -6,7 +7,7 @@ use nalgebra::Vector2;
 use teeter_beam::{Deflection, DeflectionBounds};
 use teeter_detect::{Frame, HalfSpace, Kinematics, SurfacePoint};
 
-/// How deflection and slope at a place follow from coordinates, linearly.
+/// Deflection and slope along a beam as linear functions of its coordinates.
 pub(crate) trait Deflecting {
     /// m.
     fn span(&self) -> f64;
@@ -14,21 +15,21 @@ pub(crate) trait Deflecting {
     /// Deflection and slope at x in [0, span] for coordinates `q`; `None` elsewhere.
     fn deflection_at(&self, q: &[f64], x: f64) -> Option<Deflection>;
 
-    /// Hands to `each`, for every coordinate that moves the point of [0, span] nearest to x: its number, and the deflection and the
-    /// slope there for a unit of it.
+    /// Calls `each` for every coordinate that moves the point of [0, span] nearest to x, with its
+    /// number and the deflection and slope there per unit of it.
     fn shape(&self, x: f64, each: impl FnMut(usize, f64, f64));
 
     /// Whether its points move along the axis too.
     fn has_axial_dofs(&self) -> bool;
 
-    /// By how much the point of [0, span] nearest to x has moved along the axis, m.
+    /// Displacement along the axis of the point of [0, span] nearest to x, m.
     fn axial_displacement(&self, q: &[f64], x: f64) -> f64;
 
     /// As [`Deflecting::shape`], for the displacement along the axis.
     fn axial_shape(&self, x: f64, each: impl FnMut(usize, f64));
 }
 
-/// A straight level beam in the world, or where its supports have moved it.
+/// A straight level beam in the world, displaced with its supports if they move.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Line {
     /// Its left end, m.
@@ -36,7 +37,7 @@ pub(crate) struct Line {
     surface: BeamSurface,
 }
 
-/// Most rounds of the fixed point for the foot on the top fibre.
+/// Most iterations for the foot on the top fibre.
 const FOOT_ROUNDS: usize = 20;
 
 impl Line {
@@ -49,8 +50,8 @@ impl Line {
         Self { position: position + moved, surface }
     }
 
-    /// The beam's own coordinate of a place in the world. The ends belong to the beam, so a place beyond one by the rounding
-    /// of a difference is at it.
+    /// The coordinate along the beam of a place in the world. The ends belong to the beam, so a
+    /// place beyond an end by no more than rounding is moved to it.
     fn along(&self, span: f64, x: f64) -> f64 {
         let left = self.position.x;
         let along = x - left;
@@ -58,7 +59,8 @@ impl Line {
         if (-rounding..=span + rounding).contains(&along) { along.clamp(0.0, span) } else { along }
     }
 
-    /// The foot point at the beam's own coordinate of `at`: the point of the surface with the same x.
+    /// The foot point at the beam's own coordinate of `at`: the point of the surface with the same
+    /// x.
     pub(crate) fn foot(
         &self,
         beam: &impl Deflecting,
@@ -87,8 +89,9 @@ impl Line {
         };
         let (mut foot, mut w, mut normal) = (x, d.w, normal_of(d.slope));
         if offset != 0.0 {
-            // x_f − offset sin ψ(x_f) = x: each round gains a factor offset·w'' on the last, a curvature radius of many
-            // thicknesses for anything that is a beam; 1e-16 of the span is reached in some four rounds.
+            // x_f − offset sin ψ(x_f) = x: each round gains a factor offset·w'' on the last, a
+            // curvature radius of many thicknesses for anything that is a beam; 1e-16 of the span
+            // is reached in some four rounds.
             for _ in 0..FOOT_ROUNDS {
                 let next = (x - offset * normal.x).clamp(0.0, beam.span());
                 let moved = (next - foot).abs();
@@ -103,8 +106,9 @@ impl Line {
         Some(SurfacePoint { place, normal, material: Vector2::new(foot, offset) })
     }
 
-    /// All points whose gap is at most `margin`: the foot of a point lies right below it, not above w + offset, and the gap is the height
-    /// above it times cos ψ.
+    /// A half space with all points whose gap is at most `margin`: the foot of a point lies
+    /// vertically below it, no higher than w + offset, and the gap is the height above the foot
+    /// times cos ψ.
     pub(crate) fn reach(&self, bounds: DeflectionBounds, margin: f64) -> HalfSpace<2> {
         let DeflectionBounds { highest, steepest } = bounds;
         let top = self.position.y + highest + self.surface.offset().max(0.0);
@@ -123,7 +127,8 @@ impl Line {
     }
 }
 
-/// The material point that axial motion has brought to x: x_m + u(x_m) = x. Strains are far below 1, so that a few rounds do.
+/// The material point that axial motion has brought to x: x_m + u(x_m) = x. Strains are far below
+/// 1, so a few iterations suffice.
 fn before_moving(beam: &impl Deflecting, q: &[f64], x: f64) -> f64 {
     let mut material = x;
     for _ in 0..FOOT_ROUNDS {
@@ -137,11 +142,13 @@ fn before_moving(beam: &impl Deflecting, q: &[f64], x: f64) -> f64 {
     material
 }
 
-/// The Jacobian rows of a surface point in a contact's frame, and how many columns they take; then one column for each of the
-/// prescribed velocities `driven`, which move all points along x and y.
+/// Fills the Jacobian rows of a surface point in a contact's frame, followed by one column for each
+/// of the prescribed velocities `driven`, which move all points along x and y; returns the number
+/// of columns.
 ///
-/// The frame is taken to be that of the surface point: its normal (−sin ψ, cos ψ) says how the section stands, so that
-/// v_s = (−offset cos ψ·ψ̇, ẇ − offset sin ψ·ψ̇) with ψ̇ = ẇ' cos² ψ; for linear kinematics ψ = 0.
+/// The frame is taken to be that of the surface point, so its normal (−sin ψ, cos ψ) gives the
+/// rotation of the section: v_s = (−offset cos ψ·ψ̇, ẇ − offset sin ψ·ψ̇) with ψ̇ = ẇ' cos² ψ; for
+/// linear kinematics ψ = 0.
 pub(crate) fn rows(
     beam: &impl Deflecting,
     point: &Vector2<f64>,
@@ -169,8 +176,9 @@ pub(crate) fn rows(
     taken
 }
 
-/// J̇ v of a point fixed in the beam, `state` its own coordinates and velocities: with ψ̇ = ẇ' cos²ψ the point at height y above the axis moves
-/// at (−y cos ψ·ψ̇, ẇ − y sin ψ·ψ̇); what is left of the derivative of that without ẅ and ẅ'. `None` off the beam.
+/// J̇ v of a point fixed in the beam, `state` its own coordinates and velocities: with ψ̇ = ẇ'
+/// cos²ψ the point at height y above the axis moves at (−y cos ψ·ψ̇, ẇ − y sin ψ·ψ̇); J̇ v is the
+/// part of its derivative without ẅ and ẅ'. `None` off the beam.
 pub(crate) fn bias(
     beam: &impl Deflecting,
     state: [&[f64]; 2],
@@ -191,8 +199,9 @@ pub(crate) fn bias(
     Some(frame * (Vector2::new(along, up) * point.y))
 }
 
-/// The velocities of a surface point in a contact's frame for a unit of ẇ and of ẇ' there. So an impulse p on the beam is the
-/// vertical one up·p and the couple turn·p about the axis.
+/// The velocities `[up, turn]` of a surface point in a contact's frame per unit of ẇ and of ẇ'
+/// there. So an impulse p acts on the beam as the vertical impulse up·p and the couple turn·p about
+/// the axis.
 pub(crate) fn lift_and_turn(point: &Vector2<f64>, frame: &Frame<2>) -> [Vector2<f64>; 2] {
     let (sin, cos) = (-frame[(0, 0)], frame[(0, 1)]);
     [frame.column(1).into(), frame * Vector2::new(-cos, -sin) * (point.y * cos * cos)]

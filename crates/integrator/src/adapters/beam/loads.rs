@@ -1,4 +1,4 @@
-//! Loads on a beam that follow a signal: where they stand, or as they move along it.
+//! Loads on a beam that follow a signal, at fixed places or moving along it.
 
 use crate::Signal;
 use crate::signal::window;

@@ -1,6 +1,7 @@
-//! What moving supports add to a beam: two prescribed coordinates, and the inertia of the motion that they share.
+//! Moving supports of a beam: two prescribed coordinates, and the inertia of the common motion.
 //!
-//! With v_y the supports' velocity and v the rates of the deflection relative to them, every point moves at v_y + N v:
+//! With v_y the supports' velocity and v the rates of the deflection relative to them, every point
+//! moves at v_y + N v:
 //!
 //! ```text
 //! M_aug = ⎡ M   0   s ⎤     s = ρA ∫ Nᵀ dx,  m = ρA L         T = ½ vᵀM v + v_y sᵀv + ½ m (v_x² + v_y²)
@@ -8,7 +9,7 @@
 //!         ⎣ sᵀ  0   m ⎦
 //! ```
 //!
-//! Stiffness and damping know the relative motion only.
+//! Stiffness and damping act on the relative motion only.
 
 use crate::Motion;
 use teeter_beam::{Beam, ModalBasis};
@@ -28,7 +29,8 @@ impl MovingSupports {
     pub(crate) fn new(beam: &Beam, motion: [Motion; 2]) -> Self {
         let n = beam.dofs();
         let mut coupling = vec![0.0; n];
-        // The acceleration is finite and the vector as long as it must be, so there is no error to pass on.
+        // The acceleration is finite and the vector has the right length, so there is no error to
+        // pass on.
         let _ = beam.add_self_weight(1.0, &mut coupling);
         Self { motion, driven: [n, n + 1], coupling, mass: beam.total_mass() }
     }
