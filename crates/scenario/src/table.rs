@@ -6,7 +6,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use crate::dimension::Dimension;
 use crate::keys::{Bound, Key, Kind, Occurrence, OnlyWith, Presence, Range, Reserved, Table};
-use crate::measure::{CONTACT_DAMPING, CONTACT_STIFFNESS};
+use crate::measure::Unit;
 use crate::words;
 use beam_keys::*;
 
@@ -66,6 +66,15 @@ const POINT: Kind = Kind::Pair(Dimension::LENGTH, Range::ANY);
 /// The laws of contacts: of an instant, and with duration.
 const IMPACTS: &[&str] = &["newton", "poisson", "energetic"];
 const COMPLIANT: &[&str] = &["kelvin-voigt", "hunt-crossley"];
+
+/// Stiffness and damping of a contact with duration: their units hold the exponent of the force.
+const CONTACT_STIFFNESS: &[Unit] =
+    &[Unit::new(Dimension::STIFFNESS, "N/m"), Unit::over_powers_of_metre(Dimension::FORCE, "N/m^n")];
+const CONTACT_DAMPING: &[Unit] = &[
+    Unit::new(Dimension::DAMPING, "N s/m"),
+    Unit::new(Dimension::INVERSE_VELOCITY, "s/m"),
+    Unit::over_powers_of_metre(Dimension::IMPULSE, "N s/m^(n+1)"),
+];
 
 const SIGNAL: Key = key(
     "signal",

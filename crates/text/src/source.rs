@@ -1,4 +1,4 @@
-//! The text of a scene: positions in it, and where each value of a scene came from.
+//! The text of a file: positions in it, and where each value came from.
 
 use std::ops::Range;
 
@@ -8,7 +8,7 @@ use crate::diagnostic::{Diagnostic, Severity, printable};
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Origin {
-    /// The scene file: bytes of the source.
+    /// The file: bytes of its text.
     File(Range<usize>),
     /// A `--set KEY=VALUE`: its place among them, and its text.
     Set {
@@ -19,16 +19,17 @@ pub enum Origin {
     },
     /// The default of the table of keys.
     Default,
-    /// A default that depends on other values, set by whoever resolved the scene.
+    /// A default that depends on other values, set by whoever gives the document its meaning.
     Derived,
 }
 
-/// A scene file in memory.
+/// A file in memory.
 #[derive(Debug, Clone)]
-pub(crate) struct Source {
+pub struct Source {
     /// As given; for messages.
-    pub(crate) file: String,
-    pub(crate) text: String,
+    pub file: String,
+    /// All of it.
+    pub text: String,
     /// Byte at which each line starts.
     lines: Vec<usize>,
 }
@@ -36,30 +37,32 @@ pub(crate) struct Source {
 const BOM: char = '\u{feff}';
 
 impl Source {
-    pub(crate) fn new(file: &str, text: &str) -> Self {
+    /// A file of this name and text.
+    pub fn new(file: &str, text: &str) -> Self {
         let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
         Self { file: file.to_owned(), text: text.to_owned(), lines }
     }
 
     /// Line of a byte, from 0.
-    pub(crate) fn line(&self, at: usize) -> usize {
+    pub fn line(&self, at: usize) -> usize {
         self.lines.partition_point(|start| *start <= at).saturating_sub(1)
     }
 
     /// Bytes of a line, without its end.
-    pub(crate) fn line_range(&self, line: usize) -> Range<usize> {
+    pub fn line_range(&self, line: usize) -> Range<usize> {
         let start = self.lines.get(line).copied().unwrap_or(self.text.len());
         let end = self.lines.get(line + 1).map_or(self.text.len(), |next| next - 1);
         start..end
     }
 
-    pub(crate) fn line_text(&self, line: usize) -> &str {
+    /// The text of a line, without its end.
+    pub fn line_text(&self, line: usize) -> &str {
         let text = self.text.get(self.line_range(line)).unwrap_or_default();
         text.trim_start_matches(BOM).trim_end_matches('\r')
     }
 
     /// Line and column, both from 1, the column in characters. A byte order mark takes no column.
-    pub(crate) fn position(&self, at: usize) -> (usize, usize) {
+    pub fn position(&self, at: usize) -> (usize, usize) {
         let line = self.line(at);
         let start = self.line_range(line).start;
         let before = self.text.get(start..at).unwrap_or_default();
@@ -67,12 +70,12 @@ impl Source {
     }
 
     /// A piece of the text as written, shortened.
-    pub(crate) fn written(&self, span: &Range<usize>) -> String {
+    pub fn written(&self, span: &Range<usize>) -> String {
         printable(self.text.get(span.clone()).unwrap_or_default())
     }
 
     /// An error about `path`, placed at `origin`.
-    pub(crate) fn error(&self, origin: &Origin, path: &str, rule: impl Into<String>) -> Diagnostic {
+    pub fn error(&self, origin: &Origin, path: &str, rule: impl Into<String>) -> Diagnostic {
         let mut found =
             Diagnostic { severity: Severity::Error, path: path.to_owned(), ..Diagnostic::error(&self.file, rule) };
         match origin {
