@@ -35,14 +35,12 @@
 mod carrier;
 pub mod decode;
 pub mod deflection;
-pub mod document;
 mod doubts;
 mod driven;
 mod faults;
 mod fineness;
 mod flexibility;
 mod idle;
-mod judge;
 pub mod keys;
 mod layout;
 mod left_out;
@@ -57,20 +55,16 @@ mod required;
 pub mod resolve;
 mod rocking;
 pub mod scene;
-mod sets;
 mod settling;
 pub mod simulation;
 mod stability;
 pub mod swing;
-mod syntax;
 mod table;
-mod tree;
-pub mod value;
 pub mod volume;
 pub mod wording;
 mod words;
 
-pub use teeter_text::{diagnostic, dimension, measure, quantity, source, suggest, units};
+pub use teeter_text::{diagnostic, dimension, document, measure, quantity, source, suggest, units, value};
 
 pub use carrier::Carrier;
 pub use fineness::FAR_TURN;

@@ -130,7 +130,7 @@ pub struct Diagnostics(pub Vec<Diagnostic>);
 pub const MOST_PRINTED: usize = 50;
 
 /// Findings after which a file is not read on.
-pub const MOST_FINDINGS: usize = 200;
+pub(crate) const MOST_FINDINGS: usize = 200;
 
 impl Diagnostics {
     /// Sorts by place: findings about the whole file, then by position, then those about `--set` in the order given.

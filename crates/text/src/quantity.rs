@@ -134,13 +134,13 @@ pub fn format_si(value: f64, dimension: Dimension) -> String {
 
 /// A number and unit as read, before anything is asked of its dimension.
 #[derive(Debug)]
-pub struct Quantity<'a> {
+pub(crate) struct Quantity<'a> {
     /// In SI units.
-    pub value: f64,
+    pub(crate) value: f64,
     /// Of its unit.
-    pub dimension: Dimension,
+    pub(crate) dimension: Dimension,
     /// The unit as written; may be empty.
-    pub unit: &'a str,
+    pub(crate) unit: &'a str,
 }
 
 impl<'a> Quantity<'a> {
@@ -148,7 +148,7 @@ impl<'a> Quantity<'a> {
     ///
     /// # Errors
     /// As [`parse`], but for the dimension.
-    pub fn read(text: &'a str) -> Result<Self, QuantityError> {
+    pub(crate) fn read(text: &'a str) -> Result<Self, QuantityError> {
         let text = text.trim();
         let number = Number::read(text)?;
         let unit = text.get(number.length..).unwrap_or_default().trim();

@@ -25,11 +25,11 @@ pub enum Origin {
 
 /// A file in memory.
 #[derive(Debug, Clone)]
-pub struct Source {
+pub(crate) struct Source {
     /// As given; for messages.
-    pub file: String,
+    pub(crate) file: String,
     /// All of it.
-    pub text: String,
+    pub(crate) text: String,
     /// Byte at which each line starts.
     lines: Vec<usize>,
 }
@@ -38,31 +38,31 @@ const BOM: char = '\u{feff}';
 
 impl Source {
     /// A file of this name and text.
-    pub fn new(file: &str, text: &str) -> Self {
+    pub(crate) fn new(file: &str, text: &str) -> Self {
         let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
         Self { file: file.to_owned(), text: text.to_owned(), lines }
     }
 
     /// Line of a byte, from 0.
-    pub fn line(&self, at: usize) -> usize {
+    pub(crate) fn line(&self, at: usize) -> usize {
         self.lines.partition_point(|start| *start <= at).saturating_sub(1)
     }
 
     /// Bytes of a line, without its end.
-    pub fn line_range(&self, line: usize) -> Range<usize> {
+    pub(crate) fn line_range(&self, line: usize) -> Range<usize> {
         let start = self.lines.get(line).copied().unwrap_or(self.text.len());
         let end = self.lines.get(line + 1).map_or(self.text.len(), |next| next - 1);
         start..end
     }
 
     /// The text of a line, without its end.
-    pub fn line_text(&self, line: usize) -> &str {
+    pub(crate) fn line_text(&self, line: usize) -> &str {
         let text = self.text.get(self.line_range(line)).unwrap_or_default();
         text.trim_start_matches(BOM).trim_end_matches('\r')
     }
 
     /// Line and column, both from 1, the column in characters. A byte order mark takes no column.
-    pub fn position(&self, at: usize) -> (usize, usize) {
+    pub(crate) fn position(&self, at: usize) -> (usize, usize) {
         let line = self.line(at);
         let start = self.line_range(line).start;
         let before = self.text.get(start..at).unwrap_or_default();
@@ -70,12 +70,12 @@ impl Source {
     }
 
     /// A piece of the text as written, shortened.
-    pub fn written(&self, span: &Range<usize>) -> String {
+    pub(crate) fn written(&self, span: &Range<usize>) -> String {
         printable(self.text.get(span.clone()).unwrap_or_default())
     }
 
     /// An error about `path`, placed at `origin`.
-    pub fn error(&self, origin: &Origin, path: &str, rule: impl Into<String>) -> Diagnostic {
+    pub(crate) fn error(&self, origin: &Origin, path: &str, rule: impl Into<String>) -> Diagnostic {
         let mut found =
             Diagnostic { severity: Severity::Error, path: path.to_owned(), ..Diagnostic::error(&self.file, rule) };
         match origin {
