@@ -50,10 +50,12 @@ mod tests {
             for key in table.keys {
                 let path = format!("{}.{}", table.pattern.replace('*', "x"), key.name);
                 let path = path.trim_start_matches('.');
+                let found = find(path);
                 assert!(
-                    matches!(find(path), Some(Found::Key(t, k)) if std::ptr::eq(k, key) && std::ptr::eq(t, table)),
-                    "{path}"
+                    matches!(found, Some(Found::Key(t, k)) if k == key && t.pattern == table.pattern),
+                    "{path}: {found:?}"
                 );
+                assert_eq!(table.keys.iter().filter(|other| other.name == key.name).count(), 1, "{path}");
                 assert!(key.doc.ends_with('.') && !key.example.is_empty(), "{path}");
                 assert!(children(table).all(|child| child.name() != key.name), "{path}");
             }
