@@ -255,9 +255,9 @@ fn run(scene: &Scene, outlook: &Outlook) -> Vec<String> {
     vec![
         format!(
             "{} of {} s to {} s, theta = {}{}",
-            count(time.steps, "step"),
+            count(time.steps(), "step"),
             time.step,
-            time.steps as f64 * time.step,
+            time.steps() as f64 * time.step,
             time.theta,
             // The default is not worth a word.
             if time.scheme == SchemeName::MoreauJeanClosed { ", by moreau-jean-closed" } else { "" }

@@ -192,7 +192,7 @@ fn value(key: &Key) -> String {
         Kind::WordOrTablePair(words, keys) => format!("two of {}, or {}", quoted(words), table_of(keys)),
         Kind::ChoicePair(choices) => format!("two of {}", quoted(choices)),
         Kind::NamePair => format!("two names, {such_as}"),
-        Kind::Gravity => format!("acceleration, {such_as}, or `[x, y]`"),
+        Kind::Downward(dimension) => format!("{}, {such_as}, or `[x, y]`", bare(dimension)),
         _ => such_as,
     }
 }

@@ -8,7 +8,9 @@ use crate::run::Exit;
 use crate::scene_page;
 use serde_json::{Map, Value, json};
 use teeter_scenario::dimension::Dimension;
-use teeter_scenario::keys::{Bound, Key, Kind, LONGEST_TITLE, Occurrence, OnlyWith, Presence, Range, TABLES, Table};
+use teeter_scenario::keys::{
+    self, Bound, Key, Kind, LONGEST_TITLE, Occurrence, OnlyWith, Presence, Range, TABLES, Table,
+};
 
 /// What the schema is printed as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -49,7 +51,7 @@ fn object(table: &Table) -> Map<String, Value> {
         properties.insert(key.name.to_owned(), property(key));
     }
     let mut required: Vec<&str> = table.keys.iter().filter(|key| is_required(key)).map(|key| key.name).collect();
-    for child in table.children() {
+    for child in keys::children(table) {
         let inner = Value::Object(object(child));
         let value = match child.occurrence {
             Occurrence::Named => json!({
@@ -179,8 +181,8 @@ fn of_kind(key: &Key) -> Value {
         Kind::WordOrTablePair(words, keys) => pair(word_or_table(words, keys, rules::of_support())),
         Kind::ChoicePair(words) => pair(json!({ "enum": words })),
         Kind::NamePair => pair(json!({ "$ref": "#/$defs/name" })),
-        Kind::Gravity => {
-            let of = |range| quantity(Dimension::ACCELERATION, range);
+        Kind::Downward(dimension) => {
+            let of = |range| quantity(dimension, range);
             json!({ "anyOf": [of(&Range::NOT_NEGATIVE), pair(of(&Range::ANY))] })
         }
         // A kind that this page does not know yet: anything goes, the program decides.

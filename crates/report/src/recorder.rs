@@ -141,7 +141,7 @@ impl<'a> Recorder<'a> {
         let headers =
             [&trajectory_header(layout, &sections), contacts::HEADER, IMPACTS_HEADER, ENERGY_HEADER].map(str::to_owned);
         let kept = Kept {
-            schedule: Schedule::new(scene.every, scene.time.steps, scene.time.step),
+            schedule: Schedule::new(scene.every, scene.time.steps(), scene.time.step),
             closings: ClosingMonitor::default(),
             met: Met::default(),
             impulses: Impulses::default(),

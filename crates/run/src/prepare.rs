@@ -144,6 +144,6 @@ impl Prepared {
     /// The number of the step with which the run is complete.
     #[must_use]
     pub fn steps(&self) -> u64 {
-        self.resolved.scene.time.steps
+        self.resolved.scene.time.steps()
     }
 }

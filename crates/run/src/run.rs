@@ -96,7 +96,7 @@ impl Prepared {
     fn exporter(&self, former: Former) -> Result<Option<Exporter>, ResultsError> {
         let (Some((folder, when)), Some(watch)) = (&self.job.export, &self.watch) else { return Ok(None) };
         let (scene, stem) = (&self.resolved.scene, self.job.scene.stem());
-        let (steps, tolerance) = (scene.time.steps, scene.solver.tolerance);
+        let (steps, tolerance) = (scene.time.steps(), scene.solver.tolerance);
         Exporter::create(watch, folder, stem, &scene.title, steps, *when, tolerance, former).map(Some)
     }
 

@@ -38,7 +38,7 @@ const LISTED: usize = 20;
 pub(crate) fn of(scene: &Scene, document: &Document) -> (Vec<Diagnostic>, Vec<Diagnostic>) {
     let used = used(document);
     let (mut warnings, mut notes) = (Vec::new(), Vec::new());
-    let end = scene.time.steps as f64 * scene.time.step;
+    let end = scene.time.steps() as f64 * scene.time.step;
     let mut unused = Vec::new();
     for signal in &scene.signals {
         let Some(used) = used.get(signal.name.as_str()) else {
@@ -153,7 +153,7 @@ fn swing(path: &str, formula: &Formula, in_the_mean: &str, scene: &Scene, docume
 /// A table with peaks between the ends of steps.
 fn rows(path: &str, table: &Table, in_the_mean: &str, scene: &Scene, document: &Document) -> Option<Diagnostic> {
     let step = scene.time.step;
-    let last = scene.time.steps as f64;
+    let last = scene.time.steps() as f64;
     let largest = table.rows().map(|(_, y)| y.abs()).fold(0.0, f64::max);
     let (mut worst, mut closest, mut before) = (0.0_f64, f64::INFINITY, None::<f64>);
     for (t, y) in table.rows() {
@@ -255,7 +255,7 @@ fn rises(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
 
 /// The time between two rows, shorter than a step, whose slope is the farthest from the mean ones of the steps around, if it is far from them.
 fn fastest_rise(table: &Table, scene: &Scene) -> Option<f64> {
-    let (step, last) = (scene.time.step, scene.time.steps as f64);
+    let (step, last) = (scene.time.step, scene.time.steps() as f64);
     let rows = || table.rows().zip(table.rows().skip(1));
     let slope = |((a, from), (b, to)): ((f64, f64), (f64, f64))| (to - from) / (b - a);
     let largest = rows().map(|rows| slope(rows).abs()).fold(0.0, f64::max);
@@ -292,7 +292,7 @@ fn fast_start(axis: &AxisScene, end: f64) -> Option<f64> {
 
 /// Beams whose supports don't begin from rest, and ground that doesn't under a block that does.
 fn fast_starts(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
-    let end = scene.time.steps as f64 * scene.time.step;
+    let end = scene.time.steps() as f64 * scene.time.step;
     let beams = scene.beams.iter().filter_map(|beam| {
         let start = fast_start(beam.motion.0[1].as_ref()?, end)?;
         let rule = format!(

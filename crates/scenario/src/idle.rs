@@ -14,7 +14,7 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
     let mut idle = |path: &str, rule: String, remedy: &str| {
         found.push(document.error(path, rule, remedy).as_warning());
     };
-    let (time, end) = (&scene.time, scene.time.steps as f64 * scene.time.step);
+    let (time, end) = (&scene.time, scene.time.steps() as f64 * scene.time.step);
     // Who tries another scheme with `--set` needn't take the key of the scene's own one out.
     let by_set = |path: &str| matches!(document.origin(path), Origin::Set { .. });
     let tried = by_set("time.scheme") && !by_set("time.activation_gamma");

@@ -1,329 +1,30 @@
 //! The table of keys: what a scene may say.
 //!
-//! One entry per key gives its kind, range, default and meaning. Decoding, the defaults written out, the lists of allowed keys in messages and the
-//! addressing by `--set` all follow from [`TABLES`]; so do the program's JSON schema and
-//! reference page.
-
-use crate::dimension::Dimension;
+//! The columns are those of [`teeter_text::keys`]. Decoding, the defaults written out, the lists of allowed keys in
+//! messages and the addressing by `--set` all follow from [`TABLES`]; so do the program's JSON schema and reference page.
 
 pub use crate::table::TABLES;
+pub use teeter_text::keys::{
+    Bound, Found, Key, Kind, LONGEST_TITLE, Occurrence, OnlyWith, Presence, Range, Reserved, Table,
+};
 
-/// A table of the scene file, such as `[time]` or `[beam.NAME]`, and its keys.
-#[derive(Debug)]
-pub struct Table {
-    /// Dotted path; a `*` stands for a name chosen by the user; empty for the root.
-    pub pattern: &'static str,
-    /// When the table is there.
-    pub occurrence: Occurrence,
-    /// Its keys in the order in which they are written out.
-    pub keys: &'static [Key],
-    /// What it describes.
-    pub doc: &'static str,
-}
+use teeter_text::schema::{Advice, Namespace, Reference, Schema};
 
-/// When a table is there.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Occurrence {
-    /// Always: its defaults and required keys hold even where the file does not name it.
-    Always,
-    /// Where the file names it; there can be one.
-    Optional,
-    /// One for each name that the user gives.
-    Named,
-    /// A value of its parent, written `key = { … }`; there can be one.
-    Inline,
-}
+/// What a scene may say, for the engine that reads it.
+pub static SCENE: Schema = Schema::new("scene", TABLES)
+    .with_namespaces(&[Namespace { groups: &["beam", "block"], taken: &["ground"] }])
+    .with_references(&[Reference { group: "material", from: &["beam", "block"], key: "material" }])
+    .with_advice(ADVICE);
 
-/// One key of a table.
-#[derive(Debug, PartialEq)]
-pub struct Key {
-    /// Name within its table.
-    pub name: &'static str,
-    /// What its value is.
-    pub kind: Kind,
-    /// Whether it must be given, and what it means when it is not.
-    pub presence: Presence,
-    /// Values that are known but not built in yet: the value's text and what to do instead.
-    pub reserved: &'static [Reserved],
-    /// A valid value, in TOML.
-    pub example: &'static str,
-    /// One sentence.
-    pub doc: &'static str,
-    /// Bytes of memory that each one of a count takes; 0 where it takes none.
-    pub bytes_each: u64,
-    /// Where the key has a meaning; `None`: wherever its table is.
-    pub only_with: Option<OnlyWith>,
-}
+const ADVICE: Advice = Advice {
+    empty: Some("a scene has at least a table [time] with end and step"),
+    other_file: Some("a scene is a TOML file; see the scenarios that come with the program"),
+    too_deep: Some("no key of a scene has more than five parts, as in beam.table.support.middle.at"),
+};
 
-/// Words of another key of the same table with which alone a key has a meaning: with others it is refused, and neither
-/// required nor filled in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct OnlyWith {
-    /// The other key.
-    pub sibling: &'static str,
-    /// Its words.
-    pub words: &'static [&'static str],
-}
-
-/// A value that is known but not built in yet.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Reserved {
-    /// The text of the value (`true` for a flag).
-    pub value: &'static str,
-    /// What to do instead.
-    pub instead: &'static str,
-}
-
-/// Whether a key must be given, and what it means when it is not.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Presence {
-    /// Must be given wherever its table is.
-    Required,
-    /// Must be given with these words of the key that it goes with (`only_with`); optional with the others.
-    RequiredWith(&'static [&'static str]),
-    /// Must be given where this key of the same table is not.
-    RequiredWithout(&'static str),
-    /// May be left out; nothing stands in for it here.
-    Optional,
-    /// Stands for this TOML value when left out.
-    Default(&'static str),
-    /// Stands for this TOML value when left out, where the sibling key is given; else it stays absent.
-    DefaultWith {
-        /// The other key of the same table.
-        sibling: &'static str,
-        /// In TOML.
-        value: &'static str,
-    },
-    /// Stands for this TOML value when left out, where the sibling key is not given; else it stays absent.
-    DefaultWithout {
-        /// The other key of the same table.
-        sibling: &'static str,
-        /// In TOML.
-        value: &'static str,
-    },
-    /// Known but not built in yet: refused.
-    NotYet,
-}
-
-/// Characters of a [`Kind::Text`].
-pub const LONGEST_TITLE: usize = 200;
-
-/// What a key's value is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum Kind {
-    /// A line of text for people, of at most [`LONGEST_TITLE`] characters, none of which steers a terminal.
-    Text,
-    /// A file, relative to the scene's own.
-    Path,
-    /// A name of something in the scene: letters, digits, `_`, `-`.
-    Name,
-    /// One of some words.
-    Choice(&'static [&'static str]),
-    /// `true` or `false`.
-    Flag,
-    /// A whole number.
-    Integer {
-        /// Smallest allowed.
-        min: i64,
-        /// Largest allowed.
-        max: i64,
-    },
-    /// A version of the scene format, one of these.
-    Version(&'static [i64]),
-    /// A bare number.
-    Number(Range),
-    /// A number with a unit.
-    Quantity(Dimension, Range),
-    /// An array of two quantities: x, y.
-    Pair(Dimension, Range),
-    /// An array of any number of quantities.
-    List(Dimension, Range),
-    /// An array of any number of bare numbers.
-    Numbers(Range),
-    /// An array of two words.
-    ChoicePair(&'static [&'static str]),
-    /// An array of some of these words, each once.
-    Words(&'static [&'static str]),
-    /// One of some words, or a table of some keys.
-    WordOrTable(&'static [&'static str], &'static [Key]),
-    /// An array of two, each one of some words or a table of some keys.
-    WordOrTablePair(&'static [&'static str], &'static [Key]),
-    /// An array of two names.
-    NamePair,
-    /// A quantity that may have one of several units, by which it is understood.
-    Measure(&'static [crate::measure::Unit], Range),
-    /// An acceleration: a quantity that is not negative (downwards) or an array of two (a vector x, y).
-    Gravity,
-}
-
-/// One end of a range.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum Bound {
-    /// No end.
-    None,
-    /// The end itself is allowed.
-    Closed(f64),
-    /// The end itself is not allowed.
-    Open(f64),
-}
-
-/// Which numbers a key takes, in SI units.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Range {
-    /// Lower end.
-    pub low: Bound,
-    /// Upper end.
-    pub high: Bound,
-    /// Smallest size of a value other than zero that the program can compute with.
-    pub smallest: f64,
-    /// Largest size that the program can compute with.
-    pub largest: f64,
-}
-
-impl Range {
-    /// Any number up to 1e12 in size.
-    pub const ANY: Self = Self::new(Bound::None, Bound::None);
-    /// Greater than zero, from 1e-12 to 1e12.
-    pub const POSITIVE: Self = Self::new(Bound::Open(0.0), Bound::None).sizes(1e-12, 1e12);
-    /// Zero or greater, up to 1e12.
-    pub const NOT_NEGATIVE: Self = Self::new(Bound::Closed(0.0), Bound::None);
-    /// From 0 to 1, ends included.
-    pub const UNIT: Self = Self::new(Bound::Closed(0.0), Bound::Closed(1.0));
-    /// From 0 to 1, ends excluded.
-    pub const INSIDE_UNIT: Self = Self::new(Bound::Open(0.0), Bound::Open(1.0));
-
-    /// A range between two ends, up to 1e12 in size.
-    pub const fn new(low: Bound, high: Bound) -> Self {
-        Self { low, high, smallest: f64::MIN_POSITIVE, largest: 1e12 }
-    }
-
-    /// The same range with other limits of size.
-    #[must_use]
-    pub const fn sizes(mut self, smallest: f64, largest: f64) -> Self {
-        self.smallest = smallest;
-        self.largest = largest;
-        self
-    }
-
-    /// What is wrong with `value`, in the unit of `dimension` (angles in degrees); `None` where it is allowed.
-    ///
-    /// ```
-    /// use teeter_scenario::{dimension::Dimension, keys::Range};
-    /// let rule = Range::POSITIVE.check(-0.0015, Dimension::LENGTH);
-    /// assert_eq!(rule.as_deref(), Some("must be greater than 0 m"));
-    /// assert_eq!(Range::POSITIVE.check(0.0015, Dimension::LENGTH), None);
-    /// ```
-    pub fn check(&self, value: f64, dimension: Dimension) -> Option<String> {
-        if !value.is_finite() {
-            return Some("not a finite number".to_owned());
-        }
-        let inside_low = match self.low {
-            Bound::None => true,
-            Bound::Closed(end) => value >= end,
-            Bound::Open(end) => value > end,
-        };
-        let inside_high = match self.high {
-            Bound::None => true,
-            Bound::Closed(end) => value <= end,
-            Bound::Open(end) => value < end,
-        };
-        let size = value.abs();
-        if !(inside_low && inside_high) {
-            Some(self.rule(dimension))
-        } else if size > self.largest || (size != 0.0 && size < self.smallest) {
-            Some(self.sizes_rule(dimension))
-        } else {
-            None
-        }
-    }
-
-    /// The sizes that can be computed with, in words.
-    pub(crate) fn sizes_rule(&self, dimension: Dimension) -> String {
-        let (smallest, largest) = (in_unit(self.smallest, dimension), in_unit(self.largest, dimension));
-        format!("outside the range that can be computed with: {smallest} to {largest} in size")
-    }
-
-    /// The range in words: "must lie in [0, 1]".
-    pub fn rule(&self, dimension: Dimension) -> String {
-        let show = |end| in_unit(end, dimension);
-        match (self.low, self.high) {
-            (Bound::None, Bound::None) => "may be any number".to_owned(),
-            (Bound::Closed(low), Bound::None) => format!("must be at least {}", show(low)),
-            (Bound::Open(low), Bound::None) => format!("must be greater than {}", show(low)),
-            (Bound::None, Bound::Closed(high)) => format!("must be at most {}", show(high)),
-            (Bound::None, Bound::Open(high)) => format!("must be less than {}", show(high)),
-            (Bound::Closed(low), Bound::Closed(high)) => {
-                format!("must lie in [{}, {}]", show(low), show(high))
-            }
-            (Bound::Open(low), Bound::Open(high)) => {
-                format!("must lie between {} and {}, both excluded", show(low), show(high))
-            }
-            (Bound::Closed(low), Bound::Open(high)) => {
-                format!("must be at least {} and less than {}", show(low), show(high))
-            }
-            (Bound::Open(low), Bound::Closed(high)) => {
-                format!("must be greater than {} and at most {}", show(low), show(high))
-            }
-        }
-    }
-}
-
-/// A bound for a message: short digits; angles in degrees.
-fn in_unit(value: f64, dimension: Dimension) -> String {
-    let (value, unit) =
-        if dimension == Dimension::ANGLE { (value.to_degrees(), "deg".to_owned()) } else { (value, dimension.unit()) };
-    let number =
-        if value == 0.0 || (1e-4..1e6).contains(&value.abs()) { format!("{value}") } else { format!("{value:e}") };
-    format!("{number} {unit}").trim_end().to_owned()
-}
-
-/// What became of a path that was looked up.
-#[derive(Debug, Clone, Copy)]
-pub enum Found {
-    /// A key of a table.
-    Key(&'static Table, &'static Key),
-    /// A table.
-    Table(&'static Table),
-    /// The group of named tables, such as `beam` of `beam.*`.
-    Group(&'static Table),
-}
-
-impl Table {
-    /// The key of this name.
-    pub fn key(&self, name: &str) -> Option<&'static Key> {
-        self.keys.iter().find(|key| key.name == name)
-    }
-
-    /// Last part of the pattern, the star of a named table left off: `time`, `beam`, `damping_ratio`.
-    pub fn name(&self) -> &'static str {
-        let pattern = self.pattern.strip_suffix(".*").unwrap_or(self.pattern);
-        pattern.rsplit('.').next().unwrap_or(pattern)
-    }
-
-    /// The tables right below this one.
-    pub fn children(&self) -> impl Iterator<Item = &'static Table> + use<> {
-        let parent = self.pattern;
-        TABLES.iter().filter(move |table| {
-            let own = table.pattern.strip_suffix(".*").unwrap_or(table.pattern);
-            let above = own.rsplit_once('.').map_or("", |(above, _)| above);
-            !own.is_empty() && above == parent
-        })
-    }
-
-    /// The names that may stand in this table: its keys that are built in, then its tables.
-    pub fn allowed(&self) -> Vec<&'static str> {
-        let keys = self.keys.iter().filter(|key| key.presence != Presence::NotYet);
-        keys.map(|key| key.name).chain(self.children().map(Table::name)).collect()
-    }
-}
-
-/// The root table.
-pub(crate) fn root() -> Option<&'static Table> {
-    TABLES.iter().find(|table| table.pattern.is_empty())
+/// The tables right below a table.
+pub fn children(table: &Table) -> impl Iterator<Item = &'static Table> + use<> {
+    SCENE.children(table)
 }
 
 /// What a dotted path such as `beam.table.thickness` addresses.
@@ -336,24 +37,12 @@ pub(crate) fn root() -> Option<&'static Table> {
 /// assert!(keys::find("beam.table.colour").is_none());
 /// ```
 pub fn find(path: &str) -> Option<Found> {
-    let mut table = root()?;
-    let mut segments = path.split('.');
-    while let Some(segment) = segments.next() {
-        if let Some(key) = table.key(segment) {
-            return segments.next().is_none().then_some(Found::Key(table, key));
-        }
-        table = table.children().find(|child| child.name() == segment)?;
-        if table.occurrence == Occurrence::Named && segments.next().is_none() {
-            return Some(Found::Group(table));
-        }
-    }
-    Some(Found::Table(table))
+    SCENE.find(path)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Found, Range, TABLES, find};
-    use crate::dimension::Dimension;
+    use super::{Found, TABLES, children, find};
 
     #[test]
     fn each_key_is_found_by_its_path_and_no_name_is_used_twice() {
@@ -361,30 +50,18 @@ mod tests {
             for key in table.keys {
                 let path = format!("{}.{}", table.pattern.replace('*', "x"), key.name);
                 let path = path.trim_start_matches('.');
+                let found = find(path);
                 assert!(
-                    matches!(find(path), Some(Found::Key(t, k)) if std::ptr::eq(k, key) && std::ptr::eq(t, table)),
-                    "{path}"
+                    matches!(found, Some(Found::Key(t, k)) if k == key && t.pattern == table.pattern),
+                    "{path}: {found:?}"
                 );
+                assert_eq!(table.keys.iter().filter(|other| other.name == key.name).count(), 1, "{path}");
                 assert!(key.doc.ends_with('.') && !key.example.is_empty(), "{path}");
-                assert!(table.children().all(|child| child.name() != key.name), "{path}");
+                assert!(children(table).all(|child| child.name() != key.name), "{path}");
             }
         }
         assert!(find("").is_none());
         assert!(find("time.end.x").is_none());
         assert!(find("beam.").is_some_and(|found| matches!(found, Found::Table(_))));
-    }
-
-    #[test]
-    fn ranges_name_their_ends_and_refuse_nan() {
-        let number = Dimension::NONE;
-        assert_eq!(Range::UNIT.check(1.2, number).as_deref(), Some("must lie in [0, 1]"));
-        assert_eq!(Range::UNIT.check(1.0, number), None);
-        assert_eq!(Range::INSIDE_UNIT.check(1.0, number).as_deref(), Some("must lie between 0 and 1, both excluded"));
-        assert_eq!(Range::ANY.check(f64::NAN, number).as_deref(), Some("not a finite number"));
-        assert_eq!(
-            Range::POSITIVE.check(1e200, Dimension::LENGTH).as_deref(),
-            Some("outside the range that can be computed with: 1e-12 m to 1e12 m in size")
-        );
-        assert!(Range::POSITIVE.check(1e-13, Dimension::LENGTH).is_some());
     }
 }

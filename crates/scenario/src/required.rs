@@ -120,7 +120,8 @@ impl Required {
     pub(crate) fn of(scene: &Scene, layout: &Layout, model: &Model<2>, q: &[f64], v: &[f64]) -> Self {
         let mut required = Self { extent: Extent::Required, ..Self::all(scene) };
         let start = Start { scene, layout, model, q, v };
-        let rests: Vec<Option<Rest>> = (0..scene.beams.len()).map(|k| Rest::of(&start, k, scene.time.steps)).collect();
+        let rests: Vec<Option<Rest>> =
+            (0..scene.beams.len()).map(|k| Rest::of(&start, k, scene.time.steps())).collect();
         let dead = scene.contacts.iter().map(|contact| !start.is_stood_on(contact)).collect();
         let Some((pairs, barrier, reaches)) = Pairs::search(&start, dead, &rests) else { return required };
         let dead = &pairs.dead;
@@ -215,7 +216,7 @@ struct Start<'a> {
 impl Start<'_> {
     /// How long the run is, s.
     fn time(&self) -> f64 {
-        self.scene.time.steps as f64 * self.scene.time.step
+        self.scene.time.steps() as f64 * self.scene.time.step
     }
 
     /// Time that a step may look past its start, s: to its end, or as far as the activation looks.

@@ -189,7 +189,7 @@ impl<'a, 'f> Resolver<'a, 'f> {
         }
         let time = self.time(&blocks, &beams);
         if let Some(time) = &time {
-            self.covered(&signals, time.steps as f64 * time.step);
+            self.covered(&signals, time.steps() as f64 * time.step);
         }
         let solver = self.solver();
         let every = doc.quantity("output.every");

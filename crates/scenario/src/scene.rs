@@ -44,8 +44,6 @@ pub struct Time {
     pub end: f64,
     /// Step size, s.
     pub step: f64,
-    /// Steps: up to the first time at or past `end`.
-    pub steps: u64,
     /// The scheme.
     pub scheme: SchemeName,
     /// θ of the scheme.
@@ -80,6 +78,28 @@ impl Scene {
 }
 
 impl Time {
+    /// Steps of the run: up to the first time at or past `end`.
+    ///
+    /// They follow from `end` and `step`, whoever changes those:
+    ///
+    /// ```
+    /// # let text = "[time]\nend = '0.5 s'\nstep = '1 ms'\n[ground]\n[material.m]\ndensity = '1 kg/m^3'\n[block.b]\n\
+    /// #     material = 'm'\nwidth = '1 m'\nheight = '1 m'\ndepth = '1 m'\nposition = ['0 m', '1 m']\n";
+    /// let mut scene = teeter_scenario::load(text.as_bytes(), "block.toml", "block", &[])?.scene;
+    /// assert_eq!(scene.time.steps(), 500);
+    /// scene.time.step = 0.3e-3;
+    /// assert_eq!(scene.time.steps(), 1667);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        let steps = self.end / self.step;
+        // Up to rounding of the quotient a whole number of steps is one; of very many, a thousandth of a step is more than that.
+        let whole = steps.round();
+        let rounding = (1e-9 * whole).min(1e-3);
+        (if (steps - whole).abs() <= rounding { whole } else { steps.ceil() }) as u64
+    }
+
     /// The θ by which the scheme steps: the closed one has ½, whatever is given.
     #[must_use]
     pub fn theta_of_scheme(&self) -> f64 {

@@ -212,7 +212,7 @@ impl Simulation {
             SolverSettings { tolerance: scene.solver.tolerance, max_iterations: scene.solver.max_iterations };
         let work = Workspace::new(&model, wrap(solver), settings);
         let scheme = scheme(&scene.time)?;
-        let plan = Plan::steps(scene.time.steps).when_unsolved(if scene.solver.require_convergence {
+        let plan = Plan::steps(scene.time.steps()).when_unsolved(if scene.solver.require_convergence {
             Unsolved::End
         } else {
             Unsolved::GoOn

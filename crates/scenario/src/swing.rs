@@ -82,7 +82,7 @@ impl Swing {
 /// Beams that are let go deformed and swing faster than the steps show.
 pub(crate) fn coarse(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
     let theta = scene.time.theta_of_scheme();
-    let end = scene.time.steps as f64 * scene.time.step;
+    let end = scene.time.steps() as f64 * scene.time.step;
     let of = |beam: &crate::scene::BeamScene| {
         if beam.shape.iter().all(|x| *x == 0.0) {
             return None;

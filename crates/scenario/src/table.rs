@@ -5,30 +5,13 @@ mod beam_keys;
 use std::f64::consts::FRAC_PI_2;
 
 use crate::dimension::Dimension;
-use crate::keys::{Bound, Key, Kind, Occurrence, OnlyWith, Presence, Range, Reserved, Table};
-use crate::measure::{CONTACT_DAMPING, CONTACT_STIFFNESS};
+use crate::keys::{Bound, Key, Kind, Occurrence, Presence, Range, Reserved, Table};
+use crate::measure::Unit;
 use crate::words;
 use beam_keys::*;
 
 const fn key(name: &'static str, kind: Kind, presence: Presence, example: &'static str, doc: &'static str) -> Key {
-    Key { name, kind, presence, reserved: &[], example, doc, bytes_each: 0, only_with: None }
-}
-
-impl Key {
-    const fn reserving(mut self, reserved: &'static [Reserved]) -> Self {
-        self.reserved = reserved;
-        self
-    }
-
-    const fn only_with(mut self, sibling: &'static str, words: &'static [&'static str]) -> Self {
-        self.only_with = Some(OnlyWith { sibling, words });
-        self
-    }
-
-    const fn taking(mut self, bytes_each: u64) -> Self {
-        self.bytes_each = bytes_each;
-        self
-    }
+    Key::new(name, kind, presence, example, doc)
 }
 
 /// A word whose place will be taken by the words that are built in.
@@ -66,6 +49,15 @@ const POINT: Kind = Kind::Pair(Dimension::LENGTH, Range::ANY);
 /// The laws of contacts: of an instant, and with duration.
 const IMPACTS: &[&str] = &["newton", "poisson", "energetic"];
 const COMPLIANT: &[&str] = &["kelvin-voigt", "hunt-crossley"];
+
+/// Stiffness and damping of a contact with duration: their units hold the exponent of the force.
+const CONTACT_STIFFNESS: &[Unit] =
+    &[Unit::new(Dimension::STIFFNESS, "N/m"), Unit::over_powers_of_metre(Dimension::FORCE, "N/m^n")];
+const CONTACT_DAMPING: &[Unit] = &[
+    Unit::new(Dimension::DAMPING, "N s/m"),
+    Unit::new(Dimension::INVERSE_VELOCITY, "s/m"),
+    Unit::over_powers_of_metre(Dimension::IMPULSE, "N s/m^(n+1)"),
+];
 
 const SIGNAL: Key = key(
     "signal",
@@ -144,7 +136,7 @@ pub static TABLES: &[Table] = &[
         pattern: "world",
         occurrence: Occurrence::Always,
         doc: "What holds everywhere.",
-        keys: &[key("gravity", Kind::Gravity, Default("\"9.81 m/s^2\""), "\"9.81 m/s^2\"", "Acceleration of gravity downwards, or as a vector [x, y].")],
+        keys: &[key("gravity", Kind::Downward(Dimension::ACCELERATION), Default("\"9.81 m/s^2\""), "\"9.81 m/s^2\"", "Acceleration of gravity downwards, or as a vector [x, y].")],
     },
     Table {
         pattern: "material.*",

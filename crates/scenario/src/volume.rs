@@ -21,7 +21,7 @@ impl Volume {
     /// An estimate from the scene, within a factor of two: each contact pair touches with one corner in every row.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
-        let steps = scene.time.steps as f64;
+        let steps = scene.time.steps() as f64;
         let rows = match scene.every {
             Some(every) => steps.min((scene.time.end / every).ceil()),
             None => (steps / (steps / ROWS).ceil()).ceil(),
@@ -100,7 +100,7 @@ pub fn expected_seconds(scene: &Scene, beam_dofs: usize) -> f64 {
         + cost::DOF * beam_dofs as f64 * (1.0 + substitutions)
         + if few { 0.0 } else { cost::PAIR_OF_CONTACTS * contacts * contacts };
     let writing = cost::NUMBER * Volume::of(scene).bytes / BYTES_A_NUMBER;
-    (step * scene.time.steps as f64 + writing) * 1e-6
+    (step * scene.time.steps() as f64 + writing) * 1e-6
 }
 
 #[cfg(test)]

@@ -1,83 +1,10 @@
-//! Words for messages: what a key expects, sizes, durations.
+//! Words for messages: those of every document, and those for beams.
 
-use crate::diagnostic::printable;
-use crate::dimension::Dimension;
-use crate::keys::{Key, Kind};
 use crate::scene::BeamScene;
 use teeter_beam::Support;
 use teeter_integrator::WBackend;
 
-/// How to give a bare number its unit.
-pub(crate) fn with_unit(number: &str, dimension: Dimension) -> String {
-    let number = printable(number);
-    let unit = dimension.unit();
-    match dimension.usual_units() {
-        [] | [_] => format!("write \"{number} {unit}\""),
-        [_, others @ ..] => format!("write \"{number} {unit}\" if it is in {unit}; also known: {}", others.join(", ")),
-    }
-}
-
-/// What a key's value is, with its article.
-pub(crate) fn noun(key: &Key) -> String {
-    match key.kind {
-        Kind::Text => "a text in quotes".to_owned(),
-        Kind::Path => "the name of a file in quotes".to_owned(),
-        Kind::Measure(units, _) => {
-            let units: Vec<&str> = units.iter().map(|unit| unit.example).collect();
-            format!("a quantity in {}", units.join(" or "))
-        }
-        Kind::Name => "a name in quotes".to_owned(),
-        Kind::Choice(_) => "a word in quotes".to_owned(),
-        Kind::Flag => "true or false".to_owned(),
-        Kind::Integer { .. } | Kind::Version(_) => "a whole number".to_owned(),
-        Kind::Number(_) => "a bare number".to_owned(),
-        Kind::Quantity(dimension, _) => format!("{} with its unit", dimension.name()),
-        Kind::Pair(dimension, _) => {
-            format!("an array of two, each {} with its unit,", dimension.name())
-        }
-        Kind::List(dimension, _) => {
-            format!("an array, each item {} with its unit,", dimension.name())
-        }
-        Kind::Numbers(_) => "an array of bare numbers".to_owned(),
-        Kind::Words(_) => "an array of words in quotes".to_owned(),
-        Kind::WordOrTable(..) => "a word in quotes or a table".to_owned(),
-        Kind::WordOrTablePair(..) => "an array of two, each a word in quotes or a table,".to_owned(),
-        Kind::ChoicePair(_) | Kind::NamePair => "an array of two words in quotes".to_owned(),
-        Kind::Gravity => "an acceleration with its unit, or an array of two,".to_owned(),
-    }
-}
-
-/// The names of some keys.
-pub(crate) fn names(keys: &[Key]) -> String {
-    let names: Vec<&str> = keys.iter().map(|key| key.name).collect();
-    names.join(", ")
-}
-
-/// What would be right for a key: for `help:` lines.
-#[must_use]
-pub fn expected(key: &Key) -> String {
-    match key.kind {
-        Kind::Choice(choices) => format!("built in: {}", choices.join(", ")),
-        Kind::ChoicePair(choices) => {
-            format!("two of {}, such as {}", choices.join(", "), key.example)
-        }
-        Kind::Words(words) => format!("some of {}, each once, such as {}", words.join(", "), key.example),
-        Kind::WordOrTable(words, keys) => {
-            format!("built in: {}, or a table of {}", words.join(", "), names(keys))
-        }
-        Kind::WordOrTablePair(words, keys) => {
-            format!("two of {}, or tables of {}; such as {}", words.join(", "), names(keys), key.example)
-        }
-        Kind::Flag => "write true or false".to_owned(),
-        Kind::Integer { min, max } => {
-            format!("a whole number from {min} to {max}, such as {}", key.example)
-        }
-        _ => {
-            let noun = noun(key);
-            format!("{}, such as {}", noun.trim_end_matches(','), key.example)
-        }
-    }
-}
+pub use teeter_text::wording::{bytes, duration, expected};
 
 /// The word for a support of a beam.
 #[must_use]
@@ -106,31 +33,6 @@ pub fn backend(beam: &BeamScene) -> &'static str {
 #[must_use]
 pub fn theory(beam: &BeamScene) -> &'static str {
     if beam.is_sheared() { "timoshenko" } else { "euler-bernoulli" }
-}
-
-/// A size of memory or of files, two digits.
-#[must_use]
-pub fn bytes(count: f64) -> String {
-    let units = [(1e12, "TB"), (1e9, "GB"), (1e6, "MB"), (1e3, "kB")];
-    match units.into_iter().find(|(size, _)| count >= *size) {
-        Some((size, unit)) if count < 9.95 * size => format!("{:.1} {unit}", count / size),
-        Some((size, unit)) => format!("{:.0} {unit}", count / size),
-        None => format!("{count:.0} bytes"),
-    }
-}
-
-/// A time that a computation takes.
-#[must_use]
-pub fn duration(seconds: f64) -> String {
-    match seconds {
-        s if s < 0.095 => "less than 0.1 s".to_owned(),
-        s if s < 9.95 => format!("{s:.1} s"),
-        s if s < 120.0 => format!("{s:.0} s"),
-        s if s < 7200.0 => format!("{:.0} minutes", s / 60.0),
-        s if s < 172_800.0 => format!("{:.0} hours", s / 3600.0),
-        s if s < 6.3e7 => format!("{:.0} days", s / 86_400.0),
-        s => format!("{:.0} years", s / 3.156e7),
-    }
 }
 
 /// "1/68 of its span".

@@ -200,7 +200,7 @@ impl Tradeoff {
     /// How many steps a run has with each step of the ladder.
     fn steps(&self, source: &Source) -> Vec<f64> {
         let ladder = self.axes.ladder(&Setting::none());
-        let of = |setting: &Setting| source.load(setting).map_or(0.0, |resolved| resolved.scene.time.steps as f64);
+        let of = |setting: &Setting| source.load(setting).map_or(0.0, |resolved| resolved.scene.time.steps() as f64);
         ladder.iter().map(of).collect()
     }
 

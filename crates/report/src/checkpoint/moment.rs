@@ -79,7 +79,7 @@ impl Moment {
             return Err(CheckpointError::Step { path: path(), t, dt, good: t / (t / dt).ceil() });
         }
         let step = if same_steps { self.step } else { steps as u64 };
-        if step >= scene.time.steps {
+        if step >= scene.time.steps() {
             return Err(CheckpointError::End { path: path(), t, end: scene.time.end });
         }
         let mut state = State::at(model, step, &self.q, &self.v, dt)

@@ -69,7 +69,7 @@ contact.wall = { between = ["ball", "ground"], friction = 0.4, restitution = 1.0
 fn memory_does_not_grow_with_the_steps() {
     let resolved = teeter_scenario::load(SCENE.as_bytes(), "cubes.toml", "cubes", &[]).unwrap();
     let scene = &resolved.scene;
-    assert_eq!(scene.time.steps, 1_000_000);
+    assert_eq!(scene.time.steps(), 1_000_000);
     let watch = Watch::default();
     let mut simulation = Simulation::with_solver(scene, |solver| watch.around(solver)).unwrap();
     let layout = simulation.layout.clone();

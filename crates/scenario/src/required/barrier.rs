@@ -286,7 +286,7 @@ pub(super) const STATIC: MatrixWeights = MatrixWeights { mass: 0.0, damping: 0.0
 fn bounds(start: &Start<'_>, beam: usize) -> Option<BeamBounds> {
     let (of, place) = (&start.scene.beams[beam], &start.layout.beams[beam]);
     let elements = place.beam.elements();
-    let worth = elements <= MOST_ELEMENTS && start.scene.time.steps >= STEPS_AN_ELEMENT * elements as u64;
+    let worth = elements <= MOST_ELEMENTS && start.scene.time.steps() >= STEPS_AN_ELEMENT * elements as u64;
     if !worth || of.top || matches!(of.spec.axial, Axial::Elastic { .. }) {
         return None;
     }

@@ -65,7 +65,7 @@ impl Reach {
             // Where it turns back, if it does so in time.
             let turn = if g == 0.0 { 0.0 } else { (-rate / g).clamp(0.0, end) };
             let margin = start.ahead() * (v[k].abs() + g.abs() * (end + start.ahead()))
-                + rounding(time.steps) * (q[k].abs() + v[k].abs() * end + g.abs() * end * end + extent[k]);
+                + rounding(time.steps()) * (q[k].abs() + v[k].abs() * end + g.abs() * end * end + extent[k]);
             let places = [q[k], at(turn), at(end)];
             let low = places.into_iter().fold(f64::INFINITY, f64::min);
             let high = places.into_iter().fold(f64::NEG_INFINITY, f64::max);

@@ -4,6 +4,7 @@ use teeter_detect::Kinematics;
 use teeter_integrator::{ImpactLaw, PairLaw};
 
 use super::Resolver;
+use crate::dimension::Dimension;
 use crate::measure::Measure;
 use crate::scene::{ContactScene, Support};
 use crate::words::{Frames, Law};
@@ -54,7 +55,7 @@ impl Resolver<'_, '_> {
             );
             return None;
         }
-        if damping.is_inverse_velocity() || damping.power.is_some_and(|power| power != 1.0) {
+        if damping.dimension == Dimension::INVERSE_VELOCITY || damping.power.is_some_and(|power| power != 1.0) {
             self.error(&format!("{path}.damping"), "the damping c of kelvin-voigt is in N s/m", "such as \"10 N s/m\"");
             return None;
         }
@@ -78,7 +79,7 @@ impl Resolver<'_, '_> {
             return None;
         }
         let k = stiffness.value;
-        let damping = if damping.is_inverse_velocity() { damping.value } else { damping.value / k };
+        let damping = if damping.dimension == Dimension::INVERSE_VELOCITY { damping.value } else { damping.value / k };
         Some(ImpactLaw::HuntCrossley { stiffness: k, damping, exponent })
     }
 

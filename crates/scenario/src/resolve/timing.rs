@@ -57,23 +57,15 @@ impl Resolver<'_, '_> {
             self.error("time.step", rule, "take a longer step or an earlier end");
             return None;
         }
-        // Up to rounding of the quotient a whole number of steps is one; of very many, a thousandth of a step is more than that.
-        let whole = steps.round();
-        let steps = if (steps - whole).abs() <= (1e-9 * whole).min(1e-3) { whole } else { steps.ceil() };
-        if steps != whole || (steps * step - end).abs() > (1e-9 * end).min(1e-3 * step) {
+        let time =
+            Time { end, step, scheme: scheme?, theta: theta?, activation_gamma: activation_gamma?, gap_tolerance };
+        let steps = time.steps() as f64;
+        if (steps * step - end).abs() > (1e-9 * end).min(1e-3 * step) {
             let rule = format!("not a whole number of steps of {step} s: the run goes on to {} s", steps * step);
             self.warnings
                 .push(self.doc.error("time.end", rule, "choose an end that is a multiple of the step").as_warning());
         }
-        Some(Time {
-            end,
-            step,
-            steps: steps as u64,
-            scheme: scheme?,
-            theta: theta?,
-            activation_gamma: activation_gamma?,
-            gap_tolerance,
-        })
+        Some(time)
     }
 
     /// The gap below which a contact counts as closed, m: what is given, if it is small against the blocks.

@@ -119,10 +119,10 @@ fn times_that_do_not_fit_together() {
     says(&of(&[("time.step", "2 s")]), &["time.step", "longer than the whole run of 0.5 s"]);
     says(&of(&[("time.end", "1e6 s"), ("time.step", "1e-9 s")]), &["1.0e15 steps", "limit", "years"]);
     let (resolved, _) = set(&[("time.end", "0.50005 s")]).unwrap();
-    assert_eq!(resolved.scene.time.steps, 5001);
+    assert_eq!(resolved.scene.time.steps(), 5001);
     says(&resolved.warnings[0].to_string(), &["warning", "time.end", "goes on to 0.5001 s"]);
     let (resolved, _) = set(&[("time.end", "0.3 s"), ("time.step", "0.1 s")]).unwrap();
-    assert_eq!(resolved.scene.time.steps, 3, "0.3/0.1 is 2.9999999999999996");
+    assert_eq!(resolved.scene.time.steps(), 3, "0.3/0.1 is 2.9999999999999996");
     assert!(resolved.warnings.iter().all(|warning| warning.path != "time.end"));
 }
 

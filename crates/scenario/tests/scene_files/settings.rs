@@ -1,5 +1,6 @@
 //! `--set`, and errors placed where a value came from.
 
+use teeter_scenario::resolve::resolve;
 use teeter_scenario::source::Origin;
 
 use crate::{ROCKING, findings, read};
@@ -68,4 +69,21 @@ fn rules_over_several_keys_are_placed_where_the_value_was_written() {
     assert!(place("beam.table").starts_with("error: scene.toml:18:1: beam.table: no"));
     let warning = scene.error("beam.table.span", "no", "yes").as_warning();
     assert!(warning.to_string().starts_with("warning: "));
+}
+
+#[test]
+fn a_scene_edited_by_its_document_is_the_scene_read_with_the_setting() {
+    let load = |sets: &[(&str, &str)]| {
+        let sets: Vec<_> = sets.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
+        teeter_scenario::load(ROCKING.as_bytes(), "scene.toml", "scene", &sets).unwrap()
+    };
+    let edited = load(&[]).document.with("time.step", "50 us").unwrap();
+    let edited = resolve(edited, "scene", &mut |_| Err("there is none".to_owned())).unwrap();
+    let read = load(&[("time.step", "50 us")]);
+    assert_eq!(edited.scene, read.scene);
+    assert_eq!(edited.document.to_toml(), read.document.to_toml());
+    assert_eq!((edited.scene.time.steps(), load(&[]).scene.time.steps()), (10_000, 5_000));
+    // The gap tolerance follows from sizes: it is derived anew, not kept from the scene before.
+    let large = edited.document.with("block.rocker.height", "20 m").unwrap();
+    assert!(edited.document.has("time.gap_tolerance") && !large.has("time.gap_tolerance"));
 }

@@ -1,5 +1,5 @@
-//! Quantities that may have one of several units, by which they are understood: stiffness and damping of contacts with
-//! duration, whose units hold the exponent of the force.
+//! Quantities that may have one of several units, by which they are understood: coefficients of power laws, whose units hold
+//! the exponent.
 
 use std::fmt;
 
@@ -17,22 +17,19 @@ pub struct Unit {
     pub example: &'static str,
 }
 
-const fn unit(dimension: Dimension, any_power: bool, example: &'static str) -> Unit {
-    Unit { dimension, any_power, example }
+impl Unit {
+    /// A unit of this dimension.
+    #[must_use]
+    pub const fn new(dimension: Dimension, example: &'static str) -> Self {
+        Self { dimension, any_power: false, example }
+    }
+
+    /// A unit of this dimension over any power of the metre.
+    #[must_use]
+    pub const fn over_powers_of_metre(dimension: Dimension, example: &'static str) -> Self {
+        Self { dimension, any_power: true, example }
+    }
 }
-
-const INVERSE_VELOCITY: Dimension = Dimension::new(0, -1, 1, 0, 0);
-
-/// Units of the stiffness of a contact.
-pub(crate) const CONTACT_STIFFNESS: &[Unit] =
-    &[unit(Dimension::STIFFNESS, false, "N/m"), unit(Dimension::FORCE, true, "N/m^n")];
-
-/// Units of the damping of a contact.
-pub(crate) const CONTACT_DAMPING: &[Unit] = &[
-    unit(Dimension::DAMPING, false, "N s/m"),
-    unit(INVERSE_VELOCITY, false, "s/m"),
-    unit(Dimension::IMPULSE, true, "N s/m^(n+1)"),
-];
 
 /// A number and its unit: that of `dimension`, over a power of the metre.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,14 +43,11 @@ pub struct Measure {
 }
 
 impl Measure {
-    /// Whether it is in s/m.
-    #[must_use]
-    pub fn is_inverse_velocity(&self) -> bool {
-        self.dimension == INVERSE_VELOCITY
-    }
-
     /// Reads a quantity in one of the units.
-    pub(crate) fn read(text: &str, units: &[Unit]) -> Result<Self, QuantityError> {
+    ///
+    /// # Errors
+    /// What is wrong with the text, as seen from the first of the units.
+    pub fn read(text: &str, units: &[Unit]) -> Result<Self, QuantityError> {
         for unit in units.iter().filter(|unit| !unit.any_power) {
             if let Ok(value) = quantity::parse(text, unit.dimension) {
                 return Ok(Self { value, dimension: unit.dimension, power: None });
@@ -88,22 +82,30 @@ impl fmt::Display for Measure {
 mod tests {
     use super::*;
 
+    const STIFFNESS: &[Unit] =
+        &[Unit::new(Dimension::STIFFNESS, "N/m"), Unit::over_powers_of_metre(Dimension::FORCE, "N/m^n")];
+    const DAMPING: &[Unit] = &[
+        Unit::new(Dimension::DAMPING, "N s/m"),
+        Unit::new(Dimension::INVERSE_VELOCITY, "s/m"),
+        Unit::over_powers_of_metre(Dimension::IMPULSE, "N s/m^(n+1)"),
+    ];
+
     #[test]
     fn the_unit_tells_what_it_is() {
         let read = |text, units| Measure::read(text, units).map(|m| (m.value, m.power, m.to_string()));
-        assert_eq!(read("2 kN/m", CONTACT_STIFFNESS), Ok((2e3, None, "2000.0 N/m".to_owned())));
-        assert_eq!(read("1e8 N/m^1.5", CONTACT_STIFFNESS), Ok((1e8, Some(1.5), "100000000.0 N/m^1.5".to_owned())));
-        assert_eq!(read("3 kN s/m^2.5", CONTACT_DAMPING), Ok((3e3, Some(2.5), "3000.0 N s/m^2.5".to_owned())));
-        assert_eq!(read("0.5 s/m", CONTACT_DAMPING), Ok((0.5, None, "0.5 s/m".to_owned())));
+        assert_eq!(read("2 kN/m", STIFFNESS), Ok((2e3, None, "2000.0 N/m".to_owned())));
+        assert_eq!(read("1e8 N/m^1.5", STIFFNESS), Ok((1e8, Some(1.5), "100000000.0 N/m^1.5".to_owned())));
+        assert_eq!(read("3 kN s/m^2.5", DAMPING), Ok((3e3, Some(2.5), "3000.0 N s/m^2.5".to_owned())));
+        assert_eq!(read("0.5 s/m", DAMPING), Ok((0.5, None, "0.5 s/m".to_owned())));
         for text in ["2 kN/m", "1e8 N/m^1.5"] {
-            let once = Measure::read(text, CONTACT_STIFFNESS).unwrap();
-            assert_eq!(Measure::read(&once.to_string(), CONTACT_STIFFNESS), Ok(once));
+            let once = Measure::read(text, STIFFNESS).unwrap();
+            assert_eq!(Measure::read(&once.to_string(), STIFFNESS), Ok(once));
         }
         assert!(matches!(
-            Measure::read("2 kg", CONTACT_STIFFNESS),
+            Measure::read("2 kg", STIFFNESS),
             Err(QuantityError::WrongDimension { got: Dimension::MASS, .. })
         ));
-        assert_eq!(Measure::read("2", CONTACT_DAMPING), Err(QuantityError::MissingUnit));
-        assert!(Measure::read("2 N/m^-1", CONTACT_STIFFNESS).is_err());
+        assert_eq!(Measure::read("2", DAMPING), Err(QuantityError::MissingUnit));
+        assert!(Measure::read("2 N/m^-1", STIFFNESS).is_err());
     }
 }

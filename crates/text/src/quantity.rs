@@ -98,7 +98,7 @@ impl QuantityError {
 /// Reads a quantity of the wanted dimension and returns its value in SI units.
 ///
 /// ```
-/// use teeter_scenario::{dimension::Dimension, quantity};
+/// use teeter_text::{dimension::Dimension, quantity};
 /// assert_eq!(quantity::parse("36 cm", Dimension::LENGTH), Ok(0.36));
 /// assert_eq!(quantity::parse("0.4 N s/m^2", Dimension::DAMPING_PER_LENGTH), Ok(0.4));
 /// let error = quantity::parse("36 kg", Dimension::LENGTH).unwrap_err();
@@ -123,7 +123,7 @@ pub fn parse(text: &str, wanted: Dimension) -> Result<f64, QuantityError> {
 /// The value should be finite; NaN and infinities are written by name and refused when read.
 ///
 /// ```
-/// use teeter_scenario::{dimension::Dimension, quantity};
+/// use teeter_text::{dimension::Dimension, quantity};
 /// assert_eq!(quantity::format_si(0.36, Dimension::LENGTH), "0.36 m");
 /// assert_eq!(quantity::format_si(69e9, Dimension::PRESSURE), "69000000000.0 Pa");
 /// ```
@@ -137,12 +137,17 @@ pub fn format_si(value: f64, dimension: Dimension) -> String {
 pub(crate) struct Quantity<'a> {
     /// In SI units.
     pub(crate) value: f64,
+    /// Of its unit.
     pub(crate) dimension: Dimension,
     /// The unit as written; may be empty.
     pub(crate) unit: &'a str,
 }
 
 impl<'a> Quantity<'a> {
+    /// Reads a number with its unit, or without one.
+    ///
+    /// # Errors
+    /// As [`parse`], but for the dimension.
     pub(crate) fn read(text: &'a str) -> Result<Self, QuantityError> {
         let text = text.trim();
         let number = Number::read(text)?;

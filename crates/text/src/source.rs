@@ -1,4 +1,4 @@
-//! The text of a scene: positions in it, and where each value of a scene came from.
+//! The text of a file: positions in it, and where each value came from.
 
 use std::ops::Range;
 
@@ -8,7 +8,7 @@ use crate::diagnostic::{Diagnostic, Severity, printable};
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Origin {
-    /// The scene file: bytes of the source.
+    /// The file: bytes of its text.
     File(Range<usize>),
     /// A `--set KEY=VALUE`: its place among them, and its text.
     Set {
@@ -19,15 +19,16 @@ pub enum Origin {
     },
     /// The default of the table of keys.
     Default,
-    /// A default that depends on other values, set by whoever resolved the scene.
+    /// A default that depends on other values, set by whoever gives the document its meaning.
     Derived,
 }
 
-/// A scene file in memory.
+/// A file in memory.
 #[derive(Debug, Clone)]
 pub(crate) struct Source {
     /// As given; for messages.
     pub(crate) file: String,
+    /// All of it.
     pub(crate) text: String,
     /// Byte at which each line starts.
     lines: Vec<usize>,
@@ -36,6 +37,7 @@ pub(crate) struct Source {
 const BOM: char = '\u{feff}';
 
 impl Source {
+    /// A file of this name and text.
     pub(crate) fn new(file: &str, text: &str) -> Self {
         let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
         Self { file: file.to_owned(), text: text.to_owned(), lines }
@@ -53,6 +55,7 @@ impl Source {
         start..end
     }
 
+    /// The text of a line, without its end.
     pub(crate) fn line_text(&self, line: usize) -> &str {
         let text = self.text.get(self.line_range(line)).unwrap_or_default();
         text.trim_start_matches(BOM).trim_end_matches('\r')

@@ -7,7 +7,7 @@ use crate::keys::{Key, Kind};
 use crate::measure::Measure;
 use crate::quantity;
 
-/// A value of a scene; all quantities in SI units.
+/// A value of a document; all quantities in SI units.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Value {
@@ -102,9 +102,9 @@ impl Value {
             Self::Flag(_) => kind == Kind::Flag,
             Self::Integer(_) => matches!(kind, Kind::Integer { .. } | Kind::Version(_)),
             Self::Number(_) => {
-                matches!(kind, Kind::Number(_) | Kind::Quantity(..) | Kind::Gravity)
+                matches!(kind, Kind::Number(_) | Kind::Quantity(..) | Kind::Downward(_))
             }
-            Self::Pair(_) => matches!(kind, Kind::Pair(..) | Kind::Gravity),
+            Self::Pair(_) => matches!(kind, Kind::Pair(..) | Kind::Downward(_)),
             Self::List(_) => matches!(kind, Kind::List(..) | Kind::Numbers(_)),
             Self::TextPair(_) => matches!(kind, Kind::ChoicePair(_) | Kind::NamePair),
             Self::Words(_) => matches!(kind, Kind::Words(_)),
@@ -144,8 +144,10 @@ impl Value {
 
 fn dimension_of(kind: Kind) -> Dimension {
     match kind {
-        Kind::Quantity(dimension, _) | Kind::Pair(dimension, _) | Kind::List(dimension, _) => dimension,
-        Kind::Gravity => Dimension::ACCELERATION,
+        Kind::Quantity(dimension, _)
+        | Kind::Pair(dimension, _)
+        | Kind::List(dimension, _)
+        | Kind::Downward(dimension) => dimension,
         _ => Dimension::NONE,
     }
 }

@@ -1,7 +1,8 @@
 //! `--set KEY=VALUE`: put into the tree before it is decoded, so that it goes by the same rules as the file.
 
 use crate::diagnostic::Diagnostic;
-use crate::keys::{self, Found, Kind, Occurrence, TABLES};
+use crate::keys::{Found, Kind, Occurrence};
+use crate::schema::Schema;
 use crate::source::{Origin, Source};
 use crate::suggest;
 use crate::tree::{Branch, Node, Raw, Twig, lenient_value};
@@ -10,17 +11,17 @@ use crate::tree::{Branch, Node, Raw, Twig, lenient_value};
 const MOST_COMPARED: usize = 20_000;
 
 /// Applies the settings in their order; a later one wins.
-pub(crate) fn apply(root: &mut Branch, sets: &[(String, String)], source: &Source) -> Vec<Diagnostic> {
+pub(crate) fn apply(schema: &Schema, root: &mut Branch, sets: &[(String, String)], source: &Source) -> Vec<Diagnostic> {
     let mut findings = Vec::new();
     for (index, (path, value)) in sets.iter().enumerate() {
         let path = path.trim();
         let origin = Origin::Set { index, text: setting(path, value) };
-        match node(path, value, &origin) {
+        match node(schema, path, value, &origin) {
             Ok(node) => {
                 let segments: Vec<&str> = path.split('.').collect();
                 insert(root, &segments, node, &origin);
             }
-            Err(Wrong::Unknown) => findings.push(unknown(root, path, &origin, source)),
+            Err(Wrong::Unknown) => findings.push(unknown(schema, root, path, &origin, source)),
             Err(Wrong::Rule(rule, remedy)) => {
                 findings.push(source.error(&origin, path, rule).with_remedy(remedy));
             }
@@ -40,9 +41,9 @@ enum Wrong {
 }
 
 /// The value as a node, if the path addresses something that can take it.
-fn node(path: &str, value: &str, origin: &Origin) -> Result<Node, Wrong> {
+fn node(schema: &Schema, path: &str, value: &str, origin: &Origin) -> Result<Node, Wrong> {
     let mut node = lenient_value(value.trim(), origin.clone());
-    match keys::find(path).ok_or(Wrong::Unknown)? {
+    match schema.find(path).ok_or(Wrong::Unknown)? {
         Found::Key(_, key) => {
             // A title of digits, a material called true: a text needs no quotes here.
             let textual = matches!(key.kind, Kind::Text | Kind::Path | Kind::Name | Kind::Choice(_));
@@ -55,12 +56,12 @@ fn node(path: &str, value: &str, origin: &Origin) -> Result<Node, Wrong> {
             Raw::Branch(_) => Ok(node),
             _ => Err(Wrong::Rule(
                 format!("this is a table, got {}", node.raw.what()),
-                format!("set one of its keys: {}", table.allowed().join(", ")),
+                format!("set one of its keys: {}", schema.allowed(table).join(", ")),
             )),
         },
         Found::Group(table) => Err(Wrong::Rule(
             "a name and a key are missing".to_owned(),
-            format!("write {0}.NAME.KEY; the keys are {1}", table.name(), table.allowed().join(", ")),
+            format!("write {0}.NAME.KEY; the keys are {1}", table.name(), schema.allowed(table).join(", ")),
         )),
     }
 }
@@ -93,20 +94,23 @@ fn insert(branch: &mut Branch, segments: &[&str], node: Node, origin: &Origin) {
     }
 }
 
-fn unknown(root: &Branch, path: &str, origin: &Origin, source: &Source) -> Diagnostic {
-    let known = paths(root);
+fn unknown(schema: &Schema, root: &Branch, path: &str, origin: &Origin, source: &Source) -> Diagnostic {
+    let known = paths(schema, root);
     let found = source
         .error(origin, path, "unknown key")
         .with_suggestion(suggest::nearest(path, known.iter().map(String::as_str)));
     // The keys of the table that the path does reach.
-    let above = path.match_indices('.').rev().find_map(|(at, _)| match keys::find(path.get(..at)?)? {
+    let above = path.match_indices('.').rev().find_map(|(at, _)| match schema.find(path.get(..at)?)? {
         Found::Table(table) => Some((path.get(..at)?, table)),
         _ => None,
     });
     match above {
-        Some((above, table)) => found.with_remedy(format!("the keys of {above} are {}", table.allowed().join(", "))),
+        Some((above, table)) => {
+            found.with_remedy(format!("the keys of {above} are {}", schema.allowed(table).join(", ")))
+        }
         None => {
-            let tables: Vec<String> = TABLES
+            let tables: Vec<String> = schema
+                .tables
                 .iter()
                 .filter(|table| table.occurrence != Occurrence::Inline && !table.pattern.is_empty())
                 .map(|table| table.pattern.replace('*', "NAME"))
@@ -116,7 +120,7 @@ fn unknown(root: &Branch, path: &str, origin: &Origin, source: &Source) -> Diagn
     }
 }
 
-/// The paths that a pattern stands for, each with a dot at its end: a star is every name that the scene has there.
+/// The paths that a pattern stands for, each with a dot at its end: a star is every name that the document has there.
 fn named_paths(branch: &Branch, pattern: &str, above: &str, all: &mut Vec<String>) {
     let Some((group, below)) = pattern.split_once(".*") else {
         all.push(if pattern.is_empty() { above.to_owned() } else { format!("{above}{pattern}.") });
@@ -131,10 +135,10 @@ fn named_paths(branch: &Branch, pattern: &str, above: &str, all: &mut Vec<String
     }
 }
 
-/// The paths of all keys that a scene with these names can have.
-fn paths(root: &Branch) -> Vec<String> {
+/// The paths of all keys that a document with these names can have.
+fn paths(schema: &Schema, root: &Branch) -> Vec<String> {
     let mut all = Vec::new();
-    for table in TABLES {
+    for table in schema.tables {
         let mut prefixes = Vec::new();
         named_paths(root, table.pattern, "", &mut prefixes);
         for prefix in prefixes {

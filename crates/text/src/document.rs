@@ -1,16 +1,19 @@
-//! A decoded scene: values by path, with defaults and origins, and the way back to TOML.
+//! A decoded document: values by path, with defaults and origins, and the way back to TOML.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
 
-use crate::diagnostic::Diagnostic;
+use crate::decode;
+use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::judge::Judge;
-use crate::keys::{self, Found, Key, Kind, Occurrence, Table};
+use crate::keys::{Found, Key, Kind, Occurrence, Table};
 use crate::measure::Measure;
+use crate::schema::Schema;
 use crate::source::{Origin, Source};
 use crate::tree::lenient_value;
 use crate::value::{Item, Value};
 
-/// A value of a scene with its key and origin.
+/// A value of a document with its key and origin.
 #[derive(Debug, Clone)]
 pub struct Entry {
     /// Its entry in the table of keys.
@@ -23,7 +26,7 @@ pub struct Entry {
     pub written: String,
 }
 
-/// A scene as decoded by [`crate::decode::parse`]: each value by its path, such as `beam.table.thickness`.
+/// A document as decoded by [`crate::decode::parse`]: each value by its path, such as `beam.table.thickness`.
 ///
 /// All values are of the kind and in the range that the table of keys gives; the defaults of the table are filled in. Nothing is checked here
 /// that takes two keys: references to names, damping given twice, geometry.
@@ -31,7 +34,10 @@ pub struct Entry {
 /// The getters return `None` for a path that is absent or holds another kind of value.
 #[derive(Debug, Clone)]
 pub struct Document {
+    schema: &'static Schema,
     source: Source,
+    /// The overrides that it was read with.
+    sets: Vec<(String, String)>,
     entries: BTreeMap<String, Entry>,
     tables: BTreeMap<String, Origin>,
     /// By the path of the group.
@@ -44,8 +50,8 @@ pub struct Document {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SetError {
-    /// The path is no key of the table of keys, or its table is not in the scene.
-    #[error("the scene has no place for the key {0}")]
+    /// The path is no key of the table of keys, or its table is not in the document.
+    #[error("there is no place for the key {0}")]
     NoSuchKey(String),
     /// The key holds another type of value.
     #[error("the value is not of the type of the key {0}")]
@@ -56,9 +62,11 @@ pub enum SetError {
 }
 
 impl Document {
-    pub(crate) fn new(source: Source) -> Self {
+    pub(crate) fn new(schema: &'static Schema, source: Source, sets: &[(String, String)]) -> Self {
         Self {
+            schema,
             source,
+            sets: sets.to_vec(),
             entries: BTreeMap::new(),
             tables: BTreeMap::new(),
             names: BTreeMap::new(),
@@ -83,7 +91,7 @@ impl Document {
     }
 
     /// Whether the path was written with something that is no value for it, so that there is a message about it already.
-    pub(crate) fn is_refused(&self, path: &str) -> bool {
+    pub fn is_refused(&self, path: &str) -> bool {
         self.refused.contains(path)
     }
 
@@ -117,8 +125,8 @@ impl Document {
         self.entries.get(path).is_some_and(|entry| matches!(entry.origin, Origin::File(_) | Origin::Set { .. }))
     }
 
-    /// Whether the scene has this table: `ground`, `beam.table`, `beam.table.rayleigh`. Tables that always hold
-    /// (`time`, `world`, `solver`, `output`) are there even if the file does not name them.
+    /// Whether the document has this table: `ground`, `beam.table`, `beam.table.rayleigh`. Tables that always hold
+    /// are there even if the file does not name them.
     pub fn has_table(&self, path: &str) -> bool {
         self.tables.contains_key(path)
     }
@@ -168,12 +176,12 @@ impl Document {
         }
     }
 
-    /// A vector x, y in SI units. Gravity given as one number g is (0, −g).
+    /// A vector x, y in SI units. One number g where the kind is [`Kind::Downward`] is (0, −g).
     pub fn pair(&self, path: &str) -> Option<[f64; 2]> {
         let entry = self.entries.get(path)?;
         match (&entry.value, entry.key.kind) {
             (Value::Pair(pair), _) => Some(*pair),
-            (Value::Number(down), Kind::Gravity) => Some([0.0, 0.0 - down]),
+            (Value::Number(down), Kind::Downward(_)) => Some([0.0, 0.0 - down]),
             _ => None,
         }
     }
@@ -267,13 +275,46 @@ impl Document {
         }
     }
 
-    /// Puts in a value that follows from others, such as `time.gap_tolerance`, so that [`Document::to_toml`] writes it out.
+    /// A copy with one key changed, as if it had been read with `--set key=value` on top: checked in the same way, with all
+    /// that follows from the key (defaults, keys that go with a word of it) read anew. `value` is taken as TOML if it is
+    /// TOML, else as a text. Values that were put in by [`Document::set`] are left out: they are to be derived again.
+    ///
+    /// ```
+    /// # use teeter_text::keys::{Key, Kind, Occurrence, Presence, Range, Table};
+    /// # use teeter_text::{decode, dimension::Dimension, schema::Schema};
+    /// # const TIME: Kind = Kind::Quantity(Dimension::TIME, Range::POSITIVE);
+    /// # static TABLES: &[Table] = &[
+    /// #     Table { pattern: "", occurrence: Occurrence::Always, doc: "", keys: &[] },
+    /// #     Table { pattern: "time", occurrence: Occurrence::Always, doc: "", keys: &[
+    /// #         Key::new("end", TIME, Presence::Required, "\"1 s\"", "When it ends."),
+    /// #         Key::new("step", TIME, Presence::Default("\"1 ms\""), "\"1 ms\"", "Step."),
+    /// #     ] },
+    /// # ];
+    /// # static SCHEMA: Schema = Schema::new("run", TABLES);
+    /// let run = decode::parse(&SCHEMA, "[time]\nend = '1 s'", "run.toml", &[])?;
+    /// let finer = run.with("time.step", "50 us")?;
+    /// assert_eq!((run.quantity("time.step"), finer.quantity("time.step")), (Some(1e-3), Some(5e-5)));
+    ///
+    /// let errors = finer.with("time.step", "50 kg").unwrap_err();
+    /// assert_eq!(errors.0[0].rule, "a time (s) is expected, got a mass (kg)");
+    /// # Ok::<(), teeter_text::diagnostic::Diagnostics>(())
+    /// ```
     ///
     /// # Errors
-    /// The path is no key, its table is not in the scene, or the key does not take the value.
+    /// All that is wrong with the document and this value in it: the path is no key, or the key does not take the value.
+    pub fn with(&self, key: &str, value: impl fmt::Display) -> Result<Self, Diagnostics> {
+        let mut sets = self.sets.clone();
+        sets.push((key.to_owned(), value.to_string()));
+        decode::parse(self.schema, &self.source.text, &self.source.file, &sets)
+    }
+
+    /// Puts in a value that follows from others, so that [`Document::to_toml`] writes it out.
+    ///
+    /// # Errors
+    /// The path is no key, its table is not in the document, or the key does not take the value.
     pub fn set(&mut self, path: &str, value: Value) -> Result<(), SetError> {
         let no_such_key = || SetError::NoSuchKey(path.to_owned());
-        let Some(Found::Key(_, key)) = keys::find(path) else {
+        let Some(Found::Key(_, key)) = self.schema.find(path) else {
             return Err(no_such_key());
         };
         if let Some((table, _)) = path.rsplit_once('.')
@@ -286,7 +327,7 @@ impl Document {
         }
         // By the same judge as the file, so that what is written out can be read again.
         let written = value.to_toml(key.kind);
-        let mut judge = Judge { source: &self.source, findings: Vec::new() };
+        let mut judge = Judge { schema: self.schema, source: &self.source, findings: Vec::new() };
         let judged = judge.value(key, path, &lenient_value(&written, Origin::Derived));
         if judged.is_none() {
             let rule = judge.findings.pop().map(|found| found.rule);
@@ -298,23 +339,23 @@ impl Document {
     }
 
     /// Leaves a value out that nobody gave, so that [`Document::to_toml`] doesn't write it.
-    pub(crate) fn forget_default(&mut self, path: &str) {
+    pub fn forget_default(&mut self, path: &str) {
         if !self.is_given(path) {
             self.entries.remove(path);
         }
     }
 
-    /// The scene as it stands: every value in the order of the table of keys, defaults written out, quantities in SI units.
+    /// The document as it stands: every value in the order of the table of keys, defaults written out, quantities in SI units.
     /// It parses to the same values bit for bit, and writing that out again gives the same bytes.
     pub fn to_toml(&self) -> String {
         let mut out = String::new();
-        if let Some(root) = keys::root() {
+        if let Some(root) = self.schema.root() {
             self.write_table(root, "", &mut out);
         }
         out
     }
 
-    /// The scene as it stands, as [`Document::to_toml`], with the files that it names rewritten by `path`: for a scene that is
+    /// The document as it stands, as [`Document::to_toml`], with the files that it names rewritten by `path`: for a document that is
     /// written to another folder.
     pub fn to_toml_elsewhere(&self, path: impl Fn(&str) -> String) -> String {
         let mut moved = self.clone();
@@ -336,7 +377,7 @@ impl Document {
 
     fn write_table(&self, table: &Table, path: &str, out: &mut String) {
         let mut lines = self.lines(table, path);
-        for inline in table.children().filter(|child| child.occurrence == Occurrence::Inline) {
+        for inline in self.schema.children(table).filter(|child| child.occurrence == Occurrence::Inline) {
             let path = format!("{path}.{}", inline.name());
             if self.has_table(&path) {
                 let values = self.lines(inline, &path).join(", ");
@@ -352,7 +393,7 @@ impl Document {
             out.push_str(&line);
             out.push('\n');
         }
-        for child in table.children() {
+        for child in self.schema.children(table) {
             let inner = if path.is_empty() { child.name().to_owned() } else { format!("{path}.{}", child.name()) };
             match child.occurrence {
                 Occurrence::Inline => {}

@@ -5,6 +5,7 @@ use crate::dimension::Dimension;
 use crate::keys::{Key, Kind, LONGEST_TITLE, Range};
 use crate::measure::{Measure, Unit};
 use crate::quantity::{self, QuantityError};
+use crate::schema::Schema;
 use crate::source::Source;
 use crate::suggest;
 use crate::tree::{Branch, Node, Raw};
@@ -14,6 +15,7 @@ use std::collections::BTreeMap;
 
 /// Decodes nodes and collects what is wrong with them.
 pub(crate) struct Judge<'a> {
+    pub(crate) schema: &'static Schema,
     pub(crate) source: &'a Source,
     pub(crate) findings: Vec<Diagnostic>,
 }
@@ -130,15 +132,13 @@ impl Judge<'_> {
                 let read = |judge: &mut Self, item: &Node| judge.name(key, path, item);
                 self.pair(items, read).map(Value::TextPair)
             }
-            Kind::Gravity => match &node.raw {
+            Kind::Downward(dimension) => match &node.raw {
                 Raw::Array(_) => {
                     let items = self.items(key, path, node, Some(2))?;
-                    let read = |judge: &mut Self, item: &Node| {
-                        judge.quantity(key, Dimension::ACCELERATION, &Range::ANY, path, item)
-                    };
+                    let read = |judge: &mut Self, item: &Node| judge.quantity(key, dimension, &Range::ANY, path, item);
                     self.pair(items, read).map(Value::Pair)
                 }
-                _ => self.gravity(key, path, node).map(Value::Number),
+                _ => self.downward(key, dimension, path, node).map(Value::Number),
             },
         }
     }
@@ -272,7 +272,7 @@ impl Judge<'_> {
         None
     }
 
-    /// A word, or a table of keys each of which is judged like one of a scene's tables.
+    /// A word, or a table of keys each of which is judged like one of a document's tables.
     fn item(&mut self, key: &Key, (words, keys): (&[&str], &'static [Key]), path: &str, node: &Node) -> Option<Item> {
         match &node.raw {
             Raw::Branch(branch) => self.item_table(keys, path, branch).map(Item::Table),
@@ -341,7 +341,8 @@ impl Judge<'_> {
             return Some(value);
         }
         let known: Vec<String> = known.iter().map(i64::to_string).collect();
-        let rule = format!("this program reads version {} of scene files, got {value}", known.join(", "));
+        let rule =
+            format!("this program reads version {} of {} files, got {value}", known.join(", "), self.schema.noun);
         self.blame(node, path, rule).remedy = Some(format!("write {} = {}", key.name, key.example));
         None
     }
@@ -402,12 +403,13 @@ impl Judge<'_> {
         }
     }
 
-    fn gravity(&mut self, key: &Key, path: &str, node: &Node) -> Option<f64> {
+    fn downward(&mut self, key: &Key, dimension: Dimension, path: &str, node: &Node) -> Option<f64> {
         let range = Range::ANY;
-        let value = self.quantity(key, Dimension::ACCELERATION, &range, path, node)?;
-        if let Some(rule) = Range::NOT_NEGATIVE.check(value, Dimension::ACCELERATION) {
-            let remedy = "a single number is downwards; upwards is the vector [\"0 m/s^2\", \"1 m/s^2\"]";
-            self.blame(node, path, rule).remedy = Some(remedy.to_owned());
+        let value = self.quantity(key, dimension, &range, path, node)?;
+        if let Some(rule) = Range::NOT_NEGATIVE.check(value, dimension) {
+            let unit = dimension.unit();
+            let remedy = format!("a single number is downwards; upwards is the vector [\"0 {unit}\", \"1 {unit}\"]");
+            self.blame(node, path, rule).remedy = Some(remedy);
             return None;
         }
         Some(value)

@@ -11,7 +11,7 @@ use crate::suggest;
 /// One unit: its symbol and its size in SI, 10^`shift` × `factor`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unit {
-    /// As written in a scene.
+    /// As written.
     pub symbol: &'static str,
     /// What it measures.
     pub dimension: Dimension,
@@ -29,7 +29,7 @@ const fn odd(symbol: &'static str, dimension: Dimension, factor: f64) -> Unit {
     Unit { symbol, dimension, shift: 0, factor }
 }
 
-/// All units that a scene may use.
+/// All units that are known.
 pub static UNITS: &[Unit] = &[
     ten("m", Dimension::LENGTH, 0),
     ten("dm", Dimension::LENGTH, -1),
@@ -101,7 +101,7 @@ static WORDS: &[(&str, &str)] = &[
 /// The unit of this symbol. Both Unicode letters for micro (µ U+00B5 and μ U+03BC) stand for `u`.
 ///
 /// ```
-/// use teeter_scenario::units;
+/// use teeter_text::units;
 /// assert_eq!(units::find("GPa").unwrap().shift, 9);
 /// assert_eq!(units::find("µs"), units::find("us"));
 /// assert!(units::find("furlong").is_none());

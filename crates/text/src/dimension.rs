@@ -40,6 +40,8 @@ impl Dimension {
     pub const TEMPERATURE: Self = Self::new(0, 0, 0, 0, 1);
     /// Velocity, m/s.
     pub const VELOCITY: Self = Self::new(0, 1, -1, 0, 0);
+    /// One over a velocity, s/m.
+    pub const INVERSE_VELOCITY: Self = Self::new(0, -1, 1, 0, 0);
     /// Acceleration, m/s².
     pub const ACCELERATION: Self = Self::new(0, 1, -2, 0, 0);
     /// Angular velocity, rad/s.
@@ -81,7 +83,7 @@ impl Dimension {
     /// be there; elsewhere it counts as dimensionless (1/s accepts rad/s, N m accepts N m/rad).
     ///
     /// ```
-    /// use teeter_scenario::dimension::Dimension;
+    /// use teeter_text::dimension::Dimension;
     /// assert!(Dimension::RATE.accepts(Dimension::ANGULAR_VELOCITY));
     /// assert!(!Dimension::ANGULAR_VELOCITY.accepts(Dimension::RATE));
     /// ```
@@ -98,11 +100,11 @@ impl Dimension {
         NAMED.iter().find(|named| named.dimension == self).map_or("a quantity", |named| named.name)
     }
 
-    /// Its SI unit in the syntax of scene files: `m`, `Pa`, `N s/m^2`; made of base units where it has no usual one, and
+    /// Its SI unit as it is read: `m`, `Pa`, `N s/m^2`; made of base units where it has no usual one, and
     /// empty for a pure number.
     ///
     /// ```
-    /// use teeter_scenario::dimension::Dimension;
+    /// use teeter_text::dimension::Dimension;
     /// assert_eq!(Dimension::DENSITY.unit(), "kg/m^3");
     /// assert_eq!(Dimension::new(1, 2, 0, 0, -1).unit(), "kg m^2/K");
     /// ```

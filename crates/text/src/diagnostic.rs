@@ -1,4 +1,4 @@
-//! What is wrong with a scene, where, and what would be right.
+//! What is wrong with a file, where, and what would be right.
 
 use std::fmt;
 use std::ops::Range;
@@ -7,15 +7,15 @@ use std::ops::Range;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Severity {
-    /// The scene cannot be run.
+    /// The file cannot be used.
     Error,
-    /// The scene can be run, but probably does not mean what was meant.
+    /// The file can be used, but probably does not say what was meant.
     Warning,
     /// Worth knowing, and nothing wrong.
     Note,
 }
 
-/// One finding about a scene.
+/// One finding about a file.
 ///
 /// Printed as
 /// ```text
@@ -122,7 +122,7 @@ impl fmt::Display for Diagnostic {
     }
 }
 
-/// All findings about a scene, in the order of the file, those about `--set` last.
+/// All findings about a file, in the order of the file, those about `--set` last.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Diagnostics(pub Vec<Diagnostic>);
 
@@ -184,7 +184,8 @@ impl std::error::Error for Diagnostics {}
 const LONGEST_PIECE: usize = 80;
 
 /// A piece of the user's text made fit for a terminal: shortened, control characters escaped.
-pub(crate) fn printable(text: &str) -> String {
+#[must_use]
+pub fn printable(text: &str) -> String {
     match text.char_indices().nth(LONGEST_PIECE) {
         Some((end, _)) => escaped(text.get(..end).unwrap_or_default()) + "…",
         None => escaped(text),

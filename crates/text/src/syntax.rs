@@ -7,21 +7,25 @@ use toml::de::DeTable;
 
 use crate::diagnostic::Diagnostic;
 use crate::quantity::Quantity;
+use crate::schema::Schema;
 use crate::source::{Origin, Source};
 use crate::tree::{Branch, Planter};
 
-/// Largest scene file, in bytes. A scene of ten thousand blocks takes about 3 MB.
+/// Largest file that is read, in bytes.
 pub const LARGEST_FILE: usize = 4 << 20;
 
-/// For files that are something else.
-pub(crate) const A_SCENE_IS: &str = "a scene is a TOML file; see the scenarios that come with the program";
-
-pub(crate) fn too_large(file: &str) -> Diagnostic {
-    let rule = format!("the file is larger than {} MB, the limit for a scene", LARGEST_FILE >> 20);
-    Diagnostic::error(file, rule).with_remedy(A_SCENE_IS)
+/// An error about a file that is something else.
+pub(crate) fn other_file(schema: &Schema, file: &str, rule: impl Into<String>) -> Diagnostic {
+    let default = || format!("{} is a TOML file", schema.a_document());
+    Diagnostic::error(file, rule).with_remedy(schema.advice.other_file.map_or_else(default, str::to_owned))
 }
 
-/// Syntax errors that are reported; past that the file is probably no scene at all.
+pub(crate) fn too_large(schema: &Schema, file: &str) -> Diagnostic {
+    let rule = format!("the file is larger than {} MB, the limit for {}", LARGEST_FILE >> 20, schema.a_document());
+    other_file(schema, file, rule)
+}
+
+/// Syntax errors that are reported; past that the file is probably something else.
 const MOST_ERRORS: usize = 50;
 
 /// A file as a tree, as far as it could be read.
@@ -35,16 +39,16 @@ pub(crate) struct Parsed {
 }
 
 /// Reads the TOML of a file, going on after errors.
-pub(crate) fn read(source: &Source) -> Parsed {
+pub(crate) fn read(schema: &Schema, source: &Source) -> Parsed {
     let mut parsed =
         Parsed { root: Branch::default(), errors: Vec::new(), bad_lines: BTreeSet::new(), complete: false };
     if source.text.len() > LARGEST_FILE {
-        parsed.errors.push(too_large(&source.file));
+        parsed.errors.push(too_large(schema, &source.file));
         return parsed;
     }
     if let Some(at) = source.text.find('\0') {
         let rule = format!("not a text file: byte {at} is zero");
-        parsed.errors.push(Diagnostic::error(&source.file, rule).with_remedy(A_SCENE_IS));
+        parsed.errors.push(other_file(schema, &source.file, rule));
         return parsed;
     }
     // The parser gives up the rest of the file at a key without value: blank such lines and read again. After an unclosed
@@ -58,7 +62,7 @@ pub(crate) fn read(source: &Source) -> Parsed {
             let span = span_within(error.span(), source);
             let fresh = seen.insert((span.start, error.message().to_owned()));
             if fresh && parsed.errors.len() < MOST_ERRORS {
-                let found = finding(source, &span, error.message());
+                let found = finding(schema, source, &span, error.message());
                 // A value that is missing altogether is reported twice by the parser.
                 let same_place = |other: &Diagnostic| other.span.as_ref() == Some(&span);
                 if !parsed.errors.iter().any(same_place) {
@@ -126,7 +130,7 @@ fn key_of(source: &Source, line: usize) -> &str {
     text.split('=').next().unwrap_or_default().trim()
 }
 
-fn finding(source: &Source, span: &Range<usize>, message: &str) -> Diagnostic {
+fn finding(schema: &Schema, source: &Source, span: &Range<usize>, message: &str) -> Diagnostic {
     if message == DUPLICATE {
         return duplicate(source, span);
     }
@@ -151,7 +155,7 @@ fn finding(source: &Source, span: &Range<usize>, message: &str) -> Diagnostic {
         }
     }
     if message == TOO_DEEP {
-        return too_deep(source);
+        return too_deep(schema, source);
     }
     let rule = message
         .replace("invalid basic string, expected", "the text in quotes does not end, expected")
@@ -164,7 +168,7 @@ fn finding(source: &Source, span: &Range<usize>, message: &str) -> Diagnostic {
 }
 
 /// The parser doesn't say where: at the first of the lines in which most begins that is within something else.
-fn too_deep(source: &Source) -> Diagnostic {
+fn too_deep(schema: &Schema, source: &Source) -> Diagnostic {
     let depth = |line: &str| line.matches(['.', '[', '{']).count();
     let (mut start, mut deepest, mut most) = (0, 0, 0);
     for line in source.text.split_inclusive('\n') {
@@ -174,10 +178,10 @@ fn too_deep(source: &Source) -> Diagnostic {
         start += line.len();
     }
     let origin = Origin::File(deepest..deepest);
-    let remedy = "no key of a scene has more than five parts, as in beam.table.support.middle.at";
-    source
-        .error(&origin, "", "nested too deeply: a key of too many parts, or too many tables or arrays in each other")
-        .with_remedy(remedy)
+    let rule = "nested too deeply: a key of too many parts, or too many tables or arrays in each other";
+    let mut found = source.error(&origin, "", rule);
+    found.remedy = schema.advice.too_deep.map(str::to_owned);
+    found
 }
 
 fn join(table: &str, key: &str) -> String {
