@@ -29,7 +29,8 @@
 //! let ground = parts.add(Ground::flat(0.0)).body();
 //! let law = parts.law(PairLaw::new(0.5, 0.0));
 //! let model = parts.build(Box::new(PointDetector::new(vec![PointPair {
-//!     pair,
+//!     pair: 0,
+//!     law,
 //!     points: shape.corners().to_vec(),
 //!     body: block,
 //!     surface: ground,
