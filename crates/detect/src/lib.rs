@@ -40,6 +40,8 @@
 //! ```
 
 mod candidate;
+#[cfg(feature = "conformance")]
+pub mod conformance;
 mod memory;
 mod points;
 
@@ -125,7 +127,7 @@ pub trait Geometry<const D: usize> {
     }
 }
 
-/// Finds candidates for contact.
+/// Finds candidates for contact. The feature `conformance` brings a harness that holds a detector to this page.
 pub trait ContactDetector<const D: usize>: Send + Sync {
     /// Puts all candidates with a gap of at most `margin` (m) into `out`, which is cleared first, in an order that
     /// depends on nothing but the detector. Allocates only where there are more than ever before.
