@@ -56,6 +56,7 @@ mod contact;
 mod coupled_modes;
 mod equilibrium;
 mod factors;
+mod free_velocity;
 mod ground;
 mod laws;
 mod ledger;
