@@ -43,6 +43,8 @@
 //! ```
 
 mod candidate;
+#[cfg(feature = "conformance")]
+pub mod conformance;
 mod memory;
 mod points;
 
@@ -130,7 +132,7 @@ pub trait Geometry<const D: usize> {
     }
 }
 
-/// Finds candidates for contact.
+/// Finds candidates for contact. The feature `conformance` brings a harness that holds a detector to this page.
 pub trait ContactDetector<const D: usize>: Send + Sync {
     /// Puts all candidates with a gap of at most `margin` (m) into `out`, which is cleared first,
     /// in an order that depends on the detector only. Allocates only if there are more than ever

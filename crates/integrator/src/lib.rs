@@ -68,6 +68,7 @@ mod contact;
 mod coupled_modes;
 mod equilibrium;
 mod factors;
+mod free_velocity;
 mod laws;
 mod ledger;
 mod memory;

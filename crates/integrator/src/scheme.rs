@@ -23,6 +23,12 @@ pub enum StepError {
     /// Scheme, workspace or numbers are of another model.
     #[error(transparent)]
     Mismatch(#[from] Mismatch),
+    /// The model has something that the scheme can't do, such as prescribed velocities.
+    #[error("the scheme can't take steps of a model with {what}")]
+    Unsupported {
+        /// What it has.
+        what: &'static str,
+    },
     /// A scheme that ended a step without a phase in it.
     #[error("the scheme ended a step without a phase: Workspace::phase comes before Workspace::finish")]
     NoPhase,
@@ -40,7 +46,7 @@ impl StepError {
     pub fn t(&self) -> Option<f64> {
         match self {
             Self::Problem { t, .. } | Self::Diverged { t } => Some(*t),
-            Self::Factor(_) | Self::State(_) | Self::Mismatch(_) | Self::NoPhase => None,
+            Self::Factor(_) | Self::State(_) | Self::Mismatch(_) | Self::Unsupported { .. } | Self::NoPhase => None,
         }
     }
 }

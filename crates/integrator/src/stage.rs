@@ -2,6 +2,7 @@
 
 mod islands;
 mod posed;
+mod resolve;
 mod rows;
 mod solve;
 

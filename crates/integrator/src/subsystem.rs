@@ -29,6 +29,11 @@ pub struct Weights {
     pub stiffness: f64,
 }
 
+impl Weights {
+    /// M alone: that of impacts, and of explicit steps.
+    pub const MASS: Self = Self { mass: 1.0, damping: 0.0, stiffness: 0.0 };
+}
+
 /// The energies of a subsystem or of a model, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -55,7 +55,7 @@ fn scene(rod: &Pendulum, laws: [PairLaw; 2], speed: f64, step: f64) -> Done<Scen
         let law = parts.law(law);
         pairs.push(PointPair {
             pair: 0,
- law,
+            law,
             points: shape.corners().to_vec(),
             body,
             surface,

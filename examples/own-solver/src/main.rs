@@ -12,7 +12,7 @@ use teeter_contact::ContactSolver;
 use teeter_detect::{Kinematics, PointDetector, PointPair};
 use teeter_integrator::{
     Block, Blocks, Ended, Ground, Model, ModelBuilder, MoreauJean, MoreauJeanSettings, Observer, ObserverError,
-    PairLaw, Plan, SolverSettings, State, Unsolved, StepReport, Tally, Workspace, run,
+    PairLaw, Plan, SolverSettings, State, StepReport, Tally, Unsolved, Workspace, run,
 };
 use teeter_rigid::{MassProperties, Rectangle};
 use teeter_solvers::Auto;
@@ -54,8 +54,7 @@ fn rock(solver: Box<dyn ContactSolver<2>>) -> Result<Motion, Box<dyn Error + Sen
     let surface = parts.add(Ground::flat(0.0)).body();
     let law = parts.law(PairLaw::new(0.5, 0.0));
     let points = shape.corners().to_vec();
-    let touching = PointPair { pair: 0,
- law, points, body, surface, kinematics: Kinematics::Deformed };
+    let touching = PointPair { pair: 0, law, points, body, surface, kinematics: Kinematics::Deformed };
     let model = parts.build(Box::new(PointDetector::new(vec![touching])))?;
 
     // Held on its left bottom corner, let go at rest.

@@ -109,11 +109,8 @@ fn a_subsystem_of_ones_own_is_hit_and_keeps_the_energy_identity() {
 struct SemiImplicitEuler {
     q: Vec<f64>,
     v: Vec<f64>,
-    f: Vec<f64>,
     stage: ContactStage<2>,
 }
-
-const MASS: Weights = Weights { mass: 1.0, damping: 0.0, stiffness: 0.0 };
 
 impl Scheme<2> for SemiImplicitEuler {
     fn name(&self) -> &'static str {
@@ -122,8 +119,7 @@ impl Scheme<2> for SemiImplicitEuler {
 
     fn start(&mut self, model: &Model<2>, state: &mut State, work: &mut Workspace<2>) -> Result<(), StepError> {
         self.q.resize(model.size().q, 0.0);
-        self.f.resize(model.size().v, 0.0);
-        work.factors(model, MASS, &state.q, Keep::Pinned)
+        work.factors(model, Weights::MASS, &state.q, Keep::Pinned)
     }
 
     fn advance<'w>(
@@ -135,21 +131,10 @@ impl Scheme<2> for SemiImplicitEuler {
     ) -> Result<StepReport<'w, 2>, StepError> {
         let span = state.next_step(until);
         work.begin(model, state, span)?;
-        self.v.clone_from(&state.v);
-        for (index, part) in model.parts().iter().enumerate().filter(|(_, part)| !part.v.is_empty()) {
-            let f = &mut self.f[part.v.clone()];
-            f.fill(0.0);
-            part.system.internal_force(&state.q[part.q.clone()], &state.v[part.v.clone()], f);
-            work.factor(index, MASS).expect("it was made").solve(f);
-            self.v[part.v.clone()].iter_mut().zip(f.iter()).for_each(|(v, a)| *v += span.h * a);
-        }
-        let (over, responses) = (Over::Step { h: span.h, weight: 1.0 }, Responses::Of(MASS));
-        let problem = |source| StepError::Problem { t: span.start, source };
+        work.free_velocity(model, Weights::MASS, &state.q, &state.v, &span, &mut self.v)?;
+        let (over, responses) = (Over::Step { h: span.h, weight: 1.0 }, Responses::Of(Weights::MASS));
         self.stage.find(model, state, &Look::new(&state.q, 0.0), work)?;
-        self.stage.pose(model, state, &state.v, &self.v, over).map_err(problem)?;
-        let outcome = self.stage.solve(model, work, &responses, over).map_err(problem)?;
-        self.stage.respond(model, work, &responses, &mut self.v).map_err(problem)?;
-        self.stage.complete(&self.v)?;
+        let outcome = self.stage.resolve(model, state, &mut self.v, over, &responses, work)?;
         model.retract(&state.q, &self.v, span.h, &mut self.q)?;
         let phase = PhaseEnd::new(PhaseKind::Step, span.end, &self.q, &self.v)
             .with_balance(Balance::Weighted(1.0))

@@ -1,0 +1,32 @@
+//! From contacts that were found to the velocities after them, in one call.
+
+use super::{ContactStage, Over};
+use crate::{Model, Responses, State, StepError, Workspace};
+use teeter_contact::Outcome;
+
+impl<const D: usize> ContactStage<D> {
+    /// [Poses](Self::pose), [solves](Self::solve), [responds](Self::respond) and [completes](Self::complete) the contacts
+    /// that were found, each by its pair's law: `v`, the free velocities, become those after the impulses. Velocities before
+    /// are those of `state`; over [`Over::Instant`], which leaves no time for forces, they are `v` itself. A scheme that does
+    /// more in between takes the four one by one.
+    ///
+    /// # Errors
+    /// As these four; what is wrong with the contact problem is said to be so at the time of `state`.
+    pub fn resolve(
+        &mut self,
+        model: &Model<D>,
+        state: &State,
+        v: &mut [f64],
+        over: Over,
+        responses: &Responses<'_>,
+        work: &mut Workspace<D>,
+    ) -> Result<Option<Outcome>, StepError> {
+        let problem = |source| StepError::Problem { t: state.t, source };
+        let before = if over == Over::Instant { &*v } else { &state.v };
+        self.pose(model, state, before, v, over).map_err(problem)?;
+        let outcome = self.solve(model, work, responses, over).map_err(problem)?;
+        self.respond(model, work, responses, v).map_err(problem)?;
+        self.complete(v)?;
+        Ok(outcome)
+    }
+}
