@@ -84,15 +84,10 @@ pub fn accuracy_of_seconds(scene: &Scene) -> &'static str {
 #[must_use]
 pub fn expected_seconds(scene: &Scene, beam_dofs: usize) -> f64 {
     let bodies = scene.contacts.len().max(scene.blocks.len()) as f64;
-    // `moreau-jean` takes the contacts of blocks that stand apart on the ground island by island.
-    let pairs = if scene.time.scheme == SchemeName::MoreauJean {
-        scene.contacts.iter().filter(|contact| matches!(contact.surface, Support::Beam(_))).count()
-    } else {
-        scene.contacts.len()
-    };
-    let contacts = 2.0 * pairs as f64;
     let few = scene.contacts.len() <= 1;
     let on_beams = scene.contacts.iter().filter(|contact| matches!(contact.surface, Support::Beam(_))).count();
+    // The contacts of blocks that stand apart on the ground are solved island by island.
+    let contacts = 2.0 * on_beams as f64;
     // A block's two contacts use columns of W that are there; those of many are solved for in each step, a substitution each.
     let substitutions = if few { 0.0 } else { 2.0 * on_beams as f64 / scene.beams.len().max(1) as f64 };
     let step = cost::PAIR * bodies
