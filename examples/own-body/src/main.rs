@@ -51,10 +51,10 @@ fn scene(rod: &Pendulum, laws: [PairLaw; 2], speed: f64, step: f64) -> Done<Scen
     let hanging = parts.add(rod.clone()).body();
     let ground = parts.add(Ground::flat(0.0)).body();
     let mut pairs = Vec::new();
-    for (law, surface) in laws.into_iter().zip([ground, hanging]) {
+    for ((pair, law), surface) in (0..).zip(laws).zip([ground, hanging]) {
         let law = parts.law(law);
         pairs.push(PointPair {
-            pair: 0,
+            pair,
             law,
             points: shape.corners().to_vec(),
             body,

@@ -3,7 +3,9 @@
 use super::*;
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
-use teeter_integrator::{Contact, ObserverError, StepReport};
+use teeter_detect::Kinematics;
+use teeter_integrator::conformance::{Case, check};
+use teeter_integrator::{Bodies, Contact, ObserverError, StepReport, Weights};
 
 /// Ends a run with the step of the first hit, and keeps its contacts.
 #[derive(Default)]
@@ -161,4 +163,37 @@ fn the_programs_rod_is_hit_comes_back_and_ends_leaning_on_the_block() {
     assert!(impacts.found.len() > 2 && impacts.found.iter().all(|impact| impact.work < 0.0 && impact.point == 2));
     assert!(scene.state.v.iter().all(|v| v.abs() < 1e-10), "at rest: {:?}", scene.state.v);
     assert!(scene.state.q[3] > 0.05 && scene.state.tally.unconverged_steps == 0);
+}
+
+/// Not at the origin, and with all numbers different.
+const ANY: Pendulum =
+    Pendulum { pivot: Vector2::new(0.1, 0.4), length: 0.3, half_thickness: 0.002, mass: 0.2, gravity: 9.81 };
+
+#[test]
+fn it_is_what_the_integrator_asks_of_a_subsystem() {
+    let case = Case {
+        q: vec![0.7],
+        weights: Weights { mass: 1.0, damping: 0.0, stiffness: 2.5e-3 },
+        points: vec![(0, Vector2::new(0.002, -0.2)), (0, Vector2::new(-0.002, -0.3))],
+        places: vec![(0, Vector2::new(0.3, 0.3)), (0, Vector2::new(0.1, 0.2))],
+        ..Case::default()
+    };
+    assert_eq!(check(&ANY, &case), []);
+}
+
+#[test]
+fn the_foot_is_on_the_nearer_face_and_within_the_rod() {
+    let q = [0.5];
+    for (side, along) in [(1.0, 0.2), (-1.0, 0.29)] {
+        let mut at = [Vector2::zeros()];
+        ANY.place(0, &q, &[Vector2::new(side * 0.01, -along)], &mut at);
+        let foot = ANY.surface(0, &q, Kinematics::Deformed, &at[0]).unwrap();
+        assert!((foot.normal.dot(&(at[0] - foot.place)) - 0.008).abs() < 1e-15);
+        assert!((foot.material - Vector2::new(side * 0.002, -along)).norm() < 1e-15);
+    }
+    for beyond in [0.001, -0.301] {
+        let mut at = [Vector2::zeros()];
+        ANY.place(0, &q, &[Vector2::new(0.01, beyond)], &mut at);
+        assert_eq!(ANY.surface(0, &q, Kinematics::Deformed, &at[0]), None);
+    }
 }

@@ -109,6 +109,23 @@ fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use teeter_contact::conformance::{plane_cases, run as conform};
+    use teeter_contact::{Status, Stop, Vector};
+
+    #[test]
+    fn conforms() {
+        conform(&mut Jacobi::default(), &plane_cases(), 1e-10).unwrap();
+    }
+
+    #[test]
+    fn says_when_it_ran_out_of_iterations() {
+        for case in plane_cases().iter().filter(|case| case.name.starts_with("two feet, slide")) {
+            let mut p = vec![Vector::<2>::zeros(); case.q.len()];
+            let stop = Stop::default().with_max_iterations(1);
+            let outcome = Jacobi::default().solve(&case.problem().unwrap(), &stop, &mut p);
+            assert_eq!((outcome.status, outcome.iterations), (Status::MaxIterations, 1));
+        }
+    }
 
     #[test]
     fn a_solver_from_outside_gives_the_motion_that_auto_gives() {
