@@ -1,6 +1,6 @@
 //! How much a run writes and how long it takes: estimates, before anything is run.
 
-use crate::scene::{Scene, SchemeName, Support};
+use crate::scene::{Scene, Support};
 
 /// Rows of a run without `output.every`: every step up to here, thinned evenly past that.
 const ROWS: f64 = 10_000.0;
