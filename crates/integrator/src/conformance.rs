@@ -50,7 +50,7 @@ pub struct Case {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Property {
-    /// Vectors and rows are as long as [`Subsystem::size`] says, numbers of velocities ascend and are within it.
+    /// Vectors and rows are as long as [`Dynamics::size`](crate::Dynamics::size) says, numbers of velocities ascend and are within it.
     Sizes,
     /// `q ⊕ 0` is q, and `⊕ −τ v` undoes `⊕ τ v`.
     Retract,
@@ -58,7 +58,7 @@ pub enum Property {
     Drive,
     /// A load only where there is said to be one, added to what is there.
     Load,
-    /// The foot of a place is where [`Subsystem::place`] puts its material point.
+    /// The foot of a place is where [`Bodies::place`](crate::Bodies::place) puts its material point.
     Foot,
     /// Rows are the derivative of places.
     Rows,
