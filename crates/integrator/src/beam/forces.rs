@@ -23,7 +23,7 @@ pub trait SpanLoads: std::fmt::Debug + Send + Sync {
     fn add(&self, t: f64, loads: &mut Vec<SpanLoad>);
 
     /// Adds the means of the loads over the time from `times[0]` to `times[1]` (s) to a list, as a step takes them
-    /// ([`Subsystem::mean_load`](crate::Subsystem::mean_load)). Allocates nothing else.
+    /// ([`Dynamics::mean_load`](crate::Dynamics::mean_load)). Allocates nothing else.
     fn add_mean(&self, times: [f64; 2], loads: &mut Vec<SpanLoad>);
 }
 
