@@ -24,14 +24,9 @@ pub trait SpanLoads: std::fmt::Debug + Send + Sync {
     /// Adds the loads at time `t` (s) to a list. Must allocate nothing else.
     fn add(&self, t: f64, loads: &mut Vec<SpanLoad>);
 
-<<<<<<< HEAD:crates/integrator/src/adapters/beam/forces.rs
     /// Adds the means of the loads over the time from `times[0]` to `times[1]` (s) to a list, as a
     /// step takes them ([`Dynamics::mean_load`](crate::Dynamics::mean_load)). Must allocate nothing
     /// else.
-=======
-    /// Adds the means of the loads over the time from `times[0]` to `times[1]` (s) to a list, as a step takes them
-    /// ([`Dynamics::mean_load`](crate::Dynamics::mean_load)). Allocates nothing else.
->>>>>>> h-examples:crates/integrator/src/beam/forces.rs
     fn add_mean(&self, times: [f64; 2], loads: &mut Vec<SpanLoad>);
 }
 
