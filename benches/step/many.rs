@@ -1,4 +1,5 @@
 //! A step of many blocks beside each other on the ground, each sliding flat on two corners: time per contact, from a hundred contacts on.
+#![allow(clippy::expect_used)] // a measurement that can't be set up has nothing to go on with
 
 use criterion::{Criterion, Throughput};
 use nalgebra::Vector2;
