@@ -154,13 +154,9 @@ impl<const D: usize> Phases<D> {
 
     /// Begins a step.
     #[inline]
-    pub(crate) fn begin(&mut self, state: &State, span: StepSpan) {
+    pub(crate) fn begin(&mut self, span: StepSpan) {
         self.used = 0;
         self.span = span;
-        self.q.clear();
-        self.q.extend_from_slice(&state.q);
-        self.v.clear();
-        self.v.extend_from_slice(&state.v);
     }
 
     pub(crate) fn has_any(&self) -> bool {
@@ -235,8 +231,11 @@ impl<const D: usize> Phases<D> {
             }
         }
         if let Some(last) = self.kept[..self.used].last() {
-            state.q.copy_from_slice(&last.q);
-            state.v.copy_from_slice(&last.v);
+            // What the step started from is kept for the report.
+            for (start, now, end) in [(&mut self.q, &mut state.q, &last.q), (&mut self.v, &mut state.v, &last.v)] {
+                std::mem::swap(start, now);
+                now.clone_from(end);
+            }
         }
     }
 

@@ -318,6 +318,18 @@ pub trait Bodies<const D: usize>: Send + Sync {
     }
 }
 
+/// Whether all numbers are: 0 · x is 0 for those that are, and NaN for the others.
+pub(crate) fn all_finite(x: &[f64]) -> bool {
+    let (fours, rest) = x.as_chunks::<4>();
+    let mut sums = [0.0; 4];
+    for x in fours {
+        for k in 0..4 {
+            sums[k] += 0.0 * x[k];
+        }
+    }
+    sums.iter().sum::<f64>() + rest.iter().map(|x| 0.0 * x).sum::<f64>() == 0.0
+}
+
 /// xᵀy in four independent sums: in a single one each addition would wait for the last.
 pub(crate) fn dot(x: &[f64], y: &[f64]) -> f64 {
     let ((x, x_rest), (y, y_rest)) = (x.as_chunks::<4>(), y.as_chunks::<4>());

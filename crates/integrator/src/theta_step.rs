@@ -1,7 +1,7 @@
 //! The θ step that the schemes share: free velocities, the end of the step, the account of its forces.
 
 use crate::mismatch::Identity;
-use crate::subsystem::dot;
+use crate::subsystem::{all_finite, dot};
 use crate::{Account, ContactStage, Mismatch, Model, Size, State, StepEnergy, StepError, StepSpan, Weights, Workspace};
 
 /// Vectors of a step: they carry nothing from one to the next.
@@ -253,9 +253,4 @@ fn add(x: &mut [f64], y: &[f64]) {
     for (x, y) in x.iter_mut().zip(y) {
         *x += y;
     }
-}
-
-fn all_finite(x: &[f64]) -> bool {
-    // Without an early exit, so that it takes several numbers at once.
-    x.iter().fold(true, |finite, x| finite & x.is_finite())
 }

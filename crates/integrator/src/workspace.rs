@@ -5,6 +5,7 @@ use crate::laws::Laws;
 use crate::mismatch::{Identity, length};
 use crate::phases::Phases;
 use crate::stage::{Problem, RESERVED_CONTACTS};
+use crate::subsystem::all_finite;
 use crate::{
     Compliance, Contact, ContactError, ContactStage, Keep, Mismatch, Model, PhaseEnd, State, StateError, StepError,
     StepReport, StepSpan, Vector, Weights,
@@ -279,7 +280,7 @@ impl<const D: usize> Workspace<D> {
         if !(span.h > 0.0 && span.start == state.t) {
             return Err(StateError::StepSize(span.h).into());
         }
-        self.phases.begin(state, span);
+        self.phases.begin(span);
         Ok(())
     }
 
@@ -360,9 +361,4 @@ impl<const D: usize> Workspace<D> {
         state.tally.count(outcome.as_ref(), self.phases.most_contacts(), penetration);
         Ok(self.phases.report(state.step, penetration))
     }
-}
-
-fn all_finite(x: &[f64]) -> bool {
-    // Without an early exit, so that it takes several numbers at once.
-    x.iter().fold(true, |finite, x| finite & x.is_finite())
 }
