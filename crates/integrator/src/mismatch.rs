@@ -56,6 +56,14 @@ pub enum Mismatch {
         /// The contact.
         id: ContactId,
     },
+    /// Contacts of a step that don't rise in identity.
+    #[error(
+        "contact {contact} comes after one of a higher number, or twice: contacts are added to a stage in order of identity"
+    )]
+    ContactOrder {
+        /// Its number in the stage.
+        contact: usize,
+    },
     /// A candidate of another contact.
     #[error("contact {contact} is another one than the candidate")]
     OtherContact {

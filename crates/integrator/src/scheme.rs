@@ -29,6 +29,9 @@ pub enum StepError {
         /// What it has.
         what: &'static str,
     },
+    /// A scheme that ends a phase or a step that it hasn't begun.
+    #[error("the scheme ended what it has not begun: Workspace::begin comes before each step")]
+    NotBegun,
     /// A scheme that ended a step without a phase in it.
     #[error("the scheme ended a step without a phase: Workspace::phase comes before Workspace::finish")]
     NoPhase,
@@ -46,7 +49,12 @@ impl StepError {
     pub fn t(&self) -> Option<f64> {
         match self {
             Self::Problem { t, .. } | Self::Diverged { t } => Some(*t),
-            Self::Factor(_) | Self::State(_) | Self::Mismatch(_) | Self::Unsupported { .. } | Self::NoPhase => None,
+            Self::Factor(_)
+            | Self::State(_)
+            | Self::Mismatch(_)
+            | Self::Unsupported { .. }
+            | Self::NoPhase
+            | Self::NotBegun => None,
         }
     }
 }

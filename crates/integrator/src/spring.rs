@@ -161,6 +161,11 @@ impl Springs {
         self.touched.reserve(contacts);
     }
 
+    /// Forgets what was found.
+    pub(crate) fn forget(&mut self) {
+        self.touched.clear();
+    }
+
     /// Finds the contacts that the free motion from `q` to `q_free` brings into contact.
     pub(crate) fn look<const D: usize>(
         &mut self,

@@ -151,6 +151,8 @@ pub struct ContactStage<const D: usize> {
     islands: Islands<D>,
     /// Whether the last solve was by islands.
     apart: bool,
+    /// The workspace's count when the problem was coupled; 0 where rows have changed since.
+    coupled: u64,
     model: Option<Identity>,
     velocities: usize,
 }
@@ -173,6 +175,7 @@ impl<const D: usize> ContactStage<D> {
             springs: Springs::default(),
             islands: Islands::default(),
             apart: false,
+            coupled: 0,
             model: None,
             velocities: 0,
         }
@@ -211,11 +214,13 @@ impl<const D: usize> ContactStage<D> {
         self.rows.clear();
         self.problem.clear();
         self.extra.clear();
+        self.springs.forget();
+        self.coupled = 0;
         self.model = None;
         self.apart = false;
     }
 
-    fn check(&self, model: &Model<D>) -> Result<(), Mismatch> {
+    pub(crate) fn check(&self, model: &Model<D>) -> Result<(), Mismatch> {
         match self.model {
             Some(identity) if identity != model.identity() => {
                 let remedy = "clear the stage before contacts of this one are added";
@@ -392,9 +397,8 @@ impl<const D: usize> ContactStage<D> {
         if let Rule::Spring(spring) = rule {
             self.contacts[i].gap = spring.gap;
         }
-        if rule == Rule::Frictionless {
-            self.problem.mu[i] = 0.0;
-        }
+        self.contacts[i].gap_after = None;
+        self.problem.mu[i] = if rule == Rule::Frictionless { 0.0 } else { self.problem.posed[i].friction };
     }
 
     /// Takes the rows of contact `i`, and its frame and gap, anew from a candidate of the same contact at coordinates `q`: the same contact
@@ -410,6 +414,7 @@ impl<const D: usize> ContactStage<D> {
         if contact.id != candidate.id {
             return Err(Mismatch::OtherContact { contact: i });
         }
+        self.coupled = 0;
         self.rows.renew(model, q, candidate, i)?;
         (contact.sides, contact.frame, contact.gap) = (candidate.sides, candidate.frame, candidate.gap);
         Ok(())
@@ -423,6 +428,7 @@ impl<const D: usize> ContactStage<D> {
     pub fn update_row(&mut self, i: usize, a: f64, x: &[f64]) -> Result<(), Mismatch> {
         self.check_index(i)?;
         self.check_velocities(x)?;
+        self.coupled = 0;
         for (column, value) in self.rows.entries_mut(i) {
             value[0] += a * x[column];
         }
@@ -465,6 +471,11 @@ impl<const D: usize> ContactStage<D> {
             }
         }
         Ok(())
+    }
+
+    /// The first contact whose identity isn't higher than that of the one before.
+    pub(crate) fn out_of_order(&self) -> Option<usize> {
+        self.contacts.windows(2).position(|pair| pair[0].id >= pair[1].id).map(|at| at + 1)
     }
 
     /// The contacts go over to a phase; the stage is empty then.

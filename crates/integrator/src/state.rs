@@ -320,7 +320,8 @@ impl State {
     /// Whether time `t` (s) is reached, up to the rounding that [`State::next_step`] allows for.
     #[must_use]
     pub fn has_reached(&self, t: f64) -> bool {
-        t - self.t <= STEP_ROUNDING * self.dt
+        // Written so that NaN is reached: it is no time to go to.
+        !(t - self.t > STEP_ROUNDING * self.dt)
     }
 
     /// Moves time and the number of steps to the end of a step.

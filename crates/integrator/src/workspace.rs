@@ -116,6 +116,10 @@ pub struct Workspace<const D: usize> {
     pub counts: WorkCounts,
     pub(crate) factors: Factors<D>,
     pub(crate) laws: Laws<D>,
+    /// Counts what changes the memory of the factors: a response may go by it only where nothing has come in between.
+    pub(crate) coupled: u64,
+    /// Whether a step was begun and not finished.
+    open: bool,
     detection: DetectorMemory,
     phases: Phases<D>,
     /// The model that it was made for.
@@ -151,6 +155,8 @@ impl<const D: usize> Workspace<D> {
             counts: WorkCounts::default(),
             factors: Factors::new(),
             laws,
+            coupled: 0,
+            open: false,
             detection: DetectorMemory::default(),
             phases,
             model: model.identity(),
@@ -193,6 +199,8 @@ impl<const D: usize> Workspace<D> {
     /// The factor of a subsystem, by its number; `None` where [`Workspace::factors`] was not asked for these weights, or too long ago.
     #[inline]
     pub fn factor(&mut self, part: usize, w: Weights) -> Option<&mut dyn Compliance<D>> {
+        // Whoever has it may change it.
+        self.coupled += 1;
         self.factors.of(part, w)
     }
 
@@ -281,6 +289,7 @@ impl<const D: usize> Workspace<D> {
             return Err(StateError::StepSize(span.h).into());
         }
         self.phases.begin(span);
+        self.open = true;
         Ok(())
     }
 
@@ -296,7 +305,16 @@ impl<const D: usize> Workspace<D> {
         phase: &PhaseEnd<'_>,
         stage: Option<&mut ContactStage<D>>,
     ) -> Result<(), StepError> {
+        if !self.open {
+            return Err(StepError::NotBegun);
+        }
         model.fits(phase.q, phase.v)?;
+        if let Some(stage) = &stage {
+            stage.check(model)?;
+            if let Some(contact) = stage.out_of_order() {
+                return Err(Mismatch::ContactOrder { contact }.into());
+            }
+        }
         let t = self.phases.span.start;
         let now = match self.account {
             Account::Kept => {
@@ -335,9 +353,15 @@ impl<const D: usize> Workspace<D> {
         penetration: Option<f64>,
         mut stays: impl FnMut(usize, &Contact<D>) -> bool,
     ) -> Result<StepReport<'_, D>, StepError> {
+        if !self.open {
+            return Err(StepError::NotBegun);
+        }
         if !self.phases.has_any() {
             return Err(StepError::NoPhase);
         }
+        self.check(model)?;
+        state.check(model)?;
+        self.open = false;
         let account = self.account == Account::Kept;
         self.phases.settle(state, account);
         let penetration = match penetration {

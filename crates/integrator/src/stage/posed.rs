@@ -12,6 +12,8 @@ pub(crate) struct Posed<const D: usize> {
     pub(crate) u_free: Vector<D>,
     pub(crate) shift: Vector<D>,
     pub(crate) rule: Rule<D>,
+    /// μ of the law.
+    pub(crate) friction: f64,
 }
 
 /// A contact problem with its rules. Impulses stand where a solver starts, and at last where it ended.
@@ -54,7 +56,7 @@ impl<const D: usize> Problem<D> {
     #[inline]
     pub(crate) fn push(&mut self, mu: f64, p: Vector<D>) {
         let zero = Vector::zeros();
-        self.posed.push(Posed { u_before: zero, u_free: zero, shift: zero, rule: Rule::Unposed });
+        self.posed.push(Posed { u_before: zero, u_free: zero, shift: zero, rule: Rule::Unposed, friction: mu });
         self.q.push(zero);
         self.mu.push(mu);
         self.p.push(p);

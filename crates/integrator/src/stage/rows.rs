@@ -8,6 +8,8 @@ use teeter_detect::Candidate;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ContactRows<const D: usize> {
     pub(crate) spans: Vec<[Span; 2]>,
+    /// How much of the arena is taken.
+    taken: usize,
     /// Columns within their subsystems, and among the model's velocities.
     columns: Vec<usize>,
     global: Vec<usize>,
@@ -26,15 +28,18 @@ impl<const D: usize> ContactRows<D> {
 
     pub(crate) fn clear(&mut self) {
         self.spans.clear();
+        self.taken = 0;
     }
 
+    /// Where rows are free: past those of all contacts, as rows that were taken anew may lie behind the last contact's.
     fn end(&self) -> usize {
-        self.spans.last().map_or(0, |[a, b]| (a.start + a.len).max(b.start + b.len))
+        self.taken
     }
 
     /// Adds the rows of a candidate at coordinates `q`; leaves nothing behind on an error.
     pub(crate) fn push(&mut self, model: &Model<D>, q: &[f64], candidate: &Candidate<D>) -> Result<(), Mismatch> {
         let spans = self.fill(model, q, candidate, self.end())?;
+        self.taken = spans[1].start + spans[1].len;
         self.spans.push(spans);
         Ok(())
     }
@@ -54,6 +59,7 @@ impl<const D: usize> ContactRows<D> {
         let new = self.fill(model, q, candidate, end)?;
         let len = new[0].len + new[1].len;
         if len > room {
+            self.taken = new[1].start + new[1].len;
             self.spans[i] = new;
             return Ok(());
         }
@@ -133,7 +139,9 @@ impl<const D: usize> ContactRows<D> {
     }
 
     pub(crate) fn pop(&mut self) {
-        self.spans.pop();
+        if let Some([first, _]) = self.spans.pop() {
+            self.taken = first.start;
+        }
     }
 
     /// The entries of contact `i`, with their columns among the model's velocities.

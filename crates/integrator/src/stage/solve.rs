@@ -61,7 +61,8 @@ impl<const D: usize> ContactStage<D> {
         let Self { rows, problem, extra, .. } = self;
         couple(rows, model, work, responses, &rows.spans, problem);
         add_compliances(extra, problem);
-        Ok(Some(work.solve_problem(problem, over.weight())?))
+        self.coupled = work.coupled;
+        Ok(Some(work.solve_problem(&mut self.problem, over.weight())?))
     }
 
     /// Checks what is to be solved; whether there is anything.
@@ -106,6 +107,7 @@ impl<const D: usize> ContactStage<D> {
         let mut problem = std::mem::take(&mut self.problem);
         let outcome = self.solve_whole(model, &mut problem, work, responses, over, guard);
         self.problem = problem;
+        self.coupled = work.coupled;
         outcome.map(Some)
     }
 
@@ -145,7 +147,10 @@ impl<const D: usize> ContactStage<D> {
             return Ok(());
         }
         self.check(model)?;
+        work.check(model)?;
         length("the velocities", v, model.size().v)?;
+        // What a factor keeps of coupling is of the contacts that were coupled last, and of an island numbered within it.
+        let kept = !self.apart && self.coupled == work.coupled;
         let Workspace { factors, scratch, .. } = work;
         for (index, part) in model.parts().iter().enumerate().filter(|(_, part)| !part.v.is_empty()) {
             let rows = self.rows.of_part(index);
@@ -156,8 +161,7 @@ impl<const D: usize> ContactStage<D> {
                 return Err(ContactError::Factors { part: index });
             };
             let (scratch, v) = (&mut scratch[part.v.clone()], &mut v[part.v.clone()]);
-            // What was kept in coupling is of the last island, and numbered within it.
-            if self.apart && !factor.is_diagonal() {
+            if !kept && !factor.is_diagonal() {
                 respond_by_solving(&rows, &self.problem.p, scratch, v, |f| factor.solve(f));
             } else {
                 factor.respond(&rows, &self.problem.p, scratch, v);
@@ -178,6 +182,7 @@ pub(super) fn couple<const D: usize>(
     problem: &mut Problem<D>,
 ) {
     let mut coupling = problem.coupling();
+    work.coupled += 1;
     couple_into(&mut coupling, rows, model, work, responses, spans);
 }
 

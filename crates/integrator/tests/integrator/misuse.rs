@@ -199,3 +199,85 @@ fn candidates_of_pairs_and_bodies_that_are_not_there_end_the_step() {
         }
     }
 }
+
+#[test]
+fn stages_share_a_workspace_and_a_rule_can_be_taken_back() {
+    let model = beam_of(0.0015);
+    let mut work = workspace(&model);
+    let w = Weights { mass: 1.0, damping: 0.5e-4, stiffness: 0.25e-8 };
+    let (over, responses) = (Over::Step { h: 1e-4, weight: 0.5 }, Responses::Of(w));
+    let mut q = vec![0.18, 0.0675, 0.0];
+    q.resize(model.size().q, 0.0);
+    let mut v = vec![0.3, -1.0, 0.0];
+    v.resize(model.size().v, 0.0);
+    let state = State::new(&model, &q, &v, 1e-4).unwrap();
+    work.factors(&model, w, &q, Keep::Pinned).unwrap();
+    let mut solved = |stage: &mut ContactStage<2>, work: &mut Workspace<2>| {
+        stage.find(&model, &state, &Look::new(&q, 1e-9), work).unwrap();
+        assert_eq!(stage.len(), 2, "both feet");
+        stage.pose(&model, &state, &v, &v, over).unwrap();
+        stage.solve(&model, work, &responses, over).unwrap();
+    };
+    let (mut alone, mut one, mut other) = (ContactStage::new(), ContactStage::new(), ContactStage::new());
+    solved(&mut alone, &mut work);
+    let mut expected = v.clone();
+    alone.respond(&model, &mut work, &responses, &mut expected).unwrap();
+    // What the second stage leaves behind in the factors is not the first one's.
+    solved(&mut one, &mut work);
+    other.add(&model, &q, &work.candidates[1].clone(), &state.warm, &state.memory).unwrap();
+    other.pose(&model, &state, &v, &v, over).unwrap();
+    other.solve(&model, &mut work, &responses, over).unwrap();
+    let mut found = v.clone();
+    one.respond(&model, &mut work, &responses, &mut found).unwrap();
+    let off = found.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(off < 1e-12, "{off:e}");
+
+    // Without friction and with it again.
+    let tangential = |stage: &ContactStage<2>| (0..2).map(|i| stage.impulse(i).unwrap()[1].abs()).sum::<f64>();
+    let rubbed = tangential(&one);
+    for i in 0..2 {
+        let u = one.velocity(i, &v).unwrap();
+        one.set(i, u, u, Vector2::zeros(), Rule::Frictionless).unwrap();
+    }
+    one.solve(&model, &mut work, &responses, over).unwrap();
+    assert!(tangential(&one) == 0.0 && rubbed > 0.0, "{rubbed}");
+    one.pose(&model, &state, &v, &v, over).unwrap();
+    one.solve(&model, &mut work, &responses, over).unwrap();
+    assert!((tangential(&one) - rubbed).abs() < 1e-9 * rubbed, "friction is back");
+
+    // In a direction that is given: as much as μ allows, along it.
+    for i in 0..2 {
+        let u = one.velocity(i, &v).unwrap();
+        one.set(i, u, u, Vector2::zeros(), Rule::SlidesAlong(Vector2::new(0.0, 1.0))).unwrap();
+    }
+    one.solve(&model, &mut work, &responses, over).unwrap();
+    for i in 0..2 {
+        let p = one.impulse(i).unwrap();
+        assert!(p[0] >= 0.0 && (p[1] + 0.5 * p[0]).abs() <= 1e-12 * p[0], "{p}");
+    }
+}
+
+#[test]
+fn a_step_that_was_not_begun_or_whose_contacts_are_out_of_order_is_refused() {
+    let model = on_ground(PairLaw::new(0.5, 0.0));
+    let (mut state, mut work) = (start(&model), workspace(&model));
+    let (q, v) = (state.q.clone(), state.v.clone());
+    let phase = PhaseEnd::new(PhaseKind::Step, 1e-4, &q, &v);
+    assert_eq!(work.phase(&model, &phase, None), Err(StepError::NotBegun));
+    work.begin(&model, &state, state.next_step(f64::INFINITY)).unwrap();
+    assert!(matches!(work.finish(&model, &mut state, None, |_, _| true), Err(StepError::NoPhase)));
+    work.phase(&model, &phase, None).unwrap();
+    work.finish(&model, &mut state, None, |_, _| true).unwrap();
+    assert!(matches!(work.finish(&model, &mut state, None, |_, _| true), Err(StepError::NotBegun)));
+    assert_eq!(state.step, 1, "counted once");
+
+    let mut stage = ContactStage::new();
+    work.detect(&model, &q, 1.0).unwrap();
+    for k in [1, 0] {
+        let candidate = work.candidates[k];
+        stage.add(&model, &q, &candidate, &state.warm, &state.memory).unwrap();
+    }
+    work.begin(&model, &state, state.next_step(f64::INFINITY)).unwrap();
+    let error = work.phase(&model, &phase, Some(&mut stage)).unwrap_err();
+    assert_eq!(error, StepError::Mismatch(Mismatch::ContactOrder { contact: 1 }));
+}
