@@ -16,7 +16,7 @@ pub(crate) use posed::Problem;
 pub(crate) use rows::ContactRows;
 pub(crate) use solve::Members;
 use teeter_contact::{Block, ProblemError};
-use teeter_detect::Candidate;
+use teeter_detect::{BodyId, Candidate};
 
 /// Why contacts can't be solved.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -51,6 +51,12 @@ pub enum ContactError {
     Rules {
         /// The contact that slides.
         contact: usize,
+    },
+    /// A body whose points' accelerations aren't known.
+    #[error("body {} doesn't say how its points are accelerated by their velocities: it needs Bodies::bias for contacts over accelerations", body.0)]
+    Bias {
+        /// The body.
+        body: BodyId,
     },
     /// No factors of the weights asked for.
     #[error("subsystem {part} has no factors of these weights: ask Workspace::factors for them first")]
@@ -320,10 +326,12 @@ impl<const D: usize> ContactStage<D> {
     }
 
     /// Gives every contact what the law of its pair asks for (`docs/laws.md`): velocity before `v_before` (m/s), free velocity `v_free`,
-    /// shift and rule. Newton's restitution acts on every contact; the other laws tell impacts from contacts that press.
+    /// shift and rule. Newton's restitution acts on every contact; the other laws tell impacts from contacts that press. Over
+    /// accelerations `v_free` are the free ones (m/s²), and J̇v at the state's velocities is added.
     ///
     /// # Errors
-    /// For too few or too many velocities, or a law that has no meaning over such a time.
+    /// For too few or too many velocities, a law that has no meaning over such a time, or a body that doesn't know J̇v where that is
+    /// needed.
     #[inline]
     pub fn pose(
         &mut self,
@@ -338,9 +346,13 @@ impl<const D: usize> ContactStage<D> {
         for i in 0..self.contacts.len() {
             let law = model.law(self.contacts[i].law)?;
             let u_before = self.rows.velocity(i, v_before);
-            let u_free = self.rows.velocity(i, v_free);
+            let mut u_free = self.rows.velocity(i, v_free);
             let (shift, rule) = match over {
-                Over::Acceleration => (Vector::zeros(), self.without_duration(i, &law, over).map(|()| Rule::Shifted)?),
+                Over::Acceleration => {
+                    self.without_duration(i, &law, over)?;
+                    u_free += self.bias(i, model, state)?;
+                    (Vector::zeros(), Rule::Shifted)
+                }
                 Over::Instant => {
                     self.without_duration(i, &law, over)?;
                     by_law(&law, &self.contacts[i], &u_before, &u_free)
@@ -358,6 +370,19 @@ impl<const D: usize> ContactStage<D> {
             self.put(i, u_before, u_free, shift, rule);
         }
         Ok(())
+    }
+
+    /// J̇v of contact `i` at the state, with its points and frame as they were found, m/s².
+    fn bias(&self, i: usize, model: &Model<D>, state: &State) -> Result<Vector<D>, ContactError> {
+        let (contact, mut sum) = (&self.contacts[i], Vector::zeros());
+        model.fits(&state.q, &state.v)?;
+        for (anchor, sign) in contact.sides.iter().zip([1.0, -1.0]) {
+            let Some((_, part, body)) = model.owner(anchor.body) else { continue };
+            let (q, v) = (&state.q[part.q.clone()], &state.v[part.v.clone()]);
+            let bias = part.system.bias(body, q, v, &anchor.point, &contact.frame);
+            sum += bias.ok_or(ContactError::Bias { body: anchor.body })? * sign;
+        }
+        Ok(sum)
     }
 
     fn without_duration(&self, i: usize, law: &PairLaw, over: Over) -> Result<(), ContactError> {

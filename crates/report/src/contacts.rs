@@ -44,7 +44,7 @@ impl Impulses {
         for (id, p) in &self.sums {
             let Some(names) = Names::of(layout, *id) else { continue };
             let now = self.candidates.iter().find(|candidate| candidate.id == *id);
-            let active = contacts.iter().find(|contact| contact.id == *id);
+            let active = contacts.iter().rev().find(|contact| contact.id == *id);
             push(out, state.t);
             names.push(out);
             // A point that has left the surface has no gap to it, and no frame for a velocity.

@@ -281,3 +281,33 @@ fn a_step_that_was_not_begun_or_whose_contacts_are_out_of_order_is_refused() {
     let error = work.phase(&model, &phase, Some(&mut stage)).unwrap_err();
     assert_eq!(error, StepError::Mismatch(Mismatch::ContactOrder { contact: 1 }));
 }
+
+/// A block that turns about the corner on which it stands: the corner would fall with g less what the turning takes, ω² r_y, and the
+/// floor's force stops that.
+#[test]
+fn forces_over_accelerations_know_that_a_turning_corner_is_accelerated() {
+    let model = on_ground(PairLaw::new(0.0, 0.0));
+    let (phi, omega): (f64, f64) = (0.3, 5.0);
+    let (half_width, half_height) = (0.5 * PAPER_BLOCK.width, 0.5 * PAPER_BLOCK.height);
+    // From the centre to the lower left corner: turned by φ > 0, the lower right one is lifted.
+    let corner = Vector2::new(-half_width, -half_height);
+    let (sin, cos) = phi.sin_cos();
+    let r = Vector2::new(cos * corner.x - sin * corner.y, sin * corner.x + cos * corner.y);
+    let q = [0.0, -r.y, phi];
+    let state = State::new(&model, &q, &[0.0, -omega * r.x, omega], 1e-4).unwrap();
+    let (mut work, mut stage) = (workspace(&model), ContactStage::new());
+    let w = Weights { mass: 1.0, ..Weights::default() };
+    let responses = Responses::Of(w);
+    work.factors(&model, w, &q, Keep::Pinned).unwrap();
+    stage.find(&model, &state, &Look::new(&q, 1e-12), &mut work).unwrap();
+    assert_eq!(stage.len(), 1);
+    let free = [0.0, -9.81, 0.0];
+    stage.pose(&model, &state, &[0.0; 3], &free, Over::Acceleration).unwrap();
+    stage.solve(&model, &mut work, &responses, Over::Acceleration).unwrap();
+    let mass = PAPER_BLOCK.width * PAPER_BLOCK.height * PAPER_BLOCK.depth * PAPER_BLOCK.density;
+    let inertia = mass / 3.0 * (half_width.powi(2) + half_height.powi(2));
+    // a_n = −g − ω² r_y + f (1/m + r_x²/I) = 0.
+    let expected = (9.81 + omega * omega * r.y) / (mass.recip() + r.x * r.x / inertia);
+    let found = stage.impulse(0).unwrap()[0];
+    assert!((found - expected).abs() < 1e-9 * expected, "{found} {expected}");
+}
