@@ -212,7 +212,7 @@ fn stages_share_a_workspace_and_a_rule_can_be_taken_back() {
     v.resize(model.size().v, 0.0);
     let state = State::new(&model, &q, &v, 1e-4).unwrap();
     work.factors(&model, w, &q, Keep::Pinned).unwrap();
-    let mut solved = |stage: &mut ContactStage<2>, work: &mut Workspace<2>| {
+    let solved = |stage: &mut ContactStage<2>, work: &mut Workspace<2>| {
         stage.find(&model, &state, &Look::new(&q, 1e-9), work).unwrap();
         assert_eq!(stage.len(), 2, "both feet");
         stage.pose(&model, &state, &v, &v, over).unwrap();
