@@ -94,6 +94,13 @@ impl<const D: usize> Factors<D> {
                 entries[at].keep = keep;
             }
             entries.swap(0, at);
+            // One that was for now is pinned: another goes.
+            let pinned = entries.iter().enumerate().filter(|(_, entry)| entry.keep == Keep::Pinned);
+            if pinned.clone().count() > PINNED
+                && let Some((oldest, _)) = pinned.min_by_key(|(_, entry)| entry.asked)
+            {
+                entries.remove(oldest);
+            }
             return Ok(());
         }
         self.made += 1;
@@ -124,6 +131,14 @@ impl<const D: usize> Factors<D> {
         let entries = self.parts.get_mut(part)?;
         let at =
             if self.front == Some(w) { 0 } else { entries.iter().position(|entry| entry.factor.weights() == w)? };
+        Some(entries.get_mut(at)?.factor.as_mut())
+    }
+
+    /// As [`Factors::of`], for someone who may give it other weights.
+    pub(crate) fn lend(&mut self, part: usize, w: Weights) -> Option<&mut dyn Compliance<D>> {
+        let first = self.front.take() == Some(w);
+        let entries = self.parts.get_mut(part)?;
+        let at = if first { 0 } else { entries.iter().position(|entry| entry.factor.weights() == w)? };
         Some(entries.get_mut(at)?.factor.as_mut())
     }
 

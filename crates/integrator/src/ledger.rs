@@ -118,6 +118,14 @@ impl Ledger {
         ledger
     }
 
+    /// Begins with energy that springs of contacts hold already, J.
+    pub(crate) fn take_stored(&mut self, stored: f64) {
+        self.initial.elastic += stored - self.stored;
+        self.current.elastic += stored - self.stored;
+        self.stored = stored;
+        self.rescale();
+    }
+
     fn rescale(&mut self) {
         let Energy { kinetic, elastic, gravity } = self.current;
         self.scale = self.scale.max(kinetic.abs() + elastic.abs() + (gravity - self.initial.gravity).abs());

@@ -161,6 +161,11 @@ impl<const D: usize> Part<D> {
         &self.traits
     }
 
+    /// Whether all of its velocities are prescribed: no impulse changes any.
+    pub(crate) fn is_prescribed(&self) -> bool {
+        self.traits.driven.len() == self.v.len()
+    }
+
     /// Whether any of its velocities is prescribed.
     pub(crate) fn is_driven(&self) -> bool {
         !self.traits.driven.is_empty()

@@ -222,6 +222,10 @@ impl<const D: usize> Phases<D> {
     pub(crate) fn settle(&mut self, state: &mut State, account: bool) {
         for kept in &mut self.kept[..self.used] {
             if account {
+                if kept.kind == PhaseKind::Impact {
+                    // Contacts with duration take no part in it, and hold what they held.
+                    kept.stored = state.ledger.stored;
+                }
                 kept.energy.contact += kept.stored - state.ledger.stored;
                 state.ledger.stored = kept.stored;
                 let largest = &mut state.ledger.largest_tangential_work;
@@ -242,6 +246,21 @@ impl<const D: usize> Phases<D> {
     /// The contacts of the last phase.
     pub(crate) fn last_contacts(&self) -> &[Contact<D>] {
         self.kept[..self.used].last().map_or(&[], |kept| &kept.contacts)
+    }
+
+    /// The contacts with duration whose springs an impact at the end of the step has left as they were.
+    pub(crate) fn springs_before_impact(&self) -> impl Iterator<Item = &Contact<D>> {
+        let phases = &self.kept[..self.used];
+        let ends_with_impact = phases.last().is_some_and(|kept| kept.kind == PhaseKind::Impact);
+        let before = phases.iter().rev().find(|kept| kept.kind != PhaseKind::Impact).filter(|_| ends_with_impact);
+        let contacts = before.map_or([].as_slice(), |kept| kept.contacts.as_slice());
+        contacts.iter().filter(|contact| contact.gap_after.is_some_and(|gap| gap < 0.0))
+    }
+
+    /// How the contact problems of the phases were solved.
+    #[inline]
+    pub(crate) fn outcomes(&self) -> impl Iterator<Item = &Outcome> {
+        self.kept[..self.used].iter().filter_map(|kept| kept.outcome.as_ref())
     }
 
     /// As [`StepReport::outcome`].

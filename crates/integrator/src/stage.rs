@@ -58,6 +58,11 @@ pub enum ContactError {
         /// The body.
         body: BodyId,
     },
+    /// Forces where impulses belong.
+    #[error(
+        "the stage holds forces, solved over accelerations, but a phase takes impulses: solve it over the phase's time, or hand the phase in without it"
+    )]
+    Forces,
     /// No factors of the weights asked for.
     #[error("subsystem {part} has no factors of these weights: ask Workspace::factors for them first")]
     Factors {
@@ -157,6 +162,8 @@ pub struct ContactStage<const D: usize> {
     islands: Islands<D>,
     /// Whether the last solve was by islands.
     apart: bool,
+    /// Whether the last solve was over accelerations.
+    forces: bool,
     /// The workspace's count when the problem was coupled; 0 where rows have changed since.
     coupled: u64,
     model: Option<Identity>,
@@ -181,6 +188,7 @@ impl<const D: usize> ContactStage<D> {
             springs: Springs::default(),
             islands: Islands::default(),
             apart: false,
+            forces: false,
             coupled: 0,
             model: None,
             velocities: 0,
@@ -224,6 +232,12 @@ impl<const D: usize> ContactStage<D> {
         self.coupled = 0;
         self.model = None;
         self.apart = false;
+        self.forces = false;
+    }
+
+    /// Whether it holds forces in place of impulses.
+    pub(crate) fn holds_forces(&self) -> bool {
+        self.forces
     }
 
     pub(crate) fn check(&self, model: &Model<D>) -> Result<(), Mismatch> {
@@ -454,9 +468,7 @@ impl<const D: usize> ContactStage<D> {
         self.check_index(i)?;
         self.check_velocities(x)?;
         self.coupled = 0;
-        for (column, value) in self.rows.entries_mut(i) {
-            value[0] += a * x[column];
-        }
+        self.rows.add_to_normal(i, a, x);
         Ok(())
     }
 

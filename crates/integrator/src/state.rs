@@ -4,7 +4,7 @@
 use crate::clock::Clock;
 use crate::{Ledger, Memory, Model, Vector};
 use teeter_contact::Outcome;
-use teeter_detect::ContactId;
+use teeter_detect::{Candidate, ContactId};
 
 /// The impulses of the last step's contacts, in order of identity, from which the contact solver
 /// starts. It is a hint: without it a step ends in the same motion, up to the solver's tolerance.
@@ -164,18 +164,21 @@ pub enum StateError {
 }
 
 impl Tally {
-    /// Counts a step: how its contact problem was solved, its number of contacts, the penetration
-    /// (m) at its end.
-    pub fn count(&mut self, outcome: Option<&Outcome>, contacts: usize, penetration: f64) {
+    /// Counts a step: how the contact problems of its phases were solved, its number of contacts,
+    /// the penetration (m) at its end.
+    pub fn count<'a>(&mut self, outcomes: impl Iterator<Item = &'a Outcome>, contacts: usize, penetration: f64) {
         self.max_penetration = self.max_penetration.max(penetration);
         self.max_contacts = self.max_contacts.max(contacts);
-        if let Some(outcome) = outcome {
-            self.contact_steps += 1;
+        let (mut any, mut solved) = (false, true);
+        for outcome in outcomes {
+            any = true;
+            solved &= outcome.converged();
             self.max_residual = self.max_residual.max(outcome.residual.global);
             self.max_contact_residual = self.max_contact_residual.max(outcome.residual.worst);
             self.max_iterations = self.max_iterations.max(outcome.iterations);
-            self.unconverged_steps += u64::from(!outcome.converged());
         }
+        self.contact_steps += u64::from(any);
+        self.unconverged_steps += u64::from(!solved);
     }
 }
 
@@ -253,6 +256,39 @@ impl State {
             tally: Tally::default(),
             clock: Clock::new(dt),
         })
+    }
+
+    /// Takes over which contacts were active, what their springs hold, and where the contact solver
+    /// starts. What springs hold counts as energy of the start.
+    pub fn take_contacts<const D: usize>(&mut self, model: &Model<D>, memory: &Memory, warm: &WarmStart) {
+        self.memory.copy_from(memory);
+        self.warm.copy_from(warm);
+        let mut candidates = Vec::new();
+        if model.has_springs() && self.q.len() == model.size().q {
+            model.detector().locate(&model.placed_at(&self.q), memory.active(), &mut candidates);
+        }
+        let stored = |candidate: &Candidate<D>| {
+            let (law, gap) = (model.law(candidate.law).ok()?, memory.spring_gap(candidate.id)?);
+            Some(law.impact.spring()?.potential(gap))
+        };
+        let stored: f64 = candidates.iter().filter_map(stored).sum();
+        self.ledger.take_stored(stored);
+    }
+
+    /// Takes prescribed velocities as a step of a θ scheme that ended here has left them: as means
+    /// about this time (`docs/signals.md`). A run that goes on from a step's end then moves as that
+    /// step's run does.
+    ///
+    /// # Errors
+    /// If there are too few or too many velocities.
+    pub fn drive_about<const D: usize>(&mut self, model: &Model<D>, theta: f64) -> Result<(), StateError> {
+        let (found, expected) = (self.v.len(), model.size().v);
+        if found != expected {
+            return Err(StateError::Length { what: "the velocities", found, expected });
+        }
+        let Self { t, dt, .. } = *self;
+        model.drive_mean_at([t - theta * dt, t + (1.0 - theta) * dt], &mut self.v);
+        Ok(())
     }
 
     /// Whether steps of this model can start from it: it has as many numbers as the model needs,

@@ -183,7 +183,8 @@ impl<const D: usize> Workspace<D> {
     }
 
     /// Sees to it that there are factors of `mass·M + damping·C + stiffness·K` for all subsystems at coordinates `q`. Some combinations are
-    /// kept, so that a scheme may alternate them; see [`Keep`]. Allocates nothing once as many have been asked for as are kept.
+    /// kept, so that a scheme may alternate them; see [`Keep`]. The factor of a subsystem that [follows its
+    /// coordinates](crate::Traits) may be of the coordinates at which it was made: [`Compliance::update`] takes it to others. Allocates nothing once as many have been asked for as are kept.
     ///
     /// # Errors
     /// If a matrix can't be factorised, or the workspace is of another model, or there are too few or too many coordinates.
@@ -199,9 +200,9 @@ impl<const D: usize> Workspace<D> {
     /// The factor of a subsystem, by its number; `None` where [`Workspace::factors`] was not asked for these weights, or too long ago.
     #[inline]
     pub fn factor(&mut self, part: usize, w: Weights) -> Option<&mut dyn Compliance<D>> {
-        // Whoever has it may change it.
+        // Whoever has it may change it, its weights too.
         self.coupled += 1;
-        self.factors.of(part, w)
+        self.factors.lend(part, w)
     }
 
     /// Puts the candidates with a gap of at most `margin` (m) at coordinates `q` into `candidates`, in order of identity.
@@ -285,7 +286,7 @@ impl<const D: usize> Workspace<D> {
         state.check(model)?;
         self.check(model)?;
         // Written so that NaN fails too.
-        if !(span.h > 0.0 && span.start == state.t) {
+        if !(span.h > 0.0 && span.h < f64::INFINITY && span.start == state.t && span.end >= span.start) {
             return Err(StateError::StepSize(span.h).into());
         }
         self.phases.begin(span);
@@ -314,6 +315,9 @@ impl<const D: usize> Workspace<D> {
             if let Some(contact) = stage.out_of_order() {
                 return Err(Mismatch::ContactOrder { contact }.into());
             }
+            if stage.holds_forces() {
+                return Err(StepError::Problem { t: self.phases.span.start, source: ContactError::Forces });
+            }
         }
         let t = self.phases.span.start;
         let now = match self.account {
@@ -340,7 +344,7 @@ impl<const D: usize> Workspace<D> {
 
     /// Ends the step: the state moves to the end of the last phase and of the step's time, phases are entered into ledger and tally, the
     /// solver's next start is kept, and those contacts of the last phase of which `stays` says so, by number and contact, count as
-    /// active from now on. `penetration` (m) is that at the end, if the scheme has looked; else it is looked for where an
+    /// active from now on; springs that were pressed before an impact at the end stay pressed. `penetration` (m) is that at the end, if the scheme has looked; else it is looked for where an
     /// [account](Account) is kept.
     ///
     /// # Errors
@@ -375,14 +379,21 @@ impl<const D: usize> Workspace<D> {
         state.count_step(&self.phases.span);
         state.warm.clear();
         state.memory.forget_contacts();
+        let mut springs = self.phases.springs_before_impact().peekable();
+        let mut keep = |contact: &Contact<D>| {
+            state.warm.push(contact.id, &contact.p);
+            state.memory.remember(contact);
+        };
         for (i, contact) in self.phases.last_contacts().iter().enumerate() {
+            while let Some(spring) = springs.next_if(|spring| spring.id < contact.id) {
+                keep(spring);
+            }
             if stays(i, contact) {
-                state.warm.push(contact.id, &contact.p);
-                state.memory.remember(contact);
+                keep(contact);
             }
         }
-        let outcome = self.phases.outcome();
-        state.tally.count(outcome.as_ref(), self.phases.most_contacts(), penetration);
+        springs.for_each(keep);
+        state.tally.count(self.phases.outcomes(), self.phases.most_contacts(), penetration);
         Ok(self.phases.report(state.step, penetration))
     }
 }

@@ -1,7 +1,8 @@
 //! The contacts of many bodies that stand apart, solved island by island: the dense operator of all of them together is never made.
 //!
 //! Contacts feel each other through the bodies that they share. Where W of a subsystem is diagonal, as that of blocks, those that share a velocity
-//! do; of any other subsystem all that push it. Memory and time then grow with the number of islands, not with its square.
+//! do; of any other subsystem all that push it. A prescribed velocity yields to nobody, so that nobody feels another through it: blocks on ground that
+//! shakes stand apart as those on ground at rest. Memory and time then grow with the number of islands, not with its square.
 
 use super::solve::{couple, couple_into};
 use super::{ContactError, ContactRows, ContactStage, Members, Over, Problem};
@@ -27,18 +28,20 @@ pub(super) struct Islands<const D: usize> {
     problem: Problem<D>,
 }
 
-/// What a contact shares with others: the velocities that it pushes where W is diagonal, else the subsystem.
+/// What a contact shares with others: the velocities that it pushes where W is diagonal, else the subsystem; prescribed ones not.
 fn keys<'a, const D: usize>(
     rows: &'a ContactRows<D>,
     model: &'a Model<D>,
     diagonal: &'a [bool],
     sides: &'a [Span; 2],
 ) -> impl Iterator<Item = usize> + 'a {
-    sides.iter().filter(|side| side.len > 0).flat_map(move |side| {
+    let moves = |side: &&Span| side.len > 0 && !model.parts()[side.part].is_prescribed();
+    sides.iter().filter(moves).flat_map(move |side| {
         let apart = diagonal[side.part];
-        let all = model.parts()[side.part].v.start;
-        let columns = rows.columns_of(side).take(if apart { side.len } else { 1 });
-        columns.map(move |column| if apart { column } else { all })
+        let (all, driven) = (model.parts()[side.part].v.start, &model.parts()[side.part].traits.driven);
+        let columns =
+            rows.columns_of(side).filter(move |column| !apart || driven.binary_search(&(column - all)).is_err());
+        columns.take(if apart { side.len } else { 1 }).map(move |column| if apart { column } else { all })
     })
 }
 

@@ -158,11 +158,16 @@ impl<const D: usize> ContactRows<D> {
         self.global[side.start..side.start + side.len].iter().copied()
     }
 
-    /// As [`ContactRows::entries`], to change the values.
-    pub(crate) fn entries_mut(&mut self, i: usize) -> impl Iterator<Item = (usize, &mut Vector<D>)> {
-        let [a, b] = self.spans[i];
-        let range = a.start..a.start + a.len + b.len;
-        self.global[range.clone()].iter().copied().zip(&mut self.values[range])
+    /// Adds a x to the normal row of contact `i`, once where both sides have the same column.
+    pub(crate) fn add_to_normal(&mut self, i: usize, a: f64, x: &[f64]) {
+        let [first, second] = self.spans[i];
+        let range = first.start..first.start + first.len + second.len;
+        let columns = &self.global[range.clone()];
+        for (k, value) in self.values[range].iter_mut().enumerate() {
+            if !columns[..k].contains(&columns[k]) {
+                value[0] += a * x[columns[k]];
+            }
+        }
     }
 
     /// J_i v.

@@ -55,6 +55,7 @@ impl<const D: usize> ContactStage<D> {
         if !self.is_ready(model, work, responses)? {
             return Ok(None);
         }
+        self.forces = over == Over::Acceleration;
         if let Some(outcome) = self.solve_apart(model, work, responses, over, &mut |_, _, _, _| Ok(false))? {
             return Ok(Some(outcome));
         }
@@ -73,7 +74,7 @@ impl<const D: usize> ContactStage<D> {
         work: &mut Workspace<D>,
         responses: &Responses<'_>,
     ) -> Result<bool, ContactError> {
-        self.apart = false;
+        (self.apart, self.forces) = (false, false);
         if self.is_empty() {
             return Ok(false);
         }

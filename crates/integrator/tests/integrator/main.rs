@@ -10,6 +10,7 @@ mod coupled_modes;
 mod driven;
 mod equilibrium;
 mod following;
+mod going_on;
 mod impulses;
 mod laws;
 mod lengths;

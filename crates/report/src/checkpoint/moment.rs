@@ -85,11 +85,14 @@ impl Moment {
         let mut state = State::at(model, step, &self.q, &self.v, dt)
             .map_err(|source| CheckpointError::State { path: path(), source })?;
         if contacts(layout) == self.contacts {
-            state.warm.copy_from(&self.warm);
-            state.memory.copy_from(&self.memory);
+            state.take_contacts(model, &self.memory, &self.warm);
         }
         if same_steps {
             state.t = t;
+            // The step before ended with the mean about this time, and the next one goes on from that.
+            state
+                .drive_about(model, scene.time.theta_of_scheme())
+                .map_err(|source| CheckpointError::State { path: path(), source })?;
         } else {
             // They mean nothing to another scheme, or in steps of another size.
             state.memory.set_numbers(&[]);

@@ -1,0 +1,115 @@
+//! States that are taken over from another run, by what is known of their moment: they go on as that run does.
+
+use crate::scenes::{FLAT_BLOCK, PAPER_BLOCK, model, workspace};
+use nalgebra::Vector2;
+use std::sync::Arc;
+use teeter_detect::Kinematics;
+use teeter_integrator::*;
+
+fn gravity() -> Vector2<f64> {
+    Vector2::new(0.0, -9.81)
+}
+
+/// Takes so many steps by a new scheme.
+fn steps(model: &Model<2>, scheme: &SchemeEntry, state: &mut State, number: u64) {
+    let (mut scheme, mut work) = (scheme.make().unwrap(), workspace(model));
+    scheme.start(model, state, &mut work).unwrap();
+    for _ in 0..number {
+        scheme.advance(model, state, f64::INFINITY, &mut work).unwrap();
+    }
+}
+
+/// The moment of a state: what another run can know of it.
+fn taken_over(model: &Model<2>, state: &State) -> State {
+    let mut other = State::at(model, state.step, &state.q, &state.v, state.dt).unwrap();
+    other.drive_about(model, 0.5).unwrap();
+    other.take_contacts(model, &state.memory, &state.warm);
+    other
+}
+
+#[test]
+fn what_springs_hold_is_energy_of_the_start() {
+    let law = PairLaw::new(0.5, 0.0).with_impact(ImpactLaw::KelvinVoigt { stiffness: 1e6, damping: 0.0 });
+    let model = model(&PAPER_BLOCK, gravity(), law, Kinematics::Deformed, Box::new(Ground::flat(0.0)));
+    for scheme in schemes() {
+        let mut whole = State::new(&model, &[0.0, 0.0685, 0.0], &[0.0, -0.5, 0.0], 1e-5).unwrap();
+        // Into the ground, until the springs hold most of the energy.
+        steps(&model, scheme, &mut whole, 220);
+        assert!(whole.ledger.stored > 1e-3, "{}: {} J", scheme.name, whole.ledger.stored);
+        let mut part = taken_over(&model, &whole);
+        assert!((part.ledger.stored - whole.ledger.stored).abs() < 1e-12 * whole.ledger.stored, "{}", scheme.name);
+        assert!((part.ledger.initial.total() - whole.ledger.current.total()).abs() < 1e-12, "{}", scheme.name);
+        steps(&model, scheme, &mut whole, 300);
+        steps(&model, scheme, &mut part, 300);
+        assert_eq!((&part.q, &part.v), (&whole.q, &whole.v), "{}", scheme.name);
+        // A spring without damping gives back what it held, and no more.
+        assert!(part.ledger.sum.contact.abs() < 1e-9, "{}: {} J", scheme.name, part.ledger.sum.contact);
+    }
+}
+
+#[test]
+fn prescribed_velocities_go_on_as_means_about_the_time() {
+    let shake = Motion::still().with(Given::Acceleration, 3.0, Arc::new(Formula::harmonic(0.0, 40.0, 0.3).unwrap()));
+    let ground = Ground::moving(0.0, [shake, Motion::still(), Motion::still()]);
+    let model = model(&FLAT_BLOCK, gravity(), PairLaw::new(0.2, 0.0), Kinematics::Deformed, Box::new(ground));
+    for scheme in schemes() {
+        let mut whole = State::new(&model, &[0.0, 0.025, 0.0, 0.0, 0.0, 0.0], &[0.0; 6], 1e-3).unwrap();
+        steps(&model, scheme, &mut whole, 37);
+        let mut part = taken_over(&model, &whole);
+        assert_eq!(part.v, whole.v, "{}", scheme.name);
+        steps(&model, scheme, &mut whole, 100);
+        steps(&model, scheme, &mut part, 100);
+        assert_eq!((&part.q, &part.v), (&whole.q, &whole.v), "{}", scheme.name);
+    }
+    let mut short = State::new(&model, &[0.0, 0.025, 0.0, 0.0, 0.0, 0.0], &[0.0; 6], 1e-3).unwrap();
+    short.v.pop();
+    assert!(matches!(short.drive_about(&model, 0.5), Err(StateError::Length { found: 5, expected: 6, .. })));
+}
+
+/// Forces are no impulses, and a phase doesn't take them for such.
+#[test]
+fn a_stage_that_holds_forces_is_not_handed_in() {
+    let model =
+        model(&FLAT_BLOCK, gravity(), PairLaw::new(0.2, 0.0), Kinematics::Deformed, Box::new(Ground::flat(0.0)));
+    let state = State::new(&model, &[0.0, 0.025, 0.0], &[0.0; 3], 1e-3).unwrap();
+    let (mut work, mut stage) = (workspace(&model), ContactStage::new());
+    let masses = Weights { mass: 1.0, ..Weights::default() };
+    work.factors(&model, masses, &state.q, Keep::Pinned).unwrap();
+    stage.find(&model, &state, &Look::new(&state.q, 1e-9), &mut work).unwrap();
+    let mut a = [0.0, -9.81, 0.0];
+    stage.resolve(&model, &state, &mut a, Over::Acceleration, &Responses::Of(masses), &mut work).unwrap();
+    work.begin(&model, &state, state.next_step(f64::INFINITY)).unwrap();
+    let phase = PhaseEnd::new(PhaseKind::Smooth, 1e-3, &state.q, &state.v);
+    let error = work.phase(&model, &phase, Some(&mut stage)).unwrap_err();
+    assert!(matches!(error, StepError::Problem { source: ContactError::Forces, .. }), "{error}");
+}
+
+/// Contacts with duration take no part in an impact that ends a step, but go on holding what they hold.
+#[test]
+fn springs_are_remembered_over_an_impact_that_ends_a_step() {
+    let law = PairLaw::new(0.5, 0.0).with_impact(ImpactLaw::KelvinVoigt { stiffness: 1e6, damping: 0.0 });
+    let model = model(&PAPER_BLOCK, gravity(), law, Kinematics::Deformed, Box::new(Ground::flat(0.0)));
+    let mut state = State::new(&model, &[0.0, 0.0674, 0.0], &[0.0, -0.1, 0.0], 1e-5).unwrap();
+    steps(&model, &schemes()[0], &mut state, 20);
+    let (stored, gaps) = (state.ledger.stored, state.memory.clone());
+    assert!(stored > 0.0 && gaps.active().len() == 2);
+    let (mut work, span) = (workspace(&model), state.next_step(f64::INFINITY));
+    let (q, v) = (state.q.clone(), state.v.clone());
+    let mut stage = ContactStage::new();
+    let weights = Weights { mass: 1.0, damping: 0.5 * span.h, stiffness: 0.25 * span.h * span.h };
+    work.factors(&model, weights, &q, Keep::Pinned).unwrap();
+    work.begin(&model, &state, span).unwrap();
+    stage.find(&model, &state, &Look::new(&q, 1e-9), &mut work).unwrap();
+    let mut after = v.clone();
+    let over = Over::Step { h: span.h, weight: 0.5 };
+    let outcome = stage.resolve(&model, &state, &mut after, over, &Responses::Of(weights), &mut work).unwrap();
+    let step = PhaseEnd::new(PhaseKind::Step, span.end, &q, &after).with_outcome(outcome);
+    work.phase(&model, &step, Some(&mut stage)).unwrap();
+    work.phase(&model, &PhaseEnd::new(PhaseKind::Impact, span.end, &q, &after), None).unwrap();
+    let report = work.finish(&model, &mut state, None, |_, _| true).unwrap();
+    let energies: Vec<f64> = report.phases().map(|phase| phase.energy.contact).collect();
+    assert_eq!(energies[1], 0.0, "nothing happened at the instant: {energies:?}");
+    assert_eq!(state.memory.active(), gaps.active());
+    assert!(state.memory.active().iter().all(|id| state.memory.spring_gap(*id).unwrap() < 0.0));
+    assert!(state.ledger.stored > 0.0);
+}
