@@ -260,7 +260,7 @@ fn run(scene: &Scene, outlook: &Outlook) -> Vec<String> {
             time.steps() as f64 * time.step,
             time.theta,
             // The default is not worth a word.
-            if time.scheme == SchemeName::MoreauJeanClosed { ", by moreau-jean-closed" } else { "" }
+            if time.scheme == SchemeName::default() { String::new() } else { format!(", by {}", time.scheme.word()) }
         ),
         format!(
             "time: {} (an estimate from times measured on a server, good {})",

@@ -87,7 +87,7 @@ impl<const D: usize> ClosingMonitor<D> {
     }
 
     /// Enters a step with the state at its end, and calls `each` for every contact that closes in
-    /// it.
+    /// it, with the end of the phase in which it does (s).
     ///
     /// # Errors
     /// If the state is not one of the model.
@@ -97,18 +97,19 @@ impl<const D: usize> ClosingMonitor<D> {
         step: &StepReport<'_, D>,
         state: &State,
         openings: &[Opening],
-        mut each: impl FnMut(&Contact<D>, Closing),
+        mut each: impl FnMut(f64, &Contact<D>, Closing),
     ) -> Result<(), Mismatch> {
         let (t, h) = (step.t_end, step.t_end - step.t_start);
         let before = step.t_start;
-        for contact in step.contacts().filter(|contact| contact.p[0] > 0.0) {
+        let carrying = step.phases().flat_map(|phase| phase.contacts.iter().map(move |contact| (phase.end, contact)));
+        for (at_time, contact) in carrying.filter(|(_, contact)| contact.p[0] > 0.0) {
             let now = Held { id: contact.id, last: t, carried: true, opened: false };
             match self.held.binary_search_by_key(&contact.id, |held| held.id) {
                 Ok(at) => {
                     let held = std::mem::replace(&mut self.held[at], now);
                     if held.carried && held.last < before {
                         self.reclosures += 1;
-                        each(contact, Closing::Reclosure);
+                        each(at_time, contact, Closing::Reclosure);
                     }
                 }
                 Err(at) => {
@@ -116,7 +117,7 @@ impl<const D: usize> ClosingMonitor<D> {
                     // A contact that closes without approaching is no impact.
                     let approaches = contact.u_before[0] < 0.0;
                     *if approaches { &mut self.impacts } else { &mut self.reclosures } += 1;
-                    each(contact, if approaches { Closing::Impact } else { Closing::Reclosure });
+                    each(at_time, contact, if approaches { Closing::Impact } else { Closing::Reclosure });
                 }
             }
         }

@@ -61,6 +61,7 @@
 
 mod adapters;
 mod clock;
+mod closed_step;
 mod closings;
 #[cfg(feature = "conformance")]
 pub mod conformance;
@@ -77,6 +78,7 @@ mod model;
 mod monitor;
 mod moreau_jean;
 mod moreau_jean_closed;
+mod moreau_jean_located;
 mod pair_law;
 mod phases;
 mod registry;
@@ -114,6 +116,7 @@ pub use model::{Model, ModelBuilder, ModelError, Part, PartPlace, Placed};
 pub use monitor::{Crossing, LISTED_CROSSINGS, Peak, RockingMonitor};
 pub use moreau_jean::{MoreauJean, MoreauJeanSettings};
 pub use moreau_jean_closed::{MoreauJeanClosed, MoreauJeanClosedSettings};
+pub use moreau_jean_located::{MoreauJeanLocated, MoreauJeanLocatedSettings};
 pub use pair_law::{ImpactLaw, PairLaw};
 pub use phases::{Balance, Phase, PhaseEnd, PhaseKind, StepReport};
 pub use registry::{SchemeEntry, schemes};

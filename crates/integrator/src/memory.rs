@@ -34,6 +34,25 @@ impl Memory {
         self.gaps.clear();
     }
 
+    /// Forgets the contacts without a compressed spring; a scheme's own numbers stay.
+    pub(crate) fn forget_rigid(&mut self) {
+        let Self { active, gaps, .. } = self;
+        let mut number = 0;
+        active.retain(|_| {
+            number += 1;
+            gaps[number - 1] < 0.0
+        });
+        gaps.retain(|gap| *gap < 0.0);
+    }
+
+    /// Remembers a contact as active, in its place in the order of identity.
+    pub(crate) fn insert<const D: usize>(&mut self, contact: &Contact<D>) {
+        if let Err(at) = self.active.binary_search(&contact.id) {
+            self.active.insert(at, contact.id);
+            self.gaps.insert(at, contact.gap_after.map_or(0.0, |gap| gap.min(0.0)));
+        }
+    }
+
     /// Remembers a contact as active. Add contacts in order of identity.
     pub fn remember<const D: usize>(&mut self, contact: &Contact<D>) {
         self.active.push(contact.id);

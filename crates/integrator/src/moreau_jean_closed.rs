@@ -1,39 +1,7 @@
 //! The Moreau–Jean step with contacts that stay closed: `moreau-jean-closed` (`docs/schemes.md`).
-//!
-//! The matrices, the free velocity and the contact solver are those of [`MoreauJean`](crate::MoreauJean) at θ = ½. What is
-//! different is which contacts take part, and the shift s of the law:
-//!
-//! ```text
-//! q̃_m = q⁰ + ¼h(v⁰ + v_free),   q̃ = q⁰ + ½h(v⁰ + v_free)
-//! J = J(q̃_m),   U⁰ = J v⁰,   b = (J(q̃) − J) v⁰
-//! s_n = U_n⁰ if |U_n⁰ − b_n| ≤ |b_n|, else max(b_n, U_n⁰)
-//! s_t = U_t⁰ if ‖U_t⁰ − b_t‖ ≤ ‖b_t‖, else b_t
-//! 0 ≤ U_n¹ + s_n ⊥ p_n ≥ 0,   Coulomb on U_t¹ + s_t
-//! ```
-//!
-//! A contact that pressed in a step is *closed* in the next, whatever its gap. An open contact becomes closed where the step
-//! would end in the surface, and deeper than it began: the step is then tried again. If it approaches, s_n = e U_n⁰ for an impact, and 0 for
-//! an approach that its free acceleration makes within the step. J at mid-step and b make the closed contact end the step
-//! with the velocity that the surface has there, so its gap doesn't drift apart as that of the page's scheme does.
-//!
-//! **Work**: U_n¹ = −s_n where p_n > 0, so Ū_n p_n = ½(U_n⁰ − s_n) p_n ≤ 0, as s_n ≥ U_n⁰. Friction obeys (U_t¹ + s_t)·p_t ≤ 0; where
-//! that leaves a contact with Ū·p > 0 all the same, as where a slide turns within the step, its shift becomes s_n = max(s_n, U_n⁰), and
-//! s_t = U_t⁰ or no friction at all, whichever ends nearer to rest; with both Ū·p ≤ 0. The problem is solved once more. So no contact
-//! gives energy in any step. (But for closed contacts with what moves as prescribed: there Ū is relative, and they are left as they are.)
 
-use crate::contact::tangential;
-use crate::laws::{Laws, is_impact};
-use crate::stage::{Members, Problem};
-use crate::theta_step::{ThetaStep, weights};
-use crate::{
-    ContactError, ContactStage, ImpactLaw, Keep, Mismatch, Model, Over, PairLaw, PhaseEnd, PhaseKind, Responses, Rule,
-    Scheme, SettingError, SpringStep, State, StepError, StepReport, StepSpan, Vector, Workspace,
-};
-use teeter_contact::Outcome;
-use teeter_detect::{Candidate, Candidates, ContactId};
-
-/// θ: the scheme's account of work holds for the trapezoidal rule.
-const THETA: f64 = 0.5;
+use crate::closed_step::ClosedStep;
+use crate::{Model, Scheme, SettingError, State, StepError, StepReport, Workspace};
 
 /// The settings of [`MoreauJeanClosed`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,31 +16,42 @@ impl Default for MoreauJeanClosedSettings {
     }
 }
 
+impl MoreauJeanClosedSettings {
+    /// What is out of its range.
+    pub(crate) fn check(&self) -> Result<(), SettingError> {
+        let gap = self.gap_tolerance;
+        let good = gap >= 0.0 && gap.is_finite();
+        if good { Ok(()) } else { Err(SettingError { what: "gap_tolerance", value: gap, rule: "at least 0 m" }) }
+    }
+}
+
 /// The Moreau–Jean step at θ = ½ with contacts that stay closed from step to step: no contact gives energy, gaps don't drift apart, and
 /// restitution tells impacts from contacts that press.
+///
+/// The matrices, the free velocity and the contact solver are those of [`MoreauJean`](crate::MoreauJean) at θ = ½. What is
+/// different is which contacts take part, and the shift s of the law:
+///
+/// ```text
+/// q̃_m = q⁰ + ¼h(v⁰ + v_free),   q̃ = q⁰ + ½h(v⁰ + v_free)
+/// J = J(q̃_m),   U⁰ = J v⁰,   b = (J(q̃) − J) v⁰
+/// s_n = U_n⁰ if |U_n⁰ − b_n| ≤ |b_n|, else max(b_n, U_n⁰)
+/// s_t = U_t⁰ if ‖U_t⁰ − b_t‖ ≤ ‖b_t‖, else b_t
+/// 0 ≤ U_n¹ + s_n ⊥ p_n ≥ 0,   Coulomb on U_t¹ + s_t
+/// ```
+///
+/// A contact that pressed in a step is *closed* in the next, whatever its gap. An open contact becomes closed where the step
+/// would end in the surface, and deeper than it began: the step is then tried again. If it approaches, s_n = e U_n⁰ for an impact, and 0 for
+/// an approach that its free acceleration makes within the step. J at mid-step and b make the closed contact end the step
+/// with the velocity that the surface has there, so its gap doesn't drift apart as that of the page's scheme does.
+///
+/// **Work**: U_n¹ = −s_n where p_n > 0, so Ū_n p_n = ½(U_n⁰ − s_n) p_n ≤ 0, as s_n ≥ U_n⁰. Friction obeys (U_t¹ + s_t)·p_t ≤ 0; where
+/// that leaves a contact with Ū·p > 0 all the same, as where a slide turns within the step, its shift becomes s_n = max(s_n, U_n⁰), and
+/// s_t = U_t⁰ or no friction at all, whichever ends nearer to rest; with both Ū·p ≤ 0. The problem is solved once more. So no contact
+/// gives energy in any step. (But for closed contacts with what moves as prescribed: there Ū is relative, and they are left as they are.)
 #[derive(Debug)]
 pub struct MoreauJeanClosed<const D: usize> {
     settings: MoreauJeanClosedSettings,
-    step: ThetaStep,
-    v_free: Vec<f64>,
-    /// q̃.
-    q_ahead: Vec<f64>,
-    /// q̃_m.
-    q_mid: Vec<f64>,
-    middle: Candidates<D>,
-    ahead: Candidates<D>,
-    start: Candidates<D>,
-    stage: ContactStage<D>,
-    /// Rows at q̃.
-    ahead_rows: ContactStage<D>,
-    /// The contacts that take part, in order of identity.
-    closed: Vec<ContactId>,
-    /// Of each contact of the step: its shift were there no restitution.
-    resting_shift: Vec<f64>,
-    /// Which contacts have the shift that can't give energy.
-    guarded: Vec<bool>,
-    /// Which contacts stay closed.
-    stays: Vec<bool>,
+    step: ClosedStep<D>,
 }
 
 impl<const D: usize> MoreauJeanClosed<D> {
@@ -84,26 +63,8 @@ impl<const D: usize> MoreauJeanClosed<D> {
     /// # Errors
     /// If a setting is out of its range.
     pub fn new(settings: MoreauJeanClosedSettings) -> Result<Self, SettingError> {
-        let gap = settings.gap_tolerance;
-        if !(gap >= 0.0 && gap.is_finite()) {
-            return Err(SettingError { what: "gap_tolerance", value: gap, rule: "at least 0 m" });
-        }
-        Ok(Self {
-            settings,
-            step: ThetaStep::default(),
-            v_free: Vec::new(),
-            q_ahead: Vec::new(),
-            q_mid: Vec::new(),
-            middle: Vec::new(),
-            ahead: Vec::new(),
-            start: Vec::new(),
-            stage: ContactStage::new(),
-            ahead_rows: ContactStage::new(),
-            closed: Vec::new(),
-            resting_shift: Vec::new(),
-            guarded: Vec::new(),
-            stays: Vec::new(),
-        })
+        settings.check()?;
+        Ok(Self { settings, step: ClosedStep::new(settings.gap_tolerance) })
     }
 
     /// The settings.
@@ -113,38 +74,13 @@ impl<const D: usize> MoreauJeanClosed<D> {
     }
 }
 
-/// Rounding of a contact's work, as a part of ‖p‖ Σ|J_i v|, the larger of v⁰ and v_free.
-const WORKLESS: f64 = 1e-13;
-
-/// Where a contact is in the surface already, it closes when it sinks by this part of the gap tolerance within a step: more than
-/// rounding, and so little that no approach is too slow to be seen.
-const SINKING: f64 = 1e-3;
-
-/// A contact that leaves faster than this part of Σ|J_i v| is open after the step, v the larger of v¹ and v_free: what was stopped has no
-/// velocity left to tell its rounding by.
-const LEAVING: f64 = 1e-10;
-
 impl<const D: usize> Scheme<D> for MoreauJeanClosed<D> {
     fn name(&self) -> &'static str {
         Self::NAME
     }
 
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {
-        let contacts = model.detector().capacity();
-        self.step.start(model, state, work)?;
-        self.resize(model);
-        for candidates in [&mut self.middle, &mut self.ahead, &mut self.start, &mut work.candidates] {
-            candidates.reserve(contacts);
-        }
-        self.stage.reserve(model);
-        self.ahead_rows.reserve(model);
-        self.closed.reserve(contacts);
-        self.resting_shift.reserve(contacts);
-        self.guarded.reserve(contacts);
-        self.stays.reserve(contacts);
-        state.warm.reserve(contacts, D);
-        state.memory.reserve(contacts);
-        work.factors(model, weights(state.dt, THETA), &state.q, Keep::Pinned)
+        self.step.start(model, state, work)
     }
 
     fn advance<'w>(
@@ -155,309 +91,19 @@ impl<const D: usize> Scheme<D> for MoreauJeanClosed<D> {
         work: &'w mut Workspace<D>,
     ) -> Result<StepReport<'w, D>, StepError> {
         let span = state.next_step(until);
-        let (h, t) = (span.h, state.t);
         self.step.check(model, state, work)?;
-        self.resize(model);
         work.begin(model, state, span)?;
-        work.factors(model, weights(h, THETA), &state.q, if h == state.dt { Keep::Pinned } else { Keep::Once })?;
-        self.step.free_velocity(model, state, work, THETA, &span);
-        self.v_free.clear();
-        self.v_free.extend_from_slice(&self.step.v_end);
-        self.closed.clear();
-        self.closed.extend_from_slice(state.memory.active());
-        let mut looked_for = 0;
-        let (outcome, penetration) = loop {
-            // In flight there is nothing to look at.
-            if looked_for < self.closed.len() {
-                self.look_ahead(model, state, h, work)?;
-                looked_for = self.closed.len();
-            }
-            let outcome = self.attempt(model, state, &span, work).map_err(|source| StepError::Problem { t, source })?;
-            self.step.close(model, state, h, THETA)?;
-            work.detect(model, &self.step.q_at, 0.0)?;
-            let penetration = work.candidates.iter().map(|candidate| -candidate.gap).fold(0.0, f64::max);
-            if !self.close_what_sinks(model, state, work)? {
-                break (outcome, penetration);
-            }
-            work.counts.refused_attempts += 1;
-        };
-        self.find_what_stays();
-        let energy = self.step.work_of_forces(model, state, work, &self.stage, h, THETA);
-        let phase = PhaseEnd::new(PhaseKind::Step, span.end, &self.step.q_at, &self.step.v_end)
-            .with_energy(energy)
-            .with_outcome(outcome);
-        work.phase(model, &phase, Some(&mut self.stage))?;
-        let stays = &self.stays;
+        self.step.begin(model, state, &span, work)?;
+        let outcome = self.step.settle(model, state, &span, work)?;
+        let penetration = deepest(work);
+        self.step.find_what_stays();
+        self.step.end_phase(model, state, &span, outcome, work)?;
+        let stays = &self.step.stays;
         work.finish(model, state, Some(penetration), |i, _| stays[i])
     }
 }
 
-impl<const D: usize> MoreauJeanClosed<D> {
-    /// Takes the sizes of a model; allocates nothing where they are the same.
-    fn resize(&mut self, model: &Model<D>) {
-        self.v_free.resize(model.size().v, 0.0);
-        self.q_mid.resize(model.size().q, 0.0);
-        self.q_ahead.resize(model.size().q, 0.0);
-    }
-
-    /// Finds frames and gaps of the closed contacts at q̃_m and q̃.
-    fn look_ahead(&mut self, model: &Model<D>, state: &State, h: f64, work: &mut Workspace<D>) -> Result<(), Mismatch> {
-        // ½(v⁰ + v_free), the mean velocity of the free motion.
-        let mean = &mut self.step.v_end;
-        mean.iter_mut().zip(&self.v_free).zip(&state.v).for_each(|((v, free), v0)| *v = 0.5 * (free + v0));
-        let places = [(0.5 * h, &mut self.q_mid, &mut self.middle), (h, &mut self.q_ahead, &mut self.ahead)];
-        for (tau, q, candidates) in places {
-            model.move_along(&state.q, mean, tau, q);
-            work.locate(model, q, &self.closed, candidates)?;
-        }
-        Ok(())
-    }
-
-    /// Finds which of the step's contacts are closed in the next.
-    fn find_what_stays(&mut self) {
-        self.stays.clear();
-        for (i, contact) in self.stage.contacts().iter().enumerate() {
-            let stays = match contact.gap_after {
-                Some(gap) => gap < 0.0,
-                None => {
-                    let leaves = match self.stage.problem.rule(i) {
-                        // What comes back is found in expansion.
-                        Rule::Poisson { .. } => contact.u_after[0] + self.resting_shift[i],
-                        // U_n¹ = −s_n where it presses: by s_n itself, as at rest a velocity is all rounding and solver's error.
-                        _ => self.resting_shift[i] - self.stage.problem.shift(i)[0],
-                    };
-                    let speed = |v: &[f64]| self.stage.speed(i, v);
-                    let still = || LEAVING * speed(&self.step.v_end).max(speed(&self.v_free));
-                    contact.p[0] > 0.0 && (leaves <= 0.0 || leaves <= still())
-                }
-            };
-            self.stays.push(stays);
-        }
-    }
-
-    /// Takes the step with the closed contacts: leaves v¹ in the step.
-    fn attempt(
-        &mut self,
-        model: &Model<D>,
-        state: &State,
-        span: &StepSpan,
-        work: &mut Workspace<D>,
-    ) -> Result<Option<Outcome>, ContactError> {
-        self.step.v_end.copy_from_slice(&self.v_free);
-        self.stage.clear();
-        self.resting_shift.clear();
-        if self.closed.is_empty() {
-            return Ok(None);
-        }
-        for k in 0..self.middle.len() {
-            let candidate = self.middle[k];
-            self.pose(model, state, span.h, work, &candidate)?;
-        }
-        let (over, responses) = (Over::Step { h: span.h, weight: THETA }, Responses::Of(weights(span.h, THETA)));
-        self.guarded.clear();
-        self.guarded.resize(self.stage.len(), false);
-        let (guarded, v_free) = (&mut self.guarded, &self.v_free);
-        // Each round guards one contact more at least, so it ends.
-        let outcome = self.stage.solve_guarded(model, work, &responses, over, |stage, problem, laws, members| {
-            let guard = Guard { model, stage, laws, members, v_before: &state.v, v_free };
-            Ok(guard.apply(problem, guarded)?)
-        })?;
-        self.stage.respond(model, work, &responses, &mut self.step.v_end)?;
-        self.stage.complete(&self.step.v_end)?;
-        Ok(outcome)
-    }
-
-    fn pose(
-        &mut self,
-        model: &Model<D>,
-        state: &State,
-        h: f64,
-        work: &mut Workspace<D>,
-        candidate: &Candidate<D>,
-    ) -> Result<(), Mismatch> {
-        let law = model.law(candidate.law)?;
-        let i = self.stage.len();
-        if !self.stage.add(model, &self.q_mid, candidate, &state.warm, &state.memory)? {
-            return Ok(());
-        }
-        let u_before = self.stage.velocity(i, &state.v)?;
-        let u_free = self.stage.velocity(i, &self.v_free)?;
-        // Off the end of its surface by then, it has no frame there.
-        let b = match find(&self.ahead, candidate.id) {
-            Some(ahead) => {
-                self.ahead_rows.clear();
-                match self.ahead_rows.add(model, &self.q_ahead, ahead, &state.warm, &state.memory)? {
-                    true => self.ahead_rows.velocity(0, &state.v)? - u_before,
-                    false => Vector::zeros(),
-                }
-            }
-            None => Vector::zeros(),
-        };
-        let (before_t, b_t) = (tangential(&u_before), tangential(&b));
-        let mut shift = if (before_t - b_t).norm() <= b_t.norm() { before_t } else { b_t };
-        shift[0] = if (u_before[0] - b[0]).abs() <= b[0].abs() { u_before[0] } else { b[0].max(u_before[0]) };
-        let persisting = self.stage.contacts()[i].persisting;
-        if !persisting && u_before[0] < 0.0 {
-            shift[0] = 0.0;
-        }
-        self.resting_shift.push(shift[0]);
-        let rule = if law.impact.spring().is_some() {
-            let gap = match state.memory.spring_gap(candidate.id) {
-                Some(gap) if gap < 0.0 => gap,
-                _ => self.gap_at_start(model, state, work, candidate.id)?.max(0.0),
-            };
-            shift[0] = 0.0;
-            SpringStep::new(&law.impact, gap, u_before[0], h, THETA).map_or(Rule::Shifted, Rule::Spring)
-        } else {
-            restitute(persisting, &law, &u_before, &u_free, &mut shift)
-        };
-        self.stage.set(i, u_before, u_free, shift, rule)
-    }
-
-    /// The gap of a contact at q⁰, m; 0 where it has none. Only a step with a new contact pays for looking there.
-    fn gap_at_start(
-        &mut self,
-        model: &Model<D>,
-        state: &State,
-        work: &mut Workspace<D>,
-        id: ContactId,
-    ) -> Result<f64, Mismatch> {
-        work.locate(model, &state.q, &[id], &mut self.start)?;
-        Ok(self.start.first().map_or(0.0, |candidate| candidate.gap))
-    }
-
-    /// Closes the open contacts that the attempt ends with in their surface (they are the workspace's candidates), deeper
-    /// than they began; whether there are any.
-    fn close_what_sinks(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>) -> Result<bool, Mismatch> {
-        let before = self.closed.len();
-        for k in 0..work.candidates.len() {
-            let Candidate { id, gap, .. } = work.candidates[k];
-            if gap >= -self.settings.gap_tolerance || self.closed[..before].binary_search(&id).is_ok() {
-                continue;
-            }
-            let level = self.gap_at_start(model, state, work, id)?.min(0.0);
-            if gap < level - SINKING * self.settings.gap_tolerance {
-                self.closed.push(id);
-            }
-        }
-        let found = self.closed.len() > before;
-        self.closed.sort_unstable();
-        Ok(found)
-    }
-}
-
-/// Puts restitution into the shift of a contact that closes with an impact; returns its rule.
-fn restitute<const D: usize>(
-    persisting: bool,
-    law: &PairLaw,
-    u_before: &Vector<D>,
-    u_free: &Vector<D>,
-    shift: &mut Vector<D>,
-) -> Rule<D> {
-    let e = law.restitution;
-    let closing = !persisting && u_before[0] < 0.0;
-    let tangential_restitution =
-        if closing && is_impact(1.0, u_before, u_free) { law.tangential_restitution } else { 0.0 };
-    if law.impact == ImpactLaw::Poisson {
-        return Rule::Poisson { e, tangential: tangential_restitution };
-    }
-    let mut rule = Rule::Shifted;
-    if closing && is_impact(e, u_before, u_free) {
-        // Newton's law too: where it would make energy, less of it, before the guard has to bend friction.
-        rule = Rule::Energetic;
-        shift[0] = e * u_before[0];
-    }
-    if tangential_restitution > 0.0 {
-        let normal = shift[0];
-        *shift = tangential(u_before) * tangential_restitution;
-        shift[0] = normal;
-    }
-    rule
-}
-
-fn find<const D: usize>(candidates: &[Candidate<D>], id: ContactId) -> Option<&Candidate<D>> {
-    candidates.binary_search_by_key(&id, |candidate| candidate.id).ok().map(|at| &candidates[at])
-}
-
-/// Sees to it that no contact of a solved problem gives energy.
-struct Guard<'a, const D: usize> {
-    model: &'a Model<D>,
-    stage: &'a ContactStage<D>,
-    laws: &'a Laws<D>,
-    members: Members<'a>,
-    v_before: &'a [f64],
-    v_free: &'a [f64],
-}
-
-impl<const D: usize> Guard<'_, D> {
-    /// Changes what holds for contacts whose work is positive, so that it can't be; whether there are any.
-    ///
-    /// The usual case is a slide that turns within the step: sticking at its end would take an impulse along the slide that
-    /// was. Then either no friction, or the velocity turned about, whichever ends nearer to rest; it sticks in the next step.
-    ///
-    /// Where Poisson's law hands a blow on, what one contact gains another one has lost: there it is the sum over contacts that feel
-    /// each other that counts. The law scales what it gives back by it, so what is left is of contacts that would give energy without
-    /// any restitution, too.
-    fn apply(&self, problem: &mut Problem<D>, guarded: &mut [bool]) -> Result<bool, Mismatch> {
-        let laws = self.laws;
-        let mut found = false;
-        for i in 0..problem.len() {
-            let (number, u_before, p) = (self.members.number(i), problem.u_before(i), problem.p[i]);
-            // A spring's law sees to it itself.
-            if guarded[number] || p[0] <= 0.0 || matches!(problem.rule(i), Rule::Spring(_)) {
-                continue;
-            }
-            // What moves as prescribed gives energy anyway, and a slide that ends there is better stopped where it ends.
-            let contact = &self.stage.contacts()[number];
-            if contact.persisting && self.stage.feels_drive(self.model, number, self.v_before, self.v_free) {
-                continue;
-            }
-            let gain = if laws.handed_on(problem, i) {
-                let allowed: f64 = (0..problem.len()).map(|i| self.rounding(problem, i)).sum();
-                if laws.work_around(problem, i) > allowed { laws.work_unreturned(i) } else { 0.0 }
-            } else {
-                problem.work(i)
-            };
-            if gain <= self.rounding(problem, i) {
-                continue;
-            }
-            let without = problem.without_own_friction(i);
-            let mut shift = tangential(&u_before);
-            if without.norm() < shift.norm() {
-                problem.mu[i] = 0.0;
-            }
-            let e = self.model.law(contact.law)?.restitution;
-            let back = match problem.rule(i) {
-                Rule::Poisson { .. } if is_impact(e, &u_before, &problem.u_free(i)) => e * u_before[0],
-                _ => problem.shift(i)[0],
-            };
-            shift[0] = back.max(u_before[0]);
-            problem.posed[i].rule = Rule::Shifted;
-            problem.reshift(i, shift);
-            guarded[number] = true;
-            found = true;
-        }
-        Ok(found || self.stop_handing_on(problem))
-    }
-
-    /// What may be rounding of a contact's work, J: at rest it is the free velocity whose digits are lost.
-    fn rounding(&self, problem: &Problem<D>, i: usize) -> f64 {
-        let number = self.members.number(i);
-        let speed = self.stage.speed(number, self.v_before).max(self.stage.speed(number, self.v_free));
-        WORKLESS * problem.p[i].norm() * speed
-    }
-
-    /// The last resort where contacts that hand a blow on give energy though none does by itself, as the solver finds another one of
-    /// several solutions each time: nothing is given back there. Whether it changed anything.
-    fn stop_handing_on(&self, problem: &mut Problem<D>) -> bool {
-        let (laws, n) = (self.laws, problem.len());
-        let allowed = |i: usize| self.rounding(problem, i) + laws.work_unreturned(i).max(0.0);
-        let gives = |i: usize| {
-            let phased = matches!(problem.rule(i), Rule::Poisson { .. }) && laws.handed_on(problem, i);
-            phased && laws.work_around(problem, i) > (0..n).map(allowed).sum::<f64>()
-        };
-        let Some(first) = (0..n).find(|&i| gives(i)) else { return false };
-        problem.posed[first].rule = Rule::Shifted;
-        true
-    }
+/// The deepest penetration of the candidates that were found last, m.
+pub(crate) fn deepest<const D: usize>(work: &Workspace<D>) -> f64 {
+    work.candidates.iter().map(|candidate| -candidate.gap).fold(0.0, f64::max)
 }

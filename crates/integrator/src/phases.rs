@@ -152,6 +152,14 @@ impl<const D: usize> Phases<D> {
         }
     }
 
+    /// Makes room for so many phases.
+    pub(crate) fn reserve_more(&mut self, phases: usize, contacts: usize, size: Size) {
+        while self.kept.len() < phases {
+            self.kept.push(Kept::new());
+        }
+        self.reserve(contacts, size);
+    }
+
     /// Begins a step.
     #[inline]
     pub(crate) fn begin(&mut self, span: StepSpan) {

@@ -1,6 +1,9 @@
 //! The list of schemes by name.
 
-use crate::{MoreauJean, MoreauJeanClosed, MoreauJeanClosedSettings, MoreauJeanSettings, Scheme};
+use crate::{
+    MoreauJean, MoreauJeanClosed, MoreauJeanClosedSettings, MoreauJeanLocated, MoreauJeanLocatedSettings,
+    MoreauJeanSettings, Scheme,
+};
 
 /// A scheme in the list.
 #[derive(Clone, Copy, Debug)]
@@ -26,7 +29,7 @@ impl SchemeEntry {
 ///
 /// ```
 /// let names: Vec<_> = teeter_integrator::schemes().iter().map(|scheme| scheme.name).collect();
-/// assert_eq!(names, ["moreau-jean", "moreau-jean-closed"]);
+/// assert_eq!(names, ["moreau-jean", "moreau-jean-closed", "moreau-jean-located"]);
 /// ```
 #[must_use]
 pub fn schemes() -> &'static [SchemeEntry] {
@@ -40,6 +43,11 @@ pub fn schemes() -> &'static [SchemeEntry] {
             name: MoreauJeanClosed::<2>::NAME,
             about: "the same step with contacts that stay closed: no contact gives energy, and gaps don't drift apart",
             make: || Some(Box::new(MoreauJeanClosed::new(MoreauJeanClosedSettings::default()).ok()?)),
+        },
+        SchemeEntry {
+            name: MoreauJeanLocated::<2>::NAME,
+            about: "the closed step, divided where a contact closes: of second order through impacts on rigid ground",
+            make: || Some(Box::new(MoreauJeanLocated::new(MoreauJeanLocatedSettings::default()).ok()?)),
         },
     ]
 }

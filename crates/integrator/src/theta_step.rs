@@ -175,6 +175,25 @@ impl ThetaStep {
         if all_finite(q_at) { Ok(()) } else { Err(StepError::Diverged { t: state.t }) }
     }
 
+    /// The same at an impact, after which velocities are `v`: what drives give.
+    pub(crate) fn work_of_impact<const D: usize>(
+        &mut self,
+        model: &Model<D>,
+        state: &State,
+        work: &mut Workspace<D>,
+        stage: &ContactStage<D>,
+        v: &[f64],
+    ) -> Result<StepEnergy, StepError> {
+        if !model.is_driven() {
+            return Ok(StepEnergy::default());
+        }
+        self.v_end.copy_from_slice(v);
+        self.q_forces.copy_from_slice(&state.q);
+        self.impulse.fill(0.0);
+        self.close(model, state, 0.0, 0.5)?;
+        Ok(self.work_of_forces(model, state, work, stage, 0.0, 0.5))
+    }
+
     /// The terms of the energy identity that aren't contact: loads, drives, damping, the scheme itself. The impulses of the
     /// step's contacts are in `stage`.
     pub(crate) fn work_of_forces<const D: usize>(

@@ -163,6 +163,12 @@ impl<const D: usize> Workspace<D> {
         }
     }
 
+    /// Makes room for steps of so many phases.
+    pub(crate) fn reserve_phases(&mut self, model: &Model<D>, phases: usize) {
+        let contacts = model.detector().capacity().min(RESERVED_CONTACTS);
+        self.phases.reserve_more(phases, contacts, model.size());
+    }
+
     /// Whether it was made for this model, and its memory still fits it: else steps would take the factors of another.
     ///
     /// # Errors

@@ -63,7 +63,7 @@ fn percent(part: f64) -> String {
 /// found (`docs/schemes.md`, "Energy made").
 fn remedy(scene: &Scene) -> String {
     match scene.time.scheme {
-        SchemeName::MoreauJeanClosed => "take a shorter step (`time.step`)".to_owned(),
+        scheme if scheme.keeps_energy() => "take a shorter step (`time.step`)".to_owned(),
         // Contacts with a body that is moved as prescribed may give energy in the closed scheme, too.
         _ if scene.motions().any(|(_, motion)| motion.is_given()) => format!(
             "take a shorter step (`time.step`), or `time.scheme = \"{}\"` with one: where bodies are moved as prescribed neither scheme's contacts \

@@ -284,11 +284,11 @@ impl<'a> Recorder<'a> {
     ) -> Result<(), ObserverError> {
         let Self { layout, impacts, line, kept: Kept { closings, record, .. }, .. } = self;
         let mut written = Ok(());
-        closings.enter(model, step, state, &layout.openings, |contact, closing| {
+        closings.enter(model, step, state, &layout.openings, |t, contact, closing| {
             let names = Names::of(layout, contact.id).filter(|_| closing == Closing::Impact);
             let (Some(names), Ok(())) = (names, &written) else { return };
             line.clear();
-            push(line, step.t_end);
+            push(line, t);
             names.push(line);
             for x in [contact.p[0], contact.p[1], contact.u_before[0], contact.u_after[0]] {
                 push_next(line, x);
@@ -297,7 +297,7 @@ impl<'a> Recorder<'a> {
             written = impacts.rows(line);
             if record.impacts.len() < LISTED_IMPACTS {
                 record.impacts.push(ImpactRow {
-                    t: step.t_end,
+                    t,
                     contact: names.contact.to_owned(),
                     point: names.point.into(),
                     impulse_n: contact.p[0],
@@ -347,7 +347,9 @@ impl Observer<2> for Recorder<'_> {
             monitor.enter(state.t, self.layout.tilt(block, &state.q));
         }
         self.kept.contacts_now.clear();
-        self.kept.contacts_now.extend(step.contacts());
+        if let Some(last) = step.phases().last() {
+            self.kept.contacts_now.extend_from_slice(last.contacts);
+        }
         if self.kept.schedule.takes(state.step, state.t) {
             self.write_rows(model, state)?;
         }

@@ -118,7 +118,14 @@ impl Resolution {
     /// Takes a step in.
     pub(crate) fn observe(&mut self, bodies: &Bodies, layout: &Layout, step: &StepReport<'_, 2>, state: &State) {
         let h = step.t_end - step.t_start;
-        for contact in step.contacts() {
+        let mut at = step.t_start;
+        let contacts = step.phases().flat_map(|phase| phase.contacts.iter().map(move |contact| (phase, contact)));
+        for (phase, contact) in contacts {
+            if phase.end > at {
+                // What presses in the last phase that takes time counts.
+                self.blocks.iter_mut().for_each(|seen| seen.pressed = 0);
+                at = phase.end;
+            }
             let owner = bodies.owners.get(contact.id.pair() as usize);
             let Some(seen) = owner.and_then(|block| self.blocks.get_mut(*block)) else { continue };
             seen.pressed += u32::from(contact.p[0] > 0.0);
@@ -130,7 +137,7 @@ impl Resolution {
             // One that closes fast and gets no impulse, as the surface is gone again by the end of the step, is as late. A contact with duration takes
             // its time, and its force begins at nothing.
             if !contact.persisting && contact.gap_after.is_none() {
-                let late = h * (-contact.u_before[0]).max(0.0);
+                let late = (phase.end - phase.start) * (-contact.u_before[0]).max(0.0);
                 seen.late += late;
                 seen.latest = seen.latest.max(late);
             }

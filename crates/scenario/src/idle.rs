@@ -2,7 +2,7 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;
-use crate::scene::{LoadKind, Scene, SchemeName};
+use crate::scene::{LoadKind, Scene};
 use crate::source::Origin;
 use std::collections::BTreeSet;
 
@@ -18,8 +18,8 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
     // Who tries another scheme with `--set` needn't take the key of the scene's own one out.
     let by_set = |path: &str| matches!(document.origin(path), Origin::Set { .. });
     let tried = by_set("time.scheme") && !by_set("time.activation_gamma");
-    if time.scheme == SchemeName::MoreauJeanClosed && document.is_given("time.activation_gamma") && !tried {
-        let rule = "moreau-jean-closed has no prediction for it to act on: it does nothing".to_owned();
+    if !time.scheme.predicts() && document.is_given("time.activation_gamma") && !tried {
+        let rule = format!("{} has no prediction for it to act on: it does nothing", time.scheme.word());
         idle("time.activation_gamma", rule, "leave it out, or take scheme = \"moreau-jean\"");
     }
     if time.theta >= 0.5 && document.flag("time.allow_conditional_stability") == Some(true) {

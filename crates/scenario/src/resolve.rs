@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::document::Document;
 use crate::doubts;
-use crate::scene::{ContactScene, GroundScene, Scene, SchemeName, SignalScene, SolverScene, Support};
+use crate::scene::{ContactScene, GroundScene, Scene, SignalScene, SolverScene, Support};
 use crate::value::Value;
 use crate::words::Word;
 use crate::{volume, wording};
@@ -67,7 +67,7 @@ pub fn resolve(mut document: Document, stem: &str, read: &mut ReadFile<'_>) -> R
                 }
             }
             // A default that does nothing is not written out as if it were meant.
-            if scene.time.scheme == SchemeName::MoreauJeanClosed {
+            if !scene.time.scheme.predicts() {
                 document.forget_default("time.activation_gamma");
             }
             if errors.is_empty() {

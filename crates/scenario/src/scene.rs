@@ -103,10 +103,7 @@ impl Time {
     /// The θ by which the scheme steps: the closed one has ½, whatever is given.
     #[must_use]
     pub fn theta_of_scheme(&self) -> f64 {
-        match self.scheme {
-            SchemeName::MoreauJean => self.theta,
-            SchemeName::MoreauJeanClosed => 0.5,
-        }
+        if self.scheme.is_trapezoidal() { 0.5 } else { self.theta }
     }
 }
 
@@ -119,6 +116,8 @@ pub enum SchemeName {
     MoreauJean,
     /// The same with contacts that stay closed by a flag.
     MoreauJeanClosed,
+    /// The closed one, divided where a contact closes.
+    MoreauJeanLocated,
 }
 
 impl SchemeName {
@@ -128,6 +127,34 @@ impl SchemeName {
         match self {
             Self::MoreauJean => teeter_integrator::MoreauJean::<2>::NAME,
             Self::MoreauJeanClosed => teeter_integrator::MoreauJeanClosed::<2>::NAME,
+            Self::MoreauJeanLocated => teeter_integrator::MoreauJeanLocated::<2>::NAME,
+        }
+    }
+
+    /// Whether it is a scheme of θ = ½ alone.
+    #[must_use]
+    pub fn is_trapezoidal(self) -> bool {
+        match self {
+            Self::MoreauJean => false,
+            Self::MoreauJeanClosed | Self::MoreauJeanLocated => true,
+        }
+    }
+
+    /// Whether contacts are active by a predicted gap, `activation_gamma` of a step ahead.
+    #[must_use]
+    pub fn predicts(self) -> bool {
+        match self {
+            Self::MoreauJean => true,
+            Self::MoreauJeanClosed | Self::MoreauJeanLocated => false,
+        }
+    }
+
+    /// Whether no contact gives energy, but for contacts with what is moved as prescribed.
+    #[must_use]
+    pub fn keeps_energy(self) -> bool {
+        match self {
+            Self::MoreauJean => false,
+            Self::MoreauJeanClosed | Self::MoreauJeanLocated => true,
         }
     }
 }

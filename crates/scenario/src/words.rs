@@ -2,7 +2,7 @@
 //! that is added is a variant that is added, and every place that decides by it has to say what it means.
 
 use crate::scene::SchemeName;
-use teeter_integrator::{MoreauJean, MoreauJeanClosed};
+use teeter_integrator::{MoreauJean, MoreauJeanClosed, MoreauJeanLocated};
 
 /// One of some words.
 pub(crate) trait Word: Copy + Sized + 'static {
@@ -71,11 +71,11 @@ words! {
 }
 
 /// The words of the schemes.
-pub(crate) const SCHEMES: &[&str] = &[MoreauJean::<2>::NAME, MoreauJeanClosed::<2>::NAME];
+pub(crate) const SCHEMES: &[&str] = &[MoreauJean::<2>::NAME, MoreauJeanClosed::<2>::NAME, MoreauJeanLocated::<2>::NAME];
 
 impl Word for SchemeName {
     const ALL: &'static [(&'static str, Self)] =
-        &[(SCHEMES[0], Self::MoreauJean), (SCHEMES[1], Self::MoreauJeanClosed)];
+        &[(SCHEMES[0], Self::MoreauJean), (SCHEMES[1], Self::MoreauJeanClosed), (SCHEMES[2], Self::MoreauJeanLocated)];
 }
 
 #[cfg(test)]

@@ -128,11 +128,11 @@ impl<'a> Sampler<'a> {
         self.motion
     }
 
-    /// Takes the sample at the share `s` of the step that ended with `state`.
-    fn take(&mut self, s: f64, state: &State) {
-        let h = state.t - self.before.t;
+    /// Takes the sample at the share `s` of the step that ended with `state`: `piece` is the part of it without impacts in which that is.
+    fn take(&mut self, s: f64, piece: &Piece<'_>, state: &State) {
+        let Piece { s: within, h, q: [q0, q1], v: [v0, v1] } = *piece;
         let (before, motion) = (&self.before, &mut self.motion);
-        let between = |k: usize| hermite(s, h, [before.q[k], state.q[k]], [before.v[k], state.v[k]]);
+        let between = |k: usize| hermite(within, h, [q0[k], q1[k]], [v0[k], v1[k]]);
         for block in 0..self.blocks {
             motion.poses.push([0, 1, 2].map(|k| between(3 * block + k)));
         }
@@ -141,8 +141,8 @@ impl<'a> Sampler<'a> {
             // Deflections are linear in the coordinates: of q and of v at both ends.
             let of = |shape: &ShapeAt, x: &[f64]| place.deflection(shape, &x[range.clone()]).w;
             for shape in shapes {
-                let (q, v) = ([of(shape, &before.q), of(shape, &state.q)], [of(shape, &before.v), of(shape, &state.v)]);
-                motion.deflections.push(hermite(s, h, q, v));
+                let (q, v) = ([of(shape, q0), of(shape, q1)], [of(shape, v0), of(shape, v1)]);
+                motion.deflections.push(hermite(within, h, q, v));
             }
         }
         let linear = |a: f64, b: f64| a + s * (b - a);
@@ -158,6 +158,35 @@ impl<'a> Sampler<'a> {
         q.clone_from(&state.q);
         v.clone_from(&state.v);
         impulses.clone_from(now);
+    }
+}
+
+/// A part of a step without impacts, and a place in it.
+#[derive(Clone, Copy)]
+struct Piece<'a> {
+    /// The share of the part that has passed.
+    s: f64,
+    /// How long it takes, s.
+    h: f64,
+    /// Coordinates and velocities at both of its ends.
+    q: [&'a [f64]; 2],
+    v: [&'a [f64]; 2],
+}
+
+impl<'a> Piece<'a> {
+    /// The end of a step.
+    fn end(state: &'a State) -> Self {
+        Self { s: 1.0, h: 0.0, q: [&state.q; 2], v: [&state.v; 2] }
+    }
+
+    /// The part of a step in which time `t` (s) is, the share `s` of the whole.
+    fn of(step: &StepReport<'a, 2>, t: f64, s: f64) -> Option<Self> {
+        let mut lasting = step.phases().filter(|phase| phase.end > phase.start);
+        let phase = lasting.find(|phase| phase.end > t)?;
+        let h = phase.end - phase.start;
+        let whole = h == step.t_end - step.t_start;
+        let within = if whole { s } else { (t - phase.start) / h };
+        Some(Self { s: within, h, q: phase.q, v: phase.v })
     }
 }
 
@@ -188,7 +217,7 @@ const ROUNDING: f64 = 1e-6;
 impl Observer<2> for Sampler<'_> {
     fn start(&mut self, _: &Model<2>, state: &State) -> Result<(), ObserverError> {
         self.keep(state);
-        self.take(1.0, state);
+        self.take(1.0, &Piece::end(state), state);
         Ok(())
     }
 
@@ -201,13 +230,17 @@ impl Observer<2> for Sampler<'_> {
         for contact in step.contacts() {
             self.before.now[contact.id.pair() as usize] += contact.p[0];
         }
-        let h = state.t - self.before.t;
+        let (start, h) = (self.before.t, state.t - self.before.t);
         while self.motion.samples < self.sampling.count {
             let s = (self.sampling.time(self.motion.samples) - self.before.t) / h;
             if s > 1.0 + ROUNDING {
                 break;
             }
-            self.take(if s > 1.0 - ROUNDING { 1.0 } else { s }, state);
+            if s > 1.0 - ROUNDING {
+                self.take(1.0, &Piece::end(state), state);
+            } else {
+                self.take(s, &Piece::of(step, start + s * h, s).unwrap_or(Piece::end(state)), state);
+            }
         }
         self.keep(state);
         let cancelled = state.step.is_multiple_of(256) && self.cancel.load(Ordering::Relaxed);

@@ -1,5 +1,6 @@
 //! Subsystems with prescribed velocities, by themselves: places, rows, masses, inverses belong together.
 
+use crate::scenes::all_schemes;
 use nalgebra::Vector2;
 use std::sync::Arc;
 use teeter_beam::{Beam, BeamSpec, Damping, Section, Support};
@@ -207,16 +208,6 @@ fn loads_on_blocks_and_beams_follow_their_signal() {
     assert_eq!(f, pattern);
 }
 
-fn schemes() -> Vec<Box<dyn Scheme<2>>> {
-    let mut schemes: Vec<Box<dyn Scheme<2>>> = Vec::new();
-    for theta in [0.5, 0.75, 1.0] {
-        let settings = MoreauJeanSettings { theta, ..MoreauJeanSettings::default() };
-        schemes.push(Box::new(MoreauJean::new(settings).unwrap()));
-    }
-    schemes.push(Box::new(MoreauJeanClosed::new(MoreauJeanClosedSettings::default()).unwrap()));
-    schemes
-}
-
 /// The work of drives is what closes the account, for every θ: of ground that shakes and turns under a rocking block, of a beam's
 /// supports, of a block that is moved while another one's ground stands still.
 #[test]
@@ -250,7 +241,7 @@ fn the_energy_account_holds_the_work_of_the_drives() {
             let pairs = vec![teeter_detect::PointPair { pair: 0, law, points, body, surface, kinematics }];
             parts.build(Box::new(teeter_detect::PointDetector::new(pairs))).unwrap()
         };
-        for mut scheme in schemes() {
+        for mut scheme in all_schemes(&[0.75, 1.0]) {
             let mut q = vec![0.0, 0.0675 * 0.05_f64.cos() + 0.015 * 0.05_f64.sin(), 0.05];
             q.resize(model.size().q, 0.0);
             let mut state = State::new(&model, &q, &vec![0.0; model.size().v], 1e-4).unwrap();
@@ -290,7 +281,7 @@ fn a_block_on_rails_goes_through_the_ground() {
             let (points, kinematics) = (shape.corners().to_vec(), Kinematics::Deformed);
             let pairs = vec![teeter_detect::PointPair { pair: 0, law, points, body, surface, kinematics }];
             let model = parts.build(Box::new(teeter_detect::PointDetector::new(pairs))).unwrap();
-            for mut scheme in schemes() {
+            for mut scheme in all_schemes(&[0.75, 1.0]) {
                 let mut q = vec![0.0, 0.0675, 0.0];
                 q.resize(model.size().q, 0.0);
                 let mut state = State::new(&model, &q, &vec![0.0; model.size().v], 1e-3).unwrap();

@@ -2,6 +2,7 @@
 //! every kind of signal, over random steps with jumps and kinks in them; and drives lead where
 //! their signals do.
 
+use crate::scenes::all_schemes;
 use nalgebra::Vector2;
 use std::sync::Arc;
 use teeter_beam::{Beam, BeamSpec, Load, ModalBasis, MovingLoad, Section, Support};
@@ -131,16 +132,6 @@ fn means_of_signals_rates_integrals_and_moments_are_exact_over_any_step() {
     }
 }
 
-fn schemes() -> Vec<Box<dyn Scheme<2>>> {
-    let mut schemes: Vec<Box<dyn Scheme<2>>> = Vec::new();
-    for theta in [0.5, 0.6, 1.0] {
-        let settings = MoreauJeanSettings { theta, ..MoreauJeanSettings::default() };
-        schemes.push(Box::new(MoreauJean::new(settings).unwrap()));
-    }
-    schemes.push(Box::new(MoreauJeanClosed::new(MoreauJeanClosedSettings::default()).unwrap()));
-    schemes
-}
-
 /// A block of 1 kg in the air, without weight.
 fn block() -> (MassProperties, Blocks) {
     let shape = Rectangle::new(0.1, 0.1).unwrap();
@@ -175,7 +166,7 @@ fn a_block_gets_the_impulse_of_any_signal_whatever_the_step() {
             let (mass, blocks) = block();
             let load = BlockLoad { block: 0, force: Vector2::new(2.0, -1.0), couple: 0.3, signal: Arc::clone(&signal) };
             let model = alone(Box::new(blocks.with_load(load).unwrap()));
-            for mut scheme in schemes() {
+            for mut scheme in all_schemes(&[0.6, 1.0]) {
                 let state = state_after(&model, scheme.as_mut(), h, steps as u64);
                 for (k, part) in [2.0, -1.0, 0.3].into_iter().enumerate() {
                     let found = mass.diagonal()[k] * state.v[k];
@@ -204,7 +195,7 @@ fn pulses_and_rows_within_a_step_move_what_they_act_on() {
         let force = Vector2::new(force, 0.0);
         let load = BlockLoad { block: 0, force, couple: 0.0, signal };
         let model = alone(Box::new(blocks.with_load(load).unwrap()));
-        for mut scheme in schemes() {
+        for mut scheme in all_schemes(&[0.6, 1.0]) {
             let state = state_after(&model, scheme.as_mut(), h, (0.5 / h).round() as u64);
             assert!((state.v[0] * mass.diagonal()[0] / impulse - 1.0).abs() < 1e-13, "{}", state.v[0]);
         }
@@ -307,7 +298,7 @@ fn drives_lead_where_their_signals_do() {
     let shake: Arc<dyn Signal> = Arc::new(Formula::harmonic(0.0, 1000.0, 0.0).unwrap());
     let motion = || Motion::still().with(Given::Acceleration, 50.0, Arc::clone(&shake));
     let ground = alone(Box::new(Ground::moving(0.0, [motion(), Motion::still(), Motion::still()])));
-    for mut scheme in schemes() {
+    for mut scheme in all_schemes(&[0.6, 1.0]) {
         let (mut state, zero) = (state_after(&ground, scheme.as_mut(), 1e-3, 499), vec![0.0; 3]);
         let drift = 50.0 / omega * 0.5;
         let before = state.v[0];

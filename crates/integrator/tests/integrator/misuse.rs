@@ -1,6 +1,6 @@
 //! What doesn't belong together is refused: another model's workspace or scheme, wiring that can't work, a law that nobody handles.
 
-use crate::scenes::{PAPER_BLOCK, beam_body, workspace};
+use crate::scenes::{PAPER_BLOCK, all_schemes, beam_body, workspace};
 use nalgebra::Vector2;
 use std::sync::Arc;
 use teeter_beam::{Beam, BeamSpec, Section};
@@ -14,13 +14,6 @@ use teeter_rigid::{MassProperties, Rectangle};
 fn on_ground(law: PairLaw) -> Model<2> {
     let ground = Box::new(Ground::flat(0.0));
     crate::scenes::model(&PAPER_BLOCK, Vector2::new(0.0, -9.81), law, Kinematics::Deformed, ground)
-}
-
-fn schemes() -> [Box<dyn Scheme<2>>; 2] {
-    [
-        Box::new(MoreauJean::new(MoreauJeanSettings::default()).unwrap()),
-        Box::new(MoreauJeanClosed::new(MoreauJeanClosedSettings::default()).unwrap()),
-    ]
 }
 
 fn start(model: &Model<2>) -> State {
@@ -41,7 +34,7 @@ fn beam_of(height: f64) -> Model<2> {
 fn a_workspace_of_another_model_of_the_same_sizes_is_refused() {
     // A beam twice as thick: the same sizes, other numbers.
     let (one, other) = (beam_of(0.0015), beam_of(0.003));
-    for mut scheme in schemes() {
+    for mut scheme in all_schemes(&[]) {
         let (mut state, mut work) = (start(&one), workspace(&one));
         scheme.start(&one, &mut state, &mut work).unwrap();
         scheme.advance(&one, &mut state, f64::INFINITY, &mut work).unwrap();
@@ -188,7 +181,7 @@ fn candidates_of_pairs_and_bodies_that_are_not_there_end_the_step() {
         parts.add(Ground::flat(0.0));
         parts.law(PairLaw::new(0.5, 0.0));
         let model = parts.build(Box::new(Fixed(candidate))).unwrap();
-        for mut scheme in schemes() {
+        for mut scheme in all_schemes(&[]) {
             let mut state = State::new(&model, &[0.0; 3], &[0.0, -1.0, 0.0], 1e-3).unwrap();
             let mut work = workspace(&model);
             let error = (0..3)

@@ -50,3 +50,12 @@ pub(crate) fn beam_body(beam: &Arc<Beam>) -> BeamBody {
 pub(crate) fn workspace(model: &Model<2>) -> Workspace<2> {
     Workspace::new(model, Box::new(teeter_solvers::Auto::new()), SolverSettings::default())
 }
+
+/// All schemes with their default settings, and the θ scheme with others.
+pub(crate) fn all_schemes(thetas: &[f64]) -> Vec<Box<dyn Scheme<2>>> {
+    let by_theta = thetas.iter().map(|&theta| -> Box<dyn Scheme<2>> {
+        let settings = MoreauJeanSettings { theta, ..MoreauJeanSettings::default() };
+        Box::new(MoreauJean::new(settings).unwrap())
+    });
+    schemes().iter().map(|entry| entry.make().unwrap()).chain(by_theta).collect()
+}

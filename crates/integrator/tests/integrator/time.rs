@@ -1,18 +1,11 @@
 //! Time is right for any sequence of step sizes.
 
-use crate::scenes::{PAPER_BLOCK, workspace};
+use crate::scenes::{PAPER_BLOCK, all_schemes, workspace};
 use nalgebra::Vector2;
 use proptest::prelude::*;
 use teeter_detect::{Kinematics, PointDetector};
 use teeter_integrator::*;
 use teeter_rigid::{MassProperties, Rectangle};
-
-fn schemes() -> [Box<dyn Scheme<2>>; 2] {
-    [
-        Box::new(MoreauJean::new(MoreauJeanSettings::default()).unwrap()),
-        Box::new(MoreauJeanClosed::new(MoreauJeanClosedSettings::default()).unwrap()),
-    ]
-}
 
 fn sine(given: Given, amplitude: f64) -> Motion {
     Motion::still().with(given, amplitude, std::sync::Arc::new(Formula::harmonic(0.0, 7.0, 0.3).unwrap()))
@@ -31,7 +24,7 @@ fn driven() -> (Model<2>, Motion) {
 
 #[test]
 fn a_changed_step_size_goes_on_from_the_time_that_it_is() {
-    for mut scheme in schemes() {
+    for mut scheme in all_schemes(&[]) {
         let law = PairLaw::new(0.5, 0.0);
         let ground = Box::new(Ground::flat(0.0));
         let model = crate::scenes::model(&PAPER_BLOCK, Vector2::new(0.0, -9.81), law, Kinematics::Deformed, ground);
@@ -59,7 +52,7 @@ proptest! {
     fn time_and_what_is_prescribed_are_right_for_any_sequence_of_steps(
         sizes in prop::collection::vec((1e-6_f64..1e-2, 1_usize..5), 1..12)
     ) {
-        for mut scheme in schemes() {
+        for mut scheme in all_schemes(&[]) {
             let (model, motion) = driven();
             let mut state = State::new(&model, &[0.0; 3], &[0.0; 3], sizes[0].0).unwrap();
             let mut work = workspace(&model);
@@ -85,7 +78,7 @@ proptest! {
     #[test]
     fn a_fixed_step_from_zero_is_counted(dt in 1e-7_f64..1e-1, steps in 1_u64..200) {
         let (model, _) = driven();
-        for mut scheme in schemes() {
+        for mut scheme in all_schemes(&[]) {
             let mut state = State::new(&model, &[0.0; 3], &[0.0; 3], dt).unwrap();
             let mut work = workspace(&model);
             for k in 1..=steps {

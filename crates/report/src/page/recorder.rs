@@ -213,12 +213,12 @@ impl PageRecorder {
             let (pair, point) = (contact.id.pair() as usize, contact.id.point() as usize);
             curves.add(CORNERS * pair + point, [contact.p[0], contact.p[1]], contact.state());
         }
-        closings.enter(model, step, state, &layout.openings, |contact, closing| {
+        closings.enter(model, step, state, &layout.openings, |t, contact, closing| {
             let (pair, point) = (contact.id.pair() as usize, contact.id.point() as usize);
             let Some(drawn) = scenery.contacts.get(pair) else { return };
             if closing == Closing::Impact && impacts.len() < MARKED_IMPACTS {
                 impacts.push(ImpactMark {
-                    t: step.t_end,
+                    t,
                     contact: pair,
                     block: drawn.block,
                     point,

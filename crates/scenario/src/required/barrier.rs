@@ -7,7 +7,7 @@
 use super::beam_bounds::BeamBounds;
 use super::reach::{By, ROUNDING, Reach};
 use super::{Limits, Pairs, Removed, Start};
-use crate::scene::{ContactScene, SchemeName, Support};
+use crate::scene::{ContactScene, Support};
 use teeter_beam::{Axial, Beam, MatrixWeights};
 use teeter_integrator::ImpactLaw;
 
@@ -130,7 +130,7 @@ impl Barrier {
         let barrier = |k: usize| least + weight(k) * (radius(k) - half_height(k));
         let room = (0..on.len()).map(barrier).fold(f64::INFINITY, f64::min) - energy;
         let scale = all(&|k| weight(k) * radius(k));
-        let needed = if scene.time.scheme == SchemeName::MoreauJeanClosed { ROUNDING } else { LEAST_ROOM };
+        let needed = if scene.time.scheme.keeps_energy() { ROUNDING } else { LEAST_ROOM };
         // Heights count from the world's origin: where that is far off, so much of the energy is rounding.
         let lost = ROUNDING * 1e-3 * all(&|k| weight(k) * on[k].y.abs());
         if !(room > needed * scale + lost) {

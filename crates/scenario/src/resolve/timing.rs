@@ -23,10 +23,11 @@ impl Resolver<'_, '_> {
             self.stable(theta, beams);
         }
         let scheme = self.choice::<SchemeName>("time.scheme");
-        if let (Some(SchemeName::MoreauJeanClosed), Some(theta)) = (scheme, theta)
+        if let (Some(scheme), Some(theta)) = (scheme, theta)
+            && scheme.is_trapezoidal()
             && theta != 0.5
         {
-            let rule = "moreau-jean-closed is a scheme of theta = 0.5: another one is refused";
+            let rule = format!("{} is a scheme of theta = 0.5: another one is refused", scheme.word());
             self.error("time.theta", rule, "leave theta out, or take scheme = \"moreau-jean\"");
         }
         let held = beams.iter().flatten().find(|beam| beam.spec.axial == teeter_beam::Axial::Held);

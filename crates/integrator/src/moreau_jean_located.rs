@@ -1,0 +1,223 @@
+//! The Moreau–Jean step with located impacts: `moreau-jean-located` (`docs/schemes.md`).
+
+mod impact;
+mod locate;
+
+use crate::closed_step::{ClosedStep, THETA};
+use crate::moreau_jean_closed::deepest;
+use crate::theta_step::weights;
+use crate::{
+    ContactStage, Keep, Model, MoreauJeanClosedSettings, STEP_ROUNDING, Scheme, SettingError, State, StepError,
+    StepReport, StepSpan, Weights, Workspace,
+};
+use locate::Hit;
+use teeter_contact::Outcome;
+use teeter_detect::{Candidates, ContactId};
+
+/// The settings of [`MoreauJeanLocated`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MoreauJeanLocatedSettings {
+    /// Impacts are located to a gap of this, m, or to rounding where that is more.
+    pub gap_tolerance: f64,
+}
+
+impl Default for MoreauJeanLocatedSettings {
+    fn default() -> Self {
+        Self { gap_tolerance: 1e-12 }
+    }
+}
+
+/// Impacts that are located in a step. What comes after them in the same step is taken as a fixed step takes it: an open contact
+/// closes where the rest of the step would end in its surface.
+const LOCATED: usize = 8;
+
+/// W at an instant: M⁻¹.
+const MASSES: Weights = Weights { mass: 1.0, damping: 0.0, stiffness: 0.0 };
+
+/// The step of [`MoreauJeanClosed`](crate::MoreauJeanClosed), divided where a contact closes: of second order through impacts.
+///
+/// A step in which no open contact would end in its surface is that of the closed scheme. Otherwise the time at which the first one
+/// touches is located; the step up to there is a step of its own, with matrices of its own; then places stand still while velocities jump,
+///
+/// ```text
+/// v⁺ = v⁻ + M⁻¹ Jᵀ p,   0 ≤ U_n⁺ + s_n ⊥ p_n ≥ 0,   s_n = e U_n⁻,   Coulomb on U_t⁺,   H = J M⁻¹ Jᵀ
+/// ```
+///
+/// with all contacts that touch; and the rest of the step follows in the same way. e counts for a contact that was open, where e |U_n⁻| > a h with a
+/// its free normal acceleration: this ends the bounces of a contact that comes to rest. Restitution by Newton's law is made smaller where
+/// it would make energy; then no impact does.
+///
+/// Contacts with duration have no impact: only the time at which they close is located.
+#[derive(Debug)]
+pub struct MoreauJeanLocated<const D: usize> {
+    settings: MoreauJeanLocatedSettings,
+    step: ClosedStep<D>,
+    /// The state at the start of the part of the step that is taken.
+    from: Option<State>,
+    /// The contacts that touch at an impact.
+    impact: ContactStage<D>,
+    /// Open contacts that the step would end inside of.
+    hits: Vec<Hit>,
+    ids: Vec<ContactId>,
+    near: Candidates<D>,
+    /// Rows of one contact.
+    one: ContactStage<D>,
+    /// What forces do to the velocities in a whole step.
+    by_forces: Vec<f64>,
+    /// v⁺.
+    v: Vec<f64>,
+    /// Which contacts of the last phase are closed after it.
+    stays: Vec<bool>,
+}
+
+impl<const D: usize> MoreauJeanLocated<D> {
+    /// The name by which users choose it.
+    pub const NAME: &'static str = "moreau-jean-located";
+
+    /// A scheme with these settings.
+    ///
+    /// # Errors
+    /// If a setting is out of its range.
+    pub fn new(settings: MoreauJeanLocatedSettings) -> Result<Self, SettingError> {
+        let gap_tolerance = settings.gap_tolerance;
+        MoreauJeanClosedSettings { gap_tolerance }.check()?;
+        Ok(Self {
+            settings,
+            step: ClosedStep::new(gap_tolerance),
+            from: None,
+            impact: ContactStage::new(),
+            hits: Vec::new(),
+            ids: Vec::new(),
+            near: Vec::new(),
+            one: ContactStage::new(),
+            by_forces: Vec::new(),
+            v: Vec::new(),
+            stays: Vec::new(),
+        })
+    }
+
+    /// The settings.
+    #[must_use]
+    pub fn settings(&self) -> &MoreauJeanLocatedSettings {
+        &self.settings
+    }
+}
+
+impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
+    fn name(&self) -> &'static str {
+        Self::NAME
+    }
+
+    fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {
+        let contacts = model.detector().capacity();
+        self.step.start(model, state, work)?;
+        self.impact.reserve(model);
+        self.one.reserve(model);
+        self.hits.reserve(contacts);
+        self.ids.reserve(contacts);
+        self.near.reserve(contacts);
+        self.stays.reserve(contacts);
+        self.by_forces.resize(model.size().v, 0.0);
+        self.v.resize(model.size().v, 0.0);
+        let mut from = state.clone();
+        from.warm.reserve(contacts, D);
+        from.memory.reserve(contacts);
+        self.from = Some(from);
+        work.reserve_phases(model, 2 * LOCATED + 1);
+        // A part of a step will need a factor of its own, and an impact that of the masses.
+        work.factors(model, MASSES, &state.q, Keep::Pinned)?;
+        work.factors(model, weights(0.5 * state.dt, THETA), &state.q, Keep::Once)?;
+        work.factors(model, weights(state.dt, THETA), &state.q, Keep::Pinned)
+    }
+
+    fn advance<'w>(
+        &mut self,
+        model: &Model<D>,
+        state: &mut State,
+        until: f64,
+        work: &'w mut Workspace<D>,
+    ) -> Result<StepReport<'w, D>, StepError> {
+        let span = state.next_step(until);
+        self.step.check(model, state, work)?;
+        self.by_forces.resize(model.size().v, 0.0);
+        self.v.resize(model.size().v, 0.0);
+        work.begin(model, state, span)?;
+        let mut from = self.from.take().unwrap_or_else(|| state.clone());
+        from.copy_from(state);
+        let penetration = self.take_parts(model, &mut from, &span, work);
+        self.from = Some(from);
+        let (penetration, stays) = (penetration?, &self.stays);
+        work.finish(model, state, Some(penetration), |i, _| stays[i])
+    }
+}
+
+impl<const D: usize> MoreauJeanLocated<D> {
+    /// Takes the step from impact to impact, each part of it from `from`, which moves on; returns the penetration at its end, m.
+    fn take_parts(
+        &mut self,
+        model: &Model<D>,
+        from: &mut State,
+        span: &StepSpan,
+        work: &mut Workspace<D>,
+    ) -> Result<f64, StepError> {
+        let mut left = span.h;
+        for impacts in 0.. {
+            let rest = StepSpan { start: from.t, end: span.end, h: left };
+            self.step.begin(model, from, &rest, work)?;
+            if impacts == 0 {
+                for ((by_forces, free), v0) in self.by_forces.iter_mut().zip(&self.step.v_free).zip(&from.v) {
+                    *by_forces = free - v0;
+                }
+            }
+            let (outcome, found) = if impacts < LOCATED {
+                self.locate(model, from, &rest, work)?
+            } else {
+                (self.step.settle(model, from, &rest, work)?, None)
+            };
+            let Some(tau) = found else {
+                let penetration = deepest(work);
+                self.take_part(model, from, &rest, outcome, work)?;
+                return Ok(penetration);
+            };
+            // What rounding leaves of a step is nothing.
+            let last = left - tau <= STEP_ROUNDING * span.h;
+            let end = if last { span.end } else { from.t + tau };
+            if tau > 0.0 {
+                self.take_part(model, from, &StepSpan { start: from.t, end, h: tau }, outcome, work)?;
+            }
+            self.strike(model, from, end, work)?;
+            left -= tau;
+            if last {
+                work.detect(model, &from.q, 0.0)?;
+                return Ok(deepest(work));
+            }
+        }
+        Ok(0.0)
+    }
+
+    /// Ends the part of the step that was attempted, and moves on to its end.
+    fn take_part(
+        &mut self,
+        model: &Model<D>,
+        from: &mut State,
+        part: &StepSpan,
+        outcome: Option<Outcome>,
+        work: &mut Workspace<D>,
+    ) -> Result<(), StepError> {
+        self.step.find_what_stays();
+        self.stays.clone_from(&self.step.stays);
+        from.warm.clear();
+        from.memory.forget_contacts();
+        for (contact, stays) in self.step.stage.contacts().iter().zip(&self.stays) {
+            if *stays {
+                from.warm.push(contact.id, &contact.p);
+                from.memory.remember(contact);
+            }
+        }
+        self.step.end_phase(model, from, part, outcome, work)?;
+        from.q.copy_from_slice(&self.step.step.q_at);
+        from.v.copy_from_slice(&self.step.step.v_end);
+        from.t = part.end;
+        Ok(())
+    }
+}

@@ -1,0 +1,100 @@
+//! An impact: places stand still, velocities jump.
+
+use super::{MASSES, MoreauJeanLocated};
+use crate::closed_step::{leaves, restitute};
+use crate::laws::is_impact;
+use crate::{
+    ContactError, Keep, Mismatch, Model, Over, PhaseEnd, PhaseKind, Responses, Rule, State, StepError, Vector,
+    Workspace,
+};
+use teeter_detect::Candidate;
+
+/// Contacts with a gap of up to so many tolerances touch.
+const TOUCHING: f64 = 10.0;
+
+impl<const D: usize> MoreauJeanLocated<D> {
+    /// Lets the contacts that touch at `from` strike, at time `end` (s): its velocities and what is
+    /// closed change.
+    pub(super) fn strike(
+        &mut self,
+        model: &Model<D>,
+        from: &mut State,
+        end: f64,
+        work: &mut Workspace<D>,
+    ) -> Result<(), StepError> {
+        self.find_what_touches(model, from, work)?;
+        if self.impact.is_empty() {
+            return Ok(());
+        }
+        let t = from.t;
+        let problem = |source| StepError::Problem { t, source };
+        self.pose(model, from).map_err(problem)?;
+        let (over, responses) = (Over::Instant, Responses::Of(MASSES));
+        work.factors(model, MASSES, &from.q, Keep::Pinned)?;
+        self.v.copy_from_slice(&from.v);
+        let outcome = self.impact.solve(model, work, &responses, over).map_err(problem)?;
+        self.impact.respond(model, work, &responses, &mut self.v).map_err(problem)?;
+        self.impact.complete(&self.v)?;
+        self.stays.clear();
+        from.memory.forget_rigid();
+        for (i, contact) in self.impact.contacts().iter().enumerate() {
+            let speed = || self.impact.speed(i, &self.v).max(self.impact.speed(i, &from.v));
+            let stays = (contact.p[0] > 0.0 || contact.persisting) && !leaves(contact.u_after[0], speed);
+            self.stays.push(stays);
+            if stays {
+                from.memory.insert(contact);
+            }
+        }
+        let energy = self.step.step.work_of_impact(model, from, work, &self.impact, &self.v)?;
+        let phase = PhaseEnd::new(PhaseKind::Impact, end, &from.q, &self.v).with_energy(energy).with_outcome(outcome);
+        work.phase(model, &phase, Some(&mut self.impact))?;
+        from.v.copy_from_slice(&self.v);
+        from.t = end;
+        Ok(())
+    }
+
+    /// Takes the contacts that touch into the stage: those that are closed, and those that are
+    /// near.
+    fn find_what_touches(&mut self, model: &Model<D>, from: &State, work: &mut Workspace<D>) -> Result<(), Mismatch> {
+        work.detect(model, &from.q, TOUCHING * self.tolerance(&from.q))?;
+        work.locate(model, &from.q, from.memory.active(), &mut self.near)?;
+        let Self { impact, near, .. } = self;
+        impact.clear();
+        let mut add = |candidate: &Candidate<D>| -> Result<(), Mismatch> {
+            if model.law(candidate.law)?.impact.spring().is_none() {
+                impact.add(model, &from.q, candidate, &from.warm, &from.memory)?;
+            }
+            Ok(())
+        };
+        let mut closed = near.iter().peekable();
+        for candidate in &work.candidates {
+            while let Some(other) = closed.next_if(|other| other.id < candidate.id) {
+                add(other)?;
+            }
+            closed.next_if(|other| other.id == candidate.id);
+            add(candidate)?;
+        }
+        closed.try_for_each(add)
+    }
+
+    /// Gives each contact its law.
+    fn pose(&mut self, model: &Model<D>, from: &State) -> Result<(), ContactError> {
+        let mut strikes = false;
+        for i in 0..self.impact.len() {
+            let contact = self.impact.contacts()[i];
+            let law = model.law(contact.law)?;
+            let u = self.impact.velocity(i, &from.v)?;
+            let u_free = u + self.impact.velocity(i, &self.by_forces)?;
+            let mut shift = Vector::zeros();
+            let rule = restitute(contact.persisting, &law, &u, &u_free, &mut shift);
+            strikes |= !contact.persisting && is_impact(law.restitution, &u, &u_free);
+            self.impact.set(i, u, u, shift, rule)?;
+        }
+        // Poisson's law gives back of any blow: where nothing strikes, there is none.
+        for i in (0..self.impact.len()).filter(|_| !strikes) {
+            let u = self.impact.velocity(i, &from.v)?;
+            self.impact.set(i, u, u, Vector::zeros(), Rule::Shifted)?;
+        }
+        Ok(())
+    }
+}
