@@ -3,6 +3,7 @@
 
 mod beams;
 mod driven;
+mod located;
 mod many;
 mod modes;
 mod properties;

@@ -7,6 +7,7 @@ use std::f64::consts::PI;
 pub(crate) enum Scheme {
     MoreauJean { theta: f64, gamma: f64 },
     Closed,
+    Located,
 }
 
 /// What a block can stand on or fall on.
@@ -337,6 +338,7 @@ impl Drawn {
         out.quantity("gap_tolerance", self.gap_tolerance, "m");
         match self.scheme {
             Scheme::Closed => out.word("scheme", "moreau-jean-closed"),
+            Scheme::Located => out.word("scheme", "moreau-jean-located"),
             Scheme::MoreauJean { theta, gamma } => {
                 out.word("scheme", "moreau-jean");
                 out.number("theta", theta);

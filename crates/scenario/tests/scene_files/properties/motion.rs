@@ -204,7 +204,9 @@ fn put_in(drawn: &Drawn, motion: &Motion) -> f64 {
     // known to the root of that.
     let scaled = |law: &Law| match law {
         Law::Instant { word: "energetic", normal, .. } => *normal > 0.0,
-        Law::Instant { word: "newton", normal, .. } => *normal > 0.0 && drawn.scheme == Scheme::Closed,
+        Law::Instant { word: "newton", normal, .. } => {
+            *normal > 0.0 && matches!(drawn.scheme, Scheme::Closed | Scheme::Located)
+        }
         _ => false,
     };
     if drawn.contacts.iter().any(|contact| scaled(&contact.law)) { solved.max(1e-7) } else { solved }

@@ -199,6 +199,7 @@ pub(crate) fn scene() -> impl Strategy<Value = Drawn> {
     let scheme = prop_oneof![
         (or(0.5, 0.5..1.0), or(0.5, 0.0..1.0)).prop_map(|(theta, gamma)| Scheme::MoreauJean { theta, gamma }),
         Just(Scheme::Closed),
+        Just(Scheme::Located),
     ];
     let world = (
         select(vec![Below::Ground, Below::Beam, Below::BeamOverGround, Below::TwoBeams]),

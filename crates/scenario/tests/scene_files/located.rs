@@ -1,0 +1,174 @@
+//! `moreau-jean-located` against exact motions: impacts at their times, second order through them, bounces that end.
+
+use std::ops::ControlFlow;
+use teeter_integrator::{Ended, Model, Observer, ObserverError, PhaseKind, State, StepReport};
+use teeter_scenario::simulation::Simulation;
+
+/// The impacts of a run, and how its steps were divided.
+#[derive(Default)]
+struct Seen {
+    /// Time, normal velocity before and after of each contact that came in at more than 1 µm/s.
+    impacts: Vec<(f64, f64, f64)>,
+    most_phases: usize,
+}
+
+impl Observer<2> for Seen {
+    fn observe(&mut self, _: &Model<2>, step: &StepReport<'_, 2>, _: &State) -> Result<ControlFlow<()>, ObserverError> {
+        self.most_phases = self.most_phases.max(step.phases().count());
+        for phase in step.phases().filter(|phase| phase.kind == PhaseKind::Impact) {
+            let came = phase.contacts.iter().filter(|contact| contact.u_before[0] < -1e-6 && contact.p[0] > 0.0);
+            self.impacts.extend(came.map(|contact| (phase.end, contact.u_before[0], contact.u_after[0])));
+        }
+        Ok(ControlFlow::Continue(()))
+    }
+}
+
+const G: f64 = 9.81;
+
+fn run(scene: &str, step: &str) -> (Simulation, Seen) {
+    let sets = [("time.scheme", "moreau-jean-located"), ("time.step", step)];
+    let sets: Vec<(String, String)> =
+        sets.into_iter().map(|(key, value)| (key.to_owned(), format!("\"{value}\""))).collect();
+    let resolved = teeter_scenario::load(scene.as_bytes(), "located", "located", &sets).unwrap();
+    let mut simulation = Simulation::new(&resolved.scene).unwrap();
+    let mut seen = Seen::default();
+    assert_eq!(simulation.run(&mut [&mut seen]).unwrap(), Ended::Complete);
+    let ledger = &simulation.state.ledger;
+    assert!(ledger.relative_residual() < 1e-13, "{:e} of the energy unexplained", ledger.relative_residual());
+    assert!(ledger.positive_contact_work.largest <= 1e-15 * ledger.scale, "{:?}", ledger.positive_contact_work);
+    assert_eq!(simulation.state.tally.unconverged_steps, 0);
+    (simulation, seen)
+}
+
+fn block(more: &str, end: &str, contact: &str) -> String {
+    format!(
+        "[time]\nend = '{end}'\nstep = '1 ms'\n[ground]\n[material.m]\ndensity = '2700 kg/m^3'\n\
+         [block.b]\nmaterial = 'm'\nwidth = '3 cm'\nheight = '13.5 cm'\ndepth = '3 cm'\n{more}\n\
+         [contact.c]\nbetween = ['b', 'ground']\n{contact}\n"
+    )
+}
+
+fn rocking() -> String {
+    block("on = 'ground'\nat = '0 cm'\ntilt = '5 deg'", "0.9 s", "friction = 0.5")
+}
+
+/// Housner's block: the impacts in closed form.
+#[test]
+fn a_rocking_block_strikes_at_its_times_in_steps_of_any_size() {
+    let exact = [0.106510, 0.292488, 0.457537, 0.605581, 0.739365, 0.860926];
+    // The times are known to 1e-6 s.
+    for (step, off) in [("2 ms", 8e-5), ("1 ms", 2e-5), ("100 us", 1e-6)] {
+        let (_, seen) = run(&rocking(), step);
+        assert_eq!(seen.impacts.len(), exact.len(), "{step}");
+        for (impact, exact) in seen.impacts.iter().zip(exact) {
+            assert!((impact.0 - exact).abs() < off, "{step}: {} {exact}", impact.0);
+            assert!(impact.2.abs() < 1e-12, "{step}: no rebound, but {} m/s", impact.2);
+        }
+        assert_eq!(seen.most_phases, 3, "up to the impact, the impact, and the rest");
+    }
+}
+
+#[test]
+fn the_motion_is_of_second_order_through_its_impacts() {
+    let angle = |step: &str| run(&rocking(), step).0.state.q[2];
+    let [coarse, middle, fine] = ["2 ms", "1 ms", "500 us"].map(angle);
+    let order = ((coarse - middle) / (middle - fine)).abs().log2();
+    assert!((1.8..2.4).contains(&order), "order {order}: {coarse} {middle} {fine}");
+    let finest = angle("50 us");
+    assert!((coarse - finest).abs() < 2e-4 * 0.0873, "{coarse} {finest}");
+}
+
+/// A flat fall from height H with e: v = −√(2gH), then every eᵏ of it, at times that are known.
+#[test]
+fn a_block_that_bounces_flat_keeps_its_times_and_ends_at_rest() {
+    for law in ["newton", "poisson", "energetic"] {
+        for step in ["5 ms", "1 ms", "170 us"] {
+            let (e, fall) = (0.6_f64, 0.02);
+            let scene = block(
+                "position = ['0 m', '8.75 cm']",
+                "1 s",
+                &format!("friction = 0.3\nrestitution = {e}\nlaw = '{law}'"),
+            );
+            let (simulation, seen) = run(&scene, step);
+            let (speed, mut t) = ((2.0 * G * fall).sqrt(), (2.0 * fall / G).sqrt());
+            // Two corners at each impact.
+            for (k, pair) in seen.impacts.chunks(2).take(4).enumerate() {
+                let arrives = speed * e.powi(k as i32);
+                for &(at, before, after) in pair {
+                    assert!((at - t).abs() < 1e-9, "{law} {step}: impact {k} at {at} s, {t} s expected");
+                    assert!((before + arrives).abs() < 1e-8 * speed, "{law} {step}: {before} {arrives}");
+                    assert!((after - e * arrives).abs() < 1e-6 * speed, "{law} {step}: back with {after}");
+                }
+                t += 2.0 * e * arrives / G;
+            }
+            let state = &simulation.state;
+            assert!(seen.impacts.len() > 8 && seen.impacts.len() < 60, "{law} {step}: {}", seen.impacts.len());
+            assert!((state.q[1] - 0.0675).abs() < 1e-8 && state.v[1].abs() < 1e-10, "{law} {step}: {:?}", state.q);
+        }
+    }
+}
+
+/// The two corners of a block that falls with a tilt of 1e-3 rad come down one after the other, in one step.
+#[test]
+fn two_impacts_in_a_step_are_told_apart() {
+    let scene = block("position = ['0 m', '8 cm']\nangle = '1e-3 rad'", "0.1 s", "friction = 0.3");
+    let (_, seen) = run(&scene, "2 ms");
+    let (first, second) = (seen.impacts[0].0, seen.impacts[1].0);
+    let t = (2.0 * (0.08 - (0.0675 * 1e-3_f64.cos() + 0.015 * 1e-3_f64.sin())) / G).sqrt();
+    assert!((first - t).abs() < 1e-9, "{first} {t}");
+    assert!(second > first && second - first < 1.2e-3, "{first} {second}");
+    assert!(seen.most_phases >= 5, "{}", seen.most_phases);
+}
+
+/// A block that starts on the ground with a velocity into it strikes at once.
+#[test]
+fn a_block_that_starts_with_an_impact_has_it_at_the_start() {
+    let scene = block(
+        "position = ['0 m', '6.75 cm']\nvelocity = ['0 m/s', '-0.1 m/s']",
+        "20 ms",
+        "friction = 0.3\nrestitution = 0.5",
+    );
+    let (simulation, seen) = run(&scene, "1 ms");
+    assert!(
+        seen.impacts.iter().take(2).all(|impact| impact.0 == 0.0 && (impact.2 - 0.05).abs() < 1e-9),
+        "{:?}",
+        seen.impacts
+    );
+    let t = simulation.state.t;
+    let y = 0.0675 + 0.05 * t - 0.5 * G * t * t;
+    assert!((simulation.state.q[1] - y.max(0.0675)).abs() < 1e-9 || t > 0.1 / G, "{}", simulation.state.q[1]);
+}
+
+/// Ground that rises and falls under a block that bounces on it: work of the drive and impacts, all accounted for.
+#[test]
+fn impacts_on_moving_ground_are_in_the_account() {
+    let scene = block(
+        "on = 'ground'\nat = '0 m'\ntilt = '3 deg'",
+        "0.5 s",
+        "friction = 0.6\nrestitution = 0.3",
+    )
+    .replace("[ground]\n", "[ground]\nmotion = { acceleration = ['4 m/s^2', '3 m/s^2'], signal = 's' }\n[signal.s]\nshape = 'harmonic'\nfrequency = '9 Hz'\n");
+    let sets = [("time.scheme", "\"moreau-jean-located\"")];
+    let sets: Vec<(String, String)> = sets.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
+    let resolved = teeter_scenario::load(scene.as_bytes(), "s", "s", &sets).unwrap();
+    let mut simulation = Simulation::new(&resolved.scene).unwrap();
+    let mut seen = Seen::default();
+    let _ = simulation.run(&mut [&mut seen]).unwrap();
+    assert!(seen.impacts.len() > 5, "{}", seen.impacts.len());
+    assert!(simulation.state.ledger.relative_residual() < 1e-13, "{:e}", simulation.state.ledger.relative_residual());
+    let off = |step: &str| {
+        let sets: Vec<(String, String)> =
+            [("time.scheme", "moreau-jean-located"), ("time.step", step), ("time.end", "0.15 s")]
+                .iter()
+                .map(|(k, v)| ((*k).to_owned(), format!("\"{v}\"")))
+                .collect();
+        let scene = scene.replace("restitution = 0.3", "restitution = 0");
+        let resolved = teeter_scenario::load(scene.as_bytes(), "s", "s", &sets).unwrap();
+        let mut simulation = Simulation::new(&resolved.scene).unwrap();
+        let _ = simulation.run(&mut []).unwrap();
+        simulation.state.q[2]
+    };
+    let [coarse, middle, fine] = ["1 ms", "500 us", "250 us"].map(off);
+    let order = ((coarse - middle) / (middle - fine)).abs().log2();
+    assert!(order > 1.6, "order {order}: {coarse} {middle} {fine}");
+}
