@@ -68,7 +68,8 @@ fn files(folder: &Path) -> Vec<String> {
 #[test]
 fn a_run_writes_its_files_with_the_columns_of_the_contract() {
     let folder = folder("files");
-    let output = run(&folder, "free-rocking-on-beam", &["--set", "beam.table.probes=['9 cm']"]);
+    let sets = ["--set", "beam.table.probes=['9 cm']", "--set", "time.scheme=moreau-jean"];
+    let output = run(&folder, "free-rocking-on-beam", &sets);
     assert!(output.status.success(), "{}", stderr(&output));
     assert!(output.stdout.is_empty(), "results go to files");
     assert_eq!(files(&folder.join("out")), FILES);

@@ -57,6 +57,8 @@ pub(crate) struct ClosedStep<const D: usize> {
     pub(crate) closed: Vec<ContactId>,
     /// As many of them have been looked at in this step.
     looked_for: usize,
+    /// The part of the step that is taken: an approach that forces make within a whole step is no impact.
+    pub(crate) of_step: f64,
     /// Of each contact of the step: its shift were there no restitution.
     resting_shift: Vec<f64>,
     /// Which contacts have the shift that can't give energy.
@@ -91,6 +93,7 @@ impl<const D: usize> ClosedStep<D> {
             one: ContactStage::new(),
             closed: Vec::new(),
             looked_for: 0,
+            of_step: 1.0,
             resting_shift: Vec::new(),
             guarded: Vec::new(),
             stays: Vec::new(),
@@ -207,6 +210,7 @@ impl<const D: usize> ClosedStep<D> {
     ) -> Result<(), StepError> {
         let energy = self.step.work_of_forces(model, from, work, &self.stage, span.h, THETA);
         let phase = PhaseEnd::new(PhaseKind::Step, span.end, &self.step.q_at, &self.step.v_end)
+            .lasting(span.h)
             .with_energy(energy)
             .with_outcome(outcome);
         work.phase(model, &phase, Some(&mut self.stage))
@@ -328,7 +332,11 @@ impl<const D: usize> ClosedStep<D> {
             shift[0] = 0.0;
             SpringStep::new(&law.impact, gap, u_before[0], h, THETA).map_or(Rule::Shifted, Rule::Spring)
         } else {
-            restitute(persisting, &law, &u_before, &u_free, &mut shift)
+            let whole = match self.of_step {
+                1.0 => u_free,
+                part => u_before + (u_free - u_before) / part,
+            };
+            restitute(persisting, &law, &u_before, &whole, &mut shift)
         };
         self.stage.set(i, u_before, u_free, shift, rule)
     }

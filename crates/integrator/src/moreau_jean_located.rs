@@ -27,9 +27,8 @@ impl Default for MoreauJeanLocatedSettings {
     }
 }
 
-/// Impacts that are located in a step. What comes after them in the same step is taken as a fixed step takes it: an open contact
-/// closes where the rest of the step would end in its surface.
-const LOCATED: usize = 8;
+/// What it can't step.
+const FOLLOWERS: &str = "matrices that follow their coordinates, as of a beam held along its axis: they keep energy in steps of one size only";
 
 /// W at an instant: M⁻¹.
 const MASSES: Weights = Weights { mass: 1.0, damping: 0.0, stiffness: 0.0 };
@@ -47,7 +46,8 @@ const MASSES: Weights = Weights { mass: 1.0, damping: 0.0, stiffness: 0.0 };
 /// its free normal acceleration: this ends the bounces of a contact that comes to rest. Restitution by Newton's law is made smaller where
 /// it would make energy; then no impact does.
 ///
-/// Contacts with duration have no impact: only the time at which they close is located.
+/// Contacts with duration have no impact: only the time at which they close is located. Subsystems whose matrices follow their coordinates, such as beams held
+/// along their axis, are refused: they keep their energy in steps of one size only.
 #[derive(Debug)]
 pub struct MoreauJeanLocated<const D: usize> {
     settings: MoreauJeanLocatedSettings,
@@ -71,6 +71,11 @@ pub struct MoreauJeanLocated<const D: usize> {
 }
 
 impl<const D: usize> MoreauJeanLocated<D> {
+    /// Impacts that are located in a step. What comes after them in the same step is taken as a
+    /// fixed step takes it: an open contact closes where the rest of the step would end in its
+    /// surface.
+    pub const MOST_IMPACTS: usize = 8;
+
     /// The name by which users choose it.
     pub const NAME: &'static str = "moreau-jean-located";
 
@@ -109,6 +114,10 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
     }
 
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {
+        // Their modified energy depends on the size of the step: each change of it would take or give some.
+        if model.parts().iter().any(|part| part.traits.follows_coordinates) {
+            return Err(StepError::Unsupported { what: FOLLOWERS });
+        }
         let contacts = model.detector().capacity();
         self.step.start(model, state, work)?;
         self.impact.reserve(model);
@@ -123,7 +132,7 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         from.warm.reserve(contacts, D);
         from.memory.reserve(contacts);
         self.from = Some(from);
-        work.reserve_phases(model, 2 * LOCATED + 1);
+        work.reserve_phases(model, 2 * Self::MOST_IMPACTS + 1);
         // A part of a step will need a factor of its own, and an impact that of the masses.
         work.factors(model, MASSES, &state.q, Keep::Pinned)?;
         work.factors(model, weights(0.5 * state.dt, THETA), &state.q, Keep::Once)?;
@@ -161,15 +170,17 @@ impl<const D: usize> MoreauJeanLocated<D> {
         work: &mut Workspace<D>,
     ) -> Result<f64, StepError> {
         let mut left = span.h;
+        let mut struck = true;
         for impacts in 0.. {
             let rest = StepSpan { start: from.t, end: span.end, h: left };
             self.step.begin(model, from, &rest, work)?;
+            self.step.of_step = left / span.h;
             if impacts == 0 {
                 for ((by_forces, free), v0) in self.by_forces.iter_mut().zip(&self.step.v_free).zip(&from.v) {
                     *by_forces = free - v0;
                 }
             }
-            let (outcome, found) = if impacts < LOCATED {
+            let (outcome, found) = if impacts < Self::MOST_IMPACTS && struck {
                 self.locate(model, from, &rest, work)?
             } else {
                 (self.step.settle(model, from, &rest, work)?, None)
@@ -185,7 +196,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
             if tau > 0.0 {
                 self.take_part(model, from, &StepSpan { start: from.t, end, h: tau }, outcome, work)?;
             }
-            self.strike(model, from, end, work)?;
+            struck = self.strike(model, from, end, work)? || tau > 0.0;
             left -= tau;
             if last {
                 work.detect(model, &from.q, 0.0)?;

@@ -48,6 +48,8 @@ pub struct PhaseEnd<'a> {
     pub kind: PhaseKind,
     /// Its end, s; it begins where the one before it ended, the first at the start of the step.
     pub end: f64,
+    /// How long it took, s, without the rounding of times; `None`: the time from its start to its end.
+    pub duration: Option<f64>,
     /// Coordinates at its end.
     pub q: &'a [f64],
     /// Velocities at its end.
@@ -64,7 +66,23 @@ impl<'a> PhaseEnd<'a> {
     /// A phase that ended at time `end` (s) with these coordinates and velocities.
     #[must_use]
     pub fn new(kind: PhaseKind, end: f64, q: &'a [f64], v: &'a [f64]) -> Self {
-        Self { kind, end, q, v, balance: Balance::Weighted(0.5), energy: StepEnergy::default(), outcome: None }
+        Self {
+            kind,
+            end,
+            duration: None,
+            q,
+            v,
+            balance: Balance::Weighted(0.5),
+            energy: StepEnergy::default(),
+            outcome: None,
+        }
+    }
+
+    /// With this duration, s.
+    #[must_use]
+    pub fn lasting(mut self, duration: f64) -> Self {
+        self.duration = Some(duration);
+        self
     }
 
     /// With these means in the balance of momentum; halves of both ends without.
@@ -94,6 +112,7 @@ impl<'a> PhaseEnd<'a> {
 struct Kept<const D: usize> {
     kind: PhaseKind,
     end: f64,
+    duration: Option<f64>,
     balance: Balance,
     contacts: Vec<Contact<D>>,
     outcome: Option<Outcome>,
@@ -111,6 +130,7 @@ impl<const D: usize> Kept<D> {
         Self {
             kind: PhaseKind::Step,
             end: 0.0,
+            duration: None,
             balance: Balance::Weighted(0.5),
             contacts: Vec::new(),
             outcome: None,
@@ -187,6 +207,7 @@ impl<const D: usize> Phases<D> {
         let kept = &mut self.kept[self.used];
         self.used += 1;
         (kept.kind, kept.end, kept.balance, kept.outcome) = (phase.kind, phase.end, phase.balance, phase.outcome);
+        kept.duration = phase.duration;
         (kept.energy, kept.stored, kept.largest_slip_work) = (phase.energy, 0.0, f64::NEG_INFINITY);
         kept.now = now.unwrap_or_default();
         for (mine, other) in [(&mut kept.q, phase.q), (&mut kept.v, phase.v)] {
@@ -354,7 +375,7 @@ impl<'w, const D: usize> StepReport<'w, D> {
                 kind: own.kind,
                 start,
                 end: own.end,
-                duration: if whole { span.h } else { own.end - start },
+                duration: own.duration.unwrap_or(if whole { span.h } else { own.end - start }),
                 balance: own.balance,
                 contacts: &own.contacts,
                 outcome: own.outcome,

@@ -144,8 +144,10 @@ impl ThetaStep {
             }
             self.impulse[v.clone()].copy_from_slice(dv);
             v_end.copy_from_slice(v_start);
-            // The part θ of the mean lies before the end, so that q = θ d(t + (1 − θ)h) + (1 − θ) d(t − θh).
-            part.system.drive_mean([t_end - theta * h, t_end + (1.0 - theta) * h], v_end);
+            // The part θ of the mean lies before the end, so that q = θ d(t + (1 − θ)h) + (1 − θ) d(t − θh). Over a part of a step it is the mean over as
+            // long a time: that over a short one would jump from it, and push with what the jump takes.
+            let dt = state.dt;
+            part.system.drive_mean([t_end - theta * dt, t_end + (1.0 - theta) * dt], v_end);
             let (jump, pull) = (&mut work.scratch[..v.len()], &mut self.product[v]);
             for ((jump, v1), v0) in jump.iter_mut().zip(v_end.iter()).zip(v_start) {
                 *jump = v1 - v0;

@@ -12,7 +12,8 @@ use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::ops::ControlFlow;
 use teeter_integrator::{
-    Closing, ClosingMonitor, Contact, Model, Observer, ObserverError, RockingMonitor, State, StepReport,
+    Closing, ClosingMonitor, Contact, Model, MoreauJeanLocated, Observer, ObserverError, PhaseKind, RockingMonitor,
+    State, StepReport,
 };
 use teeter_scenario::Shapes;
 use teeter_scenario::diagnostic::Diagnostic;
@@ -50,6 +51,8 @@ pub struct Record {
     pub impact_count: u64,
     /// How often a contact was lost for a moment and found again, without having been truly open.
     pub reclosure_count: u64,
+    /// Steps in which more contacts struck than a scheme locates.
+    pub unlocated_steps: u64,
     /// Zero crossings and peaks, by block.
     pub rocking: Vec<RockingMonitor>,
     /// What beams bore, of those that are asked.
@@ -330,6 +333,8 @@ impl Observer<2> for Recorder<'_> {
         step: &StepReport<'_, 2>,
         state: &State,
     ) -> Result<ControlFlow<()>, ObserverError> {
+        let impacts = step.phases().filter(|phase| phase.kind == PhaseKind::Impact).count();
+        self.kept.record.unlocated_steps += u64::from(impacts >= MoreauJeanLocated::<2>::MOST_IMPACTS);
         self.kept.impulses.add(step.contacts());
         self.write_impacts(model, step, state)?;
         self.warn_of_unsolved(step);
@@ -347,8 +352,12 @@ impl Observer<2> for Recorder<'_> {
             monitor.enter(state.t, self.layout.tilt(block, &state.q));
         }
         self.kept.contacts_now.clear();
-        if let Some(last) = step.phases().last() {
+        // Those of its last part, and of an impact at its very end.
+        if let Some(last) = step.phases().filter(|phase| phase.kind != PhaseKind::Impact).last() {
             self.kept.contacts_now.extend_from_slice(last.contacts);
+        }
+        if let Some(last) = step.phases().last().filter(|phase| phase.kind == PhaseKind::Impact) {
+            self.kept.contacts_now.extend(last.contacts.iter().filter(|contact| contact.p[0] > 0.0));
         }
         if self.kept.schedule.takes(state.step, state.t) {
             self.write_rows(model, state)?;

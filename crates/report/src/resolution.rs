@@ -5,7 +5,7 @@
 //! miss impacts, lose contacts and find them again, or let corners go deep: each of these closes contacts with large h |u_n|.
 
 use serde::{Deserialize, Serialize};
-use teeter_integrator::{State, StepReport};
+use teeter_integrator::{Phase, State, StepReport};
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Layout;
 
@@ -117,18 +117,22 @@ impl Resolution {
 
     /// Takes a step in.
     pub(crate) fn observe(&mut self, bodies: &Bodies, layout: &Layout, step: &StepReport<'_, 2>, state: &State) {
-        let h = step.t_end - step.t_start;
-        let mut at = step.t_start;
-        let contacts = step.phases().flat_map(|phase| phase.contacts.iter().map(move |contact| (phase, contact)));
-        for (phase, contact) in contacts {
-            if phase.end > at {
-                // What presses in the last phase that takes time counts.
+        for phase in step.phases() {
+            let lasts = phase.end > phase.start;
+            if lasts {
+                // What presses in the last part of the step counts.
                 self.blocks.iter_mut().for_each(|seen| seen.pressed = 0);
-                at = phase.end;
             }
+            self.take_contacts(bodies, &phase, lasts);
+        }
+        self.take_places(bodies, layout, step.t_end - step.t_start, state);
+    }
+
+    fn take_contacts(&mut self, bodies: &Bodies, phase: &Phase<'_, 2>, lasts: bool) {
+        for contact in phase.contacts {
             let owner = bodies.owners.get(contact.id.pair() as usize);
             let Some(seen) = owner.and_then(|block| self.blocks.get_mut(*block)) else { continue };
-            seen.pressed += u32::from(contact.p[0] > 0.0);
+            seen.pressed += u32::from(contact.p[0] > 0.0 && lasts);
             seen.normal = [contact.frame[(0, 0)], contact.frame[(0, 1)]];
             if contact.persisting && contact.gap_after.is_none() && contact.p[0] > 0.0 {
                 let [least, most] = seen.gaps.unwrap_or([contact.gap; 2]);
@@ -142,6 +146,9 @@ impl Resolution {
                 seen.latest = seen.latest.max(late);
             }
         }
+    }
+
+    fn take_places(&mut self, bodies: &Bodies, layout: &Layout, h: f64, state: &State) {
         for (block, ((seen, place), width)) in
             self.blocks.iter_mut().zip(&layout.blocks).zip(&bodies.widths).enumerate()
         {

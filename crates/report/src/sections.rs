@@ -261,10 +261,10 @@ impl Sections {
     ) -> Option<String> {
         let mut told = None;
         let beams = self.watched.len().min(records.len());
-        for (phase, beam) in step.phases().flat_map(|phase| (0..beams).map(move |beam| (phase, beam))) {
+        for beam in 0..beams {
             let (watched, record) = (&mut self.watched[beam], &mut records[beam]);
             // A motion that goes beyond all bounds is about to end the run: its forces are no numbers, and no reason to end it.
-            let entered = watched.forces.enter(&phase).map(|forces| forces.is_some());
+            let entered = watched.forces.enter_step(step).map(|forces| forces.is_some());
             if entered == Ok(false) {
                 continue;
             }
@@ -273,7 +273,7 @@ impl Sections {
                 continue;
             }
             let forces = watched.forces.forces();
-            let largest = record.take(watched.forces.beam(), watched.forces.dofs(), forces, phase.end);
+            let largest = record.take(watched.forces.beam(), watched.forces.dofs(), forces, step.t_end);
             if let (Some(LargestStress { stress, x, t }), Some(strength)) = (largest, watched.yield_strength)
                 && stress > strength
             {

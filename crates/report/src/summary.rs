@@ -87,6 +87,8 @@ pub struct Summary {
     pub impact_count: u64,
     /// How often a contact was lost for a moment and found again, without having been truly open.
     pub reclosure_count: u64,
+    /// Steps in which more contacts struck than the scheme locates: the rest of such a step is taken as by a fixed step.
+    pub unlocated_steps: u64,
     /// Zero crossings of the angles.
     pub crossings: Vec<CrossingRow>,
     /// All crossings, counted; only where the list holds no more than the first of them.
@@ -325,6 +327,7 @@ impl Summary {
             impacts: record.impacts.clone(),
             impact_count: record.impact_count,
             reclosure_count: record.reclosure_count,
+            unlocated_steps: record.unlocated_steps,
             crossing_count: (counted > crossings.len() as u64).then_some(counted),
             crossings,
             peaks,

@@ -66,6 +66,12 @@ pub fn resolve(mut document: Document, stem: &str, read: &mut ReadFile<'_>) -> R
                     errors.push(document.error(path, error.to_string(), "give the key in the scene"));
                 }
             }
+            // Whoever runs it again has the scheme that was chosen, whatever is written out beside it.
+            if document.text("time.scheme") != Some(scene.time.scheme.word())
+                && let Err(error) = document.set("time.scheme", Value::Text(scene.time.scheme.word().to_owned()))
+            {
+                errors.push(document.error("time.scheme", error.to_string(), "name a scheme in the scene"));
+            }
             // A default that does nothing is not written out as if it were meant.
             if !scene.time.scheme.predicts() {
                 document.forget_default("time.activation_gamma");

@@ -71,11 +71,23 @@ words! {
 }
 
 /// The words of the schemes.
-pub(crate) const SCHEMES: &[&str] = &[MoreauJean::<2>::NAME, MoreauJeanClosed::<2>::NAME, MoreauJeanLocated::<2>::NAME];
+pub(crate) const SCHEMES: &[&str] =
+    &["auto", MoreauJean::<2>::NAME, MoreauJeanClosed::<2>::NAME, MoreauJeanLocated::<2>::NAME];
 
-impl Word for SchemeName {
-    const ALL: &'static [(&'static str, Self)] =
-        &[(SCHEMES[0], Self::MoreauJean), (SCHEMES[1], Self::MoreauJeanClosed), (SCHEMES[2], Self::MoreauJeanLocated)];
+/// A scheme by name, or the one that suits the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum SchemeChoice {
+    Auto,
+    Named(SchemeName),
+}
+
+impl Word for SchemeChoice {
+    const ALL: &'static [(&'static str, Self)] = &[
+        (SCHEMES[0], Self::Auto),
+        (SCHEMES[1], Self::Named(SchemeName::MoreauJean)),
+        (SCHEMES[2], Self::Named(SchemeName::MoreauJeanClosed)),
+        (SCHEMES[3], Self::Named(SchemeName::MoreauJeanLocated)),
+    ];
 }
 
 #[cfg(test)]
@@ -91,7 +103,7 @@ mod tests {
 
     #[test]
     fn no_word_is_taken_for_another() {
-        each_means_something_of_its_own::<SchemeName>();
+        each_means_something_of_its_own::<SchemeChoice>();
         each_means_something_of_its_own::<Law>();
         each_means_something_of_its_own::<Frames>();
         each_means_something_of_its_own::<Lies>();

@@ -14,17 +14,17 @@ const TOUCHING: f64 = 10.0;
 
 impl<const D: usize> MoreauJeanLocated<D> {
     /// Lets the contacts that touch at `from` strike, at time `end` (s): its velocities and what is
-    /// closed change.
+    /// closed change. Whether any do.
     pub(super) fn strike(
         &mut self,
         model: &Model<D>,
         from: &mut State,
         end: f64,
         work: &mut Workspace<D>,
-    ) -> Result<(), StepError> {
+    ) -> Result<bool, StepError> {
         self.find_what_touches(model, from, work)?;
         if self.impact.is_empty() {
-            return Ok(());
+            return Ok(false);
         }
         let t = from.t;
         let problem = |source| StepError::Problem { t, source };
@@ -50,14 +50,14 @@ impl<const D: usize> MoreauJeanLocated<D> {
         work.phase(model, &phase, Some(&mut self.impact))?;
         from.v.copy_from_slice(&self.v);
         from.t = end;
-        Ok(())
+        Ok(true)
     }
 
-    /// Takes the contacts that touch into the stage: those that are closed, and those that are
-    /// near.
+    /// Takes the contacts that touch into the stage: those that were closed up to here, and those
+    /// that are near.
     fn find_what_touches(&mut self, model: &Model<D>, from: &State, work: &mut Workspace<D>) -> Result<(), Mismatch> {
         work.detect(model, &from.q, TOUCHING * self.tolerance(&from.q))?;
-        work.locate(model, &from.q, from.memory.active(), &mut self.near)?;
+        work.locate(model, &from.q, &self.step.closed, &mut self.near)?;
         let Self { impact, near, .. } = self;
         impact.clear();
         let mut add = |candidate: &Candidate<D>| -> Result<(), Mismatch> {
@@ -87,13 +87,15 @@ impl<const D: usize> MoreauJeanLocated<D> {
             let u_free = u + self.impact.velocity(i, &self.by_forces)?;
             let mut shift = Vector::zeros();
             let rule = restitute(contact.persisting, &law, &u, &u_free, &mut shift);
-            strikes |= !contact.persisting && is_impact(law.restitution, &u, &u_free);
+            strikes |= !contact.persisting && is_impact(1.0, &u, &u_free);
             self.impact.set(i, u, u, shift, rule)?;
         }
         // Poisson's law gives back of any blow: where nothing strikes, there is none.
         for i in (0..self.impact.len()).filter(|_| !strikes) {
-            let u = self.impact.velocity(i, &from.v)?;
-            self.impact.set(i, u, u, Vector::zeros(), Rule::Shifted)?;
+            if let Rule::Poisson { .. } = self.impact.problem.rule(i) {
+                let u = self.impact.velocity(i, &from.v)?;
+                self.impact.set(i, u, u, Vector::zeros(), Rule::Shifted)?;
+            }
         }
         Ok(())
     }

@@ -27,6 +27,9 @@ impl Hit {
     /// `h` is 0.
     fn touches(&self, h: f64) -> f64 {
         let Self { above: a, rate, end: b, end_rate, .. } = *self;
+        if a == f64::INFINITY {
+            return 0.5 * h;
+        }
         let (da, db) = (h * rate, h * end_rate);
         let value = |s: f64| {
             let r = 1.0 - s;
@@ -88,12 +91,13 @@ impl<const D: usize> MoreauJeanLocated<D> {
                     return Ok((outcome, Some(0.0)));
                 }
                 // A flight shorter than the step, or a spring that is pressed from now on.
-                self.step.closed.push(id);
+                if let Err(at) = self.step.closed.binary_search(&id) {
+                    self.step.closed.insert(at, id);
+                }
             }
             if self.step.closed.len() == closed {
                 return self.close_in(model, from, rest, tolerance, work);
             }
-            self.step.closed.sort_unstable();
         }
     }
 
@@ -112,7 +116,8 @@ impl<const D: usize> MoreauJeanLocated<D> {
         let mut tau = self.hits.iter().map(|hit| hit.touches(rest.h)).fold(rest.h, f64::min);
         let mut outcome = None;
         for attempt in 1..=ATTEMPTS {
-            if !(tau > 0.0) {
+            // Times are known no better.
+            if !(tau > 4.0 * f64::EPSILON * rest.start.abs()) {
                 break;
             }
             let part = StepSpan { start: rest.start, end: rest.start + tau, h: tau };
@@ -156,9 +161,9 @@ impl<const D: usize> MoreauJeanLocated<D> {
             }
             work.locate(model, &from.q, &[id], &mut self.near)?;
             let Self { hits, near, one, step, .. } = self;
-            // One that comes in from beyond the end of its surface has no gap there.
+            // One that comes from beyond the end of its surface has no gap there.
             let start = near.first();
-            let gap = start.map_or(0.0, |start| start.gap);
+            let gap = start.map_or(f64::INFINITY, |start| start.gap);
             let level = gap.min(0.0);
             if candidate.gap < level - tolerance && gap - level >= least {
                 let rate = start.map_or(Ok(0.0), |start| rate_at(one, model, &from.q, start, &from.v))?;

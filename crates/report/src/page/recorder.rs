@@ -7,7 +7,9 @@ use super::scenery::{CORNERS, Scenery};
 use crate::sections::{BeamRecord, Column, Kind, columns_of};
 use serde::{Deserialize, Serialize};
 use std::ops::{ControlFlow, Range};
-use teeter_integrator::{Closing, ClosingMonitor, Model, Observer, ObserverError, State, StepReport};
+use teeter_integrator::{
+    Closing, ClosingMonitor, ContactState, Model, Observer, ObserverError, PhaseKind, State, StepReport,
+};
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Layout;
 
@@ -209,9 +211,17 @@ impl PageRecorder {
     ) -> Result<(), ObserverError> {
         let Self { scenery, kept, layout, .. } = self;
         let Kept { curves, impacts, closings, omega: [now, before], .. } = kept;
-        for contact in step.contacts() {
-            let (pair, point) = (contact.id.pair() as usize, contact.id.point() as usize);
-            curves.add(CORNERS * pair + point, [contact.p[0], contact.p[1]], contact.state());
+        let lasting = step.phases().filter(|phase| phase.kind != PhaseKind::Impact).count();
+        let mut number = 0;
+        for phase in step.phases() {
+            number += usize::from(phase.kind != PhaseKind::Impact);
+            // What a contact does in a step is what it does in its last part.
+            let tells = number == lasting && phase.kind != PhaseKind::Impact;
+            for contact in phase.contacts {
+                let (pair, point) = (contact.id.pair() as usize, contact.id.point() as usize);
+                let state = if tells { contact.state() } else { ContactState::Open };
+                curves.add(CORNERS * pair + point, [contact.p[0], contact.p[1]], state);
+            }
         }
         closings.enter(model, step, state, &layout.openings, |t, contact, closing| {
             let (pair, point) = (contact.id.pair() as usize, contact.id.point() as usize);

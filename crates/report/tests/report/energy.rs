@@ -23,6 +23,7 @@ fn warning(summary: &Summary) -> Option<&str> {
 
 /// Warned of with `sets`; and not with the scheme that the warning names.
 fn warns(text: &[u8], folder: &Path, sets: &[&str]) {
+    let sets = &[sets, &["time.scheme=moreau-jean"]].concat()[..];
     let made = summary(text, folder, sets);
     let Some(told) = warning(&made) else { panic!("{sets:?}: {:?}", made.energy) };
     assert!(told.contains("`time.scheme = \"moreau-jean-closed\"`"), "{told}");

@@ -66,7 +66,7 @@ const ASKED: [(&str, &str); 6] = [
 
 #[test]
 fn a_static_start_is_written_as_statics_has_it() {
-    let run = run("asked", &ASKED);
+    let run = run("asked", &[&ASKED[..], &[("time.scheme", "moreau-jean")]].concat());
     let table = columns(&fs::read_to_string(run.folder.join("trajectory.csv")).unwrap());
     let names: Vec<&str> =
         table.iter().skip_while(|(name, _)| name != "table.v_mid").map(|(name, _)| name.as_str()).collect();
@@ -195,7 +195,7 @@ fn what_leaves_the_model_is_warned_of_in_the_summary() {
     assert_eq!(count("small", "large-deflection", &thickness("1.5 mm")), 0);
     // In equilibrium already it sags by more than 1/9 of the span.
     assert_eq!(count("large", "large-deflection", &thickness("0.75 mm")), 21);
-    let coarse = |step| [("time.step", step), ("output.every", step)];
+    let coarse = |step| [("time.scheme", "moreau-jean"), ("time.step", step), ("output.every", step)];
     assert_eq!(count("shallow", "deep-penetration", &coarse("1 ms")), 0);
     assert!(count("deep", "deep-penetration", &coarse("50 ms")) > 0);
     let held = |step| [("beam.table.axial", "held"), ("time.step", step), ("output.every", "1 ms")];

@@ -4,6 +4,7 @@ use super::Resolver;
 use crate::scene::{BeamScene, BlockScene, Scene, SchemeName, Time};
 use crate::volume::Volume;
 use crate::wording;
+use crate::words::SchemeChoice;
 
 /// Most steps of a run.
 pub const MAX_STEPS: f64 = 1e12;
@@ -11,6 +12,9 @@ pub const MAX_STEPS: f64 = 1e12;
 /// A gap tolerance beyond this part of the shortest side of a block is refused; one beyond the second is warned of.
 const MOST_GAP: f64 = 1e-3;
 const DOUBTFUL_GAP: f64 = 1e-6;
+
+/// Up to so many blocks their impacts are located one by one.
+const FEW_BLOCKS: usize = 8;
 
 /// Most bytes of the tables of a run.
 const MAX_BYTES: f64 = 10e9;
@@ -22,7 +26,18 @@ impl Resolver<'_, '_> {
         if let Some(theta) = theta {
             self.stable(theta, beams);
         }
-        let scheme = self.choice::<SchemeName>("time.scheme");
+        let scheme = self.choice::<SchemeChoice>("time.scheme").map(|choice| match choice {
+            SchemeChoice::Named(scheme) => scheme,
+            SchemeChoice::Auto => self.suitable(blocks.len(), beams),
+        });
+        let held = beams.iter().flatten().find(|beam| beam.spec.axial == teeter_beam::Axial::Held);
+        if let (Some(beam), Some(SchemeName::MoreauJeanLocated)) = (held, scheme) {
+            let rule = format!(
+                "the beam `{}` is held along its axis, and keeps its energy over steps of one size only: moreau-jean-located divides them",
+                beam.name
+            );
+            self.error("time.scheme", rule, "take scheme = \"moreau-jean-closed\", or axial = free");
+        }
         if let (Some(scheme), Some(theta)) = (scheme, theta)
             && scheme.is_trapezoidal()
             && theta != 0.5
@@ -30,7 +45,6 @@ impl Resolver<'_, '_> {
             let rule = format!("{} is a scheme of theta = 0.5: another one is refused", scheme.word());
             self.error("time.theta", rule, "leave theta out, or take scheme = \"moreau-jean\"");
         }
-        let held = beams.iter().flatten().find(|beam| beam.spec.axial == teeter_beam::Axial::Held);
         if let (Some(beam), Some(theta)) = (held, theta)
             && theta != 0.5
         {
@@ -67,6 +81,21 @@ impl Resolver<'_, '_> {
                 .push(self.doc.error("time.end", rule, "choose an end that is a multiple of the step").as_warning());
         }
         Some(time)
+    }
+
+    /// The scheme that suits the scene: the most accurate one (`docs/schemes.md`), unless keys of another are given. Where many blocks strike in a
+    /// step there are too many impacts to locate, and a held beam keeps its energy in steps of one size only; where there are no blocks, one is as good as
+    /// the other.
+    fn suitable(&self, blocks: usize, beams: &[Option<BeamScene>]) -> SchemeName {
+        let held = beams.iter().flatten().any(|beam| beam.spec.axial == teeter_beam::Axial::Held);
+        let own = ["time.theta", "time.gap_tolerance", "time.activation_gamma"];
+        if blocks == 0 || own.iter().any(|key| self.doc.is_given(key)) {
+            SchemeName::MoreauJean
+        } else if held || blocks > FEW_BLOCKS {
+            SchemeName::MoreauJeanClosed
+        } else {
+            SchemeName::MoreauJeanLocated
+        }
     }
 
     /// The gap below which a contact counts as closed, m: what is given, if it is small against the blocks.

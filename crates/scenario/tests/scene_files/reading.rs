@@ -32,7 +32,7 @@ fn what_is_left_out_has_its_default() {
         &[],
     )
     .unwrap();
-    assert_eq!(scene.text("time.scheme"), Some("moreau-jean"));
+    assert_eq!(scene.text("time.scheme"), Some("auto"));
     assert_eq!(scene.number("time.theta"), Some(0.5));
     assert_eq!(scene.integer("solver.max_iterations"), Some(10_000));
     assert_eq!(scene.pair("block.b.velocity"), Some([0.0, 0.0]));

@@ -14,7 +14,9 @@ pub(crate) fn workspace() -> PathBuf {
 fn scenario(name: &str, sets: &[(&str, &str)]) -> Simulation {
     let file = workspace().join("scenarios").join(format!("{name}.toml"));
     let text = std::fs::read(&file).unwrap();
-    let sets: Vec<_> = sets.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
+    // The scheme of the independent implementation, where no other is asked for.
+    let sets: Vec<_> =
+        [("time.scheme", "moreau-jean")].iter().chain(sets).map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
     let resolved = load(&text, name, name, &sets).unwrap_or_else(|errors| panic!("{errors}"));
     Simulation::new(&resolved.scene).unwrap()
 }

@@ -19,16 +19,31 @@ const END: &str = "0.3 s";
 
 const COUNTS: [&str; 7] = ["steps", "factorisations", "detections", "problems", "iterations", "unsolved", "refused"];
 
-fn counts(name: &str, scheme: &str) -> [u64; 7] {
+/// None where the scheme refuses the scene.
+fn counts(name: &str, scheme: &str) -> Option<[u64; 7]> {
     let bytes = std::fs::read(workspace().join("scenarios").join(format!("{name}.toml"))).unwrap();
     let sets = [("time.end", format!("\"{END}\"")), ("time.scheme", format!("\"{scheme}\""))];
     let sets: Vec<(String, String)> = sets.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
-    let resolved = teeter_scenario::load(&bytes, name, name, &sets).unwrap();
+    let resolved = match teeter_scenario::load(&bytes, name, name, &sets) {
+        Ok(resolved) => resolved,
+        Err(errors) => {
+            assert!(errors.to_string().contains("time.scheme"), "{errors}");
+            return None;
+        }
+    };
     let mut simulation = Simulation::new(&resolved.scene).unwrap();
     assert_eq!(simulation.run(&mut []).unwrap(), teeter_integrator::Ended::Complete);
     let work = simulation.work_counts();
     let steps = simulation.state.step;
-    [steps, work.factorisations, work.detections, work.problems, work.iterations, work.unsolved, work.refused_attempts]
+    Some([
+        steps,
+        work.factorisations,
+        work.detections,
+        work.problems,
+        work.iterations,
+        work.unsolved,
+        work.refused_attempts,
+    ])
 }
 
 #[test]
@@ -46,7 +61,7 @@ fn no_scenario_takes_more_work_than_it_did() {
     let mut grown = Vec::new();
     for name in &names {
         for scheme in teeter_integrator::schemes().iter().map(|scheme| scheme.name) {
-            let now = counts(name, scheme);
+            let Some(now) = counts(name, scheme) else { continue };
             let head = format!("{name} {scheme}:");
             writeln!(text, "{head} {}", now.map(|count| count.to_string()).join(" ")).unwrap();
             let Some(held) = kept.lines().find_map(|line| line.strip_prefix(&head)) else {

@@ -12,7 +12,7 @@
 //! an impact is spread over it as p/τ: its peaks grow as the step shrinks.
 
 use super::line::lift_and_turn;
-use crate::{Contact, Phase, State, Vector};
+use crate::{Contact, Phase, State, StepReport, Vector};
 use std::ops::Range;
 use std::sync::Arc;
 use teeter_beam::{Actions, Beam, BeamError, ModalBasis, SectionForces, SpanLoad};
@@ -202,6 +202,60 @@ impl BeamForces {
         }
         let span = self.beam.spec().span;
         self.span_loads.extend(phase.contacts.iter().flat_map(|contact| pushes(contact, self.body, span, tau)));
+        self.update()?;
+        Ok(Some(&self.forces))
+    }
+
+    /// The section forces of a step, as means over all of its phases that take time: of a step in
+    /// several parts, the mean of theirs by their durations. Impacts, which take no time, are not in
+    /// it. `None` for a step without such a phase. Of a step in one phase it is what
+    /// [`enter`](Self::enter) gives.
+    ///
+    /// # Errors
+    /// As [`BeamForces::enter`].
+    pub fn enter_step(&mut self, step: &StepReport<'_, 2>) -> Result<Option<&SectionForces>, BeamError> {
+        let lasting = || step.phases().filter(|phase| phase.duration > 0.0);
+        let whole: f64 = lasting().map(|phase| phase.duration).sum();
+        let mut phases = lasting();
+        let (Some(first), several) = (phases.next(), phases.next().is_some()) else { return Ok(None) };
+        if !several {
+            return self.enter(&first);
+        }
+        for mean in [&mut self.q_mean, &mut self.v_mean, &mut self.acceleration, &mut self.predicted] {
+            mean.fill(0.0);
+        }
+        self.span_loads.clear();
+        let span = self.beam.spec().span;
+        for phase in lasting() {
+            let (part, weight) = (phase.duration / whole, phase.balance.weight());
+            for end in 0..2 {
+                self.read(end, phase.q[end], phase.v[end])?;
+            }
+            for (mean, [x0, x1]) in [(&mut self.q_mean, &self.q), (&mut self.v_mean, &self.v)] {
+                for (mean, (x0, x1)) in mean.iter_mut().zip(x0.iter().zip(x1)) {
+                    *mean += part * (weight * x1 + (1.0 - weight) * x0);
+                }
+            }
+            for (a, (v0, v1)) in self.acceleration.iter_mut().zip(self.v[0].iter().zip(&self.v[1])) {
+                *a += (v1 - v0) / whole;
+            }
+            if let Some(y) = self.lifted {
+                let lift = (phase.v[1][y] - phase.v[0][y]) / whole;
+                self.acceleration[..2 * self.beam.nodes()].iter_mut().step_by(2).for_each(|a| *a += lift);
+            }
+            for (predicted, (q0, v0)) in self.predicted.iter_mut().zip(self.q[0].iter().zip(&self.v[0])) {
+                *predicted += part * (q0 + phase.duration * weight * v0);
+            }
+            self.span_loads.extend(phase.contacts.iter().flat_map(|contact| pushes(contact, self.body, span, whole)));
+        }
+        if let Some(loads) = &self.loads {
+            loads.add_mean([step.t_start, step.t_end], &mut self.span_loads);
+        }
+        self.update()?;
+        Ok(Some(&self.forces))
+    }
+
+    fn update(&mut self) -> Result<(), BeamError> {
         let actions = Actions {
             q: &self.q_mean,
             velocity: &self.v_mean,
@@ -209,8 +263,7 @@ impl BeamForces {
             loads: &self.span_loads,
             stretched_at: &self.predicted,
         };
-        self.forces.update(&self.beam, &actions)?;
-        Ok(Some(&self.forces))
+        self.forces.update(&self.beam, &actions)
     }
 
     /// Reads the dofs at one end of a phase.
