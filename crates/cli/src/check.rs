@@ -252,6 +252,13 @@ fn model(scene: &Scene, outlook: &Outlook) -> Vec<String> {
 
 fn run(scene: &Scene, outlook: &Outlook) -> Vec<String> {
     let (time, volume) = (&scene.time, outlook.volume);
+    if let Some(accuracy) = time.accuracy {
+        return vec![format!(
+            "steps to {} s as long as an accuracy of {accuracy} allows, by {}: the run finds them",
+            time.end,
+            time.scheme.word()
+        )];
+    }
     vec![
         format!(
             "{} of {} s to {} s, theta = {}{}",

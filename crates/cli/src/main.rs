@@ -44,6 +44,9 @@ enum Command {
         /// Override a key of the scene, such as beam.table.thickness="2 mm"; may be repeated
         #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value)]
         set: Vec<(String, String)>,
+        /// Find the step that reaches this accuracy, for a scene without one (`--set time.step=auto` takes it out): --set time.accuracy=X
+        #[arg(long, value_name = "X")]
+        accuracy: Option<String>,
         /// Print errors only
         #[arg(long)]
         quiet: bool,
@@ -182,7 +185,8 @@ fn main() -> ExitCode {
         Command::Run {
             scene,
             out,
-            set,
+            mut set,
+            accuracy,
             quiet,
             force,
             export_problems,
@@ -193,6 +197,7 @@ fn main() -> ExitCode {
             from,
             dump_unconverged,
         } => {
+            set.extend(accuracy.map(|accuracy| ("time.accuracy".to_owned(), accuracy)));
             let export = export_problems.map(|folder| (folder, export_when));
             let existing = match (resume, force) {
                 (true, _) => Existing::Resume,

@@ -165,7 +165,15 @@ fn notes(prepared: &Prepared) -> Vec<String> {
         _ => None,
     };
     let presenter = Presenter::new(prepared.resolved().document.source());
-    start.into_iter().chain(prepared.warnings().iter().map(|warning| presenter.one(warning))).collect()
+    let chosen = prepared.chosen_step().map(|chosen| {
+        let until =
+            if chosen.whole { String::new() } else { format!(" up to t = {:.4} s, the horizon", chosen.horizon) };
+        format!(
+            "steps of {:e} s, found by {} runs: off by {:.1e} from finer ones{until}",
+            chosen.step, chosen.runs, chosen.error
+        )
+    });
+    start.into_iter().chain(chosen).chain(prepared.warnings().iter().map(|warning| presenter.one(warning))).collect()
 }
 
 /// Tells how a run ended and what it wrote beside its results.

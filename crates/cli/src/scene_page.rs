@@ -160,6 +160,14 @@ fn table_of(keys: &[Key]) -> String {
 }
 
 fn value(key: &Key) -> String {
+    let value = value_alone(key);
+    match key.left_out_as {
+        Some(word) => format!("{value}; `\"{word}\"`"),
+        None => value,
+    }
+}
+
+fn value_alone(key: &Key) -> String {
     let such_as = format!("such as `{}`", key.example);
     match key.kind {
         Kind::Text => "text".to_owned(),

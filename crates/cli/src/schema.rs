@@ -151,6 +151,14 @@ fn range_of(key: &Key) -> String {
 }
 
 fn of_kind(key: &Key) -> Value {
+    let value = of_kind_alone(key);
+    match key.left_out_as {
+        Some(word) => json!({ "anyOf": [value, { "const": word }] }),
+        None => value,
+    }
+}
+
+fn of_kind_alone(key: &Key) -> Value {
     let quantity =
         |dimension, range: &Range| json!({ "type": "string", "pattern": patterns::quantity(dimension, range) });
     let pair = |item: Value| json!({ "type": "array", "items": item, "minItems": 2, "maxItems": 2 });

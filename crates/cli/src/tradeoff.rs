@@ -34,6 +34,15 @@ pub(crate) fn tradeoff(options: &Options) -> Exit {
         Err(error) => return bad_input(&refusal(&error)),
     };
     let presenter = Presenter::new(resolved.document.source());
+    if resolved.scene.time.accuracy.is_some() {
+        let rule = "a study measures what steps give, from one that the scene has";
+        let found = resolved.document.error(
+            "time.accuracy",
+            rule,
+            "give a step in its place, such as --set time.step=\"100 us\"",
+        );
+        return bad_input(&presenter.one(&found));
+    }
     if let Err(error) = Simulation::new(&resolved.scene) {
         return bad_input(&presenter.one(&error.diagnostic(&resolved.document)));
     }

@@ -1,7 +1,7 @@
 //! Contacts that close: impacts, told from contacts that were lost for a moment and found again
 //! (`docs/impacts.md`).
 
-use crate::{Contact, Mismatch, Model, State, StepReport};
+use crate::{Contact, Mismatch, Model, PhaseKind, State, StepReport};
 use teeter_detect::{Candidate, ContactId};
 
 /// When a contact counts as truly open: since it last carried, its gap has exceeded `gap` **and**
@@ -41,6 +41,8 @@ struct Held {
     carried: bool,
     /// Whether its gap has been large enough since.
     opened: bool,
+    /// Whether it has been, had steps played no part in that.
+    lifted: bool,
 }
 
 /// Tells impacts from re-closures, step by step.
@@ -79,7 +81,7 @@ impl<const D: usize> ClosingMonitor<D> {
         for candidate in &monitor.candidates {
             let carried = state.memory.is_active(candidate.id);
             if carried || candidate.gap <= opening_of(openings, candidate.id).gap {
-                monitor.held.push(Held { id: candidate.id, last: state.t, carried, opened: false });
+                monitor.held.push(Held { id: candidate.id, last: state.t, carried, opened: false, lifted: false });
             }
         }
         monitor.held.sort_unstable_by_key(|held| held.id);
@@ -101,13 +103,19 @@ impl<const D: usize> ClosingMonitor<D> {
     ) -> Result<(), Mismatch> {
         let (t, h) = (step.t_end, step.t_end - step.t_start);
         let before = step.t_start;
-        let carrying = step.phases().flat_map(|phase| phase.contacts.iter().map(move |contact| (phase.end, contact)));
-        for (at_time, contact) in carrying.filter(|(_, contact)| contact.p[0] > 0.0) {
-            let now = Held { id: contact.id, last: t, carried: true, opened: false };
+        let carrying = step.phases().flat_map(|phase| phase.contacts.iter().map(move |contact| (phase, contact)));
+        for (phase, contact) in carrying.filter(|(_, contact)| contact.p[0] > 0.0) {
+            let at_time = phase.end;
+            let now = Held { id: contact.id, last: t, carried: true, opened: false, lifted: false };
             match self.held.binary_search_by_key(&contact.id, |held| held.id) {
                 Ok(at) => {
                     let held = std::mem::replace(&mut self.held[at], now);
-                    if held.carried && held.last < before {
+                    // An impact with a time of its own is no work of the step.
+                    let struck = phase.kind == PhaseKind::Impact && contact.u_before[0] < 0.0;
+                    if struck && held.lifted && at_time - held.last > opening_of(openings, contact.id).time {
+                        self.impacts += 1;
+                        each(at_time, contact, Closing::Impact);
+                    } else if held.carried && held.last < before {
                         self.reclosures += 1;
                         each(at_time, contact, Closing::Reclosure);
                     }
@@ -137,6 +145,7 @@ impl<const D: usize> ClosingMonitor<D> {
                 // Beyond the end of the surface there is nothing to touch.
                 let gap = found.map_or(f64::INFINITY, |at| candidates[at].gap);
                 held.opened = gap > opening.gap.max(2.0 * opening.fall * h * h);
+                held.lifted |= gap > opening.gap;
             }
             // Half a step of margin for the rounding of times.
             !(held.opened && t - held.last > opening.time.max((STEPS - 0.5) * h))

@@ -98,6 +98,11 @@ impl Memory {
         &self.numbers
     }
 
+    /// Makes room for so many numbers of a scheme.
+    pub fn reserve_numbers(&mut self, numbers: usize) {
+        self.numbers.reserve(numbers);
+    }
+
     /// Stores a scheme's own numbers in place of earlier ones; allocates only if there are more
     /// than ever before.
     pub fn set_numbers(&mut self, numbers: &[f64]) {

@@ -4,10 +4,11 @@ mod impact;
 mod locate;
 
 use crate::closed_step::{ClosedStep, THETA};
+use crate::factors::Factors;
 use crate::moreau_jean_closed::deepest;
 use crate::theta_step::weights;
 use crate::{
-    ContactStage, Keep, Model, MoreauJeanClosedSettings, STEP_ROUNDING, Scheme, SettingError, State, StepError,
+    ContactStage, Keep, Model, MoreauJeanClosedSettings, Part, STEP_ROUNDING, Scheme, SettingError, State, StepError,
     StepReport, StepSpan, Weights, Workspace,
 };
 use locate::Hit;
@@ -29,6 +30,14 @@ impl Default for MoreauJeanLocatedSettings {
 
 /// What it can't step.
 const FOLLOWERS: &str = "matrices that follow their coordinates, as of a beam held along its axis: they keep energy in steps of one size only";
+
+/// Steps for which a contact with something elastic pressed lately.
+const LATELY: f64 = 50.0;
+
+/// Whether a subsystem yields to a push in more than its whole motion: a beam, not a block or the ground.
+fn is_elastic<const D: usize>(part: &Part<D>, index: usize, w: Weights, factors: &mut Factors<D>) -> bool {
+    part.row > 0 && !part.is_prescribed() && factors.of(index, w).is_some_and(|factor| !factor.is_diagonal())
+}
 
 /// W at an instant: M⁻¹.
 const MASSES: Weights = Weights { mass: 1.0, damping: 0.0, stiffness: 0.0 };
@@ -68,6 +77,9 @@ pub struct MoreauJeanLocated<const D: usize> {
     v: Vec<f64>,
     /// Which contacts of the last phase are closed after it.
     stays: Vec<bool>,
+    /// Contacts with something elastic that pressed lately: pair, point, and the last step in which
+    /// they did, as the state's memory holds them.
+    lately: Vec<f64>,
 }
 
 impl<const D: usize> MoreauJeanLocated<D> {
@@ -98,6 +110,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
             by_forces: Vec::new(),
             v: Vec::new(),
             stays: Vec::new(),
+            lately: Vec::new(),
         })
     }
 
@@ -126,9 +139,12 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         self.ids.reserve(contacts);
         self.near.reserve(contacts);
         self.stays.reserve(contacts);
+        self.lately.reserve(3 * contacts);
         self.by_forces.resize(model.size().v, 0.0);
         self.v.resize(model.size().v, 0.0);
+        state.memory.reserve_numbers(3 * contacts);
         let mut from = state.clone();
+        from.memory.reserve_numbers(3 * contacts);
         from.warm.reserve(contacts, D);
         from.memory.reserve(contacts);
         self.from = Some(from);
@@ -153,10 +169,15 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         work.begin(model, state, span)?;
         let mut from = self.from.take().unwrap_or_else(|| state.clone());
         from.copy_from(state);
+        self.lately.clear();
+        self.lately.extend_from_slice(state.memory.all_numbers());
         let penetration = self.take_parts(model, &mut from, &span, work);
         self.from = Some(from);
+        self.remember_lately(model, state.step + 1, work);
         let (penetration, stays) = (penetration?, &self.stays);
-        work.finish(model, state, Some(penetration), |i, _| stays[i])
+        let report = work.finish(model, state, Some(penetration), |i, _| stays[i])?;
+        state.memory.set_numbers(&self.lately);
+        Ok(report)
     }
 }
 
@@ -204,6 +225,41 @@ impl<const D: usize> MoreauJeanLocated<D> {
             }
         }
         Ok(0.0)
+    }
+
+    /// Whether a contact with something elastic pressed lately. Such a contact chatters: it is lost
+    /// and closes again some thirty times, and where each of these closures is located, their order
+    /// depends on rounding.
+    fn pressed_lately(&self, id: ContactId) -> bool {
+        self.lately.chunks_exact(3).any(|held| held[0] == f64::from(id.pair()) && held[1] == f64::from(id.point()))
+    }
+
+    /// Enters the contacts with something elastic that pressed or struck in step number `step`, and
+    /// forgets those that have not for long.
+    fn remember_lately(&mut self, model: &Model<D>, step: u64, work: &mut Workspace<D>) {
+        let now = step as f64;
+        let Some(w) = self.from.as_ref().map(|from| weights(from.dt, THETA)) else { return };
+        let (contacts, factors) = work.contacts_and_factors();
+        for contact in contacts.filter(|contact| contact.p[0] > 0.0) {
+            let (pair, point) = (f64::from(contact.id.pair()), f64::from(contact.id.point()));
+            if let Some(held) = self.lately.chunks_exact_mut(3).find(|held| held[0] == pair && held[1] == point) {
+                held[2] = now;
+            } else if contact
+                .sides
+                .iter()
+                .any(|side| model.owner(side.body).is_some_and(|(index, part, _)| is_elastic(part, index, w, factors)))
+            {
+                self.lately.extend_from_slice(&[pair, point, now]);
+            }
+        }
+        let mut kept = 0;
+        for at in (0..self.lately.len()).step_by(3) {
+            if now - self.lately[at + 2] <= LATELY {
+                self.lately.copy_within(at..at + 3, kept);
+                kept += 3;
+            }
+        }
+        self.lately.truncate(kept);
     }
 
     /// Ends the part of the step that was attempted, and moves on to its end.

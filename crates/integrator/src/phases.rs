@@ -272,6 +272,11 @@ impl<const D: usize> Phases<D> {
         }
     }
 
+    /// The contacts of all phases.
+    pub(crate) fn contacts(&self) -> impl Iterator<Item = &Contact<D>> {
+        self.kept[..self.used].iter().flat_map(|kept| &kept.contacts)
+    }
+
     /// The contacts of the last phase.
     pub(crate) fn last_contacts(&self) -> &[Contact<D>] {
         self.kept[..self.used].last().map_or(&[], |kept| &kept.contacts)

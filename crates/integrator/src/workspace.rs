@@ -169,6 +169,11 @@ impl<const D: usize> Workspace<D> {
         self.phases.reserve_more(phases, contacts, model.size());
     }
 
+    /// The contacts of all phases that were ended in this step.
+    pub(crate) fn contacts_and_factors(&mut self) -> (impl Iterator<Item = &Contact<D>>, &mut Factors<D>) {
+        (self.phases.contacts(), &mut self.factors)
+    }
+
     /// Whether it was made for this model, and its memory still fits it: else steps would take the factors of another.
     ///
     /// # Errors

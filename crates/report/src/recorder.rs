@@ -51,6 +51,8 @@ pub struct Record {
     pub impact_count: u64,
     /// How often a contact was lost for a moment and found again, without having been truly open.
     pub reclosure_count: u64,
+    /// Up to when the motion was found to be as accurate as was asked for, s.
+    pub horizon: Option<f64>,
     /// Steps in which more contacts struck than a scheme locates.
     pub unlocated_steps: u64,
     /// Zero crossings and peaks, by block.

@@ -55,7 +55,7 @@ struct Seen {
     carried: f64,
     /// By how much the gaps of its feet differ while both go on pressing, m: the largest so far.
     held: f64,
-    /// The smallest and largest gap of those that go on pressing in this step, m.
+    /// The smallest and largest gap of those that go on pressing in this part of a step, m.
     gaps: Option<[f64; 2]>,
     /// How long nothing has pressed on it, and the longest of such times, s.
     aloft: [f64; 2],
@@ -124,6 +124,9 @@ impl Resolution {
                 self.blocks.iter_mut().for_each(|seen| seen.pressed = 0);
             }
             self.take_contacts(bodies, &phase, lasts);
+            for seen in &mut self.blocks {
+                seen.held = seen.gaps.take().map_or(seen.held, |[least, most]| seen.held.max(most - least));
+            }
         }
         self.take_places(bodies, layout, step.t_end - step.t_start, state);
     }
@@ -168,7 +171,6 @@ impl Resolution {
             seen.way += way;
             seen.carried += seen.late * way;
             seen.pressed = 0;
-            seen.held = seen.gaps.take().map_or(seen.held, |[least, most]| seen.held.max(most - least));
         }
     }
 

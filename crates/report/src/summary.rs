@@ -332,7 +332,7 @@ impl Summary {
             crossings,
             peaks,
             beams: record.beams.iter().map(|borne| BorneSummary::new(scene, borne)).collect(),
-            horizon: None,
+            horizon: record.horizon,
             ended,
             model: ModelSummary::new(scene, layout),
             warnings: record.warnings.warnings().iter().cloned().chain(made_energy::warning(scene, state)).collect(),

@@ -7,6 +7,7 @@ use teeter_report::{CheckpointError, EndedWord, ResultsError};
 use teeter_scenario::diagnostic::Diagnostics;
 use teeter_scenario::resolve::Resolved;
 use teeter_scenario::simulation::BuildError;
+use teeter_study::NoStep;
 
 /// Why a scene file can't be read.
 #[derive(Debug, thiserror::Error)]
@@ -74,6 +75,9 @@ pub enum PrepareError {
     /// There is no scene to run.
     #[error(transparent)]
     Load(#[from] LoadError),
+    /// There is no step for the accuracy that the scene asks for.
+    #[error(transparent)]
+    Step(#[from] NoStep),
     /// The time between checkpoints is no time, s.
     #[error("the time between checkpoints must be greater than 0 s, and is {0} s")]
     Interval(f64),

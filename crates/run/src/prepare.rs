@@ -3,12 +3,14 @@
 use crate::start::{self, Start};
 use crate::{LoadError, PrepareError, RunJob};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 use teeter_integrator::State;
 use teeter_report::{Checkpoint, FILES, Former, Identity, Moment, Results, Watch};
 use teeter_scenario::diagnostic::Diagnostic;
 use teeter_scenario::resolve::Resolved;
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Simulation;
+use teeter_study::ChosenStep;
 
 /// A job with its scene read, its model built and its start found. Nothing was written so far, and
 /// dropping it leaves no trace. Its folder is taken by [`run`](Self::run) only: until then nobody
@@ -24,6 +26,7 @@ pub struct Prepared {
     pub(crate) identity: Option<Identity>,
     pub(crate) start: Start,
     pub(crate) checkpoint: Option<Checkpoint>,
+    pub(crate) chosen: Option<ChosenStep>,
 }
 
 impl RunJob {
@@ -39,7 +42,7 @@ impl RunJob {
         if let Some(every) = self.checkpoint_every.filter(|every| !(*every > 0.0 && every.is_finite())) {
             return Err(PrepareError::Interval(every));
         }
-        let resolved = self.scene.load(&self.sets)?;
+        let (resolved, chosen) = with_step(self.scene.load(&self.sets)?)?;
         let watch = self.export.is_some().then(Watch::default);
         let mut simulation = Simulation::with_extent(&resolved.scene, self.modelled(), |solver| match &watch {
             Some(watch) => watch.around(solver),
@@ -63,7 +66,7 @@ impl RunJob {
         if let Some(checkpoint) = &checkpoint {
             simulation.state = checkpoint.state().clone();
         }
-        Ok(Prepared { job: self, folder, resolved, simulation, watch, identity, start, checkpoint })
+        Ok(Prepared { job: self, folder, resolved, simulation, watch, identity, start, checkpoint, chosen })
     }
 
     /// The scene with every override and default, with the files that it names as seen from the
@@ -97,6 +100,17 @@ impl RunJob {
     }
 }
 
+/// A scene that asks for an accuracy, with the step that reaches it.
+fn with_step(resolved: Resolved) -> Result<(Resolved, Option<ChosenStep>), PrepareError> {
+    let Some(accuracy) = resolved.scene.time.accuracy else { return Ok((resolved, None)) };
+    let chosen = teeter_study::step_for(&resolved.scene, accuracy, &AtomicBool::new(false))?;
+    let text = resolved.document.source().to_owned();
+    match resolved.with_step(chosen.step) {
+        Ok(resolved) => Ok((resolved, Some(chosen))),
+        Err(found) => Err(LoadError::Invalid { text, found }.into()),
+    }
+}
+
 fn state_from(path: &Path, scene: &Scene, simulation: &Simulation) -> Result<State, PrepareError> {
     let moment = Moment::read(path).map_err(PrepareError::State)?;
     let state = moment.start(path, scene, &simulation.layout, &simulation.model, simulation.scheme());
@@ -127,6 +141,12 @@ impl Prepared {
     #[must_use]
     pub fn simulation(&self) -> &Simulation {
         &self.simulation
+    }
+
+    /// The step that was found for the accuracy that the scene asks for; `None` if it gives a step.
+    #[must_use]
+    pub fn chosen_step(&self) -> Option<&ChosenStep> {
+        self.chosen.as_ref()
     }
 
     /// Where the run starts.

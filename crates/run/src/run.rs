@@ -80,7 +80,8 @@ impl Prepared {
         // The folder exists from here on: paths in the scene are relative to it.
         let scene_as_run = self.job.scene_as_run(&self.folder, &self.resolved);
         let layout = self.simulation.layout.clone();
-        let recorded = self.simulate(&results, &scene_as_run, exporter, &layout, hooks)?;
+        let mut recorded = self.simulate(&results, &scene_as_run, exporter, &layout, hooks)?;
+        recorded.record.horizon = self.chosen.map(|chosen| chosen.horizon);
         let exporter = recorded.exporter.as_ref().map(Exporter::written);
         let summary = write(&results, recorded, &self.resolved.scene, &layout, &self.simulation.state, &scene_as_run)?;
         let unsolved = summary.contact.unconverged_steps > 0;

@@ -97,6 +97,30 @@ pub(crate) fn mistakes(document: &Document, read: &mut ReadFile<'_>) -> Vec<Diag
     resolver.errors
 }
 
+impl Resolved {
+    /// The scene with a step (s) in place of the accuracy that it was to be found for.
+    ///
+    /// # Errors
+    /// All that is wrong with it then.
+    pub fn with_step(self, step: f64) -> Result<Self, Diagnostics> {
+        let Self { mut document, files, scene, .. } = self;
+        document.leave_out("time.accuracy");
+        if let Err(error) = document.set("time.step", Value::Number(step)) {
+            let remedy = "give a step in place of the accuracy";
+            return Err(document.error("time.accuracy", error.to_string(), remedy).into());
+        }
+        // A default that does nothing was left out, but is read all the same.
+        if !document.has("time.activation_gamma") {
+            let _ = document.set("time.activation_gamma", Value::Number(scene.time.activation_gamma));
+        }
+        let mut read = |path: &str| {
+            let file = files.iter().find(|(name, _)| name == path);
+            file.map(|(_, bytes)| bytes.clone()).ok_or_else(|| "was not read with the scene".to_owned())
+        };
+        resolve(document, &scene.title, &mut read)
+    }
+}
+
 struct Resolver<'a, 'f> {
     read: &'f mut ReadFile<'f>,
     /// What was read.

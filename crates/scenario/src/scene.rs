@@ -42,8 +42,10 @@ pub struct Scene {
 pub struct Time {
     /// The time asked for, s.
     pub end: f64,
-    /// Step size, s.
+    /// Step size, s. Where an accuracy is asked for, one to go on with until a step is found.
     pub step: f64,
+    /// The accuracy that a step is to be found for; `None` once there is a step.
+    pub accuracy: Option<f64>,
     /// The scheme.
     pub scheme: SchemeName,
     /// θ of the scheme.
@@ -146,6 +148,15 @@ impl SchemeName {
         match self {
             Self::MoreauJean => true,
             Self::MoreauJeanClosed | Self::MoreauJeanLocated => false,
+        }
+    }
+
+    /// Whether impacts have times of their own, rather than those of the steps in which they fall.
+    #[must_use]
+    pub fn locates(self) -> bool {
+        match self {
+            Self::MoreauJean | Self::MoreauJeanClosed => false,
+            Self::MoreauJeanLocated => true,
         }
     }
 

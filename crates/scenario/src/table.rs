@@ -122,8 +122,8 @@ pub static TABLES: &[Table] = &[
         doc: "How long to simulate, in which steps, by which scheme.",
         keys: &[
             key("end", TIME, Required, "\"0.5 s\"", "Simulated time; the run ends with the first step at or past it."),
-            key("step", TIME, Required, "\"100 us\"", "Size of the time step.").reserving(&[Reserved { value: "auto", instead: "give a step, such as \"100 us\"" }]),
-            key("accuracy", Kind::Number(Range::INSIDE_UNIT), NotYet, "1e-3", "Largest relative error allowed, in place of a step."),
+            key("step", TIME, RequiredWithout("accuracy"), "\"100 us\"", "Size of the time step; with auto, or left out, it is the longest that is found to reach the accuracy.").left_out_as("auto"),
+            key("accuracy", Kind::Number(Range::INSIDE_UNIT), Optional, "1e-3", "In place of a step: the largest error of any angle, relative to the largest angle, and of any place, relative to the block's larger side, before the horizon."),
             key("scheme", Kind::Choice(words::SCHEMES), Default("\"auto\""), "\"moreau-jean\"", "Time integration scheme; auto takes moreau-jean-located, but moreau-jean where theta, gap_tolerance or activation_gamma is given, and moreau-jean-closed for more than 8 blocks or a beam held along its axis. In moreau-jean-closed a contact stays closed until it pulls, and no contact gives energy; moreau-jean-located also divides a step where a contact closes.").reserving(&[later("moreau-jean-projected"), later("generalized-alpha"), later("event-driven")]),
             key("theta", Kind::Number(Range::UNIT), Default("0.5"), "0.5", "Weight of the end of the step in the theta method: 0.5 keeps energy, 1 damps the most; moreau-jean-closed and moreau-jean-located take 0.5 only."),
             key("gap_tolerance", Kind::Quantity(Dimension::LENGTH, GAP), Optional, "\"1e-12 m\"", "Gap below which a contact counts as closed, at most 1e-3 of the shortest block side; when left out, it follows from the largest block side."),

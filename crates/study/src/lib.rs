@@ -4,9 +4,12 @@
 //! [`Reference`] that is itself verified, measures their time, and says which one to take for which accuracy. [`runner`] does jobs on all cores,
 //! with results in order.
 //!
+//! [`step_for`] finds the step that reaches an accuracy, for scenes that ask for that in place of a step.
+//!
 //! What is tried and what is advised is decided by counted [`Work`] and not by the clock: it is the same in every run. Nothing is advised that
 //! `check` or `run` would warn of, and nothing before the first impacts of the scene have been compared.
 
+mod accuracy;
 mod against;
 mod axes;
 mod errors;
@@ -26,6 +29,7 @@ mod warned;
 mod work;
 pub mod write;
 
+pub use accuracy::{ChosenStep, NoStep, step_for};
 pub use against::Against;
 pub use axes::{Axes, Axis};
 pub use errors::{Errors, Quantity, Ruler};

@@ -233,6 +233,11 @@ impl Walk<'_> {
             });
             return;
         }
+        if let (Some(word), Raw::Text(text)) = (key.left_out_as, &twig.node.raw)
+            && text == word
+        {
+            return;
+        }
         if let Some(value) = self.judge.value(key, path, &twig.node) {
             let entry = Entry { key, value, origin: twig.node.origin.clone(), written: twig.node.written.clone() };
             self.document.add(path, entry);

@@ -345,6 +345,11 @@ impl Document {
         }
     }
 
+    /// Takes a value out, given or not.
+    pub fn leave_out(&mut self, path: &str) {
+        self.entries.remove(path);
+    }
+
     /// The document as it stands: every value in the order of the table of keys, defaults written out, quantities in SI units.
     /// It parses to the same values bit for bit, and writing that out again gives the same bytes.
     pub fn to_toml(&self) -> String {

@@ -44,6 +44,8 @@ pub struct Key {
     pub presence: Presence,
     /// Values that are known but not built in yet: the value's text and what to do instead.
     pub reserved: &'static [Reserved],
+    /// A word that says the same as leaving the key out.
+    pub left_out_as: Option<&'static str>,
     /// A valid value, in TOML.
     pub example: &'static str,
     /// One sentence.
@@ -300,13 +302,20 @@ impl Key {
         example: &'static str,
         doc: &'static str,
     ) -> Self {
-        Self { name, kind, presence, reserved: &[], example, doc, bytes_each: 0, only_with: None }
+        Self { name, kind, presence, reserved: &[], left_out_as: None, example, doc, bytes_each: 0, only_with: None }
     }
 
     /// The same key with values that are known but not built in yet.
     #[must_use]
     pub const fn reserving(mut self, reserved: &'static [Reserved]) -> Self {
         self.reserved = reserved;
+        self
+    }
+
+    /// The same key with a word that says the same as leaving it out.
+    #[must_use]
+    pub const fn left_out_as(mut self, word: &'static str) -> Self {
+        self.left_out_as = Some(word);
         self
     }
 

@@ -84,13 +84,14 @@ impl<const D: usize> MoreauJeanLocated<D> {
             let closed = self.step.closed.len();
             for k in 0..self.hits.len() {
                 let Hit { id, above, .. } = self.hits[k];
-                if above > AT_START * tolerance {
+                let lately = self.pressed_lately(id);
+                if above > AT_START * tolerance && !lately {
                     continue;
                 }
-                if self.strikes_at_start(model, from, id, work)? {
+                if !lately && self.strikes_at_start(model, from, id, work)? {
                     return Ok((outcome, Some(0.0)));
                 }
-                // A flight shorter than the step, or a spring that is pressed from now on.
+                // It chatters; or a flight shorter than the step, or a spring that is pressed from now on.
                 if let Err(at) = self.step.closed.binary_search(&id) {
                     self.step.closed.insert(at, id);
                 }
@@ -156,7 +157,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
             let candidate = work.candidates[k];
             let id = candidate.id;
             let known = self.hits.iter().any(|hit| hit.id == id) || self.step.closed.binary_search(&id).is_ok();
-            if candidate.gap >= -tolerance || known {
+            if candidate.gap >= -tolerance || known || (least > 0.0 && self.pressed_lately(id)) {
                 continue;
             }
             work.locate(model, &from.q, &[id], &mut self.near)?;

@@ -13,6 +13,12 @@ pub const MAX_STEPS: f64 = 1e12;
 const MOST_GAP: f64 = 1e-3;
 const DOUBTFUL_GAP: f64 = 1e-6;
 
+/// Steps of a run whose step is not found yet.
+const STEPS_TO_GO_ON: f64 = 10_000.0;
+
+/// No smaller error can be asked for.
+const LEAST_ACCURACY: f64 = 1e-9;
+
 /// Up to so many blocks their impacts are located one by one.
 const FEW_BLOCKS: usize = 8;
 
@@ -21,7 +27,11 @@ const MAX_BYTES: f64 = 10e9;
 
 impl Resolver<'_, '_> {
     pub(super) fn time(&mut self, blocks: &[Option<BlockScene>], beams: &[Option<BeamScene>]) -> Option<Time> {
-        let (end, step) = (self.quantity("time.end"), self.quantity("time.step"));
+        let (end, accuracy) = (self.quantity("time.end"), self.accuracy());
+        let step = match (accuracy, end) {
+            (Some(_), Some(end)) => Some(end / STEPS_TO_GO_ON),
+            _ => self.quantity("time.step"),
+        };
         let theta = self.number("time.theta");
         if let Some(theta) = theta {
             self.stable(theta, beams);
@@ -72,8 +82,15 @@ impl Resolver<'_, '_> {
             self.error("time.step", rule, "take a longer step or an earlier end");
             return None;
         }
-        let time =
-            Time { end, step, scheme: scheme?, theta: theta?, activation_gamma: activation_gamma?, gap_tolerance };
+        let time = Time {
+            end,
+            step,
+            accuracy,
+            scheme: scheme?,
+            theta: theta?,
+            activation_gamma: activation_gamma?,
+            gap_tolerance,
+        };
         let steps = time.steps() as f64;
         if (steps * step - end).abs() > (1e-9 * end).min(1e-3 * step) {
             let rule = format!("not a whole number of steps of {step} s: the run goes on to {} s", steps * step);
@@ -81,6 +98,31 @@ impl Resolver<'_, '_> {
                 .push(self.doc.error("time.end", rule, "choose an end that is a multiple of the step").as_warning());
         }
         Some(time)
+    }
+
+    /// The accuracy asked for in place of a step.
+    fn accuracy(&mut self) -> Option<f64> {
+        let accuracy = self.doc.number("time.accuracy");
+        match accuracy {
+            Some(_) if self.doc.has("time.step") => {
+                let rule = "a step is given beside it, and one follows from the other";
+                self.error("time.accuracy", rule, "leave one of them out; step = \"auto\" is found by the accuracy");
+                None
+            }
+            Some(given) if given < LEAST_ACCURACY => {
+                let rule = format!(
+                    "{given:e} is below {LEAST_ACCURACY:e}, which no step reaches for rounding and the tolerance of contacts"
+                );
+                self.error("time.accuracy", rule, "ask for 1e-3 or 1e-6, or give a step");
+                None
+            }
+            None if !self.doc.has("time.step") && !self.doc.is_refused("time.step") && self.doc.has("time.end") => {
+                let rule = "auto, but there is no accuracy to find it by";
+                self.error("time.step", rule, "give accuracy = 1e-3 beside it, or a step, such as \"100 us\"");
+                None
+            }
+            accuracy => accuracy,
+        }
     }
 
     /// The scheme that suits the scene: the most accurate one (`docs/schemes.md`), unless keys of another are given. Where many blocks strike in a
