@@ -173,7 +173,6 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         self.lately.extend_from_slice(state.memory.all_numbers());
         let penetration = self.take_parts(model, &mut from, &span, work);
         self.from = Some(from);
-        self.remember_lately(model, state.step + 1, work);
         let (penetration, stays) = (penetration?, &self.stays);
         let report = work.finish(model, state, Some(penetration), |i, _| stays[i])?;
         state.memory.set_numbers(&self.lately);
@@ -209,6 +208,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
             let Some(tau) = found else {
                 let penetration = deepest(work);
                 self.take_part(model, from, &rest, outcome, work)?;
+                self.remember_lately(model, from, work);
                 return Ok(penetration);
             };
             // What rounding leaves of a step is nothing.
@@ -218,6 +218,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
                 self.take_part(model, from, &StepSpan { start: from.t, end, h: tau }, outcome, work)?;
             }
             struck = self.strike(model, from, end, work)? || tau > 0.0;
+            self.remember_lately(model, from, work);
             left -= tau;
             if last {
                 work.detect(model, &from.q, 0.0)?;
@@ -234,11 +235,10 @@ impl<const D: usize> MoreauJeanLocated<D> {
         self.lately.chunks_exact(3).any(|held| held[0] == f64::from(id.pair()) && held[1] == f64::from(id.point()))
     }
 
-    /// Enters the contacts with something elastic that pressed or struck in step number `step`, and
+    /// Enters the contacts with something elastic that pressed or struck so far in the step from `from`, and
     /// forgets those that have not for long.
-    fn remember_lately(&mut self, model: &Model<D>, step: u64, work: &mut Workspace<D>) {
-        let now = step as f64;
-        let Some(w) = self.from.as_ref().map(|from| weights(from.dt, THETA)) else { return };
+    fn remember_lately(&mut self, model: &Model<D>, from: &State, work: &mut Workspace<D>) {
+        let (now, w) = (from.step.saturating_add(1) as f64, weights(from.dt, THETA));
         let (contacts, factors) = work.contacts_and_factors();
         for contact in contacts.filter(|contact| contact.p[0] > 0.0) {
             let (pair, point) = (f64::from(contact.id.pair()), f64::from(contact.id.point()));
