@@ -44,7 +44,7 @@ enum Command {
         /// Override a key of the scene, such as beam.table.thickness="2 mm"; may be repeated
         #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value)]
         set: Vec<(String, String)>,
-        /// Find the step that reaches this accuracy, for a scene without one (`--set time.step=auto` takes it out): --set time.accuracy=X
+        /// Find the longest step that reaches this accuracy; the scene must have `step = "auto"` or none, as with --set time.step=auto
         #[arg(long, value_name = "X")]
         accuracy: Option<String>,
         /// Print errors only

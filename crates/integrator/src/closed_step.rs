@@ -1,26 +1,8 @@
-//! The θ step in which contacts that are closed stay so: of the whole step in `moreau-jean-closed`, of its parts in
-//! `moreau-jean-located` (`docs/schemes.md`).
+//! The θ step in which contacts that are closed stay so: of the whole step in `moreau-jean-closed`,
+//! of its parts in `moreau-jean-located` (`docs/schemes.md`).
 //!
-//! The matrices, the free velocity and the contact solver are those of [`MoreauJean`](crate::MoreauJean) at θ = ½. What is
-//! different is which contacts take part, and the shift s of the law:
-//!
-//! ```text
-//! q̃_m = q⁰ + ¼h(v⁰ + v_free),   q̃ = q⁰ + ½h(v⁰ + v_free)
-//! J = J(q̃_m),   U⁰ = J v⁰,   b = (J(q̃) − J) v⁰
-//! s_n = U_n⁰ if |U_n⁰ − b_n| ≤ |b_n|, else max(b_n, U_n⁰)
-//! s_t = U_t⁰ if ‖U_t⁰ − b_t‖ ≤ ‖b_t‖, else b_t
-//! 0 ≤ U_n¹ + s_n ⊥ p_n ≥ 0,   Coulomb on U_t¹ + s_t
-//! ```
-//!
-//! A contact that pressed in a step is *closed* in the next, whatever its gap. An open contact becomes closed where the step
-//! would end in the surface, and deeper than it began: the step is then tried again. If it approaches, s_n = e U_n⁰ for an impact, and 0 for
-//! an approach that its free acceleration makes within the step. J at mid-step and b make the closed contact end the step
-//! with the velocity that the surface has there, so its gap doesn't drift apart as that of the page's scheme does.
-//!
-//! **Work**: U_n¹ = −s_n where p_n > 0, so Ū_n p_n = ½(U_n⁰ − s_n) p_n ≤ 0, as s_n ≥ U_n⁰. Friction obeys (U_t¹ + s_t)·p_t ≤ 0; where
-//! that leaves a contact with Ū·p > 0 all the same, as where a slide turns within the step, its shift becomes s_n = max(s_n, U_n⁰), and
-//! s_t = U_t⁰ or no friction at all, whichever ends nearer to rest; with both Ū·p ≤ 0. The problem is solved once more. So no contact
-//! gives energy in any step. (But for closed contacts with what moves as prescribed: there Ū is relative, and they are left as they are.)
+//! Its formulas, and why no contact gives energy, are at
+//! [`MoreauJeanClosed`](crate::MoreauJeanClosed).
 
 use crate::contact::tangential;
 use crate::laws::{Laws, is_impact};
@@ -36,7 +18,8 @@ use teeter_detect::{Candidate, Candidates, ContactId};
 /// θ: the step's account of work holds for the trapezoidal rule.
 pub(crate) const THETA: f64 = 0.5;
 
-/// A step, or a part of one, that is tried until no open contact ends in its surface; and the memory for it.
+/// A step, or a part of one, that is tried until no open contact ends in its surface; and the
+/// memory for it.
 #[derive(Debug)]
 pub(crate) struct ClosedStep<const D: usize> {
     /// An open contact closes where the step would end so deep in the surface, and sinking, m.
@@ -57,7 +40,8 @@ pub(crate) struct ClosedStep<const D: usize> {
     pub(crate) closed: Vec<ContactId>,
     /// As many of them have been looked at in this step.
     looked_for: usize,
-    /// The part of the step that is taken: an approach that forces make within a whole step is no impact.
+    /// The part of the step that is taken: an approach that forces make within a whole step is no
+    /// impact.
     pub(crate) of_step: f64,
     /// Of each contact of the step: its shift were there no restitution.
     resting_shift: Vec<f64>,
@@ -70,12 +54,13 @@ pub(crate) struct ClosedStep<const D: usize> {
 /// Rounding of a contact's work, as a part of ‖p‖ Σ|J_i v|, the larger of v⁰ and v_free.
 const WORKLESS: f64 = 1e-13;
 
-/// Where a contact is in the surface already, it closes when it sinks by this part of the gap tolerance within a step: more than
-/// rounding, and so little that no approach is too slow to be seen.
+/// Where a contact is in the surface already, it closes when it sinks by this part of the gap
+/// tolerance within a step: more than rounding, and so little that no approach is too slow to be
+/// seen.
 const SINKING: f64 = 1e-3;
 
-/// A contact that leaves faster than this part of Σ|J_i v| is open after the step, v the larger of v¹ and v_free: what was stopped has no
-/// velocity left to tell its rounding by.
+/// A contact that leaves faster than this part of Σ|J_i v| is open after the step, v the larger of
+/// v¹ and v_free: what was stopped has no velocity left to tell its rounding by.
 const LEAVING: f64 = 1e-10;
 
 impl<const D: usize> ClosedStep<D> {
@@ -132,7 +117,8 @@ impl<const D: usize> ClosedStep<D> {
         Ok(())
     }
 
-    /// Begins a step, or a part of one, from a state: the free velocity, and the contacts that are closed there.
+    /// Begins a step, or a part of one, from a state: the free velocity, and the contacts that are
+    /// closed there.
     pub(crate) fn begin(
         &mut self,
         model: &Model<D>,
@@ -163,7 +149,8 @@ impl<const D: usize> ClosedStep<D> {
         Ok(())
     }
 
-    /// Takes the step with the contacts that are closed: leaves q¹ and v¹, and the candidates in their surface there in the workspace.
+    /// Takes the step with the contacts that are closed: leaves q¹ and v¹, and the candidates in
+    /// their surface there in the workspace.
     pub(crate) fn attempt(
         &mut self,
         model: &Model<D>,
@@ -246,7 +233,8 @@ impl<const D: usize> ClosedStep<D> {
                     let leaves = match self.stage.problem.rule(i) {
                         // What comes back is found in expansion.
                         Rule::Poisson { .. } => contact.u_after[0] + self.resting_shift[i],
-                        // U_n¹ = −s_n where it presses: by s_n itself, as at rest a velocity is all rounding and solver's error.
+                        // U_n¹ = −s_n where it presses: by s_n itself, as at rest a velocity is all
+                        // rounding and solver's error.
                         _ => self.resting_shift[i] - self.stage.problem.shift(i)[0],
                     };
                     let speed = |v: &[f64]| self.stage.speed(i, v);
@@ -341,7 +329,8 @@ impl<const D: usize> ClosedStep<D> {
         self.stage.set(i, u_before, u_free, shift, rule)
     }
 
-    /// The gap of a contact at q⁰, m; 0 where it has none. Only a step with a new contact pays for looking there.
+    /// The gap of a contact at q⁰, m; 0 where it has none. Only a step with a new contact pays for
+    /// looking there.
     fn gap_at_start(
         &mut self,
         model: &Model<D>,
@@ -353,8 +342,8 @@ impl<const D: usize> ClosedStep<D> {
         Ok(self.start.first().map_or(0.0, |candidate| candidate.gap))
     }
 
-    /// Closes the open contacts that the attempt ends with in their surface (they are the workspace's candidates), deeper
-    /// than they began; whether there are any.
+    /// Closes the open contacts that the attempt ends with in their surface (they are the
+    /// workspace's candidates), deeper than they began; whether there are any.
     fn close_what_sinks(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>) -> Result<bool, Mismatch> {
         let before = self.closed.len();
         for k in 0..work.candidates.len() {
@@ -373,7 +362,8 @@ impl<const D: usize> ClosedStep<D> {
     }
 }
 
-/// Whether a contact with this normal velocity (m/s) leaves, beyond the rounding of a velocity of this size.
+/// Whether a contact with this normal velocity (m/s) leaves, beyond the rounding of a velocity of
+/// this size.
 pub(crate) fn leaves(u: f64, speed: impl Fn() -> f64) -> bool {
     u > 0.0 && u > LEAVING * speed()
 }
@@ -395,7 +385,8 @@ pub(crate) fn restitute<const D: usize>(
     }
     let mut rule = Rule::Shifted;
     if closing && is_impact(e, u_before, u_free) {
-        // Newton's law too: where it would make energy, less of it, before the guard has to bend friction.
+        // Newton's law too: where it would make energy, less of it, before the guard has to bend
+        // friction.
         rule = Rule::Energetic;
         shift[0] = e * u_before[0];
     }
@@ -422,14 +413,16 @@ struct Guard<'a, const D: usize> {
 }
 
 impl<const D: usize> Guard<'_, D> {
-    /// Changes what holds for contacts whose work is positive, so that it can't be; whether there are any.
+    /// Changes what holds for contacts whose work is positive, so that it can't be; whether there
+    /// are any.
     ///
-    /// The usual case is a slide that turns within the step: sticking at its end would take an impulse along the slide that
-    /// was. Then either no friction, or the velocity turned about, whichever ends nearer to rest; it sticks in the next step.
+    /// The usual case is a slide that turns within the step: sticking at its end would take an
+    /// impulse along the slide that was. Then either no friction, or the velocity turned about,
+    /// whichever ends nearer to rest; it sticks in the next step.
     ///
-    /// Where Poisson's law hands a blow on, what one contact gains another one has lost: there it is the sum over contacts that feel
-    /// each other that counts. The law scales what it gives back by it, so what is left is of contacts that would give energy without
-    /// any restitution, too.
+    /// Where Poisson's law hands a blow on, what one contact gains another one has lost: there it
+    /// is the sum over contacts that feel each other that counts. The law scales what it gives back
+    /// by it, so what is left is of contacts that would give energy without any restitution, too.
     fn apply(&self, problem: &mut Problem<D>, guarded: &mut [bool]) -> Result<bool, Mismatch> {
         let laws = self.laws;
         let mut found = false;
@@ -439,7 +432,8 @@ impl<const D: usize> Guard<'_, D> {
             if guarded[number] || p[0] <= 0.0 || matches!(problem.rule(i), Rule::Spring(_)) {
                 continue;
             }
-            // What moves as prescribed gives energy anyway, and a slide that ends there is better stopped where it ends.
+            // What moves as prescribed gives energy anyway, and a slide that ends there is better
+            // stopped where it ends.
             let contact = &self.stage.contacts()[number];
             if contact.persisting && self.stage.feels_drive(self.model, number, self.v_before, self.v_free) {
                 continue;
@@ -472,15 +466,17 @@ impl<const D: usize> Guard<'_, D> {
         Ok(found || self.stop_handing_on(problem))
     }
 
-    /// What may be rounding of a contact's work, J: at rest it is the free velocity whose digits are lost.
+    /// What may be rounding of a contact's work, J: at rest it is the free velocity whose digits
+    /// are lost.
     fn rounding(&self, problem: &Problem<D>, i: usize) -> f64 {
         let number = self.members.number(i);
         let speed = self.stage.speed(number, self.v_before).max(self.stage.speed(number, self.v_free));
         WORKLESS * problem.p[i].norm() * speed
     }
 
-    /// The last resort where contacts that hand a blow on give energy though none does by itself, as the solver finds another one of
-    /// several solutions each time: nothing is given back there. Whether it changed anything.
+    /// The last resort where contacts that hand a blow on give energy though none does by itself,
+    /// as the solver finds another one of several solutions each time: nothing is given back there.
+    /// Whether it changed anything.
     fn stop_handing_on(&self, problem: &mut Problem<D>) -> bool {
         let (laws, n) = (self.laws, problem.len());
         let allowed = |i: usize| self.rounding(problem, i) + laws.work_unreturned(i).max(0.0);

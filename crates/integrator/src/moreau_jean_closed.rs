@@ -25,11 +25,12 @@ impl MoreauJeanClosedSettings {
     }
 }
 
-/// The Moreau–Jean step at θ = ½ with contacts that stay closed from step to step: no contact gives energy, gaps don't drift apart, and
-/// restitution tells impacts from contacts that press.
+/// The Moreau–Jean step at θ = ½ with contacts that stay closed from step to step: no contact gives
+/// energy, gaps don't drift apart, and restitution tells impacts from contacts that press.
 ///
-/// The matrices, the free velocity and the contact solver are those of [`MoreauJean`](crate::MoreauJean) at θ = ½. What is
-/// different is which contacts take part, and the shift s of the law:
+/// The matrices, the free velocity and the contact solver are those of
+/// [`MoreauJean`](crate::MoreauJean) at θ = ½. What is different is which contacts take part, and
+/// the shift s of the law:
 ///
 /// ```text
 /// q̃_m = q⁰ + ¼h(v⁰ + v_free),   q̃ = q⁰ + ½h(v⁰ + v_free)
@@ -39,15 +40,19 @@ impl MoreauJeanClosedSettings {
 /// 0 ≤ U_n¹ + s_n ⊥ p_n ≥ 0,   Coulomb on U_t¹ + s_t
 /// ```
 ///
-/// A contact that pressed in a step is *closed* in the next, whatever its gap. An open contact becomes closed where the step
-/// would end in the surface, and deeper than it began: the step is then tried again. If it approaches, s_n = e U_n⁰ for an impact, and 0 for
-/// an approach that its free acceleration makes within the step. J at mid-step and b make the closed contact end the step
-/// with the velocity that the surface has there, so its gap doesn't drift apart as that of the page's scheme does.
+/// A contact that pressed in a step is *closed* in the next, whatever its gap. An open contact
+/// becomes closed where the step would end in the surface, and deeper than it began: the step is
+/// then tried again. If it approaches, s_n = e U_n⁰ for an impact, and 0 for an approach that its
+/// free acceleration makes within the step. J at mid-step and b make the closed contact end the
+/// step with the velocity that the surface has there, so its gap doesn't drift apart as that of the
+/// page's scheme does.
 ///
 /// **Work**: U_n¹ = −s_n where p_n > 0, so Ū_n p_n = ½(U_n⁰ − s_n) p_n ≤ 0, as s_n ≥ U_n⁰. Friction obeys (U_t¹ + s_t)·p_t ≤ 0; where
-/// that leaves a contact with Ū·p > 0 all the same, as where a slide turns within the step, its shift becomes s_n = max(s_n, U_n⁰), and
-/// s_t = U_t⁰ or no friction at all, whichever ends nearer to rest; with both Ū·p ≤ 0. The problem is solved once more. So no contact
-/// gives energy in any step. (But for closed contacts with what moves as prescribed: there Ū is relative, and they are left as they are.)
+/// that leaves a contact with Ū·p > 0 all the same, as where a slide turns within the step, its
+/// shift becomes s_n = max(s_n, U_n⁰), and s_t = U_t⁰ or no friction at all, whichever ends nearer
+/// to rest; with both Ū·p ≤ 0. The problem is solved once more. So no contact gives energy in any
+/// step. (But for closed contacts with what moves as prescribed: there Ū is relative, and they are
+/// left as they are.)
 #[derive(Debug)]
 pub struct MoreauJeanClosed<const D: usize> {
     settings: MoreauJeanClosedSettings,

@@ -34,7 +34,8 @@ const FOLLOWERS: &str = "matrices that follow their coordinates, as of a beam he
 /// Steps for which a contact with something elastic pressed lately.
 const LATELY: f64 = 50.0;
 
-/// Whether a subsystem yields to a push in more than its whole motion: a beam, not a block or the ground.
+/// Whether a subsystem yields to a push in more than its whole motion: a beam, not a block or the
+/// ground.
 fn is_elastic<const D: usize>(part: &Part<D>, index: usize, w: Weights, factors: &mut Factors<D>) -> bool {
     part.row > 0 && !part.is_prescribed() && factors.of(index, w).is_some_and(|factor| !factor.is_diagonal())
 }
@@ -42,21 +43,25 @@ fn is_elastic<const D: usize>(part: &Part<D>, index: usize, w: Weights, factors:
 /// W at an instant: M⁻¹.
 const MASSES: Weights = Weights { mass: 1.0, damping: 0.0, stiffness: 0.0 };
 
-/// The step of [`MoreauJeanClosed`](crate::MoreauJeanClosed), divided where a contact closes: of second order through impacts.
+/// The step of [`MoreauJeanClosed`](crate::MoreauJeanClosed), divided where a contact closes: of
+/// second order through impacts.
 ///
-/// A step in which no open contact would end in its surface is that of the closed scheme. Otherwise the time at which the first one
-/// touches is located; the step up to there is a step of its own, with matrices of its own; then places stand still while velocities jump,
+/// A step in which no open contact would end in its surface is that of the closed scheme. Otherwise
+/// the time at which the first one touches is located; the step up to there is a step of its own,
+/// with matrices of its own; then places stand still while velocities jump,
 ///
 /// ```text
 /// v⁺ = v⁻ + M⁻¹ Jᵀ p,   0 ≤ U_n⁺ + s_n ⊥ p_n ≥ 0,   s_n = e U_n⁻,   Coulomb on U_t⁺,   H = J M⁻¹ Jᵀ
 /// ```
 ///
-/// with all contacts that touch; and the rest of the step follows in the same way. e counts for a contact that was open, where e |U_n⁻| > a h with a
-/// its free normal acceleration: this ends the bounces of a contact that comes to rest. Restitution by Newton's law is made smaller where
-/// it would make energy; then no impact does.
+/// with all contacts that touch; and the rest of the step follows in the same way. e counts for a
+/// contact that was open, where e |U_n⁻| > a h with a its free normal acceleration: this ends the
+/// bounces of a contact that comes to rest. Restitution by Newton's law is made smaller where it
+/// would make energy; then no impact does.
 ///
-/// Contacts with duration have no impact: only the time at which they close is located. Subsystems whose matrices follow their coordinates, such as beams held
-/// along their axis, are refused: they keep their energy in steps of one size only.
+/// Contacts with duration have no impact: only the time at which they close is located. Subsystems
+/// whose matrices follow their coordinates, such as beams held along their axis, are refused: they
+/// keep their energy in steps of one size only.
 #[derive(Debug)]
 pub struct MoreauJeanLocated<const D: usize> {
     settings: MoreauJeanLocatedSettings,
@@ -80,6 +85,8 @@ pub struct MoreauJeanLocated<const D: usize> {
     /// Contacts with something elastic that pressed lately: pair, point, and the last step in which
     /// they did, as the state's memory holds them.
     lately: Vec<f64>,
+    /// Whether more contacts struck in the step than are located.
+    unlocated: bool,
 }
 
 impl<const D: usize> MoreauJeanLocated<D> {
@@ -111,6 +118,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
             v: Vec::new(),
             stays: Vec::new(),
             lately: Vec::new(),
+            unlocated: false,
         })
     }
 
@@ -127,7 +135,8 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
     }
 
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {
-        // Their modified energy depends on the size of the step: each change of it would take or give some.
+        // Their modified energy depends on the size of the step: each change of it would take or
+        // give some.
         if model.parts().iter().any(|part| part.traits.follows_coordinates) {
             return Err(StepError::Unsupported { what: FOLLOWERS });
         }
@@ -176,12 +185,14 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         let (penetration, stays) = (penetration?, &self.stays);
         let report = work.finish(model, state, Some(penetration), |i, _| stays[i])?;
         state.memory.set_numbers(&self.lately);
+        state.tally.unlocated_steps += u64::from(self.unlocated);
         Ok(report)
     }
 }
 
 impl<const D: usize> MoreauJeanLocated<D> {
-    /// Takes the step from impact to impact, each part of it from `from`, which moves on; returns the penetration at its end, m.
+    /// Takes the step from impact to impact, each part of it from `from`, which moves on; returns
+    /// the penetration at its end, m.
     fn take_parts(
         &mut self,
         model: &Model<D>,
@@ -189,9 +200,8 @@ impl<const D: usize> MoreauJeanLocated<D> {
         span: &StepSpan,
         work: &mut Workspace<D>,
     ) -> Result<f64, StepError> {
-        let mut left = span.h;
-        let mut struck = true;
-        for impacts in 0.. {
+        let (mut left, mut impacts, mut struck) = (span.h, 0, true);
+        loop {
             let rest = StepSpan { start: from.t, end: span.end, h: left };
             self.step.begin(model, from, &rest, work)?;
             self.step.of_step = left / span.h;
@@ -200,10 +210,11 @@ impl<const D: usize> MoreauJeanLocated<D> {
                     *by_forces = free - v0;
                 }
             }
-            let (outcome, found) = if impacts < Self::MOST_IMPACTS && struck {
-                self.locate(model, from, &rest, work)?
-            } else {
+            self.unlocated = impacts == Self::MOST_IMPACTS;
+            let (outcome, found) = if self.unlocated || !struck {
                 (self.step.settle(model, from, &rest, work)?, None)
+            } else {
+                self.locate(model, from, &rest, work)?
             };
             let Some(tau) = found else {
                 let penetration = deepest(work);
@@ -219,13 +230,12 @@ impl<const D: usize> MoreauJeanLocated<D> {
             }
             struck = self.strike(model, from, end, work)? || tau > 0.0;
             self.remember_lately(model, from, work);
-            left -= tau;
+            (left, impacts) = (left - tau, impacts + 1);
             if last {
                 work.detect(model, &from.q, 0.0)?;
                 return Ok(deepest(work));
             }
         }
-        Ok(0.0)
     }
 
     /// Whether a contact with something elastic pressed lately. Such a contact chatters: it is lost
@@ -235,8 +245,8 @@ impl<const D: usize> MoreauJeanLocated<D> {
         self.lately.chunks_exact(3).any(|held| held[0] == f64::from(id.pair()) && held[1] == f64::from(id.point()))
     }
 
-    /// Enters the contacts with something elastic that pressed or struck so far in the step from `from`, and
-    /// forgets those that have not for long.
+    /// Enters the contacts with something elastic that pressed or struck so far in the step from
+    /// `from`, and forgets those that have not for long.
     fn remember_lately(&mut self, model: &Model<D>, from: &State, work: &mut Workspace<D>) {
         let (now, w) = (from.step.saturating_add(1) as f64, weights(from.dt, THETA));
         let (contacts, factors) = work.contacts_and_factors();

@@ -391,6 +391,12 @@ impl<'w, const D: usize> StepReport<'w, D> {
         })
     }
 
+    /// Its last phase that takes time; `None` for a step that is impacts only.
+    #[must_use]
+    pub fn last_lasting(&self) -> Option<Phase<'w, D>> {
+        self.phases().filter(|phase| phase.kind != PhaseKind::Impact).last()
+    }
+
     /// The contacts of all phases: a contact that was active in several comes several times.
     pub fn contacts(&self) -> impl Iterator<Item = &'w Contact<D>> + use<'w, D> {
         let Phases { kept, used, .. } = self.phases;

@@ -1,4 +1,5 @@
-//! The θ step that the schemes share: free velocities, the end of the step, the account of its forces.
+//! The θ step that the schemes share: free velocities, the end of the step, the account of its
+//! forces.
 
 use crate::mismatch::Identity;
 use crate::subsystem::{all_finite, dot};
@@ -45,7 +46,8 @@ impl ThetaStep {
         self.check(model, state, work)
     }
 
-    /// Refuses what belongs to another model than that which the scheme was started with; a scheme that never was starts with this one.
+    /// Refuses what belongs to another model than that which the scheme was started with; a scheme
+    /// that never was starts with this one.
     #[inline]
     pub(crate) fn check<const D: usize>(
         &mut self,
@@ -97,8 +99,8 @@ impl ThetaStep {
         Ok(())
     }
 
-    /// Leaves v_free and P. Prescribed velocities are those about the end of the step; what their change does to the others
-    /// goes to the right-hand side.
+    /// Leaves v_free and P. Prescribed velocities are those about the end of the step; what their
+    /// change does to the others goes to the right-hand side.
     pub(crate) fn free_velocity<const D: usize>(
         &mut self,
         model: &Model<D>,
@@ -144,8 +146,9 @@ impl ThetaStep {
             }
             self.impulse[v.clone()].copy_from_slice(dv);
             v_end.copy_from_slice(v_start);
-            // The part θ of the mean lies before the end, so that q = θ d(t + (1 − θ)h) + (1 − θ) d(t − θh). Over a part of a step it is the mean over as
-            // long a time: that over a short one would jump from it, and push with what the jump takes.
+            // The part θ of the mean lies before the end, so that q = θ d(t + (1 − θ)h) + (1 − θ)
+            // d(t − θh). Over a part of a step it is the mean over as long a time: that over a
+            // short one would jump from it, and push with what the jump takes.
             let dt = state.dt;
             part.system.drive_mean([t_end - theta * dt, t_end + (1.0 - theta) * dt], v_end);
             let (jump, pull) = (&mut work.scratch[..v.len()], &mut self.product[v]);
@@ -196,8 +199,8 @@ impl ThetaStep {
         Ok(self.work_of_forces(model, state, work, stage, 0.0, 0.5))
     }
 
-    /// The terms of the energy identity that aren't contact: loads, drives, damping, the scheme itself. The impulses of the
-    /// step's contacts are in `stage`.
+    /// The terms of the energy identity that aren't contact: loads, drives, damping, the scheme
+    /// itself. The impulses of the step's contacts are in `stage`.
     pub(crate) fn work_of_forces<const D: usize>(
         &mut self,
         model: &Model<D>,
@@ -261,7 +264,8 @@ impl ThetaStep {
 
 /// β = hα/(1 + hθα): with C = αM the damping needs no product.
 ///
-/// A Δv = h[−K(q⁰ + hθv⁰) − αM v⁰ + P] with A = (1 + hθα)M + h²θ²K, so αM v⁰ = α/(1 + hθα) (A − h²θ²K) v⁰ and
+/// A Δv = h[−K(q⁰ + hθv⁰) − αM v⁰ + P] with A = (1 + hθα)M + h²θ²K, so αM v⁰ = α/(1 + hθα) (A −
+/// h²θ²K) v⁰ and
 ///
 /// ```text
 /// v_free = (1 − β) v⁰ + h W [ −K(q⁰ + hθ(1 − βθ) v⁰) + P ]

@@ -12,8 +12,7 @@ use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::ops::ControlFlow;
 use teeter_integrator::{
-    Closing, ClosingMonitor, Contact, Model, MoreauJeanLocated, Observer, ObserverError, PhaseKind, RockingMonitor,
-    State, StepReport,
+    Closing, ClosingMonitor, Contact, Model, Observer, ObserverError, PhaseKind, RockingMonitor, State, StepReport,
 };
 use teeter_scenario::Shapes;
 use teeter_scenario::diagnostic::Diagnostic;
@@ -53,8 +52,6 @@ pub struct Record {
     pub reclosure_count: u64,
     /// Up to when the motion was found to be as accurate as was asked for, s.
     pub horizon: Option<f64>,
-    /// Steps in which more contacts struck than a scheme locates.
-    pub unlocated_steps: u64,
     /// Zero crossings and peaks, by block.
     pub rocking: Vec<RockingMonitor>,
     /// What beams bore, of those that are asked.
@@ -335,8 +332,6 @@ impl Observer<2> for Recorder<'_> {
         step: &StepReport<'_, 2>,
         state: &State,
     ) -> Result<ControlFlow<()>, ObserverError> {
-        let impacts = step.phases().filter(|phase| phase.kind == PhaseKind::Impact).count();
-        self.kept.record.unlocated_steps += u64::from(impacts >= MoreauJeanLocated::<2>::MOST_IMPACTS);
         self.kept.impulses.add(step.contacts());
         self.write_impacts(model, step, state)?;
         self.warn_of_unsolved(step);
@@ -355,7 +350,7 @@ impl Observer<2> for Recorder<'_> {
         }
         self.kept.contacts_now.clear();
         // Those of its last part, and of an impact at its very end.
-        if let Some(last) = step.phases().filter(|phase| phase.kind != PhaseKind::Impact).last() {
+        if let Some(last) = step.last_lasting() {
             self.kept.contacts_now.extend_from_slice(last.contacts);
         }
         if let Some(last) = step.phases().last().filter(|phase| phase.kind == PhaseKind::Impact) {

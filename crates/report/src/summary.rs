@@ -327,7 +327,7 @@ impl Summary {
             impacts: record.impacts.clone(),
             impact_count: record.impact_count,
             reclosure_count: record.reclosure_count,
-            unlocated_steps: record.unlocated_steps,
+            unlocated_steps: state.tally.unlocated_steps,
             crossing_count: (counted > crossings.len() as u64).then_some(counted),
             crossings,
             peaks,

@@ -1,15 +1,15 @@
-//! The step that reaches an accuracy: found by runs, each of half the step of the one before, and believed only where
-//! two finer runs confirm it.
+//! The step that reaches an accuracy: found by runs, each of half the step of the one before, and
+//! believed only where two finer runs confirm it.
 //!
-//! The error is that of [`Quantity::Accuracy`], the largest of angles, places and deflections. A step h is taken when
-//! the run with it is within the accuracy of the run with h/4, and that with h/2 is nearer: so it converges. Motions
-//! that part from a start 1e-12 beside them are compared up to there, the horizon.
+//! The error is that of [`Quantity::Accuracy`], the largest of angles, places and deflections. A
+//! step h is taken when the run with it is within the accuracy of the run with h/4, and that with
+//! h/2 is nearer: so it converges. Motions that part from a start 1e-12 beside them are compared up
+//! to there, the horizon.
 
 use crate::motion::Sampler;
 use crate::reference::NUDGE;
 use crate::{Failure, Motion, Quantity, Ruler, Sampling, Work};
 use std::sync::atomic::AtomicBool;
-use teeter_integrator::Ended;
 use teeter_report::Record;
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Simulation;
@@ -96,16 +96,24 @@ pub fn step_for(scene: &Scene, accuracy: f64, cancel: &AtomicBool) -> Result<Cho
     // The runs so far, from long steps to short ones; none where a run didn't come to its end.
     let mut motions: Vec<(f64, Option<Motion>)> = Vec::new();
     let mut step = end / 2_f64.powf((end / longest(scene)).log2().ceil());
-    let mut errors = Vec::new();
+    let (mut errors, mut failed) = (Vec::new(), None);
     let mut best = (f64::NAN, f64::INFINITY, end);
     loop {
         let fine = match pilots.run(step, 0.0) {
             Ok(Some(motion)) => Some(motion),
             Ok(None) => {
                 let (step, error, horizon) = best;
+                // Where nothing could be compared, as no run came to its end, that is what there is
+                // to say.
+                if let Some(failure) = failed.filter(|_| step.is_nan()) {
+                    return Err(NoStep::Failure(failure));
+                }
                 return Err(NoStep::NotReached { accuracy, step, error, horizon, dear: true });
             }
-            Err(Failure::Ended(_)) => None,
+            Err(failure @ Failure::Ended(_)) => {
+                failed = Some(failure);
+                None
+            }
             Err(failure) => return Err(failure.into()),
         };
         motions.push((step, fine));
@@ -116,8 +124,10 @@ pub fn step_for(scene: &Scene, accuracy: f64, cancel: &AtomicBool) -> Result<Cho
                 ruler.clone().up_to(samples).errors(motion, fine).of(Quantity::Accuracy).unwrap_or(0.0)
             };
             if motions.len() > PATIENCE && !(of(coarse, fine, samples) <= ROOM * accuracy) {
-                let Some(nudged) = pilots.run(step, NUDGE)? else { continue };
-                samples = ruler.agree(&nudged, fine, accuracy).max(1);
+                // As dear as the run beside it, which was not too dear.
+                if let Some(nudged) = pilots.run(step, NUDGE)? {
+                    samples = ruler.agree(&nudged, fine, accuracy).max(1);
+                }
             }
             let horizon = sampling.time(samples - 1);
             let [error, nearer] = [coarse, middle].map(|motion| of(motion, fine, samples));
@@ -160,7 +170,8 @@ pub fn step_for(scene: &Scene, accuracy: f64, cancel: &AtomicBool) -> Result<Cho
     }
 }
 
-/// A step between h and 2h that should do, by the errors of both; `None` if it is hardly longer than h.
+/// A step between h and 2h that should do, by the errors of both; `None` if it is hardly longer
+/// than h.
 fn longer(error: f64, twice: Option<f64>, accuracy: f64, step: f64) -> Option<f64> {
     let order = (twice? / error).log2();
     let factor = (0.8 * accuracy / error).powf(order.recip()).min(1.9);
@@ -168,7 +179,8 @@ fn longer(error: f64, twice: Option<f64>, accuracy: f64, step: f64) -> Option<f6
     (order > 0.5 && factor > LONGER).then_some(factor * step)
 }
 
-/// The step that a search begins with, s: the motion of a block in it, and some tens of steps in all.
+/// The step that a search begins with, s: the motion of a block in it, and some tens of steps in
+/// all.
 fn longest(scene: &Scene) -> f64 {
     let [x, y] = scene.gravity;
     let gravity = x.hypot(y);
@@ -186,7 +198,8 @@ struct Pilots<'a> {
 }
 
 impl Pilots<'_> {
-    /// The motion with a step (s), the first block turned by `nudge` (rad) at the start, or a beam without one bent more by that share; `None` if it would take too long.
+    /// The motion with a step (s), the first block turned by `nudge` (rad) at the start, or a beam
+    /// without one bent more by that share; `None` if it would take too long.
     fn run(&mut self, step: f64, nudge: f64) -> Result<Option<Motion>, Failure> {
         let mut scene = self.scene.clone();
         scene.time.step = step;
@@ -202,19 +215,13 @@ impl Pilots<'_> {
             (None, Some(beam)) => simulation.state.q[beam.range.clone()].iter_mut().for_each(|q| *q *= 1.0 + nudge),
             (None, None) => {}
         }
+        let state = &simulation.state;
+        // Crossings and peaks are not what it is judged by: each block has none.
+        let record = Record { rocking: layout.rocking_monitors(state.t, &state.q), ..Record::default() };
         let mut sampler = Sampler::new(self.sampling, &layout, self.cancel);
-        match simulation.run(&mut [&mut sampler]).map_err(|error| Failure::Ended(error.to_string()))? {
-            Ended::Complete => {
-                let mut motion = sampler.finish(&simulation.state, &Record::default());
-                // Crossings and peaks are not what it is judged by.
-                motion.crossings = vec![Vec::new(); layout.blocks.len()];
-                motion.peaks = vec![Vec::new(); layout.blocks.len()];
-                Ok(Some(motion))
-            }
-            Ended::Interrupted => Err(Failure::Interrupted),
-            Ended::Failed(error) => Err(Failure::Ended(error.to_string())),
-            _ => Err(Failure::Ended("a step was not solved to tolerance".to_owned())),
-        }
+        let ended = simulation.run(&mut [&mut sampler]).map_err(|error| Failure::Ended(error.to_string()))?;
+        Failure::unless_complete(ended, simulation.state.t)?;
+        Ok(Some(sampler.finish(&simulation.state, &record)))
     }
 }
 

@@ -21,8 +21,8 @@ pub struct Sampling {
 const SAMPLES: f64 = 500.0;
 
 impl Sampling {
-    /// For a scene: some 500 samples, a whole number of the scene's own steps apart. Steps that divide this hit the samples; for
-    /// others the motion is taken in between.
+    /// For a scene: some 500 samples, a whole number of the scene's own steps apart. Steps that
+    /// divide this hit the samples; for others the motion is taken in between.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let (end, step) = (scene.time.end, scene.time.step);
@@ -128,7 +128,8 @@ impl<'a> Sampler<'a> {
         self.motion
     }
 
-    /// Takes the sample at the share `s` of the step that ended with `state`: `piece` is the part of it without impacts in which that is.
+    /// Takes the sample at the share `s` of the step that ended with `state`: `piece` is the part
+    /// of it without impacts in which that is.
     fn take(&mut self, s: f64, piece: &Piece<'_>, state: &State) {
         let Piece { s: within, h, q: [q0, q1], v: [v0, v1] } = *piece;
         let (before, motion) = (&self.before, &mut self.motion);
@@ -190,7 +191,8 @@ impl<'a> Piece<'a> {
     }
 }
 
-/// Where the deflection of a beam is watched, m from its left end: in the middles and at its probes.
+/// Where the deflection of a beam is watched, m from its left end: in the middles and at its
+/// probes.
 fn watched_places(place: &BeamPlace) -> Vec<f64> {
     let mut places = place.middles();
     for x in &place.probes {
@@ -201,7 +203,8 @@ fn watched_places(place: &BeamPlace) -> Vec<f64> {
     places
 }
 
-/// The cubic with these values and derivatives at both ends of a step of length `h`, at its share `s`.
+/// The cubic with these values and derivatives at both ends of a step of length `h`, at its share
+/// `s`.
 fn hermite(s: f64, h: f64, q: [f64; 2], v: [f64; 2]) -> f64 {
     if s >= 1.0 {
         return q[1];

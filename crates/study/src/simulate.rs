@@ -33,6 +33,18 @@ impl From<Diagnostics> for Failure {
     }
 }
 
+impl Failure {
+    /// Refuses a run that ended at time `t` (s), but for one that came to its end.
+    pub(crate) fn unless_complete(ended: Ended, t: f64) -> Result<(), Self> {
+        match ended {
+            Ended::Complete => Ok(()),
+            Ended::Interrupted => Err(Self::Interrupted),
+            Ended::Failed(error) => Err(Self::Ended(error.to_string())),
+            _ => Err(Self::Ended(format!("a step was not solved to tolerance at t = {t} s"))),
+        }
+    }
+}
+
 /// A run that came to its end.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Ran {
@@ -122,12 +134,7 @@ fn run_within(
         )));
     }
     let state = &simulation.state;
-    match ended {
-        Ended::Complete => {}
-        Ended::Interrupted => return Err(Failure::Interrupted),
-        Ended::Failed(error) => return Err(Failure::Ended(error.to_string())),
-        _ => return Err(Failure::Ended(format!("a step was not solved to tolerance at t = {} s", state.t))),
-    }
+    Failure::unless_complete(ended, state.t)?;
     let work = Work::of(&simulation);
     let record = recorder.into_record();
     let summary = Summary::new(&resolved.scene, &layout, state, &record, EndedWord::Complete, 0.0);

@@ -341,7 +341,7 @@ impl Document {
     /// Leaves a value out that nobody gave, so that [`Document::to_toml`] doesn't write it.
     pub fn forget_default(&mut self, path: &str) {
         if !self.is_given(path) {
-            self.entries.remove(path);
+            self.leave_out(path);
         }
     }
 

@@ -91,7 +91,8 @@ impl<const D: usize> MoreauJeanLocated<D> {
                 if !lately && self.strikes_at_start(model, from, id, work)? {
                     return Ok((outcome, Some(0.0)));
                 }
-                // It chatters; or a flight shorter than the step, or a spring that is pressed from now on.
+                // It chatters; or a flight shorter than the step, or a spring that is pressed from
+                // now on.
                 if let Err(at) = self.step.closed.binary_search(&id) {
                     self.step.closed.insert(at, id);
                 }

@@ -1,8 +1,11 @@
-//! The contacts of many bodies that stand apart, solved island by island: the dense operator of all of them together is never made.
+//! The contacts of many bodies that stand apart, solved island by island: the dense operator of all
+//! of them together is never made.
 //!
-//! Contacts feel each other through the bodies that they share. Where W of a subsystem is diagonal, as that of blocks, those that share a velocity
-//! do; of any other subsystem all that push it. A prescribed velocity yields to nobody, so that nobody feels another through it: blocks on ground that
-//! shakes stand apart as those on ground at rest. Memory and time then grow with the number of islands, not with its square.
+//! Contacts feel each other through the bodies that they share. Where W of a subsystem is diagonal,
+//! as that of blocks, those that share a velocity do; of any other subsystem all that push it. A
+//! prescribed velocity yields to nobody, so that nobody feels another through it: blocks on ground
+//! that shakes stand apart as those on ground at rest. Memory and time then grow with the number of
+//! islands, not with its square.
 
 use super::solve::{couple, couple_into};
 use super::{ContactError, ContactRows, ContactStage, Members, Over, Problem};
@@ -11,8 +14,9 @@ use crate::subsystem::Span;
 use crate::{Model, Responses, Workspace};
 use teeter_contact::{Incidence, Outcome};
 
-/// From so many contacts on. Below it the dense operator of all costs next to nothing, and the solver finds the islands in it. An island of so
-/// many is coupled by neighbours, if most of its contacts are none.
+/// From so many contacts on. Below it the dense operator of all costs next to nothing, and the
+/// solver finds the islands in it. An island of so many is coupled by neighbours, if most of its
+/// contacts are none.
 const MANY: usize = 64;
 
 /// Memory for the islands.
@@ -28,7 +32,8 @@ pub(super) struct Islands<const D: usize> {
     problem: Problem<D>,
 }
 
-/// What a contact shares with others: the velocities that it pushes where W is diagonal, else the subsystem; prescribed ones not.
+/// What a contact shares with others: the velocities that it pushes where W is diagonal, else the
+/// subsystem; prescribed ones not.
 fn keys<'a, const D: usize>(
     rows: &'a ContactRows<D>,
     model: &'a Model<D>,
@@ -46,11 +51,11 @@ fn keys<'a, const D: usize>(
 }
 
 impl<const D: usize> ContactStage<D> {
-    /// Solves the stage's problem island by island, and leaves the impulses in it. `None` where that is not worth while: few contacts, or
-    /// one island only.
+    /// Solves the stage's problem island by island, and leaves the impulses in it. `None` where
+    /// that is not worth while: few contacts, or one island only.
     ///
-    /// The outcome is that of all islands: converged if all are; residuals are the largest, each in its island's own scale; iterations the
-    /// most of an island.
+    /// The outcome is that of all islands: converged if all are; residuals are the largest, each in
+    /// its island's own scale; iterations the most of an island.
     #[inline]
     pub(super) fn solve_apart(
         &mut self,

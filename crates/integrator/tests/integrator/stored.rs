@@ -127,6 +127,7 @@ proptest! {
             max_contacts: counts[2] as usize,
             contact_steps: u64::from(counts[3]),
             unconverged_steps: u64::from(counts[4]),
+            unlocated_steps: u64::from(counts[4]),
         };
         (state.t, state.dt, state.step) = (number(), number(), u64::from(counts[5]));
         let memory: Vec<f64>;

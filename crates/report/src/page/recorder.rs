@@ -8,7 +8,7 @@ use crate::sections::{BeamRecord, Column, Kind, columns_of};
 use serde::{Deserialize, Serialize};
 use std::ops::{ControlFlow, Range};
 use teeter_integrator::{
-    Closing, ClosingMonitor, ContactState, Model, Observer, ObserverError, PhaseKind, State, StepReport,
+    Closing, ClosingMonitor, Contact, ContactState, Model, Observer, ObserverError, State, StepReport,
 };
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Layout;
@@ -211,17 +211,13 @@ impl PageRecorder {
     ) -> Result<(), ObserverError> {
         let Self { scenery, kept, layout, .. } = self;
         let Kept { curves, impacts, closings, omega: [now, before], .. } = kept;
-        let lasting = step.phases().filter(|phase| phase.kind != PhaseKind::Impact).count();
-        let mut number = 0;
-        for phase in step.phases() {
-            number += usize::from(phase.kind != PhaseKind::Impact);
-            // What a contact does in a step is what it does in its last part.
-            let tells = number == lasting && phase.kind != PhaseKind::Impact;
-            for contact in phase.contacts {
-                let (pair, point) = (contact.id.pair() as usize, contact.id.point() as usize);
-                let state = if tells { contact.state() } else { ContactState::Open };
-                curves.add(CORNERS * pair + point, [contact.p[0], contact.p[1]], state);
-            }
+        // Impulses are those of the whole step; what a contact does in it is what it does in its last part.
+        let place = |contact: &Contact<2>| CORNERS * contact.id.pair() as usize + contact.id.point() as usize;
+        for contact in step.contacts() {
+            curves.add(place(contact), [contact.p[0], contact.p[1]], ContactState::Open);
+        }
+        for contact in step.last_lasting().iter().flat_map(|last| last.contacts) {
+            curves.add(place(contact), [0.0; 2], contact.state());
         }
         closings.enter(model, step, state, &layout.openings, |t, contact, closing| {
             let (pair, point) = (contact.id.pair() as usize, contact.id.point() as usize);

@@ -9,7 +9,8 @@ use crate::words::SchemeChoice;
 /// Most steps of a run.
 pub const MAX_STEPS: f64 = 1e12;
 
-/// A gap tolerance beyond this part of the shortest side of a block is refused; one beyond the second is warned of.
+/// A gap tolerance beyond this part of the shortest side of a block is refused; one beyond the
+/// second is warned of.
 const MOST_GAP: f64 = 1e-3;
 const DOUBTFUL_GAP: f64 = 1e-6;
 
@@ -125,9 +126,10 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// The scheme that suits the scene: the most accurate one (`docs/schemes.md`), unless keys of another are given. Where many blocks strike in a
-    /// step there are too many impacts to locate, and a held beam keeps its energy in steps of one size only; where there are no blocks, one is as good as
-    /// the other.
+    /// The scheme that suits the scene: the most accurate one (`docs/schemes.md`), unless keys of
+    /// another are given. Where many blocks strike in a step there are too many impacts to locate,
+    /// and a held beam keeps its energy in steps of one size only; where there are no blocks, one
+    /// is as good as the other.
     fn suitable(&self, blocks: usize, beams: &[Option<BeamScene>]) -> SchemeName {
         let held = beams.iter().flatten().any(|beam| beam.spec.axial == teeter_beam::Axial::Held);
         let own = ["time.theta", "time.gap_tolerance", "time.activation_gamma"];
@@ -140,7 +142,8 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// The gap below which a contact counts as closed, m: what is given, if it is small against the blocks.
+    /// The gap below which a contact counts as closed, m: what is given, if it is small against the
+    /// blocks.
     fn gap_tolerance(&mut self, blocks: &[Option<BlockScene>]) -> f64 {
         let Some(given) = self.doc.quantity("time.gap_tolerance") else { return gap_tolerance(blocks) };
         let shortest = blocks.iter().flatten().map(|block| block.width.min(block.height)).fold(f64::INFINITY, f64::min);
@@ -199,8 +202,8 @@ impl Resolver<'_, '_> {
     }
 }
 
-/// The gap tolerance that a scene without one gets: 1e-12 m, scaled for blocks outside [0.01, 1] m; less beside a block so thin that it would be
-/// doubtful.
+/// The gap tolerance that a scene without one gets: 1e-12 m, scaled for blocks outside [0.01, 1] m;
+/// less beside a block so thin that it would be doubtful.
 fn gap_tolerance(blocks: &[Option<BlockScene>]) -> f64 {
     let largest = blocks.iter().flatten().map(|block| block.width.max(block.height)).fold(0.0, f64::max);
     let shortest = blocks.iter().flatten().map(|block| block.width.min(block.height)).fold(f64::INFINITY, f64::min);

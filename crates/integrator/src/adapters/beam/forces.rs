@@ -174,35 +174,13 @@ impl BeamForces {
     /// As [`SectionForces::update`], such as for a state that is not finite; and if the phase
     /// doesn't have the beam's coordinates.
     pub fn enter(&mut self, phase: &Phase<'_, 2>) -> Result<Option<&SectionForces>, BeamError> {
-        let (tau, weight) = (phase.duration, phase.balance.weight());
         for end in 0..2 {
             self.read(end, phase.q[end], phase.v[end])?;
         }
-        if tau <= 0.0 {
+        if phase.duration <= 0.0 {
             return Ok(None);
         }
-        let mean = |out: &mut [f64], [x0, x1]: &[Vec<f64>; 2]| {
-            out.iter_mut().zip(x0.iter().zip(x1)).for_each(|(out, (x0, x1))| *out = weight * x1 + (1.0 - weight) * x0);
-        };
-        mean(&mut self.q_mean, &self.q);
-        mean(&mut self.v_mean, &self.v);
-        for (a, (v0, v1)) in self.acceleration.iter_mut().zip(self.v[0].iter().zip(&self.v[1])) {
-            *a = (v1 - v0) / tau;
-        }
-        if let Some(y) = self.lifted {
-            let lift = (phase.v[1][y] - phase.v[0][y]) / tau;
-            self.acceleration[..2 * self.beam.nodes()].iter_mut().step_by(2).for_each(|a| *a += lift);
-        }
-        for (predicted, (q0, v0)) in self.predicted.iter_mut().zip(self.q[0].iter().zip(&self.v[0])) {
-            *predicted = q0 + tau * weight * v0;
-        }
-        self.span_loads.clear();
-        if let Some(loads) = &self.loads {
-            loads.add_mean([phase.start, phase.end], &mut self.span_loads);
-        }
-        let span = self.beam.spec().span;
-        self.span_loads.extend(phase.contacts.iter().flat_map(|contact| pushes(contact, self.body, span, tau)));
-        self.update()?;
+        self.take_means(std::iter::once(*phase), phase.duration, [phase.start, phase.end])?;
         Ok(Some(&self.forces))
     }
 
@@ -216,17 +194,30 @@ impl BeamForces {
     pub fn enter_step(&mut self, step: &StepReport<'_, 2>) -> Result<Option<&SectionForces>, BeamError> {
         let lasting = || step.phases().filter(|phase| phase.duration > 0.0);
         let whole: f64 = lasting().map(|phase| phase.duration).sum();
-        let mut phases = lasting();
-        let (Some(first), several) = (phases.next(), phases.next().is_some()) else { return Ok(None) };
-        if !several {
-            return self.enter(&first);
+        if whole <= 0.0 {
+            return Ok(None);
         }
+        self.take_means(lasting(), whole, [step.t_start, step.t_end])?;
+        Ok(Some(&self.forces))
+    }
+
+    /// Takes the means of phases that last for `whole` (s) together, between these times, and the
+    /// forces of them.
+    fn take_means<'p>(
+        &mut self,
+        phases: impl Iterator<Item = Phase<'p, 2>>,
+        whole: f64,
+        times: [f64; 2],
+    ) -> Result<(), BeamError> {
         for mean in [&mut self.q_mean, &mut self.v_mean, &mut self.acceleration, &mut self.predicted] {
             mean.fill(0.0);
         }
         self.span_loads.clear();
+        if let Some(loads) = &self.loads {
+            loads.add_mean(times, &mut self.span_loads);
+        }
         let span = self.beam.spec().span;
-        for phase in lasting() {
+        for phase in phases {
             let (part, weight) = (phase.duration / whole, phase.balance.weight());
             for end in 0..2 {
                 self.read(end, phase.q[end], phase.v[end])?;
@@ -248,14 +239,6 @@ impl BeamForces {
             }
             self.span_loads.extend(phase.contacts.iter().flat_map(|contact| pushes(contact, self.body, span, whole)));
         }
-        if let Some(loads) = &self.loads {
-            loads.add_mean([step.t_start, step.t_end], &mut self.span_loads);
-        }
-        self.update()?;
-        Ok(Some(&self.forces))
-    }
-
-    fn update(&mut self) -> Result<(), BeamError> {
         let actions = Actions {
             q: &self.q_mean,
             velocity: &self.v_mean,
