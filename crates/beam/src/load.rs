@@ -220,6 +220,13 @@ pub trait Load: Send + Sync {
             f.iter_mut().zip(scratch.iter()).for_each(|(f, p)| *f += share * p);
         }
     }
+
+    /// The first time after `t` (s) at which P isn't smooth, s; infinity, the default, for none. A
+    /// time scheme of high order ends a step there.
+    fn next_break(&self, beam: &Beam, t: f64) -> f64 {
+        let _ = (beam, t);
+        f64::INFINITY
+    }
 }
 
 /// Gauss' four points of a stretch of time, and their shares of its mean.
@@ -376,6 +383,14 @@ impl Load for MovingLoad {
                 beam.whole_shape(element, xi).add_load(0.5 * self.force * part, 0.0, f);
             }
         }
+    }
+
+    fn next_break(&self, beam: &Beam, t: f64) -> f64 {
+        if self.speed == 0.0 {
+            return f64::INFINITY;
+        }
+        let passes = beam.node_positions().iter().map(|x| (x - self.start) / self.speed);
+        passes.filter(|passes| *passes > t).fold(f64::INFINITY, f64::min)
     }
 }
 

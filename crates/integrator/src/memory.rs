@@ -53,6 +53,14 @@ impl Memory {
         }
     }
 
+    /// Remembers a contact without a spring as active, in its place in the order of identity.
+    pub(crate) fn activate(&mut self, id: ContactId) {
+        if let Err(at) = self.active.binary_search(&id) {
+            self.active.insert(at, id);
+            self.gaps.insert(at, 0.0);
+        }
+    }
+
     /// Remembers a contact as active. Add contacts in order of identity.
     pub fn remember<const D: usize>(&mut self, contact: &Contact<D>) {
         self.active.push(contact.id);

@@ -12,6 +12,7 @@ use crate::{
     StepReport, StepSpan, Weights, Workspace,
 };
 use locate::Hit;
+pub(crate) use locate::rate_at;
 use teeter_contact::Outcome;
 use teeter_detect::{Candidates, ContactId};
 
@@ -172,9 +173,7 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         work: &'w mut Workspace<D>,
     ) -> Result<StepReport<'w, D>, StepError> {
         let span = state.next_step(until);
-        self.step.check(model, state, work)?;
-        self.by_forces.resize(model.size().v, 0.0);
-        self.v.resize(model.size().v, 0.0);
+        self.check(model, state, work)?;
         work.begin(model, state, span)?;
         let mut from = self.from.take().unwrap_or_else(|| state.clone());
         from.copy_from(state);
@@ -191,6 +190,44 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
 }
 
 impl<const D: usize> MoreauJeanLocated<D> {
+    /// Refuses what doesn't belong together, and takes the sizes of the model.
+    pub(crate) fn check(&mut self, model: &Model<D>, state: &State, work: &Workspace<D>) -> Result<(), StepError> {
+        self.step.check(model, state, work)?;
+        self.by_forces.resize(model.size().v, 0.0);
+        self.v.resize(model.size().v, 0.0);
+        Ok(())
+    }
+
+    /// Lets the contacts that touch at `from` strike; `closed`, which rise, were closed up to here. An approach
+    /// that `by_forces` make is no impact.
+    pub(crate) fn strike_by(
+        &mut self,
+        model: &Model<D>,
+        from: &mut State,
+        closed: &[ContactId],
+        by_forces: impl Iterator<Item = f64>,
+        work: &mut Workspace<D>,
+    ) -> Result<bool, StepError> {
+        self.step.closed.clear();
+        self.step.closed.extend_from_slice(closed);
+        self.by_forces.clear();
+        self.by_forces.extend(by_forces);
+        let end = from.t;
+        self.strike(model, from, end, work)
+    }
+
+    /// Takes the rest of a step that another scheme began.
+    pub(crate) fn take_rest(
+        &mut self,
+        model: &Model<D>,
+        from: &mut State,
+        rest: &StepSpan,
+        work: &mut Workspace<D>,
+    ) -> Result<(), StepError> {
+        self.lately.clear();
+        self.take_parts(model, from, rest, work).map(|_| ())
+    }
+
     /// Takes the step from impact to impact, each part of it from `from`, which moves on; returns
     /// the penetration at its end, m.
     fn take_parts(

@@ -56,8 +56,13 @@ pub struct PhaseEnd<'a> {
     pub v: &'a [f64],
     /// By which means it satisfies the balance of momentum.
     pub balance: Balance,
-    /// Work of loads, dampers, the scheme itself; what contacts did is added.
+    /// Work of loads, dampers, the scheme itself; what contacts did is added, unless it is known.
     pub energy: StepEnergy,
+    /// Whether `energy` holds the work of contacts already.
+    pub knows_contacts: bool,
+    /// q̄, the mean of the coordinates over the phase, where the scheme knows it; else it is that of
+    /// the balance.
+    pub mean: Option<&'a [f64]>,
     /// How its contact problems were solved; `None` without contacts.
     pub outcome: Option<Outcome>,
 }
@@ -74,8 +79,25 @@ impl<'a> PhaseEnd<'a> {
             v,
             balance: Balance::Weighted(0.5),
             energy: StepEnergy::default(),
+            knows_contacts: false,
+            mean: None,
             outcome: None,
         }
+    }
+
+    /// With these terms of the energy identity, the work of contacts among them: in a smooth motion it
+    /// isn't that of the mean velocity.
+    #[must_use]
+    pub fn with_all_energy(mut self, energy: StepEnergy) -> Self {
+        (self.energy, self.knows_contacts) = (energy, true);
+        self
+    }
+
+    /// With the mean of the coordinates over the phase.
+    #[must_use]
+    pub fn with_mean(mut self, q: &'a [f64]) -> Self {
+        self.mean = Some(q);
+        self
     }
 
     /// With this duration, s.
@@ -123,6 +145,8 @@ struct Kept<const D: usize> {
     largest_slip_work: f64,
     q: Vec<f64>,
     v: Vec<f64>,
+    /// q̄, where the scheme knows it.
+    mean: Vec<f64>,
 }
 
 impl<const D: usize> Kept<D> {
@@ -140,6 +164,7 @@ impl<const D: usize> Kept<D> {
             largest_slip_work: f64::NEG_INFINITY,
             q: Vec::new(),
             v: Vec::new(),
+            mean: Vec::new(),
         }
     }
 }
@@ -214,12 +239,14 @@ impl<const D: usize> Phases<D> {
             mine.clear();
             mine.extend_from_slice(other);
         }
+        kept.mean.clear();
+        kept.mean.extend_from_slice(phase.mean.unwrap_or_default());
         kept.contacts.clear();
         if let Some(stage) = stage {
             stage.hand_over(&mut kept.contacts);
         }
         if now.is_some() {
-            kept.account_for_contacts(model);
+            kept.account_for_contacts(model, phase.knows_contacts);
         }
     }
 }
@@ -227,12 +254,14 @@ impl<const D: usize> Phases<D> {
 impl<const D: usize> Kept<D> {
     /// The work of contacts, Σ Ū·p with Ū the mean velocity of the phase, and what their springs hold.
     #[inline]
-    fn account_for_contacts(&mut self, model: &Model<D>) {
+    fn account_for_contacts(&mut self, model: &Model<D>, work_is_known: bool) {
         let weight = self.balance.weight();
         for contact in &self.contacts {
-            let mean = contact.u_after * weight + contact.u_before * (1.0 - weight);
-            self.energy.contact += mean[0] * contact.p[0];
-            self.energy.friction += tangential(&mean).dot(&contact.p);
+            if !work_is_known {
+                let mean = contact.u_after * weight + contact.u_before * (1.0 - weight);
+                self.energy.contact += mean[0] * contact.p[0];
+                self.energy.friction += tangential(&mean).dot(&contact.p);
+            }
             let slip = tangential(&contact.u_law).dot(&contact.p);
             self.largest_slip_work = self.largest_slip_work.max(slip);
             if let Some(gap) = contact.gap_after
@@ -345,6 +374,8 @@ pub struct Phase<'w, const D: usize> {
     pub q: [&'w [f64]; 2],
     /// Velocities at its start and at its end.
     pub v: [&'w [f64]; 2],
+    /// q̄, the mean of the coordinates over it, where the scheme knows it.
+    pub mean: Option<&'w [f64]>,
 }
 
 /// What happened in a step.
@@ -387,6 +418,7 @@ impl<'w, const D: usize> StepReport<'w, D> {
                 energy: own.energy,
                 q: [q, own.q.as_slice()],
                 v: [v, own.v.as_slice()],
+                mean: (!own.mean.is_empty()).then_some(own.mean.as_slice()),
             }
         })
     }

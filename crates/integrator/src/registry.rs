@@ -1,7 +1,7 @@
 //! The list of schemes by name.
 
 use crate::{
-    MoreauJean, MoreauJeanClosed, MoreauJeanClosedSettings, MoreauJeanLocated, MoreauJeanLocatedSettings,
+    EventDriven, EventDrivenSettings, MoreauJean, MoreauJeanClosed, MoreauJeanClosedSettings, MoreauJeanLocated, MoreauJeanLocatedSettings,
     MoreauJeanSettings, Scheme,
 };
 
@@ -29,7 +29,7 @@ impl SchemeEntry {
 ///
 /// ```
 /// let names: Vec<_> = teeter_integrator::schemes().iter().map(|scheme| scheme.name).collect();
-/// assert_eq!(names, ["moreau-jean", "moreau-jean-closed", "moreau-jean-located"]);
+/// assert_eq!(names, ["moreau-jean", "moreau-jean-closed", "moreau-jean-located", "event-driven"]);
 /// ```
 #[must_use]
 pub fn schemes() -> &'static [SchemeEntry] {
@@ -48,6 +48,11 @@ pub fn schemes() -> &'static [SchemeEntry] {
             name: MoreauJeanLocated::<2>::NAME,
             about: "the closed step, divided where a contact closes: of second order through impacts on rigid ground",
             make: || Some(Box::new(MoreauJeanLocated::new(MoreauJeanLocatedSettings::default()).ok()?)),
+        },
+        SchemeEntry {
+            name: EventDriven::NAME,
+            about: "smooth motion by a method of order 8 between events, all of them located to rounding",
+            make: || Some(Box::new(EventDriven::new(EventDrivenSettings::default()).ok()?)),
         },
     ]
 }

@@ -72,6 +72,21 @@ pub trait Signal: std::fmt::Debug + Send + Sync {
     fn jump(&self) -> Option<f64> {
         None
     }
+
+    /// The first time after `t` at which it isn't smooth, s: where it or any of its derivatives
+    /// jumps; infinity, the default, for none. A scheme of high order ends a step there.
+    fn next_break(&self, t: f64) -> f64 {
+        let _ = t;
+        f64::INFINITY
+    }
+
+    /// Its second derivative at `t`, 1/s²; from the right where it jumps. The default takes
+    /// differences of [`Signal::rate`] over a ten-thousandth of a second, right to some ten digits
+    /// for a signal that varies within a second: override it.
+    fn second_rate(&self, t: f64) -> f64 {
+        let (h, rate) = (1e-4, |k: f64| self.rate(t + 1e-4 * k));
+        (8.0 * (rate(1.0) - rate(-1.0)) - (rate(2.0) - rate(-2.0))) / (12.0 * h)
+    }
 }
 
 /// What is wrong with a signal.
@@ -156,6 +171,11 @@ pub(crate) mod tests {
             let f = |k: f64| signal.value(t + k * h);
             let rate = (8.0 * (f(1.0) - f(-1.0)) - (f(2.0) - f(-2.0))) / (12.0 * h);
             assert!((signal.rate(t) - rate).abs() < 1e-9 * (1.0 + rate.abs()), "{signal:?} rate at {t}");
+            let f = |k: f64| signal.rate(t + k * h);
+            let second = (8.0 * (f(1.0) - f(-1.0)) - (f(2.0) - f(-2.0))) / (12.0 * h);
+            let own = signal.second_rate(t);
+            assert!((own - second).abs() < 1e-8 * (1.0 + second.abs()), "{signal:?} second rate at {t}: {own} {second}");
+            assert!(signal.next_break(a) >= b || (signal.next_break(a) - b).abs() < 1e-12, "{signal:?} after {a}");
             (once, twice) = (inner(b), twice + quadrature(inner, a, b, 200));
         }
         assert_eq!((signal.integral(0.0), signal.double_integral(0.0)), (0.0, 0.0));

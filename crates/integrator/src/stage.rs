@@ -388,11 +388,22 @@ impl<const D: usize> ContactStage<D> {
 
     /// J̇v of contact `i` at the state, with its points and frame as they were found, m/s².
     fn bias(&self, i: usize, model: &Model<D>, state: &State) -> Result<Vector<D>, ContactError> {
-        let (contact, mut sum) = (&self.contacts[i], Vector::zeros());
         model.fits(&state.q, &state.v)?;
+        self.bias_at(i, model, &state.q, &state.v)
+    }
+
+    /// The same at coordinates `q` and velocities `v`, whose lengths are right.
+    pub(crate) fn bias_at(
+        &self,
+        i: usize,
+        model: &Model<D>,
+        q: &[f64],
+        v: &[f64],
+    ) -> Result<Vector<D>, ContactError> {
+        let (contact, mut sum) = (&self.contacts[i], Vector::zeros());
         for (anchor, sign) in contact.sides.iter().zip([1.0, -1.0]) {
             let Some((_, part, body)) = model.owner(anchor.body) else { continue };
-            let (q, v) = (&state.q[part.q.clone()], &state.v[part.v.clone()]);
+            let (q, v) = (&q[part.q.clone()], &v[part.v.clone()]);
             let bias = part.system.bias(body, q, v, &anchor.point, &contact.frame);
             sum += bias.ok_or(ContactError::Bias { body: anchor.body })? * sign;
         }
@@ -508,6 +519,31 @@ impl<const D: usize> ContactStage<D> {
             }
         }
         Ok(())
+    }
+
+    /// Drops the contact that was added last.
+    pub(crate) fn drop_last(&mut self) {
+        self.contacts.pop();
+        self.rows.pop();
+        self.problem.pop();
+    }
+
+    /// Completes contact `i` of a smooth motion with its impulse over it, N·s, its relative velocities
+    /// at the ends (m/s) and that for which its law holds.
+    pub(crate) fn complete_smooth(&mut self, i: usize, p: Vector<D>, u: [Vector<D>; 2], u_law: Vector<D>) {
+        self.problem.p[i] = p;
+        let contact = &mut self.contacts[i];
+        (contact.p, contact.u_before, contact.u_after, contact.u_law) = (p, u[0], u[1], u_law);
+    }
+
+    /// Gives contact `i` an impulse, N·s, for [`respond`](Self::respond).
+    pub(crate) fn push_with(&mut self, i: usize, p: Vector<D>) {
+        self.problem.p[i] = p;
+    }
+
+    /// Block (i, j) of H, dense, after [`couple`](Self::couple).
+    pub(crate) fn block(&self, i: usize, j: usize) -> &Block<D> {
+        &self.problem.blocks[i * self.contacts.len() + j]
     }
 
     /// The first contact whose identity isn't higher than that of the one before.

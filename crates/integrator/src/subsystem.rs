@@ -214,6 +214,21 @@ pub trait Dynamics<const D: usize>: Send + Sync {
         self.drive(0.5 * (times[0] + times[1]), v);
     }
 
+    /// Writes the prescribed accelerations at time `t` (s) into their places in `a`, and leaves the
+    /// others unchanged; whether it could. The default is `false`: a scheme that needs accelerations
+    /// then refuses the subsystem if any of its velocities is prescribed.
+    fn drive_rate(&self, t: f64, a: &mut [f64]) -> bool {
+        let _ = (t, a);
+        false
+    }
+
+    /// The first time after `t` (s) at which loads or prescribed velocities aren't smooth, s:
+    /// infinity, the default, for none. A scheme of high order ends a step there.
+    fn next_break(&self, t: f64) -> f64 {
+        let _ = t;
+        f64::INFINITY
+    }
+
     /// vᵀC v, the power that damping dissipates, W. The default multiplies by C, in `scratch`,
     /// which is as long as the velocities; override it if the sum can be had for less.
     fn damping_power(&self, q: &[f64], v: &[f64], scratch: &mut [f64]) -> f64 {

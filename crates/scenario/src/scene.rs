@@ -120,6 +120,8 @@ pub enum SchemeName {
     MoreauJeanClosed,
     /// The closed one, divided where a contact closes.
     MoreauJeanLocated,
+    /// Smooth motion of high order between events.
+    EventDriven,
 }
 
 impl SchemeName {
@@ -130,15 +132,16 @@ impl SchemeName {
             Self::MoreauJean => teeter_integrator::MoreauJean::<2>::NAME,
             Self::MoreauJeanClosed => teeter_integrator::MoreauJeanClosed::<2>::NAME,
             Self::MoreauJeanLocated => teeter_integrator::MoreauJeanLocated::<2>::NAME,
+            Self::EventDriven => teeter_integrator::EventDriven::NAME,
         }
     }
 
-    /// Whether it is a scheme of θ = ½ alone.
+    /// Whether it takes no θ but ½, or none.
     #[must_use]
     pub fn is_trapezoidal(self) -> bool {
         match self {
             Self::MoreauJean => false,
-            Self::MoreauJeanClosed | Self::MoreauJeanLocated => true,
+            Self::MoreauJeanClosed | Self::MoreauJeanLocated | Self::EventDriven => true,
         }
     }
 
@@ -147,7 +150,7 @@ impl SchemeName {
     pub fn predicts(self) -> bool {
         match self {
             Self::MoreauJean => true,
-            Self::MoreauJeanClosed | Self::MoreauJeanLocated => false,
+            Self::MoreauJeanClosed | Self::MoreauJeanLocated | Self::EventDriven => false,
         }
     }
 
@@ -156,7 +159,7 @@ impl SchemeName {
     pub fn locates(self) -> bool {
         match self {
             Self::MoreauJean | Self::MoreauJeanClosed => false,
-            Self::MoreauJeanLocated => true,
+            Self::MoreauJeanLocated | Self::EventDriven => true,
         }
     }
 
@@ -165,7 +168,7 @@ impl SchemeName {
     pub fn keeps_energy(self) -> bool {
         match self {
             Self::MoreauJean => false,
-            Self::MoreauJeanClosed | Self::MoreauJeanLocated => true,
+            Self::MoreauJeanClosed | Self::MoreauJeanLocated | Self::EventDriven => true,
         }
     }
 }

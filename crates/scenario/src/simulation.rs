@@ -14,7 +14,7 @@ use teeter_contact::ContactSolver;
 use teeter_detect::{PointDetector, PointPair};
 use teeter_integrator::{
     Account, Block, Ended, Mismatch, Model, ModelBuilder, ModelError, MoreauJean, MoreauJeanClosed,
-    MoreauJeanClosedSettings, MoreauJeanLocated, MoreauJeanLocatedSettings, MoreauJeanSettings, Observer, PartPlace,
+    EventDriven, EventDrivenSettings, MoreauJeanClosedSettings, MoreauJeanLocated, MoreauJeanLocatedSettings, MoreauJeanSettings, Observer, PartPlace,
     Plan, RunError, Scheme, SettingError, SolverSettings, State, StateError, StepError, StepReport, Subsystem,
     Unsolved, WorkCounts, Workspace, run,
 };
@@ -408,6 +408,7 @@ fn scheme(time: &Time) -> Result<Box<dyn Scheme<2>>, SettingError> {
             Box::new(MoreauJean::new(MoreauJeanSettings { theta, activation_gamma, gap_tolerance })?)
         }
         SchemeName::MoreauJeanClosed => Box::new(MoreauJeanClosed::new(MoreauJeanClosedSettings { gap_tolerance })?),
+        SchemeName::EventDriven => Box::new(EventDriven::new(EventDrivenSettings::default())?),
         SchemeName::MoreauJeanLocated => Box::new(MoreauJeanLocated::new(MoreauJeanLocatedSettings { gap_tolerance })?),
     })
 }

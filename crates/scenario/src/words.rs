@@ -2,7 +2,7 @@
 //! that is added is a variant that is added, and every place that decides by it has to say what it means.
 
 use crate::scene::SchemeName;
-use teeter_integrator::{MoreauJean, MoreauJeanClosed, MoreauJeanLocated};
+use teeter_integrator::{EventDriven, MoreauJean, MoreauJeanClosed, MoreauJeanLocated};
 
 /// One of some words.
 pub(crate) trait Word: Copy + Sized + 'static {
@@ -71,8 +71,13 @@ words! {
 }
 
 /// The words of the schemes.
-pub(crate) const SCHEMES: &[&str] =
-    &["auto", MoreauJean::<2>::NAME, MoreauJeanClosed::<2>::NAME, MoreauJeanLocated::<2>::NAME];
+pub(crate) const SCHEMES: &[&str] = &[
+    "auto",
+    MoreauJean::<2>::NAME,
+    MoreauJeanClosed::<2>::NAME,
+    MoreauJeanLocated::<2>::NAME,
+    EventDriven::NAME,
+];
 
 /// A scheme by name, or the one that suits the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,6 +92,7 @@ impl Word for SchemeChoice {
         (SCHEMES[1], Self::Named(SchemeName::MoreauJean)),
         (SCHEMES[2], Self::Named(SchemeName::MoreauJeanClosed)),
         (SCHEMES[3], Self::Named(SchemeName::MoreauJeanLocated)),
+        (SCHEMES[4], Self::Named(SchemeName::EventDriven)),
     ];
 }
 

@@ -160,6 +160,18 @@ impl Dynamics<2> for Blocks {
         }
     }
 
+    fn drive_rate(&self, t: f64, a: &mut [f64]) -> bool {
+        for (velocity, motion) in self.driven.iter().zip(&self.motions) {
+            a[*velocity] = motion.acceleration(t);
+        }
+        true
+    }
+
+    fn next_break(&self, t: f64) -> f64 {
+        let loads = self.loads.iter().map(|load| load.signal.next_break(t));
+        loads.chain(self.motions.iter().map(|motion| motion.next_break(t))).fold(f64::INFINITY, f64::min)
+    }
+
     fn drive_mean(&self, [from, to]: [f64; 2], v: &mut [f64]) {
         for (velocity, motion) in self.driven.iter().zip(&self.motions) {
             v[*velocity] = motion.mean_velocity(from, to);

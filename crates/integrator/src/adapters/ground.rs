@@ -92,6 +92,20 @@ impl Dynamics<2> for Ground {
         }
     }
 
+    fn drive_rate(&self, t: f64, a: &mut [f64]) -> bool {
+        if let Form::Moving { motion, .. } = &self.0 {
+            for (a, motion) in a.iter_mut().zip(motion) {
+                *a = motion.acceleration(t);
+            }
+        }
+        true
+    }
+
+    fn next_break(&self, t: f64) -> f64 {
+        let Form::Moving { motion, .. } = &self.0 else { return f64::INFINITY };
+        motion.iter().map(|motion| motion.next_break(t)).fold(f64::INFINITY, f64::min)
+    }
+
     fn drive_mean(&self, [from, to]: [f64; 2], v: &mut [f64]) {
         if let Form::Moving { motion, .. } = &self.0 {
             for (v, motion) in v.iter_mut().zip(motion) {

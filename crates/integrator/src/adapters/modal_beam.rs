@@ -338,6 +338,20 @@ impl Dynamics<2> for ModalBeam {
         }
     }
 
+    fn drive_rate(&self, t: f64, a: &mut [f64]) -> bool {
+        if let Some(supports) = &self.supports {
+            a[self.coordinates()..].copy_from_slice(&supports.accelerations(t));
+        }
+        true
+    }
+
+    fn next_break(&self, t: f64) -> f64 {
+        let loads = self.loads.iter().map(|load| load.next_break(self.beam(), t));
+        let signals = self.signals.iter().map(|load| load.next_break(self.beam(), t));
+        let supports = self.supports.iter().map(|supports| supports.next_break(t));
+        loads.chain(signals).chain(supports).fold(f64::INFINITY, f64::min)
+    }
+
     fn drive_mean(&self, times: [f64; 2], v: &mut [f64]) {
         if let Some(supports) = &self.supports {
             v[self.coordinates()..].copy_from_slice(&supports.mean_velocities(times));

@@ -57,7 +57,7 @@ const AT_START: f64 = 2.0;
 
 impl<const D: usize> MoreauJeanLocated<D> {
     /// What a gap is located to at these coordinates, m.
-    pub(super) fn tolerance(&self, q: &[f64]) -> f64 {
+    pub(crate) fn tolerance(&self, q: &[f64]) -> f64 {
         let largest = q.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
         self.settings.gap_tolerance.max(ROUNDING * largest)
     }
@@ -218,7 +218,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
 }
 
 /// The normal velocity of a candidate at coordinates `q`, m/s; its rows are left in `one`.
-fn rate_at<const D: usize>(
+pub(crate) fn rate_at<const D: usize>(
     one: &mut ContactStage<D>,
     model: &Model<D>,
     q: &[f64],

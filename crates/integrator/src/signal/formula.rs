@@ -296,6 +296,30 @@ impl Signal for Formula {
         pieces.moments()
     }
 
+    fn next_break(&self, t: f64) -> f64 {
+        let [first, second] = match self.shape {
+            Shape::Constant => [0.0, f64::INFINITY],
+            Shape::Ramp { duration } => [0.0, duration],
+            Shape::Sine { end, .. } => [0.0, end],
+            Shape::Ricker { .. } => [f64::INFINITY; 2],
+        };
+        [self.start + first, self.start + second].into_iter().find(|at| *at > t).unwrap_or(f64::INFINITY)
+    }
+
+    fn second_rate(&self, t: f64) -> f64 {
+        let tau = t - self.start;
+        match self.shape {
+            Shape::Ricker { rate } => {
+                let a = (rate * tau) * (rate * tau);
+                2.0 * rate * rate * (-a).exp() * ((12.0 - 4.0 * a) * a - 3.0)
+            }
+            Shape::Sine { omega, phase, end } if tau >= 0.0 && tau < end => {
+                -omega * omega * (omega * tau + phase).sin()
+            }
+            _ => 0.0,
+        }
+    }
+
     fn jump(&self) -> Option<f64> {
         let jumps = match self.shape {
             Shape::Constant => true,

@@ -71,6 +71,22 @@ impl Motion {
         })
     }
 
+    /// Acceleration at time `t` (s), m/s² or rad/s²; from the right where the velocity has a kink.
+    #[must_use]
+    pub fn acceleration(&self, t: f64) -> f64 {
+        self.sum(|given, signal| match given {
+            Given::Displacement => signal.second_rate(t),
+            Given::Velocity => signal.rate(t),
+            Given::Acceleration => signal.value(t),
+        })
+    }
+
+    /// The first time after `t` at which it isn't smooth, s; infinity for none.
+    #[must_use]
+    pub fn next_break(&self, t: f64) -> f64 {
+        self.terms.iter().map(|term| term.signal.next_break(t)).fold(f64::INFINITY, f64::min)
+    }
+
     /// The mean of the velocity over the time from `from` to the later `to` (s), m/s or rad/s.
     #[must_use]
     pub fn mean_velocity(&self, from: f64, to: f64) -> f64 {
@@ -100,6 +116,8 @@ mod tests {
                 let h = 1e-5;
                 let rate = (motion.displacement(t + h) - motion.displacement(t - h)) / (2.0 * h);
                 assert!((rate - motion.velocity(t)).abs() < 1e-8, "{given:?}");
+                let rate = (motion.velocity(t + h) - motion.velocity(t - h)) / (2.0 * h);
+                assert!((rate - motion.acceleration(t)).abs() < 1e-7, "{given:?}");
             }
             let starts = [motion.displacement(0.0) == 0.0, motion.velocity(0.0) == 0.0];
             let expected = [given != Given::Displacement, given == Given::Acceleration];

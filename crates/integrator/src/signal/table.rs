@@ -128,6 +128,14 @@ impl Signal for Table {
         self.piece(t).2
     }
 
+    fn next_break(&self, t: f64) -> f64 {
+        self.times.get(self.times.partition_point(|row| *row <= t)).copied().unwrap_or(f64::INFINITY)
+    }
+
+    fn second_rate(&self, _: f64) -> f64 {
+        0.0
+    }
+
     fn integral(&self, t: f64) -> f64 {
         from_zero(t, |t| self.antiderivatives(t)).0
     }

@@ -48,6 +48,14 @@ impl<const D: usize> Problem<D> {
         self.p.clear();
     }
 
+    /// Drops the contact that was added last.
+    pub(crate) fn pop(&mut self) {
+        self.posed.pop();
+        self.q.pop();
+        self.mu.pop();
+        self.p.pop();
+    }
+
     pub(crate) fn len(&self) -> usize {
         self.posed.len()
     }

@@ -66,6 +66,25 @@ impl<const D: usize> ContactStage<D> {
         Ok(Some(work.solve_problem(&mut self.problem, over.weight())?))
     }
 
+    /// Computes H of all contacts, dense, without solving anything.
+    pub(crate) fn couple(
+        &mut self,
+        model: &Model<D>,
+        work: &mut Workspace<D>,
+        responses: &Responses<'_>,
+    ) -> Result<(), ContactError> {
+        if self.is_empty() {
+            return Ok(());
+        }
+        if let Some(part) = work.factors.missing(model, responses) {
+            return Err(ContactError::Factors { part });
+        }
+        let Self { rows, problem, .. } = self;
+        couple(rows, model, work, responses, &rows.spans, problem);
+        (self.apart, self.forces, self.coupled) = (false, false, work.coupled);
+        Ok(())
+    }
+
     /// Checks what is to be solved; whether there is anything.
     #[inline]
     fn is_ready(

@@ -50,6 +50,8 @@ pub struct BeamForces {
     v_mean: Vec<f64>,
     acceleration: Vec<f64>,
     predicted: Vec<f64>,
+    /// q̄ of a phase whose scheme knows it.
+    known: Vec<f64>,
     span_loads: Vec<SpanLoad>,
     forces: SectionForces,
 }
@@ -73,6 +75,7 @@ impl BeamForces {
             q_mean: none.clone(),
             v_mean: none.clone(),
             acceleration: none.clone(),
+            known: none.clone(),
             predicted: if beam.is_stretched() { none } else { Vec::new() },
             span_loads: Vec::with_capacity(LOADS),
             forces: SectionForces::new(beam),
@@ -222,9 +225,20 @@ impl BeamForces {
             for end in 0..2 {
                 self.read(end, phase.q[end], phase.v[end])?;
             }
-            for (mean, [x0, x1]) in [(&mut self.q_mean, &self.q), (&mut self.v_mean, &self.v)] {
-                for (mean, (x0, x1)) in mean.iter_mut().zip(x0.iter().zip(x1)) {
-                    *mean += part * (weight * x1 + (1.0 - weight) * x0);
+            if let Some(mean) = phase.mean.and_then(|mean| mean.get(self.range.clone())) {
+                match &self.basis {
+                    Some(basis) => basis.expand(mean, &mut self.known),
+                    None => self.known.copy_from_slice(mean),
+                }
+                self.q_mean.iter_mut().zip(&self.known).for_each(|(sum, mean)| *sum += part * mean);
+                for (mean, (q0, q1)) in self.v_mean.iter_mut().zip(self.q[0].iter().zip(&self.q[1])) {
+                    *mean += (q1 - q0) / whole;
+                }
+            } else {
+                for (mean, [x0, x1]) in [(&mut self.q_mean, &self.q), (&mut self.v_mean, &self.v)] {
+                    for (mean, (x0, x1)) in mean.iter_mut().zip(x0.iter().zip(x1)) {
+                        *mean += part * (weight * x1 + (1.0 - weight) * x0);
+                    }
                 }
             }
             for (a, (v0, v1)) in self.acceleration.iter_mut().zip(self.v[0].iter().zip(&self.v[1])) {

@@ -40,6 +40,10 @@ impl Load for SignalLoad {
     fn add_mean(&self, _beam: &Beam, [from, to]: [f64; 2], _scratch: &mut [f64], f: &mut [f64]) {
         self.add_times(self.signal.mean(from, to), f);
     }
+
+    fn next_break(&self, _beam: &Beam, t: f64) -> f64 {
+        self.signal.next_break(t)
+    }
 }
 
 /// A force that moves along a beam at a constant speed, times a signal; none while it is off the
@@ -97,5 +101,15 @@ impl Load for MovingForce {
         for (x, force) in self.mean(beam, times) {
             beam.shape_clamped(x).add_load(force, 0.0, f);
         }
+    }
+
+    fn next_break(&self, beam: &Beam, t: f64) -> f64 {
+        let mut next = self.signal.next_break(t);
+        if self.speed != 0.0 {
+            let nodes = beam.node_positions().iter();
+            let passes = nodes.map(|x| (x - self.start) / self.speed).filter(|passes| *passes > t);
+            next = passes.fold(next, f64::min);
+        }
+        next
     }
 }

@@ -52,6 +52,14 @@ impl MovingSupports {
         self.motion.each_ref().map(|motion| motion.velocity(t))
     }
 
+    pub(crate) fn accelerations(&self, t: f64) -> [f64; 2] {
+        self.motion.each_ref().map(|motion| motion.acceleration(t))
+    }
+
+    pub(crate) fn next_break(&self, t: f64) -> f64 {
+        self.motion.iter().map(|motion| motion.next_break(t)).fold(f64::INFINITY, f64::min)
+    }
+
     pub(crate) fn mean_velocities(&self, [from, to]: [f64; 2]) -> [f64; 2] {
         self.motion.each_ref().map(|motion| motion.mean_velocity(from, to))
     }

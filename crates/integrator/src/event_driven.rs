@@ -1,0 +1,402 @@
+//! The event-driven scheme: `event-driven` (`docs/schemes.md`).
+
+mod decide;
+mod events;
+mod linear;
+mod modes;
+mod runge_kutta;
+mod smooth;
+
+use crate::moreau_jean_located::{MoreauJeanLocated, MoreauJeanLocatedSettings};
+use crate::{
+    Keep, Model, PhaseEnd, PhaseKind, Scheme, SettingError, State, StepEnergy, StepError, StepReport, StepSpan, Workspace,
+};
+use events::{Open, Watch};
+use modes::{Mode, Pressing};
+use runge_kutta::RungeKutta;
+use smooth::{MASSES, Smooth};
+use teeter_detect::{Candidates, ContactId};
+
+/// The settings of [`EventDriven`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EventDrivenSettings {
+    /// Largest error of a step within a smooth phase, as a part of the largest coordinate and the
+    /// largest velocity.
+    pub tolerance: f64,
+}
+
+impl Default for EventDrivenSettings {
+    fn default() -> Self {
+        Self { tolerance: 1e-12 }
+    }
+}
+
+/// Gaps are located to this, m, or to rounding where that is more.
+const GAP_TOLERANCE: f64 = 1e-14;
+
+/// A place or velocity below this (m or rad, m/s or rad/s) has errors measured by this.
+const FLOOR: f64 = 1e-3;
+
+/// Bounces that rise by less than so many tolerances of gaps are none.
+const LOWEST_BOUNCE: f64 = 100.0;
+
+/// Events one upon the other, without motion in between, after which the modes go round in a circle.
+const MOST_IDLE: u32 = 6;
+
+/// Numbers that the state's memory holds of a contact: pair, point, mode, level.
+const REMEMBERED: usize = 4;
+
+/// What it can't step.
+const SPRINGS: &str = "contacts with duration, whose forces event-driven doesn't integrate";
+const ON_MANIFOLDS: &str = "coordinates that don't move with velocities one by one";
+const UNKNOWN_DRIVES: &str = "prescribed velocities whose accelerations aren't known: it needs Dynamics::drive_rate";
+
+/// Smooth motion by a method of order 8 with steps of its own, divided where something happens: a
+/// contact closes, opens, begins to slide or stops.
+///
+/// Between two events each contact that presses either sticks or slides to one side, and
+///
+/// ```text
+/// M a = F(q, v, t) + Jᵀ f,   J_n a + J̇_n v = 0,   sticking: J_t a + J̇_t v = 0,   sliding: f_t = −μ f_n sign(u_t)
+/// ```
+///
+/// is integrated by DOP853 (Hairer, Nørsett, Wanner, doi 10.1007/978-3-540-78862-1), together with
+/// impulses and work, to a local error of [`tolerance`](EventDrivenSettings::tolerance). Events are
+/// the zeros of gaps, forces, distances from the friction cone and sliding velocities; each is
+/// located to rounding by steps that end there, as are the times at which loads and drives have
+/// kinks or jumps. Velocities jump by the impact of
+/// [`MoreauJeanLocated`](crate::MoreauJeanLocated). Which contacts press, stick and slide afterwards
+/// is found from the law over accelerations,
+///
+/// ```text
+/// 0 ≤ a_n ⊥ f_n ≥ 0,   Coulomb's law on a_t where u_t = 0
+/// ```
+///
+/// Where more happens in a step than [`MOST_EVENTS`](Self::MOST_EVENTS), as where bounces pile up, or
+/// that law has no solution, the rest of the step is one of `MoreauJeanLocated`; the tally of
+/// unlocated steps counts it.
+///
+/// The step size is only that of the output: the method's own steps end there. Contacts with
+/// duration are refused, and beams held along their axis.
+#[derive(Debug)]
+pub struct EventDriven {
+    settings: EventDrivenSettings,
+    /// Impacts, and the rest of a step in which too much happens.
+    located: MoreauJeanLocated<2>,
+    smooth: Smooth,
+    rk: RungeKutta,
+    from: Option<State>,
+    y: Vec<f64>,
+    /// What errors are measured by.
+    scale: Vec<f64>,
+    /// Slope at the end of a step.
+    next_slope: Vec<f64>,
+    mean: Vec<f64>,
+    v_before: Vec<f64>,
+    open: Vec<Open>,
+    watched: Vec<Watch>,
+    /// The last contacts, where an event changes them.
+    touching: Candidates<2>,
+    found: Candidates<2>,
+    ids: Vec<ContactId>,
+    numbers: Vec<f64>,
+    /// The step that the method would take next, s.
+    h: f64,
+}
+
+/// Where a smooth phase ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stop {
+    /// At the end of the step.
+    End,
+    /// Where loads or drives aren't smooth.
+    Break,
+    /// At an event: those that are watched.
+    Event,
+    /// It can't go on.
+    Stuck,
+}
+
+impl EventDriven {
+    /// The name by which users choose it.
+    pub const NAME: &'static str = "event-driven";
+
+    /// Events that are located in a step.
+    pub const MOST_EVENTS: usize = 200;
+
+    /// Steps of the method within one of the scheme's: many fit where a beam has fast modes.
+    pub const MOST_SUBSTEPS: usize = 1_000_000;
+
+    /// A scheme with these settings.
+    ///
+    /// # Errors
+    /// If a setting is out of its range.
+    pub fn new(settings: EventDrivenSettings) -> Result<Self, SettingError> {
+        let EventDrivenSettings { tolerance } = settings;
+        if !(1e-14..=1e-3).contains(&tolerance) {
+            return Err(SettingError { what: "tolerance", value: tolerance, rule: "in [1e-14, 1e-3]" });
+        }
+        Ok(Self {
+            settings,
+            located: MoreauJeanLocated::new(MoreauJeanLocatedSettings { gap_tolerance: GAP_TOLERANCE })?,
+            smooth: Smooth::new(),
+            rk: RungeKutta::default(),
+            from: None,
+            y: Vec::new(),
+            scale: Vec::new(),
+            next_slope: Vec::new(),
+            mean: Vec::new(),
+            v_before: Vec::new(),
+            open: Vec::new(),
+            watched: Vec::new(),
+            touching: Vec::new(),
+            found: Vec::new(),
+            ids: Vec::new(),
+            numbers: Vec::new(),
+            h: 0.0,
+        })
+    }
+
+    /// The settings.
+    #[must_use]
+    pub fn settings(&self) -> &EventDrivenSettings {
+        &self.settings
+    }
+
+    fn refuse(model: &Model<2>) -> Result<(), StepError> {
+        let unsupported = |what| Err(StepError::Unsupported { what });
+        if model.has_springs() {
+            return unsupported(SPRINGS);
+        }
+        for part in model.parts() {
+            if part.q.len() != part.v.len() {
+                return unsupported(ON_MANIFOLDS);
+            }
+            if part.is_driven() && !part.system.drive_rate(0.0, &mut vec![0.0; part.v.len()]) {
+                return unsupported(UNKNOWN_DRIVES);
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Scheme<2> for EventDriven {
+    fn name(&self) -> &'static str {
+        Self::NAME
+    }
+
+    fn start(&mut self, model: &Model<2>, state: &mut State, work: &mut Workspace<2>) -> Result<(), StepError> {
+        Self::refuse(model)?;
+        self.located.start(model, state, work)?;
+        self.smooth.reserve(model);
+        let (size, contacts) = (model.size(), model.detector().capacity().min(crate::stage::RESERVED_CONTACTS));
+        let numbers = 1 + REMEMBERED * contacts;
+        self.open.reserve(contacts);
+        self.watched.reserve(4 * contacts);
+        self.ids.reserve(contacts);
+        self.touching.reserve(2 * contacts);
+        self.found.reserve(contacts);
+        self.numbers.reserve(numbers);
+        self.mean.resize(size.q, 0.0);
+        self.v_before.resize(size.v, 0.0);
+        let most = self.smooth.most(model);
+        self.rk.resize(most);
+        for list in [&mut self.y, &mut self.next_slope, &mut self.scale] {
+            list.resize(most, 0.0);
+        }
+        state.memory.reserve_numbers(numbers);
+        let mut from = state.clone();
+        from.memory.reserve_numbers(numbers);
+        from.memory.reserve(contacts);
+        from.warm.reserve(contacts, 2);
+        self.from = Some(from);
+        work.factors(model, MASSES, &state.q, Keep::Pinned)
+    }
+
+    fn advance<'w>(
+        &mut self,
+        model: &Model<2>,
+        state: &mut State,
+        until: f64,
+        work: &'w mut Workspace<2>,
+    ) -> Result<StepReport<'w, 2>, StepError> {
+        let span = state.next_step(until);
+        self.located.check(model, state, work)?;
+        self.smooth.resize(model);
+        self.mean.resize(model.size().q, 0.0);
+        self.v_before.resize(model.size().v, 0.0);
+        work.begin(model, state, span)?;
+        let mut from = self.from.take().unwrap_or_else(|| state.clone());
+        from.copy_from(state);
+        let took = self.take_phases(model, &mut from, &span, work);
+        self.from = Some(from);
+        let located = took?;
+        let contacts = &self.smooth.contacts;
+        let report = work.finish(model, state, None, |_, contact| {
+            if located { contacts.iter().any(|own| own.id == contact.id) } else { contact.p[0] > 0.0 }
+        })?;
+        self.numbers.clear();
+        self.numbers.push(self.h);
+        for contact in self.smooth.contacts.iter().filter(|_| located) {
+            let Pressing { id, mode, level, .. } = contact;
+            self.numbers.extend([f64::from(id.pair()), f64::from(id.point()), mode.number(), *level]);
+        }
+        state.memory.set_numbers(&self.numbers);
+        state.tally.unlocated_steps += u64::from(!located);
+        Ok(report)
+    }
+}
+
+impl EventDriven {
+    /// Takes the step from event to event, from `from`, which moves on; whether all events were
+    /// located.
+    fn take_phases(
+        &mut self,
+        model: &Model<2>,
+        from: &mut State,
+        span: &StepSpan,
+        work: &mut Workspace<2>,
+    ) -> Result<bool, StepError> {
+        work.factors(model, MASSES, &from.q, Keep::Pinned)?;
+        self.jump(model, from, work)?;
+        let known = self.restore(model, from, work)?;
+        if !known && !self.decide(model, from, work)? {
+            return self.give_up(model, from, span, work);
+        }
+        let (mut at, mut idle) = (from.t, 0);
+        for _ in 0..=Self::MOST_EVENTS {
+            let stop = self.go_on(model, from, span.end, work)?;
+            if std::env::var("EVDBG").is_ok() { eprintln!("{} {:?} {} refused={} det={} h={:e} c={:?}", from.t, stop, span.end, work.counts.refused_attempts, work.counts.detections, self.h, self.smooth.contacts.iter().map(|c| (c.id, c.mode)).collect::<Vec<_>>()); }
+            idle = if from.t == at { idle + 1 } else { 0 };
+            at = from.t;
+            if idle > MOST_IDLE {
+                break;
+            }
+            match stop {
+                Stop::End => return Ok(true),
+                Stop::Stuck => break,
+                Stop::Event => {
+                    if !self.change_modes(model, from, work)? {
+                        break;
+                    }
+                }
+                Stop::Break => {
+                    self.jump(model, from, work)?;
+                    if !self.decide(model, from, work)? {
+                        break;
+                    }
+                }
+            }
+        }
+        self.give_up(model, from, span, work)
+    }
+
+    /// Takes the rest of the step as the located scheme does.
+    fn give_up(
+        &mut self,
+        model: &Model<2>,
+        from: &mut State,
+        span: &StepSpan,
+        work: &mut Workspace<2>,
+    ) -> Result<bool, StepError> {
+        from.memory.forget_contacts();
+        for contact in &self.smooth.contacts {
+            from.memory.activate(contact.id);
+        }
+        self.smooth.contacts.clear();
+        let rest = StepSpan { start: from.t, end: span.end, h: span.end - from.t };
+        if rest.h > 0.0 {
+            self.located.take_rest(model, from, &rest, work)?;
+        }
+        Ok(false)
+    }
+
+    /// Takes contacts with their modes from the state's memory; whether they are there.
+    fn restore(&mut self, model: &Model<2>, from: &State, work: &mut Workspace<2>) -> Result<bool, StepError> {
+        self.smooth.contacts.clear();
+        let (active, numbers) = (from.memory.active(), from.memory.all_numbers());
+        self.h = from.dt;
+        let Some((h, contacts)) = numbers.split_first() else { return Ok(false) };
+        if contacts.len() != REMEMBERED * active.len() || !(*h > 0.0 && h.is_finite()) {
+            return Ok(false);
+        }
+        work.locate(model, &from.q, active, &mut self.found)?;
+        let mut known = self.found.len() == active.len();
+        for (candidate, held) in self.found.iter().zip(contacts.chunks_exact(REMEMBERED)) {
+            known &= held[0] == f64::from(candidate.id.pair()) && held[1] == f64::from(candidate.id.point());
+            let friction = model.law(candidate.law)?.friction;
+            let (mode, level) = (Mode::of(held[2]), held[3]);
+            self.smooth.contacts.push(Pressing::new(candidate.id, mode, level, friction));
+        }
+        if known {
+            self.h = *h;
+        } else {
+            self.smooth.contacts.clear();
+        }
+        Ok(known)
+    }
+
+    /// Lets prescribed velocities jump to what they are from now on; what hangs on them by mass jumps
+    /// too.
+    fn jump(&mut self, model: &Model<2>, from: &mut State, work: &mut Workspace<2>) -> Result<(), StepError> {
+        if !model.is_driven() {
+            return Ok(());
+        }
+        self.v_before.copy_from_slice(&from.v);
+        model.drive_at(from.t, &mut from.v);
+        if self.v_before == from.v {
+            return Ok(());
+        }
+        for (index, part) in model.parts().iter().enumerate().filter(|(_, part)| part.is_driven()) {
+            let (v, old) = (&mut from.v[part.v.clone()], &self.v_before[part.v.clone()]);
+            let Some(factor) = work.factors.of(index, MASSES) else { continue };
+            let (jumps, pull) = (&mut work.scratch[..v.len()], &mut self.smooth.a[part.v.clone()]);
+            jumps.fill(0.0);
+            pull.fill(0.0);
+            for &k in &part.traits.driven {
+                jumps[k] = v[k] - old[k];
+            }
+            part.system.apply(MASSES, &from.q[part.q.clone()], jumps, pull);
+            factor.solve(pull);
+            v.iter_mut().zip(pull.iter()).for_each(|(v, dv)| *v -= dv);
+        }
+        let gained = model.energy_at(&from.q, &from.v).kinetic - model.energy_at(&from.q, &self.v_before).kinetic;
+        let energy = StepEnergy { external: gained, ..StepEnergy::default() };
+        work.phase(model, &PhaseEnd::new(PhaseKind::Impact, from.t, &from.q, &from.v).with_energy(energy), None)
+    }
+
+    /// Ends the smooth phase that was integrated from `from` to time `end` (s), and moves on.
+    fn end_phase(
+        &mut self,
+        model: &Model<2>,
+        from: &mut State,
+        end: f64,
+        duration: f64,
+        work: &mut Workspace<2>,
+    ) -> Result<(), StepError> {
+        let (nq, nv) = (model.size().q, model.size().v);
+        let (q, v) = (&self.y[..nq], &self.y[nq..nq + nv]);
+        let energy = self.smooth.energy(model, &self.y);
+        for (mean, sum) in self.mean.iter_mut().zip(self.smooth.sum_of_places(model, &self.y)) {
+            *mean = sum / duration;
+        }
+        let outcome = self.smooth.finish_contacts(model, &self.y, work)?;
+        let phase = PhaseEnd::new(PhaseKind::Smooth, end, q, v)
+            .lasting(duration)
+            .with_all_energy(energy)
+            .with_mean(&self.mean)
+            .with_outcome(outcome);
+        work.phase(model, &phase, Some(&mut self.smooth.stage))?;
+        from.q.copy_from_slice(q);
+        from.v.copy_from_slice(v);
+        from.t = end;
+        Ok(())
+    }
+}
+
+/// The velocity below which a contact counts as still, m/s: what solvers leave of these speeds (m/s),
+/// or what free accelerations (m/s²) make in next to no time of a step of `dt` (s).
+fn still(speed: f64, acceleration: f64, dt: f64) -> f64 {
+    (1e-10 * speed).max(1e-9 * dt * acceleration)
+}
+

@@ -1,0 +1,182 @@
+//! What contacts do from an event on.
+
+use super::events::Kind;
+use super::modes::{Mode, Pressing};
+use super::{EventDriven, LOWEST_BOUNCE, smooth::MASSES, still};
+use crate::{Memory, Model, Over, Responses, Rule, State, StepError, Vector, WarmStart, Workspace};
+use teeter_detect::Candidate;
+
+/// Contacts with a gap of up to so many tolerances touch.
+const TOUCHING: f64 = 10.0;
+
+/// A tangential acceleration below this part of what it consists of is none.
+const NONE: f64 = 1e-8;
+
+/// A force or distance from the friction cone above this, in parts of its scale, still holds.
+const HOLDS: f64 = -1e-7;
+
+impl EventDriven {
+    /// Changes what the watched contacts do, after an event; whether a motion was found that goes on.
+    pub(super) fn change_modes(
+        &mut self,
+        model: &Model<2>,
+        from: &mut State,
+        work: &mut Workspace<2>,
+    ) -> Result<bool, StepError> {
+        let mut simple = true;
+        for k in 0..self.watched.len() {
+            let watch = self.watched[k];
+            if !watch.is_now {
+                continue;
+            }
+            let contacts = &mut self.smooth.contacts;
+            let at = contacts.iter().position(|contact| contact.id == watch.id);
+            match (watch.kind, at) {
+                (Kind::Opens | Kind::Leaves, Some(at)) => {
+                    contacts.remove(at);
+                }
+                (Kind::Slips, Some(at)) => {
+                    contacts[at].mode = Mode::Slide(-watch.side);
+                }
+                _ => simple = false,
+            }
+        }
+        if simple {
+            self.smooth.between = [from.t, from.t];
+            self.smooth.accelerate(model, from.t, &from.q, &from.v, work)?;
+            self.smooth.share_friction();
+            if self.smooth.contacts.iter().all(|contact| contact.presses() >= HOLDS && contact.holds() >= HOLDS) {
+                return Ok(true);
+            }
+        }
+        self.decide(model, from, work)
+    }
+
+    /// Finds which of the contacts that touch press, and which of them stick; first lets those that
+    /// approach strike. Whether there is a motion that goes on.
+    pub(super) fn decide(
+        &mut self,
+        model: &Model<2>,
+        from: &mut State,
+        work: &mut Workspace<2>,
+    ) -> Result<bool, StepError> {
+        let t = from.t;
+        self.smooth.between = [t, t];
+        self.v_before.copy_from_slice(&from.v);
+        self.find_touching(model, from, work)?;
+        if self.touching.is_empty() {
+            self.smooth.contacts.clear();
+            return Ok(true);
+        }
+        self.smooth.accelerate_freely(model, t, &from.q, &from.v, work)?;
+        if let Some(fastest) = self.approach(model, from)? {
+            self.ids.clear();
+            self.ids.extend(self.smooth.contacts.iter().map(|contact| contact.id));
+            from.memory.forget_contacts();
+            self.ids.iter().for_each(|id| from.memory.activate(*id));
+            // U²/2a is the height of a bounce.
+            let height = LOWEST_BOUNCE * self.located.tolerance(&from.q);
+            let time = (2.0 * height / fastest).sqrt();
+            self.located.strike_by(model, from, &self.ids, self.smooth.a.iter().map(|a| time * a), work)?;
+            self.smooth.accelerate_freely(model, t, &from.q, &from.v, work)?;
+        }
+        self.find_who_presses(model, from, work)
+    }
+
+    /// The contacts that press and those that are as near.
+    fn find_touching(&mut self, model: &Model<2>, from: &State, work: &mut Workspace<2>) -> Result<(), StepError> {
+        self.ids.clear();
+        self.ids.extend(self.smooth.contacts.iter().map(|contact| contact.id));
+        work.detect(model, &from.q, TOUCHING * self.located.tolerance(&from.q))?;
+        work.locate(model, &from.q, &self.ids, &mut self.found)?;
+        self.touching.clear();
+        self.touching.extend_from_slice(&self.found);
+        let known = |candidate: &&Candidate<2>| self.ids.binary_search(&candidate.id).is_err();
+        self.touching.extend(work.candidates.iter().filter(known));
+        self.touching.sort_unstable_by_key(|candidate| candidate.id);
+        Ok(())
+    }
+
+    /// Where a contact that was open approaches: the largest normal acceleration of those that touch,
+    /// m/s².
+    fn approach(&mut self, model: &Model<2>, from: &State) -> Result<Option<f64>, StepError> {
+        let stage = &mut self.smooth.stage;
+        let (mut approaches, mut fastest) = (false, f64::MIN_POSITIVE);
+        for candidate in &self.touching {
+            stage.clear();
+            if !stage.add(model, &from.q, candidate, &WarmStart::default(), &Memory::default())? {
+                continue;
+            }
+            fastest = stage.velocity(0, &self.smooth.a)?[0].abs().max(fastest);
+            let pressing = self.smooth.contacts.iter().any(|contact| contact.id == candidate.id);
+            let slow = still(stage.speed(0, &from.v), stage.speed(0, &self.smooth.a), from.dt);
+            approaches |= !pressing && stage.velocity(0, &from.v)?[0] < -slow;
+        }
+        Ok(approaches.then_some(fastest))
+    }
+
+    /// Solves the law over accelerations for the contacts that touch and don't part.
+    fn find_who_presses(&mut self, model: &Model<2>, from: &mut State, work: &mut Workspace<2>) -> Result<bool, StepError> {
+        let problem = |source| StepError::Problem { t: from.t, source };
+        let smooth = &mut self.smooth;
+        smooth.stage.clear();
+        self.found.clear();
+        for candidate in &self.touching {
+            let row = smooth.stage.len();
+            if !smooth.stage.add(model, &from.q, candidate, &WarmStart::default(), &Memory::default())? {
+                continue;
+            }
+            let u = smooth.stage.velocity(row, &from.v)?;
+            let speed = smooth.stage.speed(row, &from.v).max(smooth.stage.speed(row, &self.v_before));
+            if u[0] > still(speed, smooth.stage.speed(row, &smooth.a), from.dt) {
+                smooth.stage.drop_last();
+                continue;
+            }
+            self.found.push(*candidate);
+        }
+        smooth.contacts.clear();
+        from.memory.forget_contacts();
+        if self.found.is_empty() {
+            return Ok(true);
+        }
+        smooth.posed.clear();
+        for (row, candidate) in self.found.iter().enumerate() {
+            let stage = &smooth.stage;
+            let u = stage.velocity(row, &from.v)?;
+            let speed = stage.speed(row, &from.v).max(stage.speed(row, &self.v_before));
+            let slow = still(speed, stage.speed(row, &smooth.a), from.dt);
+            let slides = (u[1].abs() > slow).then(|| u[1].signum());
+            let bias = smooth.turning(model, &from.q, work, row, candidate)?;
+            let free = smooth.stage.velocity(row, &smooth.a)? + bias;
+            let rule = slides.map_or(Rule::Shifted, |sign| Rule::SlidesAlong(Vector::<2>::new(0.0, sign)));
+            smooth.stage.set(row, u, free, Vector::zeros(), rule)?;
+            let size = smooth.stage.speed(row, &smooth.a) + bias.norm();
+            smooth.posed.push((bias, slides, size));
+        }
+        let responses = Responses::Of(MASSES);
+        let outcome = smooth.stage.solve(model, work, &responses, Over::Acceleration).map_err(problem)?;
+        if outcome.is_none_or(|outcome| !outcome.converged()) {
+            return Ok(false);
+        }
+        smooth.stage.respond(model, work, &responses, &mut smooth.a).map_err(problem)?;
+        let force = |row: usize| smooth.stage.impulse(row).map_or(0.0, |f| f[0]);
+        let largest = (0..self.found.len()).map(force).fold(0.0, f64::max);
+        for (row, (candidate, (bias, slides, size))) in self.found.iter().zip(&smooth.posed).enumerate() {
+            if force(row) <= 1e-11 * largest {
+                continue;
+            }
+            let friction = model.law(candidate.law)?.friction;
+            let a = smooth.stage.velocity(row, &smooth.a)? + bias;
+            let mode = match slides {
+                Some(sign) => Mode::Slide(*sign),
+                None if friction == 0.0 => Mode::Slide(1.0),
+                None if a[1].abs() <= NONE * size => Mode::Stick,
+                None => Mode::Slide(a[1].signum()),
+            };
+            let level = candidate.gap.min(0.0);
+            smooth.contacts.push(Pressing::new(candidate.id, mode, level, friction));
+            from.memory.activate(candidate.id);
+        }
+        Ok(true)
+    }
+}

@@ -1,0 +1,414 @@
+//! Events of a smooth phase: what is watched, and when it happens first.
+
+use super::runge_kutta::RungeKutta;
+use super::{EventDriven, FLOOR, Stop};
+use crate::moreau_jean_located::rate_at;
+use crate::{Model, State, StepError, Workspace};
+use teeter_detect::ContactId;
+
+/// An open contact at the start of a step of the method.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Open {
+    id: ContactId,
+    /// m.
+    gap: f64,
+    /// m/s.
+    rate: f64,
+}
+
+/// What can happen to a contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// It closes.
+    Closes,
+    /// Its force is gone.
+    Opens,
+    /// Its surface ends.
+    Leaves,
+    /// Its friction is at the limit.
+    Slips,
+    /// Its slide is at rest.
+    Stops,
+}
+
+/// A quantity that is positive up to an event.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Watch {
+    pub(super) kind: Kind,
+    pub(super) id: ContactId,
+    /// At the start of the step, at its end, and at the time that is looked at.
+    start: f64,
+    end: f64,
+    now: f64,
+    /// The gap at which a contact closes, m.
+    level: f64,
+    /// Up to here it is 0.
+    tolerance: f64,
+    /// To which side friction holds the contact.
+    pub(super) side: f64,
+    /// Whether it happens where the phase ended.
+    pub(super) is_now: bool,
+}
+
+/// Forces and distances from the friction cone are 0 to this, in parts of their scale.
+const FORCE: f64 = 1e-11;
+
+/// Sliding velocities are 0 to this part of what they consist of.
+const SLIDE: f64 = 1e-14;
+
+/// A quantity that begins so far beyond 0 can't be watched.
+const WRONG: f64 = 1e-6;
+
+/// An error that falls with less than this power of the step is rounding, unless it is more than so
+/// many tolerances: then something isn't smooth.
+const ROUNDING_ORDER: f64 = 2.5;
+const MOST_NOISE: f64 = 1e3;
+const LEAST_NOISE: f64 = 0.2;
+
+/// Trials at an event: six to ten do.
+const TRIALS: usize = 80;
+
+/// Halvings of a step in search of its start's sign.
+const HALVINGS: usize = 40;
+
+impl EventDriven {
+    /// Moves in smooth motion from `from` to the first event, to where loads aren't smooth, or to `end` (s).
+    pub(super) fn go_on(
+        &mut self,
+        model: &Model<2>,
+        from: &mut State,
+        end: f64,
+        work: &mut Workspace<2>,
+    ) -> Result<Stop, StepError> {
+        // A break at the start or the end is not seen from the wrong side, nor is it met twice.
+        let nudge = 8.0 * f64::EPSILON * from.t.abs().max(end.abs());
+        let breaks = model.parts().iter().map(|part| part.system.next_break(from.t + nudge));
+        let next = breaks.fold(f64::INFINITY, f64::min);
+        let last = if next < end - nudge { next } else { end };
+        let middle = 0.5 * (from.t + last);
+        self.smooth.between = [(from.t + nudge).min(middle), (last - nudge).max(middle)];
+        let n = self.smooth.len(model);
+        self.rk.resize(n);
+        self.next_slope.resize(n, 0.0);
+        self.y.clear();
+        self.y.extend_from_slice(&from.q);
+        self.y.extend_from_slice(&from.v);
+        self.y.resize(n, 0.0);
+        self.smooth.project(model, from.t, &mut self.y, work)?;
+        self.smooth.slope(model, from.t, &self.y, work, self.rk.first_slope())?;
+        self.smooth.share_friction();
+        for contact in &mut self.smooth.contacts {
+            contact.u_before = contact.u;
+        }
+        self.watch_start();
+        if self.smooth.contacts.iter().any(|contact| !(contact.presses() > -WRONG && contact.holds() > -WRONG)) {
+            return Ok(Stop::Stuck);
+        }
+        self.find_open(model, work)?;
+        let (mut t, mut duration) = (from.t, 0.0);
+        let (mut noise, mut longest, mut explored) = (0.0_f64, None::<(f64, f64)>, false);
+        for _ in 0..Self::MOST_SUBSTEPS {
+            let rest = last - t;
+            let mut h = if self.h < 0.9 * rest { self.h } else { rest };
+            if !(h > 4.0 * f64::EPSILON * t.abs()) {
+                // Rounding leaves no time to go on.
+                return if rest > STEP_LEFT * from.dt { Ok(Stop::Stuck) } else { self.arrive(model, from, last, duration, end, work) };
+            }
+            let estimate = self.try_step(model, t, h, work)?;
+            // What is rounding falls with the step only.
+            match longest {
+                Some((longer, before)) if 0.8 * longer > h => {
+                    let order = (before / estimate).ln() / (longer / h).ln();
+                    if estimate > LEAST_NOISE && estimate < MOST_NOISE && order < ROUNDING_ORDER {
+                        noise = noise.max(1.5 * estimate / h);
+                    }
+                }
+                Some((longer, _)) if longer > h => {}
+                _ => longest = Some((h, estimate)),
+            }
+            let error = (estimate - noise * h).max(0.0);
+            if !(error <= 1.0) {
+                self.h = if error.is_finite() { RungeKutta::better(h, error) } else { 0.1 * h };
+                work.counts.refused_attempts += 1;
+                continue;
+            }
+            if let Some(shorter) = self.dip(model, h, work)? {
+                self.h = shorter;
+                work.counts.refused_attempts += 1;
+                continue;
+            }
+            let mut stop = None;
+            if self.find_watches(model, &from.q, work)? {
+                h = self.locate_event(model, t, h, work)?;
+                stop = Some(Stop::Event);
+            } else {
+                let better = RungeKutta::better(h, error.max(1e-12));
+                self.h = if h < self.h { self.h.max(better) } else { better };
+                // Where steps stop growing, a longer one tells whether it is rounding that holds them.
+                if estimate > LEAST_NOISE && !explored {
+                    (self.h, explored) = (3.0 * h, true);
+                }
+            }
+            if h > 0.0 {
+                self.y.copy_from_slice(&self.rk.end);
+            }
+            t = if stop.is_none() && h == rest { last } else { t + h };
+            duration += h;
+            if let Some(stop) = stop {
+                if duration > 0.0 {
+                    self.smooth.project(model, t, &mut self.y, work)?;
+                    self.end_phase(model, from, t, duration, work)?;
+                }
+                return Ok(stop);
+            }
+            self.smooth.project(model, t, &mut self.y, work)?;
+            if t == last {
+                return self.arrive(model, from, last, duration, end, work);
+            }
+            self.smooth.slope(model, t, &self.y, work, self.rk.first_slope())?;
+            self.smooth.share_friction();
+            self.watch_start();
+            self.find_open(model, work)?;
+        }
+        Ok(Stop::Stuck)
+    }
+
+    /// Ends the phase at `last`.
+    fn arrive(
+        &mut self,
+        model: &Model<2>,
+        from: &mut State,
+        last: f64,
+        duration: f64,
+        end: f64,
+        work: &mut Workspace<2>,
+    ) -> Result<Stop, StepError> {
+        if duration > 0.0 || last == end {
+            self.end_phase(model, from, last, duration.max(f64::MIN_POSITIVE), work)?;
+        }
+        Ok(if last == end { Stop::End } else { Stop::Break })
+    }
+
+    /// Takes a step of the method; its error, 1 at most for a good one.
+    fn try_step(&mut self, model: &Model<2>, t: f64, h: f64, work: &mut Workspace<2>) -> Result<f64, StepError> {
+        let Self { smooth, rk, y, .. } = self;
+        rk.step(h, y, |s, y, slope| smooth.slope(model, t + s * h, y, work, slope))?;
+        if !crate::subsystem::all_finite(&rk.end) {
+            return Ok(f64::INFINITY);
+        }
+        let (nq, nv, tolerance) = (model.size().q, model.size().v, self.settings.tolerance);
+        let largest = |range: std::ops::Range<usize>| {
+            let pairs = y[range.clone()].iter().zip(&rk.end[range]);
+            pairs.fold(FLOOR, |largest, (a, b)| largest.max(a.abs()).max(b.abs()))
+        };
+        let (of_q, of_v) = (tolerance * largest(0..nq), tolerance * largest(nq..nq + nv));
+        self.scale.clear();
+        self.scale.resize(nq, of_q);
+        self.scale.resize(nq + nv, of_v);
+        Ok(rk.error(h, &self.scale))
+    }
+
+    /// Finds the gaps of open contacts at the start of a step.
+    fn find_open(&mut self, model: &Model<2>, work: &mut Workspace<2>) -> Result<(), StepError> {
+        self.open.clear();
+        let (nq, nv) = (model.size().q, model.size().v);
+        let (q, v) = (&self.y[..nq], &self.y[nq..nq + nv]);
+        work.detect(model, q, f64::INFINITY)?;
+        for k in 0..work.candidates.len() {
+            let candidate = work.candidates[k];
+            if !self.smooth.contacts.iter().any(|contact| contact.id == candidate.id) {
+                let rate = rate_at(&mut self.smooth.stage, model, q, &candidate, v)?;
+                self.open.push(Open { id: candidate.id, gap: candidate.gap, rate });
+            }
+        }
+        Ok(())
+    }
+
+    /// Keeps what contacts that press have at the start of a step.
+    fn watch_start(&mut self) {
+        for contact in &mut self.smooth.contacts {
+            contact.start = [contact.presses(), contact.holds(), contact.slides()];
+        }
+    }
+
+    /// A shorter step where an open contact goes into its surface and out again within this one of `h` (s).
+    fn dip(&mut self, model: &Model<2>, h: f64, work: &mut Workspace<2>) -> Result<Option<f64>, StepError> {
+        let (nq, nv) = (model.size().q, model.size().v);
+        let (q, v) = (&self.rk.end[..nq], &self.rk.end[nq..nq + nv]);
+        work.detect(model, q, f64::INFINITY)?;
+        for k in 0..work.candidates.len() {
+            let candidate = work.candidates[k];
+            let Ok(at) = self.open.binary_search_by_key(&candidate.id, |open| open.id) else { continue };
+            let Open { gap, rate, .. } = self.open[at];
+            if rate >= 0.0 || candidate.gap < 0.0 || gap < 0.0 {
+                continue;
+            }
+            let end_rate = rate_at(&mut self.smooth.stage, model, q, &candidate, v)?;
+            if end_rate <= 0.0 {
+                continue;
+            }
+            // The lowest point of the cubic with these ends.
+            let (a, b, da, db) = (gap, candidate.gap, h * rate, h * end_rate);
+            let (c2, c3) = (3.0 * (b - a) - 2.0 * da - db, 2.0 * (a - b) + da + db);
+            let root = (c2 * c2 - 3.0 * c3 * da).max(0.0).sqrt();
+            // 3 c3 s² + 2 c2 s + da = 0, without a difference of like numbers.
+            let s = if c2 + root > 0.0 { -da / (c2 + root) } else { 0.5 };
+            let low = ((c3 * s + c2) * s + da) * s + a;
+            if s > 0.01 && s < 0.99 && low < -self.located.tolerance(q) {
+                return Ok(Some(s * h));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Lists what has happened by the end of a step; whether anything has.
+    fn find_watches(&mut self, model: &Model<2>, q0: &[f64], work: &mut Workspace<2>) -> Result<bool, StepError> {
+        self.watched.clear();
+        let (nq, nv) = (model.size().q, model.size().v);
+        let tolerance = self.located.tolerance(q0);
+        work.detect(model, &self.rk.end[..nq], 0.0)?;
+        for candidate in &work.candidates {
+            if candidate.gap >= -tolerance || self.smooth.contacts.iter().any(|contact| contact.id == candidate.id) {
+                continue;
+            }
+            let at = self.open.binary_search_by_key(&candidate.id, |open| open.id);
+            // One that comes from beyond the end of its surface has no gap there.
+            let start = at.map_or(f64::INFINITY, |at| self.open[at].gap);
+            let level = start.min(0.0);
+            if candidate.gap < level - tolerance {
+                let watch = Watch::new(Kind::Closes, candidate.id, start - level, candidate.gap - level, tolerance);
+                self.watched.push(Watch { level, ..watch });
+            }
+        }
+        if !self.smooth.contacts.is_empty() {
+            let (q, v) = self.rk.end[..nq + nv].split_at(nq);
+            let t = self.smooth.between[1];
+            self.smooth.accelerate(model, t, q, v, work)?;
+            self.smooth.share_friction();
+            for contact in &self.smooth.contacts {
+                let mut watch = |kind, start, end: f64, tolerance: f64| {
+                    if end < -tolerance {
+                        self.watched.push(Watch::new(kind, contact.id, start, end, tolerance));
+                    }
+                };
+                if contact.row.is_none() {
+                    watch(Kind::Leaves, 1.0, -1.0, 0.0);
+                    continue;
+                }
+                let [presses, holds, slides] = contact.start;
+                watch(Kind::Opens, presses, contact.presses(), FORCE);
+                watch(Kind::Slips, holds, contact.holds(), FORCE);
+                watch(Kind::Stops, slides, contact.slides(), SLIDE * contact.speed);
+            }
+        }
+        Ok(!self.watched.is_empty())
+    }
+
+    /// Takes what is watched at the end of the step that was tried last: the least in parts of what it was
+    /// at the end of the whole step, and whether all of it is 0 or more.
+    fn look(&mut self, model: &Model<2>, t: f64, work: &mut Workspace<2>) -> Result<(f64, bool), StepError> {
+        let (nq, nv) = (model.size().q, model.size().v);
+        let (q, v) = self.rk.end[..nq + nv].split_at(nq);
+        if self.watched.iter().any(|watch| watch.kind == Kind::Closes) {
+            self.ids.clear();
+            self.ids.extend(self.watched.iter().filter(|watch| watch.kind == Kind::Closes).map(|watch| watch.id));
+            work.locate(model, q, &self.ids, &mut self.found)?;
+        }
+        if self.watched.iter().any(|watch| watch.kind != Kind::Closes) {
+            self.smooth.accelerate(model, t, q, v, work)?;
+            self.smooth.share_friction();
+        }
+        let (mut least, mut clear) = (f64::INFINITY, true);
+        for watch in &mut self.watched {
+            let contact = self.smooth.contacts.iter().find(|contact| contact.id == watch.id);
+            watch.now = match (watch.kind, contact) {
+                (Kind::Closes, _) => {
+                    let at = self.found.binary_search_by_key(&watch.id, |candidate| candidate.id);
+                    at.map_or(f64::INFINITY, |at| self.found[at].gap - watch.level)
+                }
+                (_, None) => f64::INFINITY,
+                (Kind::Leaves, Some(contact)) => if contact.row.is_some() { 1.0 } else { -1.0 },
+                (Kind::Opens, Some(contact)) => contact.presses(),
+                (Kind::Slips, Some(contact)) => contact.holds(),
+                (Kind::Stops, Some(contact)) => contact.slides(),
+            };
+            watch.side = contact.map_or(0.0, |contact| contact.force[1].signum());
+            least = least.min(watch.now / watch.end.abs());
+            clear &= watch.now >= -watch.tolerance;
+        }
+        Ok((least, clear))
+    }
+
+    /// Finds the time from `t` (s) at which the first of what is watched is 0, within a step of `h` (s), and
+    /// leaves the step up to there; returns that time, s.
+    fn locate_event(&mut self, model: &Model<2>, t: f64, h: f64, work: &mut Workspace<2>) -> Result<f64, StepError> {
+        let (mut low, mut high) = (0.0, h);
+        let mut at_low = self.watched.iter().map(|watch| watch.start / watch.end.abs()).fold(f64::INFINITY, f64::min);
+        let mut at_high = -1.0;
+        if self.watched.iter().any(|watch| watch.start <= watch.tolerance) {
+            // What is 0 at the start may become positive first.
+            let mut tau = h;
+            let mut found = false;
+            for _ in 0..HALVINGS {
+                tau *= 0.5;
+                self.try_step(model, t, tau, work)?;
+                work.counts.refused_attempts += 1;
+                let (value, clear) = self.look(model, t + tau, work)?;
+                if clear {
+                    (low, at_low, found) = (tau, value.max(f64::MIN_POSITIVE), true);
+                    break;
+                }
+                (high, at_high) = (tau, value);
+            }
+            if !found {
+                for watch in &mut self.watched {
+                    watch.is_now = watch.start <= watch.tolerance;
+                }
+                return Ok(0.0);
+            }
+        }
+        let mut tau = h;
+        let mut same = 0;
+        for trial in 0..TRIALS {
+            let width = high - low;
+            let narrow = width <= 2.0 * f64::EPSILON * t.abs().max(h);
+            let secant = (low * at_high - high * at_low) / (at_high - at_low);
+            let inside = secant > low && secant < high;
+            tau = if narrow { high } else if inside && trial % 8 != 7 { secant } else { 0.5 * (low + high) };
+            self.try_step(model, t, tau, work)?;
+            work.counts.refused_attempts += 1;
+            let (value, clear) = self.look(model, t + tau, work)?;
+            let is_zero = self.watched.iter().any(|watch| watch.now.abs() <= watch.tolerance);
+            if narrow || (clear && is_zero) {
+                break;
+            }
+            // Illinois: the end that stays twice counts for half.
+            if value > 0.0 || clear {
+                (low, at_low) = (tau, value.max(f64::MIN_POSITIVE));
+                if same == 1 {
+                    at_high *= 0.5;
+                }
+                same = 1;
+            } else {
+                (high, at_high) = (tau, value);
+                if same == -1 {
+                    at_low *= 0.5;
+                }
+                same = -1;
+            }
+        }
+        for watch in &mut self.watched {
+            watch.is_now = watch.now <= watch.tolerance;
+        }
+        Ok(tau)
+    }
+}
+
+/// A rest of a step's time that rounding may leave.
+const STEP_LEFT: f64 = 1e-9;
+
+impl Watch {
+    fn new(kind: Kind, id: ContactId, start: f64, end: f64, tolerance: f64) -> Self {
+        Self { kind, id, start, end, now: end, level: 0.0, tolerance, side: 0.0, is_now: false }
+    }
+}
