@@ -43,6 +43,9 @@ const LOWEST_BOUNCE: f64 = 100.0;
 /// Events one upon the other, without motion in between, after which the modes go round in a circle.
 const MOST_IDLE: u32 = 6;
 
+/// Phases of a step for which there is room from the start: a corner that chatters on a beam has dozens.
+const USUAL_PHASES: usize = 100;
+
 /// Numbers that the state's memory holds of a contact: pair, point, mode, level.
 const REMEMBERED: usize = 4;
 
@@ -102,6 +105,8 @@ pub struct EventDriven {
     numbers: Vec<f64>,
     /// The step that the method would take next, s.
     h: f64,
+    /// Whether loads or drives aren't smooth where the phase would end.
+    ends_with_break: bool,
 }
 
 /// Where a smooth phase ended.
@@ -154,6 +159,7 @@ impl EventDriven {
             ids: Vec::new(),
             numbers: Vec::new(),
             h: 0.0,
+            ends_with_break: false,
         })
     }
 
@@ -210,6 +216,8 @@ impl Scheme<2> for EventDriven {
         from.memory.reserve(contacts);
         from.warm.reserve(contacts, 2);
         self.from = Some(from);
+        work.reserve_directed(model);
+        work.reserve_phases(model, USUAL_PHASES);
         work.factors(model, MASSES, &state.q, Keep::Pinned)
     }
 
@@ -266,7 +274,6 @@ impl EventDriven {
         let (mut at, mut idle) = (from.t, 0);
         for _ in 0..=Self::MOST_EVENTS {
             let stop = self.go_on(model, from, span.end, work)?;
-            if std::env::var("EVDBG").is_ok() { eprintln!("{} {:?} {} refused={} det={} h={:e} c={:?}", from.t, stop, span.end, work.counts.refused_attempts, work.counts.detections, self.h, self.smooth.contacts.iter().map(|c| (c.id, c.mode)).collect::<Vec<_>>()); }
             idle = if from.t == at { idle + 1 } else { 0 };
             at = from.t;
             if idle > MOST_IDLE {

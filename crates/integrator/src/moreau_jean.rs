@@ -77,6 +77,10 @@ impl<const D: usize> Scheme<D> for MoreauJean<D> {
         Self::NAME
     }
 
+    fn drives_about(&self) -> Option<f64> {
+        Some(self.settings.theta)
+    }
+
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {
         self.step.start(model, state, work)?;
         let contacts = model.detector().capacity();

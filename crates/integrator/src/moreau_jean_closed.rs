@@ -84,6 +84,10 @@ impl<const D: usize> Scheme<D> for MoreauJeanClosed<D> {
         Self::NAME
     }
 
+    fn drives_about(&self) -> Option<f64> {
+        Some(crate::closed_step::THETA)
+    }
+
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {
         self.step.start(model, state, work)
     }

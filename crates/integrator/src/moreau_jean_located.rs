@@ -135,6 +135,10 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         Self::NAME
     }
 
+    fn drives_about(&self) -> Option<f64> {
+        Some(THETA)
+    }
+
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {
         // Their modified energy depends on the size of the step: each change of it would take or
         // give some.

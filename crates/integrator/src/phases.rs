@@ -194,6 +194,7 @@ impl<const D: usize> Phases<D> {
             kept.contacts.reserve(contacts);
             kept.q.reserve(size.q);
             kept.v.reserve(size.v);
+            kept.mean.reserve(size.q);
         }
     }
 

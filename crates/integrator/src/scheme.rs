@@ -97,6 +97,12 @@ pub trait Scheme<const D: usize>: Send + Sync {
     /// The name by which users choose it.
     fn name(&self) -> &'static str;
 
+    /// The θ with which prescribed velocities at the end of a step are means about it, as
+    /// [`State::drive_about`] takes them; `None`, the default, where they are those of that time.
+    fn drives_about(&self) -> Option<f64> {
+        None
+    }
+
     /// Prepares for steps from this state: factorises, reserves; afterwards a step of the same size allocates nothing. From then on the
     /// scheme serves this model, until it is started with another.
     ///

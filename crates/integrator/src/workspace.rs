@@ -116,6 +116,8 @@ pub struct Workspace<const D: usize> {
     pub counts: WorkCounts,
     pub(crate) factors: Factors<D>,
     pub(crate) laws: Laws<D>,
+    /// A problem with contacts that slide in given directions, as the solver sees it.
+    directed: Problem<D>,
     /// Counts what changes the memory of the factors: a response may go by it only where nothing has come in between.
     pub(crate) coupled: u64,
     /// Whether a step was begun and not finished.
@@ -155,6 +157,7 @@ impl<const D: usize> Workspace<D> {
             counts: WorkCounts::default(),
             factors: Factors::new(),
             laws,
+            directed: Problem::default(),
             coupled: 0,
             open: false,
             detection: DetectorMemory::default(),
@@ -167,6 +170,11 @@ impl<const D: usize> Workspace<D> {
     pub(crate) fn reserve_phases(&mut self, model: &Model<D>, phases: usize) {
         let contacts = model.detector().capacity().min(RESERVED_CONTACTS);
         self.phases.reserve_more(phases, contacts, model.size());
+    }
+
+    /// Makes room for contacts that slide in given directions.
+    pub(crate) fn reserve_directed(&mut self, model: &Model<D>) {
+        self.directed.reserve(model.detector().capacity().min(RESERVED_CONTACTS));
     }
 
     /// The contacts of all phases that were ended in this step.
@@ -278,10 +286,10 @@ impl<const D: usize> Workspace<D> {
         }
         let mut solver = Counted { solver: self.solver.as_mut(), counts: &mut self.counts };
         if problem.has_directions() {
-            let mut reduced = problem.with_directions()?;
-            let (posed, p) = reduced.pose()?;
+            problem.with_directions(&mut self.directed)?;
+            let (posed, p) = self.directed.pose()?;
             let outcome = solver.solve(&posed, &stop, p);
-            problem.take_directed(&reduced);
+            problem.take_directed(&self.directed);
             return Ok(outcome);
         }
         Ok(self.laws.solve(problem, weight, &mut solver, &stop)?)

@@ -265,6 +265,9 @@ fn resolved_in_time(contact: &ContactScene, scene: &Scene, document: &Document) 
 /// A step too coarse for the motion of a contact. The time scales are those of the model itself: a block on its corner moves
 /// as exp(±pt), p = √(3g/4R) (Housner 1963), whatever its angle; a beam under it swings with its first period.
 fn step(scene: &Scene, document: &Document) -> Option<Diagnostic> {
+    if scene.time.scheme.has_own_steps() {
+        return None;
+    }
     let gravity = scene.gravity[0].hypot(scene.gravity[1]);
     let mut shortest: Option<(f64, String)> = None;
     let mut enter = |time: f64, what: String| {

@@ -22,6 +22,10 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
         let rule = format!("{} has no prediction for it to act on: it does nothing", time.scheme.word());
         idle("time.activation_gamma", rule, "leave it out, or take scheme = \"moreau-jean\"");
     }
+    if time.scheme.has_own_steps() && document.is_given("time.gap_tolerance") && !tried {
+        let rule = format!("{} locates contacts to rounding: it does nothing", time.scheme.word());
+        idle("time.gap_tolerance", rule, "leave it out");
+    }
     if time.theta >= 0.5 && document.flag("time.allow_conditional_stability") == Some(true) {
         let rule = format!("with theta = {} every step is stable: it does nothing", time.theta);
         idle("time.allow_conditional_stability", rule, "leave it out; it goes with theta below 0.5");

@@ -145,6 +145,45 @@ impl SchemeName {
         }
     }
 
+    /// The θ with which prescribed velocities at the end of a step are means about it; `None` where
+    /// they are those of that time.
+    #[must_use]
+    pub fn drives_about(self, theta: f64) -> Option<f64> {
+        match self {
+            Self::MoreauJean => Some(theta),
+            Self::MoreauJeanClosed | Self::MoreauJeanLocated => Some(0.5),
+            Self::EventDriven => None,
+        }
+    }
+
+    /// Whether it takes contacts with duration.
+    #[must_use]
+    pub fn takes_springs(self) -> bool {
+        match self {
+            Self::MoreauJean | Self::MoreauJeanClosed | Self::MoreauJeanLocated => true,
+            Self::EventDriven => false,
+        }
+    }
+
+    /// Whether it takes steps of its own within those of the scene, so that these only say when it
+    /// reports.
+    #[must_use]
+    pub fn has_own_steps(self) -> bool {
+        match self {
+            Self::MoreauJean | Self::MoreauJeanClosed | Self::MoreauJeanLocated => false,
+            Self::EventDriven => true,
+        }
+    }
+
+    /// Whether it takes beams held along their axis.
+    #[must_use]
+    pub fn takes_held_beams(self) -> bool {
+        match self {
+            Self::MoreauJean | Self::MoreauJeanClosed => true,
+            Self::MoreauJeanLocated | Self::EventDriven => false,
+        }
+    }
+
     /// Whether contacts are active by a predicted gap, `activation_gamma` of a step ahead.
     #[must_use]
     pub fn predicts(self) -> bool {

@@ -242,7 +242,7 @@ impl<M: Made> Check<'_, M> {
             let t = contact + 1e-3;
             let v = match self.run(&model, start, t) {
                 Ok(end) => end.v[1],
-                Err(StepError::Problem { .. }) => continue,
+                Err(StepError::Problem { .. } | StepError::Unsupported { .. }) => continue,
                 Err(error) => return Err(error.into()),
             };
             let [least, most] = back.map(|e| if e > 0.0 { e * arrival - GRAVITY * 1e-3 } else { 0.0 });

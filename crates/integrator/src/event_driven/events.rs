@@ -85,6 +85,7 @@ impl EventDriven {
         let breaks = model.parts().iter().map(|part| part.system.next_break(from.t + nudge));
         let next = breaks.fold(f64::INFINITY, f64::min);
         let last = if next < end - nudge { next } else { end };
+        self.ends_with_break = next <= end + nudge;
         let middle = 0.5 * (from.t + last);
         self.smooth.between = [(from.t + nudge).min(middle), (last - nudge).max(middle)];
         let n = self.smooth.len(model);
@@ -106,7 +107,7 @@ impl EventDriven {
         }
         self.find_open(model, work)?;
         let (mut t, mut duration) = (from.t, 0.0);
-        let (mut noise, mut longest, mut explored) = (0.0_f64, None::<(f64, f64)>, false);
+        let (mut noise, mut before, mut explored) = (0.0_f64, None::<(f64, f64)>, false);
         for _ in 0..Self::MOST_SUBSTEPS {
             let rest = last - t;
             let mut h = if self.h < 0.9 * rest { self.h } else { rest };
@@ -116,15 +117,16 @@ impl EventDriven {
             }
             let estimate = self.try_step(model, t, h, work)?;
             // What is rounding falls with the step only.
-            match longest {
-                Some((longer, before)) if 0.8 * longer > h => {
-                    let order = (before / estimate).ln() / (longer / h).ln();
+            match before {
+                Some((longer, error)) if 0.8 * longer > h => {
+                    let order = (error / estimate).ln() / (longer / h).ln();
                     if estimate > LEAST_NOISE && estimate < MOST_NOISE && order < ROUNDING_ORDER {
                         noise = noise.max(1.5 * estimate / h);
                     }
+                    before = Some((h, estimate));
                 }
                 Some((longer, _)) if longer > h => {}
-                _ => longest = Some((h, estimate)),
+                _ => before = Some((h, estimate)),
             }
             let error = (estimate - noise * h).max(0.0);
             if !(error <= 1.0) {
@@ -183,9 +185,14 @@ impl EventDriven {
         end: f64,
         work: &mut Workspace<2>,
     ) -> Result<Stop, StepError> {
+        if !self.ends_with_break {
+            let nq = model.size().q;
+            model.drive_at(last, &mut self.y[nq..nq + model.size().v]);
+        }
         if duration > 0.0 || last == end {
             self.end_phase(model, from, last, duration.max(f64::MIN_POSITIVE), work)?;
         }
+        from.t = last;
         Ok(if last == end { Stop::End } else { Stop::Break })
     }
 

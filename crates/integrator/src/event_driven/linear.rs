@@ -153,9 +153,10 @@ mod tests {
         let singular = [[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 2.0]];
         let mut linear = system(singular, [3.0, 3.0, 4.0]);
         assert!(linear.solve(|_| 1.0));
-        assert!(linear.solution().iter().zip([1.5, 1.5, 2.0]).all(|(x, y)| (x - y).abs() < 1e-12), "{linear:?}");
+        assert!(linear.solution().iter().zip([1.5, 1.5, 2.0]).all(|(x, y)| (x - y).abs() < 1e-7), "{linear:?}");
+        // What is not determined has the digits that the shift leaves.
         assert!(linear.solve(|i| [1.0, 0.5, 1.0][i]));
-        assert!(linear.solution().iter().zip([1.0, 2.0, 2.0]).all(|(x, y)| (x - y).abs() < 1e-12), "{linear:?}");
+        assert!(linear.solution().iter().zip([1.0, 2.0, 2.0]).all(|(x, y)| (x - y).abs() < 1e-7), "{linear:?}");
         assert!(!system(singular, [3.0, 3.1, 4.0]).solve(|_| 1.0));
     }
 }

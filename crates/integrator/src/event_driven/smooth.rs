@@ -439,6 +439,7 @@ impl Smooth {
         work: &mut Workspace<2>,
     ) -> Result<(), StepError> {
         let (nq, nv, responses) = (model.size().q, model.size().v, Responses::Of(MASSES));
+        model.drive_at(t.clamp(self.between[0], self.between[1]), &mut y[nq..nq + nv]);
         self.v.copy_from_slice(&y[nq..nq + nv]);
         self.take_rows(model, &y[..nq], work)?;
         let problem = |source| StepError::Problem { t, source };

@@ -297,13 +297,15 @@ impl Signal for Formula {
     }
 
     fn next_break(&self, t: f64) -> f64 {
-        let [first, second] = match self.shape {
-            Shape::Constant => [0.0, f64::INFINITY],
-            Shape::Ramp { duration } => [0.0, duration],
-            Shape::Sine { end, .. } => [0.0, end],
-            Shape::Ricker { .. } => [f64::INFINITY; 2],
+        let never = f64::INFINITY;
+        let breaks = match self.shape {
+            Shape::Constant => [0.0, never, never],
+            Shape::Ramp { duration } => [0.0, duration, never],
+            Shape::Sine { end, .. } => [0.0, end, never],
+            // It is smooth, but nothing before and after: a long step could pass it by.
+            Shape::Ricker { rate } => [-BELL / rate, 0.0, BELL / rate],
         };
-        [self.start + first, self.start + second].into_iter().find(|at| *at > t).unwrap_or(f64::INFINITY)
+        breaks.into_iter().map(|after| self.start + after).find(|at| *at > t).unwrap_or(never)
     }
 
     fn second_rate(&self, t: f64) -> f64 {

@@ -70,6 +70,17 @@ impl<const D: usize> Problem<D> {
         self.p.push(p);
     }
 
+    /// Becomes equal to a problem that is dense.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        let Self { blocks, posed, q, mu, p, .. } = other;
+        self.is_sparse = false;
+        self.blocks.clone_from(blocks);
+        self.posed.clone_from(posed);
+        self.q.clone_from(q);
+        self.mu.clone_from(mu);
+        self.p.clone_from(p);
+    }
+
     /// Becomes the part of `whole` that its contacts `members` are, without H.
     pub(crate) fn take_part(&mut self, whole: &Self, members: &[usize]) {
         self.clear();

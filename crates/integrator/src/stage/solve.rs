@@ -235,10 +235,10 @@ fn add_compliances<const D: usize>(extra: &[(usize, Block<D>)], problem: &mut Pr
 }
 
 impl<const D: usize> Problem<D> {
-    /// The problem in which contacts that slide in a given direction d have one unknown, p_n: p = p_n (n − μ d).
-    pub(crate) fn with_directions(&self) -> Result<Self, ContactError> {
+    /// Leaves the problem in which contacts that slide in a given direction d have one unknown, p_n: p = p_n (n − μ d).
+    pub(crate) fn with_directions(&self, reduced: &mut Self) -> Result<(), ContactError> {
         let n = self.len();
-        let mut reduced = self.clone();
+        reduced.copy_from(self);
         for (j, posed) in self.posed.iter().enumerate() {
             let Rule::SlidesAlong(d) = posed.rule else {
                 if matches!(posed.rule, Rule::Shifted | Rule::Frictionless) {
@@ -266,7 +266,7 @@ impl<const D: usize> Problem<D> {
             reduced.q[j][0] = normal;
             reduced.mu[j] = 0.0;
         }
-        Ok(reduced)
+        Ok(())
     }
 
     /// n − μ d.

@@ -20,9 +20,11 @@ fn steps(model: &Model<2>, scheme: &SchemeEntry, state: &mut State, number: u64)
 }
 
 /// The moment of a state: what another run can know of it.
-fn taken_over(model: &Model<2>, state: &State) -> State {
+fn taken_over(model: &Model<2>, scheme: &SchemeEntry, state: &State) -> State {
     let mut other = State::at(model, state.step, &state.q, &state.v, state.dt).unwrap();
-    other.drive_about(model, 0.5).unwrap();
+    if let Some(theta) = scheme.make().unwrap().drives_about() {
+        other.drive_about(model, theta).unwrap();
+    }
     other.take_contacts(model, &state.memory, &state.warm);
     other
 }
@@ -32,11 +34,15 @@ fn what_springs_hold_is_energy_of_the_start() {
     let law = PairLaw::new(0.5, 0.0).with_impact(ImpactLaw::KelvinVoigt { stiffness: 1e6, damping: 0.0 });
     let model = model(&PAPER_BLOCK, gravity(), law, Kinematics::Deformed, Box::new(Ground::flat(0.0)));
     for scheme in schemes() {
+        // It refuses contacts with duration.
+        if scheme.name == EventDriven::NAME {
+            continue;
+        }
         let mut whole = State::new(&model, &[0.0, 0.0685, 0.0], &[0.0, -0.5, 0.0], 1e-5).unwrap();
         // Into the ground, until the springs hold most of the energy.
         steps(&model, scheme, &mut whole, 220);
         assert!(whole.ledger.stored > 1e-3, "{}: {} J", scheme.name, whole.ledger.stored);
-        let mut part = taken_over(&model, &whole);
+        let mut part = taken_over(&model, scheme, &whole);
         assert!((part.ledger.stored - whole.ledger.stored).abs() < 1e-12 * whole.ledger.stored, "{}", scheme.name);
         assert!((part.ledger.initial.total() - whole.ledger.current.total()).abs() < 1e-12, "{}", scheme.name);
         steps(&model, scheme, &mut whole, 300);
@@ -55,7 +61,7 @@ fn prescribed_velocities_go_on_as_means_about_the_time() {
     for scheme in schemes() {
         let mut whole = State::new(&model, &[0.0, 0.025, 0.0, 0.0, 0.0, 0.0], &[0.0; 6], 1e-3).unwrap();
         steps(&model, scheme, &mut whole, 37);
-        let mut part = taken_over(&model, &whole);
+        let mut part = taken_over(&model, scheme, &whole);
         assert_eq!(part.v, whole.v, "{}", scheme.name);
         steps(&model, scheme, &mut whole, 100);
         steps(&model, scheme, &mut part, 100);

@@ -89,10 +89,12 @@ impl Moment {
         }
         if same_steps {
             state.t = t;
-            // The step before ended with the mean about this time, and the next one goes on from that.
-            state
-                .drive_about(model, scene.time.theta_of_scheme())
-                .map_err(|source| CheckpointError::State { path: path(), source })?;
+            // Where the step before ended with the mean about this time, the next one goes on from that.
+            if let Some(theta) = scene.time.scheme.drives_about(scene.time.theta) {
+                state
+                    .drive_about(model, theta)
+                    .map_err(|source| CheckpointError::State { path: path(), source })?;
+            }
         } else {
             // They mean nothing to another scheme, or in steps of another size.
             state.memory.set_numbers(&[]);

@@ -1,10 +1,11 @@
 //! Steps, their number and their stability; rows of output.
 
 use super::Resolver;
-use crate::scene::{BeamScene, BlockScene, Scene, SchemeName, Time};
+use crate::scene::{BeamScene, BlockScene, ContactScene, Scene, SchemeName, Time};
 use crate::volume::Volume;
 use crate::wording;
 use crate::words::SchemeChoice;
+use teeter_integrator::ImpactLaw;
 
 /// Most steps of a run.
 pub const MAX_STEPS: f64 = 1e12;
@@ -42,10 +43,11 @@ impl Resolver<'_, '_> {
             SchemeChoice::Auto => self.suitable(blocks.len(), beams),
         });
         let held = beams.iter().flatten().find(|beam| beam.spec.axial == teeter_beam::Axial::Held);
-        if let (Some(beam), Some(SchemeName::MoreauJeanLocated)) = (held, scheme) {
+        if let (Some(beam), Some(scheme)) = (held, scheme.filter(|scheme| !scheme.takes_held_beams())) {
             let rule = format!(
-                "the beam `{}` is held along its axis, and keeps its energy over steps of one size only: moreau-jean-located divides them",
-                beam.name
+                "the beam `{}` is held along its axis, and keeps its energy over steps of one size only: {} divides them",
+                beam.name,
+                scheme.word()
             );
             self.error("time.scheme", rule, "take scheme = \"moreau-jean-closed\", or axial = free");
         }
@@ -123,6 +125,17 @@ impl Resolver<'_, '_> {
                 None
             }
             accuracy => accuracy,
+        }
+    }
+
+    /// Refuses contacts with duration where the scheme takes none.
+    pub(super) fn refuse_springs(&mut self, scheme: SchemeName, contacts: &[Option<ContactScene>]) {
+        let has_duration = |contact: &&ContactScene| {
+            matches!(contact.law.impact, ImpactLaw::KelvinVoigt { .. } | ImpactLaw::HuntCrossley { .. })
+        };
+        if let Some(contact) = contacts.iter().flatten().find(has_duration).filter(|_| !scheme.takes_springs()) {
+            let rule = format!("{} takes no contacts with duration, such as `{}`", scheme.word(), contact.name);
+            self.error("time.scheme", rule, "take scheme = \"moreau-jean-located\", or law = \"newton\"");
         }
     }
 
