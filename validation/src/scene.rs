@@ -8,7 +8,7 @@ use teeter_beam::{Beam, BeamSpec, Damping, Section};
 use teeter_detect::{Kinematics, PointDetector, PointPair};
 use teeter_integrator::{
     BeamBody, BeamSurface, Block, Blocks, Ended, Model, ModelBuilder, MoreauJean, MoreauJeanClosed,
-    MoreauJeanClosedSettings, MoreauJeanSettings, Observer, ObserverError, PairLaw, Plan, Scheme, SolverSettings,
+    MoreauJeanClosedSettings, MoreauJeanLocated, MoreauJeanLocatedSettings, EventDriven, EventDrivenSettings, MoreauJeanSettings, Observer, ObserverError, PairLaw, Plan, Scheme, SolverSettings,
     State, StepReport, Subsystem, Unsolved, Workspace, run,
 };
 use teeter_rigid::{MassProperties, Rectangle};
@@ -102,10 +102,12 @@ pub(crate) struct Start {
 pub(crate) enum Stepping {
     MoreauJean,
     MoreauJeanClosed,
+    MoreauJeanLocated,
+    EventDriven,
 }
 
 impl Stepping {
-    /// Both, the one of `docs/theory.md` first.
+    /// Those of a fixed step, the one of `docs/theory.md` first.
     pub(crate) const ALL: [Self; 2] = [Self::MoreauJean, Self::MoreauJeanClosed];
 
     /// The name by which users choose it.
@@ -113,6 +115,8 @@ impl Stepping {
         match self {
             Self::MoreauJean => MoreauJean::<2>::NAME,
             Self::MoreauJeanClosed => MoreauJeanClosed::<2>::NAME,
+            Self::MoreauJeanLocated => MoreauJeanLocated::<2>::NAME,
+            Self::EventDriven => EventDriven::NAME,
         }
     }
 
@@ -124,7 +128,11 @@ impl Stepping {
             Self::MoreauJeanClosed if theta == 0.5 => {
                 Box::new(MoreauJeanClosed::new(MoreauJeanClosedSettings::default())?)
             }
-            Self::MoreauJeanClosed => return Err(format!("{} knows no θ but 1/2", self.name()).into()),
+            Self::MoreauJeanLocated if theta == 0.5 => {
+                Box::new(MoreauJeanLocated::new(MoreauJeanLocatedSettings::default())?)
+            }
+            Self::EventDriven => Box::new(EventDriven::new(EventDrivenSettings::default())?),
+            Self::MoreauJeanClosed | Self::MoreauJeanLocated => return Err(format!("{} knows no θ but 1/2", self.name()).into()),
         })
     }
 }

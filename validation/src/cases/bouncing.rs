@@ -156,7 +156,7 @@ fn settle(runner: &mut Runner, dt: f64, findings: &mut Findings) -> Result<()> {
     let rest = what("largest velocity in the last half second, m/s");
     findings.checks.push(match runner.stepping() {
         Stepping::MoreauJean => Check::worst(rest, fastest, GRAVITY * dt),
-        Stepping::MoreauJeanClosed => Check::worst(rest, fastest, 1e-15),
+        _ => Check::worst(rest, fastest, 1e-15),
     });
     // It rests as deep as its last step went.
     let depth = end.q[1] - 0.5 * FLAT_BLOCK.height;
