@@ -53,12 +53,23 @@ pub(crate) fn block_over(
     surface: Box<dyn Subsystem<2>>,
 ) -> Result<Model<2>> {
     let shape = Rectangle::new(spec.width, spec.height)?;
+    points_over(spec, shape.corners().to_vec(), gravity, law, surface)
+}
+
+/// The same with these points of the block in place of its corners, m from its centre.
+pub(crate) fn points_over(
+    spec: &BlockSpec,
+    points: Vec<Vector2<f64>>,
+    gravity: Vector2<f64>,
+    law: PairLaw,
+    surface: Box<dyn Subsystem<2>>,
+) -> Result<Model<2>> {
+    let shape = Rectangle::new(spec.width, spec.height)?;
     let mass = MassProperties::rectangle(&shape, spec.depth, spec.density)?;
     let mut parts = ModelBuilder::new();
     let body = parts.add(Blocks::new(vec![Block::new(mass, &shape)], gravity)).body();
     let surface = parts.add_boxed(surface).body();
     let law = parts.law(law);
-    let points = shape.corners().to_vec();
     let kinematics = Kinematics::Deformed;
     Ok(parts.build(Box::new(PointDetector::new(vec![PointPair {
         pair: 0,
