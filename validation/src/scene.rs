@@ -7,9 +7,10 @@ use std::sync::Arc;
 use teeter_beam::{Beam, BeamSpec, Damping, Section};
 use teeter_detect::{Kinematics, PointDetector, PointPair};
 use teeter_integrator::{
-    BeamBody, BeamSurface, Block, Blocks, Ended, Model, ModelBuilder, MoreauJean, MoreauJeanClosed,
-    MoreauJeanClosedSettings, MoreauJeanLocated, MoreauJeanLocatedSettings, EventDriven, EventDrivenSettings, MoreauJeanSettings, Observer, ObserverError, PairLaw, Plan, Scheme, SolverSettings,
-    State, StepReport, Subsystem, Unsolved, Workspace, run,
+    BeamBody, BeamSurface, Block, Blocks, Ended, EventDriven, EventDrivenSettings, Model, ModelBuilder, MoreauJean,
+    MoreauJeanClosed, MoreauJeanClosedSettings, MoreauJeanLocated, MoreauJeanLocatedSettings, MoreauJeanSettings,
+    Observer, ObserverError, PairLaw, Plan, Scheme, SolverSettings, State, StepReport, Subsystem, Unsolved, Workspace,
+    run,
 };
 use teeter_rigid::{MassProperties, Rectangle};
 
@@ -143,7 +144,9 @@ impl Stepping {
                 Box::new(MoreauJeanLocated::new(MoreauJeanLocatedSettings::default())?)
             }
             Self::EventDriven => Box::new(EventDriven::new(EventDrivenSettings::default())?),
-            Self::MoreauJeanClosed | Self::MoreauJeanLocated => return Err(format!("{} knows no θ but 1/2", self.name()).into()),
+            Self::MoreauJeanClosed | Self::MoreauJeanLocated => {
+                return Err(format!("{} knows no θ but 1/2", self.name()).into());
+            }
         })
     }
 }

@@ -9,7 +9,8 @@ mod smooth;
 
 use crate::moreau_jean_located::{MoreauJeanLocated, MoreauJeanLocatedSettings};
 use crate::{
-    Keep, Model, PhaseEnd, PhaseKind, Scheme, SettingError, State, StepEnergy, StepError, StepReport, StepSpan, Workspace,
+    Keep, Model, PhaseEnd, PhaseKind, Scheme, SettingError, State, StepEnergy, StepError, StepReport, StepSpan,
+    Workspace,
 };
 use events::{Open, Watch};
 use modes::{Mode, Pressing};
@@ -39,6 +40,9 @@ const FLOOR: f64 = 1e-3;
 
 /// Bounces that rise by less than so many tolerances of gaps are none.
 const LOWEST_BOUNCE: f64 = 100.0;
+
+/// Prescribed velocities that change by this part of the largest don't jump.
+const NO_JUMP: f64 = 1e-12;
 
 /// Events one upon the other, without motion in between, after which the modes go round in a circle.
 const MOST_IDLE: u32 = 6;
@@ -105,6 +109,10 @@ pub struct EventDriven {
     numbers: Vec<f64>,
     /// The step that the method would take next, s.
     h: f64,
+    /// The last time at which loads and drives may have changed and contacts were decided anew, s.
+    handled: f64,
+    /// Steps of the method within the present one of the scheme's.
+    substeps: usize,
     /// Whether loads or drives aren't smooth where the phase would end.
     ends_with_break: bool,
 }
@@ -159,6 +167,8 @@ impl EventDriven {
             ids: Vec::new(),
             numbers: Vec::new(),
             h: 0.0,
+            handled: 0.0,
+            substeps: 0,
             ends_with_break: false,
         })
     }
@@ -244,7 +254,8 @@ impl Scheme<2> for EventDriven {
             if located { contacts.iter().any(|own| own.id == contact.id) } else { contact.p[0] > 0.0 }
         })?;
         self.numbers.clear();
-        self.numbers.push(self.h);
+        // Without them the next step begins anew.
+        self.numbers.extend(located.then_some(self.h));
         for contact in self.smooth.contacts.iter().filter(|_| located) {
             let Pressing { id, mode, level, .. } = contact;
             self.numbers.extend([f64::from(id.pair()), f64::from(id.point()), mode.number(), *level]);
@@ -266,13 +277,18 @@ impl EventDriven {
         work: &mut Workspace<2>,
     ) -> Result<bool, StepError> {
         work.factors(model, MASSES, &from.q, Keep::Pinned)?;
-        self.jump(model, from, work)?;
+        (self.handled, self.substeps) = (from.t, 0);
+        let jumped = self.jump(model, from, work)?;
+        let early = from.t - (after(from.t) - from.t);
+        let breaks = model.parts().iter().map(|part| part.system.next_break(early));
+        let broken = breaks.fold(f64::INFINITY, f64::min) <= after(from.t);
         let known = self.restore(model, from, work)?;
-        if !known && !self.decide(model, from, work)? {
+        if !(known && !jumped && !broken) && !self.decide(model, from, work)? {
             return self.give_up(model, from, span, work);
         }
         let (mut at, mut idle) = (from.t, 0);
-        for _ in 0..=Self::MOST_EVENTS {
+        let mut events = 0;
+        while events <= Self::MOST_EVENTS {
             let stop = self.go_on(model, from, span.end, work)?;
             idle = if from.t == at { idle + 1 } else { 0 };
             at = from.t;
@@ -283,11 +299,13 @@ impl EventDriven {
                 Stop::End => return Ok(true),
                 Stop::Stuck => break,
                 Stop::Event => {
+                    events += 1;
                     if !self.change_modes(model, from, work)? {
                         break;
                     }
                 }
                 Stop::Break => {
+                    self.handled = from.t;
                     self.jump(model, from, work)?;
                     if !self.decide(model, from, work)? {
                         break;
@@ -314,6 +332,8 @@ impl EventDriven {
         let rest = StepSpan { start: from.t, end: span.end, h: span.end - from.t };
         if rest.h > 0.0 {
             self.located.take_rest(model, from, &rest, work)?;
+            // Prescribed velocities are means there, and those of their time here.
+            self.jump(model, from, work)?;
         }
         Ok(false)
     }
@@ -323,11 +343,14 @@ impl EventDriven {
         self.smooth.contacts.clear();
         let (active, numbers) = (from.memory.active(), from.memory.all_numbers());
         self.h = from.dt;
-        let Some((h, contacts)) = numbers.split_first() else { return Ok(false) };
-        if contacts.len() != REMEMBERED * active.len() || !(*h > 0.0 && h.is_finite()) {
+        work.locate(model, &from.q, active, &mut self.found)?;
+        let (h, contacts) = numbers.split_first().map_or((0.0, numbers), |(h, contacts)| (*h, contacts));
+        if contacts.len() != REMEMBERED * active.len() || !(h > 0.0 && h.is_finite()) {
+            // They are closed, whatever else they do.
+            let closed = self.found.iter().map(|candidate| Pressing::new(candidate.id, Mode::Stick, 0.0, 0.0));
+            self.smooth.contacts.extend(closed);
             return Ok(false);
         }
-        work.locate(model, &from.q, active, &mut self.found)?;
         let mut known = self.found.len() == active.len();
         for (candidate, held) in self.found.iter().zip(contacts.chunks_exact(REMEMBERED)) {
             known &= held[0] == f64::from(candidate.id.pair()) && held[1] == f64::from(candidate.id.point());
@@ -336,23 +359,25 @@ impl EventDriven {
             self.smooth.contacts.push(Pressing::new(candidate.id, mode, level, friction));
         }
         if known {
-            self.h = *h;
-        } else {
-            self.smooth.contacts.clear();
+            self.h = h;
         }
         Ok(known)
     }
 
     /// Lets prescribed velocities jump to what they are from now on; what hangs on them by mass jumps
-    /// too.
-    fn jump(&mut self, model: &Model<2>, from: &mut State, work: &mut Workspace<2>) -> Result<(), StepError> {
+    /// too. Whether there was a jump.
+    fn jump(&mut self, model: &Model<2>, from: &mut State, work: &mut Workspace<2>) -> Result<bool, StepError> {
         if !model.is_driven() {
-            return Ok(());
+            return Ok(false);
         }
         self.v_before.copy_from_slice(&from.v);
-        model.drive_at(from.t, &mut from.v);
-        if self.v_before == from.v {
-            return Ok(());
+        model.drive_at(after(from.t), &mut from.v);
+        let fastest = from.v.iter().chain(&self.v_before).fold(0.0_f64, |fastest, v| fastest.max(v.abs()));
+        let moved = from.v.iter().zip(&self.v_before).fold(0.0_f64, |moved, (v, old)| moved.max((v - old).abs()));
+        if moved <= NO_JUMP * fastest {
+            from.v.copy_from_slice(&self.v_before);
+            model.drive_at(from.t, &mut from.v);
+            return Ok(false);
         }
         for (index, part) in model.parts().iter().enumerate().filter(|(_, part)| part.is_driven()) {
             let (v, old) = (&mut from.v[part.v.clone()], &self.v_before[part.v.clone()]);
@@ -369,7 +394,13 @@ impl EventDriven {
         }
         let gained = model.energy_at(&from.q, &from.v).kinetic - model.energy_at(&from.q, &self.v_before).kinetic;
         let energy = StepEnergy { external: gained, ..StepEnergy::default() };
-        work.phase(model, &PhaseEnd::new(PhaseKind::Impact, from.t, &from.q, &from.v).with_energy(energy), None)
+        work.phase(model, &PhaseEnd::new(PhaseKind::Impact, from.t, &from.q, &from.v).with_energy(energy), None)?;
+        Ok(true)
+    }
+
+    /// The time in which free accelerations make no velocity that counts, s: that of rounding.
+    fn instant(&self, from: &State) -> f64 {
+        1e3 * f64::EPSILON * (from.t.abs() + self.h)
     }
 
     /// Ends the smooth phase that was integrated from `from` to time `end` (s), and moves on.
@@ -387,6 +418,9 @@ impl EventDriven {
         for (mean, sum) in self.mean.iter_mut().zip(self.smooth.sum_of_places(model, &self.y)) {
             *mean = sum / duration;
         }
+        if duration <= f64::MIN_POSITIVE {
+            self.mean.copy_from_slice(q);
+        }
         let outcome = self.smooth.finish_contacts(model, &self.y, work)?;
         let phase = PhaseEnd::new(PhaseKind::Smooth, end, q, v)
             .lasting(duration)
@@ -401,9 +435,14 @@ impl EventDriven {
     }
 }
 
-/// The velocity below which a contact counts as still, m/s: what solvers leave of these speeds (m/s),
-/// or what free accelerations (m/s²) make in next to no time of a step of `dt` (s).
-fn still(speed: f64, acceleration: f64, dt: f64) -> f64 {
-    (1e-10 * speed).max(1e-9 * dt * acceleration)
+/// Just after time `t` (s): there loads and drives have the values from now on, whatever rounding of
+/// times says.
+fn after(t: f64) -> f64 {
+    t + 8.0 * f64::EPSILON * t.abs()
 }
 
+/// The velocity below which a contact counts as still, m/s: what solvers leave of these speeds (m/s),
+/// or what free accelerations (m/s²) make in an `instant` (s).
+fn still(speed: f64, acceleration: f64, instant: f64) -> f64 {
+    (1e-10 * speed).max(instant * acceleration)
+}

@@ -1,8 +1,8 @@
 //! The list of schemes by name.
 
 use crate::{
-    EventDriven, EventDrivenSettings, MoreauJean, MoreauJeanClosed, MoreauJeanClosedSettings, MoreauJeanLocated, MoreauJeanLocatedSettings,
-    MoreauJeanSettings, Scheme,
+    EventDriven, EventDrivenSettings, MoreauJean, MoreauJeanClosed, MoreauJeanClosedSettings, MoreauJeanLocated,
+    MoreauJeanLocatedSettings, MoreauJeanSettings, Scheme,
 };
 
 /// A scheme in the list.

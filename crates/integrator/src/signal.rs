@@ -174,7 +174,10 @@ pub(crate) mod tests {
             let f = |k: f64| signal.rate(t + k * h);
             let second = (8.0 * (f(1.0) - f(-1.0)) - (f(2.0) - f(-2.0))) / (12.0 * h);
             let own = signal.second_rate(t);
-            assert!((own - second).abs() < 1e-8 * (1.0 + second.abs()), "{signal:?} second rate at {t}: {own} {second}");
+            assert!(
+                (own - second).abs() < 1e-8 * (1.0 + second.abs()),
+                "{signal:?} second rate at {t}: {own} {second}"
+            );
             let next = signal.next_break(a);
             assert!(kinks.is_empty() || next >= b || (next - b).abs() < 1e-12, "{signal:?} after {a}: {next}");
             (once, twice) = (inner(b), twice + quadrature(inner, a, b, 200));

@@ -393,13 +393,7 @@ impl<const D: usize> ContactStage<D> {
     }
 
     /// The same at coordinates `q` and velocities `v`, whose lengths are right.
-    pub(crate) fn bias_at(
-        &self,
-        i: usize,
-        model: &Model<D>,
-        q: &[f64],
-        v: &[f64],
-    ) -> Result<Vector<D>, ContactError> {
+    pub(crate) fn bias_at(&self, i: usize, model: &Model<D>, q: &[f64], v: &[f64]) -> Result<Vector<D>, ContactError> {
         let (contact, mut sum) = (&self.contacts[i], Vector::zeros());
         for (anchor, sign) in contact.sides.iter().zip([1.0, -1.0]) {
             let Some((_, part, body)) = model.owner(anchor.body) else { continue };
@@ -533,7 +527,10 @@ impl<const D: usize> ContactStage<D> {
     pub(crate) fn complete_smooth(&mut self, i: usize, p: Vector<D>, u: [Vector<D>; 2], u_law: Vector<D>) {
         self.problem.p[i] = p;
         let contact = &mut self.contacts[i];
-        (contact.p, contact.u_before, contact.u_after, contact.u_law) = (p, u[0], u[1], u_law);
+        (contact.p, contact.u_law) = (p, u_law);
+        // What presses doesn't part.
+        [contact.u_before, contact.u_after] = u.map(|u| tangential(&u));
+        contact.persisting = true;
     }
 
     /// Gives contact `i` an impulse, N·s, for [`respond`](Self::respond).

@@ -13,10 +13,10 @@ use teeter_beam::{BeamError, ModalError};
 use teeter_contact::ContactSolver;
 use teeter_detect::{PointDetector, PointPair};
 use teeter_integrator::{
-    Account, Block, Ended, Mismatch, Model, ModelBuilder, ModelError, MoreauJean, MoreauJeanClosed,
-    EventDriven, EventDrivenSettings, MoreauJeanClosedSettings, MoreauJeanLocated, MoreauJeanLocatedSettings, MoreauJeanSettings, Observer, PartPlace,
-    Plan, RunError, Scheme, SettingError, SolverSettings, State, StateError, StepError, StepReport, Subsystem,
-    Unsolved, WorkCounts, Workspace, run,
+    Account, Block, Ended, EventDriven, EventDrivenSettings, Mismatch, Model, ModelBuilder, ModelError, MoreauJean,
+    MoreauJeanClosed, MoreauJeanClosedSettings, MoreauJeanLocated, MoreauJeanLocatedSettings, MoreauJeanSettings,
+    Observer, PartPlace, Plan, RunError, Scheme, SettingError, SolverSettings, State, StateError, StepError,
+    StepReport, Subsystem, Unsolved, WorkCounts, Workspace, run,
 };
 use teeter_rigid::{MassProperties, Rectangle, RigidError};
 

@@ -71,13 +71,8 @@ words! {
 }
 
 /// The words of the schemes.
-pub(crate) const SCHEMES: &[&str] = &[
-    "auto",
-    MoreauJean::<2>::NAME,
-    MoreauJeanClosed::<2>::NAME,
-    MoreauJeanLocated::<2>::NAME,
-    EventDriven::NAME,
-];
+pub(crate) const SCHEMES: &[&str] =
+    &["auto", MoreauJean::<2>::NAME, MoreauJeanClosed::<2>::NAME, MoreauJeanLocated::<2>::NAME, EventDriven::NAME];
 
 /// A scheme by name, or the one that suits the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

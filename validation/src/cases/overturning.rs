@@ -74,7 +74,9 @@ impl Case for Overturning {
                     points.extend(found.map(|found| (limit.frequency, found)));
                     let found = found.unwrap_or(f64::NAN);
                     if depth == Depth::Full {
-                        let fine = limit.computed(&mut runner, room.min(AROUND), 0.5 * STEP, BRACKET)?.unwrap_or(f64::INFINITY);
+                        let fine = limit
+                            .computed(&mut runner, room.min(AROUND), 0.5 * STEP, BRACKET)?
+                            .unwrap_or(f64::INFINITY);
                         change = change.max((fine / found - 1.0).abs());
                     }
                     findings.checks.push(Check::relative(quantity + ", relative", limit.exact, found, BOUND));

@@ -2,7 +2,7 @@
 
 use super::events::Kind;
 use super::modes::{Mode, Pressing};
-use super::{EventDriven, LOWEST_BOUNCE, smooth::MASSES, still};
+use super::{EventDriven, LOWEST_BOUNCE, after, smooth::MASSES, still};
 use crate::{Memory, Model, Over, Responses, Rule, State, StepError, Vector, WarmStart, Workspace};
 use teeter_detect::Candidate;
 
@@ -42,9 +42,9 @@ impl EventDriven {
             }
         }
         if simple {
-            self.smooth.between = [from.t, from.t];
-            self.smooth.accelerate(model, from.t, &from.q, &from.v, work)?;
-            self.smooth.share_friction();
+            let t = after(from.t);
+            self.smooth.between = [t, t];
+            self.smooth.accelerate(model, t, &from.q, &from.v, work)?;
             if self.smooth.contacts.iter().all(|contact| contact.presses() >= HOLDS && contact.holds() >= HOLDS) {
                 return Ok(true);
             }
@@ -60,7 +60,8 @@ impl EventDriven {
         from: &mut State,
         work: &mut Workspace<2>,
     ) -> Result<bool, StepError> {
-        let t = from.t;
+        // Loads and drives are those from now on.
+        let t = after(from.t);
         self.smooth.between = [t, t];
         self.v_before.copy_from_slice(&from.v);
         self.find_touching(model, from, work)?;
@@ -91,8 +92,8 @@ impl EventDriven {
         work.locate(model, &from.q, &self.ids, &mut self.found)?;
         self.touching.clear();
         self.touching.extend_from_slice(&self.found);
-        let known = |candidate: &&Candidate<2>| self.ids.binary_search(&candidate.id).is_err();
-        self.touching.extend(work.candidates.iter().filter(known));
+        let is_new = |candidate: &&Candidate<2>| self.ids.binary_search(&candidate.id).is_err();
+        self.touching.extend(work.candidates.iter().filter(is_new));
         self.touching.sort_unstable_by_key(|candidate| candidate.id);
         Ok(())
     }
@@ -100,24 +101,31 @@ impl EventDriven {
     /// Where a contact that was open approaches: the largest normal acceleration of those that touch,
     /// m/s².
     fn approach(&mut self, model: &Model<2>, from: &State) -> Result<Option<f64>, StepError> {
-        let stage = &mut self.smooth.stage;
         let (mut approaches, mut fastest) = (false, f64::MIN_POSITIVE);
+        let instant = self.instant(from);
+        let stage = &mut self.smooth.stage;
         for candidate in &self.touching {
             stage.clear();
             if !stage.add(model, &from.q, candidate, &WarmStart::default(), &Memory::default())? {
                 continue;
             }
             fastest = stage.velocity(0, &self.smooth.a)?[0].abs().max(fastest);
-            let pressing = self.smooth.contacts.iter().any(|contact| contact.id == candidate.id);
-            let slow = still(stage.speed(0, &from.v), stage.speed(0, &self.smooth.a), from.dt);
-            approaches |= !pressing && stage.velocity(0, &from.v)?[0] < -slow;
+            let slow = still(stage.speed(0, &from.v), stage.speed(0, &self.smooth.a), instant);
+            approaches |= stage.velocity(0, &from.v)?[0] < -slow;
         }
         Ok(approaches.then_some(fastest))
     }
 
     /// Solves the law over accelerations for the contacts that touch and don't part.
-    fn find_who_presses(&mut self, model: &Model<2>, from: &mut State, work: &mut Workspace<2>) -> Result<bool, StepError> {
+    fn find_who_presses(
+        &mut self,
+        model: &Model<2>,
+        from: &mut State,
+        work: &mut Workspace<2>,
+    ) -> Result<bool, StepError> {
         let problem = |source| StepError::Problem { t: from.t, source };
+        let height = LOWEST_BOUNCE * self.located.tolerance(&from.q);
+        let instant = self.instant(from);
         let smooth = &mut self.smooth;
         smooth.stage.clear();
         self.found.clear();
@@ -128,7 +136,10 @@ impl EventDriven {
             }
             let u = smooth.stage.velocity(row, &from.v)?;
             let speed = smooth.stage.speed(row, &from.v).max(smooth.stage.speed(row, &self.v_before));
-            if u[0] > still(speed, smooth.stage.speed(row, &smooth.a), from.dt) {
+            let free = smooth.stage.velocity(row, &smooth.a)?[0];
+            let slow = still(speed, smooth.stage.speed(row, &smooth.a), instant);
+            // What would come back from less than the lowest bounce stays.
+            if u[0] > slow.max((2.0 * height * (-free).max(0.0)).sqrt()) {
                 smooth.stage.drop_last();
                 continue;
             }
@@ -144,7 +155,7 @@ impl EventDriven {
             let stage = &smooth.stage;
             let u = stage.velocity(row, &from.v)?;
             let speed = stage.speed(row, &from.v).max(stage.speed(row, &self.v_before));
-            let slow = still(speed, stage.speed(row, &smooth.a), from.dt);
+            let slow = still(speed, stage.speed(row, &smooth.a), instant);
             let slides = (u[1].abs() > slow).then(|| u[1].signum());
             let bias = smooth.turning(model, &from.q, work, row, candidate)?;
             let free = smooth.stage.velocity(row, &smooth.a)? + bias;

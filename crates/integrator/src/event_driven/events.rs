@@ -14,6 +14,8 @@ pub(super) struct Open {
     gap: f64,
     /// m/s.
     rate: f64,
+    /// Whether no force can move it.
+    is_prescribed: bool,
 }
 
 /// What can happen to a contact.
@@ -65,6 +67,9 @@ const ROUNDING_ORDER: f64 = 2.5;
 const MOST_NOISE: f64 = 1e3;
 const LEAST_NOISE: f64 = 0.2;
 
+/// A contact that pulls by this part of its scale within a step has opened in it.
+const PULLED: f64 = 1e-3;
+
 /// Trials at an event: six to ten do.
 const TRIALS: usize = 80;
 
@@ -82,7 +87,7 @@ impl EventDriven {
     ) -> Result<Stop, StepError> {
         // A break at the start or the end is not seen from the wrong side, nor is it met twice.
         let nudge = 8.0 * f64::EPSILON * from.t.abs().max(end.abs());
-        let breaks = model.parts().iter().map(|part| part.system.next_break(from.t + nudge));
+        let breaks = model.parts().iter().map(|part| part.system.next_break(self.handled + nudge));
         let next = breaks.fold(f64::INFINITY, f64::min);
         let last = if next < end - nudge { next } else { end };
         self.ends_with_break = next <= end + nudge;
@@ -97,7 +102,6 @@ impl EventDriven {
         self.y.resize(n, 0.0);
         self.smooth.project(model, from.t, &mut self.y, work)?;
         self.smooth.slope(model, from.t, &self.y, work, self.rk.first_slope())?;
-        self.smooth.share_friction();
         for contact in &mut self.smooth.contacts {
             contact.u_before = contact.u;
         }
@@ -107,30 +111,50 @@ impl EventDriven {
         }
         self.find_open(model, work)?;
         let (mut t, mut duration) = (from.t, 0.0);
-        let (mut noise, mut before, mut explored) = (0.0_f64, None::<(f64, f64)>, false);
-        for _ in 0..Self::MOST_SUBSTEPS {
+        let (mut noise, mut noisy, mut flat) = (0.0_f64, f64::INFINITY, 0);
+        let (mut before, mut explored) = (None::<(f64, f64)>, false);
+        while self.substeps < Self::MOST_SUBSTEPS {
+            self.substeps += 1;
             let rest = last - t;
             let mut h = if self.h < 0.9 * rest { self.h } else { rest };
             if !(h > 4.0 * f64::EPSILON * t.abs()) {
                 // Rounding leaves no time to go on.
-                return if rest > STEP_LEFT * from.dt { Ok(Stop::Stuck) } else { self.arrive(model, from, last, duration, end, work) };
+                return if rest > STEP_LEFT * from.dt {
+                    Ok(Stop::Stuck)
+                } else {
+                    self.arrive(model, from, last, duration, end, work)
+                };
             }
             let estimate = self.try_step(model, t, h, work)?;
             // What is rounding falls with the step only.
             match before {
                 Some((longer, error)) if 0.8 * longer > h => {
                     let order = (error / estimate).ln() / (longer / h).ln();
-                    if estimate > LEAST_NOISE && estimate < MOST_NOISE && order < ROUNDING_ORDER {
-                        noise = noise.max(1.5 * estimate / h);
+                    let is_flat = estimate > LEAST_NOISE && estimate < MOST_NOISE && order < ROUNDING_ORDER;
+                    // Once may be chance, where the step doesn't resolve a load.
+                    flat = if is_flat { flat + 1 } else { 0 };
+                    if flat > 1 {
+                        (noise, noisy) = (1.5 * estimate / h, h);
                     }
                     before = Some((h, estimate));
                 }
                 Some((longer, _)) if longer > h => {}
                 _ => before = Some((h, estimate)),
             }
-            let error = (estimate - noise * h).max(0.0);
+            // It is that of steps like these.
+            if h > 4.0 * noisy {
+                (noise, flat) = (0.0, 0);
+            }
+            let error = if estimate.is_nan() { f64::INFINITY } else { (estimate - (noise * h).min(MOST_NOISE)).max(0.0) };
             if !(error <= 1.0) {
                 self.h = if error.is_finite() { RungeKutta::better(h, error) } else { 0.1 * h };
+                work.counts.refused_attempts += 1;
+                continue;
+            }
+            if let Some(part) = self.smooth.pulled.take()
+                && part * h > 1e-3 * self.h.min(rest)
+            {
+                self.h = part * h;
                 work.counts.refused_attempts += 1;
                 continue;
             }
@@ -140,9 +164,15 @@ impl EventDriven {
                 continue;
             }
             let mut stop = None;
-            if self.find_watches(model, &from.q, work)? {
-                h = self.locate_event(model, t, h, work)?;
-                stop = Some(Stop::Event);
+            if self.find_watches(model, t + h, work)? {
+                match self.locate_event(model, t, h, work)? {
+                    Some(tau) => (h, stop) = (tau, Some(Stop::Event)),
+                    // Nothing that a shorter step would confirm.
+                    None => {
+                        self.h = 0.5 * h;
+                        continue;
+                    }
+                }
             } else {
                 let better = RungeKutta::better(h, error.max(1e-12));
                 self.h = if h < self.h { self.h.max(better) } else { better };
@@ -154,7 +184,7 @@ impl EventDriven {
             if h > 0.0 {
                 self.y.copy_from_slice(&self.rk.end);
             }
-            t = if stop.is_none() && h == rest { last } else { t + h };
+            t = if stop.is_none() && h == rest { last } else { (t + h).min(last) };
             duration += h;
             if let Some(stop) = stop {
                 if duration > 0.0 {
@@ -168,8 +198,7 @@ impl EventDriven {
                 return self.arrive(model, from, last, duration, end, work);
             }
             self.smooth.slope(model, t, &self.y, work, self.rk.first_slope())?;
-            self.smooth.share_friction();
-            self.watch_start();
+                self.watch_start();
             self.find_open(model, work)?;
         }
         Ok(Stop::Stuck)
@@ -199,7 +228,14 @@ impl EventDriven {
     /// Takes a step of the method; its error, 1 at most for a good one.
     fn try_step(&mut self, model: &Model<2>, t: f64, h: f64, work: &mut Workspace<2>) -> Result<f64, StepError> {
         let Self { smooth, rk, y, .. } = self;
-        rk.step(h, y, |s, y, slope| smooth.slope(model, t + s * h, y, work, slope))?;
+        smooth.pulled = None;
+        rk.step(h, y, |s, y, slope| {
+            smooth.slope(model, t + s * h, y, work, slope)?;
+            if smooth.pulled.is_none() && s < 1.0 && smooth.contacts.iter().any(|contact| contact.presses() < -PULLED) {
+                smooth.pulled = Some(s);
+            }
+            Ok::<_, StepError>(())
+        })?;
         if !crate::subsystem::all_finite(&rk.end) {
             return Ok(f64::INFINITY);
         }
@@ -225,7 +261,8 @@ impl EventDriven {
             let candidate = work.candidates[k];
             if !self.smooth.contacts.iter().any(|contact| contact.id == candidate.id) {
                 let rate = rate_at(&mut self.smooth.stage, model, q, &candidate, v)?;
-                self.open.push(Open { id: candidate.id, gap: candidate.gap, rate });
+                let is_prescribed = self.smooth.stage.is_empty();
+                self.open.push(Open { id: candidate.id, gap: candidate.gap, rate, is_prescribed });
             }
         }
         Ok(())
@@ -246,8 +283,8 @@ impl EventDriven {
         for k in 0..work.candidates.len() {
             let candidate = work.candidates[k];
             let Ok(at) = self.open.binary_search_by_key(&candidate.id, |open| open.id) else { continue };
-            let Open { gap, rate, .. } = self.open[at];
-            if rate >= 0.0 || candidate.gap < 0.0 || gap < 0.0 {
+            let Open { gap, rate, is_prescribed, .. } = self.open[at];
+            if is_prescribed || rate >= 0.0 || candidate.gap < 0.0 || gap < 0.0 {
                 continue;
             }
             let end_rate = rate_at(&mut self.smooth.stage, model, q, &candidate, v)?;
@@ -269,10 +306,10 @@ impl EventDriven {
     }
 
     /// Lists what has happened by the end of a step; whether anything has.
-    fn find_watches(&mut self, model: &Model<2>, q0: &[f64], work: &mut Workspace<2>) -> Result<bool, StepError> {
+    fn find_watches(&mut self, model: &Model<2>, t: f64, work: &mut Workspace<2>) -> Result<bool, StepError> {
         self.watched.clear();
         let (nq, nv) = (model.size().q, model.size().v);
-        let tolerance = self.located.tolerance(q0);
+        let tolerance = self.located.tolerance(&self.y[..nq]);
         work.detect(model, &self.rk.end[..nq], 0.0)?;
         for candidate in &work.candidates {
             if candidate.gap >= -tolerance || self.smooth.contacts.iter().any(|contact| contact.id == candidate.id) {
@@ -282,16 +319,14 @@ impl EventDriven {
             // One that comes from beyond the end of its surface has no gap there.
             let start = at.map_or(f64::INFINITY, |at| self.open[at].gap);
             let level = start.min(0.0);
-            if candidate.gap < level - tolerance {
+            if candidate.gap < level - tolerance && !at.is_ok_and(|at| self.open[at].is_prescribed) {
                 let watch = Watch::new(Kind::Closes, candidate.id, start - level, candidate.gap - level, tolerance);
                 self.watched.push(Watch { level, ..watch });
             }
         }
         if !self.smooth.contacts.is_empty() {
             let (q, v) = self.rk.end[..nq + nv].split_at(nq);
-            let t = self.smooth.between[1];
             self.smooth.accelerate(model, t, q, v, work)?;
-            self.smooth.share_friction();
             for contact in &self.smooth.contacts {
                 let mut watch = |kind, start, end: f64, tolerance: f64| {
                     if end < -tolerance {
@@ -323,8 +358,7 @@ impl EventDriven {
         }
         if self.watched.iter().any(|watch| watch.kind != Kind::Closes) {
             self.smooth.accelerate(model, t, q, v, work)?;
-            self.smooth.share_friction();
-        }
+            }
         let (mut least, mut clear) = (f64::INFINITY, true);
         for watch in &mut self.watched {
             let contact = self.smooth.contacts.iter().find(|contact| contact.id == watch.id);
@@ -334,7 +368,13 @@ impl EventDriven {
                     at.map_or(f64::INFINITY, |at| self.found[at].gap - watch.level)
                 }
                 (_, None) => f64::INFINITY,
-                (Kind::Leaves, Some(contact)) => if contact.row.is_some() { 1.0 } else { -1.0 },
+                (Kind::Leaves, Some(contact)) => {
+                    if contact.row.is_some() {
+                        1.0
+                    } else {
+                        -1.0
+                    }
+                }
                 (Kind::Opens, Some(contact)) => contact.presses(),
                 (Kind::Slips, Some(contact)) => contact.holds(),
                 (Kind::Stops, Some(contact)) => contact.slides(),
@@ -348,7 +388,7 @@ impl EventDriven {
 
     /// Finds the time from `t` (s) at which the first of what is watched is 0, within a step of `h` (s), and
     /// leaves the step up to there; returns that time, s.
-    fn locate_event(&mut self, model: &Model<2>, t: f64, h: f64, work: &mut Workspace<2>) -> Result<f64, StepError> {
+    fn locate_event(&mut self, model: &Model<2>, t: f64, h: f64, work: &mut Workspace<2>) -> Result<Option<f64>, StepError> {
         let (mut low, mut high) = (0.0, h);
         let mut at_low = self.watched.iter().map(|watch| watch.start / watch.end.abs()).fold(f64::INFINITY, f64::min);
         let mut at_high = -1.0;
@@ -371,7 +411,7 @@ impl EventDriven {
                 for watch in &mut self.watched {
                     watch.is_now = watch.start <= watch.tolerance;
                 }
-                return Ok(0.0);
+                return Ok(Some(0.0));
             }
         }
         let mut tau = h;
@@ -381,7 +421,13 @@ impl EventDriven {
             let narrow = width <= 2.0 * f64::EPSILON * t.abs().max(h);
             let secant = (low * at_high - high * at_low) / (at_high - at_low);
             let inside = secant > low && secant < high;
-            tau = if narrow { high } else if inside && trial % 8 != 7 { secant } else { 0.5 * (low + high) };
+            tau = if narrow {
+                high
+            } else if inside && trial % 8 != 7 {
+                secant
+            } else {
+                0.5 * (low + high)
+            };
             self.try_step(model, t, tau, work)?;
             work.counts.refused_attempts += 1;
             let (value, clear) = self.look(model, t + tau, work)?;
@@ -404,10 +450,17 @@ impl EventDriven {
                 same = -1;
             }
         }
+        let mut any = false;
         for watch in &mut self.watched {
             watch.is_now = watch.now <= watch.tolerance;
+            any |= watch.is_now;
         }
-        Ok(tau)
+        // Where a surface ends there are no rows: the phase ends before.
+        if self.watched.iter().any(|watch| watch.is_now && watch.kind == Kind::Leaves) && low > 0.0 {
+            tau = low;
+            self.try_step(model, t, tau, work)?;
+        }
+        Ok(any.then_some(tau))
     }
 }
 

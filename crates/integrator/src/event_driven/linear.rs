@@ -17,8 +17,11 @@ pub(super) struct Linear {
 /// takes it out again.
 const SHIFT: f64 = 1e-8;
 
-/// Refinements: each gains some eight digits of what is determined.
-const REFINEMENTS: usize = 4;
+/// An unknown without an entry of its own is shifted by this part of the largest.
+const LEAST_OWN: f64 = 1e-12;
+
+/// Refinements: each gains some eight digits of what is determined, by weights of up to a thousand five.
+const REFINEMENTS: usize = 6;
 
 impl Linear {
     pub(super) fn reserve(&mut self, n: usize) {
@@ -50,15 +53,16 @@ impl Linear {
         &self.x
     }
 
-    /// Solves; of several solutions of a symmetric system that with the least Σ w x², w = `weights`
-    /// times the diagonal. Whether the system has a solution, up to rounding.
+    /// Solves; of several solutions of a symmetric system that with the least Σ w a x², w the `weights`
+    /// and a the diagonal. Whether the system has a solution, up to rounding.
     pub(super) fn solve(&mut self, weights: impl Fn(usize) -> f64) -> bool {
         let n = self.n;
-        let largest = (0..n).map(|i| self.a[i * n + i].abs()).fold(0.0, f64::max);
+        let own = |a: &[f64], i: usize| a[i * n + i].abs();
+        let largest = (0..n).map(|i| own(&self.a, i)).fold(0.0, f64::max);
         self.lu.clear();
         self.lu.extend_from_slice(&self.a);
         for i in 0..n {
-            self.lu[i * n + i] += SHIFT * largest * weights(i);
+            self.lu[i * n + i] += SHIFT * own(&self.a, i).max(LEAST_OWN * largest) * weights(i);
         }
         if !self.factor() {
             return false;

@@ -36,6 +36,8 @@ pub(super) struct Pressing {
     pub(super) friction: f64,
     /// Its force on side 0, N.
     pub(super) force: Vector<2>,
+    /// The same before friction is shared, N.
+    pub(super) alone: Vector<2>,
     /// Its relative velocity, m/s.
     pub(super) u: Vector<2>,
     /// That at the start of the phase, m/s.
@@ -64,6 +66,7 @@ impl Pressing {
             level,
             friction,
             force: zero,
+            alone: zero,
             u: zero,
             u_before: zero,
             scale: 0.0,

@@ -22,6 +22,9 @@ const OF_CONTACT: usize = 4;
 /// than this, m or rad: its error falls with the fourth power.
 const ALONG: f64 = 1e-3;
 
+/// A contact has at least this part of the largest normal force where friction is shared.
+const LEAST_SHARE: f64 = 1e-3;
+
 /// The right-hand side.
 #[derive(Debug)]
 pub(super) struct Smooth {
@@ -46,6 +49,8 @@ pub(super) struct Smooth {
     /// Of contacts over which the law of accelerations is solved: J̇v, to which side they slide, and
     /// what their accelerations without contacts consist of, in size.
     pub(super) posed: Vec<(Vector<2>, Option<f64>, f64)>,
+    /// The part of a step of the method at which a contact was seen to pull.
+    pub(super) pulled: Option<f64>,
     /// Between these times loads and drives are smooth, s.
     pub(super) between: [f64; 2],
 }
@@ -68,6 +73,7 @@ impl Smooth {
             linear: Linear::default(),
             unknowns: Vec::new(),
             posed: Vec::new(),
+            pulled: None,
             between: [f64::NEG_INFINITY, f64::INFINITY],
         }
     }
@@ -125,6 +131,8 @@ impl Smooth {
         sum.copy_from_slice(q);
         if work.account == Account::Kept {
             works.copy_from_slice(&self.powers(model, q, work));
+        } else {
+            works.fill(0.0);
         }
         for (out, contact) in impulses.chunks_exact_mut(OF_CONTACT).zip(&self.contacts) {
             let (f, u) = (contact.force, contact.u);
@@ -291,10 +299,7 @@ impl Smooth {
     ) -> Result<Vector<2>, StepError> {
         let t = self.between[0];
         if model.owner(candidate.sides[1].body).is_some_and(|(_, part, _)| part.row == 0) {
-            return self
-                .stage
-                .bias_at(row, model, q, &self.v)
-                .map_err(|source| StepError::Problem { t, source });
+            return self.stage.bias_at(row, model, q, &self.v).map_err(|source| StepError::Problem { t, source });
         }
         let mut fastest = 0.0_f64;
         for side in &candidate.sides {
@@ -305,7 +310,7 @@ impl Smooth {
         if fastest == 0.0 {
             return Ok(Vector::zeros());
         }
-        let h = ALONG / fastest;
+        let h = (ALONG / fastest).min(1e6);
         let mut sum = Vector::zeros();
         for (shift, share) in [(h, 8.0), (-h, -8.0), (2.0 * h, -1.0), (-2.0 * h, 1.0)] {
             model.move_along(q, &self.v, shift, &mut self.q_probe);
@@ -338,6 +343,7 @@ impl Smooth {
             contact.free = self.stage.velocity(row, &self.a)? + bias;
         }
         self.solve_forces(|_| 1.0);
+        self.share_friction();
         Ok(())
     }
 
@@ -394,11 +400,18 @@ impl Smooth {
 
     /// Shares friction among contacts of which more than needed stick by what presses them: then one
     /// of them is at its limit only where all are.
-    pub(super) fn share_friction(&mut self) {
+    fn share_friction(&mut self) {
         let sticking = self.contacts.iter().filter(|contact| contact.mode == Mode::Stick && contact.row.is_some());
-        if sticking.count() > 1 {
-            let largest = self.contacts.iter().map(|contact| contact.force[0]).fold(0.0, f64::max);
-            self.solve_forces(|contact| largest / contact.force[0].max(1e-6 * largest));
+        let largest = self.contacts.iter().map(|contact| contact.force[0]).fold(0.0, f64::max);
+        if sticking.count() < 2 || !(largest > 0.0 && largest.is_finite()) {
+            return;
+        }
+        for contact in &mut self.contacts {
+            contact.alone = contact.force;
+        }
+        self.solve_forces(|contact| (largest / contact.alone[0].max(LEAST_SHARE * largest)).max(1.0));
+        if self.contacts.iter().any(|contact| contact.force.iter().any(|f| f.is_nan())) {
+            self.contacts.iter_mut().for_each(|contact| contact.force = contact.alone);
         }
     }
 
