@@ -8,7 +8,7 @@ use crate::render::{Presenter, refusal};
 use crate::scene;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use teeter_report::ENERGY_MADE;
+use teeter_report::{ENERGY_MADE, UNLOCATED};
 use teeter_run::{
     Done, Dump, EndedWord, Existing, ExportWhen, Extent, Hooks, LoadError, PrepareError, Prepared, RunError, RunJob,
     Start, Summary,
@@ -201,7 +201,7 @@ fn conclude(console: Console, options: &Options, done: &Done) -> Exit {
 
 fn tell_end(console: Console, summary: &Summary, folder: &Path, resumable: bool) -> Exit {
     // All others have been told as they came.
-    for warning in summary.warnings.iter().filter(|warning| warning.code == ENERGY_MADE) {
+    for warning in summary.warnings.iter().filter(|warning| [ENERGY_MADE, UNLOCATED].contains(&warning.code.as_ref())) {
         console.note(&format!("warning: {}", warning.text));
     }
     match summary.ended {

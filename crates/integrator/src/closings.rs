@@ -38,6 +38,8 @@ struct Held {
     id: ContactId,
     /// End of the last step in which it carried, s; the start of the run if it hasn't yet.
     last: f64,
+    /// End of the last phase in which it did, s.
+    pressed: f64,
     carried: bool,
     /// Whether its gap has been large enough since.
     opened: bool,
@@ -81,7 +83,14 @@ impl<const D: usize> ClosingMonitor<D> {
         for candidate in &monitor.candidates {
             let carried = state.memory.is_active(candidate.id);
             if carried || candidate.gap <= opening_of(openings, candidate.id).gap {
-                monitor.held.push(Held { id: candidate.id, last: state.t, carried, opened: false, lifted: false });
+                monitor.held.push(Held {
+                    id: candidate.id,
+                    last: state.t,
+                    pressed: state.t,
+                    carried,
+                    opened: false,
+                    lifted: false,
+                });
             }
         }
         monitor.held.sort_unstable_by_key(|held| held.id);
@@ -106,13 +115,17 @@ impl<const D: usize> ClosingMonitor<D> {
         let carrying = step.phases().flat_map(|phase| phase.contacts.iter().map(move |contact| (phase, contact)));
         for (phase, contact) in carrying.filter(|(_, contact)| contact.p[0] > 0.0) {
             let at_time = phase.end;
-            let now = Held { id: contact.id, last: t, carried: true, opened: false, lifted: false };
+            let now = Held { id: contact.id, last: t, pressed: at_time, carried: true, opened: false, lifted: false };
             match self.held.binary_search_by_key(&contact.id, |held| held.id) {
                 Ok(at) => {
                     let held = std::mem::replace(&mut self.held[at], now);
                     // An impact with a time of its own is no work of the step.
                     let struck = phase.kind == PhaseKind::Impact && contact.u_before[0] < 0.0;
-                    if struck && held.lifted && at_time - held.last > opening_of(openings, contact.id).time {
+                    let opening = opening_of(openings, contact.id);
+                    // A fall as fast as it comes, where nobody looked at its gap within the step.
+                    let fell = contact.u_before[0].powi(2) > 2.0 * opening.fall * opening.gap && opening.fall > 0.0;
+                    let lifted = held.lifted || (fell && held.pressed > before);
+                    if struck && lifted && at_time - held.pressed > opening.time {
                         self.impacts += 1;
                         each(at_time, contact, Closing::Impact);
                     } else if held.carried && held.last < before {

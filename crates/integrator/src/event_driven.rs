@@ -111,6 +111,8 @@ pub struct EventDriven {
     h: f64,
     /// The last time at which loads and drives may have changed and contacts were decided anew, s.
     handled: f64,
+    /// Energy that contacts took as they came to rest at the start of the phase, J.
+    projected: f64,
     /// Steps of the method within the present one of the scheme's.
     substeps: usize,
     /// Whether loads or drives aren't smooth where the phase would end.
@@ -168,6 +170,7 @@ impl EventDriven {
             numbers: Vec::new(),
             h: 0.0,
             handled: 0.0,
+            projected: 0.0,
             substeps: 0,
             ends_with_break: false,
         })
@@ -414,7 +417,8 @@ impl EventDriven {
     ) -> Result<(), StepError> {
         let (nq, nv) = (model.size().q, model.size().v);
         let (q, v) = (&self.y[..nq], &self.y[nq..nq + nv]);
-        let energy = self.smooth.energy(model, &self.y);
+        let mut energy = self.smooth.energy(model, &self.y);
+        energy.projection = self.projected;
         for (mean, sum) in self.mean.iter_mut().zip(self.smooth.sum_of_places(model, &self.y)) {
             *mean = sum / duration;
         }

@@ -21,6 +21,7 @@ mod sections;
 mod summary;
 mod swings;
 mod table;
+mod unlocated;
 mod warnings;
 
 pub use checkpoint::{
@@ -35,4 +36,5 @@ pub use run_recorder::{Origin, RunRecorder};
 pub use schedule::Schedule;
 pub use sections::{BeamRecord, LargestStress, ReactionRange, envelopes};
 pub use summary::{EndedWord, Summary};
+pub use unlocated::UNLOCATED;
 pub use warnings::{Warning, WarningLog};

@@ -1,7 +1,7 @@
 //! `summary.json`: the numbers of a run.
 
-use crate::made_energy;
 use crate::{BeamRecord, ImpactRow, LargestStress, ReactionRange, Record, Warning};
+use crate::{made_energy, unlocated};
 use serde::Serialize;
 use teeter_integrator::{Ended, RockingMonitor, State};
 use teeter_scenario::scene::Scene;
@@ -335,7 +335,14 @@ impl Summary {
             horizon: record.horizon,
             ended,
             model: ModelSummary::new(scene, layout),
-            warnings: record.warnings.warnings().iter().cloned().chain(made_energy::warning(scene, state)).collect(),
+            warnings: record
+                .warnings
+                .warnings()
+                .iter()
+                .cloned()
+                .chain(made_energy::warning(scene, state))
+                .chain(unlocated::warning(scene, state))
+                .collect(),
         }
     }
 

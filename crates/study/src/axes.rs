@@ -87,7 +87,7 @@ impl Axes {
                 .collect(),
             keys: vec![key],
         };
-        let scheme = words(resolved, "scheme", &["time.scheme".to_owned()], |_| true).unwrap_or_else(|| Axis {
+        let scheme = words(resolved, "scheme", &["time.scheme".to_owned()], has_steps).unwrap_or_else(|| Axis {
             name: "scheme",
             keys: Vec::new(),
             options: vec![Setting::none()],
@@ -150,6 +150,12 @@ pub(crate) fn in_seconds(t: f64) -> String {
     // Twelve digits: what the multiples of a decimal step have, without the rounding of the product.
     let digits = format!("{:.11e}", t * factor).parse::<f64>().unwrap_or(t * factor);
     format!("{digits} {unit}")
+}
+
+/// Schemes whose accuracy and work go by the step: `auto` is one of them under another name, and
+/// `event-driven` has steps of its own.
+fn has_steps(scheme: &str) -> bool {
+    !["auto", teeter_integrator::EventDriven::NAME].contains(&scheme)
 }
 
 /// An axis of words: those of the table of keys, for all keys at once.

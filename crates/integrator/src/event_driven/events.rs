@@ -3,7 +3,7 @@
 use super::runge_kutta::RungeKutta;
 use super::{EventDriven, FLOOR, Stop};
 use crate::moreau_jean_located::rate_at;
-use crate::{Model, State, StepError, Workspace};
+use crate::{Account, Model, State, StepError, Workspace};
 use teeter_detect::ContactId;
 
 /// An open contact at the start of a step of the method.
@@ -85,6 +85,7 @@ impl EventDriven {
         end: f64,
         work: &mut Workspace<2>,
     ) -> Result<Stop, StepError> {
+        let size = model.size();
         // A break at the start or the end is not seen from the wrong side, nor is it met twice.
         let nudge = 8.0 * f64::EPSILON * from.t.abs().max(end.abs());
         let breaks = model.parts().iter().map(|part| part.system.next_break(self.handled + nudge));
@@ -101,6 +102,13 @@ impl EventDriven {
         self.y.extend_from_slice(&from.v);
         self.y.resize(n, 0.0);
         self.smooth.project(model, from.t, &mut self.y, work)?;
+        self.projected = 0.0;
+        if work.account == Account::Kept {
+            let (q, v) = self.y[..size.q + size.v].split_at(size.q);
+            let [before, after] = [model.energy_at(&from.q, &from.v), model.energy_at(q, v)];
+            self.projected =
+                after.kinetic - before.kinetic + (after.elastic - before.elastic) + (after.gravity - before.gravity);
+        }
         self.smooth.slope(model, from.t, &self.y, work, self.rk.first_slope())?;
         for contact in &mut self.smooth.contacts {
             contact.u_before = contact.u;
@@ -145,7 +153,8 @@ impl EventDriven {
             if h > 4.0 * noisy {
                 (noise, flat) = (0.0, 0);
             }
-            let error = if estimate.is_nan() { f64::INFINITY } else { (estimate - (noise * h).min(MOST_NOISE)).max(0.0) };
+            let error =
+                if estimate.is_nan() { f64::INFINITY } else { (estimate - (noise * h).min(MOST_NOISE)).max(0.0) };
             if !(error <= 1.0) {
                 self.h = if error.is_finite() { RungeKutta::better(h, error) } else { 0.1 * h };
                 work.counts.refused_attempts += 1;
@@ -198,7 +207,7 @@ impl EventDriven {
                 return self.arrive(model, from, last, duration, end, work);
             }
             self.smooth.slope(model, t, &self.y, work, self.rk.first_slope())?;
-                self.watch_start();
+            self.watch_start();
             self.find_open(model, work)?;
         }
         Ok(Stop::Stuck)
@@ -358,7 +367,7 @@ impl EventDriven {
         }
         if self.watched.iter().any(|watch| watch.kind != Kind::Closes) {
             self.smooth.accelerate(model, t, q, v, work)?;
-            }
+        }
         let (mut least, mut clear) = (f64::INFINITY, true);
         for watch in &mut self.watched {
             let contact = self.smooth.contacts.iter().find(|contact| contact.id == watch.id);
@@ -388,7 +397,13 @@ impl EventDriven {
 
     /// Finds the time from `t` (s) at which the first of what is watched is 0, within a step of `h` (s), and
     /// leaves the step up to there; returns that time, s.
-    fn locate_event(&mut self, model: &Model<2>, t: f64, h: f64, work: &mut Workspace<2>) -> Result<Option<f64>, StepError> {
+    fn locate_event(
+        &mut self,
+        model: &Model<2>,
+        t: f64,
+        h: f64,
+        work: &mut Workspace<2>,
+    ) -> Result<Option<f64>, StepError> {
         let (mut low, mut high) = (0.0, h);
         let mut at_low = self.watched.iter().map(|watch| watch.start / watch.end.abs()).fold(f64::INFINITY, f64::min);
         let mut at_high = -1.0;

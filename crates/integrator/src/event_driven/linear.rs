@@ -20,8 +20,8 @@ const SHIFT: f64 = 1e-8;
 /// An unknown without an entry of its own is shifted by this part of the largest.
 const LEAST_OWN: f64 = 1e-12;
 
-/// Refinements: each gains some eight digits of what is determined, by weights of up to a thousand five.
-const REFINEMENTS: usize = 6;
+/// Refinements: each gains some eight digits of what is determined, by weights of up to a million two.
+const REFINEMENTS: usize = 8;
 
 impl Linear {
     pub(super) fn reserve(&mut self, n: usize) {

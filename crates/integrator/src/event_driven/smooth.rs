@@ -23,7 +23,7 @@ const OF_CONTACT: usize = 4;
 const ALONG: f64 = 1e-3;
 
 /// A contact has at least this part of the largest normal force where friction is shared.
-const LEAST_SHARE: f64 = 1e-3;
+const LEAST_SHARE: f64 = 1e-6;
 
 /// The right-hand side.
 #[derive(Debug)]

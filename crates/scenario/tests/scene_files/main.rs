@@ -3,6 +3,7 @@
 
 mod beams;
 mod driven;
+mod event_driven;
 mod located;
 mod many;
 mod modes;

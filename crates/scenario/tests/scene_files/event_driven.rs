@@ -1,0 +1,110 @@
+//! `event-driven` against exact motions, in steps of any size: the size of the step is that of the output only.
+
+use std::f64::consts::PI;
+use teeter_integrator::Ended;
+use teeter_scenario::simulation::Simulation;
+
+const G: f64 = 9.81;
+
+fn run(scene: &str, step: &str) -> Simulation {
+    let sets = [("time.scheme", "event-driven"), ("time.step", step)];
+    let sets: Vec<(String, String)> =
+        sets.into_iter().map(|(key, value)| (key.to_owned(), format!("\"{value}\""))).collect();
+    let resolved = teeter_scenario::load(scene.as_bytes(), "events", "events", &sets).unwrap();
+    let mut simulation = Simulation::new(&resolved.scene).unwrap();
+    assert_eq!(simulation.run(&mut []).unwrap(), Ended::Complete);
+    let (ledger, tally) = (&simulation.state.ledger, &simulation.state.tally);
+    assert!(ledger.relative_residual() < 1e-11, "{step}: {:e} unexplained", ledger.relative_residual());
+    assert_eq!((tally.unconverged_steps, tally.unlocated_steps), (0, 0), "{step}");
+    simulation
+}
+
+fn block(end: &str, [width, height]: [&str; 2], more: &str, contact: &str) -> String {
+    format!(
+        "[time]\nend = '{end}'\nstep = '1 ms'\n[ground]\n[material.m]\ndensity = '1000 kg/m^3'\n\
+         [block.b]\nmaterial = 'm'\nwidth = '{width}'\nheight = '{height}'\ndepth = '10 cm'\n{more}\n\
+         [contact.c]\nbetween = ['b', 'ground']\n{contact}\n"
+    )
+}
+
+/// Both feet leave the ground in the same instant: where it falls faster than the block.
+#[test]
+fn a_block_takes_off_from_ground_that_falls_away_at_its_time() {
+    let scene = block("0.2 s", ["30 cm", "18 cm"], "on = 'ground'\nat = '0 m'", "friction = 0.2").replace(
+        "[ground]\n",
+        "[ground]\nmotion = { acceleration = ['0 m/s^2', '14 m/s^2'], signal = 'q' }\n\
+         [signal.q]\nshape = 'harmonic'\nfrequency = '5 Hz'\n",
+    );
+    let (a, omega, end) = (14.0_f64, 10.0 * PI, 0.2);
+    let t = (PI + (G / a).asin()) / omega;
+    let (y, v) = (a / omega * (t - (omega * t).sin() / omega), a / omega * (1.0 - (omega * t).cos()));
+    let exact = 0.09 + y + v * (end - t) - 0.5 * G * (end - t).powi(2);
+    for step in ["100 us", "1 ms", "8 ms", "50 ms", "200 ms"] {
+        let off = run(&scene, step).state.q[1] - exact;
+        assert!(off.abs() < 1e-12, "{step}: {off:e} m off");
+    }
+}
+
+#[test]
+fn a_slide_ends_at_its_time_and_place() {
+    let scene = block(
+        "0.5 s",
+        ["30 cm", "18 cm"],
+        "on = 'ground'\nat = '0 m'\nvelocity = ['1 m/s', '0 m/s']",
+        "friction = 0.3",
+    );
+    for step in ["100 us", "3 ms", "500 ms"] {
+        let state = run(&scene, step).state;
+        let off = state.q[0] - 0.5 / (0.3 * G);
+        assert!(off.abs() < 1e-12 && state.v[0].abs() < 1e-15, "{step}: {off:e} m off, {:e} m/s left", state.v[0]);
+    }
+}
+
+/// A slender block on slippery ground rocks and slides to rest through infinitely many impacts.
+#[test]
+fn rocking_that_dies_out_ends_at_rest() {
+    let scene = block(
+        "0.5 s",
+        ["3 cm", "13.5 cm"],
+        "on = 'ground'\nat = '0 cm'\ntilt = '5 deg'",
+        "friction = 0.1\nrestitution = 0.0",
+    );
+    let places: Vec<f64> = ["1 ms", "10 ms", "100 ms"]
+        .into_iter()
+        .map(|step| {
+            let state = run(&scene, step).state;
+            assert!(state.v.iter().all(|v| v.abs() < 1e-14), "{step}: {:?}", state.v);
+            assert!(state.q[2].abs() < 1e-10 && (state.q[1] - 0.0675).abs() < 1e-10, "{step}: {:?}", state.q);
+            state.q[0]
+        })
+        .collect();
+    assert!(places.iter().all(|x| (x - places[0]).abs() < 1e-9), "{places:?}");
+}
+
+/// A push that begins and ends between the ends of steps.
+#[test]
+fn a_push_is_felt_from_its_time_on() {
+    let scene = block("0.3 s", ["30 cm", "18 cm"], "on = 'ground'\nat = '0 m'", "friction = 0.3").replace(
+        "[material.m]",
+        "[force.hand]\non = 'b'\nforce = ['30 N', '0 N']\nsignal = 'p'\n\
+         [signal.p]\nshape = 'half-sine'\nstart = '50.3 ms'\nduration = '100.4 ms'\n[material.m]",
+    );
+    let at = |step: &str| run(&scene, step).state.q[0];
+    let fine = at("100 us");
+    assert!(fine > 1e-4, "{fine}");
+    for step in ["1 ms", "30 ms", "300 ms"] {
+        assert!((at(step) - fine).abs() < 1e-11, "{step}: {:e}", at(step) - fine);
+    }
+}
+
+#[test]
+fn what_it_does_not_take_is_refused_with_the_reason() {
+    let contact = "law = 'kelvin-voigt'\nfriction = 0.3\nstiffness = '1e6 N/m'\ndamping = '10 N s/m'";
+    let scene = block("0.1 s", ["30 cm", "18 cm"], "on = 'ground'\nat = '0 m'", contact);
+    let sets = [("time.scheme".to_owned(), "event-driven".to_owned())];
+    let refused = teeter_scenario::load(scene.as_bytes(), "s", "s", &sets).unwrap_err().to_string();
+    assert!(
+        refused.contains("takes no contacts with duration") && refused.contains("moreau-jean-located"),
+        "{refused}"
+    );
+}
