@@ -286,7 +286,8 @@ impl EventDriven {
         let breaks = model.parts().iter().map(|part| part.system.next_break(early));
         let broken = breaks.fold(f64::INFINITY, f64::min) <= after(from.t);
         let known = self.restore(model, from, work)?;
-        if !(known && !jumped && !broken) && !self.decide(model, from, work)? {
+        let is_settled = known && !jumped && !broken;
+        if !is_settled && !self.decide(model, from, work)? {
             return self.give_up(model, from, span, work);
         }
         let (mut at, mut idle) = (from.t, 0);

@@ -78,9 +78,11 @@ impl Linear {
             self.substitute();
             self.x.iter_mut().zip(&self.rest).for_each(|(x, dx)| *x += dx);
         }
+        let given = self.b.iter().fold(0.0, |given: f64, b| given.max(b.abs()));
+        // A contradiction makes x large.
         let size = |i: usize| -> f64 {
             let row = &self.a[i * n..(i + 1) * n];
-            self.b[i].abs() + row.iter().zip(&self.x).map(|(a, x)| (a * x).abs()).sum::<f64>()
+            given + 1e-3 * row.iter().zip(&self.x).map(|(a, x)| (a * x).abs()).sum::<f64>()
         };
         (0..n).all(|i| {
             let row = &self.a[i * n..(i + 1) * n];

@@ -209,7 +209,11 @@ mod tests {
         };
         for _ in 0..n {
             slope(&y, rk.first_slope());
-            rk.step(h, &y, |_, y, k| Ok::<_, ()>(slope(y, k))).unwrap();
+            let each = |_: f64, y: &[f64], k: &mut [f64]| -> Result<(), ()> {
+                slope(y, k);
+                Ok(())
+            };
+            rk.step(h, &y, each).unwrap();
             y.copy_from_slice(&rk.end);
         }
         [y[0], y[1]]
@@ -227,7 +231,11 @@ mod tests {
         let (mut rk, h) = (RungeKutta::default(), 0.8);
         rk.resize(1);
         rk.first_slope()[0] = 1.0;
-        rk.step(h, &[1.0], |_, y, k| Ok::<_, ()>(k.copy_from_slice(y))).unwrap();
+        let each = |_: f64, y: &[f64], k: &mut [f64]| -> Result<(), ()> {
+            k.copy_from_slice(y);
+            Ok(())
+        };
+        rk.step(h, &[1.0], each).unwrap();
         let (error, estimate) = ((rk.end[0] - h.exp()).abs(), rk.error(h, &[1.0]));
         assert!(estimate > error && estimate < 1e3 * error, "{error:e} {estimate:e}");
         assert!(RungeKutta::better(h, 2.0) < h && RungeKutta::better(h, 0.01) > h);

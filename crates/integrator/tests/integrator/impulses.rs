@@ -180,7 +180,9 @@ fn a_block_gets_the_impulse_of_any_signal_whatever_the_step() {
                     assert!((found - part * impulse).abs() < digits, "{signal:?}, h = {h}: {found} {}", part * impulse);
                 }
                 let residual = state.ledger.relative_residual();
-                assert!(residual < own_error(scheme.as_ref(), 1e-13), "{}: {residual:e}", scheme.name());
+                // Of a pulse that ended before the start there are 1e-148 J.
+                let none = state.ledger.scale < 1e-30;
+                assert!(none || residual < own_error(scheme.as_ref(), 1e-13), "{}: {residual:e}", scheme.name());
             }
         }
     }
