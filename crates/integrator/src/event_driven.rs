@@ -139,6 +139,10 @@ impl EventDriven {
     /// Events that are located in a step.
     pub const MOST_EVENTS: usize = 200;
 
+    /// Contacts of which it finds the forces: they are solved all together. Steps in which more touch
+    /// are those of the located scheme.
+    pub const MOST_CONTACTS: usize = 32;
+
     /// Steps of the method within one of the scheme's: many fit where a beam has fast modes.
     pub const MOST_SUBSTEPS: usize = 1_000_000;
 
@@ -230,7 +234,10 @@ impl Scheme<2> for EventDriven {
         from.warm.reserve(contacts, 2);
         self.from = Some(from);
         work.reserve_directed(model);
-        work.reserve_phases(model, USUAL_PHASES);
+        // Many contacts are the located scheme's.
+        if model.detector().capacity() <= 4 * Self::MOST_CONTACTS {
+            work.reserve_phases(model, USUAL_PHASES);
+        }
         work.factors(model, MASSES, &state.q, Keep::Pinned)
     }
 

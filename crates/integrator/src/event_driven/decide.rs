@@ -69,6 +69,9 @@ impl EventDriven {
             self.smooth.contacts.clear();
             return Ok(true);
         }
+        if self.touching.len() > EventDriven::MOST_CONTACTS {
+            return Ok(false);
+        }
         self.smooth.accelerate_freely(model, t, &from.q, &from.v, work)?;
         if let Some(fastest) = self.approach(model, from)? {
             self.ids.clear();
