@@ -289,6 +289,10 @@ impl EventDriven {
         work.factors(model, MASSES, &from.q, Keep::Pinned)?;
         (self.handled, self.substeps) = (from.t, 0);
         let jumped = self.jump(model, from, work)?;
+        if from.memory.active().len() > Self::MOST_CONTACTS {
+            self.smooth.contacts.clear();
+            return self.take_rest(model, from, span, work);
+        }
         let early = from.t - (after(from.t) - from.t);
         let breaks = model.parts().iter().map(|part| part.system.next_break(early));
         let broken = breaks.fold(f64::INFINITY, f64::min) <= after(from.t);
@@ -327,7 +331,7 @@ impl EventDriven {
         self.give_up(model, from, span, work)
     }
 
-    /// Takes the rest of the step as the located scheme does.
+    /// Takes the rest of the step as the located scheme does, which finds anew what the contacts do.
     fn give_up(
         &mut self,
         model: &Model<2>,
@@ -340,6 +344,16 @@ impl EventDriven {
             from.memory.activate(contact.id);
         }
         self.smooth.contacts.clear();
+        self.take_rest(model, from, span, work)
+    }
+
+    fn take_rest(
+        &mut self,
+        model: &Model<2>,
+        from: &mut State,
+        span: &StepSpan,
+        work: &mut Workspace<2>,
+    ) -> Result<bool, StepError> {
         let rest = StepSpan { start: from.t, end: span.end, h: span.end - from.t };
         if rest.h > 0.0 {
             self.located.take_rest(model, from, &rest, work)?;

@@ -64,6 +64,10 @@ impl EventDriven {
         let t = after(from.t);
         self.smooth.between = [t, t];
         self.v_before.copy_from_slice(&from.v);
+        work.detect(model, &from.q, TOUCHING * self.located.tolerance(&from.q))?;
+        if work.candidates.len() > EventDriven::MOST_CONTACTS {
+            return Ok(false);
+        }
         self.find_touching(model, from, work)?;
         if self.touching.is_empty() {
             self.smooth.contacts.clear();
@@ -87,11 +91,10 @@ impl EventDriven {
         self.find_who_presses(model, from, work)
     }
 
-    /// The contacts that press and those that are as near.
+    /// The contacts that press and the candidates, which are as near.
     fn find_touching(&mut self, model: &Model<2>, from: &State, work: &mut Workspace<2>) -> Result<(), StepError> {
         self.ids.clear();
         self.ids.extend(self.smooth.contacts.iter().map(|contact| contact.id));
-        work.detect(model, &from.q, TOUCHING * self.located.tolerance(&from.q))?;
         work.locate(model, &from.q, &self.ids, &mut self.found)?;
         self.touching.clear();
         self.touching.extend_from_slice(&self.found);
