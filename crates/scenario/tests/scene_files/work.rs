@@ -19,7 +19,7 @@ const END: &str = "0.3 s";
 
 const COUNTS: [&str; 7] = ["steps", "factorisations", "detections", "problems", "iterations", "unsolved", "refused"];
 
-/// None where the scheme refuses the scene.
+/// None where the scheme refuses the scene, or counts mean nothing.
 fn counts(name: &str, scheme: &str) -> Option<[u64; 7]> {
     let bytes = std::fs::read(workspace().join("scenarios").join(format!("{name}.toml"))).unwrap();
     let sets = [("time.end", format!("\"{END}\"")), ("time.scheme", format!("\"{scheme}\""))];
@@ -31,6 +31,10 @@ fn counts(name: &str, scheme: &str) -> Option<[u64; 7]> {
             return None;
         }
     };
+    // On a beam the number of its steps and events is that of a chatter, which hangs on rounding.
+    if resolved.scene.time.scheme.has_own_steps() && !resolved.scene.beams.is_empty() {
+        return None;
+    }
     let mut simulation = Simulation::new(&resolved.scene).unwrap();
     assert_eq!(simulation.run(&mut []).unwrap(), teeter_integrator::Ended::Complete);
     let work = simulation.work_counts();
