@@ -9,3 +9,5 @@ pub(crate) mod blocks;
 pub(crate) mod ground;
 #[cfg(feature = "beam")]
 pub(crate) mod modal_beam;
+#[cfg(feature = "beam")]
+pub(crate) mod modal_motion;

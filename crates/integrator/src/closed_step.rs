@@ -398,18 +398,18 @@ pub(crate) fn restitute<const D: usize>(
     rule
 }
 
-fn find<const D: usize>(candidates: &[Candidate<D>], id: ContactId) -> Option<&Candidate<D>> {
+pub(crate) fn find<const D: usize>(candidates: &[Candidate<D>], id: ContactId) -> Option<&Candidate<D>> {
     candidates.binary_search_by_key(&id, |candidate| candidate.id).ok().map(|at| &candidates[at])
 }
 
 /// Sees to it that no contact of a solved problem gives energy.
-struct Guard<'a, const D: usize> {
-    model: &'a Model<D>,
-    stage: &'a ContactStage<D>,
-    laws: &'a Laws<D>,
-    members: Members<'a>,
-    v_before: &'a [f64],
-    v_free: &'a [f64],
+pub(crate) struct Guard<'a, const D: usize> {
+    pub(crate) model: &'a Model<D>,
+    pub(crate) stage: &'a ContactStage<D>,
+    pub(crate) laws: &'a Laws<D>,
+    pub(crate) members: Members<'a>,
+    pub(crate) v_before: &'a [f64],
+    pub(crate) v_free: &'a [f64],
 }
 
 impl<const D: usize> Guard<'_, D> {
@@ -423,7 +423,7 @@ impl<const D: usize> Guard<'_, D> {
     /// Where Poisson's law hands a blow on, what one contact gains another one has lost: there it
     /// is the sum over contacts that feel each other that counts. The law scales what it gives back
     /// by it, so what is left is of contacts that would give energy without any restitution, too.
-    fn apply(&self, problem: &mut Problem<D>, guarded: &mut [bool]) -> Result<bool, Mismatch> {
+    pub(crate) fn apply(&self, problem: &mut Problem<D>, guarded: &mut [bool]) -> Result<bool, Mismatch> {
         let laws = self.laws;
         let mut found = false;
         for i in 0..problem.len() {

@@ -1,6 +1,8 @@
 //! W of every subsystem, for as many combinations of weights as a scheme has use for.
 
-use crate::{Compliance, FactorError, Model, Weights};
+use crate::subsystem::respond_by_solving;
+use crate::theta_step::weights;
+use crate::{Compliance, Coupling, FactorError, Model, PartRows, Propagator, Vector, Weights};
 
 /// How long the factors of a combination are wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,7 +14,7 @@ pub enum Keep {
 }
 
 /// Combinations that are kept of each subsystem, the one for now not among them: the one asked for the longest ago makes place.
-const PINNED: usize = 4;
+const PINNED: usize = 8;
 
 struct Entry<const D: usize> {
     factor: Box<dyn Compliance<D>>,
@@ -29,6 +31,8 @@ pub(crate) struct Factors<const D: usize> {
     /// The weights that stand first in all lists.
     front: Option<Weights>,
     round: u64,
+    /// Of each subsystem, its motion in closed form, once somebody has asked for it.
+    propagators: Vec<Option<Box<dyn Propagator<D>>>>,
     /// How many matrices were factorised.
     made: u64,
 }
@@ -39,6 +43,9 @@ pub(crate) struct Factors<const D: usize> {
 pub enum Responses<'a> {
     /// Those of one combination.
     Of(Weights),
+    /// What constant forces over h (s) do to the place at its end, as (2/h²) D: that of their
+    /// [`Propagator`], where subsystems have one, else the inverse of M + ½hC + ¼h²K.
+    Over(f64),
     /// One combination for each subsystem, in the order in which they were added to the model.
     Each(&'a [Weights]),
 }
@@ -49,14 +56,55 @@ impl Responses<'_> {
     pub fn of(&self, part: usize) -> Option<Weights> {
         match self {
             Self::Of(weights) => Some(*weights),
+            Self::Over(h) => Some(weights(*h, 0.5)),
             Self::Each(weights) => weights.get(part).copied(),
+        }
+    }
+}
+
+/// How a subsystem responds to contacts.
+pub(crate) enum Answer<'a, const D: usize> {
+    /// By the inverse of a combination.
+    Inverse(&'a mut dyn Compliance<D>),
+    /// By its motion under constant forces.
+    Motion(&'a mut dyn Propagator<D>),
+}
+
+impl<const D: usize> Answer<'_, D> {
+    pub(crate) fn is_diagonal(&self) -> bool {
+        match self {
+            Self::Inverse(factor) => factor.is_diagonal(),
+            Self::Motion(_) => false,
+        }
+    }
+
+    pub(crate) fn couple(&mut self, rows: &PartRows<'_, D>, scratch: &mut [f64], h: &mut Coupling<'_, D>) {
+        match self {
+            Self::Inverse(factor) => factor.couple(rows, scratch, h),
+            Self::Motion(motion) => motion.couple(rows, h),
+        }
+    }
+
+    /// `coupled` says whether these rows were those that were coupled last.
+    pub(crate) fn respond(
+        &mut self,
+        rows: &PartRows<'_, D>,
+        p: &[Vector<D>],
+        scratch: &mut [f64],
+        v: &mut [f64],
+        coupled: bool,
+    ) {
+        match self {
+            Self::Inverse(factor) if coupled || factor.is_diagonal() => factor.respond(rows, p, scratch, v),
+            Self::Inverse(factor) => respond_by_solving(rows, p, scratch, v, |f| factor.solve(f)),
+            Self::Motion(motion) => motion.respond(rows, p, v),
         }
     }
 }
 
 impl<const D: usize> Factors<D> {
     pub(crate) fn new() -> Self {
-        Self { parts: Vec::new(), front: None, round: 0, made: 0 }
+        Self { parts: Vec::new(), front: None, round: 0, propagators: Vec::new(), made: 0 }
     }
 
     pub(crate) fn made(&self) -> u64 {
@@ -132,6 +180,28 @@ impl<const D: usize> Factors<D> {
         let at =
             if self.front == Some(w) { 0 } else { entries.iter().position(|entry| entry.factor.weights() == w)? };
         Some(entries.get_mut(at)?.factor.as_mut())
+    }
+
+    /// Sees to it that subsystems have their motion in closed form, where there is one.
+    pub(crate) fn make_propagators(&mut self, model: &Model<D>) {
+        if self.propagators.len() != model.parts().len() {
+            self.propagators = model.parts().iter().map(|part| part.system.propagator()).collect();
+        }
+    }
+
+    /// The motion of a subsystem in closed form.
+    pub(crate) fn propagator(&mut self, part: usize) -> Option<&mut (dyn Propagator<D> + 'static)> {
+        self.propagators.get_mut(part)?.as_deref_mut()
+    }
+
+    /// How a subsystem responds.
+    #[inline]
+    pub(crate) fn answer(&mut self, part: usize, responses: &Responses<'_>) -> Option<Answer<'_, D>> {
+        if matches!(responses, Responses::Over(_)) && self.propagators.get(part).is_some_and(Option::is_some) {
+            let motion = self.propagator(part)?;
+            return Some(Answer::Motion(motion));
+        }
+        self.of(part, responses.of(part)?).map(Answer::Inverse)
     }
 
     /// As [`Factors::of`], for someone who may give it other weights.

@@ -37,7 +37,7 @@ const LATELY: f64 = 50.0;
 
 /// Whether a subsystem yields to a push in more than its whole motion: a beam, not a block or the
 /// ground.
-fn is_elastic<const D: usize>(part: &Part<D>, index: usize, w: Weights, factors: &mut Factors<D>) -> bool {
+pub(crate) fn is_elastic<const D: usize>(part: &Part<D>, index: usize, w: Weights, factors: &mut Factors<D>) -> bool {
     part.row > 0 && !part.is_prescribed() && factors.of(index, w).is_some_and(|factor| !factor.is_diagonal())
 }
 

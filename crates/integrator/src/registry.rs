@@ -2,7 +2,7 @@
 
 use crate::{
     EventDriven, EventDrivenSettings, MoreauJean, MoreauJeanClosed, MoreauJeanClosedSettings, MoreauJeanLocated,
-    MoreauJeanLocatedSettings, MoreauJeanSettings, Scheme,
+    MoreauJeanLocatedSettings, MoreauJeanSettings, Resolved, ResolvedSettings, Scheme,
 };
 
 /// A scheme in the list.
@@ -29,7 +29,7 @@ impl SchemeEntry {
 ///
 /// ```
 /// let names: Vec<_> = teeter_integrator::schemes().iter().map(|scheme| scheme.name).collect();
-/// assert_eq!(names, ["moreau-jean", "moreau-jean-closed", "moreau-jean-located", "event-driven"]);
+/// assert_eq!(names, ["moreau-jean", "moreau-jean-closed", "moreau-jean-located", "event-driven", "resolved"]);
 /// ```
 #[must_use]
 pub fn schemes() -> &'static [SchemeEntry] {
@@ -53,6 +53,11 @@ pub fn schemes() -> &'static [SchemeEntry] {
             name: EventDriven::NAME,
             about: "smooth motion by a method of order 8 between events, all of them located to rounding",
             make: || Some(Box::new(EventDriven::new(EventDrivenSettings::default()).ok()?)),
+        },
+        SchemeEntry {
+            name: Resolved::<2>::NAME,
+            about: "contact with a beam as a force that keeps the gap closed, in steps halved where contacts close",
+            make: || Some(Box::new(Resolved::new(ResolvedSettings::default()).ok()?)),
         },
     ]
 }

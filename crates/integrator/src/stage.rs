@@ -564,6 +564,16 @@ impl<const D: usize> ContactStage<D> {
         })
     }
 
+    /// The parts that contact `i` acts on.
+    pub(crate) fn parts_of(&self, i: usize) -> impl Iterator<Item = usize> + use<D> {
+        let [a, b] = self.rows.spans[i];
+        let again = b.part == a.part;
+        [(a, true), (b, !again || a.len == 0)]
+            .into_iter()
+            .filter(|(side, once)| side.len > 0 && *once)
+            .map(|(side, _)| side.part)
+    }
+
     /// Σ |J_i v| of contact `i`, m/s: what rounding of its velocity is measured by.
     pub(crate) fn speed(&self, i: usize, v: &[f64]) -> f64 {
         self.rows.entries(i).map(|(column, value)| value.norm() * v[column].abs()).sum()

@@ -1,6 +1,6 @@
 //! What a subsystem offers to a time scheme.
 
-use crate::Vector;
+use crate::{Propagator, Vector};
 use teeter_contact::{Block, BlockSparse};
 use teeter_detect::{Frame, HalfSpace, Kinematics, SurfacePoint};
 
@@ -258,6 +258,12 @@ pub trait Dynamics<const D: usize>: Send + Sync {
     /// # Errors
     /// If the matrix is not positive definite.
     fn factor(&self, w: Weights, q: &[f64]) -> Result<Box<dyn Compliance<D>>, FactorError>;
+
+    /// Its motion over a time under constant forces in closed form; `None`, the default, where there
+    /// is none: a step then takes the trapezoidal rule.
+    fn propagator(&self) -> Option<Box<dyn Propagator<D>>> {
+        None
+    }
 
     /// Extra information for a linearly implicit step, such as that of the θ schemes. `None`, the
     /// default, is always right for a quadratic potential.

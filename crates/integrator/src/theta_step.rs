@@ -24,6 +24,8 @@ pub(crate) struct ThetaStep {
     product: Vec<f64>,
     /// h times the forces at the start of the step, of parts with prescribed velocities.
     impulse: Vec<f64>,
+    /// The cutoff with which subsystems that have a motion in closed form take it; `None`: none does.
+    pub(crate) cutoff: Option<f64>,
     /// The model that the scheme was started with.
     model: Option<Identity>,
 }
@@ -35,6 +37,11 @@ pub(crate) fn weights(h: f64, theta: f64) -> Weights {
 }
 
 impl ThetaStep {
+    /// A step in which subsystems that have a motion in closed form take it, with this cutoff.
+    pub(crate) fn in_closed_form(cutoff: f64) -> Self {
+        Self { cutoff: Some(cutoff), ..Self::default() }
+    }
+
     /// Starts to serve a model.
     pub(crate) fn start<const D: usize>(
         &mut self,
@@ -113,6 +120,18 @@ impl ThetaStep {
         let w = weights(h, theta);
         for (index, part) in model.parts().iter().enumerate() {
             let (q, v) = (part.q.clone(), part.v.clone());
+            if let Some(cutoff) = self.cutoff
+                && let Some(motion) = work.factors.propagator(index)
+            {
+                let load = &mut self.load[v.clone()];
+                load.fill(0.0);
+                if part.traits.loaded {
+                    part.system.mean_load([t_start, t_end], &mut work.scratch[..v.len()], load);
+                }
+                motion.take(h, cutoff);
+                motion.begin(&state.q[q], &state.v[v.clone()], load, &mut self.v_end[v]);
+                continue;
+            }
             // The factors have been made.
             let Some(factor) = work.factors.of(index, w).filter(|_| !v.is_empty()) else { continue };
             let dv = &mut self.dv[v.clone()];
@@ -213,7 +232,7 @@ impl ThetaStep {
         if work.account == Account::LeftOut {
             return StepEnergy::default();
         }
-        let Self { q_forces, q_at, v_end, v_mean, dv, load, product, impulse, .. } = self;
+        let Self { q_forces, q_at, v_end, v_mean, dv, load, product, impulse, cutoff, .. } = self;
         let mut energy = StepEnergy::default();
         if theta != 0.5 || model.is_driven() {
             for ((dv, v1), v0) in dv.iter_mut().zip(v_end.iter()).zip(&state.v) {
@@ -229,7 +248,8 @@ impl ThetaStep {
                 energy.numerical -= modified(q_at, v_end) - modified(&state.q, &state.v);
             }
             let product = &mut product[v.clone()];
-            if part.traits.damped {
+            let in_closed_form = cutoff.is_some() && work.factors.propagator(index).is_some();
+            if part.traits.damped && !in_closed_form {
                 energy.viscous -= h * part.system.damping_power(q, &v_mean[v.clone()], product);
             }
             let mut form = |w: Weights, x: &[f64]| {

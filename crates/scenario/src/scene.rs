@@ -122,6 +122,8 @@ pub enum SchemeName {
     MoreauJeanLocated,
     /// Smooth motion of high order between events.
     EventDriven,
+    /// Contact with beams as a force, in steps halved where contacts close.
+    Resolved,
 }
 
 impl SchemeName {
@@ -133,6 +135,7 @@ impl SchemeName {
             Self::MoreauJeanClosed => teeter_integrator::MoreauJeanClosed::<2>::NAME,
             Self::MoreauJeanLocated => teeter_integrator::MoreauJeanLocated::<2>::NAME,
             Self::EventDriven => teeter_integrator::EventDriven::NAME,
+            Self::Resolved => teeter_integrator::Resolved::<2>::NAME,
         }
     }
 
@@ -141,7 +144,7 @@ impl SchemeName {
     pub fn is_trapezoidal(self) -> bool {
         match self {
             Self::MoreauJean => false,
-            Self::MoreauJeanClosed | Self::MoreauJeanLocated | Self::EventDriven => true,
+            Self::MoreauJeanClosed | Self::MoreauJeanLocated | Self::EventDriven | Self::Resolved => true,
         }
     }
 
@@ -151,7 +154,7 @@ impl SchemeName {
     pub fn drives_about(self, theta: f64) -> Option<f64> {
         match self {
             Self::MoreauJean => Some(theta),
-            Self::MoreauJeanClosed | Self::MoreauJeanLocated => Some(0.5),
+            Self::MoreauJeanClosed | Self::MoreauJeanLocated | Self::Resolved => Some(0.5),
             Self::EventDriven => None,
         }
     }
@@ -161,7 +164,7 @@ impl SchemeName {
     pub fn takes_springs(self) -> bool {
         match self {
             Self::MoreauJean | Self::MoreauJeanClosed | Self::MoreauJeanLocated => true,
-            Self::EventDriven => false,
+            Self::EventDriven | Self::Resolved => false,
         }
     }
 
@@ -170,7 +173,7 @@ impl SchemeName {
     #[must_use]
     pub fn has_own_steps(self) -> bool {
         match self {
-            Self::MoreauJean | Self::MoreauJeanClosed | Self::MoreauJeanLocated => false,
+            Self::MoreauJean | Self::MoreauJeanClosed | Self::MoreauJeanLocated | Self::Resolved => false,
             Self::EventDriven => true,
         }
     }
@@ -180,7 +183,7 @@ impl SchemeName {
     pub fn takes_held_beams(self) -> bool {
         match self {
             Self::MoreauJean | Self::MoreauJeanClosed => true,
-            Self::MoreauJeanLocated | Self::EventDriven => false,
+            Self::MoreauJeanLocated | Self::EventDriven | Self::Resolved => false,
         }
     }
 
@@ -189,7 +192,7 @@ impl SchemeName {
     pub fn predicts(self) -> bool {
         match self {
             Self::MoreauJean => true,
-            Self::MoreauJeanClosed | Self::MoreauJeanLocated | Self::EventDriven => false,
+            Self::MoreauJeanClosed | Self::MoreauJeanLocated | Self::EventDriven | Self::Resolved => false,
         }
     }
 
@@ -198,7 +201,7 @@ impl SchemeName {
     pub fn locates(self) -> bool {
         match self {
             Self::MoreauJean | Self::MoreauJeanClosed => false,
-            Self::MoreauJeanLocated | Self::EventDriven => true,
+            Self::MoreauJeanLocated | Self::EventDriven | Self::Resolved => true,
         }
     }
 
@@ -207,7 +210,7 @@ impl SchemeName {
     pub fn keeps_energy(self) -> bool {
         match self {
             Self::MoreauJean => false,
-            Self::MoreauJeanClosed | Self::MoreauJeanLocated | Self::EventDriven => true,
+            Self::MoreauJeanClosed | Self::MoreauJeanLocated | Self::EventDriven | Self::Resolved => true,
         }
     }
 }

@@ -15,8 +15,8 @@ use teeter_detect::{PointDetector, PointPair};
 use teeter_integrator::{
     Account, Block, Ended, EventDriven, EventDrivenSettings, Mismatch, Model, ModelBuilder, ModelError, MoreauJean,
     MoreauJeanClosed, MoreauJeanClosedSettings, MoreauJeanLocated, MoreauJeanLocatedSettings, MoreauJeanSettings,
-    Observer, PartPlace, Plan, RunError, Scheme, SettingError, SolverSettings, State, StateError, StepError,
-    StepReport, Subsystem, Unsolved, WorkCounts, Workspace, run,
+    Observer, PartPlace, Plan, Resolved, ResolvedSettings, RunError, Scheme, SettingError, SolverSettings, State,
+    StateError, StepError, StepReport, Subsystem, Unsolved, WorkCounts, Workspace, run,
 };
 use teeter_rigid::{MassProperties, Rectangle, RigidError};
 
@@ -408,6 +408,9 @@ fn scheme(time: &Time) -> Result<Box<dyn Scheme<2>>, SettingError> {
             Box::new(MoreauJean::new(MoreauJeanSettings { theta, activation_gamma, gap_tolerance })?)
         }
         SchemeName::MoreauJeanClosed => Box::new(MoreauJeanClosed::new(MoreauJeanClosedSettings { gap_tolerance })?),
+        SchemeName::Resolved => {
+            Box::new(Resolved::new(ResolvedSettings { gap_tolerance, ..ResolvedSettings::default() })?)
+        }
         SchemeName::EventDriven => Box::new(EventDriven::new(EventDrivenSettings::default())?),
         SchemeName::MoreauJeanLocated => Box::new(MoreauJeanLocated::new(MoreauJeanLocatedSettings { gap_tolerance })?),
     })

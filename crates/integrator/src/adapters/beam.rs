@@ -7,8 +7,10 @@ pub(crate) mod line;
 pub(crate) mod loads;
 pub(crate) mod motion;
 
+use super::modal_motion::ModalMotion;
 use crate::{
-    Bodies, Compliance, Dynamics, Energy, FactorError, Linearised, Motion, Rows, Size, Traits, Vector, Weights,
+    Bodies, Compliance, Dynamics, Energy, FactorError, Linearised, Motion, Propagator, Rows, Size, Traits, Vector,
+    Weights,
 };
 use compliance::BeamCompliance;
 pub use compliance::WBackend;
@@ -19,6 +21,9 @@ use nalgebra::Vector2;
 use std::sync::Arc;
 use teeter_beam::{Beam, Deflection, Load, MatrixWeights};
 use teeter_detect::{Frame, HalfSpace, Kinematics, SurfacePoint};
+
+/// A beam with more dofs has no motion in closed form: all of its modes would have to be found.
+const MOST_DOFS: usize = 400;
 
 /// The fibre of a beam that is its contact surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -291,6 +296,18 @@ impl Dynamics<2> for BeamBody {
 
     fn factor(&self, w: Weights, _q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
         Ok(Box::new(BeamCompliance::new(&self.beam, w, self.backend)?))
+    }
+
+    fn propagator(&self) -> Option<Box<dyn Propagator<2>>> {
+        // What moves the supports acts on all modes, and its share isn't constant over a step.
+        let is_linear = self.supports.is_none() && !self.beam.is_stretched();
+        if !is_linear || self.beam.dofs() > MOST_DOFS {
+            return None;
+        }
+        let none = vec![0.0; self.beam.dofs()];
+        let mut constant = none.clone();
+        self.internal_force(&none, &none, &mut constant);
+        Some(Box::new(ModalMotion::of_beam(&self.beam, &constant)?))
     }
 
     fn linearised(&self) -> Option<&dyn Linearised> {

@@ -11,10 +11,11 @@
 use super::beam;
 use super::beam::line::{self, Deflecting, Line};
 use super::beam::motion::MovingSupports;
+use super::modal_motion::{self, ModalMotion};
 use crate::subsystem::{couple_by_solving, dot};
 use crate::{
-    BeamSurface, Bodies, Compliance, Coupling, Dynamics, Energy, FactorError, Motion, PartRows, Rows, SignalLoad, Size,
-    Traits, Vector, Weights,
+    BeamSurface, Bodies, Compliance, Coupling, Dynamics, Energy, FactorError, Motion, PartRows, Propagator, Rows,
+    SignalLoad, Size, Traits, Vector, Weights,
 };
 use nalgebra::{Matrix2, Vector2};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -371,6 +372,19 @@ impl Dynamics<2> for ModalBeam {
         for ((y, x), (k, d)) in y.iter_mut().zip(x).zip(self.stiffness.iter().zip(&self.damping)) {
             *y += (w.mass + w.damping * d + w.stiffness * k) * x;
         }
+    }
+
+    fn propagator(&self) -> Option<Box<dyn Propagator<2>>> {
+        if self.supports.is_some() {
+            return None;
+        }
+        let constant = if self.weight.is_empty() { vec![0.0; self.coordinates()] } else { self.weight.clone() };
+        Some(Box::new(ModalMotion::new(
+            modal_motion::Shapes::Own,
+            self.stiffness.clone(),
+            self.damping.clone(),
+            constant,
+        )))
     }
 
     fn energy(&self, q: &[f64], v: &[f64]) -> Energy {

@@ -88,8 +88,8 @@ impl<const D: usize> ContactStage<D> {
         let Islands { diagonal, shared, own, found, spans, problem } = islands;
         diagonal.clear();
         for part in 0..model.parts().len() {
-            let factor = responses.of(part).and_then(|w| work.factors.of(part, w));
-            diagonal.push(factor.is_some_and(|factor| factor.is_diagonal()));
+            let answer = work.factors.answer(part, responses);
+            diagonal.push(answer.is_some_and(|answer| answer.is_diagonal()));
         }
         shared.load(self.len(), |i| keys(&self.rows, model, diagonal, &self.rows.spans[i]));
         found.find_shared(shared);

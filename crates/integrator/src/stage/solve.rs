@@ -3,7 +3,7 @@
 use super::{ContactError, ContactRows, ContactStage, Over, Problem, Rule};
 use crate::laws::{Laws, join};
 use crate::mismatch::length;
-use crate::subsystem::{Span, respond_by_solving};
+use crate::subsystem::Span;
 use crate::{Coupling, Model, Responses, Workspace};
 use teeter_contact::{Block, Outcome};
 
@@ -150,6 +150,26 @@ impl<const D: usize> ContactStage<D> {
         Ok(outcome)
     }
 
+    /// What a unit impulse along the normal of contact `i` does to its normal velocity by way of one part, 1/kg; and whether that part
+    /// is elastic.
+    pub(crate) fn own_response(
+        &mut self,
+        i: usize,
+        index: usize,
+        model: &Model<D>,
+        responses: &Responses<'_>,
+        work: &mut Workspace<D>,
+    ) -> (f64, bool) {
+        let part = &model.parts()[index];
+        let Some(mut answer) = work.factors.answer(index, responses) else { return (0.0, false) };
+        let mut block = [Block::<D>::zeros()];
+        let rows = self.rows.of_island(index, &self.rows.spans[i..=i]);
+        answer.couple(&rows, &mut work.scratch[..part.v.len()], &mut Coupling::dense(1, &mut block));
+        let is_elastic = !answer.is_diagonal() && !part.is_prescribed();
+        work.coupled += 1;
+        (block[0][(0, 0)], is_elastic)
+    }
+
     /// Adds W Jᵀ p to velocities `v`, after [`solve`](Self::solve) with the same responses; `v` become those after the impulses (added accelerations over
     /// [`Over::Acceleration`]).
     ///
@@ -177,15 +197,11 @@ impl<const D: usize> ContactStage<D> {
             if rows.is_empty() {
                 continue;
             }
-            let Some(factor) = responses.of(index).and_then(|w| factors.of(index, w)) else {
+            let Some(mut answer) = factors.answer(index, responses) else {
                 return Err(ContactError::Factors { part: index });
             };
             let (scratch, v) = (&mut scratch[part.v.clone()], &mut v[part.v.clone()]);
-            if !kept && !factor.is_diagonal() {
-                respond_by_solving(&rows, &self.problem.p, scratch, v, |f| factor.solve(f));
-            } else {
-                factor.respond(&rows, &self.problem.p, scratch, v);
-            }
+            answer.respond(&rows, &self.problem.p, scratch, v, kept);
         }
         Ok(())
     }
@@ -221,8 +237,8 @@ pub(super) fn couple_into<const D: usize>(
         if part.v.is_empty() {
             continue;
         }
-        if let Some(factor) = responses.of(index).and_then(|w| factors.of(index, w)) {
-            factor.couple(&rows.of_island(index, spans), &mut scratch[..part.v.len()], coupling);
+        if let Some(mut answer) = factors.answer(index, responses) {
+            answer.couple(&rows.of_island(index, spans), &mut scratch[..part.v.len()], coupling);
         }
     }
 }
