@@ -39,8 +39,11 @@ const QUIET: u32 = 8;
 /// χ: oscillations that turn by more than this angle in a step, rad, follow their forces as if they had no mass.
 const CUTOFF: f64 = 4.0;
 
+/// Parts of a step for which there is room from the start, in a model of so many contacts.
+const USUAL_PARTS: usize = 64;
+const FEW_CONTACTS: usize = 128;
+
 /// What it can't step.
-const SPRINGS: &str = "contacts with duration, whose forces resolved doesn't take";
 const FOLLOWERS: &str = "matrices that follow their coordinates, as of a beam held along its axis: they keep energy in steps of one size only";
 
 /// Contact with a beam as a force that holds the gap closed, in steps that are halved where contacts
@@ -70,6 +73,8 @@ pub struct Resolved<const D: usize> {
     posed: Vec<Posed>,
     /// Of each velocity: whether it is of something elastic.
     elastic: Vec<bool>,
+    /// Of each contact of the stage, whether its gap is held.
+    holds: Vec<bool>,
     guarded: Vec<bool>,
     stays: Vec<bool>,
     /// The part of the step that is taken.
@@ -122,6 +127,7 @@ impl<const D: usize> Resolved<D> {
             ahead: Vec::new(),
             posed: Vec::new(),
             elastic: Vec::new(),
+            holds: Vec::new(),
             guarded: Vec::new(),
             stays: Vec::new(),
             of_step: 1.0,
@@ -163,9 +169,6 @@ impl<const D: usize> Scheme<D> for Resolved<D> {
     }
 
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {
-        if model.has_springs() {
-            return Err(StepError::Unsupported { what: SPRINGS });
-        }
         if model.parts().iter().any(|part| part.traits.follows_coordinates) {
             return Err(StepError::Unsupported { what: FOLLOWERS });
         }
@@ -179,6 +182,7 @@ impl<const D: usize> Scheme<D> for Resolved<D> {
         self.one.reserve(model);
         self.ids.reserve(contacts);
         self.posed.reserve(contacts);
+        self.holds.reserve(contacts);
         self.guarded.reserve(contacts);
         self.stays.reserve(contacts);
         state.warm.reserve(contacts, D);
@@ -190,7 +194,9 @@ impl<const D: usize> Scheme<D> for Resolved<D> {
         from.memory.reserve(contacts);
         self.from = Some(from);
         work.factors.make_propagators(model);
-        work.reserve_phases(model, 1 << self.settings.levels.min(6));
+        if contacts <= FEW_CONTACTS {
+            work.reserve_phases(model, USUAL_PARTS);
+        }
         for level in (0..=self.settings.levels).rev() {
             let h = state.dt / f64::from(1_u32 << level);
             work.factors(model, weights(h, THETA), &state.q, Keep::Pinned)?;

@@ -163,9 +163,16 @@ impl SchemeName {
     #[must_use]
     pub fn takes_springs(self) -> bool {
         match self {
-            Self::MoreauJean | Self::MoreauJeanClosed | Self::MoreauJeanLocated => true,
-            Self::EventDriven | Self::Resolved => false,
+            Self::MoreauJean | Self::MoreauJeanClosed | Self::MoreauJeanLocated | Self::Resolved => true,
+            Self::EventDriven => false,
         }
+    }
+
+    /// Whether contact with a beam is a force that holds the gap closed, so that there is nothing that
+    /// could be given back.
+    #[must_use]
+    pub fn holds_beams(self) -> bool {
+        self == Self::Resolved
     }
 
     /// Whether it takes steps of its own within those of the scene, so that these only say when it

@@ -289,7 +289,8 @@ impl Propagator<2> for ModalMotion {
             for (other, (i, columns_i, values_i)) in rows.iter().take(number + 1).enumerate() {
                 let mut block = Matrix2::zeros();
                 for (k, coefficients) in modes.iter().enumerate() {
-                    let (a, b) = (self.entry(columns_i, values_i, k), self.entry(columns_j, values_j, k));
+                    let b = self.entry(columns_j, values_j, k);
+                    let a = if other == number { b } else { self.entry(columns_i, values_i, k) };
                     block += a * (gain * yielding(self.stiffness[k], coefficients)) * b.transpose();
                 }
                 h.add(i, j, &block);
@@ -353,4 +354,87 @@ fn moved(omega2: f64, &[b, b_rate, d, f]: &[f64; 4], [place, rate]: [f64; 2], fo
     }
     let rest = force / omega2;
     ([rest + f * (exact[0] - rest), f * exact[1]], exact)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MODES: [(f64, f64); 9] = [
+        (0.0, 0.0),
+        (0.0, 3.0),
+        (1e-3, 0.0),
+        (170.0, 3.4),
+        (170.0, 339.9999),
+        (170.0, 340.0),
+        (170.0, 2e4),
+        (3e5, 6e3),
+        (3e5, 1e7),
+    ];
+
+    /// η and η̇ after h by a power series of so many short steps.
+    fn by_series(omega2: f64, damping: f64, start: [f64; 2], force: f64, h: f64) -> [f64; 2] {
+        let parts = (h * (omega2.sqrt() + damping) * 4.0).ceil().max(1.0) as usize;
+        let tau = h / parts as f64;
+        (0..parts).fold(start, |[place, rate], _| {
+            let (mut a, mut b) = (place, rate);
+            let (mut end, mut speed, mut power) = (place + rate * tau, rate, tau);
+            for n in 0..30 {
+                let m = f64::from(n);
+                let forced = if n == 0 { force } else { 0.0 };
+                let next = (forced - damping * (m + 1.0) * b - omega2 * a) / ((m + 1.0) * (m + 2.0));
+                (a, b) = (b, next);
+                speed += (m + 2.0) * next * power;
+                power *= tau;
+                end += next * power;
+            }
+            [end, speed]
+        })
+    }
+
+    #[test]
+    fn modes_move_as_their_equation_says_whatever_their_damping() {
+        for (omega, damping) in MODES {
+            for h in [1e-7, 1e-5, 1e-4, 1e-3] {
+                let [b, b_rate, d] = response(omega * omega, damping, h);
+                let (start, force) = ([0.3, -20.0], 1e3);
+                let expected = by_series(omega * omega, damping, start, force, h);
+                let (_, found) = moved(omega * omega, &[b, b_rate, d, 1.0], start, force);
+                let size = [0.3 + 20.0 * h + force * d, 20.0 + omega * 0.3 + force * b.abs()];
+                for k in 0..2 {
+                    let error = (found[k] - expected[k]).abs() / size[k];
+                    assert!(error < 1e-11, "ω {omega}, 2δ {damping}, h {h}: {found:?} {expected:?}");
+                }
+            }
+        }
+    }
+
+    /// What the filter takes is energy, and without damping nothing else is taken.
+    #[test]
+    fn a_step_loses_what_it_says() {
+        for (omega, damping) in MODES {
+            for h in [1e-5, 1e-3] {
+                let mut motion = ModalMotion::new(Shapes::Own, vec![omega * omega], vec![damping], vec![2.0]);
+                motion.take(h, 4.0);
+                let (q, v) = ([0.3], [-20.0]);
+                let mut free = [0.0];
+                motion.begin(&q, &v, &[5.0], &mut free);
+                let rows = PartRows { part: 0, spans: &[], columns: &[], values: &[] };
+                let (mut end, mut mean) = (v, q);
+                let lost = motion.end(&rows, &[], &mut end, &mut mean);
+                let moved = 0.5 * h * (v[0] + free[0]);
+                let energy = |q: f64, v: f64| 0.5 * (v * v + omega * omega * q * q);
+                let gained = energy(q[0] + moved, end[0]) - energy(q[0], v[0]) - 7.0 * moved;
+                let scale = energy(q[0], v[0]);
+                assert!((gained + lost.viscous + lost.filtered).abs() < 1e-12 * scale, "{omega} {damping} {h}");
+                assert!(lost.viscous >= -1e-14 * scale && lost.filtered >= 0.0, "{lost:?}");
+                assert!(damping != 0.0 || lost.viscous == 0.0);
+                assert!(omega * h > 1.0 || lost.filtered < 1e-4 * scale, "{omega} {h}: {lost:?}");
+                // M Δv/h + C Δq/h + K q̄ = F.
+                let balance = (end[0] - v[0]) / h + damping * moved / h + omega * omega * mean[0] - 7.0;
+                let largest = ((end[0] - v[0]) / h).abs() + 7.0 + omega * omega * 0.3;
+                assert!(omega == 0.0 || balance.abs() < 1e-11 * largest, "{balance}");
+            }
+        }
+    }
 }

@@ -13,6 +13,9 @@ const PASSES: usize = 6;
 /// Places at the end that change by less than this part of the largest coordinate stand still.
 const SETTLED: f64 = 4.0 * f64::EPSILON;
 
+/// Gaps that would change by less than this part of their tolerance are closed.
+const OPEN: f64 = 0.1;
+
 /// Where a contact is in the surface already, it closes when it sinks by this part of the gap tolerance.
 const SINKING: f64 = 1e-3;
 
@@ -61,6 +64,8 @@ impl<const D: usize> Resolved<D> {
         let (over, responses) = (Over::Step { h: part.h, weight: THETA }, Responses::Over(part.h));
         let problem = |source| StepError::Problem { t: from.t, source };
         let mut outcome = None;
+        let mut last = None;
+        self.holds.clear();
         for pass in 0..PASSES {
             self.pose(model, from, part, work, pass)?;
             self.q_end.copy_from_slice(&self.step.q_at);
@@ -80,9 +85,14 @@ impl<const D: usize> Resolved<D> {
             self.step.close(model, from, part.h, THETA)?;
             let largest = self.q_end.iter().fold(0.0_f64, |largest, q| largest.max(q.abs()));
             let moved = self.q_end.iter().zip(&self.step.q_at).fold(0.0_f64, |moved, (a, b)| moved.max((a - b).abs()));
-            if !self.posed.iter().any(|posed| posed.held) || moved <= SETTLED * largest {
+            // The next pass would move them less by the factor by which this one did.
+            let next = last.map_or(moved, |last: f64| moved * (moved / last).min(1.0));
+            if !self.posed.iter().any(|posed| posed.held)
+                || next <= (SETTLED * largest).max(OPEN * self.settings.gap_tolerance)
+            {
                 break;
             }
+            last = Some(moved);
         }
         Ok(outcome)
     }
@@ -113,7 +123,11 @@ impl<const D: usize> Resolved<D> {
         for (i, (contact, posed)) in self.stage.contacts().iter().zip(&self.posed).enumerate() {
             let shift = posed.resting_shift - self.stage.problem.shift(i)[0];
             let still = || self.stage.speed(i, &self.step.v_end).max(self.stage.speed(i, &self.v_free));
-            self.stays.push(contact.p[0] > 0.0 && (posed.held || !leaves(shift, still)));
+            let stays = match contact.gap_after {
+                Some(gap) => gap < 0.0,
+                None => contact.p[0] > 0.0 && (posed.held || !leaves(shift, still)),
+            };
+            self.stays.push(stays);
         }
     }
 

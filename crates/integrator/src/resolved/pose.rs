@@ -1,16 +1,17 @@
 //! What each contact of a part of a step is asked for: a closed gap at a beam, a velocity elsewhere.
 
 use super::{Posed, Resolved};
-use crate::closed_step::{find, restitute};
+use crate::closed_step::{THETA, find, restitute};
 use crate::contact::tangential;
-use crate::{Model, Responses, Rule, State, StepError, StepSpan, Vector, Workspace};
+use crate::{Model, Responses, Rule, SpringStep, State, StepError, StepSpan, Vector, Workspace};
 use teeter_detect::Candidate;
 
 /// A gap is held where so much of what a push does there is a beam's.
 const SHARE: f64 = 0.5;
 
-/// A contact with a beam that has restitution: in the continuum it has no meaning.
-pub(super) const RESTITUTION: &str = "restitution at a beam: a beam has no velocity of its own at a point, so resolved has nothing that it could give back";
+/// A contact with a beam that gives something back: in the continuum that has no meaning.
+const RESTITUTION: &str =
+    "restitution or a law with duration at a beam: resolved takes a beam's own elasticity for all that it gives back";
 
 impl<const D: usize> Resolved<D> {
     /// Poses the contacts with their rows in the middle of the motion to `q_at`.
@@ -52,8 +53,16 @@ impl<const D: usize> Resolved<D> {
         if !self.stage.add(model, &self.q_mid, candidate, &from.warm, &from.memory)? {
             return Ok(());
         }
-        let held = self.share(i, model, part, work) > SHARE;
-        if held && (law.restitution > 0.0 || law.tangential_restitution > 0.0) {
+        let held = match self.holds.get(i) {
+            Some(held) => *held,
+            None => {
+                let held = self.share(i, model, part, work) > SHARE;
+                self.holds.push(held);
+                held
+            }
+        };
+        let gives_back = law.restitution > 0.0 || law.tangential_restitution > 0.0 || law.impact.spring().is_some();
+        if held && gives_back {
             return Err(StepError::Unsupported { what: RESTITUTION });
         }
         let gap_before = find(&self.start, candidate.id).map_or(0.0, |start| start.gap);
@@ -91,6 +100,14 @@ impl<const D: usize> Resolved<D> {
             shift[0] = 2.0 * gap / part.h - self.stage.velocity(i, &self.step.v_end)?[0];
             self.posed.push(Posed { held, resting_shift: shift[0], approach, way });
             rule = Rule::Shifted;
+        } else if law.impact.spring().is_some() {
+            let gap = match from.memory.spring_gap(candidate.id) {
+                Some(gap) if gap < 0.0 => gap,
+                _ => gap_before.max(0.0),
+            };
+            shift[0] = 0.0;
+            self.posed.push(Posed { held, resting_shift: 0.0, approach, way });
+            rule = SpringStep::new(&law.impact, gap, u_before[0], part.h, THETA).map_or(Rule::Shifted, Rule::Spring);
         } else {
             shift[0] = if (u_before[0] - b[0]).abs() <= b[0].abs() { u_before[0] } else { b[0].max(u_before[0]) };
             if !persisting && u_before[0] < 0.0 {

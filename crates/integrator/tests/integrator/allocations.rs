@@ -51,7 +51,11 @@ fn count(surface: Box<dyn Subsystem<2>>, dofs: usize, mut scheme: Box<dyn Scheme
     let before = ALLOCATIONS.with(Cell::get);
     let mut most = 0;
     for _ in 0..3000 {
-        let step = scheme.advance(&model, &mut state, f64::INFINITY, &mut work).unwrap();
+        let step = match scheme.advance(&model, &mut state, f64::INFINITY, &mut work) {
+            // Nor with a law that it refuses.
+            Err(StepError::Unsupported { .. }) => return 0,
+            step => step.unwrap(),
+        };
         most = step.phases().map(|phase| phase.contacts.len()).fold(most, usize::max);
     }
     assert_eq!(most, 2, "the run is meant to meet two contacts");

@@ -1,7 +1,7 @@
 //! Steps, their number and their stability; rows of output.
 
 use super::Resolver;
-use crate::scene::{BeamScene, BlockScene, ContactScene, Scene, SchemeName, Time};
+use crate::scene::{BeamScene, BlockScene, ContactScene, Scene, SchemeName, Support, Time};
 use crate::volume::Volume;
 use crate::wording;
 use crate::words::SchemeChoice;
@@ -128,7 +128,7 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// Refuses contacts with duration where the scheme takes none.
+    /// Refuses contacts that the scheme doesn't take: with duration, or with what it has no meaning for at a beam.
     pub(super) fn refuse_springs(&mut self, scheme: SchemeName, contacts: &[Option<ContactScene>]) {
         let has_duration = |contact: &&ContactScene| {
             matches!(contact.law.impact, ImpactLaw::KelvinVoigt { .. } | ImpactLaw::HuntCrossley { .. })
@@ -136,6 +136,22 @@ impl Resolver<'_, '_> {
         if let Some(contact) = contacts.iter().flatten().find(has_duration).filter(|_| !scheme.takes_springs()) {
             let rule = format!("{} takes no contacts with duration, such as `{}`", scheme.word(), contact.name);
             self.error("time.scheme", rule, "take scheme = \"moreau-jean-located\", or law = \"newton\"");
+        }
+        if !scheme.holds_beams() || contacts.iter().any(Option::is_none) {
+            return;
+        }
+        let at_beam = |contact: &&ContactScene| matches!(contact.surface, Support::Beam(_));
+        if !contacts.iter().flatten().any(|contact| at_beam(&contact)) {
+            let rule = format!("{} is for contact with beams, and there is none here", scheme.word());
+            self.error("time.scheme", rule, "take scheme = \"moreau-jean-located\", or leave it out");
+        }
+        if let Some(contact) = contacts.iter().flatten().filter(at_beam).find(|contact| gives_back(contact)) {
+            let rule = format!(
+                "{} takes no restitution and no law with duration at a beam, as in `{}`: contact there is a force, and all that a beam gives back is its own elasticity",
+                scheme.word(),
+                contact.name
+            );
+            self.error("time.scheme", rule, "take scheme = \"moreau-jean-located\", or restitution = 0");
         }
     }
 
@@ -222,4 +238,11 @@ fn gap_tolerance(blocks: &[Option<BlockScene>]) -> f64 {
     let shortest = blocks.iter().flatten().map(|block| block.width.min(block.height)).fold(f64::INFINITY, f64::min);
     let usual = if largest == 0.0 || (0.01..=1.0).contains(&largest) { 1e-12 } else { 1e-11 * largest };
     usual.min(DOUBTFUL_GAP * shortest)
+}
+
+/// Whether a contact gives back what struck it, beyond what its bodies' own elasticity does.
+fn gives_back(contact: &ContactScene) -> bool {
+    let law = &contact.law;
+    let has_duration = matches!(law.impact, ImpactLaw::KelvinVoigt { .. } | ImpactLaw::HuntCrossley { .. });
+    has_duration || law.restitution > 0.0 || law.tangential_restitution > 0.0
 }
