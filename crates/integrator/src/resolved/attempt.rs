@@ -13,9 +13,6 @@ const PASSES: usize = 6;
 /// Places at the end that change by less than this part of the largest coordinate stand still.
 const SETTLED: f64 = 4.0 * f64::EPSILON;
 
-/// Gaps that would change by less than this part of their tolerance are closed.
-const OPEN: f64 = 0.1;
-
 /// Where a contact is in the surface already, it closes when it sinks by this part of the gap tolerance.
 const SINKING: f64 = 1e-3;
 
@@ -87,9 +84,7 @@ impl<const D: usize> Resolved<D> {
             let moved = self.q_end.iter().zip(&self.step.q_at).fold(0.0_f64, |moved, (a, b)| moved.max((a - b).abs()));
             // The next pass would move them less by the factor by which this one did.
             let next = last.map_or(moved, |last: f64| moved * (moved / last).min(1.0));
-            if !self.posed.iter().any(|posed| posed.held)
-                || next <= (SETTLED * largest).max(OPEN * self.settings.gap_tolerance)
-            {
+            if !self.posed.iter().any(|posed| posed.held) || next <= SETTLED * largest {
                 break;
             }
             last = Some(moved);

@@ -11,6 +11,7 @@ mod properties;
 mod reading;
 mod refusing;
 mod required;
+mod resolved;
 mod resolving;
 mod resting;
 mod running;
