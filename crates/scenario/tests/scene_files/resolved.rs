@@ -1,7 +1,7 @@
 //! `resolved`: contact with a beam as a force that holds the gap closed.
 
 use super::running::workspace;
-use teeter_integrator::Contact;
+use teeter_integrator::{Contact, Ended};
 use teeter_scenario::simulation::Simulation;
 
 fn source(name: &str) -> String {
@@ -36,7 +36,7 @@ fn a_block_rocks_on_a_beam_as_it_does_event_by_event() {
         let mut simulation = simulation(&text, &[("time.step", step)]);
         let angle = simulation.layout.blocks[0].range.start + 2;
         for (t, phi) in exact {
-            simulation.run_until(t, &mut []).unwrap();
+            assert_eq!(simulation.run_until(t, &mut []).unwrap(), Ended::Complete);
             let found = simulation.state.q[angle];
             assert!((found - phi).abs() < error, "{step}, {t} s: {found} {phi}");
         }
