@@ -85,6 +85,19 @@ impl<const D: usize> Answer<'_, D> {
         }
     }
 
+    /// Whether it is elastic, and its velocity at the end only that of the trapezoidal rule, which rings.
+    pub(crate) fn rings(&self) -> bool {
+        matches!(self, Self::Inverse(factor) if !factor.is_diagonal())
+    }
+
+    /// Adds what impulses over the time do to the velocities at its end.
+    pub(crate) fn couple_rates(&mut self, rows: &PartRows<'_, D>, scratch: &mut [f64], h: &mut Coupling<'_, D>) {
+        match self {
+            Self::Inverse(factor) => factor.couple(rows, scratch, h),
+            Self::Motion(motion) => motion.couple_rates(rows, h),
+        }
+    }
+
     /// `coupled` says whether these rows were those that were coupled last.
     pub(crate) fn respond(
         &mut self,

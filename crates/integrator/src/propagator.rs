@@ -45,6 +45,10 @@ pub trait Propagator<const D: usize>: Send + Sync {
     /// Adds (2/h²) J_i D J_jᵀ for all pairs of rows.
     fn couple(&mut self, rows: &PartRows<'_, D>, h: &mut Coupling<'_, D>);
 
+    /// Adds (1/h) J_i V J_jᵀ for all pairs of rows, V what constant forces do to the true velocity at
+    /// the end.
+    fn couple_rates(&mut self, rows: &PartRows<'_, D>, h: &mut Coupling<'_, D>);
+
     /// Adds (2/h²) D Jᵀp to `v`, p the impulses of all contacts of the model, N·s.
     fn respond(&mut self, rows: &PartRows<'_, D>, p: &[Vector<D>], v: &mut [f64]);
 

@@ -48,6 +48,23 @@ const FOLLOWERS: &str = "matrices that follow their coordinates, as of a beam he
 
 /// Contact with a beam as a force that holds the gap closed, in steps that are halved where contacts
 /// close.
+///
+/// ```text
+/// 0 ≤ (2/h)(g(q¹) − ℓ) ⊥ p_n ≥ 0,   Coulomb on U_t¹ + s_t,   H = (2/h²) J D Jᵀ,   p = hF,   ℓ = min(0, g(q⁰))
+/// ```
+///
+/// D is what a constant force F does to the place at the end of a step: of a beam in its modes by its
+/// [`Propagator`](crate::Propagator), else by the trapezoidal rule. Rows are those in the middle of the
+/// motion, made a discrete gradient of the gap, so that a contact's work is −F (g(q⁰) − ℓ) ≤ 0; the
+/// step is solved again until places stand still. Contacts between bodies obey the rule of
+/// [`MoreauJeanClosed`](crate::MoreauJeanClosed).
+///
+/// A step is taken in parts, h/2ʲ with j up to [`levels`](ResolvedSettings::levels): a part in which a
+/// contact closes from afar is taken anew with half its length.
+///
+/// Restitution and laws with duration at a beam are refused: what a beam gives back is its own
+/// elasticity. So are subsystems whose matrices follow their coordinates, such as beams held along
+/// their axis: they keep their energy in steps of one size only.
 #[derive(Debug)]
 pub struct Resolved<const D: usize> {
     settings: ResolvedSettings,

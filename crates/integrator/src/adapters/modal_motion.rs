@@ -163,6 +163,25 @@ impl ModalMotion {
         }
     }
 
+    /// Adds the sum over modes of J_ik gain J_jkᵀ for all pairs of rows.
+    fn couple_by(&self, rows: &PartRows<'_, 2>, h: &mut Coupling<'_, 2>, gain: impl Fn(f64, &[f64; 4]) -> f64) {
+        let modes = &self.kept[self.now].modes;
+        for (number, (j, columns_j, values_j)) in rows.iter().enumerate() {
+            for (other, (i, columns_i, values_i)) in rows.iter().take(number + 1).enumerate() {
+                let mut block = Matrix2::zeros();
+                for (k, coefficients) in modes.iter().enumerate() {
+                    let b = self.entry(columns_j, values_j, k);
+                    let a = if other == number { b } else { self.entry(columns_i, values_i, k) };
+                    block += a * (gain(self.stiffness[k], coefficients)) * b.transpose();
+                }
+                h.add(i, j, &block);
+                if other < number {
+                    h.add(j, i, &block.transpose());
+                }
+            }
+        }
+    }
+
     /// The modal row k of a contact's rows.
     fn entry(&self, columns: &[usize], values: &[Vector<2>], k: usize) -> Vector<2> {
         let n = self.len();
@@ -283,22 +302,13 @@ impl Propagator<2> for ModalMotion {
     }
 
     fn couple(&mut self, rows: &PartRows<'_, 2>, h: &mut Coupling<'_, 2>) {
-        let Coefficients { h: duration, modes, .. } = &self.kept[self.now];
-        let gain = 2.0 / (duration * duration);
-        for (number, (j, columns_j, values_j)) in rows.iter().enumerate() {
-            for (other, (i, columns_i, values_i)) in rows.iter().take(number + 1).enumerate() {
-                let mut block = Matrix2::zeros();
-                for (k, coefficients) in modes.iter().enumerate() {
-                    let b = self.entry(columns_j, values_j, k);
-                    let a = if other == number { b } else { self.entry(columns_i, values_i, k) };
-                    block += a * (gain * yielding(self.stiffness[k], coefficients)) * b.transpose();
-                }
-                h.add(i, j, &block);
-                if other < number {
-                    h.add(j, i, &block.transpose());
-                }
-            }
-        }
+        let gain = 2.0 / self.kept[self.now].h.powi(2);
+        self.couple_by(rows, h, |omega2, coefficients| gain * yielding(omega2, coefficients));
+    }
+
+    fn couple_rates(&mut self, rows: &PartRows<'_, 2>, h: &mut Coupling<'_, 2>) {
+        let gain = 1.0 / self.kept[self.now].h;
+        self.couple_by(rows, h, |_, [b, _, _, f]| gain * f * b);
     }
 
     fn respond(&mut self, rows: &PartRows<'_, 2>, p: &[Vector<2>], v: &mut [f64]) {

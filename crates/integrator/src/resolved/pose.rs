@@ -6,8 +6,8 @@ use crate::contact::tangential;
 use crate::{Model, Responses, Rule, SpringStep, State, StepError, StepSpan, Vector, Workspace};
 use teeter_detect::Candidate;
 
-/// A gap is held where so much of what a push does there is a beam's.
-const SHARE: f64 = 0.5;
+/// A gap is held where hV/(2D) is at most this: 1 between bodies, ¾ on a long beam, 0 on one without mass.
+const BODIES: f64 = 0.875;
 
 /// A contact with a beam that gives something back: in the continuum that has no meaning.
 const RESTITUTION: &str =
@@ -59,7 +59,7 @@ impl<const D: usize> Resolved<D> {
         let held = match self.holds.get(i) {
             Some(held) => *held,
             None => {
-                let held = self.share(i, model, part, work) > SHARE;
+                let held = self.is_held(i, model, part, work);
                 self.holds.push(held);
                 held
             }
@@ -146,17 +146,15 @@ impl<const D: usize> Resolved<D> {
         Ok(())
     }
 
-    /// How much of what a push along the normal does at contact `i` is done by what is elastic.
-    fn share(&mut self, i: usize, model: &Model<D>, part: &StepSpan, work: &mut Workspace<D>) -> f64 {
-        let (mut elastic, mut all) = (0.0, 0.0);
+    /// Whether the gap of contact `i` is held. A constant force that holds it changes a relative velocity
+    /// U to (1 − hV/D) U: to −U between bodies, which would part at once, to −½U on a long beam.
+    fn is_held(&mut self, i: usize, model: &Model<D>, part: &StepSpan, work: &mut Workspace<D>) -> bool {
+        let (mut place, mut rate) = (0.0, 0.0);
         for index in self.stage.parts_of(i) {
-            let (own, is_elastic) = self.stage.own_response(i, index, model, &Responses::Over(part.h), work);
-            all += own;
-            if is_elastic {
-                elastic += own;
-            }
+            let [own_place, own_rate] = self.stage.own_response(i, index, model, &Responses::Over(part.h), work);
+            (place, rate) = (place + own_place, rate + own_rate);
         }
-        if all > 0.0 { elastic / all } else { 0.0 }
+        rate <= BODIES * place
     }
 
     /// The change of the normal velocity of contact `i` by forces on what isn't elastic, in the part of the step that is taken, m/s.

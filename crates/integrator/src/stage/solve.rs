@@ -36,6 +36,9 @@ impl Over {
     }
 }
 
+/// hV/(2D) of a long beam: its mobility is C s^(−½), so that V goes with √h.
+const LONG_BEAM: f64 = 0.75;
+
 impl<const D: usize> ContactStage<D> {
     /// Finds the impulses (forces over [`Over::Acceleration`]) of all contacts, which have been posed. `None` without contacts.
     ///
@@ -150,8 +153,8 @@ impl<const D: usize> ContactStage<D> {
         Ok(outcome)
     }
 
-    /// What a unit impulse along the normal of contact `i` does to its normal velocity by way of one part, 1/kg; and whether that part
-    /// is elastic.
+    /// What a unit impulse along the normal of contact `i` does by way of one part, 1/kg: to its normal velocity as its responses have it,
+    /// and to the true one at the end.
     pub(crate) fn own_response(
         &mut self,
         i: usize,
@@ -159,15 +162,19 @@ impl<const D: usize> ContactStage<D> {
         model: &Model<D>,
         responses: &Responses<'_>,
         work: &mut Workspace<D>,
-    ) -> (f64, bool) {
+    ) -> [f64; 2] {
         let part = &model.parts()[index];
-        let Some(mut answer) = work.factors.answer(index, responses) else { return (0.0, false) };
-        let mut block = [Block::<D>::zeros()];
+        let Some(mut answer) = work.factors.answer(index, responses) else { return [0.0; 2] };
+        let mut blocks = [[Block::<D>::zeros()]; 2];
+        let scratch = &mut work.scratch[..part.v.len()];
         let rows = self.rows.of_island(index, &self.rows.spans[i..=i]);
-        answer.couple(&rows, &mut work.scratch[..part.v.len()], &mut Coupling::dense(1, &mut block));
-        let is_elastic = !answer.is_diagonal() && !part.is_prescribed();
+        answer.couple(&rows, scratch, &mut Coupling::dense(1, &mut blocks[0]));
+        answer.couple_rates(&rows, scratch, &mut Coupling::dense(1, &mut blocks[1]));
+        if answer.rings() && !part.is_prescribed() {
+            blocks[1][0] *= LONG_BEAM;
+        }
         work.coupled += 1;
-        (block[0][(0, 0)], is_elastic)
+        blocks.map(|block| block[0][(0, 0)])
     }
 
     /// Adds W Jᵀ p to velocities `v`, after [`solve`](Self::solve) with the same responses; `v` become those after the impulses (added accelerations over
