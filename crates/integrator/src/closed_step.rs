@@ -273,7 +273,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         span: &StepSpan,
         work: &mut Workspace<D>,
     ) -> Result<Option<Outcome>, ContactError> {
-        self.step.v_end_mut().copy_from_slice(&self.v_free);
+        self.step.restart(&self.v_free);
         self.stage.clear();
         self.resting_shift.clear();
         if self.closed.is_empty() {

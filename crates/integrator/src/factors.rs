@@ -1,6 +1,7 @@
 //! W of every subsystem, for as many combinations of weights as a scheme has use for.
 
-use crate::{Compliance, FactorError, Model, Weights};
+use crate::blend::{Blends, Term, is_blend};
+use crate::{Compliance, FactorError, Model, Part, Weights};
 
 /// How long the factors of a combination are wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,6 +30,8 @@ pub(crate) struct Factors<const D: usize> {
     /// The weights that stand first in all lists.
     front: Option<Weights>,
     round: u64,
+    /// Sums of two of them.
+    blends: Blends<D>,
     /// How many matrices were factorised.
     made: u64,
 }
@@ -56,7 +59,7 @@ impl Responses<'_> {
 
 impl<const D: usize> Factors<D> {
     pub(crate) fn new() -> Self {
-        Self { parts: Vec::new(), front: None, round: 0, made: 0 }
+        Self { parts: Vec::new(), front: None, round: 0, blends: Blends::new(), made: 0 }
     }
 
     pub(crate) fn made(&self) -> u64 {
@@ -125,9 +128,30 @@ impl<const D: usize> Factors<D> {
         Ok(())
     }
 
+    /// Sees to it that there are sums of two factors, as [`Blends::make`].
+    pub(crate) fn make_blends(
+        &mut self,
+        model: &Model<D>,
+        key: Weights,
+        keep: Keep,
+        q: &[f64],
+        terms: impl Fn(&Part<D>) -> [Term; 2],
+    ) -> Result<(), FactorError> {
+        self.made += self.blends.make(model, key, keep, q, terms)?;
+        Ok(())
+    }
+
+    /// The two factors of a sum; `None` where it was not made.
+    pub(crate) fn terms(&mut self, part: usize, key: Weights) -> Option<[&mut dyn Compliance<D>; 2]> {
+        self.blends.terms(part, key)
+    }
+
     /// The factor of a subsystem; `None` where it was not made.
     #[inline]
     pub(crate) fn of(&mut self, part: usize, w: Weights) -> Option<&mut dyn Compliance<D>> {
+        if is_blend(w) {
+            return self.blends.of(part, w);
+        }
         let entries = self.parts.get_mut(part)?;
         let at =
             if self.front == Some(w) { 0 } else { entries.iter().position(|entry| entry.factor.weights() == w)? };

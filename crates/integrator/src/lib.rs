@@ -60,6 +60,8 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 mod adapters;
+mod alpha_step;
+mod blend;
 mod clock;
 mod closed_step;
 mod closings;
@@ -71,6 +73,7 @@ mod equilibrium;
 mod event_driven;
 mod factors;
 mod free_velocity;
+mod generalized_alpha;
 mod laws;
 mod ledger;
 mod memory;
@@ -115,6 +118,7 @@ pub use coupled_modes::{CoupledModes, CoupledModesError, MOST_VELOCITIES, couple
 pub use equilibrium::{Equilibrium, EquilibriumError, SettlingLimits, settle};
 pub use event_driven::{EventDriven, EventDrivenSettings};
 pub use factors::{Keep, Responses};
+pub use generalized_alpha::{GeneralizedAlpha, GeneralizedAlphaSettings};
 pub use ledger::{Ledger, PositiveWork, StepEnergy};
 pub use memory::Memory;
 pub use mismatch::Mismatch;

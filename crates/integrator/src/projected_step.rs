@@ -78,8 +78,10 @@ impl<const D: usize, M: StepMotion<D>> ProjectedStep<D, M> {
         let penetration = deepest(work);
         self.step.find_what_stays();
         self.end_phase(model, state, &span, outcome, projected, work)?;
-        let stays = &self.step.stays;
-        work.finish(model, state, Some(penetration), |i, _| stays[i])
+        let ClosedStep { stays, step, .. } = &self.step;
+        let report = work.finish(model, state, Some(penetration), |i, _| stays[i])?;
+        step.remember(&mut state.memory);
+        Ok(report)
     }
 
     fn end_phase(
@@ -91,6 +93,7 @@ impl<const D: usize, M: StepMotion<D>> ProjectedStep<D, M> {
         projected: Option<Outcome>,
         work: &mut Workspace<D>,
     ) -> Result<(), StepError> {
+        self.step.step.settle(model, from);
         let mut energy = self.step.step.work(model, from, span, &self.step.stage, work);
         let ClosedStep { step, stage, .. } = &mut self.step;
         let q = self.projection.q();

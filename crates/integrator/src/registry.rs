@@ -1,8 +1,9 @@
 //! The list of schemes by name.
 
 use crate::{
-    EventDriven, EventDrivenSettings, MoreauJean, MoreauJeanClosed, MoreauJeanClosedSettings, MoreauJeanLocated,
-    MoreauJeanLocatedSettings, MoreauJeanProjected, MoreauJeanProjectedSettings, MoreauJeanSettings, Scheme,
+    EventDriven, EventDrivenSettings, GeneralizedAlpha, GeneralizedAlphaSettings, MoreauJean, MoreauJeanClosed,
+    MoreauJeanClosedSettings, MoreauJeanLocated, MoreauJeanLocatedSettings, MoreauJeanProjected,
+    MoreauJeanProjectedSettings, MoreauJeanSettings, Scheme,
 };
 
 /// A scheme in the list.
@@ -30,7 +31,7 @@ impl SchemeEntry {
 /// ```
 /// let names: Vec<_> = teeter_integrator::schemes().iter().map(|scheme| scheme.name).collect();
 /// assert!(names.starts_with(&["moreau-jean", "moreau-jean-closed", "moreau-jean-located", "event-driven"]));
-/// assert!(names.contains(&"moreau-jean-projected"));
+/// assert!(names.ends_with(&["moreau-jean-projected", "generalized-alpha"]));
 /// ```
 #[must_use]
 pub fn schemes() -> &'static [SchemeEntry] {
@@ -59,6 +60,11 @@ pub fn schemes() -> &'static [SchemeEntry] {
             name: MoreauJeanProjected::<2>::NAME,
             about: "the closed step, with places projected onto what contacts allow: no penetration but rounding",
             make: || Some(Box::new(MoreauJeanProjected::new(MoreauJeanProjectedSettings::default()).ok()?)),
+        },
+        SchemeEntry {
+            name: GeneralizedAlpha::<2>::NAME,
+            about: "smooth motion by generalized-α, which damps what the step can't resolve; impacts, and projected places",
+            make: || Some(Box::new(GeneralizedAlpha::new(GeneralizedAlphaSettings::default()).ok()?)),
         },
     ]
 }

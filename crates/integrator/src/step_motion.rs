@@ -3,7 +3,7 @@
 use crate::closed_step::THETA;
 use crate::theta_step::{ThetaStep, weights};
 use crate::{
-    ContactError, ContactStage, Keep, Model, Responses, State, StepEnergy, StepError, StepSpan, Workspace,
+    ContactError, ContactStage, Keep, Memory, Model, Responses, State, StepEnergy, StepError, StepSpan, Workspace,
 };
 
 /// The motion of a step beside its contacts, and what impulses do to it; it holds the end of the
@@ -41,6 +41,22 @@ pub(crate) trait StepMotion<const D: usize>: std::fmt::Debug {
 
     /// Leaves the coordinates at the end of the step.
     fn end(&mut self, model: &Model<D>, from: &State, h: f64) -> Result<(), StepError>;
+
+    /// Begins anew with the velocities at the end without impulses of contacts.
+    fn restart(&mut self, v_free: &[f64]) {
+        self.v_end_mut().copy_from_slice(v_free);
+    }
+
+    /// Takes the end that was tried as that of the step: asked for once, before its work and its
+    /// means.
+    fn settle(&mut self, model: &Model<D>, from: &State) {
+        let _ = (model, from);
+    }
+
+    /// Leaves in a state's memory what the next step needs.
+    fn remember(&self, memory: &mut Memory) {
+        let _ = memory;
+    }
 
     /// Coordinates at the end.
     fn q_end(&self) -> &[f64];

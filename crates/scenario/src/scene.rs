@@ -54,6 +54,8 @@ pub struct Time {
     pub activation_gamma: f64,
     /// Largest predicted gap of an active contact, m.
     pub gap_tolerance: f64,
+    /// ρ∞ of `generalized-alpha`.
+    pub spectral_radius: f64,
 }
 
 impl Scene {
@@ -122,6 +124,10 @@ pub enum SchemeName {
     MoreauJeanLocated,
     /// Smooth motion of high order between events.
     EventDriven,
+    /// The closed one, with places projected onto what contacts allow.
+    MoreauJeanProjected,
+    /// Generalized-α with impacts.
+    GeneralizedAlpha,
 }
 
 impl SchemeName {
@@ -133,6 +139,8 @@ impl SchemeName {
             Self::MoreauJeanClosed => teeter_integrator::MoreauJeanClosed::<2>::NAME,
             Self::MoreauJeanLocated => teeter_integrator::MoreauJeanLocated::<2>::NAME,
             Self::EventDriven => teeter_integrator::EventDriven::NAME,
+            Self::MoreauJeanProjected => teeter_integrator::MoreauJeanProjected::<2>::NAME,
+            Self::GeneralizedAlpha => teeter_integrator::GeneralizedAlpha::<2>::NAME,
         }
     }
 
@@ -142,6 +150,7 @@ impl SchemeName {
         match self {
             Self::MoreauJean => false,
             Self::MoreauJeanClosed | Self::MoreauJeanLocated | Self::EventDriven => true,
+            Self::MoreauJeanProjected | Self::GeneralizedAlpha => true,
         }
     }
 
@@ -152,6 +161,7 @@ impl SchemeName {
         match self {
             Self::MoreauJean => Some(theta),
             Self::MoreauJeanClosed | Self::MoreauJeanLocated => Some(0.5),
+            Self::MoreauJeanProjected | Self::GeneralizedAlpha => Some(0.5),
             Self::EventDriven => None,
         }
     }
@@ -161,6 +171,7 @@ impl SchemeName {
     pub fn takes_springs(self) -> bool {
         match self {
             Self::MoreauJean | Self::MoreauJeanClosed | Self::MoreauJeanLocated => true,
+            Self::MoreauJeanProjected | Self::GeneralizedAlpha => true,
             Self::EventDriven => false,
         }
     }
@@ -171,6 +182,7 @@ impl SchemeName {
     pub fn has_own_steps(self) -> bool {
         match self {
             Self::MoreauJean | Self::MoreauJeanClosed | Self::MoreauJeanLocated => false,
+            Self::MoreauJeanProjected | Self::GeneralizedAlpha => false,
             Self::EventDriven => true,
         }
     }
@@ -180,6 +192,8 @@ impl SchemeName {
     pub fn takes_held_beams(self) -> bool {
         match self {
             Self::MoreauJean | Self::MoreauJeanClosed => true,
+            Self::MoreauJeanProjected => true,
+            Self::GeneralizedAlpha => false,
             Self::MoreauJeanLocated | Self::EventDriven => false,
         }
     }
@@ -190,6 +204,7 @@ impl SchemeName {
         match self {
             Self::MoreauJean => true,
             Self::MoreauJeanClosed | Self::MoreauJeanLocated | Self::EventDriven => false,
+            Self::MoreauJeanProjected | Self::GeneralizedAlpha => false,
         }
     }
 
@@ -198,15 +213,17 @@ impl SchemeName {
     pub fn locates(self) -> bool {
         match self {
             Self::MoreauJean | Self::MoreauJeanClosed => false,
+            Self::MoreauJeanProjected | Self::GeneralizedAlpha => false,
             Self::MoreauJeanLocated | Self::EventDriven => true,
         }
     }
 
-    /// Whether no contact gives energy, but for contacts with what is moved as prescribed.
+    /// Whether no contact gives energy, but for contacts with what is moved as prescribed. A
+    /// projection may: it lifts what has sunk in.
     #[must_use]
     pub fn keeps_energy(self) -> bool {
         match self {
-            Self::MoreauJean => false,
+            Self::MoreauJean | Self::MoreauJeanProjected | Self::GeneralizedAlpha => false,
             Self::MoreauJeanClosed | Self::MoreauJeanLocated | Self::EventDriven => true,
         }
     }

@@ -2,7 +2,9 @@
 //! that is added is a variant that is added, and every place that decides by it has to say what it means.
 
 use crate::scene::SchemeName;
-use teeter_integrator::{EventDriven, MoreauJean, MoreauJeanClosed, MoreauJeanLocated};
+use teeter_integrator::{
+    EventDriven, GeneralizedAlpha, MoreauJean, MoreauJeanClosed, MoreauJeanLocated, MoreauJeanProjected,
+};
 
 /// One of some words.
 pub(crate) trait Word: Copy + Sized + 'static {
@@ -71,8 +73,15 @@ words! {
 }
 
 /// The words of the schemes.
-pub(crate) const SCHEMES: &[&str] =
-    &["auto", MoreauJean::<2>::NAME, MoreauJeanClosed::<2>::NAME, MoreauJeanLocated::<2>::NAME, EventDriven::NAME];
+pub(crate) const SCHEMES: &[&str] = &[
+    "auto",
+    MoreauJean::<2>::NAME,
+    MoreauJeanClosed::<2>::NAME,
+    MoreauJeanLocated::<2>::NAME,
+    EventDriven::NAME,
+    MoreauJeanProjected::<2>::NAME,
+    GeneralizedAlpha::<2>::NAME,
+];
 
 /// A scheme by name, or the one that suits the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,6 +97,8 @@ impl Word for SchemeChoice {
         (SCHEMES[2], Self::Named(SchemeName::MoreauJeanClosed)),
         (SCHEMES[3], Self::Named(SchemeName::MoreauJeanLocated)),
         (SCHEMES[4], Self::Named(SchemeName::EventDriven)),
+        (SCHEMES[5], Self::Named(SchemeName::MoreauJeanProjected)),
+        (SCHEMES[6], Self::Named(SchemeName::GeneralizedAlpha)),
     ];
 }
 
