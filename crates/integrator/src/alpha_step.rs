@@ -224,6 +224,7 @@ impl<const D: usize> StepMotion<D> for AlphaStep {
     ) -> Result<(), StepError> {
         let keep = if h == from.dt { Keep::Pinned } else { Keep::Once };
         let coefficients = self.coefficients;
+        work.factors(model, coefficients.iteration_matrix(h), &from.q, keep)?;
         work.blended_factors(model, self.key(h), keep, &from.q, |part| coefficients.response(part, h))
     }
 
@@ -276,6 +277,10 @@ impl<const D: usize> StepMotion<D> for AlphaStep {
 
     fn responses(&self, h: f64) -> Responses<'static> {
         Responses::Of(self.key(h))
+    }
+
+    fn projection_responses(&self, h: f64) -> Responses<'static> {
+        Responses::Of(self.coefficients.iteration_matrix(h))
     }
 
     /// M W = Jᵀp, and what the forces of the positions ½hW and velocities κW do to a¹.

@@ -62,7 +62,7 @@ impl<const D: usize, M: StepMotion<D>> ProjectedStep<D, M> {
         self.resize(model);
         work.begin(model, state, span)?;
         self.step.begin(model, state, &span, work)?;
-        let responses = self.step.step.responses(span.h);
+        let responses = self.step.step.projection_responses(span.h);
         let (outcome, projected) = loop {
             let outcome = self.step.settle(model, state, &span, work)?;
             let projected = self

@@ -30,6 +30,10 @@ pub(crate) trait StepMotion<const D: usize>: std::fmt::Debug {
     /// What impulses do to the velocities at the end of a step of `h` (s).
     fn responses(&self, h: f64) -> Responses<'static>;
 
+    /// The inverse of the metric in which coordinates are projected: stiff, so that a beam's highest
+    /// modes don't take the correction and keep its energy.
+    fn projection_responses(&self, h: f64) -> Responses<'static>;
+
     /// Adds what the impulses of `stage` do to the velocities without them.
     fn respond(
         &mut self,
@@ -113,6 +117,11 @@ impl<const D: usize> StepMotion<D> for ThetaStep {
 
     #[inline]
     fn responses(&self, h: f64) -> Responses<'static> {
+        Responses::Of(weights(h, THETA))
+    }
+
+    #[inline]
+    fn projection_responses(&self, h: f64) -> Responses<'static> {
         Responses::Of(weights(h, THETA))
     }
 
