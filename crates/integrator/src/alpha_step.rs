@@ -58,6 +58,12 @@ impl Coefficients {
     }
 }
 
+/// The time over which prescribed velocities at the end of a step are means, s: as long as a whole
+/// step, also at the end of a part of one.
+fn about_end(from: &State, span: &StepSpan) -> [f64; 2] {
+    [span.end - 0.5 * from.dt, span.end + 0.5 * from.dt]
+}
+
 /// Vectors of a step. What it carries to the next is in the state's memory: accelerations a, and the
 /// coordinates and velocities q_a, v_a whose forces they are, M a = F(q_a, v_a).
 #[derive(Debug)]
@@ -87,7 +93,6 @@ pub(crate) struct AlphaStep {
     f: Vec<f64>,
     g: Vec<f64>,
     q_at: Vec<f64>,
-    h: f64,
     /// As it goes into the memory.
     numbers: Vec<f64>,
 }
@@ -114,7 +119,6 @@ impl AlphaStep {
             f: none(),
             g: none(),
             q_at: none(),
-            h: 0.0,
             numbers: none(),
         }
     }
@@ -180,9 +184,9 @@ impl AlphaStep {
         if part.is_driven() {
             // Prescribed velocities jump to those about the end (`docs/signals.md`); by their
             // masses they pull the others along.
-            let (dt, given) = (from.dt, &mut self.v_end[v.clone()]);
+            let given = &mut self.v_end[v.clone()];
             given.copy_from_slice(&from.v[v.clone()]);
-            part.system.drive_mean([span.end - 0.5 * dt, span.end + 0.5 * dt], given);
+            part.system.drive_mean(about_end(from, span), given);
             for ((jump, v1), v0) in jump.iter_mut().zip(given.iter()).zip(&from.v[v.clone()]) {
                 *jump = v1 - v0;
             }
@@ -231,7 +235,6 @@ impl<const D: usize> StepMotion<D> for AlphaStep {
     fn move_without_impulses(&mut self, model: &Model<D>, from: &State, span: &StepSpan, work: &mut Workspace<D>) {
         let (h, key) = (span.h, self.key(span.h));
         let Coefficients { alpha_m, alpha_f, beta, gamma } = self.coefficients;
-        self.h = h;
         self.recall(model, from, key, work);
         for (index, part) in model.parts().iter().enumerate() {
             let (q, v) = (part.q.clone(), part.v.clone());
@@ -261,8 +264,13 @@ impl<const D: usize> StepMotion<D> for AlphaStep {
             part.system.apply(Weights { mass: -alpha_m, ..Weights::default() }, q0, a, f);
             matrix.solve(f);
             self.a_free[v.clone()].copy_from_slice(f);
-            for (k, v1) in self.v_end[v].iter_mut().enumerate() {
+            let v_end = &mut self.v_end[v];
+            for (k, v1) in v_end.iter_mut().enumerate() {
                 *v1 = v0[k] + h * ((1.0 - gamma) * a[k] + gamma * f[k]) + jump[k];
+            }
+            if part.is_driven() {
+                // As given, without the rounding of the jump.
+                part.system.drive_mean(about_end(from, span), v_end);
             }
         }
         self.a_end.copy_from_slice(&self.a_free);

@@ -208,6 +208,12 @@ impl<const D: usize> Phases<D> {
             kept.q.reserve(size.q);
             kept.v.reserve(size.v);
             kept.mean.reserve(size.q);
+        }
+    }
+
+    /// Makes room for v̄ of the first phase.
+    pub(crate) fn reserve_mean_velocity(&mut self, size: Size) {
+        if let Some(kept) = self.kept.first_mut() {
             kept.mean_velocity.reserve(size.v);
         }
     }

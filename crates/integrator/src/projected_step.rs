@@ -37,6 +37,7 @@ impl<const D: usize, M: StepMotion<D>> ProjectedStep<D, M> {
     ) -> Result<(), StepError> {
         self.step.start(model, state, work)?;
         self.projection.reserve(model);
+        work.reserve_mean_velocity(model);
         self.resize(model);
         Ok(())
     }

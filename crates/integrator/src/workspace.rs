@@ -173,6 +173,11 @@ impl<const D: usize> Workspace<D> {
         self.phases.reserve_more(phases, contacts, model.size());
     }
 
+    /// Makes room for the mean of the velocities over a step's only phase.
+    pub(crate) fn reserve_mean_velocity(&mut self, model: &Model<D>) {
+        self.phases.reserve_mean_velocity(model.size());
+    }
+
     /// Makes room for contacts that slide in given directions.
     pub(crate) fn reserve_directed(&mut self, model: &Model<D>) {
         self.directed.reserve(model.detector().capacity().min(RESERVED_CONTACTS));
