@@ -68,6 +68,7 @@ fn about_end(from: &State, span: &StepSpan) -> [f64; 2] {
 /// coordinates and velocities q_a, v_a whose forces they are, M a = F(q_a, v_a).
 #[derive(Debug)]
 pub(crate) struct AlphaStep {
+    spectral_radius: f64,
     coefficients: Coefficients,
     /// Which model it serves, and that everything is of it.
     identity: ThetaStep,
@@ -101,6 +102,7 @@ impl AlphaStep {
     pub(crate) fn new(spectral_radius: f64) -> Self {
         let none = Vec::new;
         Self {
+            spectral_radius,
             coefficients: Coefficients::of(spectral_radius),
             identity: ThetaStep::default(),
             a: none(),
@@ -141,8 +143,12 @@ impl AlphaStep {
 
     /// Takes what the step before has left, or begins with the accelerations of the state's forces.
     fn recall<const D: usize>(&mut self, model: &Model<D>, from: &State, key: Weights, work: &mut Workspace<D>) {
-        let (numbers, n) = (from.memory.all_numbers(), model.size().v);
-        if numbers.len() == 2 * n + model.size().q {
+        let n = model.size().v;
+        // Those of another scheme, or of this one with another radius, are none.
+        if let [rho, numbers @ ..] = from.memory.all_numbers()
+            && *rho == self.spectral_radius
+            && numbers.len() == 2 * n + model.size().q
+        {
             self.a.copy_from_slice(&numbers[..n]);
             self.v_a.copy_from_slice(&numbers[n..2 * n]);
             self.q_a.copy_from_slice(&numbers[2 * n..]);
@@ -207,7 +213,7 @@ impl<const D: usize> StepMotion<D> for AlphaStep {
         }
         self.identity.start(model, state, work)?;
         self.resize(model);
-        let numbers = 2 * model.size().v + model.size().q;
+        let numbers = 1 + 2 * model.size().v + model.size().q;
         self.numbers.reserve(numbers);
         state.memory.reserve_numbers(numbers);
         Ok(())
@@ -364,6 +370,7 @@ impl<const D: usize> StepMotion<D> for AlphaStep {
             }
         }
         self.numbers.clear();
+        self.numbers.push(self.spectral_radius);
         for numbers in [&self.a_end, &self.v_a_end, &self.q_a_end] {
             self.numbers.extend_from_slice(numbers);
         }

@@ -192,12 +192,12 @@ fn the_spectral_radius_is_what_is_left_of_a_fast_motion() {
     let model = parts.build(Box::new(PointDetector::new(Vec::new()))).unwrap();
     let q = ragged(&model);
     let energy = |rho: f64, steps: f64| {
-        // The slowest mode has ωh = 1700 rad.
-        let (state, _) = take(&model, alpha(rho).as_mut(), &q, &vec![0.0; q.len()], 10.0, 10.0 * steps);
-        assert!(state.ledger.relative_residual() < 1e-13, "{rho}: {:e}", state.ledger.relative_residual());
+        // The slowest mode has ωh = 170, where roots are within 1/ωh of ρ; the fastest 2000: (ωh)² ε of a position is rounding.
+        let (state, _) = take(&model, alpha(rho).as_mut(), &q, &vec![0.0; q.len()], 1.0, steps);
+        assert!(state.ledger.relative_residual() < 1e-8, "{rho}: {:e}", state.ledger.relative_residual());
         state.ledger.current.total() / state.ledger.initial.total()
     };
-    assert!((energy(1.0, 40.0) - 1.0).abs() < 1e-9, "{}", energy(1.0, 40.0));
+    assert!((energy(1.0, 40.0) - 1.0).abs() < 1e-7, "{}", energy(1.0, 40.0));
     for rho in [0.5_f64, 0.8] {
         // Double or triple roots: a power of the number of steps stands before ρ^n.
         let rate = (energy(rho, 160.0) / energy(rho, 80.0)).powf(1.0 / 160.0);
