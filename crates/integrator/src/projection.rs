@@ -4,12 +4,12 @@
 use crate::mismatch::Mismatch;
 use crate::{ContactError, ContactStage, Memory, Model, Over, Responses, Rule, State, Vector, WarmStart, Workspace};
 use teeter_contact::Outcome;
-use teeter_detect::{Candidates, ContactId};
+use teeter_detect::{Candidate, Candidates, ContactId};
 
-/// A gap is known to so much of the largest coordinate.
+/// A gap is known to so much of the lengths that it is the difference of.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// Newton's steps at the most; three or four do.
+/// Newton's steps at the most: two or three to gaps of 0, and as many to the last digit of d.
 const MOST_ROUNDS: usize = 20;
 
 /// The unilateral problem on gaps, by Newton's method:
@@ -19,12 +19,15 @@ const MOST_ROUNDS: usize = 20;
 /// 0 ≤ g(q_k) + J(q_k) (d − d_k) ⊥ ν ≥ 0        round k + 1
 /// ```
 ///
-/// It ends where no gap is below 0, and none that is pushed above it, by more than rounding of the
-/// coordinates. Contacts with duration are left alone, and so are those between what moves as
+/// It ends where no gap is below 0, and none that is pushed above it, by more than rounding, and
+/// where d has settled to as much: 16 ε of Σ|J q| and of where a contact's points are on their
+/// bodies, which are lengths whatever the units. Contacts with duration are left alone, and so are those between what moves as
 /// prescribed. Contacts that a round closes are added before the next.
 #[derive(Debug)]
 pub(crate) struct Projection<const D: usize> {
     stage: ContactStage<D>,
+    /// Rows of one contact.
+    one: ContactStage<D>,
     /// Contacts whose gaps are kept at 0 or more, in order of identity.
     ids: Vec<ContactId>,
     /// Those of them that were pushed.
@@ -34,6 +37,7 @@ pub(crate) struct Projection<const D: usize> {
     q: Vec<f64>,
     /// d.
     moved: Vec<f64>,
+    /// d of a round; then what the round has changed of it.
     trial: Vec<f64>,
     /// Contacts of a projection have neither a start for the solver nor a past.
     warm: WarmStart,
@@ -44,6 +48,7 @@ impl<const D: usize> Projection<D> {
     pub(crate) fn new() -> Self {
         Self {
             stage: ContactStage::new(),
+            one: ContactStage::new(),
             ids: Vec::new(),
             pushed: Vec::new(),
             near: Vec::new(),
@@ -59,6 +64,7 @@ impl<const D: usize> Projection<D> {
     pub(crate) fn reserve(&mut self, model: &Model<D>) {
         let contacts = model.detector().capacity();
         self.stage.reserve(model);
+        self.one.reserve(model);
         self.near.reserve(contacts);
         self.ids.reserve(contacts);
         self.pushed.reserve(contacts);
@@ -95,11 +101,10 @@ impl<const D: usize> Projection<D> {
         self.pushed.clear();
         self.moved.clear();
         self.moved.resize(model.size().v, 0.0);
-        let rounding = ROUNDING * q_start.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
         let mut last = None;
         for _ in 0..MOST_ROUNDS {
-            let found = self.take_in_what_is_inside(model, rounding, work)?;
-            if self.ids.is_empty() || !found && self.is_settled(model, rounding, work)? {
+            let found = self.take_in_what_is_inside(model, work)?;
+            if self.ids.is_empty() || !found && self.is_settled(model, work)? {
                 break;
             }
             work.locate(model, &self.q, &self.ids, &mut self.near)?;
@@ -113,7 +118,9 @@ impl<const D: usize> Projection<D> {
                 last = Some(outcome);
                 break;
             }
-            std::mem::swap(&mut self.moved, &mut self.trial);
+            for (d, last) in self.trial.iter_mut().zip(&mut self.moved) {
+                (*d, *last) = (*d - *last, *d);
+            }
             model.move_along(q_start, &self.moved, 1.0, &mut self.q);
             self.pushed.clear();
             for (i, contact) in self.stage.contacts().iter().enumerate() {
@@ -128,17 +135,19 @@ impl<const D: usize> Projection<D> {
     }
 
     /// Adds the candidates with a gap below 0; whether there were any.
-    fn take_in_what_is_inside(
-        &mut self,
-        model: &Model<D>,
-        rounding: f64,
-        work: &Workspace<D>,
-    ) -> Result<bool, Mismatch> {
+    fn take_in_what_is_inside(&mut self, model: &Model<D>, work: &Workspace<D>) -> Result<bool, Mismatch> {
         let before = self.ids.len();
-        for candidate in work.candidates.iter().filter(|candidate| candidate.gap < -rounding) {
-            if model.law(candidate.law)?.impact.spring().is_none()
-                && self.ids[..before].binary_search(&candidate.id).is_err()
+        for candidate in &work.candidates {
+            // The rows are looked at only where they may matter.
+            if candidate.gap >= -ROUNDING * reach(candidate)
+                || model.law(candidate.law)?.impact.spring().is_some()
+                || self.ids[..before].binary_search(&candidate.id).is_ok()
             {
+                continue;
+            }
+            self.one.clear();
+            let movable = self.one.add(model, &self.q, candidate, &self.warm, &self.memory)?;
+            if movable && candidate.gap < -rounding(&self.one, 0, candidate, &self.q, model) {
                 self.ids.push(candidate.id);
             }
         }
@@ -146,15 +155,16 @@ impl<const D: usize> Projection<D> {
         Ok(self.ids.len() > before)
     }
 
-    /// Whether no gap is below 0, and none of a contact that was pushed above it.
-    fn is_settled(&mut self, model: &Model<D>, rounding: f64, work: &mut Workspace<D>) -> Result<bool, Mismatch> {
+    /// Whether no gap is below 0, and none of a contact that was pushed above it; and whether the last
+    /// round moved nothing any more: gaps settle before the directions in which they were closed.
+    fn is_settled(&mut self, model: &Model<D>, work: &mut Workspace<D>) -> Result<bool, Mismatch> {
         work.locate(model, &self.q, &self.ids, &mut self.near)?;
-        let pushed = |id| self.pushed.binary_search(&id).is_ok();
-        // Between what moves as prescribed nothing can be pushed apart.
-        let posed = |id| self.stage.contacts().binary_search_by_key(&id, |contact| contact.id).is_ok();
         Ok(self.near.iter().all(|candidate| {
             let (gap, id) = (candidate.gap, candidate.id);
-            !posed(id) || gap >= -rounding && (gap <= rounding || !pushed(id))
+            let Ok(i) = self.stage.contacts().binary_search_by_key(&id, |contact| contact.id) else { return true };
+            let rounding = rounding(&self.stage, i, candidate, &self.q, model);
+            let moves = self.stage.speed(i, &self.trial) > rounding;
+            !moves && gap >= -rounding && (gap <= rounding || self.pushed.binary_search(&id).is_err())
         }))
     }
 
@@ -172,4 +182,22 @@ impl<const D: usize> Projection<D> {
         }
         Ok(())
     }
+}
+
+/// How far the points of a contact are from the origins of their bodies, m.
+fn reach<const D: usize>(candidate: &Candidate<D>) -> f64 {
+    candidate.sides.iter().map(|side| side.point.amax()).fold(0.0, f64::max)
+}
+
+/// What may be rounding of the gap of contact `i` of a stage, m.
+fn rounding<const D: usize>(
+    stage: &ContactStage<D>,
+    i: usize,
+    candidate: &Candidate<D>,
+    q: &[f64],
+    model: &Model<D>,
+) -> f64 {
+    // Coordinates that aren't as many as velocities are no lengths along these.
+    let along = if q.len() == model.size().v { stage.speed(i, q) } else { 0.0 };
+    ROUNDING * (reach(candidate) + along)
 }
