@@ -39,7 +39,7 @@ impl Coefficients {
     /// κ: the viscous force is that of ṽ¹ + κW. All of W where C = αM; elsewhere γ/2β of it, so that
     /// the response is that of two factors.
     fn damped_jump<const D: usize>(&self, part: &Part<D>) -> f64 {
-        if part.mass_damping == 0.0 { 1.0 - self.unanswered() } else { 1.0 }
+        if part.free_mass_damping == 0.0 { 1.0 - self.unanswered() } else { 1.0 }
     }
 
     /// The weights of S = (1−α_m)M + (1−α_f)(hγC + h²βK).
@@ -52,7 +52,7 @@ impl Coefficients {
     /// M⁻¹ − hγ(1−α_f) S⁻¹(½hK + κC) M⁻¹.
     fn response<const D: usize>(&self, part: &Part<D>, h: f64) -> [Term; 2] {
         let left = self.unanswered();
-        let viscous = h * self.gamma * (1.0 - self.alpha_f) * left * part.mass_damping;
+        let viscous = h * self.gamma * (1.0 - self.alpha_f) * left * part.free_mass_damping;
         let by_matrix = (1.0 - left) * (1.0 - self.alpha_m) - viscous;
         [(left, Weights::MASS), (by_matrix, self.iteration_matrix(h))]
     }

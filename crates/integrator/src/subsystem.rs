@@ -275,6 +275,13 @@ pub trait Linearised: Send + Sync {
         0.0
     }
 
+    /// α, 1/s, if C is αM among the velocities that aren't prescribed, and 0 towards those that are;
+    /// else 0. The default is [`Linearised::mass_damping`]; it is more where that is 0 for the sake of
+    /// prescribed velocities only.
+    fn free_mass_damping(&self) -> f64 {
+        self.mass_damping()
+    }
+
     /// Adds the internal forces without the viscous one to `f`, N; called only if
     /// [`Linearised::mass_damping`] is not 0.
     fn conservative_force(&self, q: &[f64], f: &mut [f64]) {
