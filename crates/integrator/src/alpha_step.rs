@@ -297,7 +297,7 @@ impl<const D: usize> StepMotion<D> for AlphaStep {
         Responses::Of(self.coefficients.iteration_matrix(h))
     }
 
-    /// M W = Jᵀp, and what the forces of the positions ½hW and velocities κW do to a¹.
+    /// v¹ += A Jᵀp, W += M⁻¹Jᵀp, and what the forces of the positions ½hW and velocities κW do to a¹.
     fn respond(
         &mut self,
         model: &Model<D>,
@@ -306,28 +306,36 @@ impl<const D: usize> StepMotion<D> for AlphaStep {
         work: &mut Workspace<D>,
     ) -> Result<(), ContactError> {
         let key = self.key(h);
-        let Coefficients { alpha_f, gamma, .. } = self.coefficients;
+        let Coefficients { alpha_f, .. } = self.coefficients;
         for (index, part) in model.parts().iter().enumerate().filter(|(_, part)| !part.v.is_empty()) {
             if !stage.acts_on(index) {
                 continue;
             }
-            let Some([masses, matrix]) = work.factors.terms(index, key) else {
+            let Workspace { factors, scratch, .. } = work;
+            let Some([masses, matrix]) = factors.terms(index, key) else {
                 return Err(ContactError::Factors { part: index });
             };
+            let [(left, _), (by_matrix, _)] = self.coefficients.response(part, h);
             let (jump, pulled) = (&mut self.f[part.v.clone()], &mut self.g[part.v.clone()]);
+            let answer = &mut scratch[..jump.len()];
             jump.fill(0.0);
             stage.add_generalised_impulse(index, jump);
+            answer.copy_from_slice(jump);
             masses.solve(jump);
-            let kappa = self.coefficients.damped_jump(part);
-            let pull = Weights { mass: 0.0, damping: alpha_f - 1.0, stiffness: 0.5 * h * (alpha_f - 1.0) };
-            let pull = Weights { damping: kappa * pull.damping, ..pull };
+            matrix.solve(answer);
+            // −(1−α_f)(½hK + κC)W, which is exactly 0 for what has neither.
+            let kept = 1.0 - alpha_f;
+            let damping = -kept * self.coefficients.damped_jump(part);
+            let pull = Weights { mass: 0.0, damping, stiffness: -0.5 * h * kept };
             pulled.fill(0.0);
             part.system.apply(pull, &self.q_a[part.q.clone()], jump, pulled);
             matrix.solve(pulled);
             for (k, at) in part.v.clone().enumerate() {
                 self.jump[at] += jump[k];
                 self.a_end[at] += pulled[k];
-                self.v_end[at] += jump[k] + h * gamma * pulled[k];
+                // W + hγ Δa¹ as the sum of two small terms: where the step is long, W is far larger
+                // than what stiffness leaves of it.
+                self.v_end[at] += left * jump[k] + by_matrix * answer[k];
             }
         }
         Ok(())

@@ -53,7 +53,7 @@ fn the_paper_s_scene_comes_out_by_both() {
             let sets = sets.map(|(key, value)| (key.to_owned(), value));
             let resolved = teeter_scenario::load(&bytes, "beam", "beam", &sets).unwrap();
             let mut simulation = Simulation::new(&resolved.scene).unwrap();
-            simulation.run(&mut []).unwrap();
+            assert_eq!(simulation.run(&mut []).unwrap(), Ended::Complete);
             let off = simulation.state.q[2] - expected;
             assert!(off.abs() < tolerance, "{scheme} at {end} s: {off:e}");
         }
