@@ -1,17 +1,21 @@
-//! The θ step in which contacts that are closed stay so: of the whole step in `moreau-jean-closed`,
-//! of its parts in `moreau-jean-located` (`docs/schemes.md`).
+//! The step in which contacts that are closed stay so: of the whole step in `moreau-jean-closed`,
+//! of its parts in `moreau-jean-located`; with another motion beside the contacts in
+//! `generalized-alpha` (`docs/schemes.md`).
 //!
 //! Its formulas, and why no contact gives energy, are at
 //! [`MoreauJeanClosed`](crate::MoreauJeanClosed).
 
+mod guard;
+
 use crate::contact::tangential;
-use crate::laws::{Laws, is_impact};
-use crate::stage::{Members, Problem};
-use crate::theta_step::{ThetaStep, weights};
+use crate::laws::is_impact;
+use crate::step_motion::StepMotion;
+use crate::theta_step::ThetaStep;
 use crate::{
-    ContactError, ContactStage, ImpactLaw, Keep, Mismatch, Model, Over, PairLaw, PhaseEnd, PhaseKind, Responses, Rule,
-    SpringStep, State, StepError, StepSpan, Vector, Workspace,
+    ContactError, ContactStage, ImpactLaw, Mismatch, Model, Over, PairLaw, PhaseEnd, PhaseKind, Rule, SpringStep,
+    State, StepError, StepSpan, Vector, Workspace,
 };
+pub(crate) use guard::Guard;
 use teeter_contact::Outcome;
 use teeter_detect::{Candidate, Candidates, ContactId};
 
@@ -21,10 +25,10 @@ pub(crate) const THETA: f64 = 0.5;
 /// A step, or a part of one, that is tried until no open contact ends in its surface; and the
 /// memory for it.
 #[derive(Debug)]
-pub(crate) struct ClosedStep<const D: usize> {
+pub(crate) struct ClosedStep<const D: usize, M = ThetaStep> {
     /// An open contact closes where the step would end so deep in the surface, and sinking, m.
     gap_tolerance: f64,
-    pub(crate) step: ThetaStep,
+    pub(crate) step: M,
     pub(crate) v_free: Vec<f64>,
     /// q̃.
     q_ahead: Vec<f64>,
@@ -51,9 +55,6 @@ pub(crate) struct ClosedStep<const D: usize> {
     pub(crate) stays: Vec<bool>,
 }
 
-/// Rounding of a contact's work, as a part of ‖p‖ Σ|J_i v|, the larger of v⁰ and v_free.
-const WORKLESS: f64 = 1e-13;
-
 /// Where a contact is in the surface already, it closes when it sinks by this part of the gap
 /// tolerance within a step: more than rounding, and so little that no approach is too slow to be
 /// seen.
@@ -64,10 +65,17 @@ const SINKING: f64 = 1e-3;
 const LEAVING: f64 = 1e-10;
 
 impl<const D: usize> ClosedStep<D> {
+    /// With the motion of the θ step.
     pub(crate) fn new(gap_tolerance: f64) -> Self {
+        Self::with_motion(gap_tolerance, ThetaStep::default())
+    }
+}
+
+impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
+    pub(crate) fn with_motion(gap_tolerance: f64, step: M) -> Self {
         Self {
             gap_tolerance,
-            step: ThetaStep::default(),
+            step,
             v_free: Vec::new(),
             q_ahead: Vec::new(),
             q_mid: Vec::new(),
@@ -93,7 +101,7 @@ impl<const D: usize> ClosedStep<D> {
         work: &mut Workspace<D>,
     ) -> Result<(), StepError> {
         let contacts = model.detector().capacity();
-        self.step.start(model, state, work)?;
+        self.step.start_motion(model, state, work)?;
         self.resize(model);
         for candidates in [&mut self.middle, &mut self.ahead, &mut self.start, &mut work.candidates] {
             candidates.reserve(contacts);
@@ -106,13 +114,13 @@ impl<const D: usize> ClosedStep<D> {
         self.stays.reserve(contacts);
         state.warm.reserve(contacts, D);
         state.memory.reserve(contacts);
-        work.factors(model, weights(state.dt, THETA), &state.q, Keep::Pinned)
+        self.step.make_factors(model, state, state.dt, work)
     }
 
     /// Begins a step: checks what belongs together.
     #[inline]
     pub(crate) fn check(&mut self, model: &Model<D>, state: &State, work: &Workspace<D>) -> Result<(), StepError> {
-        self.step.check(model, state, work)?;
+        self.step.check_motion(model, state, work)?;
         self.resize(model);
         Ok(())
     }
@@ -140,11 +148,10 @@ impl<const D: usize> ClosedStep<D> {
         span: &StepSpan,
         work: &mut Workspace<D>,
     ) -> Result<(), StepError> {
-        let keep = if span.h == from.dt { Keep::Pinned } else { Keep::Once };
-        work.factors(model, weights(span.h, THETA), &from.q, keep)?;
-        self.step.free_velocity(model, from, work, THETA, span);
+        self.step.make_factors(model, from, span.h, work)?;
+        self.step.move_without_impulses(model, from, span, work);
         self.v_free.clear();
-        self.v_free.extend_from_slice(&self.step.v_end);
+        self.v_free.extend_from_slice(self.step.v_end());
         self.looked_for = 0;
         Ok(())
     }
@@ -164,8 +171,8 @@ impl<const D: usize> ClosedStep<D> {
             self.looked_for = self.closed.len();
         }
         let outcome = self.solve(model, from, span, work).map_err(|source| StepError::Problem { t: from.t, source })?;
-        self.step.close(model, from, span.h, THETA)?;
-        work.detect(model, &self.step.q_at, 0.0)?;
+        self.step.end(model, from, span.h)?;
+        work.detect(model, self.step.q_end(), 0.0)?;
         Ok(outcome)
     }
 
@@ -186,6 +193,17 @@ impl<const D: usize> ClosedStep<D> {
         }
     }
 
+    /// Closes contacts beside those that are, which rise; whether any is new.
+    pub(crate) fn close_too(&mut self, ids: &[ContactId]) -> bool {
+        let before = self.closed.len();
+        for id in ids {
+            if let Err(at) = self.closed.binary_search(id) {
+                self.closed.insert(at, *id);
+            }
+        }
+        self.closed.len() > before
+    }
+
     /// Ends the phase that was attempted.
     pub(crate) fn end_phase(
         &mut self,
@@ -195,8 +213,8 @@ impl<const D: usize> ClosedStep<D> {
         outcome: Option<Outcome>,
         work: &mut Workspace<D>,
     ) -> Result<(), StepError> {
-        let energy = self.step.work_of_forces(model, from, work, &self.stage, span.h, THETA);
-        let phase = PhaseEnd::new(PhaseKind::Step, span.end, &self.step.q_at, &self.step.v_end)
+        let energy = self.step.work(model, from, span, &self.stage, work);
+        let phase = PhaseEnd::new(PhaseKind::Step, span.end, self.step.q_end(), self.step.v_end())
             .lasting(span.h)
             .with_energy(energy)
             .with_outcome(outcome);
@@ -213,7 +231,7 @@ impl<const D: usize> ClosedStep<D> {
     /// Finds frames and gaps of the closed contacts at q̃_m and q̃.
     fn look_ahead(&mut self, model: &Model<D>, state: &State, h: f64, work: &mut Workspace<D>) -> Result<(), Mismatch> {
         // ½(v⁰ + v_free), the mean velocity of the free motion.
-        let mean = &mut self.step.v_end;
+        let mean = self.step.v_end_mut();
         mean.iter_mut().zip(&self.v_free).zip(&state.v).for_each(|((v, free), v0)| *v = 0.5 * (free + v0));
         let places = [(0.5 * h, &mut self.q_mid, &mut self.middle), (h, &mut self.q_ahead, &mut self.ahead)];
         for (tau, q, candidates) in places {
@@ -238,7 +256,7 @@ impl<const D: usize> ClosedStep<D> {
                         _ => self.resting_shift[i] - self.stage.problem.shift(i)[0],
                     };
                     let speed = |v: &[f64]| self.stage.speed(i, v);
-                    let still = || LEAVING * speed(&self.step.v_end).max(speed(&self.v_free));
+                    let still = || LEAVING * speed(self.step.v_end()).max(speed(&self.v_free));
                     contact.p[0] > 0.0 && (leaves <= 0.0 || leaves <= still())
                 }
             };
@@ -254,7 +272,7 @@ impl<const D: usize> ClosedStep<D> {
         span: &StepSpan,
         work: &mut Workspace<D>,
     ) -> Result<Option<Outcome>, ContactError> {
-        self.step.v_end.copy_from_slice(&self.v_free);
+        self.step.restart(&self.v_free);
         self.stage.clear();
         self.resting_shift.clear();
         if self.closed.is_empty() {
@@ -264,7 +282,7 @@ impl<const D: usize> ClosedStep<D> {
             let candidate = self.middle[k];
             self.pose(model, state, span.h, work, &candidate)?;
         }
-        let (over, responses) = (Over::Step { h: span.h, weight: THETA }, Responses::Of(weights(span.h, THETA)));
+        let (over, responses) = (Over::Step { h: span.h, weight: THETA }, self.step.responses(span.h));
         self.guarded.clear();
         self.guarded.resize(self.stage.len(), false);
         let (guarded, v_free) = (&mut self.guarded, &self.v_free);
@@ -273,8 +291,8 @@ impl<const D: usize> ClosedStep<D> {
             let guard = Guard { model, stage, laws, members, v_before: &state.v, v_free };
             Ok(guard.apply(problem, guarded)?)
         })?;
-        self.stage.respond(model, work, &responses, &mut self.step.v_end)?;
-        self.stage.complete(&self.step.v_end)?;
+        self.step.respond(model, &self.stage, span.h, work)?;
+        self.stage.complete(self.step.v_end())?;
         Ok(outcome)
     }
 
@@ -400,92 +418,4 @@ pub(crate) fn restitute<const D: usize>(
 
 pub(crate) fn find<const D: usize>(candidates: &[Candidate<D>], id: ContactId) -> Option<&Candidate<D>> {
     candidates.binary_search_by_key(&id, |candidate| candidate.id).ok().map(|at| &candidates[at])
-}
-
-/// Sees to it that no contact of a solved problem gives energy.
-pub(crate) struct Guard<'a, const D: usize> {
-    pub(crate) model: &'a Model<D>,
-    pub(crate) stage: &'a ContactStage<D>,
-    pub(crate) laws: &'a Laws<D>,
-    pub(crate) members: Members<'a>,
-    pub(crate) v_before: &'a [f64],
-    pub(crate) v_free: &'a [f64],
-}
-
-impl<const D: usize> Guard<'_, D> {
-    /// Changes what holds for contacts whose work is positive, so that it can't be; whether there
-    /// are any.
-    ///
-    /// The usual case is a slide that turns within the step: sticking at its end would take an
-    /// impulse along the slide that was. Then either no friction, or the velocity turned about,
-    /// whichever ends nearer to rest; it sticks in the next step.
-    ///
-    /// Where Poisson's law hands a blow on, what one contact gains another one has lost: there it
-    /// is the sum over contacts that feel each other that counts. The law scales what it gives back
-    /// by it, so what is left is of contacts that would give energy without any restitution, too.
-    pub(crate) fn apply(&self, problem: &mut Problem<D>, guarded: &mut [bool]) -> Result<bool, Mismatch> {
-        let laws = self.laws;
-        let mut found = false;
-        for i in 0..problem.len() {
-            let (number, u_before, p) = (self.members.number(i), problem.u_before(i), problem.p[i]);
-            // A spring's law sees to it itself.
-            if guarded[number] || p[0] <= 0.0 || matches!(problem.rule(i), Rule::Spring(_)) {
-                continue;
-            }
-            // What moves as prescribed gives energy anyway, and a slide that ends there is better
-            // stopped where it ends.
-            let contact = &self.stage.contacts()[number];
-            if contact.persisting && self.stage.feels_drive(self.model, number, self.v_before, self.v_free) {
-                continue;
-            }
-            let gain = if laws.handed_on(problem, i) {
-                let allowed: f64 = (0..problem.len()).map(|i| self.rounding(problem, i)).sum();
-                if laws.work_around(problem, i) > allowed { laws.work_unreturned(i) } else { 0.0 }
-            } else {
-                problem.work(i)
-            };
-            if gain <= self.rounding(problem, i) {
-                continue;
-            }
-            let without = problem.without_own_friction(i);
-            let mut shift = tangential(&u_before);
-            if without.norm() < shift.norm() {
-                problem.mu[i] = 0.0;
-            }
-            let e = self.model.law(contact.law)?.restitution;
-            let back = match problem.rule(i) {
-                Rule::Poisson { .. } if is_impact(e, &u_before, &problem.u_free(i)) => e * u_before[0],
-                _ => problem.shift(i)[0],
-            };
-            shift[0] = back.max(u_before[0]);
-            problem.posed[i].rule = Rule::Shifted;
-            problem.reshift(i, shift);
-            guarded[number] = true;
-            found = true;
-        }
-        Ok(found || self.stop_handing_on(problem))
-    }
-
-    /// What may be rounding of a contact's work, J: at rest it is the free velocity whose digits
-    /// are lost.
-    fn rounding(&self, problem: &Problem<D>, i: usize) -> f64 {
-        let number = self.members.number(i);
-        let speed = self.stage.speed(number, self.v_before).max(self.stage.speed(number, self.v_free));
-        WORKLESS * problem.p[i].norm() * speed
-    }
-
-    /// The last resort where contacts that hand a blow on give energy though none does by itself,
-    /// as the solver finds another one of several solutions each time: nothing is given back there.
-    /// Whether it changed anything.
-    fn stop_handing_on(&self, problem: &mut Problem<D>) -> bool {
-        let (laws, n) = (self.laws, problem.len());
-        let allowed = |i: usize| self.rounding(problem, i) + laws.work_unreturned(i).max(0.0);
-        let gives = |i: usize| {
-            let phased = matches!(problem.rule(i), Rule::Poisson { .. }) && laws.handed_on(problem, i);
-            phased && laws.work_around(problem, i) > (0..n).map(allowed).sum::<f64>()
-        };
-        let Some(first) = (0..n).find(|&i| gives(i)) else { return false };
-        problem.posed[first].rule = Rule::Shifted;
-        true
-    }
 }

@@ -1,8 +1,9 @@
 //! W of every subsystem, for as many combinations of weights as a scheme has use for.
 
+use crate::blend::{Blends, Term, is_blend};
 use crate::subsystem::respond_by_solving;
 use crate::theta_step::weights;
-use crate::{Compliance, Coupling, FactorError, Model, PartRows, Propagator, Vector, Weights};
+use crate::{Compliance, Coupling, FactorError, Model, Part, PartRows, Propagator, Vector, Weights};
 
 /// How long the factors of a combination are wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,6 +34,8 @@ pub(crate) struct Factors<const D: usize> {
     round: u64,
     /// Of each subsystem, its motion in closed form, once somebody has asked for it.
     propagators: Vec<Option<Box<dyn Propagator<D>>>>,
+    /// Sums of two of them.
+    blends: Blends<D>,
     /// How many matrices were factorised.
     made: u64,
 }
@@ -117,7 +120,8 @@ impl<const D: usize> Answer<'_, D> {
 
 impl<const D: usize> Factors<D> {
     pub(crate) fn new() -> Self {
-        Self { parts: Vec::new(), front: None, round: 0, propagators: Vec::new(), made: 0 }
+        let (propagators, blends) = (Vec::new(), Blends::new());
+        Self { parts: Vec::new(), front: None, round: 0, propagators, blends, made: 0 }
     }
 
     pub(crate) fn made(&self) -> u64 {
@@ -186,9 +190,30 @@ impl<const D: usize> Factors<D> {
         Ok(())
     }
 
+    /// Sees to it that there are sums of two factors, as [`Blends::make`].
+    pub(crate) fn make_blends(
+        &mut self,
+        model: &Model<D>,
+        key: Weights,
+        keep: Keep,
+        q: &[f64],
+        terms: impl Fn(&Part<D>) -> [Term; 2],
+    ) -> Result<(), FactorError> {
+        self.made += self.blends.make(model, key, keep, q, terms)?;
+        Ok(())
+    }
+
+    /// The two factors of a sum; `None` where it was not made.
+    pub(crate) fn terms(&mut self, part: usize, key: Weights) -> Option<[&mut dyn Compliance<D>; 2]> {
+        self.blends.terms(part, key)
+    }
+
     /// The factor of a subsystem; `None` where it was not made.
     #[inline]
     pub(crate) fn of(&mut self, part: usize, w: Weights) -> Option<&mut dyn Compliance<D>> {
+        if is_blend(w) {
+            return self.blends.of(part, w);
+        }
         let entries = self.parts.get_mut(part)?;
         let at =
             if self.front == Some(w) { 0 } else { entries.iter().position(|entry| entry.factor.weights() == w)? };

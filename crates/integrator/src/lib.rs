@@ -60,6 +60,8 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 mod adapters;
+mod alpha_step;
+mod blend;
 mod clock;
 mod closed_step;
 mod closings;
@@ -71,6 +73,7 @@ mod equilibrium;
 mod event_driven;
 mod factors;
 mod free_velocity;
+mod generalized_alpha;
 mod laws;
 mod ledger;
 mod memory;
@@ -80,8 +83,11 @@ mod monitor;
 mod moreau_jean;
 mod moreau_jean_closed;
 mod moreau_jean_located;
+mod moreau_jean_projected;
 mod pair_law;
 mod phases;
+mod projected_step;
+mod projection;
 mod propagator;
 mod registry;
 mod resolved;
@@ -91,6 +97,7 @@ mod signal;
 mod spring;
 mod stage;
 mod state;
+mod step_motion;
 #[cfg(feature = "serde")]
 mod stored;
 mod subsystem;
@@ -113,6 +120,7 @@ pub use coupled_modes::{CoupledModes, CoupledModesError, MOST_VELOCITIES, couple
 pub use equilibrium::{Equilibrium, EquilibriumError, SettlingLimits, settle};
 pub use event_driven::{EventDriven, EventDrivenSettings};
 pub use factors::{Keep, Responses};
+pub use generalized_alpha::{GeneralizedAlpha, GeneralizedAlphaSettings};
 pub use ledger::{Ledger, PositiveWork, StepEnergy};
 pub use memory::Memory;
 pub use mismatch::Mismatch;
@@ -121,6 +129,7 @@ pub use monitor::{Crossing, LISTED_CROSSINGS, Peak, RockingMonitor};
 pub use moreau_jean::{MoreauJean, MoreauJeanSettings};
 pub use moreau_jean_closed::{MoreauJeanClosed, MoreauJeanClosedSettings};
 pub use moreau_jean_located::{MoreauJeanLocated, MoreauJeanLocatedSettings};
+pub use moreau_jean_projected::{MoreauJeanProjected, MoreauJeanProjectedSettings};
 pub use pair_law::{ImpactLaw, PairLaw};
 pub use phases::{Balance, Phase, PhaseEnd, PhaseKind, StepReport};
 pub use propagator::{Dissipated, Propagator};

@@ -120,6 +120,8 @@ pub struct Part<const D: usize> {
     pub(crate) traits: Traits,
     /// α of C = αM, 1/s; else 0.
     pub(crate) mass_damping: f64,
+    /// The same among the velocities that are not prescribed.
+    pub(crate) free_mass_damping: f64,
     /// Most columns of a row.
     pub(crate) row: usize,
 }
@@ -241,7 +243,8 @@ impl<const D: usize> ModelBuilder<D> {
         let (place_q, place_v) = (q.clone(), v.clone());
         let traits = system.traits();
         let mass_damping = system.linearised().map_or(0.0, Linearised::mass_damping);
-        self.parts.push(Part { system, q, v, traits, mass_damping, row: size.row });
+        let free_mass_damping = system.linearised().map_or(0.0, Linearised::free_mass_damping);
+        self.parts.push(Part { system, q, v, traits, mass_damping, free_mass_damping, row: size.row });
         self.size = Size {
             q: self.size.q + size.q,
             v: self.size.v + size.v,

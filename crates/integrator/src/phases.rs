@@ -63,6 +63,9 @@ pub struct PhaseEnd<'a> {
     /// q̄, the mean of the coordinates over the phase, where the scheme knows it; else it is that of
     /// the balance.
     pub mean: Option<&'a [f64]>,
+    /// v̄, where the scheme knows it; else it is the change of the coordinates over the duration where
+    /// q̄ is known, and that of the balance where it isn't.
+    pub mean_velocity: Option<&'a [f64]>,
     /// How its contact problems were solved; `None` without contacts.
     pub outcome: Option<Outcome>,
 }
@@ -81,6 +84,7 @@ impl<'a> PhaseEnd<'a> {
             energy: StepEnergy::default(),
             knows_contacts: false,
             mean: None,
+            mean_velocity: None,
             outcome: None,
         }
     }
@@ -97,6 +101,13 @@ impl<'a> PhaseEnd<'a> {
     #[must_use]
     pub fn with_mean(mut self, q: &'a [f64]) -> Self {
         self.mean = Some(q);
+        self
+    }
+
+    /// With the mean of the velocities over the phase.
+    #[must_use]
+    pub fn with_mean_velocity(mut self, v: &'a [f64]) -> Self {
+        self.mean_velocity = Some(v);
         self
     }
 
@@ -145,8 +156,9 @@ struct Kept<const D: usize> {
     largest_slip_work: f64,
     q: Vec<f64>,
     v: Vec<f64>,
-    /// q̄, where the scheme knows it.
+    /// q̄ and v̄, where the scheme knows them.
     mean: Vec<f64>,
+    mean_velocity: Vec<f64>,
 }
 
 impl<const D: usize> Kept<D> {
@@ -165,6 +177,7 @@ impl<const D: usize> Kept<D> {
             q: Vec::new(),
             v: Vec::new(),
             mean: Vec::new(),
+            mean_velocity: Vec::new(),
         }
     }
 }
@@ -195,6 +208,13 @@ impl<const D: usize> Phases<D> {
             kept.q.reserve(size.q);
             kept.v.reserve(size.v);
             kept.mean.reserve(size.q);
+        }
+    }
+
+    /// Makes room for v̄ of the first phase.
+    pub(crate) fn reserve_mean_velocity(&mut self, size: Size) {
+        if let Some(kept) = self.kept.first_mut() {
+            kept.mean_velocity.reserve(size.v);
         }
     }
 
@@ -240,8 +260,10 @@ impl<const D: usize> Phases<D> {
             mine.clear();
             mine.extend_from_slice(other);
         }
-        kept.mean.clear();
-        kept.mean.extend_from_slice(phase.mean.unwrap_or_default());
+        for (mine, other) in [(&mut kept.mean, phase.mean), (&mut kept.mean_velocity, phase.mean_velocity)] {
+            mine.clear();
+            mine.extend_from_slice(other.unwrap_or_default());
+        }
         kept.contacts.clear();
         if let Some(stage) = stage {
             stage.hand_over(&mut kept.contacts);
@@ -377,6 +399,8 @@ pub struct Phase<'w, const D: usize> {
     pub v: [&'w [f64]; 2],
     /// q̄, the mean of the coordinates over it, where the scheme knows it.
     pub mean: Option<&'w [f64]>,
+    /// v̄, the mean of the velocities over it, where the scheme knows it.
+    pub mean_velocity: Option<&'w [f64]>,
 }
 
 /// What happened in a step.
@@ -420,6 +444,7 @@ impl<'w, const D: usize> StepReport<'w, D> {
                 q: [q, own.q.as_slice()],
                 v: [v, own.v.as_slice()],
                 mean: (!own.mean.is_empty()).then_some(own.mean.as_slice()),
+                mean_velocity: (!own.mean_velocity.is_empty()).then_some(own.mean_velocity.as_slice()),
             }
         })
     }

@@ -579,6 +579,11 @@ impl<const D: usize> ContactStage<D> {
         self.rows.entries(i).map(|(column, value)| value.norm() * v[column].abs()).sum()
     }
 
+    /// Whether a contact acts on a part.
+    pub(crate) fn acts_on(&self, part: usize) -> bool {
+        !self.rows.of_part(part).is_empty()
+    }
+
     /// Adds Jᵀ p of one part to `f`, as long as its velocities, N·s.
     pub(crate) fn add_generalised_impulse(&self, part: usize, f: &mut [f64]) {
         self.rows.of_part(part).add_generalised_impulse(&self.problem.p, f);

@@ -281,6 +281,13 @@ pub trait Linearised: Send + Sync {
         0.0
     }
 
+    /// α, 1/s, if C is αM among the velocities that aren't prescribed, and 0 towards those that are;
+    /// else 0. The default is [`Linearised::mass_damping`]; it is more where that is 0 for the sake of
+    /// prescribed velocities only.
+    fn free_mass_damping(&self) -> f64 {
+        self.mass_damping()
+    }
+
     /// Adds the internal forces without the viscous one to `f`, N; called only if
     /// [`Linearised::mass_damping`] is not 0.
     fn conservative_force(&self, q: &[f64], f: &mut [f64]) {
@@ -586,7 +593,11 @@ impl<const D: usize> PartRows<'_, D> {
 
 /// The Delassus operator while subsystems add to it.
 #[derive(Debug)]
-pub struct Coupling<'a, const D: usize>(Blocks<'a, D>);
+pub struct Coupling<'a, const D: usize> {
+    blocks: Blocks<'a, D>,
+    /// Factor of what is added.
+    scale: f64,
+}
 
 #[derive(Debug)]
 enum Blocks<'a, const D: usize> {
@@ -597,20 +608,29 @@ enum Blocks<'a, const D: usize> {
 impl<'a, const D: usize> Coupling<'a, D> {
     /// All blocks of so many contacts, by rows.
     pub(crate) fn dense(contacts: usize, blocks: &'a mut [Block<D>]) -> Self {
-        Self(Blocks::Dense { contacts, blocks })
+        Self { blocks: Blocks::Dense { contacts, blocks }, scale: 1.0 }
     }
 
     /// The blocks of contacts that share a body.
     pub(crate) fn sparse(blocks: &'a mut BlockSparse<D>) -> Self {
-        Self(Blocks::Sparse(blocks))
+        Self { blocks: Blocks::Sparse(blocks), scale: 1.0 }
     }
 }
 
 impl<const D: usize> Coupling<'_, D> {
+    /// Lets someone add with this factor.
+    pub(crate) fn scaled(&mut self, factor: f64, add: impl FnOnce(&mut Self)) {
+        let scale = self.scale;
+        self.scale *= factor;
+        add(self);
+        self.scale = scale;
+    }
+
     /// Adds to the block of contacts (i, j).
     #[inline]
     pub fn add(&mut self, i: usize, j: usize, block: &Block<D>) {
-        match &mut self.0 {
+        let block = block * self.scale;
+        match &mut self.blocks {
             Blocks::Dense { contacts, blocks } => blocks[i * *contacts + j] += block,
             // Contacts that share nothing have no place in the pattern, and what they feel of each
             // other is 0.

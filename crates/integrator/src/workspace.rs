@@ -1,5 +1,6 @@
 //! The memory and the contact solver of one worker.
 
+use crate::blend::Term;
 use crate::factors::Factors;
 use crate::laws::Laws;
 use crate::mismatch::{Identity, length};
@@ -7,8 +8,8 @@ use crate::phases::Phases;
 use crate::stage::{Problem, RESERVED_CONTACTS};
 use crate::subsystem::all_finite;
 use crate::{
-    Compliance, Contact, ContactError, ContactStage, Keep, Mismatch, Model, PhaseEnd, State, StateError, StepError,
-    StepReport, StepSpan, Vector, Weights,
+    Compliance, Contact, ContactError, ContactStage, Keep, Mismatch, Model, Part, PhaseEnd, State, StateError,
+    StepError, StepReport, StepSpan, Vector, Weights,
 };
 use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, Stop};
 use teeter_detect::{Candidates, ContactId, DetectorMemory};
@@ -172,6 +173,11 @@ impl<const D: usize> Workspace<D> {
         self.phases.reserve_more(phases, contacts, model.size());
     }
 
+    /// Makes room for the mean of the velocities over a step's only phase.
+    pub(crate) fn reserve_mean_velocity(&mut self, model: &Model<D>) {
+        self.phases.reserve_mean_velocity(model.size());
+    }
+
     /// Makes room for contacts that slide in given directions.
     pub(crate) fn reserve_directed(&mut self, model: &Model<D>) {
         self.directed.reserve(model.detector().capacity().min(RESERVED_CONTACTS));
@@ -212,6 +218,22 @@ impl<const D: usize> Workspace<D> {
         self.check_at(model, q)?;
         let made = self.factors.made();
         let done = self.factors.make(model, w, q, keep);
+        self.counts.factorisations += self.factors.made() - made;
+        done.map_err(StepError::Factor)
+    }
+
+    /// Sees to it that there are sums of two factors for all subsystems, by a key.
+    pub(crate) fn blended_factors(
+        &mut self,
+        model: &Model<D>,
+        key: Weights,
+        keep: Keep,
+        q: &[f64],
+        terms: impl Fn(&Part<D>) -> [Term; 2],
+    ) -> Result<(), StepError> {
+        self.check_at(model, q)?;
+        let made = self.factors.made();
+        let done = self.factors.make_blends(model, key, keep, q, terms);
         self.counts.factorisations += self.factors.made() - made;
         done.map_err(StepError::Factor)
     }

@@ -54,6 +54,8 @@ pub struct Time {
     pub activation_gamma: f64,
     /// Largest predicted gap of an active contact, m.
     pub gap_tolerance: f64,
+    /// ρ∞ of `generalized-alpha`.
+    pub spectral_radius: f64,
 }
 
 impl Scene {
@@ -124,6 +126,10 @@ pub enum SchemeName {
     EventDriven,
     /// Contact with beams as a force, in steps halved where contacts close.
     Resolved,
+    /// The closed one, with places projected onto what contacts allow.
+    MoreauJeanProjected,
+    /// Generalized-α with impacts.
+    GeneralizedAlpha,
 }
 
 impl SchemeName {
@@ -136,6 +142,8 @@ impl SchemeName {
             Self::MoreauJeanLocated => teeter_integrator::MoreauJeanLocated::<2>::NAME,
             Self::EventDriven => teeter_integrator::EventDriven::NAME,
             Self::Resolved => teeter_integrator::Resolved::<2>::NAME,
+            Self::MoreauJeanProjected => teeter_integrator::MoreauJeanProjected::<2>::NAME,
+            Self::GeneralizedAlpha => teeter_integrator::GeneralizedAlpha::<2>::NAME,
         }
     }
 
@@ -145,6 +153,7 @@ impl SchemeName {
         match self {
             Self::MoreauJean => false,
             Self::MoreauJeanClosed | Self::MoreauJeanLocated | Self::EventDriven | Self::Resolved => true,
+            Self::MoreauJeanProjected | Self::GeneralizedAlpha => true,
         }
     }
 
@@ -155,6 +164,7 @@ impl SchemeName {
         match self {
             Self::MoreauJean => Some(theta),
             Self::MoreauJeanClosed | Self::MoreauJeanLocated | Self::Resolved => Some(0.5),
+            Self::MoreauJeanProjected | Self::GeneralizedAlpha => Some(0.5),
             Self::EventDriven => None,
         }
     }
@@ -164,6 +174,7 @@ impl SchemeName {
     pub fn takes_springs(self) -> bool {
         match self {
             Self::MoreauJean | Self::MoreauJeanClosed | Self::MoreauJeanLocated | Self::Resolved => true,
+            Self::MoreauJeanProjected | Self::GeneralizedAlpha => true,
             Self::EventDriven => false,
         }
     }
@@ -181,6 +192,7 @@ impl SchemeName {
     pub fn has_own_steps(self) -> bool {
         match self {
             Self::MoreauJean | Self::MoreauJeanClosed | Self::MoreauJeanLocated | Self::Resolved => false,
+            Self::MoreauJeanProjected | Self::GeneralizedAlpha => false,
             Self::EventDriven => true,
         }
     }
@@ -191,6 +203,8 @@ impl SchemeName {
         match self {
             Self::MoreauJean | Self::MoreauJeanClosed => true,
             Self::MoreauJeanLocated | Self::EventDriven | Self::Resolved => false,
+            Self::MoreauJeanProjected => true,
+            Self::GeneralizedAlpha => false,
         }
     }
 
@@ -200,6 +214,7 @@ impl SchemeName {
         match self {
             Self::MoreauJean => true,
             Self::MoreauJeanClosed | Self::MoreauJeanLocated | Self::EventDriven | Self::Resolved => false,
+            Self::MoreauJeanProjected | Self::GeneralizedAlpha => false,
         }
     }
 
@@ -209,15 +224,17 @@ impl SchemeName {
         match self {
             Self::MoreauJean | Self::MoreauJeanClosed => false,
             Self::MoreauJeanLocated | Self::EventDriven | Self::Resolved => true,
+            Self::MoreauJeanProjected | Self::GeneralizedAlpha => false,
         }
     }
 
-    /// Whether no contact gives energy, but for contacts with what is moved as prescribed.
+    /// Whether no contact gives energy, but for contacts with what is moved as prescribed. A
+    /// projection may: it lifts what has sunk in.
     #[must_use]
     pub fn keeps_energy(self) -> bool {
         match self {
-            Self::MoreauJean => false,
             Self::MoreauJeanClosed | Self::MoreauJeanLocated | Self::EventDriven | Self::Resolved => true,
+            Self::MoreauJean | Self::MoreauJeanProjected | Self::GeneralizedAlpha => false,
         }
     }
 }

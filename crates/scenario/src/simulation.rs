@@ -13,10 +13,11 @@ use teeter_beam::{BeamError, ModalError};
 use teeter_contact::ContactSolver;
 use teeter_detect::{PointDetector, PointPair};
 use teeter_integrator::{
-    Account, Block, Ended, EventDriven, EventDrivenSettings, Mismatch, Model, ModelBuilder, ModelError, MoreauJean,
-    MoreauJeanClosed, MoreauJeanClosedSettings, MoreauJeanLocated, MoreauJeanLocatedSettings, MoreauJeanSettings,
-    Observer, PartPlace, Plan, Resolved, ResolvedSettings, RunError, Scheme, SettingError, SolverSettings, State,
-    StateError, StepError, StepReport, Subsystem, Unsolved, WorkCounts, Workspace, run,
+    Account, Block, Ended, EventDriven, EventDrivenSettings, GeneralizedAlpha, GeneralizedAlphaSettings, Mismatch,
+    Model, ModelBuilder, ModelError, MoreauJean, MoreauJeanClosed, MoreauJeanClosedSettings, MoreauJeanLocated,
+    MoreauJeanLocatedSettings, MoreauJeanProjected, MoreauJeanProjectedSettings, MoreauJeanSettings, Observer,
+    PartPlace, Plan, Resolved, ResolvedSettings, RunError, Scheme, SettingError, SolverSettings, State, StateError,
+    StepError, StepReport, Subsystem, Unsolved, WorkCounts, Workspace, run,
 };
 use teeter_rigid::{MassProperties, Rectangle, RigidError};
 
@@ -402,7 +403,7 @@ fn assemble(
 }
 
 fn scheme(time: &Time) -> Result<Box<dyn Scheme<2>>, SettingError> {
-    let Time { theta, activation_gamma, gap_tolerance, .. } = *time;
+    let Time { theta, activation_gamma, gap_tolerance, spectral_radius, .. } = *time;
     Ok(match time.scheme {
         SchemeName::MoreauJean => {
             Box::new(MoreauJean::new(MoreauJeanSettings { theta, activation_gamma, gap_tolerance })?)
@@ -410,6 +411,12 @@ fn scheme(time: &Time) -> Result<Box<dyn Scheme<2>>, SettingError> {
         SchemeName::MoreauJeanClosed => Box::new(MoreauJeanClosed::new(MoreauJeanClosedSettings { gap_tolerance })?),
         SchemeName::Resolved => {
             Box::new(Resolved::new(ResolvedSettings { gap_tolerance, ..ResolvedSettings::default() })?)
+        }
+        SchemeName::MoreauJeanProjected => {
+            Box::new(MoreauJeanProjected::new(MoreauJeanProjectedSettings { gap_tolerance })?)
+        }
+        SchemeName::GeneralizedAlpha => {
+            Box::new(GeneralizedAlpha::new(GeneralizedAlphaSettings { spectral_radius, gap_tolerance })?)
         }
         SchemeName::EventDriven => Box::new(EventDriven::new(EventDrivenSettings::default())?),
         SchemeName::MoreauJeanLocated => Box::new(MoreauJeanLocated::new(MoreauJeanLocatedSettings { gap_tolerance })?),

@@ -5,18 +5,13 @@ mod beam_keys;
 use std::f64::consts::FRAC_PI_2;
 
 use crate::dimension::Dimension;
-use crate::keys::{Bound, Key, Kind, Occurrence, Presence, Range, Reserved, Table};
+use crate::keys::{Bound, Key, Kind, Occurrence, Presence, Range, Table};
 use crate::measure::Unit;
 use crate::words;
 use beam_keys::*;
 
 const fn key(name: &'static str, kind: Kind, presence: Presence, example: &'static str, doc: &'static str) -> Key {
     Key::new(name, kind, presence, example, doc)
-}
-
-/// A word whose place will be taken by the words that are built in.
-const fn later(value: &'static str) -> Reserved {
-    Reserved { value, instead: "" }
 }
 
 const QUARTER_TURN: Range = Range::new(Bound::Closed(-FRAC_PI_2), Bound::Closed(FRAC_PI_2));
@@ -124,12 +119,12 @@ pub static TABLES: &[Table] = &[
             key("end", TIME, Required, "\"0.5 s\"", "Simulated time; the run ends with the first step at or past it."),
             key("step", TIME, RequiredWithout("accuracy"), "\"100 us\"", "Size of the time step; with auto, or left out, it is the longest that is found to reach the accuracy.").left_out_as("auto"),
             key("accuracy", Kind::Number(Range::INSIDE_UNIT), Optional, "1e-3", "In place of a step: the largest error of any angle, relative to the largest angle, and of any place, relative to the block's larger side, before the horizon."),
-            key("scheme", Kind::Choice(words::SCHEMES), Default("\"auto\""), "\"moreau-jean\"", "Time integration scheme; auto takes moreau-jean-located, but moreau-jean where theta, gap_tolerance or activation_gamma is given, and moreau-jean-closed for more than 8 blocks or a beam held along its axis. In moreau-jean-closed a contact stays closed until it pulls, and no contact gives energy; moreau-jean-located also divides a step where a contact closes. event-driven takes steps of its own between located events, to rounding; the step is then that of the output. resolved takes contact with beams as a force, without restitution there, in steps that are halved where contacts close.").reserving(&[later("moreau-jean-projected"), later("generalized-alpha")]),
-            key("theta", Kind::Number(Range::UNIT), Default("0.5"), "0.5", "Weight of the end of the step in the theta method: 0.5 keeps energy, 1 damps the most; moreau-jean-closed, moreau-jean-located and resolved take 0.5 only, event-driven none."),
+            key("scheme", Kind::Choice(words::SCHEMES), Default("\"auto\""), "\"moreau-jean\"", "Time integration scheme; auto takes moreau-jean-located, but moreau-jean where theta, gap_tolerance or activation_gamma is given, and moreau-jean-closed for more than 8 blocks or a beam held along its axis. In moreau-jean-closed a contact stays closed until it pulls, and no contact gives energy; moreau-jean-located also divides a step where a contact closes. event-driven takes steps of its own between located events, to rounding; the step is then that of the output. moreau-jean-projected is the closed one with places projected, so that nothing ends a step in a surface; generalized-alpha does that, too, and damps vibrations of beams that the step can't resolve. resolved takes contact with beams as a force, without restitution there, in steps that are halved where contacts close."),
+            key("theta", Kind::Number(Range::UNIT), Default("0.5"), "0.5", "Weight of the end of the step in the theta method: 0.5 keeps energy, 1 damps the most; moreau-jean-closed, moreau-jean-located, moreau-jean-projected and resolved take 0.5 only, event-driven and generalized-alpha none."),
             key("gap_tolerance", Kind::Quantity(Dimension::LENGTH, GAP), Optional, "\"1e-12 m\"", "Gap below which a contact counts as closed, at most 1e-3 of the shortest block side; when left out, it follows from the largest block side."),
             key("activation_gamma", Kind::Number(Range::UNIT), Default("0.5"), "0.5", "Fraction of the step by which positions are predicted to find the active contacts; of moreau-jean only."),
             key("allow_conditional_stability", Kind::Flag, Default("false"), "false", "Allows theta below 0.5, where the step must be short enough to be stable."),
-            key("spectral_radius", Kind::Number(Range::UNIT), NotYet, "0.8", "Damping of the highest frequencies in the generalized-alpha scheme."),
+            key("spectral_radius", Kind::Number(Range::UNIT), Optional, "0.8", "Part of a vibration of infinite frequency that a step of generalized-alpha leaves: 1 damps nothing, 0 the most; when left out, 0.8. Of generalized-alpha only."),
         ],
     },
     Table {

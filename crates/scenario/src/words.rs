@@ -2,7 +2,9 @@
 //! that is added is a variant that is added, and every place that decides by it has to say what it means.
 
 use crate::scene::SchemeName;
-use teeter_integrator::{EventDriven, MoreauJean, MoreauJeanClosed, MoreauJeanLocated, Resolved};
+use teeter_integrator::{
+    EventDriven, GeneralizedAlpha, MoreauJean, MoreauJeanClosed, MoreauJeanLocated, MoreauJeanProjected, Resolved,
+};
 
 /// One of some words.
 pub(crate) trait Word: Copy + Sized + 'static {
@@ -78,6 +80,8 @@ pub(crate) const SCHEMES: &[&str] = &[
     MoreauJeanLocated::<2>::NAME,
     EventDriven::NAME,
     Resolved::<2>::NAME,
+    MoreauJeanProjected::<2>::NAME,
+    GeneralizedAlpha::<2>::NAME,
 ];
 
 /// A scheme by name, or the one that suits the scene.
@@ -95,6 +99,8 @@ impl Word for SchemeChoice {
         (SCHEMES[3], Self::Named(SchemeName::MoreauJeanLocated)),
         (SCHEMES[4], Self::Named(SchemeName::EventDriven)),
         (SCHEMES[5], Self::Named(SchemeName::Resolved)),
+        (SCHEMES[6], Self::Named(SchemeName::MoreauJeanProjected)),
+        (SCHEMES[7], Self::Named(SchemeName::GeneralizedAlpha)),
     ];
 }
 

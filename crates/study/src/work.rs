@@ -41,8 +41,14 @@ mod cost {
     pub(super) const ITERATION: f64 = 10.0;
 
     /// Schemes that detect and try more often in a step than `moreau-jean`: their factor, 1 where nobody has measured it.
-    pub(super) const SCHEMES: [(&str, f64); 4] =
-        [("moreau-jean-closed", 1.35), ("moreau-jean-located", 1.45), ("event-driven", 30.0), ("resolved", 5.0)];
+    pub(super) const SCHEMES: [(&str, f64); 6] = [
+        ("moreau-jean-closed", 1.35),
+        ("moreau-jean-located", 1.45),
+        ("event-driven", 30.0),
+        ("resolved", 5.0),
+        ("moreau-jean-projected", 1.6),
+        ("generalized-alpha", 2.3),
+    ];
 }
 
 impl Work {

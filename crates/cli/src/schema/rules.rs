@@ -114,6 +114,11 @@ fn of_pattern(pattern: &str) -> Vec<Value> {
         "time" => vec![
             where_is("scheme", &json!("moreau-jean-closed"), &properties([("theta", json!({ "const": 0.5 }))])),
             where_is("scheme", &json!("moreau-jean-located"), &properties([("theta", json!({ "const": 0.5 }))])),
+            where_is("scheme", &json!("moreau-jean-projected"), &properties([("theta", json!({ "const": 0.5 }))])),
+            json!({
+                "if": { "required": ["spectral_radius"] },
+                "then": { "required": ["scheme"], "properties": { "scheme": { "const": "generalized-alpha" } } },
+            }),
             json!({
                 "if": { "required": ["theta"], "properties": { "theta": { "exclusiveMaximum": 0.5 } } },
                 "then": { "required": ["allow_conditional_stability"], "properties": { "allow_conditional_stability": { "const": true } } },

@@ -350,6 +350,10 @@ impl Linearised for BeamBody {
         if self.supports.is_some() || self.beam.is_stretched() { 0.0 } else { self.beam.mass_damping() }
     }
 
+    fn free_mass_damping(&self) -> f64 {
+        if self.beam.is_stretched() { 0.0 } else { self.beam.mass_damping() }
+    }
+
     fn conservative_force(&self, q: &[f64], f: &mut [f64]) {
         self.add_conservative_force(q, f);
     }

@@ -150,10 +150,19 @@ fn reactions_contacts_loads_and_momentum_balance_at_every_step() {
     let clamped = || spec().supported([Support::Clamped, Support::Pinned]).support_at(0.09, Support::Pinned);
     let top = BeamSurface::Top { offset: 0.00075 };
     let closed = || Box::new(MoreauJeanClosed::new(MoreauJeanClosedSettings::default()).unwrap());
+    let projected = || Box::new(MoreauJeanProjected::new(MoreauJeanProjectedSettings::default()).unwrap());
+    let alpha = |spectral_radius| {
+        let settings = GeneralizedAlphaSettings { spectral_radius, ..GeneralizedAlphaSettings::default() };
+        Box::new(GeneralizedAlpha::new(settings).unwrap())
+    };
     let runs = [
         ("paper", run(Beam::new(spec()).unwrap(), BeamSurface::Axis, moreau_jean(0.5), false)),
         ("theta", run(Beam::new(damped(spec())).unwrap(), BeamSurface::Axis, moreau_jean(0.75), false)),
         ("closed", run(Beam::new(damped(spec())).unwrap(), BeamSurface::Axis, closed(), false)),
+        ("projected", run(Beam::new(damped(spec())).unwrap(), BeamSurface::Axis, projected(), false)),
+        ("alpha", run(Beam::new(damped(spec())).unwrap(), BeamSurface::Axis, alpha(0.8), false)),
+        ("alpha 0", run(Beam::new(spec()).unwrap(), BeamSurface::Axis, alpha(0.0), false)),
+        ("alpha driven", run(Beam::new(damped(clamped())).unwrap(), top, alpha(0.8), true)),
         ("driven", run(Beam::new(damped(spec())).unwrap(), BeamSurface::Axis, moreau_jean(0.5), true)),
         ("top", run(Beam::new(damped(clamped())).unwrap(), top, moreau_jean(0.5), true)),
         ("held", run(Beam::new(spec().axial(Axial::Held)).unwrap(), BeamSurface::Axis, moreau_jean(0.5), true)),

@@ -17,6 +17,7 @@ mod lengths;
 mod misuse;
 mod modal;
 mod own_parts;
+mod projected;
 mod reference;
 mod scenes;
 mod springs;

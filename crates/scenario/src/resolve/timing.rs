@@ -5,7 +5,7 @@ use crate::scene::{BeamScene, BlockScene, ContactScene, Scene, SchemeName, Suppo
 use crate::volume::Volume;
 use crate::wording;
 use crate::words::SchemeChoice;
-use teeter_integrator::ImpactLaw;
+use teeter_integrator::{GeneralizedAlphaSettings, ImpactLaw};
 
 /// Most steps of a run.
 pub const MAX_STEPS: f64 = 1e12;
@@ -45,9 +45,10 @@ impl Resolver<'_, '_> {
         let held = beams.iter().flatten().find(|beam| beam.spec.axial == teeter_beam::Axial::Held);
         if let (Some(beam), Some(scheme)) = (held, scheme.filter(|scheme| !scheme.takes_held_beams())) {
             let rule = format!(
-                "the beam `{}` is held along its axis, and keeps its energy over steps of one size only: {} divides them",
+                "the beam `{}` is held along its axis, and keeps its energy over steps of one size only: {} {}",
                 beam.name,
-                scheme.word()
+                scheme.word(),
+                if scheme == SchemeName::GeneralizedAlpha { "needs forces that are linear" } else { "divides them" }
             );
             self.error("time.scheme", rule, "take scheme = \"moreau-jean-closed\", or axial = free");
         }
@@ -58,6 +59,7 @@ impl Resolver<'_, '_> {
             let rule = format!("{} is a scheme of theta = 0.5: another one is refused", scheme.word());
             self.error("time.theta", rule, "leave theta out, or take scheme = \"moreau-jean\"");
         }
+        let spectral_radius = self.spectral_radius(scheme);
         if let (Some(beam), Some(theta)) = (held, theta)
             && theta != 0.5
         {
@@ -93,6 +95,7 @@ impl Resolver<'_, '_> {
             theta: theta?,
             activation_gamma: activation_gamma?,
             gap_tolerance,
+            spectral_radius,
         };
         let steps = time.steps() as f64;
         if (steps * step - end).abs() > (1e-9 * end).min(1e-3 * step) {
@@ -101,6 +104,18 @@ impl Resolver<'_, '_> {
                 .push(self.doc.error("time.end", rule, "choose an end that is a multiple of the step").as_warning());
         }
         Some(time)
+    }
+
+    /// ρ∞, which is of one scheme only.
+    fn spectral_radius(&mut self, scheme: Option<SchemeName>) -> f64 {
+        let given = self.doc.number("time.spectral_radius");
+        if let (Some(scheme), true) = (scheme, self.doc.is_given("time.spectral_radius"))
+            && scheme != SchemeName::GeneralizedAlpha
+        {
+            let rule = format!("{} has none: it is a setting of generalized-alpha", scheme.word());
+            self.error("time.spectral_radius", rule, "leave it out, or take scheme = \"generalized-alpha\"");
+        }
+        given.unwrap_or(GeneralizedAlphaSettings::default().spectral_radius)
     }
 
     /// The accuracy asked for in place of a step.

@@ -88,11 +88,9 @@ fn names_are_of_few_letters_and_unique_over_bodies() {
 
 #[test]
 fn what_is_known_but_not_built_in_says_so() {
-    for (key, value) in [("time.spectral_radius", "0.8"), ("ground.profile", "hills.csv")] {
-        let found = findings(ROCKING, &[(key, value)]);
-        assert_eq!(found.len(), 1, "{found:#?}");
-        assert!(found[0].ends_with("known, but not built in yet"), "{found:#?}");
-    }
+    let found = findings(ROCKING, &[("ground.profile", "hills.csv")]);
+    assert_eq!(found.len(), 1, "{found:#?}");
+    assert!(found[0].ends_with("known, but not built in yet"), "{found:#?}");
 }
 
 #[test]

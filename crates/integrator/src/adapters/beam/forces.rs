@@ -50,7 +50,7 @@ pub struct BeamForces {
     v_mean: Vec<f64>,
     acceleration: Vec<f64>,
     predicted: Vec<f64>,
-    /// q̄ of a phase whose scheme knows it.
+    /// q̄ or v̄ of a phase whose scheme knows it.
     known: Vec<f64>,
     span_loads: Vec<SpanLoad>,
     forces: SectionForces,
@@ -231,8 +231,16 @@ impl BeamForces {
                     None => self.known.copy_from_slice(mean),
                 }
                 self.q_mean.iter_mut().zip(&self.known).for_each(|(sum, mean)| *sum += part * mean);
-                for (mean, (q0, q1)) in self.v_mean.iter_mut().zip(self.q[0].iter().zip(&self.q[1])) {
-                    *mean += (q1 - q0) / whole;
+                if let Some(mean) = phase.mean_velocity.and_then(|mean| mean.get(self.range.clone())) {
+                    match &self.basis {
+                        Some(basis) => basis.expand(mean, &mut self.known),
+                        None => self.known.copy_from_slice(mean),
+                    }
+                    self.v_mean.iter_mut().zip(&self.known).for_each(|(sum, mean)| *sum += part * mean);
+                } else {
+                    for (mean, (q0, q1)) in self.v_mean.iter_mut().zip(self.q[0].iter().zip(&self.q[1])) {
+                        *mean += (q1 - q0) / whole;
+                    }
                 }
             } else {
                 for (mean, [x0, x1]) in [(&mut self.q_mean, &self.q), (&mut self.v_mean, &self.v)] {

@@ -8,6 +8,15 @@ pub(crate) enum Scheme {
     MoreauJean { theta: f64, gamma: f64 },
     Closed,
     Located,
+    Projected,
+    GeneralizedAlpha,
+}
+
+impl Scheme {
+    /// Whether its contacts stay closed by a flag, and give no energy.
+    pub(crate) fn is_closed(self) -> bool {
+        !matches!(self, Self::MoreauJean { .. })
+    }
 }
 
 /// What a block can stand on or fall on.
@@ -339,6 +348,8 @@ impl Drawn {
         match self.scheme {
             Scheme::Closed => out.word("scheme", "moreau-jean-closed"),
             Scheme::Located => out.word("scheme", "moreau-jean-located"),
+            Scheme::Projected => out.word("scheme", "moreau-jean-projected"),
+            Scheme::GeneralizedAlpha => out.word("scheme", "generalized-alpha"),
             Scheme::MoreauJean { theta, gamma } => {
                 out.word("scheme", "moreau-jean");
                 out.number("theta", theta);

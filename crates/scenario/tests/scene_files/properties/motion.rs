@@ -1,6 +1,6 @@
 //! A scene run in memory, and two motions compared up to the horizon.
 
-use super::drawn::{Drawn, Law, Scheme, Use};
+use super::drawn::{Drawn, Law, Use};
 use std::fmt::Display;
 use std::ops::ControlFlow;
 use teeter_beam::ShapeAt;
@@ -204,9 +204,7 @@ fn put_in(drawn: &Drawn, motion: &Motion) -> f64 {
     // known to the root of that.
     let scaled = |law: &Law| match law {
         Law::Instant { word: "energetic", normal, .. } => *normal > 0.0,
-        Law::Instant { word: "newton", normal, .. } => {
-            *normal > 0.0 && matches!(drawn.scheme, Scheme::Closed | Scheme::Located)
-        }
+        Law::Instant { word: "newton", normal, .. } => *normal > 0.0 && drawn.scheme.is_closed(),
         _ => false,
     };
     if drawn.contacts.iter().any(|contact| scaled(&contact.law)) { solved.max(1e-7) } else { solved }

@@ -200,6 +200,8 @@ pub(crate) fn scene() -> impl Strategy<Value = Drawn> {
         (or(0.5, 0.5..1.0), or(0.5, 0.0..1.0)).prop_map(|(theta, gamma)| Scheme::MoreauJean { theta, gamma }),
         Just(Scheme::Closed),
         Just(Scheme::Located),
+        Just(Scheme::Projected),
+        Just(Scheme::GeneralizedAlpha),
     ];
     let world = (
         select(vec![Below::Ground, Below::Beam, Below::BeamOverGround, Below::TwoBeams]),

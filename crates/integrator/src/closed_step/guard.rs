@@ -1,0 +1,97 @@
+//! What keeps the contacts of a closed step from giving energy.
+
+use crate::contact::tangential;
+use crate::laws::{Laws, is_impact};
+use crate::stage::{Members, Problem};
+use crate::{ContactStage, Mismatch, Model, Rule};
+
+/// Rounding of a contact's work, as a part of ‖p‖ Σ|J_i v|, the larger of v⁰ and v_free.
+const WORKLESS: f64 = 1e-13;
+
+/// Sees to it that no contact of a solved problem gives energy.
+pub(crate) struct Guard<'a, const D: usize> {
+    pub(crate) model: &'a Model<D>,
+    pub(crate) stage: &'a ContactStage<D>,
+    pub(crate) laws: &'a Laws<D>,
+    pub(crate) members: Members<'a>,
+    pub(crate) v_before: &'a [f64],
+    pub(crate) v_free: &'a [f64],
+}
+
+impl<const D: usize> Guard<'_, D> {
+    /// Changes what holds for contacts whose work is positive, so that it can't be; whether there
+    /// are any.
+    ///
+    /// The usual case is a slide that turns within the step: sticking at its end would take an
+    /// impulse along the slide that was. Then either no friction, or the velocity turned about,
+    /// whichever ends nearer to rest; it sticks in the next step.
+    ///
+    /// Where Poisson's law hands a blow on, what one contact gains another one has lost: there it
+    /// is the sum over contacts that feel each other that counts. The law scales what it gives back
+    /// by it, so what is left is of contacts that would give energy without any restitution, too.
+    pub(crate) fn apply(&self, problem: &mut Problem<D>, guarded: &mut [bool]) -> Result<bool, Mismatch> {
+        let laws = self.laws;
+        let mut found = false;
+        for i in 0..problem.len() {
+            let (number, u_before, p) = (self.members.number(i), problem.u_before(i), problem.p[i]);
+            // A spring's law sees to it itself.
+            if guarded[number] || p[0] <= 0.0 || matches!(problem.rule(i), Rule::Spring(_)) {
+                continue;
+            }
+            // What moves as prescribed gives energy anyway, and a slide that ends there is better
+            // stopped where it ends.
+            let contact = &self.stage.contacts()[number];
+            if contact.persisting && self.stage.feels_drive(self.model, number, self.v_before, self.v_free) {
+                continue;
+            }
+            let gain = if laws.handed_on(problem, i) {
+                let allowed: f64 = (0..problem.len()).map(|i| self.rounding(problem, i)).sum();
+                if laws.work_around(problem, i) > allowed { laws.work_unreturned(i) } else { 0.0 }
+            } else {
+                problem.work(i)
+            };
+            if gain <= self.rounding(problem, i) {
+                continue;
+            }
+            let without = problem.without_own_friction(i);
+            let mut shift = tangential(&u_before);
+            if without.norm() < shift.norm() {
+                problem.mu[i] = 0.0;
+            }
+            let e = self.model.law(contact.law)?.restitution;
+            let back = match problem.rule(i) {
+                Rule::Poisson { .. } if is_impact(e, &u_before, &problem.u_free(i)) => e * u_before[0],
+                _ => problem.shift(i)[0],
+            };
+            shift[0] = back.max(u_before[0]);
+            problem.posed[i].rule = Rule::Shifted;
+            problem.reshift(i, shift);
+            guarded[number] = true;
+            found = true;
+        }
+        Ok(found || self.stop_handing_on(problem))
+    }
+
+    /// What may be rounding of a contact's work, J: at rest it is the free velocity whose digits
+    /// are lost.
+    fn rounding(&self, problem: &Problem<D>, i: usize) -> f64 {
+        let number = self.members.number(i);
+        let speed = self.stage.speed(number, self.v_before).max(self.stage.speed(number, self.v_free));
+        WORKLESS * problem.p[i].norm() * speed
+    }
+
+    /// The last resort where contacts that hand a blow on give energy though none does by itself,
+    /// as the solver finds another one of several solutions each time: nothing is given back there.
+    /// Whether it changed anything.
+    fn stop_handing_on(&self, problem: &mut Problem<D>) -> bool {
+        let (laws, n) = (self.laws, problem.len());
+        let allowed = |i: usize| self.rounding(problem, i) + laws.work_unreturned(i).max(0.0);
+        let gives = |i: usize| {
+            let phased = matches!(problem.rule(i), Rule::Poisson { .. }) && laws.handed_on(problem, i);
+            phased && laws.work_around(problem, i) > (0..n).map(allowed).sum::<f64>()
+        };
+        let Some(first) = (0..n).find(|&i| gives(i)) else { return false };
+        problem.posed[first].rule = Rule::Shifted;
+        true
+    }
+}
