@@ -353,6 +353,18 @@ pub struct ContactScene {
     pub kinematics: teeter_detect::Kinematics,
 }
 
+impl ContactScene {
+    /// Whether it gives back what struck it, beyond what its bodies' own elasticity does: by
+    /// restitution, or by a law with duration.
+    #[must_use]
+    pub fn gives_back(&self) -> bool {
+        use teeter_integrator::ImpactLaw;
+        let law = &self.law;
+        let has_duration = matches!(law.impact, ImpactLaw::KelvinVoigt { .. } | ImpactLaw::HuntCrossley { .. });
+        has_duration || law.restitution > 0.0 || law.tangential_restitution > 0.0
+    }
+}
+
 /// The contact solver of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SolverScene {

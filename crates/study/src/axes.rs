@@ -6,7 +6,7 @@ use crate::Setting;
 use teeter_scenario::document::Document;
 use teeter_scenario::keys::{self, Found, Kind};
 use teeter_scenario::resolve::Resolved;
-use teeter_scenario::scene::{BeamScene, Support};
+use teeter_scenario::scene::{BeamScene, ContactScene, Scene, SchemeName, Support};
 
 /// One thing that can be varied.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,7 +87,8 @@ impl Axes {
                 .collect(),
             keys: vec![key],
         };
-        let scheme = words(resolved, "scheme", &["time.scheme".to_owned()], has_steps).unwrap_or_else(|| Axis {
+        let taken = |scheme: &str| has_steps(scheme) && suits(scheme, &resolved.scene);
+        let scheme = words(resolved, "scheme", &["time.scheme".to_owned()], taken).unwrap_or_else(|| Axis {
             name: "scheme",
             keys: Vec::new(),
             options: vec![Setting::none()],
@@ -156,6 +157,12 @@ pub(crate) fn in_seconds(t: f64) -> String {
 /// `event-driven` has steps of its own.
 fn has_steps(scheme: &str) -> bool {
     !["auto", teeter_integrator::EventDriven::NAME].contains(&scheme)
+}
+
+/// `resolved` is for beams that give nothing back but by their own elasticity.
+fn suits(scheme: &str, scene: &Scene) -> bool {
+    let at_beams = || scene.contacts.iter().filter(|contact| matches!(contact.surface, Support::Beam(_)));
+    scheme != SchemeName::Resolved.word() || (at_beams().next().is_some() && !at_beams().any(ContactScene::gives_back))
 }
 
 /// An axis of words: those of the table of keys, for all keys at once.

@@ -160,7 +160,7 @@ impl Resolver<'_, '_> {
             let rule = format!("{} is for contact with beams, and there is none here", scheme.word());
             self.error("time.scheme", rule, "take scheme = \"moreau-jean-located\", or leave it out");
         }
-        if let Some(contact) = contacts.iter().flatten().filter(at_beam).find(|contact| gives_back(contact)) {
+        if let Some(contact) = contacts.iter().flatten().filter(at_beam).find(|contact| contact.gives_back()) {
             let rule = format!(
                 "{} takes no restitution and no law with duration at a beam, as in `{}`: contact there is a force, and all that a beam gives back is its own elasticity",
                 scheme.word(),
@@ -253,11 +253,4 @@ fn gap_tolerance(blocks: &[Option<BlockScene>]) -> f64 {
     let shortest = blocks.iter().flatten().map(|block| block.width.min(block.height)).fold(f64::INFINITY, f64::min);
     let usual = if largest == 0.0 || (0.01..=1.0).contains(&largest) { 1e-12 } else { 1e-11 * largest };
     usual.min(DOUBTFUL_GAP * shortest)
-}
-
-/// Whether a contact gives back what struck it, beyond what its bodies' own elasticity does.
-fn gives_back(contact: &ContactScene) -> bool {
-    let law = &contact.law;
-    let has_duration = matches!(law.impact, ImpactLaw::KelvinVoigt { .. } | ImpactLaw::HuntCrossley { .. });
-    has_duration || law.restitution > 0.0 || law.tangential_restitution > 0.0
 }
