@@ -61,7 +61,7 @@ What a run measures it says at its end, on the terminal, on the page and among t
 | `under-resolved`, `under-resolved-swings`, `under-resolved-flight` | steps too long for the impacts of a block, for the swings of a beam, for a flight with θ other than ½: motions are likely off by more than 10 % ([resolution.md](resolution.md)) |
 | `unconverged` | steps whose contact problem was not solved to tolerance |
 | `unlocated` | steps of `event-driven` in which not every event was located ([schemes.md](schemes.md)) |
-| `energy-made` | contacts made 1 % or more of the energy scale, or of the energy lost ([schemes.md](schemes.md)) |
+| `energy-made` | contacts, or the scheme, made 1 % or more of the energy scale, or of the energy lost ([schemes.md](schemes.md)) |
 | `energy-account` | the identity of energy is off by more than rounding |
 | `deep-penetration`, `far-turn` | corners over a tenth of a block's shorter side deep; turns of more than 0.1 rad a step |
 | `passes-through`, `between-corners`, `past-the-end` | bodies inside each other where no contact is modelled ([impacts.md](impacts.md)) |

@@ -23,6 +23,10 @@ const MOST_ROUNDS: usize = 20;
 /// where d has settled to as much: 16 ε of Σ|J q| and of where a contact's points are on their
 /// bodies, which are lengths whatever the units. Contacts with duration are left alone, and so are those between what moves as
 /// prescribed. Contacts that a round closes are added before the next.
+///
+/// Only what the step has made is taken back: a contact that began in its surface is kept at its gap
+/// there, and one that began beside its surface, such as a corner that comes in under a beam's end, at
+/// the gap with which it came in. To push these out would throw the body up by as much.
 #[derive(Debug)]
 pub(crate) struct Projection<const D: usize> {
     stage: ContactStage<D>,
@@ -30,6 +34,9 @@ pub(crate) struct Projection<const D: usize> {
     one: ContactStage<D>,
     /// Contacts whose gaps are kept at 0 or more, in order of identity.
     ids: Vec<ContactId>,
+    /// The gaps at which contacts are kept that aren't kept at 0, m.
+    levels: Vec<(ContactId, f64)>,
+    at_start: Candidates<D>,
     /// Those of them that were pushed.
     pushed: Vec<ContactId>,
     near: Candidates<D>,
@@ -50,6 +57,8 @@ impl<const D: usize> Projection<D> {
             stage: ContactStage::new(),
             one: ContactStage::new(),
             ids: Vec::new(),
+            levels: Vec::new(),
+            at_start: Vec::new(),
             pushed: Vec::new(),
             near: Vec::new(),
             q: Vec::new(),
@@ -68,6 +77,8 @@ impl<const D: usize> Projection<D> {
         self.near.reserve(contacts);
         self.ids.reserve(contacts);
         self.pushed.reserve(contacts);
+        self.levels.reserve(contacts);
+        self.at_start.reserve(contacts);
         self.q.reserve(model.size().q);
         self.moved.reserve(model.size().v);
         self.trial.reserve(model.size().v);
@@ -99,11 +110,12 @@ impl<const D: usize> Projection<D> {
         self.q.extend_from_slice(q_start);
         self.ids.clear();
         self.pushed.clear();
+        self.levels.clear();
         self.moved.clear();
         self.moved.resize(model.size().v, 0.0);
         let mut last = None;
         for _ in 0..MOST_ROUNDS {
-            let found = self.take_in_what_is_inside(model, work)?;
+            let found = self.take_in_what_is_inside(model, state, work)?;
             if self.ids.is_empty() || !found && self.is_settled(model, work)? {
                 break;
             }
@@ -134,10 +146,16 @@ impl<const D: usize> Projection<D> {
         Ok(last)
     }
 
-    /// Adds the candidates with a gap below 0; whether there were any.
-    fn take_in_what_is_inside(&mut self, model: &Model<D>, work: &Workspace<D>) -> Result<bool, Mismatch> {
+    /// Adds the candidates with a gap below that at which they are kept; whether there were any.
+    fn take_in_what_is_inside(
+        &mut self,
+        model: &Model<D>,
+        state: &State,
+        work: &mut Workspace<D>,
+    ) -> Result<bool, Mismatch> {
         let before = self.ids.len();
-        for candidate in &work.candidates {
+        for k in 0..work.candidates.len() {
+            let candidate = &work.candidates[k];
             // The rows are looked at only where they may matter.
             if candidate.gap >= -ROUNDING * reach(candidate)
                 || model.law(candidate.law)?.impact.spring().is_some()
@@ -146,21 +164,40 @@ impl<const D: usize> Projection<D> {
                 continue;
             }
             self.one.clear();
-            let movable = self.one.add(model, &self.q, candidate, &self.warm, &self.memory)?;
-            if movable && candidate.gap < -rounding(&self.one, 0, candidate, &self.q, model) {
-                self.ids.push(candidate.id);
+            if !self.one.add(model, &self.q, candidate, &self.warm, &self.memory)? {
+                continue;
+            }
+            let rounding = rounding(&self.one, 0, candidate, &self.q, model);
+            if candidate.gap >= -rounding {
+                continue;
+            }
+            let (id, gap) = (candidate.id, candidate.gap);
+            if !self.levels.iter().any(|(known, _)| *known == id) {
+                work.locate(model, &state.q, &[id], &mut self.at_start)?;
+                let level = self.at_start.first().map_or(gap, |candidate| candidate.gap);
+                // Rounding is taken back, or it would add up.
+                let level = if level < -2.0 * rounding { level } else { 0.0 };
+                self.levels.push((id, level));
+            }
+            if gap < self.level(id) - rounding {
+                self.ids.push(id);
             }
         }
         self.ids.sort_unstable();
         Ok(self.ids.len() > before)
     }
 
-    /// Whether no gap is below 0, and none of a contact that was pushed above it; and whether the last
+    /// The gap at which a contact is kept, m.
+    fn level(&self, id: ContactId) -> f64 {
+        self.levels.iter().find(|(known, _)| *known == id).map_or(0.0, |(_, level)| *level)
+    }
+
+    /// Whether no gap is below that at which it is kept, and none of a contact that was pushed above it; and whether the last
     /// round moved nothing any more: gaps settle before the directions in which they were closed.
     fn is_settled(&mut self, model: &Model<D>, work: &mut Workspace<D>) -> Result<bool, Mismatch> {
         work.locate(model, &self.q, &self.ids, &mut self.near)?;
         Ok(self.near.iter().all(|candidate| {
-            let (gap, id) = (candidate.gap, candidate.id);
+            let (gap, id) = (candidate.gap - self.level(candidate.id), candidate.id);
             let Ok(i) = self.stage.contacts().binary_search_by_key(&id, |contact| contact.id) else { return true };
             let rounding = rounding(&self.stage, i, candidate, &self.q, model);
             let moves = self.stage.speed(i, &self.trial) > rounding;
@@ -177,7 +214,7 @@ impl<const D: usize> Projection<D> {
             }
             let i = self.stage.len() - 1;
             let mut gap = -self.stage.velocity(i, &self.moved)?;
-            gap[0] += candidate.gap;
+            gap[0] += candidate.gap - self.level(candidate.id);
             self.stage.set(i, Vector::zeros(), gap, Vector::zeros(), Rule::Frictionless)?;
         }
         Ok(())

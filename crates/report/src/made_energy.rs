@@ -1,4 +1,4 @@
-//! The warning that contacts made energy, and what to take instead.
+//! The warning that contacts, or a scheme, made energy, and what to take instead.
 
 use crate::Warning;
 use teeter_integrator::{Ledger, State};
@@ -18,8 +18,34 @@ pub(crate) fn warning(scene: &Scene, state: &State) -> Option<Warning> {
     let ledger = &state.ledger;
     let (made, lost) = (ledger.positive_contact_work, lost(ledger));
     // Also false for NaN.
-    let much = made.sum >= PART * ledger.scale.min(lost) && made.sum > NOTHING * ledger.scale;
-    much.then(|| Warning { code: ENERGY_MADE.into(), count: 1, first_t: None, text: text(scene, ledger, lost) })
+    let much = |made: f64| made >= PART * ledger.scale.min(lost) && made > NOTHING * ledger.scale;
+    let text = if much(made.sum) {
+        text(scene, ledger, lost)
+    } else if much(by_scheme(ledger)) {
+        text_of_scheme(scene, ledger)
+    } else {
+        return None;
+    };
+    Some(Warning { code: ENERGY_MADE.into(), count: 1, first_t: None, text })
+}
+
+/// What the scheme itself gave the bodies, by projecting places or by its rule, J.
+fn by_scheme(ledger: &Ledger) -> f64 {
+    ledger.sum.projection.max(0.0) + ledger.sum.numerical.max(0.0)
+}
+
+fn text_of_scheme(scene: &Scene, ledger: &Ledger) -> String {
+    let made = by_scheme(ledger);
+    format!(
+        "{} made {made:.2e} J of energy, {} of the scene's energy scale of {:.2e} J: {:.2e} J by projecting places and {:.2e} J by its own rule; \
+         the energy of the motion is off by as much; take a shorter step (`time.step`), or `time.scheme = \"{}\"`, which makes none",
+        scene.time.scheme.word(),
+        percent(made / ledger.scale),
+        ledger.scale,
+        ledger.sum.projection.max(0.0),
+        ledger.sum.numerical.max(0.0),
+        SchemeName::MoreauJeanClosed.word()
+    )
 }
 
 /// What contacts, friction, damping and the scheme took from the bodies, J.

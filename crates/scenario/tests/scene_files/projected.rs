@@ -94,3 +94,51 @@ fn a_theta_of_its_own_is_refused() {
         assert!(matches!(found.as_slice(), [one] if one.contains("time.theta") && one.contains(scheme)), "{found:#?}");
     }
 }
+
+/// A block that tips off the end of its support: a corner comes in under the beam's end, 1 cm deep at
+/// once. What throws it out again throws the block up by as much as it holds.
+#[test]
+fn a_corner_that_comes_in_under_the_end_of_a_beam_is_not_thrown_out() {
+    let text = r#"
+        title = "Off the end"
+        [time]
+        end = "0.15 s"
+        step = "100 us"
+        [material.soft]
+        density = "1200 kg/m^3"
+        youngs_modulus = "0.05 GPa"
+        [material.light]
+        density = "300 kg/m^3"
+        [beam.strip]
+        material = "soft"
+        span = "20 cm"
+        width = "3 cm"
+        thickness = "10 mm"
+        elements = 6
+        supports = ["clamped", "clamped"]
+        damping_ratio = { mode = 1, ratio = 0.01 }
+        start = "static"
+        [block.box]
+        material = "light"
+        width = "3 cm"
+        height = "6 cm"
+        depth = "3 cm"
+        on = "strip"
+        at = "19 cm"
+        tilt = "2 deg"
+        [contact.feet]
+        between = ["box", "strip"]
+        friction = 0.3
+    "#;
+    for scheme in SCHEMES {
+        let sets = [("time.scheme".to_owned(), scheme.to_owned())];
+        let scene = teeter_scenario::load(text.as_bytes(), "scene.toml", "scene", &sets).unwrap().scene;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        assert_eq!(simulation.run(&mut []).unwrap(), Ended::Complete);
+        let ledger = &simulation.state.ledger;
+        // It was 0.16 of the scale.
+        assert!(ledger.sum.projection < 0.01 * ledger.scale, "{scheme}: {} J", ledger.sum.projection);
+        assert!(ledger.current.total() < ledger.initial.total(), "{scheme}");
+        assert!(simulation.state.tally.max_penetration > 5e-3, "{scheme}: nothing came in");
+    }
+}
