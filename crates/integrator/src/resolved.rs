@@ -90,8 +90,8 @@ pub struct Resolved<const D: usize> {
     posed: Vec<Posed>,
     /// Of each velocity: whether it is of something elastic.
     elastic: Vec<bool>,
-    /// Of each contact of the stage, whether its gap is held.
-    holds: Vec<bool>,
+    /// The contacts that were looked at, and whether their gaps are held.
+    holds: Vec<(ContactId, bool)>,
     guarded: Vec<bool>,
     stays: Vec<bool>,
     /// The part of the step that is taken.

@@ -27,6 +27,9 @@ impl<const D: usize> Resolved<D> {
     ) -> Result<Option<Outcome>, StepError> {
         let keep = if part.h == from.dt * self.of_step { Keep::Pinned } else { Keep::Once };
         work.factors(model, weights(part.h, THETA), &from.q, keep)?;
+        if self.elastic.len() != from.v.len() {
+            self.find_what_is_elastic(model, part.h, work);
+        }
         self.step.free_velocity(model, from, work, THETA, part);
         self.v_free.copy_from_slice(&self.step.v_end);
         self.step.close(model, from, part.h, THETA)?;

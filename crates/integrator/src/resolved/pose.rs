@@ -56,11 +56,11 @@ impl<const D: usize> Resolved<D> {
         if !self.stage.add(model, &self.q_mid, candidate, &from.warm, &from.memory)? {
             return Ok(());
         }
-        let held = match self.holds.get(i) {
-            Some(held) => *held,
+        let held = match self.holds.iter().find(|(id, _)| *id == candidate.id) {
+            Some((_, held)) => *held,
             None => {
                 let held = self.is_held(i, model, part, work);
-                self.holds.push(held);
+                self.holds.push((candidate.id, held));
                 held
             }
         };
@@ -68,18 +68,20 @@ impl<const D: usize> Resolved<D> {
         if held && gives_back {
             return Err(StepError::Unsupported { what: RESTITUTION });
         }
-        let gap_before = find(&self.start, candidate.id).map_or(0.0, |start| start.gap);
         let way = self.way_of_forces(i, from) * part.h / (self.of_step * self.of_step);
         let persisting = self.stage.contacts()[i].persisting;
-        let approach = if persisting { 0.0 } else { gap_before };
         // Off the end of its surface by then, it has no frame there.
         let ahead = find(&self.ahead, candidate.id).copied();
+        let start = find(&self.start, candidate.id).map(|start| start.gap);
         if held
-            && let Some(ahead) = &ahead
+            && let (Some(start), Some(ahead)) = (start, &ahead)
             && pass > 0
         {
-            self.take_discrete_gradient(i, ahead.gap - gap_before, part.h)?;
+            self.take_discrete_gradient(i, ahead.gap - start, part.h)?;
         }
+        // What comes in from beside its surface is kept as deep as it came.
+        let gap_before = start.unwrap_or_else(|| ahead.map_or(0.0, |ahead| ahead.gap.min(0.0)));
+        let approach = if persisting { 0.0 } else { gap_before };
         let u_before = self.stage.velocity(i, &from.v)?;
         let u_free = self.stage.velocity(i, &self.v_free)?;
         let b = match &ahead {
