@@ -6,12 +6,12 @@ from html import escape
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 760, 470, 80, 190, 46, 56
 COLOURS = {
     "teeter": "#0b6e99",
-    "teeter, tuned": "#5fb0d3",
+    "moreau-jean, tuned": "#5fb0d3",
     "siconos": "#c2410c",
     "mujoco": "#4d7c0f",
     "rapier": "#7e22ce",
 }
-MARKS = {"teeter": "circle", "teeter, tuned": "circle", "siconos": "square", "mujoco": "diamond", "rapier": "triangle"}
+MARKS = {"teeter": "circle", "moreau-jean, tuned": "circle", "siconos": "square", "mujoco": "diamond", "rapier": "triangle"}
 
 
 def _mark(kind, x, y, colour, faint):

@@ -110,6 +110,16 @@ struct RankOne {
     scale: f64,
 }
 
+impl RankOne {
+    /// Becomes `weight` g gᵀ of its g beside what `factor` is of without it.
+    fn take(&mut self, weight: f64, factor: &Factor) {
+        self.u.copy_from_slice(&self.g);
+        factor.solve_linear(&mut self.u);
+        let along: f64 = self.g.iter().zip(&self.u).map(|(g, u)| g * u).sum();
+        self.scale = weight / (1.0 + weight * along);
+    }
+}
+
 /// The factor of a weighted sum of M, C and K, made by [`Beam::factor`].
 ///
 /// Solving needs no scratch and no `mut`: one factor may serve several threads.
@@ -236,7 +246,8 @@ impl Beam {
             None => sum.combine(&[(m, &self.m), (k, &self.k)]),
         }
         if let (Some(membrane), true) = (&self.membrane, tension != 0.0) {
-            sum.add_scaled(k * tension, &membrane.matrix);
+            // Not in C = a₁K, which is that of the beam without it.
+            sum.add_scaled(weights.stiffness * tension, &membrane.matrix);
         }
     }
 
@@ -340,6 +351,38 @@ impl Beam {
         Ok(())
     }
 
+    /// Makes `factor`, with its own weights m, c, k, that of
+    ///
+    /// ```text
+    /// m M + c C + k (K + N G) + r g gᵀ
+    /// ```
+    ///
+    /// of a beam held along its axis: N the `tension` (N) beside the beam's own axial force, G that of
+    /// [`Beam::slope_form`], r the `weight` of the matrix of rank one. It is what a step is solved by
+    /// whose axial force is unknown. Other beams: N and g count for nothing. Factorises, and solves
+    /// once; no allocation.
+    ///
+    /// # Errors
+    /// As [`Beam::refactor`].
+    ///
+    /// # Panics
+    /// If `g` has not [`Beam::dofs`] entries.
+    pub fn refactor_stretched(
+        &self,
+        tension: f64,
+        weight: f64,
+        g: &[f64],
+        factor: &mut Factor,
+    ) -> Result<(), FactorError> {
+        factor.update(self, factor.weights, tension)?;
+        if let Some(mut stretch) = factor.stretch.take() {
+            stretch.g.copy_from_slice(g);
+            stretch.take(weight, factor);
+            factor.stretch = Some(stretch);
+        }
+        Ok(())
+    }
+
     /// Takes the stretching at `q` into the factor of a beam that is held along its axis: K + EA/L
     /// (Gq)(Gq)ᵀ in place of K, with G the matrix of ∫w'² dx = qᵀG q. Nothing for other beams. One
     /// solve, no allocation.
@@ -354,11 +397,7 @@ impl Beam {
         let (Some(membrane), Some(mut stretch)) = (&self.membrane, factor.stretch.take()) else { return };
         stretch.g.fill(0.0);
         membrane.slopes.add_product(1.0, self.bend(q), self.split_mut(&mut stretch.g).0);
-        stretch.u.copy_from_slice(&stretch.g);
-        factor.solve_linear(&mut stretch.u);
-        let along: f64 = stretch.g.iter().zip(&stretch.u).map(|(g, u)| g * u).sum();
-        let weight = factor.weights.stiffness * membrane.stiffness;
-        stretch.scale = weight / (1.0 + weight * along);
+        stretch.take(factor.weights.stiffness * membrane.stiffness, factor);
         factor.stretch = Some(stretch);
     }
 }

@@ -18,6 +18,7 @@ pub use stress::PeakStress;
 
 use crate::beam::Beam;
 use crate::error::{BeamError, check, check_len};
+use crate::membrane::Membrane;
 
 /// A load on the beam, upwards positive.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,9 +61,10 @@ pub struct Actions<'a> {
     pub acceleration: &'a [f64],
     /// All loads but those of supports.
     pub loads: &'a [SpanLoad],
-    /// Of a beam held along its axis, in a time step: the deflection at which the step took the
-    /// stretching, q⁰ + hθv⁰ ([`Beam::follow`]). Empty: `q` itself.
-    pub stretched_at: &'a [f64],
+    /// Of a beam held along its axis, in a time step: what the step took for the axial force that the
+    /// deflection adds, N; EA/(4L) (s⁰ + s¹) with s = ∫w'² dx at both ends of a θ step. `None`: that
+    /// of `q`.
+    pub tension: Option<f64>,
 }
 
 /// What a support bears: the force and the couple of the support on the beam.
@@ -134,8 +136,8 @@ impl SectionForces {
                 check_len(name, dofs, vector.len())?;
             }
         }
-        if !actions.stretched_at.is_empty() {
-            check_len("stretched_at", dofs, actions.stretched_at.len())?;
+        if let Some(tension) = actions.tension {
+            check("tension", tension, true, "finite")?;
         }
         self.elastic_forces(beam, actions);
         self.inside.clear();
@@ -155,8 +157,8 @@ impl SectionForces {
     /// K_e q_e + C_e v_e + M_e a_e.
     fn elastic_forces(&mut self, beam: &Beam, actions: &Actions<'_>) {
         let q = beam.bend(actions.q);
-        let stretched = if actions.stretched_at.is_empty() { q } else { beam.bend(actions.stretched_at) };
-        let stretching = beam.membrane.as_ref().map(|membrane| (membrane, membrane.force_towards(stretched, q)));
+        let tension = |membrane: &Membrane| actions.tension.unwrap_or_else(|| membrane.force(q));
+        let stretching = beam.membrane.as_ref().map(|membrane| (membrane, tension(membrane)));
         let damping = &beam.spec.damping;
         self.deceleration.fill(0.0);
         if let (Some(modal), false) = (&beam.modal, actions.velocity.is_empty()) {
@@ -173,7 +175,7 @@ impl SectionForces {
                 add(end, 1.0, foundation.on_nodes(e, q));
             }
             if let Some((membrane, force)) = stretching {
-                add(end, force, membrane.slopes.on_nodes(e, stretched));
+                add(end, force, membrane.slopes.on_nodes(e, q));
             }
             if !actions.velocity.is_empty() && beam.is_damped() {
                 let v = beam.bend(actions.velocity);

@@ -8,8 +8,18 @@
 //! V = EA/(8L) s²        −∂V/∂q = −EA/(2L) s G q
 //! ```
 //!
-//! A θ step with θ = ½ takes the force at q* = q⁰ + ½h v⁰ and adds EA/L (Gq*)(Gq*)ᵀ, a matrix of
-//! rank one, to K. That is linear in v¹, so a contact problem stays one. And it keeps an energy
+//! A step takes the mean of the tension at its ends, with the slopes of q̄ = ½(q⁰ + q¹):
+//!
+//! ```text
+//! N̄ = EA/(4L) (s⁰ + s¹)        s¹ − s⁰ = 2 q̄ᵀG Δq        work of −N̄ G q̄: −Δ(EA/(8L) s²) = −ΔV
+//! ```
+//!
+//! So V itself is kept, whatever the step's length (the discrete gradient of Gonzalez 1996, doi
+//! 10.1007/BF02440162, here exact because V is a function of one form). N̄ is an unknown of the
+//! step: [`Beam::refactor_stretched`](crate::Beam::refactor_stretched) is what it is found by.
+//!
+//! A step that is to be linear in v¹ takes the force at q* = q⁰ + ½h v⁰ and adds EA/L (Gq*)(Gq*)ᵀ,
+//! a matrix of rank one, to K ([`Beam::follow`](crate::Beam::follow)). It keeps another energy
 //! exactly: with σ = s − ¼h² vᵀG v,
 //!
 //! ```text
@@ -18,7 +28,8 @@
 //!
 //! because q̄ − q* = ¼h Δv and Δq = ½h(v⁰ + v¹). So EA/(8L) σ², never negative, takes the place of
 //! V, from which it differs by O(h²); no iteration, and bounded for every h. Not accurate for every
-//! h: modes with ωh ≫ 1 that ring, v changing its sign in every step, take from σ and so from N.
+//! h: modes with ωh ≫ 1 that ring, v changing its sign in every step, take (ωh/2)² times from σ, and
+//! so from N, what they add to s.
 //! (Auxiliary variables of this kind: Yang 2016, doi 10.1016/j.jcp.2016.09.029; that this one is a
 //! function of q and v, and so can't drift, is peculiar to the quartic potential.)
 
@@ -40,12 +51,6 @@ impl Membrane {
     /// What the deflection adds to the axial force, N.
     pub(crate) fn force(&self, q: &[[f64; 2]]) -> f64 {
         0.5 * self.stiffness * self.slopes.form(q)
-    }
-
-    /// The force of a θ step that takes it at `taken` and its matrix of rank one from there to `q`,
-    /// N: to be applied with the slopes of `taken`, EA/(2L) q*ᵀG(2q − q*).
-    pub(crate) fn force_towards(&self, taken: &[[f64; 2]], q: &[[f64; 2]]) -> f64 {
-        0.5 * self.stiffness * (2.0 * self.slopes.between(taken, q) - self.slopes.form(taken))
     }
 
     /// V, J.

@@ -236,6 +236,33 @@ impl Beam {
         self.membrane.as_ref().map_or(0.0, |membrane| membrane.modification(h, self.bend(q), self.bend(v)))
     }
 
+    /// EA/(2L), N/m, of a beam held along its axis: its deflection adds this times ∫w'² dx to the
+    /// axial force. 0 for other beams.
+    #[must_use]
+    pub fn stretching_stiffness(&self) -> f64 {
+        self.membrane.as_ref().map_or(0.0, |membrane| 0.5 * membrane.stiffness)
+    }
+
+    /// xᵀG y = ∫w_x' w_y' dx of two deflections of a beam held along its axis, m; 0 for other beams.
+    ///
+    /// # Panics
+    /// If `x` or `y` has not [`Beam::dofs`] entries.
+    #[must_use]
+    pub fn slope_form(&self, x: &[f64], y: &[f64]) -> f64 {
+        self.membrane.as_ref().map_or(0.0, |membrane| membrane.slopes.between(self.bend(x), self.bend(y)))
+    }
+
+    /// y += a G x of a beam held along its axis, with [`slope_form`](Beam::slope_form)'s G: under a
+    /// tension of −a (N) the transverse forces on the nodes (N, N m). Nothing for other beams.
+    ///
+    /// # Panics
+    /// If `x` or `y` has not [`Beam::dofs`] entries.
+    pub fn add_slope_product(&self, a: f64, x: &[f64], y: &mut [f64]) {
+        if let Some(membrane) = &self.membrane {
+            membrane.slopes.add_product(a, self.bend(x), self.split_mut(y).0);
+        }
+    }
+
     /// The axial force, N, tension positive: N₀, and of a beam held along its axis what its
     /// deflection adds. Axial dofs have a force of their own in every element:
     /// [`Beam::axial_forces`].

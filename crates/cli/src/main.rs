@@ -47,6 +47,9 @@ enum Command {
         /// Find the longest step that reaches this accuracy; the scene must have `step = "auto"` or none, as with --set time.step=auto
         #[arg(long, value_name = "X")]
         accuracy: Option<String>,
+        /// Find until when the motion can be told: by runs with half the step, and from 1e-12 beside the start
+        #[arg(long, conflicts_with = "from")]
+        horizon: bool,
         /// Print errors only
         #[arg(long)]
         quiet: bool,
@@ -187,6 +190,7 @@ fn main() -> ExitCode {
             out,
             mut set,
             accuracy,
+            horizon,
             quiet,
             force,
             export_problems,
@@ -214,6 +218,7 @@ fn main() -> ExitCode {
                 checkpoint_every,
                 extent: model,
                 from,
+                horizon,
                 dump_unconverged,
             };
             run::run(&options).into()

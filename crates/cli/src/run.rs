@@ -8,7 +8,7 @@ use crate::render::{Presenter, refusal};
 use crate::scene;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use teeter_report::{ENERGY_MADE, UNLOCATED};
+use teeter_report::{ENERGY_MADE, ENERGY_TAKEN, HORIZON, UNLOCATED};
 use teeter_run::{
     Done, Dump, EndedWord, Existing, ExportWhen, Extent, Hooks, LoadError, PrepareError, Prepared, RunError, RunJob,
     Start, Summary,
@@ -54,6 +54,8 @@ pub(crate) struct Options {
     pub(crate) extent: Extent,
     /// A state to start from.
     pub(crate) from: Option<PathBuf>,
+    /// Whether to find until when the motion can be told.
+    pub(crate) horizon: bool,
     /// Where to write the state before the first step that is not solved.
     pub(crate) dump_unconverged: Option<PathBuf>,
 }
@@ -75,6 +77,9 @@ impl Options {
         }
         if let Some(path) = &self.from {
             job = job.from_state(path);
+        }
+        if self.horizon {
+            job = job.horizon();
         }
         if let Some(path) = &self.dump_unconverged {
             job = job.dump_unconverged(path);
@@ -178,7 +183,7 @@ fn notes(prepared: &Prepared) -> Vec<String> {
 
 /// Tells how a run ended and what it wrote beside its results.
 fn conclude(console: Console, options: &Options, done: &Done) -> Exit {
-    let exit = tell_end(console, &done.summary, &done.folder, options.checkpoint_every.is_some());
+    let exit = tell_end(console, options, &done.summary, &done.folder);
     if let Some(exported) = &done.exported {
         let count = exported.count;
         let problems = if count == 1 { "problem" } else { "problems" };
@@ -199,19 +204,23 @@ fn conclude(console: Console, options: &Options, done: &Done) -> Exit {
     exit
 }
 
-fn tell_end(console: Console, summary: &Summary, folder: &Path, resumable: bool) -> Exit {
+fn tell_end(console: Console, options: &Options, summary: &Summary, folder: &Path) -> Exit {
     // All others have been told as they came.
-    for warning in summary.warnings.iter().filter(|warning| [ENERGY_MADE, UNLOCATED].contains(&warning.code.as_ref())) {
+    for warning in summary
+        .warnings
+        .iter()
+        .filter(|warning| [ENERGY_MADE, ENERGY_TAKEN, HORIZON, UNLOCATED].contains(&warning.code.as_ref()))
+    {
         console.note(&format!("warning: {}", warning.text));
     }
     match summary.ended {
         EndedWord::Complete => {
-            console.note(&told(summary, folder));
+            console.note(&told(summary, folder, options.horizon));
             Exit::Done
         }
         EndedWord::Interrupted => {
             let mut text = how_it_ended(summary, "interrupted");
-            text.push_str(if resumable { "; --resume goes on from there" } else { "" });
+            text.push_str(if options.checkpoint_every.is_some() { "; --resume goes on from there" } else { "" });
             console.note(&text);
             Exit::Interrupted
         }
@@ -234,7 +243,7 @@ fn how_it_ended(summary: &Summary, why: &str) -> String {
 }
 
 /// What a user wants to know first.
-fn told(summary: &Summary, folder: &Path) -> String {
+fn told(summary: &Summary, folder: &Path, horizon: bool) -> String {
     let mut text = format!(
         "{}: {} steps of {} s in {:.2} s ({:.2} µs a step)\n",
         summary.title, summary.steps, summary.dt, summary.wall_seconds, summary.us_per_step
@@ -254,6 +263,10 @@ fn told(summary: &Summary, folder: &Path) -> String {
     ));
     if summary.contact.unconverged_steps > 0 {
         text.push_str(&format!("  {} steps not solved to tolerance\n", summary.contact.unconverged_steps));
+    }
+    // Where it is earlier, a warning has said so.
+    if horizon && summary.warnings.iter().all(|warning| warning.code != HORIZON) {
+        text.push_str("  horizon: with half the step, and started 1e-12 beside itself, the motion is the same to the end, to 1 %\n");
     }
     text.push_str(&format!("  results in {0}, to be looked at in {0}/report.html", folder.display()));
     text

@@ -62,10 +62,12 @@ What a run measures it says at its end, on the terminal, on the page and among t
 | `unconverged` | steps whose contact problem was not solved to tolerance |
 | `unlocated` | steps of `event-driven` in which not every event was located ([schemes.md](schemes.md)) |
 | `energy-made` | contacts, or the scheme, made 1 % or more of the energy scale, or of the energy lost ([schemes.md](schemes.md)) |
+| `energy-taken` | the scheme's own rule took 1 % or more of the energy scale ([schemes.md](schemes.md)) |
+| `horizon` | until when the motion can be told, where `--horizon` finds that it is before the end ([accuracy.md](accuracy.md)) |
 | `energy-account` | the identity of energy is off by more than rounding |
 | `deep-penetration`, `far-turn` | corners over a tenth of a block's shorter side deep; turns of more than 0.1 rad a step |
 | `passes-through`, `between-corners`, `past-the-end` | bodies inside each other where no contact is modelled ([impacts.md](impacts.md)) |
-| `large-deflection`, `yield`, `stretching` | a beam out of linear theory, or over its yield strength; a step too long for its stretching |
+| `large-deflection`, `yield` | a beam out of linear theory, or over its yield strength |
 | `model-limits` | energy or penetration over what was taken for granted where parts were left out ([required.md](required.md)) |
 ";
 

@@ -49,8 +49,10 @@ pub(crate) struct ClosedStep<const D: usize, M = ThetaStep> {
     pub(crate) of_step: f64,
     /// Of each contact of the step: its shift were there no restitution.
     resting_shift: Vec<f64>,
+    /// Of each contact of the step: its velocity along the surface at the start, m/s.
+    pub(crate) slides: Vec<Vector<D>>,
     /// Which contacts have the shift that can't give energy.
-    guarded: Vec<bool>,
+    pub(crate) guarded: Vec<bool>,
     /// Which contacts stay closed.
     pub(crate) stays: Vec<bool>,
 }
@@ -88,6 +90,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             looked_for: 0,
             of_step: 1.0,
             resting_shift: Vec::new(),
+            slides: Vec::new(),
             guarded: Vec::new(),
             stays: Vec::new(),
         }
@@ -110,6 +113,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         self.one.reserve(model);
         self.closed.reserve(contacts);
         self.resting_shift.reserve(contacts);
+        self.slides.reserve(contacts);
         self.guarded.reserve(contacts);
         self.stays.reserve(contacts);
         state.warm.reserve(contacts, D);
@@ -170,7 +174,15 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             self.look_ahead(model, from, span.h, work)?;
             self.looked_for = self.closed.len();
         }
-        let outcome = self.solve(model, from, span, work).map_err(|source| StepError::Problem { t: from.t, source })?;
+        let outcome = loop {
+            let outcome =
+                self.solve(model, from, span, work).map_err(|source| StepError::Problem { t: from.t, source })?;
+            // Frames and gaps stay those of the first round: its fixed point is then that of one problem.
+            if !self.step.takes_another_round(model, from, span.h, work) {
+                break self.step.judge(outcome, work.settings.tolerance);
+            }
+            self.v_free.copy_from_slice(self.step.v_end());
+        };
         self.step.end(model, from, span.h)?;
         work.detect(model, self.step.q_end(), 0.0)?;
         Ok(outcome)
@@ -275,6 +287,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         self.step.restart(&self.v_free);
         self.stage.clear();
         self.resting_shift.clear();
+        self.slides.clear();
         if self.closed.is_empty() {
             return Ok(None);
         }
@@ -330,6 +343,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             shift[0] = 0.0;
         }
         self.resting_shift.push(shift[0]);
+        self.slides.push(before_t - tangential(&shift));
         let rule = if law.impact.spring().is_some() {
             let gap = match state.memory.spring_gap(candidate.id) {
                 Some(gap) if gap < 0.0 => gap,

@@ -23,6 +23,7 @@
 //! ```
 
 mod scheme;
+mod tension;
 
 pub use scheme::{Made, SchemeFailure, SchemeProperty, check_scheme};
 
@@ -81,6 +82,9 @@ pub enum Property {
     Inverse,
     /// A refactored factor equals a new one; an update doesn't depend on earlier updates.
     Refactor,
+    /// What [stretches](crate::Dynamics::stretching): G is symmetric, the forces beside the tension
+    /// −κ (qᵀG q) G q are all others, and a stretched factor is the inverse of its matrix.
+    Stretching,
     /// The coupling of rows is J W Jᵀ, whatever was coupled before.
     Couple,
     /// The response to impulses is W Jᵀ p.
@@ -272,6 +276,7 @@ impl Check<'_> {
         self.energies(&x, &moving);
         self.inverse(factor.as_mut(), &inner);
         self.refactor(&inner);
+        self.tension(&x, &y, &inner);
         if let Some(touches) = self.touches() {
             touches.iter().for_each(|touch| self.rows(touch, &moving));
             touches.iter().for_each(|touch| self.bias(touch));

@@ -100,6 +100,7 @@ mod state;
 mod step_motion;
 #[cfg(feature = "serde")]
 mod stored;
+mod stretching;
 mod subsystem;
 mod theta_step;
 mod workspace;
@@ -141,6 +142,7 @@ pub use signal::{Formula, Given, Motion, Signal, SignalError, Table};
 pub use spring::SpringStep;
 pub use stage::{ContactError, ContactStage, Look, Over, Rule};
 pub use state::{STEP_ROUNDING, State, StateError, StepSpan, Tally, WarmStart};
+pub use stretching::Stretching;
 pub use subsystem::{
     Bodies, Compliance, Coupling, Dynamics, Energy, FactorError, Linearised, PartRows, Rows, Size, Subsystem, Traits,
     Weights,

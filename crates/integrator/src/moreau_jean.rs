@@ -106,20 +106,25 @@ impl<const D: usize> Scheme<D> for MoreauJean<D> {
         work.factors(model, w, &state.q, if h == state.dt { Keep::Pinned } else { Keep::Once })?;
 
         self.step.free_velocity(model, state, work, theta, &span);
-        if model.has_springs() {
-            self.step.move_freely(model, state, h, theta)?;
-        }
-        if model.has_contacts() {
-            self.step.predict(model, &state.q, &state.v, activation_gamma * h);
-        }
-        let ThetaStep { q_at, q_free, v_end: v_free, .. } = &mut self.step;
-        self.stage.find(model, state, &Look::new(q_at, gap_tolerance).with_free_end(q_free), work)?;
         let (over, responses) = (Over::Step { h, weight: theta }, Responses::Of(w));
         let problem = |source| StepError::Problem { t, source };
-        self.stage.pose(model, state, &state.v, v_free, over).map_err(problem)?;
-        let outcome = self.stage.solve(model, work, &responses, over).map_err(problem)?;
-        self.stage.respond(model, work, &responses, v_free).map_err(problem)?;
-        self.stage.complete(v_free)?;
+        let outcome = loop {
+            if model.has_springs() {
+                self.step.move_freely(model, state, h, theta)?;
+            }
+            if model.has_contacts() {
+                self.step.predict(model, &state.q, &state.v, activation_gamma * h);
+            }
+            let ThetaStep { q_at, q_free, v_end: v_free, .. } = &mut self.step;
+            self.stage.find(model, state, &Look::new(q_at, gap_tolerance).with_free_end(q_free), work)?;
+            self.stage.pose(model, state, &state.v, v_free, over).map_err(problem)?;
+            let outcome = self.stage.solve(model, work, &responses, over).map_err(problem)?;
+            self.stage.respond(model, work, &responses, v_free).map_err(problem)?;
+            self.stage.complete(v_free)?;
+            if !self.step.takes_another_round(model, state, work, theta, h) {
+                break self.step.judge(outcome, work.settings.tolerance);
+            }
+        };
         self.step.close(model, state, h, theta)?;
 
         let energy = self.step.work_of_forces(model, state, work, &self.stage, h, theta);

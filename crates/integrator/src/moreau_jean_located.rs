@@ -2,6 +2,7 @@
 
 mod impact;
 mod locate;
+mod turn;
 
 use crate::closed_step::{ClosedStep, THETA};
 use crate::factors::Factors;
@@ -15,6 +16,7 @@ use locate::Hit;
 pub(crate) use locate::rate_at;
 use teeter_contact::Outcome;
 use teeter_detect::{Candidates, ContactId};
+use turn::Slide;
 
 /// The settings of [`MoreauJeanLocated`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +32,7 @@ impl Default for MoreauJeanLocatedSettings {
 }
 
 /// What it can't step.
-const FOLLOWERS: &str = "matrices that follow their coordinates, as of a beam held along its axis: they keep energy in steps of one size only";
+const FOLLOWERS: &str = "matrices that follow their coordinates: what energy they keep depends on the size of the step";
 
 /// Steps for which a contact with something elastic pressed lately.
 const LATELY: f64 = 50.0;
@@ -44,8 +46,8 @@ pub(crate) fn is_elastic<const D: usize>(part: &Part<D>, index: usize, w: Weight
 /// W at an instant: M⁻¹.
 const MASSES: Weights = Weights { mass: 1.0, damping: 0.0, stiffness: 0.0 };
 
-/// The step of [`MoreauJeanClosed`](crate::MoreauJeanClosed), divided where a contact closes: of
-/// second order through impacts.
+/// The step of [`MoreauJeanClosed`](crate::MoreauJeanClosed), divided where a contact closes and where a
+/// slide stops: of second order through both.
 ///
 /// A step in which no open contact would end in its surface is that of the closed scheme. Otherwise
 /// the time at which the first one touches is located; the step up to there is a step of its own,
@@ -61,8 +63,9 @@ const MASSES: Weights = Weights { mass: 1.0, damping: 0.0, stiffness: 0.0 };
 /// would make energy; then no impact does.
 ///
 /// Contacts with duration have no impact: only the time at which they close is located. Subsystems
-/// whose matrices follow their coordinates, such as beams held along their axis, are refused: they
-/// keep their energy in steps of one size only.
+/// whose matrices follow their coordinates are refused, as what energy they keep depends on the size
+/// of the step; but not those that [stretch](crate::Dynamics::stretching), such as beams held along
+/// their axis.
 #[derive(Debug)]
 pub struct MoreauJeanLocated<const D: usize> {
     settings: MoreauJeanLocatedSettings,
@@ -73,6 +76,8 @@ pub struct MoreauJeanLocated<const D: usize> {
     impact: ContactStage<D>,
     /// Open contacts that the step would end inside of.
     hits: Vec<Hit>,
+    /// Slides that stop within the attempt.
+    slides: Vec<Slide<D>>,
     ids: Vec<ContactId>,
     near: Candidates<D>,
     /// Rows of one contact.
@@ -91,7 +96,7 @@ pub struct MoreauJeanLocated<const D: usize> {
 }
 
 impl<const D: usize> MoreauJeanLocated<D> {
-    /// Impacts that are located in a step. What comes after them in the same step is taken as a
+    /// Impacts and ends of slides that are located in a step. What comes after them in the same step is taken as a
     /// fixed step takes it: an open contact closes where the rest of the step would end in its
     /// surface.
     pub const MOST_IMPACTS: usize = 8;
@@ -112,6 +117,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
             from: None,
             impact: ContactStage::new(),
             hits: Vec::new(),
+            slides: Vec::new(),
             ids: Vec::new(),
             near: Vec::new(),
             one: ContactStage::new(),
@@ -142,7 +148,8 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {
         // Their modified energy depends on the size of the step: each change of it would take or
         // give some.
-        if model.parts().iter().any(|part| part.traits.follows_coordinates) {
+        let refused = |part: &Part<D>| part.traits.follows_coordinates && part.system.stretching().is_none();
+        if model.parts().iter().any(refused) {
             return Err(StepError::Unsupported { what: FOLLOWERS });
         }
         let contacts = model.detector().capacity();
@@ -150,6 +157,7 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         self.impact.reserve(model);
         self.one.reserve(model);
         self.hits.reserve(contacts);
+        self.slides.reserve(contacts);
         self.ids.reserve(contacts);
         self.near.reserve(contacts);
         self.stays.reserve(contacts);
@@ -257,6 +265,19 @@ impl<const D: usize> MoreauJeanLocated<D> {
             } else {
                 self.locate(model, from, &rest, work)?
             };
+            // Up to the end, or to the next impact, a slide may stop.
+            let reached = found.map_or(rest, |tau| StepSpan { end: from.t + tau, h: tau, ..rest });
+            let (outcome, stops) = match self.unlocated {
+                true => (outcome, None),
+                false => self.find_stop(model, from, &reached, outcome, work)?,
+            };
+            if let Some(tau) = stops {
+                let part = StepSpan { end: from.t + tau, h: tau, ..rest };
+                self.take_part(model, from, &part, outcome, work)?;
+                self.remember_lately(model, from, work);
+                (left, impacts, struck) = (left - tau, impacts + 1, true);
+                continue;
+            }
             let Some(tau) = found else {
                 let penetration = deepest(work);
                 self.take_part(model, from, &rest, outcome, work)?;

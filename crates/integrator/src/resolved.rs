@@ -44,7 +44,8 @@ const USUAL_PARTS: usize = 64;
 const FEW_CONTACTS: usize = 128;
 
 /// What it can't step.
-const FOLLOWERS: &str = "matrices that follow their coordinates, as of a beam held along its axis: they keep energy in steps of one size only";
+const FOLLOWERS: &str =
+    "matrices that follow their coordinates, as of a beam held along its axis: it has no modes that stay";
 
 /// Contact with a beam as a force that holds the gap closed, in steps that are halved where contacts
 /// close.
@@ -64,7 +65,7 @@ const FOLLOWERS: &str = "matrices that follow their coordinates, as of a beam he
 ///
 /// Restitution and laws with duration at a beam are refused: what a beam gives back is its own
 /// elasticity. So are subsystems whose matrices follow their coordinates, such as beams held along
-/// their axis: they keep their energy in steps of one size only.
+/// their axis: they have no modes that stay.
 #[derive(Debug)]
 pub struct Resolved<const D: usize> {
     settings: ResolvedSettings,

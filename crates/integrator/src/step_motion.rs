@@ -5,6 +5,7 @@ use crate::theta_step::{ThetaStep, weights};
 use crate::{
     ContactError, ContactStage, Keep, Memory, Model, Responses, State, StepEnergy, StepError, StepSpan, Workspace,
 };
+use teeter_contact::Outcome;
 
 /// The motion of a step beside its contacts, and what impulses do to it; it holds the end of the
 /// step that is tried. Impulses do their work with the mean of the velocities at both ends.
@@ -42,6 +43,20 @@ pub(crate) trait StepMotion<const D: usize>: std::fmt::Debug {
         h: f64,
         work: &mut Workspace<D>,
     ) -> Result<(), ContactError>;
+
+    /// Whether the velocities that were tried ask for other ones without impulses, which are then in
+    /// their place: the step is to be solved again. It ends by itself.
+    fn takes_another_round(&mut self, model: &Model<D>, from: &State, h: f64, work: &mut Workspace<D>) -> bool {
+        let _ = (model, from, h, work);
+        false
+    }
+
+    /// The outcome of the step, which is unsolved where these rounds have not found their end to
+    /// `tolerance`.
+    fn judge(&self, outcome: Option<Outcome>, tolerance: f64) -> Option<Outcome> {
+        let _ = tolerance;
+        outcome
+    }
 
     /// Leaves the coordinates at the end of the step.
     fn end(&mut self, model: &Model<D>, from: &State, h: f64) -> Result<(), StepError>;
@@ -134,6 +149,16 @@ impl<const D: usize> StepMotion<D> for ThetaStep {
         work: &mut Workspace<D>,
     ) -> Result<(), ContactError> {
         stage.respond(model, work, &Responses::Of(weights(h, THETA)), &mut self.v_end)
+    }
+
+    #[inline]
+    fn takes_another_round(&mut self, model: &Model<D>, from: &State, h: f64, work: &mut Workspace<D>) -> bool {
+        Self::takes_another_round(self, model, from, work, THETA, h)
+    }
+
+    #[inline]
+    fn judge(&self, outcome: Option<Outcome>, tolerance: f64) -> Option<Outcome> {
+        Self::judge(self, outcome, tolerance)
     }
 
     #[inline]

@@ -1,6 +1,6 @@
 //! What a subsystem offers to a time scheme.
 
-use crate::{Propagator, Vector};
+use crate::{Propagator, Stretching, Vector};
 use teeter_contact::{Block, BlockSparse};
 use teeter_detect::{Frame, HalfSpace, Kinematics, SurfacePoint};
 
@@ -265,6 +265,15 @@ pub trait Dynamics<const D: usize>: Send + Sync {
         None
     }
 
+    /// The part of its potential that grows with the fourth power of a deflection, for a step that
+    /// takes the mean of its tension over the step; `None`, the default, where there is none. The
+    /// θ schemes take such a part implicitly, in rounds of [`Compliance::stretch`], and keep the
+    /// energy itself; they don't ask for [`Linearised::modified_energy`] then. [`Dynamics::apply`]
+    /// gives K without it, [`Dynamics::internal_force`] and [`Dynamics::energy`] with it.
+    fn stretching(&self) -> Option<&dyn Stretching> {
+        None
+    }
+
     /// Extra information for a linearly implicit step, such as that of the θ schemes. `None`, the
     /// default, is always right for a quadratic potential.
     fn linearised(&self) -> Option<&dyn Linearised> {
@@ -400,6 +409,15 @@ pub trait Compliance<const D: usize>: Send + Sync {
     /// the step then ends as diverged.
     fn update(&mut self, q: &[f64]) {
         let _ = q;
+    }
+
+    /// Becomes the inverse of `mass·M + damping·C + stiffness·(K + tension·G) + weight·g gᵀ`, with its
+    /// own weights, of a subsystem that [stretches](Dynamics::stretching), whatever updates there were
+    /// before; `tension` (N) and `weight` are at least 0. Allocates nothing. If the matrix is not
+    /// positive definite, solutions must be NaN. The default leaves it as it is: right where nothing
+    /// stretches.
+    fn stretch(&mut self, tension: f64, weight: f64, g: &[f64]) {
+        let _ = (tension, weight, g);
     }
 
     /// Becomes the inverse with K the tangent at `q`, the derivative of the internal force. The

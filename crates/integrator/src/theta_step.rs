@@ -2,8 +2,13 @@
 //! forces.
 
 use crate::mismatch::Identity;
+use crate::stretching::{Taken, Tensions};
 use crate::subsystem::{all_finite, dot};
-use crate::{Account, ContactStage, Mismatch, Model, Size, State, StepEnergy, StepError, StepSpan, Weights, Workspace};
+use crate::{
+    Account, ContactStage, Mismatch, Model, Part, Size, State, StepEnergy, StepError, StepSpan, Stretching, Weights,
+    Workspace,
+};
+use teeter_contact::Outcome;
 
 /// Vectors of a step: they carry nothing from one to the next.
 #[derive(Clone, Debug, Default)]
@@ -24,6 +29,8 @@ pub(crate) struct ThetaStep {
     product: Vec<f64>,
     /// h times the forces at the start of the step, of parts with prescribed velocities.
     impulse: Vec<f64>,
+    /// The tension of the parts that stretch.
+    tensions: Tensions,
     /// The cutoff with which subsystems that have a motion in closed form take it; `None`: none does.
     pub(crate) cutoff: Option<f64>,
     /// The model that the scheme was started with.
@@ -50,7 +57,9 @@ impl ThetaStep {
         work: &Workspace<D>,
     ) -> Result<(), StepError> {
         self.model = None;
-        self.check(model, state, work)
+        self.check(model, state, work)?;
+        self.tensions.reserve(model);
+        Ok(())
     }
 
     /// Refuses what belongs to another model than that which the scheme was started with; a scheme
@@ -118,6 +127,7 @@ impl ThetaStep {
     ) {
         let StepSpan { start: t_start, end: t_end, h } = *span;
         let w = weights(h, theta);
+        self.tensions.clear();
         for (index, part) in model.parts().iter().enumerate() {
             let (q, v) = (part.q.clone(), part.v.clone());
             if let Some(cutoff) = self.cutoff
@@ -141,11 +151,13 @@ impl ThetaStep {
             let ahead = h * theta * (1.0 - kept * theta);
             part.system.retract(&state.q[q.clone()], v_start, ahead, &mut self.q_forces[q.clone()]);
             let q = &self.q_forces[q];
-            if part.traits.follows_coordinates {
+            let stretching = part.system.stretching();
+            if part.traits.follows_coordinates && stretching.is_none() {
                 factor.update(q);
             }
-            match part.system.linearised() {
-                Some(linearised) if part.mass_damping != 0.0 => linearised.conservative_force(q, dv),
+            match (stretching, part.system.linearised()) {
+                (Some(stretching), _) => stretching.force_beside(q, v_start, dv),
+                (None, Some(linearised)) if part.mass_damping != 0.0 => linearised.conservative_force(q, dv),
                 _ => part.system.internal_force(q, v_start, dv),
             }
             if part.traits.loaded {
@@ -156,7 +168,13 @@ impl ThetaStep {
             }
             dv.iter_mut().for_each(|f| *f *= h);
             let v_end = &mut self.v_end[v.clone()];
+            let step = stretching.map(|stretching| taken(stretching, part, state, h, theta));
             if !part.is_driven() {
+                if let Some(step) = &step {
+                    v_end.copy_from_slice(v_start);
+                    self.tensions.enter(index, step, [q, dv], factor, v_end);
+                    continue;
+                }
                 factor.solve(dv);
                 for ((free, v0), dv) in v_end.iter_mut().zip(v_start).zip(dv.iter()) {
                     *free = (1.0 - kept) * v0 + dv;
@@ -177,9 +195,59 @@ impl ThetaStep {
             pull.fill(0.0);
             part.system.apply(weights(h, theta), q, jump, pull);
             dv.iter_mut().zip(pull.iter()).for_each(|(dv, pull)| *dv -= pull);
+            if let Some(step) = &step {
+                self.tensions.enter(index, step, [q, dv], factor, v_end);
+                continue;
+            }
             factor.solve(dv);
             add(v_end, dv);
         }
+        if !self.tensions.is_empty() {
+            self.tensions.keep(&self.v_end);
+            work.counts.factorisations += self.tensions.len();
+        }
+    }
+
+    /// Whether the end that was tried asks for another tension in parts that stretch: the velocities
+    /// without impulses are then those of the next round, to be given impulses anew. At most some
+    /// tens of rounds.
+    #[inline]
+    pub(crate) fn takes_another_round<const D: usize>(
+        &mut self,
+        model: &Model<D>,
+        state: &State,
+        work: &mut Workspace<D>,
+        theta: f64,
+        h: f64,
+    ) -> bool {
+        !self.tensions.is_empty() && self.look_at_tensions(model, state, work, theta, h)
+    }
+
+    fn look_at_tensions<const D: usize>(
+        &mut self,
+        model: &Model<D>,
+        state: &State,
+        work: &mut Workspace<D>,
+        theta: f64,
+        h: f64,
+    ) -> bool {
+        let step = |index: usize| {
+            let part = &model.parts()[index];
+            let stretching = part.system.stretching()?;
+            Some((taken(stretching, part, state, h, theta), part.v.clone()))
+        };
+        if !self.tensions.look(&self.v_end, step) {
+            return false;
+        }
+        self.tensions.take_next(&mut self.v_end, step, &mut work.factors, weights(h, theta));
+        work.counts.factorisations += self.tensions.len();
+        true
+    }
+
+    /// The outcome of a step, which is unsolved where a tension was not found to `tolerance`.
+    #[inline]
+    pub(crate) fn judge(&self, outcome: Option<Outcome>, tolerance: f64) -> Option<Outcome> {
+        self.tensions.judge(outcome, tolerance)
     }
 
     /// Leaves v_θ, and q¹ in `q_at`.
@@ -232,7 +300,7 @@ impl ThetaStep {
         if work.account == Account::LeftOut {
             return StepEnergy::default();
         }
-        let Self { q_forces, q_at, v_end, v_mean, dv, load, product, impulse, cutoff, .. } = self;
+        let Self { q_forces, q_at, v_end, v_mean, dv, load, product, impulse, cutoff, tensions, .. } = self;
         let mut energy = StepEnergy::default();
         if theta != 0.5 || model.is_driven() {
             for ((dv, v1), v0) in dv.iter_mut().zip(v_end.iter()).zip(&state.v) {
@@ -241,7 +309,9 @@ impl ThetaStep {
         }
         for (index, part) in model.parts().iter().enumerate().filter(|(_, part)| !part.v.is_empty()) {
             let (q, v) = (&q_forces[part.q.clone()], part.v.clone());
-            if let Some(linearised) = part.system.linearised() {
+            if let Some(numerical) = tensions.numerical(index).filter(|_| h > 0.0) {
+                energy.numerical += numerical;
+            } else if let Some(linearised) = part.system.linearised() {
                 let modified = |q: &[f64], velocity: &[f64]| {
                     linearised.modified_energy(h, &q[part.q.clone()], &velocity[part.v.clone()])
                 };
@@ -280,6 +350,17 @@ impl ThetaStep {
         }
         energy
     }
+}
+
+/// The step from a state, as one of its parts that stretch has it.
+fn taken<'a, const D: usize>(
+    stretching: &'a dyn Stretching,
+    part: &Part<D>,
+    state: &'a State,
+    h: f64,
+    theta: f64,
+) -> Taken<'a> {
+    Taken { stretching, h, theta, q: &state.q[part.q.clone()], v: &state.v[part.v.clone()] }
 }
 
 /// β = hα/(1 + hθα): with C = αM the damping needs no product.

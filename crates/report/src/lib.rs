@@ -21,6 +21,7 @@ mod sections;
 mod summary;
 mod swings;
 mod table;
+mod taken_energy;
 mod unlocated;
 mod warnings;
 
@@ -36,5 +37,6 @@ pub use run_recorder::{Origin, RunRecorder};
 pub use schedule::Schedule;
 pub use sections::{BeamRecord, LargestStress, ReactionRange, envelopes};
 pub use summary::{EndedWord, Summary};
+pub use taken_energy::ENERGY_TAKEN;
 pub use unlocated::UNLOCATED;
-pub use warnings::{Warning, WarningLog};
+pub use warnings::{HORIZON, Warning, WarningLog};

@@ -74,7 +74,7 @@ fn text(scene: &Scene, ledger: &Ledger, lost: f64) -> String {
     )
 }
 
-fn percent(part: f64) -> String {
+pub(crate) fn percent(part: f64) -> String {
     let percent = 100.0 * part;
     if percent < 0.1 {
         "less than 0.1 %".to_owned()

@@ -1,7 +1,7 @@
 //! `summary.json`: the numbers of a run.
 
 use crate::{BeamRecord, ImpactRow, LargestStress, ReactionRange, Record, Warning};
-use crate::{made_energy, unlocated};
+use crate::{made_energy, taken_energy, unlocated};
 use serde::Serialize;
 use teeter_integrator::{Ended, RockingMonitor, State};
 use teeter_scenario::scene::Scene;
@@ -341,6 +341,7 @@ impl Summary {
                 .iter()
                 .cloned()
                 .chain(made_energy::warning(scene, state))
+                .chain(taken_energy::warning(scene, &state.ledger))
                 .chain(unlocated::warning(scene, state))
                 .collect(),
         }

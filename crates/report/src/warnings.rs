@@ -16,6 +16,9 @@ pub struct Warning {
     pub text: String,
 }
 
+/// The kind of the warning that a motion can be told up to a time before its end only.
+pub const HORIZON: &str = "horizon";
+
 /// The warnings of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WarningLog {

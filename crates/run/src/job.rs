@@ -30,6 +30,7 @@ pub struct RunJob {
     pub(crate) from: Option<PathBuf>,
     pub(crate) export: Option<(PathBuf, ExportWhen)>,
     pub(crate) dump: Option<PathBuf>,
+    pub(crate) horizon: bool,
     extent: Extent,
     pub(crate) program: Option<[u8; 32]>,
 }
@@ -46,6 +47,7 @@ impl RunJob {
             from: None,
             export: None,
             dump: None,
+            horizon: false,
             extent: Extent::default(),
             program: None,
         }
@@ -100,6 +102,14 @@ impl RunJob {
     /// `path`, for [`from_state`](Self::from_state). The default is to write none.
     pub fn dump_unconverged(mut self, path: impl Into<PathBuf>) -> Self {
         self.dump = Some(path.into());
+        self
+    }
+
+    /// Finds until when the motion can be told, by three more runs after this one: with half the step, and from 1e-12 beside the start. It is
+    /// `horizon` of the summary. Not for runs [from a state](Self::from_state), nor for those whose step was found for an accuracy, which
+    /// have one.
+    pub fn horizon(mut self) -> Self {
+        self.horizon = true;
         self
     }
 

@@ -57,6 +57,7 @@
 
 mod error;
 mod hooks;
+mod horizon;
 mod job;
 mod prepare;
 mod run;

@@ -80,8 +80,17 @@ impl Prepared {
         // The folder exists from here on: paths in the scene are relative to it.
         let scene_as_run = self.job.scene_as_run(&self.folder, &self.resolved);
         let layout = self.simulation.layout.clone();
+        let cancel = hooks.cancel;
         let mut recorded = self.simulate(&results, &scene_as_run, exporter, &layout, hooks)?;
         recorded.record.horizon = self.chosen.map(|chosen| chosen.horizon);
+        let wanted = self.job.horizon && self.chosen.is_none() && self.job.from.is_none();
+        if wanted
+            && recorded.ended == EndedWord::Complete
+            && !crate::horizon::find(&self.resolved.scene, cancel, &mut recorded.record)
+        {
+            // What was asked for isn't there: a resumed run takes the end again, and finds it.
+            recorded.ended = EndedWord::Interrupted;
+        }
         let exporter = recorded.exporter.as_ref().map(Exporter::written);
         let summary = write(&results, recorded, &self.resolved.scene, &layout, &self.simulation.state, &scene_as_run)?;
         let unsolved = summary.contact.unconverged_steps > 0;

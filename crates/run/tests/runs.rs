@@ -298,3 +298,25 @@ fn contact_problems_are_saved_and_counted() {
     assert!(exported.count > 0 && names.len() as u64 == exported.count, "{names:?}");
     assert!(names.iter().all(|name| name.to_string_lossy().starts_with("free-rocking-on-beam-step")), "{names:?}");
 }
+
+/// A block that stands on its edge falls, to a side that nobody knows; one that rocks is known to the end.
+#[test]
+fn the_horizon_is_found_on_demand() {
+    let place = Place::new("horizon");
+    let run =
+        |job: RunJob, name: &str| job.folder(place.at(name)).prepare().unwrap().run(Hooks::new()).unwrap().summary;
+    let rocking = || scenario("free-rocking-on-ground").set("time.step", "1 ms");
+    assert_eq!(run(rocking(), "unasked").horizon, None);
+    let known = run(rocking().horizon(), "known");
+    assert_eq!(known.horizon, Some(1.0));
+    assert!(known.warnings.iter().all(|warning| warning.code != "horizon"));
+    // tan α = 3 cm/13.5 cm, to the last digit.
+    let balanced = rocking().set("block.rocker.tilt", "12.528807709151511 deg").set("time.end", "5 s").horizon();
+    let fallen = run(balanced, "balanced");
+    // e^(pt) of 1e-12 rad is 1 % of the fall after some 20/p.
+    let horizon = fallen.horizon.unwrap();
+    assert!((1.0..4.5).contains(&horizon), "{horizon}");
+    let told = fallen.warnings.iter().find(|warning| warning.code == "horizon").unwrap();
+    assert!(told.text.contains("so small a change decides it"), "{}", told.text);
+    assert_eq!(told.first_t, Some(horizon));
+}

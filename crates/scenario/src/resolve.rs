@@ -219,7 +219,7 @@ impl<'a, 'f> Resolver<'a, 'f> {
         }
         let time = self.time(&blocks, &beams);
         if let Some(time) = &time {
-            self.refuse_springs(time.scheme, &contacts);
+            self.refuse_springs(time.scheme, &contacts, &beams);
             self.covered(&signals, time.steps() as f64 * time.step);
         }
         let solver = self.solver();

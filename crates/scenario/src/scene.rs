@@ -201,10 +201,8 @@ impl SchemeName {
     #[must_use]
     pub fn takes_held_beams(self) -> bool {
         match self {
-            Self::MoreauJean | Self::MoreauJeanClosed => true,
-            Self::MoreauJeanLocated | Self::EventDriven | Self::Resolved => false,
-            Self::MoreauJeanProjected => true,
-            Self::GeneralizedAlpha => false,
+            Self::MoreauJean | Self::MoreauJeanClosed | Self::MoreauJeanLocated | Self::MoreauJeanProjected => true,
+            Self::EventDriven | Self::Resolved | Self::GeneralizedAlpha => false,
         }
     }
 

@@ -6,13 +6,11 @@
 //! h/2 is nearer: so it converges. Motions that part from a start 1e-12 beside them are compared up
 //! to there, the horizon.
 
-use crate::motion::Sampler;
+use crate::pilots::Pilots;
 use crate::reference::NUDGE;
-use crate::{Failure, Motion, Quantity, Ruler, Sampling, Work};
+use crate::{Failure, Motion, Quantity, Ruler, Sampling};
 use std::sync::atomic::AtomicBool;
-use teeter_report::Record;
 use teeter_scenario::scene::Scene;
-use teeter_scenario::simulation::Simulation;
 
 /// A step that reaches an accuracy, and how it is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -92,7 +90,7 @@ const LONGER: f64 = 1.15;
 pub fn step_for(scene: &Scene, accuracy: f64, cancel: &AtomicBool) -> Result<ChosenStep, NoStep> {
     let end = scene.time.end;
     let sampling = Sampling { every: end / SAMPLES as f64, count: SAMPLES + 1 };
-    let mut pilots = Pilots { scene, sampling, cancel, runs: 0 };
+    let mut pilots = Pilots { scene, sampling, cancel, most_seconds: MOST_SECONDS, runs: 0 };
     // The runs so far, from long steps to short ones; none where a run didn't come to its end.
     let mut motions: Vec<(f64, Option<Motion>)> = Vec::new();
     let mut step = end / 2_f64.powf((end / longest(scene)).log2().ceil());
@@ -187,42 +185,6 @@ fn longest(scene: &Scene) -> f64 {
     let swing = |radius: f64| (4.0 * radius / (3.0 * gravity)).sqrt() / PER_SWING;
     let blocks = scene.blocks.iter().map(|block| swing(0.5 * block.width.hypot(block.height)));
     blocks.filter(|step| *step > 0.0).fold(scene.time.end / LEAST_STEPS, f64::min)
-}
-
-/// Runs of one scene with other steps.
-struct Pilots<'a> {
-    scene: &'a Scene,
-    sampling: Sampling,
-    cancel: &'a AtomicBool,
-    runs: usize,
-}
-
-impl Pilots<'_> {
-    /// The motion with a step (s), the first block turned by `nudge` (rad) at the start, or a beam
-    /// without one bent more by that share; `None` if it would take too long.
-    fn run(&mut self, step: f64, nudge: f64) -> Result<Option<Motion>, Failure> {
-        let mut scene = self.scene.clone();
-        scene.time.step = step;
-        let mut simulation = Simulation::new(&scene).map_err(|error| Failure::Refused(error.to_string()))?;
-        if Work::expected(&simulation).seconds() > MOST_SECONDS {
-            return Ok(None);
-        }
-        self.runs += 1;
-        let layout = simulation.layout.clone();
-        match (layout.blocks.first(), layout.beams.first()) {
-            // An angle of its own: an upright block has none that could be greater by a share.
-            (Some(block), _) => simulation.state.q[block.range.start + 2] += nudge,
-            (None, Some(beam)) => simulation.state.q[beam.range.clone()].iter_mut().for_each(|q| *q *= 1.0 + nudge),
-            (None, None) => {}
-        }
-        let state = &simulation.state;
-        // Crossings and peaks are not what it is judged by: each block has none.
-        let record = Record { rocking: layout.rocking_monitors(state.t, &state.q), ..Record::default() };
-        let mut sampler = Sampler::new(self.sampling, &layout, self.cancel);
-        let ended = simulation.run(&mut [&mut sampler]).map_err(|error| Failure::Ended(error.to_string()))?;
-        Failure::unless_complete(ended, simulation.state.t)?;
-        Ok(Some(sampler.finish(&simulation.state, &record)))
-    }
 }
 
 #[cfg(test)]

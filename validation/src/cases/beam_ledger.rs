@@ -31,7 +31,7 @@ impl Case for BeamLedger {
         "The energy identity of a step, worst of 1e6 steps (2e4 when short) of h = 1e-4 s with θ = 1/2, relative to the energy scale: a beam held along \
          its axis that swings four times its thickness wide, with every mode in it, and one with everything else: shear and rotatory inertia, \
          segments, an inner support, springs and dashpots, a foundation, a mass, a tension, axial dofs, all kinds of damping, distributed and \
-         moving loads. Undamped, what the step keeps of the held beam (T + V_bending + EA/(8L) σ²) stays, and the energy itself to O(h²)."
+         moving loads. Undamped, the energy of the held beam itself stays."
     }
 
     fn run(&self, depth: Depth) -> Result<Findings> {
@@ -42,15 +42,11 @@ impl Case for BeamLedger {
 
         let beam = Arc::new(Beam::new(held.clone())?);
         let start = rough(&beam)?;
-        let kept = |state: &State| state.ledger.current.total() + beam.modified_energy(DT, &state.q, &state.v);
-        let initial = beam.kinetic_energy(&start.v)
-            + beam.elastic_energy(&start.q)
-            + beam.modified_energy(DT, &start.q, &start.v);
-        let (end, drift) = swing(&beam, start, steps, Vec::new(), |state| (kept(state) / initial - 1.0).abs())?;
+        let initial = beam.kinetic_energy(&start.v) + beam.elastic_energy(&start.q);
+        let kept = |state: &State| (state.ledger.current.total() / initial - 1.0).abs();
+        let (end, drift) = swing(&beam, start, steps, Vec::new(), kept)?;
         findings.checks.push(Check::worst("held along its axis: identity", end.ledger.relative_residual(), IDENTITY));
-        findings.checks.push(Check::worst("held along its axis: drift of what is kept", drift, DRIFT));
-        let apart = (kept(&end) - end.ledger.current.total()).abs() / initial;
-        findings.checks.push(Check::reported("held along its axis: kept less true energy at the end", apart));
+        findings.checks.push(Check::worst("held along its axis: drift of the energy", drift, DRIFT));
 
         let damping = Damping { viscous: 0.4, rayleigh_mass: 0.1, rayleigh_stiffness: 1e-7, modal: vec![0.002, 0.01] };
         let beam = Arc::new(Beam::new(held.damped(damping.clone()))?);

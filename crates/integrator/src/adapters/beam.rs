@@ -9,8 +9,8 @@ pub(crate) mod motion;
 
 use super::modal_motion::ModalMotion;
 use crate::{
-    Bodies, Compliance, Dynamics, Energy, FactorError, Linearised, Motion, Propagator, Rows, Size, Traits, Vector,
-    Weights,
+    Bodies, Compliance, Dynamics, Energy, FactorError, Linearised, Motion, Propagator, Rows, Size, Stretching, Traits,
+    Vector, Weights,
 };
 use compliance::BeamCompliance;
 pub use compliance::WBackend;
@@ -141,6 +141,10 @@ impl BeamBody {
     fn add_conservative_force(&self, q: &[f64], f: &mut [f64]) {
         let n = self.beam.dofs();
         self.beam.add_elastic_force(&q[..n], &mut f[..n]);
+        self.add_weight(f);
+    }
+
+    fn add_weight(&self, f: &mut [f64]) {
         if let Some(weight) = &self.weight {
             // The supports have coordinates only if they move.
             f.iter_mut().zip(&weight.force).for_each(|(f, weight)| *f += weight);
@@ -310,6 +314,10 @@ impl Dynamics<2> for BeamBody {
         Some(Box::new(ModalMotion::of_beam(&self.beam, &constant)?))
     }
 
+    fn stretching(&self) -> Option<&dyn Stretching> {
+        if self.beam.is_stretched() { Some(self) } else { None }
+    }
+
     fn linearised(&self) -> Option<&dyn Linearised> {
         Some(self)
     }
@@ -361,6 +369,31 @@ impl Linearised for BeamBody {
     fn modified_energy(&self, h: f64, q: &[f64], v: &[f64]) -> f64 {
         let n = self.beam.dofs();
         if self.beam.is_stretched() { self.beam.modified_energy(h, &q[..n], &v[..n]) } else { 0.0 }
+    }
+}
+
+impl Stretching for BeamBody {
+    fn stiffness(&self) -> f64 {
+        self.beam.stretching_stiffness()
+    }
+
+    fn form(&self, x: &[f64], y: &[f64]) -> f64 {
+        let n = self.beam.dofs();
+        self.beam.slope_form(&x[..n], &y[..n])
+    }
+
+    fn add_product(&self, a: f64, x: &[f64], y: &mut [f64]) {
+        let n = self.beam.dofs();
+        self.beam.add_slope_product(a, &x[..n], &mut y[..n]);
+    }
+
+    fn force_beside(&self, q: &[f64], v: &[f64], f: &mut [f64]) {
+        let n = self.beam.dofs();
+        self.beam.add_stiffness_product(-1.0, &q[..n], &mut f[..n]);
+        self.add_weight(f);
+        if self.beam.is_damped() {
+            self.beam.add_damping_product(-1.0, &v[..n], &mut f[..n]);
+        }
     }
 }
 

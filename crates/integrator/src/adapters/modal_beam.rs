@@ -378,7 +378,9 @@ impl Dynamics<2> for ModalBeam {
         if self.supports.is_some() {
             return None;
         }
-        let constant = if self.weight.is_empty() { vec![0.0; self.coordinates()] } else { self.weight.clone() };
+        // Without the supports' share, which is at the end.
+        let mut constant = self.weight.clone();
+        constant.resize(self.coordinates(), 0.0);
         Some(Box::new(ModalMotion::new(
             modal_motion::Shapes::Own,
             self.stiffness.clone(),

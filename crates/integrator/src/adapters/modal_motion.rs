@@ -28,8 +28,8 @@ const TERMS: usize = 14;
 pub(crate) enum Shapes {
     /// They are the same.
     Own,
-    /// q = Φη: Φ by dofs, and ΦᵀM by modes.
-    Of { by_dof: Vec<f64>, momenta: Vec<f64> },
+    /// q = Φη: Φ by dofs and by modes, and ΦᵀM by dofs.
+    Of { by_dof: Vec<f64>, by_mode: Vec<f64>, momenta: Vec<f64> },
 }
 
 /// The modes of a beam in motion.
@@ -48,6 +48,8 @@ pub(crate) struct ModalMotion {
     /// Which of those that are kept goes next.
     next: usize,
     start: Vec<[f64; 2]>,
+    /// Room for one number a mode.
+    modal: Vec<f64>,
     force: Vec<f64>,
     change: Vec<f64>,
     /// As `change`, of the mean.
@@ -61,6 +63,67 @@ struct Coefficients {
     cutoff: f64,
     /// B, B', D and f of each mode.
     modes: Vec<[f64; 4]>,
+    /// (2/h²) D of each mode, and D of the dofs by rows; with the filter.
+    places: Response,
+    /// As `places`: V/h.
+    rates: Response,
+}
+
+/// What constant forces do.
+#[derive(Clone, Debug)]
+struct Response {
+    /// Of each mode on its own.
+    gains: Vec<f64>,
+    /// Φ gains Φᵀ, by dofs; empty where the coordinates are those of the modes.
+    matrix: Vec<f64>,
+}
+
+impl Response {
+    fn new(shapes: &Shapes, modes: usize) -> Self {
+        let entries = match shapes {
+            Shapes::Own => 0,
+            Shapes::Of { by_dof, .. } => (by_dof.len() / modes.max(1)).pow(2),
+        };
+        Self { gains: vec![0.0; modes], matrix: vec![0.0; entries] }
+    }
+
+    /// Makes the matrix of the gains.
+    fn fill(&mut self, shapes: &Shapes) {
+        let Shapes::Of { by_mode, .. } = shapes else { return };
+        let n = by_mode.len() / self.gains.len().max(1);
+        self.matrix.fill(0.0);
+        for (shape, gain) in by_mode.chunks_exact(n.max(1)).zip(&self.gains) {
+            for (row, a) in self.matrix.chunks_exact_mut(n.max(1)).zip(shape) {
+                let a = gain * a;
+                row.iter_mut().zip(shape).for_each(|(entry, b)| *entry += a * b);
+            }
+        }
+    }
+
+    /// Adds J_i times the response times J_jᵀ for all pairs of rows.
+    fn couple(&self, rows: &PartRows<'_, 2>, h: &mut Coupling<'_, 2>) {
+        let n = self.gains.len();
+        let dofs = if self.matrix.is_empty() { n } else { self.matrix.len().isqrt() };
+        for (number, (j, columns_j, values_j)) in rows.iter().enumerate() {
+            for (other, (i, columns_i, values_i)) in rows.iter().take(number + 1).enumerate() {
+                let mut block = Matrix2::zeros();
+                for (&c, a) in columns_i.iter().zip(values_i) {
+                    for (&d, b) in columns_j.iter().zip(values_j) {
+                        let gain = match self.matrix.get(c * dofs + d) {
+                            Some(entry) => *entry,
+                            None if c == d => self.gains[c],
+                            None => continue,
+                        };
+                        block += a * gain * b.transpose();
+                    }
+                }
+                h.add(i, j, &block);
+                if other < number {
+                    h.add(j, i, &block.transpose());
+                }
+            }
+        }
+    }
 }
 
 impl ModalMotion {
@@ -76,6 +139,7 @@ impl ModalMotion {
             now: 0,
             next: 0,
             start: vec![[0.0; 2]; n],
+            modal: vec![0.0; n],
             force: vec![0.0; n],
             change: vec![0.0; n],
             change_of_mean: vec![0.0; n],
@@ -92,10 +156,14 @@ impl ModalMotion {
         let mut shapes: Vec<Vec<f64>> = (0..n).map(|i| basis.shape(i).to_vec()).collect();
         uncouple(beam, &mut shapes[basis.rigid()..]);
         let by_dof = (0..beam.dofs() * n).map(|k| shapes[k % n][k / n]).collect();
+        let by_mode = shapes.concat();
         let mut momenta = vec![0.0; n * beam.dofs()];
+        let mut momentum = vec![0.0; beam.dofs()];
         let mut stiffness = vec![0.0; n];
-        for (i, momentum) in momenta.chunks_exact_mut(beam.dofs()).enumerate() {
-            beam.add_mass_product(1.0, &shapes[i], momentum);
+        for i in 0..n {
+            momentum.fill(0.0);
+            beam.add_mass_product(1.0, &shapes[i], &mut momentum);
+            momenta[i..].iter_mut().step_by(n).zip(&momentum).for_each(|(own, value)| *own = *value);
             if i >= basis.rigid() {
                 stiffness[i] = 2.0 * beam.elastic_energy(&shapes[i]);
             }
@@ -104,7 +172,7 @@ impl ModalMotion {
             }
         }
         let constant = shapes.iter().map(|shape| dot(shape, constant)).collect();
-        Some(Self::new(Shapes::Of { by_dof, momenta }, stiffness, damping, constant))
+        Some(Self::new(Shapes::Of { by_dof, by_mode, momenta }, stiffness, damping, constant))
     }
 
     fn len(&self) -> usize {
@@ -116,9 +184,9 @@ impl ModalMotion {
         match &self.shapes {
             Shapes::Own => self.start.iter_mut().zip(x).for_each(|(start, x)| start[k] = *x),
             Shapes::Of { momenta, .. } => {
-                for (start, momentum) in self.start.iter_mut().zip(momenta.chunks_exact(x.len())) {
-                    start[k] = dot(momentum, x);
-                }
+                self.modal.fill(0.0);
+                add_columns(momenta, x, &mut self.modal);
+                self.start.iter_mut().zip(&self.modal).for_each(|(start, x)| start[k] = *x);
             }
         }
     }
@@ -127,11 +195,7 @@ impl ModalMotion {
     fn add(shapes: &Shapes, x: &[f64], out: &mut [f64]) {
         match shapes {
             Shapes::Own => out.iter_mut().zip(x).for_each(|(out, x)| *out += x),
-            Shapes::Of { by_dof, .. } => {
-                for (out, row) in out.iter_mut().zip(by_dof.chunks_exact(x.len())) {
-                    *out += dot(row, x);
-                }
-            }
+            Shapes::Of { by_mode, .. } => add_columns(by_mode, x, out),
         }
     }
 
@@ -159,36 +223,6 @@ impl ModalMotion {
                         out.iter_mut().zip(row).for_each(|(out, phi)| *out += f * phi);
                     }
                 }
-            }
-        }
-    }
-
-    /// Adds the sum over modes of J_ik gain J_jkᵀ for all pairs of rows.
-    fn couple_by(&self, rows: &PartRows<'_, 2>, h: &mut Coupling<'_, 2>, gain: impl Fn(f64, &[f64; 4]) -> f64) {
-        let modes = &self.kept[self.now].modes;
-        for (number, (j, columns_j, values_j)) in rows.iter().enumerate() {
-            for (other, (i, columns_i, values_i)) in rows.iter().take(number + 1).enumerate() {
-                let mut block = Matrix2::zeros();
-                for (k, coefficients) in modes.iter().enumerate() {
-                    let b = self.entry(columns_j, values_j, k);
-                    let a = if other == number { b } else { self.entry(columns_i, values_i, k) };
-                    block += a * (gain(self.stiffness[k], coefficients)) * b.transpose();
-                }
-                h.add(i, j, &block);
-                if other < number {
-                    h.add(j, i, &block.transpose());
-                }
-            }
-        }
-    }
-
-    /// The modal row k of a contact's rows.
-    fn entry(&self, columns: &[usize], values: &[Vector<2>], k: usize) -> Vector<2> {
-        let n = self.len();
-        match &self.shapes {
-            Shapes::Own => columns.iter().zip(values).filter(|(c, _)| **c == k).map(|(_, value)| *value).sum(),
-            Shapes::Of { by_dof, .. } => {
-                columns.iter().zip(values).map(|(c, value)| value * by_dof[c * n + k]).sum::<Vector<2>>()
             }
         }
     }
@@ -272,17 +306,26 @@ impl Propagator<2> for ModalMotion {
             return;
         }
         if self.kept.len() < KEPT {
-            self.kept.push(Coefficients { h, cutoff, modes: vec![[0.0; 4]; self.stiffness.len()] });
+            let n = self.len();
+            let response = || Response::new(&self.shapes, n);
+            let (places, rates) = (response(), response());
+            self.kept.push(Coefficients { h, cutoff, modes: vec![[0.0; 4]; n], places, rates });
             self.now = self.kept.len() - 1;
         } else {
             (self.now, self.next) = (self.next, (self.next + 1) % KEPT);
         }
-        let Coefficients { h: own, cutoff: own_cutoff, modes } = &mut self.kept[self.now];
+        let Self { kept, now, shapes, stiffness, damping, .. } = self;
+        let Coefficients { h: own, cutoff: own_cutoff, modes, places, rates } = &mut kept[*now];
         (*own, *own_cutoff) = (h, cutoff);
-        for (coefficients, (omega2, damping)) in modes.iter_mut().zip(self.stiffness.iter().zip(&self.damping)) {
-            let [b, b_rate, d] = response(*omega2, *damping, h);
-            *coefficients = [b, b_rate, d, (-(omega2.sqrt() * h / cutoff).powi(8)).exp()];
+        for (k, coefficients) in modes.iter_mut().enumerate() {
+            let [b, b_rate, d] = response(stiffness[k], damping[k], h);
+            let f = (-(stiffness[k].sqrt() * h / cutoff).powi(8)).exp();
+            *coefficients = [b, b_rate, d, f];
+            places.gains[k] = 2.0 / (h * h) * yielding(stiffness[k], coefficients);
+            rates.gains[k] = f * b / h;
         }
+        places.fill(shapes);
+        rates.fill(shapes);
     }
 
     fn begin(&mut self, q: &[f64], v: &[f64], load: &[f64], v_free: &mut [f64]) {
@@ -302,24 +345,26 @@ impl Propagator<2> for ModalMotion {
     }
 
     fn couple(&mut self, rows: &PartRows<'_, 2>, h: &mut Coupling<'_, 2>) {
-        let gain = 2.0 / self.kept[self.now].h.powi(2);
-        self.couple_by(rows, h, |omega2, coefficients| gain * yielding(omega2, coefficients));
+        self.kept[self.now].places.couple(rows, h);
     }
 
     fn couple_rates(&mut self, rows: &PartRows<'_, 2>, h: &mut Coupling<'_, 2>) {
-        let gain = 1.0 / self.kept[self.now].h;
-        self.couple_by(rows, h, |_, [b, _, _, f]| gain * f * b);
+        self.kept[self.now].rates.couple(rows, h);
     }
 
     fn respond(&mut self, rows: &PartRows<'_, 2>, p: &[Vector<2>], v: &mut [f64]) {
-        let Coefficients { h, modes, .. } = &self.kept[self.now];
-        let gain = 2.0 / (h * h);
-        self.change.fill(0.0);
-        Self::add_impulses(&self.shapes, rows, p, &mut self.change);
-        for (k, change) in self.change.iter_mut().enumerate() {
-            *change *= gain * yielding(self.stiffness[k], &modes[k]);
+        let Response { gains, matrix } = &self.kept[self.now].places;
+        for (contact, columns, values) in rows.iter() {
+            for (&c, value) in columns.iter().zip(values) {
+                let f = value.dot(&p[contact]);
+                if matrix.is_empty() {
+                    v[c] += gains[c] * f;
+                } else {
+                    let row = &matrix[c * v.len()..(c + 1) * v.len()];
+                    v.iter_mut().zip(row).for_each(|(v, entry)| *v += f * entry);
+                }
+            }
         }
-        Self::add(&self.shapes, &self.change, v);
     }
 
     fn end(&mut self, rows: &PartRows<'_, 2>, p: &[Vector<2>], v: &mut [f64], mean: &mut [f64]) -> Dissipated {
@@ -347,6 +392,26 @@ impl Propagator<2> for ModalMotion {
         Self::add(&self.shapes, &self.change, v);
         Self::add(&self.shapes, &self.change_of_mean, mean);
         lost
+    }
+}
+
+/// Adds the columns of a matrix times the numbers of `x` to `out`. Four columns at once: `out` is read and written less often.
+fn add_columns(columns: &[f64], x: &[f64], out: &mut [f64]) {
+    let n = out.len();
+    if n == 0 {
+        return;
+    }
+    let (four, rest) = x.as_chunks::<4>();
+    let (blocks, last) = columns.split_at(four.len() * 4 * n);
+    for (block, x) in blocks.chunks_exact(4 * n).zip(four) {
+        let (first, second) = block.split_at(2 * n);
+        let ((a, b), (c, d)) = (first.split_at(n), second.split_at(n));
+        for (out, (((a, b), c), d)) in out.iter_mut().zip(a.iter().zip(b).zip(c).zip(d)) {
+            *out += (x[0] * a + x[1] * b) + (x[2] * c + x[3] * d);
+        }
+    }
+    for (column, x) in last.chunks_exact(n).zip(rest) {
+        out.iter_mut().zip(column).for_each(|(out, a)| *out += x * a);
     }
 }
 

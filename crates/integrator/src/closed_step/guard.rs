@@ -53,23 +53,44 @@ impl<const D: usize> Guard<'_, D> {
             if gain <= self.rounding(problem, i) {
                 continue;
             }
-            let without = problem.without_own_friction(i);
-            let mut shift = tangential(&u_before);
-            if without.norm() < shift.norm() {
+            let frees = problem.without_own_friction(i).norm() < tangential(&u_before).norm();
+            if frees {
                 problem.mu[i] = 0.0;
             }
-            let e = self.model.law(contact.law)?.restitution;
-            let back = match problem.rule(i) {
-                Rule::Poisson { .. } if is_impact(e, &u_before, &problem.u_free(i)) => e * u_before[0],
-                _ => problem.shift(i)[0],
-            };
-            shift[0] = back.max(u_before[0]);
-            problem.posed[i].rule = Rule::Shifted;
-            problem.reshift(i, shift);
+            self.shift_back(problem, i)?;
             guarded[number] = true;
             found = true;
+            if frees {
+                continue;
+            }
+            // The feet of one body go along together: were one turned about and the other not, nothing would fit both.
+            for j in 0..problem.len() {
+                let (other, contact) = (self.members.number(j), &self.stage.contacts()[self.members.number(j)]);
+                let beside =
+                    self.stage.contacts()[number].sides.map(|side| side.body) == contact.sides.map(|side| side.body);
+                let slides = matches!(problem.rule(j), Rule::Shifted) && contact.persisting && problem.p[j][0] > 0.0;
+                if beside && slides && !guarded[other] {
+                    self.shift_back(problem, j)?;
+                    guarded[other] = true;
+                }
+            }
         }
         Ok(found || self.stop_handing_on(problem))
+    }
+
+    /// Gives contact `i` the shift with which no sticking can be along its slide.
+    fn shift_back(&self, problem: &mut Problem<D>, i: usize) -> Result<(), Mismatch> {
+        let (u_before, contact) = (problem.u_before(i), &self.stage.contacts()[self.members.number(i)]);
+        let e = self.model.law(contact.law)?.restitution;
+        let back = match problem.rule(i) {
+            Rule::Poisson { .. } if is_impact(e, &u_before, &problem.u_free(i)) => e * u_before[0],
+            _ => problem.shift(i)[0],
+        };
+        let mut shift = tangential(&u_before);
+        shift[0] = back.max(u_before[0]);
+        problem.posed[i].rule = Rule::Shifted;
+        problem.reshift(i, shift);
+        Ok(())
     }
 
     /// What may be rounding of a contact's work, J: at rest it is the free velocity whose digits

@@ -171,6 +171,15 @@ impl EventDriven {
             smooth.posed.push((bias, slides, size));
         }
         let responses = Responses::Of(MASSES);
+        smooth.stage.couple(model, work, &responses).map_err(problem)?;
+        for (row, (candidate, (_, slides, _))) in self.found.iter().zip(&smooth.posed).enumerate() {
+            let own = smooth.stage.block(row, row);
+            let along = slides.map_or(0.0, |sign| sign * own[(0, 1)]);
+            // Painlevé's paradox: a push with the friction that belongs to it pulls the contact together. No acceleration, or several, fit the law.
+            if own[(0, 0)] - model.law(candidate.law)?.friction * along <= 0.0 {
+                return Ok(false);
+            }
+        }
         let outcome = smooth.stage.solve(model, work, &responses, Over::Acceleration).map_err(problem)?;
         if outcome.is_none_or(|outcome| !outcome.converged()) {
             return Ok(false);

@@ -1,5 +1,6 @@
 //! Events of a smooth phase: what is watched, and when it happens first.
 
+use super::modes::Pressing;
 use super::runge_kutta::RungeKutta;
 use super::{EventDriven, FLOOR, Stop};
 use crate::moreau_jean_located::rate_at;
@@ -67,7 +68,7 @@ const ROUNDING_ORDER: f64 = 2.5;
 const MOST_NOISE: f64 = 1e3;
 const LEAST_NOISE: f64 = 0.2;
 
-/// A contact that pulls by this part of its scale within a step has opened in it.
+/// A contact that pulls by this part of its scale within a step has opened in it; one whose friction is over its limit by as much slides.
 const PULLED: f64 = 1e-3;
 
 /// Trials at an event: six to ten do.
@@ -240,7 +241,8 @@ impl EventDriven {
         smooth.pulled = None;
         rk.step(h, y, |s, y, slope| {
             smooth.slope(model, t + s * h, y, work, slope)?;
-            if smooth.pulled.is_none() && s < 1.0 && smooth.contacts.iter().any(|contact| contact.presses() < -PULLED) {
+            let fails = |contact: &Pressing| contact.presses().min(contact.holds()) < -PULLED;
+            if smooth.pulled.is_none() && s < 1.0 && smooth.contacts.iter().any(fails) {
                 smooth.pulled = Some(s);
             }
             Ok::<_, StepError>(())

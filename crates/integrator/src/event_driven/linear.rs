@@ -20,7 +20,7 @@ const SHIFT: f64 = 1e-8;
 /// An unknown without an entry of its own is shifted by this part of the largest.
 const LEAST_OWN: f64 = 1e-12;
 
-/// Refinements: each gains some eight digits of what is determined, by weights of up to a million two.
+/// Most refinements: each gains some eight digits of what is determined, by weights of up to a million two.
 const REFINEMENTS: usize = 8;
 
 impl Linear {
@@ -71,9 +71,18 @@ impl Linear {
         self.x.resize(n, 0.0);
         for _ in 0..REFINEMENTS {
             self.rest.clear();
+            let mut settled = true;
             for i in 0..n {
                 let row = &self.a[i * n..(i + 1) * n];
-                self.rest.push(self.b[i] - row.iter().zip(&self.x).map(|(a, x)| a * x).sum::<f64>());
+                let (mut rest, mut size) = (self.b[i], self.b[i].abs());
+                for (a, x) in row.iter().zip(&self.x) {
+                    (rest, size) = (rest - a * x, size + (a * x).abs());
+                }
+                settled &= rest.abs() <= f64::EPSILON * size;
+                self.rest.push(rest);
+            }
+            if settled {
+                break;
             }
             self.substitute();
             self.x.iter_mut().zip(&self.rest).for_each(|(x, dx)| *x += dx);

@@ -49,7 +49,7 @@ pub(super) struct Smooth {
     /// Of contacts over which the law of accelerations is solved: J̇v, to which side they slide, and
     /// what their accelerations without contacts consist of, in size.
     pub(super) posed: Vec<(Vector<2>, Option<f64>, f64)>,
-    /// The part of a step of the method at which a contact was seen to pull.
+    /// The part of a step of the method at which a contact was seen to pull, or to be over its friction.
     pub(super) pulled: Option<f64>,
     /// Between these times loads and drives are smooth, s.
     pub(super) between: [f64; 2],

@@ -38,7 +38,9 @@ impl<const D: usize> MoreauJeanLocated<D> {
         self.stays.clear();
         from.memory.forget_rigid();
         for (i, contact) in self.impact.contacts().iter().enumerate() {
-            let speed = || self.impact.speed(i, &self.v).max(self.impact.speed(i, &from.v));
+            // What rests beside has no velocity left to tell its rounding by, but what weight would give it.
+            let speeds = || [&self.v, &from.v, &self.by_forces].map(|v| self.impact.speed(i, v));
+            let speed = || speeds().into_iter().fold(0.0, f64::max);
             let stays = (contact.p[0] > 0.0 || contact.persisting) && !leaves(contact.u_after[0], speed);
             self.stays.push(stays);
             if stays {

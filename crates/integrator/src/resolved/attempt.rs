@@ -1,7 +1,7 @@
 //! A part of a step: motion without contacts, the contacts that take part, passes until their gaps are closed.
 
 use super::Resolved;
-use crate::closed_step::{Guard, THETA, leaves};
+use crate::closed_step::{Guard, THETA, find, leaves};
 use crate::theta_step::weights;
 use crate::{Keep, Model, Over, PhaseEnd, PhaseKind, Responses, State, StepError, StepSpan, Weights, Workspace};
 use teeter_contact::Outcome;
@@ -61,6 +61,7 @@ impl<const D: usize> Resolved<D> {
             return Ok(None);
         }
         work.locate(model, &from.q, &self.ids, &mut self.start)?;
+        self.ids.retain(|id| find(&self.start, *id).is_some());
         let (over, responses) = (Over::Step { h: part.h, weight: THETA }, Responses::Over(part.h));
         let problem = |source| StepError::Problem { t: from.t, source };
         let mut outcome = None;
@@ -105,7 +106,9 @@ impl<const D: usize> Resolved<D> {
                 continue;
             }
             work.locate(model, &from.q, &[id], &mut self.start)?;
-            let level = self.start.first().map_or(0.0, |candidate| candidate.gap).min(0.0);
+            // What comes in from beside its surface has no way that it could have sunk, in this part of the step.
+            let Some(start) = self.start.first() else { continue };
+            let level = start.gap.min(0.0);
             if gap < level - SINKING * self.settings.gap_tolerance {
                 self.ids.push(id);
             }

@@ -7,7 +7,7 @@ use crate::{Model, Responses, Rule, SpringStep, State, StepError, StepSpan, Vect
 use teeter_detect::Candidate;
 
 /// A gap is held where hV/(2D) is at most this: 1 between bodies, ¾ on a long beam, 0 on one without mass.
-const BODIES: f64 = 0.875;
+const BODIES: f64 = 0.82;
 
 /// A contact with a beam that gives something back: in the continuum that has no meaning.
 const RESTITUTION: &str =
@@ -72,15 +72,13 @@ impl<const D: usize> Resolved<D> {
         let persisting = self.stage.contacts()[i].persisting;
         // Off the end of its surface by then, it has no frame there.
         let ahead = find(&self.ahead, candidate.id).copied();
-        let start = find(&self.start, candidate.id).map(|start| start.gap);
+        let gap_before = find(&self.start, candidate.id).map_or(0.0, |start| start.gap);
         if held
-            && let (Some(start), Some(ahead)) = (start, &ahead)
+            && let Some(ahead) = &ahead
             && pass > 0
         {
-            self.take_discrete_gradient(i, ahead.gap - start, part.h)?;
+            self.take_discrete_gradient(i, ahead.gap - gap_before, part.h)?;
         }
-        // What comes in from beside its surface is kept as deep as it came.
-        let gap_before = start.unwrap_or_else(|| ahead.map_or(0.0, |ahead| ahead.gap.min(0.0)));
         let approach = if persisting { 0.0 } else { gap_before };
         let u_before = self.stage.velocity(i, &from.v)?;
         let u_free = self.stage.velocity(i, &self.v_free)?;

@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::sync::Arc;
-use teeter_beam::{Beam, BeamSpec, Damping, ModalBasis, Section};
+use teeter_beam::{Axial, Beam, BeamSpec, Damping, ModalBasis, Section};
 use teeter_detect::Kinematics;
 use teeter_integrator::*;
 
@@ -116,6 +116,19 @@ fn beam() -> Arc<Beam> {
         }))
         .unwrap(),
     )
+}
+
+/// Whose tension takes several rounds a step.
+#[test]
+fn a_step_on_a_held_beam_allocates_nothing() {
+    let section = Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap();
+    let damping = Damping { viscous: 0.4, rayleigh_stiffness: 1e-6, ..Damping::default() };
+    let spec = BeamSpec::new(0.36, 20, section).axial(Axial::Held).damped(damping);
+    let beam = Arc::new(Beam::new(spec).unwrap());
+    for scheme in all_schemes(&[0.75]) {
+        let name = scheme.name();
+        assert_eq!(count(Box::new(beam_body(&beam)), beam.dofs(), scheme, PairLaw::new(0.5, 0.2)), 0, "{name}");
+    }
 }
 
 #[test]

@@ -130,6 +130,10 @@ impl Dynamics<2> for Wrong {
         Traits::free().driven(if self.0 == Property::Sizes { vec![2] } else { vec![] })
     }
 
+    fn stretching(&self) -> Option<&dyn teeter_integrator::Stretching> {
+        if self.0 == Property::Stretching { Some(self) } else { None }
+    }
+
     fn internal_force(&self, q: &[f64], v: &[f64], f: &mut [f64]) {
         let c = if self.0 == Property::Damping { 1.0 } else { 0.0 };
         f[0] -= q[0] + c * v[0];
@@ -163,6 +167,25 @@ impl Dynamics<2> for Wrong {
 
     fn factor(&self, w: Weights, _q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
         Ok(Box::new(WrongCompliance { weights: w, wrong: self.0, coupled: 0 }))
+    }
+}
+
+impl teeter_integrator::Stretching for Wrong {
+    fn stiffness(&self) -> f64 {
+        2.0
+    }
+
+    fn form(&self, x: &[f64], y: &[f64]) -> f64 {
+        x[0] * y[0] + x[1] * y[1]
+    }
+
+    fn add_product(&self, a: f64, x: &[f64], y: &mut [f64]) {
+        y.iter_mut().zip(x).for_each(|(y, x)| *y += a * x);
+    }
+
+    /// All of them, while the tension is said to act beside them.
+    fn force_beside(&self, q: &[f64], v: &[f64], f: &mut [f64]) {
+        self.internal_force(q, v, f);
     }
 }
 
@@ -263,6 +286,7 @@ fn the_harness_finds_what_is_wrong_and_nothing_else() {
         Force,
         Inverse,
         Refactor,
+        Stretching,
         Couple,
         Respond,
     ] {

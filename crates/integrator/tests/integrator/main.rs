@@ -23,5 +23,6 @@ mod scenes;
 mod springs;
 mod stored;
 mod stretched;
+mod tension;
 mod time;
 mod tipping;

@@ -6,9 +6,6 @@ use teeter_integrator::{State, StepReport};
 use teeter_scenario::simulation::Layout;
 use teeter_scenario::{FAR_TURN, deflection};
 
-/// A change of the modified energy over this part of the kinetic and elastic energy is a warning.
-const FAR_FROM_CONSERVED: f64 = 0.02;
-
 /// A penetration over this part of the shortest side of a block is a warning.
 const DEEP: f64 = 0.1;
 
@@ -134,19 +131,6 @@ impl Recorder<'_> {
                     "up to t = {} s the energy of a step is off by {left:.1e} of the scene's scale, far more than rounding: numbers of very \
                      different size act together, and the motion is not to be trusted; check loads, signals and masses, and their units",
                     state.t
-                )
-            });
-        }
-        // With theta = 1/2 nothing dissipates but that what is conserved is a modified energy: `numerical` is minus its change.
-        let stirred = ledger.current.kinetic + ledger.current.elastic;
-        let share = if stirred > 0.0 { ledger.sum.numerical.abs() / stirred } else { 0.0 };
-        if share > FAR_FROM_CONSERVED && layout.beams.iter().any(|place| place.beam.is_stretched()) {
-            self.warn_once("stretching", state.t, || {
-                format!(
-                    "the step is too long for the vibrations that stretch the beam: at t = {} s the energy that it conserves is off \
-                     by {:.1} % of what moves and bends, and so is the axial force it goes by; take a shorter step",
-                    state.t,
-                    100.0 * share
                 )
             });
         }

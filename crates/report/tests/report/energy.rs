@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::Path;
-use teeter_report::{ENERGY_MADE, EndedWord, Record, Summary};
+use teeter_report::{ENERGY_MADE, ENERGY_TAKEN, EndedWord, Record, Summary};
 use teeter_scenario::simulation::Simulation;
 
 /// The summary of a run in memory.
@@ -79,4 +79,31 @@ fn scenarios_that_make_none_are_not_warned_of() {
         let text = fs::read(folder.join(format!("{name}.toml"))).unwrap();
         assert_eq!(warning(&summary(&text, &folder, &[])), None, "{name}");
     }
+}
+
+/// What the filter of `resolved` and θ = 1 take from a beam that rattles under a block; what takes none isn't warned of.
+#[test]
+fn energy_that_a_scheme_takes_is_warned_of() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
+    let text = fs::read_to_string(folder.join("free-rocking-on-beam-undeformed-start.toml")).unwrap();
+    let taken = |text: &str, sets: &[&str]| {
+        let summary = summary(text.as_bytes(), &folder, &[sets, &["time.end=0.2 s", "time.step=1 ms"]].concat());
+        let told = summary.warnings.iter().find(|warning| warning.code == ENERGY_TAKEN)?;
+        assert!(told.text.contains(&format!("{:.2e} J", summary.energy.scale)), "{}", told.text);
+        Some(told.text.clone())
+    };
+    let theta = taken(&text, &["time.scheme=moreau-jean", "time.theta=1"]).unwrap();
+    assert!(theta.contains("`time.theta = 0.5` takes none"), "{theta}");
+    assert_eq!(taken(&text, &["time.scheme=moreau-jean", "time.theta=0.5"]), None);
+    assert_eq!(taken(&text, &["time.scheme=resolved"]), None);
+    // The block falls flat on the beam instead, from 2 cm.
+    let places = ["on       = \"table\"\n", "at       = \"18 cm\"", "tilt     = \"5 deg\""];
+    let dropped =
+        places.iter().zip(["", "position = [\"18 cm\", \"9 cm\"]", ""]).fold(text.clone(), |text, (line, new)| {
+            assert!(text.contains(line), "{line}");
+            text.replace(line, new)
+        });
+    let filter = taken(&dropped, &["time.scheme=resolved"]).unwrap();
+    assert!(filter.contains("oscillations of beams"), "{filter}");
+    assert_eq!(taken(&dropped, &["time.scheme=moreau-jean-located"]), None);
 }

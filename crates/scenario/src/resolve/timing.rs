@@ -45,10 +45,14 @@ impl Resolver<'_, '_> {
         let held = beams.iter().flatten().find(|beam| beam.spec.axial == teeter_beam::Axial::Held);
         if let (Some(beam), Some(scheme)) = (held, scheme.filter(|scheme| !scheme.takes_held_beams())) {
             let rule = format!(
-                "the beam `{}` is held along its axis, and keeps its energy over steps of one size only: {} {}",
+                "the beam `{}` is held along its axis, so that its stiffness changes as it moves: {} {}",
                 beam.name,
                 scheme.word(),
-                if scheme == SchemeName::GeneralizedAlpha { "needs forces that are linear" } else { "divides them" }
+                if scheme == SchemeName::GeneralizedAlpha {
+                    "needs forces that are linear"
+                } else {
+                    "needs modes that stay"
+                }
             );
             self.error("time.scheme", rule, "take scheme = \"moreau-jean-closed\", or axial = free");
         }
@@ -144,7 +148,12 @@ impl Resolver<'_, '_> {
     }
 
     /// Refuses contacts that the scheme doesn't take: with duration, or with what it has no meaning for at a beam.
-    pub(super) fn refuse_springs(&mut self, scheme: SchemeName, contacts: &[Option<ContactScene>]) {
+    pub(super) fn refuse_springs(
+        &mut self,
+        scheme: SchemeName,
+        contacts: &[Option<ContactScene>],
+        beams: &[Option<BeamScene>],
+    ) {
         let has_duration = |contact: &&ContactScene| {
             matches!(contact.law.impact, ImpactLaw::KelvinVoigt { .. } | ImpactLaw::HuntCrossley { .. })
         };
@@ -160,20 +169,24 @@ impl Resolver<'_, '_> {
             let rule = format!("{} is for contact with beams, and there is none here", scheme.word());
             self.error("time.scheme", rule, "take scheme = \"moreau-jean-located\", or leave it out");
         }
+        if let Some(beam) = beams.iter().flatten().find(|beam| beam.motion.is_given()) {
+            let rule = format!("{} takes no beams on moving supports, such as `{}`", scheme.word(), beam.name);
+            self.error("time.scheme", rule, "take scheme = \"moreau-jean-located\", or leave it out");
+        }
         if let Some(contact) = contacts.iter().flatten().filter(at_beam).find(|contact| contact.gives_back()) {
             let rule = format!(
                 "{} takes no restitution and no law with duration at a beam, as in `{}`: contact there is a force, and all that a beam gives back is its own elasticity",
                 scheme.word(),
                 contact.name
             );
-            self.error("time.scheme", rule, "take scheme = \"moreau-jean-located\", or restitution = 0");
+            self.error("time.scheme", rule, "take scheme = \"moreau-jean-located\", or law = \"newton\" with restitution and tangential_restitution 0");
         }
     }
 
     /// The scheme that suits the scene: the most accurate one (`docs/schemes.md`), unless keys of
     /// another are given. Where many blocks strike in a step there are too many impacts to locate,
-    /// and a held beam keeps its energy in steps of one size only; where there are no blocks, one
-    /// is as good as the other.
+    /// and on held beams locating them has been measured in one scene only; where there are no
+    /// blocks, one is as good as the other.
     fn suitable(&self, blocks: usize, beams: &[Option<BeamScene>]) -> SchemeName {
         let held = beams.iter().flatten().any(|beam| beam.spec.axial == teeter_beam::Axial::Held);
         let own = ["time.theta", "time.gap_tolerance", "time.activation_gamma"];

@@ -7,6 +7,7 @@ mod event_driven;
 mod located;
 mod many;
 mod modes;
+mod painleve;
 mod projected;
 mod properties;
 mod reading;

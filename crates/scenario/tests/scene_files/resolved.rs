@@ -8,6 +8,15 @@ fn source(name: &str) -> String {
     std::fs::read_to_string(workspace().join("scenarios").join(format!("{name}.toml"))).unwrap()
 }
 
+const SHAKEN: &str = r#"
+[beam.table.motion]
+acceleration = ["0 m/s^2", "1 m/s^2"]
+signal = "s"
+[signal.s]
+shape = "harmonic"
+frequency = "2 Hz"
+"#;
+
 /// The scene with these keys.
 fn simulation(text: &str, sets: &[(&str, &str)]) -> Simulation {
     let sets: Vec<(String, String)> = [("time.scheme", "resolved")]
@@ -92,9 +101,20 @@ fn what_it_has_no_meaning_for_is_refused_with_place_and_remedy() {
         (source("free-rocking-on-ground"), vec![], "for contact with beams, and there is none here"),
         (beam.clone(), vec![("contact.feet.restitution", "0.3")], "no restitution"),
         (beam.clone(), vec![("beam.table.axial", "held")], "held along its axis"),
-        (beam, vec![("time.theta", "0.6")], "theta = 0.5"),
+        (beam.clone(), vec![("time.theta", "0.6")], "theta = 0.5"),
+        (beam + SHAKEN, vec![], "moving supports"),
     ] {
         let said = error(&text, &sets);
         assert!(said.contains(what) && said.contains("take "), "{said}");
     }
+}
+
+/// The weight of a beam in modes has entries for its supports, too, which only move if they are told to.
+#[test]
+fn a_heavy_beam_in_modes_carries_itself_and_a_block() {
+    let text = source("free-rocking-on-beam");
+    let modes = [("beam.table.model", "modes"), ("beam.table.self_weight", "true"), ("time.end", "0.05 s")];
+    let mut simulation = simulation(&text, &modes);
+    assert_eq!(simulation.run(&mut []).unwrap(), Ended::Complete);
+    assert!(simulation.state.ledger.relative_residual() < 1e-13);
 }

@@ -116,6 +116,14 @@ impl Compliance<2> for BeamCompliance {
         self.beam.follow(&q[..self.beam.dofs()], &mut self.factor);
     }
 
+    fn stretch(&mut self, tension: f64, weight: f64, g: &[f64]) {
+        if let Memory::Columns(columns) = &mut self.memory {
+            columns.forget();
+        }
+        // A factor that could not be made gives NaN, which ends the step as diverged.
+        let _ = self.beam.refactor_stretched(tension, weight, &g[..self.beam.dofs()], &mut self.factor);
+    }
+
     fn take_tangent(&mut self, q: &[f64]) -> Result<(), FactorError> {
         if let Memory::Columns(columns) = &mut self.memory {
             columns.forget();

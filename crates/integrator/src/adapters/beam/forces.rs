@@ -45,11 +45,10 @@ pub struct BeamForces {
     /// The dofs before and after the phase, and their rates.
     q: [Vec<f64>; 2],
     v: [Vec<f64>; 2],
-    /// q̄, v̄, the acceleration, and q⁰ + wτv⁰.
+    /// q̄, v̄ and the acceleration.
     q_mean: Vec<f64>,
     v_mean: Vec<f64>,
     acceleration: Vec<f64>,
-    predicted: Vec<f64>,
     /// q̄ or v̄ of a phase whose scheme knows it.
     known: Vec<f64>,
     span_loads: Vec<SpanLoad>,
@@ -75,8 +74,7 @@ impl BeamForces {
             q_mean: none.clone(),
             v_mean: none.clone(),
             acceleration: none.clone(),
-            known: none.clone(),
-            predicted: if beam.is_stretched() { none } else { Vec::new() },
+            known: none,
             span_loads: Vec::with_capacity(LOADS),
             forces: SectionForces::new(beam),
             beam: Arc::clone(beam),
@@ -212,7 +210,7 @@ impl BeamForces {
         whole: f64,
         times: [f64; 2],
     ) -> Result<(), BeamError> {
-        for mean in [&mut self.q_mean, &mut self.v_mean, &mut self.acceleration, &mut self.predicted] {
+        for mean in [&mut self.q_mean, &mut self.v_mean, &mut self.acceleration] {
             mean.fill(0.0);
         }
         self.span_loads.clear();
@@ -220,6 +218,7 @@ impl BeamForces {
             loads.add_mean(times, &mut self.span_loads);
         }
         let span = self.beam.spec().span;
+        let mut tension = 0.0;
         for phase in phases {
             let (part, weight) = (phase.duration / whole, phase.balance.weight());
             for end in 0..2 {
@@ -231,6 +230,7 @@ impl BeamForces {
                     None => self.known.copy_from_slice(mean),
                 }
                 self.q_mean.iter_mut().zip(&self.known).for_each(|(sum, mean)| *sum += part * mean);
+                tension += part * self.tension_towards_known(weight);
                 if let Some(mean) = phase.mean_velocity.and_then(|mean| mean.get(self.range.clone())) {
                     match &self.basis {
                         Some(basis) => basis.expand(mean, &mut self.known),
@@ -243,6 +243,7 @@ impl BeamForces {
                     }
                 }
             } else {
+                tension += part * self.tension_between(&self.q[1]);
                 for (mean, [x0, x1]) in [(&mut self.q_mean, &self.q), (&mut self.v_mean, &self.v)] {
                     for (mean, (x0, x1)) in mean.iter_mut().zip(x0.iter().zip(x1)) {
                         *mean += part * (weight * x1 + (1.0 - weight) * x0);
@@ -256,9 +257,6 @@ impl BeamForces {
                 let lift = (phase.v[1][y] - phase.v[0][y]) / whole;
                 self.acceleration[..2 * self.beam.nodes()].iter_mut().step_by(2).for_each(|a| *a += lift);
             }
-            for (predicted, (q0, v0)) in self.predicted.iter_mut().zip(self.q[0].iter().zip(&self.v[0])) {
-                *predicted += part * (q0 + phase.duration * weight * v0);
-            }
             self.span_loads.extend(phase.contacts.iter().flat_map(|contact| pushes(contact, self.body, span, whole)));
         }
         let actions = Actions {
@@ -266,9 +264,29 @@ impl BeamForces {
             velocity: &self.v_mean,
             acceleration: &self.acceleration,
             loads: &self.span_loads,
-            stretched_at: &self.predicted,
+            tension: self.beam.is_stretched().then_some(tension),
         };
         self.forces.update(&self.beam, &actions)
+    }
+
+    /// What the deflection adds to the axial force of a beam held along its axis in a phase from the
+    /// dofs that were read to `end`, N: the mean of both, EA/(4L) (s⁰ + s¹).
+    fn tension_between(&self, end: &[f64]) -> f64 {
+        let ends = [&self.q[0], end].map(|q| self.beam.slope_form(q, q));
+        0.5 * self.beam.stretching_stiffness() * (ends[0] + ends[1])
+    }
+
+    /// The same where the scheme knows the mean of the coordinates, which is in `known` and becomes
+    /// the end that it is the mean towards, q̄ = w q¹ + (1 − w) q⁰: the coordinates at the end of the
+    /// phase may have been projected to elsewhere.
+    fn tension_towards_known(&mut self, weight: f64) -> f64 {
+        if !self.beam.is_stretched() || weight <= 0.0 {
+            return 0.0;
+        }
+        for (mean, q0) in self.known.iter_mut().zip(&self.q[0]) {
+            *mean = q0 + (*mean - q0) / weight;
+        }
+        self.tension_between(&self.known)
     }
 
     /// Reads the dofs at one end of a phase.
