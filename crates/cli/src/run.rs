@@ -15,6 +15,7 @@ use teeter_run::{
 };
 use teeter_scenario::dimension::Dimension;
 use teeter_scenario::quantity;
+use teeter_study::Basis;
 
 /// How the command ended; the exit code of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -173,10 +174,11 @@ fn notes(prepared: &Prepared) -> Vec<String> {
     let chosen = prepared.chosen_step().map(|chosen| {
         let until =
             if chosen.whole { String::new() } else { format!(" up to t = {:.4} s, the horizon", chosen.horizon) };
-        format!(
-            "steps of {:e} s, found by {} runs: off by {:.1e} from finer ones{until}",
-            chosen.step, chosen.runs, chosen.error
-        )
+        let off = match chosen.basis {
+            Basis::Order => "by their order",
+            _ => "from finer ones",
+        };
+        format!("steps of {:e} s, found by {} runs: off by {:.1e} {off}{until}", chosen.step, chosen.runs, chosen.error)
     });
     start.into_iter().chain(chosen).chain(prepared.warnings().iter().map(|warning| presenter.one(warning))).collect()
 }

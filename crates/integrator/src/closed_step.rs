@@ -60,7 +60,7 @@ pub(crate) struct ClosedStep<const D: usize, M = ThetaStep> {
 /// Where a contact is in the surface already, it closes when it sinks by this part of the gap
 /// tolerance within a step: more than rounding, and so little that no approach is too slow to be
 /// seen.
-const SINKING: f64 = 1e-3;
+pub(crate) const SINKING: f64 = 1e-3;
 
 /// A contact that leaves faster than this part of Σ|J_i v| is open after the step, v the larger of
 /// v¹ and v_free: what was stopped has no velocity left to tell its rounding by.

@@ -1,14 +1,16 @@
 //! The step that reaches an accuracy: found by runs, each of half the step of the one before, and
-//! believed only where two finer runs confirm it.
+//! believed where two finer runs confirm it, or where the errors fall so regularly that five longer
+//! steps tell what a shorter one does.
 //!
 //! The error is that of [`Quantity::Accuracy`], the largest of angles, places and deflections. A
 //! step h is taken when the run with it is within the accuracy of the run with h/4, and that with
-//! h/2 is nearer: so it converges. Motions that part from a start 1e-12 beside them are compared up
-//! to there, the horizon.
+//! h/2 is nearer: so it converges. Or when the last five runs show errors of second order: that of a
+//! step down to a sixteenth of the finest is then foretold. Motions that part from a start 1e-12 beside them are compared up to there, the horizon.
 
 use crate::pilots::Pilots;
 use crate::reference::NUDGE;
 use crate::{Failure, Motion, Quantity, Ruler, Sampling};
+use std::ops::RangeInclusive;
 use std::sync::atomic::AtomicBool;
 use teeter_scenario::scene::Scene;
 
@@ -18,14 +20,27 @@ use teeter_scenario::scene::Scene;
 pub struct ChosenStep {
     /// The step, s.
     pub step: f64,
-    /// How far a run with it is from one with a quarter of it, or less, before the horizon.
+    /// How far a run with it is from one with a quarter of it, or less, before the horizon; or how
+    /// far from the limit, by the order of the errors.
     pub error: f64,
+    /// Which of both.
+    pub basis: Basis,
     /// The time up to which they were compared, s.
     pub horizon: f64,
     /// Whether that is the end of the run.
     pub whole: bool,
     /// How many runs it took.
     pub runs: usize,
+}
+
+/// How the error of a [`ChosenStep`] is known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Basis {
+    /// By runs with a half and a quarter of the step.
+    FinerRuns,
+    /// By the order of the errors of runs with longer steps.
+    Order,
 }
 
 /// Why there is no such step.
@@ -80,6 +95,13 @@ const STALLED: f64 = 0.5;
 /// A horizon before this part of the run shows too little of it.
 const SHORT: f64 = 0.05;
 
+/// Errors are of second order where three halvings in a row show such orders, and these on average.
+const REGULAR: RangeInclusive<f64> = 1.2..=2.8;
+const ON_AVERAGE: RangeInclusive<f64> = 1.7..=2.3;
+
+/// What a step of a regular order does is foretold down to this part of the finest that was tried.
+const FURTHEST: f64 = 1.0 / 16.0;
+
 /// A longer step than the one that was halved to is worth a run of its own from this factor on.
 const LONGER: f64 = 1.15;
 
@@ -93,10 +115,13 @@ pub fn step_for(scene: &Scene, accuracy: f64, cancel: &AtomicBool) -> Result<Cho
     let mut pilots = Pilots { scene, sampling, cancel, most_seconds: MOST_SECONDS, runs: 0 };
     // The runs so far, from long steps to short ones; none where a run didn't come to its end.
     let mut motions: Vec<(f64, Option<Motion>)> = Vec::new();
-    let mut step = end / 2_f64.powf((end / longest(scene)).log2().ceil());
+    // An odd number of steps, and one more than twice as many in the next run: halves of a run, quarters … would fall on ends
+    // of steps in all of them, and what happens there, as where a load begins, would look better than it is elsewhere.
+    let mut count = 2.0 * (0.5 * end / longest(scene)).ceil() + 1.0;
     let (mut errors, mut failed) = (Vec::new(), None);
     let mut best = (f64::NAN, f64::INFINITY, end);
     loop {
+        let step = end / count;
         let fine = match pilots.run(step, 0.0) {
             Ok(Some(motion)) => Some(motion),
             Ok(None) => {
@@ -127,6 +152,17 @@ pub fn step_for(scene: &Scene, accuracy: f64, cancel: &AtomicBool) -> Result<Cho
                     samples = ruler.agree(&nudged, fine, accuracy).max(1);
                 }
             }
+            if let [.., (_, Some(first)), (_, Some(second)), _, _, _] = motions.as_slice()
+                && samples == sampling.count
+            {
+                let neighbours = [(first, second), (second, coarse), (coarse, middle), (middle, fine)];
+                let apart = neighbours.map(|(a, b)| of(a, b, samples));
+                if let Some((factor, error)) = by_order(apart, accuracy) {
+                    let chosen = end / (end / (factor * step)).ceil();
+                    let (runs, basis) = (pilots.runs, Basis::Order);
+                    return Ok(ChosenStep { step: chosen, error, basis, horizon: end, whole: true, runs });
+                }
+            }
             let horizon = sampling.time(samples - 1);
             let [error, nearer] = [coarse, middle].map(|motion| of(motion, fine, samples));
             best = (*coarse_step, error, horizon);
@@ -143,6 +179,7 @@ pub fn step_for(scene: &Scene, accuracy: f64, cancel: &AtomicBool) -> Result<Cho
                 let mut chosen = ChosenStep {
                     step: *coarse_step,
                     error,
+                    basis: Basis::FinerRuns,
                     horizon,
                     whole: samples == sampling.count,
                     runs: pilots.runs,
@@ -160,12 +197,32 @@ pub fn step_for(scene: &Scene, accuracy: f64, cancel: &AtomicBool) -> Result<Cho
             }
         }
         // What is not compared any more.
-        let old = motions.len().saturating_sub(4);
+        let old = motions.len().saturating_sub(5);
         if let Some((_, motion)) = motions[..old].last_mut() {
             *motion = None;
         }
-        step *= 0.5;
+        count = 2.0 * count + 1.0;
     }
+}
+
+/// The step that should do, as a multiple of the finest of five that were each half of the one
+/// before, by how far the motions of neighbours are `apart`; and its error. `None` where these don't
+/// fall regularly, or where that step is out of their reach.
+fn by_order(apart: [f64; 4], accuracy: f64) -> Option<(f64, f64)> {
+    let orders = [0, 1, 2].map(|k| (apart[k] / apart[k + 1]).log2());
+    let mean = orders.iter().sum::<f64>() / 3.0;
+    if !(orders.iter().all(|order| REGULAR.contains(order)) && ON_AVERAGE.contains(&mean)) {
+        return None;
+    }
+    // Of the finest step, were the errors h² times the largest factor that was seen: how large it is goes by where
+    // in their steps the events are.
+    let found = [0, 1, 2, 3].map(|k| apart[k] * 0.25_f64.powi(3 - k as i32) / 3.0);
+    let (least, most) = found.iter().fold((f64::INFINITY, 0.0_f64), |(least, most), e| (least.min(*e), most.max(*e)));
+    // Where they differ much, there may be larger ones.
+    let error = most * (most / least).sqrt();
+    // Longer than the longest of them it would be told by none.
+    let factor = (ROOM * accuracy / error).sqrt().min(16.0);
+    (factor >= FURTHEST).then_some((factor, error * factor * factor))
 }
 
 /// A step between h and 2h that should do, by the errors of both; `None` if it is hardly longer
@@ -192,6 +249,20 @@ mod tests {
     use super::*;
 
     #[test]
+    fn five_runs_of_second_order_tell_what_a_shorter_step_does() {
+        // e = h² for h = 16, 8, 4, 2, 1: apart by 192, 48, 12, 3.
+        let (factor, error) = by_order([192.0, 48.0, 12.0, 3.0], 1e-2 / ROOM).unwrap();
+        assert!((factor - 0.1).abs() < 1e-12 && (error - 1e-2).abs() < 1e-12, "{factor}, {error}");
+        assert_eq!(by_order([192.0, 48.0, 24.0, 3.0], 2e-2), None, "of no order from one halving to the next");
+        // The worst of them counts, and more than that.
+        let (factor, _) = by_order([192.0, 48.0, 18.0, 3.0], 1e-2 * 1.5_f64.powf(1.5) / ROOM).unwrap();
+        assert!((factor - 0.1).abs() < 1e-12, "{factor}");
+        assert_eq!(by_order([192.0, 48.0, 12.0, 3.0], 1e-3), None, "too far from what was tried");
+        assert_eq!(by_order([16.0, 8.0, 4.0, 2.0], 1e-2), None, "of first order, which scatters");
+        assert_eq!(by_order([0.0; 4], 1e-2), None, "nothing depends on the step");
+    }
+
+    #[test]
     fn a_longer_step_goes_by_the_order() {
         // Second order: an error four times smaller than allowed lets the step double, nearly.
         let step = longer(1e-4, Some(4e-4), 4e-4, 1.0).unwrap();
@@ -199,5 +270,26 @@ mod tests {
         assert_eq!(longer(3.9e-4, Some(1.6e-3), 4e-4, 1.0), None, "hardly longer");
         assert_eq!(longer(1e-4, None, 4e-4, 1.0), None);
         assert_eq!(longer(1e-4, Some(1e-4), 4e-4, 1.0), None, "no order to go by");
+    }
+
+    #[test]
+    fn a_step_foretold_reaches_its_accuracy() {
+        // Half a sine pushes it into sliding, and begins and ends where steps that halve the run would all end; Housner's block.
+        let path = |name| format!("{}/../../scenarios/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        for (name, accuracy) in [("free-rocking-on-ground", 1e-5), ("shaken-ground", 1e-5), ("pushed-block", 1e-6)] {
+            let step = ("time.step".to_owned(), "1 ms".to_owned());
+            let text = std::fs::read(path(name)).unwrap();
+            let scene = teeter_scenario::load(&text, &path(name), name, &[step]).unwrap().scene;
+            let cancel = AtomicBool::new(false);
+            let chosen = step_for(&scene, accuracy, &cancel).unwrap();
+            let end = scene.time.end;
+            let sampling = Sampling { every: end / SAMPLES as f64, count: SAMPLES + 1 };
+            let mut pilots = Pilots { scene: &scene, sampling, cancel: &cancel, most_seconds: 100.0, runs: 0 };
+            let [run, fine] =
+                [1.0, 8.0].map(|by| pilots.run(end / (by * end / chosen.step).ceil(), 0.0).unwrap().unwrap());
+            let error = Ruler::new(&scene, sampling).errors(&run, &fine).of(Quantity::Accuracy).unwrap();
+            assert!(error > 0.1 * accuracy && error <= accuracy, "{name}: {error:e} for {accuracy:e}, {chosen:?}");
+            assert!(name == "pushed-block" || chosen.basis == Basis::Order && chosen.runs == 5, "{name}: {chosen:?}");
+        }
     }
 }

@@ -31,7 +31,7 @@ mod warned;
 mod work;
 pub mod write;
 
-pub use accuracy::{ChosenStep, NoStep, step_for};
+pub use accuracy::{Basis, ChosenStep, NoStep, step_for};
 pub use against::Against;
 pub use axes::{Axes, Axis};
 pub use errors::{Errors, Quantity, Ruler};

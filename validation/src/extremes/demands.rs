@@ -1,7 +1,7 @@
 //! What every row must keep, whatever its scene, and the misses that are known.
 
 use super::measure::{Ending, Measured};
-use super::row::{Row, Scheme};
+use super::row::Row;
 
 /// What a step may gain by rounding, relative to the scene's energy scale.
 const GAIN: f64 = 1e-13;
@@ -61,7 +61,7 @@ pub(crate) fn missed(row: &Row, measured: &Measured) -> Vec<Demand> {
     );
     demand(
         Demand::Gain,
-        row.scheme == Scheme::Open || measured.gain <= GAIN.max(GAIN_OF_TOLERANCE * measured.tolerance),
+        !row.scheme.keeps_energy() || measured.gain <= GAIN.max(GAIN_OF_TOLERANCE * measured.tolerance),
     );
     demand(Demand::Account, measured.residual <= RESIDUAL);
     demand(Demand::Penetration, measured.penetration <= 1.0);

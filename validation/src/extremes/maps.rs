@@ -29,7 +29,7 @@ pub(crate) fn all() -> Result<Vec<Map>> {
 
 /// A run of a base scene, each step shown; its last state.
 fn run(base: Base, sets: Sets, each: impl FnMut(&StepReport<'_, 2>, &State)) -> Result<State> {
-    let row = Row { name: "a map's".to_owned(), base, scheme: Scheme::Open, sets, long: false };
+    let row = Row { name: "a map's".to_owned(), base, scheme: Scheme::OPEN, sets, long: false };
     let resolved = row.load().map_err(|found| found.0.first().map_or(String::new(), |found| found.rule.clone()))?;
     let mut simulation = Simulation::new(&resolved.scene)?;
     match simulation.run(&mut [&mut Each(each)])? {

@@ -184,10 +184,7 @@ impl Seen {
             slope: 0.0,
             spin: 0.0,
             blocks,
-            late: match scheme {
-                Scheme::Open => 1.0,
-                Scheme::Closed => 0.5,
-            },
+            late: if scheme == Scheme::CLOSED { 0.5 } else { 1.0 },
             radius: scene.blocks.iter().map(|block| 0.5 * block.width.hypot(block.height)).fold(0.0, f64::max),
             dt: scene.time.step,
             tolerance: scene.time.gap_tolerance,

@@ -1,6 +1,7 @@
 //! A row of the table: a base scene and the keys that it changes.
 
 use crate::case::Result;
+use teeter_integrator::{MoreauJean, MoreauJeanClosed, MoreauJeanLocated, schemes};
 use teeter_scenario::resolve::Resolved;
 
 /// A scene that rows start from.
@@ -41,24 +42,34 @@ impl Base {
     }
 }
 
-/// Which scheme a row is stepped by.
+/// Which scheme a row is stepped by: its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Scheme {
-    /// `moreau-jean`.
-    Open,
-    /// `moreau-jean-closed`, whose contacts give no energy.
-    Closed,
-}
+pub(crate) struct Scheme(pub(crate) &'static str);
 
 impl Scheme {
-    pub(crate) const ALL: [Self; 2] = [Self::Open, Self::Closed];
+    /// `moreau-jean`.
+    pub(crate) const OPEN: Self = Self(MoreauJean::<2>::NAME);
+    /// `moreau-jean-closed`, whose contacts give no energy.
+    pub(crate) const CLOSED: Self = Self(MoreauJeanClosed::<2>::NAME);
+
+    /// All that the registry knows.
+    pub(crate) fn all() -> impl Iterator<Item = Self> {
+        schemes().iter().map(|entry| Self(entry.name))
+    }
 
     /// The word for it in scenes.
     pub(crate) fn word(self) -> &'static str {
-        match self {
-            Self::Open => "moreau-jean",
-            Self::Closed => "moreau-jean-closed",
-        }
+        self.0
+    }
+
+    /// The word for it in names of rows.
+    pub(crate) fn short(self) -> &'static str {
+        if self == Self::OPEN { "open" } else { self.0.trim_start_matches("moreau-jean-") }
+    }
+
+    /// Whether no step of it gains energy.
+    pub(crate) fn keeps_energy(self) -> bool {
+        self == Self::CLOSED || self.0 == MoreauJeanLocated::<2>::NAME
     }
 }
 

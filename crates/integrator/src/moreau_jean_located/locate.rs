@@ -1,7 +1,7 @@
 //! When the first open contact of a step touches.
 
 use super::MoreauJeanLocated;
-use crate::closed_step::leaves;
+use crate::closed_step::{SINKING, leaves};
 use crate::{ContactStage, Memory, Mismatch, Model, State, StepError, StepSpan, WarmStart, Workspace};
 use teeter_contact::Outcome;
 use teeter_detect::{Candidate, ContactId};
@@ -48,6 +48,11 @@ impl Hit {
 /// A gap is known to so much of the largest coordinate.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
+/// What a gap is known to at these coordinates, m.
+fn rounding(q: &[f64]) -> f64 {
+    ROUNDING * q.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()))
+}
+
 /// Attempts at locating an impact: two or three do, where no other contact opens or closes on the
 /// way.
 const ATTEMPTS: usize = 40;
@@ -58,8 +63,7 @@ const AT_START: f64 = 2.0;
 impl<const D: usize> MoreauJeanLocated<D> {
     /// What a gap is located to at these coordinates, m.
     pub(crate) fn tolerance(&self, q: &[f64]) -> f64 {
-        let largest = q.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
-        self.settings.gap_tolerance.max(ROUNDING * largest)
+        self.settings.gap_tolerance.max(rounding(q))
     }
 
     /// Attempts the step; if open contacts would end in their surface, only up to where the first
@@ -162,12 +166,14 @@ impl<const D: usize> MoreauJeanLocated<D> {
                 continue;
             }
             work.locate(model, &from.q, &[id], &mut self.near)?;
+            // A whole tolerance in each of many short steps would let it sink by any depth.
+            let sinking = (SINKING * tolerance).max(rounding(&from.q));
             let Self { hits, near, one, step, .. } = self;
             // One that comes from beyond the end of its surface has no gap there.
             let start = near.first();
             let gap = start.map_or(f64::INFINITY, |start| start.gap);
             let level = gap.min(0.0);
-            if candidate.gap < level - tolerance && gap - level >= least {
+            if candidate.gap < level - sinking && gap - level >= least {
                 let rate = start.map_or(Ok(0.0), |start| rate_at(one, model, &from.q, start, &from.v))?;
                 let end_rate = rate_at(one, model, &step.step.q_at, &candidate, &step.step.v_end)?;
                 hits.push(Hit { id, level, above: gap - level, rate, end: candidate.gap - level, end_rate });

@@ -68,12 +68,12 @@ fn border(fails: &[bool]) -> Option<f64> {
 }
 
 pub(super) fn map() -> Result<Map> {
-    let reference = rock(Scheme::Closed, 0.5, 5000)?;
+    let reference = rock(Scheme::CLOSED, 0.5, 5000)?;
     let (mut accurate, mut gaining) = (Vec::new(), Vec::new());
     for theta in THETAS {
         let (mut wrong, mut gains) = (Vec::new(), Vec::new());
         for steps in STEPS {
-            let found = rock(Scheme::Open, theta, steps)?;
+            let found = rock(Scheme::OPEN, theta, steps)?;
             wrong.push(!(error(&found, &reference) <= ERROR));
             gains.push(!(found.gain <= GAIN));
         }
@@ -82,7 +82,7 @@ pub(super) fn map() -> Result<Map> {
     }
     let mut wrong = Vec::new();
     for steps in STEPS {
-        wrong.push(!(error(&rock(Scheme::Closed, 0.5, steps)?, &reference) <= ERROR));
+        wrong.push(!(error(&rock(Scheme::CLOSED, 0.5, steps)?, &reference) <= ERROR));
     }
     let closed = border(&wrong);
     let told = |points: &[(f64, f64)], theta: f64| {
