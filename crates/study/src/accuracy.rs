@@ -4,7 +4,7 @@
 //!
 //! The error is that of [`Quantity::Accuracy`], the largest of angles, places and deflections. A
 //! step h is taken when the run with it is within the accuracy of the run with h/4, and that with
-//! h/2 is nearer: so it converges. Or when the last five runs show errors of second order: that of a
+//! h/2 is nearer, or all three agree to half the accuracy. Or when the last five runs show errors of second order: that of a
 //! step down to a sixteenth of the finest is then foretold. Motions that part from a start 1e-12 beside them are compared up to there, the horizon.
 
 use crate::pilots::Pilots;
@@ -82,9 +82,9 @@ const MOST_SECONDS: f64 = 2.0;
 /// Of the accuracy, what the error may take up by what is measured.
 const ROOM: f64 = 0.9;
 
-/// The finer run is nearer by this factor at least, where both are not near enough anyway.
+/// The finer run is nearer by this factor at least, where errors don't scatter so far below the accuracy.
 const NEARER: f64 = 0.75;
-const NEAR: f64 = 1e-3;
+const ALIKE: f64 = 0.5;
 
 /// Runs after which those that don't converge are compared up to a horizon.
 const PATIENCE: usize = 5;
@@ -172,7 +172,7 @@ pub fn step_for(scene: &Scene, accuracy: f64, cancel: &AtomicBool) -> Result<Cho
             {
                 return Err(NoStep::NotReached { accuracy, step: *coarse_step, error, horizon, dear: false });
             }
-            let converges = nearer <= NEARER * error || error <= NEAR * accuracy;
+            let converges = nearer <= NEARER * error || error.max(nearer) <= ALIKE * accuracy;
             if error <= ROOM * accuracy && converges && horizon >= SHORT * end {
                 let before = motions.len().checked_sub(4).and_then(|at| motions[at].1.as_ref());
                 let longer = longer(error, before.map(|motion| of(motion, fine, samples)), accuracy, *coarse_step);

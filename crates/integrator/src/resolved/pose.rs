@@ -112,7 +112,11 @@ impl<const D: usize> Resolved<D> {
             self.posed.push(Posed { held, resting_shift: 0.0, approach, way });
             rule = SpringStep::new(&law.impact, gap, u_before[0], part.h, THETA).map_or(Rule::Shifted, Rule::Spring);
         } else {
-            shift[0] = if (u_before[0] - b[0]).abs() <= b[0].abs() { u_before[0] } else { b[0].max(u_before[0]) };
+            // Modes that move exactly don't end with the velocity that makes their mean the way: contacts that ask for a velocity of 0 at
+            // the end would sink from step to step. Those keep their gap, J Δq = 0.
+            let keeps = persisting && self.stage.parts_of(i).any(|index| work.factors.propagator(index).is_some());
+            shift[0] =
+                if keeps || (u_before[0] - b[0]).abs() <= b[0].abs() { u_before[0] } else { b[0].max(u_before[0]) };
             if !persisting && u_before[0] < 0.0 {
                 shift[0] = 0.0;
             }

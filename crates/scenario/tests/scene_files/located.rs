@@ -338,3 +338,10 @@ fn what_rests_isnt_touched_by_another_blocks_impact() {
         assert!(v.iter().all(|v| v.abs() < 1e-14), "{step}: {v:?}");
     }
 }
+
+/// Less than a tolerance in each step is no approach, or so it was: steps of 10 ns let a foot fall freely to 5e-10 m.
+#[test]
+fn no_step_is_so_short_that_a_foot_sinks_unseen() {
+    let (simulation, _) = run(&block("on = 'ground'\nat = '0 m'\ntilt = '1 deg'", "20 us", "friction = 0.5"), "10 ns");
+    assert!(simulation.state.tally.max_penetration < 2e-12, "{} m", simulation.state.tally.max_penetration);
+}
