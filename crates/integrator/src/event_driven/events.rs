@@ -282,7 +282,7 @@ impl EventDriven {
     /// Keeps what contacts that press have at the start of a step.
     fn watch_start(&mut self) {
         for contact in &mut self.smooth.contacts {
-            contact.start = [contact.presses(), contact.holds(), contact.slides()];
+            contact.start = [contact.presses(), contact.held, contact.slides()];
         }
     }
 
@@ -350,7 +350,7 @@ impl EventDriven {
                 }
                 let [presses, holds, slides] = contact.start;
                 watch(Kind::Opens, presses, contact.presses(), FORCE);
-                watch(Kind::Slips, holds, contact.holds(), FORCE);
+                watch(Kind::Slips, holds, contact.held, FORCE);
                 watch(Kind::Stops, slides, contact.slides(), SLIDE * contact.speed);
             }
         }
@@ -387,7 +387,7 @@ impl EventDriven {
                     }
                 }
                 (Kind::Opens, Some(contact)) => contact.presses(),
-                (Kind::Slips, Some(contact)) => contact.holds(),
+                (Kind::Slips, Some(contact)) => contact.held,
                 (Kind::Stops, Some(contact)) => contact.slides(),
             };
             watch.side = contact.map_or(0.0, |contact| contact.force[1].signum());

@@ -53,6 +53,8 @@ pub(super) struct Pressing {
     pub(super) free: Vector<2>,
     /// Its own entry of H, normal and tangential, 1/kg.
     pub(super) own: [f64; 2],
+    /// How far it is from sliding together with those that share its friction.
+    pub(super) held: f64,
     /// Where its rows are in the stage; `None` where it has none, off the end of its surface.
     pub(super) row: Option<usize>,
 }
@@ -74,6 +76,7 @@ impl Pressing {
             speed: 0.0,
             start: [0.0; 3],
             own: [0.0; 2],
+            held: f64::INFINITY,
             row: None,
         }
     }

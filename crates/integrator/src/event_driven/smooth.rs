@@ -22,6 +22,9 @@ const OF_CONTACT: usize = 4;
 /// than this, m or rad: its error falls with the fourth power.
 const ALONG: f64 = 1e-3;
 
+/// Contacts that share friction are at its limit together, up to this part of their scale.
+const SHARED: f64 = 1e-6;
+
 /// A contact has at least this part of the largest normal force where friction is shared.
 const LEAST_SHARE: f64 = 1e-6;
 
@@ -344,6 +347,7 @@ impl Smooth {
         }
         self.solve_forces(|_| 1.0);
         self.share_friction();
+        self.find_held();
         Ok(())
     }
 
@@ -412,6 +416,22 @@ impl Smooth {
         self.solve_forces(|contact| (largest / contact.alone[0].max(LEAST_SHARE * largest)).max(1.0));
         if self.contacts.iter().any(|contact| contact.force.iter().any(|f| f.is_nan())) {
             self.contacts.iter_mut().for_each(|contact| contact.force = contact.alone);
+        }
+    }
+
+    /// Finds how far contacts are from sliding. Those that share friction do so to some 1e-8 only: where one of them reached its limit
+    /// before the others, it could not slide, and would stick again at once. They reach it together, the last of them.
+    fn find_held(&mut self) {
+        let Self { contacts, stage, .. } = self;
+        for k in 0..contacts.len() {
+            let Pressing { mode, row, .. } = contacts[k];
+            let own = contacts[k].holds();
+            let beside = |other: &&Pressing| {
+                let coupled = |row, other| stage.block(row, other)[(1, 1)] != 0.0;
+                mode == Mode::Stick && row.zip(other.row).is_some_and(|(row, other)| coupled(row, other))
+            };
+            let alike = |other: &Pressing| Some(other.holds()).filter(|holds| (holds - own).abs() <= SHARED);
+            contacts[k].held = contacts.iter().filter(beside).filter_map(alike).fold(own, f64::max);
         }
     }
 

@@ -108,3 +108,25 @@ fn what_it_does_not_take_is_refused_with_the_reason() {
         "{refused}"
     );
 }
+
+/// Two feet share the friction of a slab up to 1e-8 only: were one let slide before the other, it would stop at once, hundreds of times in a row.
+#[test]
+fn a_slab_that_sticks_and_slips_does_so_with_both_feet() {
+    for (width, mu, shake, push) in [(36.7, 0.309, (3.69, 3.68), (5.3, 8.8)), (14.3, 0.21, (4.1, 1.3), (3.7, 5.1))] {
+        let scene = format!(
+            "[time]\nend = '2 s'\nstep = '1 ms'\n[ground]\nmotion = {{ acceleration = ['{} m/s^2', '0 m/s^2'], signal = 'one' }}\n\
+             [signal.one]\nshape = 'harmonic'\nfrequency = '{} Hz'\n[signal.two]\nshape = 'harmonic'\nfrequency = '{} Hz'\n\
+             [material.m]\ndensity = '2000 kg/m^3'\n\
+             [block.b]\nmaterial = 'm'\nwidth = '{width} cm'\nheight = '9.99 cm'\ndepth = '10 cm'\non = 'ground'\nat = '0 m'\n\
+             [contact.c]\nbetween = ['b', 'ground']\nfriction = {mu}\n[force.f]\non = 'b'\nforce = ['{} N', '0 N']\nsignal = 'two'\n",
+            shake.0, shake.1, push.1, push.0
+        );
+        let [short, long] = ["1 ms", "0.1 s"].map(|step| run(&scene, step));
+        for simulation in [&short, &long] {
+            assert_eq!(simulation.state.tally.unlocated_steps, 0);
+        }
+        let off = (short.state.q[0] - long.state.q[0]).abs();
+        assert!(off < 1e-11, "{off} m");
+        assert!(short.state.ledger.sum.friction < -0.1, "it didn't slide: {} J", short.state.ledger.sum.friction);
+    }
+}
