@@ -6,7 +6,7 @@
 mod rows;
 
 use regex::Regex;
-use rows::{Input, rows};
+use rows::{Input, STACKED, rows};
 use serde_json::Value;
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -243,6 +243,13 @@ const BEYOND: &[&str] = &[
     "corner off the beam",
     "corner below the surface",
     "two blocks in one place",
+    "block on a block without a contact",
+    "block on itself",
+    "blocks on each other",
+    "block beside the block that it stands on",
+    "blocks joined twice",
+    "kinematics between blocks",
+    "two blocks that are prescribed",
     "static start of a beam on one pin",
     "static start on a slope without friction",
     "static start that tips",
@@ -290,6 +297,9 @@ fn bad_inputs_are_refused_but_those_beyond_a_schema() {
             Input::Set(values) => sets = values,
             Input::Edit(changes) => changes.iter().for_each(|(from, to)| text = text.replacen(from, to, 1)),
             Input::Text(own) => text = (*own).to_owned(),
+            Input::Stack(changes) => {
+                text = changes.iter().fold(STACKED.to_owned(), |text, (from, to)| text.replacen(from, to, 1));
+            }
             // What is in another file no schema of this one tells.
             Input::Record(_) | Input::Shape(_) => continue,
         }

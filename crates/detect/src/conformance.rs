@@ -29,7 +29,7 @@ pub enum Property {
     Frame,
     /// The gap is n · (point − foot), where the geometry can place both.
     Gap,
-    /// `locate` gives the candidates of `detect` with these identities, in order of identity.
+    /// `locate` gives the candidates of `detect` with these identities, and no others than was asked for, in order of identity.
     Locate,
     /// `deepest` is the largest −gap, or 0.
     Deepest,
@@ -218,7 +218,7 @@ impl<const D: usize> Check<'_, D> {
             self.same(Property::Cleared, &what, &again, &found);
         }
         let expected = gaps().map(|gap| -gap).fold(0.0, f64::max);
-        let deepest = self.detector.deepest(at, &mut Candidates::new());
+        let deepest = self.detector.deepest(at, &mut DetectorMemory::default(), &mut Candidates::new());
         self.hold(Property::Deepest, (deepest - expected).abs() <= ROUNDING * expected, || {
             format!("configuration {k}: {deepest:e} m, but the largest −gap is {expected:e} m")
         });
@@ -253,8 +253,18 @@ impl<const D: usize> Check<'_, D> {
                 self.detector.locate(at, ids, &mut out);
                 self.detector.locate(at, ids, &mut again);
                 let what = format!("configuration {k}, locating {} contacts", ids.len());
-                self.same(Property::Locate, &what, &out, &expected);
                 self.same(Property::Cleared, &what, &again, &out);
+                let others = out.iter().filter(|candidate| !expected.iter().any(|known| known.id == candidate.id));
+                let others: Candidates<D> = others.copied().collect();
+                self.frames(k, at, &others);
+                self.hold(Property::Locate, others.iter().all(|other| ids.contains(&other.id)), || {
+                    format!("{what}: there are contacts that were not asked for")
+                });
+                self.hold(Property::Locate, out.is_sorted_by_key(|candidate| candidate.id), || {
+                    format!("{what}: they don't rise in identity")
+                });
+                out.retain(|candidate| expected.iter().any(|known| known.id == candidate.id));
+                self.same(Property::Locate, &what, &out, &expected);
             }
         }
     }

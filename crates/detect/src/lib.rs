@@ -46,11 +46,18 @@ mod candidate;
 #[cfg(feature = "conformance")]
 pub mod conformance;
 mod memory;
+mod placed;
 mod points;
+mod shape;
+mod shapes;
+mod touch;
 
 pub use candidate::{Anchor, BodyId, Candidate, Candidates, ContactId, Frame, LawId, plane_frame};
 pub use memory::DetectorMemory;
 pub use points::{PointDetector, PointPair};
+pub use shape::{Disc, MOST_CORNERS, Polygon, Shape, ShapeError};
+pub use shapes::{ShapeDetector, ShapePair, WiringError};
+pub use touch::CornerOnSide;
 
 /// A point or direction of the world, or of a body.
 pub type Vector<const D: usize> = nalgebra::SVector<f64, D>;
@@ -142,15 +149,18 @@ pub trait ContactDetector<const D: usize>: Send + Sync {
     /// hint: with an empty one the detector finds the same candidates, with the same identities, in
     /// the same order.
     fn detect(&self, at: &dyn Geometry<D>, margin: f64, memory: &mut DetectorMemory, out: &mut Candidates<D>);
-    /// The deepest penetration of any candidate, m; 0 if there is none. `scratch` is memory for
-    /// candidates; its content is lost. The default detects with a margin of 0.
-    fn deepest(&self, at: &dyn Geometry<D>, scratch: &mut Candidates<D>) -> f64 {
-        self.detect(at, 0.0, &mut DetectorMemory::default(), scratch);
+    /// The deepest penetration of any candidate, m; 0 if there is none. `memory` is that of
+    /// [`detect`](Self::detect), and `scratch` is memory for candidates; its content is lost. The
+    /// default detects with a margin of 0.
+    fn deepest(&self, at: &dyn Geometry<D>, memory: &mut DetectorMemory, scratch: &mut Candidates<D>) -> f64 {
+        self.detect(at, 0.0, memory, scratch);
         scratch.iter().map(|candidate| -candidate.gap).fold(0.0, f64::max)
     }
     /// Puts those of the contacts `ids` that have a foot now into `out`, which is cleared first,
-    /// however large their gaps. `ids` must ascend, and `out` ascends by identity. The default
-    /// detects everything and keeps these.
+    /// however large their gaps. `ids` must ascend, and `out` ascends by identity. All are among them
+    /// that [`detect`](Self::detect) finds with an infinite margin; there may be others, such as a
+    /// corner that is over a side yet where other features of the two bodies are nearer by now. The
+    /// default detects everything and keeps these.
     fn locate(&self, at: &dyn Geometry<D>, ids: &[ContactId], out: &mut Candidates<D>) {
         self.detect(at, f64::INFINITY, &mut DetectorMemory::default(), out);
         out.retain(|candidate| ids.binary_search(&candidate.id).is_ok());

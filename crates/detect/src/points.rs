@@ -103,7 +103,7 @@ impl ContactDetector<2> for PointDetector<2> {
         }
     }
 
-    fn deepest(&self, at: &dyn Geometry<2>, _scratch: &mut Candidates<2>) -> f64 {
+    fn deepest(&self, at: &dyn Geometry<2>, _memory: &mut DetectorMemory, _scratch: &mut Candidates<2>) -> f64 {
         let mut deepest = 0.0_f64;
         for pair in &self.pairs {
             pair.near(at, 0.0, |_, place| {

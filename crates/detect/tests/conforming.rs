@@ -103,8 +103,8 @@ impl ContactDetector<2> for Wrong {
         out.append(&mut found);
     }
 
-    fn deepest(&self, at: &dyn Geometry<2>, scratch: &mut Candidates<2>) -> f64 {
-        let deepest = self.1.deepest(at, scratch);
+    fn deepest(&self, at: &dyn Geometry<2>, memory: &mut DetectorMemory, scratch: &mut Candidates<2>) -> f64 {
+        let deepest = self.1.deepest(at, memory, scratch);
         match self.0 {
             Property::Deepest => 0.5 * deepest,
             Property::Found => 0.0,

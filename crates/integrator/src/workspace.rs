@@ -292,7 +292,7 @@ impl<const D: usize> Workspace<D> {
             return Ok(0.0);
         }
         self.counts.detections += 1;
-        Ok(model.detector().deepest(&model.placed_at(q), &mut self.candidates))
+        Ok(model.detector().deepest(&model.placed_at(q), &mut self.detection, &mut self.candidates))
     }
 
     /// Solves a problem, whose H is there, by its rules; `weight` is that of the velocity after in the mean that impulses do work with.
@@ -413,7 +413,7 @@ impl<const D: usize> Workspace<D> {
             Some(penetration) => penetration,
             None if account && model.has_contacts() => {
                 self.counts.detections += 1;
-                model.detector().deepest(&model.placed_at(&state.q), &mut self.candidates)
+                model.detector().deepest(&model.placed_at(&state.q), &mut self.detection, &mut self.candidates)
             }
             None => 0.0,
         };

@@ -45,7 +45,7 @@
     if (!points.length) return;
     const suffix = scenery.contacts.length > 1 ? `, ${nameOf(contact)}` : "";
     const series = (key) => points.map((point) =>
-      ({ label: cornerName(point.point), index: point.point, t: forces.borders, y: point[key], stepped: true }));
+      ({ label: contact.points[point.point].label, index: point.point, t: forces.borders, y: point[key], stepped: true }));
     for (const [key, title] of [["normal", "Normal force"], ["tangential", "Tangential force"]]) {
       const lines = series(key);
       const least = 1e-6 * strongest;
@@ -53,10 +53,10 @@
         id: `${key}-${k}`, contact: k, title: title + suffix, unit: "N", series: lines, cut: cutOf(lines, least), floor: 0, least, height: 150,
       });
     }
-    const initials = (point) => scenery.corners[point].split("-").map((word) => word[0].toUpperCase()).join("");
+    const initials = (point) => scenery.corners[contact.points[point].corner].split("-").map((word) => word[0].toUpperCase()).join("");
     plots.add({
       id: `state-${k}`, contact: k, title: `Contact state${suffix}`, series: [],
-      bands: points.map((point) => ({ short: several ? initials(point.point) : cornerName(point.point).replace("bottom ", ""), state: point.state })),
+      bands: points.map((point) => ({ short: several ? initials(point.point) : contact.points[point.point].label.replace("bottom ", ""), state: point.state })),
       height: plots.margin.top + plots.margin.bottom + plots.rowHeight * points.length,
     });
   });

@@ -107,4 +107,3 @@ function deflection(beam, frame, x) {
 
 const colour = (index) => `var(--c${index % 7})`;
 const dash = (index) => ["none", "6 3", "2 2.5"][Math.floor(index / 7) % 3];
-const cornerName = (point) => scenery.corners[point].replace("-", " ");

@@ -207,16 +207,32 @@ const scene = (() => {
   })();
   const hardest = data.impacts.reduce((most, impact) => Math.max(most, Math.hypot(...impact.impulse)), 1e-300);
 
+  /** The outward normal of the side of a block that a point is at. */
+  function outwardAt(block, x, y, at) {
+    const { x: cx, y: cy, phi } = truePose(block, at);
+    const { width, height } = scenery.blocks[block];
+    const [cos, sin] = [Math.cos(phi), Math.sin(phi)];
+    const along = cos * (x - cx) + sin * (y - cy);
+    const up = cos * (y - cy) - sin * (x - cx);
+    if (Math.abs(up) - height / 2 >= Math.abs(along) - width / 2) return [-sin, cos].map((n) => n * Math.sign(up));
+    return [cos, sin].map((n) => n * Math.sign(along));
+  }
+
   /** A contact point as drawn, with the directions of the contact's frame. */
   function contactPoint(contact, point, at) {
-    const { block, beam, linear } = scenery.contacts[contact];
-    const [x, y] = corners(drawnPose(block, at), scenery.blocks[block])[point];
+    const { block: first, beam, other, linear, points: places } = scenery.contacts[contact];
+    const { block, corner } = places[point];
+    const [x, y] = corners(drawnPose(block, at), scenery.blocks[block])[corner];
+    if (other !== null) {
+      const normal = outwardAt(block === first ? other : first, x, y, at).map((n) => (block === first ? n : -n));
+      return { x: px(x), y: py(y), normal, tangent: [normal[1], -normal[0]] };
+    }
     let slope = beam === null ? Math.tan(groundAt(at).slope) : 0;
     if (beam !== null && !linear) {
       const { span, points } = scenery.beams[beam];
       const left = leftOf(beam, at);
       const step = span / (points - 1);
-      const place = corners(truePose(block, at), scenery.blocks[block])[point][0] - left;
+      const place = corners(truePose(block, at), scenery.blocks[block])[corner][0] - left;
       slope = (deflection(beam, at, place + step) - deflection(beam, at, place - step)) / (2 * step);
     }
     const size = Math.hypot(1, slope);

@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use teeter_detect::{Candidate, ContactId};
 use teeter_integrator::{Contact, Model, State, Vector};
-use teeter_rigid::Rectangle;
 use teeter_scenario::simulation::Layout;
 
 pub(crate) const HEADER: &str = "t,contact,a,b,point,gap,p_n,p_t,u_n,u_t,state\n";
@@ -76,13 +75,13 @@ impl Impulses {
 pub(crate) struct Names<'a> {
     pub(crate) contact: &'a str,
     between: &'a [String; 2],
-    pub(crate) point: &'static str,
+    pub(crate) point: &'a str,
 }
 
 impl<'a> Names<'a> {
     pub(crate) fn of(layout: &'a Layout, id: ContactId) -> Option<Self> {
         let pair = layout.pairs.get(id.pair() as usize)?;
-        let point = Rectangle::CORNER_NAMES.get(id.point() as usize)?;
+        let point = &pair.points[pair.point(id)?].name;
         Some(Self { contact: &pair.name, between: &pair.between, point })
     }
 

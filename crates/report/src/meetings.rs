@@ -61,7 +61,7 @@ fn text(meeting: Meeting, layout: &Layout, t: f64, depth: f64) -> String {
     let beam = |k: usize| &layout.beams[k].name;
     match meeting {
         Meeting::Blocks(a, b) => format!(
-            "`{}` and `{}` overlap by {depth:.1e} m at t = {t} s: contact between blocks is not modelled, so they pass through each other",
+            "`{}` and `{}` overlap by {depth:.1e} m at t = {t} s: no contact joins the two, so they pass through each other",
             block(a),
             block(b)
         ),

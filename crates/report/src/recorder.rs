@@ -301,7 +301,7 @@ impl<'a> Recorder<'a> {
                 record.impacts.push(ImpactRow {
                     t,
                     contact: names.contact.to_owned(),
-                    point: names.point.into(),
+                    point: names.point.to_owned().into(),
                     impulse_n: contact.p[0],
                     u_n_before: contact.u_before[0],
                 });

@@ -1,7 +1,7 @@
 //! What carries a block, and the angle at which it stands on that.
 
 use crate::scene::{Placement, Scene, Support};
-use crate::simulation::Layout;
+use crate::simulation::{BlockPlace, Layout};
 use teeter_integrator::RockingMonitor;
 
 /// What carries a block, as far as its rocking goes: what it is placed on, else the surface of its first contact in the file.
@@ -13,12 +13,12 @@ pub enum Carrier {
     Level,
     /// Ground that stands still, with this slope, rad.
     Incline(f64),
-    /// Ground that moves: the place of its slope in the state.
+    /// Ground that moves, or a block: the place of its slope in the state.
     Moving(usize),
 }
 
-/// The carriers of the blocks; `slope` is the place of the slope of ground that moves.
-pub(crate) fn carriers(scene: &Scene, slope: Option<usize>) -> Vec<Carrier> {
+/// The carriers of the blocks, whose places are given; `slope` is the place of the slope of ground that moves.
+pub(crate) fn carriers(scene: &Scene, blocks: &[BlockPlace], slope: Option<usize>) -> Vec<Carrier> {
     let on_ground = match (slope, &scene.ground) {
         (Some(slope), _) => Carrier::Moving(slope),
         (None, Some(ground)) if ground.incline != 0.0 => Carrier::Incline(ground.incline),
@@ -30,8 +30,17 @@ pub(crate) fn carriers(scene: &Scene, slope: Option<usize>) -> Vec<Carrier> {
             scene.contacts.iter().find(|contact| contact.block == number).map(|contact| contact.surface)
         }
     };
-    let placements = scene.blocks.iter().map(|block| &block.placement).enumerate();
-    placements.map(|block| if support(block) == Some(Support::Ground) { on_ground } else { Carrier::Level }).collect()
+    let carrier = |block| match support(block) {
+        Some(Support::Ground) => on_ground,
+        Some(Support::Block(below)) if stands(block.1) => Carrier::Moving(blocks[below].range.start + 2),
+        Some(Support::Beam(_) | Support::Block(_)) | None => Carrier::Level,
+    };
+    scene.blocks.iter().map(|block| &block.placement).enumerate().map(carrier).collect()
+}
+
+/// Whether it stands on what carries it: what only touches a block, such as a neighbour, isn't tilted by its turning.
+fn stands(placement: &Placement) -> bool {
+    matches!(placement, Placement::On { .. })
 }
 
 impl Layout {

@@ -45,7 +45,9 @@ impl BuildError {
                 format!("the parts of the model don't belong together: {error}"),
                 "this is a mistake of the program: report it with the scene",
             ),
-            Self::Scheme(error) => document.error("time", error.to_string(), "check theta, activation_gamma and gap_tolerance"),
+            Self::Scheme(error) => {
+                document.error("time", error.to_string(), "check theta, activation_gamma and gap_tolerance")
+            }
             Self::Solver(_) => document.error("solver.method", self.to_string(), "name one of the solvers built in"),
             Self::Penetration { block, corner, surface, depth, tolerance } => {
                 let rule = format!(
@@ -61,8 +63,13 @@ impl BuildError {
             }
             Self::Overlap { first, second, depth } => document.error(
                 &place_of(second, document),
-                format!("`{second}` overlaps `{first}` by {depth:.1e} m at the start; contact between blocks is not modelled"),
+                format!("`{second}` overlaps `{first}` by {depth:.1e} m at the start"),
                 "move one of the two",
+            ),
+            Self::Shape(_) | Self::Wiring(_) => document.error(
+                "",
+                format!("the shapes of blocks make no contact: {self}"),
+                "check widths and heights for numbers that are out of proportion",
             ),
         }
     }

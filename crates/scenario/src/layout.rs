@@ -3,12 +3,13 @@
 use crate::carrier::Carrier;
 use crate::driven;
 use crate::required::Required;
-use crate::scene::Scene;
+use crate::scene::{ContactScene, Scene};
 use std::ops::Range;
 use std::sync::Arc;
 use teeter_beam::{Beam, Deflection, ModalBasis, ShapeAt, SpanLoad};
-use teeter_detect::BodyId;
+use teeter_detect::{BodyId, ContactId, CornerOnSide};
 use teeter_integrator::{BeamForces, Opening};
+use teeter_rigid::Rectangle;
 
 /// Where a block is in the state.
 #[derive(Debug, Clone, PartialEq)]
@@ -109,13 +110,58 @@ impl BeamPlace {
     }
 }
 
-/// The names of a contact pair.
+/// A contact pair: its names, and the points at which it can touch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PairPlace {
     /// The contact's name.
     pub name: String,
     /// The bodies, in the order of the file.
     pub between: [String; 2],
+    /// The points at which it can touch.
+    pub points: Vec<ContactPoint>,
+    /// Whether the two are blocks: each has corners that the other's sides can touch.
+    pub of_shapes: bool,
+}
+
+/// A point at which a pair can touch: a corner of a block.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactPoint {
+    /// What it is called in tables: the corner, with its block before it where both have corners.
+    pub name: String,
+    /// The block, by its number in the scene.
+    pub block: usize,
+    /// The corner, as in [`Rectangle::CORNER_NAMES`].
+    pub corner: usize,
+}
+
+impl ContactPoint {
+    /// The points of a scene's contact.
+    pub(crate) fn all(scene: &Scene, contact: &ContactScene) -> Vec<Self> {
+        let corners = Rectangle::CORNER_NAMES.into_iter().enumerate();
+        let Some(other) = contact.other_block() else {
+            let point = |(corner, name): (usize, &str)| Self { name: name.to_owned(), block: contact.block, corner };
+            return corners.map(point).collect();
+        };
+        let of = |block: usize| {
+            let named = move |name: &str| format!("{}.{name}", scene.blocks[block].name);
+            corners.clone().map(move |(corner, name)| Self { name: named(name), block, corner })
+        };
+        of(contact.block).chain(of(other)).collect()
+    }
+}
+
+impl PairPlace {
+    /// The number of a contact's point among the pair's [points](Self::points); `None` for an identity that is not one of them.
+    #[must_use]
+    pub fn point(&self, id: ContactId) -> Option<usize> {
+        let number = if self.of_shapes {
+            let CornerOnSide { owner, corner, .. } = CornerOnSide::from_number(id.point())?;
+            owner * Rectangle::CORNER_NAMES.len() + corner
+        } else {
+            id.point() as usize
+        };
+        (number < self.points.len()).then_some(number)
+    }
 }
 
 /// Who is where in model and state.

@@ -41,8 +41,12 @@ pub fn left_out(scene: &Scene) -> Vec<&'static str> {
 
 /// Where bodies can meet that the model keeps apart nowhere, or only at corners.
 fn meetings(scene: &Scene, left_out: &mut Vec<&'static str>) {
-    if scene.blocks.len() > 1 {
+    let blocks = scene.blocks.len();
+    let paired = scene.contacts.iter().filter(|contact| contact.other_block().is_some()).count();
+    if paired == 0 && blocks > 1 {
         left_out.push("contact between blocks: they pass through each other");
+    } else if paired < blocks * blocks.saturating_sub(1) / 2 {
+        left_out.push("contact between blocks that no contact joins: they pass through each other");
     }
     let joined: BTreeSet<(usize, Support)> =
         scene.contacts.iter().map(|contact| (contact.block, contact.surface)).collect();

@@ -3,6 +3,7 @@
 use crate::overlap::{Box2, each_overlap};
 use crate::scene::{Scene, Support};
 use crate::simulation::Layout;
+use std::collections::BTreeSet;
 
 /// Two bodies, by their numbers in the scene, that are inside each other where nothing keeps them apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -46,6 +47,8 @@ pub struct Shapes {
     incline: Option<f64>,
     /// Which blocks a contact joins to the ground, and to each beam.
     on_ground: Vec<bool>,
+    /// Which blocks a contact joins to each other, the lower number first.
+    blocks: BTreeSet<(usize, usize)>,
     on_beam: Vec<Vec<bool>>,
     boxes: Vec<Box2>,
     order: Vec<usize>,
@@ -70,6 +73,12 @@ impl Shapes {
             beams: scene.beams.iter().map(line).collect(),
             incline: scene.ground.as_ref().map(|ground| ground.incline),
             on_ground: joined(Support::Ground),
+            blocks: scene
+                .contacts
+                .iter()
+                .filter_map(|contact| Some((contact.block, contact.other_block()?)))
+                .map(|(a, b)| (a.min(b), a.max(b)))
+                .collect(),
             on_beam: (0..scene.beams.len()).map(|beam| joined(Support::Beam(beam))).collect(),
             boxes: Vec::with_capacity(scene.blocks.len()),
             order: Vec::with_capacity(scene.blocks.len()),
@@ -78,7 +87,7 @@ impl Shapes {
 
     /// Hands who meets whom at coordinates `q` of the whole model to `each`, with the depth, m.
     pub fn meetings(&mut self, layout: &Layout, q: &[f64], mut each: impl FnMut(Meeting, f64)) {
-        let Self { sides, beams, incline, on_ground, on_beam, boxes, order } = self;
+        let Self { sides, beams, incline, on_ground, blocks, on_beam, boxes, order } = self;
         boxes.clear();
         boxes.extend(layout.blocks.iter().zip(sides.iter()).map(|(place, sides)| {
             let q = &q[place.range.clone()];
@@ -87,7 +96,9 @@ impl Shapes {
         let allowed = |block: usize| MEETS * sides[block][0].min(sides[block][1]);
         if boxes.len() > 1 {
             each_overlap(boxes, allowed, MOST_PAIRS, order, |overlap| {
-                each(Meeting::Blocks(overlap.first, overlap.second), overlap.depth);
+                if !blocks.contains(&(overlap.first, overlap.second)) {
+                    each(Meeting::Blocks(overlap.first, overlap.second), overlap.depth);
+                }
             });
         }
         if let Some(incline) = *incline {

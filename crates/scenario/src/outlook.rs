@@ -204,7 +204,7 @@ fn coupled_frequencies(scene: &Scene, simulation: &Simulation) -> Vec<f64> {
         return Vec::new();
     };
     let force = |f: &crate::settling::ContactForce| {
-        (ContactId::new(f.contact as u32, f.corner as u32), nalgebra::Vector2::from(f.force))
+        (ContactId::new(f.contact as u32, f.point), nalgebra::Vector2::from(f.force))
     };
     let forces: Vec<_> = start.forces.iter().map(force).collect();
     let modes = coupled_modes(&simulation.model, &simulation.state.q, &forces, COUPLED);

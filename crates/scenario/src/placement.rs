@@ -1,7 +1,10 @@
 //! Where blocks are put: by their mass centre, or on a surface.
 
+use crate::driven::BeamModel;
 use crate::scene::{BlockScene, Placement, Scene, Support};
+use crate::simulation::BuildError;
 use nalgebra::{Vector2, Vector3};
+use std::f64::consts::FRAC_PI_2;
 use teeter_beam::StaticError;
 use teeter_detect::Kinematics;
 use teeter_integrator::{EquilibriumError, Subsystem};
@@ -133,6 +136,82 @@ fn surface_height(
 ) -> Result<f64, PlacementError> {
     let at = Vector2::new(foot.x, 0.0);
     surface.surface(0, q, kinematics, &at).map(|point| point.place.y).ok_or_else(|| off_surface(block, foot))
+}
+
+/// The configurations (X, Y, φ) of all blocks at the start: on beams with these deflections, on ground whose line is given, on each
+/// other. Where supports start, a beam and what stands on it are placed as if they stood still.
+pub(crate) fn starting_poses(
+    scene: &Scene,
+    beams: &[BeamModel],
+    deflections: &[Vec<f64>],
+    ground: [f64; 3],
+) -> Result<Vec<Vector3<f64>>, BuildError> {
+    let mut poses: Vec<Option<Vector3<f64>>> = vec![None; scene.blocks.len()];
+    let mut pile = Vec::new();
+    for block in 0..scene.blocks.len() {
+        // What is below comes first; the resolver refuses circles.
+        let mut lower = Some(block).filter(|&block| poses[block].is_none());
+        while let Some(block) = lower {
+            pile.push(block);
+            lower = below(scene, block).filter(|&below| poses[below].is_none() && pile.len() <= scene.blocks.len());
+        }
+        while let Some(number) = pile.pop() {
+            let block = &scene.blocks[number];
+            let pose = match block.placement {
+                Placement::On { support: Support::Beam(k), .. } => {
+                    let still = beams[k].still(&scene.beams[k])?.boxed();
+                    block_pose(scene, block, &Standing::Surface(still.as_ref(), &deflections[k]))?
+                }
+                Placement::On { support: Support::Block(below), at, .. } => {
+                    let carrier = &scene.blocks[below];
+                    let top = Top::of(carrier, &poses[below].unwrap_or_default());
+                    if !top.is_under(block, at) {
+                        return Err(off_surface(block, &Foot { corner: 0, x: at - 0.5 * block.width }).into());
+                    }
+                    block_pose(scene, block, &Standing::Line(top.line))?
+                }
+                _ => block_pose(scene, block, &Standing::Line(ground))?,
+            };
+            poses[number] = Some(pose);
+        }
+    }
+    Ok(poses.into_iter().map(Option::unwrap_or_default).collect())
+}
+
+/// The block that a block stands on.
+pub(crate) fn below(scene: &Scene, block: usize) -> Option<usize> {
+    match scene.blocks[block].placement {
+        Placement::On { support: Support::Block(below), .. } => Some(below),
+        _ => None,
+    }
+}
+
+/// The side of a block that is on top.
+struct Top {
+    /// Its middle, and its slope, rad.
+    line: [f64; 3],
+    /// From where to where it reaches along x, m.
+    x: [f64; 2],
+}
+
+impl Top {
+    fn of(block: &BlockScene, pose: &Vector3<f64>) -> Self {
+        // Quarters of a turn by which the side that was on top has left it.
+        let quarters = (pose.z / FRAC_PI_2).round();
+        let slope = pose.z - quarters * FRAC_PI_2;
+        let sides =
+            if quarters.rem_euclid(2.0) == 0.0 { [block.width, block.height] } else { [block.height, block.width] };
+        let upright = Pose::new(&Vector3::new(pose.x, pose.y, slope));
+        let end = |half: f64| upright.point(&Vector2::new(half * sides[0], 0.5 * sides[1]));
+        let [left, middle, right] = [end(-0.5), end(0.0), end(0.5)];
+        Self { line: [middle.x, middle.y, slope], x: [left.x, right.x] }
+    }
+
+    /// Whether it is under some of the base of a block whose middle is at `at` (m) before it is tilted.
+    fn is_under(&self, block: &BlockScene, at: f64) -> bool {
+        let half = 0.5 * block.width * self.line[2].cos();
+        at + half > self.x[0] && at - half < self.x[1]
+    }
 }
 
 /// What a block can stand on.

@@ -167,7 +167,9 @@ impl Pairs {
         let mut pairs =
             Self { dead, live: vec![Vec::new(); scene.blocks.len()], touched: vec![false; scene.beams.len()] };
         for (k, contact) in scene.contacts.iter().enumerate().filter(|(k, _)| !pairs.dead[*k]) {
-            pairs.live[contact.block].push(k);
+            for block in std::iter::once(contact.block).chain(contact.other_block()) {
+                pairs.live[block].push(k);
+            }
             if let Support::Beam(beam) = contact.surface {
                 pairs.touched[beam] = true;
             }

@@ -211,6 +211,7 @@ impl<'a, 'f> Resolver<'a, 'f> {
         let joined = self.joined(&contacts);
         let blocks: Vec<_> =
             doc.names("block").into_iter().map(|name| self.block(name, &beams, &contacts, &joined, &signals)).collect();
+        self.stand_on_something(&blocks);
         self.gives_way(&blocks, &contacts);
         let forces: Vec<_> = doc.names("force").into_iter().map(|name| self.force(name, &signals)).collect();
         let loads: Vec<_> = doc.names("load").into_iter().map(|name| self.load(name, &beams, &signals)).collect();
@@ -299,6 +300,11 @@ impl<'a, 'f> Resolver<'a, 'f> {
         self.beams.get(name).copied().map(Support::Beam)
     }
 
+    /// What a block can stand on.
+    fn support(&self, name: &str) -> Option<Support> {
+        self.surface(name).or_else(|| self.blocks.get(name).copied().map(Support::Block))
+    }
+
     /// A name that is no body of the scene; nothing is said where bodies may have been lost.
     fn no_body(&mut self, path: &str, name: &str) {
         if ["beam", "block", "ground"].iter().any(|group| self.doc.is_refused(group)) {
@@ -367,7 +373,7 @@ impl<'a, 'f> Resolver<'a, 'f> {
     }
 }
 
-/// The contact that joins a block and a surface.
+/// The contact that joins a block and a surface; one between two blocks joins each to the other.
 type Joined = BTreeMap<(usize, Support), usize>;
 
 impl Resolver<'_, '_> {
@@ -377,6 +383,9 @@ impl Resolver<'_, '_> {
         for (k, contact) in contacts.iter().enumerate() {
             let Some(contact) = contact else { continue };
             let first = *joined.entry((contact.block, contact.surface)).or_insert(k);
+            if let Some(other) = contact.other_block() {
+                joined.entry((other, Support::Block(contact.block))).or_insert(k);
+            }
             if first != k
                 && let Some(Some(first)) = contacts.get(first)
             {

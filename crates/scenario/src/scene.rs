@@ -75,6 +75,8 @@ impl Scene {
             Support::Beam(beam) => {
                 self.beams[beam].motion.is_given() || self.loads.iter().any(|load| load.beam == beam)
             }
+            // It moves as it likes.
+            Support::Block(_) => true,
         };
         let pushed = self.forces.iter().any(|force| force.block == contact.block);
         carried || pushed || block.motion.is_given() || block.spin != 0.0 || block.velocity != [0.0; 2]
@@ -332,16 +334,18 @@ pub enum Support {
     Ground,
     /// A beam, by its number in the scene.
     Beam(usize),
+    /// Another block, by its number in the scene.
+    Block(usize),
 }
 
-/// A contact between a block and a surface.
+/// A contact between a block and a surface, or between two blocks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactScene {
     /// Its name.
     pub name: String,
     /// The bodies by name, as in the file.
     pub between: [String; 2],
-    /// The block, by its number in the scene.
+    /// The block, by its number in the scene; of two, the one that is named first.
     pub block: usize,
     /// What it touches.
     pub surface: Support,
@@ -352,6 +356,15 @@ pub struct ContactScene {
 }
 
 impl ContactScene {
+    /// The other block of a contact between two.
+    #[must_use]
+    pub fn other_block(&self) -> Option<usize> {
+        match self.surface {
+            Support::Block(other) => Some(other),
+            Support::Ground | Support::Beam(_) => None,
+        }
+    }
+
     /// Whether it gives back what struck it, beyond what its bodies' own elasticity does: by
     /// restitution, or by a law with duration.
     #[must_use]

@@ -6,12 +6,12 @@
 //! and the place of its foot.
 
 use crate::driven::{self, BeamModel};
-use crate::placement::{Departure, PlacementError};
+use crate::placement::{Departure, PlacementError, below};
 use crate::scene::{Placement, Scene, Support};
-use crate::simulation::BuildError;
+use crate::simulation::{BuildError, detector};
 use nalgebra::{Vector2, Vector3};
 use teeter_beam::SpanLoad;
-use teeter_detect::{BodyId, PointDetector, PointPair};
+use teeter_detect::{BodyId, PointPair, ShapePair};
 use teeter_integrator::{
     BeamForces, Block, BlockCoordinate, Blocks, Equilibrium, EquilibriumError, Mismatch, Model, ModelBuilder, Motion,
     PairLaw, SettlingLimits, SolverSettings, Workspace, settle,
@@ -67,7 +67,8 @@ impl Start<'_> {
             let refused = |source| PlacementError::Static { beam: scene.beams[k].name.clone(), source };
             beam.solve_static(&mut vec![0.0; beam.dofs()]).map_err(refused)?;
         }
-        let blocks = (0..scene.blocks.len()).filter(|&k| stands_on(scene, k).is_some_and(|beam| beams.contains(&beam)));
+        let blocks =
+            (0..scene.blocks.len()).filter(|&k| carried_by(scene, k).is_some_and(|beam| beams.contains(&beam)));
         let taking_part = TakingPart { blocks: blocks.collect(), beams };
         let (model, pairs) = taking_part.model(scene, self)?;
         let reach: Vec<f64> =
@@ -92,9 +93,10 @@ impl Start<'_> {
             summary.forces.clear();
             for (id, force) in &found.forces {
                 let Some(pair) = pairs.get(id.pair() as usize) else { continue };
-                let corner = pair.corners.get(id.point() as usize).copied().unwrap_or_default();
+                // The detector of a run numbers features of blocks as this one does.
+                let point = pair.corners.get(id.point() as usize).map_or(id.point(), |&corner| corner as u32);
                 let force = [force[0], force[1]];
-                summary.forces.push(ContactForce { contact: pair.contact, corner, force });
+                summary.forces.push(ContactForce { contact: pair.contact, point, force });
             }
             if let Some(foot) = held.iter().find(|foot| foot.is_left(scene, &summary.forces)) {
                 let (block, motion) = (scene.blocks[foot.block].name.clone(), Departure::ChangesFoot);
@@ -129,15 +131,18 @@ pub struct StaticStart {
 pub struct ContactForce {
     /// The contact, by its number in the scene.
     pub contact: usize,
-    /// The corner of the block, as in [`Rectangle::CORNER_NAMES`].
-    pub corner: usize,
+    /// The point of the pair that touches, as in the identity of its contact: of a pair with a surface the corner of the block, as in
+    /// [`Rectangle::CORNER_NAMES`](teeter_rigid::Rectangle::CORNER_NAMES).
+    pub point: u32,
     /// The force on the block along the contact's normal and tangent, N.
     pub force: [f64; 2],
 }
 
-/// The beam that a block stands on.
-fn stands_on(scene: &Scene, block: usize) -> Option<usize> {
-    match scene.blocks[block].placement {
+/// The beam that a block stands on, be it on top of others.
+fn carried_by(scene: &Scene, block: usize) -> Option<usize> {
+    let piled = |of: &usize| below(scene, *of);
+    let lowest = std::iter::successors(Some(block), piled).take(scene.blocks.len()).last()?;
+    match scene.blocks[lowest].placement {
         Placement::On { support: Support::Beam(k), .. } => Some(k),
         _ => None,
     }
@@ -155,7 +160,7 @@ fn foot_of(scene: &Scene, block: usize) -> Option<usize> {
 struct Pair {
     /// The contact of the scene.
     contact: usize,
-    /// Its points: corners of the block.
+    /// Its points: corners of the block; empty where it is with another block.
     corners: Vec<usize>,
 }
 
@@ -179,8 +184,13 @@ impl HeldFoot {
 
     /// Whether the block presses elsewhere only.
     fn is_left(&self, scene: &Scene, forces: &[ContactForce]) -> bool {
-        let of_block = || forces.iter().filter(|force| scene.contacts[force.contact].block == self.block);
-        of_block().next().is_some() && of_block().all(|force| force.corner != self.corner)
+        let of_block = || {
+            forces.iter().filter(|force| {
+                let contact = &scene.contacts[force.contact];
+                contact.block == self.block && contact.other_block().is_none()
+            })
+        };
+        of_block().next().is_some() && of_block().all(|force| force.point != self.corner as u32)
     }
 
     /// Puts the block back to where its foot was; whether it was there.
@@ -226,30 +236,41 @@ impl TakingPart {
         if let Some(ground) = &scene.ground {
             surfaces.push((Support::Ground, parts.add(driven::ground(ground)).body()));
         }
-        let (mut pairs, mut contacts) = (Vec::new(), Vec::new());
+        let (mut pairs, mut shape_pairs, mut contacts) = (Vec::new(), Vec::new(), Vec::new());
+        let part = |block: usize| self.blocks.iter().position(|&k| k == block);
+        let body = |part: usize| BodyId(first.0 + part as u32);
         for (number, contact) in scene.contacts.iter().enumerate() {
-            let block = self.blocks.iter().position(|&k| k == contact.block);
+            let block = part(contact.block);
+            if let Some(other) = contact.other_block() {
+                let (Some(block), Some(other_part)) = (block, part(other)) else { continue };
+                let held = [contact.block, other].into_iter().any(|block| foot_of(scene, block).is_some());
+                let law = parts.law(PairLaw::new(if held { HELD } else { contact.law.friction }, 0.0));
+                let (pair, bodies) = (contacts.len() as u32, [block, other_part].map(body));
+                shape_pairs.push(ShapePair { pair, law, bodies });
+                contacts.push(Pair { contact: number, corners: Vec::new() });
+                continue;
+            }
             let surface = surfaces.iter().find(|(support, _)| *support == contact.surface);
             let (Some(block), Some(&(_, surface))) = (block, surface) else { continue };
             let corners = start.blocks[contact.block].1.corners();
-            let body = BodyId(first.0 + block as u32);
             let groups = match foot_of(scene, contact.block) {
                 Some(foot) => vec![(HELD, vec![foot]), (0.0, (0..corners.len()).filter(|&k| k != foot).collect())],
                 None => vec![(contact.law.friction, (0..corners.len()).collect())],
             };
             for (friction, numbers) in groups {
                 pairs.push(PointPair {
-                    pair: pairs.len() as u32,
+                    pair: contacts.len() as u32,
                     law: parts.law(PairLaw::new(friction, 0.0)),
                     points: numbers.iter().map(|&k| corners[k]).collect(),
-                    body,
+                    body: body(block),
                     surface,
                     kinematics: contact.kinematics,
                 });
                 contacts.push(Pair { contact: number, corners: numbers });
             }
         }
-        Ok((parts.build(Box::new(PointDetector::new(pairs)))?, contacts))
+        let shapes = self.blocks.iter().enumerate().map(|(number, &k)| (body(number), start.blocks[k].1));
+        Ok((parts.build(detector(pairs, shape_pairs, shapes)?)?, contacts))
     }
 
     fn coordinates(&self, start: &Start<'_>) -> Vec<f64> {

@@ -4,14 +4,17 @@ use crate::carrier::{Carrier, carriers};
 use crate::driven::{self, BeamModel};
 use crate::opening::{OPEN_GAP, openings};
 use crate::overlap::{Box2, Overlap, deepest_overlap};
-use crate::placement::{PlacementError, Standing, block_pose};
+use crate::placement::{PlacementError, starting_poses};
 use crate::required::{AtRest, Extent, Required};
-use crate::scene::{Placement, Scene, SchemeName, Support, Time};
+use crate::scene::{Scene, SchemeName, Support, Time};
 use crate::settling::{Start, StaticStart};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use teeter_beam::{BeamError, ModalError};
 use teeter_contact::ContactSolver;
-use teeter_detect::{PointDetector, PointPair};
+use teeter_detect::{
+    BodyId, ContactDetector, PointDetector, PointPair, Polygon, ShapeDetector, ShapeError, ShapePair, WiringError,
+};
 use teeter_integrator::{
     Account, Block, Ended, EventDriven, EventDrivenSettings, GeneralizedAlpha, GeneralizedAlphaSettings, Mismatch,
     Model, ModelBuilder, ModelError, MoreauJean, MoreauJeanClosed, MoreauJeanClosedSettings, MoreauJeanLocated,
@@ -21,7 +24,7 @@ use teeter_integrator::{
 };
 use teeter_rigid::{MassProperties, Rectangle, RigidError};
 
-pub use crate::layout::{BeamPlace, BlockPlace, Layout, PairPlace};
+pub use crate::layout::{BeamPlace, BlockPlace, ContactPoint, Layout, PairPlace};
 
 /// Why a scene can't be made into a model.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -70,10 +73,14 @@ pub enum BuildError {
         /// What is allowed, m.
         tolerance: f64,
     },
+    /// A shape of a block.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
+    /// Shapes and pairs that don't belong together.
+    #[error(transparent)]
+    Wiring(#[from] WiringError),
     /// Two blocks that start in the same place.
-    #[error(
-        "block `{second}`: it overlaps `{first}` by {depth:e} m at the start, and contact between blocks is not modelled"
-    )]
+    #[error("block `{second}`: it overlaps `{first}` by {depth:e} m at the start")]
     Overlap {
         /// The block that comes first in the file.
         first: String,
@@ -158,7 +165,8 @@ impl Simulation {
         let mut assembled = assemble(scene, &blocks, &beams, &required)?;
         let mut layout = lay_out(scene, &beams, &assembled, required);
         let slope = layout.ground.as_ref().map(|ground| ground.start + 2);
-        for (place, carrier) in layout.blocks.iter_mut().zip(carriers(scene, slope)) {
+        let all_carriers = carriers(scene, &layout.blocks, slope);
+        for (place, carrier) in layout.blocks.iter_mut().zip(all_carriers) {
             place.carrier = carrier;
         }
         let dofs = assembled.model.size().q;
@@ -167,16 +175,7 @@ impl Simulation {
 
         let deflections: Vec<Vec<f64>> =
             scene.beams.iter().zip(&beams).map(|(of, model)| model.coordinates(&of.shape)).collect();
-        let mut poses = Vec::with_capacity(blocks.len());
-        for block in &scene.blocks {
-            let Placement::On { support: Support::Beam(k), .. } = block.placement else {
-                poses.push(block_pose(scene, block, &Standing::Line(line))?);
-                continue;
-            };
-            // Where the supports start, the beam and what stands on it are placed as if they stood still.
-            let still = beams[k].still(&scene.beams[k])?.boxed();
-            poses.push(block_pose(scene, block, &Standing::Surface(still.as_ref(), &deflections[k]))?);
-        }
+        let poses = starting_poses(scene, &beams, &deflections, line)?;
         let mut start =
             Start { blocks: &blocks, poses, beams: &beams, deflections, ground: &ground_start, pressed: Vec::new() };
         let static_start = start.settle(scene)?;
@@ -346,7 +345,12 @@ fn lay_out(scene: &Scene, beams: &[BeamModel], assembled: &Assembled, required: 
         }
     });
     let pairs = scene.contacts.iter();
-    let pairs = pairs.map(|contact| PairPlace { name: contact.name.clone(), between: contact.between.clone() });
+    let pairs = pairs.map(|contact| PairPlace {
+        name: contact.name.clone(),
+        between: contact.between.clone(),
+        points: ContactPoint::all(scene, contact),
+        of_shapes: contact.other_block().is_some(),
+    });
     Layout {
         blocks: blocks.collect(),
         beams: beams.collect(),
@@ -376,16 +380,21 @@ fn assemble(
         surfaces.push(parts.add_boxed(body));
     }
     let ground = scene.ground.as_ref().map(|ground| parts.add(driven::ground(ground)));
-    let mut pairs = Vec::new();
+    let (mut pairs, mut shape_pairs) = (Vec::new(), Vec::new());
     for (number, contact) in scene.contacts.iter().enumerate() {
+        let law = parts.law(contact.law);
         let surface = match contact.surface {
             Support::Beam(k) => surfaces[k].body(),
             Support::Ground => match &ground {
                 Some(ground) => ground.body(),
                 None => continue, // the resolver refuses a contact with ground that isn't there
             },
+            Support::Block(other) => {
+                let bodies = [contact.block, other].map(|block| all_blocks.nth_body(block as u32));
+                shape_pairs.push(ShapePair { pair: number as u32, law, bodies });
+                continue;
+            }
         };
-        let law = parts.law(contact.law);
         let points = required.points(number);
         if points > 0 {
             pairs.push(PointPair {
@@ -398,8 +407,26 @@ fn assemble(
             });
         }
     }
-    let model = parts.build(Box::new(PointDetector::new(pairs)))?;
+    let shapes = |block: usize| (all_blocks.nth_body(block as u32), blocks[block].1);
+    let model = parts.build(detector(pairs, shape_pairs, (0..blocks.len()).map(shapes))?)?;
     Ok(Assembled { model, blocks: all_blocks, beams: surfaces, ground })
+}
+
+/// What detects contacts of blocks with surfaces, and with each other.
+pub(crate) fn detector(
+    points: Vec<PointPair<2>>,
+    pairs: Vec<ShapePair>,
+    shapes: impl Iterator<Item = (BodyId, Rectangle)>,
+) -> Result<Box<dyn ContactDetector<2>>, BuildError> {
+    let points = PointDetector::new(points);
+    if pairs.is_empty() {
+        return Ok(Box::new(points));
+    }
+    let paired: BTreeSet<BodyId> = pairs.iter().flat_map(|pair| pair.bodies).collect();
+    let shapes = shapes.filter(|(body, _)| paired.contains(body));
+    let shapes = shapes.map(|(body, shape)| Ok((body, Polygon::new(shape.corners().to_vec())?.into())));
+    let shapes = shapes.collect::<Result<Vec<_>, ShapeError>>()?;
+    Ok(Box::new(ShapeDetector::new(shapes, pairs)?.with_points(points)))
 }
 
 fn scheme(time: &Time) -> Result<Box<dyn Scheme<2>>, SettingError> {
@@ -452,6 +479,10 @@ fn check_start(scene: &Scene, model: &Model<2>, layout: &Layout, q: &[f64]) -> R
     for candidate in &candidates {
         let pair = candidate.id.pair() as usize;
         let contact = &scene.contacts[pair];
+        // Of blocks the whole is looked at.
+        if contact.other_block().is_some() {
+            continue;
+        }
         let block = &scene.blocks[contact.block];
         let tolerance = START_TOLERANCE * block.width.max(block.height);
         if -candidate.gap > tolerance {

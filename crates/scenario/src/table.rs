@@ -287,7 +287,7 @@ pub static TABLES: &[Table] = &[
             key("width", SIZE, Required, "\"3 cm\"", "Side along its base."),
             key("height", SIZE, Required, "\"13.5 cm\"", "Side upwards."),
             key("depth", SIZE, Required, "\"3 cm\"", "Side out of the plane."),
-            key("on", Kind::Name, Optional, "\"table\"", "What it stands on: a beam, or \"ground\"; another block is not available yet."),
+            key("on", Kind::Name, Optional, "\"table\"", "What it stands on: a beam, \"ground\", or another block, on whose upper side it is put."),
             key("at", Kind::Quantity(Dimension::LENGTH, Range::ANY), Optional, "\"18 cm\"", "Place x, in the world, of the middle of its base before it is tilted."),
             key("tilt", Kind::Quantity(Dimension::ANGLE, QUARTER_TURN), DefaultWith { sibling: "on", value: "\"0 deg\"" }, "\"5 deg\"", "Turn about the corner that it stays on, counter-clockwise positive."),
             key("position", POINT, Optional, "[\"18 cm\", \"6.75 cm\"]", "Place of its mass centre, in place of on and at."),
@@ -309,9 +309,9 @@ pub static TABLES: &[Table] = &[
     Table {
         pattern: "contact.*",
         occurrence: Occurrence::Named,
-        doc: "Contact of a block with a beam or with the ground, with impact and friction; between two blocks it is not available yet.",
+        doc: "Contact of a block with a beam, with the ground or with another block, with impact and friction. Bodies that no contact joins pass through each other.",
         keys: &[
-            key("between", Kind::NamePair, Required, "[\"rocker\", \"table\"]", "The block, and the beam or `ground` that it touches, in either order."),
+            key("between", Kind::NamePair, Required, "[\"rocker\", \"table\"]", "Two blocks, or a block and the beam or `ground` that it touches, in either order. Forces and velocities in the tables are those on the block; between two, on the first."),
             key("friction", Kind::Number(Range::NOT_NEGATIVE), Required, "0.5", "Coefficient of Coulomb friction."),
             key("restitution", Kind::Number(Range::UNIT), Default("0.0"), "0.0", "Coefficient of restitution: of the normal velocity, or with poisson of the normal impulse.").only_with("law", IMPACTS),
             key("tangential_restitution", Kind::Number(Range::UNIT), Default("0.0"), "0.0", "Part of the tangential velocity that comes back from an impact that does not slide.").only_with("law", IMPACTS),

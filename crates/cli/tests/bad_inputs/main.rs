@@ -10,7 +10,7 @@
 mod odd_files;
 mod rows;
 
-use rows::{Input, Row, rows};
+use rows::{Input, Row, STACKED, rows};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -78,20 +78,23 @@ fn check_refusal(what: &str, folder: &Path, output: &Output, took: Duration) -> 
     message
 }
 
+/// A scene with pieces replaced.
+fn edited(what: &str, mut text: String, changes: &[(&str, &str)]) -> String {
+    for (from, to) in changes {
+        assert!(text.contains(from), "{what}: no «{from}» in the base scene");
+        text = text.replacen(from, to, 1);
+    }
+    text
+}
+
 /// Runs a row; adds to `missing` what its message should have said.
 fn run_row(row: &Row, missing: &mut String) -> String {
     let what = format!("row {} ({})", row.number, row.what);
     let folder = folder(&format!("row-{}-{}", row.number, row.what.replace(|c: char| !c.is_ascii_alphanumeric(), "-")));
     let (text, sets): (String, &[&str]) = match &row.input {
         Input::Set(sets) => (base(), sets),
-        Input::Edit(changes) => {
-            let mut text = base();
-            for (from, to) in *changes {
-                assert!(text.contains(from), "{what}: no «{from}» in the base scene");
-                text = text.replacen(from, to, 1);
-            }
-            (text, &[])
-        }
+        Input::Edit(changes) => (edited(&what, base(), changes), &[]),
+        Input::Stack(changes) => (edited(&what, STACKED.to_owned(), changes), &[]),
         Input::Text(text) => ((*text).to_owned(), &[]),
         Input::Record(record) => {
             if let Some(record) = record {

@@ -8,6 +8,8 @@ pub(crate) enum Input {
     Edit(&'static [(&'static str, &'static str)]),
     /// A scene of its own.
     Text(&'static str),
+    /// A scene of two blocks on each other with pieces replaced.
+    Stack(&'static [(&'static str, &'static str)]),
     /// The base scene on ground that is shaken by this record; what is absent is a file that isn't there.
     Record(Option<&'static str>),
     /// The base scene with two elements, that start in the shape of this file.
@@ -24,7 +26,7 @@ pub(crate) struct Row {
     pub(crate) warns: bool,
 }
 
-use Input::{Edit, Record, Set, Shape, Text};
+use Input::{Edit, Record, Set, Shape, Stack, Text};
 
 const fn refused(number: u32, what: &'static str, input: Input, says: &'static [&'static str]) -> Row {
     Row { number, what, input, says, warns: false }
@@ -79,6 +81,39 @@ friction = 0.5
 [contact.b]
 between = [\"right\", \"ground\"]
 friction = 0.5
+";
+
+const RAIL_0: &str = "at = \"0 cm\"\nmotion = { velocity = [\"1 m/s\", \"0 m/s\"], angular_velocity = \"0 rad/s\" }";
+const RAIL_1: &str = "at = \"1 cm\"\nmotion = { velocity = [\"1 m/s\", \"0 m/s\"], angular_velocity = \"0 rad/s\" }";
+
+/// A block on a block on the ground.
+pub(crate) const STACKED: &str = "\
+[time]
+end = \"1 s\"
+step = \"1 ms\"
+[ground]
+[material.oak]
+density = \"700 kg/m^3\"
+[block.lower]
+material = \"oak\"
+width = \"20 cm\"
+height = \"10 cm\"
+depth = \"20 cm\"
+on = \"ground\"
+at = \"0 cm\"
+[block.upper]
+material = \"oak\"
+width = \"20 cm\"
+height = \"10 cm\"
+depth = \"20 cm\"
+on = \"lower\"
+at = \"1 cm\"
+[contact.floor]
+between = [\"lower\", \"ground\"]
+friction = 0.5
+[contact.joint]
+between = [\"upper\", \"lower\"]
+friction = 0.4
 ";
 
 #[rustfmt::skip] // a row a line
@@ -140,7 +175,14 @@ fn geometry() -> Vec<Row> {
         refused(21, "block wider than the beam", Set(&["block.rocker.width=50 cm"]), &["block.rocker.width", "0.5 m wide", "0.36 m"]),
         refused(22, "corner off the beam", Edit(&[("at       = \"18 cm\"", "at = \"35 cm\""), (TILT, "")]), &["block.rocker.at = \"35 cm\"", "bottom-right", "x = 0.365 m", "0.36 m"]),
         refused(23, "corner below the surface", Edit(&[(PLACE, "position = [\"18 cm\", \"6.65 cm\"]"), ("start         = \"static\"", "")]), &["block.rocker.position", "[\"18 cm\", \"6.65 cm\"]", "1.0e-3 m below", "bottom-left", "`table`", "1.4e-10 m"]),
-        refused(24, "two blocks in one place", Text(OVERLAPPING), &["block.right.at = \"19 cm\"", "`left`", "`right`", "1.0e-2 m", "not modelled"]),
+        refused(24, "two blocks in one place", Text(OVERLAPPING), &["block.right.at = \"19 cm\"", "`left`", "`right`", "1.0e-2 m"]),
+        refused(24, "block on a block without a contact", Stack(&[("\"upper\", \"lower\"", "\"upper\", \"ground\"")]), &["block.upper.on = \"lower\"", "no contact joins the two", "[contact.NAME]"]),
+        refused(24, "block on itself", Stack(&[("on = \"lower\"", "on = \"upper\"")]), &["block.upper.on = \"upper\"", "can't stand on itself"]),
+        refused(24, "blocks on each other", Stack(&[("on = \"ground\"", "on = \"upper\"")]), &["block.lower.on = \"upper\"", "in a circle"]),
+        refused(24, "block beside the block that it stands on", Stack(&[("at = \"1 cm\"", "at = \"30 cm\"")]), &["block.upper.at = \"30 cm\"", "not over what the block stands on"]),
+        refused(24, "blocks joined twice", Stack(&[("friction = 0.4", "friction = 0.4\n[contact.again]\nbetween = [\"lower\", \"upper\"]\nfriction = 0.3")]), &["contact.again", "joins the same two bodies"]),
+        refused(24, "kinematics between blocks", Stack(&[("friction = 0.4", "friction = 0.4\nkinematics = \"linear\"")]), &["contact.joint.kinematics", "between two blocks"]),
+        refused(24, "two blocks that are prescribed", Stack(&[("at = \"0 cm\"", RAIL_0), ("at = \"1 cm\"", RAIL_1)]), &["contact.joint.between", "`lower` can't give way"]),
         refused(25, "static start of a free beam", Edit(&[("\"pinned\", \"pinned\"", "\"free\", \"free\"")]), &["beam.table.start = \"static\"", "rigid body", "both ends are free", "clamp one end or pin both"]),
         refused(25, "static start of a beam on one pin", Edit(&[("\"pinned\", \"pinned\"", "\"pinned\", \"free\"")]), &["beam.table.start = \"static\"", "pinned left end", "support the right end"]),
         refused(25, "static start on a slope without friction", Edit(&[("at       = \"18 cm\"", "at = \"10 cm\""), (TILT, ""), ("friction = 0.5", "friction = 0")]), &["block.rocker.at = \"10 cm\"", "no static equilibrium", "slides", "more friction"]),

@@ -1,7 +1,7 @@
 //! The data of the page: what its script draws.
 
 use super::recorder::{BLOCK_COLUMNS, BLOCK_FRAME, ENERGIES, PageRecorder};
-use super::scenery::{CORNERS, Scenery};
+use super::scenery::Scenery;
 use super::{DIGITS, TIME_DIGITS, rounded};
 use crate::Summary;
 use crate::sections::Kind;
@@ -205,16 +205,18 @@ fn sections(recorder: &PageRecorder) -> Vec<SectionData> {
 }
 
 fn forces(recorder: &PageRecorder) -> ForceData {
-    let points = (0..CORNERS * recorder.scenery.contacts.len()).filter_map(|k| {
-        let forces = recorder.kept.curves.forces(k)?;
+    let contacts = recorder.scenery.contacts.iter().enumerate();
+    let all = contacts.flat_map(|(contact, drawn)| (0..drawn.points.len()).map(move |point| (contact, drawn, point)));
+    let points = all.filter_map(|(contact, drawn, point)| {
+        let forces = recorder.kept.curves.forces(drawn.first + point)?;
         let state = forces.state.iter().map(|state| match state {
             ContactState::Open => 'o',
             ContactState::Stick => 'k',
             ContactState::Slip => 'l',
         });
         Some(PointForces {
-            contact: k / CORNERS,
-            point: k % CORNERS,
+            contact,
+            point,
             normal: forces.normal.into_iter().map(digits).collect(),
             tangential: forces.tangential.into_iter().map(digits).collect(),
             state: state.collect(),

@@ -2,7 +2,6 @@
 
 use super::recorder::{BLOCK_COLUMNS, ENERGIES, ImpactMark, PageRecorder};
 use super::rounded;
-use super::scenery::CORNERS;
 use crate::sections::Kind;
 use teeter_beam::Envelope;
 use teeter_integrator::ContactState;
@@ -153,23 +152,23 @@ impl<'a> Plots<'a> {
     fn contact_forces(&self) -> Option<Figure> {
         let scenery = &self.recorder.scenery;
         let borders = self.recorder.kept.curves.borders();
-        let points = 0..CORNERS * scenery.contacts.len();
+        let points = 0..scenery.points;
         let curves: Vec<_> = points.map(|point| self.recorder.kept.curves.forces(point)).collect();
         let strongest = curves.iter().flatten().flat_map(|forces| &forces.normal).fold(0.0, |most: f64, f| f.max(most));
         let least = 1e-6 * strongest;
         let mut panels = Vec::new();
         for (pair, contact) in scenery.contacts.iter().enumerate() {
             let (mut normal, mut tangential, mut bands) = (Vec::new(), Vec::new(), Vec::new());
-            for point in 0..CORNERS {
-                let Some(forces) = &curves[CORNERS * pair + point] else { continue };
-                let label = scenery.corners[point].replace('-', " ");
+            for (point, drawn) in contact.points.iter().enumerate() {
+                let Some(forces) = &curves[contact.first + point] else { continue };
+                let label = &drawn.label;
                 let step = |y: &[f64]| {
                     let end = borders.last().copied().unwrap_or_default();
-                    Series::staircase(&label, borders.iter().copied().zip(y.iter().copied()), end).number(point)
+                    Series::staircase(label, borders.iter().copied().zip(y.iter().copied()), end).number(point)
                 };
                 normal.push(step(&forces.normal));
                 tangential.push(step(&forces.tangential));
-                bands.push(Band::new(&label, stretches(&borders, &forces.state)));
+                bands.push(Band::new(label, stretches(&borders, &forces.state)));
             }
             if normal.is_empty() {
                 continue;

@@ -3,7 +3,7 @@
 use super::curves::Curves;
 use super::frames::Frames;
 use super::rounded;
-use super::scenery::{CORNERS, Scenery};
+use super::scenery::Scenery;
 use crate::sections::{BeamRecord, Column, Kind, columns_of};
 use serde::{Deserialize, Serialize};
 use std::ops::{ControlFlow, Range};
@@ -122,7 +122,7 @@ impl PageRecorder {
         let sections = beams.flat_map(|(number, (of, place))| columns_of(number, of, place));
         let sections: Vec<Column> = sections.filter(|column| column.kind != Kind::Deflection).collect();
         let columns = BLOCK_COLUMNS * scenery.blocks.len() + scenery.beams.len() + ENERGIES.len() + sections.len();
-        let points = CORNERS * scenery.contacts.len();
+        let points = scenery.points;
         let even = |n: usize| n - n % 2;
         let capacity = |most: usize, width: usize| even((NUMBERS / width).clamp(10, most));
         let bucket_capacity = capacity(BUCKETS, 2 * columns + 2 * points + 3);
@@ -212,16 +212,24 @@ impl PageRecorder {
         let Self { scenery, kept, layout, .. } = self;
         let Kept { curves, impacts, closings, omega: [now, before], .. } = kept;
         // Impulses are those of the whole step; what a contact does in it is what it does in its last part.
-        let place = |contact: &Contact<2>| CORNERS * contact.id.pair() as usize + contact.id.point() as usize;
+        let place = |contact: &Contact<2>| {
+            let pair = contact.id.pair() as usize;
+            Some((pair, layout.pairs.get(pair)?.point(contact.id)?))
+        };
+        let curve = |contact: &Contact<2>| place(contact).map(|(pair, point)| scenery.contacts[pair].first + point);
         for contact in step.contacts() {
-            curves.add(place(contact), [contact.p[0], contact.p[1]], ContactState::Open);
+            if let Some(curve) = curve(contact) {
+                curves.add(curve, [contact.p[0], contact.p[1]], ContactState::Open);
+            }
         }
         for contact in step.last_lasting().iter().flat_map(|last| last.contacts) {
-            curves.add(place(contact), [0.0; 2], contact.state());
+            if let Some(curve) = curve(contact) {
+                curves.add(curve, [0.0; 2], contact.state());
+            }
         }
         closings.enter(model, step, state, &layout.openings, |t, contact, closing| {
-            let (pair, point) = (contact.id.pair() as usize, contact.id.point() as usize);
-            let Some(drawn) = scenery.contacts.get(pair) else { return };
+            let Some((pair, point)) = place(contact) else { return };
+            let drawn = &scenery.contacts[pair];
             if closing == Closing::Impact && impacts.len() < MARKED_IMPACTS {
                 impacts.push(ImpactMark {
                     t,
@@ -279,8 +287,7 @@ impl Observer<2> for PageRecorder {
         self.take_row(state);
         self.take_omega(state);
         self.kept.closings = ClosingMonitor::new(model, state, &self.layout.openings)?;
-        self.kept.curves =
-            Curves::new(self.bucket_capacity, state.t, self.row.clone(), CORNERS * self.scenery.contacts.len());
+        self.kept.curves = Curves::new(self.bucket_capacity, state.t, self.row.clone(), self.scenery.points);
         Ok(())
     }
 

@@ -47,10 +47,28 @@ pub(crate) struct ContactDrawn {
     pub(crate) block: usize,
     /// The name of what the block touches.
     pub(crate) surface: String,
-    /// The beam's number; none for ground.
+    /// The beam's number; none for ground and blocks.
     pub(crate) beam: Option<usize>,
+    /// The other block's number; none for ground and beams.
+    pub(crate) other: Option<usize>,
     /// Whether the normal stays upright.
     pub(crate) linear: bool,
+    /// Where it can touch.
+    pub(crate) points: Vec<PointDrawn>,
+    /// The number of its first point among those of all contacts.
+    #[serde(skip)]
+    pub(crate) first: usize,
+}
+
+/// A point at which a pair can touch.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct PointDrawn {
+    /// What it is called in legends.
+    pub(crate) label: String,
+    /// The block that has it.
+    pub(crate) block: usize,
+    /// The corner of the block.
+    pub(crate) corner: usize,
 }
 
 /// All of it.
@@ -63,10 +81,10 @@ pub(crate) struct Scenery {
     pub(crate) beams: Vec<BeamDrawn>,
     pub(crate) contacts: Vec<ContactDrawn>,
     pub(crate) corners: [&'static str; 4],
+    /// Points of all contacts.
+    #[serde(skip)]
+    pub(crate) points: usize,
 }
-
-/// Contact points of a pair.
-pub(crate) const CORNERS: usize = Rectangle::CORNER_NAMES.len();
 
 /// Pieces of a beam's line: enough that the eye sees a curve.
 const PIECES: usize = 40;
@@ -107,26 +125,42 @@ impl Scenery {
                 middle: place.beam.shape_clamped(0.5 * span),
             }
         });
-        let contacts = scene.contacts.iter().map(|contact| ContactDrawn {
-            name: contact.name.clone(),
-            block: contact.block,
-            surface: match contact.surface {
-                scene::Support::Beam(k) => scene.beams[k].name.clone(),
-                scene::Support::Ground => "ground".to_owned(),
-            },
-            beam: match contact.surface {
-                scene::Support::Beam(k) => Some(k),
-                scene::Support::Ground => None,
-            },
-            linear: contact.kinematics == teeter_detect::Kinematics::Linear,
+        let mut points = 0;
+        let contacts = scene.contacts.iter().zip(&layout.pairs).map(|(contact, pair)| {
+            let drawn = pair.points.iter().map(|point| PointDrawn {
+                label: point.name.replace(['-', '.'], " "),
+                block: point.block,
+                corner: point.corner,
+            });
+            let first = points;
+            points += pair.points.len();
+            ContactDrawn {
+                name: contact.name.clone(),
+                block: contact.block,
+                surface: match contact.surface {
+                    scene::Support::Beam(k) => scene.beams[k].name.clone(),
+                    scene::Support::Block(k) => scene.blocks[k].name.clone(),
+                    scene::Support::Ground => "ground".to_owned(),
+                },
+                beam: match contact.surface {
+                    scene::Support::Beam(k) => Some(k),
+                    scene::Support::Ground | scene::Support::Block(_) => None,
+                },
+                other: contact.other_block(),
+                linear: contact.kinematics == teeter_detect::Kinematics::Linear,
+                points: drawn.collect(),
+                first,
+            }
         });
+        let contacts: Vec<_> = contacts.collect();
         Self {
             ground: scene.ground.is_some(),
             incline: scene.ground.as_ref().map_or(0.0, |ground| ground.incline),
             blocks: blocks.collect(),
             beams: beams.collect(),
-            contacts: contacts.collect(),
+            contacts,
             corners: Rectangle::CORNER_NAMES,
+            points,
         }
     }
 }

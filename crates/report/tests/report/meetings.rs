@@ -40,7 +40,7 @@ fn blocks_that_pass_through_each_other_are_told_once() {
         block("q", "10 cm", "on = \"ground\", at = \"20 cm\""),
     );
     let found = summary("pounding", &scene, &[]);
-    only(&found, "passes-through", &["`p` and `q` overlap", "contact between blocks is not modelled"]);
+    only(&found, "passes-through", &["`p` and `q` overlap", "no contact joins the two"]);
     assert!(left_out(&found, "contact between blocks"));
     // They are apart again at the only rows, its start and its end.
     only(&summary("unseen-pounding", &scene, &[("output.every", "0.5 s")]), "passes-through", &["`p` and `q` overlap"]);

@@ -113,6 +113,8 @@ impl Barrier {
         let level = |surface: Support| match surface {
             Support::Ground => ground.as_ref(),
             Support::Beam(k) => beams[k].as_ref(),
+            // It may be anywhere.
+            Support::Block(_) => None,
         };
         let on: Vec<&Level> = stands.iter().map(|surface| level(*surface)).collect::<Option<_>>()?;
         let all = |of: &dyn Fn(usize) -> f64| (0..on.len()).map(of).sum::<f64>();
@@ -181,6 +183,7 @@ impl Barrier {
             let swing = match stands[k] {
                 Support::Ground => 0.0,
                 Support::Beam(beam) => proof.deflections[beam]?,
+                Support::Block(_) => return None,
             };
             let well = Well {
                 barrier: barrier(k),
@@ -208,6 +211,7 @@ impl Barrier {
                     let beam = &scene.beams[beam];
                     from >= beam.position[0] && to <= beam.position[0] + beam.spec.span
                 }
+                Support::Block(_) => false,
             };
             if !on_it {
                 return None;

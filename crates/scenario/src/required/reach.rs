@@ -85,6 +85,7 @@ impl Reach {
     ) -> bool {
         let gap = start.scene.time.gap_tolerance;
         match surface {
+            Support::Block(_) => false,
             Support::Ground => start.scene.ground.as_ref().is_some_and(|ground| {
                 // Height over the line y = x tan β is least at one end of the strip.
                 let height = |x: f64| self.y - x * ground.incline.tan();

@@ -80,14 +80,14 @@ impl Resolver<'_, '_> {
         }
         let on = doc.text(&at("on"))?;
         let (x, tilt) = (doc.quantity(&at("at")), doc.quantity(&at("tilt")));
-        let Some(support) = self.surface(on) else {
-            if self.blocks.contains_key(on) {
-                self.error(&at("on"), "a block on a block is not available yet", "put it on a beam or on the ground");
-            } else {
-                self.no_body(&at("on"), on);
-            }
+        let Some(support) = self.support(on) else {
+            self.no_body(&at("on"), on);
             return None;
         };
+        if on == name {
+            self.error(&at("on"), "a block can't stand on itself", self.known_bodies());
+            return None;
+        }
         let contact = joined.get(&(self.blocks.get(name).copied()?, support)).copied();
         if contact.is_none() && contacts.iter().all(Option::is_some) && !doc.is_refused("contact") {
             let rule = format!("the block stands on `{on}`, but no contact joins the two");
@@ -95,6 +95,26 @@ impl Resolver<'_, '_> {
             self.error(&at("on"), rule, remedy);
         }
         Some(Placement::On { support, at: x?, tilt: tilt?, contact: contact? })
+    }
+
+    /// Blocks that stand on each other in a circle stand on nothing.
+    pub(super) fn stand_on_something(&mut self, blocks: &[Option<BlockScene>]) {
+        let below = |block: usize| match blocks.get(block) {
+            Some(Some(BlockScene { placement: Placement::On { support: Support::Block(below), .. }, .. })) => {
+                Some(*below)
+            }
+            _ => None,
+        };
+        // From a pile's lowest block nothing leads further down; a way of as many steps as there are blocks leads round in a circle.
+        let circle = (0..blocks.len()).find(|&block| (0..blocks.len()).try_fold(block, |at, _| below(at)).is_some());
+        if let Some(Some(block)) = circle.and_then(|block| blocks.get(block)) {
+            let rule = "blocks stand on each other in a circle, and none of them on anything else";
+            self.error(
+                &format!("block.{}.on", block.name),
+                rule,
+                "put one of them on the ground or a beam, or give it a position",
+            );
+        }
     }
 
     /// Whether a block fits on the beam it stands on.

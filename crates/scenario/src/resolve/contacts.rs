@@ -19,6 +19,10 @@ impl Resolver<'_, '_> {
         let kinematics = self.choice(&at("kinematics"));
         let between = between?;
         let (block, surface) = self.sides(&at("between"), &between)?;
+        if matches!(surface, Support::Block(_)) && self.doc.is_given(&at("kinematics")) {
+            let rule = "it says how a beam's deflection enters, but this contact is between two blocks";
+            self.error(&at("kinematics"), rule, "leave it out");
+        }
         let kinematics = match kinematics? {
             Frames::Deformed => Kinematics::Deformed,
             Frames::Linear => Kinematics::Linear,
@@ -107,17 +111,16 @@ impl Resolver<'_, '_> {
         if missing {
             return None;
         }
+        if let (Some(first), Some(second)) = (self.blocks.get(a.as_str()), self.blocks.get(b.as_str())) {
+            return Some((*first, Support::Block(*second)));
+        }
         let sides = [(a, b), (b, a)];
         let found = sides
             .iter()
             .find_map(|(block, surface)| Some((self.blocks.get(block.as_str()).copied()?, self.surface(surface)?)));
         if found.is_none() {
-            let rule = if self.blocks.contains_key(a.as_str()) {
-                "contact between two blocks is not available yet"
-            } else {
-                "a contact joins a block and a beam, or a block and the ground"
-            };
-            self.error(path, rule, "name a block, and a beam or the ground");
+            let rule = "a contact joins two blocks, a block and a beam, or a block and the ground";
+            self.error(path, rule, "name a block, and another one, a beam or the ground");
         }
         found
     }

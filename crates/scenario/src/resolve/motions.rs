@@ -147,10 +147,19 @@ impl Resolver<'_, '_> {
 
     /// A block none of whose coordinates is free can't give way to ground that no force moves either.
     pub(super) fn gives_way(&mut self, blocks: &[Option<BlockScene>], contacts: &[Option<ContactScene>]) {
-        for contact in contacts.iter().flatten().filter(|contact| contact.surface == Support::Ground) {
+        let is_prescribed = |block: &BlockScene| block.motion.0.iter().all(Option::is_some);
+        for contact in contacts.iter().flatten() {
             let Some(Some(block)) = blocks.get(contact.block) else { continue };
-            if block.motion.0.iter().all(Option::is_some) {
-                let rule = format!("all of `{}` is prescribed, and the ground can't give way to it", block.name);
+            let other = match contact.surface {
+                Support::Ground => "the ground".to_owned(),
+                Support::Beam(_) => continue,
+                Support::Block(other) => match blocks.get(other) {
+                    Some(Some(other)) if is_prescribed(other) => format!("`{}`", other.name),
+                    _ => continue,
+                },
+            };
+            if is_prescribed(block) {
+                let rule = format!("all of `{}` is prescribed, and {other} can't give way to it", block.name);
                 let remedy = "leave a direction or the angle free, or leave the contact out";
                 self.error(&format!("contact.{}.between", contact.name), rule, remedy);
             }

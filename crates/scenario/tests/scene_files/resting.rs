@@ -45,7 +45,7 @@ fn unbalanced(simulation: &Simulation, top: bool, deformed: bool) -> f64 {
         let centre = Vector3::from_column_slice(&state.q[block.range.clone()]);
         let (mut force, mut couple) = (Vector2::new(0.0, -WEIGHT), 0.0);
         for pressed in simulation.static_start.as_ref().unwrap().forces.iter().filter(|f| f.contact == number) {
-            let corner = Pose::new(&centre).point(&corners[pressed.corner]);
+            let corner = Pose::new(&centre).point(&corners[pressed.point as usize]);
             // The foot on the top fibre: x_f − offset sin ψ(x_f) = x_c where the surface is taken as deformed.
             let (mut foot, mut psi) = (corner.x, 0.0_f64);
             for _ in 0..50 {
