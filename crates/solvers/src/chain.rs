@@ -26,6 +26,10 @@ use teeter_contact::{ContactProblem, ContactSolver, Outcome, Status, Stop, Vecto
 /// Up to so many contacts a solution is polished, to this residual.
 const SMALL: usize = 12;
 const POLISHED: f64 = 1e-14;
+/// More of them are polished to this part of the tolerance where the factors of H have no more than so many times its blocks, as along a
+/// stack: what rests then starts every step from a solution, and what the tolerance leaves doesn't add up over the steps.
+const PART: f64 = 1e-3;
+const FILL: usize = 4;
 /// Sweeps of the first two batches; the rate comes from the second.
 const FIRST: u32 = 12;
 /// Rounds of Newton steps, each after a batch of sweeps; and for each, the work in Newton steps within which Gauss–Seidel must
@@ -115,12 +119,17 @@ impl<const D: usize> Chain<D> {
         p: &mut [Vector<D>],
     ) -> Outcome {
         let mut outcome = self.approach(problem, small, stop, p);
-        if outcome.converged() && p.len() <= SMALL && outcome.residual.global > POLISHED {
+        let few = p.len() <= SMALL;
+        let goal = if few { POLISHED } else { POLISHED.max(PART * stop.tolerance) };
+        if outcome.converged() && outcome.residual.global > goal {
+            let work = self.newton.prepare(problem);
+            if !few && work.filled > FILL * work.blocks {
+                return outcome;
+            }
             self.best.clear();
             self.best.extend_from_slice(p);
             let left = stop.max_iterations.saturating_sub(outcome.iterations);
-            let polish = stop.with_tolerance(POLISHED).with_max_iterations(left);
-            self.newton.prepare(problem);
+            let polish = stop.with_tolerance(goal).with_max_iterations(left);
             let polished = self.newton.round(problem, &polish, p);
             outcome.iterations = outcome.iterations.saturating_add(polished.iterations);
             if polished.residual.global < outcome.residual.global {

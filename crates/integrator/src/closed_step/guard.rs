@@ -32,6 +32,8 @@ impl<const D: usize> Guard<'_, D> {
     pub(crate) fn apply(&self, problem: &mut Problem<D>, guarded: &mut [bool]) -> Result<bool, Mismatch> {
         let laws = self.laws;
         let mut found = false;
+        // Usually none does, and then nothing is summed over the neighbours of each.
+        let any_phased = problem.rules().any(|rule| matches!(rule, Rule::Poisson { .. }));
         for i in 0..problem.len() {
             let (number, u_before, p) = (self.members.number(i), problem.u_before(i), problem.p[i]);
             // A spring's law sees to it itself.
@@ -44,7 +46,7 @@ impl<const D: usize> Guard<'_, D> {
             if contact.persisting && self.stage.feels_drive(self.model, number, self.v_before, self.v_free) {
                 continue;
             }
-            let gain = if laws.handed_on(problem, i) {
+            let gain = if any_phased && laws.handed_on(problem, i) {
                 let allowed: f64 = (0..problem.len()).map(|i| self.rounding(problem, i)).sum();
                 if laws.work_around(problem, i) > allowed { laws.work_unreturned(i) } else { 0.0 }
             } else {
@@ -63,13 +65,14 @@ impl<const D: usize> Guard<'_, D> {
             if frees {
                 continue;
             }
-            // The feet of one body go along together: were one turned about and the other not, nothing would fit both.
-            for j in 0..problem.len() {
+            // The feet of one body go along together: were one turned about and the other not, nothing would fit both. They follow each
+            // other, as contacts are in order of identity.
+            let bodies = |j: usize| self.stage.contacts()[self.members.number(j)].sides.map(|side| side.body);
+            let beside = |j: &usize| bodies(*j) == bodies(i);
+            for j in (0..i).rev().take_while(beside).chain((i + 1..problem.len()).take_while(beside)) {
                 let (other, contact) = (self.members.number(j), &self.stage.contacts()[self.members.number(j)]);
-                let beside =
-                    self.stage.contacts()[number].sides.map(|side| side.body) == contact.sides.map(|side| side.body);
                 let slides = matches!(problem.rule(j), Rule::Shifted) && contact.persisting && problem.p[j][0] > 0.0;
-                if beside && slides && !guarded[other] {
+                if slides && !guarded[other] {
                     self.shift_back(problem, j)?;
                     guarded[other] = true;
                 }
