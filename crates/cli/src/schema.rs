@@ -45,6 +45,9 @@ fn schema() -> Value {
 /// What the program takes for a name.
 const NAME: &str = "^[A-Za-z0-9_-]{1,64}$";
 
+/// The same with `*` for any letters.
+const PATTERN: &str = "^[A-Za-z0-9_*-]{1,}$";
+
 fn object(table: &Table) -> Map<String, Value> {
     let mut properties = Map::new();
     for key in table.keys {
@@ -189,6 +192,7 @@ fn of_kind_alone(key: &Key) -> Value {
         Kind::WordOrTablePair(words, keys) => pair(word_or_table(words, keys, rules::of_support())),
         Kind::ChoicePair(words) => pair(json!({ "enum": words })),
         Kind::NamePair => pair(json!({ "$ref": "#/$defs/name" })),
+        Kind::PatternPair => pair(json!({ "type": "string", "pattern": PATTERN })),
         Kind::Downward(dimension) => {
             let of = |range| quantity(dimension, range);
             json!({ "anyOf": [of(&Range::NOT_NEGATIVE), pair(of(&Range::ANY))] })

@@ -4,6 +4,7 @@
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;
 use crate::mesh_error::{self, OfMesh};
+use crate::resolve::names::table_of;
 use crate::scene::{BeamScene, BlockScene, ContactScene, Placement, Scene, Support};
 use crate::{deflection, fineness, flexibility, idle, outlook, rocking, stability, swing, wording};
 use std::f64::consts::{PI, TAU};
@@ -214,7 +215,11 @@ fn tilt(block: &BlockScene, incline: f64, touches: bool, document: &Document) ->
     } else {
         return None;
     };
-    let found = document.error(&format!("block.{}.{key}", block.name), rule, "check the angle and its unit");
+    let found = document.error(
+        &format!("block.{}.{key}", table_of(document, &block.name)),
+        rule,
+        "check the angle and its unit",
+    );
     Some(found.as_warning())
 }
 

@@ -3,6 +3,7 @@
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;
 use crate::placement::{Departure, PlacementError};
+use crate::resolve::names::table_of;
 use crate::simulation::BuildError;
 use teeter_beam::{BeamError, ModalError, ModesError, StaticError};
 use teeter_integrator::{EquilibriumError, ModelError};
@@ -27,7 +28,7 @@ impl BuildError {
     pub fn diagnostic(&self, document: &Document) -> Diagnostic {
         match self {
             Self::Block(name, error) => document.error(
-                &format!("block.{name}"),
+                &format!("block.{}", table_of(document, name)),
                 error.to_string(),
                 "check its width, height and depth, and the density of its material",
             ),
@@ -54,7 +55,7 @@ impl BuildError {
                     "the corner {corner} starts {depth:.1e} m below the surface of `{surface}`; up to {tolerance:.1e} m is \
                      taken for rounding"
                 );
-                let remedy = if document.has(&format!("block.{block}.position")) {
+                let remedy = if document.has(&format!("block.{}.position", table_of(document, block))) {
                     "move the block up, or give on, at and tilt in place of position: it then stands on the surface"
                 } else {
                     "move one of the two, so that the corner is clear of the surface"
@@ -77,8 +78,8 @@ impl BuildError {
 
 /// The key that says where a block is.
 fn place_of(block: &str, document: &Document) -> String {
-    let key = if document.has(&format!("block.{block}.position")) { "position" } else { "at" };
-    format!("block.{block}.{key}")
+    let key = if document.has(&format!("block.{}.position", table_of(document, block))) { "position" } else { "at" };
+    format!("block.{}.{key}", table_of(document, block))
 }
 
 pub(crate) fn beam(name: &str, error: &BeamError, document: &Document) -> Diagnostic {
@@ -144,7 +145,7 @@ fn placement(error: &PlacementError, document: &Document) -> Diagnostic {
             "take fewer elements or a stiffer beam, or start undeformed",
         ),
         PlacementError::NoEquilibrium { block, motion } => document.error(
-            &format!("block.{block}.at"),
+            &format!("block.{}.at", table_of(document, block)),
             format!("no static equilibrium: the block {motion}"),
             match motion {
                 Departure::Slides => "give more friction, put it where the beam stays level, or start undeformed",
@@ -171,7 +172,7 @@ fn placement(error: &PlacementError, document: &Document) -> Diagnostic {
             "check the numbers of the beam and of what stands on it, or start undeformed",
         ),
         PlacementError::OffSurface { block, corner, x } => document.error(
-            &format!("block.{block}.at"),
+            &format!("block.{}.at", table_of(document, block)),
             format!("the corner {corner} at x = {x} m is not over what the block stands on"),
             "move the block, such that the corners it stands on are over the surface",
         ),

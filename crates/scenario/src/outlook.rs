@@ -122,9 +122,7 @@ impl Outlook {
         let block = |block: &BlockScene| {
             let (angle, on) = match block.placement {
                 Placement::Free { angle, .. } => (angle, None),
-                Placement::On { tilt, .. } => {
-                    (tilt, resolved.document.text(&format!("block.{}.on", block.name)).map(str::to_owned))
-                }
+                Placement::On { tilt, support, .. } => (tilt, Some(scene.name_of(support).to_owned())),
             };
             let (mass, critical_angle) = (block.mass(), block.critical_angle());
             BlockOutlook { name: block.name.clone(), mass, critical_angle, angle, on }

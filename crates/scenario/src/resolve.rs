@@ -5,12 +5,14 @@ mod beams;
 mod blocks;
 mod contacts;
 mod motions;
+pub(crate) mod names;
 mod sections;
 mod shape;
 mod signals;
 mod supports;
 mod timing;
 
+use names::BlockName;
 use std::collections::BTreeMap;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -129,7 +131,9 @@ struct Resolver<'a, 'f> {
     /// Whether values are missing that have their message already.
     partial: bool,
     beams: BTreeMap<&'a str, usize>,
-    blocks: BTreeMap<&'a str, usize>,
+    block_names: Vec<BlockName>,
+    /// The numbers of blocks by their names.
+    blocks: BTreeMap<String, usize>,
     signals: BTreeMap<&'a str, usize>,
     errors: Vec<Diagnostic>,
     warnings: Vec<Diagnostic>,
@@ -138,15 +142,22 @@ struct Resolver<'a, 'f> {
 impl<'a, 'f> Resolver<'a, 'f> {
     fn new(doc: &'a Document, partial: bool, read: &'f mut ReadFile<'f>) -> Self {
         let numbered = |group| doc.names(group).into_iter().zip(0..).collect();
+        let block_names = BlockName::all(doc);
+        let mut errors = Vec::new();
+        let blocks = names::numbered(&block_names, |block| {
+            let rule = format!("there are two blocks `{}`: one of its own table, one by repeat", block.name);
+            errors.push(doc.error(&format!("block.{}", block.table), rule, "give one of them another name"));
+        });
         Self {
             read,
             files: Vec::new(),
             doc,
             partial,
             beams: numbered("beam"),
-            blocks: numbered("block"),
+            block_names,
+            blocks,
             signals: numbered("signal"),
-            errors: Vec::new(),
+            errors,
             warnings: Vec::new(),
         }
     }
@@ -206,11 +217,10 @@ impl<'a, 'f> Resolver<'a, 'f> {
         if self.mesh_sizes(&beams) {
             beams.iter_mut().flatten().for_each(|beam| self.assembled(beam));
         }
-        let contacts: Vec<_> = doc.names("contact").into_iter().map(|name| self.contact(name)).collect();
-        self.contacts_fit_memory(contacts.len());
-        let joined = self.joined(&contacts);
-        let blocks: Vec<_> =
-            doc.names("block").into_iter().map(|name| self.block(name, &beams, &contacts, &joined, &signals)).collect();
+        let (contacts, joined) = self.contacts();
+        self.contacts_fit_memory(&contacts);
+        let names = self.block_names.clone();
+        let blocks: Vec<_> = names.iter().map(|name| self.block(name, &beams, &contacts, &joined, &signals)).collect();
         self.stand_on_something(&blocks);
         self.gives_way(&blocks, &contacts);
         let forces: Vec<_> = doc.names("force").into_iter().map(|name| self.force(name, &signals)).collect();
@@ -318,7 +328,7 @@ impl<'a, 'f> Resolver<'a, 'f> {
     }
 
     fn known_bodies(&self) -> String {
-        let mut names = self.doc.names("block");
+        let mut names: Vec<&str> = self.block_names.iter().map(|block| block.name.as_str()).collect();
         names.extend(self.doc.names("beam"));
         if self.doc.has_table("ground") {
             names.push("ground");
@@ -331,7 +341,10 @@ impl<'a, 'f> Resolver<'a, 'f> {
     }
 
     /// Refuses more contacts than whose dense operator memory can be asked for: a run would end in the middle, without a word.
-    fn contacts_fit_memory(&mut self, pairs: usize) {
+    fn contacts_fit_memory(&mut self, contacts: &[Option<ContactScene>]) {
+        // Of blocks in a plane few touch each other at a time.
+        let between = contacts.iter().flatten().filter(|contact| contact.other_block().is_some()).count();
+        let pairs = contacts.len() - between + between.min(3 * self.block_names.len());
         let most = volume::operator_bytes(2 * pairs);
         if most > volume::MOST_OPERATOR_BYTES {
             let rule = format!(
@@ -370,30 +383,6 @@ impl<'a, 'f> Resolver<'a, 'f> {
             max_iterations: self.need("solver.max_iterations", max_iterations)?,
             require_convergence: doc.flag("solver.require_convergence").unwrap_or(false),
         })
-    }
-}
-
-/// The contact that joins a block and a surface; one between two blocks joins each to the other.
-type Joined = BTreeMap<(usize, Support), usize>;
-
-impl Resolver<'_, '_> {
-    /// Which contact joins which two; a pair joined twice is an error.
-    fn joined(&mut self, contacts: &[Option<ContactScene>]) -> Joined {
-        let mut joined = Joined::new();
-        for (k, contact) in contacts.iter().enumerate() {
-            let Some(contact) = contact else { continue };
-            let first = *joined.entry((contact.block, contact.surface)).or_insert(k);
-            if let Some(other) = contact.other_block() {
-                joined.entry((other, Support::Block(contact.block))).or_insert(k);
-            }
-            if first != k
-                && let Some(Some(first)) = contacts.get(first)
-            {
-                let rule = format!("the contact `{}` joins the same two bodies", first.name);
-                self.error(&format!("contact.{}", contact.name), rule, "keep one of them");
-            }
-        }
-        joined
     }
 }
 

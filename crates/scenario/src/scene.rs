@@ -67,6 +67,16 @@ impl Scene {
         blocks.chain(beams).chain(ground)
     }
 
+    /// The name of what a block can stand on or touch.
+    #[must_use]
+    pub fn name_of(&self, support: Support) -> &str {
+        match support {
+            Support::Ground => "ground",
+            Support::Beam(beam) => &self.beams[beam].name,
+            Support::Block(block) => &self.blocks[block].name,
+        }
+    }
+
     /// Whether anything but weight moves the block of a contact: its own start or motion, a force on it, or what carries it.
     pub(crate) fn is_driven(&self, contact: &ContactScene) -> bool {
         let block = &self.blocks[contact.block];

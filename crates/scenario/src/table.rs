@@ -307,11 +307,21 @@ pub static TABLES: &[Table] = &[
         ],
     },
     Table {
+        pattern: "block.*.repeat",
+        occurrence: Occurrence::Inline,
+        doc: "Several blocks of one kind, named after the table with `-1`, `-2`, … at the end.",
+        keys: &[
+            key("count", Kind::Integer { min: 1, max: 10_000 }, Required, "20", "How many there are."),
+            key("shift", Kind::Pair(Dimension::LENGTH, Range::ANY), Default("[\"0 m\", \"0 m\"]"), "[\"8 cm\", \"0 cm\"]", "From the place of one to the place of the next; where they stand on something, x alone."),
+            key("stacked", Kind::Flag, Default("false"), "true", "Whether each stands on the one before, the first on what `on` says."),
+        ],
+    },
+    Table {
         pattern: "contact.*",
         occurrence: Occurrence::Named,
         doc: "Contact of a block with a beam, with the ground or with another block, with impact and friction. Bodies that no contact joins pass through each other.",
         keys: &[
-            key("between", Kind::NamePair, Required, "[\"rocker\", \"table\"]", "Two blocks, or a block and the beam or `ground` that it touches, in either order. Forces and velocities in the tables are those on the block; between two, on the first."),
+            key("between", Kind::PatternPair, Required, "[\"rocker\", \"table\"]", "Two blocks, or a block and the beam or `ground` that it touches, in either order. Forces and velocities in the tables are those on the block; between two, on the first. A `*` in a name stands for any letters: [\"brick-*\", \"brick-*\"] joins all blocks of such names with each other, but for those that a contact joins by their full names, or an earlier one by a pattern."),
             key("friction", Kind::Number(Range::NOT_NEGATIVE), Required, "0.5", "Coefficient of Coulomb friction."),
             key("restitution", Kind::Number(Range::UNIT), Default("0.0"), "0.0", "Coefficient of restitution: of the normal velocity, or with poisson of the normal impulse.").only_with("law", IMPACTS),
             key("tangential_restitution", Kind::Number(Range::UNIT), Default("0.0"), "0.0", "Part of the tangential velocity that comes back from an impact that does not slide.").only_with("law", IMPACTS),

@@ -8,8 +8,8 @@
 //! Of a block-sparse problem of many small islands, time and memory grow with the number of contacts. An operator that is
 //! given by what it does is not split: nothing is known of its blocks.
 
-use crate::Enumeration;
-use crate::chain::Chain;
+use crate::chain::{Chain, Pivots};
+use crate::{Enumeration, Lemke};
 use crate::ending::ended;
 use crate::enumeration::{FEW, MAX_CONTACTS};
 use crate::memory::reserve;
@@ -59,6 +59,8 @@ pub struct Auto<const D: usize> {
     p: Vec<Vector<D>>,
     /// The impulses to start from, of all.
     start: Vec<Vector<D>>,
+    /// Pivots, in the plane.
+    lemke: Lemke,
 }
 
 impl<const D: usize> Auto<D> {
@@ -77,6 +79,7 @@ impl<const D: usize> Auto<D> {
         problem: &ContactProblem<'_, D>,
         island: usize,
         exact: Exact<D>,
+        pivots: Pivots<'_, D>,
         stop: &Stop<'_>,
         all: &mut [Vector<D>],
     ) -> Option<Outcome> {
@@ -89,7 +92,7 @@ impl<const D: usize> Auto<D> {
         let own = self.own.problem();
         let outcome = match (exact.first)(&own, stop, &mut self.p) {
             Some(outcome) => outcome,
-            None => along(&mut self.chain, exact, &own, stop, &mut self.p),
+            None => along(&mut self.chain, exact, pivots, &own, stop, &mut self.p),
         };
         for (&i, p) in members.iter().zip(&self.p) {
             all[i] = *p;
@@ -101,6 +104,7 @@ impl<const D: usize> Auto<D> {
         &mut self,
         problem: &ContactProblem<'_, D>,
         exact: Exact<D>,
+        mut pivots: Pivots<'_, D>,
         stop: &Stop<'_>,
         p: &mut [Vector<D>],
     ) -> Outcome {
@@ -109,13 +113,14 @@ impl<const D: usize> Auto<D> {
         }
         self.islands.find(problem);
         if self.islands.len() <= 1 {
-            return along(&mut self.chain, exact, problem, stop, p);
+            return along(&mut self.chain, exact, pivots, problem, stop, p);
         }
         self.start.clear();
         self.start.extend_from_slice(p);
         let (mut used, mut iterations) = (Enumeration::NAME, 0);
         for island in 0..self.islands.len() {
-            let Some(outcome) = self.solve_island(problem, island, exact, stop, p) else { continue };
+            let pivots = pivots.as_mut().map(|pivots| &mut **pivots as &mut dyn ContactSolver<D>);
+            let Some(outcome) = self.solve_island(problem, island, exact, pivots, stop, p) else { continue };
             iterations = iterations.max(outcome.iterations);
             if outcome.used != Enumeration::NAME {
                 used = outcome.used;
@@ -124,7 +129,7 @@ impl<const D: usize> Auto<D> {
         // Each island is judged in its own scale; what counts is the whole.
         let residual = judge(problem, p);
         let apart = Outcome::new(ended(stop, iterations, &residual), used, iterations, residual);
-        if apart.converged() { apart } else { self.solve_whole(problem, exact, stop, apart, p) }
+        if apart.converged() { apart } else { self.solve_whole(problem, exact, pivots, stop, apart, p) }
     }
 
     /// The whole problem along the chain, after its islands, solved each for itself, have not satisfied the judge: `apart` is what came of
@@ -134,6 +139,7 @@ impl<const D: usize> Auto<D> {
         &mut self,
         problem: &ContactProblem<'_, D>,
         exact: Exact<D>,
+        pivots: Pivots<'_, D>,
         stop: &Stop<'_>,
         apart: Outcome,
         p: &mut [Vector<D>],
@@ -143,7 +149,7 @@ impl<const D: usize> Auto<D> {
             p.swap_with_slice(&mut self.start);
         }
         let rest = stop.with_max_iterations(stop.max_iterations.saturating_sub(apart.iterations));
-        let mut outcome = self.chain.solve(problem, exact.first, &rest, p);
+        let mut outcome = self.chain.solve(problem, exact.first, pivots, &rest, p);
         outcome.iterations = outcome.iterations.saturating_add(apart.iterations);
         if anew && !(outcome.residual.global <= apart.residual.global) {
             p.copy_from_slice(&self.start);
@@ -166,11 +172,12 @@ impl<const D: usize> Auto<D> {
 fn along<const D: usize>(
     chain: &mut Chain<D>,
     exact: Exact<D>,
+    pivots: Pivots<'_, D>,
     problem: &ContactProblem<'_, D>,
     stop: &Stop<'_>,
     p: &mut [Vector<D>],
 ) -> Outcome {
-    let outcome = chain.solve(problem, exact.first, stop, p);
+    let outcome = chain.solve(problem, exact.first, pivots, stop, p);
     if outcome.converged() || stop.cancelled() {
         return outcome;
     }
@@ -218,7 +225,10 @@ impl ContactSolver<2> for Auto<2> {
         let first: Small<2> =
             |problem, stop, p| (p.len() <= FEW).then(|| Enumeration.solve(problem, stop, p)).filter(Outcome::converged);
         let last: Small<2> = |problem, stop, p| enumerate(FEW + 1..=MAX_CONTACTS, problem, stop, p);
-        self.solve_with(problem, Exact { first, last }, stop, p)
+        let mut lemke = std::mem::take(&mut self.lemke);
+        let outcome = self.solve_with(problem, Exact { first, last }, Some(&mut lemke), stop, p);
+        self.lemke = lemke;
+        outcome
     }
 
     fn fork(&self) -> Box<dyn ContactSolver<2>> {
@@ -240,7 +250,7 @@ impl ContactSolver<3> for Auto<3> {
     }
 
     fn solve(&mut self, problem: &ContactProblem<'_, 3>, stop: &Stop<'_>, p: &mut [Vector<3>]) -> Outcome {
-        self.solve_with(problem, Exact { first: |_, _, _| None, last: |_, _, _| None }, stop, p)
+        self.solve_with(problem, Exact { first: |_, _, _| None, last: |_, _, _| None }, None, stop, p)
     }
 
     fn fork(&self) -> Box<dyn ContactSolver<3>> {

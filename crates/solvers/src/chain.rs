@@ -7,8 +7,10 @@
 //!    one or two where Newton takes ten.
 //! 4. **Semi-smooth Newton** ([`Newton`]): a round of steps from there; where they fail, more sweeps for about the same
 //!    work, and another round, a few times.
-//! 5. **The central path** ([`Smoothing`]): for what is degenerate.
-//! 6. **The proximal point** ([`Prox`]), Newton with more sweeps between its steps, and sweeps until the iterations run out.
+//! 5. **Pivots** ([`Lemke`](crate::Lemke)), in the plane and up to some hundred contacts: where blocks lean on each other, contacts that
+//!    press against each other without end leave all that goes by the residual at about 1e-10; pivots are exact.
+//! 6. **The central path** ([`Smoothing`]): for what is degenerate.
+//! 7. **The proximal point** ([`Prox`]), Newton with more sweeps between its steps, and sweeps until the iterations run out.
 //!
 //! What decides is counted work (blocks, block products), never time: the same problem takes the same way on every machine.
 //!
@@ -43,6 +45,12 @@ const STEP_BLOCK: f64 = 1.3;
 const STEP_CONTACT: f64 = 16.0;
 const SWEEP_BLOCK: f64 = 0.4;
 const SWEEP_CONTACT: f64 = 5.0;
+
+/// Up to so many contacts Lemke's tableau is no more work than what it spares.
+const PIVOTED: usize = 200;
+
+/// Lemke's method, in the plane.
+pub(crate) type Pivots<'a, const D: usize> = Option<&'a mut dyn ContactSolver<D>>;
 
 /// From so many contacts with so many blocks a row on, alternating directions come before Newton; and their iterations.
 #[cfg(feature = "sparse")]
@@ -115,10 +123,11 @@ impl<const D: usize> Chain<D> {
         &mut self,
         problem: &ContactProblem<'_, D>,
         small: Small<D>,
+        pivots: Pivots<'_, D>,
         stop: &Stop<'_>,
         p: &mut [Vector<D>],
     ) -> Outcome {
-        let mut outcome = self.approach(problem, small, stop, p);
+        let mut outcome = self.approach(problem, small, pivots, stop, p);
         let few = p.len() <= SMALL;
         let goal = if few { POLISHED } else { POLISHED.max(PART * stop.tolerance) };
         if outcome.converged() && outcome.residual.global > goal {
@@ -145,6 +154,7 @@ impl<const D: usize> Chain<D> {
         &mut self,
         problem: &ContactProblem<'_, D>,
         small: Small<D>,
+        pivots: Pivots<'_, D>,
         stop: &Stop<'_>,
         p: &mut [Vector<D>],
     ) -> Outcome {
@@ -164,6 +174,18 @@ impl<const D: usize> Chain<D> {
         }
         if !progress.over(stop) {
             self.sweeps_and_steps(problem, stop, p, &mut progress);
+        }
+        if !progress.over(stop)
+            && p.len() <= PIVOTED
+            && let Some(pivots) = pivots
+        {
+            self.best.clear();
+            self.best.extend_from_slice(p);
+            let outcome = pivots.solve(problem, &within(progress.left(stop), u32::MAX), p);
+            if !(outcome.residual.global < progress.best.residual.global) {
+                p.copy_from_slice(&self.best);
+            }
+            progress.add(outcome);
         }
         if !progress.over(stop) {
             let outcome = self.smoothing.solve(problem, &within(progress.left(stop), u32::MAX), p);

@@ -132,6 +132,11 @@ impl Judge<'_> {
                 let read = |judge: &mut Self, item: &Node| judge.name(key, path, item);
                 self.pair(items, read).map(Value::TextPair)
             }
+            Kind::PatternPair => {
+                let items = self.items(key, path, node, Some(2))?;
+                let read = |judge: &mut Self, item: &Node| judge.pattern(key, path, item);
+                self.pair(items, read).map(Value::TextPair)
+            }
             Kind::Downward(dimension) => match &node.raw {
                 Raw::Array(_) => {
                     let items = self.items(key, path, node, Some(2))?;
@@ -254,6 +259,19 @@ impl Judge<'_> {
         match name_rule(&text) {
             Some(rule) => {
                 self.blame(node, path, rule);
+                None
+            }
+            None => Some(text),
+        }
+    }
+
+    /// A name, or one with `*` in it.
+    fn pattern(&mut self, key: &Key, path: &str, node: &Node) -> Option<String> {
+        let text = self.text(key, path, node)?;
+        let plain: String = text.chars().filter(|c| *c != '*').collect();
+        match name_rule(&plain).filter(|_| !(plain.is_empty() && !text.is_empty())) {
+            Some(rule) => {
+                self.blame(node, path, format!("{rule}; `*` stands for any letters of a name"));
                 None
             }
             None => Some(text),

@@ -153,6 +153,8 @@ pub enum Kind {
     WordOrTablePair(&'static [&'static str], &'static [Key]),
     /// An array of two names.
     NamePair,
+    /// An array of two names, in which a `*` stands for any letters.
+    PatternPair,
     /// A quantity that may have one of several units, by which it is understood.
     Measure(&'static [crate::measure::Unit], Range),
     /// A vector: an array of two quantities x, y, or one quantity that is not negative, for a vector that points downwards.

@@ -106,7 +106,7 @@ impl Value {
             }
             Self::Pair(_) => matches!(kind, Kind::Pair(..) | Kind::Downward(_)),
             Self::List(_) => matches!(kind, Kind::List(..) | Kind::Numbers(_)),
-            Self::TextPair(_) => matches!(kind, Kind::ChoicePair(_) | Kind::NamePair),
+            Self::TextPair(_) => matches!(kind, Kind::ChoicePair(_) | Kind::NamePair | Kind::PatternPair),
             Self::Words(_) => matches!(kind, Kind::Words(_)),
             Self::Measure(_) => matches!(kind, Kind::Measure(..)),
             Self::Item(_) => matches!(kind, Kind::WordOrTable(..)),

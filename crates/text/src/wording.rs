@@ -39,7 +39,7 @@ pub(crate) fn noun(key: &Key) -> String {
         Kind::Words(_) => "an array of words in quotes".to_owned(),
         Kind::WordOrTable(..) => "a word in quotes or a table".to_owned(),
         Kind::WordOrTablePair(..) => "an array of two, each a word in quotes or a table,".to_owned(),
-        Kind::ChoicePair(_) | Kind::NamePair => "an array of two words in quotes".to_owned(),
+        Kind::ChoicePair(_) | Kind::NamePair | Kind::PatternPair => "an array of two words in quotes".to_owned(),
         Kind::Downward(dimension) => format!("{} with its unit, or an array of two,", dimension.name()),
     }
 }

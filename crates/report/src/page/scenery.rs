@@ -137,11 +137,7 @@ impl Scenery {
             ContactDrawn {
                 name: contact.name.clone(),
                 block: contact.block,
-                surface: match contact.surface {
-                    scene::Support::Beam(k) => scene.beams[k].name.clone(),
-                    scene::Support::Block(k) => scene.blocks[k].name.clone(),
-                    scene::Support::Ground => "ground".to_owned(),
-                },
+                surface: scene.name_of(contact.surface).to_owned(),
                 beam: match contact.surface {
                     scene::Support::Beam(k) => Some(k),
                     scene::Support::Ground | scene::Support::Block(_) => None,

@@ -1,18 +1,20 @@
 //! Blocks: sides, place, and whether they fit on what they stand on.
 
-use super::{Joined, Resolver};
+use super::Resolver;
+use super::contacts::Joined;
+use super::names::BlockName;
 use crate::scene::{BeamScene, BlockScene, ContactScene, Placement, SignalScene, Support};
 
 impl Resolver<'_, '_> {
     pub(super) fn block(
         &mut self,
-        name: &str,
+        block: &BlockName,
         beams: &[Option<BeamScene>],
         contacts: &[Option<ContactScene>],
         joined: &Joined,
         signals: &[Option<SignalScene>],
     ) -> Option<BlockScene> {
-        let path = format!("block.{name}");
+        let path = format!("block.{}", block.table);
         let at = |key: &str| format!("{path}.{key}");
         let density = self.material(&path).and_then(|m| self.quantity(&format!("{m}.density")));
         let width = self.quantity(&at("width"));
@@ -29,12 +31,12 @@ impl Resolver<'_, '_> {
                 }
             }
         }
-        let placement = self.placement(name, contacts, joined);
+        let placement = self.placement(block, contacts, joined);
         if let (Some(width), Some(placement)) = (width, &placement) {
-            self.stands(name, width, placement, beams);
+            self.stands(&block.table, width, placement, beams);
         }
         Some(BlockScene {
-            name: name.to_owned(),
+            name: block.name.clone(),
             width: width?,
             height: height?,
             depth: depth?,
@@ -46,9 +48,16 @@ impl Resolver<'_, '_> {
         })
     }
 
-    fn placement(&mut self, name: &str, contacts: &[Option<ContactScene>], joined: &Joined) -> Option<Placement> {
+    fn placement(
+        &mut self,
+        block: &BlockName,
+        contacts: &[Option<ContactScene>],
+        joined: &Joined,
+    ) -> Option<Placement> {
         let doc = self.doc;
-        let path = format!("block.{name}");
+        let (name, path) = (block.name.as_str(), format!("block.{}", block.table));
+        let shift =
+            doc.pair(&format!("{path}.repeat.shift")).unwrap_or_default().map(|shift| block.copy as f64 * shift);
         let at = |key: &str| format!("{path}.{key}");
         let written = |key: &str| doc.is_given(&at(key)) || doc.is_refused(&at(key));
         if written("position") {
@@ -60,8 +69,14 @@ impl Resolver<'_, '_> {
                 );
                 return None;
             }
+            if doc.flag(&at("repeat.stacked")) == Some(true) {
+                let rule = "stacked blocks stand on each other, but position says where they are";
+                self.error(&at("repeat.stacked"), rule, "give on and at, or shift in place of stacked");
+                return None;
+            }
             let (position, angle) = (self.pair(&at("position")), self.quantity(&at("angle")));
-            return Some(Placement::Free { position: position?, angle: angle? });
+            let [x, y] = position?;
+            return Some(Placement::Free { position: [x + shift[0], y + shift[1]], angle: angle? });
         }
         if written("angle") {
             self.error(&at("angle"), "angle goes with position", "write tilt, or give position");
@@ -78,7 +93,11 @@ impl Resolver<'_, '_> {
                 "the place x of the middle of its base, such as \"18 cm\"",
             );
         }
-        let on = doc.text(&at("on"))?;
+        if shift[1] != 0.0 {
+            let rule = "what stands on something is shifted along x only";
+            self.error(&at("repeat.shift"), rule, "let y be 0, or give a position in place of on and at");
+        }
+        let on = block.stands_on.as_deref().map_or_else(|| doc.text(&at("on")), Some)?;
         let (x, tilt) = (doc.quantity(&at("at")), doc.quantity(&at("tilt")));
         let Some(support) = self.support(on) else {
             self.no_body(&at("on"), on);
@@ -94,7 +113,7 @@ impl Resolver<'_, '_> {
             let remedy = format!("add [contact.NAME] with between = [\"{name}\", \"{on}\"]");
             self.error(&at("on"), rule, remedy);
         }
-        Some(Placement::On { support, at: x?, tilt: tilt?, contact: contact? })
+        Some(Placement::On { support, at: x? + shift[0], tilt: tilt?, contact: contact? })
     }
 
     /// Blocks that stand on each other in a circle stand on nothing.

@@ -1,33 +1,153 @@
 //! Contacts: who touches whom.
 
+use std::collections::{BTreeMap, BTreeSet};
 use teeter_detect::Kinematics;
 use teeter_integrator::{ImpactLaw, PairLaw};
 
-use super::Resolver;
+use super::{Resolver, names};
 use crate::dimension::Dimension;
 use crate::measure::Measure;
 use crate::scene::{ContactScene, Support};
 use crate::words::{Frames, Law};
 
+/// The contact that joins a block and a surface; one between two blocks joins each to the other.
+pub(super) type Joined = BTreeMap<(usize, Support), usize>;
+
+/// Pairs that patterns may stand for, in all.
+const MOST_PAIRS: usize = 20_000;
+
 impl Resolver<'_, '_> {
-    pub(super) fn contact(&mut self, name: &str) -> Option<ContactScene> {
+    /// All contacts, those by full names first, and which of them joins which two.
+    pub(super) fn contacts(&mut self) -> (Vec<Option<ContactScene>>, Joined) {
+        let (mut contacts, mut joined) = (Vec::new(), Joined::new());
+        let names = self.doc.names("contact");
+        let by_pattern = |name: &&str| {
+            let between = self.doc.text_pair(&format!("contact.{name}.between"));
+            between.is_some_and(|between| between.iter().any(|side| side.contains('*')))
+        };
+        let (patterns, plain): (Vec<&str>, Vec<&str>) = names.into_iter().partition(by_pattern);
+        for name in plain {
+            let contact = self.contact(name);
+            if let Some(contact) = &contact {
+                self.join(contact, contacts.len(), &contacts, &mut joined);
+            }
+            contacts.push(contact);
+        }
+        for name in patterns {
+            match self.contacts_by_pattern(name, &joined, contacts.len()) {
+                Some(found) => {
+                    for contact in found {
+                        self.join(&contact, contacts.len(), &contacts, &mut joined);
+                        contacts.push(Some(contact));
+                    }
+                }
+                None => contacts.push(None),
+            }
+        }
+        (contacts, joined)
+    }
+
+    /// Enters a contact; a pair joined twice is an error.
+    fn join(&mut self, contact: &ContactScene, number: usize, others: &[Option<ContactScene>], joined: &mut Joined) {
+        let first = *joined.entry((contact.block, contact.surface)).or_insert(number);
+        if let Some(other) = contact.other_block() {
+            joined.entry((other, Support::Block(contact.block))).or_insert(number);
+        }
+        if first != number
+            && let Some(Some(first)) = others.get(first)
+        {
+            let rule = format!("the contact `{}` joins the same two bodies", first.name);
+            self.error(&format!("contact.{}", contact.name), rule, "keep one of them");
+        }
+    }
+
+    fn contact(&mut self, name: &str) -> Option<ContactScene> {
         let path = format!("contact.{name}");
         let at = |key: &str| format!("{path}.{key}");
         let between = self.doc.text_pair(&at("between")).map(|pair| pair.map(str::to_owned));
         let between = self.need(&at("between"), between);
         let law = self.pair_law(&path);
-        let kinematics = self.choice(&at("kinematics"));
+        let kinematics = self.kinematics(&path);
         let between = between?;
         let (block, surface) = self.sides(&at("between"), &between)?;
-        if matches!(surface, Support::Block(_)) && self.doc.is_given(&at("kinematics")) {
-            let rule = "it says how a beam's deflection enters, but this contact is between two blocks";
-            self.error(&at("kinematics"), rule, "leave it out");
-        }
-        let kinematics = match kinematics? {
+        self.no_frames_of_blocks(&path, surface);
+        Some(ContactScene { name: name.to_owned(), between, block, surface, law: law?, kinematics: kinematics? })
+    }
+
+    fn kinematics(&mut self, path: &str) -> Option<Kinematics> {
+        Some(match self.choice(&format!("{path}.kinematics"))? {
             Frames::Deformed => Kinematics::Deformed,
             Frames::Linear => Kinematics::Linear,
-        };
-        Some(ContactScene { name: name.to_owned(), between, block, surface, law: law?, kinematics })
+        })
+    }
+
+    fn no_frames_of_blocks(&mut self, path: &str, surface: Support) {
+        let key = format!("{path}.kinematics");
+        if matches!(surface, Support::Block(_)) && self.doc.is_given(&key) {
+            let rule = "it says how a beam's deflection enters, but this contact is between two blocks";
+            self.error(&key, rule, "leave it out");
+        }
+    }
+
+    /// The contacts of all pairs that a pattern stands for, but those that are joined already.
+    fn contacts_by_pattern(&mut self, name: &str, joined: &Joined, known: usize) -> Option<Vec<ContactScene>> {
+        let path = format!("contact.{name}");
+        let key = format!("{path}.between");
+        let patterns = self.doc.text_pair(&key).map(|pair| pair.map(str::to_owned))?;
+        let (law, kinematics) = (self.pair_law(&path), self.kinematics(&path));
+        let sides = patterns.each_ref().map(|pattern| self.meant(&key, pattern));
+        let [Some(first), Some(second)] = sides else { return None };
+        let (law, kinematics) = (law?, kinematics?);
+        let mut found: Vec<ContactScene> = Vec::new();
+        let mut pairs: BTreeSet<(usize, Support)> = BTreeSet::new();
+        for (a, b) in first.iter().flat_map(|a| second.iter().map(move |b| (a, b))) {
+            let (block, surface) = match (a.1, b.1) {
+                (Support::Block(a), surface) | (surface, Support::Block(a)) => (a, surface),
+                _ => {
+                    self.error(
+                        &key,
+                        "a contact joins two blocks, a block and a beam, or a block and the ground",
+                        "name blocks",
+                    );
+                    return None;
+                }
+            };
+            let again = matches!(surface, Support::Block(other) if other == block || pairs.contains(&(other, Support::Block(block))));
+            if again || joined.contains_key(&(block, surface)) || !pairs.insert((block, surface)) {
+                continue;
+            }
+            let between = [a.0.clone(), b.0.clone()];
+            found.push(ContactScene { name: name.to_owned(), between, block, surface, law, kinematics });
+            if known + found.len() > MOST_PAIRS {
+                let rule = format!("the patterns stand for more than {MOST_PAIRS} pairs of bodies");
+                self.error(&key, rule, "name only what can meet, such as each course of a wall and the next");
+                return None;
+            }
+        }
+        if let Some(contact) = found.first() {
+            self.no_frames_of_blocks(&path, contact.surface);
+        }
+        Some(found)
+    }
+
+    /// The bodies that a name or a pattern stands for.
+    fn meant(&mut self, key: &str, pattern: &str) -> Option<Vec<(String, Support)>> {
+        if !pattern.contains('*') {
+            let support = self.support(pattern);
+            if support.is_none() {
+                self.no_body(key, pattern);
+            }
+            return Some(vec![(pattern.to_owned(), support?)]);
+        }
+        let blocks = self.block_names.iter().enumerate();
+        let meant = blocks.filter(|(_, block)| names::matches(pattern, &block.name));
+        let meant: Vec<_> = meant.map(|(number, block)| (block.name.clone(), Support::Block(number))).collect();
+        if meant.is_empty() {
+            let remedy = self.known_bodies();
+            self.error(key, format!("no block's name is like `{pattern}`"), remedy);
+            return None;
+        }
+        Some(meant)
     }
 
     fn pair_law(&mut self, path: &str) -> Option<PairLaw> {

@@ -1,0 +1,98 @@
+//! Names of blocks: those of the file, the copies of a block that is repeated, and patterns that stand for several.
+
+use std::collections::BTreeMap;
+
+use crate::document::Document;
+
+/// A block of the scene, and where it comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct BlockName {
+    /// Its own name: that of its table, with `-1`, `-2`, … where it is repeated.
+    pub(super) name: String,
+    /// The name of its table in the file.
+    pub(super) table: String,
+    /// How many copies of the table come before it.
+    pub(super) copy: usize,
+    /// The copy before, which it stands on.
+    pub(super) stands_on: Option<String>,
+}
+
+impl BlockName {
+    /// All blocks of a file, in its order.
+    pub(super) fn all(doc: &Document) -> Vec<Self> {
+        doc.names("block").into_iter().flat_map(|table| Self::of_table(doc, table)).collect()
+    }
+
+    fn of_table(doc: &Document, table: &str) -> Vec<Self> {
+        let count = doc.integer(&format!("block.{table}.repeat.count")).and_then(|count| usize::try_from(count).ok());
+        let Some(count) = count else {
+            let (name, table) = (table.to_owned(), table.to_owned());
+            return vec![Self { name, table, copy: 0, stands_on: None }];
+        };
+        let stacked = doc.flag(&format!("block.{table}.repeat.stacked")) == Some(true);
+        let name = |copy: usize| format!("{table}-{}", copy + 1);
+        let copy = |copy: usize| Self {
+            name: name(copy),
+            table: table.to_owned(),
+            copy,
+            stands_on: (stacked && copy > 0).then(|| name(copy - 1)),
+        };
+        (0..count).map(copy).collect()
+    }
+}
+
+/// The name of the table of the file that a block of the scene comes from.
+pub(crate) fn table_of<'a>(doc: &Document, block: &'a str) -> &'a str {
+    let repeated = |table: &&str| doc.has_table(&format!("block.{table}.repeat"));
+    match block.rsplit_once('-').map(|(table, _)| table).filter(repeated) {
+        Some(table) if !doc.has_table(&format!("block.{block}")) => table,
+        _ => block,
+    }
+}
+
+/// Whether a name is what a pattern stands for, in which `*` is any letters.
+pub(super) fn matches(pattern: &str, name: &str) -> bool {
+    let Some((start, rest)) = pattern.split_once('*') else { return pattern == name };
+    let Some(mut name) = name.strip_prefix(start) else { return false };
+    let mut parts: Vec<&str> = rest.split('*').collect();
+    let end = parts.pop().unwrap_or_default();
+    for part in parts {
+        let Some(at) = name.find(part) else { return false };
+        name = &name[at + part.len()..];
+    }
+    name.ends_with(end)
+}
+
+/// Blocks by their names; a name that two have is handed to `twice`.
+pub(super) fn numbered(names: &[BlockName], mut twice: impl FnMut(&BlockName)) -> BTreeMap<String, usize> {
+    let mut numbers = BTreeMap::new();
+    for (number, block) in names.iter().enumerate() {
+        if numbers.insert(block.name.clone(), number).is_some() {
+            twice(block);
+        }
+    }
+    numbers
+}
+
+#[cfg(test)]
+mod tests {
+    use super::matches;
+
+    #[test]
+    fn a_star_stands_for_any_letters() {
+        for (pattern, name, does) in [
+            ("wall", "wall", true),
+            ("wall", "wall-1", false),
+            ("*", "anything", true),
+            ("wall-*", "wall-12", true),
+            ("wall-*", "wall", false),
+            ("*-1", "wall-1", true),
+            ("*-1", "wall-11", false),
+            ("a*b*c", "a-b-b-c", true),
+            ("a*b*c", "acb", false),
+            ("a*a", "a", false),
+        ] {
+            assert_eq!(matches(pattern, name), does, "{pattern} {name}");
+        }
+    }
+}
