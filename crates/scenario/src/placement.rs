@@ -162,13 +162,14 @@ pub(crate) fn starting_poses(
                     let still = beams[k].still(&scene.beams[k])?.boxed();
                     block_pose(scene, block, &Standing::Surface(still.as_ref(), &deflections[k]))?
                 }
-                Placement::On { support: Support::Block(below), at, .. } => {
+                Placement::On { support: Support::Block(below), at, tilt, stacked, .. } => {
                     let carrier = &scene.blocks[below];
                     let top = Top::of(carrier, &poses[below].unwrap_or_default());
+                    let at = if stacked { top.line[0] + at * top.line[2].cos() } else { at };
                     if !top.is_under(block, at) {
                         return Err(off_surface(block, &Foot { corner: 0, x: at - 0.5 * block.width }).into());
                     }
-                    block_pose(scene, block, &Standing::Line(top.line))?
+                    pose_on_line(block, at, tilt, &top.line)
                 }
                 _ => block_pose(scene, block, &Standing::Line(ground))?,
             };

@@ -328,8 +328,10 @@ pub enum Placement {
     On {
         /// What it stands on.
         support: Support,
-        /// x of the middle of its base before it is tilted, m.
+        /// x of the middle of its base before it is tilted, m; of a stacked one from the middle of the side below, along it.
         at: f64,
+        /// Whether it was put on the block below by `stacked`.
+        stacked: bool,
         /// Turn about the corner that it stays on, rad.
         tilt: f64,
         /// The contact that joins the two.

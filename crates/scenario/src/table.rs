@@ -312,8 +312,8 @@ pub static TABLES: &[Table] = &[
         doc: "Several blocks of one kind, named after the table with `-1`, `-2`, … at the end.",
         keys: &[
             key("count", Kind::Integer { min: 1, max: 10_000 }, Required, "20", "How many there are."),
-            key("shift", Kind::Pair(Dimension::LENGTH, Range::ANY), Default("[\"0 m\", \"0 m\"]"), "[\"8 cm\", \"0 cm\"]", "From the place of one to the place of the next; where they stand on something, x alone."),
-            key("stacked", Kind::Flag, Default("false"), "true", "Whether each stands on the one before, the first on what `on` says."),
+            key("shift", Kind::Pair(Dimension::LENGTH, Range::ANY), Default("[\"0 m\", \"0 m\"]"), "[\"8 cm\", \"0 cm\"]", "From the place of one to the place of the next; where they stand on something, x alone; where they are stacked, along the upper side of the one before, from its middle."),
+            key("stacked", Kind::Flag, Default("false"), "true", "Whether each stands on the one before, flat, the first on what `on` says."),
         ],
     },
     Table {

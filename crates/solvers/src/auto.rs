@@ -9,11 +9,11 @@
 //! given by what it does is not split: nothing is known of its blocks.
 
 use crate::chain::{Chain, Pivots};
-use crate::{Enumeration, Lemke};
 use crate::ending::ended;
 use crate::enumeration::{FEW, MAX_CONTACTS};
 use crate::memory::reserve;
 use crate::pairs::Small;
+use crate::{Enumeration, Lemke};
 use teeter_contact::{
     ContactProblem, ContactSolver, Delassus, Islands, Law, Outcome, OwnedProblem, Stop, Vector, judge,
 };

@@ -113,7 +113,10 @@ impl Resolver<'_, '_> {
             let remedy = format!("add [contact.NAME] with between = [\"{name}\", \"{on}\"]");
             self.error(&at("on"), rule, remedy);
         }
-        Some(Placement::On { support, at: x? + shift[0], tilt: tilt?, contact: contact? })
+        // What is stacked lies flat on the one before.
+        let stacked = block.stands_on.is_some();
+        let (at, tilt) = if stacked { (shift[0] / block.copy as f64, 0.0) } else { (x? + shift[0], tilt?) };
+        Some(Placement::On { support, at, stacked, tilt, contact: contact? })
     }
 
     /// Blocks that stand on each other in a circle stand on nothing.

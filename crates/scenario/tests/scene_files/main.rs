@@ -18,6 +18,7 @@ mod resolving;
 mod resting;
 mod running;
 mod settings;
+mod stacks;
 mod together;
 mod too_fast;
 mod work;

@@ -1,0 +1,163 @@
+//! Blocks on blocks.
+
+use teeter_scenario::load;
+use teeter_scenario::simulation::Simulation;
+
+const WEIGHT: f64 = 2700.0 * 0.1 * 0.1 * 0.1 * 9.81;
+
+/// Boxes of 10 cm on each other; `keys` are those of their table, `more` what comes after.
+fn scene(time: &str, keys: &str, more: &str) -> String {
+    format!(
+        "[time]\n{time}\n[ground]\n[material.m]\ndensity = '2700 kg/m^3'\n[material.heavy]\ndensity = '2.7e6 kg/m^3'\n\
+         [block.box]\nmaterial = 'm'\nwidth = '10 cm'\nheight = '10 cm'\ndepth = '10 cm'\n{keys}\n{more}\n\
+         [contact.floor]\nbetween = ['*', 'ground']\nfriction = 0.5\n[contact.joints]\nbetween = ['*', '*']\nfriction = 0.5\n"
+    )
+}
+
+fn simulation(text: &str, sets: &[(&str, &str)]) -> Simulation {
+    let resolved = load(text.as_bytes(), "scene", "scene", &super::sets(sets));
+    Simulation::new(&resolved.unwrap_or_else(|errors| panic!("{errors}\n{text}")).scene).unwrap()
+}
+
+/// Runs, and says by how much any coordinate has changed.
+fn drift(simulation: &mut Simulation) -> f64 {
+    let start = simulation.state.q.clone();
+    let ended = simulation.run(&mut []).unwrap();
+    assert!(matches!(ended, teeter_integrator::Ended::Complete { .. }), "{ended:?}");
+    simulation.state.q.iter().zip(&start).map(|(q, start)| (q - start).abs()).fold(0.0, f64::max)
+}
+
+const STACKED: &str = "on = 'ground'\nat = '0 m'\nrepeat = { count = 19, stacked = true }";
+
+fn load_of(material: &str) -> String {
+    format!(
+        "[block.load]\nmaterial = '{material}'\nwidth = '10 cm'\nheight = '10 cm'\ndepth = '10 cm'\non = 'box-19'\nat = '0 m'"
+    )
+}
+
+#[test]
+fn twenty_blocks_rest_for_ten_seconds_under_an_equal_and_under_a_heavy_one() {
+    for material in ["m", "heavy"] {
+        let text = scene("end = '10 s'\nstep = '1 ms'", STACKED, &load_of(material));
+        let drift = drift(&mut simulation(&text, &[]));
+        assert!(drift < 1e-10, "{material}: {drift:e} m");
+    }
+}
+
+#[test]
+fn every_joint_bears_the_weight_above_it() {
+    for (material, top) in [("m", 1.0), ("heavy", 1000.0)] {
+        let text = scene("end = '0.1 s'\nstep = '1 ms'", STACKED, &load_of(material));
+        let mut simulation = simulation(&text, &[]);
+        simulation.run(&mut []).unwrap();
+        let step = simulation.step().unwrap();
+        let mut pressed = vec![0.0; 20];
+        for contact in step.contacts() {
+            let upper = contact.sides.iter().map(|side| side.body.0).filter(|body| *body < 20).max().unwrap();
+            pressed[upper as usize] += contact.p[0] / 1e-3;
+        }
+        for (k, pressed) in pressed.iter().enumerate() {
+            let above = WEIGHT * (19.0 - k as f64 + top);
+            assert!((pressed / above - 1.0).abs() < 1e-8, "{material}, joint {k}: {pressed} N, not {above} N");
+        }
+    }
+}
+
+/// Case S5 of the reference: five blocks of half the height, at rest for a second, by the scheme of the theory page.
+#[test]
+fn every_scheme_keeps_a_stack_at_rest() {
+    let repeat = "on = 'ground'\nat = '0 m'\nrepeat = { count = 5, stacked = true }";
+    let text = scene("end = '1 s'\nstep = '1 ms'", repeat, "").replace("height = '10 cm'", "height = '5 cm'");
+    for scheme in teeter_integrator::schemes() {
+        if scheme.name == "resolved" {
+            continue; // there is no beam
+        }
+        let drift = drift(&mut simulation(&text, &[("time.scheme", scheme.name)]));
+        assert!(drift < 1e-12, "{}: {drift:e} m", scheme.name);
+    }
+}
+
+/// From gaps of 1 mm the blocks fall onto each other; then they lie still.
+#[test]
+fn a_stack_that_falls_together_comes_to_rest() {
+    let keys = "position = ['0 m', '5.1 cm']\nrepeat = { count = 20, shift = ['0 m', '10.1 cm'] }";
+    let mut simulation = simulation(&scene("end = '1 s'\nstep = '1 ms'", keys, ""), &[]);
+    simulation.run(&mut []).unwrap();
+    let there = simulation.state.q.clone();
+    assert!(there.chunks_exact(3).enumerate().all(|(k, q)| (q[1] - 0.05 - 0.1 * k as f64).abs() < 1e-3));
+    simulation.run_until(2.0, &mut []).unwrap();
+    let moved = simulation.state.q.iter().zip(&there).map(|(q, there)| (q - there).abs()).fold(0.0, f64::max);
+    assert!(moved < 1e-9, "{moved:e} m");
+}
+
+/// A stack of five on an incline tips about its toe where tan β = 1/5.
+#[test]
+fn a_tilted_stack_falls_when_its_centre_passes_the_toe() {
+    let repeat = "on = 'ground'\nat = '0 m'\nrepeat = { count = 5, stacked = true }";
+    let text = scene("end = '1.5 s'\nstep = '1 ms'", repeat, "");
+    let critical = 0.2_f64.atan().to_degrees();
+    for scheme in ["moreau-jean-closed", "moreau-jean-located", "event-driven"] {
+        for (off, falls) in [(-0.005, false), (0.005, true)] {
+            let incline = format!("{} deg", critical + off);
+            let drift = drift(&mut simulation(&text, &[("time.scheme", scheme), ("ground.incline", &incline)]));
+            assert!(if falls { drift > 1e-3 } else { drift < 1e-10 }, "{scheme}, {incline}: {drift:e} m");
+        }
+    }
+}
+
+/// A plank falls off the block that it lies on when its middle is past the edge, to a micrometre.
+#[test]
+fn a_plank_tips_when_its_centre_passes_the_edge() {
+    for scheme in ["moreau-jean", "moreau-jean-closed", "moreau-jean-located", "event-driven"] {
+        for (off, falls) in [(-1e-6, false), (1e-6, true)] {
+            let plank = format!(
+                "[block.plank]\nmaterial = 'm'\nwidth = '30 cm'\nheight = '2 cm'\ndepth = '10 cm'\non = 'box'\nat = '{} m'",
+                0.05 + off
+            );
+            let text = scene("end = '2 s'\nstep = '1 ms'", "on = 'ground'\nat = '0 m'", &plank);
+            let drift = drift(&mut simulation(&text, &[("time.scheme", scheme)]));
+            assert!(if falls { drift > 1e-2 } else { drift < 1e-12 }, "{scheme}, {off}: {drift:e} m");
+        }
+    }
+}
+
+/// The block below is as the ground to the one above, if it can't move: the same motion.
+#[test]
+fn a_block_rocks_on_a_block_as_on_the_ground() {
+    let rocker = |on: &str| {
+        format!(
+            "[block.rocker]\nmaterial = 'm'\nwidth = '3 cm'\nheight = '13.5 cm'\ndepth = '3 cm'\non = '{on}'\nat = '0 m'\ntilt = '5 deg'"
+        )
+    };
+    let held = "on = 'ground'\nat = '0 m'\nmotion = { velocity = ['0 m/s', '0 m/s'], only = 'x', angular_velocity = '0 rad/s' }";
+    for scheme in ["moreau-jean", "moreau-jean-closed", "moreau-jean-located", "event-driven"] {
+        let of = |on: &str, keys: &str| {
+            let text = scene("end = '0.5 s'\nstep = '0.5 ms'", keys, &rocker(on)).replace("2700 kg/m^3", "700 kg/m^3");
+            let mut simulation = simulation(&text, &[("time.scheme", scheme)]);
+            simulation.run(&mut []).unwrap();
+            simulation.state.q[3..6].to_vec()
+        };
+        let below = "on = 'ground'\nat = '1 m'\n";
+        let (on_ground, on_block) = (of("ground", below), of("box", &held.replace("10 cm", "100 cm")));
+        let off = (on_ground[2] - on_block[2]).abs().max((on_ground[1] + 0.1 - on_block[1]).abs());
+        assert!(off < 1e-9, "{scheme}: {on_ground:?} {on_block:?}");
+    }
+}
+
+#[test]
+fn patterns_join_what_is_not_joined_by_name() {
+    let text =
+        scene("end = '1 s'\nstep = '1 ms'", "on = 'ground'\nat = '0 m'\nrepeat = { count = 3, stacked = true }", "");
+    let named = text + "[contact.own]\nbetween = ['box-3', 'box-2']\nfriction = 0.1\n";
+    let scene = load(named.as_bytes(), "scene", "scene", &[]).unwrap().scene;
+    let joined: Vec<_> = scene.contacts.iter().map(|c| (c.name.as_str(), c.between.join(" "))).collect();
+    let expected = [
+        ("own", "box-3 box-2"),
+        ("floor", "box-1 ground"),
+        ("floor", "box-2 ground"),
+        ("floor", "box-3 ground"),
+        ("joints", "box-1 box-2"),
+        ("joints", "box-1 box-3"),
+    ];
+    assert_eq!(joined, expected.map(|(name, between)| (name, between.to_owned())));
+}
