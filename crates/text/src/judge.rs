@@ -269,12 +269,13 @@ impl Judge<'_> {
     fn pattern(&mut self, key: &Key, path: &str, node: &Node) -> Option<String> {
         let text = self.text(key, path, node)?;
         let plain: String = text.chars().filter(|c| *c != '*').collect();
-        match name_rule(&plain).filter(|_| !(plain.is_empty() && !text.is_empty())) {
-            Some(rule) => {
+        let only_stars = plain.is_empty() && !text.is_empty();
+        match name_rule(&plain) {
+            Some(rule) if !only_stars => {
                 self.blame(node, path, format!("{rule}; `*` stands for any letters of a name"));
                 None
             }
-            None => Some(text),
+            _ => Some(text),
         }
     }
 
