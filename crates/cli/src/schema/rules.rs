@@ -185,7 +185,11 @@ fn of_pattern(pattern: &str) -> Vec<Value> {
             excludes("position", &["on", "at", "tilt"]),
             json!({ "dependentRequired": { "on": ["at"] } }),
         ],
-        "contact.*" => vec![properties([("between", json!({ "uniqueItems": true }))])],
+        // A pattern may be paired with itself.
+        "contact.*" => {
+            let pattern = json!({ "contains": { "pattern": "\\*" } });
+            vec![properties([("between", json!({ "anyOf": [{ "uniqueItems": true }, pattern] }))])]
+        }
         "signal.*" => vec![
             json!({ "not": { "required": ["frequency", "period"] } }),
             json!({

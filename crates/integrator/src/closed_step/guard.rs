@@ -26,9 +26,13 @@ impl<const D: usize> Guard<'_, D> {
     /// impulse along the slide that was. Then either no friction, or the velocity turned about,
     /// whichever ends nearer to rest; it sticks in the next step.
     ///
-    /// Where Poisson's law hands a blow on, what one contact gains another one has lost: there it
-    /// is the sum over contacts that feel each other that counts. The law scales what it gives back
-    /// by it, so what is left is of contacts that would give energy without any restitution, too.
+    /// It is the sum over the contacts of the same two bodies that counts: how two feet that stick
+    /// share the friction between them is any solver's choice, so one may seem to gain what the
+    /// other one loses.
+    ///
+    /// Where Poisson's law hands a blow on, what one contact gains another one has lost: there the
+    /// sum is over all contacts that feel each other. The law scales what it gives back by it, so
+    /// what is left is of contacts that would give energy without any restitution, too.
     pub(crate) fn apply(&self, problem: &mut Problem<D>, guarded: &mut [bool]) -> Result<bool, Mismatch> {
         let laws = self.laws;
         let mut found = false;
@@ -46,13 +50,14 @@ impl<const D: usize> Guard<'_, D> {
             if contact.persisting && self.stage.feels_drive(self.model, number, self.v_before, self.v_free) {
                 continue;
             }
-            let gain = if any_phased && laws.handed_on(problem, i) {
+            let rounding = self.rounding(problem, i);
+            let gains = if any_phased && laws.handed_on(problem, i) {
                 let allowed: f64 = (0..problem.len()).map(|i| self.rounding(problem, i)).sum();
-                if laws.work_around(problem, i) > allowed { laws.work_unreturned(i) } else { 0.0 }
+                laws.work_around(problem, i) > allowed && laws.work_unreturned(i) > rounding
             } else {
-                problem.work(i)
+                problem.work(i) > rounding && self.pair_gains(problem, i)
             };
-            if gain <= self.rounding(problem, i) {
+            if !gains {
                 continue;
             }
             let frees = problem.without_own_friction(i).norm() < tangential(&u_before).norm();
@@ -65,11 +70,8 @@ impl<const D: usize> Guard<'_, D> {
             if frees {
                 continue;
             }
-            // The feet of one body go along together: were one turned about and the other not, nothing would fit both. They follow each
-            // other, as contacts are in order of identity.
-            let bodies = |j: usize| self.stage.contacts()[self.members.number(j)].sides.map(|side| side.body);
-            let beside = |j: &usize| bodies(*j) == bodies(i);
-            for j in (0..i).rev().take_while(beside).chain((i + 1..problem.len()).take_while(beside)) {
+            // The feet of one body go along together: were one turned about and the other not, nothing would fit both.
+            for j in self.beside(problem.len(), i) {
                 let (other, contact) = (self.members.number(j), &self.stage.contacts()[self.members.number(j)]);
                 let slides = matches!(problem.rule(j), Rule::Shifted) && contact.persisting && problem.p[j][0] > 0.0;
                 if slides && !guarded[other] {
@@ -79,6 +81,24 @@ impl<const D: usize> Guard<'_, D> {
             }
         }
         Ok(found || self.stop_handing_on(problem))
+    }
+
+    /// The other contacts between the bodies of contact `i`. They follow each other, as contacts are
+    /// in order of identity.
+    fn beside(&self, contacts: usize, i: usize) -> impl Iterator<Item = usize> {
+        let bodies = |j: usize| self.stage.contacts()[self.members.number(j)].sides.map(|side| side.body);
+        let beside = move |j: &usize| bodies(*j) == bodies(i);
+        (0..i).rev().take_while(beside).chain((i + 1..contacts).take_while(beside))
+    }
+
+    /// Whether the contacts between the bodies of contact `i` give energy together.
+    fn pair_gains(&self, problem: &Problem<D>, i: usize) -> bool {
+        let (mut gain, mut allowed) = (problem.work(i), self.rounding(problem, i));
+        for j in self.beside(problem.len(), i).filter(|&j| !matches!(problem.rule(j), Rule::Spring(_))) {
+            gain += problem.work(j);
+            allowed += self.rounding(problem, j);
+        }
+        gain > allowed
     }
 
     /// Gives contact `i` the shift with which no sticking can be along its slide.

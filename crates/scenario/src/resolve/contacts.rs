@@ -70,7 +70,7 @@ impl Resolver<'_, '_> {
         let kinematics = self.kinematics(&path);
         let between = between?;
         let (block, surface) = self.sides(&at("between"), &between)?;
-        self.no_frames_of_blocks(&path, surface);
+        self.no_frames_of_blocks(&path, surface, kinematics);
         Some(ContactScene { name: name.to_owned(), between, block, surface, law: law?, kinematics: kinematics? })
     }
 
@@ -81,9 +81,10 @@ impl Resolver<'_, '_> {
         })
     }
 
-    fn no_frames_of_blocks(&mut self, path: &str, surface: Support) {
+    /// The default may stand there, since a scene that is written out names all that it stands for.
+    fn no_frames_of_blocks(&mut self, path: &str, surface: Support, kinematics: Option<Kinematics>) {
         let key = format!("{path}.kinematics");
-        if matches!(surface, Support::Block(_)) && self.doc.is_given(&key) {
+        if matches!(surface, Support::Block(_)) && kinematics != Some(Kinematics::Deformed) {
             let rule = "it says how a beam's deflection enters, but this contact is between two blocks";
             self.error(&key, rule, "leave it out");
         }
@@ -125,7 +126,7 @@ impl Resolver<'_, '_> {
             }
         }
         if let Some(contact) = found.first() {
-            self.no_frames_of_blocks(&path, contact.surface);
+            self.no_frames_of_blocks(&path, contact.surface, Some(kinematics));
         }
         Some(found)
     }
