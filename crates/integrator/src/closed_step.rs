@@ -15,7 +15,7 @@ use crate::{
     ContactError, ContactStage, ImpactLaw, Mismatch, Model, Over, PairLaw, PhaseEnd, PhaseKind, Rule, SpringStep,
     State, StepError, StepSpan, Vector, Workspace,
 };
-pub(crate) use guard::Guard;
+pub(crate) use guard::{Guard, Guarded};
 use teeter_contact::Outcome;
 use teeter_detect::{Candidate, Candidates, ContactId};
 
@@ -52,7 +52,7 @@ pub(crate) struct ClosedStep<const D: usize, M = ThetaStep> {
     /// Of each contact of the step: its velocity along the surface at the start, m/s.
     pub(crate) slides: Vec<Vector<D>>,
     /// Which contacts have the shift that can't give energy.
-    pub(crate) guarded: Vec<bool>,
+    pub(crate) guarded: Guarded,
     /// Which contacts stay closed.
     pub(crate) stays: Vec<bool>,
 }
@@ -91,7 +91,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             of_step: 1.0,
             resting_shift: Vec::new(),
             slides: Vec::new(),
-            guarded: Vec::new(),
+            guarded: Guarded::default(),
             stays: Vec::new(),
         }
     }
@@ -296,8 +296,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             self.pose(model, state, span.h, work, &candidate)?;
         }
         let (over, responses) = (Over::Step { h: span.h, weight: THETA }, self.step.responses(span.h));
-        self.guarded.clear();
-        self.guarded.resize(self.stage.len(), false);
+        self.guarded.restart(self.stage.len());
         let (guarded, v_free) = (&mut self.guarded, &self.v_free);
         // Each round guards one contact more at least, so it ends.
         let outcome = self.stage.solve_guarded(model, work, &responses, over, |stage, problem, laws, members| {

@@ -3,6 +3,7 @@
 mod attempt;
 mod pose;
 
+use crate::closed_step::Guarded;
 use crate::closed_step::THETA;
 use crate::moreau_jean_closed::deepest;
 use crate::moreau_jean_located::is_elastic;
@@ -93,7 +94,7 @@ pub struct Resolved<const D: usize> {
     elastic: Vec<bool>,
     /// The contacts that were looked at, and whether their gaps are held.
     holds: Vec<(ContactId, bool)>,
-    guarded: Vec<bool>,
+    guarded: Guarded,
     stays: Vec<bool>,
     /// The part of the step that is taken.
     of_step: f64,
@@ -146,7 +147,7 @@ impl<const D: usize> Resolved<D> {
             posed: Vec::new(),
             elastic: Vec::new(),
             holds: Vec::new(),
-            guarded: Vec::new(),
+            guarded: Guarded::default(),
             stays: Vec::new(),
             of_step: 1.0,
         })

@@ -94,6 +94,11 @@ pub(crate) const KNOWN: &[(&str, Demand, &str)] = &[
         Demand::Account,
         "a beam of 10 kPa hangs through by more than the block's size, and its steps are solved to the solver's tolerance only.",
     ),
+    (
+        "modulus/1e4/beam/located/e=1",
+        Demand::Account,
+        "the block folds a beam of 10 kPa about itself and jams there by impulses of 2e5 N s, 1e5 times its momentum: their rounding shows.",
+    ),
     ("place/support/beam/event-driven", Demand::Account, AT_THE_END),
     ("place/support/beam/event-driven/e=0", Demand::Penetration, AT_THE_END),
     ("elements/500/beam", Demand::Account, FAST_MODES),

@@ -39,7 +39,7 @@ impl<const D: usize> Slide<D> {
         match contacts[i].state() {
             ContactState::Open => f64::INFINITY,
             // The guard acts where a slide turns about.
-            _ if step.guarded[i] => 0.0,
+            _ if step.guarded.contacts[i] => 0.0,
             ContactState::Stick => 0.0,
             ContactState::Slip => tangential(&contacts[i].u_law).dot(&self.direction),
         }

@@ -71,8 +71,7 @@ impl<const D: usize> Resolved<D> {
             self.pose(model, from, part, work, pass)?;
             self.q_end.copy_from_slice(&self.step.q_at);
             self.step.v_end.copy_from_slice(&self.v_free);
-            self.guarded.clear();
-            self.guarded.resize(self.stage.len(), false);
+            self.guarded.restart(self.stage.len());
             let (guarded, v_free) = (&mut self.guarded, &self.v_free);
             outcome = self
                 .stage

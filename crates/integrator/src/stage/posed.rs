@@ -188,6 +188,32 @@ impl<const D: usize> Problem<D> {
         ((self.velocity_by_impulses(i) + self.posed[i].u_before) * 0.5).dot(&self.p[i])
     }
 
+    /// The kinetic energy that the velocity of contact `i` carries, U⁰ or U_free, by the inertia that it feels on its own, J.
+    pub(crate) fn carried(&self, i: usize) -> f64 {
+        let Posed { u_before, u_free, .. } = &self.posed[i];
+        0.5 * D as f64 * u_before.norm_squared().max(u_free.norm_squared()) / self.own(i).trace()
+    }
+
+    /// Marks the contacts that feel contact `i`, directly or through others, and itself. A sparse problem is one island.
+    pub(crate) fn mark_island(&self, i: usize, marks: &mut Vec<bool>, reached: &mut Vec<usize>) {
+        let n = self.len();
+        marks.clear();
+        marks.resize(n, self.is_sparse);
+        reached.clear();
+        if !self.is_sparse {
+            marks[i] = true;
+            reached.push(i);
+        }
+        while let Some(k) = reached.pop() {
+            for j in 0..n {
+                if !marks[j] && self.blocks[k * n + j] != Block::<D>::zeros() {
+                    marks[j] = true;
+                    reached.push(j);
+                }
+            }
+        }
+    }
+
     /// U_t¹ of contact `i` had it no friction of its own, m/s; the others' impulses as they are.
     pub(crate) fn without_own_friction(&self, i: usize) -> Vector<D> {
         let own = self.own(i);
