@@ -1,11 +1,11 @@
 //! The step that reaches an accuracy: found by runs, each of half the step of the one before, and
-//! believed where two finer runs confirm it, or where the errors fall so regularly that five longer
-//! steps tell what a shorter one does.
+//! believed where two finer runs confirm it; or foretold where the errors fall so regularly that
+//! five longer steps tell what a shorter one does, and believed where one finer run confirms that.
 //!
 //! The error is that of [`Quantity::Accuracy`], the largest of angles, places and deflections. A
 //! step h is taken when the run with it is within the accuracy of the run with h/4, and that with
 //! h/2 is nearer, or all three agree to half the accuracy. Or when the last five runs show errors of second order: that of a
-//! step down to a sixteenth of the finest is then foretold. Motions that part from a start 1e-12 beside them are compared up to there, the horizon.
+//! step down to a sixteenth of the finest is then foretold, and measured against a run with half the step. Motions that part from a start 1e-12 beside them are compared up to there, the horizon.
 
 use crate::pilots::Pilots;
 use crate::reference::NUDGE;
@@ -20,8 +20,8 @@ use teeter_scenario::scene::Scene;
 pub struct ChosenStep {
     /// The step, s.
     pub step: f64,
-    /// How far a run with it is from one with a quarter of it, or less, before the horizon; or how
-    /// far from the limit, by the order of the errors.
+    /// How far a run with it is from one with a quarter of it, or less, before the horizon; or, where
+    /// the errors are of second order, four thirds of how far it is from one with half of it.
     pub error: f64,
     /// Which of both.
     pub basis: Basis,
@@ -39,7 +39,7 @@ pub struct ChosenStep {
 pub enum Basis {
     /// By runs with a half and a quarter of the step.
     FinerRuns,
-    /// By the order of the errors of runs with longer steps.
+    /// By a run with half the step, after longer ones showed errors of second order.
     Order,
 }
 
@@ -102,6 +102,9 @@ const ON_AVERAGE: RangeInclusive<f64> = 1.7..=2.3;
 /// What a step of a regular order does is foretold down to this part of the finest that was tried.
 const FURTHEST: f64 = 1.0 / 16.0;
 
+/// What is foretold after that proved wrong is to be shorter by this factor.
+const SHORTER: f64 = 0.7;
+
 /// A longer step than the one that was halved to is worth a run of its own from this factor on.
 const LONGER: f64 = 1.15;
 
@@ -120,6 +123,8 @@ pub fn step_for(scene: &Scene, accuracy: f64, cancel: &AtomicBool) -> Result<Cho
     let mut count = 2.0 * (0.5 * end / longest(scene)).ceil() + 1.0;
     let (mut errors, mut failed) = (Vec::new(), None);
     let mut best = (f64::NAN, f64::INFINITY, end);
+    // The step that was foretold last, and whose error proved too large.
+    let mut refuted = f64::INFINITY;
     loop {
         let step = end / count;
         let fine = match pilots.run(step, 0.0) {
@@ -157,10 +162,16 @@ pub fn step_for(scene: &Scene, accuracy: f64, cancel: &AtomicBool) -> Result<Cho
             {
                 let neighbours = [(first, second), (second, coarse), (coarse, middle), (middle, fine)];
                 let apart = neighbours.map(|(a, b)| of(a, b, samples));
-                if let Some((factor, error)) = by_order(apart, accuracy) {
-                    let chosen = end / (end / (factor * step)).ceil();
-                    let (runs, basis) = (pilots.runs, Basis::Order);
-                    return Ok(ChosenStep { step: chosen, error, basis, horizon: end, whole: true, runs });
+                let foretold = by_order(apart, accuracy).map(|factor| factor * step);
+                if let Some(step) = foretold.filter(|step| *step < SHORTER * refuted) {
+                    let count = (end / step).ceil();
+                    let [run, finer] = [pilots.run(end / count, 0.0)?, pilots.run(end / (2.0 * count + 1.0), 0.0)?];
+                    let error = run.zip(finer).map(|(run, finer)| 4.0 / 3.0 * of(&run, &finer, samples));
+                    if let Some(error) = error.filter(|error| *error <= accuracy) {
+                        let (step, runs, basis) = (end / count, pilots.runs, Basis::Order);
+                        return Ok(ChosenStep { step, error, basis, horizon: end, whole: true, runs });
+                    }
+                    refuted = step;
                 }
             }
             let horizon = sampling.time(samples - 1);
@@ -206,9 +217,9 @@ pub fn step_for(scene: &Scene, accuracy: f64, cancel: &AtomicBool) -> Result<Cho
 }
 
 /// The step that should do, as a multiple of the finest of five that were each half of the one
-/// before, by how far the motions of neighbours are `apart`; and its error. `None` where these don't
-/// fall regularly, or where that step is out of their reach.
-fn by_order(apart: [f64; 4], accuracy: f64) -> Option<(f64, f64)> {
+/// before, by how far the motions of neighbours are `apart`. `None` where these don't fall regularly,
+/// or where that step is out of their reach.
+fn by_order(apart: [f64; 4], accuracy: f64) -> Option<f64> {
     let orders = [0, 1, 2].map(|k| (apart[k] / apart[k + 1]).log2());
     let mean = orders.iter().sum::<f64>() / 3.0;
     if !(orders.iter().all(|order| REGULAR.contains(order)) && ON_AVERAGE.contains(&mean)) {
@@ -222,7 +233,7 @@ fn by_order(apart: [f64; 4], accuracy: f64) -> Option<(f64, f64)> {
     let error = most * (most / least).sqrt();
     // Longer than the longest of them it would be told by none.
     let factor = (ROOM * accuracy / error).sqrt().min(16.0);
-    (factor >= FURTHEST).then_some((factor, error * factor * factor))
+    (factor >= FURTHEST).then_some(factor)
 }
 
 /// A step between h and 2h that should do, by the errors of both; `None` if it is hardly longer
@@ -251,11 +262,11 @@ mod tests {
     #[test]
     fn five_runs_of_second_order_tell_what_a_shorter_step_does() {
         // e = h² for h = 16, 8, 4, 2, 1: apart by 192, 48, 12, 3.
-        let (factor, error) = by_order([192.0, 48.0, 12.0, 3.0], 1e-2 / ROOM).unwrap();
-        assert!((factor - 0.1).abs() < 1e-12 && (error - 1e-2).abs() < 1e-12, "{factor}, {error}");
+        let factor = by_order([192.0, 48.0, 12.0, 3.0], 1e-2 / ROOM).unwrap();
+        assert!((factor - 0.1).abs() < 1e-12, "{factor}");
         assert_eq!(by_order([192.0, 48.0, 24.0, 3.0], 2e-2), None, "of no order from one halving to the next");
         // The worst of them counts, and more than that.
-        let (factor, _) = by_order([192.0, 48.0, 18.0, 3.0], 1e-2 * 1.5_f64.powf(1.5) / ROOM).unwrap();
+        let factor = by_order([192.0, 48.0, 18.0, 3.0], 1e-2 * 1.5_f64.powf(1.5) / ROOM).unwrap();
         assert!((factor - 0.1).abs() < 1e-12, "{factor}");
         assert_eq!(by_order([192.0, 48.0, 12.0, 3.0], 1e-3), None, "too far from what was tried");
         assert_eq!(by_order([16.0, 8.0, 4.0, 2.0], 1e-2), None, "of first order, which scatters");
@@ -272,6 +283,17 @@ mod tests {
         assert_eq!(longer(1e-4, Some(1e-4), 4e-4, 1.0), None, "no order to go by");
     }
 
+    /// The step for an accuracy, and how far the run with it is from one with an eighth of it.
+    fn tried(scene: &Scene, accuracy: f64) -> (ChosenStep, f64) {
+        let cancel = AtomicBool::new(false);
+        let chosen = step_for(scene, accuracy, &cancel).unwrap();
+        let end = scene.time.end;
+        let sampling = Sampling { every: end / SAMPLES as f64, count: SAMPLES + 1 };
+        let mut pilots = Pilots { scene, sampling, cancel: &cancel, most_seconds: 100.0, runs: 0 };
+        let [run, fine] = [1.0, 8.0].map(|by| pilots.run(end / (by * end / chosen.step).ceil(), 0.0).unwrap().unwrap());
+        (chosen, Ruler::new(scene, sampling).errors(&run, &fine).of(Quantity::Accuracy).unwrap())
+    }
+
     #[test]
     fn a_step_foretold_reaches_its_accuracy() {
         // Half a sine pushes it into sliding, and begins and ends where steps that halve the run would all end; Housner's block.
@@ -280,16 +302,26 @@ mod tests {
             let step = ("time.step".to_owned(), "1 ms".to_owned());
             let text = std::fs::read(path(name)).unwrap();
             let scene = teeter_scenario::load(&text, &path(name), name, &[step]).unwrap().scene;
-            let cancel = AtomicBool::new(false);
-            let chosen = step_for(&scene, accuracy, &cancel).unwrap();
-            let end = scene.time.end;
-            let sampling = Sampling { every: end / SAMPLES as f64, count: SAMPLES + 1 };
-            let mut pilots = Pilots { scene: &scene, sampling, cancel: &cancel, most_seconds: 100.0, runs: 0 };
-            let [run, fine] =
-                [1.0, 8.0].map(|by| pilots.run(end / (by * end / chosen.step).ceil(), 0.0).unwrap().unwrap());
-            let error = Ruler::new(&scene, sampling).errors(&run, &fine).of(Quantity::Accuracy).unwrap();
+            let (chosen, error) = tried(&scene, accuracy);
             assert!(error > 0.1 * accuracy && error <= accuracy, "{name}: {error:e} for {accuracy:e}, {chosen:?}");
-            assert!(name == "pushed-block" || chosen.basis == Basis::Order && chosen.runs == 5, "{name}: {chosen:?}");
+            assert!(name == "pushed-block" || chosen.basis == Basis::Order && chosen.runs == 7, "{name}: {chosen:?}");
+        }
+    }
+
+    /// A slender block slides, and a push topples it: five runs look to be of second order, but what they foretell is 3, 5 and 20
+    /// times too good.
+    #[test]
+    fn what_is_foretold_wrongly_is_found_out() {
+        let text = "time = { end = '0.6 s', step = '1 ms' }\nground = {}\nmaterial.m = { density = '2700 kg/m^3' }\n\
+             block.b = { material = 'm', width = '3 cm', height = '15 cm', depth = '5 cm', on = 'ground', at = '0 m', \
+             velocity = ['0.4825184856256568 m/s', '0 m/s'] }\n\
+             contact.c = { between = ['b', 'ground'], friction = 0.3, restitution = 0.3 }\n\
+             force.push = { on = 'b', force = ['-0.544293682609749 N', '0 N'], couple = '0.05952416277711885 N m', signal = 'p' }\n\
+             signal.p = { shape = 'half-sine', start = '0.0503717 s', duration = '0.11 s' }\n";
+        let scene = teeter_scenario::load(text.as_bytes(), "topple", "topple", &[]).unwrap().scene;
+        for accuracy in [1e-4, 1e-5] {
+            let (chosen, error) = tried(&scene, accuracy);
+            assert!(error <= accuracy, "{error:e} for {accuracy:e}, {chosen:?}");
         }
     }
 }
