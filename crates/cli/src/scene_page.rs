@@ -66,6 +66,7 @@ What a run measures it says at its end, on the terminal, on the page and among t
 | `horizon` | until when the motion can be told, where `--horizon` finds that it is before the end ([accuracy.md](accuracy.md)) |
 | `energy-account` | the identity of energy is off by more than rounding |
 | `deep-penetration`, `far-turn` | corners over a tenth of a block's shorter side deep; turns of more than 0.1 rad a step |
+| `contested-landing` | a block landed while bounces of another of its contacts had been cut short by the steps of `moreau-jean-located` ([accuracy.md](accuracy.md)) |
 | `passes-through`, `between-corners`, `past-the-end` | bodies inside each other where no contact is modelled ([impacts.md](impacts.md)) |
 | `large-deflection`, `yield` | a beam out of linear theory, or over its yield strength |
 | `model-limits` | energy or penetration over what was taken for granted where parts were left out ([required.md](required.md)) |

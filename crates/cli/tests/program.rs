@@ -350,3 +350,23 @@ fn a_run_warns_of_far_turns_and_of_an_account_that_does_not_hold() {
         assert_eq!(warnings[0]["code"], code, "{what}");
     }
 }
+
+/// Two corners of a flat block on a slope: one has ended its bounces, e = 0.8, when the other lands.
+#[test]
+fn a_run_warns_of_a_landing_that_hangs_on_bounces_that_were_cut_short() {
+    let scene = "[time]\nend = \"0.1 s\"\nstep = \"0.25 ms\"\n[ground]\nincline = \"10 deg\"\n[material.m]\ndensity = \"2700 kg/m^3\"\n\
+         [block.b]\nmaterial = \"m\"\nwidth = \"30 cm\"\nheight = \"3 cm\"\ndepth = \"5 cm\"\n\
+         position = [\"-0.0026048963131816215 m\", \"0.01477310110293613 m\"]\nangle = \"10 deg\"\nspin = \"2.491835145336937 rad/s\"\n\
+         [contact.c]\nbetween = [\"b\", \"ground\"]\nfriction = 2\nrestitution = 0.8\n\
+         [force.push]\non = \"b\"\nforce = [\"-7.144254350426844 N\", \"0 N\"]\nsignal = \"p\"\n\
+         [signal.p]\nshape = \"half-sine\"\nstart = \"0 s\"\nduration = \"0.0517 s\"\n";
+    let folder = folder("bounces");
+    std::fs::write(folder.join("scene.toml"), scene).unwrap();
+    for (scheme, told) in [("moreau-jean-located", true), ("event-driven", false)] {
+        let sets = format!("time.scheme={scheme}");
+        let output = teeter(&folder, &["run", "scene.toml", "--out", scheme, "--set", &sets]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        let said = stderr(&output);
+        assert_eq!(said.contains("contact `c`: bottom-left landed at t = 0.0458"), told, "{scheme}: {said}");
+    }
+}

@@ -4,6 +4,7 @@
 //! `summary.json` holds. [`RunRecorder`] has all that a run of the program writes, and checkpoints from which it goes on to
 //! the same bytes. Numbers are written so that they read back to the same double.
 
+mod bounces;
 mod checkpoint;
 mod contacts;
 mod export;
@@ -25,6 +26,7 @@ mod taken_energy;
 mod unlocated;
 mod warnings;
 
+pub use bounces::{Bounces, CONTESTED, Contested};
 pub use checkpoint::{
     CHECKPOINT, Checkpoint, CheckpointError, Found, Identity, Moment, VERSION as CHECKPOINT_VERSION, program_hash,
 };

@@ -1,5 +1,6 @@
 //! The observer that writes the tables and keeps what the summary needs.
 
+use crate::bounces::Bounces;
 use crate::contacts::{self, Impulses, Names};
 use crate::meetings::Met;
 use crate::number::{push, push_next};
@@ -16,7 +17,7 @@ use teeter_integrator::{
 };
 use teeter_scenario::Shapes;
 use teeter_scenario::diagnostic::Diagnostic;
-use teeter_scenario::scene::Scene;
+use teeter_scenario::scene::{Scene, SchemeName};
 use teeter_scenario::simulation::Layout;
 
 mod alarms;
@@ -83,6 +84,8 @@ pub(crate) struct Kept {
     section_values: Values,
     resolution: Resolution,
     swings: Swings,
+    #[serde(default)]
+    bounces: Bounces,
     /// How far anything may have moved since it was last looked who meets whom, m.
     travelled: f64,
     record: Record,
@@ -99,6 +102,8 @@ pub struct Recorder<'a> {
     sections: Sections,
     bodies: Bodies,
     watch: Watch,
+    /// Whether the scheme locates closings, and ends bounces by its step: of one that locates none the other warnings tell more.
+    locates: bool,
     line: String,
     kept: Kept,
     tell: &'a mut dyn FnMut(&str),
@@ -152,6 +157,7 @@ impl<'a> Recorder<'a> {
             section_values,
             resolution: Resolution::default(),
             swings: Swings::default(),
+            bounces: Bounces::default(),
             travelled: 0.0,
             record: Record { beams, ..Record::default() },
         };
@@ -188,6 +194,7 @@ impl<'a> Recorder<'a> {
             sections,
             bodies: Bodies::of(scene),
             watch: Watch::of(scene, layout),
+            locates: scene.time.scheme == SchemeName::MoreauJeanLocated,
             line: String::new(),
             kept,
             tell,
@@ -340,6 +347,7 @@ impl Observer<2> for Recorder<'_> {
         let swing = self.kept.swings.observe(&mut self.watch, self.layout, step.t_end - step.t_start, state);
         self.warn_of_meetings(step, state, swing);
         self.kept.resolution.observe(&self.bodies, self.layout, step, state);
+        self.warn_of_bounces(model, step);
         let Kept { record, section_values, .. } = &mut self.kept;
         let kept = (record.beams.as_mut_slice(), section_values);
         if let Some(text) = self.sections.observe(step, kept, &mut record.warnings) {

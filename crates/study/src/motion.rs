@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use teeter_beam::ShapeAt;
 use teeter_integrator::{Model, Observer, ObserverError, State, StepReport};
-use teeter_report::Record;
+use teeter_report::{Bounces, Record};
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::{BeamPlace, Layout};
 
@@ -69,6 +69,8 @@ pub struct Motion {
     pub energy_scale: f64,
     /// Samples taken: fewer than asked for in a run that ended early.
     pub samples: usize,
+    /// When a landing hung on bounces that the steps had cut short, s.
+    pub contested: Option<f64>,
 }
 
 /// The observer that fills a [`Motion`].
@@ -81,6 +83,7 @@ pub(crate) struct Sampler<'a> {
     /// Names of the contacts.
     contacts: Vec<&'a str>,
     before: Before,
+    bounces: Bounces,
     pub(crate) motion: Motion,
 }
 
@@ -108,6 +111,7 @@ impl<'a> Sampler<'a> {
             watched: layout.beams.iter().map(watched).collect(),
             contacts: layout.pairs.iter().map(|pair| pair.name.as_str()).collect(),
             before: Before { impulses: vec![0.0; pairs], now: vec![0.0; pairs], ..Before::default() },
+            bounces: Bounces::default(),
             motion: Motion { impacts: vec![Vec::new(); pairs], ..Motion::default() },
         }
     }
@@ -115,6 +119,7 @@ impl<'a> Sampler<'a> {
     /// The motion, when the run has ended.
     pub(crate) fn finish(mut self, state: &State, record: &Record) -> Motion {
         self.motion.energy_scale = state.ledger.scale;
+        self.motion.contested = self.bounces.contested().map(|contested| contested.t);
         // Impacts, crossings and peaks are those that the summary lists.
         for impact in &record.impacts {
             if let Some(pair) = self.contacts.iter().position(|contact| *contact == impact.contact) {
@@ -226,10 +231,11 @@ impl Observer<2> for Sampler<'_> {
 
     fn observe(
         &mut self,
-        _: &Model<2>,
+        model: &Model<2>,
         step: &StepReport<'_, 2>,
         state: &State,
     ) -> Result<ControlFlow<()>, ObserverError> {
+        self.bounces.enter(model, step);
         for contact in step.contacts() {
             self.before.now[contact.id.pair() as usize] += contact.p[0];
         }

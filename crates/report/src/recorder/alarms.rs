@@ -1,8 +1,10 @@
 //! What a recorder warns of while a run goes on, and at its end.
 
 use super::{Kept, Recorder};
+use crate::bounces::{CONTESTED, Contested};
+use crate::contacts::Names;
 use crate::resolution::Of;
-use teeter_integrator::{State, StepReport};
+use teeter_integrator::{Model, State, StepReport};
 use teeter_scenario::simulation::Layout;
 use teeter_scenario::{FAR_TURN, deflection};
 
@@ -65,6 +67,24 @@ impl Recorder<'_> {
                 spin.abs() * state.dt,
                 state.t,
                 FAR_TURN / spin.abs()
+            )
+        });
+    }
+
+    /// Warns of a landing that hangs on bounces which the steps have cut short.
+    pub(super) fn warn_of_bounces(&mut self, model: &Model<2>, step: &StepReport<'_, 2>) {
+        if !self.locates || self.kept.bounces.contested().is_some() {
+            return;
+        }
+        self.kept.bounces.enter(model, step);
+        let Some(Contested { t, landed, cut }) = self.kept.bounces.contested() else { return };
+        let layout = self.layout;
+        let (Some(landed), Some(cut)) = (Names::of(layout, landed), Names::of(layout, cut)) else { return };
+        self.warn(CONTESTED, Some(t), || {
+            format!(
+                "contact `{}`: {} landed at t = {t:.6} s while {} was kept closed, whose bounces, shorter than two steps, may still have gone on: which \
+                 of them catches the block hangs on the step; take a shorter one (`time.step`), or `event-driven`, and compare",
+                landed.contact, landed.point, cut.point
             )
         });
     }
