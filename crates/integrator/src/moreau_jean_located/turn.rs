@@ -10,6 +10,9 @@ use teeter_detect::ContactId;
 /// A slide of a speed below this part of what forces and friction change in a step isn't looked at, m/s per m/s.
 const SLOW: f64 = 1e-3;
 
+/// Forces change the velocities of both sides of a contact alike if they part them by less than this part of what they change each by.
+const ALIKE: f64 = 1e-6;
+
 /// A slide has stopped where its speed is below this part of the same.
 const STOPPED: f64 = 1e-6;
 
@@ -125,6 +128,9 @@ impl<const D: usize> MoreauJeanLocated<D> {
             let speed = start.norm();
             let change = self.step.stage.velocity(i, &self.by_forces)?;
             let change = tangential(&change).norm() + law.friction * change[0].abs();
+            // Of two blocks that fall alike forces change nothing; what holds one of them up changes them as much as these change each.
+            let each = self.step.stage.speed(i, &self.by_forces);
+            let change = if change > ALIKE * each { change } else { 0.5 * law.friction * each };
             if speed <= SLOW * change || speed <= 4.0 * contact.still {
                 continue;
             }
