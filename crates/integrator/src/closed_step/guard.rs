@@ -18,6 +18,8 @@ pub(crate) struct Guarded {
     pub(crate) contacts: Vec<bool>,
     island: Vec<bool>,
     reached: Vec<usize>,
+    /// Of each contact of a problem the work that it is excused, J; NaN where it isn't known.
+    excused: Vec<f64>,
 }
 
 impl Guarded {
@@ -60,6 +62,8 @@ impl<const D: usize> Guard<'_, D> {
     pub(crate) fn apply(&self, problem: &mut Problem<D>, guarded: &mut Guarded) -> Result<bool, Mismatch> {
         let laws = self.laws;
         let mut found = false;
+        guarded.excused.clear();
+        guarded.excused.resize(problem.len(), f64::NAN);
         // Usually none does, and then nothing is summed over the neighbours of each.
         let any_phased = problem.rules().any(|rule| matches!(rule, Rule::Poisson { .. }));
         for i in 0..problem.len() {
@@ -79,7 +83,8 @@ impl<const D: usize> Guard<'_, D> {
                 let allowed: f64 = (0..problem.len()).map(|i| self.rounding(problem, i)).sum();
                 laws.work_around(problem, i) > allowed && laws.work_unreturned(i) > rounding
             } else {
-                problem.work(i) > rounding && self.island_gains(problem, i, guarded)
+                let gain = problem.work(i);
+                gain > rounding && gain > self.excused(problem, i, guarded)
             };
             if !gains {
                 continue;
@@ -114,18 +119,24 @@ impl<const D: usize> Guard<'_, D> {
         (0..i).rev().take_while(beside).chain((i + 1..contacts).take_while(beside))
     }
 
-    /// Whether contact `i` and those that feel it give energy together; or whether what it gains and others lose is more than what moves
-    /// there accounts for, as in a wedge.
-    fn island_gains(&self, problem: &Problem<D>, i: usize, guarded: &mut Guarded) -> bool {
-        problem.mark_island(i, &mut guarded.island, &mut guarded.reached);
-        let (mut gain, mut allowed, mut carried) = (0.0, 0.0, 0.0);
-        let members = (0..problem.len()).filter(|&j| guarded.island[j]);
-        for j in members.filter(|&j| !matches!(problem.rule(j), Rule::Spring(_))) {
-            gain += problem.work(j);
-            allowed += self.rounding(problem, j);
-            carried += problem.carried(j);
+    /// Up to which work a contact may give, as others that feel it lose as much, J: none if they give energy together, else what the
+    /// motion there accounts for; more is a jam, as in a wedge. Found once for each island.
+    fn excused(&self, problem: &Problem<D>, i: usize, guarded: &mut Guarded) -> f64 {
+        if guarded.excused[i].is_nan() {
+            problem.mark_island(i, &mut guarded.island, &mut guarded.reached);
+            let (mut gain, mut allowed, mut carried) = (0.0, 0.0, 0.0);
+            let members = || (0..problem.len()).filter(|&j| guarded.island[j]);
+            for j in members().filter(|&j| !matches!(problem.rule(j), Rule::Spring(_))) {
+                gain += problem.work(j);
+                allowed += self.rounding(problem, j);
+                carried += problem.carried(j);
+            }
+            let excused = if gain > allowed { 0.0 } else { EXCUSED * carried };
+            for j in members() {
+                guarded.excused[j] = excused;
+            }
         }
-        gain > allowed || problem.work(i) > EXCUSED * carried
+        guarded.excused[i]
     }
 
     /// Gives contact `i` the shift with which no sticking can be along its slide.
