@@ -17,7 +17,7 @@ const EXCUSED: f64 = 1e3;
 pub(crate) struct Guarded {
     pub(crate) contacts: Vec<bool>,
     island: Vec<bool>,
-    reached: Vec<usize>,
+    reached: Vec<u32>,
     /// Of each contact of a problem the work that it is excused, J; NaN where it isn't known.
     excused: Vec<f64>,
 }
@@ -28,6 +28,7 @@ impl Guarded {
             marks.reserve(contacts.saturating_sub(marks.len()));
         }
         self.reached.reserve(contacts.saturating_sub(self.reached.len()));
+        self.excused.reserve(contacts.saturating_sub(self.excused.len()));
     }
 
     /// None is, of so many.

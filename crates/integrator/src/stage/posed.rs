@@ -195,20 +195,21 @@ impl<const D: usize> Problem<D> {
     }
 
     /// Marks the contacts that feel contact `i`, directly or through others, and itself. A sparse problem is one island.
-    pub(crate) fn mark_island(&self, i: usize, marks: &mut Vec<bool>, reached: &mut Vec<usize>) {
+    pub(crate) fn mark_island(&self, i: usize, marks: &mut Vec<bool>, reached: &mut Vec<u32>) {
         let n = self.len();
         marks.clear();
         marks.resize(n, self.is_sparse);
         reached.clear();
         if !self.is_sparse {
             marks[i] = true;
-            reached.push(i);
+            reached.push(i as u32);
         }
         while let Some(k) = reached.pop() {
+            let k = k as usize;
             for j in 0..n {
                 if !marks[j] && self.blocks[k * n + j] != Block::<D>::zeros() {
                     marks[j] = true;
-                    reached.push(j);
+                    reached.push(j as u32);
                 }
             }
         }
