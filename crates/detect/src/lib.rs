@@ -166,6 +166,14 @@ pub trait ContactDetector<const D: usize>: Send + Sync {
         out.retain(|candidate| ids.binary_search(&candidate.id).is_ok());
         out.sort_unstable_by_key(|candidate| candidate.id);
     }
+    /// The same, but with those contacts, too, that have been followed past the end of their surface, as if it went straight on: `room`
+    /// tells of each in `out` how far it is to the nearest end, m, negative past it. A detector whose surfaces have no ends, or that
+    /// doesn't follow past them, leaves this to the default, by which there is room without end.
+    fn locate_past_ends(&self, at: &dyn Geometry<D>, ids: &[ContactId], out: &mut Candidates<D>, room: &mut Vec<f64>) {
+        self.locate(at, ids, out);
+        room.clear();
+        room.resize(out.len(), f64::INFINITY);
+    }
     /// The pairs that it looks at, as far as they are known before anything moves, so that a model
     /// can refuse what can't work when it is built. By default none are listed, and candidates are
     /// checked as they come.

@@ -47,6 +47,21 @@ impl<const D: usize> PointDetector<D> {
     }
 }
 
+impl PointDetector<2> {
+    /// A contact where it is now; `None` if it is of no pair here, or has no foot.
+    pub(crate) fn located(&self, at: &dyn Geometry<2>, id: ContactId) -> Option<Candidate<2>> {
+        // Usually the pairs are in the order of their numbers.
+        let here = self.pairs.get(id.pair() as usize).filter(|pair| pair.pair == id.pair());
+        let k = id.point() as usize;
+        let pair = here.or_else(|| self.pairs.iter().find(|pair| pair.pair == id.pair()))?;
+        let point = pair.points.get(k)?;
+        let mut place = [Vector::<2>::zeros()];
+        at.place(pair.body, std::slice::from_ref(point), &mut place);
+        let (foot, gap) = pair.foot(at, &place[0])?;
+        (gap <= f64::INFINITY).then(|| pair.candidate(k, &foot, gap))
+    }
+}
+
 impl PointPair<2> {
     /// The foot and the gap of a point of the pair that is at `place`; `None` where the surface
     /// doesn't extend that far.
@@ -117,20 +132,8 @@ impl ContactDetector<2> for PointDetector<2> {
 
     fn locate(&self, at: &dyn Geometry<2>, ids: &[ContactId], out: &mut Candidates<2>) {
         out.clear();
-        for id in ids {
-            // Usually the pairs are in the order of their numbers.
-            let here = self.pairs.get(id.pair() as usize).filter(|pair| pair.pair == id.pair());
-            let k = id.point() as usize;
-            let Some(pair) = here.or_else(|| self.pairs.iter().find(|pair| pair.pair == id.pair())) else { continue };
-            let Some(point) = pair.points.get(k) else { continue };
-            let mut place = [Vector::<2>::zeros()];
-            at.place(pair.body, std::slice::from_ref(point), &mut place);
-            if let Some((foot, gap)) = pair.foot(at, &place[0])
-                && gap <= f64::INFINITY
-            {
-                out.push(pair.candidate(k, &foot, gap));
-            }
-        }
+        out.reserve(ids.len());
+        out.extend(ids.iter().filter_map(|id| self.located(at, *id)));
     }
 
     fn wiring(&self) -> Vec<Wiring> {

@@ -153,6 +153,29 @@ impl ShapeDetector {
         }
     }
 
+    /// Those of the contacts `ids` that there can be, with how far it is to the end of their side, m.
+    fn located<'a>(
+        &'a self,
+        at: &'a dyn Geometry<2>,
+        ids: &'a [ContactId],
+    ) -> impl Iterator<Item = (Candidate<2>, f64)> + 'a {
+        ids.iter().filter_map(move |id| {
+            let Ok(found) = self.pairs.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair) else {
+                return self.points.located(at, *id).map(|candidate| (candidate, f64::INFINITY));
+            };
+            let (pair, members) = &self.pairs[found];
+            let [first, second] = members.map(|member| &self.members[member]);
+            let touch = match (&first.shape, &second.shape) {
+                (Shape::Polygon(mine), Shape::Polygon(other)) => {
+                    feature_of(at, [(first.body, mine), (second.body, other)], id.point())
+                }
+                _ if id.point() == OF_DISC => with_disc(at, [first, second]),
+                _ => None,
+            }?;
+            Some((candidate(pair, &touch), touch.room))
+        })
+    }
+
     fn capacity_of(&self, [a, b]: [usize; 2]) -> usize {
         let is_disc = |member: usize| matches!(self.members[member].shape, Shape::Disc(_));
         if is_disc(a) || is_disc(b) { 1 } else { 2 }
@@ -183,24 +206,20 @@ impl ContactDetector<2> for ShapeDetector {
     }
 
     fn locate(&self, at: &dyn Geometry<2>, ids: &[ContactId], out: &mut Candidates<2>) {
-        self.points.locate(at, ids, out);
-        if self.pairs.is_empty() {
-            return;
+        out.clear();
+        out.reserve(ids.len());
+        out.extend(self.located(at, ids).filter(|(_, room)| *room >= 0.0).map(|(candidate, _)| candidate));
+    }
+
+    fn locate_past_ends(&self, at: &dyn Geometry<2>, ids: &[ContactId], out: &mut Candidates<2>, rooms: &mut Vec<f64>) {
+        out.clear();
+        rooms.clear();
+        out.reserve(ids.len());
+        rooms.reserve(ids.len());
+        for (candidate, room) in self.located(at, ids) {
+            out.push(candidate);
+            rooms.push(room);
         }
-        for id in ids {
-            let Ok(found) = self.pairs.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair) else { continue };
-            let (pair, members) = &self.pairs[found];
-            let [first, second] = members.map(|member| &self.members[member]);
-            let touch = match (&first.shape, &second.shape) {
-                (Shape::Polygon(mine), Shape::Polygon(other)) => {
-                    feature_of(at, [(first.body, mine), (second.body, other)], id.point())
-                }
-                _ if id.point() == OF_DISC => with_disc(at, [first, second]),
-                _ => None,
-            };
-            out.extend(touch.map(|touch| candidate(pair, &touch)));
-        }
-        out.sort_unstable_by_key(|candidate| candidate.id);
     }
 
     fn wiring(&self) -> Vec<Wiring> {

@@ -43,13 +43,16 @@ pub(crate) struct Touch {
     /// The unit normal, from the second to the first.
     pub(crate) normal: Vector<2>,
     pub(crate) gap: f64,
+    /// How far it is to the nearest end of its side, m: negative past it, infinite for a disc.
+    pub(crate) room: f64,
 }
 
-/// A corner is over a side as far as this part of the side's length past its ends: what is in line there up to rounding stays so.
-const BESIDE: f64 = 1e-9;
+/// A corner is over a side as far as this part of its length past the side's ends: what is in line there up to rounding stays so.
+const BESIDE: f64 = 1e-12;
 
-/// A contact that is known stays over its side as far as this part past its ends, so that none is lost where it is found again.
-const STILL_BESIDE: f64 = 1e-8;
+/// A contact that is known stays over its side as far as this part past its ends, so that none is lost where it is found again, and what
+/// touches instead is found where it has left.
+const STILL_BESIDE: f64 = 1e-11;
 
 /// Of two sides that part polygons equally, up to this part of a side's length, the first shape's is taken.
 const EQUAL: f64 = 1e-9;
@@ -84,17 +87,35 @@ pub(crate) fn with_disc(at: &dyn Geometry<2>, [a, b]: [&Member; 2]) -> Option<To
                 first.centre() - frames[0].unturned(&normal) * first.radius(),
                 second.centre() + frames[1].unturned(&normal) * second.radius(),
             ];
-            Some(Touch { feature: OF_DISC, points, normal, gap: distance - first.radius() - second.radius() })
+            Some(Touch {
+                feature: OF_DISC,
+                points,
+                normal,
+                gap: distance - first.radius() - second.radius(),
+                room: f64::INFINITY,
+            })
         }
         (Shape::Disc(disc), Shape::Polygon(polygon)) => {
             let (foot, [on_disc, on_polygon]) = disc_on_polygon(disc, polygon, frames)?;
             let normal = frames[1].turned(&foot.normal);
-            Some(Touch { feature: OF_DISC, points: [on_disc, on_polygon], normal, gap: foot.distance - disc.radius() })
+            Some(Touch {
+                feature: OF_DISC,
+                points: [on_disc, on_polygon],
+                normal,
+                gap: foot.distance - disc.radius(),
+                room: f64::INFINITY,
+            })
         }
         (Shape::Polygon(polygon), Shape::Disc(disc)) => {
             let (foot, [on_disc, on_polygon]) = disc_on_polygon(disc, polygon, [frames[1], frames[0]])?;
             let normal = -frames[0].turned(&foot.normal);
-            Some(Touch { feature: OF_DISC, points: [on_polygon, on_disc], normal, gap: foot.distance - disc.radius() })
+            Some(Touch {
+                feature: OF_DISC,
+                points: [on_polygon, on_disc],
+                normal,
+                gap: foot.distance - disc.radius(),
+                room: f64::INFINITY,
+            })
         }
         (Shape::Polygon(_), Shape::Polygon(_)) => None,
     }
@@ -140,8 +161,7 @@ fn nearest(corners: &[Vector<2>], to: &Vector<2>) -> Option<Nearest> {
     Some(Nearest { place, normal, distance })
 }
 
-/// The contact of two polygons that is known by its feature; `None` where the corner isn't over the side any more, or there is no such
-/// feature.
+/// The contact of two polygons that is known by its feature, past the ends of the side as well; `None` where there is no such feature.
 pub(crate) fn feature_of(at: &dyn Geometry<2>, bodies: [(BodyId, &Polygon); 2], feature: u32) -> Option<Touch> {
     let feature = CornerOnSide::from_number(feature)?;
     let [(body, mine), (other_body, other)] = if feature.owner == 0 { bodies } else { [bodies[1], bodies[0]] };
@@ -151,7 +171,7 @@ pub(crate) fn feature_of(at: &dyn Geometry<2>, bodies: [(BodyId, &Polygon); 2], 
     at.place(body, &[corner], &mut place);
     at.place(other_body, &side, &mut ends);
     let side = Side { local: side, ends, normal: outward(&ends[0], &ends[1]) };
-    corner_on_side(feature, (corner, place[0]), &side, STILL_BESIDE)
+    corner_on_side(feature, (corner, place[0]), &side)
 }
 
 /// The side of a polygon that parts it best from another, and how far they are apart along its normal; a side by which that is more
@@ -191,7 +211,7 @@ pub(crate) fn polygons(a: &PlacedPolygon<'_>, b: &PlacedPolygon<'_>, margin: f64
     let (next, facing_next) = (mine.next(side), other.next(facing));
     let along = Vector::<2>::new(-normal.y, normal.x);
     let place = |x: &Vector<2>| along.dot(&(x - mine.corners[side]));
-    let (end, tolerance) = (place(&mine.corners[next]), BESIDE * mine.length(side));
+    let (end, tolerance) = (place(&mine.corners[next]), BESIDE * mine.length(side).min(other.length(facing)));
     // As they face each other, one begins where the other ends.
     let ends = [(facing_next, place(&other.corners[facing_next])), (facing, place(&other.corners[facing]))];
     let ends = if ends[0].1 <= ends[1].1 { ends } else { [ends[1], ends[0]] };
@@ -211,7 +231,7 @@ pub(crate) fn polygons(a: &PlacedPolygon<'_>, b: &PlacedPolygon<'_>, margin: f64
     Touches(features.map(|feature| {
         let [owner, other] = if feature.owner == 0 { [a, b] } else { [b, a] };
         let corner = (owner.local[feature.corner], owner.corners[feature.corner]);
-        corner_on_side(feature, corner, &other.side(feature.side), BESIDE)
+        corner_on_side(feature, corner, &other.side(feature.side)).filter(|touch| touch.room >= 0.0)
     }))
 }
 
@@ -238,19 +258,13 @@ impl PlacedPolygon<'_> {
     }
 }
 
-/// The contact of a corner, in its body and in the world, with a side of the other polygon; `None` if it is further past the side's
-/// ends than the part `beside` of its length.
-fn corner_on_side(
-    feature: CornerOnSide,
-    (local, place): (Vector<2>, Vector<2>),
-    side: &Side,
-    beside: f64,
-) -> Option<Touch> {
+/// The contact of a corner, in its body and in the world, with a side of the other polygon, or with its line; `None` where that isn't
+/// finite.
+fn corner_on_side(feature: CornerOnSide, (local, place): (Vector<2>, Vector<2>), side: &Side) -> Option<Touch> {
     let [begin, end] = side.ends;
     let direction = end - begin;
     let along = (place - begin).dot(&direction) / direction.norm_squared();
-    // Written so that NaN fails too.
-    if !(along >= -beside && along <= 1.0 + beside) {
+    if !along.is_finite() {
         return None;
     }
     let foot = side.local[0] + (side.local[1] - side.local[0]) * along;
@@ -259,5 +273,6 @@ fn corner_on_side(
         0 => ([local, foot], side.normal),
         _ => ([foot, local], -side.normal),
     };
-    Some(Touch { feature: feature.number(), points, normal, gap })
+    let room = (along.min(1.0 - along) + STILL_BESIDE) * direction.norm();
+    Some(Touch { feature: feature.number(), points, normal, gap, room })
 }

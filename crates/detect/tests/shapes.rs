@@ -141,6 +141,23 @@ fn a_corner_that_slides_off_its_side_is_not_found_there_again() {
 }
 
 #[test]
+fn past_the_end_of_its_side_a_corner_is_followed_along_the_sides_line() {
+    let bricks = pair([rectangle(2.0, 1.0), rectangle(2.0, 1.0)]);
+    let on = found(&bricks, &[[0.7, 1.0, 0.0], [0.0, 0.0, 0.0]], 1e-6);
+    let ids: Vec<_> = on.iter().map(|c| c.id).collect();
+    let (mut out, mut rooms) = (Candidates::new(), Vec::new());
+    for x in [0.7, 1.5, 1.9, 2.1, -0.1, -30.0] {
+        bricks.locate_past_ends(&Poses(vec![[x, 1.2, 0.0], [0.0, 0.0, 0.0]]), &ids, &mut out, &mut rooms);
+        assert_eq!((out.len(), rooms.len()), (2, 2), "{x}");
+        // The upper brick's left corner is at x − 1 on a side from −1 to 1; the lower one's right corner at 1 − x on the upper one's.
+        for room in &rooms {
+            assert!((room - f64::min(x, 2.0 - x)).abs() < 1e-10, "{x}: {room}");
+        }
+        assert!(out.iter().all(|c| (c.gap - 0.2).abs() < 1e-15 && c.frame.row(0).transpose() == Vector2::y()), "{x}");
+    }
+}
+
+#[test]
 fn discs_touch_at_the_nearest_points() {
     let discs = pair([disc(1.0), disc(0.5)]);
     // Centres at (0.1, −0.2) and (0.05, −0.1) of their bodies, not turned.

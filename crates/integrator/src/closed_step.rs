@@ -35,6 +35,11 @@ pub(crate) struct ClosedStep<const D: usize, M = ThetaStep> {
     /// q̃_m.
     q_mid: Vec<f64>,
     middle: Candidates<D>,
+    /// Of each of these, at q̃_m and at q̃, how far it is to the end of its surface, m.
+    rooms: [Vec<f64>; 2],
+    /// Whether contacts that pass the end of their surface within the step act as if it went on; if not, those act that pass it in the
+    /// second half.
+    goes_past_ends: bool,
     ahead: Candidates<D>,
     start: Candidates<D>,
     pub(crate) stage: ContactStage<D>,
@@ -82,6 +87,8 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             q_ahead: Vec::new(),
             q_mid: Vec::new(),
             middle: Vec::new(),
+            rooms: [const { Vec::new() }; 2],
+            goes_past_ends: false,
             ahead: Vec::new(),
             start: Vec::new(),
             stage: ContactStage::new(),
@@ -94,6 +101,11 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             guarded: Guarded::default(),
             stays: Vec::new(),
         }
+    }
+
+    /// With contacts that act past the end of their surface as if it went on, for a scheme that ends the step there.
+    pub(crate) fn past_ends(self) -> Self {
+        Self { goes_past_ends: true, ..self }
     }
 
     /// Starts to serve a model.
@@ -109,6 +121,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         for candidates in [&mut self.middle, &mut self.ahead, &mut self.start, &mut work.candidates] {
             candidates.reserve(contacts);
         }
+        self.rooms.iter_mut().for_each(|rooms| rooms.reserve(contacts));
         self.stage.reserve(model);
         self.one.reserve(model);
         self.closed.reserve(contacts);
@@ -245,12 +258,22 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         // ½(v⁰ + v_free), the mean velocity of the free motion.
         let mean = self.step.v_end_mut();
         mean.iter_mut().zip(&self.v_free).zip(&state.v).for_each(|((v, free), v0)| *v = 0.5 * (free + v0));
-        let places = [(0.5 * h, &mut self.q_mid, &mut self.middle), (h, &mut self.q_ahead, &mut self.ahead)];
-        for (tau, q, candidates) in places {
-            model.move_along(&state.q, mean, tau, q);
-            work.locate(model, q, &self.closed, candidates)?;
-        }
-        Ok(())
+        model.move_along(&state.q, mean, h, &mut self.q_ahead);
+        work.locate_past_ends(model, &self.q_ahead, &self.closed, &mut self.ahead, &mut self.rooms[1])?;
+        model.move_along(&state.q, mean, 0.5 * h, &mut self.q_mid);
+        work.locate_past_ends(model, &self.q_mid, &self.closed, &mut self.middle, &mut self.rooms[0])
+    }
+
+    /// Whether contact `i` of an attempt of `h` (s) may be past the end of its surface after it. It is if it was at q̃, unless impulses
+    /// have moved it since: by half the difference of the slides that are summed here, so that twice their sum leaves room for turns.
+    pub(crate) fn may_leave(&self, i: usize, h: f64) -> bool {
+        let Ok(at) = self.ahead.binary_search_by_key(&self.stage.contacts()[i].id, |ahead| ahead.id) else {
+            return true;
+        };
+        let slide = |v: &[f64]| {
+            self.stage.velocity(i, v).map_or(f64::INFINITY, |u| u.iter().skip(1).map(|u_t| u_t.abs()).sum::<f64>())
+        };
+        self.rooms[1][at] <= 2.0 * h * (slide(self.step.v_end()) + slide(&self.v_free))
     }
 
     /// Finds which of the step's contacts are closed in the next.
@@ -291,8 +314,12 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         if self.closed.is_empty() {
             return Ok(None);
         }
+        self.stage.make_room(self.middle.len());
         for k in 0..self.middle.len() {
             let candidate = self.middle[k];
+            if self.rooms[0][k] < 0.0 && !self.goes_past_ends {
+                continue;
+            }
             self.pose(model, state, span.h, work, &candidate)?;
         }
         let (over, responses) = (Over::Step { h: span.h, weight: THETA }, self.step.responses(span.h));

@@ -1,6 +1,7 @@
 //! The Moreau–Jean step with located impacts: `moreau-jean-located` (`docs/schemes.md`).
 
 mod impact;
+mod leave;
 mod locate;
 mod turn;
 
@@ -80,6 +81,12 @@ pub struct MoreauJeanLocated<const D: usize> {
     slides: Vec<Slide<D>>,
     ids: Vec<ContactId>,
     near: Candidates<D>,
+    /// Of these how far it is to the end of their surface, m.
+    rooms: Vec<f64>,
+    /// Contacts that are past it at the end of the attempt.
+    leaving: Vec<ContactId>,
+    /// Coordinates on the way of an attempt.
+    place: Vec<f64>,
     /// Rows of one contact.
     one: ContactStage<D>,
     /// What forces do to the velocities in a whole step.
@@ -113,13 +120,16 @@ impl<const D: usize> MoreauJeanLocated<D> {
         MoreauJeanClosedSettings { gap_tolerance }.check()?;
         Ok(Self {
             settings,
-            step: ClosedStep::new(gap_tolerance),
+            step: ClosedStep::new(gap_tolerance).past_ends(),
             from: None,
             impact: ContactStage::new(),
             hits: Vec::new(),
             slides: Vec::new(),
             ids: Vec::new(),
             near: Vec::new(),
+            rooms: Vec::new(),
+            leaving: Vec::new(),
+            place: Vec::new(),
             one: ContactStage::new(),
             by_forces: Vec::new(),
             v: Vec::new(),
@@ -160,10 +170,13 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         self.slides.reserve(contacts);
         self.ids.reserve(contacts);
         self.near.reserve(contacts);
+        self.rooms.reserve(contacts);
+        self.leaving.reserve(contacts);
         self.stays.reserve(contacts);
         self.lately.reserve(3 * contacts);
         self.by_forces.resize(model.size().v, 0.0);
         self.v.resize(model.size().v, 0.0);
+        self.place.resize(model.size().q, 0.0);
         state.memory.reserve_numbers(3 * contacts);
         let mut from = state.clone();
         from.memory.reserve_numbers(3 * contacts);
@@ -207,6 +220,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
         self.step.check(model, state, work)?;
         self.by_forces.resize(model.size().v, 0.0);
         self.v.resize(model.size().v, 0.0);
+        self.place.resize(model.size().q, 0.0);
         Ok(())
     }
 
@@ -271,6 +285,16 @@ impl<const D: usize> MoreauJeanLocated<D> {
                 true => (outcome, None),
                 false => self.find_stop(model, from, &reached, outcome, work)?,
             };
+            // A contact may come to the end of its surface before.
+            let attempted = stops.map_or(reached, |tau| StepSpan { end: from.t + tau, h: tau, ..rest });
+            let (outcome, leaves) = match self.unlocated {
+                true => {
+                    self.find_what_leaves(model, rest.h, work)?;
+                    (outcome, None)
+                }
+                false => self.find_end(model, from, &attempted, outcome, work)?,
+            };
+            let stops = leaves.or(stops);
             if let Some(tau) = stops {
                 let part = StepSpan { end: from.t + tau, h: tau, ..rest };
                 self.take_part(model, from, &part, outcome, work)?;
@@ -344,7 +368,9 @@ impl<const D: usize> MoreauJeanLocated<D> {
         work: &mut Workspace<D>,
     ) -> Result<(), StepError> {
         self.step.find_what_stays();
-        self.stays.clone_from(&self.step.stays);
+        self.stays.clear();
+        let contacts = self.step.stage.contacts().iter().zip(&self.step.stays);
+        self.stays.extend(contacts.map(|(contact, stays)| *stays && !self.leaving.contains(&contact.id)));
         from.warm.clear();
         from.memory.forget_contacts();
         for (contact, stays) in self.step.stage.contacts().iter().zip(&self.stays) {

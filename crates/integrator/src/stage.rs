@@ -204,6 +204,11 @@ impl<const D: usize> ContactStage<D> {
         self.springs.reserve(if model.has_springs() { model.detector().capacity() } else { 0 });
     }
 
+    /// Makes room for so many contacts more, so that adding them moves none.
+    pub(crate) fn make_room(&mut self, contacts: usize) {
+        self.contacts.reserve(contacts);
+    }
+
     /// The contacts, in the order in which they were added.
     #[must_use]
     pub fn contacts(&self) -> &[Contact<D>] {

@@ -281,6 +281,25 @@ impl<const D: usize> Workspace<D> {
         Ok(())
     }
 
+    /// The same, but past the ends of surfaces, too, with the room that is left to the nearest end, m
+    /// ([`ContactDetector::locate_past_ends`](teeter_detect::ContactDetector::locate_past_ends)).
+    ///
+    /// # Errors
+    /// As [`Workspace::detect`].
+    pub fn locate_past_ends(
+        &mut self,
+        model: &Model<D>,
+        q: &[f64],
+        ids: &[ContactId],
+        out: &mut Candidates<D>,
+        room: &mut Vec<f64>,
+    ) -> Result<(), Mismatch> {
+        self.check_at(model, q)?;
+        self.counts.detections += 1;
+        model.detector().locate_past_ends(&model.placed_at(q), ids, out, room);
+        Ok(())
+    }
+
     /// Deepest penetration at coordinates `q`, m; 0 if there is none. May change `candidates`.
     ///
     /// # Errors

@@ -187,6 +187,7 @@ impl EventDriven {
         smooth.stage.respond(model, work, &responses, &mut smooth.a).map_err(problem)?;
         let force = |row: usize| smooth.stage.impulse(row).map_or(0.0, |f| f[0]);
         let largest = (0..self.found.len()).map(force).fold(0.0, f64::max);
+        smooth.contacts.reserve(self.found.len());
         for (row, (candidate, (bias, slides, size))) in self.found.iter().zip(&smooth.posed).enumerate() {
             if force(row) <= 1e-11 * largest {
                 continue;

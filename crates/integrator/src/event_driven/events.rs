@@ -56,6 +56,9 @@ pub(super) struct Watch {
 /// Forces and distances from the friction cone are 0 to this, in parts of their scale.
 const FORCE: f64 = 1e-11;
 
+/// How far a contact is from the end of its surface is 0 to this, in parts of what a gap is located to.
+const AT_END: f64 = 1e-2;
+
 /// Sliding velocities are 0 to this part of what they consist of.
 const SLIDE: f64 = 1e-14;
 
@@ -283,6 +286,7 @@ impl EventDriven {
     fn watch_start(&mut self) {
         for contact in &mut self.smooth.contacts {
             contact.start = [contact.presses(), contact.held, contact.slides()];
+            contact.start_room = contact.room;
         }
     }
 
@@ -349,6 +353,7 @@ impl EventDriven {
                     continue;
                 }
                 let [presses, holds, slides] = contact.start;
+                watch(Kind::Leaves, contact.start_room, contact.room, AT_END * tolerance);
                 watch(Kind::Opens, presses, contact.presses(), FORCE);
                 watch(Kind::Slips, holds, contact.held, FORCE);
                 watch(Kind::Stops, slides, contact.slides(), SLIDE * contact.speed);
@@ -381,7 +386,7 @@ impl EventDriven {
                 (_, None) => f64::INFINITY,
                 (Kind::Leaves, Some(contact)) => {
                     if contact.row.is_some() {
-                        1.0
+                        contact.room.min(1.0)
                     } else {
                         -1.0
                     }
@@ -472,8 +477,9 @@ impl EventDriven {
             watch.is_now = watch.now <= watch.tolerance;
             any |= watch.is_now;
         }
-        // Where a surface ends there are no rows: the phase ends before.
-        if self.watched.iter().any(|watch| watch.is_now && watch.kind == Kind::Leaves) && low > 0.0 {
+        // Where a surface that doesn't go on past its end has left a contact without rows, the phase ends before.
+        let has_left = |watch: &Watch| watch.is_now && watch.kind == Kind::Leaves && watch.now == -1.0;
+        if low > 0.0 && self.watched.iter().any(has_left) {
             tau = low;
             self.try_step(model, t, tau, work)?;
         }

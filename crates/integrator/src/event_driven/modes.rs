@@ -55,6 +55,10 @@ pub(super) struct Pressing {
     pub(super) own: [f64; 2],
     /// How far it is from sliding together with those that share its friction.
     pub(super) held: f64,
+    /// How far it is to the end of its surface, m.
+    pub(super) room: f64,
+    /// The same at the start of a step of the method, m.
+    pub(super) start_room: f64,
     /// Where its rows are in the stage; `None` where it has none, off the end of its surface.
     pub(super) row: Option<usize>,
 }
@@ -77,6 +81,8 @@ impl Pressing {
             start: [0.0; 3],
             own: [0.0; 2],
             held: f64::INFINITY,
+            room: f64::INFINITY,
+            start_room: f64::INFINITY,
             row: None,
         }
     }

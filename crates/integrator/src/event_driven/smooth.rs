@@ -38,6 +38,8 @@ pub(super) struct Smooth {
     one: ContactStage<2>,
     found: Candidates<2>,
     probes: Candidates<2>,
+    /// Of those found, how far it is to the end of their surface, m.
+    rooms: Vec<f64>,
     /// Accelerations without contacts; then those with them.
     pub(super) a: Vec<f64>,
     /// Velocities, prescribed ones at their time.
@@ -67,6 +69,7 @@ impl Smooth {
             one: ContactStage::new(),
             found: Vec::new(),
             probes: Vec::new(),
+            rooms: Vec::new(),
             a: Vec::new(),
             v: Vec::new(),
             load: Vec::new(),
@@ -89,6 +92,7 @@ impl Smooth {
         self.one.reserve(model);
         self.found.reserve(contacts);
         self.probes.reserve(contacts);
+        self.rooms.reserve(contacts);
         self.linear.reserve(2 * contacts.min(16));
         self.unknowns.reserve(2 * contacts);
         self.posed.reserve(contacts);
@@ -274,12 +278,13 @@ impl Smooth {
         }
         self.ids.clear();
         self.ids.extend(self.contacts.iter().map(|contact| contact.id));
-        work.locate(model, q, &self.ids, &mut self.found)?;
-        let mut found = self.found.iter().peekable();
+        work.locate_past_ends(model, q, &self.ids, &mut self.found, &mut self.rooms)?;
+        let mut found = self.found.iter().zip(&self.rooms).peekable();
         for contact in &mut self.contacts {
             contact.row = None;
             contact.force = Vector::zeros();
-            let Some(candidate) = found.next_if(|candidate| candidate.id == contact.id) else { continue };
+            let Some((candidate, room)) = found.next_if(|(candidate, _)| candidate.id == contact.id) else { continue };
+            contact.room = *room;
             let row = self.stage.len();
             if self.stage.add(model, q, candidate, &WarmStart::default(), &Memory::default())? {
                 contact.row = Some(row);
@@ -317,7 +322,7 @@ impl Smooth {
         let mut sum = Vector::zeros();
         for (shift, share) in [(h, 8.0), (-h, -8.0), (2.0 * h, -1.0), (-2.0 * h, 1.0)] {
             model.move_along(q, &self.v, shift, &mut self.q_probe);
-            work.locate(model, &self.q_probe, &[candidate.id], &mut self.probes)?;
+            work.locate_past_ends(model, &self.q_probe, &[candidate.id], &mut self.probes, &mut self.rooms)?;
             self.one.clear();
             // Off the end of its surface.
             let Some(probe) = self.probes.first() else { return Ok(Vector::zeros()) };

@@ -97,7 +97,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
         Ok((self.attempt_up_to(model, from, part, part.h, work)?, None))
     }
 
-    fn attempt_up_to(
+    pub(super) fn attempt_up_to(
         &mut self,
         model: &Model<D>,
         from: &State,

@@ -166,3 +166,35 @@ fn patterns_join_what_is_not_joined_by_name() {
     ];
     assert_eq!(joined, expected.map(|(name, between)| (name, between.to_owned())));
 }
+
+/// Two blocks in free flight that meet and glide off each other: where a corner passes the end of a side is an event.
+#[test]
+fn a_corner_that_glides_off_a_side_is_located() {
+    let text = "[time]\nend = '0.3 s'\nstep = '1 ms'\n[world]\ngravity = '0 m/s^2'\n[ground]\n[material.a]\ndensity = '1000 kg/m^3'\n\
+        [block.a]\nmaterial = 'a'\nwidth = '0.7488 m'\nheight = '0.4369 m'\ndepth = '0.1 m'\nposition = ['-1.4975 m', '10 m']\nangle = '-0.9048 rad'\n\
+        velocity = ['3.0709 m/s', '0 m/s']\nspin = '1.9524 rad/s'\n\
+        [block.b]\nmaterial = 'a'\nwidth = '0.6118 m'\nheight = '1.0281 m'\ndepth = '0.1 m'\nposition = ['1.4975 m', '9.6705 m']\nangle = '0.4119 rad'\n\
+        velocity = ['-7.2132 m/s', '0 m/s']\nspin = '2.3373 rad/s'\n[contact.c]\nbetween = ['a', 'b']\n";
+    let contact = "friction = 0.0\nrestitution = 0.0\n";
+    let end = |scheme: &str, step: &str, order: bool| {
+        let between = if order { "['a', 'b']" } else { "['b', 'a']" };
+        let text = format!("{text}{contact}").replace("['a', 'b']", between);
+        let mut simulation = simulation(&text, &[("time.scheme", scheme), ("time.step", step)]);
+        run(&mut simulation);
+        simulation.state.q.clone()
+    };
+    let off = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let reference = end("event-driven", "10 us", true);
+    // They did touch, and what touched has parted: the spins have changed, and the motion is not that of a free flight.
+    assert!(off(&reference[..1], &[-1.4975 + 3.0709 * 0.3]) > 0.1, "{reference:?}");
+    for (step, order) in [("1 ms", true), ("100 us", true), ("1 ms", false)] {
+        let off = off(&end("event-driven", step, order), &reference);
+        assert!(off < 1e-8, "{step}: {off:e}");
+    }
+    for (step, order, bound) in
+        [("1 ms", true, 2e-5), ("100 us", true, 3e-7), ("10 us", true, 3e-9), ("100 us", false, 3e-7)]
+    {
+        let off = off(&end("moreau-jean-located", step, order), &reference);
+        assert!(off < bound, "{step}: {off:e}");
+    }
+}
