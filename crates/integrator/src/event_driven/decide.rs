@@ -45,7 +45,7 @@ impl EventDriven {
             let t = after(from.t);
             self.smooth.between = [t, t];
             self.smooth.accelerate(model, t, &from.q, &from.v, work)?;
-            if self.smooth.contacts.iter().all(|contact| contact.presses() >= HOLDS && contact.holds() >= HOLDS) {
+            if self.smooth.contacts.iter().all(|contact| contact.presses() >= HOLDS && contact.held >= HOLDS) {
                 return Ok(true);
             }
         }

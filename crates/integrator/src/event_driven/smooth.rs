@@ -6,6 +6,7 @@ use crate::subsystem::dot;
 use crate::{
     Account, ContactStage, Memory, Model, Responses, StepEnergy, StepError, Vector, WarmStart, Weights, Workspace,
 };
+use nalgebra::Matrix4;
 use teeter_contact::{Outcome, Residual, Status};
 use teeter_detect::{Candidate, Candidates, ContactId};
 
@@ -24,6 +25,9 @@ const ALONG: f64 = 1e-3;
 
 /// Contacts that share friction are at its limit together, up to this part of their scale.
 const SHARED: f64 = 1e-6;
+
+/// A determinant below this, of a matrix with 1 on its diagonal, is 0.
+const SINGULAR: f64 = 1e-12;
 
 /// A contact has at least this part of the largest normal force where friction is shared.
 const LEAST_SHARE: f64 = 1e-6;
@@ -424,19 +428,23 @@ impl Smooth {
         }
     }
 
-    /// Finds how far contacts are from sliding. Those that share friction do so to some 1e-8 only: where one of them reached its limit
-    /// before the others, it could not slide, and would stick again at once. They reach it together, the last of them.
+    /// Finds how far contacts are from sliding. Where a body can't move along one of them while another sticks, as two feet of a block on
+    /// the same ground, none can slide alone: they do so together, when the last is at its limit. Others that share friction do so to some
+    /// 1e-8 only: where one of them reached its limit before the others, it could not slide, and would stick again at once.
     fn find_held(&mut self) {
         let Self { contacts, stage, .. } = self;
         for k in 0..contacts.len() {
             let Pressing { mode, row, .. } = contacts[k];
             let own = contacts[k].holds();
-            let beside = |other: &&Pressing| {
-                let coupled = |row, other| stage.block(row, other)[(1, 1)] != 0.0;
-                mode == Mode::Stick && row.zip(other.row).is_some_and(|(row, other)| coupled(row, other))
+            let together = |other: &Pressing| {
+                let rows = row.zip(other.row).filter(|_| mode == Mode::Stick && other.mode == Mode::Stick);
+                let rows = rows.filter(|(row, other)| row != other && stage.block(*row, *other)[(1, 1)] != 0.0);
+                rows.is_some_and(|(row, beside)| {
+                    (other.holds() - own).abs() <= SHARED || slide_together(stage, [row, beside])
+                })
             };
-            let alike = |other: &Pressing| Some(other.holds()).filter(|holds| (holds - own).abs() <= SHARED);
-            contacts[k].held = contacts.iter().filter(beside).filter_map(alike).fold(own, f64::max);
+            let held = contacts.iter().filter(|other| together(other)).map(Pressing::holds).fold(own, f64::max);
+            contacts[k].held = held;
         }
     }
 
@@ -520,4 +528,11 @@ impl Smooth {
             }
         }
     }
+}
+
+/// Whether two contacts that keep their gaps either both slide or both stick: J M⁻¹ Jᵀ of their four components is singular.
+fn slide_together(stage: &ContactStage<2>, rows: [usize; 2]) -> bool {
+    let entry = |i: usize, j: usize| stage.block(rows[i / 2], rows[j / 2])[(i % 2, j % 2)];
+    let gram = Matrix4::from_fn(|i, j| entry(i, j) / (entry(i, i) * entry(j, j)).sqrt());
+    gram.determinant().abs() <= SINGULAR
 }
