@@ -127,12 +127,10 @@ fn block(block: &BlockOutlook) -> String {
         Some(on) => format!("on {on}, tilted by {} deg", degrees(block.angle)),
         None => format!("placed by its mass centre, at {} deg", degrees(block.angle)),
     };
-    format!(
-        "block {}: {} kg, {place}; overturns beyond {} deg (critical angle)",
-        block.name,
-        digits(block.mass),
-        degrees(block.critical_angle)
-    )
+    let overturns = block
+        .critical_angle
+        .map_or_else(String::new, |angle| format!("; overturns beyond {} deg (critical angle)", degrees(angle)));
+    format!("block {}: {} kg, {place}{overturns}", block.name, digits(block.mass))
 }
 
 /// Digits below which they are told.

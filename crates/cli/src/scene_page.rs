@@ -195,6 +195,7 @@ fn value_alone(key: &Key) -> String {
             format!("{}{}, {such_as}", bare(dimension), limits(&range, dimension))
         }
         Kind::Pair(dimension, _) => format!("`[x, y]`, each {}, {such_as}", dimension.name()),
+        Kind::Points(dimension, _) => format!("array of `[x, y]`, each {}, {such_as}", dimension.name()),
         Kind::List(dimension, range) => {
             format!("array, each {}{}, {such_as}", dimension.name(), limits(&range, dimension))
         }

@@ -145,9 +145,10 @@ fn as_json(toml: &str) -> Value {
 /// The range of a quantity in words, which a pattern can't hold.
 fn range_of(key: &Key) -> String {
     let (dimension, range) = match key.kind {
-        Kind::Quantity(dimension, range) | Kind::Pair(dimension, range) | Kind::List(dimension, range) => {
-            (dimension, range)
-        }
+        Kind::Quantity(dimension, range)
+        | Kind::Pair(dimension, range)
+        | Kind::Points(dimension, range)
+        | Kind::List(dimension, range) => (dimension, range),
         _ => return String::new(),
     };
     format!(" {dimension}; {}.", range.rule(dimension))
@@ -185,6 +186,7 @@ fn of_kind_alone(key: &Key) -> Value {
         Kind::Quantity(Dimension::NONE, range) => number(&range),
         Kind::Quantity(dimension, range) => quantity(dimension, &range),
         Kind::Pair(dimension, range) => pair(quantity(dimension, &range)),
+        Kind::Points(dimension, range) => json!({ "type": "array", "items": pair(quantity(dimension, &range)) }),
         Kind::List(dimension, range) => json!({ "type": "array", "items": quantity(dimension, &range) }),
         Kind::Numbers(range) => json!({ "type": "array", "items": number(&range) }),
         Kind::Words(words) => json!({ "type": "array", "items": { "enum": words }, "uniqueItems": true }),

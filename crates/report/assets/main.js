@@ -2,7 +2,7 @@
 
 (() => {
   const several = scenery.blocks.length > 1;
-  const alphas = [...new Set(scenery.blocks.map((block) => block.alpha * degrees))];
+  const alphas = [...new Set(scenery.blocks.filter(({ alpha }) => alpha !== null).map(({ alpha }) => alpha * degrees))];
   const ofBlocks = (pick) => scenery.blocks.map((block, index) =>
     ({ label: several ? block.name : "", index, t: curves.t, y: pick(curves.blocks[index]) }));
 
@@ -53,10 +53,9 @@
         id: `${key}-${k}`, contact: k, title: title + suffix, unit: "N", series: lines, cut: cutOf(lines, least), floor: 0, least, height: 150,
       });
     }
-    const initials = (point) => scenery.corners[contact.points[point].corner].split("-").map((word) => word[0].toUpperCase()).join("");
     plots.add({
       id: `state-${k}`, contact: k, title: `Contact state${suffix}`, series: [],
-      bands: points.map((point) => ({ short: several ? initials(point.point) : contact.points[point.point].label.replace("bottom ", ""), state: point.state })),
+      bands: points.map((point) => ({ short: several ? contact.points[point.point].short : contact.points[point.point].label.replace("bottom ", ""), state: point.state })),
       height: plots.margin.top + plots.margin.bottom + plots.rowHeight * points.length,
     });
   });

@@ -36,10 +36,16 @@ const scene = (() => {
     return beam === undefined ? 0 : (exaggeration - 1) * deflection(beam, at, x - leftOf(beam, at));
   }
 
-  function corners(pose, { width: b, height: h }) {
+  function corners(pose, { corners: own }) {
     const [sin, cos] = [Math.sin(pose.phi), Math.cos(pose.phi)];
-    return [[-b, -h], [b, -h], [b, h], [-b, h]].map(([x, y]) =>
-      [pose.x + (cos * x - sin * y) / 2, pose.y + (sin * x + cos * y) / 2]);
+    return own.map(([x, y]) => [pose.x + cos * x - sin * y, pose.y + sin * x + cos * y]);
+  }
+
+  /** The number of the side that is below: that from the corner of this number. */
+  function sideBelow({ upright }, pose, all) {
+    if (upright) return (((-Math.round(pose.phi / (Math.PI / 2))) % 4) + 4) % 4;
+    const heights = all.map(([, y], k) => y + all[(k + 1) % all.length][1]);
+    return heights.indexOf(Math.min(...heights));
   }
 
   function truePose(block, at) {
@@ -52,8 +58,8 @@ const scene = (() => {
     const pose = truePose(block, at);
     if (exaggeration === 1 || beamsOf[block].length === 0) return pose;
     const all = corners(pose, scenery.blocks[block]);
-    const below = (((-Math.round(pose.phi / (Math.PI / 2))) % 4) + 4) % 4;
-    const [a, b] = [all[below], all[(below + 1) % 4]];
+    const below = sideBelow(scenery.blocks[block], pose, all);
+    const [a, b] = [all[below], all[(below + 1) % all.length]];
     const [up, down] = [lift(block, at, a[0]), lift(block, at, b[0])];
     const turn = Math.atan2(b[1] + down - a[1] - up, b[0] - a[0]) - Math.atan2(b[1] - a[1], b[0] - a[0]);
     const middle = [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];

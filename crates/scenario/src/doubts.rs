@@ -200,7 +200,7 @@ fn slides(block: &BlockScene, incline: f64, scene: &Scene, document: &Document) 
 
 /// A block tilted so far that it may not come back.
 fn tilt(block: &BlockScene, incline: f64, touches: bool, document: &Document) -> Option<Diagnostic> {
-    let alpha = block.critical_angle();
+    let alpha = block.critical_angle()?;
     let (key, angle) = match block.placement {
         Placement::On { tilt, .. } => ("tilt", incline + tilt),
         // In the air any angle is fine.
@@ -282,7 +282,7 @@ fn step(scene: &Scene, document: &Document) -> Option<Diagnostic> {
     };
     for contact in &scene.contacts {
         let block = &scene.blocks[contact.block];
-        let radius = 0.5 * block.width.hypot(block.height);
+        let radius = block.radius();
         enter((4.0 * radius / (3.0 * gravity)).sqrt(), format!("the rocking time sqrt(4R/3g) of `{}`", block.name));
         if let Support::Beam(number) = contact.surface {
             let beam = &scene.beams[number];

@@ -9,7 +9,6 @@ use std::sync::Arc;
 use teeter_beam::{Beam, Deflection, ModalBasis, ShapeAt, SpanLoad};
 use teeter_detect::{BodyId, ContactId, CornerOnSide};
 use teeter_integrator::{BeamForces, Opening};
-use teeter_rigid::Rectangle;
 
 /// Where a block is in the state.
 #[derive(Debug, Clone, PartialEq)]
@@ -121,6 +120,8 @@ pub struct PairPlace {
     pub points: Vec<ContactPoint>,
     /// Whether the two are blocks: each has corners that the other's sides can touch.
     pub of_shapes: bool,
+    /// How many corners its (first) block has.
+    pub corners: usize,
 }
 
 /// A point at which a pair can touch: a corner of a block.
@@ -130,21 +131,24 @@ pub struct ContactPoint {
     pub name: String,
     /// The block, by its number in the scene.
     pub block: usize,
-    /// The corner, as in [`Rectangle::CORNER_NAMES`].
+    /// The corner, counter-clockwise; of a rectangle from the bottom left.
     pub corner: usize,
 }
 
 impl ContactPoint {
     /// The points of a scene's contact.
     pub(crate) fn all(scene: &Scene, contact: &ContactScene) -> Vec<Self> {
-        let corners = Rectangle::CORNER_NAMES.into_iter().enumerate();
+        let corners = |block: usize| {
+            let of = &scene.blocks[block];
+            (0..of.corner_count()).map(move |corner| (corner, of.corner_name(corner)))
+        };
         let Some(other) = contact.other_block() else {
-            let point = |(corner, name): (usize, &str)| Self { name: name.to_owned(), block: contact.block, corner };
-            return corners.map(point).collect();
+            let point = |(corner, name)| Self { name, block: contact.block, corner };
+            return corners(contact.block).map(point).collect();
         };
         let of = |block: usize| {
-            let named = move |name: &str| format!("{}.{name}", scene.blocks[block].name);
-            corners.clone().map(move |(corner, name)| Self { name: named(name), block, corner })
+            let named = move |name: String| format!("{}.{name}", scene.blocks[block].name);
+            corners(block).map(move |(corner, name)| Self { name: named(name), block, corner })
         };
         of(contact.block).chain(of(other)).collect()
     }
@@ -156,7 +160,7 @@ impl PairPlace {
     pub fn point(&self, id: ContactId) -> Option<usize> {
         let number = if self.of_shapes {
             let CornerOnSide { owner, corner, .. } = CornerOnSide::from_number(id.point())?;
-            owner * Rectangle::CORNER_NAMES.len() + corner
+            owner * self.corners + corner
         } else {
             id.point() as usize
         };

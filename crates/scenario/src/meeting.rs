@@ -1,6 +1,6 @@
 //! Bodies that meet where the model has no contact: until it has contact of whole shapes, this is told and not prevented.
 
-use crate::overlap::{Box2, each_overlap};
+use crate::overlap::{Box2, Outline, each_overlap};
 use crate::scene::{Scene, Support};
 use crate::simulation::Layout;
 use std::collections::BTreeSet;
@@ -41,7 +41,9 @@ struct BeamShape {
 /// The shapes of a scene's bodies, which tells who meets whom.
 #[derive(Debug, Clone)]
 pub struct Shapes {
-    sides: Vec<[f64; 2]>,
+    outlines: Vec<Outline>,
+    /// How deep each may be in what it meets, for rounding and drift, m.
+    allowed: Vec<f64>,
     beams: Vec<BeamShape>,
     /// Slope of ground that stands still; `None` without ground.
     incline: Option<f64>,
@@ -69,7 +71,8 @@ impl Shapes {
             BeamShape { left: [beam.position[0], beam.position[1] + offset], span: beam.spec.span }
         };
         Self {
-            sides: scene.blocks.iter().map(|block| [block.width, block.height]).collect(),
+            outlines: scene.blocks.iter().map(Outline::of).collect(),
+            allowed: scene.blocks.iter().map(|block| MEETS * block.width.min(block.height)).collect(),
             beams: scene.beams.iter().map(line).collect(),
             incline: scene.ground.as_ref().map(|ground| ground.incline),
             on_ground: joined(Support::Ground),
@@ -87,13 +90,13 @@ impl Shapes {
 
     /// Hands who meets whom at coordinates `q` of the whole model to `each`, with the depth, m.
     pub fn meetings(&mut self, layout: &Layout, q: &[f64], mut each: impl FnMut(Meeting, f64)) {
-        let Self { sides, beams, incline, on_ground, blocks, on_beam, boxes, order } = self;
+        let Self { outlines, allowed, beams, incline, on_ground, blocks, on_beam, boxes, order } = self;
         boxes.clear();
-        boxes.extend(layout.blocks.iter().zip(sides.iter()).map(|(place, sides)| {
+        boxes.extend(layout.blocks.iter().zip(outlines.iter()).map(|(place, outline)| {
             let q = &q[place.range.clone()];
-            Box2::new([q[0], q[1]], q[2], *sides)
+            Box2::new([q[0], q[1]], q[2], outline)
         }));
-        let allowed = |block: usize| MEETS * sides[block][0].min(sides[block][1]);
+        let allowed = |block: usize| allowed[block];
         if boxes.len() > 1 {
             each_overlap(boxes, allowed, MOST_PAIRS, order, |overlap| {
                 if !blocks.contains(&(overlap.first, overlap.second)) {
@@ -109,8 +112,7 @@ impl Shapes {
             let up = [-slope.sin(), slope.cos()];
             let level = x * up[0] + y * up[1];
             for (block, _) in on_ground.iter().enumerate().filter(|(_, joined)| !**joined) {
-                let (centre, reach) = boxes[block].shadow(up);
-                let depth = level - (centre - reach);
+                let depth = level - boxes[block].shadow(up)[0];
                 if depth > allowed(block) {
                     each(Meeting::Ground(block), depth);
                 }
@@ -124,8 +126,8 @@ impl Shapes {
                 block.depth_of([left + along, bottom + w])
             };
             for (block, of) in boxes.iter().enumerate() {
-                let (centre, reach) = of.shadow([1.0, 0.0]);
-                let (from, to) = ((centre - reach - left).max(0.0), (centre + reach - left).min(shape.span));
+                let [low, high] = of.shadow([1.0, 0.0]);
+                let (from, to) = ((low - left).max(0.0), (high - left).min(shape.span));
                 if from > to {
                     continue;
                 }

@@ -21,7 +21,7 @@ pub struct BlockOutlook {
     /// Mass, kg.
     pub mass: f64,
     /// Critical angle α = atan(b/H), rad.
-    pub critical_angle: f64,
+    pub critical_angle: Option<f64>,
     /// Angle at the start, rad.
     pub angle: f64,
     /// Name of what it stands on; `None` for a block placed by its mass centre.

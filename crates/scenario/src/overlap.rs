@@ -1,13 +1,37 @@
-//! Rectangles that overlap: the separating-axis test.
+//! Rectangles and polygons that overlap: the separating-axis test.
 
-/// A rectangle in the plane.
-#[derive(Debug, Clone, Copy, PartialEq)]
+use crate::scene::BlockScene;
+use nalgebra::Vector2;
+use std::sync::Arc;
+
+/// The outline of a block, about its mass centre.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Outline {
+    /// A rectangle by its sides.
+    Rectangle([f64; 2]),
+    /// The corners of a convex polygon, counter-clockwise, and its largest distance across.
+    Polygon(Arc<[Vector2<f64>]>, f64),
+}
+
+impl Outline {
+    pub(crate) fn of(block: &BlockScene) -> Self {
+        match &block.polygon {
+            None => Self::Rectangle([block.width, block.height]),
+            Some(corners) => Self::Polygon(Arc::clone(corners), 2.0 * block.radius()),
+        }
+    }
+}
+
+/// A rectangle or a polygon in the plane.
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Box2 {
     centre: [f64; 2],
     /// Unit vectors along its sides.
     axes: [[f64; 2]; 2],
-    /// Halves of its sides.
+    /// Halves of its sides; of a polygon of a square round it.
     half: [f64; 2],
+    /// The corners of a polygon about its centre, in the coordinates of its axes.
+    corners: Option<Arc<[Vector2<f64>]>>,
 }
 
 /// Two rectangles that overlap, by their numbers.
@@ -20,24 +44,50 @@ pub(crate) struct Overlap {
 }
 
 impl Box2 {
-    pub(crate) fn new(centre: [f64; 2], angle: f64, sides: [f64; 2]) -> Self {
+    pub(crate) fn new(centre: [f64; 2], angle: f64, outline: &Outline) -> Self {
         let (sin, cos) = angle.sin_cos();
-        Self { centre, axes: [[cos, sin], [-sin, cos]], half: sides.map(|side| 0.5 * side) }
+        let (sides, corners) = match outline {
+            Outline::Rectangle(sides) => (*sides, None),
+            Outline::Polygon(corners, across) => ([*across; 2], Some(Arc::clone(corners))),
+        };
+        Self { centre, axes: [[cos, sin], [-sin, cos]], half: sides.map(|side| 0.5 * side), corners }
+    }
+
+    fn world(&self, corner: &Vector2<f64>) -> [f64; 2] {
+        [0, 1].map(|k| self.centre[k] + corner.x * self.axes[0][k] + corner.y * self.axes[1][k])
+    }
+
+    /// The sides of a polygon: a corner and the unit normal outwards of the side from it.
+    fn sides<'a>(&'a self, corners: &'a [Vector2<f64>]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> + 'a {
+        corners.iter().zip(corners.iter().cycle().skip(1)).map(|(from, to)| {
+            let side = (to - from).normalize();
+            let normal = [0, 1].map(|k| side.y * self.axes[0][k] - side.x * self.axes[1][k]);
+            (self.world(from), normal)
+        })
     }
 
     /// How deep a point is inside, m; negative outside.
     pub(crate) fn depth_of(&self, point: [f64; 2]) -> f64 {
+        if let Some(corners) = &self.corners {
+            let depth = |(on, normal): ([f64; 2], [f64; 2])| dot([on[0] - point[0], on[1] - point[1]], normal);
+            return self.sides(corners).map(depth).fold(f64::INFINITY, f64::min);
+        }
         let from = [point[0] - self.centre[0], point[1] - self.centre[1]];
         let room = |k: usize| self.half[k] - dot(from, self.axes[k]).abs();
         room(0).min(room(1))
     }
 
-    /// The centre along a direction, and how far it reaches to either side of that.
-    pub(crate) fn shadow(&self, direction: [f64; 2]) -> (f64, f64) {
-        (dot(self.centre, direction), self.reach(direction))
+    /// From where to where it reaches along a direction.
+    pub(crate) fn shadow(&self, direction: [f64; 2]) -> [f64; 2] {
+        let Some(corners) = &self.corners else {
+            let (centre, reach) = (dot(self.centre, direction), self.reach(direction));
+            return [centre - reach, centre + reach];
+        };
+        let along = corners.iter().map(|corner| dot(self.world(corner), direction));
+        along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
     }
 
-    /// Half of its shadow on a direction.
+    /// Half of its shadow on a direction, of a rectangle.
     fn reach(&self, direction: [f64; 2]) -> f64 {
         self.half[0] * dot(self.axes[0], direction).abs() + self.half[1] * dot(self.axes[1], direction).abs()
     }
@@ -48,12 +98,28 @@ impl Box2 {
 
     /// The shortest way out of each other; at most 0 where some side's direction separates the two.
     fn depth(&self, other: &Self) -> f64 {
+        if self.corners.is_some() || other.corners.is_some() {
+            return self.room_beside(other).min(other.room_beside(self));
+        }
         let between = [other.centre[0] - self.centre[0], other.centre[1] - self.centre[1]];
         self.axes
             .iter()
             .chain(&other.axes)
             .map(|&axis| self.reach(axis) + other.reach(axis) - dot(between, axis).abs())
             .fold(f64::INFINITY, f64::min)
+    }
+
+    /// How deep the other is inside, across the side over which it is the least.
+    fn room_beside(&self, other: &Self) -> f64 {
+        let over = |(on, normal): ([f64; 2], [f64; 2])| dot(on, normal) - other.shadow(normal)[0];
+        let [[ax, ay], up] = self.axes;
+        match &self.corners {
+            Some(corners) => self.sides(corners).map(over).fold(f64::INFINITY, f64::min),
+            None => [[ax, ay], up, [-ax, -ay], [-up[0], -up[1]]]
+                .into_iter()
+                .map(|normal| self.shadow(normal)[1] - other.shadow(normal)[0])
+                .fold(f64::INFINITY, f64::min),
+        }
     }
 }
 
@@ -73,8 +139,8 @@ pub(crate) fn each_overlap(
     mut each: impl FnMut(Overlap),
 ) {
     // By their left ends: only neighbours along x can overlap.
-    let left = |k: usize| boxes[k].centre[0] - boxes[k].reach([1.0, 0.0]);
-    let right = |k: usize| boxes[k].centre[0] + boxes[k].reach([1.0, 0.0]);
+    let left = |k: usize| boxes[k].shadow([1.0, 0.0])[0];
+    let right = |k: usize| boxes[k].shadow([1.0, 0.0])[1];
     order.clear();
     order.extend(0..boxes.len());
     order.sort_unstable_by(|&a, &b| left(a).total_cmp(&left(b)).then(a.cmp(&b)));
@@ -116,13 +182,29 @@ mod tests {
     use std::f64::consts::FRAC_PI_4;
 
     fn square(x: f64, y: f64, angle: f64) -> Box2 {
-        Box2::new([x, y], angle, [2.0, 2.0])
+        Box2::new([x, y], angle, &Outline::Rectangle([2.0, 2.0]))
     }
 
     #[test]
     fn the_depth_is_the_shortest_way_out() {
         let found = deepest_overlap(&[square(0.0, 0.0, 0.0), square(5.0, 0.0, 0.0), square(1.5, 1.0, 0.0)], 1e-9);
         assert_eq!(found, Some(Overlap { first: 0, second: 2, depth: 0.5 }));
+    }
+
+    /// A square by its corners, its centre elsewhere.
+    #[test]
+    fn a_polygon_is_as_deep_as_the_rectangle_that_it_is() {
+        let corners = [[-1.5, -0.5], [0.5, -0.5], [0.5, 1.5], [-1.5, 1.5]].map(Vector2::from);
+        let polygon = Outline::Polygon(Arc::from(corners.as_slice()), 4.0);
+        for (x, y, angle) in [(1.5, 1.0, 0.0_f64), (0.3, 1.2, 0.4), (1.8, -0.6, 2.1), (2.4, 0.9, 5.0)] {
+            let (sin, cos) = angle.sin_cos();
+            let off = [x + 0.5 * cos + 0.5 * sin, y + 0.5 * sin - 0.5 * cos];
+            let (by_corners, by_sides) = (Box2::new(off, angle, &polygon), square(x, y, angle));
+            let still = square(0.0, 0.0, 0.0);
+            assert!((still.depth(&by_corners) - still.depth(&by_sides)).abs() < 1e-14);
+            assert!((by_corners.depth(&still) - still.depth(&by_sides)).abs() < 1e-14);
+            assert!((by_corners.depth_of([0.9, 0.8]) - by_sides.depth_of([0.9, 0.8])).abs() < 1e-14);
+        }
     }
 
     #[test]

@@ -8,7 +8,7 @@ use std::f64::consts::FRAC_PI_2;
 use teeter_beam::StaticError;
 use teeter_detect::Kinematics;
 use teeter_integrator::{EquilibriumError, Subsystem};
-use teeter_rigid::{Pose, Rectangle};
+use teeter_rigid::Pose;
 
 /// Why a scene has no start.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -56,7 +56,7 @@ pub enum PlacementError {
         /// The block.
         block: String,
         /// The corner.
-        corner: &'static str,
+        corner: String,
         /// Where it is, m.
         x: f64,
     },
@@ -124,7 +124,7 @@ fn weight(block: &BlockScene, gravity: [f64; 2]) -> f64 {
 }
 
 fn off_surface(block: &BlockScene, foot: &Foot) -> PlacementError {
-    PlacementError::OffSurface { block: block.name.clone(), corner: Rectangle::CORNER_NAMES[foot.corner], x: foot.x }
+    PlacementError::OffSurface { block: block.name.clone(), corner: block.corner_name(foot.corner), x: foot.x }
 }
 
 fn surface_height(

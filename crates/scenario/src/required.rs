@@ -74,9 +74,6 @@ pub struct Limits {
     pub penetration: f64,
 }
 
-/// Corners of a block.
-const CORNERS: usize = 4;
-
 /// Those that it stands on; they are the first.
 const FEET: usize = 2;
 
@@ -93,7 +90,7 @@ impl Required {
     pub(crate) fn all(scene: &Scene) -> Self {
         Self {
             extent: Extent::Full,
-            points: vec![CORNERS; scene.contacts.len()],
+            points: scene.contacts.iter().map(|contact| scene.blocks[contact.block].corner_count()).collect(),
             at_rest: vec![None; scene.beams.len()],
             ..Self::default()
         }
@@ -108,7 +105,7 @@ impl Required {
     /// How many corners of the block of a contact, by its number in the scene, are looked at.
     #[must_use]
     pub fn points(&self, contact: usize) -> usize {
-        self.points.get(contact).copied().unwrap_or(CORNERS)
+        self.points.get(contact).copied().unwrap_or_default()
     }
 
     /// The energy with which a beam rests; `None` for one that moves.

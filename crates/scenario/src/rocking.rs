@@ -63,7 +63,7 @@ fn late(scene: &Scene, contact: &ContactScene) -> Option<(u64, f64)> {
     if !is_housners(scene, contact) {
         return None;
     }
-    let critical = block.critical_angle();
+    let critical = block.critical_angle()?;
     let mut amplitude = tilt.abs() / critical;
     if !(amplitude > 0.0 && amplitude < 1.0) {
         return None;

@@ -8,6 +8,10 @@ pub use beam_output::{BEAM_QUANTITIES, BeamOutput, BeamQuantity};
 pub use history::{AxisScene, ForceScene, History, LoadKind, LoadScene, MotionScene, SignalScene};
 pub use reduction::Reduction;
 
+use nalgebra::Vector2;
+use std::sync::Arc;
+use teeter_rigid::{MassProperties, Rectangle, RigidError};
+
 /// A scene that can be run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
@@ -296,10 +300,12 @@ pub struct BeamScene {
 pub struct BlockScene {
     /// Its name.
     pub name: String,
-    /// Width b, m.
+    /// Width b, m; of a polygon the largest of its extents across its sides.
     pub width: f64,
-    /// Height H, m.
+    /// Height H, m; of a polygon the smallest of its extents across its sides.
     pub height: f64,
+    /// Corners about its mass centre, counter-clockwise, m, of a block that is no rectangle of these sides.
+    pub polygon: Option<Arc<[Vector2<f64>]>>,
     /// Depth out of the plane, m.
     pub depth: f64,
     /// Density, kg/m³.
@@ -413,12 +419,60 @@ impl BlockScene {
     /// Mass, kg.
     #[must_use]
     pub fn mass(&self) -> f64 {
-        self.density * self.width * self.height * self.depth
+        match &self.polygon {
+            None => self.density * self.width * self.height * self.depth,
+            Some(_) => self.mass_properties().map_or(f64::NAN, |of| of.mass),
+        }
     }
 
-    /// The critical angle α = atan(b/H), rad.
+    /// Mass and moment of inertia.
+    ///
+    /// # Errors
+    /// If they are not positive and finite.
+    pub fn mass_properties(&self) -> Result<MassProperties, RigidError> {
+        match &self.polygon {
+            None => MassProperties::rectangle(&Rectangle::new(self.width, self.height)?, self.depth, self.density),
+            Some(corners) => Ok(MassProperties::polygon(corners, self.depth, self.density)?.0),
+        }
+    }
+
+    /// The corners about its mass centre, counter-clockwise, m; those of a rectangle from the bottom left.
     #[must_use]
-    pub fn critical_angle(&self) -> f64 {
-        self.width.atan2(self.height)
+    pub fn corners(&self) -> Vec<Vector2<f64>> {
+        let (x, y) = (0.5 * self.width, 0.5 * self.height);
+        self.polygon.as_ref().map_or_else(
+            || [[-x, -y], [x, -y], [x, y], [-x, y]].map(Vector2::from).to_vec(),
+            |corners| corners.to_vec(),
+        )
+    }
+
+    /// How many corners it has.
+    #[must_use]
+    pub fn corner_count(&self) -> usize {
+        self.polygon.as_ref().map_or(Rectangle::CORNER_NAMES.len(), |corners| corners.len())
+    }
+
+    /// What a corner is called in tables: bottom-left and so on, or corner-1 and so on of a polygon.
+    #[must_use]
+    pub fn corner_name(&self, corner: usize) -> String {
+        match &self.polygon {
+            None => Rectangle::CORNER_NAMES.get(corner).map_or_else(|| corner.to_string(), |name| (*name).to_owned()),
+            Some(_) => format!("corner-{}", corner + 1),
+        }
+    }
+
+    /// The largest distance of a corner from the mass centre, m.
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        match &self.polygon {
+            None => 0.5 * self.width.hypot(self.height),
+            Some(corners) => corners.iter().map(Vector2::norm).fold(0.0, f64::max),
+        }
+    }
+
+    /// The critical angle α = atan(b/H), rad; `None` for a polygon, which has no base of its own.
+    #[must_use]
+    pub fn critical_angle(&self) -> Option<f64> {
+        self.polygon.is_none().then(|| self.width.atan2(self.height))
     }
 }

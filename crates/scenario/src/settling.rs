@@ -16,13 +16,13 @@ use teeter_integrator::{
     BeamForces, Block, BlockCoordinate, Blocks, Equilibrium, EquilibriumError, Mismatch, Model, ModelBuilder, Motion,
     PairLaw, SettlingLimits, SolverSettings, Workspace, settle,
 };
-use teeter_rigid::{Pose, Rectangle};
+use teeter_rigid::Pose;
 use teeter_solvers::Auto;
 
 /// The start of what moves, before and after settling.
 pub(crate) struct Start<'a> {
     /// The bodies of the blocks, and their shapes.
-    pub(crate) blocks: &'a [(Block, Rectangle)],
+    pub(crate) blocks: &'a [(Block, Vec<Vector2<f64>>)],
     /// X, Y, φ of each block.
     pub(crate) poses: Vec<Vector3<f64>>,
     /// The beams.
@@ -132,7 +132,7 @@ pub struct ContactForce {
     /// The contact, by its number in the scene.
     pub contact: usize,
     /// The point of the pair that touches, as in the identity of its contact: of a pair with a surface the corner of the block, as in
-    /// [`Rectangle::CORNER_NAMES`](teeter_rigid::Rectangle::CORNER_NAMES).
+    /// [`Rectangle::CORNER_NAMES`](teeter_rigid::Rectangle::CORNER_NAMES) or of a polygon counter-clockwise.
     pub point: u32,
     /// The force on the block along the contact's normal and tangent, N.
     pub force: [f64; 2],
@@ -177,7 +177,7 @@ struct HeldFoot {
 impl HeldFoot {
     fn of(scene: &Scene, start: &Start<'_>, block: usize) -> Option<Self> {
         let corner = foot_of(scene, block)?;
-        let point = start.blocks[block].1.corners()[corner];
+        let point = start.blocks[block].1[corner];
         let x = Pose::new(&start.poses[block]).point(&point).x;
         Some(Self { block, corner, point, x, width: scene.blocks[block].width })
     }
@@ -252,7 +252,7 @@ impl TakingPart {
             }
             let surface = surfaces.iter().find(|(support, _)| *support == contact.surface);
             let (Some(block), Some(&(_, surface))) = (block, surface) else { continue };
-            let corners = start.blocks[contact.block].1.corners();
+            let corners = &start.blocks[contact.block].1;
             let groups = match foot_of(scene, contact.block) {
                 Some(foot) => vec![(HELD, vec![foot]), (0.0, (0..corners.len()).filter(|&k| k != foot).collect())],
                 None => vec![(contact.law.friction, (0..corners.len()).collect())],
@@ -269,7 +269,7 @@ impl TakingPart {
                 contacts.push(Pair { contact: number, corners: numbers });
             }
         }
-        let shapes = self.blocks.iter().enumerate().map(|(number, &k)| (body(number), start.blocks[k].1));
+        let shapes = self.blocks.iter().enumerate().map(|(number, &k)| (body(number), start.blocks[k].1.as_slice()));
         Ok((parts.build(detector(pairs, shape_pairs, shapes)?)?, contacts))
     }
 

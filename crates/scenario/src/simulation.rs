@@ -3,11 +3,12 @@
 use crate::carrier::{Carrier, carriers};
 use crate::driven::{self, BeamModel};
 use crate::opening::{OPEN_GAP, openings};
-use crate::overlap::{Box2, Overlap, deepest_overlap};
+use crate::overlap::{Box2, Outline, Overlap, deepest_overlap};
 use crate::placement::{PlacementError, starting_poses};
 use crate::required::{AtRest, Extent, Required};
 use crate::scene::{Scene, SchemeName, Support, Time};
 use crate::settling::{Start, StaticStart};
+use nalgebra::Vector2;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use teeter_beam::{BeamError, ModalError};
@@ -22,7 +23,7 @@ use teeter_integrator::{
     PartPlace, Plan, Resolved, ResolvedSettings, RunError, Scheme, SettingError, SolverSettings, State, StateError,
     StepError, StepReport, Subsystem, Unsolved, WorkCounts, Workspace, run,
 };
-use teeter_rigid::{MassProperties, Rectangle, RigidError};
+use teeter_rigid::RigidError;
 
 pub use crate::layout::{BeamPlace, BlockPlace, ContactPoint, Layout, PairPlace};
 
@@ -65,7 +66,7 @@ pub enum BuildError {
         /// The block.
         block: String,
         /// The corner.
-        corner: &'static str,
+        corner: String,
         /// What it is in.
         surface: String,
         /// How deep, m.
@@ -149,9 +150,8 @@ impl Simulation {
         let mut blocks = Vec::new();
         for block in &scene.blocks {
             let named = |error| BuildError::Block(block.name.clone(), error);
-            let shape = Rectangle::new(block.width, block.height).map_err(named)?;
-            let mass = MassProperties::rectangle(&shape, block.depth, block.density).map_err(named)?;
-            blocks.push((Block::new(mass, &shape), shape));
+            let mass = block.mass_properties().map_err(named)?;
+            blocks.push((Block::within(mass, block.radius()), block.corners()));
         }
         let mut beams = Vec::new();
         for (number, scene_beam) in scene.beams.iter().enumerate() {
@@ -326,7 +326,7 @@ fn lay_out(scene: &Scene, beams: &[BeamModel], assembled: &Assembled, required: 
         name: block.name.clone(),
         range: start..start + 3,
         side: block.width.min(block.height),
-        reach: 0.5 * block.width.hypot(block.height),
+        reach: block.radius(),
         still: OPEN_GAP * block.width.min(block.height) / block.width,
         carrier: Carrier::Level,
     });
@@ -350,6 +350,7 @@ fn lay_out(scene: &Scene, beams: &[BeamModel], assembled: &Assembled, required: 
         between: contact.between.clone(),
         points: ContactPoint::all(scene, contact),
         of_shapes: contact.other_block().is_some(),
+        corners: scene.blocks[contact.block].corner_count(),
     });
     Layout {
         blocks: blocks.collect(),
@@ -364,7 +365,7 @@ fn lay_out(scene: &Scene, beams: &[BeamModel], assembled: &Assembled, required: 
 /// The model of a scene, of what is required of it.
 fn assemble(
     scene: &Scene,
-    blocks: &[(Block, Rectangle)],
+    blocks: &[(Block, Vec<Vector2<f64>>)],
     beams: &[BeamModel],
     required: &Required,
 ) -> Result<Assembled, BuildError> {
@@ -400,23 +401,23 @@ fn assemble(
             pairs.push(PointPair {
                 pair: number as u32,
                 law,
-                points: blocks[contact.block].1.corners()[..points].to_vec(),
+                points: blocks[contact.block].1[..points].to_vec(),
                 body: all_blocks.nth_body(contact.block as u32),
                 surface,
                 kinematics: contact.kinematics,
             });
         }
     }
-    let shapes = |block: usize| (all_blocks.nth_body(block as u32), blocks[block].1);
+    let shapes = |block: usize| (all_blocks.nth_body(block as u32), blocks[block].1.as_slice());
     let model = parts.build(detector(pairs, shape_pairs, (0..blocks.len()).map(shapes))?)?;
     Ok(Assembled { model, blocks: all_blocks, beams: surfaces, ground })
 }
 
 /// What detects contacts of blocks with surfaces, and with each other.
-pub(crate) fn detector(
+pub(crate) fn detector<'a>(
     points: Vec<PointPair<2>>,
     pairs: Vec<ShapePair>,
-    shapes: impl Iterator<Item = (BodyId, Rectangle)>,
+    shapes: impl Iterator<Item = (BodyId, &'a [Vector2<f64>])>,
 ) -> Result<Box<dyn ContactDetector<2>>, BuildError> {
     let points = PointDetector::new(points);
     if pairs.is_empty() {
@@ -424,7 +425,7 @@ pub(crate) fn detector(
     }
     let paired: BTreeSet<BodyId> = pairs.iter().flat_map(|pair| pair.bodies).collect();
     let shapes = shapes.filter(|(body, _)| paired.contains(body));
-    let shapes = shapes.map(|(body, shape)| Ok((body, Polygon::new(shape.corners().to_vec())?.into())));
+    let shapes = shapes.map(|(body, shape)| Ok((body, Polygon::new(shape.to_vec())?.into())));
     let shapes = shapes.collect::<Result<Vec<_>, ShapeError>>()?;
     Ok(Box::new(ShapeDetector::new(shapes, pairs)?.with_points(points)))
 }
@@ -456,7 +457,7 @@ fn check_apart(scene: &Scene, q: &[f64]) -> Result<(), BuildError> {
         .blocks
         .iter()
         .zip(q.chunks_exact(3))
-        .map(|(block, q)| Box2::new([q[0], q[1]], q[2], [block.width, block.height]))
+        .map(|(block, q)| Box2::new([q[0], q[1]], q[2], &Outline::of(block)))
         .collect();
     match deepest_overlap(&boxes, START_TOLERANCE) {
         None => Ok(()),
@@ -490,7 +491,7 @@ fn check_start(scene: &Scene, model: &Model<2>, layout: &Layout, q: &[f64]) -> R
             let surface = if between[0] == block.name { &between[1] } else { &between[0] };
             return Err(BuildError::Penetration {
                 block: block.name.clone(),
-                corner: Rectangle::CORNER_NAMES[candidate.id.point() as usize],
+                corner: block.corner_name(candidate.id.point() as usize),
                 surface: surface.clone(),
                 depth: -candidate.gap,
                 tolerance,

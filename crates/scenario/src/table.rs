@@ -281,11 +281,12 @@ pub static TABLES: &[Table] = &[
     Table {
         pattern: "block.*",
         occurrence: Occurrence::Named,
-        doc: "A rigid rectangular block.",
+        doc: "A rigid block: a rectangle by its sides, or a convex polygon by its corners.",
         keys: &[
             key("material", Kind::Name, Required, "\"aluminium\"", "Name of its material."),
-            key("width", SIZE, Required, "\"3 cm\"", "Side along its base."),
-            key("height", SIZE, Required, "\"13.5 cm\"", "Side upwards."),
+            key("width", SIZE, RequiredWithout("points"), "\"3 cm\"", "Side along its base."),
+            key("height", SIZE, RequiredWithout("points"), "\"13.5 cm\"", "Side upwards."),
+            key("points", Kind::Points(Dimension::LENGTH, Range::ANY), Optional, "[[\"0 cm\", \"0 cm\"], [\"30 cm\", \"0 cm\"], [\"20 cm\", \"15 cm\"]]", "Corners of a convex polygon, in order round it, in place of width and height. Without a position it starts where they are; with one it is moved there, its mass centre to the position. Tables call them `corner-1`, `corner-2`, …, counter-clockwise from the first."),
             key("depth", SIZE, Required, "\"3 cm\"", "Side out of the plane."),
             key("on", Kind::Name, Optional, "\"table\"", "What it stands on: a beam, \"ground\", or another block, on whose upper side it is put."),
             key("at", Kind::Quantity(Dimension::LENGTH, Range::ANY), Optional, "\"18 cm\"", "Place x, in the world, of the middle of its base before it is tilted."),

@@ -268,7 +268,7 @@ fn longest(scene: &Scene) -> f64 {
     let [x, y] = scene.gravity;
     let gravity = x.hypot(y);
     let swing = |radius: f64| (4.0 * radius / (3.0 * gravity)).sqrt() / PER_SWING;
-    let blocks = scene.blocks.iter().map(|block| swing(0.5 * block.width.hypot(block.height)));
+    let blocks = scene.blocks.iter().map(|block| swing(block.radius()));
     blocks.filter(|step| *step > 0.0).fold(scene.time.end / LEAST_STEPS, f64::min)
 }
 

@@ -202,6 +202,14 @@ impl Document {
         }
     }
 
+    /// Points x, y in SI units.
+    pub fn points(&self, path: &str) -> Option<&[[f64; 2]]> {
+        match &self.entries.get(path)?.value {
+            Value::Points(points) => Some(points),
+            _ => None,
+        }
+    }
+
     /// A list of numbers, or of quantities in SI units.
     pub fn list(&self, path: &str) -> Option<&[f64]> {
         match &self.entries.get(path)?.value {

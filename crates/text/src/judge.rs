@@ -88,6 +88,19 @@ impl Judge<'_> {
                 let read = |judge: &mut Self, item: &Node| judge.quantity(key, dimension, &range, path, item);
                 self.pair(items, read).map(Value::Pair)
             }
+            Kind::Points(dimension, range) => {
+                let items = self.items(key, path, node, None)?;
+                let mut points = Vec::new();
+                for item in items {
+                    let point = self.items(key, path, item, Some(2));
+                    let read = |judge: &mut Self, item: &Node| judge.quantity(key, dimension, &range, path, item);
+                    points.extend(point.and_then(|point| self.pair(point, read)));
+                    if self.is_full() {
+                        return None;
+                    }
+                }
+                (points.len() == items.len()).then_some(Value::Points(points))
+            }
             Kind::List(dimension, range) => {
                 let items = self.items(key, path, node, None)?;
                 let mut values = Vec::new();

@@ -139,6 +139,8 @@ pub enum Kind {
     Quantity(Dimension, Range),
     /// An array of two quantities: x, y.
     Pair(Dimension, Range),
+    /// An array of points, each an array of two quantities: x, y.
+    Points(Dimension, Range),
     /// An array of any number of quantities.
     List(Dimension, Range),
     /// An array of any number of bare numbers.

@@ -21,6 +21,8 @@ pub enum Value {
     Number(f64),
     /// Two quantities: x, y.
     Pair([f64; 2]),
+    /// Points: each two quantities x, y.
+    Points(Vec<[f64; 2]>),
     /// Any number of quantities.
     List(Vec<f64>),
     /// Two texts, names or choices.
@@ -105,6 +107,7 @@ impl Value {
                 matches!(kind, Kind::Number(_) | Kind::Quantity(..) | Kind::Downward(_))
             }
             Self::Pair(_) => matches!(kind, Kind::Pair(..) | Kind::Downward(_)),
+            Self::Points(_) => matches!(kind, Kind::Points(..)),
             Self::List(_) => matches!(kind, Kind::List(..) | Kind::Numbers(_)),
             Self::TextPair(_) => matches!(kind, Kind::ChoicePair(_) | Kind::NamePair | Kind::PatternPair),
             Self::Words(_) => matches!(kind, Kind::Words(_)),
@@ -124,6 +127,10 @@ impl Value {
             Self::Number(value) if matches!(kind, Kind::Number(_)) => format!("{value:?}"),
             Self::Number(value) => quoted(value),
             Self::Pair([x, y]) => format!("[{}, {}]", quoted(x), quoted(y)),
+            Self::Points(points) => {
+                let points = points.iter().map(|[x, y]| format!("[{}, {}]", quoted(x), quoted(y)));
+                format!("[{}]", points.collect::<Vec<_>>().join(", "))
+            }
             Self::List(values) => {
                 let bare = matches!(kind, Kind::Numbers(_));
                 let show = |value: &f64| if bare { format!("{value:?}") } else { quoted(value) };
@@ -146,6 +153,7 @@ fn dimension_of(kind: Kind) -> Dimension {
     match kind {
         Kind::Quantity(dimension, _)
         | Kind::Pair(dimension, _)
+        | Kind::Points(dimension, _)
         | Kind::List(dimension, _)
         | Kind::Downward(dimension) => dimension,
         _ => Dimension::NONE,

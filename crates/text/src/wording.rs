@@ -32,6 +32,9 @@ pub(crate) fn noun(key: &Key) -> String {
         Kind::Pair(dimension, _) => {
             format!("an array of two, each {} with its unit,", dimension.name())
         }
+        Kind::Points(dimension, _) => {
+            format!("an array of points, each an array of two, {} with its unit,", dimension.name())
+        }
         Kind::List(dimension, _) => {
             format!("an array, each item {} with its unit,", dimension.name())
         }

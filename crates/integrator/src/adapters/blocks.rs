@@ -22,6 +22,12 @@ impl Block {
     pub fn new(mass: MassProperties, shape: &Rectangle) -> Self {
         Self { mass, radius: shape.radius() }
     }
+
+    /// A block of any shape no part of which is further than `radius` (m) from its mass centre.
+    #[must_use]
+    pub fn within(mass: MassProperties, radius: f64) -> Self {
+        Self { mass, radius }
+    }
 }
 
 /// A coordinate of a block.

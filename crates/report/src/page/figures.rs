@@ -105,7 +105,11 @@ impl<'a> Plots<'a> {
         let x = Axis::around("Angle φ (°)", angles, STILL);
         let y = Axis::around("Angular velocity φ̇ (rad/s)", values(&lines), STILL);
         // A block's critical angles, where one of them is reached: beyond, it overturns.
-        let guides = blocks.iter().flat_map(|block| [-block.alpha.to_degrees(), block.alpha.to_degrees()]).collect();
+        let guides = blocks
+            .iter()
+            .filter_map(|block| block.alpha)
+            .flat_map(|alpha| [-alpha.to_degrees(), alpha.to_degrees()])
+            .collect();
         Figure::new("phase", "Phase portrait of the blocks", x).panel(Panel::new(y).with(lines).guides(guides))
     }
 

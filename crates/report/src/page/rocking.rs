@@ -51,6 +51,8 @@ const RIGHT: usize = 1;
 pub fn half_cycles(recorder: &PageRecorder, summary: &Summary) -> Vec<HalfCycle> {
     let mut cycles = Vec::new();
     for (number, block) in recorder.scenery.blocks.iter().enumerate() {
+        // A polygon has no base to rock on that would say which of its corners land.
+        let Some(alpha) = block.alpha else { continue };
         let mut peaks = summary.peaks.iter().filter(|peak| peak.body == block.name).peekable();
         for crossing in summary.crossings.iter().filter(|crossing| crossing.body == block.name) {
             let before = peaks.next();
@@ -65,7 +67,7 @@ pub fn half_cycles(recorder: &PageRecorder, summary: &Summary) -> Vec<HalfCycle>
                 body: block.name.clone(),
                 t: crossing.t,
                 omega,
-                housner: 1.0 - 1.5 * block.alpha.sin().powi(2),
+                housner: 1.0 - 1.5 * alpha.sin().powi(2),
                 peak_before: before.map(|peak| peak.phi),
                 peak_after: peaks.peek().map(|peak| peak.phi),
             });

@@ -2,7 +2,6 @@
 
 use serde::Serialize;
 use teeter_beam::{Axial, ShapeAt};
-use teeter_rigid::Rectangle;
 use teeter_scenario::scene::{self, Scene};
 use teeter_scenario::simulation::Layout;
 use teeter_scenario::wording;
@@ -11,10 +10,12 @@ use teeter_scenario::wording;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct BlockDrawn {
     pub(crate) name: String,
-    pub(crate) width: f64,
-    pub(crate) height: f64,
-    /// Critical angle, rad.
-    pub(crate) alpha: f64,
+    /// Corners about its mass centre, counter-clockwise, m.
+    pub(crate) corners: Vec<[f64; 2]>,
+    /// Whether it is a rectangle, its first corner bottom left.
+    pub(crate) upright: bool,
+    /// Critical angle of a rectangle, rad.
+    pub(crate) alpha: Option<f64>,
 }
 
 /// A beam as drawn.
@@ -69,6 +70,8 @@ pub(crate) struct PointDrawn {
     pub(crate) block: usize,
     /// The corner of the block.
     pub(crate) corner: usize,
+    /// Its initials, or its number.
+    pub(crate) short: String,
 }
 
 /// All of it.
@@ -80,10 +83,19 @@ pub(crate) struct Scenery {
     pub(crate) blocks: Vec<BlockDrawn>,
     pub(crate) beams: Vec<BeamDrawn>,
     pub(crate) contacts: Vec<ContactDrawn>,
-    pub(crate) corners: [&'static str; 4],
     /// Points of all contacts.
     #[serde(skip)]
     pub(crate) points: usize,
+}
+
+/// BL of bottom-left, 3 of corner-3.
+fn short(corner: &str) -> String {
+    match corner.strip_prefix("corner-") {
+        Some(number) => number.to_owned(),
+        None => {
+            corner.split('-').filter_map(|word| word.chars().next()).map(|first| first.to_ascii_uppercase()).collect()
+        }
+    }
 }
 
 /// Pieces of a beam's line: enough that the eye sees a curve.
@@ -96,8 +108,8 @@ impl Scenery {
     pub(crate) fn new(scene: &Scene, layout: &Layout) -> Self {
         let blocks = scene.blocks.iter().map(|block| BlockDrawn {
             name: block.name.clone(),
-            width: block.width,
-            height: block.height,
+            corners: block.corners().iter().map(|corner| [corner.x, corner.y]).collect(),
+            upright: block.polygon.is_none(),
             alpha: block.critical_angle(),
         });
         let beams = scene.beams.iter().zip(&layout.beams).map(|(drawn, place)| {
@@ -131,6 +143,7 @@ impl Scenery {
                 label: point.name.replace(['-', '.'], " "),
                 block: point.block,
                 corner: point.corner,
+                short: short(&scene.blocks[point.block].corner_name(point.corner)),
             });
             let first = points;
             points += pair.points.len();
@@ -155,7 +168,6 @@ impl Scenery {
             blocks: blocks.collect(),
             beams: beams.collect(),
             contacts,
-            corners: Rectangle::CORNER_NAMES,
             points,
         }
     }

@@ -81,7 +81,7 @@ impl Barrier {
     /// The proof, if there is one, with these pairs `dead`.
     pub(super) fn of(start: &Start<'_>, pairs: &Pairs) -> Option<Self> {
         let scene = start.scene;
-        if scene.blocks.is_empty() || !conserves(start) {
+        if scene.blocks.is_empty() || scene.blocks.iter().any(|block| block.polygon.is_some()) || !conserves(start) {
             return None;
         }
         let stands_on = |live: &Vec<usize>| match live[..] {
@@ -169,7 +169,7 @@ impl Barrier {
         proof.limits.penetration = depth / normal;
         let gap = scene.time.gap_tolerance * normal;
         for (k, of) in scene.blocks.iter().enumerate() {
-            let (mass, radius, alpha) = (of.mass(), radius(k), of.critical_angle());
+            let (mass, radius, alpha) = (of.mass(), radius(k), of.width.atan2(of.height));
             let inertia = mass * (of.width * of.width + of.height * of.height) / 12.0;
             // How high its centre can be over its lowest corner.
             let height = half_height(k) + (limit - least) / weight(k);

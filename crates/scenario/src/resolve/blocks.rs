@@ -1,9 +1,44 @@
 //! Blocks: sides, place, and whether they fit on what they stand on.
 
+use std::sync::Arc;
+
+use nalgebra::Vector2;
+use teeter_detect::Polygon;
+use teeter_rigid::MassProperties;
+
 use super::Resolver;
 use super::contacts::Joined;
 use super::names::BlockName;
 use crate::scene::{BeamScene, BlockScene, ContactScene, Placement, SignalScene, Support};
+
+/// What was said to be wrong.
+struct Refused;
+
+/// A block by its points.
+struct PolygonScene {
+    /// About its mass centre.
+    corners: Arc<[Vector2<f64>]>,
+    /// The mass centre, where it is drawn, m.
+    centre: [f64; 2],
+    /// The largest and the smallest of its extents across its sides, m.
+    extents: [f64; 2],
+}
+
+impl PolygonScene {
+    fn new(points: &[[f64; 2]]) -> Result<Self, String> {
+        let drawn = Polygon::new(points.iter().copied().map(Vector2::from).collect()).map_err(|why| why.to_string())?;
+        let corners = drawn.corners();
+        let (_, centre) = MassProperties::polygon(corners, 1.0, 1.0).map_err(|why| why.to_string())?;
+        let corners: Arc<[Vector2<f64>]> = corners.iter().map(|corner| corner - centre).collect();
+        let across = |k: usize| {
+            let side = (corners[(k + 1) % corners.len()] - corners[k]).normalize();
+            corners.iter().map(|corner| side.perp(&(corner - corners[k]))).fold(0.0, f64::max)
+        };
+        let extents = (0..corners.len()).map(across);
+        let [large, small] = extents.fold([0.0_f64, f64::INFINITY], |[large, small], x| [large.max(x), small.min(x)]);
+        Ok(Self { corners, centre: [centre.x, centre.y], extents: [large, small] })
+    }
+}
 
 impl Resolver<'_, '_> {
     pub(super) fn block(
@@ -17,8 +52,14 @@ impl Resolver<'_, '_> {
         let path = format!("block.{}", block.table);
         let at = |key: &str| format!("{path}.{key}");
         let density = self.material(&path).and_then(|m| self.quantity(&format!("{m}.density")));
-        let width = self.quantity(&at("width"));
-        let height = self.quantity(&at("height"));
+        let (polygon, width, height) = match self.polygon(block) {
+            Ok(Some(polygon)) => {
+                let [width, height] = polygon.extents;
+                (Some(polygon), Some(width), Some(height))
+            }
+            Ok(None) => (None, self.quantity(&at("width")), self.quantity(&at("height"))),
+            Err(Refused) => return None,
+        };
         let depth = self.quantity(&at("depth"));
         let velocity = self.pair(&at("velocity"));
         let spin = self.quantity(&at("spin"));
@@ -31,7 +72,8 @@ impl Resolver<'_, '_> {
                 }
             }
         }
-        let placement = self.placement(block, contacts, joined);
+        let drawn = polygon.as_ref().map(|polygon| polygon.centre);
+        let placement = self.placement(block, drawn, contacts, joined);
         if let (Some(width), Some(placement)) = (width, &placement) {
             self.stands(&block.table, width, placement, beams);
         }
@@ -39,6 +81,7 @@ impl Resolver<'_, '_> {
             name: block.name.clone(),
             width: width?,
             height: height?,
+            polygon: polygon.map(|polygon| polygon.corners),
             depth: depth?,
             density: density?,
             placement: placement?,
@@ -51,6 +94,7 @@ impl Resolver<'_, '_> {
     fn placement(
         &mut self,
         block: &BlockName,
+        drawn: Option<[f64; 2]>,
         contacts: &[Option<ContactScene>],
         joined: &Joined,
     ) -> Option<Placement> {
@@ -60,6 +104,13 @@ impl Resolver<'_, '_> {
             doc.pair(&format!("{path}.repeat.shift")).unwrap_or_default().map(|shift| block.copy as f64 * shift);
         let at = |key: &str| format!("{path}.{key}");
         let written = |key: &str| doc.is_given(&at(key)) || doc.is_refused(&at(key));
+        if drawn.is_some()
+            && let Some(key) = ["on", "at", "tilt"].into_iter().find(|key| written(key))
+        {
+            let remedy = "leave it out: the block starts where its points are, or give position and angle";
+            self.error(&at(key), "a block by its points has no base to stand on", remedy);
+            return None;
+        }
         if written("position") {
             if let Some(key) = ["on", "at", "tilt"].into_iter().find(|key| written(key)) {
                 self.error(
@@ -81,6 +132,9 @@ impl Resolver<'_, '_> {
         if written("angle") {
             self.error(&at("angle"), "angle goes with position", "write tilt, or give position");
             return None;
+        }
+        if let Some([x, y]) = drawn {
+            return Some(Placement::Free { position: [x + shift[0], y + shift[1]], angle: 0.0 });
         }
         if !written("on") {
             self.error(&path, "the block has no place", "give on and at (and tilt), or position (and angle)");
@@ -107,6 +161,13 @@ impl Resolver<'_, '_> {
             self.error(&at("on"), "a block can't stand on itself", self.known_bodies());
             return None;
         }
+        if let Support::Block(below) = support
+            && doc.is_given(&format!("block.{}.points", self.block_names[below].table))
+        {
+            let rule = format!("`{on}` is a block by its points, which has no upper side to be put on");
+            self.error(&at("on"), rule, "give position and angle in place of on, at and tilt");
+            return None;
+        }
         let contact = joined.get(&(self.blocks.get(name).copied()?, support)).copied();
         if contact.is_none() && contacts.iter().all(Option::is_some) && !doc.is_refused("contact") {
             let rule = format!("the block stands on `{on}`, but no contact joins the two");
@@ -117,6 +178,28 @@ impl Resolver<'_, '_> {
         let stacked = block.stands_on.is_some();
         let (at, tilt) = if stacked { (shift[0] / block.copy as f64, 0.0) } else { (x? + shift[0], tilt?) };
         Some(Placement::On { support, at, stacked, tilt, contact: contact? })
+    }
+
+    /// The polygon of a block that is given by its points.
+    fn polygon(&mut self, block: &BlockName) -> Result<Option<PolygonScene>, Refused> {
+        let path = format!("block.{}.points", block.table);
+        if self.doc.is_refused(&path) {
+            return Err(Refused);
+        }
+        let Some(points) = self.doc.points(&path) else { return Ok(None) };
+        for key in ["width", "height"] {
+            let at = format!("block.{}.{key}", block.table);
+            if self.doc.is_given(&at) {
+                self.error(&at, "points already say what shape the block has", "keep points, or width and height");
+                return Err(Refused);
+            }
+        }
+        PolygonScene::new(points)
+            .map_err(|why| {
+                self.error(&path, why, "three corners or more of a convex polygon, in order round it");
+                Refused
+            })
+            .map(Some)
     }
 
     /// Blocks that stand on each other in a circle stand on nothing.

@@ -8,6 +8,7 @@ mod located;
 mod many;
 mod modes;
 mod painleve;
+mod polygons;
 mod projected;
 mod properties;
 mod reading;

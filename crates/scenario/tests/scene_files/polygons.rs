@@ -1,0 +1,135 @@
+//! Blocks by their points.
+
+use std::f64::consts::PI;
+use teeter_integrator::Ended;
+use teeter_scenario::load;
+use teeter_scenario::simulation::Simulation;
+
+const HEAD: &str = "[ground]\n[material.m]\ndensity = '2000 kg/m^3'\n";
+
+fn simulation(text: &str, sets: &[(&str, &str)]) -> Simulation {
+    let resolved = load(text.as_bytes(), "scene", "scene", &super::sets(sets));
+    Simulation::new(&resolved.unwrap_or_else(|errors| panic!("{errors}\n{text}")).scene).unwrap()
+}
+
+fn run(simulation: &mut Simulation) {
+    assert_eq!(simulation.run(&mut []).unwrap(), Ended::Complete);
+}
+
+fn points(points: &[[f64; 2]]) -> String {
+    let points: Vec<String> = points.iter().map(|[x, y]| format!("['{x:?} m', '{y:?} m']")).collect();
+    format!("points = [{}]", points.join(", "))
+}
+
+/// A half-circle arch of equal voussoirs about (0, 0), of radius 1 m to its middle line, on the ground.
+fn arch(voussoirs: usize, thickness: f64) -> String {
+    let corner = |r: f64, k: usize| {
+        let angle = PI * (1.0 - k as f64 / voussoirs as f64);
+        // Both feet stand on the ground.
+        [r * angle.cos(), if k % voussoirs == 0 { 0.0 } else { r * angle.sin() }]
+    };
+    let [inner, outer] = [1.0 - 0.5 * thickness, 1.0 + 0.5 * thickness];
+    let mut text = format!("[time]\nend = '2 s'\nstep = '1 ms'\n{HEAD}");
+    for k in 0..voussoirs {
+        let corners = [corner(inner, k), corner(inner, k + 1), corner(outer, k + 1), corner(outer, k)];
+        text += &format!("[block.v{k}]\nmaterial = 'm'\ndepth = '1 m'\n{}\n", points(&corners));
+    }
+    let joints = (1..voussoirs).map(|k| (format!("v{}", k - 1), format!("v{k}")));
+    let feet = [0, voussoirs - 1].map(|k| (format!("v{k}"), "ground".to_owned()));
+    for (number, (one, other)) in joints.chain(feet).enumerate() {
+        text += &format!("[contact.j{number}]\nbetween = ['{one}', '{other}']\nfriction = 0.5\n");
+    }
+    text
+}
+
+/// The farthest that a mass centre is from where it started.
+fn moved(text: &str) -> f64 {
+    let mut simulation = simulation(text, &[]);
+    let start = simulation.state.q.clone();
+    run(&mut simulation);
+    let ways = simulation.state.q.chunks_exact(3).zip(start.chunks_exact(3));
+    ways.map(|(q, start)| (q[0] - start[0]).hypot(q[1] - start[1])).fold(0.0, f64::max)
+}
+
+/// Limit analysis: a half-circle arch of 27 voussoirs stands from t/R = 0.1067 on, where it falls by hinges.
+#[test]
+fn an_arch_stands_where_limit_analysis_says_so() {
+    for (voussoirs, falls, stands) in [(27, 0.1064, 0.107), (15, 0.1058, 0.1064)] {
+        let off = moved(&arch(voussoirs, stands));
+        assert!(off < 1e-10, "{voussoirs} voussoirs, t/R = {stands}: moved by {off:e} m");
+        let off = moved(&arch(voussoirs, falls));
+        assert!(off > 0.1, "{voussoirs} voussoirs, t/R = {falls}: moved by {off:e} m only");
+    }
+}
+
+/// In every scheme, and wherever they are drawn.
+#[test]
+fn a_rectangle_by_its_points_moves_as_one_by_its_sides() {
+    let more = "depth = '10 cm'\nposition = ['0 m', '50 cm']\nangle = '20 deg'\nspin = '-2 rad/s'\n\
+                [contact.c]\nbetween = ['b', 'ground']\nfriction = 0.4\nrestitution = 0.3";
+    let start = format!("[time]\nend = '0.6 s'\nstep = '1 ms'\n{HEAD}[block.b]\nmaterial = 'm'\n");
+    let by_sides = format!("{start}width = '20 cm'\nheight = '40 cm'\n{more}");
+    let drawn = [[0.5, 0.25], [0.75, 0.25], [0.75, 0.75], [0.5, 0.75]].map(|[x, y]| [0.8 * x, 0.8 * y]);
+    let clockwise = [drawn[0], drawn[3], drawn[2], drawn[1]];
+    for scheme in ["moreau-jean", "moreau-jean-closed", "moreau-jean-located", "event-driven", "generalized-alpha"] {
+        let end = |text: &str| {
+            let scheme = format!("'{scheme}'");
+            let mut simulation = simulation(text, &[("time.scheme", &scheme)]);
+            run(&mut simulation);
+            simulation.state.q
+        };
+        let expected = end(&by_sides);
+        assert!(expected[1] < 0.25, "{scheme}: it doesn't land");
+        for drawn in [drawn, clockwise] {
+            let q = end(&format!("{start}{}\n{more}", points(&drawn)));
+            let off = q.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-11, "{scheme}: {off:e}");
+        }
+    }
+}
+
+/// A triangle falls when the line down from its mass centre passes its toe: one with a right angle, 30 cm wide and 15 cm high, its steep side
+/// downhill, at atan(10/5); where its steep side is uphill, at atan(20/5).
+#[test]
+fn a_triangle_falls_where_its_mass_centre_passes_its_toe() {
+    let triangle = [[0.0, 0.0], [0.3, 0.0], [0.0, 0.15]];
+    let mirrored = [[0.0, 0.0], [0.3, 0.0], [0.3, 0.15]];
+    for (drawn, toe) in [(triangle, 0.1), (mirrored, 0.2)] {
+        let critical = (toe / 0.05_f64).atan();
+        for (past, falls) in [(-1e-4, false), (1e-4, true)] {
+            // Gravity turns in place of the ground: it points downhill, to the left.
+            let angle = critical + past;
+            let gravity = [-9.81 * angle.sin(), -9.81 * angle.cos()];
+            let text = format!(
+                "[time]\nend = '2 s'\nstep = '1 ms'\n[world]\ngravity = ['{:?} m/s^2', '{:?} m/s^2']\n{HEAD}\
+                 [block.b]\nmaterial = 'm'\ndepth = '10 cm'\n{}\n[contact.c]\nbetween = ['b', 'ground']\nfriction = 9.0\n",
+                gravity[0],
+                gravity[1],
+                points(&drawn)
+            );
+            let mut simulation = simulation(&text, &[]);
+            run(&mut simulation);
+            let turned = simulation.state.q[2].abs();
+            assert!(if falls { turned > 0.1 } else { turned < 1e-12 }, "{past:e} past {critical}: turned by {turned}");
+        }
+    }
+}
+
+#[test]
+fn points_that_are_no_convex_polygon_are_refused_with_the_corner() {
+    let told = |keys: &str| {
+        let text = format!(
+            "[time]\nend = '1 s'\nstep = '1 ms'\n{HEAD}[block.b]\nmaterial = 'm'\ndepth = '1 m'\n{keys}\n\
+             [contact.c]\nbetween = ['b', 'ground']\nfriction = 0.5\n"
+        );
+        load(text.as_bytes(), "scene", "scene", &[]).map(|_| ()).unwrap_err().to_string()
+    };
+    let of = |corners: &[[f64; 2]]| told(&points(corners));
+    assert!(of(&[[0.0, 0.0], [1.0, 0.0]]).contains("a polygon has 3 to"));
+    assert!(of(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]).contains("straight on"));
+    assert!(of(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]).contains("turns inwards"), "it crosses itself");
+    let triangle = points(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
+    assert!(told(&format!("{triangle}\nwidth = '1 m'")).contains("points already say"));
+    assert!(told(&format!("{triangle}\non = 'ground'\nat = '0 m'")).contains("no base to stand on"));
+    assert!(told("points = [['0 m'], ['1 m', '0 m'], ['0 m', '1 m']]").contains("an array of two is expected, got 1"));
+}
