@@ -62,8 +62,9 @@ pub fn arch(
     let step = angle / n as f64;
     let [inner, outer] = [radius - 0.5 * thickness, radius + 0.5 * thickness];
     let of_sector = 0.5 * step * (outer * outer - inner * inner);
-    let sector_radius = (outer.powi(3) - inner.powi(3)) / (outer * outer - inner * inner) * (2.0 / 3.0)
-        * (0.5 * step).sin() / (0.5 * step);
+    let sector_radius =
+        (outer.powi(3) - inner.powi(3)) / (outer * outer - inner * inner) * (2.0 / 3.0) * (0.5 * step).sin()
+            / (0.5 * step);
     let block = |(i, polygon): (usize, Vec<Point>)| {
         let beta = -0.5 * angle + step * (i as f64 + 0.5);
         let out = Point::new(-beta.sin(), beta.cos());
@@ -76,8 +77,7 @@ pub fn arch(
     let polygons = voussoirs(n, angle, radius, thickness)?;
     let blocks = polygons.into_iter().enumerate().map(block).collect::<Result<_, _>>()?;
     let springer = 0.1_f64.min(0.25 * (TAU - angle));
-    let springers =
-        [-0.5 * angle - springer, 0.5 * angle].map(|from| voussoir(from, springer, radius, thickness));
+    let springers = [-0.5 * angle - springer, 0.5 * angle].map(|from| voussoir(from, springer, radius, thickness));
     Assemblage::new(blocks, &springers)
 }
 

@@ -203,8 +203,7 @@ mod tests {
         let table = vec![Point::new(-1.0, -1.0), Point::new(0.75, -1.0), Point::new(0.75, 0.0), Point::new(-1.0, 0.0)];
         let assemblage = Assemblage::new(blocks, &[table])?;
         let [lower, upper] = assemblage.joints() else { panic!("{:?}", assemblage.joints()) };
-        let (lower, upper) =
-            if lower.sides[1] == Side::Ground { (lower, upper) } else { (upper, lower) };
+        let (lower, upper) = if lower.sides[1] == Side::Ground { (lower, upper) } else { (upper, lower) };
         assert_eq!(lower.ends, [Point::new(0.0, 0.0), Point::new(0.75, 0.0)]);
         assert_eq!((lower.sides, lower.normal), ([Side::Block(0), Side::Ground], Point::new(0.0, 1.0)));
         assert_eq!(upper.ends, [Point::new(1.0, 1.0), Point::new(0.25, 1.0)]);
