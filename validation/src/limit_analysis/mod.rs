@@ -10,6 +10,10 @@
 //! *Coulomb friction, plasticity, and limit loads*, J. Appl. Mech. 21, 1954): λ of [`load_factor`] is then an upper bound. Without
 //! sliding in the mechanism of collapse, λ is exact.
 //!
+//! The literature's t/R = 0.1067 of the semicircle of 27 voussoirs, R to the centre line, is that of polygons
+//! ([`VoussoirWeight::Polygon`]: corners on the circles of intrados and extrados, straight chords between, weight at the polygon's
+//! centroid), 0.106721; sectors of the ring with their own weight and centroid give 0.106776, weights on the centre line 0.106757.
+//!
 //! ```
 //! # use teeter_validation::limit_analysis::{LimitError, minimum_thickness};
 //! let thickness = minimum_thickness(9, std::f64::consts::PI, 0.5)?;
@@ -20,10 +24,12 @@
 mod arch;
 mod assemblage;
 mod program;
+mod thrust_line;
 
 pub use arch::{BRACKET, VoussoirWeight, arch, minimum_thickness, minimum_thickness_with, voussoirs};
 pub use assemblage::{Assemblage, Block, Joint, Point, Side};
 pub use program::{Load, LoadFactor, accelerated, load_factor, margin, stands};
+pub use thrust_line::thrust_line_thickness;
 
 use thiserror::Error;
 
