@@ -5,10 +5,10 @@
 //! the normal forces N₁, N₂ ≥ 0 at its ends and the tangential force |T| ≤ μ (N₁ + N₂), and equilibrium is linear in these.
 //! [`margin`] and [`stands`] ask whether they exist, [`load_factor`] how far a load can be raised until they don't.
 //!
-//! Where none exist, the blocks move, whatever the friction does. Where some do, the assemblage *can* stand: velocity zero
-//! solves the contact problem of every step. With sliding it needn't be the only solution, as Coulomb's law isn't associated (D. C. Drucker,
-//! *Coulomb friction, plasticity, and limit loads*, J. Appl. Mech. 21, 1954): λ of [`load_factor`] is then an upper bound. Without
-//! sliding in the mechanism of collapse, λ is exact.
+//! Where none exist, the blocks move, whatever the friction does. Where some do, the assemblage *can* stand: velocity
+//! zero solves the contact problem of every step. With sliding it needn't be the only solution, as Coulomb's law isn't
+//! associated (D. C. Drucker, *Coulomb friction, plasticity, and limit loads*, J. Appl. Mech. 21, 1954): λ of
+//! [`load_factor`] is then an upper bound. Without sliding in the mechanism of collapse, λ is exact.
 //!
 //! The literature's t/R = 0.1067 of the semicircle of 27 voussoirs, R to the centre line, is that of polygons
 //! ([`VoussoirWeight::Polygon`]: corners on the circles of intrados and extrados, straight chords between, weight at the polygon's
