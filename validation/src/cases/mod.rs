@@ -20,6 +20,7 @@ mod energy_identity;
 mod housner_order;
 mod impact_laws;
 mod incline;
+mod limit_analysis;
 mod moving_ground;
 mod overturning;
 mod resting;
@@ -58,5 +59,6 @@ pub(crate) fn all() -> Vec<Box<dyn Case>> {
         Box::new(resting::Resting),
         Box::new(moving_ground::MovingGround),
         Box::new(overturning::Overturning),
+        Box::new(limit_analysis::LimitAnalysis),
     ]
 }
