@@ -29,7 +29,7 @@ impl Case for LimitAnalysis {
          programme: two unknowns, all pairs of hinges). The literature's 0.1067 for the semicircle of 27 is that of polygons: \
          corners on the circles of intrados and extrados, straight chords, weight at the polygon's centroid. With the weight of true \
          sectors of the ring it is 0.1068. 181 of these need a little less than the continuous arch: 0.107478 with the weight at \
-         the sector's centroid (Milankovitch), 0.107426 with it on the centre line (Cochetti, Colasante and Rizzi 2011). A semicircle with \
+         the sector's centroid (Milankovitch), 0.107426 with it on the centre line (Cocchetti, Colasante and Rizzi 2011). A semicircle with \
          μ = 0.3 slides off its springers whatever its thickness; from 160° down that friction is as good as 0.5. Stacks, overhangs, \
          piles and pyramids are in `validation/tests/limit_analysis.rs`."
     }
