@@ -1,0 +1,246 @@
+//! Corrections: each gives a new record.
+
+use std::f64::consts::PI;
+
+use crate::error::RecordError;
+use crate::record::Record;
+
+/// Highest degree of a baseline.
+const HIGHEST_DEGREE: usize = 5;
+
+impl Record {
+    /// All accelerations times a factor, which may be negative (the other direction) or 0.
+    ///
+    /// # Errors
+    /// If the factor isn't finite, or makes an acceleration larger than
+    /// [`LARGEST_ACCELERATION`](crate::LARGEST_ACCELERATION).
+    pub fn scaled(&self, factor: f64) -> Result<Self, RecordError> {
+        if !factor.is_finite() {
+            return Err(RecordError::Parameter { what: "the factor", value: factor, range: "finite" });
+        }
+        self.with(self.accelerations().iter().map(|a| factor * a).collect())
+    }
+
+    /// Scaled to a peak acceleration, m/s²; signs are kept.
+    ///
+    /// # Errors
+    /// If the peak isn't positive and finite, or if the record is 0 throughout.
+    pub fn scaled_to_peak(&self, peak: f64) -> Result<Self, RecordError> {
+        if !(peak > 0.0 && peak.is_finite()) {
+            let range = "positive and finite";
+            return Err(RecordError::Parameter { what: "the peak acceleration", value: peak, range });
+        }
+        let most = self.peak_acceleration();
+        if most == 0.0 {
+            return Err(RecordError::Still);
+        }
+        // Dividing first: the largest value becomes the peak itself.
+        self.with(self.accelerations().iter().map(|a| a / most * peak).collect())
+    }
+
+    /// The values with times in [`from`, `to`], s, the time of the first being 0 in the new record.
+    /// A value that is off an end by less than a millionth of the step counts as in it.
+    ///
+    /// # Errors
+    /// If fewer than two values are left, or a time is NaN (an infinite one is beyond the end).
+    pub fn cut(&self, from: f64, to: f64) -> Result<Self, RecordError> {
+        let nothing = || RecordError::Cut { from, to, duration: self.duration() };
+        let (first, last) = ((from / self.dt() - 1e-6).ceil().max(0.0), (to / self.dt() + 1e-6).floor());
+        let last = last.min((self.len() - 1) as f64);
+        if !(first < last) || from.is_nan() || to.is_nan() {
+            return Err(nothing());
+        }
+        let kept = self.accelerations().get(first as usize..=last as usize).ok_or_else(nothing)?;
+        self.with(kept.to_vec())
+    }
+
+    /// Faded in and out by half a cosine (a Tukey window): at the time τ from either end, below
+    /// `fraction` times the duration T, the acceleration is multiplied by (1 − cos(π τ/(fraction·T)))/2.
+    /// A `fraction` of 0 leaves the record as it is, 0.5 leaves no part between the two fades.
+    ///
+    /// # Errors
+    /// If the fraction isn't in [0, 0.5].
+    pub fn tapered(&self, fraction: f64) -> Result<Self, RecordError> {
+        if !(0.0..=0.5).contains(&fraction) {
+            let range = "from 0 to 0.5 (of the duration, at each end)";
+            return Err(RecordError::Parameter { what: "the taper", value: fraction, range });
+        }
+        let (last, fade) = (self.len() - 1, fraction * self.duration());
+        let window = |k: usize| {
+            let tau = self.time(k.min(last - k));
+            if tau < fade { 0.5 * (1.0 - (PI * tau / fade).cos()) } else { 1.0 }
+        };
+        self.with(self.accelerations().iter().enumerate().map(|(k, a)| a * window(k)).collect())
+    }
+
+    /// Without its baseline: of all polynomials of a degree up to `degree` (0 to 5), the one p with the least
+    /// Σₖ (aₖ − p(tₖ))² over the values aₖ, each of the same weight, is subtracted from the acceleration.
+    /// Neither velocity nor displacement is fitted, nor anything made zero at the ends. It is
+    /// computed in Legendre polynomials of x = 2t/T − 1, T being the duration, so that it is as accurate as
+    /// the values are.
+    ///
+    /// # Errors
+    /// If the degree is over 5, or there are no more values than the degree plus 1.
+    pub fn baseline_corrected(&self, degree: usize) -> Result<Self, RecordError> {
+        if degree > HIGHEST_DEGREE {
+            let (value, range) = (degree as f64, "a whole number from 0 to 5");
+            return Err(RecordError::Parameter { what: "the degree of the baseline", value, range });
+        }
+        if self.len() <= degree + 1 {
+            let (value, range) = (degree as f64, "less than the number of values minus 1");
+            return Err(RecordError::Parameter { what: "the degree of the baseline", value, range });
+        }
+        let mut accelerations = self.accelerations().to_vec();
+        // What rounding leaves of a large baseline the second pass takes.
+        for _ in 0..2 {
+            subtract_fit(&mut accelerations, degree);
+        }
+        self.with(accelerations)
+    }
+}
+
+/// Subtracts the least-squares polynomial.
+fn subtract_fit(values: &mut [f64], degree: usize) {
+    let last = (values.len() - 1) as f64;
+    let basis = |k: usize| legendre(2.0 * (k as f64 / last) - 1.0);
+    let mut matrix = [[0.0; HIGHEST_DEGREE + 1]; HIGHEST_DEGREE + 1];
+    let mut side = [0.0; HIGHEST_DEGREE + 1];
+    for (k, value) in values.iter().enumerate() {
+        let p = basis(k);
+        for i in 0..=degree {
+            side[i] += p[i] * value;
+            for j in 0..=i {
+                matrix[i][j] += p[i] * p[j];
+            }
+        }
+    }
+    solve(&mut matrix, &mut side, degree + 1);
+    for (k, value) in values.iter_mut().enumerate() {
+        *value -= basis(k).iter().zip(side).take(degree + 1).map(|(p, c)| p * c).sum::<f64>();
+    }
+}
+
+/// P₀(x) to P₅(x), by Bonnet's recursion.
+fn legendre(x: f64) -> [f64; HIGHEST_DEGREE + 1] {
+    let mut p = [1.0; HIGHEST_DEGREE + 1];
+    p[1] = x;
+    for n in 1..HIGHEST_DEGREE {
+        let m = n as f64;
+        p[n + 1] = ((2.0 * m + 1.0) * x * p[n] - m * p[n - 1]) / (m + 1.0);
+    }
+    p
+}
+
+/// Solves the symmetric, positive definite system of the lower triangle, by L Lᵀ.
+fn solve(a: &mut [[f64; HIGHEST_DEGREE + 1]; HIGHEST_DEGREE + 1], b: &mut [f64; HIGHEST_DEGREE + 1], n: usize) {
+    for i in 0..n {
+        for j in 0..=i {
+            let sum: f64 = a[i][j] - (0..j).map(|k| a[i][k] * a[j][k]).sum::<f64>();
+            a[i][j] = if i == j { sum.sqrt() } else { sum / a[j][j] };
+        }
+        b[i] = (b[i] - (0..i).map(|k| a[i][k] * b[k]).sum::<f64>()) / a[i][i];
+    }
+    for i in (0..n).rev() {
+        b[i] = (b[i] - (i + 1..n).map(|k| a[k][i] * b[k]).sum::<f64>()) / a[i][i];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn record(values: impl IntoIterator<Item = f64>) -> Record {
+        Record::new("R", 0.01, values.into_iter().collect()).unwrap()
+    }
+
+    #[test]
+    fn scaling_meets_its_peak() {
+        let one = record([0.1, -0.7, 0.3]);
+        assert_eq!(one.scaled(-2.0).unwrap().accelerations(), [-0.2, 1.4, -0.6]);
+        let to = one.scaled_to_peak(3.0).unwrap();
+        assert_eq!((to.peak_acceleration(), to.accelerations()[1]), (3.0, -3.0));
+        let told = |error: RecordError| error.to_string();
+        assert_eq!(told(one.scaled(f64::NAN).unwrap_err()), "the factor is NaN, but must be finite");
+        assert_eq!(
+            told(one.scaled_to_peak(-1.0).unwrap_err()),
+            "the peak acceleration is -1, but must be positive and finite"
+        );
+        assert_eq!(
+            told(record([0.0, 0.0]).scaled_to_peak(1.0).unwrap_err()),
+            "the acceleration is 0 throughout: it can't be scaled to a peak"
+        );
+        assert!(told(one.scaled(1e300).unwrap_err()).contains("at most 1e12 m/s^2"));
+    }
+
+    #[test]
+    fn a_cut_has_both_its_ends() {
+        let whole = record((0..=100).map(f64::from));
+        let part = whole.cut(0.07, 0.57).unwrap();
+        assert_eq!((part.len(), part.accelerations()[0], part.accelerations()[50]), (51, 7.0, 57.0));
+        assert_eq!(whole.cut(-1.0, 9.0).unwrap(), whole);
+        assert_eq!(whole.cut(f64::NEG_INFINITY, f64::INFINITY).unwrap(), whole);
+        assert_eq!(
+            whole.cut(0.5, 0.505).unwrap_err().to_string(),
+            "from 0.5 s to 0.505 s there are fewer than two values; the record goes from 0 s to 1 s"
+        );
+        for (from, to) in [(0.6, 0.5), (2.0, 3.0), (f64::NAN, 1.0), (0.0, f64::NAN), (-2.0, -1.0)] {
+            assert!(whole.cut(from, to).is_err(), "{from} {to}");
+        }
+    }
+
+    #[test]
+    fn a_taper_is_half_a_cosine_at_each_end() {
+        let one = record([1.0; 101]);
+        let faded = one.tapered(0.2).unwrap();
+        let a = faded.accelerations();
+        assert_eq!((a[0], a[20], a[50], a[80], a[100]), (0.0, 1.0, 1.0, 1.0, 0.0));
+        assert!((a[10] - 0.5).abs() < 1e-15 && (a[5] - 0.5 * (1.0 - (PI / 4.0).cos())).abs() < 1e-15);
+        assert!((0..=50).all(|k| a[k] == a[100 - k]));
+        assert_eq!(one.tapered(0.0).unwrap(), one);
+        assert_eq!(
+            one.tapered(0.6).unwrap_err().to_string(),
+            "the taper is 0.6, but must be from 0 to 0.5 (of the duration, at each end)"
+        );
+    }
+
+    #[test]
+    fn a_polynomial_is_taken_away_whole() {
+        let polynomial = |x: f64| 3.0 + x * (-2.0 + x * (0.5 + x * (4.0 + x * (-6.0 + x * 5.0))));
+        let one = record((0..=2000).map(|k| polynomial(f64::from(k) / 2000.0)));
+        let left = one.baseline_corrected(5).unwrap().peak_acceleration();
+        // Of values up to 4.5 m/s², 2000 of them.
+        assert!(left < 1e-12, "{left:e}");
+        assert!(one.baseline_corrected(4).unwrap().peak_acceleration() > 1e-3);
+    }
+
+    #[test]
+    fn what_is_left_has_no_polynomial_in_it() {
+        // Noise of a linear congruence, upon a parabola.
+        let mut seed = 1_u32;
+        let mut noise = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(seed) / f64::from(u32::MAX) - 0.5
+        };
+        let one = record((0..501).map(|k| noise() + 1e-5 * f64::from(k * k)));
+        for degree in 0..=5_usize {
+            let left = one.baseline_corrected(degree).unwrap();
+            for power in 0..=degree {
+                let moment = |(k, a): (usize, &f64)| (k as f64 / 500.0).powi(power as i32) * a;
+                let sum: f64 = left.accelerations().iter().enumerate().map(moment).sum();
+                assert!(sum.abs() < 1e-12, "degree {degree}, power {power}: {sum:e}");
+            }
+        }
+        assert_eq!(
+            one.baseline_corrected(6).unwrap_err().to_string(),
+            "the degree of the baseline is 6, but must be a whole number from 0 to 5"
+        );
+        assert!(
+            record([1.0, 2.0])
+                .baseline_corrected(1)
+                .unwrap_err()
+                .to_string()
+                .contains("less than the number of values")
+        );
+        assert!(record([1.0, 2.0]).baseline_corrected(0).is_ok());
+    }
+}

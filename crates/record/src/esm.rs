@@ -1,0 +1,147 @@
+//! ESM's ASCII files (also called DYNA): lines `KEY: value`, 64 of them as a rule, then one value of
+//! acceleration a line.
+
+use crate::MOST_VALUES;
+use crate::error::{RecordError, shown};
+use crate::format::Format;
+use crate::numbers;
+use crate::record::Record;
+use crate::units;
+
+/// What a header says of the values.
+#[derive(Default)]
+struct Header<'a> {
+    count: Option<(usize, usize)>,
+    step: Option<f64>,
+    unit: Option<f64>,
+    network: &'a str,
+    station: &'a str,
+    station_name: &'a str,
+    event: &'a str,
+    date: &'a str,
+    stream: &'a str,
+}
+
+impl<'a> Header<'a> {
+    fn take(&mut self, line: usize, key: &str, value: &'a str) -> Result<(), RecordError> {
+        let number = || {
+            let reason = format!("{key} is `{}`, but must be a number", shown(value));
+            numbers::one(value).ok_or(RecordError::Header { line, reason })
+        };
+        match key {
+            "NDATA" => {
+                let count = number()?;
+                if !(count >= 0.0 && count <= MOST_VALUES as f64 && count.fract() == 0.0) {
+                    let reason = format!("NDATA is {count}, but must be a whole number from 2 to {MOST_VALUES}");
+                    return Err(RecordError::Header { line, reason });
+                }
+                self.count = Some((line, count as usize));
+            }
+            "SAMPLING_INTERVAL_S" => self.step = Some(number()?),
+            "DATA_TYPE" if !value.eq_ignore_ascii_case("ACCELERATION") => {
+                return Err(RecordError::NotAcceleration { line, found: shown(value), remedy: "" });
+            }
+            "UNITS" => self.unit = Some(units::acceleration(line, value)?),
+            "NETWORK" => self.network = value,
+            "STATION_CODE" => self.station = value,
+            "STATION_NAME" => self.station_name = value,
+            "EVENT_NAME" => self.event = value,
+            "EVENT_DATE_YYYYMMDD" => self.date = value,
+            "STREAM" => self.stream = value,
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn station(&self) -> String {
+        let code =
+            [self.network, self.station].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(".");
+        if self.station_name.is_empty() { code } else { format!("{code} {}", self.station_name) }
+    }
+
+    fn description(&self) -> String {
+        let parts = [self.event, self.date, self.stream];
+        parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
+    }
+}
+
+pub(crate) fn read(text: &str) -> Result<Record, RecordError> {
+    let mut header = Header::default();
+    let mut values: Vec<(usize, f64)> = Vec::new();
+    for (index, text) in text.lines().enumerate() {
+        let (line, text) = (index + 1, text.trim());
+        if text.is_empty() {
+            continue;
+        }
+        if let Some((key, value)) = text.split_once(':').filter(|_| values.is_empty()) {
+            header.take(line, key.trim(), value.trim())?;
+            continue;
+        }
+        if values.len() == MOST_VALUES {
+            return Err(RecordError::TooMany);
+        }
+        let hint = if text.contains(char::is_whitespace) { "; an ESM file has one value a line" } else { "" };
+        let bad = RecordError::Number { line, text: shown(text), hint };
+        values.push((line, numbers::one(text).ok_or(bad)?));
+    }
+    let missing = |what| RecordError::Missing { format: Format::Esm, what };
+    let (at, announced) = header.count.ok_or(missing("NDATA"))?;
+    let step = header.step.ok_or(missing("SAMPLING_INTERVAL_S"))?;
+    let unit = header.unit.ok_or(missing("UNITS"))?;
+    if values.len() != announced {
+        return Err(RecordError::Count { line: at, announced, found: values.len() });
+    }
+    let mut accelerations = Vec::with_capacity(values.len());
+    for (line, value) in values {
+        if !((value * unit).abs() <= crate::LARGEST_ACCELERATION) {
+            return Err(RecordError::Value { line, value });
+        }
+        accelerations.push(value * unit);
+    }
+    Ok(Record::new("", step, accelerations)?.described(&header.station(), &header.description()))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::Record;
+
+    const FILE: &str = "EVENT_NAME: None\nEVENT_DATE_YYYYMMDD: 20000823\nHYPOCENTER_REFERENCE: ISC: webservice\nNETWORK: XX\n\
+        STATION_CODE: 1001\nSTATION_NAME:\nSAMPLING_INTERVAL_S: 0.005000\nNDATA: 3\nSTREAM: HNE\nUNITS: cm/s^2\n\
+        DATABASE_VERSION: 0.5\nHEADER_FORMAT: DYNA 1.2\nDATA_TYPE: ACCELERATION\nUSER5:\n-1.5\n 25.0E+00\n0.000125\n";
+
+    fn read(text: &str) -> Result<Record, String> {
+        Record::read(text, "R").map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn header_and_values_are_read() {
+        for text in [FILE.to_owned(), FILE.replace('\n', "\r\n")] {
+            let record = read(&text).unwrap();
+            assert_eq!(record.accelerations(), [-1.5 * 0.01, 25.0 * 0.01, 0.000_125 * 0.01]);
+            assert_eq!((record.dt(), record.station()), (0.005, "XX.1001"));
+            assert_eq!(record.description(), "None, 20000823, HNE");
+        }
+        assert_eq!(read(&FILE.replace("cm/s^2", "m/s^2")).unwrap().accelerations()[1], 25.0);
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_with_its_line() {
+        let told = |from: &str, to: &str| read(&FILE.replace(from, to)).unwrap_err();
+        assert_eq!(told("NDATA: 3", "NDATA: 4"), "line 8: the header announces 4 values, but the file has 3");
+        assert_eq!(told("NDATA: 3", "NDATA: few"), "line 8: NDATA is `few`, but must be a number");
+        assert!(told("NDATA: 3", "NDATA: -3").starts_with("line 8: NDATA is -3, but must be a whole number from 2"));
+        assert_eq!(told("NDATA: 3\n", ""), "this ESM file has no NDATA in its header");
+        assert_eq!(
+            told("SAMPLING_INTERVAL_S: 0.005000\n", ""),
+            "this ESM file has no SAMPLING_INTERVAL_S in its header"
+        );
+        assert_eq!(told("UNITS: cm/s^2\n", ""), "this ESM file has no UNITS in its header");
+        assert!(told("cm/s^2", "cm/s").starts_with("line 10: `cm/s` is no known unit of an acceleration: m/s^2, "));
+        assert_eq!(
+            told(": ACCELERATION", ": VELOCITY"),
+            "line 13: the file holds `VELOCITY`, but a record is an acceleration"
+        );
+        assert_eq!(told("-1.5\n", "-1.5 2\n"), "line 15: `-1.5 2` is no number; an ESM file has one value a line");
+        assert_eq!(told("0.000125", "0.0001x"), "line 17: `0.0001x` is no number");
+    }
+}

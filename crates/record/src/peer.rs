@@ -1,0 +1,180 @@
+//! PEER's `.AT2`: three lines of words, one with the number of values and the step, then values of
+//! acceleration in g, several a line.
+//!
+//! The line of numbers has two forms: `NPTS=  5437, DT=   .0050 SEC`, in any case and spacing and
+//! with or without the unit, and, of older files, `5437   0.0050   NPTS, DT`.
+
+use crate::error::{RecordError, shown};
+use crate::format::Format;
+use crate::numbers;
+use crate::record::Record;
+use crate::units;
+use crate::{MOST_VALUES, STANDARD_GRAVITY};
+
+/// What a right line of numbers looks like.
+const EXAMPLE: &str = "but it must give both, such as `NPTS=  5437, DT=   .0050 SEC` or `5437   .0050   NPTS, DT`";
+
+/// The sister files of a record, by the quantity that their header names.
+const OTHERS: [(&str, &str); 2] = [
+    ("VELOCITY", " (this is the .VT2 file: take the .AT2 beside it)"),
+    ("DISPLACEMENT", " (this is the .DT2 file: take the .AT2 beside it)"),
+];
+
+pub(crate) fn read(text: &str) -> Result<Record, RecordError> {
+    let mut lines = text.lines().enumerate().map(|(index, line)| (index + 1, line));
+    let mut words: Vec<&str> = Vec::new();
+    let mut unit = STANDARD_GRAVITY;
+    let (at, numbers) = loop {
+        let Some((line, text)) = lines.next() else {
+            return Err(RecordError::Missing { format: Format::Peer, what: "line with NPTS and DT" });
+        };
+        let upper = text.to_ascii_uppercase();
+        if upper.contains("NPTS") {
+            break (line, upper);
+        }
+        if upper.contains("UNITS OF") {
+            unit = unit_of(line, text, &upper)?;
+        } else if !text.trim().is_empty() {
+            words.push(text);
+        }
+    };
+    let (announced, dt) = count_and_step(at, &numbers)?;
+    let mut accelerations = Vec::new();
+    for (line, text) in lines {
+        numbers::free(line, text, |value| {
+            if accelerations.len() == MOST_VALUES {
+                return Err(RecordError::TooMany);
+            }
+            let scaled = value * unit;
+            if !(scaled.abs() <= crate::LARGEST_ACCELERATION) {
+                return Err(RecordError::Value { line, value });
+            }
+            accelerations.push(scaled);
+            Ok(())
+        })?;
+    }
+    if accelerations.len() != announced {
+        return Err(RecordError::Count { line: at, announced, found: accelerations.len() });
+    }
+    // The first line names the database, the one after it event, station and component.
+    let description = words.get(1).or(words.first()).copied().unwrap_or_default();
+    Ok(Record::new("", dt, accelerations)?.described(station(description), description))
+}
+
+/// m/s² in the unit of the values, from a line such as `ACCELERATION TIME HISTORY IN UNITS OF G`.
+fn unit_of(line: usize, text: &str, upper: &str) -> Result<f64, RecordError> {
+    if let Some((_, remedy)) = OTHERS.iter().find(|(quantity, _)| upper.contains(quantity)) {
+        return Err(RecordError::NotAcceleration { line, found: shown(text), remedy });
+    }
+    let unit = upper.split("UNITS OF").nth(1).unwrap_or_default();
+    let unit = unit.split_whitespace().next().unwrap_or_default().trim_end_matches(['.', ',', ';']);
+    units::acceleration(line, unit)
+}
+
+fn count_and_step(line: usize, text: &str) -> Result<(usize, f64), RecordError> {
+    let (count, step) = if text.contains('=') {
+        (after(text, "NPTS"), after(text, "DT"))
+    } else {
+        let mut words = text.split(|c: char| c.is_whitespace() || c == ',').filter(|word| !word.is_empty());
+        (words.next(), words.next())
+    };
+    let read = |word: Option<&str>, what: &str| match word {
+        Some(word) => numbers::one(word).ok_or_else(|| format!("{what} is `{}`, {EXAMPLE}", shown(word))),
+        None => Err(format!("{what} is missing, {EXAMPLE}")),
+    };
+    let both = || Ok((read(count, "NPTS")?, read(step, "DT")?));
+    let (count, step) = both().map_err(|reason| RecordError::Header { line, reason })?;
+    if !(count >= 0.0 && count <= MOST_VALUES as f64 && count.fract() == 0.0) {
+        let reason = format!("NPTS is {count}, but must be a whole number from 2 to {MOST_VALUES}");
+        return Err(RecordError::Header { line, reason });
+    }
+    Ok((count as usize, step))
+}
+
+/// The word behind `KEY =`.
+fn after<'a>(text: &'a str, key: &str) -> Option<&'a str> {
+    let mut behind = text.split(key).skip(1).filter_map(|rest| rest.trim_start().strip_prefix('='));
+    let rest = behind.next()?.trim_start();
+    rest.split(|c: char| c.is_whitespace() || c == ',').next().filter(|word| !word.is_empty())
+}
+
+/// The station of a line such as `EVENT 01/01/70 1200, STATION, 090 (CDMG STATION 54100)`: what stands
+/// before the last comma, the component being behind it.
+fn station(description: &str) -> &str {
+    let mut parts = description.rsplit(',');
+    match (parts.next(), parts.next(), parts.next()) {
+        (_, Some(station), Some(_)) => station.trim(),
+        _ => "",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Record, STANDARD_GRAVITY};
+
+    const HEAD: &str = "PEER NGA STRONG MOTION DATABASE RECORD\nEvent, 10/15/1979, El Somewhere, 230\nACCELERATION TIME SERIES IN UNITS OF G\n";
+
+    fn read(text: &str) -> Result<Record, String> {
+        Record::read(text, "R").map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn new_and_old_headers_give_the_same() {
+        let lines = [
+            "NPTS=      4, DT=   .0050 SEC,",
+            "NPTS=   4, dt=  .00500",
+            "npts = 4 dt = 5e-3 sec",
+            "DT=.005, NPTS=4",
+            "   4    .0050   NPTS, DT",
+            "4, 0.005 NPTS, DT",
+        ];
+        for line in lines {
+            let text = format!("{HEAD}{line}\n  .5 -.25E+00\n.125-.0625\n\n");
+            for text in [text.clone(), text.replace('\n', "\r\n"), format!("\u{feff}{text}")] {
+                let record = read(&text).unwrap();
+                assert_eq!(
+                    record.accelerations(),
+                    [0.5, -0.25, 0.125, -0.0625].map(|g| g * STANDARD_GRAVITY),
+                    "{line}"
+                );
+                assert_eq!((record.dt(), record.name(), record.station()), (0.005, "R", "El Somewhere"));
+                assert_eq!(record.description(), "Event, 10/15/1979, El Somewhere, 230");
+            }
+        }
+    }
+
+    #[test]
+    fn units_are_those_of_the_header() {
+        let text = HEAD.replace("UNITS OF G", "UNITS OF CM/SEC**2. FILTER POINTS") + "NPTS= 2, DT= 1\n100 50\n";
+        assert_eq!(read(&text).unwrap().accelerations(), [1.0, 0.5]);
+        let told = read(&(HEAD.replace("OF G", "OF FURLONGS") + "NPTS= 2, DT= 1\n1 2\n")).unwrap_err();
+        assert_eq!(told, "line 3: `FURLONGS` is no known unit of an acceleration: m/s^2, cm/s^2, mm/s^2, gal, g");
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_with_its_line() {
+        let told = |line: &str, values: &str| read(&format!("{HEAD}{line}\n{values}\n")).unwrap_err();
+        assert_eq!(told("NPTS= 5, DT= .01", "1 2 3"), "line 4: the header announces 5 values, but the file has 3");
+        assert_eq!(told("NPTS= 2, DT= .01", "1 2\n3"), "line 4: the header announces 2 values, but the file has 3");
+        assert_eq!(told("NPTS= 3, DT= .01", "1 2\n\nx"), "line 7: `x` is no number");
+        assert_eq!(told("NPTS= 2, DT= 0", "1 2"), "the step is 0 s, but must be between 1e-9 s and 1e6 s");
+        assert!(told("NPTS= 2.5, DT= 1", "1 2").starts_with("line 4: NPTS is 2.5, but must be a whole number"));
+        assert!(told("NPTS= 1e300, DT= 1", "1 2").starts_with("line 4: NPTS is 1000"));
+        assert!(told("NPTS= many, DT= 1", "1 2").starts_with("line 4: NPTS is `MANY`, but it must give both"));
+        assert!(told("NPTS= 2", "1 2").starts_with("line 4: DT is missing, but it must give both, such as"));
+        assert_eq!(told("NPTS= 1, DT= 1", "1"), "a record needs two values or more, got 1");
+        assert_eq!(
+            told("NPTS= 2, DT= 1", "1 1e300"),
+            "line 5: the acceleration 1e300 must be finite and at most 1e12 m/s^2 in size"
+        );
+        for (quantity, file) in [("VELOCITY", ".VT2"), ("DISPLACEMENT", ".DT2")] {
+            let text = HEAD.replace("ACCELERATION", quantity) + "NPTS= 2, DT= 1\n1 2\n";
+            let told = read(&text).unwrap_err();
+            assert!(
+                told.starts_with(&format!("line 3: the file holds `{quantity} TIME SERIES IN UNITS OF G`")),
+                "{told}"
+            );
+            assert!(told.contains(file) && told.contains("take the .AT2 beside it"), "{told}");
+        }
+    }
+}

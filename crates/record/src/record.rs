@@ -1,0 +1,166 @@
+//! A record, and how it is made.
+
+use crate::error::RecordError;
+use crate::format::Format;
+use crate::{LARGEST_ACCELERATION, LARGEST_FILE, MOST_VALUES};
+
+/// An accelerogram: one component of the acceleration of the ground, at a uniform step, linear in
+/// between. Its time counts from its first value.
+///
+/// ```
+/// use teeter_record::Record;
+///
+/// let record = Record::new("pulse", 0.01, vec![0.0, 3.0, 0.0])?;
+/// assert_eq!((record.duration(), record.peak_acceleration()), (0.02, 3.0));
+/// # Ok::<(), teeter_record::RecordError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Record {
+    name: String,
+    station: String,
+    description: String,
+    dt: f64,
+    accelerations: Vec<f64>,
+}
+
+impl Record {
+    /// A record of these accelerations, m/s², `dt` s apart. Station and description are empty.
+    ///
+    /// # Errors
+    /// If there are fewer than two or more than [`MOST_VALUES`] values, if one isn't finite or is
+    /// larger than [`LARGEST_ACCELERATION`], or if `dt` isn't between 1 ns and 1e6 s.
+    pub fn new(name: &str, dt: f64, accelerations: Vec<f64>) -> Result<Self, RecordError> {
+        if !(1e-9..=1e6).contains(&dt) {
+            return Err(RecordError::Step(dt));
+        }
+        if accelerations.len() < 2 {
+            return Err(RecordError::TooFew(accelerations.len()));
+        }
+        if accelerations.len() > MOST_VALUES {
+            return Err(RecordError::TooMany);
+        }
+        if let Some(&value) = accelerations.iter().find(|a| !(a.abs() <= LARGEST_ACCELERATION)) {
+            return Err(RecordError::Value { line: 0, value });
+        }
+        Ok(Self { name: name.to_owned(), station: String::new(), description: String::new(), dt, accelerations })
+    }
+
+    /// Reads a file of any known [`Format`], recognised by its content; `name` is what the record
+    /// is called (the stem of the file, say). Bytes that are no UTF-8 are replaced: they can only
+    /// matter in names.
+    ///
+    /// # Errors
+    /// If the format isn't recognised or the file doesn't keep to it, with the line; if it holds no
+    /// acceleration; if it is a table of accelerations alone (see [`Record::read_with_step`]).
+    pub fn read(file: impl AsRef<[u8]>, name: &str) -> Result<Self, RecordError> {
+        Self::read_with_step(file, name, None)
+    }
+
+    /// Reads a file as [`Record::read`] does, with the step in s of a table that has accelerations
+    /// alone.
+    ///
+    /// # Errors
+    /// As [`Record::read`]; and if a step is given for a file that says its own.
+    pub fn read_with_step(file: impl AsRef<[u8]>, name: &str, step: Option<f64>) -> Result<Self, RecordError> {
+        let bytes = file.as_ref();
+        if bytes.len() > LARGEST_FILE {
+            return Err(RecordError::TooLarge { bytes: bytes.len() });
+        }
+        let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+        let text = String::from_utf8_lossy(bytes);
+        let format = Format::of(&text)?;
+        let record = match format {
+            Format::Peer => crate::peer::read(&text)?,
+            Format::Esm => crate::esm::read(&text)?,
+            Format::Cosmos => crate::cosmos::read(&text)?,
+            Format::Table => crate::table::read(&text, step)?,
+        };
+        match step {
+            Some(_) if format != Format::Table => Err(RecordError::StepTwice { format, step: record.dt }),
+            _ => Ok(Self { name: name.to_owned(), ..record }),
+        }
+    }
+
+    pub(crate) fn described(mut self, station: &str, description: &str) -> Self {
+        (self.station, self.description) = (one_line(station), one_line(description));
+        self
+    }
+
+    /// The record with other accelerations that are known to be in range.
+    pub(crate) fn with(&self, accelerations: Vec<f64>) -> Result<Self, RecordError> {
+        let Self { name, station, description, dt, .. } = self;
+        let made = Self::new(name, *dt, accelerations)?;
+        Ok(Self { station: station.clone(), description: description.clone(), ..made })
+    }
+
+    /// The record as a table that reads back to the same numbers: a heading with units, then time
+    /// and acceleration.
+    #[must_use]
+    pub fn to_table(&self) -> String {
+        let mut text = String::from("t [s],a [m/s^2]\n");
+        for (k, a) in self.accelerations.iter().enumerate() {
+            text.push_str(&format!("{},{a}\n", self.time(k)));
+        }
+        text
+    }
+
+    /// What it is called.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The station, as its file calls it; may be empty.
+    #[must_use]
+    pub fn station(&self) -> &str {
+        &self.station
+    }
+
+    /// The event and what else its file says in words; may be empty.
+    #[must_use]
+    pub fn description(&self) -> &str {
+        &self.description
+    }
+
+    /// Time between two values, s.
+    #[must_use]
+    pub fn dt(&self) -> f64 {
+        self.dt
+    }
+
+    /// The accelerations, m/s².
+    #[must_use]
+    pub fn accelerations(&self) -> &[f64] {
+        &self.accelerations
+    }
+
+    /// Number of values, at least 2.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.accelerations.len()
+    }
+
+    /// Never: a record has two values or more.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.accelerations.is_empty()
+    }
+
+    /// Time of the k-th value, counted from 0, s.
+    #[must_use]
+    pub fn time(&self, k: usize) -> f64 {
+        k as f64 * self.dt
+    }
+
+    /// Time from the first value to the last, s.
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        self.time(self.accelerations.len() - 1)
+    }
+}
+
+/// Words of a header, fit for one line.
+fn one_line(text: &str) -> String {
+    let blank = |c: char| c.is_whitespace() || c.is_control();
+    text.split(blank).filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,318 @@
+//! Plain tables: time and acceleration, or acceleration alone.
+
+use crate::error::{RecordError, shown};
+use crate::record::Record;
+use crate::{LARGEST_ACCELERATION, MOST_VALUES, numbers, units};
+
+/// What separates the columns.
+#[derive(Clone, Copy, PartialEq)]
+enum Separator {
+    /// Numbers may have a decimal comma.
+    Semicolon,
+    Comma,
+    Blanks,
+}
+
+/// Rows as they are read: of a table with times, the times too, and to how many seconds they are written.
+#[derive(Default)]
+struct Rows {
+    lines: Vec<usize>,
+    times: Vec<f64>,
+    accelerations: Vec<f64>,
+    resolution: f64,
+}
+
+/// Largest part of a step by which a time may be off an even one, however few digits it has.
+const UNEVEN: f64 = 0.05;
+
+const WANTED: &str = "a table has time and acceleration, or acceleration alone, as many columns in each row";
+
+/// Whether a row begins with a number, so that it is no heading.
+pub(crate) fn begins_with_number(row: &str) -> bool {
+    let cell = row.split([',', ';']).next().unwrap_or_default();
+    cell.split_whitespace().next().is_some_and(|cell| numbers::one(cell).is_some())
+}
+
+pub(crate) fn read(text: &str, step: Option<f64>) -> Result<Record, RecordError> {
+    let mut rows = Rows { resolution: f64::INFINITY, ..Rows::default() };
+    let mut heading: Option<(usize, &str)> = None;
+    let mut form: Option<(Separator, usize, [f64; 2])> = None;
+    for (index, text) in text.lines().enumerate() {
+        let (line, text) = (index + 1, text.split('#').next().unwrap_or_default().trim());
+        if text.is_empty() {
+            continue;
+        }
+        if form.is_none() && heading.is_none() && !begins_with_number(text) {
+            heading = Some((line, text));
+            continue;
+        }
+        let (separator, columns, scales) = match form {
+            Some(form) => form,
+            None => *form.insert(form_of(line, text, heading)?),
+        };
+        rows.take(line, &cells(text, separator), columns, scales, separator)?;
+    }
+    let Some((_, columns, _)) = form else { return Err(RecordError::TooFew(0)) };
+    if rows.accelerations.len() < 2 {
+        return Err(RecordError::TooFew(rows.accelerations.len()));
+    }
+    let step = match (columns, step) {
+        (1, None) => return Err(RecordError::StepNeeded),
+        (1, Some(step)) => step,
+        (_, given) => {
+            let step = rows.step()?;
+            if given.is_some() {
+                return Err(RecordError::StepTwice { format: crate::Format::Table, step });
+            }
+            step
+        }
+    };
+    Record::new("", step, rows.accelerations)
+}
+
+/// Separator, number of columns, and what their units are in s and m/s² (the last column is the acceleration).
+fn form_of(
+    line: usize,
+    row: &str,
+    heading: Option<(usize, &str)>,
+) -> Result<(Separator, usize, [f64; 2]), RecordError> {
+    let separator = match row {
+        row if row.contains(';') => Separator::Semicolon,
+        row if row.contains(',') => Separator::Comma,
+        _ => Separator::Blanks,
+    };
+    let found = cells(row, separator).len();
+    if !(1..=2).contains(&found) {
+        return Err(RecordError::Columns { line, found, wanted: WANTED });
+    }
+    let mut scales = [1.0, 1.0];
+    let Some((line, heading)) = heading else { return Ok((separator, found, scales)) };
+    let names = headings(heading, separator, found);
+    if names.len() != found {
+        return Err(RecordError::Columns {
+            line,
+            found: names.len(),
+            wanted: "the rows below the heading have another number",
+        });
+    }
+    for (k, name) in names.iter().enumerate() {
+        let is_time = k + 1 < found;
+        let plain = name.trim_matches('"').trim();
+        let title = plain.split(['[', '(']).next().unwrap_or_default().trim().to_lowercase();
+        if !is_time && matches!(title.as_str(), "t" | "time") {
+            let reason = format!("heading `{}`: time comes first, then acceleration", shown(plain));
+            return Err(RecordError::Header { line, reason });
+        }
+        if title.starts_with("vel") || title.starts_with("disp") {
+            return Err(RecordError::NotAcceleration { line, found: shown(plain), remedy: "" });
+        }
+        if let Some(unit) = unit_of(plain) {
+            let place = if is_time { 0 } else { 1 };
+            scales[place] = if is_time { units::time(line, unit)? } else { units::acceleration(line, unit)? };
+        }
+    }
+    Ok((separator, found, scales))
+}
+
+/// The names of the columns; between blanks a unit in brackets belongs to the word before it.
+fn headings(text: &str, separator: Separator, columns: usize) -> Vec<String> {
+    match separator {
+        _ if columns == 1 => vec![text.to_owned()],
+        // A heading may have a separator of its own.
+        Separator::Blanks if text.contains([',', ';']) => {
+            text.split([',', ';']).map(|name| name.trim().to_owned()).collect()
+        }
+        Separator::Blanks => {
+            let mut names: Vec<String> = Vec::new();
+            for word in text.split_whitespace() {
+                match names.last_mut() {
+                    Some(name) if word.starts_with(['[', '(']) => *name = format!("{name} {word}"),
+                    _ => names.push(word.to_owned()),
+                }
+            }
+            names
+        }
+        other => cells(text, other).into_iter().map(str::to_owned).collect(),
+    }
+}
+
+/// What stands in brackets at the end of a heading.
+fn unit_of(name: &str) -> Option<&str> {
+    let (open, inner) = match name.strip_suffix(']') {
+        Some(inner) => ('[', inner),
+        None => ('(', name.strip_suffix(')')?),
+    };
+    inner.split_once(open).map(|(_, unit)| unit.trim())
+}
+
+fn cells(row: &str, separator: Separator) -> Vec<&str> {
+    match separator {
+        Separator::Semicolon => row.split(';').map(str::trim).collect(),
+        Separator::Comma => row.split(',').map(str::trim).collect(),
+        Separator::Blanks => row.split_whitespace().collect(),
+    }
+}
+
+impl Rows {
+    fn take(
+        &mut self,
+        line: usize,
+        cells: &[&str],
+        columns: usize,
+        scales: [f64; 2],
+        separator: Separator,
+    ) -> Result<(), RecordError> {
+        if cells.len() != columns {
+            return Err(RecordError::Columns { line, found: cells.len(), wanted: WANTED });
+        }
+        if self.accelerations.len() == MOST_VALUES {
+            return Err(RecordError::TooMany);
+        }
+        let number = |cell: &str| {
+            let value = match separator {
+                Separator::Semicolon => numbers::one(&cell.replace(',', ".")),
+                _ => numbers::one(cell),
+            };
+            value.ok_or_else(|| RecordError::Number { line, text: shown(cell), hint: "" })
+        };
+        let [time, acceleration] = scales;
+        if let [t, _] = cells {
+            self.times.push(number(t)? * time);
+            self.resolution = self.resolution.min(resolution(t) * time);
+        }
+        let value = number(cells.last().copied().unwrap_or_default())?;
+        if !((value * acceleration).abs() <= LARGEST_ACCELERATION) {
+            return Err(RecordError::Value { line, value });
+        }
+        self.lines.push(line);
+        self.accelerations.push(value * acceleration);
+        Ok(())
+    }
+
+    /// The step of the times: the first one or a round one if all rows keep to it, else the mean.
+    fn step(&self) -> Result<f64, RecordError> {
+        let (first, count) = (self.times[0], (self.times.len() - 1) as f64);
+        let mean = (self.times[self.times.len() - 1] - first) / count;
+        let round = format!("{mean:.9e}").parse().unwrap_or(mean);
+        let off = |step: f64| {
+            let even = self.times.iter().enumerate().map(move |(k, t)| (k, first + k as f64 * step, *t));
+            even.map(|(k, even, t)| (k, even, (t - even).abs()))
+        };
+        let rounding = 8.0 * f64::EPSILON * self.times.iter().fold(0.0, |most: f64, t| most.max(t.abs()));
+        for step in [self.times[1] - first, round] {
+            if step > 0.0 && off(step).all(|(_, _, off)| off <= rounding.min(UNEVEN * step)) {
+                return Ok(step);
+            }
+        }
+        // A row may be off by half its last digit, and so may both ends, which make the mean.
+        let allowed = (self.resolution + rounding).min(UNEVEN * mean);
+        let uneven = self.first_uneven(mean, allowed);
+        match uneven {
+            None => Ok(mean),
+            Some(error) => Err(error),
+        }
+    }
+
+    /// The row that is to blame for uneven times: the first that isn't one step behind the one before it, the
+    /// step being that of most rows.
+    fn first_uneven(&self, mean: f64, allowed: f64) -> Option<RecordError> {
+        let first = self.times[0];
+        let worst = |(k, t): (usize, &f64)| !((t - (first + k as f64 * mean)).abs() <= allowed);
+        if !self.times.iter().enumerate().any(worst) && mean > 0.0 {
+            return None;
+        }
+        let mut steps: Vec<f64> = self.times.windows(2).map(|t| t[1] - t[0]).collect();
+        steps.sort_by(f64::total_cmp);
+        let step = steps[steps.len() / 2];
+        let within = |t: &[f64]| (t[1] - t[0] - step).abs() <= (2.0 * self.resolution).min(UNEVEN * step);
+        let at = self.times.windows(2).position(|t| !within(t)).map_or(self.times.len() - 1, |k| k + 1);
+        let expected = self.times[at - 1] + step;
+        Some(RecordError::Uneven { line: self.lines[at], time: self.times[at], expected, step })
+    }
+}
+
+/// The worth of the last digit that a number is written with.
+fn resolution(text: &str) -> f64 {
+    let lower = text.to_ascii_lowercase().replace(',', ".");
+    let (digits, power) = lower.split_once(['e', 'd']).unwrap_or((&lower, "0"));
+    let decimals = digits.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    let power: i32 = power.parse().unwrap_or(0);
+    10f64.powi(power.saturating_sub(i32::try_from(decimals).unwrap_or(i32::MAX)))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Record, STANDARD_GRAVITY};
+
+    fn read(text: &str) -> Result<Record, String> {
+        Record::read(text, "R").map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn separators_headings_and_units_are_understood() {
+        let tables = [
+            "t,a\n0,1\n0.5,-2\n1,3\n",
+            "\u{feff}# ours\r\n\r\ntime [s], a [m/s^2]\r\n0 , 1\r\n0.5,\t-2 # here\r\n1,3\r\n",
+            "0 1\n.5 -2\n1.\t3\n",
+            "t (ms);acc (cm/s^2)\n0;100\n500;-200\n1000;3e2\n",
+            "t a\n5 1\n5.5 -2\n6 3\n",
+            "time (s) acc (m/s2)\n0 1\n.5 -2\n1 3\n",
+            "\"t\";\"a\"\n0;1,0\n0,5;-2\n1;3\n",
+        ];
+        for table in tables {
+            let record = read(table).unwrap();
+            assert_eq!((record.dt(), record.accelerations()), (0.5, &[1.0, -2.0, 3.0][..]), "{table}");
+        }
+        let record = Record::read_with_step("acc (g)\n1\n-2\n", "R", Some(0.02)).unwrap();
+        assert_eq!((record.dt(), record.accelerations()), (0.02, &[STANDARD_GRAVITY, -2.0 * STANDARD_GRAVITY][..]));
+    }
+
+    #[test]
+    fn times_are_even_as_far_as_they_are_written() {
+        // 256 Hz, to four digits, and a hundred of a second that can't be told from an even one.
+        let table: String = (0..200).map(|k| format!("{:.4},1\n", f64::from(k) / 256.0)).collect();
+        assert!((read(&table).unwrap().dt() - 1.0 / 256.0).abs() < 1e-6);
+        let table: String = (0..2000).map(|k| format!("{:.2},1\n", 7.0 + 0.01 * f64::from(k))).collect();
+        assert_eq!(read(&table).unwrap().dt(), 0.01);
+        let told = read("t,a\n0,1\n0.1,1\n0.2,1\n0.31,1\n0.4,1\n").unwrap_err();
+        assert!(told.starts_with("line 5: the time 0.31 s is uneven: the other rows are 0.1"), "{told}");
+        let told = read("0,1\n0.1,1\n0.2,1\n0.4,1\n0.5,1\n").unwrap_err();
+        assert!(told.starts_with("line 4: the time 0.4 s is uneven"), "a row is missing: {told}");
+        assert!(read("0,1\n0.1,1\n0.1,1\n0.2,1\n").unwrap_err().starts_with("line 3: the time 0.1 s is uneven"));
+        assert!(read("1,1\n0.9,1\n0.8,1\n").unwrap_err().contains("is uneven"));
+        assert!(read("0,1\n0,1\n").unwrap_err().starts_with("line 2: the time 0 s is uneven"));
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_with_its_line() {
+        let told = |text: &str| read(text).unwrap_err();
+        assert_eq!(told("1\n2\n"), "the file has accelerations alone: their step must be given");
+        assert_eq!(told("# nothing\n"), "the file is empty");
+        assert_eq!(told(""), "the file is empty");
+        assert_eq!(told("t,a\n0,1\n"), "a record needs two values or more, got 1");
+        assert_eq!(
+            told("t,a\n0,1\n1\n"),
+            "line 3: 1 column, but a table has time and acceleration, or acceleration alone, as many columns in each row"
+        );
+        assert!(told("0,1,2\n1,2,3\n").starts_with("line 1: 3 columns, but a table has"));
+        assert_eq!(told("t,a\n0,1\n1,high\n"), "line 3: `high` is no number");
+        assert_eq!(told("a,t\n1,0\n1,1\n"), "line 1: heading `t`: time comes first, then acceleration");
+        assert_eq!(told("x,y,z\n1,0\n1,1\n"), "line 1: 3 columns, but the rows below the heading have another number");
+        assert_eq!(
+            told("t,v [m/s]\n0,1\n1,1\n"),
+            "line 1: `m/s` is no known unit of an acceleration: m/s^2, cm/s^2, mm/s^2, gal, g"
+        );
+        assert_eq!(told("t [h],a\n0,1\n1,1\n"), "line 1: `h` is no known unit of a time: s, ms");
+        assert_eq!(
+            told("t,velocity\n0,1\n1,1\n"),
+            "line 1: the file holds `velocity`, but a record is an acceleration"
+        );
+        assert_eq!(
+            told("Dear reader,\nthis is a letter\n"),
+            "line 1: `Dear reader,` begins no known form of a record: PEER .AT2, ESM and COSMOS files are read, and tables of \
+             numbers"
+        );
+        let error = Record::read_with_step("0,1\n1,2\n", "R", Some(1.0)).unwrap_err();
+        assert_eq!(error.to_string(), "the table file says its own step, 1 s: leave the given one out");
+    }
+}
