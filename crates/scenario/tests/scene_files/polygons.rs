@@ -26,7 +26,7 @@ fn arch(voussoirs: usize, thickness: f64) -> String {
     let corner = |r: f64, k: usize| {
         let angle = PI * (1.0 - k as f64 / voussoirs as f64);
         // Both feet stand on the ground.
-        [r * angle.cos(), if k % voussoirs == 0 { 0.0 } else { r * angle.sin() }]
+        [r * angle.cos(), if k.is_multiple_of(voussoirs) { 0.0 } else { r * angle.sin() }]
     };
     let [inner, outer] = [1.0 - 0.5 * thickness, 1.0 + 0.5 * thickness];
     let mut text = format!("[time]\nend = '2 s'\nstep = '1 ms'\n{HEAD}");
