@@ -181,7 +181,8 @@ fn of_pattern(pattern: &str) -> Vec<Value> {
             all
         }
         "block.*" => vec![
-            at_least_one(&["position", "on"]),
+            at_least_one(&["position", "on", "points"]),
+            excludes("points", &["width", "height", "on", "at", "tilt"]),
             excludes("position", &["on", "at", "tilt"]),
             json!({ "dependentRequired": { "on": ["at"] } }),
         ],
