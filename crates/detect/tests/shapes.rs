@@ -150,8 +150,9 @@ fn past_the_end_of_its_side_a_corner_is_followed_along_the_sides_line() {
         bricks.locate_past_ends(&Poses(vec![[x, 1.2, 0.0], [0.0, 0.0, 0.0]]), &ids, &mut out, &mut rooms);
         assert_eq!((out.len(), rooms.len()), (2, 2), "{x}");
         // The upper brick's left corner is at x − 1 on a side from −1 to 1; the lower one's right corner at 1 − x on the upper one's.
+        // What is known counts as over its side for 1e-9 of its length more.
         for room in &rooms {
-            assert!((room - f64::min(x, 2.0 - x)).abs() < 1e-10, "{x}: {room}");
+            assert!((room - f64::min(x, 2.0 - x) - 2e-9).abs() < 1e-13, "{x}: {room}");
         }
         assert!(out.iter().all(|c| (c.gap - 0.2).abs() < 1e-15 && c.frame.row(0).transpose() == Vector2::y()), "{x}");
     }
