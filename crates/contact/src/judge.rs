@@ -77,6 +77,9 @@ fn judge_with<const D: usize>(
     if p.is_empty() {
         return residual;
     }
+    if let [p] = p {
+        return judge_single(problem, p, &velocity(0));
+    }
     let rho = problem.scale();
     let (mut p_norm, mut q_norm, mut map_norm) = (0.0, 0.0, 0.0);
     for i in 0..p.len() {
@@ -103,6 +106,24 @@ fn judge_with<const D: usize>(
     residual.worst = residual.worst.sqrt();
     residual.global = map_norm.sqrt() / p_norm.sqrt().max(rho * q_norm.sqrt()).max(SCALE_FLOOR);
     residual
+}
+
+/// The residual of a single contact, whose two scales are one.
+#[inline]
+fn judge_single<const D: usize>(problem: &ContactProblem<'_, D>, p: &Vector<D>, u: &Vector<D>) -> Residual {
+    let (mu, q, trace) = (problem.mu()[0], problem.q()[0], problem.diagonal(0).trace());
+    let rho = if trace > 0.0 { D as f64 / trace } else { 1.0 };
+    let u_hat = if mu > MUCH_FRICTION {
+        shifted_beyond_rounding(problem, 0, std::slice::from_ref(p), u)
+    } else {
+        de_saxce(u, mu)
+    };
+    let squared = (p - project(&(p - u_hat * rho), mu)).norm_squared();
+    let (p_squared, q_squared) = (p.norm_squared(), q.norm_squared());
+    let worst = squared / p_squared.max(rho * rho * q_squared).max(SCALE_FLOOR);
+    let global = squared.sqrt() / p_squared.sqrt().max(rho * q_squared.sqrt()).max(SCALE_FLOOR);
+    // NaN counts as worst.
+    Residual { global, worst: if worst <= 0.0 { 0.0 } else { worst.sqrt() }, worst_contact: 0 }
 }
 
 /// û, shifted by the part of ‖u_T‖ that rounding can't explain.

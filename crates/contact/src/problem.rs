@@ -97,46 +97,18 @@ impl<'a, const D: usize> ContactProblem<'a, D> {
     /// a contact, or `H_TT < 0`.
     pub fn new(h: Delassus<'a, D>, q: &'a [Vector<D>], mu: &'a [f64]) -> Result<Self, ProblemError> {
         let contacts = q.len();
-        let size = |what, found, expected| {
-            if found == expected { Ok(()) } else { Err(ProblemError::Size { what, found, expected, contacts }) }
+        let (sizes, h_nothing) = match h {
+            Delassus::Dense(blocks) => (blocks.len() == contacts * contacts, nothing_of(blocks)),
+            Delassus::Blocks(sparse) => (sparse.contacts() == contacts, nothing_of(sparse.blocks())),
+            Delassus::Operator(operator) => (operator.contacts() == contacts, 0.0),
         };
-        size("mu", mu.len(), contacts)?;
-        match h {
-            Delassus::Dense(blocks) => {
-                size("the dense Delassus operator", blocks.len(), contacts * contacts)?;
-                check_blocks(blocks, |k| k / contacts)?;
-            }
-            Delassus::Blocks(sparse) => {
-                size("the block-sparse Delassus operator (rows)", sparse.contacts(), contacts)?;
-                check_blocks(sparse.blocks(), |k| sparse.row_of(k))?;
-            }
-            Delassus::Operator(operator) => size("the Delassus operator", operator.contacts(), contacts)?,
-        }
-        for contact in 0..contacts {
-            if let Some(value) = not_finite(q[contact].as_slice()) {
-                return Err(ProblemError::NotFinite { what: "q", contact, value });
-            }
-            let value = mu[contact];
-            if !value.is_finite() {
-                return Err(ProblemError::NotFinite { what: "mu", contact, value });
-            }
-            if value < 0.0 {
-                return Err(ProblemError::NegativeFriction { contact, value });
-            }
-            let diagonal = h.diagonal(contact, contacts);
-            let value = diagonal[(0, 0)];
-            // Written so that NaN fails too.
-            if !(value > 0.0 && value < f64::INFINITY) {
-                return Err(ProblemError::NotCompliant { contact, value });
-            }
-            for k in 1..D {
-                let value = diagonal[(k, k)];
-                if !(0.0..f64::INFINITY).contains(&value) {
-                    return Err(ProblemError::TangentPushesBack { contact, value });
-                }
+        let mut good = sizes && mu.len() == contacts && h_nothing == 0.0;
+        if good {
+            for (i, (q, mu)) in q.iter().zip(mu).enumerate() {
+                good &= is_contact(&h.diagonal(i, contacts), q, *mu);
             }
         }
-        Ok(Self { h, q, mu })
+        if good { Ok(Self { h, q, mu }) } else { Err(what_is_wrong(h, q, mu)) }
     }
 
     /// A problem whose data [`Self::new`] has checked before.
@@ -286,21 +258,83 @@ impl<'a, const D: usize> ContactProblem<'a, D> {
     }
 }
 
-/// The first number that isn't finite. 0 · x is 0 for finite x, so one sum tells whether there is
-/// one to look for.
+/// Σ 0 · x over all numbers: 0 if they are finite, else NaN.
 #[inline]
-fn not_finite(values: &[f64]) -> Option<f64> {
-    let nothing: f64 = values.iter().map(|x| 0.0 * x).sum();
-    if nothing == 0.0 { None } else { values.iter().copied().find(|x| !x.is_finite()) }
-}
-
-fn check_blocks<const D: usize>(blocks: &[Block<D>], row: impl Fn(usize) -> usize) -> Result<(), ProblemError> {
-    for (k, block) in blocks.iter().enumerate() {
-        if let Some(value) = not_finite(block.as_slice()) {
-            return Err(ProblemError::NotFinite { what: "the Delassus operator", contact: row(k), value });
+fn nothing_of<const D: usize>(blocks: &[Block<D>]) -> f64 {
+    let mut nothing = 0.0;
+    for block in blocks {
+        for column in &block.data.0 {
+            for x in column {
+                nothing += 0.0 * x;
+            }
         }
     }
-    Ok(())
+    nothing
+}
+
+/// Whether the numbers of a contact are those of one. Written so that NaN fails, and without a branch.
+#[inline]
+fn is_contact<const D: usize>(own: &Block<D>, q: &Vector<D>, mu: f64) -> bool {
+    // Σ 0 · x, which is 0 if all are finite.
+    let mut nothing = 0.0 * mu;
+    let mut good = (mu >= 0.0) & (own.data.0[0][0] > 0.0);
+    for k in 0..D {
+        nothing += 0.0 * q.data.0[0][k] + 0.0 * own.data.0[k][k];
+        good &= own.data.0[k][k] >= 0.0;
+    }
+    good & (nothing == 0.0)
+}
+
+/// The first fault of a problem's data that [`ContactProblem::new`] has refused.
+#[cold]
+fn what_is_wrong<const D: usize>(h: Delassus<'_, D>, q: &[Vector<D>], mu: &[f64]) -> ProblemError {
+    let contacts = q.len();
+    let h_size = match h {
+        Delassus::Dense(blocks) => ("the dense Delassus operator", blocks.len(), contacts * contacts),
+        Delassus::Blocks(sparse) => ("the block-sparse Delassus operator (rows)", sparse.contacts(), contacts),
+        Delassus::Operator(operator) => ("the Delassus operator", operator.contacts(), contacts),
+    };
+    for (what, found, expected) in [("mu", mu.len(), contacts), h_size] {
+        if found != expected {
+            return ProblemError::Size { what, found, expected, contacts };
+        }
+    }
+    let not_finite = |values: &[f64]| values.iter().copied().find(|x| !x.is_finite());
+    let (blocks, row): (&[Block<D>], &dyn Fn(usize) -> usize) = match &h {
+        Delassus::Dense(blocks) => (blocks, &|k| k / contacts),
+        Delassus::Blocks(sparse) => (sparse.blocks(), &|k| sparse.row_of(k)),
+        Delassus::Operator(_) => (&[], &|k| k),
+    };
+    for (k, block) in blocks.iter().enumerate() {
+        if let Some(value) = not_finite(block.as_slice()) {
+            return ProblemError::NotFinite { what: "the Delassus operator", contact: row(k), value };
+        }
+    }
+    for contact in 0..contacts {
+        if let Some(value) = not_finite(q[contact].as_slice()) {
+            return ProblemError::NotFinite { what: "q", contact, value };
+        }
+        let value = mu[contact];
+        if !value.is_finite() {
+            return ProblemError::NotFinite { what: "mu", contact, value };
+        }
+        if value < 0.0 {
+            return ProblemError::NegativeFriction { contact, value };
+        }
+        let diagonal = h.diagonal(contact, contacts);
+        let value = diagonal[(0, 0)];
+        if !(value > 0.0 && value < f64::INFINITY) {
+            return ProblemError::NotCompliant { contact, value };
+        }
+        for k in 1..D {
+            let value = diagonal[(k, k)];
+            if !(0.0..f64::INFINITY).contains(&value) {
+                return ProblemError::TangentPushesBack { contact, value };
+            }
+        }
+    }
+    // An operator that gives other numbers the second time.
+    ProblemError::NotFinite { what: "the Delassus operator", contact: 0, value: f64::NAN }
 }
 
 #[cfg(test)]

@@ -219,8 +219,8 @@ impl<const D: usize> StepMotion<D> for AlphaStep {
         Ok(())
     }
 
-    fn check_motion(&mut self, model: &Model<D>, state: &State, work: &Workspace<D>) -> Result<(), StepError> {
-        self.identity.check(model, state, work)?;
+    fn check_motion(&mut self, model: &Model<D>) -> Result<(), StepError> {
+        self.identity.check(model)?;
         self.resize(model);
         Ok(())
     }

@@ -134,10 +134,10 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         self.step.make_factors(model, state, state.dt, work)
     }
 
-    /// Begins a step: checks what belongs together.
+    /// Refuses another model than that which the scheme serves.
     #[inline]
-    pub(crate) fn check(&mut self, model: &Model<D>, state: &State, work: &Workspace<D>) -> Result<(), StepError> {
-        self.step.check_motion(model, state, work)?;
+    pub(crate) fn check(&mut self, model: &Model<D>) -> Result<(), StepError> {
+        self.step.check_motion(model)?;
         self.resize(model);
         Ok(())
     }

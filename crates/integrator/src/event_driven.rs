@@ -249,11 +249,11 @@ impl Scheme<2> for EventDriven {
         work: &'w mut Workspace<2>,
     ) -> Result<StepReport<'w, 2>, StepError> {
         let span = state.next_step(until);
-        self.located.check(model, state, work)?;
+        work.begin(model, state, span)?;
+        self.located.check(model)?;
         self.smooth.resize(model);
         self.mean.resize(model.size().q, 0.0);
         self.v_before.resize(model.size().v, 0.0);
-        work.begin(model, state, span)?;
         let mut from = self.from.take().unwrap_or_else(|| state.clone());
         from.copy_from(state);
         let took = self.take_phases(model, &mut from, &span, work);

@@ -211,13 +211,18 @@ impl<const D: usize> Factors<D> {
     /// The factor of a subsystem; `None` where it was not made.
     #[inline]
     pub(crate) fn of(&mut self, part: usize, w: Weights) -> Option<&mut dyn Compliance<D>> {
+        if self.front == Some(w) {
+            return Some(self.parts.get_mut(part)?.first_mut()?.factor.as_mut());
+        }
+        self.of_further_back(part, w)
+    }
+
+    fn of_further_back(&mut self, part: usize, w: Weights) -> Option<&mut dyn Compliance<D>> {
         if is_blend(w) {
             return self.blends.of(part, w);
         }
-        let entries = self.parts.get_mut(part)?;
-        let at =
-            if self.front == Some(w) { 0 } else { entries.iter().position(|entry| entry.factor.weights() == w)? };
-        Some(entries.get_mut(at)?.factor.as_mut())
+        let entry = self.parts.get_mut(part)?.iter_mut().find(|entry| entry.factor.weights() == w)?;
+        Some(entry.factor.as_mut())
     }
 
     /// Sees to it that subsystems have their motion in closed form, where there is one.
@@ -235,11 +240,14 @@ impl<const D: usize> Factors<D> {
     /// How a subsystem responds.
     #[inline]
     pub(crate) fn answer(&mut self, part: usize, responses: &Responses<'_>) -> Option<Answer<'_, D>> {
-        if matches!(responses, Responses::Over(_)) && self.propagators.get(part).is_some_and(Option::is_some) {
-            let motion = self.propagator(part)?;
-            return Some(Answer::Motion(motion));
-        }
-        self.of(part, responses.of(part)?).map(Answer::Inverse)
+        let w = match responses {
+            Responses::Of(w) => *w,
+            Responses::Over(_) if self.propagators.get(part).is_some_and(Option::is_some) => {
+                return Some(Answer::Motion(self.propagator(part)?));
+            }
+            Responses::Over(_) | Responses::Each(_) => responses.of(part)?,
+        };
+        self.of(part, w).map(Answer::Inverse)
     }
 
     /// As [`Factors::of`], for someone who may give it other weights.
@@ -253,7 +261,9 @@ impl<const D: usize> Factors<D> {
     /// The first subsystem that lacks the factor asked for.
     #[inline]
     pub(crate) fn missing(&mut self, model: &Model<D>, responses: &Responses<'_>) -> Option<usize> {
-        if self.front.is_some_and(|front| *responses == Responses::Of(front)) {
+        if let (Responses::Of(w), Some(front)) = (responses, self.front)
+            && *w == front
+        {
             return None;
         }
         (0..model.parts().len()).find(|part| responses.of(*part).is_none_or(|w| self.of(*part, w).is_none()))

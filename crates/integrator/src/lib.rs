@@ -94,6 +94,7 @@ mod resolved;
 mod run;
 mod scheme;
 mod signal;
+mod small;
 mod spring;
 mod stage;
 mod state;

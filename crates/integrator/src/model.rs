@@ -351,7 +351,16 @@ impl<const D: usize> Model<D> {
     /// For one that the model doesn't have.
     #[inline]
     pub fn law(&self, law: LawId) -> Result<PairLaw, Mismatch> {
-        self.laws.get(law.0 as usize).copied().ok_or(Mismatch::Law { law, laws: self.laws.len() })
+        self.law_of(law).copied()
+    }
+
+    /// The same without a copy.
+    #[inline]
+    pub(crate) fn law_of(&self, law: LawId) -> Result<&PairLaw, Mismatch> {
+        match self.laws.get(law.0 as usize) {
+            Some(law) => Ok(law),
+            None => Err(Mismatch::Law { law, laws: self.laws.len() }),
+        }
     }
 
     /// Puts the candidates with a gap of at most `margin` (m) at coordinates `q` into `out`, in the

@@ -100,8 +100,8 @@ impl<const D: usize> Scheme<D> for MoreauJean<D> {
         let MoreauJeanSettings { theta, activation_gamma, gap_tolerance } = self.settings;
         let span = state.next_step(until);
         let (h, t) = (span.h, state.t);
-        self.step.check(model, state, work)?;
         work.begin(model, state, span)?;
+        self.step.check(model)?;
         let w = weights(h, theta);
         work.factors(model, w, &state.q, if h == state.dt { Keep::Pinned } else { Keep::Once })?;
 
@@ -125,13 +125,15 @@ impl<const D: usize> Scheme<D> for MoreauJean<D> {
                 break self.step.judge(outcome, work.settings.tolerance);
             }
         };
-        self.step.close(model, state, h, theta)?;
+        self.step.move_to_end(model, state, h, theta);
 
         let energy = self.step.work_of_forces(model, state, work, &self.stage, h, theta);
-        let phase = PhaseEnd::new(PhaseKind::Step, span.end, &self.step.q_at, &self.step.v_end)
-            .with_balance(Balance::Weighted(theta))
-            .with_energy(energy)
-            .with_outcome(outcome);
+        let phase = PhaseEnd {
+            balance: Balance::Weighted(theta),
+            energy,
+            outcome,
+            ..PhaseEnd::new(PhaseKind::Step, span.end, &self.step.q_at, &self.step.v_end)
+        };
         work.phase(model, &phase, Some(&mut self.stage))?;
         work.finish(model, state, None, |_, _| true)
     }

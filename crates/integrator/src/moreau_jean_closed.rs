@@ -100,8 +100,8 @@ impl<const D: usize> Scheme<D> for MoreauJeanClosed<D> {
         work: &'w mut Workspace<D>,
     ) -> Result<StepReport<'w, D>, StepError> {
         let span = state.next_step(until);
-        self.step.check(model, state, work)?;
         work.begin(model, state, span)?;
+        self.step.check(model)?;
         self.step.begin(model, state, &span, work)?;
         let outcome = self.step.settle(model, state, &span, work)?;
         let penetration = deepest(work);

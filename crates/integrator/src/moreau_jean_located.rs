@@ -198,8 +198,8 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         work: &'w mut Workspace<D>,
     ) -> Result<StepReport<'w, D>, StepError> {
         let span = state.next_step(until);
-        self.check(model, state, work)?;
         work.begin(model, state, span)?;
+        self.check(model)?;
         let mut from = self.from.take().unwrap_or_else(|| state.clone());
         from.copy_from(state);
         self.lately.clear();
@@ -215,9 +215,9 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
 }
 
 impl<const D: usize> MoreauJeanLocated<D> {
-    /// Refuses what doesn't belong together, and takes the sizes of the model.
-    pub(crate) fn check(&mut self, model: &Model<D>, state: &State, work: &Workspace<D>) -> Result<(), StepError> {
-        self.step.check(model, state, work)?;
+    /// Refuses another model than the scheme's, and takes the sizes of the model.
+    pub(crate) fn check(&mut self, model: &Model<D>) -> Result<(), StepError> {
+        self.step.check(model)?;
         self.by_forces.resize(model.size().v, 0.0);
         self.v.resize(model.size().v, 0.0);
         self.place.resize(model.size().q, 0.0);

@@ -256,14 +256,10 @@ impl<const D: usize> Phases<D> {
         kept.duration = phase.duration;
         (kept.energy, kept.stored, kept.largest_slip_work) = (phase.energy, 0.0, f64::NEG_INFINITY);
         kept.now = now.unwrap_or_default();
-        for (mine, other) in [(&mut kept.q, phase.q), (&mut kept.v, phase.v)] {
-            mine.clear();
-            mine.extend_from_slice(other);
-        }
-        for (mine, other) in [(&mut kept.mean, phase.mean), (&mut kept.mean_velocity, phase.mean_velocity)] {
-            mine.clear();
-            mine.extend_from_slice(other.unwrap_or_default());
-        }
+        copy(phase.q, &mut kept.q);
+        copy(phase.v, &mut kept.v);
+        copy(phase.mean.unwrap_or_default(), &mut kept.mean);
+        copy(phase.mean_velocity.unwrap_or_default(), &mut kept.mean_velocity);
         kept.contacts.clear();
         if let Some(stage) = stage {
             stage.hand_over(&mut kept.contacts);
@@ -271,6 +267,16 @@ impl<const D: usize> Phases<D> {
         if now.is_some() {
             kept.account_for_contacts(model, phase.knows_contacts);
         }
+    }
+}
+
+#[inline]
+fn copy(from: &[f64], to: &mut Vec<f64>) {
+    if from.len() == to.len() {
+        to.copy_from_slice(from);
+    } else {
+        to.clear();
+        to.extend_from_slice(from);
     }
 }
 
@@ -319,7 +325,7 @@ impl<const D: usize> Phases<D> {
             // What the step started from is kept for the report.
             for (start, now, end) in [(&mut self.q, &mut state.q, &last.q), (&mut self.v, &mut state.v, &last.v)] {
                 std::mem::swap(start, now);
-                now.clone_from(end);
+                copy(end, now);
             }
         }
     }

@@ -59,9 +59,9 @@ impl<const D: usize, M: StepMotion<D>> ProjectedStep<D, M> {
         work: &'w mut Workspace<D>,
     ) -> Result<StepReport<'w, D>, StepError> {
         let span = state.next_step(until);
-        self.step.check(model, state, work)?;
-        self.resize(model);
         work.begin(model, state, span)?;
+        self.step.check(model)?;
+        self.resize(model);
         self.step.begin(model, state, &span, work)?;
         let responses = self.step.step.projection_responses(span.h);
         let (outcome, projected) = loop {

@@ -232,10 +232,10 @@ impl<const D: usize> Scheme<D> for Resolved<D> {
         work: &'w mut Workspace<D>,
     ) -> Result<StepReport<'w, D>, StepError> {
         let span = state.next_step(until);
-        self.step.check(model, state, work)?;
+        work.begin(model, state, span)?;
+        self.step.check(model)?;
         self.resize(model);
         work.factors.make_propagators(model);
-        work.begin(model, state, span)?;
         let mut from = self.from.take().unwrap_or_else(|| state.clone());
         from.copy_from(state);
         let taken = self.take_parts(model, &mut from, &span, work);

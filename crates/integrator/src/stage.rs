@@ -199,7 +199,7 @@ impl<const D: usize> ContactStage<D> {
     pub fn reserve(&mut self, model: &Model<D>) {
         let contacts = model.detector().capacity().min(RESERVED_CONTACTS);
         self.contacts.reserve(contacts.saturating_sub(self.contacts.len()));
-        self.rows.reserve(contacts, model.size().row);
+        self.rows.reserve(contacts, model.size().row, model.parts().len());
         self.problem.reserve(contacts);
         self.springs.reserve(if model.has_springs() { model.detector().capacity() } else { 0 });
     }
@@ -284,22 +284,27 @@ impl<const D: usize> ContactStage<D> {
         }
         if !model.has_springs() {
             work.detect(model, look.at, look.within)?;
-            for k in 0..work.candidates.len() {
-                let candidate = work.candidates[k];
-                self.add(model, look.at, &candidate, &state.warm, &state.memory)?;
+            self.belong_to(model);
+            for candidate in &work.candidates {
+                self.take_in(model, look.at, candidate, &state.warm, &state.memory)?;
             }
             return Ok(());
         }
         self.springs.look(model, &state.q, look.free.unwrap_or(look.at), work)?;
         work.detect(model, look.at, f64::INFINITY)?;
-        for k in 0..work.candidates.len() {
-            let candidate = work.candidates[k];
-            let spring = model.law(candidate.law)?.impact.spring().is_some();
-            if self.springs.admit(spring, &candidate, &state.memory, look.within) {
-                self.add(model, look.at, &candidate, &state.warm, &state.memory)?;
+        self.belong_to(model);
+        for candidate in &work.candidates {
+            let spring = model.law_of(candidate.law)?.impact.spring().is_some();
+            if self.springs.admit(spring, candidate, &state.memory, look.within) {
+                self.take_in(model, look.at, candidate, &state.warm, &state.memory)?;
             }
         }
         Ok(())
+    }
+
+    fn belong_to(&mut self, model: &Model<D>) {
+        self.model = Some(model.identity());
+        self.velocities = model.size().v;
     }
 
     /// Takes a candidate in, with its rows at coordinates `q`; side 1 enters with a minus, for u = v_0 − v_1. Its impulse starts from that
@@ -320,14 +325,29 @@ impl<const D: usize> ContactStage<D> {
     ) -> Result<bool, Mismatch> {
         self.check(model)?;
         length("the coordinates", q, model.size().q)?;
-        let law = model.law(candidate.law)?;
+        let taken = self.take_in(model, q, candidate, warm, memory)?;
+        if taken {
+            self.belong_to(model);
+        }
+        Ok(taken)
+    }
+
+    /// The same without checks of model and lengths.
+    #[inline]
+    fn take_in(
+        &mut self,
+        model: &Model<D>,
+        q: &[f64],
+        candidate: &Candidate<D>,
+        warm: &WarmStart,
+        memory: &Memory,
+    ) -> Result<bool, Mismatch> {
+        let law = model.law_of(candidate.law)?;
         self.rows.push(model, q, candidate)?;
         if self.rows.last_is_prescribed(model) {
             self.rows.pop();
             return Ok(false);
         }
-        self.model = Some(model.identity());
-        self.velocities = model.size().v;
         let before = warm.impulse::<D>(candidate.id);
         self.problem.push(law.friction, before.unwrap_or_else(Vector::zeros));
         self.contacts.push(Contact::of(candidate, memory.is_active(candidate.id)));
@@ -363,21 +383,20 @@ impl<const D: usize> ContactStage<D> {
         self.check_velocities(v_before)?;
         self.check_velocities(v_free)?;
         for i in 0..self.contacts.len() {
-            let law = model.law(self.contacts[i].law)?;
-            let u_before = self.rows.velocity(i, v_before);
-            let mut u_free = self.rows.velocity(i, v_free);
+            let law = model.law_of(self.contacts[i].law)?;
+            let [u_before, mut u_free] = self.rows.velocities(i, [v_before, v_free]);
             let (shift, rule) = match over {
                 Over::Acceleration => {
-                    self.without_duration(i, &law, over)?;
+                    self.without_duration(i, law, over)?;
                     u_free += self.bias(i, model, state)?;
                     (Vector::zeros(), Rule::Shifted)
                 }
                 Over::Instant => {
-                    self.without_duration(i, &law, over)?;
-                    by_law(&law, &self.contacts[i], &u_before, &u_free)
+                    self.without_duration(i, law, over)?;
+                    by_law(law, &self.contacts[i], &u_before, &u_free)
                 }
                 Over::Step { h, weight } => match law.impact.spring() {
-                    None => by_law(&law, &self.contacts[i], &u_before, &u_free),
+                    None => by_law(law, &self.contacts[i], &u_before, &u_free),
                     Some(spring) => {
                         let gap = self.springs.gap(self.contacts[i].id, &state.memory);
                         // With w < ½ the force at the end of the step would count for less than half, or nothing, of the work.

@@ -14,7 +14,7 @@ pub(crate) trait StepMotion<const D: usize>: std::fmt::Debug {
     fn start_motion(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError>;
 
     /// Refuses what doesn't belong together.
-    fn check_motion(&mut self, model: &Model<D>, state: &State, work: &Workspace<D>) -> Result<(), StepError>;
+    fn check_motion(&mut self, model: &Model<D>) -> Result<(), StepError>;
 
     /// Makes the factors of steps of `h` (s).
     fn make_factors(
@@ -109,8 +109,8 @@ impl<const D: usize> StepMotion<D> for ThetaStep {
     }
 
     #[inline]
-    fn check_motion(&mut self, model: &Model<D>, state: &State, work: &Workspace<D>) -> Result<(), StepError> {
-        self.check(model, state, work)
+    fn check_motion(&mut self, model: &Model<D>) -> Result<(), StepError> {
+        Ok(self.check(model)?)
     }
 
     #[inline]

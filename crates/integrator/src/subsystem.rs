@@ -1,6 +1,6 @@
 //! What a subsystem offers to a time scheme.
 
-use crate::{Propagator, Stretching, Vector};
+use crate::{Propagator, Stretching, Vector, small};
 use teeter_contact::{Block, BlockSparse};
 use teeter_detect::{Frame, HalfSpace, Kinematics, SurfacePoint};
 
@@ -592,7 +592,7 @@ impl<const D: usize> PartRows<'_, D> {
             let p = &p[contact];
             for (&c, value) in columns.iter().zip(values) {
                 if let Some(inverse) = inverse.get(c) {
-                    v[c] += inverse * value.dot(p);
+                    v[c] += inverse * small::dot(value, p);
                 }
             }
         }
@@ -602,8 +602,9 @@ impl<const D: usize> PartRows<'_, D> {
     /// of the model, N·s.
     pub fn add_generalised_impulse(&self, p: &[Vector<D>], f: &mut [f64]) {
         for (contact, columns, values) in self.iter() {
+            let p = &p[contact];
             for (&c, value) in columns.iter().zip(values) {
-                f[c] += value.dot(&p[contact]);
+                f[c] += small::dot(value, p);
             }
         }
     }

@@ -57,26 +57,21 @@ impl ThetaStep {
         work: &Workspace<D>,
     ) -> Result<(), StepError> {
         self.model = None;
-        self.check(model, state, work)?;
+        state.check(model)?;
+        work.check(model)?;
+        self.check(model)?;
         self.tensions.reserve(model);
         Ok(())
     }
 
-    /// Refuses what belongs to another model than that which the scheme was started with; a scheme
-    /// that never was starts with this one.
+    /// Refuses another model than that which the scheme was started with; a scheme that never was
+    /// starts with this one. [`Workspace::begin`] looks at state and workspace.
     #[inline]
-    pub(crate) fn check<const D: usize>(
-        &mut self,
-        model: &Model<D>,
-        state: &State,
-        work: &Workspace<D>,
-    ) -> Result<(), StepError> {
+    pub(crate) fn check<const D: usize>(&mut self, model: &Model<D>) -> Result<(), Mismatch> {
         if self.model.is_some_and(|own| own != model.identity()) {
             let remedy = "start it with this one before its first step";
-            return Err(Mismatch::OtherModel { what: "the scheme was started with that", remedy }.into());
+            return Err(Mismatch::OtherModel { what: "the scheme was started with that", remedy });
         }
-        state.check(model)?;
-        work.check(model)?;
         self.model = Some(model.identity());
         let size = model.size();
         if (self.q_at.len(), self.v_end.len()) != (size.q, size.v) {
@@ -128,7 +123,7 @@ impl ThetaStep {
         let StepSpan { start: t_start, end: t_end, h } = *span;
         let w = weights(h, theta);
         self.tensions.clear();
-        for (index, part) in model.parts().iter().enumerate() {
+        for (index, part) in model.parts().iter().enumerate().filter(|(_, part)| !part.v.is_empty()) {
             let (q, v) = (part.q.clone(), part.v.clone());
             if let Some(cutoff) = self.cutoff
                 && let Some(motion) = work.factors.propagator(index)
@@ -143,7 +138,7 @@ impl ThetaStep {
                 continue;
             }
             // The factors have been made.
-            let Some(factor) = work.factors.of(index, w).filter(|_| !v.is_empty()) else { continue };
+            let Some(factor) = work.factors.of(index, w) else { continue };
             let dv = &mut self.dv[v.clone()];
             let v_start = &state.v[v.clone()];
             dv.fill(0.0);
@@ -250,7 +245,16 @@ impl ThetaStep {
         self.tensions.judge(outcome, tolerance)
     }
 
-    /// Leaves v_θ, and q¹ in `q_at`.
+    /// Leaves v_θ, and q¹ in `q_at`, for a phase, which refuses what is not finite.
+    pub(crate) fn move_to_end<const D: usize>(&mut self, model: &Model<D>, state: &State, h: f64, theta: f64) {
+        let Self { q_at, v_end, v_mean, .. } = self;
+        for ((mean, v1), v0) in v_mean.iter_mut().zip(v_end.iter()).zip(&state.v) {
+            *mean = theta * v1 + (1.0 - theta) * v0;
+        }
+        model.move_along(&state.q, v_mean, h, q_at);
+    }
+
+    /// The same for a scheme that goes on from there.
     pub(crate) fn close<const D: usize>(
         &mut self,
         model: &Model<D>,
@@ -258,13 +262,9 @@ impl ThetaStep {
         h: f64,
         theta: f64,
     ) -> Result<(), StepError> {
-        let Self { q_at, v_end, v_mean, .. } = self;
-        for ((mean, v1), v0) in v_mean.iter_mut().zip(v_end.iter()).zip(&state.v) {
-            *mean = theta * v1 + (1.0 - theta) * v0;
-        }
-        model.move_along(&state.q, v_mean, h, q_at);
+        self.move_to_end(model, state, h, theta);
         // A velocity that is not finite leaves a coordinate that isn't.
-        if all_finite(q_at) { Ok(()) } else { Err(StepError::Diverged { t: state.t }) }
+        if all_finite(&self.q_at) { Ok(()) } else { Err(StepError::Diverged { t: state.t }) }
     }
 
     /// The same at an impact, after which velocities are `v`: what drives give.

@@ -8,8 +8,8 @@ use crate::phases::Phases;
 use crate::stage::{Problem, RESERVED_CONTACTS};
 use crate::subsystem::all_finite;
 use crate::{
-    Compliance, Contact, ContactError, ContactStage, Keep, Mismatch, Model, Part, PhaseEnd, State, StateError,
-    StepError, StepReport, StepSpan, Vector, Weights,
+    Compliance, Contact, ContactError, ContactStage, Keep, Mismatch, Model, Part, PhaseEnd, PhaseKind, State,
+    StateError, StepError, StepReport, StepSpan, Vector, Weights,
 };
 use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, Stop};
 use teeter_detect::{Candidates, ContactId, DetectorMemory};
@@ -389,7 +389,8 @@ impl<const D: usize> Workspace<D> {
                 Some(now)
             }
             Account::LeftOut => {
-                if !all_finite(phase.v) {
+                // Over any time, velocities that are not finite leave coordinates that aren't.
+                if phase.kind == PhaseKind::Impact && !all_finite(phase.v) {
                     return Err(StepError::Diverged { t });
                 }
                 None
@@ -424,7 +425,7 @@ impl<const D: usize> Workspace<D> {
             return Err(StepError::NoPhase);
         }
         self.check(model)?;
-        state.check(model)?;
+        model.fits(&state.q, &state.v)?;
         self.open = false;
         let account = self.account == Account::Kept;
         self.phases.settle(state, account);
@@ -439,20 +440,25 @@ impl<const D: usize> Workspace<D> {
         state.count_step(&self.phases.span);
         state.warm.clear();
         state.memory.forget_contacts();
-        let mut springs = self.phases.springs_before_impact().peekable();
         let mut keep = |contact: &Contact<D>| {
             state.warm.push(contact.id, &contact.p);
             state.memory.remember(contact);
         };
-        for (i, contact) in self.phases.last_contacts().iter().enumerate() {
-            while let Some(spring) = springs.next_if(|spring| spring.id < contact.id) {
-                keep(spring);
+        let contacts = self.phases.last_contacts().iter().enumerate();
+        if model.has_springs() {
+            let mut springs = self.phases.springs_before_impact().peekable();
+            for (i, contact) in contacts {
+                while let Some(spring) = springs.next_if(|spring| spring.id < contact.id) {
+                    keep(spring);
+                }
+                if stays(i, contact) {
+                    keep(contact);
+                }
             }
-            if stays(i, contact) {
-                keep(contact);
-            }
+            springs.for_each(keep);
+        } else {
+            contacts.filter(|(i, contact)| stays(*i, contact)).for_each(|(_, contact)| keep(contact));
         }
-        springs.for_each(keep);
         state.tally.count(self.phases.outcomes(), self.phases.most_contacts(), penetration);
         Ok(self.phases.report(state.step, penetration))
     }

@@ -100,7 +100,8 @@ impl<const D: usize> Auto<D> {
         Some(outcome)
     }
 
-    fn solve_with(
+    /// Solves what isn't few contacts that enumeration has solved: island by island, or along the chain.
+    fn solve_beyond(
         &mut self,
         problem: &ContactProblem<'_, D>,
         exact: Exact<D>,
@@ -108,9 +109,6 @@ impl<const D: usize> Auto<D> {
         stop: &Stop<'_>,
         p: &mut [Vector<D>],
     ) -> Outcome {
-        if let Some(outcome) = (exact.first)(problem, stop, p) {
-            return outcome;
-        }
         self.islands.find(problem);
         if self.islands.len() <= 1 {
             return along(&mut self.chain, exact, pivots, problem, stop, p);
@@ -222,11 +220,18 @@ impl ContactSolver<2> for Auto<2> {
     }
 
     fn solve(&mut self, problem: &ContactProblem<'_, 2>, stop: &Stop<'_>, p: &mut [Vector<2>]) -> Outcome {
+        // Nearly every step of a few bodies ends here, without a look at islands and chain.
+        if p.len() <= FEW {
+            let outcome = Enumeration.solve(problem, stop, p);
+            if outcome.converged() {
+                return outcome;
+            }
+        }
         let first: Small<2> =
             |problem, stop, p| (p.len() <= FEW).then(|| Enumeration.solve(problem, stop, p)).filter(Outcome::converged);
         let last: Small<2> = |problem, stop, p| enumerate(FEW + 1..=MAX_CONTACTS, problem, stop, p);
         let mut lemke = std::mem::take(&mut self.lemke);
-        let outcome = self.solve_with(problem, Exact { first, last }, Some(&mut lemke), stop, p);
+        let outcome = self.solve_beyond(problem, Exact { first, last }, Some(&mut lemke), stop, p);
         self.lemke = lemke;
         outcome
     }
@@ -250,7 +255,7 @@ impl ContactSolver<3> for Auto<3> {
     }
 
     fn solve(&mut self, problem: &ContactProblem<'_, 3>, stop: &Stop<'_>, p: &mut [Vector<3>]) -> Outcome {
-        self.solve_with(problem, Exact { first: |_, _, _| None, last: |_, _, _| None }, None, stop, p)
+        self.solve_beyond(problem, Exact { first: |_, _, _| None, last: |_, _, _| None }, None, stop, p)
     }
 
     fn fork(&self) -> Box<dyn ContactSolver<3>> {

@@ -1,5 +1,6 @@
 //! Rigid blocks as a subsystem: the adapter above `teeter-rigid`.
 
+use crate::small::{add_outer, dot};
 use crate::{
     Bodies, Compliance, Coupling, Dynamics, Energy, FactorError, ModelError, Motion, PartRows, Rows, Signal, Size,
     Traits, Vector, Weights,
@@ -226,10 +227,13 @@ impl Bodies<2> for Blocks {
     }
 
     fn rows(&self, body: u32, q: &[f64], point: &Vector2<f64>, frame: &Frame<2>, out: &mut Rows<'_, 2>) -> usize {
-        let jacobian = frame * Pose::new(&triple(q, body as usize)).jacobian(point);
-        for k in 0..3 {
+        // The point moves at (ẋ − φ̇ r_y, ẏ + φ̇ r_x).
+        let r = Pose::new(&triple(q, body as usize)).rotate(point);
+        let [x, y] = frame.data.0;
+        let turn = [x[0] * -r.y + y[0] * r.x, x[1] * -r.y + y[1] * r.x];
+        for (k, column) in [x, y, turn].into_iter().enumerate() {
             out.columns[k] = 3 * body as usize + k;
-            out.values[k] = jacobian.column(k).into();
+            out.values[k] = column.into();
         }
         3
     }
@@ -255,6 +259,11 @@ struct BlockCompliance {
 }
 
 impl BlockCompliance {
+    #[inline]
+    fn inverse_of(&self, columns: &[usize]) -> &[f64; 3] {
+        inverse_of(&self.inverse, columns)
+    }
+
     /// What the contacts of each block feel of each other, block by block.
     fn couple_neighbours(&mut self, rows: &PartRows<'_, 2>, h: &mut Coupling<'_, 2>) {
         let Self { touched, inverse, .. } = self;
@@ -273,11 +282,7 @@ impl BlockCompliance {
                     let (Some((columns, a)), Some((_, b))) = (rows.get(i, side_i), rows.get(j, side_j)) else {
                         continue;
                     };
-                    let mut block = Matrix2::zeros();
-                    for ((&c, a), b) in columns.iter().zip(a).zip(b) {
-                        block += a * (b * inverse[c]).transpose();
-                    }
-                    h.add(i, j, &block);
+                    h.add(i, j, &felt(inverse_of(inverse, columns), a, b));
                 }
             }
         }
@@ -322,17 +327,35 @@ impl Compliance<2> for BlockCompliance {
             for (j, columns_j, values_j) in rows.iter() {
                 // Contacts of different blocks aren't coupled: W is diagonal.
                 if columns_i[0] == columns_j[0] {
-                    let mut block = Matrix2::zeros();
-                    for ((&c, a), b) in columns_i.iter().zip(values_i).zip(values_j) {
-                        block += a * (b * self.inverse[c]).transpose();
-                    }
-                    h.add(i, j, &block);
+                    h.add(i, j, &felt(self.inverse_of(columns_i), values_i, values_j));
                 }
             }
         }
     }
 
     fn respond(&mut self, rows: &PartRows<'_, 2>, p: &[Vector<2>], _scratch: &mut [f64], v: &mut [f64]) {
-        rows.add_diagonal_response(&self.inverse, p, v);
+        for (contact, columns, values) in rows.iter() {
+            let (inverse, first, p) = (self.inverse_of(columns), columns[0], &p[contact]);
+            for ((v, inverse), a) in v[first..first + 3].iter_mut().zip(inverse).zip(values) {
+                *v += inverse * dot(a, p);
+            }
+        }
     }
+}
+
+/// The entries of W of the block that a row acts on: its columns are three that follow each other.
+#[inline]
+fn inverse_of<'a>(inverse: &'a [f64], columns: &[usize]) -> &'a [f64; 3] {
+    const NONE: [f64; 3] = [0.0; 3];
+    inverse.get(columns[0]..).and_then(<[f64]>::first_chunk).unwrap_or(&NONE)
+}
+
+/// What one contact of a block feels of another, J_i W J_jᵀ.
+#[inline]
+fn felt(inverse: &[f64; 3], a: &[Vector<2>], b: &[Vector<2>]) -> Matrix2<f64> {
+    let mut block = Matrix2::zeros();
+    for ((inverse, a), b) in inverse.iter().zip(a).zip(b) {
+        add_outer(&mut block, a, b, *inverse);
+    }
+    block
 }

@@ -12,6 +12,7 @@ use super::beam;
 use super::beam::line::{self, Deflecting, Line};
 use super::beam::motion::MovingSupports;
 use super::modal_motion::{self, ModalMotion};
+use crate::small::{self, add_outer};
 use crate::subsystem::{couple_by_solving, dot};
 use crate::{
     BeamSurface, Bodies, Compliance, Coupling, Dynamics, Energy, FactorError, Motion, PartRows, Propagator, Rows,
@@ -261,11 +262,10 @@ impl Deflecting for Shapes {
         let shape = self.beam.shape_at(x)?;
         let mut d = Deflection { w: 0.0, slope: 0.0 };
         // Unused places don't count.
-        let [a, b, c, e] = shape.columns.map(|dof| self.dof(dof));
-        for ((((q, a), b), c), e) in q.iter().zip(a).zip(b).zip(c).zip(e) {
-            let [n, dn] = [shape.n, shape.dn].map(|n| (n[0] * a + n[1] * b) + (n[2] * c + n[3] * e));
-            d.w += n * q;
-            d.slope += dn * q;
+        for k in 0..4 {
+            let value = self.dof_value(shape.columns[k], q);
+            d.w += shape.n[k] * value;
+            d.slope += shape.dn[k] * value;
         }
         Some(d)
     }
@@ -495,8 +495,9 @@ impl Compliance<2> for ModalCompliance {
             for (other, (i, _, values_i)) in rows.iter().take(number + 1).enumerate() {
                 let mut block = Matrix2::zeros();
                 for ((a, b), w) in values_i.iter().zip(values_j).zip(&self.inverse) {
-                    block += (a * *w) * b.transpose();
+                    add_outer(&mut block, b, a, *w);
                 }
+                let block = block.transpose();
                 h.add(i, j, &block);
                 if other < number {
                     h.add(j, i, &block.transpose());
@@ -506,6 +507,14 @@ impl Compliance<2> for ModalCompliance {
     }
 
     fn respond(&mut self, rows: &PartRows<'_, 2>, p: &[Vector<2>], _scratch: &mut [f64], v: &mut [f64]) {
-        rows.add_diagonal_response(&self.inverse, p, v);
+        // As in coupling, a row has all coordinates in their order.
+        for (contact, columns, values) in rows.iter() {
+            if columns.len() != v.len() {
+                return rows.add_diagonal_response(&self.inverse, p, v);
+            }
+            for ((v, inverse), a) in v.iter_mut().zip(&self.inverse).zip(values) {
+                *v += inverse * small::dot(a, &p[contact]);
+            }
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! The Jacobian rows of a stage's contacts.
 
+use crate::small::add_scaled;
 use crate::subsystem::Span;
 use crate::{Mismatch, Model, PartRows, Rows, Vector};
 use teeter_detect::Candidate;
@@ -14,10 +15,13 @@ pub(crate) struct ContactRows<const D: usize> {
     columns: Vec<usize>,
     global: Vec<usize>,
     values: Vec<Vector<D>>,
+    /// Whether a contact may act on a subsystem, up to the last that any has acted on.
+    acts_on: Vec<bool>,
 }
 
 impl<const D: usize> ContactRows<D> {
-    pub(crate) fn reserve(&mut self, contacts: usize, row: usize) {
+    pub(crate) fn reserve(&mut self, contacts: usize, row: usize, parts: usize) {
+        self.acts_on.resize(parts, false);
         let more = |len: usize, wanted: usize| wanted.saturating_sub(len);
         self.spans.reserve(more(self.spans.len(), contacts));
         let entries = 2 * contacts * row;
@@ -28,7 +32,14 @@ impl<const D: usize> ContactRows<D> {
 
     pub(crate) fn clear(&mut self) {
         self.spans.clear();
+        self.acts_on.fill(false);
         self.taken = 0;
+    }
+
+    /// Whether a contact may act on a subsystem: one that was dropped again may have.
+    #[inline]
+    pub(crate) fn may_act_on(&self, part: usize) -> bool {
+        self.acts_on.get(part).is_some_and(|acts| *acts)
     }
 
     /// Where rows are free: past those of all contacts, as rows that were taken anew may lie behind the last contact's.
@@ -98,19 +109,22 @@ impl<const D: usize> ContactRows<D> {
             let q = &q[part.q.clone()];
             let len = part.system.rows(body, q, &anchor.point, &candidate.frame, &mut rows).min(part.row);
             let taken = start..start + len;
-            let mut last = 0;
-            for (global, &column) in self.global[taken.clone()].iter_mut().zip(&self.columns[taken.clone()]) {
+            let (mut last, sign) = (0, if side == 0 { 1.0 } else { -1.0 });
+            let entries = self.global[taken.clone()].iter_mut().zip(&self.columns[taken.clone()]);
+            for ((global, &column), value) in entries.zip(&mut self.values[taken]) {
                 last = last.max(column);
                 *global = part.v.start + column;
+                value.data.0[0].iter_mut().for_each(|x| *x *= sign);
             }
             if last >= part.v.len() && len > 0 {
                 return Err(Mismatch::Column { body: anchor.body, column: last, velocities: part.v.len() });
             }
-            if side == 1 {
-                self.values[taken].iter_mut().for_each(|value| *value = -*value);
-            }
             spans[side] = Span { part: index, start, len };
             start += len;
+            if self.acts_on.len() <= index {
+                self.acts_on.resize(model.parts().len(), false);
+            }
+            self.acts_on[index] = true;
         }
         Ok(spans)
     }
@@ -175,7 +189,19 @@ impl<const D: usize> ContactRows<D> {
     pub(crate) fn velocity(&self, i: usize, v: &[f64]) -> Vector<D> {
         let mut u = Vector::zeros();
         for (column, value) in self.entries(i) {
-            u += value * v[column];
+            add_scaled(&mut u, value, v[column]);
+        }
+        u
+    }
+
+    /// J_i v of two velocities.
+    #[inline]
+    pub(crate) fn velocities(&self, i: usize, v: [&[f64]; 2]) -> [Vector<D>; 2] {
+        let mut u = [Vector::zeros(); 2];
+        for (column, value) in self.entries(i) {
+            for k in 0..2 {
+                add_scaled(&mut u[k], value, v[k][column]);
+            }
         }
         u
     }

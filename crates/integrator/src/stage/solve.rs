@@ -199,11 +199,11 @@ impl<const D: usize> ContactStage<D> {
         // What a factor keeps of coupling is of the contacts that were coupled last, and of an island numbered within it.
         let kept = !self.apart && self.coupled == work.coupled;
         let Workspace { factors, scratch, .. } = work;
-        for (index, part) in model.parts().iter().enumerate().filter(|(_, part)| !part.v.is_empty()) {
-            let rows = self.rows.of_part(index);
-            if rows.is_empty() {
+        for (index, part) in model.parts().iter().enumerate() {
+            if !self.rows.may_act_on(index) {
                 continue;
             }
+            let rows = self.rows.of_part(index);
             let Some(mut answer) = factors.answer(index, responses) else {
                 return Err(ContactError::Factors { part: index });
             };
@@ -241,7 +241,7 @@ pub(super) fn couple_into<const D: usize>(
 ) {
     let Workspace { factors, scratch, .. } = work;
     for (index, part) in model.parts().iter().enumerate() {
-        if part.v.is_empty() {
+        if !rows.may_act_on(index) {
             continue;
         }
         if let Some(mut answer) = factors.answer(index, responses) {

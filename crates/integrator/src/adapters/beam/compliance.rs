@@ -7,6 +7,7 @@
 //! ([`WBackend::CachedColumns`]).
 
 use super::matrix_weights;
+use crate::small::{add_outer, add_scaled};
 use crate::subsystem::{couple_by_solving, respond_by_solving};
 use crate::{Compliance, Coupling, FactorError, PartRows, Vector, Weights};
 use nalgebra::Matrix2;
@@ -314,9 +315,9 @@ impl Columns {
                     let column = self.column(b);
                     let mut u = Vector::<2>::zeros();
                     for (&a, value_a) in own_i.iter().zip(values_i) {
-                        u += value_a * column[a];
+                        add_scaled(&mut u, value_a, column[a]);
                     }
-                    block += u * value_b.transpose();
+                    add_outer(&mut block, &u, value_b, 1.0);
                 }
                 h.add(i, j, &block);
                 if other < number {
