@@ -9,6 +9,7 @@ mod guard;
 
 use crate::contact::tangential;
 use crate::laws::is_impact;
+use crate::stage::ContactRows;
 use crate::step_motion::StepMotion;
 use crate::theta_step::ThetaStep;
 use crate::{
@@ -44,7 +45,7 @@ pub(crate) struct ClosedStep<const D: usize, M = ThetaStep> {
     start: Candidates<D>,
     pub(crate) stage: ContactStage<D>,
     /// Rows of one contact elsewhere than the step's.
-    one: ContactStage<D>,
+    row: ContactRows<D>,
     /// The contacts that take part, in order of identity.
     pub(crate) closed: Vec<ContactId>,
     /// As many of them have been looked at in this step.
@@ -92,7 +93,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             ahead: Vec::new(),
             start: Vec::new(),
             stage: ContactStage::new(),
-            one: ContactStage::new(),
+            row: ContactRows::default(),
             closed: Vec::new(),
             looked_for: 0,
             of_step: 1.0,
@@ -123,7 +124,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         }
         self.rooms.iter_mut().for_each(|rooms| rooms.reserve(contacts));
         self.stage.reserve(model);
-        self.one.reserve(model);
+        self.row.reserve(1, model.size().row, model.parts().len());
         self.closed.reserve(contacts);
         self.resting_shift.reserve(contacts);
         self.slides.reserve(contacts);
@@ -270,6 +271,9 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         let Ok(at) = self.ahead.binary_search_by_key(&self.stage.contacts()[i].id, |ahead| ahead.id) else {
             return true;
         };
+        if self.rooms[1][at] == f64::INFINITY {
+            return false;
+        }
         let slide = |v: &[f64]| {
             self.stage.velocity(i, v).map_or(f64::INFINITY, |u| u.iter().skip(1).map(|u_t| u_t.abs()).sum::<f64>())
         };
@@ -315,13 +319,14 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             return Ok(None);
         }
         self.stage.make_room(self.middle.len());
-        for k in 0..self.middle.len() {
-            let candidate = self.middle[k];
-            if self.rooms[0][k] < 0.0 && !self.goes_past_ends {
-                continue;
-            }
-            self.pose(model, state, span.h, work, &candidate)?;
-        }
+        self.stage.belong_to(model);
+        let middle = std::mem::take(&mut self.middle);
+        let posed = middle.iter().enumerate().try_for_each(|(k, candidate)| {
+            let over = self.goes_past_ends || self.rooms[0][k] >= 0.0;
+            if over { self.pose(model, state, span.h, work, candidate) } else { Ok(()) }
+        });
+        self.middle = middle;
+        posed?;
         let (over, responses) = (Over::Step { h: span.h, weight: THETA }, self.step.responses(span.h));
         self.guarded.restart(self.stage.len());
         let (guarded, v_free) = (&mut self.guarded, &self.v_free);
@@ -343,20 +348,20 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         work: &mut Workspace<D>,
         candidate: &Candidate<D>,
     ) -> Result<(), Mismatch> {
-        let law = model.law(candidate.law)?;
+        let law = model.law_of(candidate.law)?;
         let i = self.stage.len();
-        if !self.stage.add(model, &self.q_mid, candidate, &state.warm, &state.memory)? {
+        if !self.stage.take_in(model, &self.q_mid, candidate, &state.warm, &state.memory)? {
             return Ok(());
         }
-        let u_before = self.stage.velocity(i, &state.v)?;
-        let u_free = self.stage.velocity(i, &self.v_free)?;
+        let [u_before, u_free] = self.stage.rows.velocities(i, [&state.v, &self.v_free]);
         // Off the end of its surface by then, it has no frame there.
         let b = match find(&self.ahead, candidate.id) {
             Some(ahead) => {
-                self.one.clear();
-                match self.one.add(model, &self.q_ahead, ahead, &state.warm, &state.memory)? {
-                    true => self.one.velocity(0, &state.v)? - u_before,
-                    false => Vector::zeros(),
+                self.row.clear();
+                self.row.push(model, &self.q_ahead, ahead)?;
+                match self.row.last_is_prescribed(model) {
+                    true => Vector::zeros(),
+                    false => self.row.velocity(0, &state.v) - u_before,
                 }
             }
             None => Vector::zeros(),
@@ -382,7 +387,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
                 1.0 => u_free,
                 part => u_before + (u_free - u_before) / part,
             };
-            restitute(persisting, &law, &u_before, &whole, &mut shift)
+            restitute(persisting, law, &u_before, &whole, &mut shift)
         };
         self.stage.set(i, u_before, u_free, shift, rule)
     }

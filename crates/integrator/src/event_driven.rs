@@ -255,7 +255,7 @@ impl Scheme<2> for EventDriven {
         self.mean.resize(model.size().q, 0.0);
         self.v_before.resize(model.size().v, 0.0);
         let mut from = self.from.take().unwrap_or_else(|| state.clone());
-        from.copy_from(state);
+        from.copy_motion(state);
         let took = self.take_phases(model, &mut from, &span, work);
         self.from = Some(from);
         let located = took?;

@@ -98,6 +98,8 @@ pub struct MoreauJeanLocated<const D: usize> {
     /// Contacts with something elastic that pressed lately: pair, point, and the last step in which
     /// they did, as the state's memory holds them.
     lately: Vec<f64>,
+    /// Whether any subsystem is elastic.
+    has_elastic: bool,
     /// Whether more contacts struck in the step than are located.
     unlocated: bool,
 }
@@ -135,6 +137,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
             v: Vec::new(),
             stays: Vec::new(),
             lately: Vec::new(),
+            has_elastic: true,
             unlocated: false,
         })
     }
@@ -187,7 +190,11 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         // A part of a step will need a factor of its own, and an impact that of the masses.
         work.factors(model, MASSES, &state.q, Keep::Pinned)?;
         work.factors(model, weights(0.5 * state.dt, THETA), &state.q, Keep::Once)?;
-        work.factors(model, weights(state.dt, THETA), &state.q, Keep::Pinned)
+        let w = weights(state.dt, THETA);
+        work.factors(model, w, &state.q, Keep::Pinned)?;
+        let mut parts = model.parts().iter().enumerate();
+        self.has_elastic = parts.any(|(index, part)| is_elastic(part, index, w, &mut work.factors));
+        Ok(())
     }
 
     fn advance<'w>(
@@ -201,7 +208,7 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         work.begin(model, state, span)?;
         self.check(model)?;
         let mut from = self.from.take().unwrap_or_else(|| state.clone());
-        from.copy_from(state);
+        from.copy_motion(state);
         self.lately.clear();
         self.lately.extend_from_slice(state.memory.all_numbers());
         let penetration = self.take_parts(model, &mut from, &span, work);
@@ -334,6 +341,9 @@ impl<const D: usize> MoreauJeanLocated<D> {
     /// Enters the contacts with something elastic that pressed or struck so far in the step from
     /// `from`, and forgets those that have not for long.
     fn remember_lately(&mut self, model: &Model<D>, from: &State, work: &mut Workspace<D>) {
+        if !self.has_elastic {
+            return;
+        }
         let (now, w) = (from.step.saturating_add(1) as f64, weights(from.dt, THETA));
         let (contacts, factors) = work.contacts_and_factors();
         for contact in contacts.filter(|contact| contact.p[0] > 0.0) {

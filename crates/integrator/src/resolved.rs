@@ -237,7 +237,7 @@ impl<const D: usize> Scheme<D> for Resolved<D> {
         self.resize(model);
         work.factors.make_propagators(model);
         let mut from = self.from.take().unwrap_or_else(|| state.clone());
-        from.copy_from(state);
+        from.copy_motion(state);
         let taken = self.take_parts(model, &mut from, &span, work);
         self.from = Some(from);
         let grading = taken?;

@@ -302,7 +302,8 @@ impl<const D: usize> ContactStage<D> {
         Ok(())
     }
 
-    fn belong_to(&mut self, model: &Model<D>) {
+    /// Marks that what is taken in from now on is of this model.
+    pub(crate) fn belong_to(&mut self, model: &Model<D>) {
         self.model = Some(model.identity());
         self.velocities = model.size().v;
     }
@@ -334,7 +335,7 @@ impl<const D: usize> ContactStage<D> {
 
     /// The same without checks of model and lengths.
     #[inline]
-    fn take_in(
+    pub(crate) fn take_in(
         &mut self,
         model: &Model<D>,
         q: &[f64],

@@ -375,15 +375,20 @@ impl State {
 
     /// Becomes equal to `other`; allocates only if `other` holds more than this ever has.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { step, t, dt, q, v, memory, warm, ledger, tally, clock } = other;
+        self.copy_motion(other);
+        self.ledger.clone_from(&other.ledger);
+        self.tally.clone_from(&other.tally);
+    }
+
+    /// Becomes equal to `other` but for the account of energies and the counts of steps.
+    pub(crate) fn copy_motion(&mut self, other: &Self) {
+        let Self { step, t, dt, q, v, memory, warm, ledger: _, tally: _, clock } = other;
         (self.step, self.t, self.dt, self.clock) = (*step, *t, *dt, *clock);
         for (mine, other) in [(&mut self.q, q), (&mut self.v, v)] {
             mine.clone_from(other);
         }
         self.memory.copy_from(memory);
         self.warm.copy_from(warm);
-        self.ledger.clone_from(ledger);
-        self.tally.clone_from(tally);
     }
 }
 

@@ -79,13 +79,13 @@ impl<const D: usize> Guard<'_, D> {
             if contact.persisting && self.stage.feels_drive(self.model, number, self.v_before, self.v_free) {
                 continue;
             }
-            let rounding = self.rounding(problem, i);
             let gains = if any_phased && laws.handed_on(problem, i) {
                 let allowed: f64 = (0..problem.len()).map(|i| self.rounding(problem, i)).sum();
-                laws.work_around(problem, i) > allowed && laws.work_unreturned(i) > rounding
+                laws.work_around(problem, i) > allowed && laws.work_unreturned(i) > self.rounding(problem, i)
             } else {
                 let gain = problem.work(i);
-                gain > rounding && gain > self.excused(problem, i, guarded)
+                // Usually none, and then nobody asks for its rounding.
+                gain > 0.0 && gain > self.rounding(problem, i) && gain > self.excused(problem, i, guarded)
             };
             if !gains {
                 continue;

@@ -126,12 +126,15 @@ impl<const D: usize> MoreauJeanLocated<D> {
             }
             let start = self.step.slides[i];
             let speed = start.norm();
+            if speed <= 4.0 * contact.still {
+                continue;
+            }
             let change = self.step.stage.velocity(i, &self.by_forces)?;
             let change = tangential(&change).norm() + law.friction * change[0].abs();
             // Of two blocks that fall alike forces change nothing; what holds one of them up changes them as much as these change each.
             let each = self.step.stage.speed(i, &self.by_forces);
             let change = if change > ALIKE * each { change } else { 0.5 * law.friction * each };
-            if speed <= SLOW * change || speed <= 4.0 * contact.still {
+            if speed <= SLOW * change {
                 continue;
             }
             let slide = Slide { id: contact.id, direction: start / speed, none: STOPPED * change, seen: (0.0, speed) };
