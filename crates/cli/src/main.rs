@@ -45,7 +45,7 @@ enum Command {
         #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value)]
         set: Vec<(String, String)>,
         /// Find the longest step that reaches this accuracy; the scene must have `step = "auto"` or none, as with --set time.step=auto
-        #[arg(long, value_name = "X")]
+        #[arg(long, value_name = "X", allow_hyphen_values = true)]
         accuracy: Option<String>,
         /// Find until when the motion can be told: by runs with half the step, and from 1e-12 beside the start
         #[arg(long, conflicts_with = "from")]

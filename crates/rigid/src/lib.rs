@@ -19,6 +19,10 @@
 //! # Ok::<(), teeter_rigid::RigidError>(())
 //! ```
 
+mod mass;
+
+pub use mass::MassProperties;
+
 use nalgebra::{SMatrix, Vector2, Vector3};
 
 /// What is wrong with the data of a body.
@@ -35,7 +39,7 @@ pub enum RigidError {
     },
 }
 
-fn positive(what: &'static str, value: f64) -> Result<f64, RigidError> {
+pub(crate) fn positive(what: &'static str, value: f64) -> Result<f64, RigidError> {
     // Written so that NaN fails too.
     if value > 0.0 && value.is_finite() { Ok(value) } else { Err(RigidError::NotPositive { what, value }) }
 }
@@ -91,70 +95,6 @@ impl Rectangle {
     }
 }
 
-/// Mass m (kg) and moment of inertia I about the mass centre (kg·m²).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MassProperties {
-    /// Mass, kg.
-    pub mass: f64,
-    /// Moment of inertia about the mass centre, kg·m².
-    pub inertia: f64,
-}
-
-impl MassProperties {
-    /// The given mass (kg) and moment of inertia (kg·m²).
-    ///
-    /// # Errors
-    /// If one is not positive and finite.
-    pub fn new(mass: f64, inertia: f64) -> Result<Self, RigidError> {
-        Ok(Self { mass: positive("the mass", mass)?, inertia: positive("the moment of inertia", inertia)? })
-    }
-
-    /// Mass and moment of inertia of a homogeneous cuboid: m = ρbHd, I = m(b² + H²)/12; depth d in
-    /// m, density ρ in kg/m³.
-    ///
-    /// # Errors
-    /// If depth or density (or a result that over- or underflows) is not positive and finite.
-    pub fn rectangle(shape: &Rectangle, depth: f64, density: f64) -> Result<Self, RigidError> {
-        let (b, height) = (shape.width, shape.height);
-        let mass = positive("the density", density)? * b * height * positive("the depth", depth)?;
-        Self::new(mass, mass * (b * b + height * height) / 12.0)
-    }
-
-    /// Mass and moment of inertia of a homogeneous convex polygon about its mass centre, and where that is, m; corners counter-clockwise
-    /// (m), depth d in m, density ρ in kg/m³: m = ρdA, I = ρd Σ aₖ (|xₖ|² + xₖ·xₖ₊₁ + |xₖ₊₁|²)/12, aₖ = xₖ × xₖ₊₁, with places xₖ seen from the mass
-    /// centre.
-    ///
-    /// # Errors
-    /// If depth or density (or the area, or a result that over- or underflows) is not positive and finite.
-    pub fn polygon(corners: &[Vector2<f64>], depth: f64, density: f64) -> Result<(Self, Vector2<f64>), RigidError> {
-        let first = corners.first().copied().unwrap_or_default();
-        let sum = |from: Vector2<f64>, of: &dyn Fn(&Vector2<f64>, &Vector2<f64>) -> f64| -> f64 {
-            let next = corners.iter().cycle().skip(1);
-            corners.iter().zip(next).map(|(a, b)| (a - from, b - from)).map(|(a, b)| a.perp(&b) * of(&a, &b)).sum()
-        };
-        let area = positive("the area", 0.5 * sum(first, &|_, _| 1.0))?;
-        let centre = Vector2::new(sum(first, &|a, b| a.x + b.x), sum(first, &|a, b| a.y + b.y)) / (6.0 * area);
-        let centre = first + centre;
-        let turning = sum(centre, &|a, b| a.norm_squared() + a.dot(b) + b.norm_squared()) / 12.0;
-        let thick = positive("the density", density)? * positive("the depth", depth)?;
-        Ok((Self::new(thick * area, thick * turning)?, centre))
-    }
-
-    /// Kinetic energy ½m(Ẋ² + Ẏ²) + ½Iφ̇², J.
-    #[inline]
-    #[must_use]
-    pub fn kinetic_energy(&self, v: &Vector3<f64>) -> f64 {
-        0.5 * (self.mass * (v.x * v.x + v.y * v.y) + self.inertia * v.z * v.z)
-    }
-
-    /// The diagonal of the mass matrix.
-    #[inline]
-    #[must_use]
-    pub fn diagonal(&self) -> Vector3<f64> {
-        Vector3::new(self.mass, self.mass, self.inertia)
-    }
-}
-
 /// The pose of a body: its mass centre and its rotation, with sine and cosine computed once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
@@ -206,29 +146,6 @@ impl Pose {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_papers_block_has_the_papers_mass_and_inertia() {
-        let mass = MassProperties::rectangle(&Rectangle::new(0.03, 0.135).unwrap(), 0.03, 2700.0).unwrap();
-        assert!((mass.mass - 0.32805).abs() < 1e-16);
-        assert!((mass.inertia - 5.228296875e-4).abs() < 1e-18);
-    }
-
-    #[test]
-    fn a_polygon_has_the_mass_of_its_triangles() {
-        let at = |x: f64, y: f64| Vector2::new(x, y);
-        // A rectangle, far from the origin: as one by its sides.
-        let moved = [at(10.0, 20.0), at(10.03, 20.0), at(10.03, 20.135), at(10.0, 20.135)];
-        let (mass, centre) = MassProperties::polygon(&moved, 0.03, 2700.0).unwrap();
-        let sides = MassProperties::rectangle(&Rectangle::new(0.03, 0.135).unwrap(), 0.03, 2700.0).unwrap();
-        assert!((mass.mass / sides.mass - 1.0).abs() < 1e-12 && (mass.inertia / sides.inertia - 1.0).abs() < 1e-11);
-        assert!((centre - at(10.015, 20.0675)).norm() < 1e-13);
-        // A triangle of base b and height h with a right angle: I = m(b² + h²)/18.
-        let (mass, centre) = MassProperties::polygon(&[at(0.0, 0.0), at(3.0, 0.0), at(0.0, 1.5)], 2.0, 5.0).unwrap();
-        assert!((mass.mass - 22.5).abs() < 1e-13 && (centre - at(1.0, 0.5)).norm() < 1e-15);
-        assert!((mass.inertia - 22.5 * (9.0 + 2.25) / 18.0).abs() < 1e-13);
-        assert!(MassProperties::polygon(&[at(0.0, 0.0), at(0.0, 1.0), at(1.0, 0.0)], 1.0, 1.0).is_err(), "clockwise");
-    }
 
     #[test]
     fn tilting_to_the_left_stands_the_block_on_its_bottom_left_corner() {
