@@ -72,7 +72,8 @@ impl Work {
     }
 
     /// What a simulation has done since it was made.
-    pub(crate) fn of(simulation: &Simulation) -> Self {
+    #[must_use]
+    pub fn of(simulation: &Simulation) -> Self {
         let counts = simulation.work_counts();
         Self {
             steps: simulation.state.step,

@@ -165,6 +165,38 @@ fn the_programs_rod_is_hit_comes_back_and_ends_leaning_on_the_block() {
     assert!(scene.state.q[3] > 0.05 && scene.state.tally.unconverged_steps == 0);
 }
 
+/// Block and platform swing as one mass about their place of rest. The trapezoidal rule turns a linear oscillator by 2 atan(ωh/2) a step,
+/// exactly: what is left is the solver's tolerance.
+#[test]
+fn a_block_on_a_platform_swings_with_it() {
+    let (stiffness, step) = (800.0, 1e-3);
+    let mut scene = put_down(stiffness, step).unwrap();
+    let mass = PLATFORM + block().unwrap().1.mass;
+    let omega = (stiffness / mass).sqrt();
+    let amplitude = mass * 9.81 / stiffness;
+    let turn = 2.0 * (0.5 * omega * step).atan();
+    for steps in [100_u64, 150, 400] {
+        simulate(&mut scene, steps, &mut Impacts::of(HIT)).unwrap();
+        let q = -amplitude * (1.0 - (turn * steps as f64).cos());
+        assert!((scene.state.q[3] - q).abs() < 1e-11, "after {steps} steps {:e}, not {q:e}", scene.state.q[3]);
+        assert!((scene.state.q[1] - 0.5 * SIDES[1] - q).abs() < 1e-11);
+    }
+    assert!(scene.state.ledger.relative_residual() < 1e-14, "{:e}", scene.state.ledger.relative_residual());
+}
+
+#[test]
+fn the_platform_is_what_the_integrator_asks_of_a_subsystem() {
+    let platform = Platform { matrices: ConstantMatrices::mass([[2.0]]).with_stiffness([[500.0]]), weight: 20.0 };
+    let case = Case {
+        q: vec![0.07],
+        weights: Weights { mass: 1.0, damping: 0.05, stiffness: 2.5e-3 },
+        points: vec![(0, Vector2::new(0.3, 0.0))],
+        places: vec![(0, Vector2::new(0.3, 0.3)), (0, Vector2::new(0.1, 0.01))],
+        ..Case::default()
+    };
+    assert_eq!(check(&platform, &case), []);
+}
+
 /// Not at the origin, and with all numbers different.
 const ANY: Pendulum =
     Pendulum { pivot: Vector2::new(0.1, 0.4), length: 0.3, half_thickness: 0.002, mass: 0.2, gravity: 9.81 };
