@@ -48,6 +48,7 @@ pub mod conformance;
 mod memory;
 mod placed;
 mod points;
+mod round;
 mod shape;
 mod shapes;
 mod touch;
@@ -55,7 +56,7 @@ mod touch;
 pub use candidate::{Anchor, BodyId, Candidate, Candidates, ContactId, Frame, LawId, plane_frame};
 pub use memory::DetectorMemory;
 pub use points::{PointDetector, PointPair};
-pub use shape::{Disc, MOST_CORNERS, Polygon, Shape, ShapeError};
+pub use shape::{Disc, MOST_CORNERS, Polygon, Rounded, Shape, ShapeError};
 pub use shapes::{ShapeDetector, ShapePair, WiringError};
 pub use touch::CornerOnSide;
 

@@ -1,10 +1,11 @@
 //! Bodies with shapes against each other, beside points against surfaces.
 
-use crate::placed::{Member, Places};
-use crate::touch::{OF_DISC, Touch, feature_of, polygons, with_disc};
+use crate::placed::{BodyFrame, Places, Shapes, outward};
+use crate::round::{near_outline, round};
+use crate::touch::{CornerOnSide, Side, Touch, Touches, corner_on_side, polygons};
 use crate::{
-    Anchor, BodyId, Candidate, Candidates, ContactDetector, ContactId, DetectorMemory, Geometry, LawId, PointDetector,
-    Shape, Wiring, plane_frame,
+    Anchor, BodyId, Candidate, Candidates, ContactDetector, ContactId, DetectorMemory, Geometry, LawId, MOST_CORNERS,
+    PointDetector, Shape, Vector, Wiring, plane_frame,
 };
 
 /// Two bodies whose shapes can touch.
@@ -22,10 +23,12 @@ pub struct ShapePair {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum WiringError {
-    /// A body with two shapes.
-    TwoShapes {
+    /// A body whose parts have more corners together than a contact's identity can number.
+    Corners {
         /// The body.
         body: BodyId,
+        /// How many there are.
+        corners: usize,
     },
     /// A pair of a body that has no shape.
     NoShape {
@@ -39,7 +42,9 @@ pub enum WiringError {
 impl std::fmt::Display for WiringError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::TwoShapes { body } => write!(f, "body {} has two shapes: give each body one", body.0),
+            Self::Corners { body, corners } => {
+                write!(f, "the parts of body {} have {corners} corners together, but at most {MOST_CORNERS} can be told apart", body.0)
+            }
             Self::NoShape { pair, body } => {
                 write!(f, "pair {pair} is of body {}, which has no shape: give it one", body.0)
             }
@@ -52,7 +57,8 @@ impl std::error::Error for WiringError {}
 /// The detector of shapes against each other, and of points against surfaces.
 ///
 /// Two polygons touch where a corner of one is over a side of the other, at two points at most: at the ends of what the side that
-/// parts them best shares with the side that faces it. Corner beside corner they don't touch. A disc touches at one point.
+/// parts them best shares with the side that faces it. Corner beside corner they don't touch, unless one of them is round. A body may
+/// have several shapes, which are its parts.
 ///
 /// ```
 /// use nalgebra::Vector2;
@@ -82,39 +88,36 @@ impl std::error::Error for WiringError {}
 #[derive(Clone, Debug, Default)]
 pub struct ShapeDetector {
     points: PointDetector<2>,
-    /// In the order of their bodies.
-    members: Vec<Member>,
+    shapes: Shapes,
     /// In the order of their numbers, with the places of their bodies among the members.
     pairs: Vec<(ShapePair, [usize; 2])>,
 }
 
+/// What detection keeps in memory.
+#[derive(Debug, Default)]
+struct Kept {
+    places: Places,
+    /// The contacts of a pair of which a body has several parts.
+    touches: Vec<Touch>,
+}
+
 impl ShapeDetector {
-    /// A detector of these bodies' shapes, of which the pairs can touch.
+    /// A detector of these bodies' shapes, of which the pairs can touch. Several shapes of one body are its parts.
     ///
     /// # Errors
-    /// If a body has two shapes, or one of a pair has none.
-    pub fn new(mut shapes: Vec<(BodyId, Shape)>, mut pairs: Vec<ShapePair>) -> Result<Self, WiringError> {
-        shapes.sort_by_key(|(body, _)| *body);
-        if let Some(twice) = shapes.windows(2).find(|two| two[0].0 == two[1].0) {
-            return Err(WiringError::TwoShapes { body: twice[0].0 });
-        }
-        let mut members: Vec<Member> = Vec::with_capacity(shapes.len());
-        for (body, shape) in shapes {
-            let start = members.last().map_or(0, |member| member.corners.end);
-            let corners = match &shape {
-                Shape::Polygon(polygon) => polygon.corners().len(),
-                Shape::Disc(_) => 0,
-            };
-            members.push(Member { body, shape, corners: start..start + corners });
+    /// If a body of a pair has no shape, or one has too many corners.
+    pub fn new(shapes: Vec<(BodyId, Shape)>, mut pairs: Vec<ShapePair>) -> Result<Self, WiringError> {
+        let shapes = Shapes::new(shapes);
+        if let Some((body, corners)) = shapes.largest().filter(|(_, corners)| *corners > MOST_CORNERS) {
+            return Err(WiringError::Corners { body, corners });
         }
         pairs.sort_by_key(|pair| pair.pair);
         let of = |pair: &ShapePair, body: BodyId| {
-            let found = members.binary_search_by_key(&body, |member| member.body);
-            found.map_err(|_| WiringError::NoShape { pair: pair.pair, body })
+            shapes.member_of(body).ok_or(WiringError::NoShape { pair: pair.pair, body })
         };
         let pairs = pairs.iter().map(|pair| Ok((*pair, [of(pair, pair.bodies[0])?, of(pair, pair.bodies[1])?])));
         let pairs = pairs.collect::<Result<_, WiringError>>()?;
-        Ok(Self { points: PointDetector::default(), members, pairs })
+        Ok(Self { points: PointDetector::default(), shapes, pairs })
     }
 
     /// With points against surfaces, too; their pairs have numbers of their own.
@@ -135,22 +138,46 @@ impl ShapeDetector {
         if self.pairs.is_empty() {
             return;
         }
-        let places = memory.of(Places::default);
-        places.place(&self.members, at);
-        for (pair, [a, b]) in &self.pairs {
-            if !places.boxes[*a].near(&places.boxes[*b], margin) {
-                continue;
-            }
-            let (first, second) = (&self.members[*a], &self.members[*b]);
-            if let (Shape::Polygon(mine), Shape::Polygon(other)) = (&first.shape, &second.shape) {
-                let near = polygons(&places.polygon(first, mine), &places.polygon(second, other), margin);
-                near.into_iter().filter(|touch| touch.gap <= margin).for_each(|touch| each(pair, &touch));
-            } else if let Some(touch) = with_disc(at, [first, second])
-                && touch.gap <= margin
-            {
-                each(pair, &touch);
+        let Kept { places, touches } = memory.of(Kept::default);
+        places.place(&self.shapes, at);
+        for (pair, members) in &self.pairs {
+            let [a, b] = *members;
+            if places.boxes[a].near(&places.boxes[b], margin) {
+                self.of_pair(places, *members, margin, touches, |touch| each(pair, touch));
             }
         }
+    }
+
+    /// Hands the contacts of two bodies to `each`, in the order of their features.
+    fn of_pair(
+        &self,
+        places: &Places,
+        [a, b]: [usize; 2],
+        margin: f64,
+        touches: &mut Vec<Touch>,
+        mut each: impl FnMut(&Touch),
+    ) {
+        let [mine, others] = [a, b].map(|member| self.shapes.members[member].parts.clone());
+        let near = |i: usize, j: usize| -> Touches {
+            let (first, second) = (places.part(&self.shapes, i), places.part(&self.shapes, j));
+            if self.are_sharp(i, j) {
+                return polygons(&first, &second, margin);
+            }
+            let outlines = [places.outline(&self.shapes, a, i), places.outline(&self.shapes, b, j)];
+            round([&first, &second], [&outlines[0], &outlines[1]], margin)
+        };
+        if mine.len() * others.len() == 1 {
+            near(mine.start, others.start).into_iter().filter(|touch| touch.gap <= margin).for_each(|touch| each(&touch));
+            return;
+        }
+        touches.clear();
+        for i in mine {
+            for j in others.clone() {
+                touches.extend(near(i, j).into_iter().filter(|touch| touch.gap <= margin));
+            }
+        }
+        touches.sort_unstable_by_key(|touch| touch.feature);
+        touches.iter().for_each(each);
     }
 
     /// Those of the contacts `ids` that there can be, with how far it is to the end of their side, m.
@@ -164,21 +191,44 @@ impl ShapeDetector {
                 return self.points.located(at, *id).map(|candidate| (candidate, f64::INFINITY));
             };
             let (pair, members) = &self.pairs[found];
-            let [first, second] = members.map(|member| &self.members[member]);
-            let touch = match (&first.shape, &second.shape) {
-                (Shape::Polygon(mine), Shape::Polygon(other)) => {
-                    feature_of(at, [(first.body, mine), (second.body, other)], id.point())
-                }
-                _ if id.point() == OF_DISC => with_disc(at, [first, second]),
-                _ => None,
-            }?;
+            let touch = self.touch(at, *members, CornerOnSide::from_number(id.point()))?;
             Some((candidate(pair, &touch), touch.room))
         })
     }
 
+    /// The contact of two members by its feature.
+    fn touch(&self, at: &dyn Geometry<2>, members: [usize; 2], feature: CornerOnSide) -> Option<Touch> {
+        let [owner, other] = if feature.owner == 0 { members } else { [members[1], members[0]] };
+        let (part, beside) = (self.shapes.part_of(owner, feature.corner)?, self.shapes.part_of(other, feature.side)?);
+        if feature.round == self.are_sharp(part, beside) {
+            return None;
+        }
+        let bodies = [owner, other].map(|member| self.shapes.members[member].body);
+        let [part, beside] = [(part, bodies[0]), (beside, bodies[1])];
+        if feature.round {
+            let [part, beside] = [part, beside].map(|(part, body)| self.shapes.outline(part, BodyFrame::of(body, at)));
+            return near_outline(feature, &part, &beside);
+        }
+        let first = |part: usize| self.shapes.parts[part].first;
+        let corner = self.shapes.local(part.0)[feature.corner - first(part.0)];
+        let sides = self.shapes.local(beside.0);
+        let side = feature.side - first(beside.0);
+        let local = [sides[side], sides[(side + 1) % sides.len()]];
+        let (mut place, mut ends) = ([Vector::zeros()], [Vector::zeros(); 2]);
+        at.place(part.1, &[corner], &mut place);
+        at.place(beside.1, &local, &mut ends);
+        corner_on_side(feature, (corner, place[0]), &Side { local, ends, normal: outward(&ends[0], &ends[1]) })
+    }
+
+    /// Whether neither of two parts is round.
+    fn are_sharp(&self, i: usize, j: usize) -> bool {
+        self.shapes.parts[i].radius + self.shapes.parts[j].radius == 0.0
+    }
+
     fn capacity_of(&self, [a, b]: [usize; 2]) -> usize {
-        let is_disc = |member: usize| matches!(self.members[member].shape, Shape::Disc(_));
-        if is_disc(a) || is_disc(b) { 1 } else { 2 }
+        let parts = |member: usize| self.shapes.members[member].parts.clone();
+        let of = |i: usize, j: usize| if self.shapes.local(i).len().min(self.shapes.local(j).len()) == 1 { 1 } else { 2 };
+        parts(a).map(|i| parts(b).map(|j| of(i, j)).sum::<usize>()).sum()
     }
 }
 

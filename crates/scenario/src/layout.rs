@@ -159,7 +159,7 @@ impl PairPlace {
     #[must_use]
     pub fn point(&self, id: ContactId) -> Option<usize> {
         let number = if self.of_shapes {
-            let CornerOnSide { owner, corner, .. } = CornerOnSide::from_number(id.point())?;
+            let CornerOnSide { owner, corner, .. } = CornerOnSide::from_number(id.point());
             owner * self.corners + corner
         } else {
             id.point() as usize
