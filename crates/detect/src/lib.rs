@@ -42,6 +42,7 @@
 //! assert_eq!((found[0].gap, found[0].id.point()), (0.1, 0));
 //! ```
 
+mod broad;
 mod candidate;
 #[cfg(feature = "conformance")]
 pub mod conformance;
@@ -53,6 +54,7 @@ mod shape;
 mod shapes;
 mod touch;
 
+pub use broad::Groups;
 pub use candidate::{Anchor, BodyId, Candidate, Candidates, ContactId, Frame, LawId, plane_frame};
 pub use memory::DetectorMemory;
 pub use points::{PointDetector, PointPair};

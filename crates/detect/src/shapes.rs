@@ -1,5 +1,6 @@
 //! Bodies with shapes against each other, beside points against surfaces.
 
+use crate::broad::{Groups, Near, NearPair};
 use crate::placed::{BodyFrame, Places, Shapes, outward};
 use crate::round::{near_outline, round};
 use crate::touch::{CornerOnSide, Side, Touch, Touches, corner_on_side, polygons};
@@ -30,6 +31,30 @@ pub enum WiringError {
         /// How many there are.
         corners: usize,
     },
+    /// More bodies in groups than pairs of them can be numbered.
+    Members {
+        /// How many there are.
+        members: usize,
+        /// How many there can be.
+        most: usize,
+    },
+    /// A body that is in groups twice.
+    ListedTwice {
+        /// The body.
+        body: BodyId,
+    },
+    /// A body whose class has no entry in the table of laws.
+    NoClass {
+        /// The body.
+        body: BodyId,
+        /// Its class.
+        class: usize,
+    },
+    /// A body of groups that has no shape.
+    Shapeless {
+        /// The body.
+        body: BodyId,
+    },
     /// A pair of a body that has no shape.
     NoShape {
         /// The pair's number.
@@ -45,6 +70,14 @@ impl std::fmt::Display for WiringError {
             Self::Corners { body, corners } => {
                 write!(f, "the parts of body {} have {corners} corners together, but at most {MOST_CORNERS} can be told apart", body.0)
             }
+            Self::Members { members, most } => {
+                write!(f, "there are {members} bodies of which any two can touch, but at most {most} can be told apart")
+            }
+            Self::ListedTwice { body } => write!(f, "body {} is listed twice: give each body one class", body.0),
+            Self::NoClass { body, class } => {
+                write!(f, "body {} is of class {class}, for which the table of laws has no entry", body.0)
+            }
+            Self::Shapeless { body } => write!(f, "body {} has no shape: give it one", body.0),
             Self::NoShape { pair, body } => {
                 write!(f, "pair {pair} is of body {}, which has no shape: give it one", body.0)
             }
@@ -91,12 +124,26 @@ pub struct ShapeDetector {
     shapes: Shapes,
     /// In the order of their numbers, with the places of their bodies among the members.
     pairs: Vec<(ShapePair, [usize; 2])>,
+    groups: Option<InGroups>,
+}
+
+/// Bodies of which any two can touch, and where their shapes are.
+#[derive(Clone, Debug)]
+struct InGroups {
+    groups: Groups,
+    /// The number of their first pair.
+    first: u32,
+    /// Their places among all members.
+    members: Vec<usize>,
+    /// Pairs of members that are listed one by one, sorted.
+    listed: Vec<[usize; 2]>,
 }
 
 /// What detection keeps in memory.
 #[derive(Debug, Default)]
 struct Kept {
     places: Places,
+    near: Near,
     /// The contacts of a pair of which a body has several parts.
     touches: Vec<Touch>,
 }
@@ -117,7 +164,21 @@ impl ShapeDetector {
         };
         let pairs = pairs.iter().map(|pair| Ok((*pair, [of(pair, pair.bodies[0])?, of(pair, pair.bodies[1])?])));
         let pairs = pairs.collect::<Result<_, WiringError>>()?;
-        Ok(Self { points: PointDetector::default(), shapes, pairs })
+        Ok(Self { points: PointDetector::default(), shapes, pairs, groups: None })
+    }
+
+    /// With bodies of which any two can touch, but for those that are listed as pairs. The number of the pair of the i-th and the j-th
+    /// of n bodies, i < j, is `first` + i n + j, and must be above those of all other pairs.
+    ///
+    /// # Errors
+    /// If one of them has no shape.
+    pub fn with_groups(mut self, groups: Groups, first: u32) -> Result<Self, WiringError> {
+        let of = |body: BodyId| self.shapes.member_of(body).ok_or(WiringError::Shapeless { body });
+        let members = groups.bodies().map(of).collect::<Result<_, _>>()?;
+        let mut listed: Vec<[usize; 2]> = self.pairs.iter().map(|(_, [a, b])| [*a.min(b), *a.max(b)]).collect();
+        listed.sort_unstable();
+        self.groups = Some(InGroups { groups, first, members, listed });
+        Ok(self)
     }
 
     /// With points against surfaces, too; their pairs have numbers of their own.
@@ -135,17 +196,45 @@ impl ShapeDetector {
         memory: &mut DetectorMemory,
         mut each: impl FnMut(&ShapePair, &Touch),
     ) {
-        if self.pairs.is_empty() {
+        if self.pairs.is_empty() && self.groups.is_none() {
             return;
         }
-        let Kept { places, touches } = memory.of(Kept::default);
+        let Kept { places, touches, near } = memory.of(Kept::default);
         places.place(&self.shapes, at);
-        for (pair, members) in &self.pairs {
-            let [a, b] = *members;
+        let mut of_pair = |pair: &ShapePair, members: [usize; 2]| {
+            let [a, b] = members;
             if places.boxes[a].near(&places.boxes[b], margin) {
-                self.of_pair(places, *members, margin, touches, |touch| each(pair, touch));
+                self.of_pair(places, members, margin, touches, |touch| each(pair, touch));
+            }
+        };
+        self.pairs.iter().for_each(|(pair, members)| of_pair(pair, *members));
+        let Some(InGroups { groups, first, members, listed }) = &self.groups else { return };
+        // Without a bound on how far apart they are, nobody is out of reach.
+        if margin < f64::INFINITY {
+            near.update(groups, *first, members, listed, places, margin);
+            near.pairs.iter().for_each(|near| of_pair(&self.in_groups(near), near.members));
+            return;
+        }
+        for i in 0..members.len() {
+            for j in i + 1..members.len() {
+                let number = groups.pair(*first, i, j);
+                if let Some(near) = self.near_pair(number) {
+                    of_pair(&self.in_groups(&near), near.members);
+                }
             }
         }
+    }
+
+    /// The pair of two bodies of groups, by its number; `None` where they don't touch, or are listed.
+    fn near_pair(&self, number: u32) -> Option<NearPair> {
+        let InGroups { groups, first, members, listed } = self.groups.as_ref()?;
+        let ([i, j], law) = groups.of_pair(*first, number)?;
+        let [a, b] = [members[i], members[j]];
+        listed.binary_search(&[a.min(b), a.max(b)]).is_err().then_some(NearPair { pair: number, law, members: [a, b] })
+    }
+
+    fn in_groups(&self, NearPair { pair, law, members }: &NearPair) -> ShapePair {
+        ShapePair { pair: *pair, law: *law, bodies: members.map(|member| self.shapes.members[member].body) }
     }
 
     /// Hands the contacts of two bodies to `each`, in the order of their features.
@@ -187,12 +276,15 @@ impl ShapeDetector {
         ids: &'a [ContactId],
     ) -> impl Iterator<Item = (Candidate<2>, f64)> + 'a {
         ids.iter().filter_map(move |id| {
-            let Ok(found) = self.pairs.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair) else {
-                return self.points.located(at, *id).map(|candidate| (candidate, f64::INFINITY));
+            let (pair, members) = match self.pairs.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair) {
+                Ok(found) => self.pairs[found],
+                Err(_) => match self.near_pair(id.pair()) {
+                    Some(near) => (self.in_groups(&near), near.members),
+                    None => return self.points.located(at, *id).map(|candidate| (candidate, f64::INFINITY)),
+                },
             };
-            let (pair, members) = &self.pairs[found];
-            let touch = self.touch(at, *members, CornerOnSide::from_number(id.point()))?;
-            Some((candidate(pair, &touch), touch.room))
+            let touch = self.touch(at, members, CornerOnSide::from_number(id.point()))?;
+            Some((candidate(&pair, &touch), touch.room))
         })
     }
 
@@ -273,6 +365,10 @@ impl ContactDetector<2> for ShapeDetector {
     }
 
     fn wiring(&self) -> Vec<Wiring> {
+        // Of groups there are too many pairs to be listed: what is found is checked as it comes.
+        if self.groups.is_some() {
+            return Vec::new();
+        }
         let mut wiring = self.points.wiring();
         wiring.extend(self.pairs.iter().map(|(pair, members)| Wiring {
             pair: pair.pair,
@@ -286,6 +382,9 @@ impl ContactDetector<2> for ShapeDetector {
     }
 
     fn capacity(&self) -> usize {
-        self.points.capacity() + self.pairs.iter().map(|(_, members)| self.capacity_of(*members)).sum::<usize>()
+        let listed = self.pairs.iter().map(|(_, members)| self.capacity_of(*members)).sum::<usize>();
+        let parts = self.shapes.members.iter().map(|member| member.parts.len()).max().unwrap_or(0);
+        let of_groups = self.groups.as_ref().map_or(0, |of| 2 * parts * parts * of.groups.pairs());
+        self.points.capacity() + listed + of_groups
     }
 }

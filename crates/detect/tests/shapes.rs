@@ -4,7 +4,7 @@
 use nalgebra::{Rotation2, Vector2};
 use teeter_detect::conformance::check;
 use teeter_detect::{
-    BodyId, Candidates, ContactDetector, CornerOnSide, DetectorMemory, Disc, Geometry, Kinematics, LawId, Polygon, Rounded,
+    BodyId, Candidates, ContactDetector, CornerOnSide, DetectorMemory, Disc, Geometry, Groups, Kinematics, LawId, Polygon, Rounded,
     Shape, ShapeDetector, ShapePair, SurfacePoint,
 };
 
@@ -232,6 +232,67 @@ fn a_body_of_parts_touches_by_each_of_them() {
     let poses: Vec<_> = poses.map(|pose| Poses(vec![pose, [0.0, 0.0, 0.1]])).into();
     let poses: Vec<&dyn Geometry<2>> = poses.iter().map(|poses| poses as &dyn Geometry<2>).collect();
     assert_eq!(check(&table, &poses), []);
+}
+
+/// Bodies that drift and turn, all against all but for one pair of classes, of which nothing touches: the same contacts as of pairs that
+/// are listed one by one, whatever was kept in memory.
+#[test]
+fn groups_find_what_listed_pairs_find() {
+    let n = 40_u32;
+    let shapes = |k: u32| match k % 3 {
+        0 => rectangle(1.0, 0.6),
+        1 => disc(0.4),
+        _ => polygon(&[[-0.4, -0.4], [0.5, -0.3], [0.1, 0.6]]),
+    };
+    let shapes: Vec<_> = (0..n).map(|k| (BodyId(k), shapes(k))).collect();
+    let class = |k: u32| usize::from(k % 5 == 0);
+    let laws = vec![vec![Some(LawId(2)), Some(LawId(3))], vec![None, None]];
+    let groups = Groups::new((0..n).map(|k| (BodyId(k), class(k))).collect(), laws).unwrap();
+    let first = 7;
+    let mut pairs = vec![ShapePair { pair: 3, law: LawId(1), bodies: [BodyId(1), BodyId(2)] }];
+    let listed = ShapeDetector::new(shapes.clone(), pairs.clone()).unwrap();
+    for i in 0..n {
+        for j in i + 1..n {
+            if (i, j) != (1, 2) && let Some(law) = groups.law(BodyId(i), BodyId(j)) {
+                pairs.push(ShapePair { pair: first + i * n + j, law, bodies: [BodyId(i), BodyId(j)] });
+            }
+        }
+    }
+    let pairwise = ShapeDetector::new(shapes, pairs).unwrap();
+    let grouped = listed.with_groups(groups, first).unwrap();
+    let mut memory = DetectorMemory::default();
+    let place = |k: u32, t: f64| {
+        let (a, b) = (f64::from(k % 7), f64::from(k / 7));
+        [0.9 * a + 0.3 * (b + t).sin(), 0.8 * b + 0.2 * (a + 2.0 * t).cos(), a * b + t]
+    };
+    let (mut out, mut fresh, mut all, mut found) = (Candidates::new(), Candidates::new(), Candidates::new(), 0);
+    let mut configurations = Vec::new();
+    for k in 0..300 {
+        let poses = Poses((0..n).map(|body| place(body, 0.01 * f64::from(k))).collect());
+        let margin = [0.0, 0.01, 0.3][k as usize % 3];
+        grouped.detect(&poses, margin, &mut memory, &mut out);
+        grouped.detect(&poses, margin, &mut DetectorMemory::default(), &mut fresh);
+        pairwise.detect(&poses, margin, &mut DetectorMemory::default(), &mut all);
+        assert_eq!(out, fresh, "{k}");
+        assert_eq!(out, all, "{k}");
+        found += out.len();
+        if k % 100 == 0 {
+            configurations.push(poses);
+        }
+    }
+    assert!(found > 3000, "{found}");
+    let configurations: Vec<&dyn Geometry<2>> = configurations.iter().map(|poses| poses as &dyn Geometry<2>).collect();
+    assert_eq!(check(&grouped, &configurations), []);
+}
+
+#[test]
+fn groups_that_cannot_work_are_refused() {
+    let laws = vec![vec![Some(LawId(0))]];
+    assert!(Groups::new(vec![(BodyId(0), 0), (BodyId(0), 0)], laws.clone()).is_err());
+    assert!(Groups::new(vec![(BodyId(0), 1)], laws.clone()).is_err());
+    let groups = Groups::new(vec![(BodyId(0), 0), (BodyId(9), 0)], laws).unwrap();
+    let error = pair([disc(1.0), disc(1.0)]).with_groups(groups, 1).unwrap_err();
+    assert_eq!(error.to_string(), "body 9 has no shape: give it one");
 }
 
 /// The distance of two polygons apart from each other: the least of any corner from any side.
