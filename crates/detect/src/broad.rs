@@ -150,15 +150,7 @@ impl Near {
 
     /// Lists the pairs whose boxes are at most `reach` (m) apart: along the axis along which the boxes lie further apart, each is
     /// compared with those that have begun before it and not ended.
-    fn sweep(
-        &mut self,
-        groups: &Groups,
-        first: u32,
-        of: &[usize],
-        listed: &[[usize; 2]],
-        places: &Places,
-        reach: f64,
-    ) {
+    fn sweep(&mut self, groups: &Groups, first: u32, of: &[usize], listed: &[[usize; 2]], places: &Places, reach: f64) {
         let boxed = |k: u32| &places.boxes[of[k as usize]];
         let spread = |axis: usize| {
             let centres = || of.iter().map(|member| places.boxes[*member].low[axis] + places.boxes[*member].high[axis]);

@@ -52,6 +52,7 @@ mod points;
 mod round;
 mod shape;
 mod shapes;
+mod sides;
 mod touch;
 
 pub use broad::Groups;
@@ -60,6 +61,7 @@ pub use memory::DetectorMemory;
 pub use points::{PointDetector, PointPair};
 pub use shape::{Disc, MOST_CORNERS, Polygon, Rounded, Shape, ShapeError};
 pub use shapes::{ShapeDetector, ShapePair, WiringError};
+pub use sides::{OnSide, SidePair};
 pub use touch::CornerOnSide;
 
 /// A point or direction of the world, or of a body.
@@ -139,6 +141,24 @@ pub trait Geometry<const D: usize> {
     fn reach(&self, body: BodyId, margin: f64) -> Option<HalfSpace<D>> {
         let _ = (body, margin);
         None
+    }
+    /// Hands the points of the body's surface to `each`, from the left, at which it comes out furthest in a direction, more so than
+    /// beside them, and whose feet lie between those of two places: the humps of a beam under a base. None, the default, for a surface
+    /// that is flat.
+    fn summits(
+        &self,
+        body: BodyId,
+        kinematics: Kinematics,
+        direction: &Vector<D>,
+        between: &[Vector<D>; 2],
+        each: &mut dyn FnMut(SurfacePoint<D>),
+    ) {
+        let _ = (body, kinematics, direction, between, each);
+    }
+    /// The points at which the body's surface ends, left and right; `None`, the default, where it doesn't.
+    fn ends(&self, body: BodyId, kinematics: Kinematics) -> [Option<SurfacePoint<D>>; 2] {
+        let _ = (body, kinematics);
+        [None, None]
     }
 }
 

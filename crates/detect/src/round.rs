@@ -24,7 +24,8 @@ pub(crate) fn round(places: [&PlacedPart<'_>; 2], outlines: [&Outline<'_>; 2], m
         _ => {}
     }
     // The corner that is nearest to the other: of those that are as near, the first one's.
-    let corners = (0..a.corners.len()).map(|corner| of(0, corner)).chain((0..b.corners.len()).map(|corner| of(1, corner)));
+    let corners =
+        (0..a.corners.len()).map(|corner| of(0, corner)).chain((0..b.corners.len()).map(|corner| of(1, corner)));
     let nearest = corners.filter_map(touch).reduce(|best, other| if other.gap < best.gap { other } else { best });
     let Some(nearest) = nearest.filter(|nearest| nearest.gap <= margin) else { return Touches::default() };
     let lying = facing(places[0], places[1], f64::INFINITY).map(|features| {
@@ -35,7 +36,9 @@ pub(crate) fn round(places: [&PlacedPart<'_>; 2], outlines: [&Outline<'_>; 2], m
     });
     // Where one of the corners at the ends of what sides share is the nearest, or as near, both of them touch.
     match lying {
-        Some([Some(first), Some(second)]) if first.gap.min(second.gap) <= nearest.gap + EQUAL * (a.radius + b.radius) => {
+        Some([Some(first), Some(second)])
+            if first.gap.min(second.gap) <= nearest.gap + EQUAL * (a.radius + b.radius) =>
+        {
             Touches([Some(first), Some(second)])
         }
         _ => one(Some(nearest)),

@@ -53,13 +53,13 @@ impl std::fmt::Display for ShapeError {
                 "at corner {corner} the polygon goes straight on or turns inwards: corners must be those of a convex polygon, in order"
             ),
             Self::Disc { radius } => {
-                write!(
-                    f,
-                    "the radius is {radius} m, but must be positive and finite, and so must the centre be"
-                )
+                write!(f, "the radius is {radius} m, but must be positive and finite, and so must the centre be")
             }
             Self::Rounding { radius, most } => {
-                write!(f, "the corners are rounded to {radius} m, but the polygon has room for radii above 0 and below {most} m")
+                write!(
+                    f,
+                    "the corners are rounded to {radius} m, but the polygon has room for radii above 0 and below {most} m"
+                )
             }
         }
     }
@@ -333,7 +333,8 @@ mod tests {
     fn corners_are_rounded_as_far_as_sides_last() {
         let triangle = polygon(&[[0.0, 0.0], [4.0, 0.0], [0.0, 3.0]]).unwrap();
         // The circle that touches all three sides has radius 1.
-        for (radius, fits) in [(0.5, true), (0.999, true), (1.0, false), (2.0, false), (0.0, false), (f64::NAN, false)] {
+        for (radius, fits) in [(0.5, true), (0.999, true), (1.0, false), (2.0, false), (0.0, false), (f64::NAN, false)]
+        {
             let rounded = Rounded::inside(&triangle, radius);
             assert_eq!(rounded.is_ok(), fits, "{radius}: {rounded:?}");
             let Ok(rounded) = rounded else { continue };

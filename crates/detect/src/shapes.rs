@@ -3,6 +3,7 @@
 use crate::broad::{Groups, Near, NearPair};
 use crate::placed::{BodyFrame, Places, Shapes, outward};
 use crate::round::{near_outline, round};
+use crate::sides::{self, OnSide, SidePair};
 use crate::touch::{CornerOnSide, Side, Touch, Touches, corner_on_side, polygons};
 use crate::{
     Anchor, BodyId, Candidate, Candidates, ContactDetector, ContactId, DetectorMemory, Geometry, LawId, MOST_CORNERS,
@@ -68,7 +69,11 @@ impl std::fmt::Display for WiringError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Corners { body, corners } => {
-                write!(f, "the parts of body {} have {corners} corners together, but at most {MOST_CORNERS} can be told apart", body.0)
+                write!(
+                    f,
+                    "the parts of body {} have {corners} corners together, but at most {MOST_CORNERS} can be told apart",
+                    body.0
+                )
             }
             Self::Members { members, most } => {
                 write!(f, "there are {members} bodies of which any two can touch, but at most {most} can be told apart")
@@ -125,6 +130,8 @@ pub struct ShapeDetector {
     /// In the order of their numbers, with the places of their bodies among the members.
     pairs: Vec<(ShapePair, [usize; 2])>,
     groups: Option<InGroups>,
+    /// In the order of their numbers, with the place of their body among the members.
+    sides: Vec<(SidePair, usize)>,
 }
 
 /// Bodies of which any two can touch, and where their shapes are.
@@ -164,7 +171,21 @@ impl ShapeDetector {
         };
         let pairs = pairs.iter().map(|pair| Ok((*pair, [of(pair, pair.bodies[0])?, of(pair, pair.bodies[1])?])));
         let pairs = pairs.collect::<Result<_, WiringError>>()?;
-        Ok(Self { points: PointDetector::default(), shapes, pairs, groups: None })
+        Ok(Self { points: PointDetector::default(), shapes, pairs, groups: None, sides: Vec::new() })
+    }
+
+    /// With sides of shapes against surfaces that bend or end; their pairs have numbers of their own.
+    ///
+    /// # Errors
+    /// If a body has no shape.
+    pub fn with_sides(mut self, mut sides: Vec<SidePair>) -> Result<Self, WiringError> {
+        sides.sort_by_key(|pair| pair.pair);
+        let of = |pair: SidePair| {
+            let member = self.shapes.member_of(pair.body).ok_or(WiringError::Shapeless { body: pair.body })?;
+            Ok((pair, member))
+        };
+        self.sides = sides.into_iter().map(of).collect::<Result<_, _>>()?;
+        Ok(self)
     }
 
     /// With bodies of which any two can touch, but for those that are listed as pairs. The number of the pair of the i-th and the j-th
@@ -256,7 +277,10 @@ impl ShapeDetector {
             round([&first, &second], [&outlines[0], &outlines[1]], margin)
         };
         if mine.len() * others.len() == 1 {
-            near(mine.start, others.start).into_iter().filter(|touch| touch.gap <= margin).for_each(|touch| each(&touch));
+            near(mine.start, others.start)
+                .into_iter()
+                .filter(|touch| touch.gap <= margin)
+                .for_each(|touch| each(&touch));
             return;
         }
         touches.clear();
@@ -280,12 +304,22 @@ impl ShapeDetector {
                 Ok(found) => self.pairs[found],
                 Err(_) => match self.near_pair(id.pair()) {
                     Some(near) => (self.in_groups(&near), near.members),
-                    None => return self.points.located(at, *id).map(|candidate| (candidate, f64::INFINITY)),
+                    None => return self.located_elsewhere(at, *id),
                 },
             };
             let touch = self.touch(at, members, CornerOnSide::from_number(id.point()))?;
             Some((candidate(&pair, &touch), touch.room))
         })
+    }
+
+    /// A contact that is none of two shapes.
+    fn located_elsewhere(&self, at: &dyn Geometry<2>, id: ContactId) -> Option<(Candidate<2>, f64)> {
+        let Ok(found) = self.sides.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair) else {
+            return self.points.located(at, id).map(|candidate| (candidate, f64::INFINITY));
+        };
+        let (pair, member) = &self.sides[found];
+        let touch = sides::located(&self.shapes, *member, pair, at, OnSide::from_number(id.point())?)?;
+        Some((candidate_of(pair.pair, pair.law, [pair.body, pair.surface], &touch), touch.room))
     }
 
     /// The contact of two members by its feature.
@@ -317,18 +351,28 @@ impl ShapeDetector {
         self.shapes.parts[i].radius + self.shapes.parts[j].radius == 0.0
     }
 
+    fn side_capacity(&self, member: usize) -> usize {
+        let parts = self.shapes.members[member].parts.clone();
+        parts.map(|part| (2 + sides::MOST_SUMMITS) * self.shapes.local(part).len()).sum()
+    }
+
     fn capacity_of(&self, [a, b]: [usize; 2]) -> usize {
         let parts = |member: usize| self.shapes.members[member].parts.clone();
-        let of = |i: usize, j: usize| if self.shapes.local(i).len().min(self.shapes.local(j).len()) == 1 { 1 } else { 2 };
+        let of =
+            |i: usize, j: usize| if self.shapes.local(i).len().min(self.shapes.local(j).len()) == 1 { 1 } else { 2 };
         parts(a).map(|i| parts(b).map(|j| of(i, j)).sum::<usize>()).sum()
     }
 }
 
 fn candidate(pair: &ShapePair, touch: &Touch) -> Candidate<2> {
-    let [a, b] = [0, 1].map(|side| Anchor { body: pair.bodies[side], point: touch.points[side] });
+    candidate_of(pair.pair, pair.law, pair.bodies, touch)
+}
+
+fn candidate_of(pair: u32, law: LawId, bodies: [BodyId; 2], touch: &Touch) -> Candidate<2> {
+    let [a, b] = [0, 1].map(|side| Anchor { body: bodies[side], point: touch.points[side] });
     Candidate {
-        id: ContactId::new(pair.pair, touch.feature),
-        law: pair.law,
+        id: ContactId::new(pair, touch.feature),
+        law,
         sides: [a, b],
         frame: plane_frame(&touch.normal),
         gap: touch.gap,
@@ -338,11 +382,20 @@ fn candidate(pair: &ShapePair, touch: &Touch) -> Candidate<2> {
 impl ContactDetector<2> for ShapeDetector {
     fn detect(&self, at: &dyn Geometry<2>, margin: f64, memory: &mut DetectorMemory, out: &mut Candidates<2>) {
         self.points.detect(at, margin, memory, out);
+        for (pair, member) in &self.sides {
+            let bodies = [pair.body, pair.surface];
+            sides::each(&self.shapes, *member, pair, at, margin, |touch| {
+                out.push(candidate_of(pair.pair, pair.law, bodies, touch));
+            });
+        }
         self.each(at, margin, memory, |pair, touch| out.push(candidate(pair, touch)));
     }
 
     fn deepest(&self, at: &dyn Geometry<2>, memory: &mut DetectorMemory, scratch: &mut Candidates<2>) -> f64 {
         let mut deepest = self.points.deepest(at, memory, scratch);
+        for (pair, member) in &self.sides {
+            sides::each(&self.shapes, *member, pair, at, 0.0, |touch| deepest = deepest.max(-touch.gap));
+        }
         self.each(at, 0.0, memory, |_, touch| deepest = deepest.max(-touch.gap));
         deepest
     }
@@ -378,6 +431,14 @@ impl ContactDetector<2> for ShapeDetector {
             contacts: self.capacity_of(*members),
             not_finite: None,
         }));
+        wiring.extend(self.sides.iter().map(|(pair, member)| Wiring {
+            pair: pair.pair,
+            law: pair.law,
+            bodies: [pair.body, pair.surface],
+            on_surface: true,
+            contacts: self.side_capacity(*member),
+            not_finite: None,
+        }));
         wiring
     }
 
@@ -385,6 +446,7 @@ impl ContactDetector<2> for ShapeDetector {
         let listed = self.pairs.iter().map(|(_, members)| self.capacity_of(*members)).sum::<usize>();
         let parts = self.shapes.members.iter().map(|member| member.parts.len()).max().unwrap_or(0);
         let of_groups = self.groups.as_ref().map_or(0, |of| 2 * parts * parts * of.groups.pairs());
-        self.points.capacity() + listed + of_groups
+        let sides: usize = self.sides.iter().map(|(_, member)| self.side_capacity(*member)).sum();
+        self.points.capacity() + listed + of_groups + sides
     }
 }

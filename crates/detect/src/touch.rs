@@ -173,7 +173,11 @@ impl PlacedPart<'_> {
 
 /// The contact of a corner, in its body and in the world, with a side of the other polygon, or with its line; `None` where that isn't
 /// finite.
-pub(crate) fn corner_on_side(feature: CornerOnSide, (local, place): (Vector<2>, Vector<2>), side: &Side) -> Option<Touch> {
+pub(crate) fn corner_on_side(
+    feature: CornerOnSide,
+    (local, place): (Vector<2>, Vector<2>),
+    side: &Side,
+) -> Option<Touch> {
     let [begin, end] = side.ends;
     let direction = end - begin;
     let along = (place - begin).dot(&direction) / direction.norm_squared();

@@ -4,8 +4,8 @@
 use nalgebra::{Rotation2, Vector2};
 use teeter_detect::conformance::check;
 use teeter_detect::{
-    BodyId, Candidates, ContactDetector, CornerOnSide, DetectorMemory, Disc, Geometry, Groups, Kinematics, LawId, Polygon, Rounded,
-    Shape, ShapeDetector, ShapePair, SurfacePoint,
+    BodyId, Candidates, ContactDetector, CornerOnSide, DetectorMemory, Disc, Geometry, Groups, Kinematics, LawId,
+    Polygon, Rounded, Shape, ShapeDetector, ShapePair, SurfacePoint,
 };
 
 /// Bodies at (x, y, φ).
@@ -253,7 +253,9 @@ fn groups_find_what_listed_pairs_find() {
     let listed = ShapeDetector::new(shapes.clone(), pairs.clone()).unwrap();
     for i in 0..n {
         for j in i + 1..n {
-            if (i, j) != (1, 2) && let Some(law) = groups.law(BodyId(i), BodyId(j)) {
+            if (i, j) != (1, 2)
+                && let Some(law) = groups.law(BodyId(i), BodyId(j))
+            {
                 pairs.push(ShapePair { pair: first + i * n + j, law, bodies: [BodyId(i), BodyId(j)] });
             }
         }
