@@ -51,7 +51,7 @@ const EQUAL: f64 = 1e-9;
 /// The contact of a corner of a core with the outline of another shape; `None` where the two have no direction from each other.
 pub(crate) fn near_outline(feature: CornerOnSide, owner: &Outline<'_>, other: &Outline<'_>) -> Option<Touch> {
     let corner = owner.corners.get(feature.corner.checked_sub(owner.first)?)?;
-    let Nearest { foot, normal, distance } = nearest(other, &other.frame.local(&owner.frame.point(corner)))?;
+    let Nearest { foot, normal, distance, .. } = nearest(other, &other.frame.local(&owner.frame.point(corner)))?;
     let on_other = foot + normal * other.radius;
     let normal = other.frame.turned(&normal);
     let on_owner = corner - owner.frame.unturned(&normal) * owner.radius;
@@ -65,21 +65,31 @@ pub(crate) fn near_outline(feature: CornerOnSide, owner: &Outline<'_>, other: &O
 
 /// The point of a core's outline that is nearest to a point, the way from there, and the distance, negative inside; in the coordinates
 /// of the body.
-struct Nearest {
-    foot: Vector<2>,
-    normal: Vector<2>,
-    distance: f64,
+pub(crate) struct Nearest {
+    pub(crate) foot: Vector<2>,
+    pub(crate) normal: Vector<2>,
+    pub(crate) distance: f64,
+    pub(crate) on: On,
 }
 
-fn nearest(of: &Outline<'_>, to: &Vector<2>) -> Option<Nearest> {
-    let from = |foot: Vector<2>| {
+/// What of an outline is nearest, by its number within its part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum On {
+    Side(usize),
+    Corner(usize),
+}
+
+/// What of an outline's core is nearest to a point of its body; `None` if the core is one point, and that the same.
+pub(crate) fn nearest(of: &Outline<'_>, to: &Vector<2>) -> Option<Nearest> {
+    let from = |corner: usize| {
+        let foot = of.corners[corner];
         let beside = to - foot;
         let distance = beside.norm();
         // Written so that NaN fails too.
-        (distance > 0.0).then(|| Nearest { foot, normal: beside / distance, distance })
+        (distance > 0.0).then(|| Nearest { foot, normal: beside / distance, distance, on: On::Corner(corner) })
     };
-    if let [centre] = of.corners {
-        return from(*centre);
+    if of.corners.len() == 1 {
+        return from(0);
     }
     let mut best: Option<(usize, f64)> = None;
     for (k, (corner, normal)) in of.corners.iter().zip(of.normals).enumerate() {
@@ -94,8 +104,8 @@ fn nearest(of: &Outline<'_>, to: &Vector<2>) -> Option<Nearest> {
     let along = (to - of.corners[k]).dot(&side) / side.norm_squared();
     // From outside, what is nearest is on the side that the point is furthest out of, or at the end of that.
     if distance > 0.0 && !(0.0..=1.0).contains(&along) {
-        return from(of.corners[if along < 0.0 { k } else { next }]);
+        return from(if along < 0.0 { k } else { next });
     }
     let foot = of.corners[k] + side * along.clamp(0.0, 1.0);
-    Some(Nearest { foot, normal: of.normals[k], distance })
+    Some(Nearest { foot, normal: of.normals[k], distance, on: On::Side(k) })
 }

@@ -31,6 +31,16 @@ pub enum ShapeError {
         /// The radius, m.
         radius: f64,
     },
+    /// A profile of fewer than two points, or more than a contact's identity can number.
+    ProfilePoints {
+        /// How many there are.
+        points: usize,
+    },
+    /// A point of a profile that is not to the right of the one before it.
+    NotRising {
+        /// Its number.
+        point: usize,
+    },
     /// A radius to which the corners of a polygon can't be rounded.
     Rounding {
         /// The radius, m.
@@ -54,6 +64,12 @@ impl std::fmt::Display for ShapeError {
             ),
             Self::Disc { radius } => {
                 write!(f, "the radius is {radius} m, but must be positive and finite, and so must the centre be")
+            }
+            Self::ProfilePoints { points } => {
+                write!(f, "a profile has 2 to {} points, but there are {points}", MOST_CORNERS - 2)
+            }
+            Self::NotRising { point } => {
+                write!(f, "point {point} of the profile is not to the right of the one before it: its x must rise")
             }
             Self::Rounding { radius, most } => {
                 write!(

@@ -2,6 +2,7 @@
 
 use crate::broad::{Groups, Near, NearPair};
 use crate::placed::{BodyFrame, Places, Shapes, outward};
+use crate::profile::{self, Profile, ProfilePair};
 use crate::round::{near_outline, round};
 use crate::sides::{self, OnSide, SidePair};
 use crate::touch::{CornerOnSide, Side, Touch, Touches, corner_on_side, polygons};
@@ -132,6 +133,9 @@ pub struct ShapeDetector {
     groups: Option<InGroups>,
     /// In the order of their numbers, with the place of their body among the members.
     sides: Vec<(SidePair, usize)>,
+    /// The profile of the ground, and those against it: in the order of their numbers, with the place of their body.
+    profile: Option<Profile>,
+    on_profile: Vec<(ProfilePair, usize)>,
 }
 
 /// Bodies of which any two can touch, and where their shapes are.
@@ -171,7 +175,15 @@ impl ShapeDetector {
         };
         let pairs = pairs.iter().map(|pair| Ok((*pair, [of(pair, pair.bodies[0])?, of(pair, pair.bodies[1])?])));
         let pairs = pairs.collect::<Result<_, WiringError>>()?;
-        Ok(Self { points: PointDetector::default(), shapes, pairs, groups: None, sides: Vec::new() })
+        Ok(Self {
+            points: PointDetector::default(),
+            shapes,
+            pairs,
+            groups: None,
+            sides: Vec::new(),
+            profile: None,
+            on_profile: Vec::new(),
+        })
     }
 
     /// With sides of shapes against surfaces that bend or end; their pairs have numbers of their own.
@@ -185,6 +197,21 @@ impl ShapeDetector {
             Ok((pair, member))
         };
         self.sides = sides.into_iter().map(of).collect::<Result<_, _>>()?;
+        Ok(self)
+    }
+
+    /// With shapes against ground of this profile, given in the coordinates of the ground's body; pairs have numbers of their own.
+    ///
+    /// # Errors
+    /// If a body has no shape.
+    pub fn with_profile(mut self, profile: Profile, mut pairs: Vec<ProfilePair>) -> Result<Self, WiringError> {
+        pairs.sort_by_key(|pair| pair.pair);
+        let of = |pair: ProfilePair| {
+            let member = self.shapes.member_of(pair.body).ok_or(WiringError::Shapeless { body: pair.body })?;
+            Ok((pair, member))
+        };
+        self.on_profile = pairs.into_iter().map(of).collect::<Result<_, _>>()?;
+        self.profile = Some(profile);
         Ok(self)
     }
 
@@ -312,8 +339,36 @@ impl ShapeDetector {
         })
     }
 
+    /// Hands the contacts with sides and with the profile of the ground to `each`.
+    fn each_on_ground(&self, at: &dyn Geometry<2>, margin: f64, mut each: impl FnMut(u32, LawId, [BodyId; 2], &Touch)) {
+        for (pair, member) in &self.sides {
+            let bodies = [pair.body, pair.surface];
+            sides::each(&self.shapes, *member, pair, at, margin, |touch| each(pair.pair, pair.law, bodies, touch));
+        }
+        let Some(profile) = &self.profile else { return };
+        for (pair, member) in &self.on_profile {
+            let [body, ground] = [pair.body, pair.ground].map(|body| BodyFrame::of(body, at));
+            for part in self.shapes.members[*member].parts.clone() {
+                profile::each(profile, &self.shapes.outline(part, body), &ground, margin, |touch| {
+                    each(pair.pair, pair.law, [pair.body, pair.ground], touch);
+                });
+            }
+        }
+    }
+
     /// A contact that is none of two shapes.
     fn located_elsewhere(&self, at: &dyn Geometry<2>, id: ContactId) -> Option<(Candidate<2>, f64)> {
+        if let (Some(profile), Ok(found)) =
+            (&self.profile, self.on_profile.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair))
+        {
+            let (pair, member) = &self.on_profile[found];
+            let feature = CornerOnSide::from_number(id.point());
+            let corner = if feature.owner == 0 { feature.corner } else { feature.side };
+            let [body, ground] = [pair.body, pair.ground].map(|body| BodyFrame::of(body, at));
+            let outline = self.shapes.outline(self.shapes.part_of(*member, corner)?, body);
+            let touch = profile::located(profile, &outline, &ground, feature)?;
+            return Some((candidate_of(pair.pair, pair.law, [pair.body, pair.ground], &touch), touch.room));
+        }
         let Ok(found) = self.sides.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair) else {
             return self.points.located(at, id).map(|candidate| (candidate, f64::INFINITY));
         };
@@ -351,6 +406,13 @@ impl ShapeDetector {
         self.shapes.parts[i].radius + self.shapes.parts[j].radius == 0.0
     }
 
+    /// As many contacts as a body can have with the ground: each corner with each piece, and each crest.
+    fn profile_capacity(&self, member: usize) -> usize {
+        let points = self.profile.as_ref().map_or(0, |profile| profile.points().count());
+        let parts = self.shapes.members[member].parts.clone();
+        parts.map(|part| (points + 1) * self.shapes.local(part).len() + points).sum()
+    }
+
     fn side_capacity(&self, member: usize) -> usize {
         let parts = self.shapes.members[member].parts.clone();
         parts.map(|part| (2 + sides::MOST_SUMMITS) * self.shapes.local(part).len()).sum()
@@ -382,20 +444,13 @@ fn candidate_of(pair: u32, law: LawId, bodies: [BodyId; 2], touch: &Touch) -> Ca
 impl ContactDetector<2> for ShapeDetector {
     fn detect(&self, at: &dyn Geometry<2>, margin: f64, memory: &mut DetectorMemory, out: &mut Candidates<2>) {
         self.points.detect(at, margin, memory, out);
-        for (pair, member) in &self.sides {
-            let bodies = [pair.body, pair.surface];
-            sides::each(&self.shapes, *member, pair, at, margin, |touch| {
-                out.push(candidate_of(pair.pair, pair.law, bodies, touch));
-            });
-        }
+        self.each_on_ground(at, margin, |pair, law, bodies, touch| out.push(candidate_of(pair, law, bodies, touch)));
         self.each(at, margin, memory, |pair, touch| out.push(candidate(pair, touch)));
     }
 
     fn deepest(&self, at: &dyn Geometry<2>, memory: &mut DetectorMemory, scratch: &mut Candidates<2>) -> f64 {
         let mut deepest = self.points.deepest(at, memory, scratch);
-        for (pair, member) in &self.sides {
-            sides::each(&self.shapes, *member, pair, at, 0.0, |touch| deepest = deepest.max(-touch.gap));
-        }
+        self.each_on_ground(at, 0.0, |_, _, _, touch| deepest = deepest.max(-touch.gap));
         self.each(at, 0.0, memory, |_, touch| deepest = deepest.max(-touch.gap));
         deepest
     }
@@ -439,6 +494,14 @@ impl ContactDetector<2> for ShapeDetector {
             contacts: self.side_capacity(*member),
             not_finite: None,
         }));
+        wiring.extend(self.on_profile.iter().map(|(pair, member)| Wiring {
+            pair: pair.pair,
+            law: pair.law,
+            bodies: [pair.body, pair.ground],
+            on_surface: false,
+            contacts: self.profile_capacity(*member),
+            not_finite: None,
+        }));
         wiring
     }
 
@@ -447,6 +510,7 @@ impl ContactDetector<2> for ShapeDetector {
         let parts = self.shapes.members.iter().map(|member| member.parts.len()).max().unwrap_or(0);
         let of_groups = self.groups.as_ref().map_or(0, |of| 2 * parts * parts * of.groups.pairs());
         let sides: usize = self.sides.iter().map(|(_, member)| self.side_capacity(*member)).sum();
-        self.points.capacity() + listed + of_groups + sides
+        let on_profile: usize = self.on_profile.iter().map(|(_, member)| self.profile_capacity(*member)).sum();
+        self.points.capacity() + listed + of_groups + sides + on_profile
     }
 }

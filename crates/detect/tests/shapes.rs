@@ -38,7 +38,7 @@ fn disc(radius: f64) -> Shape {
 }
 
 fn rounded(width: f64, height: f64, radius: f64) -> Shape {
-    let Shape::Polygon(polygon) = rectangle(width, height) else { panic!("a rectangle is a polygon") };
+    let polygon = Polygon::new(rectangle(width, height).core().to_vec()).unwrap();
     Rounded::inside(&polygon, radius).unwrap().into()
 }
 
@@ -245,7 +245,7 @@ fn groups_find_what_listed_pairs_find() {
         _ => polygon(&[[-0.4, -0.4], [0.5, -0.3], [0.1, 0.6]]),
     };
     let shapes: Vec<_> = (0..n).map(|k| (BodyId(k), shapes(k))).collect();
-    let class = |k: u32| usize::from(k % 5 == 0);
+    let class = |k: u32| usize::from(k.is_multiple_of(5));
     let laws = vec![vec![Some(LawId(2)), Some(LawId(3))], vec![None, None]];
     let groups = Groups::new((0..n).map(|k| (BodyId(k), class(k))).collect(), laws).unwrap();
     let first = 7;
