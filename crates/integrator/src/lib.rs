@@ -110,7 +110,7 @@ mod workspace;
 #[cfg(feature = "beam")]
 pub use adapters::beam::forces::{BeamForces, SpanLoads};
 #[cfg(feature = "beam")]
-pub use adapters::beam::{BeamBody, BeamSurface, MovingForce, SignalLoad, WBackend};
+pub use adapters::beam::{BeamBody, BeamFace, BeamSurface, MovingForce, SignalLoad, WBackend};
 #[cfg(feature = "bodies")]
 pub use adapters::blocks::{Block, BlockCoordinate, BlockLoad, Blocks};
 #[cfg(feature = "bodies")]

@@ -11,7 +11,8 @@
 //! phase, and balance to rounding. If a step takes forces and impulses together, the impulse p of
 //! an impact is spread over it as p/τ: its peaks grow as the step shrinks.
 
-use super::line::lift_and_turn;
+use super::BEAM_BODIES;
+use super::line::{lift_and_turn, section_of};
 use crate::{Contact, Phase, State, StepReport, Vector};
 use std::ops::Range;
 use std::sync::Arc;
@@ -59,7 +60,7 @@ pub struct BeamForces {
 const LOADS: usize = 32;
 
 impl BeamForces {
-    /// For the beam that is `body`, with its coordinates at `range` of the state.
+    /// For the beam whose first body is `body`, with its coordinates at `range` of the state.
     #[must_use]
     pub fn new(beam: &Arc<Beam>, body: BodyId, range: Range<usize>) -> Self {
         let none = vec![0.0; beam.dofs()];
@@ -141,12 +142,20 @@ impl BeamForces {
         &self.v_mean
     }
 
-    /// A force on a point of a beam's surface, in a contact's frame (N), as a load on the axis of a
-    /// beam of this span (m).
+    /// A force on a point of the surface of one of the beam's [bodies](crate::BeamFace), in a contact's
+    /// frame (N), as a load on its axis; the dofs are those that were [read](Self::dofs) last.
     #[must_use]
-    pub fn surface_load(side: &Anchor<2>, frame: &Frame<2>, force: &Vector<2>, span: f64) -> SpanLoad {
-        let [up, turn] = lift_and_turn(&side.point, frame);
-        SpanLoad::Point { x: side.point.x.clamp(0.0, span), force: up.dot(force), couple: turn.dot(force) }
+    pub fn surface_load(&self, side: &Anchor<2>, frame: &Frame<2>, force: &Vector<2>) -> SpanLoad {
+        let number = side.body.0.wrapping_sub(self.body.0);
+        let section = section_of(&*self.beam, (number, &self.q[1]), &side.point, frame);
+        let [up, turn] = lift_and_turn(&side.point, frame, &section);
+        let x = side.point.x.clamp(0.0, self.beam.spec().span);
+        SpanLoad::Point { x, force: up.dot(force), couple: turn.dot(force) }
+    }
+
+    /// Whether a body is one of the beam's.
+    fn is_own(&self, body: BodyId) -> bool {
+        (body.0.wrapping_sub(self.body.0) as usize) < BEAM_BODIES
     }
 
     /// The section forces of a state: those of a beam at rest in equilibrium under its loads and
@@ -217,7 +226,6 @@ impl BeamForces {
         if let Some(loads) = &self.loads {
             loads.add_mean(times, &mut self.span_loads);
         }
-        let span = self.beam.spec().span;
         let mut tension = 0.0;
         for phase in phases {
             let (part, weight) = (phase.duration / whole, phase.balance.weight());
@@ -257,7 +265,9 @@ impl BeamForces {
                 let lift = (phase.v[1][y] - phase.v[0][y]) / whole;
                 self.acceleration[..2 * self.beam.nodes()].iter_mut().step_by(2).for_each(|a| *a += lift);
             }
-            self.span_loads.extend(phase.contacts.iter().flat_map(|contact| pushes(contact, self.body, span, whole)));
+            let mut loads = std::mem::take(&mut self.span_loads);
+            loads.extend(phase.contacts.iter().flat_map(|contact| self.pushes(contact, whole)));
+            self.span_loads = loads;
         }
         let actions = Actions {
             q: &self.q_mean,
@@ -316,14 +326,15 @@ impl BeamForces {
     fn basis_dofs(&self) -> usize {
         self.basis.as_ref().map_or(self.beam.dofs(), |basis| basis.shape(0).len())
     }
-}
 
-/// The loads on a beam by a contact's impulse, spread over h: one for each side that is the beam's.
-fn pushes(contact: &Contact<2>, body: BodyId, span: f64, h: f64) -> impl Iterator<Item = SpanLoad> {
-    let Contact { sides, frame, p, .. } = *contact;
-    sides
-        .into_iter()
-        .zip([1.0, -1.0])
-        .filter(move |(side, _)| side.body == body)
-        .map(move |(side, sign)| BeamForces::surface_load(&side, &frame, &(p * (sign / h)), span))
+    /// The loads on the beam by a contact's impulse, spread over h: one for each side that is the
+    /// beam's.
+    fn pushes(&self, contact: &Contact<2>, h: f64) -> impl Iterator<Item = SpanLoad> + use<'_> {
+        let Contact { sides, frame, p, .. } = *contact;
+        sides
+            .into_iter()
+            .zip([1.0, -1.0])
+            .filter(|(side, _)| self.is_own(side.body))
+            .map(move |(side, sign)| self.surface_load(&side, &frame, &(p * (sign / h))))
+    }
 }
