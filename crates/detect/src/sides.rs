@@ -133,9 +133,12 @@ pub(crate) fn located(
             // Where it doesn't come out any more, what is highest is at an end of the side.
             let highest = || {
                 let feet = side.ends.iter().filter_map(|end| at.surface(pair.surface, pair.kinematics, end));
-                feet.max_by(|a, b| height(a).total_cmp(&height(b)))
+                feet.max_by(|a, b| height(a).total_cmp(&height(b))).filter(|_| which == 0)
             };
-            let summit = found.iter().take(which + 1).last().copied().or_else(highest)?;
+            let summit = match found.iter().next() {
+                Some(_) => found.iter().nth(which).copied()?,
+                None => highest()?,
+            };
             side.touch(feature, &summit)
         }
     }

@@ -68,10 +68,10 @@ fn found(shape: &Shape, pose: [f64; 3], margin: f64) -> Vec<(f64, Vector2<f64>)>
 
 fn assert_found(shape: &Shape, pose: [f64; 3], wanted: &[(f64, [f64; 2])]) {
     let found = found(shape, pose, 0.5);
-    let close = |(found, wanted): (&(f64, Vector2<f64>), &(f64, [f64; 2]))| {
-        (found.0 - wanted.0).abs() < 1e-14 && (found.1 - Vector2::from(wanted.1)).norm() < 1e-14
-    };
-    assert!(found.len() == wanted.len() && found.iter().zip(wanted).all(close), "{pose:?}: {found:?}, not {wanted:?}");
+    let close =
+        |k: usize| (found[k].0 - wanted[k].0).abs() < 1e-14 && (found[k].1 - Vector2::from(wanted[k].1)).norm() < 1e-14;
+    let all = found.len() == wanted.len() && (0..found.len()).all(close);
+    assert!(all, "{pose:?}: {found:?}, not {wanted:?}");
 }
 
 const UP: f64 = std::f64::consts::FRAC_1_SQRT_2;

@@ -20,6 +20,7 @@ mod own_parts;
 mod projected;
 mod reference;
 mod scenes;
+mod sides;
 mod springs;
 mod stored;
 mod stretched;
