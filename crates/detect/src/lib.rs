@@ -46,6 +46,7 @@ mod broad;
 mod candidate;
 #[cfg(feature = "conformance")]
 pub mod conformance;
+mod feet;
 mod memory;
 mod placed;
 mod points;
@@ -55,16 +56,19 @@ mod shape;
 mod shapes;
 mod sides;
 mod touch;
+mod wiring_error;
 
 pub use broad::Groups;
 pub use candidate::{Anchor, BodyId, Candidate, Candidates, ContactId, Frame, LawId, plane_frame};
+pub use feet::SurfacePair;
 pub use memory::DetectorMemory;
 pub use points::{PointDetector, PointPair};
 pub use profile::{Profile, ProfilePair};
 pub use shape::{Disc, MOST_CORNERS, Polygon, Rounded, Shape, ShapeError};
-pub use shapes::{ShapeDetector, ShapePair, WiringError};
+pub use shapes::{ShapeDetector, ShapePair};
 pub use sides::{OnSide, SidePair};
 pub use touch::CornerOnSide;
+pub use wiring_error::WiringError;
 
 /// A point or direction of the world, or of a body.
 pub type Vector<const D: usize> = nalgebra::SVector<f64, D>;

@@ -84,6 +84,11 @@ impl Shapes {
         Outline { first: *first, corners, normals, radius: *radius, frame }
     }
 
+    /// How many corners a member has.
+    pub(crate) fn corners_of(&self, member: usize) -> usize {
+        self.members[member].corners.len()
+    }
+
     /// The body with the most corners, and how many it has.
     pub(crate) fn largest(&self) -> Option<(BodyId, usize)> {
         self.members.iter().map(|member| (member.body, member.corners.len())).max_by_key(|(_, corners)| *corners)

@@ -1,6 +1,7 @@
 //! Bodies with shapes against each other, beside points against surfaces.
 
 use crate::broad::{Groups, Near, NearPair};
+use crate::feet::{self, SurfacePair};
 use crate::placed::{BodyFrame, Places, Shapes, outward};
 use crate::profile::{self, Profile, ProfilePair};
 use crate::round::{near_outline, round};
@@ -8,7 +9,7 @@ use crate::sides::{self, OnSide, SidePair};
 use crate::touch::{CornerOnSide, Side, Touch, Touches, corner_on_side, polygons};
 use crate::{
     Anchor, BodyId, Candidate, Candidates, ContactDetector, ContactId, DetectorMemory, Geometry, LawId, MOST_CORNERS,
-    PointDetector, Shape, Vector, Wiring, plane_frame,
+    PointDetector, Shape, Vector, Wiring, WiringError, plane_frame,
 };
 
 /// Two bodies whose shapes can touch.
@@ -21,77 +22,6 @@ pub struct ShapePair {
     /// The bodies: the normal of a contact points from the second to the first, and its impulse acts on the first.
     pub bodies: [BodyId; 2],
 }
-
-/// What is wrong with shapes and pairs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum WiringError {
-    /// A body whose parts have more corners together than a contact's identity can number.
-    Corners {
-        /// The body.
-        body: BodyId,
-        /// How many there are.
-        corners: usize,
-    },
-    /// More bodies in groups than pairs of them can be numbered.
-    Members {
-        /// How many there are.
-        members: usize,
-        /// How many there can be.
-        most: usize,
-    },
-    /// A body that is in groups twice.
-    ListedTwice {
-        /// The body.
-        body: BodyId,
-    },
-    /// A body whose class has no entry in the table of laws.
-    NoClass {
-        /// The body.
-        body: BodyId,
-        /// Its class.
-        class: usize,
-    },
-    /// A body of groups that has no shape.
-    Shapeless {
-        /// The body.
-        body: BodyId,
-    },
-    /// A pair of a body that has no shape.
-    NoShape {
-        /// The pair's number.
-        pair: u32,
-        /// The body.
-        body: BodyId,
-    },
-}
-
-impl std::fmt::Display for WiringError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Corners { body, corners } => {
-                write!(
-                    f,
-                    "the parts of body {} have {corners} corners together, but at most {MOST_CORNERS} can be told apart",
-                    body.0
-                )
-            }
-            Self::Members { members, most } => {
-                write!(f, "there are {members} bodies of which any two can touch, but at most {most} can be told apart")
-            }
-            Self::ListedTwice { body } => write!(f, "body {} is listed twice: give each body one class", body.0),
-            Self::NoClass { body, class } => {
-                write!(f, "body {} is of class {class}, for which the table of laws has no entry", body.0)
-            }
-            Self::Shapeless { body } => write!(f, "body {} has no shape: give it one", body.0),
-            Self::NoShape { pair, body } => {
-                write!(f, "pair {pair} is of body {}, which has no shape: give it one", body.0)
-            }
-        }
-    }
-}
-
-impl std::error::Error for WiringError {}
 
 /// The detector of shapes against each other, and of points against surfaces.
 ///
@@ -133,6 +63,7 @@ pub struct ShapeDetector {
     groups: Option<InGroups>,
     /// In the order of their numbers, with the place of their body among the members.
     sides: Vec<(SidePair, usize)>,
+    surfaces: Vec<(SurfacePair, usize)>,
     /// The profile of the ground, and those against it: in the order of their numbers, with the place of their body.
     profile: Option<Profile>,
     on_profile: Vec<(ProfilePair, usize)>,
@@ -175,28 +106,27 @@ impl ShapeDetector {
         };
         let pairs = pairs.iter().map(|pair| Ok((*pair, [of(pair, pair.bodies[0])?, of(pair, pair.bodies[1])?])));
         let pairs = pairs.collect::<Result<_, WiringError>>()?;
-        Ok(Self {
-            points: PointDetector::default(),
-            shapes,
-            pairs,
-            groups: None,
-            sides: Vec::new(),
-            profile: None,
-            on_profile: Vec::new(),
-        })
+        Ok(Self { shapes, pairs, ..Self::default() })
     }
 
-    /// With sides of shapes against surfaces that bend or end; their pairs have numbers of their own.
+    /// With shapes on surfaces; pairs have numbers of their own.
+    ///
+    /// # Errors
+    /// If a body has no shape.
+    pub fn with_surfaces(mut self, mut surfaces: Vec<SurfacePair>) -> Result<Self, WiringError> {
+        surfaces.sort_by_key(|pair| pair.pair);
+        self.surfaces =
+            surfaces.into_iter().map(|pair| Ok((pair, self.shaped(pair.body)?))).collect::<Result<_, _>>()?;
+        Ok(self)
+    }
+
+    /// With sides of shapes against surfaces that bend or end; pairs have numbers of their own.
     ///
     /// # Errors
     /// If a body has no shape.
     pub fn with_sides(mut self, mut sides: Vec<SidePair>) -> Result<Self, WiringError> {
         sides.sort_by_key(|pair| pair.pair);
-        let of = |pair: SidePair| {
-            let member = self.shapes.member_of(pair.body).ok_or(WiringError::Shapeless { body: pair.body })?;
-            Ok((pair, member))
-        };
-        self.sides = sides.into_iter().map(of).collect::<Result<_, _>>()?;
+        self.sides = sides.into_iter().map(|pair| Ok((pair, self.shaped(pair.body)?))).collect::<Result<_, _>>()?;
         Ok(self)
     }
 
@@ -206,11 +136,8 @@ impl ShapeDetector {
     /// If a body has no shape.
     pub fn with_profile(mut self, profile: Profile, mut pairs: Vec<ProfilePair>) -> Result<Self, WiringError> {
         pairs.sort_by_key(|pair| pair.pair);
-        let of = |pair: ProfilePair| {
-            let member = self.shapes.member_of(pair.body).ok_or(WiringError::Shapeless { body: pair.body })?;
-            Ok((pair, member))
-        };
-        self.on_profile = pairs.into_iter().map(of).collect::<Result<_, _>>()?;
+        self.on_profile =
+            pairs.into_iter().map(|pair| Ok((pair, self.shaped(pair.body)?))).collect::<Result<_, _>>()?;
         self.profile = Some(profile);
         Ok(self)
     }
@@ -221,12 +148,16 @@ impl ShapeDetector {
     /// # Errors
     /// If one of them has no shape.
     pub fn with_groups(mut self, groups: Groups, first: u32) -> Result<Self, WiringError> {
-        let of = |body: BodyId| self.shapes.member_of(body).ok_or(WiringError::Shapeless { body });
-        let members = groups.bodies().map(of).collect::<Result<_, _>>()?;
+        let members = groups.bodies().map(|body| self.shaped(body)).collect::<Result<_, _>>()?;
         let mut listed: Vec<[usize; 2]> = self.pairs.iter().map(|(_, [a, b])| [*a.min(b), *a.max(b)]).collect();
         listed.sort_unstable();
         self.groups = Some(InGroups { groups, first, members, listed });
         Ok(self)
+    }
+
+    /// The number of a body among the shapes.
+    fn shaped(&self, body: BodyId) -> Result<usize, WiringError> {
+        self.shapes.member_of(body).ok_or(WiringError::Shapeless { body })
     }
 
     /// With points against surfaces, too; their pairs have numbers of their own.
@@ -341,6 +272,10 @@ impl ShapeDetector {
 
     /// Hands the contacts with sides and with the profile of the ground to `each`.
     fn each_on_ground(&self, at: &dyn Geometry<2>, margin: f64, mut each: impl FnMut(u32, LawId, [BodyId; 2], &Touch)) {
+        for (pair, member) in &self.surfaces {
+            let bodies = [pair.body, pair.surface];
+            feet::each(&self.shapes, *member, pair, at, margin, |touch| each(pair.pair, pair.law, bodies, touch));
+        }
         for (pair, member) in &self.sides {
             let bodies = [pair.body, pair.surface];
             sides::each(&self.shapes, *member, pair, at, margin, |touch| each(pair.pair, pair.law, bodies, touch));
@@ -358,6 +293,11 @@ impl ShapeDetector {
 
     /// A contact that is none of two shapes.
     fn located_elsewhere(&self, at: &dyn Geometry<2>, id: ContactId) -> Option<(Candidate<2>, f64)> {
+        if let Ok(found) = self.surfaces.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair) {
+            let (pair, member) = &self.surfaces[found];
+            let touch = feet::located(&self.shapes, *member, pair, at, id.point() as usize)?;
+            return Some((candidate_of(pair.pair, pair.law, [pair.body, pair.surface], &touch), touch.room));
+        }
         if let (Some(profile), Ok(found)) =
             (&self.profile, self.on_profile.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair))
         {
@@ -415,7 +355,8 @@ impl ShapeDetector {
 
     fn side_capacity(&self, member: usize) -> usize {
         let parts = self.shapes.members[member].parts.clone();
-        parts.map(|part| (2 + sides::MOST_SUMMITS) * self.shapes.local(part).len()).sum()
+        // Of a rounding both ends of the surface, too.
+        parts.map(|part| (4 + sides::MOST_SUMMITS) * self.shapes.local(part).len()).sum()
     }
 
     fn capacity_of(&self, [a, b]: [usize; 2]) -> usize {
@@ -494,6 +435,14 @@ impl ContactDetector<2> for ShapeDetector {
             contacts: self.side_capacity(*member),
             not_finite: None,
         }));
+        wiring.extend(self.surfaces.iter().map(|(pair, member)| Wiring {
+            pair: pair.pair,
+            law: pair.law,
+            bodies: [pair.body, pair.surface],
+            on_surface: true,
+            contacts: self.shapes.corners_of(*member),
+            not_finite: None,
+        }));
         wiring.extend(self.on_profile.iter().map(|(pair, member)| Wiring {
             pair: pair.pair,
             law: pair.law,
@@ -511,6 +460,7 @@ impl ContactDetector<2> for ShapeDetector {
         let of_groups = self.groups.as_ref().map_or(0, |of| 2 * parts * parts * of.groups.pairs());
         let sides: usize = self.sides.iter().map(|(_, member)| self.side_capacity(*member)).sum();
         let on_profile: usize = self.on_profile.iter().map(|(_, member)| self.profile_capacity(*member)).sum();
-        self.points.capacity() + listed + of_groups + sides + on_profile
+        let surfaces: usize = self.surfaces.iter().map(|(_, member)| self.shapes.corners_of(*member)).sum();
+        self.points.capacity() + listed + of_groups + surfaces + sides + on_profile
     }
 }

@@ -1,6 +1,6 @@
 //! Sides of shapes against a surface that bends: where it comes out between their corners, and where it ends under them.
 
-use crate::placed::{BodyFrame, Shapes};
+use crate::placed::{BodyFrame, Outline, Shapes};
 use crate::touch::Touch;
 use crate::{BodyId, Geometry, Kinematics, LawId, SurfacePoint, Vector};
 
@@ -27,6 +27,8 @@ pub enum OnSide {
     End(usize),
     /// Where the surface comes out between the ends of the side, counted from the left.
     Summit(usize),
+    /// An end of the surface at the rounding about the side's first corner, or at a disc.
+    EndAtRounding(usize),
 }
 
 /// Bits of a feature's number.
@@ -41,6 +43,7 @@ impl OnSide {
         let (kind, which) = match self {
             Self::End(which) => (END, which),
             Self::Summit(which) => (SUMMIT, which),
+            Self::EndAtRounding(which) => (END | SUMMIT, which),
         };
         kind | (which as u32) << SHIFT | side as u32
     }
@@ -50,10 +53,11 @@ impl OnSide {
     pub fn from_number(number: u32) -> Option<(Self, usize)> {
         let side = (number & ((1 << SHIFT) - 1)) as usize;
         let which = ((number & !(END | SUMMIT)) >> SHIFT) as usize;
-        match number & (END | SUMMIT) {
-            END => Some((Self::End(which), side)),
-            SUMMIT => Some((Self::Summit(which), side)),
-            _ => None,
+        match (number & END != 0, number & SUMMIT != 0) {
+            (true, false) => Some((Self::End(which), side)),
+            (false, true) => Some((Self::Summit(which), side)),
+            (true, true) => Some((Self::EndAtRounding(which), side)),
+            (false, false) => None,
         }
     }
 }
@@ -91,6 +95,15 @@ pub(crate) fn each(
     let frame = BodyFrame::of(pair.body, at);
     let reach = if margin < f64::INFINITY { at.reach(pair.surface, margin) } else { None };
     let ends = at.ends(pair.surface, pair.kinematics);
+    for part in shapes.members[member].parts.clone() {
+        let outline = shapes.outline(part, frame);
+        let corners = if outline.radius > 0.0 { outline.corners.len() } else { 0 };
+        for (k, which) in (0..corners).flat_map(|k| [(k, 0), (k, 1)]) {
+            if let Some(touch) = end_at_rounding(&outline, k, which, &ends) {
+                push(&touch, margin, &mut each);
+            }
+        }
+    }
     for side in sides(shapes, member, &frame) {
         if reach.is_some_and(|reach| side.ends.iter().all(|end| reach.excludes(&(end + side.normal * side.radius)))) {
             continue;
@@ -123,8 +136,14 @@ pub(crate) fn located(
     (feature, side): (OnSide, usize),
 ) -> Option<Touch> {
     let frame = BodyFrame::of(pair.body, at);
+    if let OnSide::EndAtRounding(which) = feature {
+        let outline = shapes.outline(shapes.part_of(member, side)?, frame);
+        let ends = at.ends(pair.surface, pair.kinematics);
+        return end_at_rounding(&outline, side.checked_sub(outline.first)?, which, &ends);
+    }
     let side = sides(shapes, member, &frame).find(|placed| placed.side == side)?;
     match feature {
+        OnSide::EndAtRounding(_) => None,
         OnSide::End(which) => side.touch(feature, &at.ends(pair.surface, pair.kinematics).get(which).copied()??),
         OnSide::Summit(which) => {
             let found = Summits::of(&side, pair, at);
@@ -142,6 +161,29 @@ pub(crate) fn located(
             side.touch(feature, &summit)
         }
     }
+}
+
+/// The contact of an end of a surface with the rounding about a corner that is past it; `None` if that is not past it.
+fn end_at_rounding(
+    outline: &Outline<'_>,
+    corner: usize,
+    which: usize,
+    ends: &[Option<SurfacePoint<2>>; 2],
+) -> Option<Touch> {
+    let (local, end) = (outline.corners.get(corner)?, (*ends.get(which)?)?);
+    let beside = outline.frame.point(local) - end.place;
+    let distance = beside.norm();
+    let normal = beside / distance;
+    // To the right of the right end, to the left of the left one.
+    let past = end.normal.perp(&normal) * if which == 0 { 1.0 } else { -1.0 };
+    // Written so that NaN fails too.
+    if !(outline.radius > 0.0 && past >= 0.0 && normal.dot(&end.normal) > -FACING) {
+        return None;
+    }
+    let on_rounding = local - outline.frame.unturned(&normal) * outline.radius;
+    let feature = OnSide::EndAtRounding(which).number(outline.first + corner);
+    let (points, gap) = ([on_rounding, end.material], distance - outline.radius);
+    Some(Touch { feature, points, normal, gap, room: f64::INFINITY })
 }
 
 /// Where a surface comes out between the ends of a side, from the left.
@@ -229,7 +271,7 @@ mod tests {
 
     #[test]
     fn a_feature_keeps_its_parts() {
-        for feature in [OnSide::End(1), OnSide::Summit(0), OnSide::Summit(7)] {
+        for feature in [OnSide::End(1), OnSide::Summit(0), OnSide::Summit(7), OnSide::EndAtRounding(1)] {
             for side in [0, 3, crate::MOST_CORNERS - 1] {
                 assert_eq!(OnSide::from_number(feature.number(side)), Some((feature, side)));
             }
