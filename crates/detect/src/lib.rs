@@ -203,6 +203,13 @@ pub trait ContactDetector<const D: usize>: Send + Sync {
         room.clear();
         room.resize(out.len(), f64::INFINITY);
     }
+    /// Whether the first side of a contact touches by one and the same point of its body as long as the contact lasts, as a corner does
+    /// and a disc doesn't. The default, `false`, is always right: a scheme that needs accelerations then takes the derivative of the
+    /// rows along the motion, which costs more.
+    fn keeps_point(&self, id: ContactId) -> bool {
+        let _ = id;
+        false
+    }
     /// The pairs that it looks at, as far as they are known before anything moves, so that a model
     /// can refuse what can't work when it is built. By default none are listed, and candidates are
     /// checked as they come.

@@ -84,6 +84,11 @@ impl Shapes {
         Outline { first: *first, corners, normals, radius: *radius, frame }
     }
 
+    /// Whether a corner of a member belongs to a part without a radius.
+    pub(crate) fn is_sharp_at(&self, member: usize, corner: usize) -> bool {
+        self.part_of(member, corner).is_some_and(|part| self.parts[part].radius == 0.0)
+    }
+
     /// How many corners a member has.
     pub(crate) fn corners_of(&self, member: usize) -> usize {
         self.members[member].corners.len()

@@ -413,6 +413,24 @@ impl ContactDetector<2> for ShapeDetector {
         }
     }
 
+    fn keeps_point(&self, id: ContactId) -> bool {
+        let corner = id.point() as usize;
+        if let Ok(found) = self.surfaces.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair) {
+            return self.shapes.is_sharp_at(self.surfaces[found].1, corner);
+        }
+        if let Ok(found) = self.on_profile.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair) {
+            let CornerOnSide { owner, corner, .. } = CornerOnSide::from_number(id.point());
+            return owner == 0 && self.shapes.is_sharp_at(self.on_profile[found].1, corner);
+        }
+        if self.pairs.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair).is_ok() {
+            let CornerOnSide { owner, round, .. } = CornerOnSide::from_number(id.point());
+            return owner == 0 && !round;
+        }
+        // Points have numbers that no groups and no sides have.
+        self.near_pair(id.pair()).is_none()
+            && self.sides.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair).is_err()
+    }
+
     fn wiring(&self) -> Vec<Wiring> {
         // Of groups there are too many pairs to be listed: what is found is checked as it comes.
         if self.groups.is_some() {

@@ -7,6 +7,7 @@ mod beams;
 mod closed;
 mod conforming;
 mod coupled_modes;
+mod discs;
 mod driven;
 mod equilibrium;
 mod following;
