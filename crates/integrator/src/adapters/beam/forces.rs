@@ -142,15 +142,11 @@ impl BeamForces {
         &self.v_mean
     }
 
-    /// A force on a point of the surface of one of the beam's [bodies](crate::BeamFace), in a contact's
-    /// frame (N), as a load on its axis; the dofs are those that were [read](Self::dofs) last.
+    /// A force on a point of a beam's upper surface, in a contact's frame (N), as a load on the axis of
+    /// a beam of this span (m).
     #[must_use]
-    pub fn surface_load(&self, side: &Anchor<2>, frame: &Frame<2>, force: &Vector<2>) -> SpanLoad {
-        let number = side.body.0.wrapping_sub(self.body.0);
-        let section = section_of(&*self.beam, (number, &self.q[1]), &side.point, frame);
-        let [up, turn] = lift_and_turn(&side.point, frame, &section);
-        let x = side.point.x.clamp(0.0, self.beam.spec().span);
-        SpanLoad::Point { x, force: up.dot(force), couple: turn.dot(force) }
+    pub fn surface_load(side: &Anchor<2>, frame: &Frame<2>, force: &Vector<2>, span: f64) -> SpanLoad {
+        load_on_axis(&side.point, frame, &frame.row(0).transpose(), force, span)
     }
 
     /// Whether a body is one of the beam's.
@@ -331,10 +327,16 @@ impl BeamForces {
     /// beam's.
     fn pushes(&self, contact: &Contact<2>, h: f64) -> impl Iterator<Item = SpanLoad> + use<'_> {
         let Contact { sides, frame, p, .. } = *contact;
-        sides
-            .into_iter()
-            .zip([1.0, -1.0])
-            .filter(|(side, _)| self.is_own(side.body))
-            .map(move |(side, sign)| self.surface_load(&side, &frame, &(p * (sign / h))))
+        sides.into_iter().zip([1.0, -1.0]).filter(|(side, _)| self.is_own(side.body)).map(move |(side, sign)| {
+            let number = side.body.0.wrapping_sub(self.body.0);
+            let section = section_of(&*self.beam, (number, &self.q[1]), &side.point, &frame);
+            load_on_axis(&side.point, &frame, &section, &(p * (sign / h)), self.beam.spec().span)
+        })
     }
+}
+
+/// A force in a contact's frame (N) on a point of a beam whose section there has this normal, as a load on the axis.
+fn load_on_axis(point: &Vector<2>, frame: &Frame<2>, section: &Vector<2>, force: &Vector<2>, span: f64) -> SpanLoad {
+    let [up, turn] = lift_and_turn(point, frame, section);
+    SpanLoad::Point { x: point.x.clamp(0.0, span), force: up.dot(force), couple: turn.dot(force) }
 }
