@@ -14,11 +14,14 @@ use crate::step_motion::StepMotion;
 use crate::theta_step::ThetaStep;
 use crate::{
     ContactError, ContactStage, ImpactLaw, Mismatch, Model, Over, PairLaw, PhaseEnd, PhaseKind, Rule, SpringStep,
-    State, StepError, StepSpan, Vector, Workspace,
+    State, StepError, StepSpan, Vector, WarmStart, Workspace,
 };
 pub(crate) use guard::{Guard, Guarded};
 use teeter_contact::Outcome;
 use teeter_detect::{Candidate, Candidates, ContactId};
+
+/// Up to so many contacts a solution doesn't depend on where its search starts: it is enumerated, or polished.
+const FEW: usize = 12;
 
 /// θ: the step's account of work holds for the trapezoidal rule.
 pub(crate) const THETA: f64 = 0.5;
@@ -50,6 +53,8 @@ pub(crate) struct ClosedStep<const D: usize, M = ThetaStep> {
     pub(crate) closed: Vec<ContactId>,
     /// As many of them have been looked at in this step.
     looked_for: usize,
+    /// The impulses of the attempt before, of many contacts: where the solver starts.
+    tried: WarmStart,
     /// The part of the step that is taken: an approach that forces make within a whole step is no
     /// impact.
     pub(crate) of_step: f64,
@@ -96,6 +101,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             row: ContactRows::default(),
             closed: Vec::new(),
             looked_for: 0,
+            tried: WarmStart::default(),
             of_step: 1.0,
             resting_shift: Vec::new(),
             slides: Vec::new(),
@@ -171,6 +177,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         self.v_free.clear();
         self.v_free.extend_from_slice(self.step.v_end());
         self.looked_for = 0;
+        self.tried.clear();
         Ok(())
     }
 
@@ -329,6 +336,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         posed?;
         let (over, responses) = (Over::Step { h: span.h, weight: THETA }, self.step.responses(span.h));
         self.guarded.restart(self.stage.len());
+        self.stage.start_from(&self.tried);
         let (guarded, v_free) = (&mut self.guarded, &self.v_free);
         // Each round guards one contact more at least, so it ends.
         let outcome = self.stage.solve_guarded(model, work, &responses, over, |stage, problem, laws, members| {
@@ -337,6 +345,12 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         })?;
         self.step.respond(model, &self.stage, span.h, work)?;
         self.stage.complete(self.step.v_end())?;
+        self.tried.clear();
+        if self.stage.len() > FEW {
+            for (contact, p) in self.stage.contacts().iter().zip(&self.stage.problem.p) {
+                self.tried.push(contact.id, p);
+            }
+        }
         Ok(outcome)
     }
 
