@@ -1,4 +1,5 @@
-//! `teeter check`: what a run would model, cost and write, and what looks wrong; runs nothing, writes nothing.
+//! `teeter check`: what a run would model, cost and write, and what looks wrong; runs nothing,
+//! writes nothing.
 
 use crate::console::{Console, print_all};
 use crate::render::{Presenter, refusal};

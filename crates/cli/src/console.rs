@@ -34,7 +34,8 @@ impl Console {
     }
 }
 
-/// Writes results to standard output. A closed pipe (`teeter … | head -1`) is no failure: its reader has seen enough.
+/// Writes results to standard output. A closed pipe (`teeter … | head -1`) is no failure: its
+/// reader has seen enough.
 ///
 /// # Errors
 /// What is to be told the user where the text can't be written, such as to a full disk.
@@ -57,12 +58,14 @@ pub(crate) fn print_all(text: &str) -> Exit {
     }
 }
 
-/// A text without characters that would steer the terminal or turn the direction of writing, but for those to `keep`.
+/// A text without characters that would steer the terminal or turn the direction of writing, but
+/// for those to `keep`.
 pub(crate) fn clean(text: &str, keep: &str) -> String {
     text.chars().map(|c| if steers(c) && !keep.contains(c) { '\u{fffd}' } else { c }).collect()
 }
 
-/// A reader that went away (`teeter … 2>&1 | head -1`) is no reason to fail: the results are in files.
+/// A reader that went away (`teeter … 2>&1 | head -1`) is no reason to fail: the results are in
+/// files.
 fn say(text: &str) {
     let _ = writeln!(std::io::stderr(), "{}", text.trim_end());
 }

@@ -1,5 +1,5 @@
-//! Ctrl-C, and the signals by which batch systems and closed terminals end a program: the run ends after the step at hand,
-//! with its rows complete; a second one ends the program at once.
+//! Ctrl-C, and the signals by which batch systems and closed terminals end a program: the run ends
+//! after the step at hand, with its rows complete; a second one ends the program at once.
 
 use std::sync::atomic::AtomicBool;
 
@@ -8,8 +8,8 @@ pub(crate) const INTERRUPTED: u8 = 130;
 
 static WANTED: AtomicBool = AtomicBool::new(false);
 
-/// Listens from now on; the flag says that a signal came. Where listening is impossible the signal ends the program as it
-/// always did.
+/// Listens from now on; the flag says that a signal came. Where listening is impossible the signal
+/// ends the program as it always did.
 pub(crate) fn listen() -> &'static AtomicBool {
     static ONCE: std::sync::Once = std::sync::Once::new();
     ONCE.call_once(system::listen);
@@ -36,7 +36,8 @@ mod system {
         });
     }
 
-    /// Whether the process was started with this signal ignored; false where the system doesn't say.
+    /// Whether the process was started with this signal ignored; false where the system doesn't
+    /// say.
     fn is_ignored(signal: i32) -> bool {
         let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
         let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));

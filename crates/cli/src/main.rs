@@ -44,10 +44,12 @@ enum Command {
         /// Override a key of the scene, such as beam.table.thickness="2 mm"; may be repeated
         #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value)]
         set: Vec<(String, String)>,
-        /// Find the longest step that reaches this accuracy; the scene must have `step = "auto"` or none, as with --set time.step=auto
+        /// Find the longest step that reaches this accuracy; the scene must have `step = "auto"` or
+        /// none, as with --set time.step=auto
         #[arg(long, value_name = "X", allow_hyphen_values = true)]
         accuracy: Option<String>,
-        /// Find until when the motion can be told: by runs with half the step, and from 1e-12 beside the start
+        /// Find until when the motion can be told: by runs with half the step, and from 1e-12
+        /// beside the start
         #[arg(long, conflicts_with = "from")]
         horizon: bool,
         /// Print errors only
@@ -56,26 +58,32 @@ enum Command {
         /// Replace results of an earlier run
         #[arg(long)]
         force: bool,
-        /// Save contact problems of the run to DIR, as FCLIB files (HDF5) named by step; `teeter solve DIR` solves them
+        /// Save contact problems of the run to DIR, as FCLIB files (HDF5) named by step;
+        /// `teeter solve DIR` solves them
         #[arg(long, value_name = "DIR")]
         export_problems: Option<PathBuf>,
-        /// Which: `hard` (over ten times the median number of iterations, solved by a fallback, or not solved) or every:N steps
+        /// Which: `hard` (over ten times the median number of iterations, solved by a fallback, or
+        /// not solved) or every:N steps
         #[arg(long, value_name = "hard|every:N", default_value = "hard", value_parser = run::export_when)]
         #[arg(requires = "export_problems")]
         export_when: ExportWhen,
-        /// Write a checkpoint each time that so much simulated time has passed, with its unit; and one at Ctrl-C
+        /// Write a checkpoint each time that so much simulated time has passed, with its unit; and
+        /// one at Ctrl-C
         #[arg(long, value_name = "T", value_parser = run::interval)]
         checkpoint_every: Option<f64>,
         /// Go on from the checkpoint in the folder for results; without one, start at the beginning
         #[arg(long, conflicts_with = "force")]
         resume: bool,
-        /// `full`: model all that the scene names, also what can't matter to it and is left out otherwise; `teeter check` lists that
+        /// `full`: model all that the scene names, also what can't matter to it and is left out
+        /// otherwise; `teeter check` lists that
         #[arg(long, value_name = "required|full", default_value = "required", value_parser = run::extent)]
         model: Extent,
-        /// Start from a state or checkpoint of a run with the same bodies; its clock goes on, up to time.end; by the full model
+        /// Start from a state or checkpoint of a run with the same bodies; its clock goes on, up to
+        /// time.end; by the full model
         #[arg(long, value_name = "FILE")]
         from: Option<PathBuf>,
-        /// Write the state before the first step whose contact problem is not solved to FILE, for --from
+        /// Write the state before the first step whose contact problem is not solved to FILE, for
+        /// --from
         #[arg(long, value_name = "FILE")]
         dump_unconverged: Option<PathBuf>,
     },
@@ -88,11 +96,13 @@ enum Command {
         /// Override a key of the scene, such as beam.table.thickness="2 mm"; may be repeated
         #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value)]
         set: Vec<(String, String)>,
-        /// `full`: model all that the scene names, also what can't matter to it and is left out otherwise; `teeter check` lists that
+        /// `full`: model all that the scene names, also what can't matter to it and is left out
+        /// otherwise; `teeter check` lists that
         #[arg(long, value_name = "required|full", default_value = "required", value_parser = run::extent)]
         model: Extent,
     },
-    /// Measure what accuracy costs in a scene: errors and CPU time over schemes, steps, meshes and solvers; what to take for which accuracy
+    /// Measure what accuracy costs in a scene: errors and CPU time over schemes, steps, meshes and
+    /// solvers; what to take for which accuracy
     #[command(after_help = "Examples:\n  teeter tradeoff scenarios/free-rocking-on-beam.toml\n  \
         teeter tradeoff scene.toml --out trade --set time.end=200ms")]
     Tradeoff {
@@ -119,7 +129,8 @@ enum Command {
         /// FCLIB files (HDF5), or folders of them: all *.hdf5 below
         #[arg(value_name = "FILE.hdf5|DIR")]
         paths: Vec<PathBuf>,
-        /// The solvers, by the names of `teeter solvers`; `all`: each one on the problems that it takes
+        /// The solvers, by the names of `teeter solvers`; `all`: each one on the problems that it
+        /// takes
         #[arg(long = "solver", value_name = "NAME", num_args = 1.., value_delimiter = ',', default_value = "auto")]
         solvers: Vec<String>,
         /// The judge's residual that counts as solved
@@ -134,7 +145,8 @@ enum Command {
         /// Write the impulses to `DIR/<file stem>.<solver>.csv`, a number a line
         #[arg(long, value_name = "DIR", conflicts_with = "profile")]
         solutions: Option<PathBuf>,
-        /// Solve to 1e-4, 1e-8 and 1e-12; write table.csv, performance profiles (SVG) and profile.md to DIR
+        /// Solve to 1e-4, 1e-8 and 1e-12; write table.csv, performance profiles (SVG) and
+        /// profile.md to DIR
         #[arg(long, value_name = "DIR", conflicts_with = "tolerance")]
         profile: Option<PathBuf>,
         /// Replace solutions or profiles of an earlier solve
@@ -167,7 +179,8 @@ fn key_value(text: &str) -> Result<(String, String), String> {
     }
 }
 
-/// What clap has to say instead of running anything: help and version on standard output, wrong usage on standard error.
+/// What clap has to say instead of running anything: help and version on standard output, wrong
+/// usage on standard error.
 fn explain(error: &clap::Error) -> ExitCode {
     match error.print() {
         Err(why) if !error.use_stderr() && why.kind() != std::io::ErrorKind::BrokenPipe => {

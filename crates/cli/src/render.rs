@@ -1,4 +1,5 @@
-//! Findings about a scene as rustc shows its own: the line of the file, the place underlined, the rule beside it, the remedy below.
+//! Findings about a scene as rustc shows its own: the line of the file, the place underlined, the
+//! rule beside it, the remedy below.
 
 use crate::console::clean;
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
@@ -23,7 +24,8 @@ pub(crate) struct Presenter<'a> {
 }
 
 impl<'a> Presenter<'a> {
-    /// For findings whose spans count in `source`, with colours if a person is looking at standard error.
+    /// For findings whose spans count in `source`, with colours if a person is looking at standard
+    /// error.
     pub(crate) fn new(source: &'a str) -> Self {
         Self::with_colours(source, wants_colours())
     }
@@ -49,7 +51,8 @@ impl<'a> Presenter<'a> {
             _ => Level::ERROR,
         };
         let excerpt = self.excerpt(found);
-        // With a value the line reads as in the file, and the rule stands beside the value; else it is the title.
+        // With a value the line reads as in the file, and the rule stands beside the value; else it
+        // is the title.
         let path = cut(&found.path, PATH);
         let (title, label) = match (&found.written, &excerpt) {
             _ if path.is_empty() => (found.rule.clone(), None),

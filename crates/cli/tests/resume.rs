@@ -1,4 +1,5 @@
-//! Runs that are killed, interrupted, resumed, started from a state: what comes out must be the bytes of a run that was left alone.
+//! Runs that are killed, interrupted, resumed, started from a state: what comes out must be the
+//! bytes of a run that was left alone.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic)]
 
@@ -436,7 +437,8 @@ fn a_run_from_a_checkpoint_moves_as_the_one_that_went_on() {
     let (part, whole) = (summary(&place.out()), summary(&whole));
     assert_eq!((&part["t"], &part["steps"]), (&whole["t"], &whole["steps"]), "the clock goes on");
     assert_eq!(part["energy"]["final"], whole["energy"]["final"]);
-    // The account begins with the run: its largest residual is the identity's, checked from there on.
+    // The account begins with the run: its largest residual is the identity's, checked from there
+    // on.
     assert!(part["energy"]["largest_residual"].as_f64().unwrap() <= 1e-12);
     assert!(part["energy"]["initial"] != whole["energy"]["initial"]);
 

@@ -2,8 +2,8 @@
 
 use teeter_contact::ProblemError;
 
-/// Why a file isn't a contact problem that can be solved, or can't be written. Names are paths inside the file; contacts
-/// count from 0.
+/// Why a file isn't a contact problem that can be solved, or can't be written. Names are paths
+/// inside the file; contacts count from 0.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FclibError {
@@ -56,7 +56,8 @@ pub enum FclibError {
         /// Entries needed (at least, for the arrays of W).
         expected: u64,
     },
-    /// A part that claims more than its file can plausibly hold; refused before memory is taken for it.
+    /// A part that claims more than its file can plausibly hold; refused before memory is taken for
+    /// it.
     #[error("/{name} claims {bytes} bytes, in a file of {file} bytes: refused")]
     TooLarge {
         /// Its path.

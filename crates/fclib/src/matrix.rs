@@ -13,8 +13,8 @@ struct Entry {
     value: f64,
 }
 
-/// Reads W of `rows` rows, which are a whole number of contacts. The caller has checked that the file holds vectors of
-/// that length, so memory for so many rows is fair.
+/// Reads W of `rows` rows, which are a whole number of contacts. The caller has checked that the
+/// file holds vectors of that length, so memory for so many rows is fair.
 pub(crate) fn read<const D: usize>(store: &Store, rows: usize) -> Result<BlockSparse<D>, FclibError> {
     let storage = store.integer("fclib_local/W/nz")?;
     let pointers = store.integers("fclib_local/W/p")?;
@@ -149,7 +149,8 @@ pub(crate) fn write<const D: usize>(h: &BlockSparse<D>, group: &mut GroupBuilder
         })
     };
     let stored = || entries().filter(|(_, _, value)| value.to_bits() != 0);
-    // Counted first, so that each entry has its place; by rows within a column, as the rows come in order.
+    // Counted first, so that each entry has its place; by rows within a column, as the rows come in
+    // order.
     let mut pointers = vec![0_usize; D * h.contacts() + 1];
     stored().for_each(|(_, column, _)| pointers[column + 1] += 1);
     for k in 1..pointers.len() {

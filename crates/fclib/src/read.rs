@@ -9,10 +9,12 @@ use teeter_contact::Vector;
 /// Reads a file.
 ///
 /// # Errors
-/// If it can't be read, is no HDF5 file, or holds no local contact problem that a solver could take; see [`FclibError`].
+/// If it can't be read, is no HDF5 file, or holds no local contact problem that a solver could
+/// take; see [`FclibError`].
 pub fn read(path: impl AsRef<Path>) -> Result<FclibProblem, FclibError> {
     let mut file = std::fs::File::open(path)?;
-    // What is no HDF5 shows in the beginning: no need to take all of a huge file, or of a device that has no end.
+    // What is no HDF5 shows in the beginning: no need to take all of a huge file, or of a device
+    // that has no end.
     let mut bytes = Vec::new();
     file.by_ref().take(HEAD).read_to_end(&mut bytes)?;
     if hdf5_pure::is_hdf5_bytes(&bytes) {
@@ -21,7 +23,8 @@ pub fn read(path: impl AsRef<Path>) -> Result<FclibProblem, FclibError> {
     open(bytes)
 }
 
-/// The signature of an HDF5 file stands within so many bytes, but for files with a larger block of the user's before it.
+/// The signature of an HDF5 file stands within so many bytes, but for files with a larger block of
+/// the user's before it.
 const HEAD: u64 = 1 << 20;
 
 /// Reads a file's content.
@@ -48,7 +51,8 @@ fn open(bytes: Vec<u8>) -> Result<FclibProblem, FclibError> {
 fn local<const D: usize>(store: &Store) -> Result<LocalProblem<D>, FclibError> {
     let rows = size_of_matrix::<D>(store)?;
     no_constraints(store)?;
-    // The vectors first: they have as many entries as W has rows, so that nothing is made room for that isn't there.
+    // The vectors first: they have as many entries as W has rows, so that nothing is made room for
+    // that isn't there.
     let q = contact_vectors(constant_vector(store)?, "fclib_local/vectors/q", rows)?;
     let mu = store.numbers("fclib_local/vectors/mu")?;
     expect("fclib_local/vectors/mu", mu.len(), rows / D)?;

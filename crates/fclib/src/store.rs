@@ -5,7 +5,8 @@ use hdf5_pure::{DType, Dataset, Error, File, FormatError};
 
 /// A part may always take this many bytes …
 const ALWAYS: u64 = 16 << 20;
-/// … and above that no more than this many times the file: compression of numbers doesn't reach it, a bomb does.
+/// … and above that no more than this many times the file: compression of numbers doesn't reach it,
+/// a bomb does.
 const RATIO: u64 = 100;
 
 /// An open file.
@@ -90,8 +91,8 @@ impl Store {
         self.find(name)?.ok_or_else(|| FclibError::Missing { name: name.to_owned() })
     }
 
-    /// Refuses what claims more than the file can plausibly hold: the whole of it, and the pieces that it is stored in, which
-    /// are unpacked whole.
+    /// Refuses what claims more than the file can plausibly hold: the whole of it, and the pieces
+    /// that it is stored in, which are unpacked whole.
     fn checked_length(&self, dataset: &Dataset, name: &str) -> Result<(), FclibError> {
         let shape = dataset.shape().map_err(|error| unreadable(name, &error))?;
         let chunk = dataset.chunk_shape().map_err(|error| unreadable(name, &error))?.unwrap_or_default();

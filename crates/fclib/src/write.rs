@@ -30,19 +30,23 @@ impl<const D: usize> LocalProblem<D> {
     /// Writes a file, over one that is there.
     ///
     /// # Errors
-    /// If the data are no contact problem, as [`LocalProblem::to_bytes`], or the file can't be written.
+    /// If the data are no contact problem, as [`LocalProblem::to_bytes`], or the file can't be
+    /// written.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), FclibError> {
         Ok(std::fs::write(path, self.to_bytes()?)?)
     }
 
-    /// The content of a file that reads back to the same doubles and texts, to the bit. W is stored by compressed columns,
-    /// rows ascending, zeros left out; an off-diagonal block of zeros alone is therefore not there when read.
+    /// The content of a file that reads back to the same doubles and texts, to the bit. W is stored
+    /// by compressed columns, rows ascending, zeros left out; an off-diagonal block of zeros alone
+    /// is therefore not there when read.
     ///
-    /// The file is of HDF5 1.8's form, uncompressed, each array in one piece: libfclib, Siconos and h5py read it.
+    /// The file is of HDF5 1.8's form, uncompressed, each array in one piece: libfclib, Siconos and
+    /// h5py read it.
     ///
     /// # Errors
-    /// If the data are no contact problem (sizes, finiteness, μ, H_NN), a guess or a solution is of another size or not
-    /// finite, a text holds the character NUL, or a size exceeds the format's 32 bits.
+    /// If the data are no contact problem (sizes, finiteness, μ, H_NN), a guess or a solution is of
+    /// another size or not finite, a text holds the character NUL, or a size exceeds the format's
+    /// 32 bits.
     pub fn to_bytes(&self) -> Result<Vec<u8>, FclibError> {
         if D != 2 && D != 3 {
             return Err(FclibError::SpaceDimension(D as i64));

@@ -1,5 +1,5 @@
-//! Files that are wrong: each is refused with an error that names what and where; nothing panics or takes memory without
-//! bound. The fuzzer (`fuzz/`) goes further; its seeds are replayed here.
+//! Files that are wrong: each is refused with an error that names what and where; nothing panics or
+//! takes memory without bound. The fuzzer (`fuzz/`) goes further; its seeds are replayed here.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use hdf5_pure::FileBuilder;

@@ -29,12 +29,13 @@ const MOST_DECADES: f64 = 300.0;
 /// What differs by less than this part of its size is drawn as constant.
 const CONSTANT: f64 = 1e-9;
 
-/// Least width of a range that is given, as part of its ends: the round numbers in it are still different numbers.
+/// Least width of a range that is given, as part of its ends: the round numbers in it are still
+/// different numbers.
 const NARROWEST: f64 = 1e-12;
 
 impl Axis {
-    /// A linear axis over all of the values with a margin of 5 %; it starts at zero where that is no farther away than
-    /// the values are apart. Of no values at all, from 0 to 1.
+    /// A linear axis over all of the values with a margin of 5 %; it starts at zero where that is
+    /// no farther away than the values are apart. Of no values at all, from 0 to 1.
     ///
     /// # Errors
     /// [`AxisError::NotFinite`] if a value is not finite.
@@ -46,11 +47,13 @@ impl Axis {
         Ok(Self::between(label, if from_zero { 0.0 } else { low - margin }, high + margin))
     }
 
-    /// A logarithmic axis around all of the values with a margin of 3 %, up to the next 1, 2 or 5 times a power of ten. Of
-    /// no values at all, from 1 to 10. The axis ends at 1e±300, even if values are beyond.
+    /// A logarithmic axis around all of the values with a margin of 3 %, up to the next 1, 2 or 5
+    /// times a power of ten. Of no values at all, from 1 to 10. The axis ends at 1e±300, even if
+    /// values are beyond.
     ///
     /// # Errors
-    /// [`AxisError::NotFinite`] if a value is not finite, [`AxisError::NotPositive`] if one is zero or negative.
+    /// [`AxisError::NotFinite`] if a value is not finite, [`AxisError::NotPositive`] if one is zero
+    /// or negative.
     pub fn logarithmic(label: impl Into<String>, values: impl IntoIterator<Item = f64>) -> Result<Self, AxisError> {
         let label = label.into();
         let (low, high) = match extent(&label, values)? {
@@ -66,16 +69,17 @@ impl Axis {
         Ok(Self { label, scale: Scale::Logarithmic, low, high })
     }
 
-    /// A linear axis with a margin of 6 % around those of the values that are finite, at least `least` wide in the
-    /// unit of the values: what varies by less is at rest, and its rounding not for the eye. Of no values, from −1 to 1.
+    /// A linear axis with a margin of 6 % around those of the values that are finite, at least
+    /// `least` wide in the unit of the values: what varies by less is at rest, and its rounding not
+    /// for the eye. Of no values, from −1 to 1.
     #[must_use]
     pub fn around(label: impl Into<String>, values: impl IntoIterator<Item = f64>, least: f64) -> Self {
         let (low, high) = range_around(values.into_iter(), least);
         Self { label: label.into(), scale: Scale::Linear, low, high }
     }
 
-    /// A linear axis with given ends. Where these are no range that can be drawn (not finite, not ascending, the same
-    /// but for rounding), the axis is one [around](Axis::around) them.
+    /// A linear axis with given ends. Where these are no range that can be drawn (not finite, not
+    /// ascending, the same but for rounding), the axis is one [around](Axis::around) them.
     #[must_use]
     pub fn between(label: impl Into<String>, low: f64, high: f64) -> Self {
         if is_drawable(low, high) {
@@ -85,7 +89,8 @@ impl Axis {
         }
     }
 
-    /// The axis from another low end on, if that is below its high end and, on a logarithmic axis, positive.
+    /// The axis from another low end on, if that is below its high end and, on a logarithmic axis,
+    /// positive.
     #[must_use]
     pub fn starting_at(mut self, low: f64) -> Self {
         let low = self.scaled(low);
@@ -160,8 +165,8 @@ fn extent(label: &str, values: impl IntoIterator<Item = f64>) -> Result<Option<(
     Ok(ends)
 }
 
-/// The logarithm of the largest of the numbers 1, 2, 5, 10 … that is not above a number, given its logarithm. A number
-/// that is one of them but for rounding stays.
+/// The logarithm of the largest of the numbers 1, 2, 5, 10 … that is not above a number, given its
+/// logarithm. A number that is one of them but for rounding stays.
 fn round_down(power: f64) -> f64 {
     let decade = power.floor();
     let beside = power - decade + 1e-9;
@@ -182,7 +187,8 @@ fn range_around(values: impl Iterator<Item = f64>, least: f64) -> (f64, f64) {
         return (-1.0, 1.0);
     }
     let room = 0.06 * (high - low) + 0.5 * (least - (high - low)).max(0.0);
-    // Of constant values, wide enough for the ends to be other numbers than the values, however large these are.
+    // Of constant values, wide enough for the ends to be other numbers than the values, however
+    // large these are.
     let least = CONSTANT * low.abs().max(high.abs());
     if room > least {
         (low - room, high + room)

@@ -1,6 +1,7 @@
 //! Text inside XML.
 
-/// Text with the characters that XML takes for its own replaced; fit for content and for quoted attributes.
+/// Text with the characters that XML takes for its own replaced; fit for content and for quoted
+/// attributes.
 ///
 /// ```
 /// assert_eq!(teeter_plot::escaped("a < b & c"), "a &lt; b &amp; c");

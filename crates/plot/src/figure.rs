@@ -30,7 +30,8 @@ pub struct Figure {
     headed: bool,
 }
 
-/// 4 units are a millimetre: 480 fill a page's column of 12 cm, and type of 11 is 2.75 mm or 7.8 pt.
+/// 4 units are a millimetre: 480 fill a page's column of 12 cm, and type of 11 is 2.75 mm or 7.8
+/// pt.
 pub(crate) const WIDTH: f64 = 480.0;
 const UNITS_PER_MM: f64 = 4.0;
 pub(crate) const LEFT: f64 = 64.0;
@@ -65,8 +66,9 @@ impl Frame<'_> {
 }
 
 impl Figure {
-    /// A figure without panels. The `id` tells it from others in the same document; the title is what readers of the
-    /// document without eyes or pictures get, and a [heading](Figure::headed) if wanted.
+    /// A figure without panels. The `id` tells it from others in the same document; the title is
+    /// what readers of the document without eyes or pictures get, and a [heading](Figure::headed)
+    /// if wanted.
     #[must_use]
     pub fn new(id: &str, title: impl Into<String>, x: Axis) -> Self {
         let id = id.chars().map(|c| if c.is_ascii_alphanumeric() || c == '_' { c } else { '-' }).collect();

@@ -9,8 +9,8 @@ use std::fmt::Write;
 /// Where the names of the series stand. Never on the plot: they can't hide what it shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Legend {
-    /// In a row above each panel. Names for which there is no room run out of the figure: [`LEGEND_WIDTH`] is what there
-    /// is, [`legend_width`] what a name takes.
+    /// In a row above each panel. Names for which there is no room run out of the figure:
+    /// [`LEGEND_WIDTH`] is what there is, [`legend_width`] what a name takes.
     #[default]
     Row,
     /// Above each panel in as many rows as the names need.
@@ -19,7 +19,8 @@ pub enum Legend {
     Beside,
 }
 
-/// Room for the names of series in a row above a panel, in the figure's units (a quarter of a millimetre).
+/// Room for the names of series in a row above a panel, in the figure's units (a quarter of a
+/// millimetre).
 pub const LEGEND_WIDTH: f64 = WIDTH - LEFT - RIGHT;
 
 /// What a name takes of [`LEGEND_WIDTH`], with its symbol and the gap to the next.
@@ -28,7 +29,8 @@ pub fn legend_width(label: &str) -> f64 {
     text_width(label) + SYMBOL + GAP
 }
 
-/// About the width of a text at the size of the labels, in the figure's units (a quarter of a millimetre).
+/// About the width of a text at the size of the labels, in the figure's units (a quarter of a
+/// millimetre).
 #[must_use]
 pub fn text_width(text: &str) -> f64 {
     5.6 * text.chars().count() as f64
@@ -91,7 +93,8 @@ impl<'a> Entry<'a> {
 }
 
 impl Legend {
-    /// Row and left end of each entry above a panel; a note at the right takes its part of the first row.
+    /// Row and left end of each entry above a panel; a note at the right takes its part of the
+    /// first row.
     fn rows(self, entries: &[Entry], note: Option<&str>) -> Vec<(usize, f64)> {
         let (mut row, mut x) = (0, LEFT);
         let noted = note.map_or(0.0, |note| text_width(note) + GAP);
@@ -162,8 +165,8 @@ pub(crate) fn stroke(number: usize, theme: Theme) -> String {
     format!("stroke=\"{}\" stroke-dasharray=\"{dash}\"", colour.value(theme))
 }
 
-/// Colours of marks: hollow ones are open, filled ones have a thin edge of the background, so that neither hides what it
-/// overlaps.
+/// Colours of marks: hollow ones are open, filled ones have a thin edge of the background, so that
+/// neither hides what it overlaps.
 pub(crate) fn mark_style(number: usize, hollow: bool, theme: Theme) -> String {
     let colour = Colour::Series(number).value(theme);
     if hollow {

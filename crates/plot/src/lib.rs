@@ -1,13 +1,15 @@
-//! Plots as SVG for papers and pages: thin lines, round numbers on the axes, colours that the colour-blind tell apart.
+//! Plots as SVG for papers and pages: thin lines, round numbers on the axes, colours that the
+//! colour-blind tell apart.
 //!
-//! A [`Figure`] is one or more [`Panel`]s above each other that share an x [`Axis`]. A panel has a y axis with
-//! [`Series`] (lines, staircases, marks), or rows of [`Band`]s such as the states of a contact. A figure is 120 mm wide,
-//! has no script and loads nothing; the same figure gives the same text.
+//! A [`Figure`] is one or more [`Panel`]s above each other that share an x [`Axis`]. A panel has a
+//! y axis with [`Series`] (lines, staircases, marks), or rows of [`Band`]s such as the states of a
+//! contact. A figure is 120 mm wide, has no script and loads nothing; the same figure gives the
+//! same text.
 //!
-//! An axis is made before the figure is, from the values that it has to show. What can't be shown on it is found there:
-//! [`Axis::linear`] and [`Axis::logarithmic`] return an [`AxisError`] for values that are not finite, or have no
-//! logarithm. Once the axes are there, drawing can't fail: lines are broken where a value is not finite, and what lies
-//! off the axes is cut.
+//! An axis is made before the figure is, from the values that it has to show. What can't be shown
+//! on it is found there: [`Axis::linear`] and [`Axis::logarithmic`] return an [`AxisError`] for
+//! values that are not finite, or have no logarithm. Once the axes are there, drawing can't fail:
+//! lines are broken where a value is not finite, and what lies off the axes is cut.
 //!
 //! ```
 //! use teeter_plot::{Axis, Figure, Mark, Panel, Series};

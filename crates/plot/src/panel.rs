@@ -63,7 +63,8 @@ impl Panel {
         Self { content, note: None, ticks_at: Vec::new(), guides: Vec::new(), shaded: None, height: None }
     }
 
-    /// With more series, later ones above earlier ones, marks above lines; a panel of bands has none.
+    /// With more series, later ones above earlier ones, marks above lines; a panel of bands has
+    /// none.
     #[must_use]
     pub fn with(mut self, more: impl IntoIterator<Item = Series>) -> Self {
         if let Content::Plot { series, .. } = &mut self.content {
@@ -100,8 +101,8 @@ impl Panel {
         self
     }
 
-    /// With a frame of this height, mm. Default: 52.5 mm for a panel alone, 35 mm for one of several; bands have a
-    /// height of their own.
+    /// With a frame of this height, mm. Default: 52.5 mm for a panel alone, 35 mm for one of
+    /// several; bands have a height of their own.
     #[must_use]
     pub fn height_mm(mut self, height: f64) -> Self {
         self.height = Some(height);
@@ -206,7 +207,8 @@ impl Panel {
     }
 }
 
-/// Lines across the frame at the round numbers of both axes, of x only where it is logarithmic; labels of y.
+/// Lines across the frame at the round numbers of both axes, of x only where it is logarithmic;
+/// labels of y.
 fn draw_grid(svg: &mut String, frame: &Frame, theme: Theme, y: &Axis) {
     let (top, height, width) = (frame.top, frame.height, frame.width());
     let y_ticks = y.ticks(if height > 180.0 { 6 } else { 4 });
@@ -269,7 +271,8 @@ fn draw_bands(svg: &mut String, frame: &Frame, theme: Theme, bands: &[Band]) {
     }
 }
 
-/// A line through all points that are finite, broken where one isn't; steps that no printer resolves are left out.
+/// A line through all points that are finite, broken where one isn't; steps that no printer
+/// resolves are left out.
 fn line_path(points: &[(f64, f64)], px: impl Fn(f64) -> f64, py: impl Fn(f64) -> f64) -> String {
     let mut path = String::new();
     let mut last: Option<(f64, f64)> = None;

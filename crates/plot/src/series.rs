@@ -2,8 +2,8 @@
 
 /// Points with a name: a line, a staircase, or marks.
 ///
-/// A line is broken where a value is not finite (on a logarithmic axis, not positive), and marks are left out there: an
-/// [`Axis`](crate::Axis) made from the same values says so beforehand.
+/// A line is broken where a value is not finite (on a logarithmic axis, not positive), and marks
+/// are left out there: an [`Axis`](crate::Axis) made from the same values says so beforehand.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
     label: String,
@@ -47,7 +47,8 @@ impl Series {
         Self { label: label.into(), number: None, points: points.into_iter().collect(), drawn: Drawn::Line }
     }
 
-    /// A line of steps: each value holds from its x to the x of the next point, the last one up to `end`.
+    /// A line of steps: each value holds from its x to the x of the next point, the last one up to
+    /// `end`.
     #[must_use]
     pub fn staircase(label: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>, end: f64) -> Self {
         let points: Vec<(f64, f64)> = points.into_iter().collect();
@@ -62,15 +63,16 @@ impl Series {
         Self { drawn: Drawn::Marks { mark, hollow: false }, ..Self::line(label, points) }
     }
 
-    /// With the colour of this number; of lines, seven numbers on the colours repeat with dashes, then dots. Default:
-    /// the place of the series in its panel, from 0.
+    /// With the colour of this number; of lines, seven numbers on the colours repeat with dashes,
+    /// then dots. Default: the place of the series in its panel, from 0.
     #[must_use]
     pub fn number(mut self, number: usize) -> Self {
         self.number = Some(number);
         self
     }
 
-    /// With hollow marks instead of filled ones, through which others can be seen; a line stays as it is.
+    /// With hollow marks instead of filled ones, through which others can be seen; a line stays as
+    /// it is.
     #[must_use]
     pub fn hollow(mut self) -> Self {
         if let Drawn::Marks { hollow, .. } = &mut self.drawn {

@@ -6,8 +6,9 @@ pub enum Theme {
     /// On its own, in a file or in print: black on white, plain colours.
     #[default]
     Paper,
-    /// Inside an HTML page that has the style of the report: its CSS variables (`--bg`, `--fg`, `--muted`, `--grid`,
-    /// `--c0` … `--c6`) decide, so that the figure turns dark with the page; without them, the colours of paper.
+    /// Inside an HTML page that has the style of the report: its CSS variables (`--bg`, `--fg`,
+    /// `--muted`, `--grid`, `--c0` … `--c6`) decide, so that the figure turns dark with the page;
+    /// without them, the colours of paper.
     Page,
 }
 
@@ -15,8 +16,8 @@ pub enum Theme {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Colour {
-    /// Colour of the series of this number: those of Okabe and Ito, the light yellow left out, as it is too faint for a
-    /// thin line on white. After seven they repeat.
+    /// Colour of the series of this number: those of Okabe and Ito, the light yellow left out, as
+    /// it is too faint for a thin line on white. After seven they repeat.
     Series(usize),
     /// Text and frames.
     Ink,

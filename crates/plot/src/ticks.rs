@@ -46,7 +46,8 @@ impl Ticks {
         Self { major, minor: Vec::new() }
     }
 
-    /// Powers of ten in a range, given by the logarithms of its ends; where these are few, 2 and 5 times them too.
+    /// Powers of ten in a range, given by the logarithms of its ends; where these are few, 2 and 5
+    /// times them too.
     pub(crate) fn logarithmic(low: f64, high: f64) -> Self {
         let (first, last) = ((low - 1e-9).ceil() as i32, (high + 1e-9).floor() as i32);
         let enough = last - first + 1 >= ENOUGH as i32;

@@ -55,8 +55,9 @@ impl Record {
     }
 
     /// Faded in and out by half a cosine (a Tukey window): at the time τ from either end, below
-    /// `fraction` times the duration T, the acceleration is multiplied by (1 − cos(π τ/(fraction·T)))/2.
-    /// A `fraction` of 0 leaves the record as it is, 0.5 leaves no part between the two fades.
+    /// `fraction` times the duration T, the acceleration is multiplied by (1 − cos(π
+    /// τ/(fraction·T)))/2. A `fraction` of 0 leaves the record as it is, 0.5 leaves no part between
+    /// the two fades.
     ///
     /// # Errors
     /// If the fraction isn't in [0, 0.5].
@@ -73,11 +74,11 @@ impl Record {
         self.with(self.accelerations().iter().enumerate().map(|(k, a)| a * window(k)).collect())
     }
 
-    /// Without its baseline: of all polynomials of a degree up to `degree` (0 to 5), the one p with the least
-    /// Σₖ (aₖ − p(tₖ))² over the values aₖ, each of the same weight, is subtracted from the acceleration.
-    /// Neither velocity nor displacement is fitted, nor anything made zero at the ends. It is
-    /// computed in Legendre polynomials of x = 2t/T − 1, T being the duration, so that it is as accurate as
-    /// the values are.
+    /// Without its baseline: of all polynomials of a degree up to `degree` (0 to 5), the one p with
+    /// the least Σₖ (aₖ − p(tₖ))² over the values aₖ, each of the same weight, is subtracted from
+    /// the acceleration. Neither velocity nor displacement is fitted, nor anything made zero at the
+    /// ends. It is computed in Legendre polynomials of x = 2t/T − 1, T being the duration, so that
+    /// it is as accurate as the values are.
     ///
     /// # Errors
     /// If the degree is over 5, or there are no more values than the degree plus 1.

@@ -1,11 +1,13 @@
-//! The COSMOS Strong Motion Data Format, version 1.20 (COSMOS Strong Motion Programs Board, August 15, 2001).
+//! The COSMOS Strong Motion Data Format, version 1.20 (COSMOS Strong Motion Programs Board, August
+//! 15, 2001).
 //!
 //! A file is a row of blocks. Each has lines of text (the first says how many), integers, reals,
 //! comments, and the values, each part behind a line that says how many there are and in which
-//! Fortran format, as `7000  acceleration pts, approx   70 secs, units=cm/sec2(04),Format=(8F10.5)`.
-//! What the headers are asked for: integer 2 is the physical quantity (1: an acceleration), integer
-//! 3 the unit, real 62 the step in ms. A file of velocities beside an acceleration is read as its
-//! acceleration; one with several accelerations is refused, because none of them is the record.
+//! Fortran format, as
+//! `7000  acceleration pts, approx   70 secs, units=cm/sec2(04),Format=(8F10.5)`. What the headers
+//! are asked for: integer 2 is the physical quantity (1: an acceleration), integer 3 the unit, real
+//! 62 the step in ms. A file of velocities beside an acceleration is read as its acceleration; one
+//! with several accelerations is refused, because none of them is the record.
 
 use std::iter::Peekable;
 use std::str::Lines;
@@ -118,7 +120,8 @@ impl<'a> Reader<'a> {
             let Some(step) = reals.get(61).copied() else {
                 return Err(RecordError::Missing { format: Format::Cosmos, what: "step (real 62)" });
             };
-            // The step of most files is a round number of ms: dividing makes the nearest number of s.
+            // The step of most files is a round number of ms: dividing makes the nearest number of
+            // s.
             block.dt = step / 1000.0;
             block.accelerations = values.into_iter().map(|value| value * unit).collect();
         }

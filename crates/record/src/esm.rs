@@ -1,5 +1,5 @@
-//! ESM's ASCII files (also called DYNA): lines `KEY: value`, 64 of them as a rule, then one value of
-//! acceleration a line.
+//! ESM's ASCII files (also called DYNA): lines `KEY: value`, 64 of them as a rule, then one value
+//! of acceleration a line.
 
 use crate::MOST_VALUES;
 use crate::error::{RecordError, shown};

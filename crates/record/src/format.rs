@@ -22,8 +22,8 @@ pub enum Format {
 const HEADER: usize = 70;
 
 impl Format {
-    /// The format of a file, by its content: COSMOS by the words `(Format v` in its first line, ESM by
-    /// lines `NDATA:` or `SAMPLING_INTERVAL_S:`, PEER by `NPTS`, and a table by numbers, which a
+    /// The format of a file, by its content: COSMOS by the words `(Format v` in its first line, ESM
+    /// by lines `NDATA:` or `SAMPLING_INTERVAL_S:`, PEER by `NPTS`, and a table by numbers, which a
     /// heading and comments may precede.
     ///
     /// # Errors

@@ -24,7 +24,8 @@ impl Peak {
     }
 }
 
-/// One step of the motion: the acceleration a + s τ, with velocity and displacement where it begins.
+/// One step of the motion: the acceleration a + s τ, with velocity and displacement where it
+/// begins.
 #[derive(Clone, Copy)]
 struct Piece {
     begin: f64,
@@ -91,8 +92,8 @@ impl Record {
         peak
     }
 
-    /// Peak ground displacement, m: the largest size of the second integral of the acceleration from rest,
-    /// between the values too.
+    /// Peak ground displacement, m: the largest size of the second integral of the acceleration
+    /// from rest, between the values too.
     #[must_use]
     pub fn displacement_peak(&self) -> Peak {
         let mut peak = Peak::NONE;
@@ -111,17 +112,18 @@ impl Record {
         std::iter::once((0.0, 0.0)).chain(ends).unzip()
     }
 
-    /// Arias intensity π/(2g) ∫ a² dt, m/s, g being [`STANDARD_GRAVITY`] (A. Arias, "A measure of earthquake
-    /// intensity", in Seismic Design for Nuclear Power Plants, MIT Press 1970). The integral is
-    /// that of the linear pieces, h (a₀² + a₀a₁ + a₁²)/3 each, not the sum of the values' squares.
+    /// Arias intensity π/(2g) ∫ a² dt, m/s, g being [`STANDARD_GRAVITY`] (A. Arias, "A measure of
+    /// earthquake intensity", in Seismic Design for Nuclear Power Plants, MIT Press 1970). The
+    /// integral is that of the linear pieces, h (a₀² + a₀a₁ + a₁²)/3 each, not the sum of the
+    /// values' squares.
     #[must_use]
     pub fn arias_intensity(&self) -> f64 {
         self.pieces().map(|piece| piece.squares(piece.h)).sum::<f64>() * std::f64::consts::PI / (2.0 * STANDARD_GRAVITY)
     }
 
-    /// When the Arias intensity reaches two parts of the whole, s: `[0.05, 0.95]` are the ends of the
-    /// significant duration (M. D. Trifunac, A. G. Brady 1975). Within a step the cubic that the
-    /// intensity is there is solved.
+    /// When the Arias intensity reaches two parts of the whole, s: `[0.05, 0.95]` are the ends of
+    /// the significant duration (M. D. Trifunac, A. G. Brady 1975). Within a step the cubic that
+    /// the intensity is there is solved.
     ///
     /// # Errors
     /// If the parts don't rise within [0, 1], or the record is 0 throughout.
@@ -194,7 +196,8 @@ mod tests {
 
     #[test]
     fn peaks_between_the_values_are_found() {
-        // a = 1 - t over [0, 3]: v = t - t²/2 is largest at 1, 0 at 2; d = t²/2 - t³/6 at 2 is 2/3, at 3 it is 0.
+        // a = 1 - t over [0, 3]: v = t - t²/2 is largest at 1, 0 at 2; d = t²/2 - t³/6 at 2 is 2/3,
+        // at 3 it is 0.
         let one = Record::new("R", 3.0, vec![1.0, -2.0]).unwrap();
         let (v, d) = (one.velocity_peak(), one.displacement_peak());
         assert!((v.size - 1.5).abs() < 1e-15 && v.time == 3.0, "{v:?}");

@@ -56,7 +56,8 @@ fn length(text: &[u8]) -> usize {
         let begin = end + 1 + usize::from(is(end + 1, b"+-"));
         let power = digits(begin);
         if power > 0 {
-            // A point right behind an exponent is of the next number, and so are digits past the second.
+            // A point right behind an exponent is of the next number, and so are digits past the
+            // second.
             end = begin + if is(begin + power, b".") { power.min(2) } else { power };
         }
     }

@@ -98,8 +98,8 @@ fn after<'a>(text: &'a str, key: &str) -> Option<&'a str> {
     rest.split(|c: char| c.is_whitespace() || c == ',').next().filter(|word| !word.is_empty())
 }
 
-/// The station of a line such as `EVENT 01/01/70 1200, STATION, 090 (CDMG STATION 54100)`: what stands
-/// before the last comma, the component being behind it.
+/// The station of a line such as `EVENT 01/01/70 1200, STATION, 090 (CDMG STATION 54100)`: what
+/// stands before the last comma, the component being behind it.
 fn station(description: &str) -> &str {
     let mut parts = description.rsplit(',');
     match (parts.next(), parts.next(), parts.next()) {

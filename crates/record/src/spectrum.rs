@@ -5,7 +5,8 @@ use std::f64::consts::PI;
 use crate::error::RecordError;
 use crate::record::Record;
 
-/// Steps of a period at the least: longer steps of the record are divided evenly. More would only cost.
+/// Steps of a period at the least: longer steps of the record are divided evenly. More would only
+/// cost.
 const STEPS_OF_A_PERIOD: f64 = 16.0;
 
 /// Shortest period for the step of a record: 1/1000 of it. Shorter oscillators follow the ground.
@@ -42,11 +43,11 @@ impl Response {
 impl Record {
     /// The response spectrum at these natural periods (s), for a damping ratio ζ in [0, 1).
     ///
-    /// From value to value the response is the exact one to a linear acceleration (N. C. Nigam, P. C. Jennings,
-    /// "Calculation of response spectra from strong-motion earthquake records", Bull. Seism. Soc.
-    /// Am. 59 (1969) 909–922). Other than there, a step over 1/16 of the period is divided, and
-    /// extremes are looked for between the values, so that a record's step doesn't flatten the
-    /// peaks of short periods. What comes after the record's last value doesn't count.
+    /// From value to value the response is the exact one to a linear acceleration (N. C. Nigam, P.
+    /// C. Jennings, "Calculation of response spectra from strong-motion earthquake records", Bull.
+    /// Seism. Soc. Am. 59 (1969) 909–922). Other than there, a step over 1/16 of the period is
+    /// divided, and extremes are looked for between the values, so that a record's step doesn't
+    /// flatten the peaks of short periods. What comes after the record's last value doesn't count.
     ///
     /// # Errors
     /// If ζ isn't in [0, 1), or a period isn't finite and at least 1/1000 of the record's step.
@@ -99,11 +100,12 @@ impl Oscillator {
         Self { zeta, omega }
     }
 
-    /// Displacement and velocity at τ, from those at 0 under the acceleration a + s τ of the ground.
+    /// Displacement and velocity at τ, from those at 0 under the acceleration a + s τ of the
+    /// ground.
     ///
-    /// By the power series in τ, whose coefficients the equation of motion gives one after the other. The closed
-    /// form is the difference of terms of the size a/ω² and s/ω³, and of a long period nothing would
-    /// be left of it.
+    /// By the power series in τ, whose coefficients the equation of motion gives one after the
+    /// other. The closed form is the difference of terms of the size a/ω² and s/ω³, and of a long
+    /// period nothing would be left of it.
     fn at(&self, tau: f64, [u, v]: [f64; 2], [a, slope]: [f64; 2]) -> [f64; 2] {
         let (friction, stiffness) = (2.0 * self.zeta * self.omega, self.omega * self.omega);
         // u = Σ cₙ, v = Σ dₙ with cₙ = kₙ τⁿ and dₙ = (n + 1) kₙ₊₁ τⁿ.
@@ -127,8 +129,8 @@ impl Oscillator {
     }
 }
 
-/// The step as a matrix: the motion is linear in displacement and velocity at the beginning and in the
-/// accelerations of both ends.
+/// The step as a matrix: the motion is linear in displacement and velocity at the beginning and in
+/// the accelerations of both ends.
 struct Step([[f64; 4]; 2]);
 
 impl Step {
@@ -192,7 +194,8 @@ mod tests {
                 let omega = 2.0 * PI / t;
                 let root = (1.0 - zeta * zeta).sqrt();
                 let sd = a / (omega * omega) * (1.0 + (-zeta * PI / root).exp());
-                // The velocity is a/ω_d e^(-ζωt) sin ω_d t, largest where its rate is 0: tan ω_d t = ω_d/(ζω).
+                // The velocity is a/ω_d e^(-ζωt) sin ω_d t, largest where its rate is 0: tan ω_d
+                // t = ω_d/(ζω).
                 let phase = root.atan2(zeta);
                 let sv = a / omega * (-zeta / root * phase).exp();
                 let got = one.spectrum(zeta, &[t]).unwrap()[0];
@@ -234,7 +237,8 @@ mod tests {
         let values: Vec<f64> = (0..500).map(|k| (0.13 * f64::from(k)).sin() * (-0.01 * f64::from(k)).exp()).collect();
         let one = Record::new("R", 0.01, values).unwrap().baseline_corrected(1).unwrap();
         let [short, long] = <[Response; 2]>::try_from(one.spectrum(0.05, &[0.002, 1e4]).unwrap()).unwrap();
-        // A stiff oscillator follows the ground but for (ω_ground/ω)² and for where the record begins at once.
+        // A stiff oscillator follows the ground but for (ω_ground/ω)² and for where the record
+        // begins at once.
         assert!(short.acceleration >= one.peak_acceleration() * 0.999);
         assert!((long.displacement / one.displacement_peak().size - 1.0).abs() < 1e-3);
         assert!((long.velocity / one.velocity_peak().size - 1.0).abs() < 1e-3);

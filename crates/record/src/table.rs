@@ -13,7 +13,8 @@ enum Separator {
     Blanks,
 }
 
-/// Rows as they are read: of a table with times, the times too, and to how many seconds they are written.
+/// Rows as they are read: of a table with times, the times too, and to how many seconds they are
+/// written.
 #[derive(Default)]
 struct Rows {
     lines: Vec<usize>,
@@ -70,7 +71,8 @@ pub(crate) fn read(text: &str, step: Option<f64>) -> Result<Record, RecordError>
     Record::new("", step, rows.accelerations)
 }
 
-/// Separator, number of columns, and what their units are in s and m/s² (the last column is the acceleration).
+/// Separator, number of columns, and what their units are in s and m/s² (the last column is the
+/// acceleration).
 fn form_of(
     line: usize,
     row: &str,
@@ -213,8 +215,8 @@ impl Rows {
         }
     }
 
-    /// The row that is to blame for uneven times: the first that isn't one step behind the one before it, the
-    /// step being that of most rows.
+    /// The row that is to blame for uneven times: the first that isn't one step behind the one
+    /// before it, the step being that of most rows.
     fn first_uneven(&self, mean: f64, allowed: f64) -> Option<RecordError> {
         let first = self.times[0];
         let worst = |(k, t): (usize, &f64)| !((t - (first + k as f64 * mean)).abs() <= allowed);

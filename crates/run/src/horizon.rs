@@ -5,7 +5,8 @@ use teeter_report::{HORIZON, Record};
 use teeter_scenario::scene::Scene;
 use teeter_study::{Failure, NUDGE, PARTED, Parting};
 
-/// Enters the horizon into the record, and a warning where it is before the end of the run. Whether it was not interrupted.
+/// Enters the horizon into the record, and a warning where it is before the end of the run. Whether
+/// it was not interrupted.
 pub(crate) fn find(scene: &Scene, cancel: Option<&AtomicBool>, record: &mut Record) -> bool {
     let never = AtomicBool::new(false);
     match teeter_study::parting(scene, cancel.unwrap_or(&never)) {

@@ -105,9 +105,10 @@ impl RunJob {
         self
     }
 
-    /// Finds until when the motion can be told, by three more runs after this one: with half the step, and from 1e-12 beside the start. It is
-    /// `horizon` of the summary. Not for runs [from a state](Self::from_state), nor for those whose step was found for an accuracy, which
-    /// have one.
+    /// Finds until when the motion can be told, by three more runs after this one: with half the
+    /// step, and from 1e-12 beside the start. It is `horizon` of the summary. Not for runs [from a
+    /// state](Self::from_state), nor for those whose step was found for an accuracy, which have
+    /// one.
     pub fn horizon(mut self) -> Self {
         self.horizon = true;
         self

@@ -299,7 +299,8 @@ fn contact_problems_are_saved_and_counted() {
     assert!(names.iter().all(|name| name.to_string_lossy().starts_with("free-rocking-on-beam-step")), "{names:?}");
 }
 
-/// A block that stands on its edge falls, to a side that nobody knows; one that rocks is known to the end.
+/// A block that stands on its edge falls, to a side that nobody knows; one that rocks is known to
+/// the end.
 #[test]
 fn the_horizon_is_found_on_demand() {
     let place = Place::new("horizon");

@@ -4,7 +4,8 @@ use crate::scene::{Placement, Scene, Support};
 use crate::simulation::{BlockPlace, Layout};
 use teeter_integrator::RockingMonitor;
 
-/// What carries a block, as far as its rocking goes: what it is placed on, else the surface of its first contact in the file.
+/// What carries a block, as far as its rocking goes: what it is placed on, else the surface of its
+/// first contact in the file.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Carrier {
@@ -17,7 +18,8 @@ pub enum Carrier {
     Moving(usize),
 }
 
-/// The carriers of the blocks, whose places are given; `slope` is the place of the slope of ground that moves.
+/// The carriers of the blocks, whose places are given; `slope` is the place of the slope of ground
+/// that moves.
 pub(crate) fn carriers(scene: &Scene, blocks: &[BlockPlace], slope: Option<usize>) -> Vec<Carrier> {
     let on_ground = match (slope, &scene.ground) {
         (Some(slope), _) => Carrier::Moving(slope),
@@ -38,13 +40,15 @@ pub(crate) fn carriers(scene: &Scene, blocks: &[BlockPlace], slope: Option<usize
     scene.blocks.iter().map(|block| &block.placement).enumerate().map(carrier).collect()
 }
 
-/// Whether it stands on what carries it: what only touches a block, such as a neighbour, isn't tilted by its turning.
+/// Whether it stands on what carries it: what only touches a block, such as a neighbour, isn't
+/// tilted by its turning.
 fn stands(placement: &Placement) -> bool {
     matches!(placement, Placement::On { .. })
 }
 
 impl Layout {
-    /// The angle of a block, by its number, from the surface that carries it, rad, for coordinates `q` of the whole model.
+    /// The angle of a block, by its number, from the surface that carries it, rad, for coordinates
+    /// `q` of the whole model.
     #[must_use]
     pub fn tilt(&self, block: usize, q: &[f64]) -> f64 {
         let place = &self.blocks[block];
@@ -56,7 +60,8 @@ impl Layout {
         }
     }
 
-    /// As [`Layout::tilt`], for velocities `v`: the rate at which it turns relative to what carries it, rad/s.
+    /// As [`Layout::tilt`], for velocities `v`: the rate at which it turns relative to what carries
+    /// it, rad/s.
     #[must_use]
     pub fn tilt_rate(&self, block: usize, v: &[f64]) -> f64 {
         let place = &self.blocks[block];

@@ -7,10 +7,11 @@ use crate::keys::SCENE;
 pub use teeter_text::decode::LARGEST_FILE;
 pub(crate) use teeter_text::decode::{Decoded, in_order};
 
-/// Reads a scene. `file` is its name for messages; each of `sets` is a key's path and a value that take precedence over the file.
+/// Reads a scene. `file` is its name for messages; each of `sets` is a key's path and a value that
+/// take precedence over the file.
 ///
-/// The text may start with a byte order mark and may have Windows line ends. The value of a setting is taken as
-/// TOML if it is TOML, else as a text: `("time.step", "50 us")` needs no inner quotes.
+/// The text may start with a byte order mark and may have Windows line ends. The value of a setting
+/// is taken as TOML if it is TOML, else as a text: `("time.step", "50 us")` needs no inner quotes.
 ///
 /// ```
 /// use teeter_scenario::decode;
@@ -29,7 +30,8 @@ pub(crate) use teeter_text::decode::{Decoded, in_order};
 /// ```
 ///
 /// # Errors
-/// All that is wrong in the file and the settings, in the order of the file (of a hopeless file, the first hundreds).
+/// All that is wrong in the file and the settings, in the order of the file (of a hopeless file,
+/// the first hundreds).
 pub fn parse(source: &str, file: &str, sets: &[(String, String)]) -> Result<Document, Diagnostics> {
     teeter_text::decode::parse(&SCENE, source, file, sets)
 }

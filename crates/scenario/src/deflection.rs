@@ -20,8 +20,8 @@ pub struct Large {
     pub slope: f64,
 }
 
-/// The leftmost node at which the deflection or the slope of a beam with coordinates `q` is large; `None` where all are small,
-/// and for coordinates that are not those of its nodes.
+/// The leftmost node at which the deflection or the slope of a beam with coordinates `q` is large;
+/// `None` where all are small, and for coordinates that are not those of its nodes.
 ///
 /// ```
 /// use teeter_beam::{Beam, BeamSpec, Section};

@@ -1,5 +1,5 @@
-//! What looks wrong in a scene that can be run: blocks that fall over by themselves, beams that sag out of the small-deflection
-//! theory, steps too coarse for the motion.
+//! What looks wrong in a scene that can be run: blocks that fall over by themselves, beams that sag
+//! out of the small-deflection theory, steps too coarse for the motion.
 
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;
@@ -26,8 +26,8 @@ const NEAR_CRITICAL: f64 = 0.9;
 /// A sag over this part of the span is a warning: beyond it small deflections are no longer small.
 const DEEP_SAG: f64 = 1.0 / 50.0;
 
-/// A sag over this part of the span is worth a note: at 1/68 the shortening of the axis, left out, is worth 3 % of the angle
-/// (`docs/theory.md` §8).
+/// A sag over this part of the span is worth a note: at 1/68 the shortening of the axis, left out,
+/// is worth 3 % of the angle (`docs/theory.md` §8).
 const NOTABLE_SAG: f64 = 1.0 / 250.0;
 
 /// A thickness over this part of the span asks for Timoshenko's theory.
@@ -141,8 +141,9 @@ fn digits(beam: &BeamScene, model: &Beam, scene: &Scene, document: &Document) ->
     Some(document.error(&path(key), rule, remedy))
 }
 
-/// A beam so thick that shear counts, of a theory without it. At midspan of a rectangular beam between pins a force deflects by
-/// shear E/(κG) (t/L)² of what it does by bending, some 3 (t/L)² for metals.
+/// A beam so thick that shear counts, of a theory without it. At midspan of a rectangular beam
+/// between pins a force deflects by shear E/(κG) (t/L)² of what it does by bending, some 3 (t/L)²
+/// for metals.
 fn thick(beam: &BeamScene, document: &Document) -> Option<Diagnostic> {
     let part = beam.thickness / beam.spec.span;
     if part <= THICK || beam.is_sheared() {
@@ -243,8 +244,9 @@ fn loosely_solved(scene: &Scene, document: &Document) -> Option<Diagnostic> {
 /// Steps that a contact with duration should get from touch to release.
 const STEPS_A_CONTACT: f64 = 20.0;
 
-/// A contact with duration that the step doesn't resolve. On a spring k a mass m stays for half a period, π√(m/k); for a force
-/// k δⁿ the spring is that of the depth at which the contact carries the block.
+/// A contact with duration that the step doesn't resolve. On a spring k a mass m stays for half a
+/// period, π√(m/k); for a force k δⁿ the spring is that of the depth at which the contact carries
+/// the block.
 fn resolved_in_time(contact: &ContactScene, scene: &Scene, document: &Document) -> Option<Diagnostic> {
     let mass = scene.blocks[contact.block].mass();
     let spring = match contact.law.impact {
@@ -267,8 +269,9 @@ fn resolved_in_time(contact: &ContactScene, scene: &Scene, document: &Document) 
     Some(document.error(&format!("contact.{}.stiffness", contact.name), rule, remedy).as_warning())
 }
 
-/// A step too coarse for the motion of a contact. The time scales are those of the model itself: a block on its corner moves
-/// as exp(±pt), p = √(3g/4R) (Housner 1963), whatever its angle; a beam under it swings with its first period.
+/// A step too coarse for the motion of a contact. The time scales are those of the model itself: a
+/// block on its corner moves as exp(±pt), p = √(3g/4R) (Housner 1963), whatever its angle; a beam
+/// under it swings with its first period.
 fn step(scene: &Scene, document: &Document) -> Option<Diagnostic> {
     if scene.time.scheme.has_own_steps() {
         return None;

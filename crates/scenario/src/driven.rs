@@ -37,7 +37,8 @@ pub(crate) struct BeamModel {
     pub(crate) beam: Arc<Beam>,
     /// The shapes in which it moves, where these are not those of all its nodes.
     pub(crate) basis: Option<Arc<ModalBasis>>,
-    /// How far its supports are from where the scene has them, x and y; nothing where they don't move.
+    /// How far its supports are from where the scene has them, x and y; nothing where they don't
+    /// move.
     pub(crate) displaced: Vec<f64>,
 }
 

@@ -1,4 +1,5 @@
-//! What building a model refuses, told as a finding about the scene: which key, what it says, what would be right.
+//! What building a model refuses, told as a finding about the scene: which key, what it says, what
+//! would be right.
 
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;

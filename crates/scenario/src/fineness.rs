@@ -16,13 +16,15 @@ const STEPS_A_SWING: f64 = 10.0;
 /// worse than any other.)
 const BEYOND_THE_ENDS: f64 = 0.05;
 
-/// Steps that a displacement should take from one place to another, or its velocity shows in none of them: a pulse as long as half a swing.
+/// Steps that a displacement should take from one place to another, or its velocity shows in none
+/// of them: a pulse as long as half a swing.
 const STEPS_A_RISE: f64 = 0.5 * STEPS_A_SWING;
 
 /// A displacement that takes this part of a step is not meant to be resolved.
 const A_JUMP: f64 = 0.01;
 
-/// Of the largest velocity of supports, the part from which on a beam that starts with them is told of.
+/// Of the largest velocity of supports, the part from which on a beam that starts with them is told
+/// of.
 const STARTS_FAST: f64 = 0.01;
 
 /// A block that turns by more than this in a step, rad, is no longer followed.
@@ -222,7 +224,8 @@ fn turns(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
     spins.chain(scene.motions().map(driven)).flatten().take(LISTED).collect()
 }
 
-/// Displacements that go faster from one place to another than steps can show: what a contact feels is their velocity.
+/// Displacements that go faster from one place to another than steps can show: what a contact feels
+/// is their velocity.
 fn rises(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
     let step = scene.time.step;
     let of = |(path, motion): (String, &MotionScene)| {
@@ -253,7 +256,8 @@ fn rises(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
     scene.motions().filter_map(of).take(LISTED).collect()
 }
 
-/// The time between two rows, shorter than a step, whose slope is the farthest from the mean ones of the steps around, if it is far from them.
+/// The time between two rows, shorter than a step, whose slope is the farthest from the mean ones
+/// of the steps around, if it is far from them.
 fn fastest_rise(table: &Table, scene: &Scene) -> Option<f64> {
     let (step, last) = (scene.time.step, scene.time.steps() as f64);
     let rows = || table.rows().zip(table.rows().skip(1));

@@ -1,17 +1,20 @@
 //! What a mesh, or modes, leave out of a beam's flexibility where something presses on it.
 //!
-//! A block that rocks feels its beam through both feet: by how much they sink together, and by how much one sinks more than the other. Few modes, or
-//! an element as long as the block is wide, have the first and little of the second, and the motion is another one with every step.
-//! A load makes the beam sag everywhere, so what lacks is the largest error of that sag, relative to the largest that the load makes anywhere.
-//! Measured on the paper's scene (`docs/resolution.md`): what lacks 0.71, 0.14, 0.08, 0.04 of it (1, 3, 2, 5 elements) is off by 60, 13, 2, 1 % however
-//! fine the step.
+//! A block that rocks feels its beam through both feet: by how much they sink together, and by how
+//! much one sinks more than the other. Few modes, or an element as long as the block is wide, have
+//! the first and little of the second, and the motion is another one with every step. A load makes
+//! the beam sag everywhere, so what lacks is the largest error of that sag, relative to the largest
+//! that the load makes anywhere. Measured on the paper's scene (`docs/resolution.md`): what lacks
+//! 0.71, 0.14, 0.08, 0.04 of it (1, 3, 2, 5 elements) is off by 60, 13, 2, 1 % however fine the
+//! step.
 
 use crate::scene::{BeamScene, BlockScene, Placement, Scene, Support};
 use crate::stability;
 use teeter_beam::{Beam, BeamSpec, MatrixWeights, ShapeAt};
 
-/// A part of the flexibility that lacks, from which on motions are likely off by more than 10 %: between the 13.3 % of four modes (off by 1 to 2 %) and
-/// the 14.1 % of three elements (off by 13 %).
+/// A part of the flexibility that lacks, from which on motions are likely off by more than 10 %:
+/// between the 13.3 % of four modes (off by 1 to 2 %) and the 14.1 % of three elements (off by 13
+/// %).
 pub(crate) const LACKING: f64 = 0.135;
 
 /// A mesh or a basis that lacks no more than this is advised in place of one that lacks too much.
@@ -20,7 +23,8 @@ const ENOUGH: f64 = 0.03;
 /// Places along the span at which a load that moves, or one somewhere, is taken.
 const PLACES: usize = 16;
 
-/// Elements that stand for the exact beam, at least; nodes at the feet make them exact in statics there.
+/// Elements that stand for the exact beam, at least; nodes at the feet make them exact in statics
+/// there.
 const FINE: usize = 48;
 
 /// Most elements that are tried for advice.
@@ -49,7 +53,8 @@ struct Press {
 
 #[derive(Clone, Copy)]
 enum How {
-    /// With both feet of a block that rocks, or with its only one on the beam: as much with either as it comes.
+    /// With both feet of a block that rocks, or with its only one on the beam: as much with either
+    /// as it comes.
     Rocking,
     /// With both feet alike.
     Standing,

@@ -1,7 +1,8 @@
 //! The table of keys: what a scene may say.
 //!
-//! The columns are those of [`teeter_text::keys`]. Decoding, the defaults written out, the lists of allowed keys in
-//! messages and the addressing by `--set` all follow from [`TABLES`]; so do the program's JSON schema and reference page.
+//! The columns are those of [`teeter_text::keys`]. Decoding, the defaults written out, the lists of
+//! allowed keys in messages and the addressing by `--set` all follow from [`TABLES`]; so do the
+//! program's JSON schema and reference page.
 
 pub use crate::table::TABLES;
 pub use teeter_text::keys::{

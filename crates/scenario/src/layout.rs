@@ -21,7 +21,8 @@ pub struct BlockPlace {
     pub side: f64,
     /// From its mass centre to a corner, m.
     pub reach: f64,
-    /// A swing up to this angle, at which no corner is off its surface by more than counts as open, is none, rad.
+    /// A swing up to this angle, at which no corner is off its surface by more than counts as open,
+    /// is none, rad.
     pub still: f64,
     /// What carries it: its rocking is measured from there.
     pub carrier: Carrier,
@@ -34,11 +35,13 @@ pub struct BeamPlace {
     pub name: String,
     /// The beam.
     pub beam: Arc<Beam>,
-    /// The shapes in which it moves: its coordinates are theirs. `None`: its coordinates are its dofs.
+    /// The shapes in which it moves: its coordinates are theirs. `None`: its coordinates are its
+    /// dofs.
     pub basis: Option<Arc<ModalBasis>>,
     /// Its coordinates; its velocities have the same places.
     pub range: Range<usize>,
-    /// The displacements x and y of its supports, where they move; deflections are relative to them.
+    /// The displacements x and y of its supports, where they move; deflections are relative to
+    /// them.
     pub supports: Option<Range<usize>>,
     /// Places whose deflection is written, m from its left end.
     pub probes: Vec<f64>,
@@ -68,7 +71,8 @@ impl BeamPlace {
         places
     }
 
-    /// The quarters between two supports, their middles among them, m from its left end: none of its lower modes is 0 at all of them.
+    /// The quarters between two supports, their middles among them, m from its left end: none of
+    /// its lower modes is 0 at all of them.
     #[must_use]
     pub fn quarters(&self) -> Vec<f64> {
         let quarters = |[from, to]: [f64; 2]| [0.25, 0.5, 0.75].map(|part| from + part * (to - from));
@@ -83,7 +87,8 @@ impl BeamPlace {
         stops.windows(2).map(|stops| [stops[0], stops[1]]).collect()
     }
 
-    /// The deflection at a place of the beam for its own coordinates `q` (its rate for velocities); allocates nothing.
+    /// The deflection at a place of the beam for its own coordinates `q` (its rate for velocities);
+    /// allocates nothing.
     #[must_use]
     pub fn deflection(&self, at: &ShapeAt, q: &[f64]) -> Deflection {
         let Some(basis) = &self.basis else { return at.deflection(q) };
@@ -155,7 +160,8 @@ impl ContactPoint {
 }
 
 impl PairPlace {
-    /// The number of a contact's point among the pair's [points](Self::points); `None` for an identity that is not one of them.
+    /// The number of a contact's point among the pair's [points](Self::points); `None` for an
+    /// identity that is not one of them.
     #[must_use]
     pub fn point(&self, id: ContactId) -> Option<usize> {
         let number = if self.of_shapes {

@@ -1,8 +1,9 @@
 //! Scene files of teeter: TOML with units, read against one table of keys.
 //!
-//! [`decode::parse`] takes the text of a scene file and returns a [`document::Document`]: every value by its path, in SI units, with
-//! the defaults filled in, or all that is wrong as [`diagnostic::Diagnostics`] that point into the file. What a scene
-//! may say stands in one place, [`keys::TABLES`]. [`resolve::resolve`] makes it a [`scene::Scene`], and
+//! [`decode::parse`] takes the text of a scene file and returns a [`document::Document`]: every
+//! value by its path, in SI units, with the defaults filled in, or all that is wrong as
+//! [`diagnostic::Diagnostics`] that point into the file. What a scene may say stands in one place,
+//! [`keys::TABLES`]. [`resolve::resolve`] makes it a [`scene::Scene`], and
 //! [`simulation::Simulation`] a model with its start, ready to run in memory.
 //!
 //! ```
@@ -75,8 +76,9 @@ pub use placement::{Departure, PlacementError};
 pub use required::{Extent, Limits, Removed, Required};
 pub use settling::{ContactForce, StaticStart};
 
-/// Reads a scene: text, keys, units, references. `file` is its name in messages, `stem` its title if it has none,
-/// `sets` are overrides by path. A scene that names other files is refused: see [`load_with`].
+/// Reads a scene: text, keys, units, references. `file` is its name in messages, `stem` its title
+/// if it has none, `sets` are overrides by path. A scene that names other files is refused: see
+/// [`load_with`].
 ///
 /// # Errors
 /// All that is wrong with it, at once.

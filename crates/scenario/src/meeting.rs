@@ -1,11 +1,13 @@
-//! Bodies that meet where the model has no contact: until it has contact of whole shapes, this is told and not prevented.
+//! Bodies that meet where the model has no contact: until it has contact of whole shapes, this is
+//! told and not prevented.
 
 use crate::overlap::{Box2, Outline, each_overlap};
 use crate::scene::{Scene, Support};
 use crate::simulation::Layout;
 use std::collections::BTreeSet;
 
-/// Two bodies, by their numbers in the scene, that are inside each other where nothing keeps them apart.
+/// Two bodies, by their numbers in the scene, that are inside each other where nothing keeps them
+/// apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Meeting {
@@ -15,13 +17,15 @@ pub enum Meeting {
     Ground(usize),
     /// A block, and a beam that no contact joins it to.
     Beam(usize, usize),
-    /// A block, and a beam that it touches with its corners only: the beam is inside the block between them.
+    /// A block, and a beam that it touches with its corners only: the beam is inside the block
+    /// between them.
     BetweenCorners(usize, usize),
     /// A block with corners past the end of a beam, below its surface.
     PastEnd(usize, usize),
 }
 
-/// Overlap up to this part of a block's shorter side is rounding and drift of corners, and no meeting.
+/// Overlap up to this part of a block's shorter side is rounding and drift of corners, and no
+/// meeting.
 const MEETS: f64 = 3e-3;
 
 /// Pairs of neighbouring blocks looked at; past it a heap is judged by what was found.

@@ -1,7 +1,8 @@
-//! What a mesh makes of its beam: numbers of the model, beside those of the beam that it stands for.
+//! What a mesh makes of its beam: numbers of the model, beside those of the beam that it stands
+//! for.
 //!
-//! With few elements the two part: one element between pins has 11 % more than the first frequency, and sags by 4/5 of what it should
-//! under an even load.
+//! With few elements the two part: one element between pins has 11 % more than the first frequency,
+//! and sags by 4/5 of what it should under an even load.
 
 use crate::placement::weight_of;
 use crate::scene::{Reduction, Scene, Support};
@@ -13,7 +14,8 @@ use teeter_beam::{Beam, BeamSpec, ModalBasis};
 pub struct OfMesh {
     /// That of the model.
     pub model: f64,
-    /// That of the beam, in closed form or of a mesh eight times as fine; `None` where it is not known.
+    /// That of the beam, in closed form or of a mesh eight times as fine; `None` where it is not
+    /// known.
     pub beam: Option<f64>,
 }
 
@@ -37,7 +39,8 @@ impl OfMesh {
 /// How much finer the mesh is that stands for the beam itself: errors of order n⁻⁴ fall to 1/4096.
 const FINER: usize = 8;
 
-/// Meshes with more elements are not refined: their errors don't show, and a check should not take longer than it must.
+/// Meshes with more elements are not refined: their errors don't show, and a check should not take
+/// longer than it must.
 const COARSE: usize = 100;
 
 /// A mesh with each element divided into eight; `None` where it is fine already.
@@ -61,7 +64,8 @@ fn mesh_frequency(beam: &Beam) -> Option<f64> {
     modes.circular_frequencies().get(modes.rigid()).copied()
 }
 
-/// The first elastic frequency of a beam as modelled, Hz, and its own, and whether that is of the continuous beam: else it is one of a finer mesh.
+/// The first elastic frequency of a beam as modelled, Hz, and its own, and whether that is of the
+/// continuous beam: else it is one of a finer mesh.
 pub(crate) fn first_frequency(beam: &Beam, basis: Option<&ModalBasis>) -> Option<(OfMesh, bool)> {
     let spec = beam.spec();
     let exact = spec.circular_frequency(1).ok();
@@ -75,8 +79,9 @@ pub(crate) fn first_frequency(beam: &Beam, basis: Option<&ModalBasis>) -> Option
     Some((OfMesh { model: model? / TAU, beam: exact.or_else(fine).map(|omega| omega / TAU) }, exact.is_some()))
 }
 
-/// The largest static deflection (m) of a beam of the scene under its own weight, where it has any, and that of the blocks that stand on
-/// it, anywhere along it; `None` where neither is there, or where it has no equilibrium.
+/// The largest static deflection (m) of a beam of the scene under its own weight, where it has any,
+/// and that of the blocks that stand on it, anywhere along it; `None` where neither is there, or
+/// where it has no equilibrium.
 pub(crate) fn sag(scene: &Scene, number: usize) -> Option<OfMesh> {
     let beam = &scene.beams[number];
     let mut standing =

@@ -53,18 +53,20 @@ pub struct BeamOutlook {
     pub first_frequency: Option<OfMesh>,
     /// Whether the latter is that of the continuous beam; else it is of a finer mesh.
     pub frequency_is_exact: bool,
-    /// Circular frequency of the highest mode of the mesh times the step: over 1, the mode is not resolved in time (the scheme is
-    /// stable all the same for θ ≥ ½).
+    /// Circular frequency of the highest mode of the mesh times the step: over 1, the mode is not
+    /// resolved in time (the scheme is stable all the same for θ ≥ ½).
     pub highest_frequency_step: Option<f64>,
     /// Correct decimal digits of a solve with the matrix of a step, estimated.
     pub digits: Option<f64>,
     /// Span, m.
     pub span: f64,
-    /// Largest static deflection under the blocks' weight and its own, where that acts, m: of the model, and without the error of its mesh.
+    /// Largest static deflection under the blocks' weight and its own, where that acts, m: of the
+    /// model, and without the error of its mesh.
     pub sag: Option<OfMesh>,
     /// Whether its own weight acts.
     pub self_weight: bool,
-    /// Bending moment at which its own section (not that of a segment) begins to yield, N m, where that is known.
+    /// Bending moment at which its own section (not that of a segment) begins to yield, N m, where
+    /// that is known.
     pub yield_moment: Option<f64>,
 }
 
@@ -77,7 +79,8 @@ pub struct ShapesOutlook {
     pub corrections: usize,
     /// Where its flexibility counts, m from the left end.
     pub region: [f64; 2],
-    /// Largest relative error of its static flexibility there; `None` where there are no digits to tell.
+    /// Largest relative error of its static flexibility there; `None` where there are no digits to
+    /// tell.
     pub error: Option<f64>,
 }
 
@@ -96,7 +99,8 @@ pub struct Outlook {
     pub seconds: f64,
     /// What its tables hold; an estimate.
     pub volume: Volume,
-    /// First frequencies of blocks and beams together about a static start in which all blocks stand flat, Hz.
+    /// First frequencies of blocks and beams together about a static start in which all blocks
+    /// stand flat, Hz.
     pub coupled_frequencies: Vec<f64>,
     /// What the model leaves out, and why.
     pub left_out: Vec<&'static str>,
@@ -193,7 +197,8 @@ pub const FEW_DIGITS: f64 = teeter_beam::Digits::FEW;
 /// How many frequencies of the whole are told.
 const COUPLED: usize = 3;
 
-/// The frequencies of small vibrations about a static start, Hz; none where a block is held tilted, and so doesn't rest.
+/// The frequencies of small vibrations about a static start, Hz; none where a block is held tilted,
+/// and so doesn't rest.
 fn coupled_frequencies(scene: &Scene, simulation: &Simulation) -> Vec<f64> {
     let tilted = |block: &BlockScene| !matches!(block.placement, Placement::On { tilt, .. } if tilt == 0.0);
     let Some(start) =

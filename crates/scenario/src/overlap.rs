@@ -130,7 +130,8 @@ fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
 /// Pairs that are looked at; past it a heap of blocks is judged by what was found.
 const MOST_PAIRS: usize = 1_000_000;
 
-/// Hands all that overlap by more than both allow, m, to `each`, as far as `most` pairs of neighbours along x tell; `order` is memory.
+/// Hands all that overlap by more than both allow, m, to `each`, as far as `most` pairs of
+/// neighbours along x tell; `order` is memory.
 pub(crate) fn each_overlap(
     boxes: &[Box2],
     allowed: impl Fn(usize) -> f64,
@@ -159,7 +160,8 @@ pub(crate) fn each_overlap(
     }
 }
 
-/// The two that overlap the most, of all that do by more than `tolerance` of the smaller one's larger side.
+/// The two that overlap the most, of all that do by more than `tolerance` of the smaller one's
+/// larger side.
 pub(crate) fn deepest_overlap(boxes: &[Box2], tolerance: f64) -> Option<Overlap> {
     let mut deepest: Option<Overlap> = None;
     each_overlap(

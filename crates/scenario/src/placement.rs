@@ -109,8 +109,8 @@ fn feet(block: &BlockScene, at: f64, tilt: f64) -> ([Foot; 2], usize) {
     }
 }
 
-/// Where and how hard (m, N) a block presses on what it stands on, its weight shared evenly between its feet; `None` for a block
-/// that stands on something else or nothing.
+/// Where and how hard (m, N) a block presses on what it stands on, its weight shared evenly between
+/// its feet; `None` for a block that stands on something else or nothing.
 pub(crate) fn weight_of(block: &BlockScene, on: Support, gravity: [f64; 2]) -> Option<Vec<(f64, f64)>> {
     let Placement::On { support, at, tilt, .. } = block.placement else { return None };
     let (feet, count) = feet(block, at, tilt);
@@ -138,8 +138,9 @@ fn surface_height(
     surface.surface(0, q, kinematics, &at).map(|point| point.place.y).ok_or_else(|| off_surface(block, foot))
 }
 
-/// The configurations (X, Y, φ) of all blocks at the start: on beams with these deflections, on ground whose line is given, on each
-/// other. Where supports start, a beam and what stands on it are placed as if they stood still.
+/// The configurations (X, Y, φ) of all blocks at the start: on beams with these deflections, on
+/// ground whose line is given, on each other. Where supports start, a beam and what stands on it
+/// are placed as if they stood still.
 pub(crate) fn starting_poses(
     scene: &Scene,
     beams: &[BeamModel],
@@ -208,7 +209,8 @@ impl Top {
         Self { line: [middle.x, middle.y, slope], x: [left.x, right.x] }
     }
 
-    /// Whether it is under some of the base of a block whose middle is at `at` (m) before it is tilted.
+    /// Whether it is under some of the base of a block whose middle is at `at` (m) before it is
+    /// tilted.
     fn is_under(&self, block: &BlockScene, at: f64) -> bool {
         let half = 0.5 * block.width * self.line[2].cos();
         at + half > self.x[0] && at - half < self.x[1]
@@ -223,7 +225,8 @@ pub(crate) enum Standing<'a> {
     Line([f64; 3]),
 }
 
-/// The configuration (X, Y, φ) of a block at the start: as placed by its mass centre, or on what it stands on.
+/// The configuration (X, Y, φ) of a block at the start: as placed by its mass centre, or on what it
+/// stands on.
 pub(crate) fn block_pose(scene: &Scene, block: &BlockScene, on: &Standing<'_>) -> Result<Vector3<f64>, PlacementError> {
     let (at, tilt, contact) = match block.placement {
         Placement::Free { position, angle } => return Ok(Vector3::new(position[0], position[1], angle)),
@@ -245,7 +248,8 @@ pub(crate) fn block_pose(scene: &Scene, block: &BlockScene, on: &Standing<'_>) -
     Ok(turned_about(block, &feet[0], Vector2::new(feet[0].x, height), tilt))
 }
 
-/// On a line the middle of the base is at x = `at`, the base lies along it, and the tilt is counted from it.
+/// On a line the middle of the base is at x = `at`, the base lies along it, and the tilt is counted
+/// from it.
 fn pose_on_line(block: &BlockScene, at: f64, tilt: f64, &[x, y, slope]: &[f64; 3]) -> Vector3<f64> {
     let line = Pose::new(&Vector3::new(at, y + (at - x) * slope.tan(), slope));
     let (feet, count) = feet(block, 0.0, tilt);

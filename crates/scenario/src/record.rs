@@ -17,7 +17,8 @@ pub const MOST_ROWS: usize = 2_000_000;
 /// Shortest time between two rows, s: that of the keys that are times.
 const SHORTEST: f64 = 1e-15;
 
-/// What the columns of a signal's table are. Its value is multiplied by an amplitude that has the unit.
+/// What the columns of a signal's table are. Its value is multiplied by an amplitude that has the
+/// unit.
 const SIGNAL: &[Dimension] = &[Dimension::TIME, Dimension::NONE];
 
 /// A table read: its columns, and the line of each row.
@@ -34,7 +35,8 @@ pub(crate) fn read(bytes: &[u8], start: f64) -> Result<Table, String> {
     let Columns { columns, lines } = columns(bytes, 2..=2, "two, t and value", SIGNAL)?;
     let [mut times, values] = <[Vec<f64>; 2]>::try_from(columns).unwrap_or_default();
     times.iter_mut().for_each(|t| *t += start);
-    // Shorter ones are no time that a key would take, and rates over them no number that can be computed with.
+    // Shorter ones are no time that a key would take, and rates over them no number that can be
+    // computed with.
     if let Some(row) = times.windows(2).position(|t| t[1] > t[0] && t[1] - t[0] < SHORTEST) {
         let line = lines.get(row + 1).copied().unwrap_or_default();
         return Err(format!(
@@ -54,9 +56,10 @@ pub(crate) fn read(bytes: &[u8], start: f64) -> Result<Table, String> {
     })
 }
 
-/// Reads a table of numbers: separated by commas, as many columns in each row, a first row of words is a heading, lines that
-/// start with `#` are comments. `names` are the columns in words, for messages; `dimensions` what their numbers are, in SI units but where
-/// the heading gives another one, as `t [ms]`. Numbers are held to the limits of keys.
+/// Reads a table of numbers: separated by commas, as many columns in each row, a first row of words
+/// is a heading, lines that start with `#` are comments. `names` are the columns in words, for
+/// messages; `dimensions` what their numbers are, in SI units but where the heading gives another
+/// one, as `t [ms]`. Numbers are held to the limits of keys.
 ///
 /// # Errors
 /// What is wrong, and in which line.
@@ -140,7 +143,8 @@ pub(crate) fn columns(
     Ok(Columns { columns, lines })
 }
 
-/// Counts lines. (The reader's own count stands at the end of the row before: ahead of blank lines and comments.)
+/// Counts lines. (The reader's own count stands at the end of the row before: ahead of blank lines
+/// and comments.)
 struct Count<'a> {
     bytes: &'a [u8],
     /// Up to here the lines are counted.
@@ -149,7 +153,8 @@ struct Count<'a> {
 }
 
 impl Count<'_> {
-    /// The line of the row that the reader found from a byte on, which is not before that of the last call.
+    /// The line of the row that the reader found from a byte on, which is not before that of the
+    /// last call.
     fn line_of(&mut self, byte: u64) -> u64 {
         let byte = usize::try_from(byte).unwrap_or(usize::MAX);
         let mut in_comment = false;

@@ -1,9 +1,10 @@
-//! What a scene can't need, found and left out of its model: points that never touch, beams that never move
-//! (`docs/required.md` has the proofs).
+//! What a scene can't need, found and left out of its model: points that never touch, beams that
+//! never move (`docs/required.md` has the proofs).
 //!
-//! A set of removals is found that holds together: were one of them wrong, there would be a first step in which that shows, and up to that
-//! step everything moved as the reasons for it say. So each reason may rest on all the others. The search starts with every pair removed but
-//! those of blocks with what they stand on, and takes back what can't be shown until nothing changes.
+//! A set of removals is found that holds together: were one of them wrong, there would be a first
+//! step in which that shows, and up to that step everything moved as the reasons for it say. So
+//! each reason may rest on all the others. The search starts with every pair removed but those of
+//! blocks with what they stand on, and takes back what can't be shown until nothing changes.
 
 mod at_rest;
 mod barrier;
@@ -59,13 +60,15 @@ pub struct Required {
     pub removed: Vec<Removed>,
     /// What the run has to keep for the removals to hold; `None` where they hold whatever it does.
     pub limits: Option<Limits>,
-    /// Of each contact of the scene, how many of its block's corners are looked at, the bottom ones first.
+    /// Of each contact of the scene, how many of its block's corners are looked at, the bottom ones
+    /// first.
     points: Vec<usize>,
     /// Of each beam, the energy that it rests with; `None` for those that move.
     at_rest: Vec<Option<Energy>>,
 }
 
-/// What a removal by energy rests on, beside the scene: a scheme that doesn't make energy, and contacts that don't sink.
+/// What a removal by energy rests on, beside the scene: a scheme that doesn't make energy, and
+/// contacts that don't sink.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
     /// Most kinetic and potential energy of the model, J, counted as in the ledger.
@@ -78,7 +81,8 @@ pub struct Limits {
 const FEET: usize = 2;
 
 impl Limits {
-    /// Whether the run that led to this state has kept them so far, as far as its last step and its tally tell.
+    /// Whether the run that led to this state has kept them so far, as far as its last step and its
+    /// tally tell.
     #[must_use]
     pub fn hold(&self, state: &State) -> bool {
         state.ledger.current.total() <= self.energy && state.tally.max_penetration <= self.penetration

@@ -1,4 +1,5 @@
-//! From a decoded document to a resolved scene: references, choices that exclude each other, numbers that must fit.
+//! From a decoded document to a resolved scene: references, choices that exclude each other,
+//! numbers that must fit.
 
 mod beam_output;
 mod beams;
@@ -36,15 +37,18 @@ pub struct Resolved {
     pub document: Document,
     /// What looks wrong but can be run.
     pub warnings: Vec<Diagnostic>,
-    /// What looks wrong beforehand of what a run measures and says by itself: for who doesn't run it.
+    /// What looks wrong beforehand of what a run measures and says by itself: for who doesn't run
+    /// it.
     pub foreseen: Vec<Diagnostic>,
     /// What is worth knowing, with nothing wrong.
     pub notes: Vec<Diagnostic>,
-    /// The files that the scene names, by the path in the scene, with their bytes as they were read.
+    /// The files that the scene names, by the path in the scene, with their bytes as they were
+    /// read.
     pub files: Vec<(String, Vec<u8>)>,
 }
 
-/// Reads a file that a scene names, by the path in the scene; or says why it can't be read, in words that end an error message.
+/// Reads a file that a scene names, by the path in the scene; or says why it can't be read, in
+/// words that end an error message.
 pub type ReadFile<'a> = dyn FnMut(&str) -> Result<Vec<u8>, String> + 'a;
 
 /// Resolves a document; `stem` is the title of a scene that has none.
@@ -68,7 +72,8 @@ pub fn resolve(mut document: Document, stem: &str, read: &mut ReadFile<'_>) -> R
                     errors.push(document.error(path, error.to_string(), "give the key in the scene"));
                 }
             }
-            // Whoever runs it again has the scheme that was chosen, whatever is written out beside it.
+            // Whoever runs it again has the scheme that was chosen, whatever is written out beside
+            // it.
             if document.text("time.scheme") != Some(scene.time.scheme.word())
                 && let Err(error) = document.set("time.scheme", Value::Text(scene.time.scheme.word().to_owned()))
             {
@@ -92,7 +97,8 @@ pub fn resolve(mut document: Document, stem: &str, read: &mut ReadFile<'_>) -> R
     Err(diagnostics)
 }
 
-/// What is wrong over several keys in a document some of whose values were refused already: of those nothing is said again.
+/// What is wrong over several keys in a document some of whose values were refused already: of
+/// those nothing is said again.
 pub(crate) fn mistakes(document: &Document, read: &mut ReadFile<'_>) -> Vec<Diagnostic> {
     let mut resolver = Resolver::new(document, true, read);
     let _ = resolver.scene("");
@@ -166,8 +172,8 @@ impl<'a, 'f> Resolver<'a, 'f> {
         self.errors.push(self.doc.error(path, rule, remedy));
     }
 
-    /// A value that the decoder guarantees unless it has refused it; its absence elsewhere would be a mistake of the table
-    /// of keys, and is said as such.
+    /// A value that the decoder guarantees unless it has refused it; its absence elsewhere would be
+    /// a mistake of the table of keys, and is said as such.
     fn need<T>(&mut self, path: &str, value: Option<T>) -> Option<T> {
         if value.is_none() && !self.partial {
             self.error(path, "missing key", "add it");
@@ -340,7 +346,8 @@ impl<'a, 'f> Resolver<'a, 'f> {
         }
     }
 
-    /// Refuses more contacts than whose dense operator memory can be asked for: a run would end in the middle, without a word.
+    /// Refuses more contacts than whose dense operator memory can be asked for: a run would end in
+    /// the middle, without a word.
     fn contacts_fit_memory(&mut self, contacts: &[Option<ContactScene>]) {
         // Of blocks in a plane few touch each other at a time.
         let between = contacts.iter().flatten().filter(|contact| contact.other_block().is_some()).count();

@@ -1,16 +1,18 @@
 //! What a step does to a block that is let go tilted, before anything is run.
 //!
-//! Each impact is caught up to a step late, so the foot is off by up to h b |ω|, b the block's width. Added up over the impacts, carried on by the swings after them and
-//! relative to the swing b Δφ this is what a run measures as `under-resolved` (`docs/resolution.md`). Housner's block (1963, doi 10.1785/BSSA0530020403) says
-//! beforehand how many impacts there are and how fast.
+//! Each impact is caught up to a step late, so the foot is off by up to h b |ω|, b the block's
+//! width. Added up over the impacts, carried on by the swings after them and relative to the swing
+//! b Δφ this is what a run measures as `under-resolved` (`docs/resolution.md`). Housner's block
+//! (1963, doi 10.1785/BSSA0530020403) says beforehand how many impacts there are and how fast.
 
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;
 use crate::scene::{ContactScene, Placement, Scene, Support};
 use teeter_integrator::ImpactLaw;
 
-/// A sum above this part of the swing: on a beam a run's own is larger than on rigid ground, and a block that overturns has few impacts, so only what is
-/// twice as much as a run may show is warned of before it.
+/// A sum above this part of the swing: on a beam a run's own is larger than on rigid ground, and a
+/// block that overturns has few impacts, so only what is twice as much as a run may show is warned
+/// of before it.
 const COARSE: f64 = 0.02;
 
 /// Impacts that are counted at the most.
@@ -43,7 +45,8 @@ pub(crate) fn coarse(scene: &Scene, document: &Document) -> Option<Diagnostic> {
     Some(document.error("time.step", rule, remedy).as_warning())
 }
 
-/// Whether a block does as Housner's does: nothing but its weight moves it, on level ground or a beam that doesn't let it slide or bounce.
+/// Whether a block does as Housner's does: nothing but its weight moves it, on level ground or a
+/// beam that doesn't let it slide or bounce.
 fn is_housners(scene: &Scene, contact: &ContactScene) -> bool {
     let block = &scene.blocks[contact.block];
     let inclined =
@@ -56,7 +59,8 @@ fn is_housners(scene: &Scene, contact: &ContactScene) -> bool {
     level && !(bounces || slides || scene.is_driven(contact))
 }
 
-/// The number of impacts of a block let go tilted, and how late they are, as a part of its swing: what a run measures as `under-resolved`.
+/// The number of impacts of a block let go tilted, and how late they are, as a part of its swing:
+/// what a run measures as `under-resolved`.
 fn late(scene: &Scene, contact: &ContactScene) -> Option<(u64, f64)> {
     let block = &scene.blocks[contact.block];
     let Placement::On { tilt, .. } = block.placement else { return None };

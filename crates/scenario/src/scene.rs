@@ -63,7 +63,8 @@ pub struct Time {
 }
 
 impl Scene {
-    /// The motions of all that can be moved as prescribed, whether it is or not, with their tables: blocks, beams' supports, ground.
+    /// The motions of all that can be moved as prescribed, whether it is or not, with their tables:
+    /// blocks, beams' supports, ground.
     pub fn motions(&self) -> impl Iterator<Item = (String, &MotionScene)> {
         let blocks = self.blocks.iter().map(|block| (format!("block.{}.motion", block.name), &block.motion));
         let beams = self.beams.iter().map(|beam| (format!("beam.{}.motion", beam.name), &beam.motion));
@@ -81,7 +82,8 @@ impl Scene {
         }
     }
 
-    /// Whether anything but weight moves the block of a contact: its own start or motion, a force on it, or what carries it.
+    /// Whether anything but weight moves the block of a contact: its own start or motion, a force
+    /// on it, or what carries it.
     pub(crate) fn is_driven(&self, contact: &ContactScene) -> bool {
         let block = &self.blocks[contact.block];
         let carried = match contact.surface {
@@ -114,7 +116,8 @@ impl Time {
     #[must_use]
     pub fn steps(&self) -> u64 {
         let steps = self.end / self.step;
-        // Up to rounding of the quotient a whole number of steps is one; of very many, a thousandth of a step is more than that.
+        // Up to rounding of the quotient a whole number of steps is one; of very many, a thousandth
+        // of a step is more than that.
         let whole = steps.round();
         let rounding = (1e-9 * whole).min(1e-3);
         (if (steps - whole).abs() <= rounding { whole } else { steps.ceil() }) as u64
@@ -195,8 +198,8 @@ impl SchemeName {
         }
     }
 
-    /// Whether contact with a beam is a force that holds the gap closed, so that there is nothing that
-    /// could be given back.
+    /// Whether contact with a beam is a force that holds the gap closed, so that there is nothing
+    /// that could be given back.
     #[must_use]
     pub fn holds_beams(self) -> bool {
         self == Self::Resolved
@@ -304,7 +307,8 @@ pub struct BlockScene {
     pub width: f64,
     /// Height H, m; of a polygon the smallest of its extents across its sides.
     pub height: f64,
-    /// Corners about its mass centre, counter-clockwise, m, of a block that is no rectangle of these sides.
+    /// Corners about its mass centre, counter-clockwise, m, of a block that is no rectangle of
+    /// these sides.
     pub polygon: Option<Arc<[Vector2<f64>]>>,
     /// Depth out of the plane, m.
     pub depth: f64,
@@ -334,7 +338,8 @@ pub enum Placement {
     On {
         /// What it stands on.
         support: Support,
-        /// x of the middle of its base before it is tilted, m; of a stacked one from the middle of the side below, along it.
+        /// x of the middle of its base before it is tilted, m; of a stacked one from the middle of
+        /// the side below, along it.
         at: f64,
         /// Whether it was put on the block below by `stacked`.
         stacked: bool,
@@ -436,7 +441,8 @@ impl BlockScene {
         }
     }
 
-    /// The corners about its mass centre, counter-clockwise, m; those of a rectangle from the bottom left.
+    /// The corners about its mass centre, counter-clockwise, m; those of a rectangle from the
+    /// bottom left.
     #[must_use]
     pub fn corners(&self) -> Vec<Vector2<f64>> {
         let (x, y) = (0.5 * self.width, 0.5 * self.height);
@@ -452,7 +458,8 @@ impl BlockScene {
         self.polygon.as_ref().map_or(Rectangle::CORNER_NAMES.len(), |corners| corners.len())
     }
 
-    /// What a corner is called in tables: bottom-left and so on, or corner-1 and so on of a polygon.
+    /// What a corner is called in tables: bottom-left and so on, or corner-1 and so on of a
+    /// polygon.
     #[must_use]
     pub fn corner_name(&self, corner: usize) -> String {
         match &self.polygon {

@@ -1,9 +1,10 @@
 //! `start = "static"`: beams in equilibrium under what stands on them (`docs/theory.md` §8).
 //!
-//! The equilibrium is that of a model of its own: the beams that ask for it, the blocks that stand on them, and the ground.
-//! Blocks are put on the straight beam; then weight, and the loads and forces of t = 0, act. A flat block follows the beam,
-//! held by friction where there is any. A beam in modes settles in its modes: it is at rest in the model that runs. A tilted one is held as placed by a couple that is let go at t = 0: its angle stays,
-//! and the place of its foot.
+//! The equilibrium is that of a model of its own: the beams that ask for it, the blocks that stand
+//! on them, and the ground. Blocks are put on the straight beam; then weight, and the loads and
+//! forces of t = 0, act. A flat block follows the beam, held by friction where there is any. A beam
+//! in modes settles in its modes: it is at rest in the model that runs. A tilted one is held as
+//! placed by a couple that is let go at t = 0: its angle stays, and the place of its foot.
 
 use crate::driven::{self, BeamModel};
 use crate::placement::{Departure, PlacementError, below};
@@ -31,7 +32,8 @@ pub(crate) struct Start<'a> {
     pub(crate) deflections: Vec<Vec<f64>>,
     /// The coordinates of ground that moves.
     pub(crate) ground: &'a [f64],
-    /// The beams that are in equilibrium, with the forces of contacts on them; none before settling.
+    /// The beams that are in equilibrium, with the forces of contacts on them; none before
+    /// settling.
     pub(crate) pressed: Vec<(usize, Vec<SpanLoad>)>,
 }
 
@@ -54,7 +56,8 @@ const RETURNS: usize = 20;
 const THERE: f64 = 1e-15;
 
 impl Start<'_> {
-    /// Moves beams that start static, and the blocks on them, to their equilibrium; `None` where no beam does.
+    /// Moves beams that start static, and the blocks on them, to their equilibrium; `None` where no
+    /// beam does.
     ///
     /// # Errors
     /// If there is none, or it is not found.
@@ -131,8 +134,10 @@ pub struct StaticStart {
 pub struct ContactForce {
     /// The contact, by its number in the scene.
     pub contact: usize,
-    /// The point of the pair that touches, as in the identity of its contact: of a pair with a surface the corner of the block, as in
-    /// [`Rectangle::CORNER_NAMES`](teeter_rigid::Rectangle::CORNER_NAMES) or of a polygon counter-clockwise.
+    /// The point of the pair that touches, as in the identity of its contact: of a pair with a
+    /// surface the corner of the block, as in
+    /// [`Rectangle::CORNER_NAMES`](teeter_rigid::Rectangle::CORNER_NAMES) or of a polygon
+    /// counter-clockwise.
     pub point: u32,
     /// The force on the block along the contact's normal and tangent, N.
     pub force: [f64; 2],
@@ -218,7 +223,8 @@ impl TakingPart {
             for force in scene.forces.iter().filter(|force| force.block == k) {
                 blocks = blocks.with_load(driven::block_load(force, number))?;
             }
-            // What is prescribed stays where it is put, but for the height: the block rests on the beam.
+            // What is prescribed stays where it is put, but for the height: the block rests on the
+            // beam.
             let [x, _, angle] = scene.blocks[k].motion.0.each_ref().map(Option::is_some);
             for (coordinate, stays) in
                 [(BlockCoordinate::X, x), (BlockCoordinate::Turn, angle || foot_of(scene, k).is_some())]

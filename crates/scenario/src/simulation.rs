@@ -117,17 +117,19 @@ impl std::fmt::Debug for Simulation {
 }
 
 impl Simulation {
-    /// Makes the model of a scene, and its start. What the scene can't need from there on is left out of the model (`docs/required.md`):
-    /// who starts from another state takes [`Simulation::with_extent`] and the full model.
+    /// Makes the model of a scene, and its start. What the scene can't need from there on is left
+    /// out of the model (`docs/required.md`): who starts from another state takes
+    /// [`Simulation::with_extent`] and the full model.
     ///
     /// # Errors
-    /// If a number doesn't make sense to a layer, a beam has no equilibrium, a corner starts inside a surface or a block inside
-    /// another.
+    /// If a number doesn't make sense to a layer, a beam has no equilibrium, a corner starts inside
+    /// a surface or a block inside another.
     pub fn new(scene: &Scene) -> Result<Self, BuildError> {
         Self::with_solver(scene, |solver| solver)
     }
 
-    /// As [`Simulation::new`]; `wrap` may put something around the scene's contact solver, such as one that watches it.
+    /// As [`Simulation::new`]; `wrap` may put something around the scene's contact solver, such as
+    /// one that watches it.
     ///
     /// # Errors
     /// As [`Simulation::new`].
@@ -233,7 +235,8 @@ impl Simulation {
         self.work.counts
     }
 
-    /// Velocities of the model that something moves: what supports hold, and beams at rest, have a place in the state only.
+    /// Velocities of the model that something moves: what supports hold, and beams at rest, have a
+    /// place in the state only.
     #[must_use]
     pub fn dofs(&self) -> usize {
         let held = |k: usize, place: &BeamPlace| match self.layout.required.rests(k) {
@@ -243,7 +246,8 @@ impl Simulation {
         self.model.size().v - self.layout.beams.iter().enumerate().map(|(k, place)| held(k, place)).sum::<usize>()
     }
 
-    /// Runs to the plan's end, showing every step to the observers. The state is left at the last step taken.
+    /// Runs to the plan's end, showing every step to the observers. The state is left at the last
+    /// step taken.
     ///
     /// # Errors
     /// If an observer fails.
@@ -252,7 +256,8 @@ impl Simulation {
         self.run_by(&plan, observers)
     }
 
-    /// As [`Simulation::run`], but to time `t` (s) in place of the plan's end: the last step is cut short where it would go past.
+    /// As [`Simulation::run`], but to time `t` (s) in place of the plan's end: the last step is cut
+    /// short where it would go past.
     ///
     /// # Errors
     /// If an observer fails.
@@ -305,8 +310,9 @@ impl Simulation {
         scheme.advance(model, state, f64::INFINITY, work)
     }
 
-    /// Says whether steps keep the account of energies; they do unless told otherwise. Without it they are faster, and
-    /// `state.ledger` and the penetration in `state.tally` know nothing of them.
+    /// Says whether steps keep the account of energies; they do unless told otherwise. Without it
+    /// they are faster, and `state.ledger` and the penetration in `state.tally` know nothing of
+    /// them.
     pub fn keep_account(&mut self, account: Account) {
         self.work.account = account;
     }
@@ -469,8 +475,8 @@ fn check_apart(scene: &Scene, q: &[f64]) -> Result<(), BuildError> {
     }
 }
 
-/// A corner may start below its surface by this part of its block's larger side, for the rounding of places given in
-/// decimals.
+/// A corner may start below its surface by this part of its block's larger side, for the rounding
+/// of places given in decimals.
 const START_TOLERANCE: f64 = 1e-9;
 
 /// Refuses a start with a corner inside a surface.

@@ -6,7 +6,8 @@
 //! λ² − (2 − 2θh²ω²/D) λ + 1 + (1 − 2θ)h²ω²/D = 0,        D = 1 + θ²h²ω²
 //! ```
 //!
-//! instead of by exp(iωh): with θ = ½ it comes late, with more it dies out besides. ρ = exp(iωh)/λ says by how much, a step.
+//! instead of by exp(iωh): with θ = ½ it comes late, with more it dies out besides. ρ = exp(iωh)/λ
+//! says by how much, a step.
 
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;
@@ -26,8 +27,8 @@ pub struct Swing {
 }
 
 impl Swing {
-    /// By Rayleigh's quotient of a shape, the beam's dofs; of the sag under a uniform load where the shape is none. `None` for a beam that can move
-    /// rigidly.
+    /// By Rayleigh's quotient of a shape, the beam's dofs; of the sag under a uniform load where
+    /// the shape is none. `None` for a beam that can move rigidly.
     #[must_use]
     pub fn of(beam: &Beam, shape: &[f64]) -> Option<Self> {
         let statics = MatrixWeights { mass: 0.0, damping: 0.0, stiffness: 1.0 };
@@ -104,11 +105,13 @@ pub(crate) fn coarse(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
     scene.beams.iter().filter_map(of).collect()
 }
 
-/// A step that leaves 2 % where one of `step` has `part` off: of second order with θ = ½, else of first.
+/// A step that leaves 2 % where one of `step` has `part` off: of second order with θ = ½, else of
+/// first.
 #[must_use]
 pub fn finer(step: f64, part: f64, theta: f64) -> f64 {
     const LEFT: f64 = 0.02;
-    // What is off altogether says only that it is: more than a hundredth of the step would be a guess.
+    // What is off altogether says only that it is: more than a hundredth of the step would be a
+    // guess.
     step * (LEFT / part.min(2.0)).powf(if theta == 0.5 { 0.5 } else { 1.0 })
 }
 

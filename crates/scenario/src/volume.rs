@@ -5,7 +5,8 @@ use crate::scene::{Scene, Support};
 /// Rows of a run without `output.every`: every step up to here, thinned evenly past that.
 const ROWS: f64 = 10_000.0;
 
-/// Characters of a number in a table, its comma included: what the scenarios' tables come to on the average.
+/// Characters of a number in a table, its comma included: what the scenarios' tables come to on the
+/// average.
 const BYTES_A_NUMBER: f64 = 16.0;
 
 /// What the tables of a run will hold.
@@ -18,7 +19,8 @@ pub struct Volume {
 }
 
 impl Volume {
-    /// An estimate from the scene, within a factor of two: each contact pair touches with one corner in every row.
+    /// An estimate from the scene, within a factor of two: each contact pair touches with one
+    /// corner in every row.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let steps = scene.time.steps() as f64;
@@ -34,8 +36,9 @@ impl Volume {
     }
 }
 
-/// Time of a step by what the scene has, measured in release builds on one core of a server (`benches/results`: 0.60 µs on
-/// rigid ground; 1.70, 2.28 and 3.54 µs on beams of 20, 40 and 80 dofs).
+/// Time of a step by what the scene has, measured in release builds on one core of a server
+/// (`benches/results`: 0.60 µs on rigid ground; 1.70, 2.28 and 3.54 µs on beams of 20, 40 and 80
+/// dofs).
 mod cost {
     /// A block in contact, µs.
     pub(super) const PAIR: f64 = 0.6;
@@ -45,8 +48,9 @@ mod cost {
     pub(super) const DOF: f64 = 0.031;
     /// A number written, µs.
     pub(super) const NUMBER: f64 = 0.1;
-    /// A pair of contacts of one dense operator, whether they feel each other or not, µs: its place is cleared, looked at for islands,
-    /// and looked at for coupling (3000 blocks on the ground, 36e6 of them: 0.7 s a step, when they were one).
+    /// A pair of contacts of one dense operator, whether they feel each other or not, µs: its place
+    /// is cleared, looked at for islands, and looked at for coupling (3000 blocks on the ground,
+    /// 36e6 of them: 0.7 s a step, when they were one).
     pub(super) const PAIR_OF_CONTACTS: f64 = 0.02;
 }
 
@@ -65,8 +69,9 @@ pub fn operator_bytes(contacts: usize) -> f64 {
     32.0 * (contacts as f64) * (contacts as f64)
 }
 
-/// Up to so many contacts the time of a step is known to a factor of three; of more, how many of them feel each other and how their solver fares
-/// decides, and an order of magnitude is all that is known.
+/// Up to so many contacts the time of a step is known to a factor of three; of more, how many of
+/// them feel each other and how their solver fares decides, and an order of magnitude is all that
+/// is known.
 const FEW_CONTACTS: usize = 8;
 
 /// The factor to which [`expected_seconds`] is good, in words.
@@ -79,8 +84,8 @@ pub fn accuracy_of_seconds(scene: &Scene) -> &'static str {
     }
 }
 
-/// Time that a run of `scene` takes, s: a rule of thumb, good to a factor of two or three on today's machines while few
-/// contacts close at once; `beam_dofs` are those of all beams together.
+/// Time that a run of `scene` takes, s: a rule of thumb, good to a factor of two or three on
+/// today's machines while few contacts close at once; `beam_dofs` are those of all beams together.
 #[must_use]
 pub fn expected_seconds(scene: &Scene, beam_dofs: usize) -> f64 {
     let bodies = scene.contacts.len().max(scene.blocks.len()) as f64;
@@ -88,7 +93,8 @@ pub fn expected_seconds(scene: &Scene, beam_dofs: usize) -> f64 {
     let on_beams = scene.contacts.iter().filter(|contact| matches!(contact.surface, Support::Beam(_))).count();
     // The contacts of blocks that stand apart on the ground are solved island by island.
     let contacts = 2.0 * on_beams as f64;
-    // A block's two contacts use columns of W that are there; those of many are solved for in each step, a substitution each.
+    // A block's two contacts use columns of W that are there; those of many are solved for in each
+    // step, a substitution each.
     let substitutions = if few { 0.0 } else { 2.0 * on_beams as f64 / scene.beams.len().max(1) as f64 };
     let step = cost::PAIR * bodies
         + cost::BEAM * scene.beams.len() as f64

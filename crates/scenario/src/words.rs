@@ -1,5 +1,6 @@
-//! Words of the scene that choose something: each list is written once, here, and both the table of keys and the decoding take it from here. A word
-//! that is added is a variant that is added, and every place that decides by it has to say what it means.
+//! Words of the scene that choose something: each list is written once, here, and both the table of
+//! keys and the decoding take it from here. A word that is added is a variant that is added, and
+//! every place that decides by it has to say what it means.
 
 use crate::scene::SchemeName;
 use teeter_integrator::{

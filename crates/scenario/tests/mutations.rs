@@ -1,6 +1,7 @@
 //! Scenes damaged at random never crash the reader or the making of a model, and are answered fast.
 //!
-//! The generator has a fixed seed: a failure comes again. `TEETER_MUTATIONS=100000` looks further than CI does.
+//! The generator has a fixed seed: a failure comes again. `TEETER_MUTATIONS=100000` looks further
+//! than CI does.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use cpu_time::ThreadTime;
@@ -13,7 +14,8 @@ use teeter_scenario::simulation::Simulation;
 /// Mutated scenes of each seed in CI.
 const FEW: usize = 300;
 
-/// For one scene, in an unoptimised build; a release build takes a tenth. Of the thread's own time, so that a busy machine is no failure.
+/// For one scene, in an unoptimised build; a release build takes a tenth. Of the thread's own time,
+/// so that a busy machine is no failure.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Marsaglia's xorshift.

@@ -1,26 +1,30 @@
 //! Acary and Cadoux's fixed point: the exact law from a sequence of cone programs.
 //!
-//! **Solves** the exact Coulomb law, 2D and 3D. With the shift s_i = μ_i‖u_T,i‖ held, the law is the optimality of `min ½ pᵀHp +
-//! (q + s)ᵀp` over the cones; Clarabel solves that, s is renewed from its velocities, and so on until s stands still (Acary,
-//! Cadoux, Lemaréchal and Malick 2011, doi 10.1002/zamm.201000073). Where that map has a fixed point the law has a
-//! solution: this is also how existence is proved.
+//! **Solves** the exact Coulomb law, 2D and 3D. With the shift s_i = μ_i‖u_T,i‖ held, the law is
+//! the optimality of `min ½ pᵀHp + (q + s)ᵀp` over the cones; Clarabel solves that, s is renewed
+//! from its velocities, and so on until s stands still (Acary, Cadoux, Lemaréchal and Malick 2011,
+//! doi 10.1002/zamm.201000073). Where that map has a fixed point the law has a solution: this is
+//! also how existence is proved.
 //!
 //! **Departures.**
 //! - The shift starts from that of the impulses given, not from 0.
-//! - The interior point floors at some 1e-8 in 3D, and the fixed point converges linearly (a factor of about 0.4 a program). So once
-//!   the residual is below 1e-5, or a program no longer halves it, another solver polishes from there
-//!   (ADMM where the crate has it, else Gauss–Seidel), and the fixed point goes on only if that fails.
-//! - With μ above 100 a contact that sticks has no shift, whatever slip the interior point leaves it: μ would make much of it.
+//! - The interior point floors at some 1e-8 in 3D, and the fixed point converges linearly (a factor
+//!   of about 0.4 a program). So once the residual is below 1e-5, or a program no longer halves it,
+//!   another solver polishes from there (ADMM where the crate has it, else Gauss–Seidel), and the
+//!   fixed point goes on only if that fails.
+//! - With μ above 100 a contact that sticks has no shift, whatever slip the interior point leaves
+//!   it: μ would make much of it.
 //! - A skew part of H lags like the shift.
 //!
-//! **Take it** where robustness counts more than time: each program is solved whatever the condition of H.
-//! **Cost**: that of a cone program (a KKT factorisation an interior-point iteration, 10 to 15 of them) times about
-//! ten. `iterations` counts programs and the polish's own. Clarabel is set up anew for each problem, and
-//! allocates in its solve: an exception to "kept over steps it allocates nothing".
-//! With its polish it takes spheres-in-a-box (256 contacts) to 1e-12 and Capsules-i103 (275) too, where no solver of Siconos
-//! gets within 10 s.
-//! **Fails**: with large μ the fixed point may cycle (μ = 0.9 of FrictionContactProblem00727, 367 contacts in 2D, stalls);
-//! then the polish decides. `stalled` says that neither helped.
+//! **Take it** where robustness counts more than time: each program is solved whatever the
+//! condition of H.
+//! **Cost**: that of a cone program (a KKT factorisation an interior-point iteration, 10 to 15 of
+//! them) times about ten. `iterations` counts programs and the polish's own. Clarabel is set up
+//! anew for each problem, and allocates in its solve: an exception to "kept over steps it allocates
+//! nothing". With its polish it takes spheres-in-a-box (256 contacts) to 1e-12 and Capsules-i103
+//! (275) too, where no solver of Siconos gets within 10 s.
+//! **Fails**: with large μ the fixed point may cycle (μ = 0.9 of FrictionContactProblem00727, 367
+//! contacts in 2D, stalls); then the polish decides. `stalled` says that neither helped.
 
 use crate::cone_program::ConeProgram;
 use crate::operator::{row_product, slip_shift};
@@ -38,7 +42,8 @@ type Polisher<const D: usize> = crate::Pgs<D>;
 const PROGRAMS: u32 = 60;
 /// The residual below which polishing is cheaper than another program.
 const CLOSE: f64 = 1e-5;
-/// A program that leaves more of the residual than this is a poor one; after so many of them in a row polishing is tried.
+/// A program that leaves more of the residual than this is a poor one; after so many of them in a
+/// row polishing is tried.
 const POOR: f64 = 0.5;
 /// See [`POOR`].
 const PATIENCE: u32 = 3;
@@ -82,7 +87,8 @@ impl<const D: usize> AcaryCadoux<D> {
         }
     }
 
-    /// Iterates another method from `p`, and takes what it finds if that is better. Returns the iterations.
+    /// Iterates another method from `p`, and takes what it finds if that is better. Returns the
+    /// iterations.
     fn polish(
         &mut self,
         problem: &ContactProblem<'_, D>,

@@ -1,38 +1,43 @@
 //! Alternating directions (ADMM) with an adaptive penalty and Anderson acceleration.
 //!
-//! **Solves** the exact Coulomb law, 2D and 3D. The impulses are split into x, which knows H, and z, which knows the law:
-//! with Σ = β diag(h_i), h_i the mean diagonal of contact i's block, and w the multiplier,
+//! **Solves** the exact Coulomb law, 2D and 3D. The impulses are split into x, which knows H, and
+//! z, which knows the law: with Σ = β diag(h_i), h_i the mean diagonal of contact i's block, and w
+//! the multiplier,
 //!
 //! ```text
 //! (H + Σ) x = Σ (z − w) − q,    v = α x + (1 − α) z + w,    z = C(v),    w = v − z        α = 1.6
 //! ```
 //!
 //! (Boyd et al. 2011, doi 10.1561/2200000016; for contact Acary, Brémond and Huber 2018, doi
-//! 10.1007/978-3-319-75972-2_10, and Siconos' `ADMM`.) C solves the law of each contact alone for a multiple of the identity:
-//! `z_N = max(v_N, 0)`, `z_T` onto the disk of radius `μ z_N`. At the fixed point `u = −Σ w`.
+//! 10.1007/978-3-319-75972-2_10, and Siconos' `ADMM`.) C solves the law of each contact alone for a
+//! multiple of the identity: `z_N = max(v_N, 0)`, `z_T` onto the disk of radius `μ z_N`. At the
+//! fixed point `u = −Σ w`.
 //!
 //! **Departures.**
-//! - C solves the exact law, where the papers project onto the cone and carry De Saxcé's shift along as data: nothing lags, and μ
-//!   doesn't enter the conditioning.
-//! - A penalty a contact: heavy and light bodies are balanced alike, and units of mass or speed cancel.
-//! - The step of x is solved for as a correction, `(S + Σ)(x − z) = −(H z + q + Σ w)`, with S the symmetric part of H: one
-//!   Cholesky factorisation serves asymmetric H too (its skew part lags by an iteration), and `H z + q` is what
-//!   the residual needs anyway.
-//! - β is balanced by the ratio of primal to dual residual over rounds of growing length, and only where it is off by more than 2:
-//!   each change is a factorisation.
-//! - The iteration `v → v + α (x − z)` is accelerated by Anderson's method (8 differences); a step that doubles the fixed point's
-//!   residual is taken back.
+//! - C solves the exact law, where the papers project onto the cone and carry De Saxcé's shift
+//!   along as data: nothing lags, and μ doesn't enter the conditioning.
+//! - A penalty a contact: heavy and light bodies are balanced alike, and units of mass or speed
+//!   cancel.
+//! - The step of x is solved for as a correction, `(S + Σ)(x − z) = −(H z + q + Σ w)`, with S the
+//!   symmetric part of H: one Cholesky factorisation serves asymmetric H too (its skew part lags by
+//!   an iteration), and `H z + q` is what the residual needs anyway.
+//! - β is balanced by the ratio of primal to dual residual over rounds of growing length, and only
+//!   where it is off by more than 2: each change is a factorisation.
+//! - The iteration `v → v + α (x − z)` is accelerated by Anderson's method (8 differences); a step
+//!   that doubles the fixed point's residual is taken back.
 //!
-//! **Take it** for hyperstatic problems (walls, towers, stacks) of up to some thousand contacts, and wherever more than
-//! 1e-4 is asked of a problem that projections solve slowly.
-//! **Cost**: one factorisation, then a few more (their number is [`Admm::factorisations`]); an iteration is a product with H
-//! and two triangular solves. The ordering and analysis are kept for equal patterns; contacts that don't feel each other
-//! fill nothing in. An operator given by its product is formed first.
-//! To 1e-12 OneObject-i1028 (23 contacts) takes 340 iterations, BoxesStack1 (52) 135, LMGC_100_PR_PerioBox (60) 66,
-//! KaplasTower (570) 30, Spheres-i099 (356) 72, Capsules-i100 (276) 810; Siconos' `ADMM` 4475, 2242, never, 17, 363, 70 054.
-//! **Fails**: RockPile (463 contacts, 0.1 % skew) stalls at 9e-4; a strongly skew H need not converge (that of
-//! LMGC_Global..46, 27 % skew, does); a block whose diagonal spans many powers of ten meets the judge's residual with its
-//! stiff direction solved only; packings with many contacts at the brink of sliding stall at about 1e-7.
+//! **Take it** for hyperstatic problems (walls, towers, stacks) of up to some thousand contacts,
+//! and wherever more than 1e-4 is asked of a problem that projections solve slowly.
+//! **Cost**: one factorisation, then a few more (their number is [`Admm::factorisations`]); an
+//! iteration is a product with H and two triangular solves. The ordering and analysis are kept for
+//! equal patterns; contacts that don't feel each other fill nothing in. An operator given by its
+//! product is formed first. To 1e-12 OneObject-i1028 (23 contacts) takes 340 iterations,
+//! BoxesStack1 (52) 135, LMGC_100_PR_PerioBox (60) 66, KaplasTower (570) 30, Spheres-i099 (356) 72,
+//! Capsules-i100 (276) 810; Siconos' `ADMM` 4475, 2242, never, 17, 363, 70 054.
+//! **Fails**: RockPile (463 contacts, 0.1 % skew) stalls at 9e-4; a strongly skew H need not
+//! converge (that of LMGC_Global..46, 27 % skew, does); a block whose diagonal spans many powers of
+//! ten meets the judge's residual with its stiff direction solved only; packings with many contacts
+//! at the brink of sliding stall at about 1e-7.
 
 use crate::anderson::Anderson;
 use crate::memory::reserve;
@@ -135,7 +140,8 @@ impl<const D: usize> ContactSolver<D> for Admm<D> {
         Law::Exact
     }
 
-    /// Makes room for the iteration; the factor's room depends on the pattern, and comes with the first problem of it.
+    /// Makes room for the iteration; the factor's room depends on the pattern, and comes with the
+    /// first problem of it.
     fn reserve(&mut self, contacts: usize, blocks: usize) {
         self.h.reserve(contacts, blocks);
         self.anderson.reserve(contacts);
@@ -169,7 +175,8 @@ impl<const D: usize> ContactSolver<D> for Admm<D> {
             }
             let size = size.sqrt().max(q_norm).max(f64::MIN_POSITIVE);
             let residual = natural_map(&self.z, &self.u, mu, rho) / size;
-            // Written so that a start that isn't a number is better than nothing, and nothing is better than it.
+            // Written so that a start that isn't a number is better than nothing, and nothing is
+            // better than it.
             if residual < best || (residual.is_finite() && !best.is_finite()) {
                 (best, best_at) = (residual, iterations);
                 p.copy_from_slice(&self.z);

@@ -1,8 +1,9 @@
 //! Anderson acceleration of a fixed-point iteration (type II, limited memory).
 //!
-//! From the last few pairs of a point's image T(v) and its residual g = T(v) − v, the combination of images whose residual
-//! would be smallest if T were affine (Walker and Ni 2011, doi 10.1137/10078356X). The least squares go by normal equations
-//! with a small multiple of their trace added: a poor combination costs an iteration, and the caller checks it.
+//! From the last few pairs of a point's image T(v) and its residual g = T(v) − v, the combination
+//! of images whose residual would be smallest if T were affine (Walker and Ni 2011, doi
+//! 10.1137/10078356X). The least squares go by normal equations with a small multiple of their
+//! trace added: a poor combination costs an iteration, and the caller checks it.
 
 use crate::memory::reserve;
 use nalgebra::{SMatrix, SVector};
@@ -41,8 +42,9 @@ impl<const D: usize> Anderson<D> {
         self.next = 0;
     }
 
-    /// Takes a point's image and residual, and overwrites the image with the accelerated next point; `weight` is the
-    /// metric, contact by contact. The image stays where nothing is known yet.
+    /// Takes a point's image and residual, and overwrites the image with the accelerated next
+    /// point; `weight` is the metric, contact by contact. The image stays where nothing is known
+    /// yet.
     pub(crate) fn accelerate(&mut self, image: &mut [Vector<D>], residual: &[Vector<D>], weight: &[f64]) {
         let n = image.len();
         if self.image.len() != n {

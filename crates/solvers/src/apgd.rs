@@ -1,27 +1,32 @@
 //! Accelerated projected gradients (APGD), with the slip's shift in an outer loop.
 //!
-//! **Solves** the exact Coulomb law, 2D and 3D. With the shift s_i = μ_i ‖u_T,i‖ held, the law is the optimality of a convex
-//! problem, `min ½ pᵀHp + (q + s)ᵀp` over the cones ‖p_T‖ ≤ μ p_N (s acts on the normal components): Nesterov's method solves
-//! it (Mazhar, Heyn, Negrut and Tasora 2015, doi 10.1145/2735627), and the shift is renewed in between.
+//! **Solves** the exact Coulomb law, 2D and 3D. With the shift s_i = μ_i ‖u_T,i‖ held, the law is
+//! the optimality of a convex problem, `min ½ pᵀHp + (q + s)ᵀp` over the cones ‖p_T‖ ≤ μ p_N (s
+//! acts on the normal components): Nesterov's method solves it (Mazhar, Heyn, Negrut and Tasora
+//! 2015, doi 10.1145/2735627), and the shift is renewed in between.
 //!
 //! **Departures.**
-//! - The paper solves the convex law (s = 0) only; the outer loop is Acary and Cadoux's fixed point (2011, doi
-//!   10.1002/zamm.201000073). The shift is renewed as soon as the convex problem's residual is half of the exact
-//!   law's: solving further for a shift that is wrong is work in vain.
-//! - With μ above 100 a contact that sticks has no shift, whatever its remaining slip: the fixed point could not contract else.
-//! - Restart of the momentum by the sign of gradient times step (O'Donoghue and Candès 2015, doi 10.1007/s10208-013-9150-3), as in
-//!   the paper.
-//! - The step is tested by `dᵀH d ≤ ‖d‖²/τ` rather than by differences of the objective, which cancel near the end; each
-//!   contact's step is scaled by the mean diagonal of its block.
-//! - As H y is a combination of products that are known, an iteration takes one product with H, not two.
+//! - The paper solves the convex law (s = 0) only; the outer loop is Acary and Cadoux's fixed point
+//!   (2011, doi 10.1002/zamm.201000073). The shift is renewed as soon as the convex problem's
+//!   residual is half of the exact law's: solving further for a shift that is wrong is work in
+//!   vain.
+//! - With μ above 100 a contact that sticks has no shift, whatever its remaining slip: the fixed
+//!   point could not contract else.
+//! - Restart of the momentum by the sign of gradient times step (O'Donoghue and Candès 2015, doi
+//!   10.1007/s10208-013-9150-3), as in the paper.
+//! - The step is tested by `dᵀH d ≤ ‖d‖²/τ` rather than by differences of the objective, which
+//!   cancel near the end; each contact's step is scaled by the mean diagonal of its block.
+//! - As H y is a combination of products that are known, an iteration takes one product with H, not
+//!   two.
 //!
-//! **Take it** for large loosely packed problems at 1e-4 where nothing is to be factorised, or for the convex law.
-//! **Cost**: one product with H an iteration.
-//! KaplasTower (570 contacts) takes 550 iterations to 1e-4 and 1300 to 1e-12, spheres-in-a-box 24 000 to 1e-12 (no solver of
-//! Siconos gets there within 10 s), RockPile 930 to 1e-4, Capsules-i101 1000 to 1e-8.
-//! **Fails**: on blocks whose own diagonal is badly scaled (one step serves a contact's normal and tangent);
-//! with large μ the outer loop need not contract, and then it ends as `stalled` or out of iterations; a skew part of
-//! H isn't part of any objective: small ones do no harm, large ones may.
+//! **Take it** for large loosely packed problems at 1e-4 where nothing is to be factorised, or for
+//! the convex law.
+//! **Cost**: one product with H an iteration. KaplasTower (570 contacts) takes 550 iterations to
+//! 1e-4 and 1300 to 1e-12, spheres-in-a-box 24 000 to 1e-12 (no solver of Siconos gets there within
+//! 10 s), RockPile 930 to 1e-4, Capsules-i101 1000 to 1e-8.
+//! **Fails**: on blocks whose own diagonal is badly scaled (one step serves a contact's normal and
+//! tangent); with large μ the outer loop need not contract, and then it ends as `stalled` or out of
+//! iterations; a skew part of H isn't part of any objective: small ones do no harm, large ones may.
 
 use crate::memory::reserve;
 use crate::operator::{Operator, STEEP, disk_map, is_steep, natural_map, own_step, slip_shift};
@@ -96,7 +101,8 @@ impl<const D: usize> Apgd<D> {
         Self::default()
     }
 
-    /// Iterates from `start` and leaves the best in it; with the convex law the shift stays 0 and the convex residual counts.
+    /// Iterates from `start` and leaves the best in it; with the convex law the shift stays 0 and
+    /// the convex residual counts.
     pub(crate) fn iterate(
         &mut self,
         problem: &ContactProblem<'_, D>,
@@ -178,7 +184,8 @@ impl<const D: usize> Iterate<D> {
         self.u_y.copy_from_slice(&self.u);
         let (p, u) = (&self.p, &self.u);
         self.shift.clear();
-        // A very large μ on a contact without impulse would hold it open: there the convex law comes first.
+        // A very large μ on a contact without impulse would hold it open: there the convex law
+        // comes first.
         let shift = |i: usize| if mu[i] > STEEP && p[i][0] <= 0.0 { 0.0 } else { posed.slip(&p[i], &u[i], mu[i]) };
         self.shift.extend((0..n).map(shift));
         (self.step, self.theta) = (1.0, 1.0);
@@ -200,10 +207,12 @@ impl<const D: usize> Iterate<D> {
         small && (!exact || judge(posed.problem, &self.p).global <= tolerance)
     }
 
-    /// Renews the shift where the convex problem is solved as well as is worth while with the one held.
+    /// Renews the shift where the convex problem is solved as well as is worth while with the one
+    /// held.
     fn renew_shift(&mut self, posed: &Posed<'_, D>, distance: &Distance) {
         let mu = posed.problem.mu();
-        // A large μ inflates the residual by the smallest slip: there the law taken apart is compared with.
+        // A large μ inflates the residual by the smallest slip: there the law taken apart is
+        // compared with.
         let exact = if is_steep(mu) { disk_map(&self.p, &self.u, mu, posed.rho) / distance.size } else { distance.law };
         if posed.law == Law::Exact && distance.convex <= ENOUGH * exact {
             for i in 0..self.p.len() {
@@ -220,7 +229,8 @@ impl<const D: usize> Iterate<D> {
         gradient
     }
 
-    /// From y along the gradient onto the cones, by a step that is cut until the curvature on the way allows it.
+    /// From y along the gradient onto the cones, by a step that is cut until the curvature on the
+    /// way allows it.
     fn descend(&mut self, posed: &Posed<'_, D>) {
         let (q, mu) = (posed.problem.q(), posed.problem.mu());
         for _ in 0..MOST_CUTS {

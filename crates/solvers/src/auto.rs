@@ -1,12 +1,14 @@
 //! The choice for those who don't want to choose.
 //!
-//! Contacts that don't feel each other (blocks that stand apart on the ground) are problems of their own: a problem is
-//! split into its [`Islands`], along the zero blocks of H, whether these are stored or not. Up to three plane contacts are
-//! enumerated; the rest goes along a chain (`chain.rs`) of methods until the judge is satisfied. If it never is, four and
-//! five plane contacts are enumerated too: that takes milliseconds, but it has the solution if there is one.
+//! Contacts that don't feel each other (blocks that stand apart on the ground) are problems of
+//! their own: a problem is split into its [`Islands`], along the zero blocks of H, whether these
+//! are stored or not. Up to three plane contacts are enumerated; the rest goes along a chain
+//! (`chain.rs`) of methods until the judge is satisfied. If it never is, four and five plane
+//! contacts are enumerated too: that takes milliseconds, but it has the solution if there is one.
 //!
-//! Of a block-sparse problem of many small islands, time and memory grow with the number of contacts. An operator that is
-//! given by what it does is not split: nothing is known of its blocks.
+//! Of a block-sparse problem of many small islands, time and memory grow with the number of
+//! contacts. An operator that is given by what it does is not split: nothing is known of its
+//! blocks.
 
 use crate::chain::{Chain, Pivots};
 use crate::ending::ended;
@@ -18,15 +20,17 @@ use teeter_contact::{
     ContactProblem, ContactSolver, Delassus, Islands, Law, Outcome, OwnedProblem, Stop, Vector, judge,
 };
 
-/// The exact methods of a dimension: for islands of a few contacts, and for those that the chain doesn't solve.
+/// The exact methods of a dimension: for islands of a few contacts, and for those that the chain
+/// doesn't solve.
 #[derive(Clone, Copy)]
 struct Exact<const D: usize> {
     first: Small<D>,
     last: Small<D>,
 }
 
-/// The solver that chooses; see the [crate's table](crate). `used` of the outcome says which method gave the result;
-/// `iterations` are those of all methods tried; of a problem in islands, those of the island that took most.
+/// The solver that chooses; see the [crate's table](crate). `used` of the outcome says which method
+/// gave the result; `iterations` are those of all methods tried; of a problem in islands, those of
+/// the island that took most.
 ///
 /// ```
 /// use teeter_contact::nalgebra::Vector2;
@@ -100,7 +104,8 @@ impl<const D: usize> Auto<D> {
         Some(outcome)
     }
 
-    /// Solves what isn't few contacts that enumeration has solved: island by island, or along the chain.
+    /// Solves what isn't few contacts that enumeration has solved: island by island, or along the
+    /// chain.
     fn solve_beyond(
         &mut self,
         problem: &ContactProblem<'_, D>,
@@ -130,9 +135,11 @@ impl<const D: usize> Auto<D> {
         if apart.converged() { apart } else { self.solve_whole(problem, exact, pivots, stop, apart, p) }
     }
 
-    /// The whole problem along the chain, after its islands, solved each for itself, have not satisfied the judge: `apart` is what came of
-    /// that. A dense problem goes on from there. A block-sparse one is solved as if it had not been split, and keeps the better result:
-    /// of a hard problem (RockPile of the published ones) some ways to the solution exist for the whole only, and where they start matters.
+    /// The whole problem along the chain, after its islands, solved each for itself, have not
+    /// satisfied the judge: `apart` is what came of that. A dense problem goes on from there. A
+    /// block-sparse one is solved as if it had not been split, and keeps the better result: of a
+    /// hard problem (RockPile of the published ones) some ways to the solution exist for the whole
+    /// only, and where they start matters.
     fn solve_whole(
         &mut self,
         problem: &ContactProblem<'_, D>,
@@ -188,7 +195,8 @@ fn along<const D: usize>(
     }
 }
 
-/// Enumerates `p.len()` contacts, if they are in the range; leaves `p` as it is if the judge isn't satisfied.
+/// Enumerates `p.len()` contacts, if they are in the range; leaves `p` as it is if the judge isn't
+/// satisfied.
 fn enumerate(
     range: std::ops::RangeInclusive<usize>,
     problem: &ContactProblem<'_, 2>,

@@ -1,15 +1,17 @@
 //! LU factorisation of sparse matrices of small blocks, for Newton's method on contact problems.
 //!
-//! The pattern is that of the Delassus operator, made symmetric; it is ordered by approximate minimum degree (feature
-//! `sparse`; in the order given without it) and analysed once. Values change in every Newton step, and so does the set
-//! of contacts that take part: an open contact is left out by a flag, with no new analysis. Pivots are chosen inside the D × D
-//! diagonal blocks only. That is safe where the matrix is a regularised one of a contact problem; the caller sees from the
-//! residual of its step whether it was.
+//! The pattern is that of the Delassus operator, made symmetric; it is ordered by approximate
+//! minimum degree (feature `sparse`; in the order given without it) and analysed once. Values
+//! change in every Newton step, and so does the set of contacts that take part: an open contact is
+//! left out by a flag, with no new analysis. Pivots are chosen inside the D × D diagonal blocks
+//! only. That is safe where the matrix is a regularised one of a contact problem; the caller sees
+//! from the residual of its step whether it was.
 //!
-//! Written here because a general sparse LU pivots between rows, has to make room for the pattern of AᵀA to do so, where
-//! these matrices are structurally symmetric, and has no notion of a left-out contact: its analysis would be anew in every
-//! step. Factorising H + 1e-3 I of published problems (best of several, one run): Capsules-i100 0.047 ms to 0.53 of faer's
-//! sparse LU, spheres-in-a-box 0.15 to 9.1, RockPile 0.17 to 9.7, KaplasTower 3.5 to 18.7.
+//! Written here because a general sparse LU pivots between rows, has to make room for the pattern
+//! of AᵀA to do so, where these matrices are structurally symmetric, and has no notion of a
+//! left-out contact: its analysis would be anew in every step. Factorising H + 1e-3 I of published
+//! problems (best of several, one run): Capsules-i100 0.047 ms to 0.53 of faer's sparse LU,
+//! spheres-in-a-box 0.15 to 9.1, RockPile 0.17 to 9.7, KaplasTower 3.5 to 18.7.
 
 use crate::memory::{refill, reserve};
 use crate::ordering::{NATURAL, Ordering};
@@ -25,10 +27,12 @@ pub(crate) struct BlockLu<const D: usize> {
     /// `order[k]` is the contact eliminated at step k, `place` its inverse.
     order: Vec<usize>,
     place: Vec<usize>,
-    /// Structure of column k of L below the diagonal (and, mirrored, of row k of U): `below[start[k]..start[k + 1]]`.
+    /// Structure of column k of L below the diagonal (and, mirrored, of row k of U):
+    /// `below[start[k]..start[k + 1]]`.
     start: Vec<usize>,
     below: Vec<usize>,
-    /// The elimination tree as lists: the first child of each column, and the next of the same parent.
+    /// The elimination tree as lists: the first child of each column, and the next of the same
+    /// parent.
     first_child: Vec<usize>,
     sibling: Vec<usize>,
     /// For each step j, the earlier columns k that reach it: (k, index of j in `below`).
@@ -44,7 +48,8 @@ pub(crate) struct BlockLu<const D: usize> {
     rhs: Vec<Vector<D>>,
 }
 
-/// A clone has the memory of its own to build: analysis and factors belong to the problems that were solved.
+/// A clone has the memory of its own to build: analysis and factors belong to the problems that
+/// were solved.
 impl<const D: usize> Clone for BlockLu<D> {
     fn clone(&self) -> Self {
         Self::default()
@@ -110,8 +115,8 @@ impl<const D: usize> BlockLu<D> {
         self.start.windows(2).map(|w| (w[1] - w[0]) * (w[1] - w[0] + 1)).sum()
     }
 
-    /// The structure of each column is what the pattern holds below it and what its children in the elimination tree
-    /// pass on.
+    /// The structure of each column is what the pattern holds below it and what its children in the
+    /// elimination tree pass on.
     fn eliminate_symbolically(&mut self) {
         let n = self.order.len();
         refill(&mut self.first_child, n, NONE);
@@ -167,8 +172,9 @@ impl<const D: usize> BlockLu<D> {
         }
     }
 
-    /// Factorises the matrix with blocks `block(i, t)`, t the index in the pattern's blocks, over the contacts with
-    /// `active(i)`. The pattern must be the analysed one. `false` where a pivot block is singular or not finite.
+    /// Factorises the matrix with blocks `block(i, t)`, t the index in the pattern's blocks, over
+    /// the contacts with `active(i)`. The pattern must be the analysed one. `false` where a pivot
+    /// block is singular or not finite.
     pub(crate) fn factorise(
         &mut self,
         h: &BlockSparse<D>,
@@ -279,8 +285,9 @@ impl<const D: usize> BlockLu<D> {
     }
 }
 
-/// The inverse by Gauss–Jordan elimination with row pivoting; `None` if it is singular or not finite. Adjugate over
-/// determinant would be faster, but loses twice the digits on the nearly singular pivots of hyperstatic contacts.
+/// The inverse by Gauss–Jordan elimination with row pivoting; `None` if it is singular or not
+/// finite. Adjugate over determinant would be faster, but loses twice the digits on the nearly
+/// singular pivots of hyperstatic contacts.
 #[inline]
 fn invert<const D: usize>(a: &Block<D>) -> Option<Block<D>> {
     let (mut a, mut inverse) = (*a, Block::<D>::identity());
@@ -356,7 +363,8 @@ mod tests {
 
     #[test]
     fn nearly_singular_pivots_keep_their_digits() {
-        // One stiff direction of three, turned: what is left of a box's third corner after the first two.
+        // One stiff direction of three, turned: what is left of a box's third corner after the
+        // first two.
         for (k, epsilon) in [1e-5, 1e-7, 1e-9].into_iter().enumerate() {
             let axis = nalgebra::Vector3::new(0.3 + k as f64, -0.7, 0.5).normalize();
             let a = axis * axis.transpose() * (1.0 - epsilon) + Block::<3>::identity() * epsilon;

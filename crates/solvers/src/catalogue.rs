@@ -156,7 +156,8 @@ pub fn plane_solver(name: &str) -> Option<Box<dyn ContactSolver<2>>> {
     }
 }
 
-/// The solver of that name for contacts in space; `None` for an unknown one, and for one that knows the plane only.
+/// The solver of that name for contacts in space; `None` for an unknown one, and for one that knows
+/// the plane only.
 ///
 /// ```
 /// assert_eq!(teeter_solvers::space_solver("pgs").unwrap().name(), "pgs");

@@ -1,21 +1,25 @@
 //! The methods that `auto` goes through, cheap ones first, until the judge is satisfied.
 //!
-//! 1. **Gauss–Seidel** ([`Pgs`]): some sweeps, and more as long as the rate at which the residual falls says that it arrives before Newton
-//!    would.
-//! 2. **Pairs** (`pairs.rs`): where that left little, but contacts hold a body twice, sweeps over pairs of them.
-//! 3. **Alternating directions** ([`Admm`](crate::Admm), feature `sparse`) where rows of H are long: factors fill in there, and this takes
-//!    one or two where Newton takes ten.
-//! 4. **Semi-smooth Newton** ([`Newton`]): a round of steps from there; where they fail, more sweeps for about the same
-//!    work, and another round, a few times.
-//! 5. **Pivots** ([`Lemke`](crate::Lemke)), in the plane and up to some hundred contacts: where blocks lean on each other, contacts that
-//!    press against each other without end leave all that goes by the residual at about 1e-10; pivots are exact.
+//! 1. **Gauss–Seidel** ([`Pgs`]): some sweeps, and more as long as the rate at which the residual
+//!    falls says that it arrives before Newton would.
+//! 2. **Pairs** (`pairs.rs`): where that left little, but contacts hold a body twice, sweeps over
+//!    pairs of them.
+//! 3. **Alternating directions** ([`Admm`](crate::Admm), feature `sparse`) where rows of H are
+//!    long: factors fill in there, and this takes one or two where Newton takes ten.
+//! 4. **Semi-smooth Newton** ([`Newton`]): a round of steps from there; where they fail, more
+//!    sweeps for about the same work, and another round, a few times.
+//! 5. **Pivots** ([`Lemke`](crate::Lemke)), in the plane and up to some hundred contacts: where
+//!    blocks lean on each other, contacts that press against each other without end leave all that
+//!    goes by the residual at about 1e-10; pivots are exact.
 //! 6. **The central path** ([`Smoothing`]): for what is degenerate.
-//! 7. **The proximal point** ([`Prox`]), Newton with more sweeps between its steps, and sweeps until the iterations run out.
+//! 7. **The proximal point** ([`Prox`]), Newton with more sweeps between its steps, and sweeps
+//!    until the iterations run out.
 //!
-//! What decides is counted work (blocks, block products), never time: the same problem takes the same way on every machine.
+//! What decides is counted work (blocks, block products), never time: the same problem takes the
+//! same way on every machine.
 //!
-//! A problem of a few contacts is solved further than asked, towards 1e-14: it costs little there, and the motion of a
-//! few blocks is then as exact as an enumerated one.
+//! A problem of a few contacts is solved further than asked, towards 1e-14: it costs little there,
+//! and the motion of a few blocks is then as exact as an enumerated one.
 
 #[cfg(feature = "sparse")]
 use crate::Admm;
@@ -28,19 +32,22 @@ use teeter_contact::{ContactProblem, ContactSolver, Outcome, Status, Stop, Vecto
 /// Up to so many contacts a solution is polished, to this residual.
 const SMALL: usize = 12;
 const POLISHED: f64 = 1e-14;
-/// More of them are polished to this part of the tolerance where the factors of H have no more than so many times its blocks, as along a
-/// stack: what rests then starts every step from a solution, and what the tolerance leaves doesn't add up over the steps.
+/// More of them are polished to this part of the tolerance where the factors of H have no more than
+/// so many times its blocks, as along a stack: what rests then starts every step from a solution,
+/// and what the tolerance leaves doesn't add up over the steps.
 const PART: f64 = 1e-3;
 const FILL: usize = 4;
 /// Sweeps of the first two batches; the rate comes from the second.
 const FIRST: u32 = 12;
-/// Rounds of Newton steps, each after a batch of sweeps; and for each, the work in Newton steps within which Gauss–Seidel must
-/// be expected to arrive to go on instead. After the last round comes the central path, which takes tens of steps.
+/// Rounds of Newton steps, each after a batch of sweeps; and for each, the work in Newton steps
+/// within which Gauss–Seidel must be expected to arrive to go on instead. After the last round
+/// comes the central path, which takes tens of steps.
 const WORTH: [f64; 4] = [4.0, 8.0, 16.0, 40.0];
 /// Impulses that are right to this residual after the first sweeps may want sweeps over pairs.
 const NEARLY: f64 = 1e-4;
-/// Work of a Newton step and of a sweep in one measure (times a block product): per block of the factors and per contact. Measured
-/// on the published problems; a factor of two either way changes no choice among them that matters.
+/// Work of a Newton step and of a sweep in one measure (times a block product): per block of the
+/// factors and per contact. Measured on the published problems; a factor of two either way changes
+/// no choice among them that matters.
 const STEP_BLOCK: f64 = 1.3;
 const STEP_CONTACT: f64 = 16.0;
 const SWEEP_BLOCK: f64 = 0.4;
@@ -52,7 +59,8 @@ const PIVOTED: usize = 200;
 /// Lemke's method, in the plane.
 pub(crate) type Pivots<'a, const D: usize> = Option<&'a mut dyn ContactSolver<D>>;
 
-/// From so many contacts with so many blocks a row on, alternating directions come before Newton; and their iterations.
+/// From so many contacts with so many blocks a row on, alternating directions come before Newton;
+/// and their iterations.
 #[cfg(feature = "sparse")]
 const MANY: usize = 64;
 #[cfg(feature = "sparse")]
@@ -87,7 +95,8 @@ impl Progress {
         }
     }
 
-    /// The outcome of the whole, for the impulses that are left: how a stage ended within its own limits is not how the solve ended.
+    /// The outcome of the whole, for the impulses that are left: how a stage ended within its own
+    /// limits is not how the solve ended.
     fn end<const D: usize>(&self, problem: &ContactProblem<'_, D>, stop: &Stop<'_>, p: &[Vector<D>]) -> Outcome {
         if self.best.converged() {
             return Outcome::new(Status::Converged, self.best.used, self.iterations, self.best.residual);

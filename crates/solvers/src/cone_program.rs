@@ -83,8 +83,8 @@ impl<const D: usize> ConeProgram<D> {
         Some(Self { solver, linear, speed, impulse: rho * speed })
     }
 
-    /// Solves for the linear term `term(i)` of each contact into `p`; whether it gave numbers at all. Its own status is
-    /// not asked: "almost solved" is often as good, and the judge decides.
+    /// Solves for the linear term `term(i)` of each contact into `p`; whether it gave numbers at
+    /// all. Its own status is not asked: "almost solved" is often as good, and the judge decides.
     pub(crate) fn solve(&mut self, term: impl Fn(usize) -> Vector<D>, p: &mut [Vector<D>]) -> bool {
         for i in 0..p.len() {
             for (to, from) in self.linear[i * D..(i + 1) * D].iter_mut().zip(term(i).iter()) {

@@ -1,4 +1,5 @@
-//! The conformance run of the methods that don't solve a block whose diagonal spans 13 powers of ten, and say so.
+//! The conformance run of the methods that don't solve a block whose diagonal spans 13 powers of
+//! ten, and say so.
 
 use teeter_contact::conformance::{plane_cases, run, space_cases};
 use teeter_contact::{ContactSolver, Stop, Vector, judge};

@@ -2,8 +2,8 @@
 
 use teeter_contact::{Residual, Status, Stop};
 
-/// The status of a solve that took `iterations` and whose impulses are judged with `residual`, and that had no other reason
-/// to end than those that `stop` gives.
+/// The status of a solve that took `iterations` and whose impulses are judged with `residual`, and
+/// that had no other reason to end than those that `stop` gives.
 pub(crate) fn ended(stop: &Stop<'_>, iterations: u32, residual: &Residual) -> Status {
     if residual.global <= stop.tolerance {
         Status::Converged

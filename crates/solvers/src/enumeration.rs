@@ -1,25 +1,29 @@
 //! Exact enumeration of contact states, for up to five plane contacts.
 //!
-//! Each contact is open, sticks, or slides to the right or left; each of the 4ⁿ combinations is a small linear system
-//! (n ≤ 5: at most 10 × 10) whose solution is checked against the inequalities of the law. There is no iteration and no
-//! tolerance of its own beyond rounding.
+//! Each contact is open, sticks, or slides to the right or left; each of the 4ⁿ combinations is a
+//! small linear system (n ≤ 5: at most 10 × 10) whose solution is checked against the inequalities
+//! of the law. There is no iteration and no tolerance of its own beyond rounding.
 //!
-//! Up to three contacts the combinations are the leaves of a tree. On the way down each contact is eliminated in one of its states, so that a
-//! leaf is left with the 2 × 2 problem of the last contact: all leaves share the work above them, and most fail a
-//! sign there.
+//! Up to three contacts the combinations are the leaves of a tree. On the way down each contact is
+//! eliminated in one of its states, so that a leaf is left with the 2 × 2 problem of the last
+//! contact: all leaves share the work above them, and most fail a sign there.
 //!
-//! Before the walk through the tree the likely states are tried, one by one (`likely.rs`): that is the whole solve wherever they
-//! fit with room to spare. The tree is for the rest: borders between states, and problems where a contact can't choose alone.
+//! Before the walk through the tree the likely states are tried, one by one (`likely.rs`): that is
+//! the whole solve wherever they fit with room to spare. The tree is for the rest: borders between
+//! states, and problems where a contact can't choose alone.
 //!
-//! Four and five contacts have 256 and 1024 combinations. They are gone through one by one, each by a solve with complete pivoting: some
-//! tenths of a millisecond and some milliseconds, which [`Auto`](crate::Auto) spends where all else has failed.
+//! Four and five contacts have 256 and 1024 combinations. They are gone through one by one, each by
+//! a solve with complete pivoting: some tenths of a millisecond and some milliseconds, which
+//! [`Auto`](crate::Auto) spends where all else has failed.
 //!
-//! Hyperstatic contacts (two sticking corners of one body) make the system of a state singular: its solution of least
-//! norm is taken. The least-norm point of all impulses that obey the law lies on a face of the cones, and a face is a
-//! state; so of the states that fit, the one of smallest norm is that point.
+//! Hyperstatic contacts (two sticking corners of one body) make the system of a state singular: its
+//! solution of least norm is taken. The least-norm point of all impulses that obey the law lies on
+//! a face of the cones, and a face is a state; so of the states that fit, the one of smallest norm
+//! is that point.
 //!
-//! The enumeration of states is as old as the linear complementarity form of plane friction (Klarbring 1990,
-//! doi 10.1007/BF00534316); choosing by the norm is ours, and so is trying the likely states first.
+//! The enumeration of states is as old as the linear complementarity form of plane friction
+//! (Klarbring 1990, doi 10.1007/BF00534316); choosing by the norm is ours, and so is trying the
+//! likely states first.
 
 use crate::least_norm::{MAX, System};
 use crate::{likely, one_contact};
@@ -32,15 +36,16 @@ use teeter_contact::{
 pub(crate) const FEW: usize = 3;
 /// Most contacts that are enumerated: 4⁵ = 1024 states.
 pub(crate) const MAX_CONTACTS: usize = 5;
-/// How far an inequality may be missed, relative to the terms that its left side is the sum of: rounding of a 10 × 10 solve.
+/// How far an inequality may be missed, relative to the terms that its left side is the sum of:
+/// rounding of a 10 × 10 solve.
 pub(crate) const ROUNDING: f64 = 1e-13;
 /// The same of a good solve: some units of the last digit.
 const SHARP: f64 = 16.0 * f64::EPSILON;
 
 /// The exact 2D solver for up to five contacts; see the [crate's table](crate).
 ///
-/// `iterations` counts the states tried. With more than five contacts, or where no state fits, the status is
-/// [`Status::Breakdown`].
+/// `iterations` counts the states tried. With more than five contacts, or where no state fits, the
+/// status is [`Status::Breakdown`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Enumeration;
 
@@ -114,9 +119,10 @@ impl ContactSolver<2> for Enumeration {
     }
 }
 
-/// Searches the states for impulses that obey the law to rounding; where those aren't good enough for the tolerance, for such that obey it to the
-/// last digits. Corners of one body that can't quite both stick have states that fit to rounding and others that fit. Returns whether there are any, how
-/// many states were tried, and the residual.
+/// Searches the states for impulses that obey the law to rounding; where those aren't good enough
+/// for the tolerance, for such that obey it to the last digits. Corners of one body that can't
+/// quite both stick have states that fit to rounding and others that fit. Returns whether there are
+/// any, how many states were tried, and the residual.
 fn sharply<const N: usize>(
     problem: &ContactProblem<'_, 2>,
     stop: &Stop<'_>,
@@ -215,10 +221,11 @@ impl<const N: usize> Table<N> {
         true
     }
 
-    /// The impulses of a combination of states by a pivoted solve, of least norm where it leaves a choice.
+    /// The impulses of a combination of states by a pivoted solve, of least norm where it leaves a
+    /// choice.
     fn pivoted<const M: usize>(&self, states: &[State; N]) -> Option<Impulses<N>> {
-        // Unknown k is the size of an impulse along (1, −σμ) at a contact, or a component of a sticking one's; its
-        // equation is a row of u = 0.
+        // Unknown k is the size of an impulse along (1, −σμ) at a contact, or a component of a
+        // sticking one's; its equation is a row of u = 0.
         let mut rows = [(0, 0); M];
         let mut tangent = [0.0; M];
         let mut m = 0;
@@ -255,8 +262,8 @@ impl<const N: usize> Table<N> {
         Some(p)
     }
 
-    /// Tries the combinations of states one by one, `M` = 2 `N`; leaves the smallest impulses that fit in `p`. Returns
-    /// whether one fits, and how many were tried.
+    /// Tries the combinations of states one by one, `M` = 2 `N`; leaves the smallest impulses that
+    /// fit in `p`. Returns whether one fits, and how many were tried.
     fn try_all<const M: usize>(&self, p: &mut [Vector2<f64>]) -> (bool, u32) {
         let mut best: Option<(f64, Impulses<N>)> = None;
         let mut tried = 0;
@@ -265,7 +272,8 @@ impl<const N: usize> Table<N> {
             let mut states = [State::Open; N];
             for (i, state) in states[..self.n].iter_mut().enumerate() {
                 let digit = (number >> (2 * i) & 3) as usize;
-                // Without friction there is nothing to stick, and sliding to the left is sliding to the right.
+                // Without friction there is nothing to stick, and sliding to the left is sliding to
+                // the right.
                 if self.mu[i] == 0.0 && digit > 1 {
                     continue 'combinations;
                 }
@@ -286,7 +294,8 @@ impl<const N: usize> Table<N> {
 }
 
 impl Table {
-    /// Tries the states; leaves the smallest impulses that fit in `p`. Returns whether one fits, and how many were tried.
+    /// Tries the states; leaves the smallest impulses that fit in `p`. Returns whether one fits,
+    /// and how many were tried.
     fn search(&self, p: &mut [Vector2<f64>]) -> (bool, u32) {
         let mut search = Search {
             table: self,
@@ -308,7 +317,8 @@ impl Table {
 struct Search<'a> {
     table: &'a Table,
     states: [State; FEW],
-    /// p_k = −gain (velocity of contact k without its own impulse), for the contacts eliminated so far.
+    /// p_k = −gain (velocity of contact k without its own impulse), for the contacts eliminated so
+    /// far.
     gains: [Matrix2<f64>; FEW],
     /// The largest component of q: what velocities are small against.
     speed: f64,
@@ -319,8 +329,8 @@ struct Search<'a> {
 const STATES: [State; 4] = [State::Open, State::Slide(1.0), State::Slide(-1.0), State::Stick];
 
 impl Search<'_> {
-    /// The states of contact `k` that differ: without friction there is nothing to stick, and sliding to the left is
-    /// sliding to the right.
+    /// The states of contact `k` that differ: without friction there is nothing to stick, and
+    /// sliding to the left is sliding to the right.
     fn states_of(&self, k: usize) -> &'static [State] {
         if self.table.mu[k] == 0.0 { &STATES[..2] } else { &STATES }
     }
@@ -330,7 +340,8 @@ impl Search<'_> {
         self.best.is_some_and(|(norm, _)| norm == 0.0)
     }
 
-    /// Eliminates contact `k` in each of its states from the problem (h, q) of the contacts from `k` on.
+    /// Eliminates contact `k` in each of its states from the problem (h, q) of the contacts from
+    /// `k` on.
     fn descend(&mut self, k: usize, h: &[[Matrix2<f64>; FEW]; FEW], q: &Impulses) {
         let n = self.table.n;
         for &state in self.states_of(k) {
@@ -371,7 +382,8 @@ impl Search<'_> {
         let table = self.table;
         let mut p = [Vector2::zeros(); FEW];
         p[table.n - 1] = *last;
-        // Contact k was eliminated before those after it, in the velocities that those before it had left.
+        // Contact k was eliminated before those after it, in the velocities that those before it
+        // had left.
         for k in (0..table.n - 1).rev() {
             p[k] = self.eliminated(k, &p);
         }
@@ -396,7 +408,8 @@ impl Search<'_> {
         }
     }
 
-    /// Offers the pivoted solutions of all combinations of states from contact `k` on, those before it as they are.
+    /// Offers the pivoted solutions of all combinations of states from contact `k` on, those before
+    /// it as they are.
     fn all_pivoted(&mut self, k: usize) {
         if k < self.table.n {
             for &state in self.states_of(k) {
@@ -415,7 +428,8 @@ impl Search<'_> {
         }
     }
 
-    /// Keeps impulses that obey the law if none smaller are known; false for impulses that don't obey it.
+    /// Keeps impulses that obey the law if none smaller are known; false for impulses that don't
+    /// obey it.
     fn offer(&mut self, p: &Impulses) -> bool {
         let norm: f64 = p.iter().map(Vector2::norm_squared).sum();
         if self.best.is_some_and(|(best, _)| norm >= best) {
@@ -429,8 +443,9 @@ impl Search<'_> {
     }
 }
 
-/// How the impulse of a contact in a state answers its velocity: p = −gain u. `h` is its block with other contacts
-/// eliminated, `original` the block itself. `None` where the state leaves the impulse undetermined, or nearly.
+/// How the impulse of a contact in a state answers its velocity: p = −gain u. `h` is its block with
+/// other contacts eliminated, `original` the block itself. `None` where the state leaves the
+/// impulse undetermined, or nearly.
 fn gain(state: State, h: &Matrix2<f64>, mu: f64, original: &Matrix2<f64>) -> Option<Matrix2<f64>> {
     match state {
         State::Open => Some(Matrix2::zeros()),
@@ -449,15 +464,17 @@ fn gain(state: State, h: &Matrix2<f64>, mu: f64, original: &Matrix2<f64>) -> Opt
     }
 }
 
-/// A pivot below this part of its block is left to the pivoted solve: the one after it would hold the rounding that this one
-/// magnifies, and a vanishing one couldn't be told from that. Two such steps in a row stay far above rounding.
+/// A pivot below this part of its block is left to the pivoted solve: the one after it would hold
+/// the rounding that this one magnifies, and a vanishing one couldn't be told from that. Two such
+/// steps in a row stay far above rounding.
 const DOUBTFUL: f64 = 1e-4;
 
-/// What a sign of the last contact may be missed by, relative to the speeds of the problem, before the exact test is not
-/// worth its cost: far above rounding on the way down.
+/// What a sign of the last contact may be missed by, relative to the speeds of the problem, before
+/// the exact test is not worth its cost: far above rounding on the way down.
 const ROUGHLY: f64 = 1e-9;
 
-/// Whether the last contact's velocity `u` and impulse `p` may belong to its state, up to `slack_u` and `slack_p`.
+/// Whether the last contact's velocity `u` and impulse `p` may belong to its state, up to `slack_u`
+/// and `slack_p`.
 fn plausible(state: State, u: &Vector2<f64>, slack_u: f64, p: &Vector2<f64>, slack_p: f64, mu: f64) -> bool {
     match state {
         State::Open => u[0] >= -slack_u,
@@ -494,7 +511,8 @@ mod tests {
 
     #[test]
     fn where_even_shares_would_leave_a_cone_the_nearest_point_inside_is_taken() {
-        // The body tips forward: the rear foot is light, and half of the tangential impulse would be beyond its cone.
+        // The body tips forward: the rear foot is light, and half of the tangential impulse would
+        // be beyond its cone.
         let feet = [(-0.5, -1.0), (0.5, -1.0)];
         let p = solve(&body_on_floor("tips", 0.3, &feet, [0.4, -1.0, 0.0], 0.5));
         let (rear, front) = if p[0][0] < p[1][0] { (p[0], p[1]) } else { (p[1], p[0]) };

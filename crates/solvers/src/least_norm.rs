@@ -3,8 +3,9 @@
 /// Unknowns of a small problem: a normal and a tangential impulse for each of three contacts.
 pub(crate) const MAX: usize = 2 * crate::enumeration::FEW;
 
-/// A pivot below this, relative to the compliances of its row and column, is taken for zero: hyperstatic contacts leave
-/// pivots of some 1e-16, while two corners on a beam that slopes by w' leave w'² and more.
+/// A pivot below this, relative to the compliances of its row and column, is taken for zero:
+/// hyperstatic contacts leave pivots of some 1e-16, while two corners on a beam that slopes by w'
+/// leave w'² and more.
 pub(crate) const RANK_TOLERANCE: f64 = 1e-12;
 
 /// A square system `a x = b` of order `m` ≤ `M`.
@@ -23,8 +24,9 @@ impl<const M: usize> System<M> {
         Self { m, a: [[0.0; M]; M], b: [0.0; M], scale: [1.0; M], length: [1.0; M] }
     }
 
-    /// The solution of least norm, by Gaussian elimination with complete pivoting; `None` where a number overflows.
-    /// Whether a singular system was consistent, the caller has to see from the residual.
+    /// The solution of least norm, by Gaussian elimination with complete pivoting; `None` where a
+    /// number overflows. Whether a singular system was consistent, the caller has to see from the
+    /// residual.
     pub(crate) fn solve(mut self) -> Option<[f64; M]> {
         let m = self.m;
         let mut column: [usize; M] = std::array::from_fn(|k| k);

@@ -1,31 +1,34 @@
 //! Lemke's pivoting on the linear complementarity problem of plane friction.
 //!
-//! **What it solves**: exact Signorini–Coulomb in the plane, by a finite number of pivots; H may be asymmetric or singular.
+//! **What it solves**: exact Signorini–Coulomb in the plane, by a finite number of pivots; H may be
+//! asymmetric or singular.
 //!
 //! **When to take it**: some tens to some hundred contacts in the plane where Gauss–Seidel crawls.
 //!
-//! **How**: with p_T = λ − μ p_N and u_T = u⁺ − u⁻ the law of contact i is three complementary pairs (Klarbring 1986, doi
-//! 10.1016/0045-7825(86)90074-8)
+//! **How**: with p_T = λ − μ p_N and u_T = u⁺ − u⁻ the law of contact i is three complementary
+//! pairs (Klarbring 1986, doi 10.1016/0045-7825(86)90074-8)
 //!
 //! ```text
 //! 0 ≤ u_N ⊥ p_N ≥ 0,   0 ≤ u⁺ = u_T + u⁻ ⊥ λ ≥ 0,   0 ≤ 2 μ p_N − λ ⊥ u⁻ ≥ 0
 //! ```
 //!
-//! (one where μ = 0), in all w = M z + q. Lemke's method (Cottle, Pang and Stone 1992, doi 10.1137/1.9780898719000, §4.4) adds an
-//! artificial z₀ to every row and pivots it out again. Ties are broken lexicographically, so it can't cycle in exact
-//! arithmetic.
+//! (one where μ = 0), in all w = M z + q. Lemke's method (Cottle, Pang and Stone 1992, doi
+//! 10.1137/1.9780898719000, §4.4) adds an artificial z₀ to every row and pivots it out again. Ties
+//! are broken lexicographically, so it can't cycle in exact arithmetic.
 //!
-//! **Cost**: a dense tableau of (3n)² numbers, kept; a pivot costs as many multiplications at most, in practice what isn't
-//! zero of them; there are some 1 to 4 pivots a contact. So O(n³), and the memory of 72 n² bytes is why
-//! it refuses more than [`Lemke::MAX_CONTACTS`]. `iterations` counts pivots.
+//! **Cost**: a dense tableau of (3n)² numbers, kept; a pivot costs as many multiplications at most,
+//! in practice what isn't zero of them; there are some 1 to 4 pivots a contact. So O(n³), and the
+//! memory of 72 n² bytes is why it refuses more than [`Lemke::MAX_CONTACTS`]. `iterations` counts
+//! pivots.
 //!
-//! **How it fails**: `breakdown` where z₀ can't be pivoted out (a ray: the problem may have no solution, or the method doesn't
-//! find it, as with large μ), where there are too many contacts, and where rounding has spoilt the tableau, which the
-//! judge sees. With μ beyond some thousands λ − μ p_N loses the digits that μ has.
+//! **How it fails**: `breakdown` where z₀ can't be pivoted out (a ray: the problem may have no
+//! solution, or the method doesn't find it, as with large μ), where there are too many contacts,
+//! and where rounding has spoilt the tableau, which the judge sees. With μ beyond some thousands λ
+//! − μ p_N loses the digits that μ has.
 //!
-//! Departures: the start is judged, and returned if it is solved already, but doesn't help otherwise; two steps of iterative refinement with
-//! the final tableau take the pivots' rounding out; the pairs are scaled by ρ and the largest |q|, so that units change
-//! nothing.
+//! Departures: the start is judged, and returned if it is solved already, but doesn't help
+//! otherwise; two steps of iterative refinement with the final tableau take the pivots' rounding
+//! out; the pairs are scaled by ρ and the largest |q|, so that units change nothing.
 
 use crate::memory::reserve;
 use nalgebra::Vector2;
@@ -86,7 +89,8 @@ impl Lemke {
         self.constant.len()
     }
 
-    /// The complementarity problem, velocities in units of `speed` and impulses in units of ρ `speed`.
+    /// The complementarity problem, velocities in units of `speed` and impulses in units of ρ
+    /// `speed`.
     fn pose(&mut self, problem: &ContactProblem<'_, 2>, rho: f64, speed: f64) {
         let (n, mu) = (problem.contacts(), problem.mu());
         self.h.gather(problem);
@@ -279,7 +283,8 @@ impl Lemke {
         self.confine(problem);
     }
 
-    /// Puts impulses that the basis wants on the border of their cone there, and keeps rounding from taking others out.
+    /// Puts impulses that the basis wants on the border of their cone there, and keeps rounding
+    /// from taking others out.
     fn confine(&mut self, problem: &ContactProblem<'_, 2>) {
         let m = self.rows();
         for (i, (p, &mu)) in self.found.iter_mut().zip(problem.mu()).enumerate() {
@@ -297,8 +302,9 @@ impl Lemke {
         }
     }
 
-    /// Iterative refinement: how far w = M z + q is missed, from H and the impulses themselves, taken out with the basis'
-    /// inverse. It acts on p_T, not on λ, which has lost the digits that μ has.
+    /// Iterative refinement: how far w = M z + q is missed, from H and the impulses themselves,
+    /// taken out with the basis' inverse. It acts on p_T, not on λ, which has lost the digits that
+    /// μ has.
     fn refine(&mut self, problem: &ContactProblem<'_, 2>, rho: f64, speed: f64) {
         let (m, unit) = (self.rows(), rho * speed);
         self.evaluate();

@@ -1,7 +1,9 @@
-//! Solvers for the frictional contact problems of [`teeter_contact`]: one file each, one trait for all.
+//! Solvers for the frictional contact problems of [`teeter_contact`]: one file each, one trait for
+//! all.
 //!
-//! Take [`Auto`]. It goes from cheap methods to robust ones until the judge is satisfied, and says which one did it. The
-//! others are for who knows their problems, or compares; each one's page says what it costs and how it fails.
+//! Take [`Auto`]. It goes from cheap methods to robust ones until the judge is satisfied, and says
+//! which one did it. The others are for who knows their problems, or compares; each one's page says
+//! what it costs and how it fails.
 //!
 //! | name | dim. | law | how | take it when |
 //! |---|---|---|---|---|
@@ -18,13 +20,15 @@
 //! | [`Apgd`] | 2D, 3D | exact | accelerated projected gradients | the same, for loose packings |
 //! | [`Socp`] | 2D, 3D | **convex** | one cone program | you compare with programs that use that law |
 //!
-//! The convex law isn't Coulomb's: a sliding contact separates at μ‖u_T‖ ([`Law`](teeter_contact::Law)). [`SOLVERS`] lists them all with their papers;
-//! [`plane_solver`] and [`space_solver`] make one by its name.
+//! The convex law isn't Coulomb's: a sliding contact separates at μ‖u_T‖
+//! ([`Law`](teeter_contact::Law)). [`SOLVERS`] lists them all with their papers; [`plane_solver`]
+//! and [`space_solver`] make one by its name.
 //!
 //! # Features
 //!
-//! - `sparse` (default): faer. Brings [`Admm`], and the fill-reducing order for the factorisations of [`Newton`], [`Smoothing`], [`Prox`] and
-//!   [`Auto`], which work without it, but slowly on large problems.
+//! - `sparse` (default): faer. Brings [`Admm`], and the fill-reducing order for the factorisations
+//!   of [`Newton`], [`Smoothing`], [`Prox`] and [`Auto`], which work without it, but slowly on
+//!   large problems.
 //! - `clarabel` (default): Clarabel. Brings [`Socp`] and [`AcaryCadoux`].
 //!
 //! Without both the crate needs nalgebra only.

@@ -1,13 +1,15 @@
 //! The contact states that are likely, before all states are enumerated.
 //!
-//! The states of the start's impulses (or, from none, those that the contacts would have alone) are one linear system.
-//! Where its solution misses an inequality, all contacts that miss theirs change state at once, and again a few times. A
-//! solution that obeys every inequality with room to spare is returned.
+//! The states of the start's impulses (or, from none, those that the contacts would have alone) are
+//! one linear system. Where its solution misses an inequality, all contacts that miss theirs change
+//! state at once, and again a few times. A solution that obeys every inequality with room to spare
+//! is returned.
 //!
-//! Why that is as good as the enumeration's: with room to spare, the impulses near it that give the same velocities are
-//! those of the same states, and all impulses that obey the law with these velocities form a convex set. The point of
-//! least norm among the states' impulses is then that of the whole set. Contacts change state together, so their order
-//! doesn't matter. (Where several *velocities* obey the law, as with much friction, it is the ones next to the start.)
+//! Why that is as good as the enumeration's: with room to spare, the impulses near it that give the
+//! same velocities are those of the same states, and all impulses that obey the law with these
+//! velocities form a convex set. The point of least norm among the states' impulses is then that of
+//! the whole set. Contacts change state together, so their order doesn't matter. (Where several
+//! *velocities* obey the law, as with much friction, it is the ones next to the start.)
 
 use crate::enumeration::{FEW, Impulses, ROUNDING, State, Table};
 use crate::least_norm::{MAX, RANK_TOLERANCE};
@@ -16,8 +18,8 @@ use nalgebra::Vector2;
 /// Most combinations of states that are tried.
 const TRIES: u32 = 6;
 
-/// How much room an inequality must leave, relative to the terms that its left side is the sum of: far above rounding, so
-/// that no neighbouring state fits as well.
+/// How much room an inequality must leave, relative to the terms that its left side is the sum of:
+/// far above rounding, so that no neighbouring state fits as well.
 const ROOM: f64 = 1e-9;
 
 /// Rounding of a pivot, relative to its size, times the smallest pivot before it.
@@ -26,7 +28,8 @@ const MAGNIFIED: f64 = 64.0 * f64::EPSILON;
 /// A friction impulse this near its limit is at it: the start's impulses are known to rounding.
 const AT_LIMIT: f64 = 1.0 - 1e-9;
 
-/// Impulses and velocities that obey the law in likely states, if some are found; and how many were tried.
+/// Impulses and velocities that obey the law in likely states, if some are found; and how many were
+/// tried.
 pub(crate) fn find(table: &Table, start: &[Vector2<f64>]) -> (Option<(Impulses, Impulses)>, u32) {
     let n = table.n;
     let from_rest = start.iter().all(|p| p[0] == 0.0 && p[1] == 0.0);
@@ -91,7 +94,8 @@ fn check(table: &Table, states: &mut [State; FEW], p: &Impulses) -> Check {
     let mut velocities = [Vector2::zeros(); FEW];
     let (mut changed, mut tight) = (false, false);
     for i in 0..n {
-        // In the order of `ContactProblem::velocity`, so that the judge finds the same to the last bit.
+        // In the order of `ContactProblem::velocity`, so that the judge finds the same to the last
+        // bit.
         let mut u = Vector2::zeros();
         let mut size = table.q[i].abs();
         for j in 0..n {
@@ -182,8 +186,9 @@ fn impulses(table: &Table, states: &[State; FEW]) -> Option<Impulses> {
     Some(p)
 }
 
-/// Gaussian elimination down the diagonal, which is stable for the positive semidefinite systems that this is for; `None` for
-/// what isn't one of them. The result is checked by the velocities that it gives.
+/// Gaussian elimination down the diagonal, which is stable for the positive semidefinite systems
+/// that this is for; `None` for what isn't one of them. The result is checked by the velocities
+/// that it gives.
 #[inline]
 fn solve<const M: usize>(table: &Table, rows: &[(usize, usize); MAX], tangent: &[f64; MAX]) -> Option<[f64; MAX]> {
     let mut a = [[0.0; M]; M];
@@ -248,7 +253,8 @@ fn solve<const M: usize>(table: &Table, rows: &[(usize, usize); MAX], tangent: &
     x.iter().all(|x| x.is_finite()).then_some(solution)
 }
 
-/// The solution of least norm of a triangular system with `L` − 1 free unknowns (those without an inverse of their pivot).
+/// The solution of least norm of a triangular system with `L` − 1 free unknowns (those without an
+/// inverse of their pivot).
 #[inline]
 fn nearest_to_zero<const M: usize, const L: usize>(
     a: &[[f64; M]; M],
@@ -256,7 +262,8 @@ fn nearest_to_zero<const M: usize, const L: usize>(
     inverse: &[f64; M],
     tangent: &[f64; MAX],
 ) -> [f64; M] {
-    // Side by side the solution with the free unknowns at zero, and for each of them a vector of the null space.
+    // Side by side the solution with the free unknowns at zero, and for each of them a vector of
+    // the null space.
     let mut x = [[0.0; L]; M];
     let mut lane = L - 1;
     for k in (0..M).rev() {
@@ -274,7 +281,8 @@ fn nearest_to_zero<const M: usize, const L: usize>(
         }
         x[k] = sum.map(|sum| sum * inverse[k]);
     }
-    // The normal equations of the least norm, where x counts as long as what it stands for: (1, −σμ) has its length.
+    // The normal equations of the least norm, where x counts as long as what it stands for: (1,
+    // −σμ) has its length.
     let mut g = [[0.0; L]; L];
     for k in 0..M {
         let weight = 1.0 + tangent[k] * tangent[k];

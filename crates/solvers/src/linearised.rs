@@ -26,7 +26,8 @@ impl<const D: usize> Default for Row<D> {
     }
 }
 
-/// Linearises the law of a contact with impulse `p`, velocity `u` and Delassus block `h`, all in the problem's scale.
+/// Linearises the law of a contact with impulse `p`, velocity `u` and Delassus block `h`, all in
+/// the problem's scale.
 #[inline]
 pub(crate) fn linearise<const D: usize>(p: &Vector<D>, u: &Vector<D>, mu: f64, h: Block<D>) -> Row<D> {
     let h_nn = h[(0, 0)];
@@ -80,7 +81,8 @@ mod tests {
         let h = Matrix3::new(2.0, 0.1, 0.0, 0.1, 1.0, 0.2, 0.0, 0.2, 1.0);
         let (p, u, mu) = (Vector3::new(1.0, -0.3, 0.5), Vector3::new(0.1, 2.0, -1.0), 0.4);
         let rho_t = 1.0;
-        // p_T − μ p_N y/‖y‖ scaled by a as the linearisation holds it: with R = μ(p_N − ρ_N u_N) in place of μ p_N.
+        // p_T − μ p_N y/‖y‖ scaled by a as the linearisation holds it: with R = μ(p_N − ρ_N u_N) in
+        // place of μ p_N.
         let equations = |p: Vector3<f64>, u: Vector3<f64>| {
             let y = (p - u * rho_t).yz();
             let bound = mu * (p[0] - u[0] / h[(0, 0)]);
@@ -93,7 +95,8 @@ mod tests {
             let e = 1e-6;
             let mut d = Vector3::zeros();
             d[k] = e;
-            // The friction bound's share of u_N is taken out with the first equation: p_T's rows gain μ ρ_N u_N y.
+            // The friction bound's share of u_N is taken out with the first equation: p_T's rows
+            // gain μ ρ_N u_N y.
             let share = |u: Vector3<f64>| Vector3::new(0.0, y[0], y[1]) * (mu / h[(0, 0)] * u[0]);
             let of_p = (equations(p + d, u) - equations(p - d, u)) / (2.0 * e);
             let of_u = (equations(p, u + d) - equations(p, u - d) - share(u + d) + share(u - d)) / (2.0 * e);

@@ -1,7 +1,8 @@
-//! The law of one contact with all others held, exactly: what a sweep of Gauss–Seidel solves at each contact.
+//! The law of one contact with all others held, exactly: what a sweep of Gauss–Seidel solves at
+//! each contact.
 //!
-//! What depends on the block and on μ alone is worked out once a solve ([`Local::new`]); what is left for each visit is
-//! some tens of multiplications.
+//! What depends on the block and on μ alone is worked out once a solve ([`Local::new`]); what is
+//! left for each visit is some tens of multiplications.
 
 use crate::{one_contact, one_contact_space as space};
 use nalgebra::{Matrix2, Vector2};
@@ -13,7 +14,8 @@ const RANK_TOLERANCE: f64 = 1e-12;
 /// Above this, it costs its solution two digits at most.
 const WELL_CONDITIONED: f64 = 1e-2;
 
-/// With more friction than that, the shift μ‖u_T‖ makes rounding of a sticking contact's velocity felt.
+/// With more friction than that, the shift μ‖u_T‖ makes rounding of a sticking contact's velocity
+/// felt.
 const MUCH: f64 = 10.0;
 
 /// How much `H_NN` must exceed `μ‖H_NT‖` for a block to count as regular: rounding, with room.
@@ -24,14 +26,15 @@ const MARGIN: f64 = 1.0 + 1e-9;
 enum Kind {
     /// μ = 0, or there is no tangent.
     Frictionless,
-    /// The first state that fits is taken: in the plane because there is one only, in space for speed.
+    /// The first state that fits is taken: in the plane because there is one only, in space for
+    /// speed.
     Regular,
     /// All states are tried and the smallest impulse is taken.
     Difficult,
 }
 
-/// One contact's block, friction coefficient, and what follows from them. In this order, as a sliding contact then doesn't
-/// fetch the inverse, which it doesn't need.
+/// One contact's block, friction coefficient, and what follows from them. In this order, as a
+/// sliding contact then doesn't fetch the inverse, which it doesn't need.
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub(crate) struct Local<const D: usize> {
@@ -90,9 +93,9 @@ impl<const D: usize> Local<D> {
         Vector::from_fn(|r, _| self.h[r].iter().zip(p.iter()).fold(0.0, |sum, (h, p)| sum + h * p))
     }
 
-    /// The impulse of the contact whose velocity would be `q` without it. `slip` is what the last visit left there, from
-    /// which the next one starts: a measure of the sliding speed, 0 for a contact that stuck (and at first), −1 for an open
-    /// one. `None` where no state fits.
+    /// The impulse of the contact whose velocity would be `q` without it. `slip` is what the last
+    /// visit left there, from which the next one starts: a measure of the sliding speed, 0 for a
+    /// contact that stuck (and at first), −1 for an open one. `None` where no state fits.
     #[inline(always)]
     pub(crate) fn solve(&self, q: &Vector<D>, slip: &mut f64) -> Option<Vector<D>> {
         if q[0] >= 0.0 {
@@ -147,7 +150,8 @@ impl<const D: usize> Local<D> {
         one_contact::solve(&block, &Vector2::new(q[0], q[1]), mu).map(|p| of(p[0], p[1]))
     }
 
-    /// A step of the natural map from `p` instead, which has the same fixed points: for a contact that no state fits.
+    /// A step of the natural map from `p` instead, which has the same fixed points: for a contact
+    /// that no state fits.
     pub(crate) fn step(&self, q: &Vector<D>, p: &Vector<D>) -> Vector<D> {
         let u = self.velocity(p) + q;
         let trace: f64 = (0..D).map(|i| self.h[i][i]).sum();

@@ -1,27 +1,33 @@
 //! Semi-smooth Newton's method on the law written as equations.
 //!
-//! **What it solves**: exact Signorini–Coulomb in the plane and in space; H may be asymmetric or singular.
+//! **What it solves**: exact Signorini–Coulomb in the plane and in space; H may be asymmetric or
+//! singular.
 //!
-//! **How**: Alart and Curnier's formulation (1991, doi 10.1016/0045-7825(91)90022-X) in the variables (p, u): each contact is open, sticks or
-//! slides at the iterate, and gives D linear equations of that state; a Newton step solves them for all contacts that
-//! press. Slides are linearised with their direction. The equations of sticking contacts are singular where bodies are held
-//! more than once (hyperstatic): H + εI stands in the place of H, which takes of all corrections nearly the smallest. A
-//! step is shortened until the judge's residual falls.
+//! **How**: Alart and Curnier's formulation (1991, doi 10.1016/0045-7825(91)90022-X) in the
+//! variables (p, u): each contact is open, sticks or slides at the iterate, and gives D linear
+//! equations of that state; a Newton step solves them for all contacts that press. Slides are
+//! linearised with their direction. The equations of sticking contacts are singular where bodies
+//! are held more than once (hyperstatic): H + εI stands in the place of H, which takes of all
+//! corrections nearly the smallest. A step is shortened until the judge's residual falls.
 //!
-//! **When to take it**: for accuracy, where Gauss–Seidel crawls: from a start that is right about most states it needs three to
-//! ten steps to rounding.
+//! **When to take it**: for accuracy, where Gauss–Seidel crawls: from a start that is right about
+//! most states it needs three to ten steps to rounding.
 //!
-//! **Cost**: one sparse LU of the blocks of the pressing contacts a step (`block_lu.rs`); its analysis is kept while the pattern stays.
+//! **Cost**: one sparse LU of the blocks of the pressing contacts a step (`block_lu.rs`); its
+//! analysis is kept while the pattern stays.
 //!
-//! **How it fails**: contacts on the border between states can make it cycle or the residual rise along every step. Then it
-//! hands over to a batch of Gauss–Seidel sweeps, each time twice as many, and ends as `stalled` after some of those rounds. Where many contacts
-//! are degenerate, [`Smoothing`](crate::Smoothing) goes through.
+//! **How it fails**: contacts on the border between states can make it cycle or the residual rise
+//! along every step. Then it hands over to a batch of Gauss–Seidel sweeps, each time twice as many,
+//! and ends as `stalled` after some of those rounds. Where many contacts are degenerate,
+//! [`Smoothing`](crate::Smoothing) goes through.
 //!
 //! Departures from the paper:
-//! - The equations are Newton's for (p, u), not for (displacement, p) of a mesh: there are no other unknowns here.
+//! - The equations are Newton's for (p, u), not for (displacement, p) of a mesh: there are no other
+//!   unknowns here.
 //! - Open contacts leave the linear system altogether.
-//! - The globalisation: regularisation raised while steps fail, lowered while they succeed (Levenberg–Marquardt's rule),
-//!   backtracking on the judge's residual, Gauss–Seidel ([`Pgs`]) before and between. The paper has none.
+//! - The globalisation: regularisation raised while steps fail, lowered while they succeed
+//!   (Levenberg–Marquardt's rule), backtracking on the judge's residual, Gauss–Seidel ([`Pgs`])
+//!   before and between. The paper has none.
 
 use crate::Pgs;
 use crate::block_lu::BlockLu;
@@ -39,7 +45,8 @@ const ROUNDS: u32 = 8;
 const STEPS: u32 = 12;
 /// Failed steps in a row that end a round.
 const FAILURES: u32 = 3;
-/// The regularisation ε at the start of a round, its bounds, relative to the mean of H's diagonal; and its factors.
+/// The regularisation ε at the start of a round, its bounds, relative to the mean of H's diagonal;
+/// and its factors.
 const EPSILON: f64 = 1e-7;
 const LEAST_EPSILON: f64 = 1e-12;
 const MOST_EPSILON: f64 = 1e-1;
@@ -52,7 +59,8 @@ const PROGRESS: f64 = 0.7;
 /// Lengths of a step that are tried: 1, ½, ¼, ⅛.
 const HALVINGS: u32 = 4;
 
-/// The semi-smooth Newton solver; see the [crate's table](crate). `iterations` counts Newton steps and the sweeps between them.
+/// The semi-smooth Newton solver; see the [crate's table](crate). `iterations` counts Newton steps
+/// and the sweeps between them.
 #[derive(Clone, Debug, Default)]
 pub struct Newton<const D: usize> {
     scaled: Scaled<D>,
@@ -71,7 +79,8 @@ impl<const D: usize> Newton<D> {
         Self::default()
     }
 
-    /// Takes a problem in for [`Self::round`], and says what one of its steps takes, with all contacts pressing.
+    /// Takes a problem in for [`Self::round`], and says what one of its steps takes, with all
+    /// contacts pressing.
     pub(crate) fn prepare(&mut self, problem: &ContactProblem<'_, D>) -> Work {
         self.scaled.load(problem);
         self.steps.lu.analyse(&self.scaled.h);
@@ -82,8 +91,9 @@ impl<const D: usize> Newton<D> {
         }
     }
 
-    /// A round of Newton steps alone on the problem prepared last, for solvers that bring their own globalisation. Leaves the last of its impulses in
-    /// `p`: each step lowered the residual, but for rounding.
+    /// A round of Newton steps alone on the problem prepared last, for solvers that bring their own
+    /// globalisation. Leaves the last of its impulses in `p`: each step lowered the residual, but
+    /// for rounding.
     pub(crate) fn round(&mut self, problem: &ContactProblem<'_, D>, stop: &Stop<'_>, p: &mut [Vector<D>]) -> Outcome {
         let most = stop.max_iterations.min(STEPS);
         let end = self.steps.round(&self.scaled, None, AIM * stop.tolerance, most, stop, p);
@@ -270,7 +280,8 @@ impl<const D: usize> Steps<D> {
         }
     }
 
-    /// The Newton direction and what it does to the velocities; `diagonal` is added to H. `false` where there is none.
+    /// The Newton direction and what it does to the velocities; `diagonal` is added to H. `false`
+    /// where there is none.
     fn direction(&mut self, scaled: &Scaled<D>, alpha: f64, diagonal: f64, p: &[Vector<D>]) -> bool {
         let (rows, h) = (&self.rows, &scaled.h);
         // Open contacts go to zero at once, and the others feel it.

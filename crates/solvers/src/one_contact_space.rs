@@ -1,24 +1,27 @@
 //! The law of a single contact in space, exactly.
 //!
-//! A contact with `q_N < 0` sticks, `H p = −q` inside the cone, or slides along a direction d (‖d‖ = 1) with
-//! `p = p_N (1, −μ d)`, `u_N = 0` and `u_T = s d`, s ≥ 0. With `u_N = 0` put in, `w = H_NN − μ H_NT·d` and λ = s w this is
+//! A contact with `q_N < 0` sticks, `H p = −q` inside the cone, or slides along a direction d
+//! (‖d‖ = 1) with `p = p_N (1, −μ d)`, `u_N = 0` and `u_T = s d`, s ≥ 0. With `u_N = 0` put in,
+//! `w = H_NN − μ H_NT·d` and λ = s w this is
 //!
 //! ```text
 //! (A + λ I) d = g,   ‖d‖ = 1,   λ ≥ 0,   w > 0
 //! A = μ (q_T H_NT − q_N H_TT),   g = H_NN q_T − q_N H_TN
 //! ```
 //!
-//! which reads like the subproblem of a trust-region method: one unknown, λ. The usual way is the roots of the quartic
-//! `det(A + λI)² = ‖adj(A + λI) g‖²` (Bonnefon and Daviet 2011, INRIA RT-0417, hal-00553859), whose closed form fails
-//! where roots coincide, as they do for `H = c I`. Here, as in Moré and Sorensen's method (1983, doi 10.1137/0904038), Newton's
-//! method starts from the last visit's λ, or from ‖g‖ − ½ tr A (for `H = c I` the root itself), and takes one to three
-//! steps. Where it fails, all roots of the quartic in the interval that can hold any are isolated between those of its
-//! derivatives, and the smallest impulse that obeys the law is taken.
+//! which reads like the subproblem of a trust-region method: one unknown, λ. The usual way is the
+//! roots of the quartic `det(A + λI)² = ‖adj(A + λI) g‖²` (Bonnefon and Daviet 2011, INRIA RT-0417,
+//! hal-00553859), whose closed form fails where roots coincide, as they do for `H = c I`. Here, as
+//! in Moré and Sorensen's method (1983, doi 10.1137/0904038), Newton's method starts from the last
+//! visit's λ, or from ‖g‖ − ½ tr A (for `H = c I` the root itself), and takes one to three steps.
+//! Where it fails, all roots of the quartic in the interval that can hold any are isolated between
+//! those of its derivatives, and the smallest impulse that obeys the law is taken.
 
 use teeter_contact::Block;
 
 type Vector = [f64; 3];
-/// By rows. D is 3: the functions here are generic so that a caller that is can pass its own blocks.
+/// By rows. D is 3: the functions here are generic so that a caller that is can pass its own
+/// blocks.
 type Matrix<const D: usize> = [[f64; D]; D];
 
 /// Most Newton steps before the slow and sure way.
@@ -27,12 +30,14 @@ const STEPS: u32 = 12;
 /// The equation counts as solved by the next step when it is missed by less: the step squares it.
 const NEARLY: f64 = 1e-8;
 
-/// The same from the last visit's λ, which is the nearer the further the sweeps have come: what one visit misses, the next
-/// makes good. A count of steps that doesn't vary is worth more than digits that the next sweep changes.
+/// The same from the last visit's λ, which is the nearer the further the sweeps have come: what one
+/// visit misses, the next makes good. A count of steps that doesn't vary is worth more than digits
+/// that the next sweep changes.
 const WARM: f64 = 1e-2;
 
-/// How far a candidate of the slow way may miss the law, relative to the terms of its velocity: the square root of
-/// rounding, as two roots that coincide are known to no more. The judge has the last word.
+/// How far a candidate of the slow way may miss the law, relative to the terms of its velocity: the
+/// square root of rounding, as two roots that coincide are known to no more. The judge has the last
+/// word.
 const MISS: f64 = 1e-8;
 
 /// The rows of a block.
@@ -40,7 +45,8 @@ pub(crate) fn rows<const D: usize>(h: &Block<D>) -> Matrix<D> {
     std::array::from_fn(|r| std::array::from_fn(|c| h[(r, c)]))
 }
 
-/// The inverse by cofactors, which no scaling of rows and columns disturbs; `None` for a matrix singular to `tolerance`.
+/// The inverse by cofactors, which no scaling of rows and columns disturbs; `None` for a matrix
+/// singular to `tolerance`.
 pub(crate) fn inverse<const D: usize>(h: &Matrix<D>, tolerance: f64) -> Option<Matrix<D>> {
     let cofactor = |r: usize, c: usize| {
         let ((r1, r2), (c1, c2)) = (((r + 1) % 3, (r + 2) % 3), ((c + 1) % 3, (c + 2) % 3));
@@ -66,8 +72,8 @@ fn dot<const D: usize>(a: &[f64; D], b: &Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// `p = −H⁻¹ q` where it lies in the cone; if asked for, refined once, so that what is left of the velocity is rounding
-/// however skewed the block is.
+/// `p = −H⁻¹ q` where it lies in the cone; if asked for, refined once, so that what is left of the
+/// velocity is rounding however skewed the block is.
 #[inline(always)]
 fn stick<const D: usize>(h: &Matrix<D>, inverse: &Matrix<D>, q: &Vector, mu: f64, refine: bool) -> Option<Vector> {
     let solve = |q: &Vector| [-dot(&inverse[0], q), -dot(&inverse[1], q), -dot(&inverse[2], q)];
@@ -113,7 +119,8 @@ impl Slide {
         }
     }
 
-    /// The impulse one Newton step from `slip`, which takes the step too; or, where that is too far, some steps from it.
+    /// The impulse one Newton step from `slip`, which takes the step too; or, where that is too
+    /// far, some steps from it.
     #[inline(always)]
     fn follow<const D: usize>(&self, h: &Matrix<D>, q: &Vector, mu: f64, slip: &mut f64) -> Option<Vector> {
         let lambda = *slip;
@@ -123,7 +130,8 @@ impl Slide {
         let square_of_det = determinant * determinant;
         let half_miss = 0.5 * (square_of_det - (v[0] * v[0] + v[1] * v[1]));
         if half_miss.abs() <= WARM * square_of_det {
-            // As `newton` and then `impulse`, the step's denominator multiplied through: one division less to wait for.
+            // As `newton` and then `impulse`, the step's denominator multiplied through: one
+            // division less to wait for.
             let denominator = slope * determinant - (v[0] * self.g[0] + v[1] * self.g[1]);
             let v = [v[0] * denominator - half_miss * self.g[0], v[1] * denominator - half_miss * self.g[1]];
             let determinant = determinant * denominator - half_miss * slope;
@@ -143,7 +151,8 @@ impl Slide {
         self.impulse(h, q, mu, *slip)
     }
 
-    /// The root that Newton's method finds from `start`, or 0 where it would be negative: the contact sticks.
+    /// The root that Newton's method finds from `start`, or 0 where it would be negative: the
+    /// contact sticks.
     #[inline]
     fn newton(&self, start: f64, nearly: f64, steps: u32) -> Option<f64> {
         let mut lambda = start;
@@ -166,7 +175,8 @@ impl Slide {
         None
     }
 
-    /// The root next to where it would be if A were half its trace times the identity; or else the largest one, from above.
+    /// The root next to where it would be if A were half its trace times the identity; or else the
+    /// largest one, from above.
     fn find_afar(&self, nearly: f64) -> [Option<f64>; 2] {
         let size = |x: &[f64; 2]| (x[0] * x[0] + x[1] * x[1]).sqrt();
         let g = size(&self.g);
@@ -176,8 +186,8 @@ impl Slide {
         [near, if near.is_none_or(|lambda| lambda == 0.0) { above() } else { None }]
     }
 
-    /// The impulse for a root, where it presses. There ‖v‖ = |det|, so d = v/det; with det multiplied through, one division
-    /// is left.
+    /// The impulse for a root, where it presses. There ‖v‖ = |det|, so d = v/det; with det
+    /// multiplied through, one division is left.
     #[inline]
     fn impulse<const D: usize>(&self, h: &Matrix<D>, q: &Vector, mu: f64, lambda: f64) -> Option<Vector> {
         let v = [self.back[0] + lambda * self.g[0], self.back[1] + lambda * self.g[1]];
@@ -204,8 +214,9 @@ fn slide<const D: usize>(h: &Matrix<D>, q: &Vector, mu: f64, d: &[f64; 2]) -> Op
     (w > 0.0 && p_n.is_finite()).then(|| [p_n, -mu * p_n * d[0], -mu * p_n * d[1]])
 }
 
-/// The state that fits: the last visit's if it still does, else sticking, else the slide that Newton's method finds from
-/// afar. `slip` is λ of the last visit, 0 for a contact that stuck. `None` if nothing fits, or Newton's method fails.
+/// The state that fits: the last visit's if it still does, else sticking, else the slide that
+/// Newton's method finds from afar. `slip` is λ of the last visit, 0 for a contact that stuck.
+/// `None` if nothing fits, or Newton's method fails.
 #[inline(always)]
 pub(crate) fn usual<const D: usize>(
     h: &Matrix<D>,
@@ -318,8 +329,9 @@ fn value(c: &[f64], x: f64) -> f64 {
     c.iter().rev().fold(0.0, |sum, c| sum * x + c)
 }
 
-/// The roots of a polynomial (ascending coefficients, up to the fourth degree) in [0, end], between the roots of its
-/// derivative; for the quartic these turning points too, as two roots that coincide don't change its sign.
+/// The roots of a polynomial (ascending coefficients, up to the fourth degree) in [0, end], between
+/// the roots of its derivative; for the quartic these turning points too, as two roots that
+/// coincide don't change its sign.
 fn roots(c: &[f64], end: f64, found: &mut Roots) {
     let degree = c.len() - 1;
     if degree == 0 {

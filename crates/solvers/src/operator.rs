@@ -1,4 +1,5 @@
-//! Products with H for the iterative methods that take many of them: the blocks of a row in one run over memory.
+//! Products with H for the iterative methods that take many of them: the blocks of a row in one run
+//! over memory.
 
 use teeter_contact::{BlockSparse, ContactProblem, Delassus, Vector, de_saxce, project};
 
@@ -37,7 +38,8 @@ impl<'a, const D: usize> Operator<'a, D> {
     }
 }
 
-/// `start + Σ_j H_ij p_j`, with one sum a column of the blocks: sums that don't wait for each other.
+/// `start + Σ_j H_ij p_j`, with one sum a column of the blocks: sums that don't wait for each
+/// other.
 #[inline]
 pub(crate) fn row_product<const D: usize>(
     h: &BlockSparse<D>,
@@ -58,7 +60,8 @@ pub(crate) fn row_product<const D: usize>(
     Vector::from_fn(|r, _| (0..D).fold(start[r], |total, c| total + sums[c][r]))
 }
 
-/// The step that suits contact `i` on its own: the inverse of the mean of its block's diagonal, 1/m.
+/// The step that suits contact `i` on its own: the inverse of the mean of its block's diagonal,
+/// 1/m.
 #[inline]
 pub(crate) fn own_step<const D: usize>(problem: &ContactProblem<'_, D>, i: usize) -> f64 {
     let block = problem.diagonal(i);
@@ -67,9 +70,10 @@ pub(crate) fn own_step<const D: usize>(problem: &ContactProblem<'_, D>, i: usize
     if trace > normal { D as f64 / trace } else { normal.recip() }
 }
 
-/// One step of the natural map of Signorini's and Coulomb's law taken apart (Alart and Curnier 1991): the normal impulse
-/// onto the half line, then the tangential one onto the disk of radius μ times that. Its fixed points are those of the
-/// map with De Saxcé's shift, but its slope doesn't grow with μ.
+/// One step of the natural map of Signorini's and Coulomb's law taken apart (Alart and Curnier
+/// 1991): the normal impulse onto the half line, then the tangential one onto the disk of radius μ
+/// times that. Its fixed points are those of the map with De Saxcé's shift, but its slope doesn't
+/// grow with μ.
 #[inline]
 pub(crate) fn onto_disk<const D: usize>(x: &Vector<D>, mu: f64) -> Vector<D> {
     // Written so that a NaN stays one.
@@ -98,20 +102,22 @@ pub(crate) fn natural_map<const D: usize>(p: &[Vector<D>], u: &[Vector<D>], mu: 
     (0..p.len()).map(|i| map(i).norm_squared()).sum::<f64>().sqrt()
 }
 
-/// As [`natural_map`], with the law's two parts taken apart: no shift, so no rounding of `u_T` that a large μ makes larger.
+/// As [`natural_map`], with the law's two parts taken apart: no shift, so no rounding of `u_T` that
+/// a large μ makes larger.
 pub(crate) fn disk_map<const D: usize>(p: &[Vector<D>], u: &[Vector<D>], mu: &[f64], rho: f64) -> f64 {
     let map = |i: usize| p[i] - onto_disk(&(p[i] - u[i] * rho), mu[i]);
     (0..p.len()).map(|i| map(i).norm_squared()).sum::<f64>().sqrt()
 }
 
-/// Whether some μ is so large that the judge's residual, which holds μ‖u_T‖, can be rounding: then a method asks the judge
-/// itself as soon as [`disk_map`] is small.
+/// Whether some μ is so large that the judge's residual, which holds μ‖u_T‖, can be rounding: then
+/// a method asks the judge itself as soon as [`disk_map`] is small.
 pub(crate) fn is_steep(mu: &[f64]) -> bool {
     mu.iter().any(|mu| *mu > STEEP)
 }
 
-/// De Saxcé's shift μ‖u_T‖; but 0 for a very large μ where the contact sticks: there it vanishes at the solution, and until
-/// then μ would make much of a small slip. (For a usual μ the jump between the two would let the fixed point cycle.)
+/// De Saxcé's shift μ‖u_T‖; but 0 for a very large μ where the contact sticks: there it vanishes at
+/// the solution, and until then μ would make much of a small slip. (For a usual μ the jump between
+/// the two would let the fixed point cycle.)
 pub(crate) fn slip_shift<const D: usize>(p: &Vector<D>, u: &Vector<D>, mu: f64) -> f64 {
     let tangential = |x: &Vector<D>| x.iter().skip(1).fold(0.0, |s: f64, c| s.hypot(*c));
     if mu > STEEP && tangential(p) < (1.0 - 1e-9) * mu * p[0] { 0.0 } else { mu * tangential(u) }

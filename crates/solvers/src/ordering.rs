@@ -5,7 +5,8 @@ use crate::memory::{refill, reserve};
 use faer::dyn_stack::MemBuffer;
 use teeter_contact::BlockSparse;
 
-/// Up to so many contacts the order given is kept: a full factor is small, and ordering costs more than it saves.
+/// Up to so many contacts the order given is kept: a full factor is small, and ordering costs more
+/// than it saves.
 pub(crate) const NATURAL: usize = 24;
 
 /// The symmetric pattern of an operator, and the memory to order it.
@@ -90,8 +91,8 @@ impl Ordering {
         &self.neighbours[self.start[i]..self.start[i + 1]]
     }
 
-    /// `order[k]` is the contact eliminated at step k, `place` its inverse; the order given for few contacts, for which
-    /// ordering costs more than it saves.
+    /// `order[k]` is the contact eliminated at step k, `place` its inverse; the order given for few
+    /// contacts, for which ordering costs more than it saves.
     pub(crate) fn order(&mut self, order: &mut Vec<usize>, place: &mut Vec<usize>) {
         let n = self.start.len() - 1;
         order.clear();
@@ -106,7 +107,8 @@ impl Ordering {
     #[cfg(not(feature = "sparse"))]
     fn minimum_degree(&mut self, _order: &mut [usize], _place: &mut [usize]) {}
 
-    /// By approximate minimum degree, from the order given to the one found (Amestoy, Davis, Duff 1996, doi 10.1137/S0895479894278952).
+    /// By approximate minimum degree, from the order given to the one found (Amestoy, Davis, Duff
+    /// 1996, doi 10.1137/S0895479894278952).
     #[cfg(feature = "sparse")]
     pub(crate) fn minimum_degree(&mut self, order: &mut [usize], place: &mut [usize]) {
         use faer::dyn_stack::MemStack;

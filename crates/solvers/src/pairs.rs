@@ -1,10 +1,13 @@
 //! Gauss–Seidel over pairs of contacts that hold one body twice.
 //!
-//! Two corners of a rigid block that both stick can press against each other along the surface as they like: H has nothing to say
-//! against it. Where the surface bends under the block, their velocities can't quite both be zero, by the surface's change of slope times its
-//! height under the block, which may be 1e-10 of the problem's speed. The pressure must then grow until one of the corners slides. Sweeps
-//! over single contacts add 1e-10 of it each time, and the residual of all those impulses is the same 1e-10: nothing that goes by the residual
-//! gets there either. A pair solved exactly, by its states, is at the end at once; and pairs feel each other as weakly as bodies do.
+//! Two corners of a rigid block that both stick can press against each other along the surface as
+//! they like: H has nothing to say against it. Where the surface bends under the block, their
+//! velocities can't quite both be zero, by the surface's change of slope times its height under the
+//! block, which may be 1e-10 of the problem's speed. The pressure must then grow until one of the
+//! corners slides. Sweeps over single contacts add 1e-10 of it each time, and the residual of all
+//! those impulses is the same 1e-10: nothing that goes by the residual gets there either. A pair
+//! solved exactly, by its states, is at the end at once; and pairs feel each other as weakly as
+//! bodies do.
 
 use crate::Pgs;
 use crate::ending::ended;
@@ -14,7 +17,8 @@ use teeter_contact::{ContactProblem, Delassus, Outcome, Stop, Vector, judge};
 /// An exact method for a few contacts: what it found, if the judge is satisfied.
 pub(crate) type Small<const D: usize> = fn(&ContactProblem<'_, D>, &Stop<'_>, &mut [Vector<D>]) -> Option<Outcome>;
 
-/// Two contacts are a pair if so little of one's tangential compliance is left where the other one is held.
+/// Two contacts are a pair if so little of one's tangential compliance is left where the other one
+/// is held.
 const HELD_TWICE: f64 = 1e-3;
 /// Sweeps at the most, and sweeps in which the residual must fall to this part of it.
 const SWEEPS: u32 = 60;
@@ -64,8 +68,8 @@ impl<const D: usize> Pairs<D> {
         any
     }
 
-    /// Sweeps from `p` until the judge is satisfied, or it no longer gets better. `None` where there are no pairs, or `small` doesn't take
-    /// them; `p` holds the best impulses of all.
+    /// Sweeps from `p` until the judge is satisfied, or it no longer gets better. `None` where
+    /// there are no pairs, or `small` doesn't take them; `p` holds the best impulses of all.
     pub(crate) fn solve(
         &mut self,
         problem: &ContactProblem<'_, D>,

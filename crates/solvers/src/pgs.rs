@@ -1,27 +1,31 @@
 //! Projected (non-smooth) Gauss–Seidel over contacts with an exact local solve.
 //!
-//! **What it solves**: exact Signorini–Coulomb in the plane and in space; H may be asymmetric or singular.
+//! **What it solves**: exact Signorini–Coulomb in the plane and in space; H may be asymmetric or
+//! singular.
 //!
-//! **How**: Jean and Moreau's NSGS (Jean 1999, doi 10.1016/S0045-7825(98)00383-1): each contact in turn is solved exactly
-//! with the others held, in the plane by its four states, in space by one equation for the sliding speed
-//! (`one_contact_space.rs`).
+//! **How**: Jean and Moreau's NSGS (Jean 1999, doi 10.1016/S0045-7825(98)00383-1): each contact in
+//! turn is solved exactly with the others held, in the plane by its four states, in space by one
+//! equation for the sliding speed (`one_contact_space.rs`).
 //!
-//! **When to take it**: to 1e-4 or so for any number of contacts; further where contacts couple weakly or are few.
+//! **When to take it**: to 1e-4 or so for any number of contacts; further where contacts couple
+//! weakly or are few.
 //!
-//! **Cost**: a sweep is one product with H, linear in the number of its blocks; nothing is factorised but the diagonal blocks.
-//! The blocks that aren't zero are copied once a solve, in an order made for sweeps; an operator that is given by what it does is asked for its
-//! row products.
+//! **Cost**: a sweep is one product with H, linear in the number of its blocks; nothing is
+//! factorised but the diagonal blocks. The blocks that aren't zero are copied once a solve, in an
+//! order made for sweeps; an operator that is given by what it does is asked for its row products.
 //!
-//! **How it fails**: convergence is linear, and slow where many contacts share few bodies (stacks, hyperstatic supports)
-//! or masses differ much: tens of thousands of sweeps, or `stalled`. With large μ and strong coupling it may cycle; a
-//! relaxation below 1 ([`Pgs::with_relaxation`]) often ends that. A single contact with several solutions gets the one that its
-//! local solver finds first where the block is regular (H_ii positive definite and H_NN > μ‖H_NT‖), else the smallest;
+//! **How it fails**: convergence is linear, and slow where many contacts share few bodies (stacks,
+//! hyperstatic supports) or masses differ much: tens of thousands of sweeps, or `stalled`. With
+//! large μ and strong coupling it may cycle; a relaxation below 1 ([`Pgs::with_relaxation`]) often
+//! ends that. A single contact with several solutions gets the one that its local solver finds
+//! first where the block is regular (H_ii positive definite and H_NN > μ‖H_NT‖), else the smallest;
 //! a contact without any gets a step of the natural map.
 //!
 //! Departures from the paper:
-//! - The stop is by the judge's residual, not by the increment: a slowly converging iteration has small increments far
-//!   from the solution. The residual costs as much as a sweep, so it is computed only when the increment says that it may be
-//!   small enough (both fall at the same rate, their ratio is known from the last time), or after some sweeps.
+//! - The stop is by the judge's residual, not by the increment: a slowly converging iteration has
+//!   small increments far from the solution. The residual costs as much as a sweep, so it is
+//!   computed only when the increment says that it may be small enough (both fall at the same rate,
+//!   their ratio is known from the last time), or after some sweeps.
 //! - Relaxation, if asked for, is followed by a projection on the cone.
 //! - The best impulses judged are kept and returned.
 
@@ -39,7 +43,8 @@ const CHECK: u32 = 16;
 /// Sweeps without any better residual after which the iteration counts as stalled.
 const STALL: u32 = 1000;
 
-/// What rounding in the velocities may do to the residual, for one unit of 1 + μ; with room for long sums.
+/// What rounding in the velocities may do to the residual, for one unit of 1 + μ; with room for
+/// long sums.
 const ROUNDING: f64 = 1e-13;
 
 /// The Gauss–Seidel solver; see the [crate's table](crate). `iterations` counts sweeps.
@@ -77,8 +82,9 @@ impl<const D: usize> Pgs<D> {
         }
     }
 
-    /// A solver that takes `omega` times the step of the local solve (1: no relaxation), projected on the cone.
-    /// `omega` is kept within 0.05 to 1.95; beyond 0 and 2 the iteration diverges even without friction.
+    /// A solver that takes `omega` times the step of the local solve (1: no relaxation), projected
+    /// on the cone. `omega` is kept within 0.05 to 1.95; beyond 0 and 2 the iteration diverges even
+    /// without friction.
     #[must_use]
     pub fn with_relaxation(omega: f64) -> Self {
         let relaxation = if omega.is_nan() { 1.0 } else { omega.clamp(0.05, 1.95) };
@@ -101,9 +107,9 @@ impl<const D: usize> Pgs<D> {
     fn sweep(&mut self, q: &[Vector<D>], mu: &[f64], p: &mut [Vector<D>], rows: &impl Others<D>) -> f64 {
         let mut moved = 0.0;
         for (i, (local, slip)) in self.locals.iter().zip(&mut self.slips).enumerate() {
-            // The same code three times over, once for each state that the contact was in: the branch on the state is known
-            // long before the sum over the row, and those that wait for the sum then go as they went before. (A quarter of a
-            // sweep's time in space.)
+            // The same code three times over, once for each state that the contact was in: the
+            // branch on the state is known long before the sum over the row, and those that wait
+            // for the sum then go as they went before. (A quarter of a sweep's time in space.)
             let relaxation = self.relaxation;
             moved += if *slip > 0.0 {
                 visit::<SLID, D>(local, slip, q, mu, p, rows, i, relaxation)
@@ -138,7 +144,8 @@ impl<const D: usize> Pgs<D> {
         }
         let unknown = Residual::new(f64::INFINITY, f64::INFINITY, 0);
         let mut residual = unknown;
-        // Nothing at all solves a problem only if no contact approaches: else it isn't worth judging.
+        // Nothing at all solves a problem only if no contact approaches: else it isn't worth
+        // judging.
         let is_zero = |p: &[Vector<D>]| p.iter().all(|x| x.iter().all(|&c| c == 0.0));
         if !is_zero(p) || stop.max_iterations == 0 || q.iter().all(|q| q[0] >= 0.0) {
             residual = self.judged(problem, p, rows);
@@ -157,7 +164,8 @@ impl<const D: usize> Pgs<D> {
         let mut ratio = f64::INFINITY;
         let status = loop {
             if residual.global <= stop.tolerance {
-                // Velocities summed in another order may be judged otherwise where it is as tight as that.
+                // Velocities summed in another order may be judged otherwise where it is as tight
+                // as that.
                 if !(stop.tolerance - residual.global > rounding) {
                     residual = judge(problem, p);
                 }
@@ -307,8 +315,9 @@ mod tests {
 
     #[test]
     fn conforms_with_relaxation() {
-        // Blocks of uneven scales are left out: relaxed, the soft direction comes to its value step by step, and the judge,
-        // which has one scale for all, is satisfied before the law is obeyed in the soft direction's own.
+        // Blocks of uneven scales are left out: relaxed, the soft direction comes to its value step
+        // by step, and the judge, which has one scale for all, is satisfied before the law is
+        // obeyed in the soft direction's own.
         let even: Vec<_> = space_cases().into_iter().filter(|case| !case.name.contains("uneven")).collect();
         for omega in [0.7, 1.2] {
             run(&mut Pgs::with_relaxation(omega), &plane_cases(), 1e-11).unwrap();

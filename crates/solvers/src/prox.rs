@@ -1,21 +1,25 @@
 //! The proximal point method around Newton's.
 //!
-//! **What it solves**: exact Signorini–Coulomb in the plane and in space; H may be asymmetric or singular.
+//! **What it solves**: exact Signorini–Coulomb in the plane and in space; H may be asymmetric or
+//! singular.
 //!
-//! **How**: the outer iteration (Rockafellar 1976, doi 10.1137/0314056; for contact Acary, Brémond, Huber 2018,
-//! doi 10.1007/978-3-319-75972-2_10) solves, from the last impulses c, the problem with H + αI and q − αc, which is better
-//! conditioned and has the original solution as its fixed point. Each of those is solved by semi-smooth Newton steps
-//! ([`Newton`](crate::Newton)), to a hundredth of the residual at hand.
+//! **How**: the outer iteration (Rockafellar 1976, doi 10.1137/0314056; for contact Acary, Brémond,
+//! Huber 2018, doi 10.1007/978-3-319-75972-2_10) solves, from the last impulses c, the problem with
+//! H + αI and q − αc, which is better conditioned and has the original solution as its fixed point.
+//! Each of those is solved by semi-smooth Newton steps ([`Newton`](crate::Newton)), to a hundredth
+//! of the residual at hand.
 //!
-//! **When to take it**: where Newton's steps alone fail because H is singular: hyperstatic problems of moderate size.
+//! **When to take it**: where Newton's steps alone fail because H is singular: hyperstatic problems
+//! of moderate size.
 //!
 //! **Cost**: some Newton steps, each a sparse LU, for each of 5 to 50 outer steps.
 //!
-//! **How it fails**: α must be raised until the inner problem is solved; with a large α the outer iteration is slow, and
-//! ends as `stalled`.
+//! **How it fails**: α must be raised until the inner problem is solved; with a large α the outer
+//! iteration is slow, and ends as `stalled`.
 //!
-//! Departures from the paper: α goes down tenfold after a success and up tenfold after a failure, between which a few sweeps of
-//! Gauss–Seidel move the start; the stop is the judge's, not the increment.
+//! Departures from the paper: α goes down tenfold after a success and up tenfold after a failure,
+//! between which a few sweeps of Gauss–Seidel move the start; the stop is the judge's, not the
+//! increment.
 
 use crate::Pgs;
 use crate::ending::ended;
@@ -37,7 +41,8 @@ const SWEEPS: u32 = 20;
 /// Outer steps without a better residual after which the iteration counts as stalled.
 const PATIENCE: u32 = 40;
 
-/// The proximal point solver; see the [crate's table](crate). `iterations` counts Newton steps and sweeps.
+/// The proximal point solver; see the [crate's table](crate). `iterations` counts Newton steps and
+/// sweeps.
 #[derive(Clone, Debug, Default)]
 pub struct Prox<const D: usize> {
     scaled: Scaled<D>,

@@ -1,8 +1,8 @@
 //! The off-diagonal blocks of H, packed for sweeps.
 //!
-//! Two neighbours of a row lie together, number beside number, so that each pair of numbers is multiplied and added in
-//! one instruction (two lanes are what every x86-64 and ARM64 processor has). A row with an odd number of blocks ends with a
-//! zero block.
+//! Two neighbours of a row lie together, number beside number, so that each pair of numbers is
+//! multiplied and added in one instruction (two lanes are what every x86-64 and ARM64 processor
+//! has). A row with an odd number of blocks ends with a zero block.
 
 use crate::memory::reserve;
 use teeter_contact::{Block, ContactProblem, Delassus, Vector};
@@ -27,7 +27,8 @@ impl<const D: usize> Rows<D> {
         reserve(&mut self.columns, pairs);
     }
 
-    /// Takes the blocks out of a problem, in memory that is kept. False for an operator that is given by what it does.
+    /// Takes the blocks out of a problem, in memory that is kept. False for an operator that is
+    /// given by what it does.
     pub(crate) fn pack(&mut self, problem: &ContactProblem<'_, D>) -> bool {
         let n = problem.contacts();
         self.start.clear();
@@ -94,8 +95,9 @@ impl<const D: usize> Rows<D> {
                 }
             }
         }
-        // Seen together with what follows, the compiler pairs rows instead of lanes, and shuffles all blocks for it: half as
-        // fast. Through `black_box` it can't see, and the values are what they are.
+        // Seen together with what follows, the compiler pairs rows instead of lanes, and shuffles
+        // all blocks for it: half as fast. Through `black_box` it can't see, and the values are
+        // what they are.
         let sums = if D == 3 { std::hint::black_box(sums) } else { sums };
         let mut lanes = sums[0];
         for sum in &sums[1..] {

@@ -1,7 +1,8 @@
 //! A contact problem in its own scale, for solvers that work on a copy of H.
 //!
-//! With ρ = 1/mean(diag H) the problem (ρH, ρq, μ) has the same impulses and velocities that are impulses too, so numbers
-//! without unit (a regularisation, a step) mean the same in every system of units, and the judge's natural map is `p − Π(p − û)`.
+//! With ρ = 1/mean(diag H) the problem (ρH, ρq, μ) has the same impulses and velocities that are
+//! impulses too, so numbers without unit (a regularisation, a step) mean the same in every system
+//! of units, and the judge's natural map is `p − Π(p − û)`.
 
 use crate::memory::reserve;
 use teeter_contact::{BlockSparse, ContactProblem, Vector, de_saxce, project};

@@ -1,15 +1,17 @@
 //! The law of one contact as a smooth equation, with a parameter τ that is driven to zero.
 //!
-//! In the variables `x = (√μ p_N, p_T/√μ)` and `z = (û_N/√μ, √μ u_T)` the law is `x, z ∈ L, xᵀz = 0` with the standard
-//! second-order cone L, and `xᵀz = pᵀû`. With `[λ]_τ = (λ + √(λ² + 4τ²))/2` in the place of the positive part on the two
-//! spectral values `w_N ± ‖w_T‖` of `w = x − z`,
+//! In the variables `x = (√μ p_N, p_T/√μ)` and `z = (û_N/√μ, √μ u_T)` the law is
+//! `x, z ∈ L, xᵀz = 0` with the standard second-order cone L, and `xᵀz = pᵀû`. With
+//! `[λ]_τ = (λ + √(λ² + 4τ²))/2` in the place of the positive part on the two spectral values
+//! `w_N ± ‖w_T‖` of `w = x − z`,
 //!
 //! ```text
 //! F_τ = x − Π_τ(x − z) = 0      ⟺      x, z ∈ int L,  x ∘ z = τ² e
 //! ```
 //!
-//! (Fukushima, Luo, Tseng 2002, doi 10.1137/S1052623400380365): the points of the central path. In û the norm ‖u_T‖ is
-//! smoothed too, as √(‖u_T‖² + τ²) − τ. Without friction only the normal equation is left, and p_T = 0.
+//! (Fukushima, Luo, Tseng 2002, doi 10.1137/S1052623400380365): the points of the central path. In
+//! û the norm ‖u_T‖ is smoothed too, as √(‖u_T‖² + τ²) − τ. Without friction only the normal
+//! equation is left, and p_T = 0.
 
 use teeter_contact::{Block, Vector};
 

@@ -1,25 +1,31 @@
 //! Newton's method along the central path of the smoothed law.
 //!
-//! **What it solves**: exact Signorini–Coulomb in the plane and in space; H may be asymmetric or singular.
+//! **What it solves**: exact Signorini–Coulomb in the plane and in space; H may be asymmetric or
+//! singular.
 //!
-//! **How**: the natural map is smoothed by a parameter τ (`smooth_map.rs`); its zeros are the central path, which leads to a solution
-//! as τ → 0. Newton corrects to the path at one τ, then τ is lowered by a factor that adapts: a correction that takes
-//! few steps lowers it more, one that fails is taken back and tried with less (a non-interior continuation method; Chen and Tseng
-//! 2003, doi 10.1007/s10107-002-0322-8; for second-order cones Hayashi, Yamashita, Fukushima 2005, doi 10.1137/S1052623403421516).
+//! **How**: the natural map is smoothed by a parameter τ (`smooth_map.rs`); its zeros are the
+//! central path, which leads to a solution as τ → 0. Newton corrects to the path at one τ, then τ
+//! is lowered by a factor that adapts: a correction that takes few steps lowers it more, one that
+//! fails is taken back and tried with less (a non-interior continuation method; Chen and Tseng
+//! 2003, doi 10.1007/s10107-002-0322-8; for second-order cones Hayashi, Yamashita, Fukushima 2005,
+//! doi 10.1137/S1052623403421516).
 //!
-//! **When to take it**: for hard problems: many hyperstatic or degenerate contacts, where Gauss–Seidel crawls and
-//! semi-smooth Newton cycles. The path stays away from the borders between states, so what is degenerate at the solution
-//! isn't on the way to it.
+//! **When to take it**: for hard problems: many hyperstatic or degenerate contacts, where
+//! Gauss–Seidel crawls and semi-smooth Newton cycles. The path stays away from the borders between
+//! states, so what is degenerate at the solution isn't on the way to it.
 //!
-//! **Cost**: 15 to 80 sparse LU factorisations with all contacts in (`block_lu.rs`), whatever the start.
+//! **Cost**: 15 to 80 sparse LU factorisations with all contacts in (`block_lu.rs`), whatever the
+//! start.
 //!
-//! **How it fails**: Coulomb's law is not monotone, so with large μ the path can fold. Then it is left: damped steps at a
-//! smaller τ carry over the fold, a few times; else it starts anew with another regularisation, and ends as `stalled` when
-//! none is left. A friction coefficient of 1e6 costs it six digits.
+//! **How it fails**: Coulomb's law is not monotone, so with large μ the path can fold. Then it is
+//! left: damped steps at a smaller τ carry over the fold, a few times; else it starts anew with
+//! another regularisation, and ends as `stalled` when none is left. A friction coefficient of 1e6
+//! costs it six digits.
 //!
 //! Departures from the papers:
-//! - The law is not a monotone complementarity problem: De Saxcé's shift is in the equations, smoothed as well, with its derivative. No proof
-//!   of convergence comes over; what is said of success is measured.
+//! - The law is not a monotone complementarity problem: De Saxcé's shift is in the equations,
+//!   smoothed as well, with its derivative. No proof of convergence comes over; what is said of
+//!   success is measured.
 //! - H + εI in the linear systems, not in the equations, for singular H.
 //! - No predictor: the Newton step from the last centre at the new τ is one to first order.
 
@@ -32,7 +38,8 @@ use teeter_contact::{Block, ContactProblem, ContactSolver, Law, Outcome, Stop, V
 
 /// τ at the start, relative to the size of one contact's impulse.
 const START: f64 = 0.1;
-/// The factor that lowers τ: at first, its least value, and the value at which the path is given up for damped steps.
+/// The factor that lowers τ: at first, its least value, and the value at which the path is given up
+/// for damped steps.
 const FACTOR: f64 = 0.1;
 const LEAST_FACTOR: f64 = 0.01;
 const FOLDED: f64 = 0.9;
@@ -48,13 +55,15 @@ const FOLD_STEPS: u32 = 20;
 /// Steps shorter than this end a correction: on the path, over a fold.
 const SHORTEST: f64 = 0.2;
 const SHORTEST_FOLD: f64 = 0.004;
-/// The regularisations tried, relative to the mean of H's diagonal: in this order, and from where `solve` says, the published
-/// problems are all solved. The hardest of them (RockPile, with μ = 1) owes it to the last decimals.
+/// The regularisations tried, relative to the mean of H's diagonal: in this order, and from where
+/// `solve` says, the published problems are all solved. The hardest of them (RockPile, with μ = 1)
+/// owes it to the last decimals.
 const EPSILONS: [f64; 4] = [1e-6, 1e-5, 1e-4, 1e-7];
 /// Newton steps after which one of them is given up.
 const PATIENCE: u32 = 250;
 
-/// The solver along the central path; see the [crate's table](crate). `iterations` counts Newton steps.
+/// The solver along the central path; see the [crate's table](crate). `iterations` counts Newton
+/// steps.
 #[derive(Clone, Debug, Default)]
 pub struct Smoothing<const D: usize> {
     scaled: Scaled<D>,
@@ -173,8 +182,8 @@ impl<const D: usize> Smoothing<D> {
         ]
     }
 
-    /// Follows the path with one regularisation; `p` is where the first correction starts. Whether the judge is satisfied, or the solve has
-    /// to end.
+    /// Follows the path with one regularisation; `p` is where the first correction starts. Whether
+    /// the judge is satisfied, or the solve has to end.
     fn follow(&mut self, epsilon: f64, stop: &Stop<'_>, p: &mut [Vector<D>]) -> bool {
         let size = self.scaled.size(p);
         let until = self.iterations.saturating_add(PATIENCE).min(stop.max_iterations);
@@ -253,7 +262,8 @@ impl<const D: usize> Smoothing<D> {
         if merit <= centred { Correction::Centred(most) } else { Correction::Missed }
     }
 
-    /// The Newton direction at `p` and what it does to the velocities. Returns ‖F_τ‖, or `None` without a direction.
+    /// The Newton direction at `p` and what it does to the velocities. Returns ‖F_τ‖, or `None`
+    /// without a direction.
     fn direction(&mut self, tau: f64, epsilon: f64, p: &[Vector<D>]) -> Option<f64> {
         let mut merit = 0.0;
         for i in 0..p.len() {
@@ -334,8 +344,8 @@ impl<const D: usize> ContactSolver<D> for Smoothing<D> {
         if !(self.best_residual <= stop.tolerance) && stop.max_iterations > 0 {
             self.lu.analyse(&self.scaled.h);
             for epsilon in EPSILONS {
-                // The path is the same from everywhere, but nothing at all is nearer to its start than a bad guess, and
-                // the best point so far another way on to it.
+                // The path is the same from everywhere, but nothing at all is nearer to its start
+                // than a bad guess, and the best point so far another way on to it.
                 if epsilon == EPSILONS[0] {
                     p.fill(Vector::zeros());
                 } else {
@@ -363,8 +373,9 @@ mod tests {
 
     #[test]
     fn conforms() {
-        // With μ = 1e6 the two parts of a contact's variables lie a million apart, which costs the path six digits. A
-        // block whose diagonal spans 1e8 satisfies the judge, who has one scale for all, before its soft direction is solved.
+        // With μ = 1e6 the two parts of a contact's variables lie a million apart, which costs the
+        // path six digits. A block whose diagonal spans 1e8 satisfies the judge, who has one scale
+        // for all, before its soft direction is solved.
         let kept = |name: &str| !name.contains("huge friction") && !name.contains("uneven");
         let (mut plane, mut space) = (plane_cases(), space_cases());
         plane.retain(|case| kept(case.name));

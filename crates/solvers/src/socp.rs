@@ -1,21 +1,24 @@
 //! The convex (associated) law as one second-order cone program, by Clarabel's interior point.
 //!
-//! **Solves** `min ½ pᵀHp + qᵀp` over the cones ‖p_T‖ ≤ μ p_N (Anitescu 2006, doi 10.1007/s10107-005-0590-7). That is **not**
-//! Coulomb's law: its optimality says `K ∋ p ⊥ u ∈ K*`, so a contact that slides at speed ‖u_T‖ separates at μ‖u_T‖. Where
-//! nothing slides (or μ = 0) the two agree. [`AcaryCadoux`](crate::AcaryCadoux) makes the exact law of it.
+//! **Solves** `min ½ pᵀHp + qᵀp` over the cones ‖p_T‖ ≤ μ p_N (Anitescu 2006, doi
+//! 10.1007/s10107-005-0590-7). That is **not** Coulomb's law: its optimality says `K ∋ p ⊥ u ∈ K*`,
+//! so a contact that slides at speed ‖u_T‖ separates at μ‖u_T‖. Where nothing slides (or μ = 0) the
+//! two agree. [`AcaryCadoux`](crate::AcaryCadoux) makes the exact law of it.
 //!
-//! **What the outcome means**: `converged` speaks of the convex law, by the judge's formula with u in the place of û:
-//! `‖p − Π(p − ρu)‖ / max(‖p‖, ρ‖q‖) ≤ tolerance`. The residual reported is the judge's, of the exact law: on a sliding
-//! problem it stays large, and that is the known gap, not a failure.
+//! **What the outcome means**: `converged` speaks of the convex law, by the judge's formula with u
+//! in the place of û: `‖p − Π(p − ρu)‖ / max(‖p‖, ρ‖q‖) ≤ tolerance`. The residual reported is the
+//! judge's, of the exact law: on a sliding problem it stays large, and that is the known gap, not a
+//! failure.
 //!
-//! **Take it** to compare with programs that use the convex law (Project Chrono, Drake's older solvers, MuJoCo's relatives),
-//! or for the rough start that it gives whatever the condition of H.
-//! **Cost**: a KKT factorisation an interior-point iteration, 10 to 15 of them; `iterations` counts these solves and the
-//! gradients of the polish. Clarabel is set up anew for each problem and allocates in its solve: this solver is the exception
-//! to "kept over steps it allocates nothing".
-//! **Fails**: the interior point reaches some 1e-8 in 3D; accelerated gradients ([`Apgd`] with the shift
-//! held at 0) polish from there, and may run out of iterations on badly conditioned problems. A skew part of H belongs to no
-//! objective: it lags (three programs at most) and the polish settles the rest, if it is small.
+//! **Take it** to compare with programs that use the convex law (Project Chrono, Drake's older
+//! solvers, MuJoCo's relatives), or for the rough start that it gives whatever the condition of H.
+//! **Cost**: a KKT factorisation an interior-point iteration, 10 to 15 of them; `iterations` counts
+//! these solves and the gradients of the polish. Clarabel is set up anew for each problem and
+//! allocates in its solve: this solver is the exception to "kept over steps it allocates nothing".
+//! **Fails**: the interior point reaches some 1e-8 in 3D; accelerated gradients ([`Apgd`] with the
+//! shift held at 0) polish from there, and may run out of iterations on badly conditioned problems.
+//! A skew part of H belongs to no objective: it lags (three programs at most) and the polish
+//! settles the rest, if it is small.
 
 use crate::apgd::{Apgd, convex_map};
 use crate::cone_program::ConeProgram;

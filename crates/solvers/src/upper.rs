@@ -1,10 +1,12 @@
-//! The upper triangle of H's symmetric part in compressed columns, as factorisations and cone programs want it.
+//! The upper triangle of H's symmetric part in compressed columns, as factorisations and cone
+//! programs want it.
 
 use teeter_contact::BlockSparse;
 #[cfg(feature = "clarabel")]
 use teeter_contact::Vector;
 
-/// The upper triangle of S = (H + Hᵀ)/2; its pattern is made once, its values filled in without allocating.
+/// The upper triangle of S = (H + Hᵀ)/2; its pattern is made once, its values filled in without
+/// allocating.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Upper<const D: usize> {
     /// The matrix whose pattern was taken.
@@ -39,7 +41,8 @@ impl<const D: usize> Upper<D> {
                             self.values[at + r] = 0.5 * (block[(r, c)] + block[(c, r)]);
                         }
                     } else {
-                        // A block right of the diagonal lies in the upper triangle as it is, one left of it transposed.
+                        // A block right of the diagonal lies in the upper triangle as it is, one
+                        // left of it transposed.
                         for r in 0..D {
                             self.values[at + r] += 0.5 * if i < j { block[(r, c)] } else { block[(c, r)] };
                         }
@@ -52,7 +55,8 @@ impl<const D: usize> Upper<D> {
 
     fn analyse(&mut self, h: &BlockSparse<D>) {
         let n = h.contacts();
-        // The upper triangle's blocks, by columns; a block may be stored on one side of the diagonal only.
+        // The upper triangle's blocks, by columns; a block may be stored on one side of the
+        // diagonal only.
         let mut upper: Vec<_> = (0..n).flat_map(|i| h.row(i).map(move |(j, _)| (i.max(j), i.min(j)))).collect();
         upper.sort_unstable();
         upper.dedup();
@@ -105,7 +109,8 @@ pub(crate) mod tests {
     use super::*;
     use nalgebra::Matrix2;
 
-    /// (0, 2) is stored above the diagonal only, (1, 0) below only, (1, 2) on both sides, and not symmetric.
+    /// (0, 2) is stored above the diagonal only, (1, 0) below only, (1, 2) on both sides, and not
+    /// symmetric.
     pub(crate) fn one_sided() -> BlockSparse<2> {
         let block = |a: f64| Matrix2::new(a, 0.3, -0.1, a + 1.0);
         BlockSparse::from_rows(&[

@@ -1,34 +1,39 @@
 //! Projection (extragradient) method with a step that adapts itself.
 //!
-//! **Solves** the exact Coulomb law, 2D and 3D, any Delassus operator (an operator that is only a product stays one).
-//! It takes the law as a (quasi-)variational inequality: `p = Π(p − τ u(p))` for any step τ > 0. An iteration is a predictor
-//! `p̄ = Π(p − τ u(p))` and a corrector; the step is cut by 2/3 until `τ ‖u(p̄) − u(p)‖ ≤ 0.9 ‖p̄ − p‖` (Khobotov 1987,
-//! doi 10.1016/0041-5553(87)90058-9) and grown by 3/2 where that ratio is below 0.3. The method and its constants are
-//! those of Siconos' `VI_EG` (Acary, Brémond and Huber 2018, doi 10.1007/978-3-319-75972-2_10).
+//! **Solves** the exact Coulomb law, 2D and 3D, any Delassus operator (an operator that is only a
+//! product stays one). It takes the law as a (quasi-)variational inequality: `p = Π(p − τ u(p))`
+//! for any step τ > 0. An iteration is a predictor `p̄ = Π(p − τ u(p))` and a corrector; the step
+//! is cut by 2/3 until `τ ‖u(p̄) − u(p)‖ ≤ 0.9 ‖p̄ − p‖` (Khobotov 1987, doi
+//! 10.1016/0041-5553(87)90058-9) and grown by 3/2 where that ratio is below 0.3. The method and its
+//! constants are those of Siconos' `VI_EG` (Acary, Brémond and Huber 2018, doi
+//! 10.1007/978-3-319-75972-2_10).
 //!
 //! **Departures.**
-//! - The projection is Alart and Curnier's, normal and tangential part apart, not De Saxcé's shift with a projection onto the
-//!   cone. Both have the same fixed points; the shift's slope grows with μ, and the step would have to shrink with it.
-//! - Each contact has a step of its own, τ over the mean diagonal of its block, and norms are taken in that metric:
-//!   contacts of light and heavy bodies then move alike.
-//! - The corrector starts from the predictor, `Π(p̄ − τ u(p̄))`: two projection steps for one test. That is
-//!   what Siconos' code does, and takes half the products of Khobotov's `Π(p − τ u(p̄))`, which is what converges for
-//!   strongly asymmetric H. So if the residual doesn't fall for some time, Khobotov's corrector takes over.
+//! - The projection is Alart and Curnier's, normal and tangential part apart, not De Saxcé's shift
+//!   with a projection onto the cone. Both have the same fixed points; the shift's slope grows with
+//!   μ, and the step would have to shrink with it.
+//! - Each contact has a step of its own, τ over the mean diagonal of its block, and norms are taken
+//!   in that metric: contacts of light and heavy bodies then move alike.
+//! - The corrector starts from the predictor, `Π(p̄ − τ u(p̄))`: two projection steps for one test.
+//!   That is what Siconos' code does, and takes half the products of Khobotov's `Π(p − τ u(p̄))`,
+//!   which is what converges for strongly asymmetric H. So if the residual doesn't fall for some
+//!   time, Khobotov's corrector takes over.
 //! - Stops by the judge's residual. The best impulses met are kept.
 //!
 //! **Take it** for low accuracy (1e-4) on many contacts, where nothing is to be factorised.
-//! **Cost**: two products with H an iteration.
-//! Capsules-i100 (276 contacts) takes 25 iterations to 1e-4, Spheres-i099 (356) 114 to 1e-4 and 700 to 1e-12, KaplasTower
-//! (570) 275 to 1e-4, OneObject-i1028 (23) 190 and 5100; Siconos' `VI_EG` 110, 206 and 1011, 805, 1263 and 30 270.
-//! **Fails** slowly: the number of iterations grows with the condition of H. Stacks and packings at 1e-8 can take 10⁵:
-//! BoxesStack1 and Capsules-i100 aren't solved to 1e-8. A block
-//! whose own diagonal is badly scaled is not preconditioned: one step serves a contact's normal and tangent.
+//! **Cost**: two products with H an iteration. Capsules-i100 (276 contacts) takes 25 iterations to
+//! 1e-4, Spheres-i099 (356) 114 to 1e-4 and 700 to 1e-12, KaplasTower (570) 275 to 1e-4,
+//! OneObject-i1028 (23) 190 and 5100; Siconos' `VI_EG` 110, 206 and 1011, 805, 1263 and 30 270.
+//! **Fails** slowly: the number of iterations grows with the condition of H. Stacks and packings at
+//! 1e-8 can take 10⁵: BoxesStack1 and Capsules-i100 aren't solved to 1e-8. A block whose own
+//! diagonal is badly scaled is not preconditioned: one step serves a contact's normal and tangent.
 
 use crate::memory::reserve;
 use crate::operator::{Operator, is_steep, natural_map, onto_disk, own_step};
 use teeter_contact::{BlockSparse, ContactProblem, ContactSolver, Law, Outcome, Status, Stop, Vector, judge};
 
-/// Largest ratio τ‖Δu‖/‖Δp‖ of a step that is taken; one that is below [`SMALL`] lets the step grow.
+/// Largest ratio τ‖Δu‖/‖Δp‖ of a step that is taken; one that is below [`SMALL`] lets the step
+/// grow.
 const LARGE: f64 = 0.9;
 /// See [`LARGE`].
 const SMALL: f64 = 0.3;
@@ -38,8 +43,8 @@ const SHRINK: f64 = 2.0 / 3.0;
 const MOST_CUTS: u32 = 100;
 /// The residual is computed every so many iterations, and where the step itself is small enough.
 const CHECK: u32 = 16;
-/// Iterations without a better residual after which Khobotov's corrector takes over, and after which, with it, the
-/// iteration counts as stalled.
+/// Iterations without a better residual after which Khobotov's corrector takes over, and after
+/// which, with it, the iteration counts as stalled.
 const PATIENCE: u32 = 4000;
 
 /// The projection solver; see its [page](self). `iterations` counts predictor–corrector pairs.

@@ -4,9 +4,11 @@
 //!
 //! The error is that of [`Quantity::Accuracy`], the largest of angles, places and deflections. A
 //! step h is taken when the run with it is within the accuracy of the run with h/4, and that with
-//! h/2 is nearer, or all three agree to half the accuracy. Or when the last five runs show errors of second order: that of a
-//! step down to a sixteenth of the finest is then foretold, and measured against a run with half the step. Runs that agree as all of them cut
-//! bounces short on which a landing hangs prove nothing: they are compared up to there. Motions that part from a start 1e-12 beside them are compared up to there, the horizon.
+//! h/2 is nearer, or all three agree to half the accuracy. Or when the last five runs show errors
+//! of second order: that of a step down to a sixteenth of the finest is then foretold, and measured
+//! against a run with half the step. Runs that agree as all of them cut bounces short on which a
+//! landing hangs prove nothing: they are compared up to there. Motions that part from a start 1e-12
+//! beside them are compared up to there, the horizon.
 
 use crate::pilots::Pilots;
 use crate::reference::NUDGE;
@@ -21,8 +23,8 @@ use teeter_scenario::scene::Scene;
 pub struct ChosenStep {
     /// The step, s.
     pub step: f64,
-    /// How far a run with it is from one with a quarter of it, or less, before the horizon; or, where
-    /// the errors are of second order, four thirds of how far it is from one with half of it.
+    /// How far a run with it is from one with a quarter of it, or less, before the horizon; or,
+    /// where the errors are of second order, four thirds of how far it is from one with half of it.
     pub error: f64,
     /// Which of both.
     pub basis: Basis,
@@ -83,14 +85,16 @@ const MOST_SECONDS: f64 = 2.0;
 /// Of the accuracy, what the error may take up by what is measured.
 const ROOM: f64 = 0.9;
 
-/// The finer run is nearer by this factor at least, where errors don't scatter so far below the accuracy.
+/// The finer run is nearer by this factor at least, where errors don't scatter so far below the
+/// accuracy.
 const NEARER: f64 = 0.75;
 const ALIKE: f64 = 0.5;
 
 /// Runs after which those that don't converge are compared up to a horizon.
 const PATIENCE: usize = 5;
 
-/// The same of those in which a landing hangs on bounces that were cut short: shorter steps cut less.
+/// The same of those in which a landing hangs on bounces that were cut short: shorter steps cut
+/// less.
 const PATIENCE_WITH_BOUNCES: usize = 8;
 
 /// Errors that have not fallen below this part in five halvings won't.
@@ -122,8 +126,9 @@ pub fn step_for(scene: &Scene, accuracy: f64, cancel: &AtomicBool) -> Result<Cho
     let mut pilots = Pilots { scene, sampling, cancel, most_seconds: MOST_SECONDS, runs: 0 };
     // The runs so far, from long steps to short ones; none where a run didn't come to its end.
     let mut motions: Vec<(f64, Option<Motion>)> = Vec::new();
-    // An odd number of steps, and one more than twice as many in the next run: halves of a run, quarters … would fall on ends
-    // of steps in all of them, and what happens there, as where a load begins, would look better than it is elsewhere.
+    // An odd number of steps, and one more than twice as many in the next run: halves of a run,
+    // quarters … would fall on ends of steps in all of them, and what happens there, as where a
+    // load begins, would look better than it is elsewhere.
     let mut count = 2.0 * (0.5 * end / longest(scene)).ceil() + 1.0;
     let (mut errors, mut failed) = (Vec::new(), None);
     let mut best = (f64::NAN, f64::INFINITY, end);
@@ -234,16 +239,16 @@ fn halve(motions: &mut [(f64, Option<Motion>)], count: &mut f64) {
 }
 
 /// The step that should do, as a multiple of the finest of five that were each half of the one
-/// before, by how far the motions of neighbours are `apart`. `None` where these don't fall regularly,
-/// or where that step is out of their reach.
+/// before, by how far the motions of neighbours are `apart`. `None` where these don't fall
+/// regularly, or where that step is out of their reach.
 fn by_order(apart: [f64; 4], accuracy: f64) -> Option<f64> {
     let orders = [0, 1, 2].map(|k| (apart[k] / apart[k + 1]).log2());
     let mean = orders.iter().sum::<f64>() / 3.0;
     if !(orders.iter().all(|order| REGULAR.contains(order)) && ON_AVERAGE.contains(&mean)) {
         return None;
     }
-    // Of the finest step, were the errors h² times the largest factor that was seen: how large it is goes by where
-    // in their steps the events are.
+    // Of the finest step, were the errors h² times the largest factor that was seen: how large it
+    // is goes by where in their steps the events are.
     let found = [0, 1, 2, 3].map(|k| apart[k] * 0.25_f64.powi(3 - k as i32) / 3.0);
     let (least, most) = found.iter().fold((f64::INFINITY, 0.0_f64), |(least, most), e| (least.min(*e), most.max(*e)));
     // Where they differ much, there may be larger ones.
@@ -313,7 +318,8 @@ mod tests {
 
     #[test]
     fn a_step_foretold_reaches_its_accuracy() {
-        // Half a sine pushes it into sliding, and begins and ends where steps that halve the run would all end; Housner's block.
+        // Half a sine pushes it into sliding, and begins and ends where steps that halve the run
+        // would all end; Housner's block.
         let path = |name| format!("{}/../../scenarios/{name}.toml", env!("CARGO_MANIFEST_DIR"));
         for (name, accuracy) in [("free-rocking-on-ground", 1e-5), ("shaken-ground", 1e-5), ("pushed-block", 1e-6)] {
             let step = ("time.step".to_owned(), "1 ms".to_owned());
@@ -325,8 +331,8 @@ mod tests {
         }
     }
 
-    /// A slender block slides, and a push topples it: five runs look to be of second order, but what they foretell is 3, 5 and 20
-    /// times too good.
+    /// A slender block slides, and a push topples it: five runs look to be of second order, but
+    /// what they foretell is 3, 5 and 20 times too good.
     #[test]
     fn what_is_foretold_wrongly_is_found_out() {
         let text = "time = { end = '0.6 s', step = '1 ms' }\nground = {}\nmaterial.m = { density = '2700 kg/m^3' }\n\
@@ -342,8 +348,8 @@ mod tests {
         }
     }
 
-    /// A flat block bounces on one corner, e = 0.8, and has just ended that when it lands on the other one: runs that cut the last bounces
-    /// agree to 1e-5, and are 7 % off.
+    /// A flat block bounces on one corner, e = 0.8, and has just ended that when it lands on the
+    /// other one: runs that cut the last bounces agree to 1e-5, and are 7 % off.
     #[test]
     fn runs_that_cut_the_same_bounces_prove_nothing() {
         let text = "time = { end = '0.3 s', step = '1 ms' }\nground = { incline = '10 deg' }\nmaterial.m = { density = '2700 kg/m^3' }\n\

@@ -28,7 +28,8 @@ impl<'a> Against<'a> {
         Ok(Self { source, sampling, reference })
     }
 
-    /// Runs a setting to its end: its errors before the horizon, and what `check` and `run` warn of.
+    /// Runs a setting to its end: its errors before the horizon, and what `check` and `run` warn
+    /// of.
     ///
     /// # Errors
     /// If the scene can't be run with it, or the run ends before its time.

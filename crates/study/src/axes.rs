@@ -1,6 +1,8 @@
-//! What can be varied of a scene to trade speed for accuracy: one entry an axis. A scene has those that mean something in it.
+//! What can be varied of a scene to trade speed for accuracy: one entry an axis. A scene has those
+//! that mean something in it.
 //!
-//! Schemes, kinematics and solvers are the words that the scene file takes, so new ones join by themselves.
+//! Schemes, kinematics and solvers are the words that the scene file takes, so new ones join by
+//! themselves.
 
 use crate::Setting;
 use teeter_scenario::document::Document;
@@ -35,8 +37,9 @@ impl Axis {
     }
 }
 
-/// The axes of a scene. Those of the grid are tried in all their combinations, as what is cheapest in one of them hangs on the others: a coarse mesh
-/// lets few modes do, few modes a long step. The rest is tried one at a time.
+/// The axes of a scene. Those of the grid are tried in all their combinations, as what is cheapest
+/// in one of them hangs on the others: a coarse mesh lets few modes do, few modes a long step. The
+/// rest is tried one at a time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axes {
     /// The time schemes.
@@ -102,7 +105,8 @@ impl Axes {
         [&self.scheme, &self.step].into_iter().chain(&self.grid).chain(&self.others)
     }
 
-    /// All combinations of the schemes with the options of the grid, without the steps: the scene's own first.
+    /// All combinations of the schemes with the options of the grid, without the steps: the scene's
+    /// own first.
     #[must_use]
     pub fn combinations(&self) -> Vec<Setting> {
         let mut all = self.scheme.options.clone();
@@ -148,7 +152,8 @@ impl Axes {
 pub(crate) fn in_seconds(t: f64) -> String {
     const UNITS: [(f64, &str); 4] = [(1.0, "s"), (1e3, "ms"), (1e6, "us"), (1e9, "ns")];
     let (factor, unit) = UNITS.into_iter().find(|(factor, _)| t * factor >= 0.9995).unwrap_or(UNITS[3]);
-    // Twelve digits: what the multiples of a decimal step have, without the rounding of the product.
+    // Twelve digits: what the multiples of a decimal step have, without the rounding of the
+    // product.
     let digits = format!("{:.11e}", t * factor).parse::<f64>().unwrap_or(t * factor);
     format!("{digits} {unit}")
 }
@@ -196,8 +201,8 @@ fn tolerance(resolved: &Resolved) -> Option<Axis> {
 }
 
 fn solver(resolved: &Resolved) -> Option<Axis> {
-    // A convex law is another model, not a cheaper way to this one.
-    // And of the others only those that a scene's few contacts can make faster.
+    // A convex law is another model, not a cheaper way to this one. And of the others only those
+    // that a scene's few contacts can make faster.
     let exact = |name: &str| {
         if !QUICK.contains(&name) {
             return false;
@@ -233,7 +238,8 @@ pub(crate) fn refined(resolved: &Resolved, factor: f64) -> Setting {
     })
 }
 
-/// The kinematics of the deformed beam wherever they are not the scene's own, and all dofs of the mesh.
+/// The kinematics of the deformed beam wherever they are not the scene's own, and all dofs of the
+/// mesh.
 pub(crate) fn unreduced(resolved: &Resolved) -> Setting {
     let mut setting = Setting::none();
     for contact in resolved.scene.contacts.iter().filter(|contact| matches!(contact.surface, Support::Beam(_))) {

@@ -1,4 +1,5 @@
-//! How far a motion is from the reference: the errors that a user cares about, each in a norm of its own.
+//! How far a motion is from the reference: the errors that a user cares about, each in a norm of
+//! its own.
 
 use crate::{Motion, Sampling};
 use teeter_scenario::scene::Scene;
@@ -150,7 +151,8 @@ const TURNS: f64 = 1e-6;
 const BENDS: f64 = 1e-12;
 /// Closing speeds below this part of the largest one are no impacts to compare.
 const IMPACT_SHARE: f64 = 0.05;
-/// A contact that closes again within this part of the run is the same impact: a corner on a beam closes many times.
+/// A contact that closes again within this part of the run is the same impact: a corner on a beam
+/// closes many times.
 const SAME_IMPACT: f64 = 0.01;
 /// Samples of a window of forces, 1/50 of a run.
 const WINDOW: usize = 10;
@@ -194,7 +196,8 @@ impl Ruler {
         self.sampling.time(self.samples.saturating_sub(1))
     }
 
-    /// How many samples from the start on two motions agree, within a share of the motion, in what accuracy is made of.
+    /// How many samples from the start on two motions agree, within a share of the motion, in what
+    /// accuracy is made of.
     #[must_use]
     pub fn agree(&self, a: &Motion, reference: &Motion, share: f64) -> usize {
         let (turn, bend) = (self.turn(reference), self.bend(reference));
@@ -285,8 +288,8 @@ impl Ruler {
         worst
     }
 
-    /// When a block first has an impact and when the next one after it, over the whole run, s: as impact times are compared. `None` where it has
-    /// none.
+    /// When a block first has an impact and when the next one after it, over the whole run, s: as
+    /// impact times are compared. `None` where it has none.
     #[must_use]
     pub(crate) fn first_impacts(&self, motion: &Motion, block: usize) -> Option<(f64, Option<f64>)> {
         let mut times = motion.crossings.get(block)?.clone();
@@ -367,8 +370,8 @@ fn pairs<'a, T>(a: &'a [T], b: &'a [T], each: usize, sample: usize) -> impl Iter
     a[range.clone()].iter().zip(&b[range])
 }
 
-/// The largest difference of times matched in order, over the mean time between the wanted ones up to the horizon; 1 where one is
-/// missing; `None` where none is wanted.
+/// The largest difference of times matched in order, over the mean time between the wanted ones up
+/// to the horizon; 1 where one is missing; `None` where none is wanted.
 fn matched(times: &[f64], wanted: &[f64], horizon: f64) -> Option<f64> {
     let wanted: Vec<f64> = wanted.iter().copied().take_while(|t| *t <= horizon).collect();
     let mean = wanted.last()? / wanted.len() as f64;

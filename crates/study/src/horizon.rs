@@ -1,5 +1,5 @@
-//! How far a reference is to be trusted before anything is advised by it: past the first impacts of the scene. What comes before them is free motion,
-//! or rest, which any setting gets right.
+//! How far a reference is to be trusted before anything is advised by it: past the first impacts of
+//! the scene. What comes before them is free motion, or rest, which any setting gets right.
 
 use crate::{Motion, Ruler};
 
@@ -10,7 +10,8 @@ pub struct FirstImpact {
     pub block: usize,
     /// When, s.
     pub t: f64,
-    /// How far motions must be compared for it to count, s: to the next impact, or half as long again as until this one, so that its effect shows.
+    /// How far motions must be compared for it to count, s: to the next impact, or half as long
+    /// again as until this one, so that its effect shows.
     pub until: f64,
 }
 
@@ -28,7 +29,8 @@ pub(crate) fn first_impacts(ruler: &Ruler, reference: &Motion, end: f64) -> Opti
 }
 
 impl FirstImpact {
-    /// Whether motions that are compared up to the horizon have this impact in them, and what it did.
+    /// Whether motions that are compared up to the horizon have this impact in them, and what it
+    /// did.
     #[must_use]
     pub fn is_within(&self, horizon: f64) -> bool {
         // A sample may fall just short of the end.

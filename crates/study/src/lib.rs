@@ -1,13 +1,16 @@
 //! Many runs of one scene: what accuracy costs.
 //!
-//! [`Tradeoff::of`] runs a scene in many settings ([`Axes`]: scheme, step, θ, mesh, modes, kinematics, solver, tolerance), each against a
-//! [`Reference`] that is itself verified, measures their time, and says which one to take for which accuracy. [`runner`] does jobs on all cores,
+//! [`Tradeoff::of`] runs a scene in many settings ([`Axes`]: scheme, step, θ, mesh, modes,
+//! kinematics, solver, tolerance), each against a [`Reference`] that is itself verified, measures
+//! their time, and says which one to take for which accuracy. [`runner`] does jobs on all cores,
 //! with results in order.
 //!
-//! [`step_for`] finds the step that reaches an accuracy, for scenes that ask for that in place of a step.
+//! [`step_for`] finds the step that reaches an accuracy, for scenes that ask for that in place of a
+//! step.
 //!
-//! What is tried and what is advised is decided by counted [`Work`] and not by the clock: it is the same in every run. Nothing is advised that
-//! `check` or `run` would warn of, and nothing before the first impacts of the scene have been compared.
+//! What is tried and what is advised is decided by counted [`Work`] and not by the clock: it is the
+//! same in every run. Nothing is advised that `check` or `run` would warn of, and nothing before
+//! the first impacts of the scene have been compared.
 
 mod accuracy;
 mod against;

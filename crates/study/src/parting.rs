@@ -1,4 +1,5 @@
-//! Until when the motion of a scene can be told: runs from beside its start and with half its step part from it there.
+//! Until when the motion of a scene can be told: runs from beside its start and with half its step
+//! part from it there.
 
 use crate::pilots::Pilots;
 use crate::reference::NUDGE;
@@ -6,7 +7,8 @@ use crate::{Failure, Motion, Ruler, Sampling};
 use std::sync::atomic::AtomicBool;
 use teeter_scenario::scene::Scene;
 
-/// Motions have parted where they differ by this share of the largest angle, of a block's largest side, or of the largest deflection.
+/// Motions have parted where they differ by this share of the largest angle, of a block's largest
+/// side, or of the largest deflection.
 pub const PARTED: f64 = 1e-2;
 
 /// Samples of a run.
@@ -38,7 +40,8 @@ impl Parting {
     }
 }
 
-/// Finds until when the motion of a scene stays within [`PARTED`] of those from a start [`NUDGE`] beside it and with half the step, by three runs.
+/// Finds until when the motion of a scene stays within [`PARTED`] of those from a start [`NUDGE`]
+/// beside it and with half the step, by three runs.
 ///
 /// # Errors
 /// If a run doesn't come to its end, or the user interrupts.
@@ -53,7 +56,8 @@ pub fn parting(scene: &Scene, cancel: &AtomicBool) -> Result<Parting, Failure> {
     let step = scene.time.step;
     let (own, beside, finer) = (run(step, 0.0)?, run(step, NUDGE)?, run(0.5 * step, 0.0)?);
     let ruler = Ruler::new(scene, sampling);
-    // Relative to the larger of both: what doesn't turn by itself may where it starts beside itself.
+    // Relative to the larger of both: what doesn't turn by itself may where it starts beside
+    // itself.
     let agree = |other: &Motion| ruler.agree(other, &own, PARTED).min(ruler.agree(&own, other, PARTED));
     let until = |other: &Motion| match agree(other) {
         all if all >= sampling.count => end,

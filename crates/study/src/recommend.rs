@@ -1,4 +1,5 @@
-//! Which setting to take for which accuracy: by counted work, so that every run of the study says the same.
+//! Which setting to take for which accuracy: by counted work, so that every run of the study says
+//! the same.
 
 use crate::axes::Axes;
 use crate::row::as_cheap;
@@ -9,8 +10,9 @@ use std::collections::BTreeMap;
 /// The accuracies that are asked for.
 pub const TARGETS: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
 
-/// The advice goes by counted work, so that it is the same in every run. Where another setting was measured in less than this part of the time, it is
-/// told beside it. The least of the runs decides: other work on the machine only adds to a time, by up to a factor of two in the median.
+/// The advice goes by counted work, so that it is the same in every run. Where another setting was
+/// measured in less than this part of the time, it is told beside it. The least of the runs
+/// decides: other work on the machine only adds to a time, by up to a factor of two in the median.
 const CONTRADICTION: f64 = 0.5;
 
 /// What to take for an accuracy.
@@ -20,14 +22,16 @@ pub enum Advice {
     Take {
         /// The row.
         row: usize,
-        /// Another row that does as well and was measured in less than half the time, if there is one.
+        /// Another row that does as well and was measured in less than half the time, if there is
+        /// one.
         faster: Option<usize>,
         /// Whether a finer step of the same setting was tried: it holds the accuracy too, then.
         confirmed: bool,
     },
     /// No setting that was tried is known to be as accurate.
     NotReached,
-    /// Every setting that is known to be as accurate is warned of by `check` or `run`: this is the cheapest, by its number.
+    /// Every setting that is known to be as accurate is warned of by `check` or `run`: this is the
+    /// cheapest, by its number.
     Warned(usize),
     /// The horizon ends before the first impacts of the scene have been compared.
     BeforeImpact,
@@ -35,8 +39,9 @@ pub enum Advice {
     NotMeasurable,
 }
 
-/// What the finer steps of the same setting leave of the accuracy of each row: the largest error of the row and of all those of its finer steps that
-/// were tried. Accuracy that a finer step doesn't confirm was luck.
+/// What the finer steps of the same setting leave of the accuracy of each row: the largest error of
+/// the row and of all those of its finer steps that were tried. Accuracy that a finer step doesn't
+/// confirm was luck.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Held {
     worst: Vec<f64>,
@@ -67,8 +72,8 @@ impl Held {
         held
     }
 
-    /// The rows that are known to be as accurate as `target`: their difference from the reference and the reference's error bar together, and so for
-    /// every finer step that was tried.
+    /// The rows that are known to be as accurate as `target`: their difference from the reference
+    /// and the reference's error bar together, and so for every finer step that was tried.
     pub fn meeting(&self, target: f64, bar: f64) -> impl Iterator<Item = usize> + '_ {
         (0..self.worst.len()).filter(move |&row| self.worst[row] + bar <= target)
     }
@@ -82,7 +87,8 @@ pub(crate) fn eligible(rows: &[Row], held: &Held, target: f64, bar: f64, referen
     held.meeting(target, bar).filter(clean).collect()
 }
 
-/// The least work among these rows; of those within 5 % of it the one that changes least of the scene, then the most accurate, then the first.
+/// The least work among these rows; of those within 5 % of it the one that changes least of the
+/// scene, then the most accurate, then the first.
 #[must_use]
 pub(crate) fn cheapest(rows: &[Row], among: &[usize]) -> Option<usize> {
     let value = |x: Option<f64>| x.unwrap_or(f64::INFINITY);

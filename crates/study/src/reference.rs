@@ -1,4 +1,5 @@
-//! The reference of a trade-off: a run far finer than any candidate, its error bar from independent runs, and the horizon.
+//! The reference of a trade-off: a run far finer than any candidate, its error bar from independent
+//! runs, and the horizon.
 
 use crate::axes::{Axes, in_seconds, refined, unreduced};
 use crate::errors::{Errors, Quantity, Ruler};
@@ -18,13 +19,15 @@ pub struct Reference {
     pub motion: Motion,
     /// The runs that it is verified by.
     pub checks: Vec<Check>,
-    /// How well it is known: quantity by quantity, the largest difference from a check before the horizon.
+    /// How well it is known: quantity by quantity, the largest difference from a check before the
+    /// horizon.
     pub bar: Errors,
     /// What errors are relative to, up to the horizon.
     pub ruler: Ruler,
     /// Whether the horizon is the end of the run.
     pub whole: bool,
-    /// The share of the motion that the horizon is found by: the first of [`SHARES`], or a coarser one where that ends before the first impacts.
+    /// The share of the motion that the horizon is found by: the first of [`SHARES`], or a coarser
+    /// one where that ends before the first impacts.
     pub share: f64,
     /// What the horizon must comprise; `None` in a scene without impacts.
     pub first_impact: Option<FirstImpact>,
@@ -47,16 +50,17 @@ pub struct Check {
     pub for_bar: bool,
 }
 
-/// The horizon is where the reference and the same with another step, or started 1e-12 beside it, have parted by this share of the
-/// motion: of the largest angle, of the largest side of a block, and of the largest deflection. Where that is before the first impacts have been
-/// compared, the next one is taken; the error bar then tells how well the reference is known.
+/// The horizon is where the reference and the same with another step, or started 1e-12 beside it,
+/// have parted by this share of the motion: of the largest angle, of the largest side of a block,
+/// and of the largest deflection. Where that is before the first impacts have been compared, the
+/// next one is taken; the error bar then tells how well the reference is known.
 pub const SHARES: [f64; 3] = [1e-3, 1e-2, 3e-2];
 /// By how much of themselves the first body's coordinates are nudged.
 pub const NUDGE: f64 = 1e-12;
 /// The reference's step as a part of the scene's own, unless that is too much work.
 const STEP: f64 = 0.0025;
-/// Its elements and those of the check, as multiples of the scene's own. With an error that halves from mesh to mesh, the difference of
-/// the two is as large as the error of the finer one.
+/// Its elements and those of the check, as multiples of the scene's own. With an error that halves
+/// from mesh to mesh, the difference of the two is as large as the error of the finer one.
 const MESHES: [f64; 2] = [4.0, 2.0];
 /// Modelled work of the reference, s.
 const MOST_WORK: f64 = 1.2;
@@ -81,7 +85,8 @@ impl Recipe<'_> {
     }
 }
 
-/// A scheme as the reference: its own run, and those beside it that are only done where they are asked for.
+/// A scheme as the reference: its own run, and those beside it that are only done where they are
+/// asked for.
 struct Candidate {
     /// The run itself, and with twice the step.
     fine: Ran,
@@ -153,8 +158,9 @@ pub(crate) fn find(
     let is_enough = |of: &Candidate, samples: usize| {
         impact_of(of).is_none_or(|impact| impact.is_within(ruler.clone().up_to(samples).horizon()))
     };
-    // The scheme that agrees longest with itself comes first; where its horizon ends before the first impacts have been compared, so does the
-    // next one, and then all again with a coarser share.
+    // The scheme that agrees longest with itself comes first; where its horizon ends before the
+    // first impacts have been compared, so does the next one, and then all again with a coarser
+    // share.
     let mut chosen: Option<(usize, f64, usize)> = None;
     'search: for share in SHARES {
         for number in in_order_of_agreement(&candidates, &ruler, share) {
@@ -182,7 +188,8 @@ pub(crate) fn find(
     };
     let Candidate { fine, twice, scheme: best, nudged } = candidates.remove(number);
     let scheme = &schemes[best];
-    // An impact falls somewhere into a step: of two steps one may hit its time by luck, of three hardly any.
+    // An impact falls somewhere into a step: of two steps one may hit its time by luck, of three
+    // hardly any.
     let mut extra = vec![("four times the step", recipe.setting(scheme, 4.0, MESHES[0]))];
     let other_mesh = recipe.setting(scheme, 1.0, MESHES[1]);
     if other_mesh != jobs[2 * best] {
@@ -228,13 +235,15 @@ pub(crate) fn find(
 }
 
 impl Reference {
-    /// Whether the first impacts of the scene, where it has any, are before the horizon with what they did.
+    /// Whether the first impacts of the scene, where it has any, are before the horizon with what
+    /// they did.
     #[must_use]
     pub fn has_first_impacts(&self) -> bool {
         self.first_impact.is_none_or(|impact| impact.is_within(self.ruler.horizon()))
     }
 
-    /// How well the reference is known in a quantity; 0 where the exact value is known, as that of the penetration.
+    /// How well the reference is known in a quantity; 0 where the exact value is known, as that of
+    /// the penetration.
     #[must_use]
     pub fn bar_of(&self, quantity: Quantity) -> f64 {
         if quantity == Quantity::Penetration { 0.0 } else { self.bar.of(quantity).unwrap_or(0.0) }
@@ -257,7 +266,8 @@ fn affordable_step(source: &Source, resolved: &Resolved, axes: &Axes) -> Result<
     Ok(step)
 }
 
-/// The numbers of the candidates, first whose two runs agree the longest, and where several do, the best.
+/// The numbers of the candidates, first whose two runs agree the longest, and where several do, the
+/// best.
 fn in_order_of_agreement(candidates: &[Candidate], ruler: &Ruler, share: f64) -> Vec<usize> {
     let of = |candidate: &Candidate| {
         let (fine, twice) = (&candidate.fine.motion, &candidate.twice.motion);

@@ -55,8 +55,8 @@ impl Row {
     }
 }
 
-/// The numbers of the points (cost, error) that no other one beats: none is at most as dear and at most as wrong, and less in one of
-/// the two. Of equal points the first counts. From cheap to dear.
+/// The numbers of the points (cost, error) that no other one beats: none is at most as dear and at
+/// most as wrong, and less in one of the two. Of equal points the first counts. From cheap to dear.
 ///
 /// ```
 /// let points = [(1.0, 0.5), (2.0, 0.6), (3.0, 0.1), (3.0, 0.1), (0.5, f64::NAN)];
@@ -77,11 +77,12 @@ pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
     order
 }
 
-/// Two costs or two errors nearer to each other than this factor are the same: a solve more or less is no reason to choose.
+/// Two costs or two errors nearer to each other than this factor are the same: a solve more or less
+/// is no reason to choose.
 const SAME: f64 = 1.05;
 
-/// The rows on the front of accuracy over counted work, both in classes 5 % wide; of a class the row that changes least of the scene, then the
-/// first.
+/// The rows on the front of accuracy over counted work, both in classes 5 % wide; of a class the
+/// row that changes least of the scene, then the first.
 #[must_use]
 pub fn front_of(rows: &[Row]) -> Vec<usize> {
     let class = |x: f64| (x.max(f64::MIN_POSITIVE).ln() / SAME.ln()).round();
@@ -92,7 +93,8 @@ pub fn front_of(rows: &[Row]) -> Vec<usize> {
     front(&points).into_iter().map(|k| order[k]).collect()
 }
 
-/// Whether two rows differ in cost or accuracy by more than 5 %, or in whether they came to their end.
+/// Whether two rows differ in cost or accuracy by more than 5 %, or in whether they came to their
+/// end.
 pub(crate) fn differ(a: &Row, b: &Row) -> bool {
     let apart = |a: Option<f64>, b: Option<f64>| match (a, b) {
         (Some(a), Some(b)) => a > SAME * b || b > SAME * a,

@@ -9,9 +9,10 @@ pub fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// Does `work` for every job, on up to `threads` threads, and returns the results in the order of the jobs, whatever the order in
-/// which they came to an end. Jobs are begun in their order. Once `cancel` is set none is begun: its result is `None`.
-/// `done` hears of each job that has ended, from the threads, one at a time.
+/// Does `work` for every job, on up to `threads` threads, and returns the results in the order of
+/// the jobs, whatever the order in which they came to an end. Jobs are begun in their order. Once
+/// `cancel` is set none is begun: its result is `None`. `done` hears of each job that has ended,
+/// from the threads, one at a time.
 ///
 /// ```
 /// use std::sync::atomic::AtomicBool;

@@ -1,4 +1,5 @@
-//! Which settings are tried: cheap ones first, by counted work, until none that is left could be cheaper than what is known to do.
+//! Which settings are tried: cheap ones first, by counted work, until none that is left could be
+//! cheaper than what is known to do.
 
 use crate::axes::Axes;
 use crate::recommend::{Held, TARGETS, cheapest, eligible};
@@ -17,7 +18,8 @@ pub const TOLD: [&str; 5] = [
      confirmed in its place",
 ];
 
-/// Settings that are tried between two looks at what they showed. By their number, so that it is the same on any number of cores.
+/// Settings that are tried between two looks at what they showed. By their number, so that it is
+/// the same on any number of cores.
 const BATCH: usize = 16;
 
 /// How many finer steps confirm a setting.
@@ -48,7 +50,8 @@ impl<'a> Known<'a> {
         Self { axes, rows, tried: rows.iter().map(|row| &row.setting).collect(), cheapest: targets.map(of).collect() }
     }
 
-    /// Beyond this cost, s, no setting is of use for any accuracy; infinite while none is known for one of them.
+    /// Beyond this cost, s, no setting is of use for any accuracy; infinite while none is known for
+    /// one of them.
     fn bound(&self) -> f64 {
         let cost = |row: &Option<usize>| row.and_then(|row| self.rows[row].modelled()).unwrap_or(f64::INFINITY);
         self.cheapest.iter().map(cost).fold(0.0, f64::max)
@@ -80,7 +83,8 @@ impl<'a> Known<'a> {
         self.new_ones(axes.flat_map(|axis| axis.options.iter().cloned()).collect())
     }
 
-    /// What differs in one axis from the cheapest so far: steps, and options that changed something on the scene as it is, or can't be known to do so.
+    /// What differs in one axis from the cheapest so far: steps, and options that changed something
+    /// on the scene as it is, or can't be known to do so.
     pub(crate) fn beside_the_cheapest(&self) -> Vec<Setting> {
         let own = self.rows.iter().find(|row| row.setting.is_none());
         let side: Vec<Setting> = self.axes.others.iter().flat_map(|axis| axis.options.clone()).collect();
@@ -105,7 +109,8 @@ impl<'a> Known<'a> {
         least < self.bound()
     }
 
-    /// The next ones of the grid, which stands from cheap to dear; those that could not be advised are passed over.
+    /// The next ones of the grid, which stands from cheap to dear; those that could not be advised
+    /// are passed over.
     pub(crate) fn next_of_grid(&self, grid: &[Planned], too_dear: &BTreeSet<Setting>) -> Vec<Setting> {
         let bound = self.bound();
         let open = grid.iter().take_while(|one| one.least < bound);
@@ -124,8 +129,9 @@ impl<'a> Known<'a> {
     }
 }
 
-/// All combinations that can be run, the cheapest first by the least that they cost; `expect` tells what a setting costs, and nothing of those that
-/// can't be run. A step costs the same however many there are: one of each ladder is looked at.
+/// All combinations that can be run, the cheapest first by the least that they cost; `expect` tells
+/// what a setting costs, and nothing of those that can't be run. A step costs the same however many
+/// there are: one of each ladder is looked at.
 pub(crate) fn grid(axes: &Axes, steps: &[f64], expect: &dyn Fn(&Setting) -> Option<Work>) -> Vec<Planned> {
     let mut all = Vec::new();
     for combination in axes.combinations() {
@@ -179,7 +185,8 @@ mod tests {
         Work { steps: steps(setting), nodal_dofs: dofs(setting), beams: 1, ..Work::default() }
     }
 
-    /// The error of a made-up scene in which everything hangs together: with scheme b and few modes long steps do.
+    /// The error of a made-up scene in which everything hangs together: with scheme b and few modes
+    /// long steps do.
     fn error(setting: &Setting) -> f64 {
         let step = 1.0 / steps(setting) as f64;
         let in_time = if setting.get("time.scheme").is_some() { 2.0 * step } else { 20.0 * step };
@@ -222,7 +229,8 @@ mod tests {
         };
         assert_eq!(costs(&rows), costs(&all));
         assert_eq!(costs(&rows).iter().flatten().count(), 2, "10 % and 1 % can be had");
-        // The finest accuracies can't: all is tried for them. With the bar above them, the search ends early.
+        // The finest accuracies can't: all is tried for them. With the bar above them, the search
+        // ends early.
         assert_eq!(rows.len(), all.len());
         let coarse = Known::new(&axes, &rows[..2 * BATCH], 0.015, &[]);
         assert!(coarse.bound().is_finite() && !coarse.could_be_cheapest(coarse.bound()));

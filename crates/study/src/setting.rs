@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// Keys of a scene with the values that they are given, as texts that `--set` takes. Two that say the same are equal.
+/// Keys of a scene with the values that they are given, as texts that `--set` takes. Two that say
+/// the same are equal.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Setting(BTreeMap<String, String>);
 

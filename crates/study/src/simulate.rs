@@ -81,8 +81,9 @@ impl Observer<2> for Limit {
     }
 }
 
-/// Runs a setting as [`simulate`] does, but gives it up where its contact solver alone takes so much more than all else that it can't be the
-/// cheapest: a solver that stalls in every step would keep a study for minutes.
+/// Runs a setting as [`simulate`] does, but gives it up where its contact solver alone takes so
+/// much more than all else that it can't be the cheapest: a solver that stalls in every step would
+/// keep a study for minutes.
 pub(crate) fn simulate_unless_dear(
     source: &Source,
     setting: &Setting,
@@ -92,7 +93,8 @@ pub(crate) fn simulate_unless_dear(
     run_within(source, setting, 0.0, sampling, cancel, |work| work.most_iterations())
 }
 
-/// Runs a setting; the coordinates of the first body start greater by the share `nudge` of themselves.
+/// Runs a setting; the coordinates of the first body start greater by the share `nudge` of
+/// themselves.
 pub(crate) fn simulate(
     source: &Source,
     setting: &Setting,
@@ -142,7 +144,8 @@ fn run_within(
     Ok(Ran { motion: sampler.finish(state, &record), work, unconverged: state.tally.unconverged_steps, warned })
 }
 
-/// CPU time of the steps of a run without output, s: of this thread alone, whatever else the machine does. Making the model is not in it.
+/// CPU time of the steps of a run without output, s: of this thread alone, whatever else the
+/// machine does. Making the model is not in it.
 pub(crate) fn time(source: &Source, setting: &Setting, cancel: &AtomicBool) -> Result<f64, Failure> {
     if cancel.load(Ordering::Relaxed) {
         return Err(Failure::Interrupted);

@@ -1,4 +1,5 @@
-//! A scene that is run many times with other settings: its text and the files that it names, read once.
+//! A scene that is run many times with other settings: its text and the files that it names, read
+//! once.
 
 use crate::Setting;
 use std::collections::BTreeMap;
@@ -16,8 +17,8 @@ pub struct Source {
 }
 
 impl Source {
-    /// Reads a scene as [`teeter_scenario::load_with`] does, and keeps what it read. `sets` are the user's own, which every
-    /// run has before the setting that is tried.
+    /// Reads a scene as [`teeter_scenario::load_with`] does, and keeps what it read. `sets` are the
+    /// user's own, which every run has before the setting that is tried.
     ///
     /// # Errors
     /// All that is wrong with the scene.

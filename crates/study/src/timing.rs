@@ -1,5 +1,5 @@
-//! CPU time, measured fairly: one thread at a time, warm, without output, the candidates in turns so that a busy moment of the machine falls on
-//! all of them; the median.
+//! CPU time, measured fairly: one thread at a time, warm, without output, the candidates in turns
+//! so that a busy moment of the machine falls on all of them; the median.
 
 use crate::simulate::time;
 use crate::{Failure, Setting, Source};
@@ -31,7 +31,8 @@ impl Cpu {
 /// How often a short run is measured.
 const SHORT: usize = 7;
 
-/// How often a run is measured, by its modelled cost (s) and not by the clock: short ones vary the most and cost the least.
+/// How often a run is measured, by its modelled cost (s) and not by the clock: short ones vary the
+/// most and cost the least.
 fn runs(modelled: f64) -> usize {
     match modelled {
         short if short < 0.03 => SHORT,
@@ -40,8 +41,9 @@ fn runs(modelled: f64) -> usize {
     }
 }
 
-/// Measures settings, given with their modelled cost (s), in turns. A run of the same setting has been done before, which warms caches of
-/// the long ones; the short ones get one more that doesn't count. `done` hears of each turn.
+/// Measures settings, given with their modelled cost (s), in turns. A run of the same setting has
+/// been done before, which warms caches of the long ones; the short ones get one more that doesn't
+/// count. `done` hears of each turn.
 pub(crate) fn in_turns(
     source: &Source,
     settings: &[(&Setting, f64)],

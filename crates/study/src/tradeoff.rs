@@ -204,8 +204,8 @@ impl Tradeoff {
         ladder.iter().map(of).collect()
     }
 
-    /// Runs settings against the reference, one after the other as long as they are not too much work; all of them together up to `most`, with
-    /// those that were run before.
+    /// Runs settings against the reference, one after the other as long as they are not too much
+    /// work; all of them together up to `most`, with those that were run before.
     fn stage(
         &mut self,
         number: usize,
@@ -269,7 +269,8 @@ impl Tradeoff {
         Ok(rows)
     }
 
-    /// Runs settings against the reference of this study, beside those that it has tried: for who wants to know what it passed over.
+    /// Runs settings against the reference of this study, beside those that it has tried: for who
+    /// wants to know what it passed over.
     ///
     /// # Errors
     /// If the user interrupts.
@@ -283,8 +284,8 @@ impl Tradeoff {
         self.tried(settings, 0, &Run { source, threads, cancel }, |_| {})
     }
 
-    /// The rows whose time is worth measuring: the scene as it is and with other schemes and steps, the front, and for each accuracy those that are
-    /// nearly as cheap as what is advised.
+    /// The rows whose time is worth measuring: the scene as it is and with other schemes and steps,
+    /// the front, and for each accuracy those that are nearly as cheap as what is advised.
     fn to_time(&self) -> Vec<usize> {
         let mut timed = front_of(&self.rows);
         timed.extend((0..self.rows.len()).filter(|&row| self.rows[row].stage == 1));

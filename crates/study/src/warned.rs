@@ -1,4 +1,5 @@
-//! What `check` and `run` warn of in a setting, and which of it is of the scene and not of the setting.
+//! What `check` and `run` warn of in a setting, and which of it is of the scene and not of the
+//! setting.
 
 use teeter_report::Warning;
 use teeter_scenario::diagnostic::Diagnostic;
@@ -6,15 +7,16 @@ use teeter_scenario::diagnostic::Diagnostic;
 /// A warning of a setting.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Warned {
-    /// What it is about, the same for two settings that are warned of the same: the key and the rule without its numbers for what is known before
-    /// the run, the code for what the run meets.
+    /// What it is about, the same for two settings that are warned of the same: the key and the
+    /// rule without its numbers for what is known before the run, the code for what the run meets.
     pub kind: String,
     /// What the user would read.
     pub text: String,
 }
 
 impl Warned {
-    /// The warnings of a scene before its run (notes are none), and those of its run; each kind once.
+    /// The warnings of a scene before its run (notes are none), and those of its run; each kind
+    /// once.
     pub(crate) fn of<'a>(before: impl Iterator<Item = &'a Diagnostic>, run: &[Warning]) -> Vec<Self> {
         let rule = |found: &Diagnostic| {
             let words: String = found.rule.chars().filter(|c| c.is_alphabetic() || *c == ' ').collect();
@@ -31,8 +33,8 @@ impl Warned {
     }
 }
 
-/// The kinds that are of the scene and not of a setting: the reference has them, and so has every one of `rows`. Who can't avoid a warning by what
-/// is chosen is not to be kept from choosing.
+/// The kinds that are of the scene and not of a setting: the reference has them, and so has every
+/// one of `rows`. Who can't avoid a warning by what is chosen is not to be kept from choosing.
 pub(crate) fn of_the_scene<'a>(reference: &[Warned], mut rows: impl Iterator<Item = &'a [Warned]>) -> Vec<String> {
     let has = |warned: &[Warned], kind: &str| warned.iter().any(|one| one.kind == kind);
     let mut kinds: Vec<String> = reference.iter().map(|one| one.kind.clone()).collect();

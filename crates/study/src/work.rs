@@ -1,4 +1,5 @@
-//! Counted work: what a run costs, by what it did and not by the clock, so that a choice made by it is the same in every run.
+//! Counted work: what a run costs, by what it did and not by the clock, so that a choice made by it
+//! is the same in every run.
 
 use teeter_scenario::simulation::Simulation;
 
@@ -25,8 +26,9 @@ pub struct Work {
     pub iterations: u64,
 }
 
-/// The model of the cost: ns for each of what is counted, fitted once to the scenarios on the machine of `benches/results`. Only ratios
-/// count in a choice; `tradeoff.csv` has the time that was measured beside them.
+/// The model of the cost: ns for each of what is counted, fitted once to the scenarios on the
+/// machine of `benches/results`. Only ratios count in a choice; `tradeoff.csv` has the time that
+/// was measured beside them.
 mod cost {
     pub(super) const STEP: f64 = 60.0;
     pub(super) const BLOCK: f64 = 160.0;
@@ -40,7 +42,8 @@ mod cost {
     pub(super) const CONTACT_SHAPE: f64 = 9.0;
     pub(super) const ITERATION: f64 = 10.0;
 
-    /// Schemes that detect and try more often in a step than `moreau-jean`: their factor, 1 where nobody has measured it.
+    /// Schemes that detect and try more often in a step than `moreau-jean`: their factor, 1 where
+    /// nobody has measured it.
     pub(super) const SCHEMES: [(&str, f64); 6] = [
         ("moreau-jean-closed", 1.35),
         ("moreau-jean-located", 1.45),
@@ -83,7 +86,8 @@ impl Work {
         }
     }
 
-    /// Iterations that cost twenty times as much as all else of this work, and a million for short runs.
+    /// Iterations that cost twenty times as much as all else of this work, and a million for short
+    /// runs.
     pub(crate) fn most_iterations(&self) -> u64 {
         const DEAR: f64 = 20.0;
         const ALWAYS: f64 = 1e6;

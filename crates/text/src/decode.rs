@@ -1,4 +1,5 @@
-//! From the text of a file to a [`Document`]: the whole file against the tables of a schema, all errors at once.
+//! From the text of a file to a [`Document`]: the whole file against the tables of a schema, all
+//! errors at once.
 
 use crate::diagnostic::MOST_FINDINGS;
 use crate::diagnostic::{Diagnostic, Diagnostics, printable};
@@ -14,15 +15,17 @@ use crate::wording::expected;
 pub use crate::syntax::LARGEST_FILE;
 use crate::{sets, suggest, syntax};
 
-/// Reads a document. `file` is its name for messages; each of `sets` is a key's path and a value that take precedence over the file.
+/// Reads a document. `file` is its name for messages; each of `sets` is a key's path and a value
+/// that take precedence over the file.
 ///
-/// The text may start with a byte order mark and may have Windows line ends. The value of a setting is taken as
-/// TOML if it is TOML, else as a text: `("time.step", "50 us")` needs no inner quotes.
+/// The text may start with a byte order mark and may have Windows line ends. The value of a setting
+/// is taken as TOML if it is TOML, else as a text: `("time.step", "50 us")` needs no inner quotes.
 ///
 /// An example is at [`Schema`].
 ///
 /// # Errors
-/// All that is wrong in the file and the settings, in the order of the file (of a hopeless file, the first hundreds).
+/// All that is wrong in the file and the settings, in the order of the file (of a hopeless file,
+/// the first hundreds).
 pub fn parse(
     schema: &'static Schema,
     source: &str,
@@ -40,7 +43,8 @@ pub struct Decoded {
     pub document: Document,
     /// What is wrong, in order.
     pub found: Diagnostics,
-    /// Whether every table of the file is in the document, so that what takes several keys can be judged as well.
+    /// Whether every table of the file is in the document, so that what takes several keys can be
+    /// judged as well.
     pub whole: bool,
 }
 
@@ -64,7 +68,8 @@ pub fn decode(schema: &'static Schema, source: &str, file: &str, sets: &[(String
     walk.root(&root);
     let whole = complete && !walk.is_full();
     let Walk { judge, missing, document, .. } = walk;
-    // What was recovered from a broken line has its message already; and what seems to be missing may stand in it.
+    // What was recovered from a broken line has its message already; and what seems to be missing
+    // may stand in it.
     found.0.extend(judge.findings.into_iter().filter(|finding| {
         let place = finding.span.as_ref().map(|span| source.line(span.start));
         place.is_none_or(|line| !bad_lines.contains(&line))
@@ -76,7 +81,8 @@ pub fn decode(schema: &'static Schema, source: &str, file: &str, sets: &[(String
     Decoded { document, found, whole }
 }
 
-/// Sorts findings as they are told: by their place in the file, then those about settings in the order of the settings.
+/// Sorts findings as they are told: by their place in the file, then those about settings in the
+/// order of the settings.
 pub fn in_order(found: &mut Diagnostics, sets: &[(String, String)]) {
     found.0.sort_by_key(|finding| {
         let text = finding.set.as_ref()?;

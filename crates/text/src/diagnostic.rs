@@ -28,13 +28,15 @@ pub struct Diagnostic {
     pub severity: Severity,
     /// The file's name as it was given.
     pub file: String,
-    /// Line and column (both from 1; the column in characters), where the finding has a place in the file.
+    /// Line and column (both from 1; the column in characters), where the finding has a place in
+    /// the file.
     pub position: Option<(usize, usize)>,
     /// Bytes of the source that it is about.
     pub span: Option<Range<usize>>,
     /// `KEY=VALUE`, where it is about a `--set` and not about the file.
     pub set: Option<String>,
-    /// Full path of the key, such as `beam.table.thickness`; empty where the finding is about no key.
+    /// Full path of the key, such as `beam.table.thickness`; empty where the finding is about no
+    /// key.
     pub path: String,
     /// The value as written, shortened if long.
     pub written: Option<String>,
@@ -133,7 +135,8 @@ pub const MOST_PRINTED: usize = 50;
 pub(crate) const MOST_FINDINGS: usize = 200;
 
 impl Diagnostics {
-    /// Sorts by place: findings about the whole file, then by position, then those about `--set` in the order given.
+    /// Sorts by place: findings about the whole file, then by position, then those about `--set` in
+    /// the order given.
     pub fn sort(&mut self) {
         self.0.sort_by_key(|found| (found.set.is_some(), found.span.as_ref().map(|s| s.start)));
     }
@@ -143,8 +146,8 @@ impl Diagnostics {
         self.0.iter().any(|found| found.severity == Severity::Error)
     }
 
-    /// What is said of the findings past [`MOST_PRINTED`]; `None` if there are none. Reading ends early where very much is
-    /// wrong, so that their number is then a lower bound.
+    /// What is said of the findings past [`MOST_PRINTED`]; `None` if there are none. Reading ends
+    /// early where very much is wrong, so that their number is then a lower bound.
     #[must_use]
     pub fn rest(&self) -> Option<String> {
         match self.0.len().saturating_sub(MOST_PRINTED) {
@@ -192,8 +195,8 @@ pub fn printable(text: &str) -> String {
     }
 }
 
-/// Control characters, and those by which text is shown in another order than it is written: what a terminal obeys and
-/// doesn't show.
+/// Control characters, and those by which text is shown in another order than it is written: what a
+/// terminal obeys and doesn't show.
 #[must_use]
 pub fn steers(c: char) -> bool {
     let turns = matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');

@@ -1,11 +1,12 @@
-//! Physical dimensions: exponents over kilogram, metre, second, radian and kelvin, and how people call them.
+//! Physical dimensions: exponents over kilogram, metre, second, radian and kelvin, and how people
+//! call them.
 
 use std::fmt;
 
 /// The dimension of a quantity, as exponents of the base units kg, m, s, rad, K.
 ///
-/// The radian is kept apart so that an angle can be told from a bare number, but it counts as dimensionless wherever
-/// no angle is wanted: see [`Dimension::accepts`].
+/// The radian is kept apart so that an angle can be told from a bare number, but it counts as
+/// dimensionless wherever no angle is wanted: see [`Dimension::accepts`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Dimension {
     /// Exponent of the kilogram.
@@ -79,8 +80,9 @@ impl Dimension {
     /// Viscous damping, N s/m.
     pub const DAMPING: Self = Self::new(1, 0, -1, 0, 0);
 
-    /// Whether a quantity of dimension `got` may stand where `self` is wanted. Where an angle is wanted the radian must
-    /// be there; elsewhere it counts as dimensionless (1/s accepts rad/s, N m accepts N m/rad).
+    /// Whether a quantity of dimension `got` may stand where `self` is wanted. Where an angle is
+    /// wanted the radian must be there; elsewhere it counts as dimensionless (1/s accepts rad/s, N
+    /// m accepts N m/rad).
     ///
     /// ```
     /// use teeter_text::dimension::Dimension;
@@ -95,13 +97,14 @@ impl Dimension {
             && (self.rad == 0 || self.rad == got.rad)
     }
 
-    /// What people call it, with its article: "a length", or "a quantity" where it has no name of its own.
+    /// What people call it, with its article: "a length", or "a quantity" where it has no name of
+    /// its own.
     pub fn name(self) -> &'static str {
         NAMED.iter().find(|named| named.dimension == self).map_or("a quantity", |named| named.name)
     }
 
-    /// Its SI unit as it is read: `m`, `Pa`, `N s/m^2`; made of base units where it has no usual one, and
-    /// empty for a pure number.
+    /// Its SI unit as it is read: `m`, `Pa`, `N s/m^2`; made of base units where it has no usual
+    /// one, and empty for a pure number.
     ///
     /// ```
     /// use teeter_text::dimension::Dimension;

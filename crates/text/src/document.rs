@@ -26,10 +26,12 @@ pub struct Entry {
     pub written: String,
 }
 
-/// A document as decoded by [`crate::decode::parse`]: each value by its path, such as `beam.table.thickness`.
+/// A document as decoded by [`crate::decode::parse`]: each value by its path, such as
+/// `beam.table.thickness`.
 ///
-/// All values are of the kind and in the range that the table of keys gives; the defaults of the table are filled in. Nothing is checked here
-/// that takes two keys: references to names, damping given twice, geometry.
+/// All values are of the kind and in the range that the table of keys gives; the defaults of the
+/// table are filled in. Nothing is checked here that takes two keys: references to names, damping
+/// given twice, geometry.
 ///
 /// The getters return `None` for a path that is absent or holds another kind of value.
 #[derive(Debug, Clone)]
@@ -90,7 +92,8 @@ impl Document {
         self.refused.insert(path.to_owned());
     }
 
-    /// Whether the path was written with something that is no value for it, so that there is a message about it already.
+    /// Whether the path was written with something that is no value for it, so that there is a
+    /// message about it already.
     pub fn is_refused(&self, path: &str) -> bool {
         self.refused.contains(path)
     }
@@ -125,8 +128,8 @@ impl Document {
         self.entries.get(path).is_some_and(|entry| matches!(entry.origin, Origin::File(_) | Origin::Set { .. }))
     }
 
-    /// Whether the document has this table: `ground`, `beam.table`, `beam.table.rayleigh`. Tables that always hold
-    /// are there even if the file does not name them.
+    /// Whether the document has this table: `ground`, `beam.table`, `beam.table.rayleigh`. Tables
+    /// that always hold are there even if the file does not name them.
     pub fn has_table(&self, path: &str) -> bool {
         self.tables.contains_key(path)
     }
@@ -263,9 +266,9 @@ impl Document {
         }
     }
 
-    /// An error about the value or table at a path, placed where it was written; a value that was not written is
-    /// blamed on the header of its table. For rules that take more than one key; make it a warning with
-    /// [`Diagnostic::as_warning`].
+    /// An error about the value or table at a path, placed where it was written; a value that was
+    /// not written is blamed on the header of its table. For rules that take more than one key;
+    /// make it a warning with [`Diagnostic::as_warning`].
     pub fn error(&self, path: &str, rule: impl Into<String>, remedy: impl Into<String>) -> Diagnostic {
         let entry = self.entries.get(path);
         let given = entry.filter(|_| self.is_given(path));
@@ -283,9 +286,10 @@ impl Document {
         }
     }
 
-    /// A copy with one key changed, as if it had been read with `--set key=value` on top: checked in the same way, with all
-    /// that follows from the key (defaults, keys that go with a word of it) read anew. `value` is taken as TOML if it is
-    /// TOML, else as a text. Values that were put in by [`Document::set`] are left out: they are to be derived again.
+    /// A copy with one key changed, as if it had been read with `--set key=value` on top: checked
+    /// in the same way, with all that follows from the key (defaults, keys that go with a word of
+    /// it) read anew. `value` is taken as TOML if it is TOML, else as a text. Values that were put
+    /// in by [`Document::set`] are left out: they are to be derived again.
     ///
     /// ```
     /// # use teeter_text::keys::{Key, Kind, Occurrence, Presence, Range, Table};
@@ -309,7 +313,8 @@ impl Document {
     /// ```
     ///
     /// # Errors
-    /// All that is wrong with the document and this value in it: the path is no key, or the key does not take the value.
+    /// All that is wrong with the document and this value in it: the path is no key, or the key
+    /// does not take the value.
     pub fn with(&self, key: &str, value: impl fmt::Display) -> Result<Self, Diagnostics> {
         let mut sets = self.sets.clone();
         sets.push((key.to_owned(), value.to_string()));
@@ -358,8 +363,9 @@ impl Document {
         self.entries.remove(path);
     }
 
-    /// The document as it stands: every value in the order of the table of keys, defaults written out, quantities in SI units.
-    /// It parses to the same values bit for bit, and writing that out again gives the same bytes.
+    /// The document as it stands: every value in the order of the table of keys, defaults written
+    /// out, quantities in SI units. It parses to the same values bit for bit, and writing that out
+    /// again gives the same bytes.
     pub fn to_toml(&self) -> String {
         let mut out = String::new();
         if let Some(root) = self.schema.root() {
@@ -368,8 +374,8 @@ impl Document {
         out
     }
 
-    /// The document as it stands, as [`Document::to_toml`], with the files that it names rewritten by `path`: for a document that is
-    /// written to another folder.
+    /// The document as it stands, as [`Document::to_toml`], with the files that it names rewritten
+    /// by `path`: for a document that is written to another folder.
     pub fn to_toml_elsewhere(&self, path: impl Fn(&str) -> String) -> String {
         let mut moved = self.clone();
         for entry in moved.entries.values_mut() {

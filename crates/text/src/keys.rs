@@ -1,8 +1,9 @@
 //! The table of keys: what a document may say.
 //!
-//! One entry per key gives its kind, range, default and meaning. Decoding, the defaults written out, the lists of allowed
-//! keys in messages and the addressing by `--set` all follow from the tables of a [`Schema`](crate::schema::Schema); a
-//! program can make its reference page of them, too.
+//! One entry per key gives its kind, range, default and meaning. Decoding, the defaults written
+//! out, the lists of allowed keys in messages and the addressing by `--set` all follow from the
+//! tables of a [`Schema`](crate::schema::Schema); a program can make its reference page of them,
+//! too.
 
 use crate::dimension::Dimension;
 
@@ -56,8 +57,8 @@ pub struct Key {
     pub only_with: Option<OnlyWith>,
 }
 
-/// Words of another key of the same table with which alone a key has a meaning: with others it is refused, and neither
-/// required nor filled in.
+/// Words of another key of the same table with which alone a key has a meaning: with others it is
+/// refused, and neither required nor filled in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct OnlyWith {
     /// The other key.
@@ -81,7 +82,8 @@ pub struct Reserved {
 pub enum Presence {
     /// Must be given wherever its table is.
     Required,
-    /// Must be given with these words of the key that it goes with (`only_with`); optional with the others.
+    /// Must be given with these words of the key that it goes with (`only_with`); optional with the
+    /// others.
     RequiredWith(&'static [&'static str]),
     /// Must be given where this key of the same table is not.
     RequiredWithout(&'static str),
@@ -89,14 +91,16 @@ pub enum Presence {
     Optional,
     /// Stands for this TOML value when left out.
     Default(&'static str),
-    /// Stands for this TOML value when left out, where the sibling key is given; else it stays absent.
+    /// Stands for this TOML value when left out, where the sibling key is given; else it stays
+    /// absent.
     DefaultWith {
         /// The other key of the same table.
         sibling: &'static str,
         /// In TOML.
         value: &'static str,
     },
-    /// Stands for this TOML value when left out, where the sibling key is not given; else it stays absent.
+    /// Stands for this TOML value when left out, where the sibling key is not given; else it stays
+    /// absent.
     DefaultWithout {
         /// The other key of the same table.
         sibling: &'static str,
@@ -114,7 +118,8 @@ pub const LONGEST_TITLE: usize = 200;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Kind {
-    /// A line of text for people, of at most [`LONGEST_TITLE`] characters, none of which steers a terminal.
+    /// A line of text for people, of at most [`LONGEST_TITLE`] characters, none of which steers a
+    /// terminal.
     Text,
     /// A file, relative to the document's own.
     Path,
@@ -159,7 +164,8 @@ pub enum Kind {
     PatternPair,
     /// A quantity that may have one of several units, by which it is understood.
     Measure(&'static [crate::measure::Unit], Range),
-    /// A vector: an array of two quantities x, y, or one quantity that is not negative, for a vector that points downwards.
+    /// A vector: an array of two quantities x, y, or one quantity that is not negative, for a
+    /// vector that points downwards.
     Downward(Dimension),
 }
 
@@ -213,7 +219,8 @@ impl Range {
         self
     }
 
-    /// What is wrong with `value`, in the unit of `dimension` (angles in degrees); `None` where it is allowed.
+    /// What is wrong with `value`, in the unit of `dimension` (angles in degrees); `None` where it
+    /// is allowed.
     ///
     /// ```
     /// use teeter_text::{dimension::Dimension, keys::Range};
@@ -297,7 +304,8 @@ pub enum Found {
 }
 
 impl Key {
-    /// A key that has a meaning wherever its table is; see [`Key::only_with`], [`Key::reserving`] and [`Key::taking`].
+    /// A key that has a meaning wherever its table is; see [`Key::only_with`], [`Key::reserving`]
+    /// and [`Key::taking`].
     #[must_use]
     pub const fn new(
         name: &'static str,
@@ -344,7 +352,8 @@ impl Table {
         self.keys.iter().find(|key| key.name == name)
     }
 
-    /// Last part of the pattern, the star of a named table left off: `time`, `beam`, `damping_ratio`.
+    /// Last part of the pattern, the star of a named table left off: `time`, `beam`,
+    /// `damping_ratio`.
     pub fn name(&self) -> &'static str {
         let pattern = self.pattern.strip_suffix(".*").unwrap_or(self.pattern);
         pattern.rsplit('.').next().unwrap_or(pattern)

@@ -1,5 +1,5 @@
-//! Quantities that may have one of several units, by which they are understood: coefficients of power laws, whose units hold
-//! the exponent.
+//! Quantities that may have one of several units, by which they are understood: coefficients of
+//! power laws, whose units hold the exponent.
 
 use std::fmt;
 

@@ -1,11 +1,13 @@
 //! Quantities with units: reading "36 cm" and writing "0.36 m".
 //!
 //! A quantity is a decimal number, optional blanks, and a product or quotient of powers of units:
-//! `9.81 m/s^2`, `0.4 N s/m^2`, `36cm`, `2700 kg·m⁻³`, `1.5 1/s`, `3 J/(kg K)`. Products and quotients are read from left to right.
+//! `9.81 m/s^2`, `0.4 N s/m^2`, `36cm`, `2700 kg·m⁻³`, `1.5 1/s`, `3 J/(kg K)`. Products and
+//! quotients are read from left to right.
 //!
-//! Powers of ten of the units are added to the exponent in the number's text before it is read, so that "36 cm" is the
-//! double nearest to 0.36, as if it had been written in metres. Multiplying by 0.01 would miss it by one unit in the last place
-//! now and then. The other factors (degree, minute, hour, rpm) multiply.
+//! Powers of ten of the units are added to the exponent in the number's text before it is read, so
+//! that "36 cm" is the double nearest to 0.36, as if it had been written in metres. Multiplying by
+//! 0.01 would miss it by one unit in the last place now and then. The other factors (degree,
+//! minute, hour, rpm) multiply.
 
 use crate::diagnostic::printable;
 use crate::dimension::Dimension;
@@ -119,8 +121,9 @@ pub fn parse(text: &str, wanted: Dimension) -> Result<f64, QuantityError> {
     Ok(quantity.value)
 }
 
-/// Writes a value in SI so that [`parse`] gives the same double back, bit for bit: shortest digits and the usual unit.
-/// The value should be finite; NaN and infinities are written by name and refused when read.
+/// Writes a value in SI so that [`parse`] gives the same double back, bit for bit: shortest digits
+/// and the usual unit. The value should be finite; NaN and infinities are written by name and
+/// refused when read.
 ///
 /// ```
 /// use teeter_text::{dimension::Dimension, quantity};

@@ -2,7 +2,8 @@
 
 use crate::keys::{Found, Occurrence, Presence, Table};
 
-/// What a document may say: its tables of keys, the rules about names, and a few words for messages.
+/// What a document may say: its tables of keys, the rules about names, and a few words for
+/// messages.
 ///
 /// ```
 /// use teeter_text::decode;
@@ -38,7 +39,8 @@ use crate::keys::{Found, Occurrence, Presence, Table};
 pub struct Schema {
     /// What a document is, in a word: "scene".
     pub noun: &'static str,
-    /// The tables, in the order in which they are written out. The root is the one with an empty pattern.
+    /// The tables, in the order in which they are written out. The root is the one with an empty
+    /// pattern.
     pub tables: &'static [Table],
     /// Groups that share their names; none by default.
     pub namespaces: &'static [Namespace],
@@ -57,7 +59,8 @@ pub struct Namespace {
     pub taken: &'static [&'static str],
 }
 
-/// A key by which tables refer to a group's: of a key that is missing there, messages say who uses the table.
+/// A key by which tables refer to a group's: of a key that is missing there, messages say who uses
+/// the table.
 #[derive(Debug, Clone, Copy)]
 pub struct Reference {
     /// The group that is referred to.

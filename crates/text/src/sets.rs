@@ -1,4 +1,5 @@
-//! `--set KEY=VALUE`: put into the tree before it is decoded, so that it goes by the same rules as the file.
+//! `--set KEY=VALUE`: put into the tree before it is decoded, so that it goes by the same rules as
+//! the file.
 
 use crate::diagnostic::Diagnostic;
 use crate::keys::{Found, Kind, Occurrence};
@@ -66,8 +67,8 @@ fn node(schema: &Schema, path: &str, value: &str, origin: &Origin) -> Result<Nod
     }
 }
 
-/// Puts the node at the path; makes the tables on the way. Where something else than a table is in the way, that
-/// is an error of the file which decoding reports.
+/// Puts the node at the path; makes the tables on the way. Where something else than a table is in
+/// the way, that is an error of the file which decoding reports.
 fn insert(branch: &mut Branch, segments: &[&str], node: Node, origin: &Origin) {
     let Some((first, rest)) = segments.split_first() else {
         return;
@@ -120,7 +121,8 @@ fn unknown(schema: &Schema, root: &Branch, path: &str, origin: &Origin, source: 
     }
 }
 
-/// The paths that a pattern stands for, each with a dot at its end: a star is every name that the document has there.
+/// The paths that a pattern stands for, each with a dot at its end: a star is every name that the
+/// document has there.
 fn named_paths(branch: &Branch, pattern: &str, above: &str, all: &mut Vec<String>) {
     let Some((group, below)) = pattern.split_once(".*") else {
         all.push(if pattern.is_empty() { above.to_owned() } else { format!("{above}{pattern}.") });

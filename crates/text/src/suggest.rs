@@ -3,7 +3,8 @@
 /// Longest word that is compared; nothing that long is a slip of the finger.
 const LONGEST: usize = 96;
 
-/// The candidate nearest to `word`, if one is near: at most 1 + length/3 edits, capitals and `_` against `-` not counted.
+/// The candidate nearest to `word`, if one is near: at most 1 + length/3 edits, capitals and `_`
+/// against `-` not counted.
 #[must_use]
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     if word.is_empty() || word.len() > LONGEST {

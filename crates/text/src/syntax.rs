@@ -51,8 +51,9 @@ pub(crate) fn read(schema: &Schema, source: &Source) -> Parsed {
         parsed.errors.push(other_file(schema, &source.file, rule));
         return parsed;
     }
-    // The parser gives up the rest of the file at a key without value: blank such lines and read again. After an unclosed
-    // header it is anyone's guess which table the keys belong to: what follows is left out.
+    // The parser gives up the rest of the file at a key without value: blank such lines and read
+    // again. After an unclosed header it is anyone's guess which table the keys belong to: what
+    // follows is left out.
     let mut text = source.text.clone();
     let mut seen = BTreeSet::new();
     for round in 1.. {
@@ -167,7 +168,8 @@ fn finding(schema: &Schema, source: &Source, span: &Range<usize>, message: &str)
     source.error(&origin, if is_key { &key } else { "" }, rule)
 }
 
-/// The parser doesn't say where: at the first of the lines in which most begins that is within something else.
+/// The parser doesn't say where: at the first of the lines in which most begins that is within
+/// something else.
 fn too_deep(schema: &Schema, source: &Source) -> Diagnostic {
     let depth = |line: &str| line.matches(['.', '[', '{']).count();
     let (mut start, mut deepest, mut most) = (0, 0, 0);
@@ -199,7 +201,8 @@ fn duplicate(source: &Source, span: &Range<usize>) -> Diagnostic {
         let key = source.text.get(span.clone()).unwrap_or_default();
         let before = source.line_text(line).get(..span.end.saturating_sub(source.line_range(line).start));
         if let Some(given) = before.filter(|before| !before.contains('=')) {
-            // Of a dotted key the part up to the one that is taken: by the same key, or by a table of that name.
+            // Of a dotted key the part up to the one that is taken: by the same key, or by a table
+            // of that name.
             let path = join(&table, given.trim());
             let same = |earlier: &usize| match header_of(source, *earlier) {
                 Some(header) => header == path,

@@ -1,4 +1,5 @@
-//! A document as a tree of TOML values in the order of the file, each with its origin; and the reading of TOML into it.
+//! A document as a tree of TOML values in the order of the file, each with its origin; and the
+//! reading of TOML into it.
 
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};

@@ -20,7 +20,8 @@ impl Product {
         Self { powers: [0; 5], shift: 0, above: 1.0, below: 1.0 }
     }
 
-    /// Multiplies by `other`^`exponent`; absurd exponents saturate and are refused with the dimension.
+    /// Multiplies by `other`^`exponent`; absurd exponents saturate and are refused with the
+    /// dimension.
     fn times(&mut self, other: &Self, exponent: i32) {
         for (power, of_other) in self.powers.iter_mut().zip(other.powers) {
             *power = power.saturating_add(of_other.saturating_mul(exponent));

@@ -1,7 +1,8 @@
 //! The table of unit symbols.
 //!
-//! A unit is a power of ten times a factor times base units. The power of ten is kept apart because it goes into the
-//! exponent of the number's text before that is read (see [`crate::quantity`]): "36 cm" is then the double 0.36 itself.
+//! A unit is a power of ten times a factor times base units. The power of ten is kept apart because
+//! it goes into the exponent of the number's text before that is read (see [`crate::quantity`]):
+//! "36 cm" is then the double 0.36 itself.
 
 use std::f64::consts::PI;
 
@@ -114,7 +115,8 @@ pub fn find(symbol: &str) -> Option<&'static Unit> {
 /// Longest symbol, in bytes, for which a suggestion is looked for.
 const LONGEST: usize = 32;
 
-/// What was probably meant by an unknown symbol: a word for a unit, two units run together, or a slip.
+/// What was probably meant by an unknown symbol: a word for a unit, two units run together, or a
+/// slip.
 pub(crate) fn suggest(symbol: &str) -> Option<String> {
     if symbol.len() > LONGEST {
         return None;

@@ -108,7 +108,8 @@ fn a_copy_with_another_value_is_what_reading_with_the_setting_gives() {
     assert!(matches!(both.origin("pipe.main.grain"), Origin::Set { index: 1, .. }));
     let sets = [("site.workers", "2"), ("pipe.main.grain", "3 mm")].map(|(key, value)| (key.into(), value.into()));
     assert_eq!(both.to_toml(), parse(&PLANT, TEXT, "plant.toml", &sets).unwrap().to_toml());
-    // A text of digits needs no quotes, and a word takes the defaults with it that go with another one.
+    // A text of digits needs no quotes, and a word takes the defaults with it that go with another
+    // one.
     assert_eq!(plant.with("title", 7).unwrap().text("title"), Some("7"));
     assert!(!plant.with("pipe.main.wall", "smooth").unwrap().has("pipe.main.grain"));
 }

@@ -1,7 +1,8 @@
 //! Patterns of quantities: a number, and a unit that the program knows.
 //!
-//! A unit of one symbol is one of the dimension wanted. Whether a product or a quotient of units has the right dimension is a sum of
-//! exponents, which no pattern can hold; its symbols are known ones all the same. No look-around: any engine reads these patterns.
+//! A unit of one symbol is one of the dimension wanted. Whether a product or a quotient of units
+//! has the right dimension is a sum of exponents, which no pattern can hold; its symbols are known
+//! ones all the same. No look-around: any engine reads these patterns.
 
 use teeter_scenario::dimension::Dimension;
 use teeter_scenario::keys::{Bound, Range};

@@ -1,4 +1,5 @@
-//! What several keys of one table have to agree on: exclusive keys, keys that need each other, keys of some words of another one.
+//! What several keys of one table have to agree on: exclusive keys, keys that need each other, keys
+//! of some words of another one.
 
 use serde_json::{Map, Value, json};
 use teeter_scenario::keys::{Key, OnlyWith, Presence, Table};

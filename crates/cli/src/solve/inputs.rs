@@ -15,7 +15,8 @@ pub(super) struct Input {
     pub(super) asymmetry: f64,
 }
 
-/// The files among `paths`: a folder stands for all `*.hdf5` below it, sorted. All that is wrong is told at once.
+/// The files among `paths`: a folder stands for all `*.hdf5` below it, sorted. All that is wrong is
+/// told at once.
 pub(super) fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
     let (mut files, mut faults) = (Vec::new(), Vec::new());
     for path in paths {
@@ -100,7 +101,8 @@ impl Choice {
 }
 
 impl Choice {
-    /// Whether a solver is to try a problem: of all of them only those that take so many contacts, one asked for by name in any case.
+    /// Whether a solver is to try a problem: of all of them only those that take so many contacts,
+    /// one asked for by name in any case.
     pub(super) fn takes(&self, info: &SolverInfo, input: &Input) -> bool {
         match self {
             Self::All => info.most_contacts.is_none_or(|most| input.problem.contacts() <= most),
@@ -109,8 +111,8 @@ impl Choice {
     }
 }
 
-/// Takes the names of `--solver`. What follows it may also be a file, as in `solve --solver pgs problem.hdf5`: whatever is
-/// no solver but there on disk goes to `paths`.
+/// Takes the names of `--solver`. What follows it may also be a file, as in
+/// `solve --solver pgs problem.hdf5`: whatever is no solver but there on disk goes to `paths`.
 pub(super) fn choose(names: &[String], paths: &mut Vec<PathBuf>) -> Result<Choice, String> {
     let (mut chosen, mut all) = (Vec::new(), false);
     for name in names {

@@ -12,7 +12,8 @@ const MAX_ITERATIONS: u32 = 1_000_000_000;
 const WORTH: Duration = Duration::from_millis(100);
 /// … or so many times have been measured.
 const SAMPLES: usize = 51;
-/// One sample repeats the solve until it lasts as long as this: the clock's own cost then doesn't show.
+/// One sample repeats the solve until it lasts as long as this: the clock's own cost then doesn't
+/// show.
 const SAMPLE: Duration = Duration::from_micros(20);
 
 /// How a solve went.
@@ -31,8 +32,8 @@ pub(super) struct Measured {
     pub(super) complaint: Option<String>,
 }
 
-/// Solves from p = 0, with a solver that has made its memory ready. A short solve is repeated from the same start with the
-/// same solver, and the median taken; the first one warms it up.
+/// Solves from p = 0, with a solver that has made its memory ready. A short solve is repeated from
+/// the same start with the same solver, and the median taken; the first one warms it up.
 pub(super) fn measure<const D: usize>(
     solver: &mut dyn ContactSolver<D>,
     problem: &ContactProblem<'_, D>,
@@ -103,7 +104,8 @@ fn median_time(first: Duration, mut solve: impl FnMut()) -> Duration {
         (0..times).for_each(|_| solve());
         clock.elapsed().div_f64(f64::from(times))
     };
-    // The first solve of a solver may be slower than the others: how many make a sample is asked of a second one.
+    // The first solve of a solver may be slower than the others: how many make a sample is asked of
+    // a second one.
     let second = sample(1).min(first).max(Duration::from_nanos(20));
     let times = u32::try_from(SAMPLE.as_nanos() / second.as_nanos() + 1).unwrap_or(1);
     let mut samples = Vec::with_capacity(SAMPLES);
@@ -114,7 +116,8 @@ fn median_time(first: Duration, mut solve: impl FnMut()) -> Duration {
     samples[samples.len() / 2]
 }
 
-/// Does the work; sets `cancel` once `limit` has passed, and leaves it alone if the work is done before.
+/// Does the work; sets `cancel` once `limit` has passed, and leaves it alone if the work is done
+/// before.
 fn within<T>(limit: Duration, cancel: &AtomicBool, work: impl FnOnce() -> T) -> T {
     let (done, bell) = (Mutex::new(false), Condvar::new());
     std::thread::scope(|scope| {

@@ -68,7 +68,8 @@ pub(crate) fn solve(options: &Options) -> Exit {
     }
 }
 
-/// Everything that can be wrong with what the user asks for is found here: nothing has run, nothing is written.
+/// Everything that can be wrong with what the user asks for is found here: nothing has run, nothing
+/// is written.
 fn settle(options: &Options) -> Result<(Vec<Input>, Choice), String> {
     let mut paths = options.paths.clone();
     let choice = inputs::choose(&options.solvers, &mut paths)?;
@@ -91,7 +92,8 @@ fn settle(options: &Options) -> Result<(Vec<Input>, Choice), String> {
     Ok((inputs, choice))
 }
 
-/// Makes a folder where these files can be written; what is there already is replaced by `--force` only, and what is read never.
+/// Makes a folder where these files can be written; what is there already is replaced by `--force`
+/// only, and what is read never.
 fn take_folder(folder: &Path, files: &[String], inputs: &[Input], force: bool) -> Result<(), String> {
     let files: Vec<&str> = files.iter().map(String::as_str).collect();
     let inputs: Vec<PathBuf> = inputs.iter().map(|input| PathBuf::from(&input.file)).collect();

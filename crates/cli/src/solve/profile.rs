@@ -1,8 +1,10 @@
-//! `teeter solve --profile`: a table, performance profiles, and a page that says what was measured where.
+//! `teeter solve --profile`: a table, performance profiles, and a page that says what was measured
+//! where.
 //!
-//! A performance profile (Dolan and Moré 2002, doi 10.1007/s101070100263) shows, for each solver, the part of the problems
-//! that it solves within τ times the time of the best solver for that problem. At τ = 1 it shows how often a solver is the
-//! fastest, at the right end how many problems it solves at all.
+//! A performance profile (Dolan and Moré 2002, doi 10.1007/s101070100263) shows, for each solver,
+//! the part of the problems that it solves within τ times the time of the best solver for that
+//! problem. At τ = 1 it shows how often a solver is the fastest, at the right end how many problems
+//! it solves at all.
 
 use super::figure::{self, Curve};
 use super::machine;
@@ -48,7 +50,8 @@ impl<'a> Contest<'a> {
         contest
     }
 
-    /// A solver's times relative to the best solver of each problem, those that it solved, ascending.
+    /// A solver's times relative to the best solver of each problem, those that it solved,
+    /// ascending.
     fn ratios(&self, solver: usize) -> Vec<f64> {
         let mut ratios: Vec<f64> = self
             .times
@@ -66,7 +69,8 @@ impl<'a> Contest<'a> {
         self.times.iter().filter(|times| times[solver].is_some()).count()
     }
 
-    /// Geometric mean of a solver's times over the files that `counts` picks; `None` if there are none.
+    /// Geometric mean of a solver's times over the files that `counts` picks; `None` if there are
+    /// none.
     fn mean(&self, solver: usize, counts: impl Fn(&[Option<f64>]) -> bool) -> Option<f64> {
         let logs: Vec<f64> =
             self.times.iter().filter(|times| counts(times)).filter_map(|times| times[solver]).map(f64::ln).collect();
@@ -123,7 +127,8 @@ impl<'a> Contest<'a> {
     }
 }
 
-/// `table.csv`, a row as soon as it is there: a long comparison that is ended early leaves what it found.
+/// `table.csv`, a row as soon as it is there: a long comparison that is ended early leaves what it
+/// found.
 pub(super) struct Table {
     path: PathBuf,
     file: File,

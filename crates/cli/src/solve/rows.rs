@@ -74,7 +74,8 @@ impl Row {
 pub(super) const CSV_HEADER: &str =
     "file,solver,used,dimension,contacts,tolerance,outcome,residual,iterations,time_ms,asymmetry\n";
 
-/// The table for people; a row can be printed as soon as it is there, as all widths are known before.
+/// The table for people; a row can be printed as soon as it is there, as all widths are known
+/// before.
 #[derive(Debug)]
 pub(super) struct Columns {
     file: usize,

@@ -1,5 +1,5 @@
-//! Files that are no scenes: missing, foreign, cut off, absurdly large. Their messages are not kept word for word where they
-//! depend on the system.
+//! Files that are no scenes: missing, foreign, cut off, absurdly large. Their messages are not kept
+//! word for word where they depend on the system.
 
 use crate::{base, check_refusal, folder, stderr, teeter};
 use std::time::Instant;

@@ -1,4 +1,5 @@
-//! The rows: number, input, and what the message must name. Numbers are those of the table that the project was given.
+//! The rows: number, input, and what the message must name. Numbers are those of the table that the
+//! project was given.
 
 /// How a row's scene is made.
 pub(crate) enum Input {
@@ -10,7 +11,8 @@ pub(crate) enum Input {
     Text(&'static str),
     /// A scene of two blocks on each other with pieces replaced.
     Stack(&'static [(&'static str, &'static str)]),
-    /// The base scene on ground that is shaken by this record; what is absent is a file that isn't there.
+    /// The base scene on ground that is shaken by this record; what is absent is a file that isn't
+    /// there.
     Record(Option<&'static str>),
     /// The base scene with two elements, that start in the shape of this file.
     Shape(&'static str),

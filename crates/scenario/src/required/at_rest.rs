@@ -20,12 +20,14 @@ pub(super) struct Rest {
 /// A trembling of this part of the deflection is no longer rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// The trembling may be so many times the deflection that the rounding of the forces makes in one step, and as many times as there are steps if those
-/// are more: steps add to each other, at worst in time with a mode.
+/// The trembling may be so many times the deflection that the rounding of the forces makes in one
+/// step, and as many times as there are steps if those are more: steps add to each other, at worst
+/// in time with a mode.
 const STEPS_ADD: f64 = 1e3;
 
 impl Rest {
-    /// The rest of a beam, by its number, in a run of so many steps; `None` for one that moves by itself or is moved.
+    /// The rest of a beam, by its number, in a run of so many steps; `None` for one that moves by
+    /// itself or is moved.
     pub(super) fn of(start: &Start<'_>, beam: usize, steps: u64) -> Option<Self> {
         let place = &start.layout.beams[beam];
         let (_, part, _) = start.model.owner(place.body)?;
@@ -71,8 +73,9 @@ impl Rest {
     }
 }
 
-/// What no point of a beam is moved by more than, m, across its axis or along it: from all its dofs, so that it is 0 for the straight
-/// beam alone. In an element of length l the shape functions of the two w sum to 1, those of the two rotations to l/4 at most.
+/// What no point of a beam is moved by more than, m, across its axis or along it: from all its
+/// dofs, so that it is 0 for the straight beam alone. In an element of length l the shape functions
+/// of the two w sum to 1, those of the two rotations to l/4 at most.
 fn size(beam: &Beam, q: &[f64]) -> f64 {
     let longest = beam.node_positions().windows(2).map(|ends| ends[1] - ends[0]).fold(0.0, f64::max);
     let [w, rotation] =

@@ -1,8 +1,9 @@
 //! Blocks that haven't the energy to tip over: their upper corners never touch.
 //!
-//! A block tilted by its critical angle α stands on its diagonal: its mass centre is R over the corner below it, however it came there. If the
-//! energy of the whole model is too little for that, no block is ever tilted by more than an angle short of α, and its upper
-//! corners stay clear of what it stands on.
+//! A block tilted by its critical angle α stands on its diagonal: its mass centre is R over the
+//! corner below it, however it came there. If the energy of the whole model is too little for that,
+//! no block is ever tilted by more than an angle short of α, and its upper corners stay clear of
+//! what it stands on.
 
 use super::beam_bounds::BeamBounds;
 use super::reach::{By, ROUNDING, Reach};
@@ -44,18 +45,20 @@ struct Well {
     low: f64,
 }
 
-/// A beam must be worth the search: it takes some `elements²` operations, and a step hardly notices two points on a long beam.
+/// A beam must be worth the search: it takes some `elements²` operations, and a step hardly notices
+/// two points on a long beam.
 const MOST_ELEMENTS: usize = 200;
 
 /// Steps for each element from which on the search is worth its time.
 const STEPS_AN_ELEMENT: u64 = 100;
 
-/// The scheme of the page can make energy, and contacts sink in by what a step moves: with less room than this part of m g R in all,
-/// a run would meet its limits.
+/// The scheme of the page can make energy, and contacts sink in by what a step moves: with less
+/// room than this part of m g R in all, a run would meet its limits.
 const LEAST_ROOM: f64 = 2e-3;
 
-/// The room between start and barrier is shared: half for energy that the scheme makes, a quarter for penetration, a quarter stays. More
-/// than this part of m g R in all is not given to a run: it would be fast for nothing.
+/// The room between start and barrier is shared: half for energy that the scheme makes, a quarter
+/// for penetration, a quarter stays. More than this part of m g R in all is not given to a run: it
+/// would be fast for nothing.
 const MOST_ROOM: f64 = 2e-2;
 const FOR_ENERGY: f64 = 0.5;
 const FOR_PENETRATION: f64 = 0.25;
@@ -71,7 +74,8 @@ struct Level {
 }
 
 impl Level {
-    /// The energy that the surface can give by sagging under its blocks: of Σ m g w + w²/2F, the least is −F (Σ m g)²/2.
+    /// The energy that the surface can give by sagging under its blocks: of Σ m g w + w²/2F, the
+    /// least is −F (Σ m g)²/2.
     fn sag_energy(&self) -> f64 {
         self.bounds.map_or(0.0, |bounds| 0.5 * bounds.deflection * self.weight * self.weight)
     }
@@ -125,7 +129,8 @@ impl Barrier {
         let sag: f64 = beams.iter().flatten().map(Level::sag_energy).sum();
         let total = all(&weight);
 
-        // Upright on what sags as it may; and with the lower corners on top, for what is not known to be upright.
+        // Upright on what sags as it may; and with the lower corners on top, for what is not known
+        // to be upright.
         let least = all(&|k| weight(k) * (on[k].y + half_height(k))) - sag;
         let worst = all(&|k| weight(k) * (on[k].y - radius(k))) - sag;
         let energy = start.model.energy(start.q, start.v).ok()?.total();
@@ -133,7 +138,8 @@ impl Barrier {
         let room = (0..on.len()).map(barrier).fold(f64::INFINITY, f64::min) - energy;
         let scale = all(&|k| weight(k) * radius(k));
         let needed = if scene.time.scheme.keeps_energy() { ROUNDING } else { LEAST_ROOM };
-        // Heights count from the world's origin: where that is far off, so much of the energy is rounding.
+        // Heights count from the world's origin: where that is far off, so much of the energy is
+        // rounding.
         let lost = ROUNDING * 1e-3 * all(&|k| weight(k) * on[k].y.abs());
         if !(room > needed * scale + lost) {
             return None;
@@ -153,7 +159,8 @@ impl Barrier {
         };
         for level in &beams {
             let swing = level.as_ref().and_then(|level| Some((level, level.bounds?))).map(|(level, bounds)| {
-                // W²/2F − (Σ m g) W ≤ all that is left when the blocks are as low as the others let them.
+                // W²/2F − (Σ m g) W ≤ all that is left when the blocks are as low as the others let
+                // them.
                 let left = limit - least - level.sag_energy();
                 let sagged = bounds.deflection * level.weight;
                 let largest = sagged + (sagged * sagged + 2.0 * bounds.deflection * left).max(0.0).sqrt();
@@ -175,7 +182,8 @@ impl Barrier {
             let height = half_height(k) + (limit - least) / weight(k);
             let angle = alpha - (height / radius).clamp(-1.0, 1.0).acos();
             let fastest = (2.0 * (limit - worst) * (1.0 / mass + radius * radius / inertia)).sqrt() + fall;
-            // A corner that comes as fast as can be sinks in by half a step's way, or the run would meet its limits for nothing.
+            // A corner that comes as fast as can be sinks in by half a step's way, or the run would
+            // meet its limits for nothing.
             let impact = (2.0 * (limit - least) * (1.0 / mass + radius * radius / inertia)).sqrt();
             let shallow = 0.5 * start.scene.time.step * impact <= proof.limits.penetration;
             let spin = (2.0 * (limit - worst) / inertia).sqrt();
@@ -197,7 +205,8 @@ impl Barrier {
             };
             let ([_, _, phi], _) = start.block(k);
             let starts_in = phi.abs() <= angle;
-            // Not even a single step, as fast as can be, leads across the band of angles that it hasn't the energy for.
+            // Not even a single step, as fast as can be, leads across the band of angles that it
+            // hasn't the energy for.
             let stays_in = start.scene.time.step * spin < 2.0 * (alpha - angle);
             let clear = well.upper - 2.0 * swing - depth - 2.0 * ahead > gap;
             if !(starts_in && stays_in && clear && shallow) {
@@ -228,7 +237,8 @@ impl Barrier {
         Reach { x: [x - away, x + away], y: well.low, by: By::Energy }
     }
 
-    /// The largest deflection of a beam that is stood on, m, and its largest slope; without bound for others.
+    /// The largest deflection of a beam that is stood on, m, and its largest slope; without bound
+    /// for others.
     pub(super) fn swing(&self, beam: usize) -> (f64, f64) {
         self.deflections[beam].map_or((f64::INFINITY, f64::INFINITY), |w| (w, self.steepest))
     }
@@ -253,7 +263,8 @@ impl Barrier {
     }
 }
 
-/// Whether nothing gives energy to what moves: gravity straight down, nothing loaded or driven, a scheme that doesn't grow.
+/// Whether nothing gives energy to what moves: gravity straight down, nothing loaded or driven, a
+/// scheme that doesn't grow.
 fn conserves(start: &Start<'_>) -> bool {
     let scene = start.scene;
     let down = scene.gravity[0] == 0.0 && scene.gravity[1] < 0.0;
@@ -261,8 +272,8 @@ fn conserves(start: &Start<'_>) -> bool {
         || scene.beams.iter().any(|beam| beam.motion.is_given())
         || scene.ground.as_ref().is_some_and(|ground| ground.motion.is_given());
     let weighty = scene.beams.iter().any(|beam| beam.self_weight);
-    // A beam beyond its buckling load, or one under compression that may turn as a whole, has energy below that of its straight shape
-    // to give.
+    // A beam beyond its buckling load, or one under compression that may turn as a whole, has
+    // energy below that of its straight shape to give.
     let stable = scene
         .beams
         .iter()
@@ -286,7 +297,8 @@ fn loses(contact: &ContactScene) -> bool {
 /// The weights of a static solve.
 pub(super) const STATIC: MatrixWeights = MatrixWeights { mass: 0.0, damping: 0.0, stiffness: 1.0 };
 
-/// What is known of a beam's motion by its energy; `None` for one that this is not for, or not worth its time.
+/// What is known of a beam's motion by its energy; `None` for one that this is not for, or not
+/// worth its time.
 fn bounds(start: &Start<'_>, beam: usize) -> Option<BeamBounds> {
     let (of, place) = (&start.scene.beams[beam], &start.layout.beams[beam]);
     let elements = place.beam.elements();

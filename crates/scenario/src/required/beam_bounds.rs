@@ -3,8 +3,8 @@
 use super::barrier::STATIC;
 use teeter_beam::Beam;
 
-/// Bounds of a beam's motion by its energy: |w| ≤ √(2 `deflection` U), |w'| ≤ √(2 `slope` U) for an elastic energy U, |ẇ| ≤ √(2 `velocity` T)
-/// for a kinetic energy T, all along the beam.
+/// Bounds of a beam's motion by its energy: |w| ≤ √(2 `deflection` U), |w'| ≤ √(2 `slope` U) for an
+/// elastic energy U, |ẇ| ≤ √(2 `velocity` T) for a kinetic energy T, all along the beam.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct BeamBounds {
     /// Largest N K⁻¹ Nᵀ, m/N.
@@ -21,14 +21,16 @@ const MOST_LOST: f64 = 1e-3;
 /// What is lost is taken so many times.
 const SAFETY: f64 = 10.0;
 
-/// Places in an element at which the flexibility, a polynomial of degree six there, is taken: the zeros of a Chebyshev polynomial.
+/// Places in an element at which the flexibility, a polynomial of degree six there, is taken: the
+/// zeros of a Chebyshev polynomial.
 const PLACES: usize = 16;
 
 impl BeamBounds {
     /// Those of a beam without axial dofs; `None` where supports leave it a rigid motion.
     ///
-    /// A polynomial of degree six is nowhere more than 1/cos(6π/32) = 1.203 times as large as it is at the `PLACES` = 16 zeros of a Chebyshev
-    /// polynomial (Ehlich & Zeller 1964). Of the flexibility that is taken of the part that varies over the element.
+    /// A polynomial of degree six is nowhere more than 1/cos(6π/32) = 1.203 times as large as it is
+    /// at the `PLACES` = 16 zeros of a Chebyshev polynomial (Ehlich & Zeller 1964). Of the
+    /// flexibility that is taken of the part that varies over the element.
     pub(super) fn of(beam: &Beam) -> Option<Self> {
         // Springs that are soft beside the beam leave the solves few digits, or none.
         let lost = beam.digits(STATIC).ok()?.solve;
@@ -91,8 +93,8 @@ impl Range {
         self.0 = [self.0[0].min(x), self.0[1].max(x)];
     }
 
-    /// Not less than the polynomial anywhere in the element: its part about the middle of the range is as large as half the range at the
-    /// places, and at most `EXCEEDS` times that between them.
+    /// Not less than the polynomial anywhere in the element: its part about the middle of the range
+    /// is as large as half the range at the places, and at most `EXCEEDS` times that between them.
     fn bound(&self) -> f64 {
         let [low, high] = self.0;
         0.5 * (low + high) + 0.5 * EXCEEDS * (high - low)

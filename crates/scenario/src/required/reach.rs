@@ -34,8 +34,8 @@ pub(super) const ROUNDING: f64 = 1e-9;
 /// Deflection (m) and slope of a beam that may be anywhere.
 const UNBOUNDED: (f64, f64) = (f64::INFINITY, f64::INFINITY);
 
-/// Of a run of so many steps, this part of the sizes is added: sums of one step after the other round each time, and may do so in one
-/// direction.
+/// Of a run of so many steps, this part of the sizes is added: sums of one step after the other
+/// round each time, and may do so in one direction.
 fn rounding(steps: u64) -> f64 {
     ROUNDING.max(4.0 * f64::EPSILON * steps as f64)
 }
@@ -44,7 +44,8 @@ impl Reach {
     pub(super) const ANYWHERE: Self =
         Self { x: [f64::NEG_INFINITY, f64::INFINITY], y: f64::NEG_INFINITY, by: By::Nothing };
 
-    /// That of a block in free flight: the θ step has velocities v⁰ + g t, and places on the parabola but for (θ − ½) h g t.
+    /// That of a block in free flight: the θ step has velocities v⁰ + g t, and places on the
+    /// parabola but for (θ − ½) h g t.
     pub(super) fn of_flight(start: &Start<'_>, block: usize, pairs: &Pairs) -> Self {
         if !start.is_left_alone(block) || !pairs.live[block].is_empty() {
             return Self::ANYWHERE;

@@ -21,8 +21,8 @@ fn undamped(support: Support) -> Support {
     Support::Elastic { deflection, rotation }
 }
 
-/// Most elements of all beams together: their memory and the time to factorise them stay within what a scene's check may
-/// take.
+/// Most elements of all beams together: their memory and the time to factorise them stay within
+/// what a scene's check may take.
 const MOST_ELEMENTS: usize = 2 * MAX_ELEMENTS;
 
 impl Resolver<'_, '_> {
@@ -169,8 +169,8 @@ impl Resolver<'_, '_> {
         Some(Some(Reduction::Flexibility { tolerance, region }))
     }
 
-    /// Bounds what all beams take together; what a single one takes is bounded by the table of keys. Whether they stay
-    /// within it.
+    /// Bounds what all beams take together; what a single one takes is bounded by the table of
+    /// keys. Whether they stay within it.
     pub(super) fn mesh_sizes(&mut self, beams: &[Option<BeamScene>]) -> bool {
         let mut sum = 0;
         for beam in beams.iter().flatten() {
@@ -185,7 +185,8 @@ impl Resolver<'_, '_> {
         true
     }
 
-    /// What only the assembled beam can tell: whether its numbers fit together, whether it stands, and the shape of a file.
+    /// What only the assembled beam can tell: whether its numbers fit together, whether it stands,
+    /// and the shape of a file.
     pub(super) fn assembled(&mut self, beam: &mut BeamScene) {
         let path = format!("beam.{}", beam.name);
         let start = format!("{path}.start");
@@ -201,7 +202,8 @@ impl Resolver<'_, '_> {
             let rule = format!("the beam can move as a rigid body, so it has no static equilibrium: {motion}");
             self.error(&start, rule, format!("{remedy} (supports), or start undeformed"));
         }
-        // Whatever the start. Its modes would only say the same again, of keys that are not to blame.
+        // Whatever the start. Its modes would only say the same again, of keys that are not to
+        // blame.
         if !self.bears(&path, &model) {
             return;
         }
@@ -213,7 +215,8 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// Whether the beam bears its axial force, or the error: beyond the buckling load the straight beam is no equilibrium.
+    /// Whether the beam bears its axial force, or the error: beyond the buckling load the straight
+    /// beam is no equilibrium.
     fn bears(&mut self, path: &str, model: &Beam) -> bool {
         if model.spec().axial_force >= 0.0 {
             return true;
@@ -227,7 +230,8 @@ impl Resolver<'_, '_> {
         false
     }
 
-    /// Why the modes of a beam that a key asks for can't be found: where its axial force or its springs are to blame, at their keys.
+    /// Why the modes of a beam that a key asks for can't be found: where its axial force or its
+    /// springs are to blame, at their keys.
     fn no_modes<T>(&mut self, path: &str, beam: &Beam, error: &ModesError) -> Option<T> {
         let of = path.rsplit_once('.').map_or(path, |(beam, _)| beam);
         let asked = format!("the modes that {path} asks for can't be found");
@@ -302,13 +306,15 @@ impl Resolver<'_, '_> {
         None
     }
 
-    /// The viscous damping c that gives a mode of the finite elements its damping ratio: φᵀC φ = 2ζω.
+    /// The viscous damping c that gives a mode of the finite elements its damping ratio: φᵀC φ =
+    /// 2ζω.
     fn viscous_for_ratio(&mut self, path: &str, beam: &Beam) -> Option<f64> {
         let path = format!("{path}.damping_ratio");
         let mode = self.doc.integer(&format!("{path}.mode")).and_then(|mode| usize::try_from(mode).ok())?;
         let ratio = self.doc.number(&format!("{path}.ratio"))?;
         let (omega, shape) = self.elastic_mode(&path, beam, mode)?;
-        // Without what supports and foundations damp: that is on top, and may be so much that it hides the rest.
+        // Without what supports and foundations damp: that is on top, and may be so much that it
+        // hides the rest.
         let mut alone = beam.spec().clone();
         alone.damping = Damping { viscous: 1.0, ..Damping::default() };
         alone.supports = alone.supports.map(undamped);
@@ -454,8 +460,8 @@ impl Resolver<'_, '_> {
     }
 }
 
-/// The size of the largest deflection with its sign, of equal ones that of the leftmost: also inside elements, where a mode may
-/// have all of it.
+/// The size of the largest deflection with its sign, of equal ones that of the leftmost: also
+/// inside elements, where a mode may have all of it.
 fn largest_deflection(beam: &Beam, shape: &[f64]) -> f64 {
     const PLACES: u32 = 16;
     /// Deflections that differ by less are equal: rounding must not choose a mode's sign.

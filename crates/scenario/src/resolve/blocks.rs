@@ -210,7 +210,8 @@ impl Resolver<'_, '_> {
             }
             _ => None,
         };
-        // From a pile's lowest block nothing leads further down; a way of as many steps as there are blocks leads round in a circle.
+        // From a pile's lowest block nothing leads further down; a way of as many steps as there
+        // are blocks leads round in a circle.
         let circle = (0..blocks.len()).find(|&block| (0..blocks.len()).try_fold(block, |at, _| below(at)).is_some());
         if let Some(Some(block)) = circle.and_then(|block| blocks.get(block)) {
             let rule = "blocks stand on each other in a circle, and none of them on anything else";

@@ -1,4 +1,5 @@
-//! What signals drive: prescribed motion of the ground, of supports and of blocks, forces on blocks, loads on beams.
+//! What signals drive: prescribed motion of the ground, of supports and of blocks, forces on
+//! blocks, loads on beams.
 
 use super::Resolver;
 use crate::scene::{
@@ -145,7 +146,8 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// A block none of whose coordinates is free can't give way to ground that no force moves either.
+    /// A block none of whose coordinates is free can't give way to ground that no force moves
+    /// either.
     pub(super) fn gives_way(&mut self, blocks: &[Option<BlockScene>], contacts: &[Option<ContactScene>]) {
         let is_prescribed = |block: &BlockScene| block.motion.0.iter().all(Option::is_some);
         for contact in contacts.iter().flatten() {

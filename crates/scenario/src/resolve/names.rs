@@ -1,4 +1,5 @@
-//! Names of blocks: those of the file, the copies of a block that is repeated, and patterns that stand for several.
+//! Names of blocks: those of the file, the copies of a block that is repeated, and patterns that
+//! stand for several.
 
 use std::collections::BTreeMap;
 

@@ -67,7 +67,8 @@ impl Resolver<'_, '_> {
         })
     }
 
-    /// Young's modulus, density, and Poisson's ratio where shear needs it; an inner `None` where one is missing.
+    /// Young's modulus, density, and Poisson's ratio where shear needs it; an inner `None` where
+    /// one is missing.
     fn of_material(&mut self, material: &str, path: &str, shear: bool) -> Option<Option<[f64; 3]>> {
         let density = self.quantity(&format!("{material}.density"));
         let modulus = self.needed(&format!("{material}.youngs_modulus"), path, "youngs_modulus = \"69 GPa\"");
@@ -126,7 +127,8 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// The parts of the beam with sections of their own; of the beam's material where they name none.
+    /// The parts of the beam with sections of their own; of the beam's material where they name
+    /// none.
     pub(super) fn segments(&mut self, beam: &str, material: Option<&str>) -> Option<Vec<Segment>> {
         let group = format!("{beam}.segment");
         let span = self.doc.quantity(&format!("{beam}.span"));

@@ -71,7 +71,8 @@ fn read(bytes: &[u8], beam: &Beam) -> Result<Vec<f64>, String> {
     })
 }
 
-/// Slopes of the cubic spline through the nodes: no bending moment at ends that may turn, no slope where a support takes it.
+/// Slopes of the cubic spline through the nodes: no bending moment at ends that may turn, no slope
+/// where a support takes it.
 fn slopes(beam: &Beam, w: &[f64]) -> Vec<f64> {
     let x = beam.node_positions();
     let last = x.len() - 1;
@@ -130,8 +131,8 @@ mod tests {
 
     #[test]
     fn without_slopes_the_shape_is_the_spline_of_the_supports() {
-        // Cubics that fulfil the end conditions are their own spline: a cantilever under an end load, w ~ x²(3 − x), free of
-        // moment at x = 1.
+        // Cubics that fulfil the end conditions are their own spline: a cantilever under an end
+        // load, w ~ x²(3 − x), free of moment at x = 1.
         let q = read(file(|x| x * x * (3.0 - x)).as_bytes(), &beam([Support::Clamped, Support::Free])).unwrap();
         for (k, pair) in q.chunks_exact(2).enumerate() {
             let x = k as f64 / 8.0;

@@ -103,7 +103,8 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// A table that is over before the run, or begins after it, and is not zero there: what is assumed is said.
+    /// A table that is over before the run, or begins after it, and is not zero there: what is
+    /// assumed is said.
     pub(super) fn covered(&mut self, signals: &[Option<SignalScene>], end: f64) {
         for signal in signals.iter().flatten() {
             let History::Table(table) = &signal.history else { continue };

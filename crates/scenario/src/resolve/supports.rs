@@ -190,8 +190,9 @@ fn support(word: &str) -> Option<Support> {
     }
 }
 
-/// Nodes with elements whose length grows evenly with the distance from a place, up to `ratio` times that at the place. A
-/// length h(d) = h₀(1 + a d) makes ∫dx/h = ln(1 + a d)/a a count of elements; each side of the place gets its whole number.
+/// Nodes with elements whose length grows evenly with the distance from a place, up to `ratio`
+/// times that at the place. A length h(d) = h₀(1 + a d) makes ∫dx/h = ln(1 + a d)/a a count of
+/// elements; each side of the place gets its whole number.
 fn graded(span: f64, elements: usize, towards: f64, ratio: f64) -> Vec<f64> {
     let sides = [towards, span - towards];
     let a = (ratio - 1.0) / sides[0].max(sides[1]);
@@ -224,7 +225,8 @@ mod tests {
             let lengths: Vec<f64> = nodes.windows(2).map(|pair| pair[1] - pair[0]).collect();
             let shortest = lengths.iter().copied().fold(f64::INFINITY, f64::min);
             let longest = lengths.iter().copied().fold(0.0, f64::max);
-            // Lengths are means over elements, so the quotient of the extreme ones stays a little below.
+            // Lengths are means over elements, so the quotient of the extreme ones stays a little
+            // below.
             assert!(
                 (0.85 * ratio..=1.0001 * ratio).contains(&(longest / shortest)),
                 "{towards}: {}",

@@ -147,7 +147,8 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// Refuses contacts that the scheme doesn't take: with duration, or with what it has no meaning for at a beam.
+    /// Refuses contacts that the scheme doesn't take: with duration, or with what it has no meaning
+    /// for at a beam.
     pub(super) fn refuse_springs(
         &mut self,
         scheme: SchemeName,

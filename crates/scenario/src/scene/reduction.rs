@@ -56,8 +56,8 @@ impl Reduction {
     }
 }
 
-/// A basis that was found before. A study takes the same beam in the same shapes hundreds of times, and finding them is most of its work; they depend
-/// on nothing but the beam's numbers.
+/// A basis that was found before. A study takes the same beam in the same shapes hundreds of times,
+/// and finding them is most of its work; they depend on nothing but the beam's numbers.
 struct Known {
     reduction: Reduction,
     spec: BeamSpec,

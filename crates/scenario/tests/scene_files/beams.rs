@@ -25,7 +25,8 @@ fn resolve(text: &str, pairs: &[(&str, &str)]) -> Result<Resolved, String> {
     resolved.map_err(|errors| errors.to_string())
 }
 
-/// The beam of the bare scene with more keys, which runs as it is written out again, to the same bytes.
+/// The beam of the bare scene with more keys, which runs as it is written out again, to the same
+/// bytes.
 fn beam(more: &str, pairs: &[(&str, &str)]) -> BeamScene {
     let resolved = resolve(&format!("{BARE}{more}"), pairs).unwrap();
     let written = resolved.document.to_toml();
@@ -254,7 +255,8 @@ fn damping_is_fitted_to_ratios_and_to_any_mode() {
     assert!((rate / 0.02 - 1.0).abs() < 1e-9, "{rate}");
     let many = ["0.01"; 9].join(", ");
     refused(&plain(&format!("modal_damping = [{many}]\n")), &[], &["beam.b.modal_damping", "9 ratios"]);
-    // Of the uniform beam the modes are known, and the finite elements give the same; a mass in the middle slows the first.
+    // Of the uniform beam the modes are known, and the finite elements give the same; a mass in the
+    // middle slows the first.
     let ratio = "damping_ratio = { mode = 1, ratio = 0.02 }\n";
     let exact = beam(&plain(ratio), &[]).spec.damping.viscous;
     let with = |mass: &str| format!("{ratio}[beam.b.mass.m]\nat = '1 m'\nmass = '{mass}'\n");

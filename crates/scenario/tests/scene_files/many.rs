@@ -26,7 +26,8 @@ fn row_of_blocks(blocks: usize, on: &str) -> String {
 
 #[test]
 fn many_contacts_are_told_to_cost_more_than_their_number() {
-    // Times of a trial: 20 cubes on a beam 0.12 s, 3000 blocks on the ground 0.7 s a step; either was told as less than a tenth.
+    // Times of a trial: 20 cubes on a beam 0.12 s, 3000 blocks on the ground 0.7 s a step; either
+    // was told as less than a tenth.
     let told = |blocks, on, dofs| {
         let scene = load(row_of_blocks(blocks, on).as_bytes(), "f", "f", &[]).unwrap().scene;
         assert!(accuracy_of_seconds(&scene).contains("order of magnitude"));

@@ -67,7 +67,8 @@ fn byte_order_mark_and_windows_line_ends_are_no_mistake() {
     assert_eq!(findings("\u{feff}titel = 'x'\r\n", &[])[1], "1:1 titel: unknown key");
 }
 
-/// A table by its path; where keys have a meaning with some words of another key only, once for each of its words.
+/// A table by its path; where keys have a meaning with some words of another key only, once for
+/// each of its words.
 struct Variant {
     path: String,
     word: Option<(&'static str, &'static str)>,

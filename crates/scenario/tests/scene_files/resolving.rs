@@ -1,4 +1,5 @@
-//! What takes two keys to be wrong: each refused with a message that names the key, the rule and the remedy.
+//! What takes two keys to be wrong: each refused with a message that names the key, the rule and
+//! the remedy.
 
 use crate::ROCKING;
 use teeter_scenario::load;

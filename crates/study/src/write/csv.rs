@@ -3,9 +3,12 @@
 use crate::{Quantity, Tradeoff};
 use std::fmt::Write;
 
-/// The table, with its header: `number, stage, setting` (as arguments; empty: the scene as it is), a column for each error (empty where the scene doesn't have
-/// it), `steps, solves, contacts, iterations, unconverged_steps, modelled_ms` (counted work), `cpu_ms, cpu_ms_least, cpu_runs`, `front` (of
-/// accuracy over counted work: yes or no), `failure` (empty where it came to its end), `warnings` (what `check` and `run` warn of, with semicolons between).
+/// The table, with its header: `number, stage, setting` (as arguments; empty: the scene as it is),
+/// a column for each error (empty where the scene doesn't have it),
+/// `steps, solves, contacts, iterations, unconverged_steps, modelled_ms` (counted work),
+/// `cpu_ms, cpu_ms_least, cpu_runs`, `front` (of accuracy over counted work: yes or no), `failure`
+/// (empty where it came to its end), `warnings` (what `check` and `run` warn of, with semicolons
+/// between).
 #[must_use]
 pub fn csv(study: &Tradeoff) -> String {
     let mut text = "number,stage,setting".to_owned();

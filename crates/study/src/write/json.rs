@@ -1,4 +1,5 @@
-//! `tradeoff.json`: reference, error bars, horizon, advice, pruning; the rows are in `tradeoff.csv`.
+//! `tradeoff.json`: reference, error bars, horizon, advice, pruning; the rows are in
+//! `tradeoff.csv`.
 
 use super::{advice, pruning};
 use crate::{Advice, Errors, NUDGE, Quantity, Setting, TARGETS, Tradeoff, Warned};

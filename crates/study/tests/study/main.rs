@@ -116,7 +116,8 @@ fn an_interrupted_study_says_so() {
     assert!(cancel.load(Ordering::Relaxed));
 }
 
-/// A steel block falls 2 mm onto a timber beam of two spans whose midspan is a support, and the wave in the beam is most of the motion.
+/// A steel block falls 2 mm onto a timber beam of two spans whose midspan is a support, and the
+/// wave in the beam is most of the motion.
 const TWO_SPANS: &str = "[time]\nend = '60 ms'\nstep = '1 ms'\n[material.timber]\ndensity = '450 kg/m^3'\nyoungs_modulus = '11 GPa'\n\
     [material.steel]\ndensity = '7850 kg/m^3'\n[beam.joist]\nmaterial = 'timber'\nspan = '4 m'\nwidth = '8 cm'\nthickness = '16 cm'\n\
     elements = 8\nsurface = 'top'\nsupports = ['pinned', 'pinned']\ndamping_ratio = { mode = 1, ratio = 0.02 }\nprobes = ['3 m']\n\
@@ -146,7 +147,8 @@ fn deflection_counts_where_there_is_a_block_too() {
 
 #[test]
 fn nothing_is_advised_before_the_first_impact_has_been_compared() {
-    // A horizon that ends just after the first impact: made by hand, as no scenario of ours has one.
+    // A horizon that ends just after the first impact: made by hand, as no scenario of ours has
+    // one.
     let mut study = study("free-rocking-on-ground", &[("time.end", "0.4 s"), ("time.step", "1 ms")]);
     let impact = study.reference.first_impact.expect("the block rocks over at 0.1065 s");
     assert!((impact.t - 0.1065).abs() < 1e-4 && impact.until > 1.4 * impact.t, "{impact:?}");
@@ -218,7 +220,8 @@ fn what_is_advised_costs_hardly_more_than_the_cheapest_of_the_whole_grid() {
         Source::new(std::fs::read(path).unwrap(), "s.toml", "s", &sets, &mut read).expect("a scene");
     let cancel = AtomicBool::new(false);
     let study = Tradeoff::of(&source, &resolved, runner::cores(), &cancel, &mut |_, _, _| {}).expect("a study");
-    // The coarser half of the ladder, as what is finer is dearer than what is advised here; and two more, which show what was luck.
+    // The coarser half of the ladder, as what is finer is dearer than what is advised here; and two
+    // more, which show what was luck.
     let ladder = |one| study.axes.ladder(one).into_iter().take(study.axes.step.options.len() / 2 + 2);
     let grid: Vec<_> = study.axes.combinations().iter().flat_map(ladder).collect();
     let rows = study.beside(grid, &source, runner::cores(), &cancel).expect("rows");
@@ -235,7 +238,8 @@ fn what_is_advised_costs_hardly_more_than_the_cheapest_of_the_whole_grid() {
     assert!(compared > 0, "nothing was compared");
 }
 
-/// The scene in which a study once advised 5 ms and θ = 0.6 "for 1 %" by 6 ms of motion after its first impact, the beam left out, where it is 45 % off.
+/// The scene in which a study once advised 5 ms and θ = 0.6 "for 1 %" by 6 ms of motion after its
+/// first impact, the beam left out, where it is 45 % off.
 #[test]
 #[ignore = "some minutes without optimisation"]
 fn a_steel_block_on_a_beam_of_two_spans_is_advised_by_its_impacts_and_its_beam() {
