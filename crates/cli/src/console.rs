@@ -2,7 +2,7 @@
 
 use crate::run::Exit;
 use std::io::{ErrorKind, IsTerminal, Write};
-use teeter_scenario::diagnostic::steers;
+use teeter_scenario::diagnostic::is_display_control;
 
 /// Standard error, or less of it.
 #[derive(Clone, Copy, Debug)]
@@ -61,7 +61,7 @@ pub(crate) fn print_all(text: &str) -> Exit {
 /// A text without characters that would steer the terminal or turn the direction of writing, but
 /// for those to `keep`.
 pub(crate) fn clean(text: &str, keep: &str) -> String {
-    text.chars().map(|c| if steers(c) && !keep.contains(c) { '\u{fffd}' } else { c }).collect()
+    text.chars().map(|c| if is_display_control(c) && !keep.contains(c) { '\u{fffd}' } else { c }).collect()
 }
 
 /// A reader that went away (`teeter … 2>&1 | head -1`) is no reason to fail: the results are in

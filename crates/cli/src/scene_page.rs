@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 use teeter_scenario::dimension::Dimension;
-use teeter_scenario::keys::{Key, Kind, Occurrence, OnlyWith, Presence, Range, TABLES, Table};
+use teeter_scenario::keys::{Key, Kind, Occurrence, OnlyWith, Presence, Range, TABLES, TableSchema};
 use teeter_scenario::units;
 
 /// A scene that uses most of what there is.
@@ -76,7 +76,7 @@ What a run measures it says at its end, on the terminal, on the page and among t
 pub(crate) fn page() -> String {
     let mut page = HEAD.to_owned();
     let _ = write!(page, "\n```toml\n{EXAMPLE}```\n");
-    let _ = write!(page, "\nThe units known are {}; `µ` may be written for `u`.\n", units::known());
+    let _ = write!(page, "\nKnown units are {}; `µ` may be written for `u`.\n", units::known());
     for table in TABLES {
         section(&mut page, table);
         if table.pattern == "block.*" {
@@ -87,7 +87,7 @@ pub(crate) fn page() -> String {
     page
 }
 
-fn section(page: &mut String, table: &Table) {
+fn section(page: &mut String, table: &TableSchema) {
     let path = table.pattern.replace('*', "NAME");
     let heading = match table.occurrence {
         _ if path.is_empty() => "Top of the file".to_owned(),
@@ -113,12 +113,12 @@ fn section(page: &mut String, table: &Table) {
     }
     let later = later(table);
     if !later.is_empty() {
-        let _ = write!(page, "\nKnown, but not built in yet: {}.\n", later.join(", "));
+        let _ = write!(page, "\nReserved, not implemented yet: {}.\n", later.join(", "));
     }
 }
 
 /// Keys and words that are refused for now.
-fn later(table: &Table) -> Vec<String> {
+fn later(table: &TableSchema) -> Vec<String> {
     let keys = table.keys.iter().filter(|key| key.presence == Presence::NotYet).map(|key| format!("`{}`", key.name));
     let words = table.keys.iter().flat_map(|key| {
         key.reserved.iter().map(|reserved| match key.kind {

@@ -9,7 +9,7 @@ use crate::scene_page;
 use serde_json::{Map, Value, json};
 use teeter_scenario::dimension::Dimension;
 use teeter_scenario::keys::{
-    self, Bound, Key, Kind, LONGEST_TITLE, Occurrence, OnlyWith, Presence, Range, TABLES, Table,
+    self, Bound, Key, Kind, LONGEST_TITLE, Occurrence, OnlyWith, Presence, Range, TABLES, TableSchema,
 };
 
 /// What the schema is printed as.
@@ -48,7 +48,7 @@ const NAME: &str = "^[A-Za-z0-9_-]{1,64}$";
 /// The same with `*` for any letters.
 const PATTERN: &str = "^[A-Za-z0-9_*-]{1,}$";
 
-fn object(table: &Table) -> Map<String, Value> {
+fn object(table: &TableSchema) -> Map<String, Value> {
     let mut properties = Map::new();
     for key in table.keys {
         properties.insert(key.name.to_owned(), property(key));
@@ -99,7 +99,7 @@ fn object(table: &Table) -> Map<String, Value> {
 }
 
 /// The name that a body can't have; none of other tables, whose names are never empty.
-fn taken(table: &Table) -> &'static str {
+fn taken(table: &TableSchema) -> &'static str {
     if ["beam.*", "block.*"].contains(&table.pattern) { "ground" } else { "" }
 }
 
@@ -121,7 +121,7 @@ fn only_with(key: &Key) -> String {
 
 fn property(key: &Key) -> Value {
     if key.presence == Presence::NotYet {
-        return json!({ "not": {}, "description": format!("{} Known, but not built in yet.", key.doc) });
+        return json!({ "not": {}, "description": format!("{} Reserved, not implemented yet.", key.doc) });
     }
     let mut value = of_kind(key);
     if let Some(value) = value.as_object_mut() {

@@ -6,7 +6,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 use teeter_scenario::decode::LARGEST_FILE;
-use teeter_scenario::diagnostic::steers;
+use teeter_scenario::diagnostic::is_display_control;
 use teeter_scenario::record::LARGEST_RECORD;
 use teeter_scenario::resolve::Resolved;
 
@@ -35,7 +35,8 @@ impl SceneSource {
         let path = path.into();
         let stem = path.file_stem().map_or("scene".into(), |stem| stem.to_string_lossy().into_owned());
         // The name is printed: it must not steer a terminal.
-        let name = path.display().to_string().chars().map(|c| if steers(c) { '\u{fffd}' } else { c }).collect();
+        let name =
+            path.display().to_string().chars().map(|c| if is_display_control(c) { '\u{fffd}' } else { c }).collect();
         let folder = path.parent().map(Path::to_owned).unwrap_or_default();
         Self { content: Content::File(path), name, stem, folder }
     }

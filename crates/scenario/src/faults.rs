@@ -50,7 +50,7 @@ impl BuildError {
             Self::Scheme(error) => {
                 document.error("time", error.to_string(), "check theta, activation_gamma and gap_tolerance")
             }
-            Self::Solver(_) => document.error("solver.method", self.to_string(), "name one of the solvers built in"),
+            Self::Solver(_) => document.error("solver.method", self.to_string(), "use one of the available solvers"),
             Self::Penetration { block, corner, surface, depth, tolerance } => {
                 let rule = format!(
                     "the corner {corner} starts {depth:.1e} m below the surface of `{surface}`; up to {tolerance:.1e} m is \

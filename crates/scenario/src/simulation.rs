@@ -55,7 +55,7 @@ pub enum BuildError {
     /// The scheme's settings.
     #[error(transparent)]
     Scheme(#[from] SettingError),
-    /// A solver that is not built in.
+    /// An unknown solver.
     #[error("there is no solver `{0}`")]
     Solver(String),
     /// A corner that starts below its surface.

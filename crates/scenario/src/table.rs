@@ -5,8 +5,8 @@ mod beam_keys;
 use std::f64::consts::FRAC_PI_2;
 
 use crate::dimension::Dimension;
-use crate::keys::{Bound, Key, Kind, Occurrence, Presence, Range, Table};
-use crate::measure::Unit;
+use crate::keys::{Bound, Key, Kind, Occurrence, Presence, Range, TableSchema};
+use crate::measure::AllowedUnit;
 use crate::words;
 use beam_keys::*;
 
@@ -46,12 +46,12 @@ const IMPACTS: &[&str] = &["newton", "poisson", "energetic"];
 const COMPLIANT: &[&str] = &["kelvin-voigt", "hunt-crossley"];
 
 /// Stiffness and damping of a contact with duration: their units hold the exponent of the force.
-const CONTACT_STIFFNESS: &[Unit] =
-    &[Unit::new(Dimension::STIFFNESS, "N/m"), Unit::over_powers_of_metre(Dimension::FORCE, "N/m^n")];
-const CONTACT_DAMPING: &[Unit] = &[
-    Unit::new(Dimension::DAMPING, "N s/m"),
-    Unit::new(Dimension::INVERSE_VELOCITY, "s/m"),
-    Unit::over_powers_of_metre(Dimension::IMPULSE, "N s/m^(n+1)"),
+const CONTACT_STIFFNESS: &[AllowedUnit] =
+    &[AllowedUnit::new(Dimension::STIFFNESS, "N/m"), AllowedUnit::over_powers_of_metre(Dimension::FORCE, "N/m^n")];
+const CONTACT_DAMPING: &[AllowedUnit] = &[
+    AllowedUnit::new(Dimension::DAMPING, "N s/m"),
+    AllowedUnit::new(Dimension::INVERSE_VELOCITY, "s/m"),
+    AllowedUnit::over_powers_of_metre(Dimension::IMPULSE, "N s/m^(n+1)"),
 ];
 
 const SIGNAL: Key = key(
@@ -101,8 +101,8 @@ const TURN_ACCELERATION: Key = key(
 
 /// All tables of a scene in the order in which they are written out.
 #[rustfmt::skip] // a row per key
-pub static TABLES: &[Table] = &[
-    Table {
+pub static TABLES: &[TableSchema] = &[
+    TableSchema {
         pattern: "",
         occurrence: Occurrence::Always,
         doc: "The scene itself.",
@@ -111,7 +111,7 @@ pub static TABLES: &[Table] = &[
             key("version", Kind::Version(&[1]), Default("1"), "1", "Version of the scene format."),
         ],
     },
-    Table {
+    TableSchema {
         pattern: "time",
         occurrence: Occurrence::Always,
         doc: "How long to simulate, in which steps, by which scheme.",
@@ -127,13 +127,13 @@ pub static TABLES: &[Table] = &[
             key("spectral_radius", Kind::Number(Range::UNIT), Optional, "0.8", "Part of a vibration of infinite frequency that a step of generalized-alpha leaves: 1 damps nothing, 0 the most; when left out, 0.8. Of generalized-alpha only."),
         ],
     },
-    Table {
+    TableSchema {
         pattern: "world",
         occurrence: Occurrence::Always,
         doc: "What holds everywhere.",
         keys: &[key("gravity", Kind::Downward(Dimension::ACCELERATION), Default("\"9.81 m/s^2\""), "\"9.81 m/s^2\"", "Acceleration of gravity downwards, or as a vector [x, y].")],
     },
-    Table {
+    TableSchema {
         pattern: "material.*",
         occurrence: Occurrence::Named,
         doc: "A material of blocks and beams.",
@@ -144,7 +144,7 @@ pub static TABLES: &[Table] = &[
             key("yield_strength", Kind::Quantity(Dimension::PRESSURE, MODULUS), Optional, "\"240 MPa\"", "Stress at which it yields; `check` tells the bending moment at which a beam of it begins to, and a run warns where it is passed."),
         ],
     },
-    Table {
+    TableSchema {
         pattern: "ground",
         occurrence: Occurrence::Optional,
         doc: "Rigid ground, flat at y = 0 or inclined through the origin; its name in contacts is `ground`.",
@@ -153,13 +153,13 @@ pub static TABLES: &[Table] = &[
             key("profile", Kind::Text, NotYet, "\"profile.csv\"", "File with the heights of the ground."),
         ],
     },
-    Table {
+    TableSchema {
         pattern: "ground.motion",
         occurrence: Occurrence::Inline,
         doc: "Prescribed motion of the ground: a displacement, a velocity or an acceleration, a turn about the point that is the origin when nothing is displaced, or both.",
         keys: &[DISPLACEMENT, VELOCITY, ACCELERATION, TURN, TURN_VELOCITY, TURN_ACCELERATION, SIGNAL, SIGNALS],
     },
-    Table {
+    TableSchema {
         pattern: "beam.*",
         occurrence: Occurrence::Named,
         doc: "An elastic beam, straight and level.",
@@ -190,7 +190,7 @@ pub static TABLES: &[Table] = &[
             key("envelope", Kind::Flag, Default("false"), "true", "Whether the extremes of deflection, moment, transverse force and stress over all steps are written to envelopes.csv, by nodes."),
         ],
     },
-    Table {
+    TableSchema {
         pattern: "beam.*.damping_ratio",
         occurrence: Occurrence::Inline,
         doc: "Viscous damping given by the damping ratio of one mode; one of the three ways to give damping.",
@@ -199,7 +199,7 @@ pub static TABLES: &[Table] = &[
             key("ratio", Kind::Number(Range::NOT_NEGATIVE), Required, "0.01", "Damping over critical damping in that mode."),
         ],
     },
-    Table {
+    TableSchema {
         pattern: "beam.*.rayleigh",
         occurrence: Occurrence::Inline,
         doc: "Rayleigh damping, C = a0 M + a1 K: a0 damps low modes most, a1 high ones; given by its factors, or by the damping ratios at two frequencies. One of the three ways to give damping.",
@@ -210,7 +210,7 @@ pub static TABLES: &[Table] = &[
             key("ratios", Kind::Numbers(Range::NOT_NEGATIVE), Optional, "[0.01, 0.01]", "The damping ratios at these two frequencies."),
         ],
     },
-    Table {
+    TableSchema {
         pattern: "beam.*.modes",
         occurrence: Occurrence::Inline,
         doc: "The shapes of a beam with model = modes: a number of modes, or as few modes and static corrections as the static flexibility of a region needs. When left out, the latter with a tolerance of 1e-4 over the whole span.",
@@ -221,7 +221,7 @@ pub static TABLES: &[Table] = &[
             Key { presence: Optional, doc: "Where it ends; when left out, at the beam's right end.", ..TO },
         ],
     },
-    Table {
+    TableSchema {
         pattern: "beam.*.mesh",
         occurrence: Occurrence::Inline,
         doc: "A graded mesh: elements get shorter towards a place, evenly with the distance from it.",
@@ -230,7 +230,7 @@ pub static TABLES: &[Table] = &[
             key("ratio", Kind::Number(GRADING), Required, "4.0", "Length of the elements farthest from that place over that of the elements at it."),
         ],
     },
-    Table {
+    TableSchema {
         pattern: "beam.*.segment.*",
         occurrence: Occurrence::Named,
         doc: "A part of the beam with a section of its own; where two overlap, the later one holds.",
@@ -241,7 +241,7 @@ pub static TABLES: &[Table] = &[
             BENDING_STIFFNESS, MASS_PER_LENGTH, SHEAR_STIFFNESS, ROTATORY_INERTIA, AXIAL_STIFFNESS,
         ],
     },
-    Table {
+    TableSchema {
         pattern: "beam.*.support.*",
         occurrence: Occurrence::Named,
         doc: "A support between the ends of the beam: of a kind, or by springs and dashpots.",
@@ -251,7 +251,7 @@ pub static TABLES: &[Table] = &[
             SPRING, DASHPOT, DEFLECTION, ROTATIONAL_SPRING, ROTATIONAL_DASHPOT, ROTATION,
         ],
     },
-    Table {
+    TableSchema {
         pattern: "beam.*.mass.*",
         occurrence: Occurrence::Named,
         doc: "A mass that is fixed to the beam.",
@@ -261,7 +261,7 @@ pub static TABLES: &[Table] = &[
             key("inertia", Kind::Quantity(Dimension::INERTIA, Range::NOT_NEGATIVE.sizes(1e-18, 1e12)), Default("\"0 kg m^2\""), "\"1e-4 kg m^2\"", "Its moment of inertia about the axis of the beam's rotation."),
         ],
     },
-    Table {
+    TableSchema {
         pattern: "beam.*.foundation.*",
         occurrence: Occurrence::Named,
         doc: "A foundation under the beam (Winkler): a force per length -k w - c dw/dt.",
@@ -272,13 +272,13 @@ pub static TABLES: &[Table] = &[
             key("damping", Kind::Quantity(Dimension::DAMPING_PER_LENGTH, Range::NOT_NEGATIVE), Default("\"0 N s/m^2\""), "\"5 N s/m^2\"", "Damping c per length."),
         ],
     },
-    Table {
+    TableSchema {
         pattern: "beam.*.motion",
         occurrence: Occurrence::Inline,
         doc: "Prescribed motion of its supports, which move together; damping acts on the motion relative to them.",
         keys: &[DISPLACEMENT, VELOCITY, ACCELERATION, SIGNAL, SIGNALS],
     },
-    Table {
+    TableSchema {
         pattern: "block.*",
         occurrence: Occurrence::Named,
         doc: "A rigid block: a rectangle by its sides, or a convex polygon by its corners.",
@@ -297,7 +297,7 @@ pub static TABLES: &[Table] = &[
             key("spin", Kind::Quantity(Dimension::ANGULAR_VELOCITY, Range::ANY), Default("\"0 rad/s\""), "\"1 rad/s\"", "Angular velocity at the start, counter-clockwise positive."),
         ],
     },
-    Table {
+    TableSchema {
         pattern: "block.*.motion",
         occurrence: Occurrence::Inline,
         doc: "Prescribed motion of the block: of its mass centre, of its angle, or both; what is not named stays free. It starts where the block is placed.",
@@ -307,7 +307,7 @@ pub static TABLES: &[Table] = &[
             TURN, TURN_VELOCITY, TURN_ACCELERATION, SIGNAL, SIGNALS,
         ],
     },
-    Table {
+    TableSchema {
         pattern: "block.*.repeat",
         occurrence: Occurrence::Inline,
         doc: "Several blocks of one kind, named after the table with `-1`, `-2`, … at the end.",
@@ -317,7 +317,7 @@ pub static TABLES: &[Table] = &[
             key("stacked", Kind::Flag, Default("false"), "true", "Whether each stands on the one before, flat, the first on what `on` says."),
         ],
     },
-    Table {
+    TableSchema {
         pattern: "contact.*",
         occurrence: Occurrence::Named,
         doc: "Contact of a block with a beam, with the ground or with another block, with impact and friction. Bodies that no contact joins pass through each other.",
@@ -333,7 +333,7 @@ pub static TABLES: &[Table] = &[
             key("exponent", Kind::Number(EXPONENT), Default("1.5"), "1.5", "Exponent n of the force: 1.5 is that of two spheres.").only_with("law", &["hunt-crossley"]),
         ],
     },
-    Table {
+    TableSchema {
         pattern: "signal.*",
         occurrence: Occurrence::Named,
         doc: "A time history without unit, with a peak of 1 if by formula: what it is used for gives the amplitude. Formulas and integrals: `docs/signals.md`.",
@@ -348,7 +348,7 @@ pub static TABLES: &[Table] = &[
             key("file", Kind::Path, Required, "\"quake.csv\"", "File of two columns, time in s and value; relative to the scene's file.").only_with("shape", &["table"]),
         ],
     },
-    Table {
+    TableSchema {
         pattern: "force.*",
         occurrence: Occurrence::Named,
         doc: "A force or couple on a block.",
@@ -359,7 +359,7 @@ pub static TABLES: &[Table] = &[
             SIGNAL,
         ],
     },
-    Table {
+    TableSchema {
         pattern: "load.*",
         occurrence: Occurrence::Named,
         doc: "A load on a beam: at a point that may move, or distributed evenly over the beam or a part of it.",
@@ -375,7 +375,7 @@ pub static TABLES: &[Table] = &[
             SIGNAL,
         ],
     },
-    Table {
+    TableSchema {
         pattern: "solver",
         occurrence: Occurrence::Always,
         doc: "How the contact problem of a step is solved.",
@@ -386,7 +386,7 @@ pub static TABLES: &[Table] = &[
             key("require_convergence", Kind::Flag, Default("false"), "false", "Whether a step that is not solved ends the run."),
         ],
     },
-    Table {
+    TableSchema {
         pattern: "output",
         occurrence: Occurrence::Always,
         doc: "What is written.",

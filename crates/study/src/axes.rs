@@ -6,7 +6,7 @@
 
 use crate::Setting;
 use teeter_scenario::document::Document;
-use teeter_scenario::keys::{self, Found, Kind};
+use teeter_scenario::keys::{self, Kind, PathTarget};
 use teeter_scenario::resolve::Resolved;
 use teeter_scenario::scene::{BeamScene, ContactScene, Scene, SchemeName, Support};
 
@@ -172,7 +172,7 @@ fn suits(scheme: &str, scene: &Scene) -> bool {
 
 /// An axis of words: those of the table of keys, for all keys at once.
 fn words(resolved: &Resolved, name: &'static str, keys: &[String], taken: impl Fn(&str) -> bool) -> Option<Axis> {
-    let Some(Found::Key(_, key)) = keys.first().and_then(|key| keys::find(key)) else { return None };
+    let Some(PathTarget::Key(_, key)) = keys.first().and_then(|key| keys::find(key)) else { return None };
     let Kind::Choice(words) = key.kind else { return None };
     let mut options = vec![Setting::none()];
     for word in words.iter().filter(|word| taken(word)) {

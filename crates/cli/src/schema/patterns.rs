@@ -6,7 +6,7 @@
 
 use teeter_scenario::dimension::Dimension;
 use teeter_scenario::keys::{Bound, Range};
-use teeter_scenario::measure::Unit;
+use teeter_scenario::measure::AllowedUnit;
 use teeter_scenario::units::UNITS;
 
 /// Digits with or without a point, and with or without an exponent.
@@ -55,8 +55,8 @@ pub(super) fn quantity(dimension: Dimension, range: &Range) -> String {
 }
 
 /// A quantity in one of several units, some of which may be over any power of the metre.
-pub(super) fn measure(units: &[Unit], range: &Range) -> String {
-    let of = |of: &Unit| unit(of.dimension) + if of.any_power { "\\s*/m\\^\\s*[0-9.]+" } else { "" };
+pub(super) fn measure(units: &[AllowedUnit], range: &Range) -> String {
+    let of = |of: &AllowedUnit| unit(of.dimension) + if of.any_power { "\\s*/m\\^\\s*[0-9.]+" } else { "" };
     let units: Vec<String> = units.iter().map(of).collect();
     format!("^\\s*{}\\s*({})\\s*$", number(range), units.join("|"))
 }

@@ -2,17 +2,17 @@
 //! of some words of another one.
 
 use serde_json::{Map, Value, json};
-use teeter_scenario::keys::{Key, OnlyWith, Presence, Table};
+use teeter_scenario::keys::{Key, OnlyWith, Presence, TableSchema};
 
 /// The conditions on a table, for its `allOf`.
-pub(super) fn of(table: &Table) -> Vec<Value> {
+pub(super) fn of(table: &TableSchema) -> Vec<Value> {
     let mut all: Vec<Value> = table.keys.iter().flat_map(|key| of_key(table, key)).collect();
     all.extend(of_pattern(table.pattern));
     all
 }
 
 /// What follows from the row of a key.
-fn of_key(table: &Table, key: &Key) -> Vec<Value> {
+fn of_key(table: &TableSchema, key: &Key) -> Vec<Value> {
     let mut all = Vec::new();
     if let Presence::RequiredWithout(other) = key.presence {
         all.push(at_least_one(&[key.name, other]));
@@ -32,7 +32,7 @@ fn of_key(table: &Table, key: &Key) -> Vec<Value> {
 }
 
 /// That a key is one of some words, by its default too.
-fn is_one_of(table: &Table, name: &str, words: &[&str]) -> Value {
+fn is_one_of(table: &TableSchema, name: &str, words: &[&str]) -> Value {
     let by_default = table.key(name).is_some_and(|key| match key.presence {
         Presence::Default(default) => words.iter().any(|word| default == format!("\"{word}\"")),
         _ => false,

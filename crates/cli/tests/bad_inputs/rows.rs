@@ -216,15 +216,15 @@ fn names() -> Vec<Row> {
         refused(36, "a table by a dotted key too", Edit(&[("[block.rocker]", "[beam]\ntable.elements = 5\n[block.rocker]")]), &["scene.toml:29:1", "beam.table: given twice, first on line 18"]),
         refused(37, "unknown solver", Set(&["solver.method=foo"]), &["solver.method", "unknown method", "auto, pgs, enumeration"]),
         refused(38, "version of the future", Edit(&[("version = 1", "version = 99")]), &["scene.toml:8:11", "version = 99", "version 1", "got 99"]),
-        refused(38, "profile of the ground", Edit(&[("[contact.feet]", "[ground]\nprofile = \"hills.csv\"\n[contact.feet]")]), &["ground.profile", "known, but not built in yet"]),
+        refused(38, "profile of the ground", Edit(&[("[contact.feet]", "[ground]\nprofile = \"hills.csv\"\n[contact.feet]")]), &["ground.profile", "not implemented yet"]),
     ]
 }
 
 #[rustfmt::skip] // a row a line
 fn limits() -> Vec<Row> {
     vec![
-        refused(39, "empty file", Text(""), &["holds no scene", "[time]"]),
-        refused(39, "comments only", Text("# nothing\n\n   # here\n"), &["holds no scene", "[time]"]),
+        refused(39, "empty file", Text(""), &["contains no scene", "[time]"]),
+        refused(39, "comments only", Text("# nothing\n\n   # here\n"), &["contains no scene", "[time]"]),
         refused(42, "cut off file", Text("[time]\nend = \"1 s\"\nstep = \"1 m"), &["scene.toml:3:"]),
         refused(49, "no time between rows", Set(&["output.every=0 s"]), &["output.every", "greater than 0 s"]),
         refused(49, "too much output", Set(&["time.end=1e6 s", "time.step=1 ms", "output.every=1 ms"]), &["output.every", "1.0e9 rows", "GB", "10 GB"]),
