@@ -7,11 +7,11 @@ use crate::run::Exit;
 use crate::scene;
 use std::fmt::Write as _;
 use std::path::PathBuf;
-use teeter_scenario::outlook::{BeamOutlook, BlockOutlook, FEW_DIGITS, Outlook, ShapesOutlook};
+use teeter_scenario::output_size::accuracy_of_seconds;
+use teeter_scenario::preview::{BeamPreview, BlockPreview, FEW_DIGITS, Preview, ShapesPreview};
 use teeter_scenario::resolve::Resolved;
 use teeter_scenario::scene::{GroundScene, Scene, SchemeName};
 use teeter_scenario::simulation::Simulation;
-use teeter_scenario::volume::accuracy_of_seconds;
 use teeter_scenario::{Extent, Removed, wording};
 
 #[derive(Debug)]
@@ -36,7 +36,7 @@ pub(crate) fn check(options: &Options) -> Exit {
         Ok(simulation) => simulation,
         Err(error) => return refuse(&presenter.one(&error.diagnostic(&resolved.document))),
     };
-    let text = told(&resolved, &Outlook::new(&resolved, &simulation));
+    let text = told(&resolved, &Preview::new(&resolved, &simulation));
     let exit = print_all(&text);
     for finding in resolved.warnings.iter().chain(&resolved.foreseen).chain(&resolved.notes) {
         console.note(&format!("\n{}", presenter.one(finding)));
@@ -44,16 +44,16 @@ pub(crate) fn check(options: &Options) -> Exit {
     exit
 }
 
-fn told(resolved: &Resolved, outlook: &Outlook) -> String {
+fn told(resolved: &Resolved, preview: &Preview) -> String {
     let scene = &resolved.scene;
     let mut text = format!("{}\n", scene.title);
-    section(&mut text, "bodies", &bodies(scene, outlook));
-    section(&mut text, "model", &model(scene, outlook));
-    section(&mut text, "run", &run(scene, outlook));
-    section(&mut text, "left out", &outlook.left_out);
-    if !outlook.removed.is_empty() {
-        let mut lines: Vec<String> = outlook.removed.iter().take(LISTED).map(removed).collect();
-        lines.extend(more(outlook.removed.len(), "removal"));
+    section(&mut text, "bodies", &bodies(scene, preview));
+    section(&mut text, "model", &model(scene, preview));
+    section(&mut text, "run", &run(scene, preview));
+    section(&mut text, "left out", &preview.left_out);
+    if !preview.removed.is_empty() {
+        let mut lines: Vec<String> = preview.removed.iter().take(LISTED).map(removed).collect();
+        lines.extend(more(preview.removed.len(), "removal"));
         section(&mut text, "not needed, and so not modelled (--model full has it)", &lines);
     }
     text
@@ -77,11 +77,11 @@ fn section(text: &mut String, title: &str, lines: &[impl AsRef<str>]) {
 /// Bodies of a kind that are listed; the rest is counted.
 const LISTED: usize = 20;
 
-fn bodies(scene: &Scene, outlook: &Outlook) -> Vec<String> {
-    let mut lines: Vec<String> = outlook.blocks.iter().take(LISTED).map(block).collect();
-    lines.extend(more(outlook.blocks.len(), "block"));
-    lines.extend(outlook.beams.iter().take(LISTED).map(beam));
-    lines.extend(more(outlook.beams.len(), "beam"));
+fn bodies(scene: &Scene, preview: &Preview) -> Vec<String> {
+    let mut lines: Vec<String> = preview.blocks.iter().take(LISTED).map(block).collect();
+    lines.extend(more(preview.blocks.len(), "block"));
+    lines.extend(preview.beams.iter().take(LISTED).map(beam));
+    lines.extend(more(preview.beams.len(), "beam"));
     lines.extend(scene.ground.as_ref().map(ground));
     lines.extend(driven(scene));
     lines
@@ -123,7 +123,7 @@ fn more(n: usize, what: &str) -> Option<String> {
     (n > LISTED).then(|| format!("and {} more", count((n - LISTED) as u64, what)))
 }
 
-fn block(block: &BlockOutlook) -> String {
+fn block(block: &BlockPreview) -> String {
     let place = match &block.on {
         Some(on) => format!("on {on}, tilted by {} deg", degrees(block.angle)),
         None => format!("placed by its mass centre, at {} deg", degrees(block.angle)),
@@ -137,7 +137,7 @@ fn block(block: &BlockOutlook) -> String {
 /// Digits below which they are told.
 const WORTH_TELLING: f64 = 10.0;
 
-fn beam(beam: &BeamOutlook) -> String {
+fn beam(beam: &BeamPreview) -> String {
     let mut text = format!(
         "beam {}: {}{}, {}, {}",
         beam.name,
@@ -162,7 +162,7 @@ fn beam(beam: &BeamOutlook) -> String {
             "\n    first frequency {} Hz (period {} s){}",
             digits(frequency.model),
             digits(1.0 / frequency.model),
-            match frequency.parted() {
+            match frequency.exact_if_different() {
                 Some(beam) =>
                     format!(" of the model, {} the {} Hz of {own}", beside(frequency.model, beam), digits(beam)),
                 None if beam.frequency_is_exact => String::new(),
@@ -196,7 +196,7 @@ fn beam(beam: &BeamOutlook) -> String {
             if beam.self_weight { "its own weight and " } else { "" },
             wording::part_of(sag.model, beam.span)
         );
-        if let Some(own) = sag.parted() {
+        if let Some(own) = sag.exact_if_different() {
             let part = wording::part_of(own, beam.span);
             let _ = write!(text, "; that is {} the {} m ({part}) of a finer mesh", beside(sag.model, own), digits(own));
         }
@@ -214,7 +214,7 @@ fn beside(model: f64, beam: f64) -> String {
 }
 
 /// " in 6 modes and 3 static corrections (flexibility over [0.1, 0.26] m to 7e-5)"
-fn shapes(shapes: &ShapesOutlook) -> String {
+fn shapes(shapes: &ShapesPreview) -> String {
     let mut text = format!(" in {}", count(shapes.modes as u64, "mode"));
     if shapes.corrections > 0 {
         let _ = write!(text, " and {}", count(shapes.corrections as u64, "static correction"));
@@ -226,16 +226,16 @@ fn shapes(shapes: &ShapesOutlook) -> String {
     text
 }
 
-fn model(scene: &Scene, outlook: &Outlook) -> Vec<String> {
+fn model(scene: &Scene, preview: &Preview) -> Vec<String> {
     let mut lines = vec![
         format!(
             "{} at most, {}",
-            count(outlook.possible_contacts as u64, "contact"),
-            count(outlook.dofs as u64, "degree of freedom")
+            count(preview.possible_contacts as u64, "contact"),
+            count(preview.dofs as u64, "degree of freedom")
         ),
         format!("contact solver {}, to a residual of {:e}", scene.solver.method, scene.solver.tolerance),
     ];
-    if let [first, others @ ..] = outlook.coupled_frequencies.as_slice() {
+    if let [first, others @ ..] = preview.coupled_frequencies.as_slice() {
         let all = others.iter().fold(digits(*first), |all, next| format!("{all}, {}", digits(*next)));
         lines.push(format!("small vibrations of blocks and beams together about the start: {all} Hz"));
     }
@@ -249,8 +249,8 @@ fn model(scene: &Scene, outlook: &Outlook) -> Vec<String> {
     lines
 }
 
-fn run(scene: &Scene, outlook: &Outlook) -> Vec<String> {
-    let (time, volume) = (&scene.time, outlook.volume);
+fn run(scene: &Scene, preview: &Preview) -> Vec<String> {
+    let (time, volume) = (&scene.time, preview.volume);
     if let Some(accuracy) = time.accuracy {
         return vec![format!(
             "steps to {} s as long as an accuracy of {accuracy} allows, by {}: the run finds them",
@@ -270,7 +270,7 @@ fn run(scene: &Scene, outlook: &Outlook) -> Vec<String> {
         ),
         format!(
             "time: {} (an estimate from times measured on a server, good {})",
-            wording::duration(outlook.seconds),
+            wording::duration(preview.seconds),
             accuracy_of_seconds(scene)
         ),
         format!("tables: about {} in {} rows", wording::bytes(volume.bytes), volume.rows),

@@ -7,7 +7,7 @@ use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 use teeter_scenario::decode::LARGEST_FILE;
 use teeter_scenario::diagnostic::is_display_control;
-use teeter_scenario::record::LARGEST_RECORD;
+use teeter_scenario::number_table::LARGEST_RECORD;
 use teeter_scenario::resolve::Resolved;
 
 /// A scene file or the bytes of one, with its name in messages and the stem of the names of its

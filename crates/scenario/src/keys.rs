@@ -1,8 +1,8 @@
-//! The table of keys: what a scene may say.
+//! The table of keys of scenes.
 //!
-//! The columns are those of [`teeter_text::keys`]. Decoding, the defaults written out, the lists of
-//! allowed keys in messages and the addressing by `--set` all follow from [`TABLES`]; so do the
-//! program's JSON schema and reference page.
+//! The columns are those of [`teeter_text::keys`]. Decoding, written defaults, the lists of allowed
+//! keys in messages and `--set` all follow from [`TABLES`]; so do the program's JSON schema and
+//! reference page.
 
 pub use crate::table::TABLES;
 pub use teeter_text::keys::{
@@ -11,24 +11,24 @@ pub use teeter_text::keys::{
 
 use teeter_text::schema::{FileAdvice, NameReference, Namespace, Schema};
 
-/// What a scene may say, for the engine that reads it.
+/// The schema of scenes.
 pub static SCENE: Schema = Schema::new("scene", TABLES)
     .with_namespaces(&[Namespace { groups: &["beam", "block"], taken: &["ground"] }])
     .with_references(&[NameReference { group: "material", from: &["beam", "block"], key: "material" }])
     .with_advice(ADVICE);
 
 const ADVICE: FileAdvice = FileAdvice {
-    empty: Some("a scene has at least a table [time] with end and step"),
+    empty: Some("a scene needs at least a table [time] with end and step"),
     other_file: Some("a scene is a TOML file; see the scenarios that come with the program"),
-    too_deep: Some("no key of a scene has more than five parts, as in beam.table.support.middle.at"),
+    too_deep: Some("keys of a scene have at most five parts, as in beam.table.support.middle.at"),
 };
 
-/// The tables right below a table.
+/// The tables directly below a table.
 pub fn children(table: &TableSchema) -> impl Iterator<Item = &'static TableSchema> + use<> {
     SCENE.children(table)
 }
 
-/// What a dotted path such as `beam.table.thickness` addresses.
+/// What a dotted path such as `beam.table.thickness` refers to.
 ///
 /// ```
 /// use teeter_scenario::keys::{self, PathTarget};

@@ -8,7 +8,7 @@ use cpu_time::ThreadTime;
 use std::path::Path;
 use std::time::Duration;
 use teeter_scenario::load;
-use teeter_scenario::outlook::Outlook;
+use teeter_scenario::preview::Preview;
 use teeter_scenario::simulation::Simulation;
 
 /// Mutated scenes of each seed in CI.
@@ -180,7 +180,7 @@ fn answer(bytes: &[u8]) -> bool {
                 false
             }
             Ok(simulation) => {
-                let outlook = Outlook::new(&resolved, &simulation);
+                let outlook = Preview::new(&resolved, &simulation);
                 assert!(outlook.volume.rows >= 1.0);
                 let written = resolved.document.to_toml();
                 load(written.as_bytes(), "again.toml", "scene", &[])

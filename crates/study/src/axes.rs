@@ -8,7 +8,7 @@ use crate::Setting;
 use teeter_scenario::document::Document;
 use teeter_scenario::keys::{self, Kind, PathTarget};
 use teeter_scenario::resolve::Resolved;
-use teeter_scenario::scene::{BeamScene, ContactScene, Scene, SchemeName, Support};
+use teeter_scenario::scene::{BeamScene, ContactScene, Scene, SchemeName, SupportingBody};
 
 /// One thing that can be varied.
 #[derive(Debug, Clone, PartialEq)]
@@ -166,7 +166,7 @@ fn has_steps(scheme: &str) -> bool {
 
 /// `resolved` is for beams that give nothing back but by their own elasticity.
 fn suits(scheme: &str, scene: &Scene) -> bool {
-    let at_beams = || scene.contacts.iter().filter(|contact| matches!(contact.surface, Support::Beam(_)));
+    let at_beams = || scene.contacts.iter().filter(|contact| matches!(contact.surface, SupportingBody::Beam(_)));
     scheme != SchemeName::Resolved.word() || (at_beams().next().is_some() && !at_beams().any(ContactScene::gives_back))
 }
 
@@ -215,7 +215,7 @@ fn solver(resolved: &Resolved) -> Option<Axis> {
 }
 
 fn kinematics(resolved: &Resolved) -> Option<Axis> {
-    let on_beam = resolved.scene.contacts.iter().filter(|contact| matches!(contact.surface, Support::Beam(_)));
+    let on_beam = resolved.scene.contacts.iter().filter(|contact| matches!(contact.surface, SupportingBody::Beam(_)));
     let keys: Vec<String> = on_beam.map(|contact| format!("contact.{}.kinematics", contact.name)).collect();
     words(resolved, "kinematics", &keys, |_| true)
 }
@@ -242,7 +242,7 @@ pub(crate) fn refined(resolved: &Resolved, factor: f64) -> Setting {
 /// mesh.
 pub(crate) fn unreduced(resolved: &Resolved) -> Setting {
     let mut setting = Setting::none();
-    for contact in resolved.scene.contacts.iter().filter(|contact| matches!(contact.surface, Support::Beam(_))) {
+    for contact in resolved.scene.contacts.iter().filter(|contact| matches!(contact.surface, SupportingBody::Beam(_))) {
         let key = format!("contact.{}.kinematics", contact.name);
         if resolved.document.text(&key) != Some("deformed") {
             setting = setting.set(key, "deformed");

@@ -4,8 +4,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, Stop, Vector};
 use teeter_scenario::load;
+use teeter_scenario::output_size::{MOST_OPERATOR_BYTES, accuracy_of_seconds, expected_seconds, operator_bytes};
 use teeter_scenario::simulation::Simulation;
-use teeter_scenario::volume::{MOST_OPERATOR_BYTES, accuracy_of_seconds, expected_seconds, operator_bytes};
 
 /// So many blocks of 1 cm beside each other, on the ground or on a beam.
 fn row_of_blocks(blocks: usize, on: &str) -> String {

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use teeter_integrator::{Model, Observer, ObserverError, State, StepReport};
 use teeter_rigid::{Pose, Rectangle};
 use teeter_scenario::simulation::{BuildError, Simulation};
-use teeter_scenario::{Departure, PlacementError, load};
+use teeter_scenario::{InstabilityMode, PlacementError, load};
 
 /// Of a block, N.
 const WEIGHT: f64 = 2700.0 * 0.03 * 0.135 * 0.03 * 9.81;
@@ -173,27 +173,29 @@ fn what_cannot_rest_is_refused_by_name() {
         other => panic!("{blocks:?}: {other:?}"),
     };
     let slope = [("still", "at = '18 cm'"), ("slider", "at = '6 cm'")];
-    assert_eq!(refused("", &slope, "friction = 0.01", ""), ("slider".into(), Departure::Slides));
-    assert_eq!(refused("", &[("a", "at = '14 cm'")], "friction = 0", ""), ("a".into(), Departure::Slides));
+    assert_eq!(refused("", &slope, "friction = 0.01", ""), ("slider".into(), InstabilityMode::Slides));
+    assert_eq!(refused("", &[("a", "at = '14 cm'")], "friction = 0", ""), ("a".into(), InstabilityMode::Slides));
     let tip = [("a", "at = '34 cm'")];
     let cantilever = "supports = ['clamped', 'free']";
-    assert_eq!(refused(cantilever, &tip, "friction = 0.5", ""), ("a".into(), Departure::Tips));
+    assert_eq!(refused(cantilever, &tip, "friction = 0.5", ""), ("a".into(), InstabilityMode::Tips));
     // 3.2 N on a lever of 1.5 cm hold 48 mN m.
     let push = |couple| format!("[force.f]\non = 'a'\ncouple = '{couple}'\n");
     assert_eq!(
         refused("", &[("a", "at = '18 cm'")], "friction = 0.5", &push("60 mN m")),
-        ("a".into(), Departure::Tips)
+        ("a".into(), InstabilityMode::Tips)
     );
     assert!(build(&(scene("", &[("a", "at = '18 cm'")], "friction = 0.5") + &push("20 mN m"))).is_ok());
     let pull = "[force.f]\non = 'a'\nforce = ['0 N', '4 N']\n";
-    assert_eq!(refused("", &[("a", "at = '18 cm'")], "friction = 0.5", pull), ("a".into(), Departure::LiftsOff));
+    assert_eq!(refused("", &[("a", "at = '18 cm'")], "friction = 0.5", pull), ("a".into(), InstabilityMode::LiftsOff));
     let tilted = [("a", "at = '7 cm'\ntilt = '-0.5 deg'"), ("b", "at = '7 cm'\ntilt = '0.5 deg'")];
     for (block, leans) in [(tilted[0], true), (tilted[1], false)] {
         // The beam falls to the right there by 1.3 degrees: a block leaning less to the right comes
         // onto its left foot.
         let text = scene("", &[block], "friction = 0.5");
         match build(&text) {
-            Err(BuildError::Placement(PlacementError::NoEquilibrium { motion: Departure::ChangesFoot, .. })) => {
+            Err(BuildError::Placement(PlacementError::NoEquilibrium {
+                motion: InstabilityMode::ChangesFoot, ..
+            })) => {
                 assert!(leans, "{block:?}");
             }
             Ok(_) => assert!(!leans, "{block:?}"),
