@@ -121,11 +121,11 @@ pub(crate) fn missing_flexibility(scene: &Scene, number: usize) -> Option<Missin
             });
             match count {
                 Some(count) => format!("use modes = {{ count = {count} }} or more, or leave the number out"),
-                None => "take model = \"full\"".to_owned(),
+                None => "use model = \"full\"".to_owned(),
             }
         }
         _ => match doublings(2).find(|&elements| enough(mesh(elements))) {
-            Some(elements) => format!("take elements = {elements} or more"),
+            Some(elements) => format!("use elements = {elements} or more"),
             None => "use more elements where it is loaded".to_owned(),
         },
     };

@@ -313,12 +313,15 @@ mod tests {
         assert!(told("0,5;1\n1;2\n").ends_with("these are separated by a semicolon"));
         assert!(told("0\t1\n").ends_with("these are separated by a tab"));
         assert!(told("0 1\n").ends_with("these are separated by blanks"));
-        assert!(told("1e400x,2\n0,1\n1,2\n").starts_with("line 1: `1e400x` is no number"));
+        assert!(told("1e400x,2\n0,1\n1,2\n").starts_with("line 1: `1e400x` is not a number"));
         assert_eq!(told("0,1\n1,2,3\n"), "line 2: 3 columns, but a table has two, t and value, separated by a comma");
-        assert_eq!(told("0,1\n1,high\n"), "line 2: `high` is no number");
+        assert_eq!(told("0,1\n1,high\n"), "line 2: `high` is not a number");
         assert!(told(&"0,1\n".repeat(MOST_ROWS + 1)).starts_with("line 2000001: more than 2000000 rows"));
-        assert_eq!(told("0,1\n1,1e308\n"), "line 2, column 2: 1e308 is over 1e12 in size, the limit of numbers");
-        assert!(told("0,1\n1e-320,2\n").ends_with("is below 2.2e-308 in size, the limit of numbers"));
+        assert_eq!(
+            told("0,1\n1,1e308\n"),
+            "line 2, column 2: 1e308 is over 1e12 in absolute value, the limit of numbers"
+        );
+        assert!(told("0,1\n1e-320,2\n").ends_with("is below 2.2e-308 in absolute value, the limit of numbers"));
         assert!(told("0,1\n1e-20,2\n").starts_with("line 2: 1e-20 s after the row before, below 1e-15 s"));
         assert!(read(&vec![b'1'; LARGEST_RECORD + 1], 0.0).unwrap_err().contains("64 MB"));
     }

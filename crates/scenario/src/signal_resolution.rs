@@ -77,12 +77,12 @@ impl Used {
     fn in_the_mean(self) -> &'static str {
         match self {
             Self { motion: true, load: true } => {
-                "a step takes the mean of a load and of a velocity, so no impulse is lost, but variation within a step is"
+                "a step takes the mean of a load and of a velocity: no impulse is lost, but the variation within a step is ignored"
             }
             Self { motion: true, .. } => {
-                "a step takes the mean of the velocity, so the position stays right, but variation within a step is lost"
+                "a step takes the mean of the velocity: the position stays right, but the variation within a step is ignored"
             }
-            _ => "a step takes its mean, so no impulse is lost, but variation within a step is",
+            _ => "a step takes its mean: no impulse is lost, but the variation within a step is ignored",
         }
     }
 }
@@ -171,7 +171,7 @@ fn rows(path: &str, table: &Table, in_the_mean: &str, scene: &Scene, document: &
         return None;
     }
     let rule = format!(
-        "its rows are up to {closest:.3e} s apart at the closest, finer than the step of {step:e} s, with peaks between the ends of steps of up to \
+        "its rows are as close as {closest:.3e} s, closer than the step of {step:e} s, with peaks between the ends of steps of up to \
          {:.0} % of its largest value: {in_the_mean}",
         100.0 * worst
     );

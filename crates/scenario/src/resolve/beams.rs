@@ -144,7 +144,7 @@ impl Resolver<'_, '_> {
         }
         if doc.text(&format!("{path}.axial")) == Some("held") {
             let rule = "a beam held along its axis stretches as it deflects, which modes can't represent";
-            self.error(&model, rule, "take model = \"full\", or axial = \"free\"");
+            self.error(&model, rule, "use model = \"full\", or axial = \"free\"");
             return None;
         }
         let backend = format!("{path}.backend");

@@ -171,6 +171,9 @@ mod tests {
         assert!(told("1\n", pinned).starts_with("line 1: 1 column, but a table has two or three"));
         assert!(told(&file(|_| f64::NAN), pinned).contains("not finite"));
         let large = file(|x| if x == 0.25 { -1e300 } else { 0.0 });
-        assert_eq!(told(&large, pinned), "line 3, column 2: -1e300 is over 1e12 in size, the limit of numbers");
+        assert_eq!(
+            told(&large, pinned),
+            "line 3, column 2: -1e300 is over 1e12 in absolute value, the limit of numbers"
+        );
     }
 }

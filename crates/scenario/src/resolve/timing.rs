@@ -50,7 +50,7 @@ impl Resolver<'_, '_> {
                 scheme.word(),
                 if scheme == SchemeName::GeneralizedAlpha { "needs linear forces" } else { "needs constant modes" }
             );
-            self.error("time.scheme", rule, "take scheme = \"moreau-jean-closed\", or axial = free");
+            self.error("time.scheme", rule, "use scheme = \"moreau-jean-closed\", or axial = free");
         }
         if let (Some(scheme), Some(theta)) = (scheme, theta)
             && scheme.is_trapezoidal()
@@ -156,7 +156,7 @@ impl Resolver<'_, '_> {
         };
         if let Some(contact) = contacts.iter().flatten().find(has_duration).filter(|_| !scheme.takes_springs()) {
             let rule = format!("{} doesn't support compliant contacts, such as `{}`", scheme.word(), contact.name);
-            self.error("time.scheme", rule, "take scheme = \"moreau-jean-located\", or law = \"newton\"");
+            self.error("time.scheme", rule, "use scheme = \"moreau-jean-located\", or law = \"newton\"");
         }
         if !scheme.holds_beams() || contacts.iter().any(Option::is_none) {
             return;

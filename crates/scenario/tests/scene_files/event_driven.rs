@@ -105,7 +105,7 @@ fn what_it_does_not_take_is_refused_with_the_reason() {
     let sets = [("time.scheme".to_owned(), "event-driven".to_owned())];
     let refused = teeter_scenario::load(scene.as_bytes(), "s", "s", &sets).unwrap_err().to_string();
     assert!(
-        refused.contains("takes no contacts with duration") && refused.contains("moreau-jean-located"),
+        refused.contains("doesn't support compliant contacts") && refused.contains("moreau-jean-located"),
         "{refused}"
     );
 }

@@ -135,7 +135,7 @@ fn points_that_are_no_convex_polygon_are_refused_with_the_corner() {
     assert!(of(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]).contains("straight on"));
     assert!(of(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]).contains("turns inwards"), "it crosses itself");
     let triangle = points(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
-    assert!(told(&format!("{triangle}\nwidth = '1 m'")).contains("points already say"));
+    assert!(told(&format!("{triangle}\nwidth = '1 m'")).contains("points already give"));
     assert!(told(&format!("{triangle}\non = 'ground'\nat = '0 m'")).contains("no base to stand on"));
     assert!(told("points = [['0 m'], ['1 m', '0 m'], ['0 m', '1 m']]").contains("an array of two is expected, got 1"));
 }
