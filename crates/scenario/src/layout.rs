@@ -25,7 +25,7 @@ pub struct BlockPlace {
     /// rad.
     pub still: f64,
     /// The reference from which its tilt is measured.
-    pub carrier: TiltReference,
+    pub tilt_reference: TiltReference,
 }
 
 /// The place of a beam in the state.

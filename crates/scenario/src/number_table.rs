@@ -113,22 +113,8 @@ pub(crate) fn columns(
                 (Some(unit), Some(dimension)) => number_in(cell, unit, *dimension),
                 _ => number(cell),
             };
-            let Some(value) = read else {
-                let text = printable(&String::from_utf8_lossy(cell));
-                let other = match other_separator(&row) {
-                    Some(other) => format!("; these are separated by {other}"),
-                    None => String::new(),
-                };
-                return Err(format!("line {line}: `{text}` is not a number{other}"));
-            };
-            // Numbers that aren't finite have their own message.
-            let (size, limits) = (value.abs(), Range::ANY);
-            let beyond = match size {
-                size if size > limits.largest && size.is_finite() => format!("over {:e}", limits.largest),
-                size if size > 0.0 && size < limits.smallest => format!("below {:.1e}", limits.smallest),
-                _ => String::new(),
-            };
-            if !beyond.is_empty() {
+            let value = read.ok_or_else(|| format!("line {line}: {}", not_a_number(cell, &row)))?;
+            if let Some(beyond) = beyond_limits(value) {
                 let column = k + 1;
                 return Err(format!(
                     "line {line}, column {column}: {value:e} is {beyond} in absolute value, the limit of numbers"
@@ -139,6 +125,23 @@ pub(crate) fn columns(
         lines.push(line);
     }
     Ok(NumberColumns { columns, lines })
+}
+
+/// Why a cell of a row can't be read.
+fn not_a_number(cell: &[u8], row: &csv::ByteRecord) -> String {
+    let text = printable(&String::from_utf8_lossy(cell));
+    let other = other_separator(row).map_or_else(String::new, |other| format!("; these are separated by {other}"));
+    format!("`{text}` is not a number{other}")
+}
+
+/// The limit that a number exceeds, in words. Numbers that aren't finite have their own message.
+fn beyond_limits(value: f64) -> Option<String> {
+    let limits = Range::ANY;
+    match value.abs() {
+        size if size > limits.largest && size.is_finite() => Some(format!("over {:e}", limits.largest)),
+        size if size > 0.0 && size < limits.smallest => Some(format!("below {:.1e}", limits.smallest)),
+        _ => None,
+    }
 }
 
 /// Counts lines. (The reader's own count is the end of the row before, ahead of blank lines and

@@ -163,8 +163,8 @@ pub(crate) fn starting_poses(
                     block_pose(scene, block, &SupportSurface::Surface(still.as_ref(), &deflections[k]))?
                 }
                 Placement::On { support: SupportingBody::Block(below), at, tilt, stacked, .. } => {
-                    let carrier = &scene.blocks[below];
-                    let top = TopSide::of(carrier, &poses[below].unwrap_or_default());
+                    let lower = &scene.blocks[below];
+                    let top = TopSide::of(lower, &poses[below].unwrap_or_default());
                     let at = if stacked { top.line[0] + at * top.line[2].cos() } else { at };
                     if !top.is_under(block, at) {
                         return Err(off_surface(block, &Foot { corner: 0, x: at - 0.5 * block.width }).into());

@@ -3,11 +3,11 @@
 use crate::driven::{self, BeamModel};
 use crate::opening::{OPEN_GAP, openings};
 use crate::overlap::{Outline, Overlap, PlacedOutline, deepest_overlap};
-use crate::placement::{PlacementError, starting_poses};
+use crate::placement::PlacementError;
 use crate::required::{Extent, Required, RestingBody};
-use crate::scene::{Scene, SchemeName, SupportingBody, Time};
+use crate::scene::{BlockScene, Scene, SchemeName, SupportingBody, Time};
 use crate::static_start::{InitialConfiguration, StaticStart};
-use crate::tilt_reference::{TiltReference, carriers};
+use crate::tilt_reference::{TiltReference, tilt_references};
 use nalgebra::Vector2;
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -149,70 +149,30 @@ impl Simulation {
         extent: Extent,
         wrap: impl FnOnce(Box<dyn ContactSolver<2>>) -> Box<dyn ContactSolver<2>>,
     ) -> Result<Self, BuildError> {
-        let mut blocks = Vec::new();
-        for block in &scene.blocks {
-            let named = |error| BuildError::Block(block.name.clone(), error);
-            let mass = block.mass_properties().map_err(named)?;
-            blocks.push((Block::within(mass, block.radius()), block.corners()));
-        }
-        let mut beams = Vec::new();
-        for (number, scene_beam) in scene.beams.iter().enumerate() {
-            let mut model = BeamModel::new(scene_beam)?;
-            model.displaced = model.body(scene, number)?.displacements(0.0);
-            beams.push(model);
-        }
-        let ground = scene.ground.as_ref().map(driven::ground);
-        let ground_start = ground.as_ref().map(|ground| ground.coordinates(0.0)).unwrap_or_default();
+        let blocks = block_bodies(scene)?;
+        let beams = beam_models(scene)?;
+        let ground_start = scene.ground.as_ref().map(|of| driven::ground(of).coordinates(0.0)).unwrap_or_default();
         let required = Required::all(scene);
-        let mut assembled = assemble(scene, &blocks, &beams, &required)?;
+        let assembled = assemble(scene, &blocks, &beams, &required)?;
         let mut layout = lay_out(scene, &beams, &assembled, required);
-        let slope = layout.ground.as_ref().map(|ground| ground.start + 2);
-        let all_carriers = carriers(scene, &layout.blocks, slope);
-        for (place, carrier) in layout.blocks.iter_mut().zip(all_carriers) {
-            place.carrier = carrier;
-        }
-        let dofs = assembled.model.size().q;
-        let incline = scene.ground.as_ref().map_or(0.0, |ground| ground.incline);
-        let line = if let [x, y, slope] = *ground_start { [x, y, slope] } else { [0.0, 0.0, incline] };
 
-        let deflections: Vec<Vec<f64>> =
-            scene.beams.iter().zip(&beams).map(|(of, model)| model.coordinates(&of.shape)).collect();
-        let poses = starting_poses(scene, &beams, &deflections, line)?;
-        let mut start = InitialConfiguration {
-            blocks: &blocks,
-            poses,
-            beams: &beams,
-            deflections,
-            ground: &ground_start,
-            pressed: Vec::new(),
-        };
+        let mut start = InitialConfiguration::placed(scene, &blocks, &beams, &ground_start)?;
         let static_start = start.settle(scene)?;
-        let InitialConfiguration { poses, deflections, pressed, .. } = start;
-        for (k, pressed) in pressed {
+        let (q, v) = start.coordinates(scene, assembled.model.size().q);
+        for (k, pressed) in start.pressed {
             layout.beams[k].pressed = Some(pressed);
         }
-
-        let (mut q, mut v) = (Vec::with_capacity(dofs), Vec::with_capacity(dofs));
-        for (pose, block) in poses.iter().zip(&scene.blocks) {
-            q.extend(pose.iter());
-            v.extend([block.velocity[0], block.velocity[1], block.spin]);
-        }
-        for (deflection, model) in deflections.iter().zip(&beams) {
-            q.extend(deflection.iter().chain(&model.displaced));
-        }
-        q.extend(&ground_start);
-        v.resize(dofs, 0.0);
-
         check_start(scene, &assembled.model, &layout, &q)?;
         check_apart(scene, &q)?;
+
+        let mut model = assembled.model;
         if extent == Extent::Required {
-            layout.required = Required::of(scene, &layout, &assembled.model, &q, &v);
+            layout.required = Required::of(scene, &layout, &model, &q, &v);
             if !layout.required.removed.is_empty() {
                 // The layout of the state stays the same.
-                assembled = assemble(scene, &blocks, &beams, &layout.required)?;
+                model = assemble(scene, &blocks, &beams, &layout.required)?.model;
             }
         }
-        let model = assembled.model;
 
         let state = State::new(&model, &q, &v, scene.time.step)?;
         let solver = teeter_solvers::plane_solver(&scene.solver.method)
@@ -323,6 +283,25 @@ impl Simulation {
     }
 }
 
+/// The bodies of the blocks, with their corners.
+fn block_bodies(scene: &Scene) -> Result<Vec<(Block, Vec<Vector2<f64>>)>, BuildError> {
+    let body = |block: &BlockScene| {
+        let mass = block.mass_properties().map_err(|error| BuildError::Block(block.name.clone(), error))?;
+        Ok((Block::within(mass, block.radius()), block.corners()))
+    };
+    scene.blocks.iter().map(body).collect()
+}
+
+/// The beams, with the initial displacements of their supports.
+fn beam_models(scene: &Scene) -> Result<Vec<BeamModel>, BuildError> {
+    let model = |(number, of)| {
+        let mut model = BeamModel::new(of)?;
+        model.displaced = model.body(scene, number)?.displacements(0.0);
+        Ok(model)
+    };
+    scene.beams.iter().enumerate().map(model).collect()
+}
+
 /// A model, and the places of its parts.
 struct Assembled {
     model: Model<2>,
@@ -333,14 +312,20 @@ struct Assembled {
 
 /// The layout, from the places returned by the model builder.
 fn lay_out(scene: &Scene, beams: &[BeamModel], assembled: &Assembled, required: Required) -> Layout {
+    let ground = assembled.ground.as_ref().map(|place| place.q.clone()).filter(|q| !q.is_empty());
     let blocks = scene.blocks.iter().zip(assembled.blocks.q.clone().step_by(3)).map(|(block, start)| BlockPlace {
         name: block.name.clone(),
         range: start..start + 3,
         side: block.width.min(block.height),
         reach: block.radius(),
         still: OPEN_GAP * block.width.min(block.height) / block.width,
-        carrier: TiltReference::Level,
+        tilt_reference: TiltReference::Level,
     });
+    let mut blocks: Vec<BlockPlace> = blocks.collect();
+    let references = tilt_references(scene, &blocks, ground.as_ref().map(|ground| ground.start + 2));
+    for (place, reference) in blocks.iter_mut().zip(references) {
+        place.tilt_reference = reference;
+    }
     let beams = scene.beams.iter().zip(beams).zip(&assembled.beams).map(|((of, model), place)| {
         // The displacements of moving supports come last.
         let end = place.q.end - model.displaced.len();
@@ -363,14 +348,7 @@ fn lay_out(scene: &Scene, beams: &[BeamModel], assembled: &Assembled, required: 
         of_shapes: contact.other_block().is_some(),
         corners: scene.blocks[contact.block].corner_count(),
     });
-    Layout {
-        blocks: blocks.collect(),
-        beams: beams.collect(),
-        pairs: pairs.collect(),
-        ground: assembled.ground.as_ref().map(|place| place.q.clone()).filter(|q| !q.is_empty()),
-        openings: openings(scene),
-        required,
-    }
+    Layout { blocks, beams: beams.collect(), pairs: pairs.collect(), ground, openings: openings(scene), required }
 }
 
 /// The model of the required parts of a scene.

@@ -7,7 +7,7 @@
 //! stay. A beam in modes settles in its modes, so it is at rest in the model that runs.
 
 use crate::driven::{self, BeamModel};
-use crate::placement::{InstabilityMode, PlacementError, below};
+use crate::placement::{InstabilityMode, PlacementError, below, starting_poses};
 use crate::scene::{Placement, Scene, SupportingBody};
 use crate::simulation::{BuildError, detector};
 use nalgebra::{Vector2, Vector3};
@@ -37,10 +37,10 @@ pub(crate) struct InitialConfiguration<'a> {
 }
 
 /// A block that moves by this fraction of its width from its place has no equilibrium there.
-const REACH: f64 = 0.1;
+const MOST_DISPLACEMENT: f64 = 0.1;
 
 /// Friction under the foot of a held block, which doesn't slide. Its other corners have none.
-const HELD: f64 = 1e3;
+const HELD_FRICTION: f64 = 1e3;
 
 /// Residual of the contact problems, which limits the accuracy of the forces.
 const TOLERANCE: f64 = 1e-13;
@@ -50,12 +50,45 @@ const ITERATIONS: u32 = 10_000;
 
 /// Most times that held blocks are moved back: the top fibre of a rotating section carries them
 /// along.
-const RETURNS: usize = 20;
+const MOST_RESETS: usize = 20;
 
 /// Distance of a foot from its place, relative to its block's width, that counts as zero.
-const THERE: f64 = 1e-15;
+const FOOT_TOLERANCE: f64 = 1e-15;
 
-impl InitialConfiguration<'_> {
+impl<'a> InitialConfiguration<'a> {
+    /// The configuration before settling: blocks on beams in their given shapes.
+    ///
+    /// # Errors
+    /// If a corner is not above the surface that it should stand on, or a beam can't be evaluated.
+    pub(crate) fn placed(
+        scene: &Scene,
+        blocks: &'a [(Block, Vec<Vector2<f64>>)],
+        beams: &'a [BeamModel],
+        ground: &'a [f64],
+    ) -> Result<Self, BuildError> {
+        let incline = scene.ground.as_ref().map_or(0.0, |ground| ground.incline);
+        let line = if let [x, y, slope] = *ground { [x, y, slope] } else { [0.0, 0.0, incline] };
+        let deflections: Vec<Vec<f64>> =
+            scene.beams.iter().zip(beams).map(|(of, model)| model.coordinates(&of.shape)).collect();
+        let poses = starting_poses(scene, beams, &deflections, line)?;
+        Ok(Self { blocks, poses, beams, deflections, ground, pressed: Vec::new() })
+    }
+
+    /// Coordinates and velocities of the whole model, which has this number of coordinates.
+    pub(crate) fn coordinates(&self, scene: &Scene, dofs: usize) -> (Vec<f64>, Vec<f64>) {
+        let (mut q, mut v) = (Vec::with_capacity(dofs), Vec::with_capacity(dofs));
+        for (pose, block) in self.poses.iter().zip(&scene.blocks) {
+            q.extend(pose.iter());
+            v.extend([block.velocity[0], block.velocity[1], block.spin]);
+        }
+        for (deflection, model) in self.deflections.iter().zip(self.beams) {
+            q.extend(deflection.iter().chain(&model.displaced));
+        }
+        q.extend(self.ground);
+        v.resize(dofs, 0.0);
+        (q, v)
+    }
+
     /// Moves beams with a static start, and the blocks on them, to their equilibrium; `None` if
     /// there are no such beams.
     ///
@@ -72,25 +105,27 @@ impl InitialConfiguration<'_> {
         }
         let blocks =
             (0..scene.blocks.len()).filter(|&k| carried_by(scene, k).is_some_and(|beam| beams.contains(&beam)));
-        let taking_part = StaticModel { blocks: blocks.collect(), beams };
-        let (model, pairs) = taking_part.model(scene, self)?;
-        let reach: Vec<f64> =
-            pairs.iter().map(|pair| REACH * scene.blocks[scene.contacts[pair.contact].block].width).collect();
+        let bodies = StaticModel { blocks: blocks.collect(), beams };
+        let (model, pairs) = bodies.model(scene, self)?;
+        let reach: Vec<f64> = pairs
+            .iter()
+            .map(|pair| MOST_DISPLACEMENT * scene.blocks[scene.contacts[pair.contact].block].width)
+            .collect();
         let mut limits = SettlingLimits {
             reach: &reach,
             margin: reach.iter().copied().fold(0.0, f64::max),
             tau: SettlingLimits::FIRST_TAU,
         };
-        let held: Vec<HeldFoot> = taking_part.blocks.iter().filter_map(|&k| HeldFoot::of(scene, self, k)).collect();
+        let held: Vec<HeldFoot> = bodies.blocks.iter().filter_map(|&k| HeldFoot::of(scene, self, k)).collect();
         let settings = SolverSettings { tolerance: TOLERANCE, max_iterations: ITERATIONS };
         let mut summary = StaticStart::default();
-        for _ in 0..RETURNS {
+        for _ in 0..MOST_RESETS {
             let mut work = Workspace::new(&model, Box::new(Auto::new()), settings);
-            let found = settle(&model, 0.0, &taking_part.coordinates(self), &limits, &mut work)
+            let found = settle(&model, 0.0, &bodies.coordinates(self), &limits, &mut work)
                 .map_err(|error| refusal(scene, &scene.beams[first].name, &pairs, error))?;
             limits.tau = found.tau;
-            taking_part.take(self, &found.q);
-            self.pressed = taking_part.pressed(scene, &model, &found)?;
+            bodies.take(self, &found.q);
+            self.pressed = bodies.pressed(scene, &model, &found)?;
             summary.rounds += found.rounds;
             summary.change = found.change;
             summary.forces.clear();
@@ -203,7 +238,7 @@ impl HeldFoot {
         let pose = &mut start.poses[self.block];
         let off = self.x - Pose::new(pose).point(&self.point).x;
         pose.x += off;
-        off.abs() <= THERE * (self.width + self.x.abs())
+        off.abs() <= FOOT_TOLERANCE * (self.width + self.x.abs())
     }
 }
 
@@ -254,7 +289,7 @@ impl StaticModel {
             if let Some(other) = contact.other_block() {
                 let (Some(block), Some(other_part)) = (block, part(other)) else { continue };
                 let held = [contact.block, other].into_iter().any(|block| foot_of(scene, block).is_some());
-                let law = parts.law(PairLaw::new(if held { HELD } else { contact.law.friction }, 0.0));
+                let law = parts.law(PairLaw::new(if held { HELD_FRICTION } else { contact.law.friction }, 0.0));
                 let (pair, bodies) = (contacts.len() as u32, [block, other_part].map(body));
                 shape_pairs.push(ShapePair { pair, law, bodies });
                 contacts.push(EquilibriumPair { contact: number, corners: Vec::new() });
@@ -264,7 +299,9 @@ impl StaticModel {
             let (Some(block), Some(&(_, surface))) = (block, surface) else { continue };
             let corners = &start.blocks[contact.block].1;
             let groups = match foot_of(scene, contact.block) {
-                Some(foot) => vec![(HELD, vec![foot]), (0.0, (0..corners.len()).filter(|&k| k != foot).collect())],
+                Some(foot) => {
+                    vec![(HELD_FRICTION, vec![foot]), (0.0, (0..corners.len()).filter(|&k| k != foot).collect())]
+                }
                 None => vec![(contact.law.friction, (0..corners.len()).collect())],
             };
             for (friction, numbers) in groups {

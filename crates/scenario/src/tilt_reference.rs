@@ -20,7 +20,7 @@ pub enum TiltReference {
 
 /// The tilt references of the blocks at the given places; `slope` is the index of the slope of
 /// moving ground.
-pub(crate) fn carriers(scene: &Scene, blocks: &[BlockPlace], slope: Option<usize>) -> Vec<TiltReference> {
+pub(crate) fn tilt_references(scene: &Scene, blocks: &[BlockPlace], slope: Option<usize>) -> Vec<TiltReference> {
     let on_ground = match (slope, &scene.ground) {
         (Some(slope), _) => TiltReference::Moving(slope),
         (None, Some(ground)) if ground.incline != 0.0 => TiltReference::Incline(ground.incline),
@@ -32,12 +32,12 @@ pub(crate) fn carriers(scene: &Scene, blocks: &[BlockPlace], slope: Option<usize
             scene.contacts.iter().find(|contact| contact.block == number).map(|contact| contact.surface)
         }
     };
-    let carrier = |block| match support(block) {
+    let reference = |block| match support(block) {
         Some(SupportingBody::Ground) => on_ground,
         Some(SupportingBody::Block(below)) if stands(block.1) => TiltReference::Moving(blocks[below].range.start + 2),
         Some(SupportingBody::Beam(_) | SupportingBody::Block(_)) | None => TiltReference::Level,
     };
-    scene.blocks.iter().map(|block| &block.placement).enumerate().map(carrier).collect()
+    scene.blocks.iter().map(|block| &block.placement).enumerate().map(reference).collect()
 }
 
 /// Whether the block stands on its reference: a block that only touches another, such as a
@@ -53,7 +53,7 @@ impl Layout {
     pub fn tilt(&self, block: usize, q: &[f64]) -> f64 {
         let place = &self.blocks[block];
         let phi = q[place.range.start + 2];
-        match place.carrier {
+        match place.tilt_reference {
             TiltReference::Level => phi,
             TiltReference::Incline(slope) => phi - slope,
             TiltReference::Moving(slope) => phi - q[slope],
@@ -66,7 +66,7 @@ impl Layout {
     pub fn tilt_rate(&self, block: usize, v: &[f64]) -> f64 {
         let place = &self.blocks[block];
         let omega = v[place.range.start + 2];
-        match place.carrier {
+        match place.tilt_reference {
             TiltReference::Level | TiltReference::Incline(_) => omega,
             TiltReference::Moving(slope) => omega - v[slope],
         }

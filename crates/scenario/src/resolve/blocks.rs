@@ -99,53 +99,72 @@ impl Resolver<'_, '_> {
         contacts: &[Option<ContactScene>],
         joined: &Joined,
     ) -> Option<Placement> {
-        let doc = self.doc;
-        let (name, path) = (block.name.as_str(), format!("block.{}", block.table));
-        let shift =
-            doc.pair(&format!("{path}.repeat.shift")).unwrap_or_default().map(|shift| block.copy as f64 * shift);
+        let path = format!("block.{}", block.table);
         let at = |key: &str| format!("{path}.{key}");
-        let written = |key: &str| doc.is_given(&at(key)) || doc.is_refused(&at(key));
-        if drawn.is_some()
-            && let Some(key) = ["on", "at", "tilt"].into_iter().find(|key| written(key))
-        {
-            let remedy = "leave it out, as the block starts where its points are, or give position and angle";
-            self.error(&at(key), "a block given by its points has no base to stand on", remedy);
-            return None;
-        }
-        if written("position") {
-            if let Some(key) = ["on", "at", "tilt"].into_iter().find(|key| written(key)) {
-                self.error(
-                    &at(key),
-                    "position already gives the place of the block",
-                    "keep position and angle, or on, at and tilt",
-                );
-                return None;
-            }
-            if doc.flag(&at("repeat.stacked")) == Some(true) {
-                let rule = "stacked blocks stand on each other, but position gives their place";
-                self.error(&at("repeat.stacked"), rule, "give on and at, or shift instead of stacked");
-                return None;
-            }
+        let shift = self.doc.pair(&at("repeat.shift")).unwrap_or_default().map(|shift| block.copy as f64 * shift);
+        self.check_placement_keys(&path, drawn.is_some()).ok()?;
+        if self.is_written(&at("position")) {
             let (position, angle) = (self.pair(&at("position")), self.quantity(&at("angle")));
             let [x, y] = position?;
             return Some(Placement::Free { position: [x + shift[0], y + shift[1]], angle: angle? });
         }
-        if written("angle") {
-            self.error(&at("angle"), "angle applies only with position", "use tilt instead, or give position");
-            return None;
-        }
         if let Some([x, y]) = drawn {
             return Some(Placement::Free { position: [x + shift[0], y + shift[1]], angle: 0.0 });
         }
-        if !written("on") {
-            self.error(
-                &path,
-                "the position of the block is missing",
-                "give on and at (and tilt), or position (and angle)",
-            );
+        self.placement_on(block, shift, contacts, joined)
+    }
+
+    /// Whether the document has a value at a path, valid or not.
+    fn is_written(&self, path: &str) -> bool {
+        self.doc.is_given(path) || self.doc.is_refused(path)
+    }
+
+    /// Refuses mutually exclusive keys of the placement of a block, which may be drawn by its
+    /// points.
+    fn check_placement_keys(&mut self, path: &str, drawn: bool) -> Result<(), AlreadyReported> {
+        let at = |key: &str| format!("{path}.{key}");
+        let standing = ["on", "at", "tilt"].into_iter().find(|key| self.is_written(&at(key)));
+        let position = self.is_written(&at("position"));
+        let (key, rule, remedy) = match standing {
+            Some(key) if drawn => (
+                key,
+                "a block given by its points has no base to stand on",
+                "leave it out, as the block starts where its points are, or give position and angle",
+            ),
+            Some(key) if position => {
+                (key, "position already gives the place of the block", "keep position and angle, or on, at and tilt")
+            }
+            _ if position && self.doc.flag(&at("repeat.stacked")) == Some(true) => (
+                "repeat.stacked",
+                "stacked blocks stand on each other, but position gives their place",
+                "give on and at, or shift instead of stacked",
+            ),
+            _ if !position && self.is_written(&at("angle")) => {
+                ("angle", "angle applies only with position", "use tilt instead, or give position")
+            }
+            _ => return Ok(()),
+        };
+        self.error(&at(key), rule, remedy);
+        Err(AlreadyReported)
+    }
+
+    /// The placement of a block on a body.
+    fn placement_on(
+        &mut self,
+        block: &BlockName,
+        shift: [f64; 2],
+        contacts: &[Option<ContactScene>],
+        joined: &Joined,
+    ) -> Option<Placement> {
+        let doc = self.doc;
+        let (name, path) = (block.name.as_str(), format!("block.{}", block.table));
+        let at = |key: &str| format!("{path}.{key}");
+        if !self.is_written(&at("on")) {
+            let remedy = "give on and at (and tilt), or position (and angle)";
+            self.error(&path, "the position of the block is missing", remedy);
             return None;
         }
-        if !written("at") {
+        if !self.is_written(&at("at")) {
             self.error(&at("at"), "required with on", "give x of the midpoint of its base, such as at = \"18 cm\"");
         }
         if shift[1] != 0.0 {
@@ -154,21 +173,7 @@ impl Resolver<'_, '_> {
         }
         let on = block.stands_on.as_deref().map_or_else(|| doc.text(&at("on")), Some)?;
         let (x, tilt) = (doc.quantity(&at("at")), doc.quantity(&at("tilt")));
-        let Some(support) = self.support(on) else {
-            self.no_body(&at("on"), on);
-            return None;
-        };
-        if on == name {
-            self.error(&at("on"), "a block can't stand on itself", self.known_bodies());
-            return None;
-        }
-        if let SupportingBody::Block(below) = support
-            && doc.is_given(&format!("block.{}.points", self.block_names[below].table))
-        {
-            let rule = format!("`{on}` is a block given by its points, which has no upper side to stand on");
-            self.error(&at("on"), rule, "give position and angle instead of on, at and tilt");
-            return None;
-        }
+        let support = self.supporting_body(&at("on"), name, on).ok()?;
         let contact = joined.get(&(self.blocks.get(name).copied()?, support)).copied();
         if contact.is_none() && contacts.iter().all(Option::is_some) && !doc.is_refused("contact") {
             let rule = format!("the block stands on `{on}`, but there is no contact between the two");
@@ -179,6 +184,26 @@ impl Resolver<'_, '_> {
         let stacked = block.stands_on.is_some();
         let (at, tilt) = if stacked { (shift[0] / block.copy as f64, 0.0) } else { (x? + shift[0], tilt?) };
         Some(Placement::On { support, at, stacked, tilt, contact: contact? })
+    }
+
+    /// The body `on` on which the block `name` stands, given at `path`.
+    fn supporting_body(&mut self, path: &str, name: &str, on: &str) -> Result<SupportingBody, AlreadyReported> {
+        let Some(support) = self.support(on) else {
+            self.no_body(path, on);
+            return Err(AlreadyReported);
+        };
+        if on == name {
+            self.error(path, "a block can't stand on itself", self.known_bodies());
+            return Err(AlreadyReported);
+        }
+        if let SupportingBody::Block(below) = support
+            && self.doc.is_given(&format!("block.{}.points", self.block_names[below].table))
+        {
+            let rule = format!("`{on}` is a block given by its points, which has no upper side to stand on");
+            self.error(path, rule, "give position and angle instead of on, at and tilt");
+            return Err(AlreadyReported);
+        }
+        Ok(support)
     }
 
     /// The polygon of a block, if it is given by its points.

@@ -38,35 +38,8 @@ impl Resolver<'_, '_> {
         if let Some(theta) = theta {
             self.check_stability(theta, beams);
         }
-        let scheme = self.choice::<SchemeChoice>("time.scheme").map(|choice| match choice {
-            SchemeChoice::Named(scheme) => scheme,
-            SchemeChoice::Auto => self.automatic_scheme(blocks.len(), beams),
-        });
-        let held = beams.iter().flatten().find(|beam| beam.spec.axial == teeter_beam::Axial::Held);
-        if let (Some(beam), Some(scheme)) = (held, scheme.filter(|scheme| !scheme.takes_held_beams())) {
-            let rule = format!(
-                "the beam `{}` is held along its axis, so its stiffness changes with its motion, but {} {}",
-                beam.name,
-                scheme.word(),
-                if scheme == SchemeName::GeneralizedAlpha { "needs linear forces" } else { "needs constant modes" }
-            );
-            self.error("time.scheme", rule, "use scheme = \"moreau-jean-closed\", or axial = free");
-        }
-        if let (Some(scheme), Some(theta)) = (scheme, theta)
-            && scheme.is_trapezoidal()
-            && theta != 0.5
-        {
-            let rule = format!("{} requires theta = 0.5", scheme.word());
-            self.error("time.theta", rule, "leave theta out, or use scheme = \"moreau-jean\"");
-        }
+        let scheme = self.scheme(blocks, beams, theta);
         let spectral_radius = self.spectral_radius(scheme);
-        if let (Some(beam), Some(theta)) = (held, theta)
-            && theta != 0.5
-        {
-            let rule =
-                format!("the beam `{}` is held along its axis, and only theta = 0.5 conserves its energy", beam.name);
-            self.error("time.theta", rule, "leave theta out, or use axial = free");
-        }
         let activation_gamma = self.number("time.activation_gamma");
         let gap_tolerance = self.gap_tolerance(blocks);
         let (end, step) = (end?, step?);
@@ -104,6 +77,44 @@ impl Resolver<'_, '_> {
                 .push(self.doc.error("time.end", rule, "choose an end that is a multiple of the step").as_warning());
         }
         Some(time)
+    }
+
+    /// The scheme, checked against θ and the beams.
+    fn scheme(
+        &mut self,
+        blocks: &[Option<BlockScene>],
+        beams: &[Option<BeamScene>],
+        theta: Option<f64>,
+    ) -> Option<SchemeName> {
+        let scheme = self.choice::<SchemeChoice>("time.scheme").map(|choice| match choice {
+            SchemeChoice::Named(scheme) => scheme,
+            SchemeChoice::Auto => self.automatic_scheme(blocks.len(), beams),
+        });
+        let held = beams.iter().flatten().find(|beam| beam.spec.axial == teeter_beam::Axial::Held);
+        if let (Some(beam), Some(scheme)) = (held, scheme.filter(|scheme| !scheme.takes_held_beams())) {
+            let rule = format!(
+                "the beam `{}` is held along its axis, so its stiffness changes with its motion, but {} {}",
+                beam.name,
+                scheme.word(),
+                if scheme == SchemeName::GeneralizedAlpha { "needs linear forces" } else { "needs constant modes" }
+            );
+            self.error("time.scheme", rule, "use scheme = \"moreau-jean-closed\", or axial = free");
+        }
+        if let (Some(scheme), Some(theta)) = (scheme, theta)
+            && scheme.is_trapezoidal()
+            && theta != 0.5
+        {
+            let rule = format!("{} requires theta = 0.5", scheme.word());
+            self.error("time.theta", rule, "leave theta out, or use scheme = \"moreau-jean\"");
+        }
+        if let (Some(beam), Some(theta)) = (held, theta)
+            && theta != 0.5
+        {
+            let rule =
+                format!("the beam `{}` is held along its axis, and only theta = 0.5 conserves its energy", beam.name);
+            self.error("time.theta", rule, "leave theta out, or use axial = free");
+        }
+        scheme
     }
 
     /// ρ∞, which only one scheme has.

@@ -135,7 +135,7 @@ fn supports_stand_between_the_ends_as_well() {
         ("at = '0 m'\nkind = 'pinned'", "must be between the ends"),
         ("at = '2.5 m'\nkind = 'pinned'", "outside the span [0, 2] m"),
         ("at = '1 m'", "the kind of support is missing"),
-        ("at = '1 m'\nkind = 'pinned'\nspring = '1 N/m'", "kind already says how"),
+        ("at = '1 m'\nkind = 'pinned'\nspring = '1 N/m'", "kind already determines how"),
         ("at = '80 cm'\nkind = 'clamped'", "the support `pier` is at the same position"),
         ("kind = 'pinned'", "beam.b.support.second.at: missing"),
         ("at = '1 m'\nkind = 'pinned'\nplace = '1 m'", "unknown key"),
