@@ -15,7 +15,7 @@ use teeter_run::{
 };
 use teeter_scenario::dimension::Dimension;
 use teeter_scenario::quantity;
-use teeter_study::Basis;
+use teeter_study::ErrorBasis;
 
 /// How the command ended; the exit code of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -175,7 +175,7 @@ fn notes(prepared: &Prepared) -> Vec<String> {
         let until =
             if chosen.whole { String::new() } else { format!(" up to t = {:.4} s, the horizon", chosen.horizon) };
         let off = match chosen.basis {
-            Basis::Order => "by a run with half of it",
+            ErrorBasis::Order => "by a run with half of it",
             _ => "from finer ones",
         };
         format!("steps of {:e} s, found by {} runs: off by {:.1e} {off}{until}", chosen.step, chosen.runs, chosen.error)

@@ -12,7 +12,7 @@ use teeter_report::{Reserved, Results};
 use teeter_run::{LoadError, SceneSource};
 use teeter_scenario::resolve::Resolved;
 use teeter_scenario::simulation::Simulation;
-use teeter_study::{Failure, Source, Tradeoff, runner, write};
+use teeter_study::{Failure, StudyScene, Tradeoff, runner, write};
 
 #[derive(Debug)]
 pub(crate) struct Options {
@@ -86,11 +86,11 @@ pub(crate) fn tradeoff(options: &Options) -> Exit {
 }
 
 /// The scene that the command line names: where it is from, as the study runs it, and as it is.
-fn load(options: &Options) -> Result<(SceneSource, Source, Resolved), LoadError> {
+fn load(options: &Options) -> Result<(SceneSource, StudyScene, Resolved), LoadError> {
     let scene = scene::source(&options.scene)?;
     let bytes = scene.read()?.into_owned();
     let text = String::from_utf8(bytes.clone()).unwrap_or_default();
-    let (source, resolved) = Source::new(bytes, scene.name(), scene.stem(), &options.set, &mut scene.companions())
+    let (source, resolved) = StudyScene::new(bytes, scene.name(), scene.stem(), &options.set, &mut scene.companions())
         .map_err(|found| LoadError::Invalid { text, found })?;
     Ok((scene, source, resolved))
 }

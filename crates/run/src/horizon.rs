@@ -3,18 +3,18 @@
 use std::sync::atomic::AtomicBool;
 use teeter_report::{HORIZON, Record};
 use teeter_scenario::scene::Scene;
-use teeter_study::{Failure, NUDGE, PARTED, Parting};
+use teeter_study::{DIVERGED, Divergence, Failure, PERTURBATION};
 
 /// Enters the horizon into the record, and a warning where it is before the end of the run. Whether
 /// it was not interrupted.
 pub(crate) fn find(scene: &Scene, cancel: Option<&AtomicBool>, record: &mut Record) -> bool {
     let never = AtomicBool::new(false);
-    match teeter_study::parting(scene, cancel.unwrap_or(&never)) {
-        Ok(parting) => {
-            record.horizon = Some(parting.horizon());
-            if !parting.is_whole() {
-                let text = text(&parting, record.reclosure_count);
-                record.warnings.enter(HORIZON, Some(parting.horizon()), || text);
+    match teeter_study::divergence(scene, cancel.unwrap_or(&never)) {
+        Ok(divergence) => {
+            record.horizon = Some(divergence.horizon());
+            if !divergence.is_whole() {
+                let text = text(&divergence, record.reclosure_count);
+                record.warnings.enter(HORIZON, Some(divergence.horizon()), || text);
             }
         }
         Err(Failure::Interrupted) => return false,
@@ -25,9 +25,9 @@ pub(crate) fn find(scene: &Scene, cancel: Option<&AtomicBool>, record: &mut Reco
     true
 }
 
-fn text(parting: &Parting, reclosures: u64) -> String {
-    let Parting { by_start, by_step, end, .. } = *parting;
-    let percent = 100.0 * PARTED;
+fn text(divergence: &Divergence, reclosures: u64) -> String {
+    let Divergence { by_start, by_step, end, .. } = *divergence;
+    let percent = 100.0 * DIVERGED;
     let until = |what: &str, t: f64| match t < end {
         true => format!("{what} it is {percent:.0} % off from t = {t:.4} s on"),
         false => format!("{what} it is the same to the end"),
@@ -47,8 +47,8 @@ fn text(parting: &Parting, reclosures: u64) -> String {
     };
     format!(
         "the motion can be told up to t = {:.4} s: {}, {}{chatter}{remedy}",
-        parting.horizon(),
+        divergence.horizon(),
         until("with half the step", by_step),
-        until(&format!("started {NUDGE:.0e} beside itself"), by_start),
+        until(&format!("started {PERTURBATION:.0e} beside itself"), by_start),
     )
 }
