@@ -37,7 +37,7 @@ fn warned(stem: &str, number: usize, sets: &[&str]) -> bool {
             told.contains("under-resolved") || told.contains("too long for the impacts"),
             "{text}\nnot told: {told}"
         );
-        assert!(text.contains("teeter tradeoff") && text.contains("take "), "{text}");
+        assert!(text.contains("teeter tradeoff") && (text.contains("use ") || text.contains("take ")), "{text}");
     }
     found.is_some()
 }

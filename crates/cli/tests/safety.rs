@@ -179,7 +179,7 @@ fn a_full_disk_ends_a_run_with_the_reason_and_whole_rows() {
     let output = long_run(&out).output().unwrap();
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     assert!(stderr(&output).contains("No space left"), "{}", stderr(&output));
-    assert!(stderr(&output).contains("the tables hold the rows that there was room for"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("the tables contain the rows for which there was space"), "{}", stderr(&output));
     rows_are_whole(&out);
     // There may be room for a summary; it must not look like that of a complete run.
     if let Ok(text) = std::fs::read_to_string(out.join("summary.json")) {

@@ -164,7 +164,7 @@ fn placement(error: &PlacementError, document: &Document) -> Diagnostic {
         ),
         PlacementError::Search { beam, source: EquilibriumError::Factor(_) } => start(
             beam,
-            "no static equilibrium found: stiffnesses of the beam and its supports differ too much for double precision".to_owned(),
+            "no static equilibrium found: the softest of beam and supports is too soft, relative to the stiffest, for double precision".to_owned(),
             "use stiffer springs or foundations, a support, or a coarser mesh, or start undeformed",
         ),
         PlacementError::Search { beam, source } => start(

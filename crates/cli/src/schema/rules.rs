@@ -1,5 +1,5 @@
-//! What several keys of one table have to agree on: exclusive keys, keys that need each other, keys
-//! of some words of another one.
+//! Rules for several keys of a table: exclusive keys, keys that need each other, keys that apply
+//! only with some words of another one.
 
 use serde_json::{Map, Value, json};
 use teeter_scenario::keys::{Key, OnlyWith, Presence, TableSchema};
@@ -11,7 +11,7 @@ pub(super) fn of(table: &TableSchema) -> Vec<Value> {
     all
 }
 
-/// What follows from the row of a key.
+/// The rules that follow from the row of a key.
 fn of_key(table: &TableSchema, key: &Key) -> Vec<Value> {
     let mut all = Vec::new();
     if let Presence::RequiredWithout(other) = key.presence {
@@ -61,19 +61,19 @@ fn at_most_one(keys: &[&str]) -> Vec<Value> {
     pairs.map(|(first, second)| json!({ "not": { "required": [first, second] } })).collect()
 }
 
-/// With the first key none of the others.
+/// The first key excludes the others.
 fn excludes(key: &str, others: &[&str]) -> Value {
     json!({ "if": { "required": [key] }, "then": without(others) })
 }
 
-/// Where the key has this value, the others keep to `then`.
+/// If the key has this value, `then` applies to the others.
 fn where_is(key: &str, value: &Value, then: &Value) -> Value {
     json!({ "if": { "required": [key], "properties": { key: { "const": value } } }, "then": then })
 }
 
 const SHIFTS: [&str; 3] = ["displacement", "velocity", "acceleration"];
 const TURNS: [&str; 3] = ["angle", "angular_velocity", "angular_acceleration"];
-/// How the two motions of a node are held: by a word, or by the others.
+/// Keys for the two motions of a node: a word, or the others.
 const HELD: [[&str; 3]; 2] =
     [["deflection", "spring", "dashpot"], ["rotation", "rotational_spring", "rotational_dashpot"]];
 
@@ -82,7 +82,7 @@ pub(super) fn of_support() -> Vec<Value> {
     HELD.iter().map(|[word, numbers @ ..]| excludes(word, numbers)).collect()
 }
 
-/// The start of a beam: by a mode and its amplitude, or by a file.
+/// The initial shape of a beam: a mode and its amplitude, or a file.
 pub(super) fn of_start() -> Vec<Value> {
     vec![
         json!({ "oneOf": [{ "required": ["mode", "amplitude"] }, { "required": ["file"] }] }),
@@ -98,7 +98,7 @@ fn motion(turns: bool) -> Vec<Value> {
         moved.extend(TURNS);
     }
     all.push(at_least_one(&moved));
-    // `signal` is that of a turn, beside those of x and y.
+    // `signal` is that of the rotation, in addition to those of x and y.
     let turned = if turns { at_least_one(&TURNS) } else { json!(false) };
     all.push(json!({ "if": { "required": ["signal", "signals"] }, "then": turned }));
     all
@@ -109,7 +109,7 @@ fn holds(word: &str) -> Value {
     json!({ "contains": { "const": word } })
 }
 
-/// What the resolver asks of a table beyond the rows of its keys.
+/// The rules that the resolver checks for a table, beyond the rows of its keys.
 fn of_pattern(pattern: &str) -> Vec<Value> {
     match pattern {
         "time" => vec![
@@ -154,7 +154,7 @@ fn of_pattern(pattern: &str) -> Vec<Value> {
                 &properties([("supports", json!({ "items": { "not": { "const": "free" } } }))]),
             ),
             where_is("axial", &json!("elastic"), &without(&["motion"])),
-            // What nothing holds has no equilibrium, and no supports to move.
+            // A free beam has no equilibrium, and no supports to move.
             json!({
                 "if": { "required": ["supports"], "properties": { "supports": { "const": ["free", "free"] } } },
                 "then": { "anyOf": [
