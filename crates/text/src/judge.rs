@@ -84,81 +84,82 @@ impl Judge<'_> {
             Kind::Number(range) => self.number(key, &range, path, node).map(Value::Number),
             Kind::Quantity(dimension, range) => self.quantity(key, dimension, &range, path, node).map(Value::Number),
             Kind::Pair(dimension, range) => {
-                let items = self.items(key, path, node, Some(2))?;
                 let read = |judge: &mut Self, item: &Node| judge.quantity(key, dimension, &range, path, item);
-                self.pair(items, read).map(Value::Pair)
+                self.pair_of(key, path, node, read).map(Value::Pair)
             }
             Kind::Points(dimension, range) => {
-                let items = self.items(key, path, node, None)?;
-                let mut points = Vec::new();
-                for item in items {
-                    let point = self.items(key, path, item, Some(2));
-                    let read = |judge: &mut Self, item: &Node| judge.quantity(key, dimension, &range, path, item);
-                    points.extend(point.and_then(|point| self.pair(point, read)));
-                    if self.is_full() {
-                        return None;
-                    }
-                }
-                (points.len() == items.len()).then_some(Value::Points(points))
+                let read = |judge: &mut Self, item: &Node| judge.quantity(key, dimension, &range, path, item);
+                let point = |judge: &mut Self, item: &Node| judge.pair_of(key, path, item, read);
+                self.list_of(key, path, node, point).map(Value::Points)
             }
             Kind::List(dimension, range) => {
-                let items = self.items(key, path, node, None)?;
-                let mut values = Vec::new();
-                for item in items {
-                    values.extend(self.quantity(key, dimension, &range, path, item));
-                    if self.is_full() {
-                        return None;
-                    }
-                }
-                (values.len() == items.len()).then_some(Value::List(values))
+                let read = |judge: &mut Self, item: &Node| judge.quantity(key, dimension, &range, path, item);
+                self.list_of(key, path, node, read).map(Value::List)
             }
             Kind::Numbers(range) => {
-                let items = self.items(key, path, node, None)?;
-                let mut values = Vec::new();
-                for item in items {
-                    values.extend(self.number(key, &range, path, item));
-                    if self.is_full() {
-                        return None;
-                    }
-                }
-                (values.len() == items.len()).then_some(Value::List(values))
+                let read = |judge: &mut Self, item: &Node| judge.number(key, &range, path, item);
+                self.list_of(key, path, node, read).map(Value::List)
             }
             Kind::Words(choices) => self.words(key, choices, path, node).map(Value::Words),
             Kind::WordOrTable(words, keys) => self.item(key, (words, keys), path, node).map(Value::Item),
             Kind::WordOrTablePair(words, keys) => {
-                let items = self.items(key, path, node, Some(2))?;
                 let read = |judge: &mut Self, item: &Node| {
                     let reserved = judge.is_reserved(key, path, item);
                     if reserved { None } else { judge.item(key, (words, keys), path, item) }
                 };
-                self.pair(items, read).map(Value::ItemPair)
+                self.pair_of(key, path, node, read).map(Value::ItemPair)
             }
             Kind::ChoicePair(choices) => {
-                let items = self.items(key, path, node, Some(2))?;
                 let read = |judge: &mut Self, item: &Node| {
                     if judge.is_reserved(key, path, item) { None } else { judge.choice(key, choices, path, item) }
                 };
-                self.pair(items, read).map(Value::TextPair)
+                self.pair_of(key, path, node, read).map(Value::TextPair)
             }
             Kind::NamePair => {
-                let items = self.items(key, path, node, Some(2))?;
                 let read = |judge: &mut Self, item: &Node| judge.name(key, path, item);
-                self.pair(items, read).map(Value::TextPair)
+                self.pair_of(key, path, node, read).map(Value::TextPair)
             }
             Kind::PatternPair => {
-                let items = self.items(key, path, node, Some(2))?;
                 let read = |judge: &mut Self, item: &Node| judge.pattern(key, path, item);
-                self.pair(items, read).map(Value::TextPair)
+                self.pair_of(key, path, node, read).map(Value::TextPair)
             }
-            Kind::Downward(dimension) => match &node.raw {
-                Raw::Array(_) => {
-                    let items = self.items(key, path, node, Some(2))?;
-                    let read = |judge: &mut Self, item: &Node| judge.quantity(key, dimension, &Range::ANY, path, item);
-                    self.pair(items, read).map(Value::Pair)
-                }
-                _ => self.downward(key, dimension, path, node).map(Value::Number),
-            },
+            Kind::Downward(dimension) if matches!(node.raw, Raw::Array(_)) => {
+                let read = |judge: &mut Self, item: &Node| judge.quantity(key, dimension, &Range::ANY, path, item);
+                self.pair_of(key, path, node, read).map(Value::Pair)
+            }
+            Kind::Downward(dimension) => self.downward(key, dimension, path, node).map(Value::Number),
         }
+    }
+
+    /// An array of two items, each read by `read`.
+    fn pair_of<T>(
+        &mut self,
+        key: &Key,
+        path: &str,
+        node: &Node,
+        read: impl FnMut(&mut Self, &Node) -> Option<T>,
+    ) -> Option<[T; 2]> {
+        let items = self.items(key, path, node, Some(2))?;
+        self.pair(items, read)
+    }
+
+    /// An array of any length, each item read by `read`; `None` if an item is invalid.
+    fn list_of<T>(
+        &mut self,
+        key: &Key,
+        path: &str,
+        node: &Node,
+        mut read: impl FnMut(&mut Self, &Node) -> Option<T>,
+    ) -> Option<Vec<T>> {
+        let items = self.items(key, path, node, None)?;
+        let mut values = Vec::new();
+        for item in items {
+            values.extend(read(self, item));
+            if self.is_full() {
+                return None;
+            }
+        }
+        (values.len() == items.len()).then_some(values)
     }
 
     fn words(&mut self, key: &Key, choices: &[&str], path: &str, node: &Node) -> Option<Vec<String>> {

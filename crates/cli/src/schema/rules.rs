@@ -105,26 +105,68 @@ fn motion(turns: bool) -> Vec<Value> {
 }
 
 /// An array with this word.
-fn holds(word: &str) -> Value {
+fn contains(word: &str) -> Value {
     json!({ "contains": { "const": word } })
+}
+
+/// The rules of `[time]`.
+fn of_time() -> Vec<Value> {
+    vec![
+        where_is("scheme", &json!("moreau-jean-closed"), &properties([("theta", json!({ "const": 0.5 }))])),
+        where_is("scheme", &json!("moreau-jean-located"), &properties([("theta", json!({ "const": 0.5 }))])),
+        where_is("scheme", &json!("moreau-jean-projected"), &properties([("theta", json!({ "const": 0.5 }))])),
+        json!({
+            "if": { "required": ["spectral_radius"] },
+            "then": { "required": ["scheme"], "properties": { "scheme": { "const": "generalized-alpha" } } },
+        }),
+        json!({
+            "if": { "required": ["theta"], "properties": { "theta": { "exclusiveMaximum": 0.5 } } },
+            "then": { "required": ["allow_conditional_stability"], "properties": { "allow_conditional_stability": { "const": true } } },
+        }),
+    ]
+}
+
+/// The rules of a beam.
+fn of_beam() -> Vec<Value> {
+    vec![
+        excludes("nodes", &["elements", "mesh"]),
+        json!({ "not": { "required": ["damping_ratio", "viscous_damping"] } }),
+        json!({ "if": { "required": ["modes"] }, "then": { "required": ["model"], "properties": { "model": { "const": "modes" } } } }),
+        where_is(
+            "model",
+            &json!("modes"),
+            &properties([("axial", json!({ "enum": ["free", "elastic"] })), ("backend", json!({ "const": "auto" }))]),
+        ),
+        json!({
+            "if": { "required": ["surface", "section"], "properties": { "surface": { "const": "top" }, "section": { "const": "direct" } } },
+            "then": { "required": ["thickness"] },
+        }),
+        where_is(
+            "axial",
+            &json!("held"),
+            &properties([("supports", json!({ "items": { "not": { "const": "free" } } }))]),
+        ),
+        where_is("axial", &json!("elastic"), &without(&["motion"])),
+        // A free beam has no equilibrium, and no supports to move.
+        json!({
+            "if": { "required": ["supports"], "properties": { "supports": { "const": ["free", "free"] } } },
+            "then": { "anyOf": [
+                { "required": ["support"] },
+                { "required": ["foundation"] },
+                { "properties": { "start": { "not": { "const": "static" } }, "motion": false } },
+            ] },
+        }),
+        json!({
+            "if": { "required": ["record"], "properties": { "record": { "anyOf": [contains("moment"), contains("shear"), contains("stress")] } } },
+            "then": { "required": ["probes"], "properties": { "probes": { "minItems": 1 } } },
+        }),
+    ]
 }
 
 /// The rules that the resolver checks for a table, beyond the rows of its keys.
 fn of_pattern(pattern: &str) -> Vec<Value> {
     match pattern {
-        "time" => vec![
-            where_is("scheme", &json!("moreau-jean-closed"), &properties([("theta", json!({ "const": 0.5 }))])),
-            where_is("scheme", &json!("moreau-jean-located"), &properties([("theta", json!({ "const": 0.5 }))])),
-            where_is("scheme", &json!("moreau-jean-projected"), &properties([("theta", json!({ "const": 0.5 }))])),
-            json!({
-                "if": { "required": ["spectral_radius"] },
-                "then": { "required": ["scheme"], "properties": { "scheme": { "const": "generalized-alpha" } } },
-            }),
-            json!({
-                "if": { "required": ["theta"], "properties": { "theta": { "exclusiveMaximum": 0.5 } } },
-                "then": { "required": ["allow_conditional_stability"], "properties": { "allow_conditional_stability": { "const": true } } },
-            }),
-        ],
+        "time" => of_time(),
         "ground.motion" => motion(true),
         "block.*.motion" => {
             let mut all = motion(true);
@@ -132,42 +174,7 @@ fn of_pattern(pattern: &str) -> Vec<Value> {
             all
         }
         "beam.*.motion" => motion(false),
-        "beam.*" => vec![
-            excludes("nodes", &["elements", "mesh"]),
-            json!({ "not": { "required": ["damping_ratio", "viscous_damping"] } }),
-            json!({ "if": { "required": ["modes"] }, "then": { "required": ["model"], "properties": { "model": { "const": "modes" } } } }),
-            where_is(
-                "model",
-                &json!("modes"),
-                &properties([
-                    ("axial", json!({ "enum": ["free", "elastic"] })),
-                    ("backend", json!({ "const": "auto" })),
-                ]),
-            ),
-            json!({
-                "if": { "required": ["surface", "section"], "properties": { "surface": { "const": "top" }, "section": { "const": "direct" } } },
-                "then": { "required": ["thickness"] },
-            }),
-            where_is(
-                "axial",
-                &json!("held"),
-                &properties([("supports", json!({ "items": { "not": { "const": "free" } } }))]),
-            ),
-            where_is("axial", &json!("elastic"), &without(&["motion"])),
-            // A free beam has no equilibrium, and no supports to move.
-            json!({
-                "if": { "required": ["supports"], "properties": { "supports": { "const": ["free", "free"] } } },
-                "then": { "anyOf": [
-                    { "required": ["support"] },
-                    { "required": ["foundation"] },
-                    { "properties": { "start": { "not": { "const": "static" } }, "motion": false } },
-                ] },
-            }),
-            json!({
-                "if": { "required": ["record"], "properties": { "record": { "anyOf": [holds("moment"), holds("shear"), holds("stress")] } } },
-                "then": { "required": ["probes"], "properties": { "probes": { "minItems": 1 } } },
-            }),
-        ],
+        "beam.*" => of_beam(),
         "beam.*.rayleigh" => vec![
             at_least_one(&["a0", "a1", "frequencies"]),
             excludes("frequencies", &["a0", "a1"]),
