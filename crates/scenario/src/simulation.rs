@@ -283,8 +283,11 @@ impl Simulation {
     }
 }
 
-/// The bodies of the blocks, with their corners.
-fn block_bodies(scene: &Scene) -> Result<Vec<(Block, Vec<Vector2<f64>>)>, BuildError> {
+/// The body of a block, with its corners.
+pub(crate) type BlockBody = (Block, Vec<Vector2<f64>>);
+
+/// The bodies of the blocks.
+fn block_bodies(scene: &Scene) -> Result<Vec<BlockBody>, BuildError> {
     let body = |block: &BlockScene| {
         let mass = block.mass_properties().map_err(|error| BuildError::Block(block.name.clone(), error))?;
         Ok((Block::within(mass, block.radius()), block.corners()))
@@ -354,7 +357,7 @@ fn lay_out(scene: &Scene, beams: &[BeamModel], assembled: &Assembled, required: 
 /// The model of the required parts of a scene.
 fn assemble(
     scene: &Scene,
-    blocks: &[(Block, Vec<Vector2<f64>>)],
+    blocks: &[BlockBody],
     beams: &[BeamModel],
     required: &Required,
 ) -> Result<Assembled, BuildError> {

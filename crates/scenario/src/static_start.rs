@@ -9,13 +9,13 @@
 use crate::driven::{self, BeamModel};
 use crate::placement::{InstabilityMode, PlacementError, below, starting_poses};
 use crate::scene::{Placement, Scene, SupportingBody};
-use crate::simulation::{BuildError, detector};
+use crate::simulation::{BlockBody, BuildError, detector};
 use nalgebra::{Vector2, Vector3};
 use teeter_beam::SpanLoad;
 use teeter_detect::{BodyId, PointPair, ShapePair};
 use teeter_integrator::{
-    BeamForces, Block, BlockCoordinate, Blocks, Equilibrium, EquilibriumError, Mismatch, Model, ModelBuilder, Motion,
-    PairLaw, SettlingLimits, SolverSettings, Workspace, settle,
+    BeamForces, BlockCoordinate, Blocks, Equilibrium, EquilibriumError, Mismatch, Model, ModelBuilder, Motion, PairLaw,
+    SettlingLimits, SolverSettings, Workspace, settle,
 };
 use teeter_rigid::Pose;
 use teeter_solvers::Auto;
@@ -23,7 +23,7 @@ use teeter_solvers::Auto;
 /// The initial configuration, before and after settling.
 pub(crate) struct InitialConfiguration<'a> {
     /// The bodies of the blocks, and their corners.
-    pub(crate) blocks: &'a [(Block, Vec<Vector2<f64>>)],
+    pub(crate) blocks: &'a [BlockBody],
     /// X, Y, φ of each block.
     pub(crate) poses: Vec<Vector3<f64>>,
     /// The beams.
@@ -62,7 +62,7 @@ impl<'a> InitialConfiguration<'a> {
     /// If a corner is not above the surface that it should stand on, or a beam can't be evaluated.
     pub(crate) fn placed(
         scene: &Scene,
-        blocks: &'a [(Block, Vec<Vector2<f64>>)],
+        blocks: &'a [BlockBody],
         beams: &'a [BeamModel],
         ground: &'a [f64],
     ) -> Result<Self, BuildError> {

@@ -175,6 +175,9 @@ struct ReferenceSearch<'a> {
     done: &'a mut (dyn FnMut(usize, usize) + Send),
 }
 
+/// A run with the number of its job.
+type SingleRun = (usize, RunResult);
+
 impl ReferenceSearch<'_> {
     /// Runs settings, given with the perturbation of the initial state.
     fn run(&mut self, jobs: &[(f64, Setting)]) -> Vec<Result<RunResult, Failure>> {
@@ -191,7 +194,7 @@ impl ReferenceSearch<'_> {
 
     /// The schemes that come to the end with both steps, and the runs of the others that do, by the
     /// number of their job.
-    fn candidates(&mut self) -> Result<(Vec<ReferenceCandidate>, Vec<(usize, RunResult)>), Failure> {
+    fn candidates(&mut self) -> Result<(Vec<ReferenceCandidate>, Vec<SingleRun>), Failure> {
         let plain: Vec<(f64, Setting)> = self.jobs.iter().map(|setting| (0.0, setting.clone())).collect();
         let mut runs = self.run(&plain);
         if runs.contains(&Err(Failure::Interrupted)) {
