@@ -194,7 +194,7 @@ pub use beam::{Beam, Dof};
 pub use digits::Digits;
 pub use eigen::Modes;
 pub use envelope::Envelope;
-pub use error::{BeamError, FactorError, ModalError, ModesError, StaticError};
+pub use error::{BeamError, CholeskyError, ModalError, ModesError, StaticError};
 pub use extremes::DeflectionExtremes;
 pub use factor::{Backend, Factor, MatrixWeights};
 #[cfg(feature = "faer")]

@@ -152,8 +152,8 @@ impl Scenery {
                 block: contact.block,
                 surface: scene.name_of(contact.surface).to_owned(),
                 beam: match contact.surface {
-                    scene::Support::Beam(k) => Some(k),
-                    scene::Support::Ground | scene::Support::Block(_) => None,
+                    scene::SupportingBody::Beam(k) => Some(k),
+                    scene::SupportingBody::Ground | scene::SupportingBody::Block(_) => None,
                 },
                 other: contact.other_block(),
                 linear: contact.kinematics == teeter_detect::Kinematics::Linear,
