@@ -1,16 +1,18 @@
-//! Error against cost of all schemes for a block that rocks on a beam, after its impacts: a table in Markdown on standard output, and a
-//! figure.
+//! Error against cost of all schemes for a block that rocks on a beam, after its impacts: a table
+//! in Markdown on standard output, and a figure.
 //!
-//! The error is the root of the mean square, over scenes, of the difference of φ from a reference at 0.15, 0.2, 0.25 and 0.3 s. There are
-//! two references that share neither formulation nor mesh: `event-driven`, which takes impacts on the nodes of the scene's mesh one by one,
-//! and `resolved` with steps of 20 µs on twice as many elements, which knows no impulses. Below their disagreement no claim is made; the
-//! figure shows it as a band.
+//! The error is the root of the mean square, over scenes, of the difference of φ from a reference
+//! at 0.15, 0.2, 0.25 and 0.3 s. There are two references that share neither formulation nor mesh:
+//! `event-driven`, which takes impacts on the nodes of the scene's mesh one by one, and `resolved`
+//! with steps of 20 µs on twice as many elements, which knows no impulses. Below their disagreement
+//! no claim is made; the figure shows it as a band.
 //!
 //! ```text
 //! cargo bench -p teeter-benches --bench front -- [--keep FOLDER] [FIGURE.svg]
 //! ```
 //!
-//! With `--keep`, references are read from the folder, and written there where they are missing: `event-driven` takes minutes.
+//! With `--keep`, references are read from the folder, and written there where they are missing:
+//! `event-driven` takes minutes.
 #![allow(clippy::expect_used)] // a measurement that can't be set up has nothing to go on with
 
 use std::error::Error;
@@ -32,7 +34,8 @@ struct Scene {
     sets: &'static [(&'static str, &'static str)],
 }
 
-/// The seven scenes of the scheme's first measurements, and six that were drawn later, with other blocks, places, damping, supports.
+/// The seven scenes of the scheme's first measurements, and six that were drawn later, with other
+/// blocks, places, damping, supports.
 const SCENES: [Scene; 13] = [
     Scene { name: "1.5 mm, undeformed", sets: &[("beam.table.start", "undeformed")] },
     Scene { name: "1.5 mm, static", sets: &[] },

@@ -1,4 +1,5 @@
-//! A pile of polygons in a trough that grows with their number: time a step, by what it goes into, while they fall and once they lie.
+//! A pile of polygons in a trough that grows with their number: time a step, by what it goes into,
+//! while they fall and once they lie.
 //!
 //! ```text
 //! cargo bench -p teeter-benches --bench pile -- 100 300 1000

@@ -1,4 +1,5 @@
-//! All bodies against all: which of them are near each other, found in a time that grows with their number, not with that of pairs.
+//! All bodies against all: which of them are near each other, found in a time that grows with their
+//! number, not with that of pairs.
 
 use crate::placed::{Bounds, Places};
 use crate::{BodyId, LawId, WiringError};
@@ -27,11 +28,12 @@ pub struct Groups {
 const MOST_MEMBERS: usize = 1 << 15;
 
 impl Groups {
-    /// Bodies with their classes, and the law between each two of these; `None` where they don't touch. The table is symmetric: for
-    /// two classes the entry of the lower row is taken.
+    /// Bodies with their classes, and the law between each two of these; `None` where they don't
+    /// touch. The table is symmetric: for two classes the entry of the lower row is taken.
     ///
     /// # Errors
-    /// If there are too many bodies, one is listed twice, or the table has no entry for two classes.
+    /// If there are too many bodies, one is listed twice, or the table has no entry for two
+    /// classes.
     pub fn new(mut members: Vec<(BodyId, usize)>, laws: Vec<Vec<Option<LawId>>>) -> Result<Self, WiringError> {
         members.sort_by_key(|(body, _)| *body);
         if members.len() > MOST_MEMBERS {
@@ -97,8 +99,8 @@ pub(crate) struct NearPair {
     pub(crate) members: [usize; 2],
 }
 
-/// The pairs that are near each other, kept while no body has moved far. It decides nothing: what is nearer than a margin is among them
-/// as long as they are kept.
+/// The pairs that are near each other, kept while no body has moved far. It decides nothing: what
+/// is nearer than a margin is among them as long as they are kept.
 #[derive(Debug, Default)]
 pub(crate) struct Near {
     /// Of each member: where its box may be.
@@ -116,12 +118,14 @@ pub(crate) struct Near {
 /// A list is good until a box has moved by this part of the mean extent of all of them.
 const SKIN: f64 = 0.1;
 
-/// The margin for which a list is made, in the same measure, where less is asked for: schemes look further ahead now and then.
+/// The margin for which a list is made, in the same measure, where less is asked for: schemes look
+/// further ahead now and then.
 const USUAL: f64 = 0.05;
 
 impl Near {
-    /// Sees to it that all pairs that are at most `margin` (m) apart are listed. `of` are the numbers of the groups' members among all
-    /// shapes; `listed` are pairs of these that are left out.
+    /// Sees to it that all pairs that are at most `margin` (m) apart are listed. `of` are the
+    /// numbers of the groups' members among all shapes; `listed` are pairs of these that are left
+    /// out.
     pub(crate) fn update(
         &mut self,
         groups: &Groups,
@@ -144,12 +148,14 @@ impl Near {
         self.margin = margin.max(USUAL * mean);
         self.allowed.clear();
         self.allowed.extend(boxes().map(|b| b.grown(skin)));
-        // A pair whose boxes come to be within the margin has boxes now that are two skins further from each other.
+        // A pair whose boxes come to be within the margin has boxes now that are two skins further
+        // from each other.
         self.sweep(groups, first, of, listed, places, self.margin + 2.0 * skin);
     }
 
-    /// Lists the pairs whose boxes are at most `reach` (m) apart: along the axis along which the boxes lie further apart, each is
-    /// compared with those that have begun before it and not ended.
+    /// Lists the pairs whose boxes are at most `reach` (m) apart: along the axis along which the
+    /// boxes lie further apart, each is compared with those that have begun before it and not
+    /// ended.
     fn sweep(&mut self, groups: &Groups, first: u32, of: &[usize], listed: &[[usize; 2]], places: &Places, reach: f64) {
         let boxed = |k: u32| &places.boxes[of[k as usize]];
         let spread = |axis: usize| {

@@ -4,11 +4,12 @@ use crate::placed::{BodyFrame, Outline, Shapes};
 use crate::touch::Touch;
 use crate::{BodyId, Geometry, Kinematics, LawId, SurfacePoint, Vector};
 
-/// A body with a shape on a surface: each corner of its parts can touch it, by its rounding where it has one; a disc at one point.
+/// A body with a shape on a surface: each corner of its parts can touch it, by its rounding where
+/// it has one; a disc at one point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SurfacePair {
-    /// The pair's number, first part of the identity of its contacts; the second is the corner's number among those of all parts of
-    /// the body.
+    /// The pair's number, first part of the identity of its contacts; the second is the corner's
+    /// number among those of all parts of the body.
     pub pair: u32,
     /// The law of its contacts.
     pub law: LawId,
@@ -20,13 +21,15 @@ pub struct SurfacePair {
     pub kinematics: Kinematics,
 }
 
-/// Most rounds in which the point of a rounding that has the surface's direction is found. Each gains a factor radius · curvature.
+/// Most rounds in which the point of a rounding that has the surface's direction is found. Each
+/// gains a factor radius · curvature.
 const ROUNDS: usize = 50;
 
 /// Directions that change by less than this have been found.
 const SETTLED: f64 = 2.0 * f64::EPSILON;
 
-/// Hands the contacts of a pair that are at most `margin` (m) apart to `each`; `member` is the number of its body among the shapes.
+/// Hands the contacts of a pair that are at most `margin` (m) apart to `each`; `member` is the
+/// number of its body among the shapes.
 pub(crate) fn each(
     shapes: &Shapes,
     member: usize,
@@ -64,7 +67,8 @@ pub(crate) fn located(
     foot(&outline, corner - outline.first, pair, at)
 }
 
-/// The contact of a corner. A rounding touches where it has the direction of the surface under that point.
+/// The contact of a corner. A rounding touches where it has the direction of the surface under that
+/// point.
 fn foot(outline: &Outline<'_>, corner: usize, pair: &SurfacePair, at: &dyn Geometry<2>) -> Option<Touch> {
     let local = outline.corners[corner];
     let centre = outline.frame.point(&local);

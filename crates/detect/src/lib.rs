@@ -148,9 +148,9 @@ pub trait Geometry<const D: usize> {
         let _ = (body, margin);
         None
     }
-    /// Hands the points of the body's surface to `each`, from the left, at which it comes out furthest in a direction, more so than
-    /// beside them, and whose feet lie between those of two places: the humps of a beam under a base. None, the default, for a surface
-    /// that is flat.
+    /// Hands the points of the body's surface to `each`, from the left, at which it comes out
+    /// furthest in a direction, more so than beside them, and whose feet lie between those of two
+    /// places: the humps of a beam under a base. None, the default, for a surface that is flat.
     fn summits(
         &self,
         body: BodyId,
@@ -161,14 +161,16 @@ pub trait Geometry<const D: usize> {
     ) {
         let _ = (body, kinematics, direction, between, each);
     }
-    /// The points at which the body's surface ends, left and right; `None`, the default, where it doesn't.
+    /// The points at which the body's surface ends, left and right; `None`, the default, where it
+    /// doesn't.
     fn ends(&self, body: BodyId, kinematics: Kinematics) -> [Option<SurfacePoint<D>>; 2] {
         let _ = (body, kinematics);
         [None, None]
     }
 }
 
-/// Finds candidates for contact. The feature `conformance` brings a harness that holds a detector to this page.
+/// Finds candidates for contact. The feature `conformance` brings a harness that holds a detector
+/// to this page.
 pub trait ContactDetector<const D: usize>: Send + Sync {
     /// Puts all candidates with a gap of at most `margin` (m) into `out`, which is cleared first,
     /// in an order that depends on the detector only. Allocates only if there are more than ever
@@ -186,26 +188,28 @@ pub trait ContactDetector<const D: usize>: Send + Sync {
         scratch.iter().map(|candidate| -candidate.gap).fold(0.0, f64::max)
     }
     /// Puts those of the contacts `ids` that have a foot now into `out`, which is cleared first,
-    /// however large their gaps. `ids` must ascend, and `out` ascends by identity. All are among them
-    /// that [`detect`](Self::detect) finds with an infinite margin; there may be others, such as a
-    /// corner that is over a side yet where other features of the two bodies are nearer by now. The
-    /// default detects everything and keeps these.
+    /// however large their gaps. `ids` must ascend, and `out` ascends by identity. All are among
+    /// them that [`detect`](Self::detect) finds with an infinite margin; there may be others, such
+    /// as a corner that is over a side yet where other features of the two bodies are nearer by
+    /// now. The default detects everything and keeps these.
     fn locate(&self, at: &dyn Geometry<D>, ids: &[ContactId], out: &mut Candidates<D>) {
         self.detect(at, f64::INFINITY, &mut DetectorMemory::default(), out);
         out.retain(|candidate| ids.binary_search(&candidate.id).is_ok());
         out.sort_unstable_by_key(|candidate| candidate.id);
     }
-    /// The same, but with those contacts, too, that have been followed past the end of their surface, as if it went straight on: `room`
-    /// tells of each in `out` how far it is to the nearest end, m, negative past it. A detector whose surfaces have no ends, or that
-    /// doesn't follow past them, leaves this to the default, by which there is room without end.
+    /// The same, but with those contacts, too, that have been followed past the end of their
+    /// surface, as if it went straight on: `room` tells of each in `out` how far it is to the
+    /// nearest end, m, negative past it. A detector whose surfaces have no ends, or that doesn't
+    /// follow past them, leaves this to the default, by which there is room without end.
     fn locate_past_ends(&self, at: &dyn Geometry<D>, ids: &[ContactId], out: &mut Candidates<D>, room: &mut Vec<f64>) {
         self.locate(at, ids, out);
         room.clear();
         room.resize(out.len(), f64::INFINITY);
     }
-    /// Whether the first side of a contact touches by one and the same point of its body as long as the contact lasts, as a corner does
-    /// and a disc doesn't. The default, `false`, is always right: a scheme that needs accelerations then takes the derivative of the
-    /// rows along the motion, which costs more.
+    /// Whether the first side of a contact touches by one and the same point of its body as long as
+    /// the contact lasts, as a corner does and a disc doesn't. The default, `false`, is always
+    /// right: a scheme that needs accelerations then takes the derivative of the rows along the
+    /// motion, which costs more.
     fn keeps_point(&self, id: ContactId) -> bool {
         let _ = id;
         false

@@ -6,8 +6,8 @@ use crate::touch::{CornerOnSide, Touch};
 use crate::{BodyId, LawId, MOST_CORNERS, ShapeError, Vector};
 use std::ops::{Range, RangeInclusive};
 
-/// A profile of the ground: straight pieces between points from left to right, level beyond the first and the last. What is below is
-/// solid.
+/// A profile of the ground: straight pieces between points from left to right, level beyond the
+/// first and the last. What is below is solid.
 ///
 /// ```
 /// use nalgebra::Vector2;
@@ -70,7 +70,8 @@ pub struct ProfilePair {
 /// Pieces that turn by less than this from one to the next, rad, go on straight.
 const STRAIGHT: f64 = 1e-12;
 
-/// In a valley a piece is met past its end as far as this part of its length, on a crest as far as the smaller one.
+/// In a valley a piece is met past its end as far as this part of its length, on a crest as far as
+/// the smaller one.
 const PAST_A_VALLEY: f64 = 1e-3;
 const PAST_A_CREST: f64 = 1e-9;
 
@@ -81,7 +82,8 @@ impl Profile {
     /// The profile through these points, m.
     ///
     /// # Errors
-    /// If there are fewer than two, or too many to be numbered, one is not finite, or one is not to the right of the one before it.
+    /// If there are fewer than two, or too many to be numbered, one is not finite, or one is not to
+    /// the right of the one before it.
     pub fn new(points: Vec<Vector<2>>) -> Result<Self, ShapeError> {
         if points.len() < 2 || points.len() > MOST_CORNERS - 2 {
             return Err(ShapeError::ProfilePoints { points: points.len() });
@@ -148,7 +150,8 @@ impl Profile {
         first..self.joints.partition_point(|joint| joint.place.x <= high).max(first)
     }
 
-    /// How far a point at s along piece k is from the ends of what the piece is met along, m: negative past them.
+    /// How far a point at s along piece k is from the ends of what the piece is met along, m:
+    /// negative past them.
     fn room(&self, k: usize, s: f64) -> f64 {
         let Piece { low, high, .. } = self.pieces[k];
         // A ray has no length of its own.
@@ -184,7 +187,8 @@ struct Over<'a> {
     ground: &'a BodyFrame,
 }
 
-/// Hands the contacts of a part of a shape with the ground that are at most `margin` (m) apart to `each`.
+/// Hands the contacts of a part of a shape with the ground that are at most `margin` (m) apart to
+/// `each`.
 pub(crate) fn each(
     profile: &Profile,
     outline: &Outline<'_>,
@@ -212,7 +216,8 @@ pub(crate) fn each(
     }
 }
 
-/// The contact of a part with the ground that is known by its feature; past the ends of what it is met along too.
+/// The contact of a part with the ground that is known by its feature; past the ends of what it is
+/// met along too.
 pub(crate) fn located(
     profile: &Profile,
     outline: &Outline<'_>,
@@ -229,8 +234,9 @@ pub(crate) fn located(
 }
 
 impl Over<'_> {
-    /// Hands the pieces to `each` that a corner at `place`, `below` the ground by so much (m), can touch: those that it is over; of
-    /// those that it is in the nearest, and what meets that in a valley.
+    /// Hands the pieces to `each` that a corner at `place`, `below` the ground by so much (m), can
+    /// touch: those that it is over; of those that it is in the nearest, and what meets that in a
+    /// valley.
     fn pieces_of(&self, place: &Vector<2>, reach: f64, below: f64, mut each: impl FnMut(usize)) {
         let profile = self.profile;
         let pieces = profile.pieces_between(place.x - reach, place.x + reach);
@@ -318,7 +324,8 @@ impl Over<'_> {
         })
     }
 
-    /// Whether a direction (in the world) leads out of a crest between the normals of its two pieces.
+    /// Whether a direction (in the world) leads out of a crest between the normals of its two
+    /// pieces.
     fn faces(&self, joint: usize, normal: &Vector<2>) -> bool {
         let out = self.ground.unturned(normal);
         let [left, right] = [joint, joint + 1].map(|piece| out.dot(&self.profile.pieces[piece].direction));

@@ -1,12 +1,13 @@
-//! Where two shapes touch of which one is round: a disc, or a polygon with rounded corners. All is a matter of the cores: a corner of
-//! one and the nearest point of the other's outline, less both radii.
+//! Where two shapes touch of which one is round: a disc, or a polygon with rounded corners. All is
+//! a matter of the cores: a corner of one and the nearest point of the other's outline, less both
+//! radii.
 
 use crate::Vector;
 use crate::placed::{Outline, PlacedPart};
 use crate::touch::{CornerOnSide, Touch, Touches, facing};
 
-/// Finds where two shapes are near each other, if they are at most `margin` (m) apart: at two points where sides lie along each other.
-/// Each is given in the world and in its own coordinates.
+/// Finds where two shapes are near each other, if they are at most `margin` (m) apart: at two
+/// points where sides lie along each other. Each is given in the world and in its own coordinates.
 pub(crate) fn round(places: [&PlacedPart<'_>; 2], outlines: [&Outline<'_>; 2], margin: f64) -> Touches {
     let [a, b] = outlines;
     let of = |owner: usize, corner: usize| {
@@ -34,7 +35,8 @@ pub(crate) fn round(places: [&PlacedPart<'_>; 2], outlines: [&Outline<'_>; 2], m
             touch(of(owner, corner - first))
         })
     });
-    // Where one of the corners at the ends of what sides share is the nearest, or as near, both of them touch.
+    // Where one of the corners at the ends of what sides share is the nearest, or as near, both of
+    // them touch.
     match lying {
         Some([Some(first), Some(second)])
             if first.gap.min(second.gap) <= nearest.gap + EQUAL * (a.radius + b.radius) =>
@@ -45,10 +47,12 @@ pub(crate) fn round(places: [&PlacedPart<'_>; 2], outlines: [&Outline<'_>; 2], m
     }
 }
 
-/// A corner that is nearer than those at the ends of what two sides share by no more than this part of the radii is none of its own.
+/// A corner that is nearer than those at the ends of what two sides share by no more than this part
+/// of the radii is none of its own.
 const EQUAL: f64 = 1e-9;
 
-/// The contact of a corner of a core with the outline of another shape; `None` where the two have no direction from each other.
+/// The contact of a corner of a core with the outline of another shape; `None` where the two have
+/// no direction from each other.
 pub(crate) fn near_outline(feature: CornerOnSide, owner: &Outline<'_>, other: &Outline<'_>) -> Option<Touch> {
     let corner = owner.corners.get(feature.corner.checked_sub(owner.first)?)?;
     let Nearest { foot, normal, distance, .. } = nearest(other, &other.frame.local(&owner.frame.point(corner)))?;
@@ -63,8 +67,8 @@ pub(crate) fn near_outline(feature: CornerOnSide, owner: &Outline<'_>, other: &O
     gap.is_finite().then(|| Touch { feature: feature.number(), points, normal, gap, room: f64::INFINITY })
 }
 
-/// The point of a core's outline that is nearest to a point, the way from there, and the distance, negative inside; in the coordinates
-/// of the body.
+/// The point of a core's outline that is nearest to a point, the way from there, and the distance,
+/// negative inside; in the coordinates of the body.
 pub(crate) struct Nearest {
     pub(crate) foot: Vector<2>,
     pub(crate) normal: Vector<2>,
@@ -79,7 +83,8 @@ pub(crate) enum On {
     Corner(usize),
 }
 
-/// What of an outline's core is nearest to a point of its body; `None` if the core is one point, and that the same.
+/// What of an outline's core is nearest to a point of its body; `None` if the core is one point,
+/// and that the same.
 pub(crate) fn nearest(of: &Outline<'_>, to: &Vector<2>) -> Option<Nearest> {
     let from = |corner: usize| {
         let foot = of.corners[corner];
@@ -102,7 +107,8 @@ pub(crate) fn nearest(of: &Outline<'_>, to: &Vector<2>) -> Option<Nearest> {
     let next = if k + 1 < of.corners.len() { k + 1 } else { 0 };
     let side = of.corners[next] - of.corners[k];
     let along = (to - of.corners[k]).dot(&side) / side.norm_squared();
-    // From outside, what is nearest is on the side that the point is furthest out of, or at the end of that.
+    // From outside, what is nearest is on the side that the point is furthest out of, or at the end
+    // of that.
     if distance > 0.0 && !(0.0..=1.0).contains(&along) {
         return from(if along < 0.0 { k } else { next });
     }

@@ -1,4 +1,5 @@
-//! Shapes that bodies have: convex polygons, discs, polygons with rounded corners, fixed in the body.
+//! Shapes that bodies have: convex polygons, discs, polygons with rounded corners, fixed in the
+//! body.
 
 use crate::Vector;
 
@@ -16,7 +17,8 @@ pub enum ShapeError {
         /// Its number.
         corner: usize,
     },
-    /// A corner that is the same as the next, or so close to it that the side between them has no direction.
+    /// A corner that is the same as the next, or so close to it that the side between them has no
+    /// direction.
     Twice {
         /// Its number.
         corner: usize,
@@ -89,7 +91,8 @@ pub const MOST_CORNERS: usize = (1 << 15) - 1;
 /// At a corner that turns by less than this (rad) two sides are one.
 const STRAIGHT: f64 = 1e-9;
 
-/// A convex polygon, its corners counter-clockwise in the body's own coordinates. Side k goes from corner k to the next.
+/// A convex polygon, its corners counter-clockwise in the body's own coordinates. Side k goes from
+/// corner k to the next.
 ///
 /// ```
 /// use nalgebra::Vector2;
@@ -107,11 +110,13 @@ pub struct Polygon {
 }
 
 impl Polygon {
-    /// The polygon of these corners, m; clockwise ones are put in the opposite order, the first one staying first.
+    /// The polygon of these corners, m; clockwise ones are put in the opposite order, the first one
+    /// staying first.
     ///
     /// # Errors
-    /// If there are fewer than three, or too many to be numbered, one is not finite, two follow each other in one place, or the
-    /// polygon isn't convex: it turns inwards, goes straight on or crosses itself.
+    /// If there are fewer than three, or too many to be numbered, one is not finite, two follow
+    /// each other in one place, or the polygon isn't convex: it turns inwards, goes straight on or
+    /// crosses itself.
     pub fn new(mut corners: Vec<Vector<2>>) -> Result<Self, ShapeError> {
         let n = corners.len();
         if !(3..=MOST_CORNERS).contains(&n) {
@@ -183,7 +188,8 @@ impl Disc {
     }
 }
 
-/// All that is at most some radius from a convex core: a polygon with rounded corners; of a core of two points a stadium.
+/// All that is at most some radius from a convex core: a polygon with rounded corners; of a core of
+/// two points a stadium.
 ///
 /// ```
 /// use nalgebra::Vector2;
@@ -201,10 +207,12 @@ pub struct Rounded {
 }
 
 impl Rounded {
-    /// All that is at most `radius` (m) from the convex polygon of these corners (m), or from the line between two points.
+    /// All that is at most `radius` (m) from the convex polygon of these corners (m), or from the
+    /// line between two points.
     ///
     /// # Errors
-    /// If the radius is not positive and finite, or the corners are none of a convex polygon, nor two points apart.
+    /// If the radius is not positive and finite, or the corners are none of a convex polygon, nor
+    /// two points apart.
     pub fn new(core: Vec<Vector<2>>, radius: f64) -> Result<Self, ShapeError> {
         // Written so that NaN fails too.
         if !(radius > 0.0 && radius.is_finite()) {
@@ -225,14 +233,16 @@ impl Rounded {
         Ok(Self { core, radius })
     }
 
-    /// The polygon with its corners rounded to `radius` (m): each side keeps its line and gets shorter.
+    /// The polygon with its corners rounded to `radius` (m): each side keeps its line and gets
+    /// shorter.
     ///
     /// # Errors
     /// If the radius is not positive, or so large that nothing of a side would be left.
     pub fn inside(polygon: &Polygon, radius: f64) -> Result<Self, ShapeError> {
         let corners = &polygon.corners;
         let n = corners.len();
-        // Half the turn at each corner: a circle of radius r that touches both sides there begins r tan(turn/2) from the corner.
+        // Half the turn at each corner: a circle of radius r that touches both sides there begins r
+        // tan(turn/2) from the corner.
         let tangents: Vec<f64> = (0..n)
             .map(|k| {
                 let (before, after) = (corners[k] - corners[(k + n - 1) % n], corners[(k + 1) % n] - corners[k]);
@@ -278,8 +288,8 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// The corners of what the shape is within a [radius](Self::radius) of: its own of a polygon, the centre of a disc; m, in the
-    /// body's own coordinates.
+    /// The corners of what the shape is within a [radius](Self::radius) of: its own of a polygon,
+    /// the centre of a disc; m, in the body's own coordinates.
     #[must_use]
     pub fn core(&self) -> &[Vector<2>] {
         match self {

@@ -19,15 +19,17 @@ pub struct ShapePair {
     pub pair: u32,
     /// The law of its contacts.
     pub law: LawId,
-    /// The bodies: the normal of a contact points from the second to the first, and its impulse acts on the first.
+    /// The bodies: the normal of a contact points from the second to the first, and its impulse
+    /// acts on the first.
     pub bodies: [BodyId; 2],
 }
 
 /// The detector of shapes against each other, and of points against surfaces.
 ///
-/// Two polygons touch where a corner of one is over a side of the other, at two points at most: at the ends of what the side that
-/// parts them best shares with the side that faces it. Corner beside corner they don't touch, unless one of them is round. A body may
-/// have several shapes, which are its parts.
+/// Two polygons touch where a corner of one is over a side of the other, at two points at most: at
+/// the ends of what the side that parts them best shares with the side that faces it. Corner beside
+/// corner they don't touch, unless one of them is round. A body may have several shapes, which are
+/// its parts.
 ///
 /// ```
 /// use nalgebra::Vector2;
@@ -64,7 +66,8 @@ pub struct ShapeDetector {
     /// In the order of their numbers, with the place of their body among the members.
     sides: Vec<(SidePair, usize)>,
     surfaces: Vec<(SurfacePair, usize)>,
-    /// The profile of the ground, and those against it: in the order of their numbers, with the place of their body.
+    /// The profile of the ground, and those against it: in the order of their numbers, with the
+    /// place of their body.
     profile: Option<Profile>,
     on_profile: Vec<(ProfilePair, usize)>,
 }
@@ -91,7 +94,8 @@ struct Kept {
 }
 
 impl ShapeDetector {
-    /// A detector of these bodies' shapes, of which the pairs can touch. Several shapes of one body are its parts.
+    /// A detector of these bodies' shapes, of which the pairs can touch. Several shapes of one body
+    /// are its parts.
     ///
     /// # Errors
     /// If a body of a pair has no shape, or one has too many corners.
@@ -130,7 +134,8 @@ impl ShapeDetector {
         Ok(self)
     }
 
-    /// With shapes against ground of this profile, given in the coordinates of the ground's body; pairs have numbers of their own.
+    /// With shapes against ground of this profile, given in the coordinates of the ground's body;
+    /// pairs have numbers of their own.
     ///
     /// # Errors
     /// If a body has no shape.
@@ -142,8 +147,9 @@ impl ShapeDetector {
         Ok(self)
     }
 
-    /// With bodies of which any two can touch, but for those that are listed as pairs. The number of the pair of the i-th and the j-th
-    /// of n bodies, i < j, is `first` + i n + j, and must be above those of all other pairs.
+    /// With bodies of which any two can touch, but for those that are listed as pairs. The number
+    /// of the pair of the i-th and the j-th of n bodies, i < j, is `first` + i n + j, and must be
+    /// above those of all other pairs.
     ///
     /// # Errors
     /// If one of them has no shape.
@@ -204,7 +210,8 @@ impl ShapeDetector {
         }
     }
 
-    /// The pair of two bodies of groups, by its number; `None` where they don't touch, or are listed.
+    /// The pair of two bodies of groups, by its number; `None` where they don't touch, or are
+    /// listed.
     fn near_pair(&self, number: u32) -> Option<NearPair> {
         let InGroups { groups, first, members, listed } = self.groups.as_ref()?;
         let ([i, j], law) = groups.of_pair(*first, number)?;
@@ -251,7 +258,8 @@ impl ShapeDetector {
         touches.iter().for_each(each);
     }
 
-    /// Those of the contacts `ids` that there can be, with how far it is to the end of their side, m.
+    /// Those of the contacts `ids` that there can be, with how far it is to the end of their side,
+    /// m.
     fn located<'a>(
         &'a self,
         at: &'a dyn Geometry<2>,
@@ -346,7 +354,8 @@ impl ShapeDetector {
         self.shapes.parts[i].radius + self.shapes.parts[j].radius == 0.0
     }
 
-    /// As many contacts as a body can have with the ground: each corner with each piece, and each crest.
+    /// As many contacts as a body can have with the ground: each corner with each piece, and each
+    /// crest.
     fn profile_capacity(&self, member: usize) -> usize {
         let points = self.profile.as_ref().map_or(0, |profile| profile.points().count());
         let parts = self.shapes.members[member].parts.clone();

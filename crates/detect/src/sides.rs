@@ -1,11 +1,13 @@
-//! Sides of shapes against a surface that bends: where it comes out between their corners, and where it ends under them.
+//! Sides of shapes against a surface that bends: where it comes out between their corners, and
+//! where it ends under them.
 
 use crate::placed::{BodyFrame, Outline, Shapes};
 use crate::touch::Touch;
 use crate::{BodyId, Geometry, Kinematics, LawId, SurfacePoint, Vector};
 
-/// The sides of a body's shape against a surface that bends, or ends: a beam that comes up between the feet of a block, or ends under
-/// its base. Its corners on the surface are those of a [`PointPair`](crate::PointPair).
+/// The sides of a body's shape against a surface that bends, or ends: a beam that comes up between
+/// the feet of a block, or ends under its base. Its corners on the surface are those of a
+/// [`PointPair`](crate::PointPair).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SidePair {
     /// The pair's number, first part of the identity of its contacts.
@@ -37,7 +39,8 @@ const SUMMIT: u32 = 1 << 31;
 const SHIFT: u32 = 15;
 
 impl OnSide {
-    /// The number of the feature within its pair; `side` is the number of its first corner among those of all parts of the body.
+    /// The number of the feature within its pair; `side` is the number of its first corner among
+    /// those of all parts of the body.
     #[must_use]
     pub fn number(self, side: usize) -> u32 {
         let (kind, which) = match self {
@@ -62,10 +65,12 @@ impl OnSide {
     }
 }
 
-/// What comes out between the corners of a side by less than this part of its length is none: feet stand on both sides of it.
+/// What comes out between the corners of a side by less than this part of its length is none: feet
+/// stand on both sides of it.
 const FLAT: f64 = 1e-9;
 
-/// A side whose normal has more than this of the surface's does not lie over it but stands beside it.
+/// A side whose normal has more than this of the surface's does not lie over it but stands beside
+/// it.
 const FACING: f64 = -0.25;
 
 /// Summits under one side that are told apart.
@@ -83,7 +88,8 @@ struct PlacedSide {
     radius: f64,
 }
 
-/// Hands the contacts of a pair that are at most `margin` (m) apart to `each`; `member` is the number of its body among the shapes.
+/// Hands the contacts of a pair that are at most `margin` (m) apart to `each`; `member` is the
+/// number of its body among the shapes.
 pub(crate) fn each(
     shapes: &Shapes,
     member: usize,
@@ -127,7 +133,8 @@ fn push(touch: &Touch, margin: f64, each: &mut impl FnMut(&Touch)) {
     }
 }
 
-/// The contact that is known by its number, wherever the surface comes out by now; `None` where there is none of the kind.
+/// The contact that is known by its number, wherever the surface comes out by now; `None` where
+/// there is none of the kind.
 pub(crate) fn located(
     shapes: &Shapes,
     member: usize,
@@ -163,7 +170,8 @@ pub(crate) fn located(
     }
 }
 
-/// The contact of an end of a surface with the rounding about a corner that is past it; `None` if that is not past it.
+/// The contact of an end of a surface with the rounding about a corner that is past it; `None` if
+/// that is not past it.
 fn end_at_rounding(
     outline: &Outline<'_>,
     corner: usize,
@@ -227,7 +235,8 @@ impl Summits {
 }
 
 impl PlacedSide {
-    /// The contact of a point of the surface with the side's line; `None` if the side faces away from it, or it isn't finite.
+    /// The contact of a point of the surface with the side's line; `None` if the side faces away
+    /// from it, or it isn't finite.
     fn touch(&self, feature: OnSide, point: &SurfacePoint<2>) -> Option<Touch> {
         let [begin, end] = self.ends;
         let direction = end - begin;

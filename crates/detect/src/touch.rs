@@ -3,16 +3,17 @@
 use crate::Vector;
 use crate::placed::PlacedPart;
 
-/// What makes a contact of two shapes the same from step to step: a corner of one, and the side of the other that it is over. Where
-/// either is round, the corner is one of its core (the centre of a disc), and what it is near is the other's outline as a whole.
+/// What makes a contact of two shapes the same from step to step: a corner of one, and the side of
+/// the other that it is over. Where either is round, the corner is one of its core (the centre of a
+/// disc), and what it is near is the other's outline as a whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CornerOnSide {
     /// Which of the pair's two bodies has the corner.
     pub owner: usize,
     /// The corner's number among those of all parts of its body.
     pub corner: usize,
-    /// The number of the other body's side: it goes from the corner of this number to the next. Of an outline that of its first
-    /// corner.
+    /// The number of the other body's side: it goes from the corner of this number to the next. Of
+    /// an outline that of its first corner.
     pub side: usize,
     /// Whether either of the two is round.
     pub round: bool,
@@ -50,19 +51,23 @@ pub(crate) struct Touch {
     /// The unit normal, from the second to the first.
     pub(crate) normal: Vector<2>,
     pub(crate) gap: f64,
-    /// How far it is to the nearest end of its side, m: negative past it, infinite where the surface goes on.
+    /// How far it is to the nearest end of its side, m: negative past it, infinite where the
+    /// surface goes on.
     pub(crate) room: f64,
 }
 
-/// A corner is over a side as far as this part of its length past the side's ends: what is in line there up to rounding stays so.
+/// A corner is over a side as far as this part of its length past the side's ends: what is in line
+/// there up to rounding stays so.
 const BESIDE: f64 = 1e-12;
 
-/// A contact that is known stays over its side as far as this part past its ends, so that none is lost where it is found again, and what
-/// touches instead is found where it has left. Joints of an arch slip by some 1e-11 of their length a second, as far as solvers are exact: a corner beside
+/// A contact that is known stays over its side as far as this part past its ends, so that none is
+/// lost where it is found again, and what touches instead is found where it has left. Joints of an
+/// arch slip by some 1e-11 of their length a second, as far as solvers are exact: a corner beside
 /// its twin must not be lost by that.
 const STILL_BESIDE: f64 = 1e-9;
 
-/// Of two sides that part polygons equally, up to this part of a side's length, the first shape's is taken.
+/// Of two sides that part polygons equally, up to this part of a side's length, the first shape's
+/// is taken.
 const EQUAL: f64 = 1e-9;
 
 /// The points at which two shapes are near each other, at most two of them.
@@ -79,8 +84,8 @@ impl Touches {
     }
 }
 
-/// The side of a polygon that parts it best from another, and how far they are apart along its normal; a side by which that is more
-/// than `enough` (m) ends the search.
+/// The side of a polygon that parts it best from another, and how far they are apart along its
+/// normal; a side by which that is more than `enough` (m) ends the search.
 fn best_side(of: &PlacedPart<'_>, other: &PlacedPart<'_>, enough: f64) -> Option<(usize, f64)> {
     let mut best: Option<(usize, f64)> = None;
     for (k, (corner, normal)) in of.corners.iter().zip(of.normals).enumerate() {
@@ -106,8 +111,8 @@ pub(crate) fn polygons(a: &PlacedPart<'_>, b: &PlacedPart<'_>, margin: f64) -> T
     }))
 }
 
-/// The corners at both ends of what two polygons share along the side that parts them best, which are at most `margin` (m) apart;
-/// `None` where they are corner beside corner, or further apart.
+/// The corners at both ends of what two polygons share along the side that parts them best, which
+/// are at most `margin` (m) apart; `None` where they are corner beside corner, or further apart.
 pub(crate) fn facing(a: &PlacedPart<'_>, b: &PlacedPart<'_>, margin: f64) -> Option<[CornerOnSide; 2]> {
     let ((side_a, apart_a), (side_b, apart_b)) = (best_side(a, b, margin)?, best_side(b, a, margin)?);
     if apart_a > margin || apart_b > margin {
@@ -132,7 +137,8 @@ pub(crate) fn facing(a: &PlacedPart<'_>, b: &PlacedPart<'_>, margin: f64) -> Opt
     if !(to - from > tolerance) {
         return None;
     }
-    // At each end the corner that is further in; of two in line, the first shape's, whichever side it is that parts them best.
+    // At each end the corner that is further in; of two in line, the first shape's, whichever side
+    // it is that parts them best.
     let over_mine = |corner: usize| CornerOnSide {
         owner: 1 - owner,
         corner: other.first + corner,
@@ -171,8 +177,8 @@ impl PlacedPart<'_> {
     }
 }
 
-/// The contact of a corner, in its body and in the world, with a side of the other polygon, or with its line; `None` where that isn't
-/// finite.
+/// The contact of a corner, in its body and in the world, with a side of the other polygon, or with
+/// its line; `None` where that isn't finite.
 pub(crate) fn corner_on_side(
     feature: CornerOnSide,
     (local, place): (Vector<2>, Vector<2>),

@@ -45,7 +45,8 @@ fn disc(radius: f64) -> Shape {
     Disc::new(Vector2::zeros(), radius).unwrap().into()
 }
 
-/// Gaps and normals at a pose over ground at the origin, and again over ground that is moved and turned.
+/// Gaps and normals at a pose over ground at the origin, and again over ground that is moved and
+/// turned.
 fn found(shape: &Shape, pose: [f64; 3], margin: f64) -> Vec<(f64, Vector2<f64>)> {
     let detector = detector(shape.clone());
     let contacts = |poses: Poses| {

@@ -117,11 +117,13 @@ fn blocks_in_line_keep_their_features_through_rounding() {
 
 #[test]
 fn a_block_that_tips_stays_on_the_corner_that_it_tips_about() {
-    // Its bottom lies on the other's corner, which is its place of turning, from 1e-12 to 40 degrees.
+    // Its bottom lies on the other's corner, which is its place of turning, from 1e-12 to 40
+    // degrees.
     let plank = pair([rectangle(4.0, 0.2), rectangle(1.0, 1.0)]);
     for angle in [1e-12_f64, 1e-6, 0.01, 0.3, 0.7] {
         let (sin, cos) = angle.sin_cos();
-        // The point of the plank that stays on (½, ½), 0.7 left of its middle: the plank turns clockwise about it.
+        // The point of the plank that stays on (½, ½), 0.7 left of its middle: the plank turns
+        // clockwise about it.
         let (x, y) = (0.5 + 0.7 * cos + 0.1 * sin, 0.5 - 0.7 * sin + 0.1 * cos);
         let found = found(&plank, &[[x, y, -angle], [0.0, 0.0, 0.0]], 1e-9);
         let at_corner =
@@ -155,8 +157,9 @@ fn past_the_end_of_its_side_a_corner_is_followed_along_the_sides_line() {
     for x in [0.7, 1.5, 1.9, 2.1, -0.1, -30.0] {
         bricks.locate_past_ends(&Poses(vec![[x, 1.2, 0.0], [0.0, 0.0, 0.0]]), &ids, &mut out, &mut rooms);
         assert_eq!((out.len(), rooms.len()), (2, 2), "{x}");
-        // The upper brick's left corner is at x − 1 on a side from −1 to 1; the lower one's right corner at 1 − x on the upper one's.
-        // What is known counts as over its side for 1e-9 of its length more.
+        // The upper brick's left corner is at x − 1 on a side from −1 to 1; the lower one's right
+        // corner at 1 − x on the upper one's. What is known counts as over its side for 1e-9 of its
+        // length more.
         for room in &rooms {
             assert!((room - f64::min(x, 2.0 - x) - 2e-9).abs() < 1e-13, "{x}: {room}");
         }
@@ -192,7 +195,8 @@ fn a_rounded_block_stands_where_its_roundings_begin_and_rolls_about_them() {
         assert!(contact.gap.abs() < 1e-15 && (contact.sides[0].point - Vector2::new(x, -1.0)).norm() < 1e-15);
         assert!((contact.sides[1].point - Vector2::new(x + 0.3, 0.5)).norm() < 1e-15);
     }
-    // Turned by any angle about the middle of its rounding it touches below that, with the same identity.
+    // Turned by any angle about the middle of its rounding it touches below that, with the same
+    // identity.
     for angle in [1e-12, 0.01, 0.3, 1.0, 1.5] {
         let turn = Rotation2::new(angle);
         let centre = Vector2::new(-0.1, 0.6) - turn * Vector2::new(-0.4, -0.9);
@@ -207,7 +211,8 @@ fn a_rounded_block_stands_where_its_roundings_begin_and_rolls_about_them() {
 #[test]
 fn rounded_corners_touch_beside_each_other() {
     let blocks = pair([rounded(1.0, 1.0, 0.1), rounded(1.0, 1.0, 0.2)]);
-    // The middle of the first one's left bottom rounding is at (−0.4, −0.4) from its centre, of the other's right top at (0.3, 0.3).
+    // The middle of the first one's left bottom rounding is at (−0.4, −0.4) from its centre, of the
+    // other's right top at (0.3, 0.3).
     let there = found(&blocks, &[[1.0, 1.1, 0.0], [0.0, 0.0, 0.0]], 1.0);
     assert_eq!(there.len(), 1);
     let apart = Vector2::new(0.3_f64, 0.4);
@@ -217,7 +222,8 @@ fn rounded_corners_touch_beside_each_other() {
 
 #[test]
 fn a_body_of_parts_touches_by_each_of_them() {
-    // A table: a board on two legs, of which one ends in a disc; over a long block, and turned over it.
+    // A table: a board on two legs, of which one ends in a disc; over a long block, and turned over
+    // it.
     let board = polygon(&[[-1.0, 0.4], [1.0, 0.4], [1.0, 0.5], [-1.0, 0.5]]);
     let leg = polygon(&[[-0.9, 0.0], [-0.8, 0.0], [-0.8, 0.4], [-0.9, 0.4]]);
     let foot = Shape::from(Disc::new(Vector2::new(0.85, 0.1), 0.1).unwrap());
@@ -225,7 +231,8 @@ fn a_body_of_parts_touches_by_each_of_them() {
     let shapes = vec![(BodyId(0), board), (BodyId(0), leg), (BodyId(1), rectangle(4.0, 1.0)), (BodyId(0), foot)];
     let table = ShapeDetector::new(shapes, vec![ShapePair { pair: 0, law: LawId(0), bodies }]).unwrap();
     let on = found(&table, &[[0.0, 0.5, 0.0], [0.0, 0.0, 0.0]], 1e-6);
-    // Corners are numbered over all parts: four of the board, four of the leg, the middle of the disc.
+    // Corners are numbered over all parts: four of the board, four of the leg, the middle of the
+    // disc.
     assert_eq!(corners(&on).0, [(0, 4), (0, 5), (0, 8)]);
     assert!(on.iter().all(|contact| contact.gap.abs() < 1e-15));
     let poses = [[0.0, 0.5, 0.0], [0.0, 0.52, 0.3], [0.2, 1.0, 2.9], [1.7, 0.8, 1.2]];
@@ -234,8 +241,8 @@ fn a_body_of_parts_touches_by_each_of_them() {
     assert_eq!(check(&table, &poses), []);
 }
 
-/// Bodies that drift and turn, all against all but for one pair of classes, of which nothing touches: the same contacts as of pairs that
-/// are listed one by one, whatever was kept in memory.
+/// Bodies that drift and turn, all against all but for one pair of classes, of which nothing
+/// touches: the same contacts as of pairs that are listed one by one, whatever was kept in memory.
 #[test]
 fn groups_find_what_listed_pairs_find() {
     let n = 40_u32;
@@ -319,8 +326,8 @@ fn distance(poses: &[[f64; 3]; 2], shapes: [&[Vector2<f64>]; 2]) -> f64 {
     least
 }
 
-/// Random polygons in random places: the smallest gap is the distance, but where corner is beside corner; the two see each other alike,
-/// in whatever order, and turned or moved as a whole.
+/// Random polygons in random places: the smallest gap is the distance, but where corner is beside
+/// corner; the two see each other alike, in whatever order, and turned or moved as a whole.
 #[test]
 fn random_polygons_are_as_far_apart_as_their_nearest_points() {
     let mut seed = 12_345_u64;
@@ -352,7 +359,8 @@ fn random_polygons_are_as_far_apart_as_their_nearest_points() {
         let least = mine.iter().map(|contact| contact.gap).fold(f64::INFINITY, f64::min);
         let expected = distance(&poses, [&a, &b]);
         if least < f64::INFINITY && least > 0.0 {
-            // Not nearer than they are; and that near where the nearest points are a corner's and a side's.
+            // Not nearer than they are; and that near where the nearest points are a corner's and a
+            // side's.
             assert!(least >= expected - 1e-12, "{least} {expected}");
             apart += usize::from((least - expected).abs() < 1e-12);
         }
@@ -360,7 +368,8 @@ fn random_polygons_are_as_far_apart_as_their_nearest_points() {
     assert!(apart > 1000, "{apart}");
 }
 
-/// Random rounded polygons: apart they are as far as their cores less both radii, corner beside corner too.
+/// Random rounded polygons: apart they are as far as their cores less both radii, corner beside
+/// corner too.
 #[test]
 fn random_rounded_polygons_are_as_far_apart_as_their_cores_less_the_radii() {
     let mut seed = 54_321_u64;

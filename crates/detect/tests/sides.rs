@@ -93,7 +93,8 @@ fn found(detector: &ShapeDetector, at: &Wave, margin: f64) -> Candidates<2> {
 
 #[test]
 fn humps_are_found_between_the_corners_with_the_sides_normal() {
-    // Crests of height 0.1 at 0, 2, 4 and 6; the base from 1 to 5, tilted by 2 degrees about (3, 0.2).
+    // Crests of height 0.1 at 0, 2, 4 and 6; the base from 1 to 5, tilted by 2 degrees about (3,
+    // 0.2).
     let wave = |pose| Wave { pose, height: 0.1, number: std::f64::consts::PI, slope: 0.0, end: 7.0 };
     let angle = 0.02_f64;
     let at = wave([3.0, 0.2, angle]);

@@ -20,7 +20,8 @@ pub(crate) use guard::{Guard, Guarded};
 use teeter_contact::Outcome;
 use teeter_detect::{Candidate, Candidates, ContactId};
 
-/// Up to so many contacts a solution doesn't depend on where its search starts: it is enumerated, or polished.
+/// Up to so many contacts a solution doesn't depend on where its search starts: it is enumerated,
+/// or polished.
 const FEW: usize = 12;
 
 /// θ: the step's account of work holds for the trapezoidal rule.
@@ -41,8 +42,8 @@ pub(crate) struct ClosedStep<const D: usize, M = ThetaStep> {
     middle: Candidates<D>,
     /// Of each of these, at q̃_m and at q̃, how far it is to the end of its surface, m.
     rooms: [Vec<f64>; 2],
-    /// Whether contacts that pass the end of their surface within the step act as if it went on; if not, those act that pass it in the
-    /// second half.
+    /// Whether contacts that pass the end of their surface within the step act as if it went on; if
+    /// not, those act that pass it in the second half.
     goes_past_ends: bool,
     ahead: Candidates<D>,
     start: Candidates<D>,
@@ -110,7 +111,8 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         }
     }
 
-    /// With contacts that act past the end of their surface as if it went on, for a scheme that ends the step there.
+    /// With contacts that act past the end of their surface as if it went on, for a scheme that
+    /// ends the step there.
     pub(crate) fn past_ends(self) -> Self {
         Self { goes_past_ends: true, ..self }
     }
@@ -198,7 +200,8 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         let outcome = loop {
             let outcome =
                 self.solve(model, from, span, work).map_err(|source| StepError::Problem { t: from.t, source })?;
-            // Frames and gaps stay those of the first round: its fixed point is then that of one problem.
+            // Frames and gaps stay those of the first round: its fixed point is then that of one
+            // problem.
             if !self.step.takes_another_round(model, from, span.h, work) {
                 break self.step.judge(outcome, work.settings.tolerance);
             }
@@ -272,8 +275,9 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         work.locate_past_ends(model, &self.q_mid, &self.closed, &mut self.middle, &mut self.rooms[0])
     }
 
-    /// Whether contact `i` of an attempt of `h` (s) may be past the end of its surface after it. It is if it was at q̃, unless impulses
-    /// have moved it since: by half the difference of the slides that are summed here, so that twice their sum leaves room for turns.
+    /// Whether contact `i` of an attempt of `h` (s) may be past the end of its surface after it. It
+    /// is if it was at q̃, unless impulses have moved it since: by half the difference of the
+    /// slides that are summed here, so that twice their sum leaves room for turns.
     pub(crate) fn may_leave(&self, i: usize, h: f64) -> bool {
         let Ok(at) = self.ahead.binary_search_by_key(&self.stage.contacts()[i].id, |ahead| ahead.id) else {
             return true;

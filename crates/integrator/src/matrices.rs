@@ -3,8 +3,9 @@
 use crate::{Compliance, FactorError, Weights};
 use nalgebra::{Cholesky, Const, SMatrix, SVector};
 
-/// M, C and K of a subsystem with N velocities, where they are constant: [`Dynamics::apply`](crate::Dynamics::apply) and
-/// [`Dynamics::factor`](crate::Dynamics::factor) in a line each. No velocity may be [driven or held](crate::Traits).
+/// M, C and K of a subsystem with N velocities, where they are constant:
+/// [`Dynamics::apply`](crate::Dynamics::apply) and [`Dynamics::factor`](crate::Dynamics::factor) in
+/// a line each. No velocity may be [driven or held](crate::Traits).
 ///
 /// ```
 /// use teeter_integrator::{ConstantMatrices, Weights};

@@ -1,9 +1,12 @@
-//! A body, an observer and a contact solver of one's own, none of which the crates know: a block slides over the floor
-//! against a hanging rod ([`pendulum`]), [`gauss_seidel`] solves the contacts, [`impacts`] writes down each hit.
+//! A body, an observer and a contact solver of one's own, none of which the crates know: a block
+//! slides over the floor against a hanging rod ([`pendulum`]), [`gauss_seidel`] solves the
+//! contacts, [`impacts`] writes down each hit.
 //!
-//! Contact is of the block's corners with the rod's faces; that the rod's tip could meet a side of the block isn't modelled.
+//! Contact is of the block's corners with the rod's faces; that the rod's tip could meet a side of
+//! the block isn't modelled.
 //!
-//! Before that the shortest body that there is: a [`platform`] on a spring, on which the block is put down.
+//! Before that the shortest body that there is: a [`platform`] on a spring, on which the block is
+//! put down.
 
 mod gauss_seidel;
 mod impacts;
@@ -37,7 +40,8 @@ const ROD: Pendulum =
 /// Mass of the platform, kg.
 const PLATFORM: f64 = 2.0;
 
-/// The second pair of the model, the block's corners against the rod; the first is those against the floor.
+/// The second pair of the model, the block's corners against the rod; the first is those against
+/// the floor.
 const HIT: u32 = 1;
 
 struct Scene {
@@ -88,7 +92,8 @@ fn simulate(scene: &mut Scene, steps: u64, observer: &mut dyn Observer<2>) -> Do
     }
 }
 
-/// What the program shows: the block hits the rod and stops under it; the rod comes back, and ends leaning on the block.
+/// What the program shows: the block hits the rod and stops under it; the rod comes back, and ends
+/// leaning on the block.
 fn hit() -> Done<(Scene, Impacts)> {
     let mut scene = scene(&ROD, [PairLaw::new(0.3, 0.0), PairLaw::new(0.1, 0.2)], 1.0, 1e-4)?;
     let mut impacts = Impacts::of(HIT);
@@ -96,7 +101,8 @@ fn hit() -> Done<(Scene, Impacts)> {
     Ok((scene, impacts))
 }
 
-/// A block at rest on a platform at rest, whose spring is slack. Coordinates: the block's (X, Y, φ), then the platform's height.
+/// A block at rest on a platform at rest, whose spring is slack. Coordinates: the block's (X, Y,
+/// φ), then the platform's height.
 fn put_down(stiffness: f64, step: f64) -> Done<Scene> {
     let (shape, mass) = block()?;
     let gravity = 9.81;

@@ -1,4 +1,5 @@
-//! A body in the fewest lines: a platform on a spring, m q̈ + k q = −m g, with q its height above where the spring is slack.
+//! A body in the fewest lines: a platform on a spring, m q̈ + k q = −m g, with q its height above
+//! where the spring is slack.
 
 use nalgebra::Vector2;
 use teeter_detect::{Frame, Kinematics, SurfacePoint};

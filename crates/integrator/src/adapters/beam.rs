@@ -22,7 +22,8 @@ use std::sync::Arc;
 use teeter_beam::{Beam, Deflection, Load, MatrixWeights};
 use teeter_detect::{Frame, HalfSpace, Kinematics, SurfacePoint};
 
-/// A beam with more dofs has no motion in closed form: the time that a step takes grows with their square.
+/// A beam with more dofs has no motion in closed form: the time that a step takes grows with their
+/// square.
 const MOST_DOFS: usize = 100;
 
 /// The fibre of a beam that is its contact surface.
@@ -46,17 +47,20 @@ impl BeamSurface {
     }
 }
 
-/// A side of a beam that others touch, by its [body](Self::body); or whose points touch others, by its [fibre](Self::fibre).
+/// A side of a beam that others touch, by its [body](Self::body); or whose points touch others, by
+/// its [fibre](Self::fibre).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BeamFace {
     /// What lies on the beam touches it.
     Upper,
-    /// What is under it touches it: the axis, or the bottom fibre where the [surface](BeamSurface) is the top one.
+    /// What is under it touches it: the axis, or the bottom fibre where the [surface](BeamSurface)
+    /// is the top one.
     Lower,
 }
 
 impl BeamFace {
-    /// The number of the body, within the beam's, that has the face as its surface: points of others touch it.
+    /// The number of the body, within the beam's, that has the face as its surface: points of
+    /// others touch it.
     #[must_use]
     pub fn body(self) -> u32 {
         match self {
@@ -85,9 +89,9 @@ pub(crate) const BEAM_BODIES: usize = 4;
 
 /// A straight level beam in the world.
 ///
-/// It is four bodies, by [face](BeamFace): the upper one is the first. Its coordinates are those of [`Beam`]. If its supports [move](Self::with_motion), deflections
-/// are relative to them, and the displacements x and y of the supports follow as two more,
-/// prescribed coordinates.
+/// It is four bodies, by [face](BeamFace): the upper one is the first. Its coordinates are those of
+/// [`Beam`]. If its supports [move](Self::with_motion), deflections are relative to them, and the
+/// displacements x and y of the supports follow as two more, prescribed coordinates.
 pub struct BeamBody {
     beam: Arc<Beam>,
     position: Vector2<f64>,

@@ -46,7 +46,8 @@ fn schemes_for_rigid() -> impl Iterator<Item = Box<dyn Scheme<2>>> {
     all_schemes(&[]).into_iter().filter(|scheme| scheme.name() != Resolved::<2>::NAME)
 }
 
-/// Thrown without spin it slides until it rolls, at two thirds of its speed: friction has no moment about the ground.
+/// Thrown without spin it slides until it rolls, at two thirds of its speed: friction has no moment
+/// about the ground.
 #[test]
 fn a_disc_thrown_without_spin_rolls_from_two_thirds_of_its_speed_on() {
     let model = discs(1, 0.0, 0.2, 0.0);
@@ -85,8 +86,9 @@ fn a_disc_rolls_down_an_incline() {
     }
 }
 
-/// A row of discs, one of which strikes the others: with e = 1 and gaps each hands its speed on, as it strikes the next alone; the
-/// friction of the ground, of which there is none here, would have no part in it.
+/// A row of discs, one of which strikes the others: with e = 1 and gaps each hands its speed on, as
+/// it strikes the next alone; the friction of the ground, of which there is none here, would have
+/// no part in it.
 #[test]
 fn a_row_with_gaps_hands_the_speed_on() {
     let n = 5;
@@ -111,7 +113,8 @@ fn a_row_with_gaps_hands_the_speed_on() {
     }
 }
 
-/// In a valley of a profile a disc that drops comes to rest on both sides; over a crest it rolls on.
+/// In a valley of a profile a disc that drops comes to rest on both sides; over a crest it rolls
+/// on.
 #[test]
 fn a_disc_on_a_profile_settles_in_a_valley() {
     let (body, shape) = disc();

@@ -12,7 +12,8 @@ use teeter_rigid::{MassProperties, Rectangle};
 /// Width of the base, height and depth of the block, m.
 const SIDES: [f64; 3] = [0.2, 0.05, 0.03];
 
-/// A timber beam, strongly damped, that sags over its inner support; and where the block is put (X, φ).
+/// A timber beam, strongly damped, that sags over its inner support; and where the block is put (X,
+/// φ).
 struct Scene {
     beam: Arc<Beam>,
     at: [f64; 2],
@@ -26,7 +27,8 @@ fn over_an_inner_support(surface: BeamSurface) -> Scene {
     Scene { beam: Arc::new(Beam::new(spec.damped(damping)).unwrap()), at: [0.61, 0.0], surface }
 }
 
-/// A cantilever that is free at its right end, under which the block overhangs by less than half of its base.
+/// A cantilever that is free at its right end, under which the block overhangs by less than half of
+/// its base.
 fn over_an_end(surface: BeamSurface) -> Scene {
     let section = Section::rectangle(0.1, 0.005, 11e9, 500.0).unwrap();
     let spec = BeamSpec::new(0.6, 12, section).supported([Support::Clamped, Support::Free]);
@@ -86,8 +88,9 @@ impl Observer<2> for Forces<'_> {
     }
 }
 
-/// The block comes to rest, and then: it bears its weight, no point of its base is inside the beam, the beam hangs as statics has it
-/// under the contacts' forces, and these press where base and beam touch.
+/// The block comes to rest, and then: it bears its weight, no point of its base is inside the beam,
+/// the beam hangs as statics has it under the contacts' forces, and these press where base and beam
+/// touch.
 #[test]
 fn a_block_rests_on_humps_and_ends_as_statics_has_it() {
     let weight = SIDES[0] * SIDES[1] * SIDES[2] * 600.0 * 9.81;
@@ -102,7 +105,8 @@ fn a_block_rests_on_humps_and_ends_as_statics_has_it() {
             let mut q = vec![scene.at[0], 0.5 * SIDES[1] + offset + 1e-3, scene.at[1]];
             q.extend(&alone);
             for mut scheme in all_schemes(&[]) {
-                // The one loses contacts for a step now and then, and shakes the beam for ever; the other takes minutes.
+                // The one loses contacts for a step now and then, and shakes the beam for ever; the
+                // other takes minutes.
                 if [MoreauJean::<2>::NAME, EventDriven::NAME].contains(&scheme.name()) {
                     continue;
                 }
@@ -143,7 +147,8 @@ fn a_block_rests_on_humps_and_ends_as_statics_has_it() {
                         (beside.abs() < 0.5 * SIDES[0]).then(|| place[0].y - base(place[0].x))
                     })
                     .fold(f64::NEG_INFINITY, f64::max);
-                // Schemes that hold velocities let gaps drift by what a block that rocks to rest makes of h².
+                // Schemes that hold velocities let gaps drift by what a block that rocks to rest
+                // makes of h².
                 assert!(deepest.abs() < 5e-6, "{name}: the base is {deepest:e} m in the beam");
             }
         }

@@ -142,8 +142,8 @@ impl BeamForces {
         &self.v_mean
     }
 
-    /// A force on a point of a beam's upper surface, in a contact's frame (N), as a load on the axis of
-    /// a beam of this span (m).
+    /// A force on a point of a beam's upper surface, in a contact's frame (N), as a load on the
+    /// axis of a beam of this span (m).
     #[must_use]
     pub fn surface_load(side: &Anchor<2>, frame: &Frame<2>, force: &Vector<2>, span: f64) -> SpanLoad {
         load_on_axis(&side.point, frame, &frame.row(0).transpose(), force, span)
@@ -191,8 +191,8 @@ impl BeamForces {
     }
 
     /// The section forces of a step, as means over all of its phases that take time: of a step in
-    /// several parts, the mean of theirs by their durations. Impacts, which take no time, are not in
-    /// it. `None` for a step without such a phase. Of a step in one phase it is what
+    /// several parts, the mean of theirs by their durations. Impacts, which take no time, are not
+    /// in it. `None` for a step without such a phase. Of a step in one phase it is what
     /// [`enter`](Self::enter) gives.
     ///
     /// # Errors
@@ -275,16 +275,16 @@ impl BeamForces {
         self.forces.update(&self.beam, &actions)
     }
 
-    /// What the deflection adds to the axial force of a beam held along its axis in a phase from the
-    /// dofs that were read to `end`, N: the mean of both, EA/(4L) (s⁰ + s¹).
+    /// What the deflection adds to the axial force of a beam held along its axis in a phase from
+    /// the dofs that were read to `end`, N: the mean of both, EA/(4L) (s⁰ + s¹).
     fn tension_between(&self, end: &[f64]) -> f64 {
         let ends = [&self.q[0], end].map(|q| self.beam.slope_form(q, q));
         0.5 * self.beam.stretching_stiffness() * (ends[0] + ends[1])
     }
 
     /// The same where the scheme knows the mean of the coordinates, which is in `known` and becomes
-    /// the end that it is the mean towards, q̄ = w q¹ + (1 − w) q⁰: the coordinates at the end of the
-    /// phase may have been projected to elsewhere.
+    /// the end that it is the mean towards, q̄ = w q¹ + (1 − w) q⁰: the coordinates at the end of
+    /// the phase may have been projected to elsewhere.
     fn tension_towards_known(&mut self, weight: f64) -> f64 {
         if !self.beam.is_stretched() || weight <= 0.0 {
             return 0.0;
@@ -335,7 +335,8 @@ impl BeamForces {
     }
 }
 
-/// A force in a contact's frame (N) on a point of a beam whose section there has this normal, as a load on the axis.
+/// A force in a contact's frame (N) on a point of a beam whose section there has this normal, as a
+/// load on the axis.
 fn load_on_axis(point: &Vector<2>, frame: &Frame<2>, section: &Vector<2>, force: &Vector<2>, span: f64) -> SpanLoad {
     let [up, turn] = lift_and_turn(point, frame, section);
     SpanLoad::Point { x: point.x.clamp(0.0, span), force: up.dot(force), couple: turn.dot(force) }

@@ -130,9 +130,10 @@ impl Line {
         [0.0, beam.span()].map(|x| self.at(beam, q, x))
     }
 
-    /// Hands the points at which the surface comes out furthest along `direction`, between two places, to `each`, from the left. The
-    /// surface runs parallel to the axis, so that they belong to the sections at which the axis is at right angles to the direction; in
-    /// an element the slope is a parabola.
+    /// Hands the points at which the surface comes out furthest along `direction`, between two
+    /// places, to `each`, from the left. The surface runs parallel to the axis, so that they belong
+    /// to the sections at which the axis is at right angles to the direction; in an element the
+    /// slope is a parabola.
     pub(crate) fn summits(
         &self,
         beam: &impl Deflecting,
@@ -192,7 +193,8 @@ fn normal_of(slope: f64) -> Vector2<f64> {
 /// Where in (0, 1] a parabola with these values at 0, ½ and 1 goes from above zero to below.
 fn falls_through_zero([start, middle, end]: [f64; 3]) -> Option<f64> {
     let [square, linear] = [2.0 * (start + end) - 4.0 * middle, 4.0 * middle - 3.0 * start - end];
-    // The root at which the derivative is negative, −√(linear² − 4 square start), written without cancellation.
+    // The root at which the derivative is negative, −√(linear² − 4 square start), written without
+    // cancellation.
     let root = linear * linear - 4.0 * square * start;
     // Written so that NaN fails too.
     if !(root > 0.0) {
@@ -275,8 +277,9 @@ pub(crate) fn bias(
     Some(frame * (Vector2::new(along, up) * point.y))
 }
 
-/// The normal (−sin ψ, cos ψ) of the section at a point of the beam. Of a surface that others touch it is that of the contact's
-/// frame, up or down; for linear kinematics that has ψ = 0. Of a fibre that touches others it is the section's own.
+/// The normal (−sin ψ, cos ψ) of the section at a point of the beam. Of a surface that others touch
+/// it is that of the contact's frame, up or down; for linear kinematics that has ψ = 0. Of a fibre
+/// that touches others it is the section's own.
 pub(crate) fn section_of(
     beam: &impl Deflecting,
     (body, q): (u32, &[f64]),
