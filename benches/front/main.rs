@@ -75,8 +75,11 @@ const END: &str = "300 ms";
 /// Steps: all of them divide the times.
 const STEPS: [&str; 9] = ["2 ms", "1 ms", "500 us", "200 us", "100 us", "50 us", "20 us", "10 us", "5 us"];
 
-/// What is measured: a label, a scheme, and what else is set.
-const SETTINGS: [(&str, &str, &[(&str, &str)]); 8] = [
+/// A label, a scheme, and what else is set.
+type Setting = (&'static str, &'static str, &'static [(&'static str, &'static str)]);
+
+/// What is measured.
+const SETTINGS: [Setting; 8] = [
     ("moreau-jean", "moreau-jean", &[]),
     ("moreau-jean-closed", "moreau-jean-closed", &[]),
     ("moreau-jean-located", "moreau-jean-located", &[]),

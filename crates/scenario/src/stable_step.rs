@@ -74,7 +74,7 @@ mod tests {
 
     fn spec(elements: usize) -> BeamSpec {
         BeamSpec::new(0.36, elements, Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap())
-            .damped(Damping { viscous: 0.4, ..Damping::default() })
+            .damped(Damping::none().with_viscous(0.4))
     }
 
     #[test]
@@ -114,7 +114,7 @@ mod tests {
         // The highest mode underdamped; overdamped by Rayleigh's a₁; the low modes overdamped by c.
         for (viscous, rayleigh_stiffness) in [(300.0, 0.0), (0.0, 1e-3), (1e4, 0.0)] {
             let mut spec = spec(4);
-            spec.damping = Damping { viscous, rayleigh_stiffness, ..Damping::default() };
+            spec.damping = Damping::none().with_viscous(viscous).with_rayleigh_stiffness(rayleigh_stiffness);
             let limit = largest_stable_step(&spec, 0.4);
             assert!(!grows(spec.clone(), 0.4, 0.9 * limit), "{viscous} {rayleigh_stiffness}: {limit:e} is too large");
             assert!(grows(spec, 0.4, 1.2 * limit), "{viscous} {rayleigh_stiffness}: {limit:e} is too small");

@@ -73,7 +73,7 @@ fn fly(elements: usize) -> Result<Flight> {
     // How it bends doesn't matter; it flies straight.
     let section = Section::new(1.0, BAR.density * BAR.area)?.with_axial_stiffness(BAR.young * BAR.area)?;
     let spec = BeamSpec::new(BAR.length, elements, section).supported([Support::Free; 2]);
-    let beam = Beam::new(spec.axial(Axial::Elastic { held: [false, false] }))?;
+    let beam = Beam::new(spec.axial(Axial::elastic([false, false])))?;
     let h = BAR.length / elements as f64 / BAR.wave_speed();
     let factor = beam.factor(MatrixWeights { mass: 1.0, damping: 0.0, stiffness: 0.25 * h * h })?;
     let axial = 2 * beam.nodes();

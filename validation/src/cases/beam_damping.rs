@@ -27,7 +27,7 @@ impl Case for BeamDamping {
         let mut findings = Findings::default();
         let omegas = [1, 2, 3, 4, 5].map(|i| BEAM.frequency(f64::from(i) * PI));
         let c = 0.7;
-        let found = rates(Damping { viscous: c, ..Damping::default() }, omegas[0])?;
+        let found = rates(Damping::none().with_viscous(c), omegas[0])?;
         for (mode, found) in (1..).zip(found) {
             let quantity = format!("viscous, mode {mode}: decay rate, 1/s, relative");
             findings.checks.push(Check::relative(quantity, viscous(c, BEAM.mass), found, 1e-12));

@@ -49,7 +49,11 @@ impl Case for BeamLedger {
         findings.checks.push(Check::worst("axially held: identity", end.ledger.relative_residual(), IDENTITY));
         findings.checks.push(Check::worst("axially held: drift of the energy", drift, DRIFT));
 
-        let damping = Damping { viscous: 0.4, rayleigh_mass: 0.1, rayleigh_stiffness: 1e-7, modal: vec![0.002, 0.01] };
+        let damping = Damping::none()
+            .with_viscous(0.4)
+            .with_rayleigh_mass(0.1)
+            .with_rayleigh_stiffness(1e-7)
+            .with_modal(vec![0.002, 0.01]);
         let beam = Arc::new(Beam::new(held.damped(damping.clone()))?);
         let (end, _) = swing(&beam, rough(&beam)?, steps, Vec::new(), |_| 0.0)?;
         let quantity = "axially held, damped in every way: identity";
@@ -78,7 +82,7 @@ fn furnished(section: Section, damping: Damping) -> Result<BeamSpec> {
         .support_at(0.24, Support::Pinned)
         .lump(0.15, 0.02, 1e-6)
         .foundation(Foundation::new(0.05, 0.3, 2e3).with_damping(0.2))
-        .axial(Axial::Elastic { held: [true, false] })
+        .axial(Axial::elastic([true, false]))
         .axial_force(40.0)
         .damped(damping))
 }

@@ -78,7 +78,7 @@ const PARTS: [f64; 3] = [0.5, 0.7, 1.3];
 
 /// w at midspan at the three times.
 fn midspan(crossing: &Crossing, elements: usize, steps: u32) -> Result<[f64; 3]> {
-    let damping = Damping { viscous: 2.0 * BEAM.mass * crossing.decay, ..Damping::default() };
+    let damping = Damping::none().with_viscous(2.0 * BEAM.mass * crossing.decay);
     let section = Section::new(BEAM.bending, BEAM.mass)?;
     let beam = Beam::new(BeamSpec::new(BEAM.span, elements, section).damped(damping))?;
     let load = MovingLoad::new(crossing.force, crossing.speed, 0.0)?;

@@ -72,7 +72,7 @@ fn bent(span: f64, elements: usize, support: Support, load: SpanLoad) -> Result<
         _ => {}
     }
     beam.solve_static(&mut q)?;
-    let forces = beam.section_forces(&Actions { q: &q, loads: &[load], ..Actions::default() })?;
+    let forces = beam.section_forces(&Actions::at(&q).with_loads(&[load]))?;
     let middle = 0.5 * span;
     Ok([beam.deflection_at(&q, middle).ok_or("no middle")?.w, forces.at(&beam, middle)?.moment])
 }

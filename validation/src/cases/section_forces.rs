@@ -117,7 +117,7 @@ fn at_rest(pair: [End; 2], shear: f64, load: Load, elements: usize) -> Result<[f
         }
     };
     beam.solve_static(&mut q)?;
-    let forces = beam.section_forces(&Actions { q: &q, loads: &[on_span], ..Actions::default() })?;
+    let forces = beam.section_forces(&Actions::at(&q).with_loads(&[on_span]))?;
     let mut worst = [0.0_f64; 3];
     for k in 1..PROBES {
         let x = SPAN * f64::from(k) / f64::from(PROBES);

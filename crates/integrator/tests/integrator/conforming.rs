@@ -60,7 +60,7 @@ fn beam(elements: usize, supports: [Support; 2]) -> Arc<Beam> {
 
 fn axial_beam(elements: usize, supports: [Support; 2], axial: Axial) -> Arc<Beam> {
     let section = Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap();
-    let damping = Damping { viscous: 0.4, rayleigh_mass: 0.3, rayleigh_stiffness: 1e-5, ..Damping::default() };
+    let damping = Damping::none().with_viscous(0.4).with_rayleigh_mass(0.3).with_rayleigh_stiffness(1e-5);
     Arc::new(
         Beam::new(BeamSpec::new(0.36, elements, section).supported(supports).damped(damping).axial(axial)).unwrap(),
     )
@@ -172,7 +172,7 @@ fn summits_of_a_beam_are_where_a_fine_search_finds_them() {
 
 #[test]
 fn beams_with_axial_forces_conform() {
-    for axial in [Axial::Held, Axial::Elastic { held: [true, false] }] {
+    for axial in [Axial::Held, Axial::elastic([true, false])] {
         let beam = axial_beam(24, [Support::Pinned, Support::Clamped], axial);
         let mut case = touched(&axial_beam(24, [Support::Pinned, Support::Clamped], Axial::Free), 5);
         case.q.resize(beam.dofs(), 0.0);

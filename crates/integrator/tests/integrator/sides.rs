@@ -23,7 +23,7 @@ struct Scene {
 fn over_an_inner_support(surface: BeamSurface) -> Scene {
     let section = Section::rectangle(0.1, 0.005, 11e9, 500.0).unwrap();
     let spec = BeamSpec::new(1.2, 24, section).support_at(0.6, Support::Pinned);
-    let damping = Damping { viscous: 60.0, rayleigh_stiffness: 1e-4, ..Damping::default() };
+    let damping = Damping::none().with_viscous(60.0).with_rayleigh_stiffness(1e-4);
     Scene { beam: Arc::new(Beam::new(spec.damped(damping)).unwrap()), at: [0.61, 0.0], surface }
 }
 
@@ -32,7 +32,7 @@ fn over_an_inner_support(surface: BeamSurface) -> Scene {
 fn over_an_end(surface: BeamSurface) -> Scene {
     let section = Section::rectangle(0.1, 0.005, 11e9, 500.0).unwrap();
     let spec = BeamSpec::new(0.6, 12, section).supported([Support::Clamped, Support::Free]);
-    let damping = Damping { viscous: 60.0, rayleigh_stiffness: 1e-4, ..Damping::default() };
+    let damping = Damping::none().with_viscous(60.0).with_rayleigh_stiffness(1e-4);
     Scene { beam: Arc::new(Beam::new(spec.damped(damping)).unwrap()), at: [0.57, 0.0], surface }
 }
 

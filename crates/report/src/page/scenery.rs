@@ -131,7 +131,7 @@ impl Scenery {
                     .iter()
                     .map(|inner| (inner.x, wording::support(inner.support)))
                     .collect(),
-                held: matches!(drawn.spec.axial, Axial::Held | Axial::Elastic { held: [_, true] }),
+                held: matches!(drawn.spec.axial, Axial::Held | Axial::Elastic { held: [_, true], .. }),
                 points: pieces + 1,
                 shapes: (0..=pieces).map(at).collect(),
                 middle: place.beam.shape_clamped(0.5 * span),

@@ -125,7 +125,7 @@ impl Resolver<'_, '_> {
             AxialModel::Elastic => {
                 let ends = self.doc.text_pair(&format!("{path}.axial_supports"));
                 let held = ends.map(|ends| ends.map(|end| end == "held"));
-                Axial::Elastic { held: self.required(&format!("{path}.axial_supports"), held)? }
+                Axial::elastic(self.required(&format!("{path}.axial_supports"), held)?)
             }
             AxialModel::Free => Axial::Free,
         })
@@ -317,7 +317,7 @@ impl Resolver<'_, '_> {
         let (omega, shape) = self.elastic_mode(&path, beam, mode)?;
         // Without the damping of supports and foundations, which is added and may be much larger.
         let mut alone = beam.spec().clone();
-        alone.damping = Damping { viscous: 1.0, ..Damping::default() };
+        alone.damping = Damping::none().with_viscous(1.0);
         alone.supports = alone.supports.map(undamped);
         alone.inner_supports.iter_mut().for_each(|inner| inner.support = undamped(inner.support));
         alone.foundations.iter_mut().for_each(|foundation| foundation.damping = 0.0);
@@ -391,7 +391,7 @@ impl Resolver<'_, '_> {
                 return None;
             }
             let (mass, stiffness) = (self.quantity(&at("a0")), self.quantity(&at("a1")));
-            return Some(Damping { rayleigh_mass: mass?, rayleigh_stiffness: stiffness?, ..Damping::default() });
+            return Some(Damping::none().with_rayleigh_mass(mass?).with_rayleigh_stiffness(stiffness?));
         };
         if let Some(key) = ["a0", "a1"].into_iter().find(|key| doc.has(&at(key))) {
             self.error(&at(key), "frequencies and ratios already determine the factors", "keep these, or a0 and a1");

@@ -204,7 +204,7 @@ fn the_axis_is_free_held_or_elastic() {
     assert_eq!(beam(&plain(""), &[]).spec.axial, Axial::Free);
     assert_eq!(beam(&plain("axial = 'held'\naxial_force = '-10 N'\n"), &[]).spec.axial, Axial::Held);
     let elastic = "axial = 'elastic'\naxial_supports = ['held', 'free']\n";
-    assert_eq!(beam(&plain(elastic), &[]).spec.axial, Axial::Elastic { held: [true, false] });
+    assert_eq!(beam(&plain(elastic), &[]).spec.axial, Axial::elastic([true, false]));
     refused(&plain("axial_supports = ['held', 'free']\n"), &[], &["has no meaning with axial = free"]);
     for (supports, end) in
         [("['pinned', 'free']", "right"), ("['free', 'clamped']", "left"), ("['pinned', {}]", "right")]

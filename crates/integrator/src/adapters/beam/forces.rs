@@ -168,7 +168,7 @@ impl BeamForces {
             }
             self.span_loads.extend_from_slice(pressing);
         }
-        let actions = Actions { q: &self.q[1], loads: &self.span_loads, ..Actions::default() };
+        let actions = Actions::at(&self.q[1]).with_loads(&self.span_loads);
         self.forces.update(&self.beam, &actions)?;
         Ok(&self.forces)
     }
@@ -265,13 +265,11 @@ impl BeamForces {
             loads.extend(phase.contacts.iter().flat_map(|contact| self.pushes(contact, whole)));
             self.span_loads = loads;
         }
-        let actions = Actions {
-            q: &self.q_mean,
-            velocity: &self.v_mean,
-            acceleration: &self.acceleration,
-            loads: &self.span_loads,
-            tension: self.beam.is_stretched().then_some(tension),
-        };
+        let actions = Actions::at(&self.q_mean)
+            .with_velocity(&self.v_mean)
+            .with_acceleration(&self.acceleration)
+            .with_loads(&self.span_loads)
+            .with_tension(self.beam.is_stretched().then_some(tension));
         self.forces.update(&self.beam, &actions)
     }
 
