@@ -14,8 +14,8 @@ use nalgebra::{Vector2, Vector3};
 use teeter_beam::SpanLoad;
 use teeter_detect::{BodyId, PointPair, ShapePair};
 use teeter_integrator::{
-    BeamForces, BlockCoordinate, Blocks, Equilibrium, EquilibriumError, Mismatch, Model, ModelBuilder, Motion, PairLaw,
-    SettlingLimits, SolverSettings, Workspace, settle,
+    BeamFace, BeamForces, BlockCoordinate, Blocks, Equilibrium, EquilibriumError, Mismatch, Model, ModelBuilder,
+    Motion, PairLaw, SettlingLimits, SolverSettings, Workspace, settle,
 };
 use teeter_rigid::Pose;
 use teeter_solvers::Auto;
@@ -359,8 +359,8 @@ impl StaticModel {
             });
             loads.collect()
         };
-        // The model's bodies: the blocks, then the beams.
-        let bodies = (self.blocks.len()..).map(|body| BodyId(body as u32));
+        // The model's bodies: the blocks, then those of the beams.
+        let bodies = (self.blocks.len()..).step_by(BeamFace::BODIES).map(|body| BodyId(body as u32));
         let beams = self.beams.iter().zip(bodies);
         Ok(beams.map(|(&k, body)| (k, on(body, scene.beams[k].spec.span))).collect())
     }

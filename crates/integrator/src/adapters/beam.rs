@@ -59,6 +59,9 @@ pub enum BeamFace {
 }
 
 impl BeamFace {
+    /// How many bodies a beam is: two of each face.
+    pub const BODIES: usize = 4;
+
     /// The number of the body, within the beam's, that has the face as its surface: points of
     /// others touch it.
     #[must_use]
@@ -83,9 +86,6 @@ impl BeamFace {
         body >= 2
     }
 }
-
-/// A beam is as many bodies.
-pub(crate) const BEAM_BODIES: usize = 4;
 
 /// A straight level beam in the world.
 ///
@@ -256,7 +256,7 @@ impl Dynamics<2> for BeamBody {
         let driven = self.driven().len();
         let dofs = self.beam.dofs() + driven;
         let axial = if self.beam.has_axial_dofs() { 2 } else { 0 };
-        Size { q: dofs, v: dofs, bodies: BEAM_BODIES, row: 4 + axial + driven }
+        Size { q: dofs, v: dofs, bodies: BeamFace::BODIES, row: 4 + axial + driven }
     }
 
     fn traits(&self) -> Traits {

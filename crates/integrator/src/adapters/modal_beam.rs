@@ -307,7 +307,7 @@ impl Dynamics<2> for ModalBeam {
     fn size(&self) -> Size {
         let all = self.coordinates() + self.driven().len();
         let axial = if self.shapes.has_axial_dofs() { self.coordinates() } else { 0 };
-        Size { q: all, v: all, bodies: beam::BEAM_BODIES, row: all + axial }
+        Size { q: all, v: all, bodies: BeamFace::BODIES, row: all + axial }
     }
 
     fn traits(&self) -> Traits {

@@ -4,7 +4,7 @@ use super::{InitialMotion, Removed};
 use nalgebra::Vector2;
 use teeter_beam::{Beam, DeflectionExtremes};
 use teeter_detect::Frame;
-use teeter_integrator::{Bodies, Compliance, Dynamics, Energy, FactorError, Rows, Size, Traits, Weights};
+use teeter_integrator::{BeamFace, Bodies, Compliance, Dynamics, Energy, FactorError, Rows, Size, Traits, Weights};
 
 /// A beam that stays in its initial state unless something touches it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -88,7 +88,7 @@ fn size(beam: &Beam, q: &[f64]) -> f64 {
     w + 0.25 * longest * rotation + along
 }
 
-/// A body at rest: it has coordinates in the state, but takes no part in any step.
+/// A beam at rest: it has coordinates in the state and bodies, but takes no part in any step.
 #[derive(Debug)]
 pub(crate) struct RestingBody {
     held: Vec<usize>,
@@ -104,7 +104,7 @@ impl RestingBody {
 
 impl Dynamics<2> for RestingBody {
     fn size(&self) -> Size {
-        Size { q: self.held.len(), v: self.held.len(), bodies: 1, row: 0 }
+        Size { q: self.held.len(), v: self.held.len(), bodies: BeamFace::BODIES, row: 0 }
     }
 
     fn internal_force(&self, _q: &[f64], _v: &[f64], _f: &mut [f64]) {}

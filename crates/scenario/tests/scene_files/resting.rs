@@ -2,6 +2,7 @@
 
 use nalgebra::{Vector2, Vector3};
 use std::ops::ControlFlow;
+use teeter_beam::SpanLoad;
 use teeter_integrator::{Model, Observer, ObserverError, State, StepReport};
 use teeter_rigid::{Pose, Rectangle};
 use teeter_scenario::simulation::{BuildError, Simulation};
@@ -243,5 +244,21 @@ fn what_lands_flat_and_sticks_has_landed() {
             let most = if scheme.name == "moreau-jean" { 1e-2 } else { 1e-3 };
             assert!(fastest < most, "{}, {friction}: {:?}", scheme.name, simulation.state.v);
         }
+    }
+}
+
+#[test]
+fn a_static_start_knows_what_presses_on_each_of_several_beams() {
+    let second = "[beam.shelf]\nmaterial = 'm'\nposition = ['1 m', '1 m']\nspan = '36 cm'\nwidth = '3 cm'\nthickness = '1.5 mm'\n\
+                  elements = 20\nstart = 'static'\n\
+                  [block.b]\nmaterial = 'm'\nwidth = '3 cm'\nheight = '13.5 cm'\ndepth = '3 cm'\non = 'shelf'\nat = '1.12 m'\n\
+                  [contact.b]\nbetween = ['b', 'shelf']\nfriction = 0.5\n";
+    let text = scene("", &[("a", "at = '18 cm'")], "friction = 0.5") + second;
+    let simulation = build(&text).unwrap();
+    for place in &simulation.layout.beams {
+        let pressed = place.pressed.as_ref().unwrap();
+        let of_load = |load: &SpanLoad| if let SpanLoad::Point { force, .. } = load { *force } else { f64::NAN };
+        let force: f64 = pressed.iter().map(of_load).sum();
+        assert!((force + WEIGHT).abs() < 1e-9 * WEIGHT, "{}: {pressed:?}", place.name);
     }
 }

@@ -11,7 +11,7 @@
 //! phase, and balance to rounding. If a step takes forces and impulses together, the impulse p of
 //! an impact is spread over it as p/τ: its peaks grow as the step shrinks.
 
-use super::BEAM_BODIES;
+use super::BeamFace;
 use super::line::{lift_and_turn, section_of};
 use crate::{Contact, Phase, State, StepReport, Vector};
 use std::ops::Range;
@@ -151,7 +151,7 @@ impl BeamForces {
 
     /// Whether a body is one of the beam's.
     fn is_own(&self, body: BodyId) -> bool {
-        (body.0.wrapping_sub(self.body.0) as usize) < BEAM_BODIES
+        (body.0.wrapping_sub(self.body.0) as usize) < BeamFace::BODIES
     }
 
     /// The section forces of a state: those of a beam at rest in equilibrium under its loads and
