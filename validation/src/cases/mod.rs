@@ -1,5 +1,6 @@
 //! The rungs of the ladder, one file each.
 
+mod assemblages;
 mod bar_impact;
 mod beam_buckling;
 mod beam_damping;
@@ -60,5 +61,6 @@ pub(crate) fn all() -> Vec<Box<dyn Case>> {
         Box::new(moving_ground::MovingGround),
         Box::new(overturning::Overturning),
         Box::new(limit_analysis::LimitAnalysis),
+        Box::new(assemblages::Assemblages),
     ]
 }
