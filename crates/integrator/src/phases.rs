@@ -239,7 +239,7 @@ impl<const D: usize> Phases<D> {
 
     /// Takes a phase in; the contacts of `stage` go over to it. `now` are the energies at its end, without those of contacts; `None` where
     /// no account is kept.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn enter(
         &mut self,
         model: &Model<D>,
@@ -305,7 +305,7 @@ impl<const D: usize> Kept<D> {
 
 impl<const D: usize> Phases<D> {
     /// Enters the phases into the state's account, and moves places and velocities to the end of the last.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn settle(&mut self, state: &mut State, account: bool) {
         for kept in &mut self.kept[..self.used] {
             if account {

@@ -366,11 +366,8 @@ impl State {
     pub(crate) fn count_step(&mut self, span: &StepSpan) {
         self.clock = self.clock.going_on(self.step, self.t, span.h);
         self.step = self.step.saturating_add(1);
-        self.t = self.clock.at(self.step);
-        // A step that was cut short ends there.
-        if self.t != span.end {
-            self.t = span.end;
-        }
+        // By the clock, or where the step was cut short.
+        self.t = span.end;
     }
 
     /// Becomes equal to `other`; allocates only if `other` holds more than this ever has.

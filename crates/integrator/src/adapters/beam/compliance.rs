@@ -378,7 +378,7 @@ mod tests {
     fn answer(compliance: &mut BeamCompliance, first: &[usize]) -> (Vec<Block<2>>, Vec<f64>) {
         let columns: Vec<usize> = first.iter().flat_map(|dof| *dof..dof + 4).collect();
         let values: Vec<_> = (0..columns.len()).map(|k| Vector::<2>::new(1.0, 0.1) * (k as f64).cos()).collect();
-        let span = |part, start| Span { part, start, len: 4 * (1 - part) };
+        let span = |part, start| Span { part, first: 0, start, len: 4 * (1 - part) };
         let spans: Vec<_> = (0..first.len()).map(|k| [span(0, 4 * k), span(1, 0)]).collect();
         let rows = PartRows { part: 0, spans: &spans, columns: &columns, values: &values };
         let n = compliance.factor.dofs();
