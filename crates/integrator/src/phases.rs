@@ -270,7 +270,7 @@ impl<const D: usize> Phases<D> {
     }
 }
 
-#[inline]
+#[inline(always)]
 fn copy(from: &[f64], to: &mut Vec<f64>) {
     if from.len() == to.len() {
         to.copy_from_slice(from);
@@ -336,6 +336,7 @@ impl<const D: usize> Phases<D> {
     }
 
     /// The contacts of the last phase.
+    #[inline(always)]
     pub(crate) fn last_contacts(&self) -> &[Contact<D>] {
         self.kept[..self.used].last().map_or(&[], |kept| &kept.contacts)
     }
@@ -368,7 +369,7 @@ impl<const D: usize> Phases<D> {
     }
 
     /// The contacts of the phase that has most.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn most_contacts(&self) -> usize {
         self.kept[..self.used].iter().map(|kept| kept.contacts.len()).max().unwrap_or(0)
     }

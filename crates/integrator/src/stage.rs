@@ -360,9 +360,11 @@ impl<const D: usize> ContactStage<D> {
             self.rows.pop();
             return Ok(false);
         }
-        let before = warm.impulse::<D>(candidate.id);
+        // Usually the contacts are those of the step before.
+        let (id, number) = (candidate.id, self.contacts.len());
+        let before = warm.impulse_near::<D>(id, number);
         self.problem.push(law.friction, before.unwrap_or_else(Vector::zeros));
-        self.contacts.push(Contact::of(candidate, memory.is_active(candidate.id)));
+        self.contacts.push(Contact::of(candidate, memory.is_active_near(id, number)));
         Ok(true)
     }
 

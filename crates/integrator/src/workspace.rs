@@ -357,7 +357,7 @@ impl<const D: usize> Workspace<D> {
         state.check(model)?;
         self.check(model)?;
         // Written so that NaN fails too.
-        if !(span.h > 0.0 && span.h < f64::INFINITY && span.start == state.t && span.end >= span.start) {
+        if !(span.h > 0.0 && span.h <= f64::MAX && span.start == state.t && span.end >= span.start) {
             return Err(StateError::StepSize(span.h).into());
         }
         self.phases.begin(span);

@@ -14,13 +14,15 @@ pub(crate) struct ContactRows<const D: usize> {
     /// Columns within their subsystems.
     columns: Vec<usize>,
     values: Vec<Vector<D>>,
-    /// Whether a contact may act on a subsystem, up to the last that any has acted on.
-    acts_on: Vec<bool>,
+    /// The round in which a contact last acted on each subsystem, up to the last that any has acted on.
+    acted_on: Vec<u64>,
+    /// Counts up where all contacts are dropped.
+    round: u64,
 }
 
 impl<const D: usize> ContactRows<D> {
     pub(crate) fn reserve(&mut self, contacts: usize, row: usize, parts: usize) {
-        self.acts_on.resize(parts, false);
+        self.acted_on.resize(parts, 0);
         let more = |len: usize, wanted: usize| wanted.saturating_sub(len);
         self.spans.reserve(more(self.spans.len(), contacts));
         let entries = 2 * contacts * row;
@@ -30,14 +32,14 @@ impl<const D: usize> ContactRows<D> {
 
     pub(crate) fn clear(&mut self) {
         self.spans.clear();
-        self.acts_on.fill(false);
+        self.round += 1;
         self.taken = 0;
     }
 
     /// Whether a contact may act on a subsystem: one that was dropped again may have.
     #[inline]
     pub(crate) fn may_act_on(&self, part: usize) -> bool {
-        self.acts_on.get(part).is_some_and(|acts| *acts)
+        self.acted_on.get(part).is_some_and(|round| *round > self.round)
     }
 
     /// Where rows are free: past those of all contacts, as rows that were taken anew may lie behind the last contact's.
@@ -115,10 +117,10 @@ impl<const D: usize> ContactRows<D> {
             }
             spans[side] = Span { part: index, first: part.v.start, start, len };
             start += len;
-            if self.acts_on.len() <= index {
-                self.acts_on.resize(model.parts().len(), false);
+            if self.acted_on.len() <= index {
+                self.acted_on.resize(model.parts().len(), 0);
             }
-            self.acts_on[index] = true;
+            self.acted_on[index] = self.round + 1;
         }
         Ok(spans)
     }
