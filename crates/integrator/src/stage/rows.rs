@@ -81,48 +81,57 @@ impl<const D: usize> ContactRows<D> {
         Ok(())
     }
 
+    /// Writes the rows of both sides into the arena from `start` on.
     #[inline(always)]
     fn fill(
         &mut self,
         model: &Model<D>,
         q: &[f64],
         candidate: &Candidate<D>,
-        mut start: usize,
+        start: usize,
     ) -> Result<[Span; 2], Mismatch> {
-        let mut spans = [Span { start, ..Span::default() }; 2];
-        for (side, anchor) in candidate.sides.iter().enumerate() {
-            let Some((index, part, body)) = model.owner(anchor.body) else {
-                return Err(Mismatch::Body { body: anchor.body, bodies: model.size().bodies });
-            };
-            spans[side].start = start;
-            if part.row == 0 {
-                continue;
-            }
-            let end = start + part.row;
-            if self.values.len() < end {
-                self.grow(end);
-            }
-            let (columns, values) = (&mut self.columns[start..end], &mut self.values[start..end]);
-            let mut rows = Rows { columns, values };
-            let q = &q[part.q.clone()];
-            let len = part.system.rows(body, q, &anchor.point, &candidate.frame, &mut rows).min(part.row);
-            if side == 1 {
-                for value in &mut rows.values[..len] {
-                    value.data.0[0].iter_mut().for_each(|x| *x = -*x);
-                }
-            }
-            let velocities = part.v.len();
-            if let Some(&column) = rows.columns[..len].iter().find(|column| **column >= velocities) {
-                return Err(Mismatch::Column { body: anchor.body, column, velocities });
-            }
-            spans[side] = Span { part: index, first: part.v.start, start, len };
-            start += len;
-            if self.acted_on.len() <= index {
-                self.acted_on.resize(model.parts().len(), 0);
-            }
-            self.acted_on[index] = self.round + 1;
+        let first = self.fill_side(model, q, candidate, 0, start)?;
+        let second = self.fill_side(model, q, candidate, 1, first.range().end)?;
+        Ok([first, second])
+    }
+
+    #[inline(always)]
+    fn fill_side(
+        &mut self,
+        model: &Model<D>,
+        q: &[f64],
+        candidate: &Candidate<D>,
+        side: usize,
+        start: usize,
+    ) -> Result<Span, Mismatch> {
+        let anchor = &candidate.sides[side];
+        let Some((index, part, body)) = model.owner(anchor.body) else {
+            return Err(Mismatch::Body { body: anchor.body, bodies: model.size().bodies });
+        };
+        if part.row == 0 {
+            return Ok(Span { start, ..Span::default() });
         }
-        Ok(spans)
+        let end = start + part.row;
+        if self.values.len() < end {
+            self.grow(end);
+        }
+        let mut rows = Rows { columns: &mut self.columns[start..end], values: &mut self.values[start..end] };
+        let q = &q[part.q.clone()];
+        let len = part.system.rows(body, q, &anchor.point, &candidate.frame, &mut rows).min(part.row);
+        if side == 1 {
+            for value in &mut rows.values[..len] {
+                value.data.0[0].iter_mut().for_each(|x| *x = -*x);
+            }
+        }
+        let velocities = part.v.len();
+        if let Some(&column) = rows.columns[..len].iter().find(|column| **column >= velocities) {
+            return Err(Mismatch::Column { body: anchor.body, column, velocities });
+        }
+        if self.acted_on.len() <= index {
+            self.acted_on.resize(model.parts().len(), 0);
+        }
+        self.acted_on[index] = self.round + 1;
+        Ok(Span { part: index, first: part.v.start, start, len })
     }
 
     /// Makes room for entries; never less again, so that a step with known contacts has none to make.
