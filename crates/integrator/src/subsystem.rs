@@ -357,7 +357,7 @@ pub trait Bodies<const D: usize>: Send + Sync {
 }
 
 /// Whether all numbers are: 0 · x is 0 for those that are, and NaN for the others.
-#[inline]
+#[inline(always)]
 pub(crate) fn all_finite(x: &[f64]) -> bool {
     let (fours, rest) = x.as_chunks::<4>();
     let mut sums = [0.0; 4];

@@ -82,7 +82,6 @@ impl<const D: usize> ContactStage<D> {
     }
 
     /// Computes H of all contacts, dense, without solving anything.
-    #[inline(always)]
     pub(crate) fn couple(
         &mut self,
         model: &Model<D>,
@@ -257,7 +256,7 @@ impl<const D: usize> ContactStage<D> {
 }
 
 /// H = Σ J W Jᵀ over the subsystems, of the contacts with these rows.
-#[inline]
+#[inline(always)]
 pub(super) fn couple<const D: usize>(
     rows: &ContactRows<D>,
     model: &Model<D>,
