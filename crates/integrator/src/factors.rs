@@ -278,7 +278,7 @@ impl<const D: usize> Factors<D> {
     /// How the subsystems respond.
     #[inline]
     pub(crate) fn answers<'f>(&'f mut self, responses: &'f Responses<'f>) -> Answers<'f, D> {
-        let in_front = matches!((responses, self.front), (Responses::Of(w), Some(front)) if *w == front);
+        let in_front = self.has_in_front(responses);
         Answers { factors: self, responses, in_front }
     }
 
@@ -306,11 +306,17 @@ impl<const D: usize> Factors<D> {
     /// The first subsystem that lacks the factor asked for.
     #[inline]
     pub(crate) fn missing(&mut self, model: &Model<D>, responses: &Responses<'_>) -> Option<usize> {
-        if let (Responses::Of(w), Some(front)) = (responses, self.front)
-            && *w == front
-        {
-            return None;
-        }
+        if self.has_in_front(responses) { None } else { self.missing_further_back(model, responses) }
+    }
+
+    #[inline(never)]
+    fn missing_further_back(&mut self, model: &Model<D>, responses: &Responses<'_>) -> Option<usize> {
         (0..model.parts().len()).find(|part| responses.of(*part).is_none_or(|w| self.of(*part, w).is_none()))
+    }
+
+    /// Whether these are the factors that were asked for last.
+    #[inline]
+    fn has_in_front(&self, responses: &Responses<'_>) -> bool {
+        matches!((responses, self.front), (Responses::Of(w), Some(front)) if *w == front)
     }
 }
