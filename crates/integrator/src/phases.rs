@@ -374,6 +374,32 @@ impl<const D: usize> Phases<D> {
         self.kept[..self.used].iter().map(|kept| kept.contacts.len()).max().unwrap_or(0)
     }
 
+    /// Phase `k` of those that were ended.
+    #[inline]
+    fn phase(&self, k: usize) -> Phase<'_, D> {
+        let Self { kept, q, v, span, .. } = self;
+        let (q, v, start) = match k.checked_sub(1).map(|before| &kept[before]) {
+            Some(before) => (before.q.as_slice(), before.v.as_slice(), before.end),
+            None => (q.as_slice(), v.as_slice(), span.start),
+        };
+        let own = &kept[k];
+        let whole = start == span.start && own.end == span.end;
+        Phase {
+            kind: own.kind,
+            start,
+            end: own.end,
+            duration: own.duration.unwrap_or(if whole { span.h } else { own.end - start }),
+            balance: own.balance,
+            contacts: &own.contacts,
+            outcome: own.outcome,
+            energy: own.energy,
+            q: [q, own.q.as_slice()],
+            v: [v, own.v.as_slice()],
+            mean: (!own.mean.is_empty()).then_some(own.mean.as_slice()),
+            mean_velocity: (!own.mean_velocity.is_empty()).then_some(own.mean_velocity.as_slice()),
+        }
+    }
+
     #[inline]
     pub(crate) fn report(&self, step: u64, penetration: f64) -> StepReport<'_, D> {
         StepReport { step, t_start: self.span.start, t_end: self.span.end, h: self.span.h, penetration, phases: self }
@@ -429,37 +455,19 @@ pub struct StepReport<'w, const D: usize> {
 
 impl<'w, const D: usize> StepReport<'w, D> {
     /// Its phases, in order of time.
-    pub fn phases(&self) -> impl Iterator<Item = Phase<'w, D>> + use<'w, D> {
-        let Phases { kept, used, q, v, span } = self.phases;
-        let (start_q, start_v, span) = (q.as_slice(), v.as_slice(), *span);
-        (0..*used).map(move |k| {
-            let (q, v, start) = match k.checked_sub(1).map(|before| &kept[before]) {
-                Some(before) => (before.q.as_slice(), before.v.as_slice(), before.end),
-                None => (start_q, start_v, span.start),
-            };
-            let own = &kept[k];
-            let whole = start == span.start && own.end == span.end;
-            Phase {
-                kind: own.kind,
-                start,
-                end: own.end,
-                duration: own.duration.unwrap_or(if whole { span.h } else { own.end - start }),
-                balance: own.balance,
-                contacts: &own.contacts,
-                outcome: own.outcome,
-                energy: own.energy,
-                q: [q, own.q.as_slice()],
-                v: [v, own.v.as_slice()],
-                mean: (!own.mean.is_empty()).then_some(own.mean.as_slice()),
-                mean_velocity: (!own.mean_velocity.is_empty()).then_some(own.mean_velocity.as_slice()),
-            }
-        })
+    #[inline]
+    pub fn phases(&self) -> impl DoubleEndedIterator<Item = Phase<'w, D>> + use<'w, D> {
+        let phases = self.phases;
+        (0..phases.used).map(move |k| phases.phase(k))
     }
 
     /// Its last phase that takes time; `None` for a step that is impacts only.
+    #[inline]
     #[must_use]
     pub fn last_lasting(&self) -> Option<Phase<'w, D>> {
-        self.phases().filter(|phase| phase.kind != PhaseKind::Impact).last()
+        let Phases { kept, used, .. } = self.phases;
+        let last = kept[..*used].iter().rposition(|kept| kept.kind != PhaseKind::Impact)?;
+        Some(self.phases.phase(last))
     }
 
     /// The contacts of all phases: a contact that was active in several comes several times.

@@ -2,7 +2,6 @@
 
 use crate::number::{push, push_next};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 use teeter_detect::{Candidate, ContactId};
 use teeter_integrator::{Contact, Model, State, Vector};
 use teeter_scenario::simulation::Layout;
@@ -12,7 +11,8 @@ pub(crate) const HEADER: &str = "t,contact,a,b,point,gap,p_n,p_t,u_n,u_t,state\n
 /// Impulses since the last row, by contact.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Impulses {
-    sums: BTreeMap<ContactId, Vector<2>>,
+    /// In order of identity.
+    sums: Vec<(ContactId, Vector<2>)>,
     /// Memory of a row.
     #[serde(skip)]
     candidates: Vec<Candidate<2>>,
@@ -20,8 +20,16 @@ pub(crate) struct Impulses {
 
 impl Impulses {
     pub(crate) fn add<'c>(&mut self, contacts: impl Iterator<Item = &'c Contact<2>>) {
-        for contact in contacts {
-            *self.sums.entry(contact.id).or_insert_with(Vector::<2>::zeros) += contact.p;
+        for (number, contact) in contacts.enumerate() {
+            // Usually it has the place that it had in the step before.
+            if let Some((_, sum)) = self.sums.get_mut(number).filter(|(id, _)| *id == contact.id) {
+                *sum += contact.p;
+                continue;
+            }
+            match self.sums.binary_search_by_key(&contact.id, |(id, _)| *id) {
+                Ok(at) => self.sums[at].1 += contact.p,
+                Err(at) => self.sums.insert(at, (contact.id, Vector::zeros() + contact.p)),
+            }
         }
     }
 

@@ -1,6 +1,7 @@
 //! The observer that writes the tables and keeps what the summary needs.
 
 use crate::bounces::Bounces;
+use crate::closed::Closed;
 use crate::contacts::{self, Impulses, Names};
 use crate::meetings::Met;
 use crate::number::{push, push_next};
@@ -105,6 +106,8 @@ pub struct Recorder<'a> {
     /// Whether the scheme locates closings, and ends bounces by its step: of one that locates none the other warnings tell more.
     locates: bool,
     line: String,
+    /// The contacts that closed in the last step.
+    closed: Vec<Closed>,
     kept: Kept,
     tell: &'a mut dyn FnMut(&str),
 }
@@ -196,6 +199,7 @@ impl<'a> Recorder<'a> {
             watch: Watch::of(scene, layout),
             locates: scene.time.scheme == SchemeName::MoreauJeanLocated,
             line: String::new(),
+            closed: Vec::new(),
             kept,
             tell,
         })
@@ -285,37 +289,49 @@ impl<'a> Recorder<'a> {
     }
 
     /// Tells impacts from contacts that were lost for a moment, and writes the impacts.
-    fn write_impacts(
+    fn take_closings(
         &mut self,
         model: &Model<2>,
         step: &StepReport<'_, 2>,
         state: &State,
     ) -> Result<(), ObserverError> {
-        let Self { layout, impacts, line, kept: Kept { closings, record, .. }, .. } = self;
-        let mut written = Ok(());
-        closings.enter(model, step, state, &layout.openings, |t, contact, closing| {
-            let names = Names::of(layout, contact.id).filter(|_| closing == Closing::Impact);
-            let (Some(names), Ok(())) = (names, &written) else { return };
+        let Self { layout, closed, kept: Kept { closings, record, .. }, .. } = self;
+        Closed::of_step(closings, model, step, state, layout, closed)?;
+        if self.closed.is_empty() {
+            return Ok(());
+        }
+        (record.impact_count, record.reclosure_count) = (closings.impacts(), closings.reclosures());
+        Ok(self.write_impacts()?)
+    }
+
+    fn write_impacts(&mut self) -> Result<(), ResultsError> {
+        let Self { layout, closed, impacts, line, kept: Kept { record, .. }, .. } = self;
+        for Closed { t, contact, .. } in closed.iter().filter(|closed| closed.closing == Closing::Impact) {
+            let Some(names) = Names::of(layout, contact.id) else { continue };
             line.clear();
-            push(line, t);
+            push(line, *t);
             names.push(line);
             for x in [contact.p[0], contact.p[1], contact.u_before[0], contact.u_after[0]] {
                 push_next(line, x);
             }
             line.push('\n');
-            written = impacts.rows(line);
+            impacts.rows(line)?;
             if record.impacts.len() < LISTED_IMPACTS {
                 record.impacts.push(ImpactRow {
-                    t,
+                    t: *t,
                     contact: names.contact.to_owned(),
                     point: names.point.to_owned().into(),
                     impulse_n: contact.p[0],
                     u_n_before: contact.u_before[0],
                 });
             }
-        })?;
-        (record.impact_count, record.reclosure_count) = (closings.impacts(), closings.reclosures());
-        Ok(written?)
+        }
+        Ok(())
+    }
+
+    /// The contacts that closed in the last step.
+    pub(crate) fn closed(&self) -> &[Closed] {
+        &self.closed
     }
 }
 
@@ -340,11 +356,11 @@ impl Observer<2> for Recorder<'_> {
         state: &State,
     ) -> Result<ControlFlow<()>, ObserverError> {
         self.kept.impulses.add(step.contacts());
-        self.write_impacts(model, step, state)?;
+        self.take_closings(model, step, state)?;
         self.warn_of_unsolved(step);
         self.warn_of_limits(state);
         self.warn_of_turns(state);
-        let swing = self.kept.swings.observe(&mut self.watch, self.layout, step.t_end - step.t_start, state);
+        let swing = self.kept.swings.observe(&mut self.watch, self.layout, step.h, state);
         self.warn_of_meetings(step, state, swing);
         self.kept.resolution.observe(&self.bodies, self.layout, step, state);
         self.warn_of_bounces(model, step);
@@ -361,7 +377,7 @@ impl Observer<2> for Recorder<'_> {
         if let Some(last) = step.last_lasting() {
             self.kept.contacts_now.extend_from_slice(last.contacts);
         }
-        if let Some(last) = step.phases().last().filter(|phase| phase.kind == PhaseKind::Impact) {
+        if let Some(last) = step.phases().next_back().filter(|phase| phase.kind == PhaseKind::Impact) {
             self.kept.contacts_now.extend(last.contacts.iter().filter(|contact| contact.p[0] > 0.0));
         }
         if self.kept.schedule.takes(state.step, state.t) {

@@ -208,7 +208,7 @@ impl Observer<2> for RunRecorder<'_> {
         // None of them ends a run.
         let _ = self.recorder.observe(model, step, state)?;
         self.page.see_sections(self.recorder.section_values());
-        let _ = self.page.observe(model, step, state)?;
+        self.page.see_step(step, state, self.recorder.closed());
         if let Some(exporter) = &mut self.exporter {
             let _ = exporter.observe(model, step, state)?;
         }

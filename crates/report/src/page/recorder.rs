@@ -4,11 +4,12 @@ use super::curves::Curves;
 use super::frames::Frames;
 use super::rounded;
 use super::scenery::Scenery;
+use crate::closed::Closed;
 use crate::sections::{BeamRecord, Column, Kind, columns_of};
 use serde::{Deserialize, Serialize};
 use std::ops::{ControlFlow, Range};
 use teeter_integrator::{
-    Closing, ClosingMonitor, Contact, ContactState, Model, Observer, ObserverError, State, StepReport,
+    Closing, ClosingMonitor, Contact, ContactState, Model, Observer, ObserverError, PhaseKind, State, StepReport, Vector,
 };
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Layout;
@@ -70,9 +71,8 @@ pub(crate) struct Kept {
     pub(crate) frames: Frames,
     pub(crate) curves: Curves,
     pub(crate) impacts: Vec<ImpactMark>,
-    closings: ClosingMonitor<2>,
-    /// The blocks' angular velocities relative to what carries them, rad/s: at the end of the step, and before it.
-    omega: [Vec<f64>; 2],
+    /// All impacts, marked or not.
+    pub(crate) impact_count: u64,
 }
 
 /// Watches a run for [`render`](super::render) and [`figures`](super::figures); its memory doesn't grow with the run.
@@ -108,6 +108,10 @@ pub struct PageRecorder {
     section_values: Vec<f64>,
     /// Values of the curves at the end of the step.
     row: Vec<f64>,
+    /// Tells impacts, where nobody else does.
+    closings: ClosingMonitor<2>,
+    /// The contacts that closed in the step.
+    closed: Vec<Closed>,
 }
 
 impl PageRecorder {
@@ -131,8 +135,7 @@ impl PageRecorder {
                 frames: Frames::new(capacity(FRAMES, frame + 1), frame),
                 curves: Curves::new(bucket_capacity, 0.0, vec![0.0; columns], points),
                 impacts: Vec::new(),
-                closings: ClosingMonitor::default(),
-                omega: [vec![0.0; layout.blocks.len()], vec![0.0; layout.blocks.len()]],
+                impact_count: 0,
             },
             layout: layout.clone(),
             bucket_capacity,
@@ -140,6 +143,8 @@ impl PageRecorder {
             sections,
             beams: Vec::new(),
             row: Vec::with_capacity(columns),
+            closings: ClosingMonitor::default(),
+            closed: Vec::new(),
             scenery,
         }
     }
@@ -183,7 +188,7 @@ impl PageRecorder {
             self.row.extend([state.q[phi], state.v[phi]]);
         }
         for (place, drawn) in self.layout.beams.iter().zip(&self.scenery.beams) {
-            self.row.push(place.deflection(&drawn.middle, &state.q[place.range.clone()]).w);
+            self.row.push(drawn.middle.deflection(&state.q[place.range.clone()]));
         }
         let (now, initial, sum) = (&state.ledger.current, &state.ledger.initial, &state.ledger.sum);
         let gravity = now.gravity - initial.gravity;
@@ -203,58 +208,61 @@ impl PageRecorder {
         self.row.extend_from_slice(&self.section_values);
     }
 
-    fn take_contacts(
-        &mut self,
-        model: &Model<2>,
-        step: &StepReport<'_, 2>,
-        state: &State,
-    ) -> Result<(), ObserverError> {
+    fn take_contacts(&mut self, step: &StepReport<'_, 2>) {
         let Self { scenery, kept, layout, .. } = self;
-        let Kept { curves, impacts, closings, omega: [now, before], .. } = kept;
-        // Impulses are those of the whole step; what a contact does in it is what it does in its last part.
-        let place = |contact: &Contact<2>| {
-            let pair = contact.id.pair() as usize;
-            Some((pair, layout.pairs.get(pair)?.point(contact.id)?))
+        let mut add = |contact: &Contact<2>, impulse: Vector<2>, does: ContactState| {
+            if let Some((pair, point)) = place(layout, contact) {
+                kept.curves.add(scenery.contacts[pair].first + point, [impulse[0], impulse[1]], does);
+            }
         };
-        let curve = |contact: &Contact<2>| place(contact).map(|(pair, point)| scenery.contacts[pair].first + point);
-        for contact in step.contacts() {
-            if let Some(curve) = curve(contact) {
-                curves.add(curve, [contact.p[0], contact.p[1]], ContactState::Open);
-            }
+        // Impulses are those of the whole step; what a contact does in it is what it does in its last part.
+        let mut phases = step.phases();
+        if let (Some(only), None) = (phases.next().filter(|phase| phase.kind != PhaseKind::Impact), phases.next()) {
+            only.contacts.iter().for_each(|contact| add(contact, contact.p, contact.state()));
+            return;
         }
+        step.contacts().for_each(|contact| add(contact, contact.p, ContactState::Open));
         for contact in step.last_lasting().iter().flat_map(|last| last.contacts) {
-            if let Some(curve) = curve(contact) {
-                curves.add(curve, [0.0; 2], contact.state());
-            }
-        }
-        closings.enter(model, step, state, &layout.openings, |t, contact, closing| {
-            let Some((pair, point)) = place(contact) else { return };
-            let drawn = &scenery.contacts[pair];
-            if closing == Closing::Impact && impacts.len() < MARKED_IMPACTS {
-                impacts.push(ImpactMark {
-                    t,
-                    contact: pair,
-                    block: drawn.block,
-                    point,
-                    impulse: [contact.p[0], contact.p[1]],
-                    omega: [before[drawn.block], now[drawn.block]],
-                });
-            }
-        })?;
-        Ok(())
-    }
-
-    fn take_omega(&mut self, state: &State) {
-        self.kept.omega.swap(0, 1);
-        for (block, omega) in self.kept.omega[0].iter_mut().enumerate() {
-            *omega = self.layout.tilt_rate(block, &state.v);
+            add(contact, Vector::zeros(), contact.state());
         }
     }
 
-    /// All impacts so far, marked or not.
-    pub(crate) fn impact_count(&self) -> u64 {
-        self.kept.closings.impacts()
+    /// Marks the impacts among the contacts that closed in a step.
+    fn mark(&mut self, step: &StepReport<'_, 2>, state: &State, closed: &[Closed]) {
+        for Closed { t, contact, .. } in closed.iter().filter(|closed| closed.closing == Closing::Impact) {
+            self.kept.impact_count += 1;
+            let Some((pair, point)) = place(&self.layout, contact) else { continue };
+            if self.kept.impacts.len() >= MARKED_IMPACTS {
+                continue;
+            }
+            let block = self.scenery.contacts[pair].block;
+            let before = step.phases().next().map_or(state.v.as_slice(), |first| first.v[0]);
+            self.kept.impacts.push(ImpactMark {
+                t: *t,
+                contact: pair,
+                block,
+                point,
+                impulse: [contact.p[0], contact.p[1]],
+                omega: [before, &state.v].map(|v| self.layout.tilt_rate(block, v)),
+            });
+        }
     }
+
+    /// Takes a step in, with the contacts that closed in it.
+    pub(crate) fn see_step(&mut self, step: &StepReport<'_, 2>, state: &State, closed: &[Closed]) {
+        self.take_frame(state);
+        self.take_row(state);
+        self.kept.curves.enter(state.t, &self.row);
+        self.take_contacts(step);
+        self.mark(step, state, closed);
+    }
+}
+
+/// The numbers of a contact's pair and of its point.
+#[inline]
+fn place(layout: &Layout, contact: &Contact<2>) -> Option<(usize, usize)> {
+    let pair = contact.id.pair() as usize;
+    Some((pair, layout.pairs.get(pair)?.point(contact.id)?))
 }
 
 fn fill_frame(layout: &Layout, scenery: &Scenery, state: &State, row: &mut [f64]) {
@@ -265,7 +273,7 @@ fn fill_frame(layout: &Layout, scenery: &Scenery, state: &State, row: &mut [f64]
     for (place, drawn) in layout.beams.iter().zip(&scenery.beams) {
         let (points, rest) = beams.split_at_mut(drawn.points);
         let q = &state.q[place.range.clone()];
-        points.iter_mut().zip(&drawn.shapes).for_each(|(w, shape)| *w = place.deflection(shape, q).w);
+        points.iter_mut().zip(&drawn.places).for_each(|(w, at)| *w = at.deflection(q));
         beams = rest;
     }
     for range in moved(layout) {
@@ -285,8 +293,7 @@ impl Observer<2> for PageRecorder {
     fn start(&mut self, model: &Model<2>, state: &State) -> Result<(), ObserverError> {
         self.take_frame(state);
         self.take_row(state);
-        self.take_omega(state);
-        self.kept.closings = ClosingMonitor::new(model, state, &self.layout.openings)?;
+        self.closings = ClosingMonitor::new(model, state, &self.layout.openings)?;
         self.kept.curves = Curves::new(self.bucket_capacity, state.t, self.row.clone(), self.scenery.points);
         Ok(())
     }
@@ -297,11 +304,10 @@ impl Observer<2> for PageRecorder {
         step: &StepReport<'_, 2>,
         state: &State,
     ) -> Result<ControlFlow<()>, ObserverError> {
-        self.take_frame(state);
-        self.take_row(state);
-        self.take_omega(state);
-        self.kept.curves.enter(state.t, &self.row);
-        self.take_contacts(model, step, state)?;
+        let mut closed = std::mem::take(&mut self.closed);
+        Closed::of_step(&mut self.closings, model, step, state, &self.layout, &mut closed)?;
+        self.see_step(step, state, &closed);
+        self.closed = closed;
         Ok(ControlFlow::Continue(()))
     }
 
