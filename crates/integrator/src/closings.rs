@@ -110,7 +110,7 @@ impl<const D: usize> ClosingMonitor<D> {
         openings: &[Opening],
         mut each: impl FnMut(f64, &Contact<D>, Closing),
     ) -> Result<(), Mismatch> {
-        for phase in step.phases() {
+        for phase in step.active() {
             for (number, contact) in phase.contacts.iter().enumerate().filter(|(_, contact)| contact.p[0] > 0.0) {
                 // Usually it is one that went on pressing, in the place that it had.
                 let near = self.held.get(number).is_some_and(|held| held.id == contact.id).then_some(number);

@@ -24,16 +24,20 @@ impl Probe {
     /// The deflection for the beam's own coordinates, m; its rate for their velocities, m/s.
     #[inline]
     pub(crate) fn deflection(&self, q: &[f64]) -> f64 {
+        let mut sum = 0.0;
         match self {
-            Self::Nodes(at) => at.deflection(q).w,
-            Self::Modes(shape) => {
-                let mut sum = 0.0;
-                for (coordinate, shape) in q.iter().zip(shape) {
-                    sum += coordinate * shape;
+            Self::Nodes(at) => {
+                for (&column, n) in at.columns.iter().zip(&at.n).take(at.len) {
+                    sum += n * q[column];
                 }
-                sum
+            }
+            Self::Modes(shape) => {
+                for (q, shape) in q.iter().zip(shape) {
+                    sum += q * shape;
+                }
             }
         }
+        sum
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::bounces::Bounces;
 use crate::closed::Closed;
-use crate::contacts::{self, Impulses, Names};
+use crate::contacts::{self, AtEnd, Impulses, Names};
 use crate::meetings::Met;
 use crate::number::{push, push_next};
 use crate::resolution::{Bodies, Resolution};
@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::ops::ControlFlow;
 use teeter_integrator::{
-    Closing, ClosingMonitor, Contact, Model, Observer, ObserverError, PhaseKind, RockingMonitor, State, StepReport,
+    Closing, ClosingMonitor, Model, Observer, ObserverError, PhaseKind, RockingMonitor, State, StepReport,
 };
 use teeter_scenario::Shapes;
 use teeter_scenario::diagnostic::Diagnostic;
@@ -78,7 +78,7 @@ pub(crate) struct Kept {
     met: Met,
     impulses: Impulses,
     /// The contacts of the last step, for a row after the run's early end.
-    contacts_now: Vec<Contact<2>>,
+    contacts_now: Vec<AtEnd>,
     /// The step of the last row.
     row_at: u64,
     /// Of the last step, for a row after the run's early end too.
@@ -103,6 +103,8 @@ pub struct Recorder<'a> {
     sections: Sections,
     bodies: Bodies,
     watch: Watch,
+    /// The shorter side of the block whose that is the shortest, m.
+    shortest_side: f64,
     /// Whether the scheme locates closings, and ends bounces by its step: of one that locates none the other warnings tell more.
     locates: bool,
     line: String,
@@ -197,6 +199,7 @@ impl<'a> Recorder<'a> {
             sections,
             bodies: Bodies::of(scene),
             watch: Watch::of(scene, layout),
+            shortest_side: layout.blocks.iter().map(|place| place.side).fold(f64::INFINITY, f64::min),
             locates: scene.time.scheme == SchemeName::MoreauJeanLocated,
             line: String::new(),
             closed: Vec::new(),
@@ -288,6 +291,24 @@ impl<'a> Recorder<'a> {
         self.contacts.rows(&self.line)
     }
 
+    /// Takes the contacts of a step in, for the next row.
+    fn take_contacts(&mut self, step: &StepReport<'_, 2>) {
+        let Kept { impulses, contacts_now, .. } = &mut self.kept;
+        contacts_now.clear();
+        let mut last = None;
+        for part in step.active() {
+            impulses.add(part.contacts);
+            // Those of its last part, and of an impact at its very end.
+            if part.is_last_lasting {
+                contacts_now.extend(part.contacts.iter().map(AtEnd::of));
+            }
+            last = Some(part);
+        }
+        if let Some(last) = last.filter(|part| part.kind == PhaseKind::Impact) {
+            contacts_now.extend(last.contacts.iter().filter(|contact| contact.p[0] > 0.0).map(AtEnd::of));
+        }
+    }
+
     /// Tells impacts from contacts that were lost for a moment, and writes the impacts.
     fn take_closings(
         &mut self,
@@ -355,13 +376,12 @@ impl Observer<2> for Recorder<'_> {
         step: &StepReport<'_, 2>,
         state: &State,
     ) -> Result<ControlFlow<()>, ObserverError> {
-        self.kept.impulses.add(step.contacts());
+        self.take_contacts(step);
         self.take_closings(model, step, state)?;
         self.warn_of_unsolved(step);
         self.warn_of_limits(state);
-        self.warn_of_turns(state);
         let swing = self.kept.swings.observe(&mut self.watch, self.layout, step.h, state);
-        self.warn_of_meetings(step, state, swing);
+        self.warn_of_motion(step, state, swing);
         self.kept.resolution.observe(&self.bodies, self.layout, step, state);
         self.warn_of_bounces(model, step);
         let Kept { record, section_values, .. } = &mut self.kept;
@@ -371,14 +391,6 @@ impl Observer<2> for Recorder<'_> {
         }
         for (block, monitor) in self.kept.record.rocking.iter_mut().enumerate() {
             monitor.enter(state.t, self.layout.tilt(block, &state.q));
-        }
-        self.kept.contacts_now.clear();
-        // Those of its last part, and of an impact at its very end.
-        if let Some(last) = step.last_lasting() {
-            self.kept.contacts_now.extend_from_slice(last.contacts);
-        }
-        if let Some(last) = step.phases().next_back().filter(|phase| phase.kind == PhaseKind::Impact) {
-            self.kept.contacts_now.extend(last.contacts.iter().filter(|contact| contact.p[0] > 0.0));
         }
         if self.kept.schedule.takes(state.step, state.t) {
             self.write_rows(model, state)?;

@@ -10,6 +10,7 @@
 //! Of a only the part that turns with ω adds up; ẇ holds it once, and once what turns the other way, which cancels out as all that a load bends slowly.
 
 use crate::probe::Probe;
+use crate::resolution::raise;
 use serde::{Deserialize, Serialize};
 use teeter_integrator::State;
 use teeter_scenario::scene::Scene;
@@ -110,26 +111,26 @@ impl Swings {
 
     /// Takes a step of length `h` (s) in that ended in `state`; returns the largest rate of deflection of all beams at their places, m/s.
     pub(crate) fn observe(&mut self, watch: &mut Watch, layout: &Layout, h: f64, state: &State) -> f64 {
-        let mut fastest = 0.0_f64;
+        let mut fastest = 0.0;
         for ((swung, watched), place) in self.0.iter_mut().zip(&mut watch.beams).zip(&layout.beams) {
             if let Some(swing) = watched.swing {
                 watched.with_step(swing, watch.theta, h);
             }
             let ([c, d], [r, s]) = (watched.turn, watched.more);
             let (q, v) = (&state.q[place.range.clone()], &state.v[place.range.clone()]);
-            let mut worst = 0.0_f64;
+            let mut worst = 0.0;
             for (off, at) in swung.off.iter_mut().zip(&watched.places) {
                 let (w, rate) = (at.deflection(q), at.deflection(v));
-                fastest = fastest.max(rate.abs());
-                swung.most = swung.most.max(w.abs());
+                raise(&mut fastest, rate.abs());
+                raise(&mut swung.most, w.abs());
                 let Some(swing) = watched.swing else { continue };
                 // a = 2ẇ/(iω) lies on the imaginary axis.
                 let a = -2.0 * rate / swing.omega;
                 let [x, y] = *off;
                 *off = [c * x - d * y - s * a, d * x + c * y + r * a];
-                worst = worst.max(off[0] * off[0] + off[1] * off[1]);
+                raise(&mut worst, off[0] * off[0] + off[1] * off[1]);
             }
-            swung.worst = swung.worst.max(worst.sqrt());
+            raise(&mut swung.worst, worst.sqrt());
         }
         fastest
     }

@@ -155,7 +155,8 @@ impl Curves {
             let (a, b) = (self.buckets[2 * i], self.buckets[2 * i + 1]);
             self.buckets[i] = Bucket { begin: a.begin, first: a.first, last: b.last, steps: a.steps + b.steps };
             for k in 0..columns {
-                let (mut joined, later) = (self.extremes[2 * i * columns + k], self.extremes[(2 * i + 1) * columns + k]);
+                let (mut joined, later) =
+                    (self.extremes[2 * i * columns + k], self.extremes[(2 * i + 1) * columns + k]);
                 joined.take(later);
                 self.extremes[i * columns + k] = joined;
             }

@@ -9,7 +9,7 @@ use crate::sections::{BeamRecord, Column, Kind, columns_of};
 use serde::{Deserialize, Serialize};
 use std::ops::{ControlFlow, Range};
 use teeter_integrator::{
-    Closing, ClosingMonitor, Contact, ContactState, Model, Observer, ObserverError, PhaseKind, State, StepReport, Vector,
+    Closing, ClosingMonitor, Contact, ContactState, Model, Observer, ObserverError, State, StepReport,
 };
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Layout;
@@ -104,8 +104,6 @@ pub struct PageRecorder {
     pub(crate) sections: Vec<Column>,
     /// What beams bore in the whole run; nothing before its end.
     pub(crate) beams: Vec<BeamRecord>,
-    /// Their values at the end of the step.
-    section_values: Vec<f64>,
     /// Values of the curves at the end of the step.
     row: Vec<f64>,
     /// Tells impacts, where nobody else does.
@@ -139,10 +137,9 @@ impl PageRecorder {
             },
             layout: layout.clone(),
             bucket_capacity,
-            section_values: vec![f64::NAN; sections.len()],
             sections,
             beams: Vec::new(),
-            row: Vec::with_capacity(columns),
+            row: vec![f64::NAN; columns],
             closings: ClosingMonitor::default(),
             closed: Vec::new(),
             scenery,
@@ -172,8 +169,9 @@ impl PageRecorder {
 
     /// Takes the values of what beams bear, to be entered with the next step; without them there are no such curves.
     pub(crate) fn see_sections(&mut self, values: &[f64]) {
-        if values.len() == self.section_values.len() {
-            self.section_values.copy_from_slice(values);
+        if values.len() == self.sections.len() {
+            let before = self.row.len() - values.len();
+            self.row[before..].iter_mut().zip(values).for_each(|(own, value)| *own = *value);
         }
     }
 
@@ -182,17 +180,20 @@ impl PageRecorder {
     }
 
     fn take_row(&mut self, state: &State) {
-        self.row.clear();
-        for block in &self.layout.blocks {
+        let blocks = BLOCK_COLUMNS * self.layout.blocks.len();
+        let (of_blocks, rest) = self.row.split_at_mut(blocks);
+        for (out, block) in of_blocks.chunks_exact_mut(BLOCK_COLUMNS).zip(&self.layout.blocks) {
             let phi = block.range.start + 2;
-            self.row.extend([state.q[phi], state.v[phi]]);
+            out.copy_from_slice(&[state.q[phi], state.v[phi]]);
         }
-        for (place, drawn) in self.layout.beams.iter().zip(&self.scenery.beams) {
-            self.row.push(drawn.middle.deflection(&state.q[place.range.clone()]));
+        let (of_beams, rest) = rest.split_at_mut(self.layout.beams.len());
+        for ((out, place), drawn) in of_beams.iter_mut().zip(&self.layout.beams).zip(&self.scenery.beams) {
+            *out = drawn.middle.deflection(&state.q[place.range.clone()]);
         }
+        let energies = &mut rest[..ENERGIES.len()];
         let (now, initial, sum) = (&state.ledger.current, &state.ledger.initial, &state.ledger.sum);
         let gravity = now.gravity - initial.gravity;
-        self.row.extend([
+        energies.copy_from_slice(&[
             now.kinetic,
             now.elastic,
             gravity,
@@ -205,25 +206,17 @@ impl PageRecorder {
             sum.projection,
             sum.residual,
         ]);
-        self.row.extend_from_slice(&self.section_values);
     }
 
     fn take_contacts(&mut self, step: &StepReport<'_, 2>) {
-        let Self { scenery, kept, layout, .. } = self;
-        let mut add = |contact: &Contact<2>, impulse: Vector<2>, does: ContactState| {
-            if let Some((pair, point)) = place(layout, contact) {
-                kept.curves.add(scenery.contacts[pair].first + point, [impulse[0], impulse[1]], does);
+        for part in step.active() {
+            for contact in part.contacts {
+                let Some((pair, point)) = place(&self.layout, contact) else { continue };
+                // Impulses are those of the whole step; what a contact does in it is what it does in its last part.
+                let does = if part.is_last_lasting { contact.state() } else { ContactState::Open };
+                let curve = self.scenery.contacts[pair].first + point;
+                self.kept.curves.add(curve, [contact.p[0], contact.p[1]], does);
             }
-        };
-        // Impulses are those of the whole step; what a contact does in it is what it does in its last part.
-        let mut phases = step.phases();
-        if let (Some(only), None) = (phases.next().filter(|phase| phase.kind != PhaseKind::Impact), phases.next()) {
-            only.contacts.iter().for_each(|contact| add(contact, contact.p, contact.state()));
-            return;
-        }
-        step.contacts().for_each(|contact| add(contact, contact.p, ContactState::Open));
-        for contact in step.last_lasting().iter().flat_map(|last| last.contacts) {
-            add(contact, Vector::zeros(), contact.state());
         }
     }
 
