@@ -14,7 +14,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 use teeter_scenario::resolve::Resolved;
 use teeter_scenario::simulation::Simulation;
-use teeter_study::{Advice, Axes, Held, Row, Setting, Source, TARGETS, Tradeoff, runner};
+use teeter_study::{Advice, Axes, ConfirmedErrors, Row, Setting, StudyScene, TARGETS, Tradeoff, runner};
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
@@ -52,14 +52,14 @@ fn main() -> Result<()> {
 fn scenario(path: &Path, stem: &str, folder: &Path) -> Result<String> {
     let parent = path.parent().map(Path::to_owned).unwrap_or_default();
     let mut read = |file: &str| std::fs::read(parent.join(file)).map_err(|error| error.to_string());
-    let (source, resolved) = Source::new(std::fs::read(path)?, stem, stem, &[], &mut read)?;
+    let (source, resolved) = StudyScene::new(std::fs::read(path)?, stem, stem, &[], &mut read)?;
     let begin = Instant::now();
     let study = Tradeoff::of(&source, &resolved, runner::cores(), &AtomicBool::new(false), &mut |_, _, _| {})?;
     let seconds = begin.elapsed().as_secs_f64();
     let rows = full_grid(&source, &resolved, &study)?;
     std::fs::write(folder.join(format!("{stem}.csv")), table(&rows))?;
     let mut text = String::new();
-    let held = Held::of(&rows, &study.axes);
+    let held = ConfirmedErrors::of(&rows, &study.axes);
     for (target, advice) in TARGETS.iter().zip(&study.advice) {
         if study.bar() >= *target || *target < FINEST {
             continue;
@@ -99,7 +99,7 @@ fn scenario(path: &Path, stem: &str, folder: &Path) -> Result<String> {
 }
 
 /// Every setting of the grid that is a scene, as far as its steps are needed.
-fn full_grid(source: &Source, resolved: &Resolved, study: &Tradeoff) -> Result<Vec<Row>> {
+fn full_grid(source: &StudyScene, resolved: &Resolved, study: &Tradeoff) -> Result<Vec<Row>> {
     let cancel = AtomicBool::new(false);
     let mut open = combinations(&study.axes, resolved.scene.beams.is_empty());
     let mut rows: Vec<Row> = Vec::new();
@@ -139,14 +139,14 @@ fn combinations(axes: &Axes, all: bool) -> Vec<Setting> {
     settings
 }
 
-fn is_affordable(source: &Source, setting: &Setting) -> bool {
+fn is_affordable(source: &StudyScene, setting: &Setting) -> bool {
     let Ok(resolved) = source.load(setting) else { return false };
     let Ok(simulation) = Simulation::new(&resolved.scene) else { return false };
     teeter_study::Work::expected(&simulation).seconds() <= MOST_WORK_OF_ONE
 }
 
 /// The least CPU time of the steps of a run, s.
-fn timed(source: &Source, setting: &Setting) -> Result<f64> {
+fn timed(source: &StudyScene, setting: &Setting) -> Result<f64> {
     let resolved = source.load(setting)?;
     let mut least = f64::INFINITY;
     for _ in 0..TIMED {

@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
-use teeter_study::{Against, Quantity, Setting, Source, runner};
+use teeter_study::{Quantity, ReferenceComparison, Setting, StudyScene, runner};
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
@@ -121,9 +121,9 @@ fn says_that_it_is_off(kind: &str) -> bool {
 fn swept(path: &Path, stem: &str) -> Result<Vec<Row>> {
     let folder = path.parent().map(Path::to_owned).unwrap_or_default();
     let mut read = |file: &str| std::fs::read(folder.join(file)).map_err(|error| error.to_string());
-    let (source, resolved) = Source::new(std::fs::read(path)?, stem, stem, &[], &mut read)?;
+    let (source, resolved) = StudyScene::new(std::fs::read(path)?, stem, stem, &[], &mut read)?;
     let cancel = AtomicBool::new(false);
-    let against = Against::new(&source, &resolved, runner::cores(), &cancel)?;
+    let against = ReferenceComparison::new(&source, &resolved, runner::cores(), &cancel)?;
     let mut base = Setting::none();
     if against.horizon() < 0.99 * resolved.scene.time.end {
         base = base.set("time.end", format!("{:?} s", against.horizon()));

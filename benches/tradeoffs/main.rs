@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
-use teeter_study::{Advice, Quantity, Source, TARGETS, Tradeoff, runner, write};
+use teeter_study::{Advice, Quantity, StudyScene, TARGETS, Tradeoff, runner, write};
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
@@ -41,7 +41,7 @@ fn main() -> Result<()> {
 fn studied(path: &Path, stem: &str) -> Result<Tradeoff> {
     let folder = path.parent().map(Path::to_owned).unwrap_or_default();
     let mut read = |file: &str| std::fs::read(folder.join(file)).map_err(|error| error.to_string());
-    let (source, resolved) = Source::new(std::fs::read(path)?, stem, stem, &[], &mut read)?;
+    let (source, resolved) = StudyScene::new(std::fs::read(path)?, stem, stem, &[], &mut read)?;
     Ok(Tradeoff::of(&source, &resolved, runner::cores(), &AtomicBool::new(false), &mut |_, _, _| {})?)
 }
 
@@ -61,7 +61,7 @@ fn with_part(page: &str, stem: &str, part: &str) -> String {
 
 fn part(study: &Tradeoff, stem: &str, figure: bool) -> Result<String> {
     let mut text = format!("### {}\n\n`scenarios/{stem}.toml`\n\n", study.title);
-    writeln!(text, "| accuracy | take | off by at most | CPU time |\n|---|---|---|---|")?;
+    writeln!(text, "| accuracy | setting | off by at most | CPU time |\n|---|---|---|---|")?;
     for (target, advice) in TARGETS.iter().zip(&study.advice) {
         let target = format!("{} %", 100.0 * target);
         match advice {
@@ -75,14 +75,16 @@ fn part(study: &Tradeoff, stem: &str, figure: bool) -> Result<String> {
             }
             Advice::NotReached => writeln!(
                 text,
-                "| {target} | none of what was tried | {:.1e} at best | |",
+                "| {target} | none of the settings tried | {:.1e} at best | |",
                 study.best().unwrap_or(f64::NAN)
             )?,
-            Advice::Warned(_) => writeln!(text, "| {target} | nothing: all that reach it are warned of | | |")?,
+            Advice::Warned(_) => {
+                writeln!(text, "| {target} | nothing: every setting that reaches it has a warning | | |")?
+            }
             Advice::BeforeImpact => {
                 writeln!(text, "| {target} | nothing: the horizon ends before the first impacts are compared | | |")?;
             }
-            Advice::NotMeasurable => writeln!(text, "| {target} | not measurable here | | |")?,
+            Advice::NotMeasurable => writeln!(text, "| {target} | not measurable | | |")?,
         }
     }
     text.push('\n');

@@ -7,13 +7,13 @@ use std::path::PathBuf;
 pub(crate) const HELP: &str = "\
 teeter-validation: runs the cases with known answers
 
-  --short      what fits into a continuous build; writes no files unless --out is given
-  --out DIR    where validation.md and figures/ go (default: docs)
-  --only CASE  this case alone (of --extremes: this family); writes no files unless --out is given
-  --extremes   the scenes at the extremes instead: writes extremes.md
-  --write-bounds  with --extremes: stores what they are held to from now on
+  --short      a short run for continuous integration; writes no files unless --out is given
+  --out DIR    folder for validation.md and figures/ (default: docs)
+  --only CASE  runs only this case (with --extremes: this family); writes no files unless --out is given
+  --extremes   runs the extreme scenes instead and writes extremes.md
+  --write-bounds  with --extremes: stores the results as new bounds
   --scene ROW  prints the scene of a row of extremes.md
-  --help       this
+  --help       prints this help
 
 Exit code: 0 if every bound holds, 1 if one is missed, 2 for a wrong command line.
 ";
@@ -36,11 +36,11 @@ pub(crate) struct Options {
 /// What the command line asks for.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Asked {
-    /// To run.
+    /// A run.
     Run(Options),
-    /// To be told how.
+    /// Help.
     Help,
-    /// To be shown the scene of a row of the extremes.
+    /// The scene of a row of the extremes.
     Scene(String),
 }
 

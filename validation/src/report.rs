@@ -108,12 +108,12 @@ fn page(depth: Depth, all: &[(Box<dyn Case>, Findings)]) -> Result<String> {
     };
     let mut page = format!(
         "# Validation\n\n\
-         Cases with known answers, from a beam at rest up to a rocking block. This page is written by\n\n\
+         Cases with known answers, from a beam at rest to a rocking block. This page is written by\n\n\
          ```sh\n{command}\n```\n\n\
-         which exits with 1 if any bound is missed. Every case compares with something that isn't the program: a closed \
-         form, a quadrature, an identity. Errors below 1e-13 are rounding, and are not told in digits here (the program prints \
-         them). SI units; an error is absolute unless its row says *relative*; rows without a bound are told, not \
-         judged.\n"
+         which exits with 1 if any bound is missed. Every case compares with something independent of the program: a \
+         closed form, a quadrature, an identity. Errors below 1e-13 are rounding and are not shown in digits here \
+         (the program prints them). SI units; an error is absolute unless its row says *relative*; rows without a \
+         bound are only reported.\n"
     );
     for (case, findings) in all {
         write!(page, "\n## {}\n\n{}\n", case.name(), case.about())?;

@@ -90,7 +90,7 @@ pub(crate) fn paper_beam(elements: usize, ratio: f64) -> Result<Arc<Beam>> {
 /// The same with Rayleigh's a₁ (s) besides, which damps the high modes.
 pub(crate) fn damped_paper_beam(elements: usize, ratio: f64, rayleigh_stiffness: f64) -> Result<Arc<Beam>> {
     let mut spec = BeamSpec::new(0.36, elements, Section::rectangle(0.03, 0.0015, 69e9, 2700.0)?)
-        .damped(Damping { rayleigh_stiffness, ..Damping::default() });
+        .damped(Damping::none().with_rayleigh_stiffness(rayleigh_stiffness));
     spec.damping.viscous = spec.viscous_for_ratio(1, ratio)?;
     Ok(Arc::new(Beam::new(spec)?))
 }

@@ -44,8 +44,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         let on_beam = times.map(|t| load.position(t)).into_iter().filter(|x| *x <= SPAN);
         let halves: Vec<_> = on_beam.map(|x| SpanLoad::Point { x, force: 0.5 * FORCE, couple: 0.0 }).collect();
-        forces
-            .update(&beam, &Actions { q: &q, velocity: &v, acceleration: &a, loads: &halves, ..Actions::default() })?;
+        forces.update(&beam, &Actions::at(&q).with_velocity(&v).with_acceleration(&a).with_loads(&halves))?;
         envelope.take(&beam, &q, &forces);
         for i in 0..beam.dofs() {
             q[i] += 0.5 * h * v[i];

@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     beam.add_partial_load([0.0, SPAN], LOAD, &mut q)?;
     beam.solve_static(&mut q)?;
     let loads = [SpanLoad::Uniform { from: 0.0, to: SPAN, load: LOAD }];
-    let forces = beam.section_forces(&Actions { q: &q, loads: &loads, ..Actions::default() })?;
+    let forces = beam.section_forces(&Actions::at(&q).with_loads(&loads))?;
 
     println!("{:28} {:>12} {:>12}", "", "computed", "closed form");
     let row = |name: &str, computed: f64, exact: f64| println!("{name:28} {computed:12.4} {exact:12.4}");

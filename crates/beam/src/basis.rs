@@ -21,7 +21,7 @@
 //! rigidly F is that of its elastic modes. Where F is 0, on a support, nothing is asked.
 
 use crate::beam::Beam;
-use crate::eigen::block::{Block, Orthonormal, add, dot, mass_product, orthonormalised, ritz};
+use crate::eigen::block::{Orthonormal, VectorBlock, add, dot, mass_product, orthonormalised, ritz};
 use crate::eigen::inverse::Inverse;
 use crate::eigen::{Modes, unknowns};
 use crate::error::{ModalError, ModesError};
@@ -60,7 +60,7 @@ const SETTLED: f64 = 1e-9;
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModalBasis {
     frequencies: Vec<f64>,
-    shapes: Block,
+    shapes: VectorBlock,
     rigid: usize,
     modes: usize,
 }
@@ -344,7 +344,7 @@ impl<'a> Pool<'a> {
         let omega = self.modes.circular_frequencies();
         let mut shapes = self.modes.shapes.clone();
         shapes.truncate(count);
-        let mut corrections = Block::new(self.beam.dofs());
+        let mut corrections = VectorBlock::new(self.beam.dofs());
         for x in points {
             let mut psi = self.rest(*x)?;
             let shape = self.beam.shape_clamped(*x);

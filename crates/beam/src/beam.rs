@@ -267,7 +267,11 @@ pub(crate) mod tests {
     }
 
     pub(crate) fn damped(elements: usize, supports: [Support; 2]) -> Beam {
-        let damping = Damping { viscous: 0.7, rayleigh_mass: 0.3, rayleigh_stiffness: 0.01, modal: Vec::new() };
+        let damping = Damping::none()
+            .with_viscous(0.7)
+            .with_rayleigh_mass(0.3)
+            .with_rayleigh_stiffness(0.01)
+            .with_modal(Vec::new());
         Beam::new(spec(elements, supports).damped(damping)).unwrap()
     }
 
@@ -284,9 +288,15 @@ pub(crate) mod tests {
             .support_at(0.75, Support::Pinned)
             .lump(0.4, 0.5, 0.01)
             .foundation(foundation)
-            .axial(Axial::Elastic { held: [true, false] })
+            .axial(Axial::elastic([true, false]))
             .axial_force(3.0)
-            .damped(Damping { viscous: 0.7, rayleigh_mass: 0.3, rayleigh_stiffness: 0.01, modal: Vec::new() });
+            .damped(
+                Damping::none()
+                    .with_viscous(0.7)
+                    .with_rayleigh_mass(0.3)
+                    .with_rayleigh_stiffness(0.01)
+                    .with_modal(Vec::new()),
+            );
         Beam::new(BeamSpec { section: plain, ..spec }).unwrap()
     }
 

@@ -1,7 +1,7 @@
 //! How many digits of a solve are right.
 
 use crate::beam::Beam;
-use crate::error::FactorError;
+use crate::error::CholeskyError;
 use crate::factor::MatrixWeights;
 
 /// Where the loads act that are solved for, in parts of the span: no node of a coarse mesh, no
@@ -63,7 +63,7 @@ impl Beam {
     /// assert!(step.of_solve() > Digits::FEW);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn digits(&self, weights: MatrixWeights) -> Result<Digits, FactorError> {
+    pub fn digits(&self, weights: MatrixWeights) -> Result<Digits, CholeskyError> {
         let factor = self.factor(weights)?;
         // Moments at the nodes are rounded one by one, as many as there are nodes: a random walk.
         // And the solution itself is.

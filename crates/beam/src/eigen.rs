@@ -33,7 +33,7 @@ mod rigid;
 
 use crate::beam::Beam;
 use crate::error::ModesError;
-use block::{Block, Orthonormal, orthonormalised, ritz};
+use block::{Orthonormal, VectorBlock, orthonormalised, ritz};
 pub(crate) use inertia::unknowns;
 use inverse::Inverse;
 
@@ -64,7 +64,7 @@ const MAX_GROWTHS: usize = 3;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Modes {
     frequencies: Vec<f64>,
-    pub(crate) shapes: Block,
+    pub(crate) shapes: VectorBlock,
     residuals: Vec<f64>,
     rigid: usize,
     rounds: usize,
@@ -143,7 +143,7 @@ impl Beam {
             frequencies: vec![0.0; shapes.columns()],
             residuals: vec![0.0; shapes.columns()],
             rigid: shapes.columns(),
-            shapes: Block::new(self.dofs()),
+            shapes: VectorBlock::new(self.dofs()),
             rounds: 0,
         };
         if count > shapes.columns() {
@@ -185,7 +185,7 @@ struct Search<'a> {
 /// Ritz pairs, ascending, and the residuals of `vectors`.
 struct Found {
     eigenvalues: Vec<f64>,
-    vectors: Block,
+    vectors: VectorBlock,
     residuals: Vec<f64>,
     rounds: usize,
 }

@@ -64,11 +64,7 @@ mod tests {
             beam.add_point_load(x, -8.0, &mut q).unwrap();
             beam.solve_static(&mut q).unwrap();
             let loads = [SpanLoad::Point { x, force: -8.0, couple: 0.0 }];
-            envelope.take(
-                &beam,
-                &q,
-                &beam.section_forces(&Actions { q: &q, loads: &loads, ..Actions::default() }).unwrap(),
-            );
+            envelope.take(&beam, &q, &beam.section_forces(&Actions::at(&q).with_loads(&loads)).unwrap());
         }
         let close = |a: f64, b: f64| (a - b).abs() < 1e-12;
         assert!(close(envelope.moment[2][1], 2.0) && close(envelope.moment[1][1], 1.5));

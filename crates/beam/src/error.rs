@@ -79,7 +79,7 @@ pub enum BeamError {
 /// Why `mass M + damping C + stiffness K` has no Cholesky factor.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum FactorError {
+pub enum CholeskyError {
     /// A weight that is not finite.
     #[error("weights.{field} = {value}: must be finite")]
     Weight {
@@ -173,7 +173,7 @@ pub enum StaticError {
     Soft,
     /// The stiffness matrix could not be factorised.
     #[error("stiffness matrix: {0}")]
-    Factor(#[from] FactorError),
+    Factor(#[from] CholeskyError),
 }
 
 /// Why a beam's modes were not found.
@@ -220,7 +220,7 @@ pub enum ModesError {
     },
     /// A matrix could not be factorised.
     #[error("K + σM: {0}")]
-    Factor(#[from] FactorError),
+    Factor(#[from] CholeskyError),
 }
 
 /// Why a beam has no such modal basis.
@@ -232,7 +232,7 @@ pub enum ModalError {
     Modes(#[from] ModesError),
     /// Weights whose sum has no inverse.
     #[error(transparent)]
-    Factor(#[from] FactorError),
+    Factor(#[from] CholeskyError),
     /// A contact region that is not on the beam.
     #[error("contact region [{from}, {to}] m: must be from left to right on the beam, in [0, {span}]")]
     Region {

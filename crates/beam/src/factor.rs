@@ -6,7 +6,7 @@ use crate::band::Twisted;
 use crate::bar::BarFactor;
 use crate::beam::Beam;
 use crate::blocks::Blocks;
-use crate::error::FactorError;
+use crate::error::CholeskyError;
 use crate::modal_damping::{LowRank, ModalDamping};
 #[cfg(feature = "faer")]
 use crate::sparse::SparseFactor;
@@ -49,10 +49,10 @@ impl MatrixWeights {
     /// K alone.
     pub const STIFFNESS: Self = Self { mass: 0.0, damping: 0.0, stiffness: 1.0 };
 
-    fn validate(&self) -> Result<(), FactorError> {
+    fn validate(&self) -> Result<(), CholeskyError> {
         for (field, value) in [("mass", self.mass), ("damping", self.damping), ("stiffness", self.stiffness)] {
             if !value.is_finite() {
-                return Err(FactorError::Weight { field, value });
+                return Err(CholeskyError::Weight { field, value });
             }
         }
         Ok(())
@@ -70,7 +70,7 @@ pub enum Backend {
     Banded,
     /// A general sparse Cholesky factorisation, symbolic once: an independent way to the same
     /// numbers. By faer, so with the feature `faer` (default) only; without it
-    /// [`Beam::factor_with`] says so ([`FactorError::MissingFeature`]).
+    /// [`Beam::factor_with`] says so ([`CholeskyError::MissingFeature`]).
     Sparse,
 }
 
@@ -199,13 +199,13 @@ impl Factor {
 
     /// Fills in the numbers of a factor whose memory is there, with N G in K of an axial force
     /// beside that of the beam.
-    fn update(&mut self, beam: &Beam, weights: MatrixWeights, tension: f64) -> Result<(), FactorError> {
+    fn update(&mut self, beam: &Beam, weights: MatrixWeights, tension: f64) -> Result<(), CholeskyError> {
         weights.validate()?;
         self.weights = weights;
         if let Some(stretch) = &mut self.stretch {
             stretch.scale = 0.0;
         }
-        let not_definite = |dof| FactorError::NotPositiveDefinite { weights, dof };
+        let not_definite = |dof| CholeskyError::NotPositiveDefinite { weights, dof };
         match &mut self.kind {
             Kind::Banded { bend, bar, sum } => {
                 beam.combine(weights, tension, sum);
@@ -255,7 +255,7 @@ impl Beam {
     /// ([`Backend::Banded`]).
     ///
     /// # Errors
-    /// [`FactorError`] for weights that are not finite, or whose sum is not positive definite.
+    /// [`CholeskyError`] for weights that are not finite, or whose sum is not positive definite.
     ///
     /// ```
     /// # use teeter_beam::{Beam, BeamSpec, MatrixWeights, Section};
@@ -268,16 +268,16 @@ impl Beam {
     /// assert!(beam.deflection_at(&jump, 0.18).is_some_and(|d| d.w < 0.0));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn factor(&self, weights: MatrixWeights) -> Result<Factor, FactorError> {
+    pub fn factor(&self, weights: MatrixWeights) -> Result<Factor, CholeskyError> {
         self.factor_with(weights, Backend::default())
     }
 
     /// As [`Beam::factor`], factorised as one chooses.
     ///
     /// # Errors
-    /// As there; [`FactorError::MissingFeature`] for a backend that is not in this build
+    /// As there; [`CholeskyError::MissingFeature`] for a backend that is not in this build
     /// ([`Backend::available`]).
-    pub fn factor_with(&self, weights: MatrixWeights, backend: Backend) -> Result<Factor, FactorError> {
+    pub fn factor_with(&self, weights: MatrixWeights, backend: Backend) -> Result<Factor, CholeskyError> {
         let nodes = self.nodes();
         let kind = match backend {
             Backend::Banded => Kind::Banded {
@@ -288,7 +288,7 @@ impl Beam {
             #[cfg(feature = "faer")]
             Backend::Sparse => Kind::Sparse(Box::new(SparseFactor::new(self)?)),
             #[cfg(not(feature = "faer"))]
-            Backend::Sparse => return Err(FactorError::MissingFeature { backend, feature: "faer" }),
+            Backend::Sparse => return Err(CholeskyError::MissingFeature { backend, feature: "faer" }),
         };
         let zero = vec![0.0; self.dofs()];
         let stretch = self.membrane.is_some().then(|| RankOne { g: zero.clone(), u: zero, scale: 0.0 });
@@ -299,7 +299,7 @@ impl Beam {
     }
 
     /// The factor with N G in K of an axial force beside that of the beam.
-    pub(crate) fn factor_under(&self, weights: MatrixWeights, tension: f64) -> Result<Factor, FactorError> {
+    pub(crate) fn factor_under(&self, weights: MatrixWeights, tension: f64) -> Result<Factor, CholeskyError> {
         let mut factor = self.factor(weights)?;
         if tension != 0.0 {
             factor.update(self, weights, tension)?;
@@ -310,8 +310,8 @@ impl Beam {
     /// Makes `factor` that of other weights, in its own memory: no symbolic work, no allocation.
     ///
     /// # Errors
-    /// As [`Beam::factor`], and [`FactorError::OtherBeam`] for the factor of a beam with other
-    /// dofs. After [`FactorError::NotPositiveDefinite`] the factor's solutions are NaN until it is
+    /// As [`Beam::factor`], and [`CholeskyError::OtherBeam`] for the factor of a beam with other
+    /// dofs. After [`CholeskyError::NotPositiveDefinite`] the factor's solutions are NaN until it is
     /// renewed with success.
     ///
     /// ```
@@ -322,7 +322,7 @@ impl Beam {
     /// assert_eq!(w.weights().stiffness, 2.5e-9);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn refactor(&self, weights: MatrixWeights, factor: &mut Factor) -> Result<(), FactorError> {
+    pub fn refactor(&self, weights: MatrixWeights, factor: &mut Factor) -> Result<(), CholeskyError> {
         // By what is held, not by identity: a beam of another section or span may take over the
         // memory.
         let same = self.dofs() == factor.dofs
@@ -330,7 +330,7 @@ impl Beam {
             && self.membrane.is_some() == factor.stretch.is_some()
             && self.modal.as_ref().map_or(0, ModalDamping::modes) == factor.modal.as_ref().map_or(0, LowRank::modes);
         if !same {
-            return Err(FactorError::OtherBeam { expected: self.dofs(), found: factor.dofs });
+            return Err(CholeskyError::OtherBeam { expected: self.dofs(), found: factor.dofs });
         }
         factor.update(self, weights, 0.0)
     }
@@ -344,7 +344,7 @@ impl Beam {
     ///
     /// # Panics
     /// If `q` has not [`Beam::dofs`] entries.
-    pub fn refactor_tangent(&self, q: &[f64], factor: &mut Factor) -> Result<(), FactorError> {
+    pub fn refactor_tangent(&self, q: &[f64], factor: &mut Factor) -> Result<(), CholeskyError> {
         let Some(membrane) = &self.membrane else { return Ok(()) };
         factor.update(self, factor.weights, membrane.force(self.bend(q)))?;
         self.follow(q, factor);
@@ -373,7 +373,7 @@ impl Beam {
         weight: f64,
         g: &[f64],
         factor: &mut Factor,
-    ) -> Result<(), FactorError> {
+    ) -> Result<(), CholeskyError> {
         factor.update(self, factor.weights, tension)?;
         if let Some(mut stretch) = factor.stretch.take() {
             stretch.g.copy_from_slice(g);
@@ -454,7 +454,7 @@ mod tests {
             let mut factor = beam.factor_with(STEP, backend).unwrap();
             let negative = MatrixWeights { mass: -1.0, ..STEP };
             let error = beam.refactor(negative, &mut factor);
-            assert!(matches!(error, Err(FactorError::NotPositiveDefinite { dof: 2, .. })), "{error:?}");
+            assert!(matches!(error, Err(CholeskyError::NotPositiveDefinite { dof: 2, .. })), "{error:?}");
             let mut x = vec![1.0; beam.dofs()];
             factor.solve(&mut x);
             assert!(x[2..].iter().all(|x| x.is_nan()));
@@ -481,7 +481,7 @@ mod tests {
                 Ok(factor) => assert!(factor.backend() == backend && Backend::available().contains(&backend)),
                 Err(error) => {
                     assert!(!cfg!(feature = "faer") && !Backend::available().contains(&backend));
-                    assert_eq!(error, FactorError::MissingFeature { backend: Backend::Sparse, feature: "faer" });
+                    assert_eq!(error, CholeskyError::MissingFeature { backend: Backend::Sparse, feature: "faer" });
                     let text = "the backend Sparse is not in this build: it needs the feature `faer` of teeter-beam";
                     assert_eq!(error.to_string(), text);
                 }
@@ -493,7 +493,7 @@ mod tests {
     fn the_factor_of_another_beam_is_refused() {
         let mut factor = beam(6, [Clamped, Free]).factor(STEP).unwrap();
         for other in [beam(7, [Clamped, Free]), beam(6, [Pinned, Pinned]), beam(6, [Free, Free])] {
-            assert!(matches!(other.refactor(STEP, &mut factor), Err(FactorError::OtherBeam { .. })));
+            assert!(matches!(other.refactor(STEP, &mut factor), Err(CholeskyError::OtherBeam { .. })));
         }
     }
 

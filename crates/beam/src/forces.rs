@@ -52,6 +52,7 @@ pub enum SpanLoad {
 
 /// The state that section forces are asked for.
 #[derive(Debug, Clone, Copy, Default)]
+#[non_exhaustive]
 pub struct Actions<'a> {
     /// Deflection, as every vector.
     pub q: &'a [f64],
@@ -65,6 +66,39 @@ pub struct Actions<'a> {
     /// deflection adds, N; EA/(4L) (s⁰ + s¹) with s = ∫w'² dx at both ends of a θ step. `None`: that
     /// of `q`.
     pub tension: Option<f64>,
+}
+
+impl<'a> Actions<'a> {
+    /// A beam at rest with the deflection `q`, as long as every vector, and no loads.
+    #[must_use]
+    pub fn at(q: &'a [f64]) -> Self {
+        Self { q, ..Self::default() }
+    }
+
+    /// With this velocity.
+    #[must_use]
+    pub fn with_velocity(self, velocity: &'a [f64]) -> Self {
+        Self { velocity, ..self }
+    }
+
+    /// With this acceleration, that of moving supports included.
+    #[must_use]
+    pub fn with_acceleration(self, acceleration: &'a [f64]) -> Self {
+        Self { acceleration, ..self }
+    }
+
+    /// With these loads, all but those of supports.
+    #[must_use]
+    pub fn with_loads(self, loads: &'a [SpanLoad]) -> Self {
+        Self { loads, ..self }
+    }
+
+    /// With what a time step took for the axial force that the deflection adds, N; `None`: that of the
+    /// deflection.
+    #[must_use]
+    pub fn with_tension(self, tension: Option<f64>) -> Self {
+        Self { tension, ..self }
+    }
 }
 
 /// What a support bears: the force and the couple of the support on the beam.
@@ -399,7 +433,7 @@ impl Beam {
     /// beam.add_point_load(0.7, -3.0, &mut q)?;
     /// beam.solve_static(&mut q)?;
     /// let loads = [SpanLoad::Point { x: 0.7, force: -3.0, couple: 0.0 }];
-    /// let forces = beam.section_forces(&Actions { q: &q, loads: &loads, ..Default::default() })?;
+    /// let forces = beam.section_forces(&Actions::at(&q).with_loads(&loads))?;
     /// assert!((forces.reactions()[0].force - 3.0 * 1.3 / 2.0).abs() < 1e-13);
     /// assert!((forces.at(&beam, 0.7)?.moment - 3.0 * 0.7 * 1.3 / 2.0).abs() < 1e-13); // P a b/L
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -430,7 +464,7 @@ mod tests {
         cantilever.add_point_load(0.55, 3.0, &mut q).unwrap();
         cantilever.add_point_couple(0.55, -0.7, &mut q).unwrap();
         cantilever.solve_static(&mut q).unwrap();
-        let forces = cantilever.section_forces(&Actions { q: &q, loads: &loads, ..Actions::default() }).unwrap();
+        let forces = cantilever.section_forces(&Actions::at(&q).with_loads(&loads)).unwrap();
         for k in 0..=100 {
             let x = f64::from(k) / 100.0;
             // What lies to the right of the cut.
@@ -471,7 +505,7 @@ mod tests {
         beam.add_elastic_force(&q, &mut f);
         beam.add_damping_product(-1.0, &v, &mut f);
         beam.factor(crate::MatrixWeights::MASS).unwrap().solve(&mut f);
-        let actions = Actions { q: &q, velocity: &v, acceleration: &f, loads: &loads, ..Actions::default() };
+        let actions = Actions::at(&q).with_velocity(&v).with_acceleration(&f).with_loads(&loads);
         let forces = beam.section_forces(&actions).unwrap();
         // Reactions by the residual of the held dofs, independently.
         let mut residual = vec![0.0; beam.dofs()];

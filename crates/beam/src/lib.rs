@@ -56,7 +56,7 @@
 //! assert!((middle.w / (-3.0 * 8.0 / (48.0 * 5.0)) - 1.0).abs() < 1e-13); // P L³/(48 EI)
 //!
 //! let loads = [SpanLoad::Point { x: 1.0, force: -3.0, couple: 0.0 }];
-//! let forces = beam.section_forces(&Actions { q: &q, loads: &loads, ..Actions::default() })?;
+//! let forces = beam.section_forces(&Actions::at(&q).with_loads(&loads))?;
 //! assert!((forces.at(&beam, 1.0)?.moment - 3.0 * 2.0 / 4.0).abs() < 1e-13); // P L/4
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -194,7 +194,7 @@ pub use beam::{Beam, Dof};
 pub use digits::Digits;
 pub use eigen::Modes;
 pub use envelope::Envelope;
-pub use error::{BeamError, FactorError, ModalError, ModesError, StaticError};
+pub use error::{BeamError, CholeskyError, ModalError, ModesError, StaticError};
 pub use extremes::DeflectionExtremes;
 pub use factor::{Backend, Factor, MatrixWeights};
 #[cfg(feature = "faer")]

@@ -50,7 +50,7 @@ impl Beam {
     /// ```
     /// # use teeter_beam::{Beam, BeamSpec, Damping, Section, Support};
     /// # let spec = BeamSpec::new(1.0, 4, Section::new(1.0, 3.0)?).supported([Support::Free; 2]);
-    /// let beam = Beam::new(spec.damped(Damping { viscous: 2.0, ..Default::default() }))?;
+    /// let beam = Beam::new(spec.damped(Damping::none().with_viscous(2.0)))?;
     /// let falling = beam.from_nodes(&[[-1.0, 0.0]; 5])?;
     /// let mut force = vec![0.0; beam.dofs()];
     /// beam.add_damping_product(-1.0, &falling, &mut force);
@@ -155,7 +155,7 @@ impl Beam {
     /// ```
     /// # use teeter_beam::{Beam, BeamSpec, Damping, Section, Support};
     /// # let spec = BeamSpec::new(1.0, 4, Section::new(1.0, 3.0)?).supported([Support::Free; 2]);
-    /// let beam = Beam::new(spec.damped(Damping { viscous: 2.0, ..Default::default() }))?;
+    /// let beam = Beam::new(spec.damped(Damping::none().with_viscous(2.0)))?;
     /// let rising = beam.from_nodes(&[[3.0, 0.0]; 5])?;
     /// assert!((beam.damping_power(&rising) - 18.0).abs() < 1e-13);
     /// # Ok::<(), teeter_beam::BeamError>(())

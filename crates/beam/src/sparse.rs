@@ -10,7 +10,7 @@ use faer::sparse::{SparseColMat, SymbolicSparseColMat};
 
 use crate::beam::Beam;
 use crate::blocks::Blocks;
-use crate::error::FactorError;
+use crate::error::CholeskyError;
 use crate::factor::MatrixWeights;
 use crate::matrix::Upper;
 
@@ -72,10 +72,10 @@ impl std::fmt::Debug for SparseFactor {
 }
 
 impl SparseFactor {
-    pub(crate) fn new(beam: &Beam) -> Result<Self, FactorError> {
+    pub(crate) fn new(beam: &Beam) -> Result<Self, CholeskyError> {
         let matrix = beam.stiffness_matrix();
         // The analysis of a valid pattern can only fail for want of memory.
-        let symbolic = analyse(matrix.symbolic().to_owned().ok().as_ref()).ok_or(FactorError::Memory)?;
+        let symbolic = analyse(matrix.symbolic().to_owned().ok().as_ref()).ok_or(CholeskyError::Memory)?;
         Ok(Self {
             values: vec![0.0; symbolic.len_val()],
             gathered: matrix.val().to_vec(),

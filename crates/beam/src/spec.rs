@@ -20,10 +20,11 @@ pub const MAX_ELEMENTS: usize = 10_000;
 /// it. Ratios of single modes damp those and leave the others alone.
 ///
 /// ```
-/// let damping = teeter_beam::Damping { viscous: 0.4, ..Default::default() };
+/// let damping = teeter_beam::Damping::none().with_viscous(0.4);
 /// assert_eq!(damping.rayleigh_stiffness, 0.0);
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Damping {
     /// External viscous damping c per length, N s/m².
     pub viscous: f64,
@@ -36,6 +37,36 @@ pub struct Damping {
 }
 
 impl Damping {
+    /// None.
+    #[must_use]
+    pub fn none() -> Self {
+        Self::default()
+    }
+
+    /// With this viscous damping c per length, N s/m², at least 0.
+    #[must_use]
+    pub fn with_viscous(self, viscous: f64) -> Self {
+        Self { viscous, ..self }
+    }
+
+    /// With this factor a₀ of the mass matrix, 1/s, at least 0.
+    #[must_use]
+    pub fn with_rayleigh_mass(self, rayleigh_mass: f64) -> Self {
+        Self { rayleigh_mass, ..self }
+    }
+
+    /// With this factor a₁ of the stiffness matrix, s, at least 0.
+    #[must_use]
+    pub fn with_rayleigh_stiffness(self, rayleigh_stiffness: f64) -> Self {
+        Self { rayleigh_stiffness, ..self }
+    }
+
+    /// With these damping ratios of the first elastic modes, each at least 0, at most 64 of them.
+    #[must_use]
+    pub fn with_modal(self, modal: Vec<f64>) -> Self {
+        Self { modal, ..self }
+    }
+
     /// Rayleigh's factors that give two circular frequencies their damping ratios:
     /// ζ_i = a₀/(2ω_i) + a₁ω_i/2.
     ///
@@ -206,12 +237,21 @@ pub enum Axial {
     /// axial force, the same all along (axial inertia left out): N = N₀ + (EA)/(2L) ∫w'² dx, with
     /// 1/EA the mean over the span. Woinowsky-Krieger (1950, J. Appl. Mech. 17, 35–36).
     Held,
-    /// Axial dofs u with their inertia; which ends are held along the axis. Linear: they don't feel
-    /// the deflection.
+    /// Axial dofs u with their inertia; made by [`Axial::elastic`]. Linear: they don't feel the
+    /// deflection.
+    #[non_exhaustive]
     Elastic {
         /// Whether u = 0 at the left and at the right end.
         held: [bool; 2],
     },
+}
+
+impl Axial {
+    /// Axial dofs, held at the left and at the right end or not.
+    #[must_use]
+    pub fn elastic(held: [bool; 2]) -> Self {
+        Self::Elastic { held }
+    }
 }
 
 /// All that [`crate::Beam::new`] needs. Made by [`BeamSpec::new`] and the methods that follow it;

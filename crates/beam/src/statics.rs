@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::beam::Beam;
-use crate::error::{FactorError, StaticError};
+use crate::error::{CholeskyError, StaticError};
 use crate::factor::{Factor, MatrixWeights};
 use crate::membrane::Membrane;
 
@@ -79,10 +79,10 @@ impl Beam {
     fn solve_refined(&self, load: &[f64], n: f64) -> Result<Vec<f64>, StaticError> {
         let slopes = self.membrane.as_ref();
         let factor = self.factor_under(MatrixWeights::STIFFNESS, n).map_err(|error| match error {
-            FactorError::NotPositiveDefinite { .. } if self.spec.axial_force < 0.0 => {
+            CholeskyError::NotPositiveDefinite { .. } if self.spec.axial_force < 0.0 => {
                 StaticError::Buckled { axial_force: self.spec.axial_force }
             }
-            FactorError::NotPositiveDefinite { .. } if self.is_held_by_springs() => StaticError::Soft,
+            CholeskyError::NotPositiveDefinite { .. } if self.is_held_by_springs() => StaticError::Soft,
             other => StaticError::Factor(other),
         })?;
         let refined = self.refine(&factor, load, |q, residual| {

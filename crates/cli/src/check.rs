@@ -1,4 +1,5 @@
-//! `teeter check`: what a run would model, cost and write, and what looks wrong; runs nothing, writes nothing.
+//! `teeter check`: shows what a run would model, cost and write, and what looks wrong, without
+//! running or writing anything.
 
 use crate::console::{Console, print_all};
 use crate::render::{Presenter, refusal};
@@ -6,11 +7,11 @@ use crate::run::Exit;
 use crate::scene;
 use std::fmt::Write as _;
 use std::path::PathBuf;
-use teeter_scenario::outlook::{BeamOutlook, BlockOutlook, FEW_DIGITS, Outlook, ShapesOutlook};
+use teeter_scenario::output_size::accuracy_of_seconds;
+use teeter_scenario::preview::{BeamPreview, BlockPreview, FEW_DIGITS, Preview, ShapesPreview};
 use teeter_scenario::resolve::Resolved;
 use teeter_scenario::scene::{GroundScene, Scene, SchemeName};
 use teeter_scenario::simulation::Simulation;
-use teeter_scenario::volume::accuracy_of_seconds;
 use teeter_scenario::{Extent, Removed, wording};
 
 #[derive(Debug)]
@@ -35,7 +36,7 @@ pub(crate) fn check(options: &Options) -> Exit {
         Ok(simulation) => simulation,
         Err(error) => return refuse(&presenter.one(&error.diagnostic(&resolved.document))),
     };
-    let text = told(&resolved, &Outlook::new(&resolved, &simulation));
+    let text = format_preview(&resolved, &Preview::new(&resolved, &simulation));
     let exit = print_all(&text);
     for finding in resolved.warnings.iter().chain(&resolved.foreseen).chain(&resolved.notes) {
         console.note(&format!("\n{}", presenter.one(finding)));
@@ -43,24 +44,24 @@ pub(crate) fn check(options: &Options) -> Exit {
     exit
 }
 
-fn told(resolved: &Resolved, outlook: &Outlook) -> String {
+fn format_preview(resolved: &Resolved, preview: &Preview) -> String {
     let scene = &resolved.scene;
     let mut text = format!("{}\n", scene.title);
-    section(&mut text, "bodies", &bodies(scene, outlook));
-    section(&mut text, "model", &model(scene, outlook));
-    section(&mut text, "run", &run(scene, outlook));
-    section(&mut text, "left out", &outlook.left_out);
-    if !outlook.removed.is_empty() {
-        let mut lines: Vec<String> = outlook.removed.iter().take(LISTED).map(removed).collect();
-        lines.extend(more(outlook.removed.len(), "removal"));
-        section(&mut text, "not needed, and so not modelled (--model full has it)", &lines);
+    section(&mut text, "bodies", &bodies(scene, preview));
+    section(&mut text, "model", &model(scene, preview));
+    section(&mut text, "run", &run(scene, preview));
+    section(&mut text, "left out", &preview.left_out);
+    if !preview.removed.is_empty() {
+        let mut lines: Vec<String> = preview.removed.iter().take(LISTED).map(removed).collect();
+        lines.extend(more(preview.removed.len(), "removal"));
+        section(&mut text, "not required, and therefore not modelled (--model full includes it)", &lines);
     }
     text
 }
 
 fn removed(removed: &Removed) -> String {
     let how = match &removed.accuracy {
-        None => "exact: every number is the same".to_owned(),
+        None => "exact: every number stays the same".to_owned(),
         Some(accuracy) => format!("within {accuracy}"),
     };
     format!("{}\n    {}\n    {how}", removed.what, removed.why)
@@ -73,14 +74,14 @@ fn section(text: &mut String, title: &str, lines: &[impl AsRef<str>]) {
     }
 }
 
-/// Bodies of a kind that are listed; the rest is counted.
+/// Largest number of bodies of a kind that are listed; the rest is counted.
 const LISTED: usize = 20;
 
-fn bodies(scene: &Scene, outlook: &Outlook) -> Vec<String> {
-    let mut lines: Vec<String> = outlook.blocks.iter().take(LISTED).map(block).collect();
-    lines.extend(more(outlook.blocks.len(), "block"));
-    lines.extend(outlook.beams.iter().take(LISTED).map(beam));
-    lines.extend(more(outlook.beams.len(), "beam"));
+fn bodies(scene: &Scene, preview: &Preview) -> Vec<String> {
+    let mut lines: Vec<String> = preview.blocks.iter().take(LISTED).map(block).collect();
+    lines.extend(more(preview.blocks.len(), "block"));
+    lines.extend(preview.beams.iter().take(LISTED).map(beam));
+    lines.extend(more(preview.beams.len(), "beam"));
     lines.extend(scene.ground.as_ref().map(ground));
     lines.extend(driven(scene));
     lines
@@ -99,12 +100,12 @@ fn ground(ground: &GroundScene) -> String {
     text
 }
 
-/// What is prescribed and what is loaded.
+/// Prescribed motions and loads.
 fn driven(scene: &Scene) -> Vec<String> {
     let beams = scene.beams.iter().filter(|beam| beam.motion.is_given());
     let mut lines: Vec<String> = beams
         .take(LISTED)
-        .map(|beam| format!("supports of {}: moving, its deflections are relative to them", beam.name))
+        .map(|beam| format!("supports of {}: moving; its deflections are relative to them", beam.name))
         .collect();
     for block in scene.blocks.iter().filter(|block| block.motion.is_given()).take(LISTED) {
         let axes = ["x", "y", "angle"].iter().zip(&block.motion.0);
@@ -122,7 +123,7 @@ fn more(n: usize, what: &str) -> Option<String> {
     (n > LISTED).then(|| format!("and {} more", count((n - LISTED) as u64, what)))
 }
 
-fn block(block: &BlockOutlook) -> String {
+fn block(block: &BlockPreview) -> String {
     let place = match &block.on {
         Some(on) => format!("on {on}, tilted by {} deg", degrees(block.angle)),
         None => format!("placed by its mass centre, at {} deg", degrees(block.angle)),
@@ -133,10 +134,10 @@ fn block(block: &BlockOutlook) -> String {
     format!("block {}: {} kg, {place}{overturns}", block.name, digits(block.mass))
 }
 
-/// Digits below which they are told.
+/// Digits are shown if they are fewer than this.
 const WORTH_TELLING: f64 = 10.0;
 
-fn beam(beam: &BeamOutlook) -> String {
+fn beam(beam: &BeamPreview) -> String {
     let mut text = format!(
         "beam {}: {}{}, {}, {}",
         beam.name,
@@ -161,7 +162,7 @@ fn beam(beam: &BeamOutlook) -> String {
             "\n    first frequency {} Hz (period {} s){}",
             digits(frequency.model),
             digits(1.0 / frequency.model),
-            match frequency.parted() {
+            match frequency.exact_if_different() {
                 Some(beam) =>
                     format!(" of the model, {} the {} Hz of {own}", beside(frequency.model, beam), digits(beam)),
                 None if beam.frequency_is_exact => String::new(),
@@ -171,7 +172,7 @@ fn beam(beam: &BeamOutlook) -> String {
     }
     if let Some(product) = beam.highest_frequency_step {
         let meaning = if product > 1.0 {
-            "over 1 is usual: such modes stay stable, but are not resolved in time"
+            "above 1, which is usual: such modes are stable, but not resolved in time"
         } else {
             "all modes are resolved in time"
         };
@@ -182,22 +183,22 @@ fn beam(beam: &BeamOutlook) -> String {
             digits(product)
         );
     }
-    // Full precision is not worth a line.
+    // Full precision is not mentioned.
     if let Some(correct) = beam.digits.filter(|correct| *correct < WORTH_TELLING) {
-        let few = if correct < FEW_DIGITS { ": too few, take a coarser mesh or a shorter step" } else { "" };
+        let few = if correct < FEW_DIGITS { ": too few, use a coarser mesh or a shorter step" } else { "" };
         let _ = write!(text, "\n    {correct:.1} digits of a step's solve are correct{few}");
     }
     if let Some(sag) = beam.sag.filter(|sag| sag.larger() > 0.0) {
         let _ = write!(
             text,
-            "\n    sags by {} m under {}the blocks at rest, {}",
+            "\n    sags by {} m under {}the resting blocks, {}",
             digits(sag.model),
             if beam.self_weight { "its own weight and " } else { "" },
             wording::part_of(sag.model, beam.span)
         );
-        if let Some(own) = sag.parted() {
+        if let Some(own) = sag.exact_if_different() {
             let part = wording::part_of(own, beam.span);
-            let _ = write!(text, "; that is {} the {} m ({part}) of a finer mesh", beside(sag.model, own), digits(own));
+            let _ = write!(text, "; {} the {} m ({part}) of a finer mesh", beside(sag.model, own), digits(own));
         }
     }
     if let Some(moment) = beam.yield_moment {
@@ -213,7 +214,7 @@ fn beside(model: f64, beam: f64) -> String {
 }
 
 /// " in 6 modes and 3 static corrections (flexibility over [0.1, 0.26] m to 7e-5)"
-fn shapes(shapes: &ShapesOutlook) -> String {
+fn shapes(shapes: &ShapesPreview) -> String {
     let mut text = format!(" in {}", count(shapes.modes as u64, "mode"));
     if shapes.corrections > 0 {
         let _ = write!(text, " and {}", count(shapes.corrections as u64, "static correction"));
@@ -225,34 +226,34 @@ fn shapes(shapes: &ShapesOutlook) -> String {
     text
 }
 
-fn model(scene: &Scene, outlook: &Outlook) -> Vec<String> {
+fn model(scene: &Scene, preview: &Preview) -> Vec<String> {
     let mut lines = vec![
         format!(
             "{} at most, {}",
-            count(outlook.possible_contacts as u64, "contact"),
-            count(outlook.dofs as u64, "degree of freedom")
+            count(preview.possible_contacts as u64, "contact"),
+            count(preview.dofs as u64, "degree of freedom")
         ),
         format!("contact solver {}, to a residual of {:e}", scene.solver.method, scene.solver.tolerance),
     ];
-    if let [first, others @ ..] = outlook.coupled_frequencies.as_slice() {
+    if let [first, others @ ..] = preview.coupled_frequencies.as_slice() {
         let all = others.iter().fold(digits(*first), |all, next| format!("{all}, {}", digits(*next)));
-        lines.push(format!("small vibrations of blocks and beams together about the start: {all} Hz"));
+        lines.push(format!("small vibrations of blocks and beams about the initial state: {all} Hz"));
     }
-    // The default is not worth a line.
+    // The default is not mentioned.
     if scene.time.gap_tolerance != 1e-12 {
         lines.push(format!(
-            "a gap below {:e} m counts as closed (1e-12 m is usual; it follows the largest block side unless given)",
+            "a gap below {:e} m counts as closed (usually 1e-12 m; derived from the largest block side unless given)",
             scene.time.gap_tolerance
         ));
     }
     lines
 }
 
-fn run(scene: &Scene, outlook: &Outlook) -> Vec<String> {
-    let (time, volume) = (&scene.time, outlook.volume);
+fn run(scene: &Scene, preview: &Preview) -> Vec<String> {
+    let (time, volume) = (&scene.time, preview.volume);
     if let Some(accuracy) = time.accuracy {
         return vec![format!(
-            "steps to {} s as long as an accuracy of {accuracy} allows, by {}: the run finds them",
+            "to {} s, with the longest steps for an accuracy of {accuracy}, by {}: the run finds them",
             time.end,
             time.scheme.word()
         )];
@@ -264,12 +265,12 @@ fn run(scene: &Scene, outlook: &Outlook) -> Vec<String> {
             time.step,
             time.steps() as f64 * time.step,
             time.theta,
-            // The default is not worth a word.
+            // The default is not mentioned.
             if time.scheme == SchemeName::default() { String::new() } else { format!(", by {}", time.scheme.word()) }
         ),
         format!(
-            "time: {} (an estimate from times measured on a server, good {})",
-            wording::duration(outlook.seconds),
+            "time: {} (estimated from times measured on a server, accurate {})",
+            wording::duration(preview.seconds),
             accuracy_of_seconds(scene)
         ),
         format!("tables: about {} in {} rows", wording::bytes(volume.bytes), volume.rows),
@@ -288,7 +289,7 @@ fn degrees(radians: f64) -> String {
     digits(radians.to_degrees())
 }
 
-/// A number to four digits.
+/// A number with four digits.
 fn digits(x: f64) -> String {
     if x == 0.0 {
         return "0".to_owned();

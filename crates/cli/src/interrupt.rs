@@ -1,15 +1,15 @@
-//! Ctrl-C, and the signals by which batch systems and closed terminals end a program: the run ends after the step at hand,
-//! with its rows complete; a second one ends the program at once.
+//! Ctrl-C, and the signals with which batch systems and closed terminals end a program: the run
+//! ends after the current step, with complete rows; a second signal ends the program at once.
 
 use std::sync::atomic::AtomicBool;
 
-/// Exit code of a program that a user ended.
+/// Exit code of a program ended by its user.
 pub(crate) const INTERRUPTED: u8 = 130;
 
 static WANTED: AtomicBool = AtomicBool::new(false);
 
-/// Listens from now on; the flag says that a signal came. Where listening is impossible the signal ends the program as it
-/// always did.
+/// Starts to listen; the flag is set by a signal. If listening is impossible a signal ends the
+/// program at once.
 pub(crate) fn listen() -> &'static AtomicBool {
     static ONCE: std::sync::Once = std::sync::Once::new();
     ONCE.call_once(system::listen);
@@ -24,7 +24,7 @@ mod system {
     use std::sync::atomic::Ordering;
 
     pub(super) fn listen() {
-        // Who starts a program with a signal ignored (`nohup`, a shell's `&`) wants it to go on.
+        // A program started with a signal ignored (`nohup`, a shell's `&`) should continue.
         let heeded = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|&signal| !is_ignored(signal));
         let Ok(mut signals) = Signals::new(heeded) else { return };
         std::thread::spawn(move || {
@@ -36,7 +36,7 @@ mod system {
         });
     }
 
-    /// Whether the process was started with this signal ignored; false where the system doesn't say.
+    /// Whether the process was started with this signal ignored; false if unknown.
     fn is_ignored(signal: i32) -> bool {
         let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
         let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));

@@ -18,7 +18,7 @@ use run::Exit;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
-use teeter_run::{Existing, ExportWhen, Extent};
+use teeter_run::{ExistingResults, ExportWhen, Extent};
 
 /// Simulates rigid blocks that rock, slide and bounce on elastic beams and on rigid ground.
 #[derive(Debug, Parser)]
@@ -34,52 +34,60 @@ enum Command {
     #[command(after_help = "Examples:\n  teeter run scenarios/free-rocking-on-beam.toml\n  \
         teeter run scene.toml --out results --set time.step=50us --set contact.feet.friction=0.3\n  \
         teeter run scene.toml --checkpoint-every \"0.1 s\"            # survives a kill:\n  \
-        teeter run scene.toml --checkpoint-every \"0.1 s\" --resume   # goes on, to the same bytes")]
+        teeter run scene.toml --checkpoint-every \"0.1 s\" --resume   # continues, to the same bytes")]
     Run {
         /// The scene file; `-` reads standard input
         scene: PathBuf,
-        /// Folder for the results (default: `runs/` and the name of the scene file)
+        /// Folder for the results (default: `runs/` with the name of the scene file)
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
         /// Override a key of the scene, such as beam.table.thickness="2 mm"; may be repeated
         #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value)]
         set: Vec<(String, String)>,
-        /// Find the longest step that reaches this accuracy; the scene must have `step = "auto"` or none, as with --set time.step=auto
+        /// Find the longest step that reaches this accuracy; the scene must have `step = "auto"` or
+        /// none, as with --set time.step=auto
         #[arg(long, value_name = "X", allow_hyphen_values = true)]
         accuracy: Option<String>,
-        /// Find until when the motion can be told: by runs with half the step, and from 1e-12 beside the start
+        /// Find up to when the motion is predictable, by runs with half the step and with an
+        /// initial state perturbed by 1e-12
         #[arg(long, conflicts_with = "from")]
         horizon: bool,
-        /// Print errors only
+        /// Print only errors
         #[arg(long)]
         quiet: bool,
         /// Replace results of an earlier run
         #[arg(long)]
         force: bool,
-        /// Save contact problems of the run to DIR, as FCLIB files (HDF5) named by step; `teeter solve DIR` solves them
+        /// Save contact problems of the run to DIR, as FCLIB files (HDF5) named by step;
+        /// `teeter solve DIR` solves them
         #[arg(long, value_name = "DIR")]
         export_problems: Option<PathBuf>,
-        /// Which: `hard` (over ten times the median number of iterations, solved by a fallback, or not solved) or every:N steps
+        /// Which problems: `hard` (over ten times the median number of iterations, solved by a
+        /// fallback, or not solved) or every:N steps
         #[arg(long, value_name = "hard|every:N", default_value = "hard", value_parser = run::export_when)]
         #[arg(requires = "export_problems")]
         export_when: ExportWhen,
-        /// Write a checkpoint each time that so much simulated time has passed, with its unit; and one at Ctrl-C
+        /// Write a checkpoint at this interval of simulated time, with its unit, and one at Ctrl-C
         #[arg(long, value_name = "T", value_parser = run::interval)]
         checkpoint_every: Option<f64>,
-        /// Go on from the checkpoint in the folder for results; without one, start at the beginning
+        /// Continue from the checkpoint in the folder for results; without one, start at the
+        /// beginning
         #[arg(long, conflicts_with = "force")]
         resume: bool,
-        /// `full`: model all that the scene names, also what can't matter to it and is left out otherwise; `teeter check` lists that
+        /// `full`: model everything in the scene, including what can't affect the motion and is
+        /// otherwise left out; `teeter check` lists that
         #[arg(long, value_name = "required|full", default_value = "required", value_parser = run::extent)]
         model: Extent,
-        /// Start from a state or checkpoint of a run with the same bodies; its clock goes on, up to time.end; by the full model
+        /// Start from a state or checkpoint of a run with the same bodies; its clock continues, up
+        /// to time.end; uses the full model
         #[arg(long, value_name = "FILE")]
         from: Option<PathBuf>,
-        /// Write the state before the first step whose contact problem is not solved to FILE, for --from
+        /// Write the state before the first step whose contact problem is not solved to FILE, for
+        /// --from
         #[arg(long, value_name = "FILE")]
         dump_unconverged: Option<PathBuf>,
     },
-    /// Say what a scene models, costs and writes, and what looks wrong in it; run nothing
+    /// Show what a run of a scene models, costs and writes, and what looks wrong; run nothing
     #[command(after_help = "Examples:\n  teeter check scenarios/free-rocking-on-beam.toml\n  \
         teeter check scene.toml --set time.step=50us")]
     Check {
@@ -88,23 +96,26 @@ enum Command {
         /// Override a key of the scene, such as beam.table.thickness="2 mm"; may be repeated
         #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value)]
         set: Vec<(String, String)>,
-        /// `full`: model all that the scene names, also what can't matter to it and is left out otherwise; `teeter check` lists that
+        /// `full`: model everything in the scene, including what can't affect the motion and is
+        /// otherwise left out; `teeter check` lists that
         #[arg(long, value_name = "required|full", default_value = "required", value_parser = run::extent)]
         model: Extent,
     },
-    /// Measure what accuracy costs in a scene: errors and CPU time over schemes, steps, meshes and solvers; what to take for which accuracy
+    /// Measure what accuracy costs in a scene: errors and CPU time over schemes, steps, meshes and
+    /// solvers; recommends settings
     #[command(after_help = "Examples:\n  teeter tradeoff scenarios/free-rocking-on-beam.toml\n  \
         teeter tradeoff scene.toml --out trade --set time.end=200ms")]
     Tradeoff {
         /// The scene file; `-` reads standard input
         scene: PathBuf,
-        /// Folder for the results (default: `runs/`, the name of the scene file and `-tradeoff`)
+        /// Folder for the results (default: `runs/` with the name of the scene file and
+        /// `-tradeoff`)
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
         /// Override a key of the scene, such as beam.table.thickness="2 mm"; may be repeated
         #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value)]
         set: Vec<(String, String)>,
-        /// Print the advice and errors only
+        /// Print only the advice and errors
         #[arg(long)]
         quiet: bool,
         /// Replace results of an earlier study
@@ -116,25 +127,27 @@ enum Command {
     /// Solve contact problems from FCLIB files; print residual, iterations and time
     #[command(after_help = SOLVE_HELP)]
     Solve {
-        /// FCLIB files (HDF5), or folders of them: all *.hdf5 below
+        /// FCLIB files (HDF5), or folders with such files: all *.hdf5 below
         #[arg(value_name = "FILE.hdf5|DIR")]
         paths: Vec<PathBuf>,
-        /// The solvers, by the names of `teeter solvers`; `all`: each one on the problems that it takes
+        /// The solvers, by the names of `teeter solvers`; `all`: each one on the problems that it
+        /// supports
         #[arg(long = "solver", value_name = "NAME", num_args = 1.., value_delimiter = ',', default_value = "auto")]
         solvers: Vec<String>,
-        /// The judge's residual that counts as solved
+        /// The residual that counts as solved
         #[arg(long, value_name = "T", default_value = "1e-10", value_parser = solve::tolerance)]
         tolerance: f64,
-        /// End a solve after this time, with its unit
+        /// Time limit for a solve, with its unit
         #[arg(long, value_name = "T", default_value = "10 s", value_parser = solve::time)]
         time_limit: Duration,
-        /// Print a JSON object on a line for each file and solver
+        /// Print a line with a JSON object for each file and solver
         #[arg(long)]
         json: bool,
-        /// Write the impulses to `DIR/<file stem>.<solver>.csv`, a number a line
+        /// Write the impulses to `DIR/<file stem>.<solver>.csv`, one number per line
         #[arg(long, value_name = "DIR", conflicts_with = "profile")]
         solutions: Option<PathBuf>,
-        /// Solve to 1e-4, 1e-8 and 1e-12; write table.csv, performance profiles (SVG) and profile.md to DIR
+        /// Solve to 1e-4, 1e-8 and 1e-12; write table.csv, performance profiles (SVG) and
+        /// profile.md to DIR
         #[arg(long, value_name = "DIR", conflicts_with = "tolerance")]
         profile: Option<PathBuf>,
         /// Replace solutions or profiles of an earlier solve
@@ -144,7 +157,7 @@ enum Command {
     /// Print the JSON Schema of scene files, for editors
     #[command(after_help = "Examples:\n  teeter schema > scene.schema.json\n  teeter schema --format markdown")]
     Schema {
-        /// `json`: the schema; `markdown`: the same as a page for people
+        /// `json`: the schema; `markdown`: the reference page
         #[arg(long, default_value = "json")]
         format: schema::Format,
     },
@@ -167,7 +180,7 @@ fn key_value(text: &str) -> Result<(String, String), String> {
     }
 }
 
-/// What clap has to say instead of running anything: help and version on standard output, wrong usage on standard error.
+/// Prints clap's help and version to standard output, errors of usage to standard error.
 fn explain(error: &clap::Error) -> ExitCode {
     match error.print() {
         Err(why) if !error.use_stderr() && why.kind() != std::io::ErrorKind::BrokenPipe => {
@@ -175,7 +188,7 @@ fn explain(error: &clap::Error) -> ExitCode {
             Exit::Failed.into()
         }
         _ if error.use_stderr() => Exit::BadInput.into(),
-        _ => Exit::Done.into(),
+        _ => Exit::FinishedRun.into(),
     }
 }
 
@@ -204,9 +217,9 @@ fn main() -> ExitCode {
             set.extend(accuracy.map(|accuracy| ("time.accuracy".to_owned(), accuracy)));
             let export = export_problems.map(|folder| (folder, export_when));
             let existing = match (resume, force) {
-                (true, _) => Existing::Resume,
-                (false, true) => Existing::Replace,
-                (false, false) => Existing::Refuse,
+                (true, _) => ExistingResults::Resume,
+                (false, true) => ExistingResults::Replace,
+                (false, false) => ExistingResults::Refuse,
             };
             let options = run::Options {
                 scene,

@@ -1,4 +1,4 @@
-//! The progress bars of what takes its time.
+//! Progress bars of long tasks.
 
 use crate::console::{self, Console};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -7,15 +7,15 @@ use std::time::{Duration, Instant};
 /// A run shorter than this shows no bar.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Draws a bar with rate and time left, on a terminal only.
-pub(crate) struct Progress {
+/// Draws a bar with rate and time left, only on a terminal.
+pub(crate) struct StepBar {
     console: Console,
     begin: Instant,
     bar: ProgressBar,
 }
 
-impl Progress {
-    /// Of steps from `first` to `steps`.
+impl StepBar {
+    /// A bar for steps from `first` to `steps`.
     pub(crate) fn new(console: Console, first: u64, steps: u64) -> Self {
         let bar = ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::hidden());
         bar.set_position(first);
@@ -27,7 +27,7 @@ impl Progress {
         Self { console, begin: Instant::now(), bar }
     }
 
-    /// The run is at this step.
+    /// Sets the current step.
     pub(crate) fn at(&self, step: u64) {
         if self.console.is_watched() {
             if self.bar.is_hidden() && self.begin.elapsed() > PATIENCE {
@@ -37,27 +37,28 @@ impl Progress {
         }
     }
 
-    /// A console whose lines stand above the bar.
+    /// Prints lines above the bar.
     pub(crate) fn tell(&self) -> impl Fn(&str) + use<> {
         let (console, bar) = (self.console, self.bar.clone());
         move |text| bar.suspend(|| console.note(text))
     }
 }
 
-impl Drop for Progress {
+impl Drop for StepBar {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
     }
 }
 
-/// Rows on standard output as they come, above a bar on standard error that counts the solves.
-pub(crate) struct Solves {
+/// Prints rows to standard output as they are available, above a bar on standard error that counts
+/// the solves.
+pub(crate) struct SolveBar {
     console: Console,
     begin: Instant,
     bar: ProgressBar,
 }
 
-impl Solves {
+impl SolveBar {
     pub(crate) fn new(console: Console, solves: u64) -> Self {
         let bar = ProgressBar::with_draw_target(Some(solves), ProgressDrawTarget::hidden());
         if let Ok(style) = ProgressStyle::with_template("{bar:30} {human_pos} of {human_len} solves  {elapsed}") {
@@ -86,20 +87,20 @@ impl Solves {
     }
 }
 
-impl Drop for Solves {
+impl Drop for SolveBar {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
     }
 }
 
 /// A bar for work in phases, on standard error.
-pub(crate) struct Phases {
+pub(crate) struct PhaseBar {
     console: Console,
     begin: Instant,
     bar: ProgressBar,
 }
 
-impl Phases {
+impl PhaseBar {
     pub(crate) fn new(console: Console) -> Self {
         let bar = ProgressBar::with_draw_target(Some(0), ProgressDrawTarget::hidden());
         if let Ok(style) = ProgressStyle::with_template("{bar:30} {msg}: {human_pos} of {human_len}  {elapsed}") {
@@ -108,7 +109,7 @@ impl Phases {
         Self { console, begin: Instant::now(), bar }
     }
 
-    /// A phase is so far.
+    /// Sets the progress of a phase.
     pub(crate) fn at(&self, phase: &str, done: usize, of: usize) {
         if self.console.is_watched() && self.bar.is_hidden() && self.begin.elapsed() > PATIENCE {
             self.bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(10));
@@ -121,7 +122,7 @@ impl Phases {
     }
 }
 
-impl Drop for Phases {
+impl Drop for PhaseBar {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
     }

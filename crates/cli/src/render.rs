@@ -1,4 +1,5 @@
-//! Findings about a scene as rustc shows its own: the line of the file, the place underlined, the rule beside it, the remedy below.
+//! Shows findings about a scene in the style of rustc: the line of the file, the position
+//! underlined, the rule beside it, the remedy below.
 
 use crate::console::clean;
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
@@ -7,7 +8,7 @@ use std::ops::Range;
 use teeter_run::LoadError;
 use teeter_scenario::diagnostic::{Diagnostic, Diagnostics, MOST_PRINTED, Severity};
 
-/// What is told of a scene that can't be loaded.
+/// The messages about a scene that can't be loaded.
 pub(crate) fn refusal(error: &LoadError) -> String {
     match error {
         LoadError::Invalid { text, found } => Presenter::new(text).all(found),
@@ -23,14 +24,14 @@ pub(crate) struct Presenter<'a> {
 }
 
 impl<'a> Presenter<'a> {
-    /// For findings whose spans count in `source`, with colours if a person is looking at standard error.
+    /// For findings whose spans refer to `source`, with colours if standard error is a terminal.
     pub(crate) fn new(source: &'a str) -> Self {
         Self::with_colours(source, wants_colours())
     }
 
     fn with_colours(source: &'a str, colours: bool) -> Self {
         let renderer = if colours { Renderer::styled() } else { Renderer::plain() };
-        // Lines are cut here, where the place that matters is known.
+        // Lines are cut here, where the relevant position is known.
         Self { source, renderer: renderer.term_width(usize::MAX / 4) }
     }
 
@@ -49,7 +50,8 @@ impl<'a> Presenter<'a> {
             _ => Level::ERROR,
         };
         let excerpt = self.excerpt(found);
-        // With a value the line reads as in the file, and the rule stands beside the value; else it is the title.
+        // With a value, the title reads as in the file and the rule is beside the value; otherwise
+        // the rule is part of the title.
         let path = cut(&found.path, PATH);
         let (title, label) = match (&found.written, &excerpt) {
             _ if path.is_empty() => (found.rule.clone(), None),
@@ -69,7 +71,7 @@ impl<'a> Presenter<'a> {
             (Some(_), _) => group
                 .element(snippet(text).line_numbering(false))
                 .element(Level::NOTE.message(format!("set on the command line, for {file}"))),
-            // Counted in the whole line; the snippet would count in what it is given.
+            // The column in the whole line; the snippet would use the excerpt.
             (None, Some((line, column))) if is_cut => {
                 group.element(Origin::path(file).line(line).char_column(column)).element(snippet(text))
             }
@@ -85,11 +87,11 @@ impl<'a> Presenter<'a> {
         self.renderer.render(&[group])
     }
 
-    /// The line that a finding is about, and its place in it.
+    /// The line of a finding, and its position in it.
     fn excerpt(&self, found: &Diagnostic) -> Option<Excerpt> {
         if let Some(set) = &found.set {
             let line = format!("--set {set}");
-            // Of a setting either the value or the key is wrong.
+            // In a setting either the value or the key is wrong.
             let equals = line.find('=').unwrap_or(line.len());
             let span = if found.written.is_some() { (equals + 1).min(line.len())..line.len() } else { 6..equals };
             return Some(Excerpt::new(&line, span));
@@ -103,7 +105,7 @@ impl<'a> Presenter<'a> {
     }
 }
 
-/// A line as shown: cut around a place, no character in it that would steer the terminal.
+/// An excerpt of a line around a position, without characters that control the terminal.
 #[derive(Default)]
 struct Excerpt {
     text: String,
@@ -112,7 +114,7 @@ struct Excerpt {
     is_cut: bool,
 }
 
-/// Characters of a line that are shown before, in and after the place.
+/// Characters of a line that are shown before, in and after the position.
 const BEFORE: usize = 48;
 const WITHIN: usize = 60;
 const AFTER: usize = 60;
@@ -134,7 +136,7 @@ impl Excerpt {
         let start = text.len();
         text.push_str(&clean(&cut(within, WITHIN), "\t"));
         let end = text.len();
-        // What follows a place that was cut is far away.
+        // Text after a shortened position is left out.
         if within.chars().nth(WITHIN).is_none() {
             text.push_str(&clean(&cut(after, AFTER), "\t"));
         }

@@ -1,38 +1,38 @@
-//! `teeter run`: arguments to a job, what the job tells to the console, how it ends to an exit
-//! code.
+//! `teeter run`: turns arguments into a job, its hooks into console output, and its end into an
+//! exit code.
 
 use crate::console::Console;
 use crate::interrupt::{self, INTERRUPTED};
-use crate::progress::Progress;
+use crate::progress::StepBar;
 use crate::render::{Presenter, refusal};
 use crate::scene;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use teeter_report::{ENERGY_MADE, ENERGY_TAKEN, HORIZON, UNLOCATED};
 use teeter_run::{
-    Done, Dump, EndedWord, Existing, ExportWhen, Extent, Hooks, LoadError, PrepareError, Prepared, RunError, RunJob,
-    Start, Summary,
+    EndedWord, ExistingResults, ExportWhen, Extent, FinishedRun, Hooks, LoadError, PrepareError, Prepared, RunError,
+    RunJob, RunStart, StateDump, Summary,
 };
 use teeter_scenario::dimension::Dimension;
 use teeter_scenario::quantity;
-use teeter_study::Basis;
+use teeter_study::ErrorBasis;
 
-/// How the command ended; the exit code of the program.
+/// How the command ended, for the exit code of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Exit {
-    Done,
+    FinishedRun,
     /// The work failed.
     Failed,
     /// Bad input or usage: nothing was written.
     BadInput,
-    /// The user ended it.
+    /// Ended by the user.
     Interrupted,
 }
 
 impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> Self {
         match exit {
-            Exit::Done => Self::SUCCESS,
+            Exit::FinishedRun => Self::SUCCESS,
             Exit::Failed => Self::from(1),
             Exit::BadInput => Self::from(2),
             Exit::Interrupted => Self::from(INTERRUPTED),
@@ -46,8 +46,8 @@ pub(crate) struct Options {
     pub(crate) out: Option<PathBuf>,
     pub(crate) set: Vec<(String, String)>,
     pub(crate) quiet: bool,
-    pub(crate) existing: Existing,
-    /// Where to save contact problems, and which.
+    pub(crate) existing: ExistingResults,
+    /// Folder for contact problems, and which to save.
     pub(crate) export: Option<(PathBuf, ExportWhen)>,
     /// Simulated time between checkpoints, s.
     pub(crate) checkpoint_every: Option<f64>,
@@ -55,9 +55,9 @@ pub(crate) struct Options {
     pub(crate) extent: Extent,
     /// A state to start from.
     pub(crate) from: Option<PathBuf>,
-    /// Whether to find until when the motion can be told.
+    /// Whether to find up to when the motion is predictable.
     pub(crate) horizon: bool,
-    /// Where to write the state before the first step that is not solved.
+    /// File for the state before the first unsolved step.
     pub(crate) dump_unconverged: Option<PathBuf>,
 }
 
@@ -109,7 +109,7 @@ pub(crate) fn export_when(text: &str) -> Result<ExportWhen, String> {
 pub(crate) fn interval(text: &str) -> Result<f64, String> {
     match quantity::parse(text, Dimension::TIME) {
         Ok(seconds) if seconds > 0.0 => Ok(seconds),
-        Ok(_) => Err("a time greater than 0 is wanted, such as \"0.1 s\"".to_owned()),
+        Ok(_) => Err("write a time greater than 0, such as \"0.1 s\"".to_owned()),
         Err(error) => Err(error.to_string()),
     }
 }
@@ -120,14 +120,14 @@ pub(crate) fn run(options: &Options) -> Exit {
         Ok(prepared) => prepared,
         Err(error) => return refuse(console, &error),
     };
-    let notes = notes(&prepared);
-    let progress = Progress::new(console, prepared.first_step(), prepared.steps());
+    let start_notes = start_notes(&prepared);
+    let progress = StepBar::new(console, prepared.first_step(), prepared.steps());
     let tell = progress.tell();
     let hooks = Hooks::new()
-        .on_start(|| notes.iter().for_each(|note| console.note(note)))
+        .on_start(|| start_notes.iter().for_each(|note| console.note(note)))
         .on_progress(|at| progress.at(at.step))
         .on_warning(|text| tell(&format!("warning: {text}")))
-        // From here on files are touched: a signal ends the run in order, not the process.
+        // From here on files are written: a signal ends the run, not the process.
         .cancelled_by(interrupt::listen());
     let ran = prepared.run(hooks);
     drop(progress);
@@ -144,7 +144,7 @@ fn refuse(console: Console, error: &PrepareError) -> Exit {
     match error {
         PrepareError::AlreadyEnded { ended: EndedWord::Complete, .. } => {
             console.note(&error.to_string());
-            return Exit::Done;
+            return Exit::FinishedRun;
         }
         PrepareError::AlreadyEnded { .. } => {
             console.error(&format!("error: {error}"));
@@ -152,7 +152,7 @@ fn refuse(console: Console, error: &PrepareError) -> Exit {
         }
         PrepareError::Load(error) => console.error(&refusal(error)),
         PrepareError::Resume(_) => {
-            console.error(&format!("error: {error}\nhelp: --force in place of --resume starts over"));
+            console.error(&format!("error: {error}\nhelp: --force instead of --resume starts over"));
         }
         PrepareError::DumpExists(_) => console.error(&format!("error: {error}; --force replaces it")),
         error => console.error(&format!("error: {error}")),
@@ -160,14 +160,13 @@ fn refuse(console: Console, error: &PrepareError) -> Exit {
     Exit::BadInput
 }
 
-/// What is told before a run: where it starts, if that needs a word, and what looks wrong in the
-/// scene.
-fn notes(prepared: &Prepared) -> Vec<String> {
+/// Notes before a run: where it starts, unless at the beginning, and warnings about the scene.
+fn start_notes(prepared: &Prepared) -> Vec<String> {
     let place = prepared.folder().display();
     let start = match prepared.start() {
-        Start::Checkpoint { t } => Some(format!("going on from t = {t} s")),
-        Start::NoCheckpoint => Some(format!("{place} holds no checkpoint: the run starts again from its beginning")),
-        Start::NothingToResume => Some(format!("{place} holds no run to resume: it starts from its beginning")),
+        RunStart::Checkpoint { t } => Some(format!("continuing from t = {t} s")),
+        RunStart::NoCheckpoint => Some(format!("{place} has no checkpoint: the run starts again from the beginning")),
+        RunStart::NothingToResume => Some(format!("{place} has no run to resume: it starts from the beginning")),
         _ => None,
     };
     let presenter = Presenter::new(prepared.resolved().document.source());
@@ -175,7 +174,7 @@ fn notes(prepared: &Prepared) -> Vec<String> {
         let until =
             if chosen.whole { String::new() } else { format!(" up to t = {:.4} s, the horizon", chosen.horizon) };
         let off = match chosen.basis {
-            Basis::Order => "by a run with half of it",
+            ErrorBasis::Order => "by a run with half of it",
             _ => "from finer ones",
         };
         format!("steps of {:e} s, found by {} runs: off by {:.1e} {off}{until}", chosen.step, chosen.runs, chosen.error)
@@ -183,31 +182,30 @@ fn notes(prepared: &Prepared) -> Vec<String> {
     start.into_iter().chain(chosen).chain(prepared.warnings().iter().map(|warning| presenter.one(warning))).collect()
 }
 
-/// Tells how a run ended and what it wrote beside its results.
-fn conclude(console: Console, options: &Options, done: &Done) -> Exit {
-    let exit = tell_end(console, options, &done.summary, &done.folder);
+/// Reports how a run ended and what it wrote besides its results.
+fn conclude(console: Console, options: &Options, done: &FinishedRun) -> Exit {
+    let exit = report_end(console, options, &done.summary, &done.folder);
     if let Some(exported) = &done.exported {
         let count = exported.count;
         let problems = if count == 1 { "problem" } else { "problems" };
         console.note(&format!("  {count} contact {problems} in {}", exported.folder.display()));
     }
     match &done.dump {
-        Some(Dump::Written(path)) => {
+        Some(StateDump::Written(path)) => {
             let path = path.display();
-            console.note(&format!(
-                "  the state before the first step not solved is in {path}; --from {path} starts there"
-            ));
+            console
+                .note(&format!("  the state before the first unsolved step is in {path}; --from {path} starts there"));
         }
-        Some(Dump::NotNeeded(path)) => {
-            console.note(&format!("  every step was solved: {} is not written", path.display()));
+        Some(StateDump::NotNeeded(path)) => {
+            console.note(&format!("  every step was solved, so {} is not written", path.display()));
         }
         _ => {}
     }
     exit
 }
 
-fn tell_end(console: Console, options: &Options, summary: &Summary, folder: &Path) -> Exit {
-    // All others have been told as they came.
+fn report_end(console: Console, options: &Options, summary: &Summary, folder: &Path) -> Exit {
+    // All others have been printed when they occurred.
     for warning in summary
         .warnings
         .iter()
@@ -217,18 +215,18 @@ fn tell_end(console: Console, options: &Options, summary: &Summary, folder: &Pat
     }
     match summary.ended {
         EndedWord::Complete => {
-            console.note(&told(summary, folder, options.horizon));
-            Exit::Done
+            console.note(&format_summary(summary, folder, options.horizon));
+            Exit::FinishedRun
         }
         EndedWord::Interrupted => {
             let mut text = how_it_ended(summary, "interrupted");
-            text.push_str(if options.checkpoint_every.is_some() { "; --resume goes on from there" } else { "" });
+            text.push_str(if options.checkpoint_every.is_some() { "; --resume continues from there" } else { "" });
             console.note(&text);
             Exit::Interrupted
         }
         _ => {
             let reason = summary.warnings.iter().find(|w| matches!(w.code.as_ref(), "ended" | "unconverged"));
-            let why = reason.map_or("it could not go on", |warning| warning.text.as_str());
+            let why = reason.map_or("it could not continue", |warning| warning.text.as_str());
             console.error(&format!("error: {}", how_it_ended(summary, why)));
             Exit::Failed
         }
@@ -238,16 +236,16 @@ fn tell_end(console: Console, options: &Options, summary: &Summary, folder: &Pat
 fn how_it_ended(summary: &Summary, why: &str) -> String {
     let t = summary.t;
     let rows = match summary.ended {
-        EndedWord::DiskFull => "the tables hold the rows that there was room for",
+        EndedWord::DiskFull => "the tables contain the rows for which there was space",
         _ => "the rows up to there are written",
     };
     format!("the run ended at t = {t} s after {} steps: {why}; {rows}", summary.steps)
 }
 
-/// What a user wants to know first.
-fn told(summary: &Summary, folder: &Path, horizon: bool) -> String {
+/// The summary for the user.
+fn format_summary(summary: &Summary, folder: &Path, horizon: bool) -> String {
     let mut text = format!(
-        "{}: {} steps of {} s in {:.2} s ({:.2} µs a step)\n",
+        "{}: {} steps of {} s in {:.2} s ({:.2} µs per step)\n",
         summary.title, summary.steps, summary.dt, summary.wall_seconds, summary.us_per_step
     );
     let count = |n: u64, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
@@ -266,10 +264,10 @@ fn told(summary: &Summary, folder: &Path, horizon: bool) -> String {
     if summary.contact.unconverged_steps > 0 {
         text.push_str(&format!("  {} steps not solved to tolerance\n", summary.contact.unconverged_steps));
     }
-    // Where it is earlier, a warning has said so.
+    // If it is earlier, there was a warning.
     if horizon && summary.warnings.iter().all(|warning| warning.code != HORIZON) {
-        text.push_str("  horizon: with half the step, and started 1e-12 beside itself, the motion is the same to the end, to 1 %\n");
+        text.push_str("  horizon: with half the step, and with the initial state perturbed by 1e-12, the motion agrees within 1 % to the end\n");
     }
-    text.push_str(&format!("  results in {0}, to be looked at in {0}/report.html", folder.display()));
+    text.push_str(&format!("  results in {0}, report in {0}/report.html", folder.display()));
     text
 }

@@ -1,12 +1,12 @@
-//! The scene that the command line names.
+//! The scene named on the command line.
 
 use std::io::Read;
 use std::path::Path;
 use teeter_run::{LoadError, SceneFileError, SceneSource};
 use teeter_scenario::decode::LARGEST_FILE;
 
-/// The scene file of that path, or the scene on standard input for `-`: of one too large, no more
-/// than shows that.
+/// The scene file with that path, or the scene on standard input for `-`: if it is too large, only
+/// enough to detect that.
 pub(crate) fn source(path: &Path) -> Result<SceneSource, LoadError> {
     if path != Path::new("-") {
         return Ok(SceneSource::file(path));

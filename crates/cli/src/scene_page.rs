@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 use teeter_scenario::dimension::Dimension;
-use teeter_scenario::keys::{Key, Kind, Occurrence, OnlyWith, Presence, Range, TABLES, Table};
+use teeter_scenario::keys::{Key, Kind, Occurrence, OnlyWith, Presence, Range, TABLES, TableSchema};
 use teeter_scenario::units;
 
-/// A scene that uses most of what there is.
+/// A scene as an example.
 const EXAMPLE: &str = include_str!("../../../scenarios/free-rocking-on-beam.toml");
 
 const HEAD: &str = "\
@@ -13,70 +13,74 @@ const HEAD: &str = "\
 
 # The scene file
 
-A scene is a TOML file: a time span, bodies, the contacts between them, and what to write. `teeter check SCENE.toml` says
-what it models and what looks wrong; `teeter run SCENE.toml` simulates it; `--set KEY=VALUE` overrides a key by its path, such as
+A scene is a TOML file: a time span, bodies, the contacts between them, and output. `teeter check SCENE.toml` shows its
+model and what looks wrong; `teeter run SCENE.toml` simulates it; `--set KEY=VALUE` overrides a key by its path, such as
 `--set beam.table.thickness=\"2 mm\"`. `teeter schema` prints a JSON Schema for editors.
 
-A value with a dimension is a string with its unit: `\"36 cm\"`, `\"69 GPa\"`, `\"9.81 m/s^2\"`, `\"0.4 N s/m^2\"`. A bare number there is an
-error, so that no unit is ever guessed. Numbers are computed with from 1e-12 to 1e12 in SI units unless the table says otherwise.
-Names (of materials, beams, blocks, contacts, signals, loads) hold letters, digits, `_`, `-`, at most 64 of them; no two bodies share one, and
-`ground` is the ground's. A file is at most 4 MB; all that is wrong in it is told at once. Files that a scene names (tables of signals, at
-most 64 MB and 2 million rows) are found from its folder.
+A value with a dimension is a string with its unit: `\"36 cm\"`, `\"69 GPa\"`, `\"9.81 m/s^2\"`, `\"0.4 N s/m^2\"`. A bare number
+is an error there, so that no unit is ever guessed. Numbers may have absolute values from 1e-12 to 1e12 in SI units unless the
+table says otherwise. Names (of materials, beams, blocks, contacts, signals, loads) may contain letters, digits, `_` and `-`, at
+most 64 of them; no two bodies may share a name, and `ground` is reserved for the ground. A file may have at most 4 MB; all its
+errors are reported at once. Paths of files named in a scene (tables of signals, at most 64 MB and 2 million rows) are relative to
+its folder.
 ";
 
 const PLACES: &str = "\
 ## Where a block starts
 
-Either on something: `on` names a beam or `\"ground\"`, `at` is the place x of the middle of its base before it is tilted, and `tilt`
-turns it about the corner that it stays on, the left one if positive, the right one if negative. A contact must join the two.
-On inclined ground its base lies along the incline, and `tilt` counts from there; ground and supports that start displaced are where the
-block is put. Or anywhere: `position` is the place of its mass centre and `angle` its turn about it. A corner may not start below a surface that it is
-in contact with, and no block inside another.
+Either on a body: `on` names a beam, another block or `\"ground\"`, `at` is the position x of the midpoint of its base before it
+is tilted, and `tilt` rotates it about the corner on which it then stands, the left one if positive, the right one if negative. A
+contact between the two is required. On inclined ground the base lies along the incline, and `tilt` is relative to it; ground and
+supports with an initial displacement are displaced when the block is placed. Or anywhere: `position` is the position of its mass
+centre and `angle` its rotation about it. A corner may not start below a surface with which it has a contact, and no block inside
+another.
 ";
 
 const WARNINGS: &str = "\
-## What is warned of
+## Warnings
 
-A scene with a warning runs all the same. `teeter check` and `teeter run` warn of
+A scene with a warning still runs. `teeter check` and `teeter run` warn of
 
-- a `tilt`, with the incline of the ground, within 10 % of the critical angle α = atan(width/height), or beyond it: standing still the block overturns;
-- a beam that sags by more than 1/50 of its span under the weight of the blocks on it: deflections are no longer small (`check` notes a
-  sag from 1/250 on: linear theory leaves out the shortening of the axis, at 1/68 some per cent of the block's angle);
-- a signal that nothing uses (`check` notes as well an incline that is steeper than the friction of a block on it holds);
-- a contact with duration that a block of its mass on its stiffness leaves again in less than 20 steps;
+- a `tilt`, including the incline of the ground, within 10 % of the critical angle α = atan(width/height), or beyond it: released
+  at rest the block overturns;
+- a beam that sags by more than 1/50 of its span under the weight of the blocks on it: deflections are no longer small (`check`
+  notes a sag from 1/250 on: linear theory neglects the shortening of the axis, at 1/68 some per cent of the block's angle);
+- a signal that is not used (`check` also notes an incline too steep for the friction of a block on it);
+- a compliant contact whose duration, for the mass of the block and its stiffness, is less than 20 steps;
 - the table of a signal that ends before the run or begins after 0 s with a value other than 0: that value is kept;
-- a `step` coarser than a tenth of the shortest time scale of a contact: the rocking time √(4R/3g) of a block, R half its diagonal, and
-  for a block on a beam the beam's first period as well;
-- an `end` that is no multiple of the step: the run goes on to the first step past it;
-- a `gap_tolerance` over 1e-6 of the shortest side of a block, as blocks hover that high (over 1e-3 it is refused), and a `tolerance` of the solver over 1e-4;
+- a `step` longer than a tenth of the shortest time scale of a contact: the rocking time √(4R/3g) of a block, R half its diagonal,
+  and for a block on a beam also the beam's first period;
+- an `end` that is not a multiple of the step: the run continues to the first step past it;
+- a `gap_tolerance` over 1e-6 of the shortest side of a block, as blocks may float that high (over 1e-3 it is refused), and a
+  solver `tolerance` over 1e-4;
 - `theta` below 0.5, with the largest stable step;
-- signals, and displacements of prescribed motions, that are faster than the step; supports, or ground under a block at rest, that begin with a velocity
-  ([signals.md](signals.md));
-- a mesh, or modes, that lack flexibility where a block or a load presses; a key that has no effect.
+- signals, and displacements of prescribed motions, that are faster than the step; supports, or ground under a block at rest, that
+  start with a velocity ([signals.md](signals.md));
+- a mesh, or modes, that lack flexibility where a block or a load acts; a key that has no effect.
 
-What a run measures it says at its end, on the terminal, on the page and among the `warnings` of `summary.json`:
+A run gives warnings about what it has measured at its end, on the terminal, on the page and among the `warnings` of `summary.json`:
 
-| code | what it says |
+| code | meaning |
 |---|---|
-| `under-resolved`, `under-resolved-swings`, `under-resolved-flight` | steps too long for the impacts of a block, for the swings of a beam, for a flight with θ other than ½: motions are likely off by more than 10 % ([resolution.md](resolution.md)) |
+| `under-resolved`, `under-resolved-swings`, `under-resolved-flight` | steps too long for the impacts of a block, for the vibration of a beam, for a flight with θ other than ½: motions are likely off by more than 10 % ([resolution.md](resolution.md)) |
 | `unconverged` | steps whose contact problem was not solved to tolerance |
 | `unlocated` | steps of `event-driven` in which not every event was located ([schemes.md](schemes.md)) |
-| `energy-made` | contacts, or the scheme, made 1 % or more of the energy scale, or of the energy lost ([schemes.md](schemes.md)) |
-| `energy-taken` | the scheme's own rule took 1 % or more of the energy scale ([schemes.md](schemes.md)) |
-| `horizon` | until when the motion can be told, where `--horizon` finds that it is before the end ([accuracy.md](accuracy.md)) |
-| `energy-account` | the identity of energy is off by more than rounding |
-| `deep-penetration`, `far-turn` | corners over a tenth of a block's shorter side deep; turns of more than 0.1 rad a step |
+| `energy-made` | contacts, or the scheme, generated 1 % or more of the energy scale, or of the energy lost ([schemes.md](schemes.md)) |
+| `energy-taken` | the scheme itself dissipated 1 % or more of the energy scale ([schemes.md](schemes.md)) |
+| `horizon` | up to when the motion is predictable, if `--horizon` finds that this is before the end ([accuracy.md](accuracy.md)) |
+| `energy-account` | the energy identity is off by more than rounding |
+| `deep-penetration`, `far-turn` | penetrations of more than a tenth of a block's shorter side; rotations of more than 0.1 rad per step |
 | `contested-landing` | a block landed while bounces of another of its contacts had been cut short by the steps of `moreau-jean-located` ([accuracy.md](accuracy.md)) |
-| `passes-through`, `between-corners`, `past-the-end` | bodies inside each other where no contact is modelled ([impacts.md](impacts.md)) |
-| `large-deflection`, `yield` | a beam out of linear theory, or over its yield strength |
-| `model-limits` | energy or penetration over what was taken for granted where parts were left out ([required.md](required.md)) |
+| `passes-through`, `between-corners`, `past-the-end` | overlapping bodies where no contact is modelled ([impacts.md](impacts.md)) |
+| `large-deflection`, `yield` | a beam beyond linear theory, or over its yield strength |
+| `model-limits` | energy or penetration over the limits on which a reduced model relies ([required.md](required.md)) |
 ";
 
 /// The page.
 pub(crate) fn page() -> String {
     let mut page = HEAD.to_owned();
     let _ = write!(page, "\n```toml\n{EXAMPLE}```\n");
-    let _ = write!(page, "\nThe units known are {}; `µ` may be written for `u`.\n", units::known());
+    let _ = write!(page, "\nKnown units are {}; `µ` may be written for `u`.\n", units::known());
     for table in TABLES {
         section(&mut page, table);
         if table.pattern == "block.*" {
@@ -87,7 +91,7 @@ pub(crate) fn page() -> String {
     page
 }
 
-fn section(page: &mut String, table: &Table) {
+fn section(page: &mut String, table: &TableSchema) {
     let path = table.pattern.replace('*', "NAME");
     let heading = match table.occurrence {
         _ if path.is_empty() => "Top of the file".to_owned(),
@@ -99,8 +103,8 @@ fn section(page: &mut String, table: &Table) {
     };
     let _ = write!(page, "\n## {heading}\n\n{}", table.doc);
     page.push_str(match table.occurrence {
-        Occurrence::Named => " As many as wanted, each under a name of its own.\n",
-        Occurrence::Optional | Occurrence::Inline => " May be left out.\n",
+        Occurrence::Named => " Any number, each with its own name.\n",
+        Occurrence::Optional | Occurrence::Inline => " Optional.\n",
         _ => "\n",
     });
     let built: Vec<&Key> = table.keys.iter().filter(|key| key.presence != Presence::NotYet).collect();
@@ -113,12 +117,12 @@ fn section(page: &mut String, table: &Table) {
     }
     let later = later(table);
     if !later.is_empty() {
-        let _ = write!(page, "\nKnown, but not built in yet: {}.\n", later.join(", "));
+        let _ = write!(page, "\nReserved, not implemented yet: {}.\n", later.join(", "));
     }
 }
 
 /// Keys and words that are refused for now.
-fn later(table: &Table) -> Vec<String> {
+fn later(table: &TableSchema) -> Vec<String> {
     let keys = table.keys.iter().filter(|key| key.presence == Presence::NotYet).map(|key| format!("`{}`", key.name));
     let words = table.keys.iter().flat_map(|key| {
         key.reserved.iter().map(|reserved| match key.kind {

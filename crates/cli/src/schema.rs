@@ -9,10 +9,10 @@ use crate::scene_page;
 use serde_json::{Map, Value, json};
 use teeter_scenario::dimension::Dimension;
 use teeter_scenario::keys::{
-    self, Bound, Key, Kind, LONGEST_TITLE, Occurrence, OnlyWith, Presence, Range, TABLES, Table,
+    self, Bound, Key, Kind, LONGEST_TITLE, Occurrence, OnlyWith, Presence, Range, TABLES, TableSchema,
 };
 
-/// What the schema is printed as.
+/// Output format of the schema.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Format {
     Json,
@@ -29,7 +29,7 @@ pub(crate) fn print(format: Format) -> Exit {
 
 /// The schema of a scene file read as JSON, draft 2020-12.
 ///
-/// It is more lenient than the program where only that can tell: `docs/schema.md` says where.
+/// It is more lenient than the program where a schema can't check: see `docs/schema.md`.
 fn schema() -> Value {
     let mut schema = json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -42,13 +42,13 @@ fn schema() -> Value {
     schema
 }
 
-/// What the program takes for a name.
+/// The names that the program accepts.
 const NAME: &str = "^[A-Za-z0-9_-]{1,64}$";
 
-/// The same with `*` for any letters.
+/// The same with `*` for any characters.
 const PATTERN: &str = "^[A-Za-z0-9_*-]{1,}$";
 
-fn object(table: &Table) -> Map<String, Value> {
+fn object(table: &TableSchema) -> Map<String, Value> {
     let mut properties = Map::new();
     for key in table.keys {
         properties.insert(key.name.to_owned(), property(key));
@@ -59,10 +59,10 @@ fn object(table: &Table) -> Map<String, Value> {
         let value = match child.occurrence {
             Occurrence::Named => json!({
                 "type": "object",
-                "description": format!("{} Each has a name of its own.", child.doc),
+                "description": format!("{} Each has its own name.", child.doc),
                 "patternProperties": { NAME: inner },
                 "additionalProperties": false,
-                // Names are unique, and this one is that of the ground.
+                // Names are unique, and this one is reserved for the ground.
                 "propertyNames": { "not": { "const": taken(child) } },
             }),
             _ => inner,
@@ -98,17 +98,17 @@ fn object(table: &Table) -> Map<String, Value> {
     object
 }
 
-/// The name that a body can't have; none of other tables, whose names are never empty.
-fn taken(table: &Table) -> &'static str {
+/// The name that a body can't have; empty for other tables, as names are never empty.
+fn taken(table: &TableSchema) -> &'static str {
     if ["beam.*", "block.*"].contains(&table.pattern) { "ground" } else { "" }
 }
 
-/// Whether a key is required whatever the others say.
+/// Whether a key is required independent of the others.
 fn is_required(key: &Key) -> bool {
     key.presence == Presence::Required && key.only_with.is_none()
 }
 
-/// With which words of another key alone a key has a meaning.
+/// The words of another key with which a key applies.
 fn only_with(key: &Key) -> String {
     let Some(OnlyWith { sibling, words }) = key.only_with else { return String::new() };
     let required = match key.presence {
@@ -121,7 +121,7 @@ fn only_with(key: &Key) -> String {
 
 fn property(key: &Key) -> Value {
     if key.presence == Presence::NotYet {
-        return json!({ "not": {}, "description": format!("{} Known, but not built in yet.", key.doc) });
+        return json!({ "not": {}, "description": format!("{} Reserved, not implemented yet.", key.doc) });
     }
     let mut value = of_kind(key);
     if let Some(value) = value.as_object_mut() {
@@ -137,12 +137,12 @@ fn property(key: &Key) -> Value {
     value
 }
 
-/// A value of the table of keys; all of them read the same in TOML and JSON.
+/// A value of the table of keys; all of them are the same in TOML and JSON.
 fn as_json(toml: &str) -> Value {
     serde_json::from_str(toml).unwrap_or_else(|_| json!(toml))
 }
 
-/// The range of a quantity in words, which a pattern can't hold.
+/// The range of a quantity in words, as a pattern can't express it.
 fn range_of(key: &Key) -> String {
     let (dimension, range) = match key.kind {
         Kind::Quantity(dimension, range)
@@ -199,7 +199,7 @@ fn of_kind_alone(key: &Key) -> Value {
             let of = |range| quantity(dimension, range);
             json!({ "anyOf": [of(&Range::NOT_NEGATIVE), pair(of(&Range::ANY))] })
         }
-        // A kind that this page does not know yet: anything goes, the program decides.
+        // An unknown kind: anything is allowed here, and the program decides.
         _ => json!({}),
     }
 }
@@ -220,7 +220,7 @@ fn number(range: &Range) -> Value {
             _ => {}
         }
     }
-    // What can't be computed with.
+    // The limits of the absolute value.
     let most = range.largest;
     if range.high == Bound::None {
         number["maximum"] = json!(most);

@@ -2,7 +2,7 @@
 
 use crate::console::{Console, print};
 use crate::interrupt;
-use crate::progress::Phases;
+use crate::progress::PhaseBar;
 use crate::render::{Presenter, refusal};
 use crate::run::Exit;
 use crate::scene;
@@ -12,7 +12,7 @@ use teeter_report::{Reserved, Results};
 use teeter_run::{LoadError, SceneSource};
 use teeter_scenario::resolve::Resolved;
 use teeter_scenario::simulation::Simulation;
-use teeter_study::{Failure, Source, Tradeoff, runner, write};
+use teeter_study::{Failure, StudyScene, Tradeoff, runner, write};
 
 #[derive(Debug)]
 pub(crate) struct Options {
@@ -35,19 +35,16 @@ pub(crate) fn tradeoff(options: &Options) -> Exit {
     };
     let presenter = Presenter::new(resolved.document.source());
     if resolved.scene.time.accuracy.is_some() {
-        let rule = "a study measures what steps give, from one that the scene has";
-        let found = resolved.document.error(
-            "time.accuracy",
-            rule,
-            "give a step in its place, such as --set time.step=\"100 us\"",
-        );
+        let rule = "a study varies the step of the scene, so it needs one";
+        let found =
+            resolved.document.error("time.accuracy", rule, "give a step instead, such as --set time.step=\"100 us\"");
         return bad_input(&presenter.one(&found));
     }
     if let Err(error) = Simulation::new(&resolved.scene) {
         return bad_input(&presenter.one(&error.diagnostic(&resolved.document)));
     }
     let folder = options.out.clone().unwrap_or_else(|| Path::new("runs").join(format!("{}-tradeoff", scene.stem())));
-    // An earlier study stays until there is a new one; the folder is ours from now on.
+    // An earlier study stays until there is a new one; the folder is locked from now on.
     let free = Results::spares(&write::FILES, &folder, &scene.inputs(&resolved))
         .and_then(|()| Results::reserve(&write::FILES, &folder, options.force));
     let reserved = match free {
@@ -58,7 +55,7 @@ pub(crate) fn tradeoff(options: &Options) -> Exit {
         console.note(&presenter.one(warning));
     }
     let cancel = interrupt::listen();
-    let progress = Phases::new(console);
+    let progress = PhaseBar::new(console);
     let study = Tradeoff::of(&source, &resolved, runner::cores(), cancel, &mut |phase, done, of| {
         progress.at(phase, done, of);
     });
@@ -66,8 +63,8 @@ pub(crate) fn tradeoff(options: &Options) -> Exit {
     match study {
         Ok(study) => match write_all(&study, reserved, &resolved, &scene) {
             Ok(()) => {
-                console.note(&format!("results in {0}, to be looked at in {0}/tradeoff.html", folder.display()));
-                Exit::Done
+                console.note(&format!("results in {0}, report in {0}/tradeoff.html", folder.display()));
+                Exit::FinishedRun
             }
             Err(error) => {
                 console.error(&format!("error: {error}"));
@@ -75,7 +72,7 @@ pub(crate) fn tradeoff(options: &Options) -> Exit {
             }
         },
         Err(Failure::Interrupted) => {
-            console.note("interrupted: nothing is advised before all is compared, and nothing was written");
+            console.note("interrupted: there is no advice before everything is compared, and nothing was written");
             Exit::Interrupted
         }
         Err(failure) => {
@@ -85,12 +82,12 @@ pub(crate) fn tradeoff(options: &Options) -> Exit {
     }
 }
 
-/// The scene that the command line names: where it is from, as the study runs it, and as it is.
-fn load(options: &Options) -> Result<(SceneSource, Source, Resolved), LoadError> {
+/// The scene named on the command line: its source, for the study, and resolved.
+fn load(options: &Options) -> Result<(SceneSource, StudyScene, Resolved), LoadError> {
     let scene = scene::source(&options.scene)?;
     let bytes = scene.read()?.into_owned();
     let text = String::from_utf8(bytes.clone()).unwrap_or_default();
-    let (source, resolved) = Source::new(bytes, scene.name(), scene.stem(), &options.set, &mut scene.companions())
+    let (source, resolved) = StudyScene::new(bytes, scene.name(), scene.stem(), &options.set, &mut scene.companions())
         .map_err(|found| LoadError::Invalid { text, found })?;
     Ok((scene, source, resolved))
 }

@@ -62,8 +62,8 @@ fn what_asks_for_no_step_or_for_two_is_refused() {
     let scene = scenario("free-rocking-on-ground");
     let out = folder("refused");
     for (arguments, wanted) in [
-        (&["--accuracy", "1e-3"][..], "a step is given beside it"),
-        (&["--set", "time.step=auto"], "there is no accuracy to find it by"),
+        (&["--accuracy", "1e-3"][..], "a step is given too"),
+        (&["--set", "time.step=auto"], "auto needs an accuracy"),
         (&["--set", "time.step=auto", "--accuracy", "0"], "time.accuracy"),
         (&["--set", "time.step=auto", "--accuracy", "nan"], "time.accuracy"),
         (&["--set", "time.step=auto", "--accuracy", "1e-20"], "which no step reaches"),
@@ -79,5 +79,5 @@ fn what_asks_for_no_step_or_for_two_is_refused() {
     study.arg("tradeoff").arg(&scene).args(["--set", "time.step=auto", "--set", "time.accuracy=1e-3"]);
     let output = study.output().unwrap();
     assert_eq!(output.status.code(), Some(2), "{}", told(&output));
-    assert!(told(&output).contains("give a step in its place"), "{}", told(&output));
+    assert!(told(&output).contains("give a step instead"), "{}", told(&output));
 }

@@ -54,7 +54,7 @@ fn the_paper_s_beam_is_noted_to_be_soft() {
         "    first frequency 26.53 Hz (period 0.03769 s)",
         "  2 contacts at most, 43 degrees of freedom",
         "  5000 steps of 0.0001 s to 0.5 s, theta = 0.5, by moreau-jean-located",
-        "  axial motion of beams: their supports are free along the axis",
+        "  axial motion of beams: their supports are axially free",
     ] {
         assert!(stdout.lines().any(|told| told == line), "«{line}» is missing in\n{stdout}");
     }
@@ -69,7 +69,7 @@ fn a_doubtful_scene_is_warned_of_and_exits_with_0() {
         ("time.step=4 ms", "time.step", "a tenth of the first period of `table`"),
         ("block.rocker.tilt=12 deg", "block.rocker.tilt", "within 10 %"),
         ("block.rocker.tilt=-13 deg", "block.rocker.tilt", "overturns"),
-        ("time.end=0.12345 s", "time.end", "goes on to 0.1235"),
+        ("time.end=0.12345 s", "time.end", "continues to 0.1235"),
     ] {
         let (output, _, stderr) = check(&[&file, "--set", set]);
         assert_eq!(output.status.code(), Some(0), "{stderr}");
@@ -141,12 +141,12 @@ fn what_is_not_needed_is_listed_with_its_reason_and_the_full_model_has_it() {
     let scene = scenario("free-rocking-on-beam");
     let (_, stdout, _) = check(&[&scene]);
     for part in
-        ["not needed", "the upper corners of `rocker`", "would be needed to tilt `rocker`", "exact: every number"]
+        ["not required", "the upper corners of `rocker`", "would be needed to tilt `rocker`", "exact: every number"]
     {
         assert!(stdout.contains(part), "«{part}» is missing in\n{stdout}");
     }
     let (_, full, _) = check(&[&scene, "--model", "full"]);
-    assert!(!full.contains("not needed") && full.contains("  4 contacts at most, 43 degrees of freedom"), "{full}");
+    assert!(!full.contains("not required") && full.contains("  4 contacts at most, 43 degrees of freedom"), "{full}");
     let (output, _, stderr) = check(&[&scene, "--model", "some"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr.contains("write full, or required"), "{stderr}");

@@ -320,8 +320,8 @@ fn the_full_model_writes_the_same_bytes_and_the_summary_tells_what_the_other_doe
     assert!(table(&folder.join("out/trajectory.csv")).0.iter().any(|column| column == "shelf.w_mid"));
 }
 
-/// What no check of the scene can see: a drive that winds a block up, and places so far off that the
-/// energy of weight has no digits left.
+/// What no check of the scene can see: a drive that winds a block up, and places so far off that
+/// the energy of weight has no digits left.
 #[test]
 fn a_run_warns_of_far_turns_and_of_an_account_that_does_not_hold() {
     let scene = |block: &str| {
@@ -351,7 +351,8 @@ fn a_run_warns_of_far_turns_and_of_an_account_that_does_not_hold() {
     }
 }
 
-/// Two corners of a flat block on a slope: one has ended its bounces, e = 0.8, when the other lands.
+/// Two corners of a flat block on a slope: one has ended its bounces, e = 0.8, when the other
+/// lands.
 #[test]
 fn a_run_warns_of_a_landing_that_hangs_on_bounces_that_were_cut_short() {
     let scene = "[time]\nend = \"0.1 s\"\nstep = \"0.25 ms\"\n[ground]\nincline = \"10 deg\"\n[material.m]\ndensity = \"2700 kg/m^3\"\n\

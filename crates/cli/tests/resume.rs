@@ -1,4 +1,5 @@
-//! Runs that are killed, interrupted, resumed, started from a state: what comes out must be the bytes of a run that was left alone.
+//! Runs that are killed, interrupted, resumed, started from a state: what comes out must be the
+//! bytes of a run that was left alone.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic)]
 
@@ -257,12 +258,12 @@ fn an_interrupted_run_goes_on_to_the_same_bytes() {
         assert!(Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap().success());
         let output = child.wait_with_output().unwrap();
         assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
-        assert!(stderr(&output).contains("--resume goes on from there"), "{}", stderr(&output));
+        assert!(stderr(&output).contains("--resume continues from there"), "{}", stderr(&output));
         let summary = std::fs::read_to_string(place.out().join("summary.json")).unwrap();
         assert!(summary.contains("\"ended\": \"interrupted\""), "time {times}");
     }
     let said = place.done(&LONG, &["--resume"]);
-    assert!(said.contains("going on from t = "), "{said}");
+    assert!(said.contains("continuing from t = "), "{said}");
     assert_same(&wanted, &place.out(), "after two interrupts");
 }
 
@@ -271,7 +272,7 @@ fn where_nothing_was_begun_or_no_checkpoint_written_a_run_starts_at_its_beginnin
     let place = Place::new("beginning");
     let (wanted, _) = alone(&place, &LONG, &[]);
     let said = place.done(&LONG, &["--resume"]);
-    assert!(said.contains("no run to resume: it starts from its beginning"), "{said}");
+    assert!(said.contains("no run to resume: it starts from the beginning"), "{said}");
     assert_same(&wanted, &place.out(), "without a folder");
     std::fs::remove_dir_all(place.out()).unwrap();
 
@@ -436,7 +437,8 @@ fn a_run_from_a_checkpoint_moves_as_the_one_that_went_on() {
     let (part, whole) = (summary(&place.out()), summary(&whole));
     assert_eq!((&part["t"], &part["steps"]), (&whole["t"], &whole["steps"]), "the clock goes on");
     assert_eq!(part["energy"]["final"], whole["energy"]["final"]);
-    // The account begins with the run: its largest residual is the identity's, checked from there on.
+    // The account begins with the run: its largest residual is the identity's, checked from there
+    // on.
     assert!(part["energy"]["largest_residual"].as_f64().unwrap() <= 1e-12);
     assert!(part["energy"]["initial"] != whole["energy"]["initial"]);
 
@@ -476,7 +478,7 @@ fn the_state_before_the_first_unsolved_step_can_be_run_from() {
     assert!(said.contains("none.bin is not written") && !place.at.join("none.bin").exists(), "{said}");
 
     let message = place.refused(2, &SLIDING, &["--dump-unconverged", "hard.bin"]);
-    assert!(message.contains("hard.bin is there already"), "{message}");
+    assert!(message.contains("hard.bin already exists"), "{message}");
     let message = place.refused(2, &SLIDING, &["--dump-unconverged", "nowhere/hard.bin"]);
     assert!(message.contains("no folder nowhere"), "{message}");
     let message = place.refused(2, &SLIDING, &["--force", "--from", "hard.bin", "--checkpoint-every", "x"]);

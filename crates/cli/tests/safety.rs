@@ -33,7 +33,8 @@ fn rows_are_whole(out: &Path) -> usize {
     count_rows(out, |file, text| assert!(text.ends_with('\n'), "{file} ends in half a row"))
 }
 
-/// The rows of all tables, as wide as their headers; `end` judges what comes after the last line end.
+/// The rows of all tables, as wide as their headers; `end` judges what comes after the last line
+/// end.
 fn count_rows(out: &Path, end: impl Fn(&str, &str)) -> usize {
     let mut rows = 0;
     for file in ["trajectory.csv", "contacts.csv", "impacts.csv", "energy.csv"] {
@@ -114,7 +115,8 @@ fn a_killed_run_leaves_whole_rows_and_nothing_that_looks_complete() {
     let out = folder("kill-9");
     let output = signalled(&out, "-KILL");
     assert_eq!(output.status.code(), None);
-    // The system may cut the write that a kill falls into: then, and only then, there is half a row at the end.
+    // The system may cut the write that a kill falls into: then, and only then, there is half a row
+    // at the end.
     assert!(count_rows(&out, |_, _| ()) > 0);
     assert!(!out.join("summary.json").exists());
     // The lock is the next run's to take over.
@@ -177,7 +179,7 @@ fn a_full_disk_ends_a_run_with_the_reason_and_whole_rows() {
     let output = long_run(&out).output().unwrap();
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     assert!(stderr(&output).contains("No space left"), "{}", stderr(&output));
-    assert!(stderr(&output).contains("the tables hold the rows that there was room for"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("the tables contain the rows for which there was space"), "{}", stderr(&output));
     rows_are_whole(&out);
     // There may be room for a summary; it must not look like that of a complete run.
     if let Ok(text) = std::fs::read_to_string(out.join("summary.json")) {

@@ -71,7 +71,8 @@ fn each_key_of_the_table_is_in_the_schema_with_its_default() {
     assert_eq!(schema["required"], serde_json::json!(["time"]));
 }
 
-/// The part of JSON Schema that this one uses. The whole of it was tried with the `jsonschema` package for Python.
+/// The part of JSON Schema that this one uses. The whole of it was tried with the `jsonschema`
+/// package for Python.
 struct Validator<'s> {
     root: &'s Value,
     /// By their source, made once.
@@ -230,8 +231,8 @@ fn set(table: &mut toml::Table, path: &str, value: &str) {
     inner.insert(key.to_owned(), value);
 }
 
-/// The bad inputs that are no matter of one file, or that only arithmetic, names, files or an assembled model can tell: what
-/// docs/schema.md says is beyond a schema.
+/// The bad inputs that are no matter of one file, or that only arithmetic, names, files or an
+/// assembled model can tell: what docs/schema.md says is beyond a schema.
 const BEYOND: &[&str] = &[
     "denormal height",
     "tiny height",
@@ -370,7 +371,8 @@ fn sources(folder: &Path, out: &mut Vec<std::path::PathBuf>) {
     }
 }
 
-/// A line of a text that goes on in the next line without a backslash carries the indentation of the source with it.
+/// A line of a text that goes on in the next line without a backslash carries the indentation of
+/// the source with it.
 #[test]
 fn no_text_has_a_run_of_spaces_within_a_sentence() {
     let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");

@@ -212,7 +212,7 @@ fn wrong_words_are_refused_with_what_would_be_right() {
     assert!(refused(&["--profile", "p", "--tolerance", "1e-3"]).contains("--tolerance"));
     std::fs::create_dir(folder.join("other")).unwrap();
     chain::<2>(2).write(folder.join("other/plane.hdf5")).unwrap();
-    assert!(refused(&["other/plane.hdf5", "--solutions", "out"]).contains("of one name"));
+    assert!(refused(&["other/plane.hdf5", "--solutions", "out"]).contains("have the same name"));
 }
 
 #[test]

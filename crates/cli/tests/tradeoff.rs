@@ -38,11 +38,11 @@ fn a_study_writes_its_files_and_says_the_same_again() {
     assert!(stderr.contains("tradeoff.html"), "{stderr}");
     let stdout = String::from_utf8(first.stdout).unwrap();
     assert!(
-        stdout.starts_with("for 10 % of accuracy over the whole 0.2 s take `--set time.end=\"0.2 s\" --set time.")
+        stdout.starts_with("for 10 % of accuracy over the whole 0.2 s use `--set time.end=\"0.2 s\" --set time.")
             && stdout.lines().next().unwrap().matches("time.step=").count() == 1,
         "{stdout}"
     );
-    assert!(stdout.contains("× real time") && stdout.contains("the reference is known to"), "{stdout}");
+    assert!(stdout.contains("× real time") && stdout.contains("error bars of the reference:"), "{stdout}");
 
     let again = tradeoff(&folder, &[&SHORT[..], &["--out", "again", "--quiet"]].concat());
     assert!(again.status.success() && again.stderr.is_empty());

@@ -1,8 +1,9 @@
 //! One harness that every detector runs through (feature `conformance`).
 //!
-//! It holds a [`ContactDetector`] to what the trait's page says, in configurations that the caller gives: a few poses of
-//! one motion, some of them in contact, one after the other, so that the detector's memory is used. What doesn't hold
-//! comes back as a list, with numbers. [`check`] has an example.
+//! It holds a [`ContactDetector`] to what the trait's page says, in configurations that the caller
+//! gives: a few poses of one motion, some of them in contact, one after the other, so that the
+//! detector's memory is used. What doesn't hold comes back as a list, with numbers. [`check`] has
+//! an example.
 
 use crate::{BodyId, Candidate, Candidates, ContactDetector, ContactId, DetectorMemory, Frame};
 use crate::{Geometry, HalfSpace, Kinematics, SurfacePoint, Vector, Wiring};
@@ -13,7 +14,8 @@ use std::fmt::{self, Debug};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Property {
-    /// There is a candidate in one of the configurations. Without one, nothing else has been tested.
+    /// There is a candidate in one of the configurations. Without one, nothing else has been
+    /// tested.
     Found,
     /// What was in `out` before is gone, in `detect` and in `locate`.
     Cleared,
@@ -23,20 +25,22 @@ pub enum Property {
     Margin,
     /// Candidates keep their order, whatever the configuration and the margin.
     Order,
-    /// No two candidates have one identity, and it stands for the same bodies and law in every configuration.
+    /// No two candidates have one identity, and it stands for the same bodies and law in every
+    /// configuration.
     Identities,
     /// Frames are orthonormal; in the plane the tangent is (n_y, −n_x).
     Frame,
     /// The gap is n · (point − foot), where the geometry can place both.
     Gap,
-    /// `locate` gives the candidates of `detect` with these identities, and no others than was asked for, in order of identity.
+    /// `locate` gives the candidates of `detect` with these identities, and no others than was
+    /// asked for, in order of identity.
     Locate,
     /// `deepest` is the largest −gap, or 0.
     Deepest,
     /// There are never more candidates than the capacity.
     Capacity,
-    /// Candidates are of pairs that the wiring names, with their law and bodies, no more than it says, and surfaces are
-    /// asked for only where it says so. An empty wiring says nothing.
+    /// Candidates are of pairs that the wiring names, with their law and bodies, no more than it
+    /// says, and surfaces are asked for only where it says so. An empty wiring says nothing.
     Wiring,
 }
 
@@ -60,10 +64,11 @@ impl std::error::Error for Failure {}
 /// Rounding, relative to the largest number that is added up.
 const ROUNDING: f64 = 1e-12;
 
-/// Holds a detector to all [properties](Property) in these configurations, and returns those that fail.
+/// Holds a detector to all [properties](Property) in these configurations, and returns those that
+/// fail.
 ///
-/// A gap is compared with the places of its two sides. [`Geometry::place`] gets places that are NaN to write to; those
-/// that it leaves so can't be placed, and their gaps are not compared.
+/// A gap is compared with the places of its two sides. [`Geometry::place`] gets places that are NaN
+/// to write to; those that it leaves so can't be placed, and their gaps are not compared.
 ///
 /// ```
 /// use nalgebra::Vector2;

@@ -42,22 +42,33 @@
 //! assert_eq!((found[0].gap, found[0].id.point()), (0.1, 0));
 //! ```
 
+mod broad;
 mod candidate;
 #[cfg(feature = "conformance")]
 pub mod conformance;
+mod feet;
 mod memory;
 mod placed;
 mod points;
+mod profile;
+mod round;
 mod shape;
 mod shapes;
+mod sides;
 mod touch;
+mod wiring_error;
 
+pub use broad::Groups;
 pub use candidate::{Anchor, BodyId, Candidate, Candidates, ContactId, Frame, LawId, plane_frame};
+pub use feet::SurfacePair;
 pub use memory::DetectorMemory;
 pub use points::{PointDetector, PointPair};
-pub use shape::{Disc, MOST_CORNERS, Polygon, Shape, ShapeError};
-pub use shapes::{ShapeDetector, ShapePair, WiringError};
+pub use profile::{Profile, ProfilePair};
+pub use shape::{Disc, MOST_CORNERS, Polygon, Rounded, Shape, ShapeError};
+pub use shapes::{ShapeDetector, ShapePair};
+pub use sides::{OnSide, SidePair};
 pub use touch::CornerOnSide;
+pub use wiring_error::WiringError;
 
 /// A point or direction of the world, or of a body.
 pub type Vector<const D: usize> = nalgebra::SVector<f64, D>;
@@ -137,9 +148,29 @@ pub trait Geometry<const D: usize> {
         let _ = (body, margin);
         None
     }
+    /// Hands the points of the body's surface to `each`, from the left, at which it comes out
+    /// furthest in a direction, more so than beside them, and whose feet lie between those of two
+    /// places: the humps of a beam under a base. None, the default, for a surface that is flat.
+    fn summits(
+        &self,
+        body: BodyId,
+        kinematics: Kinematics,
+        direction: &Vector<D>,
+        between: &[Vector<D>; 2],
+        each: &mut dyn FnMut(SurfacePoint<D>),
+    ) {
+        let _ = (body, kinematics, direction, between, each);
+    }
+    /// The points at which the body's surface ends, left and right; `None`, the default, where it
+    /// doesn't.
+    fn ends(&self, body: BodyId, kinematics: Kinematics) -> [Option<SurfacePoint<D>>; 2] {
+        let _ = (body, kinematics);
+        [None, None]
+    }
 }
 
-/// Finds candidates for contact. The feature `conformance` brings a harness that holds a detector to this page.
+/// Finds candidates for contact. The feature `conformance` brings a harness that holds a detector
+/// to this page.
 pub trait ContactDetector<const D: usize>: Send + Sync {
     /// Puts all candidates with a gap of at most `margin` (m) into `out`, which is cleared first,
     /// in an order that depends on the detector only. Allocates only if there are more than ever
@@ -157,22 +188,31 @@ pub trait ContactDetector<const D: usize>: Send + Sync {
         scratch.iter().map(|candidate| -candidate.gap).fold(0.0, f64::max)
     }
     /// Puts those of the contacts `ids` that have a foot now into `out`, which is cleared first,
-    /// however large their gaps. `ids` must ascend, and `out` ascends by identity. All are among them
-    /// that [`detect`](Self::detect) finds with an infinite margin; there may be others, such as a
-    /// corner that is over a side yet where other features of the two bodies are nearer by now. The
-    /// default detects everything and keeps these.
+    /// however large their gaps. `ids` must ascend, and `out` ascends by identity. All are among
+    /// them that [`detect`](Self::detect) finds with an infinite margin; there may be others, such
+    /// as a corner that is over a side yet where other features of the two bodies are nearer by
+    /// now. The default detects everything and keeps these.
     fn locate(&self, at: &dyn Geometry<D>, ids: &[ContactId], out: &mut Candidates<D>) {
         self.detect(at, f64::INFINITY, &mut DetectorMemory::default(), out);
         out.retain(|candidate| ids.binary_search(&candidate.id).is_ok());
         out.sort_unstable_by_key(|candidate| candidate.id);
     }
-    /// The same, but with those contacts, too, that have been followed past the end of their surface, as if it went straight on: `room`
-    /// tells of each in `out` how far it is to the nearest end, m, negative past it. A detector whose surfaces have no ends, or that
-    /// doesn't follow past them, leaves this to the default, by which there is room without end.
+    /// The same, but with those contacts, too, that have been followed past the end of their
+    /// surface, as if it went straight on: `room` tells of each in `out` how far it is to the
+    /// nearest end, m, negative past it. A detector whose surfaces have no ends, or that doesn't
+    /// follow past them, leaves this to the default, by which there is room without end.
     fn locate_past_ends(&self, at: &dyn Geometry<D>, ids: &[ContactId], out: &mut Candidates<D>, room: &mut Vec<f64>) {
         self.locate(at, ids, out);
         room.clear();
         room.resize(out.len(), f64::INFINITY);
+    }
+    /// Whether the first side of a contact touches by one and the same point of its body as long as
+    /// the contact lasts, as a corner does and a disc doesn't. The default, `false`, is always
+    /// right: a scheme that needs accelerations then takes the derivative of the rows along the
+    /// motion, which costs more.
+    fn keeps_point(&self, id: ContactId) -> bool {
+        let _ = id;
+        false
     }
     /// The pairs that it looks at, as far as they are known before anything moves, so that a model
     /// can refuse what can't work when it is built. By default none are listed, and candidates are

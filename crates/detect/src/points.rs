@@ -136,6 +136,10 @@ impl ContactDetector<2> for PointDetector<2> {
         out.extend(ids.iter().filter_map(|id| self.located(at, *id)));
     }
 
+    fn keeps_point(&self, _id: ContactId) -> bool {
+        true
+    }
+
     fn wiring(&self) -> Vec<Wiring> {
         let of = |pair: &PointPair<2>| Wiring {
             pair: pair.pair,

@@ -1,10 +1,15 @@
 //! Bodies with shapes against each other, beside points against surfaces.
 
-use crate::placed::{Member, Places};
-use crate::touch::{OF_DISC, Touch, feature_of, polygons, with_disc};
+use crate::broad::{Groups, Near, NearPair};
+use crate::feet::{self, SurfacePair};
+use crate::placed::{BodyFrame, Places, Shapes, outward};
+use crate::profile::{self, Profile, ProfilePair};
+use crate::round::{near_outline, round};
+use crate::sides::{self, OnSide, SidePair};
+use crate::touch::{CornerOnSide, Side, Touch, Touches, corner_on_side, polygons};
 use crate::{
-    Anchor, BodyId, Candidate, Candidates, ContactDetector, ContactId, DetectorMemory, Geometry, LawId, PointDetector,
-    Shape, Wiring, plane_frame,
+    Anchor, BodyId, Candidate, Candidates, ContactDetector, ContactId, DetectorMemory, Geometry, LawId, MOST_CORNERS,
+    PointDetector, Shape, Vector, Wiring, WiringError, plane_frame,
 };
 
 /// Two bodies whose shapes can touch.
@@ -14,45 +19,17 @@ pub struct ShapePair {
     pub pair: u32,
     /// The law of its contacts.
     pub law: LawId,
-    /// The bodies: the normal of a contact points from the second to the first, and its impulse acts on the first.
+    /// The bodies: the normal of a contact points from the second to the first, and its impulse
+    /// acts on the first.
     pub bodies: [BodyId; 2],
 }
 
-/// What is wrong with shapes and pairs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum WiringError {
-    /// A body with two shapes.
-    TwoShapes {
-        /// The body.
-        body: BodyId,
-    },
-    /// A pair of a body that has no shape.
-    NoShape {
-        /// The pair's number.
-        pair: u32,
-        /// The body.
-        body: BodyId,
-    },
-}
-
-impl std::fmt::Display for WiringError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::TwoShapes { body } => write!(f, "body {} has two shapes: give each body one", body.0),
-            Self::NoShape { pair, body } => {
-                write!(f, "pair {pair} is of body {}, which has no shape: give it one", body.0)
-            }
-        }
-    }
-}
-
-impl std::error::Error for WiringError {}
-
 /// The detector of shapes against each other, and of points against surfaces.
 ///
-/// Two polygons touch where a corner of one is over a side of the other, at two points at most: at the ends of what the side that
-/// parts them best shares with the side that faces it. Corner beside corner they don't touch. A disc touches at one point.
+/// Two polygons touch where a corner of one is over a side of the other, at two points at most: at
+/// the ends of what the side that parts them best shares with the side that faces it. Corner beside
+/// corner they don't touch, unless one of them is round. A body may have several shapes, which are
+/// its parts.
 ///
 /// ```
 /// use nalgebra::Vector2;
@@ -82,39 +59,111 @@ impl std::error::Error for WiringError {}
 #[derive(Clone, Debug, Default)]
 pub struct ShapeDetector {
     points: PointDetector<2>,
-    /// In the order of their bodies.
-    members: Vec<Member>,
+    shapes: Shapes,
     /// In the order of their numbers, with the places of their bodies among the members.
     pairs: Vec<(ShapePair, [usize; 2])>,
+    groups: Option<InGroups>,
+    /// In the order of their numbers, with the place of their body among the members.
+    sides: Vec<(SidePair, usize)>,
+    surfaces: Vec<(SurfacePair, usize)>,
+    /// The profile of the ground, and those against it: in the order of their numbers, with the
+    /// place of their body.
+    profile: Option<Profile>,
+    on_profile: Vec<(ProfilePair, usize)>,
+}
+
+/// Bodies of which any two can touch, and where their shapes are.
+#[derive(Clone, Debug)]
+struct InGroups {
+    groups: Groups,
+    /// The number of their first pair.
+    first: u32,
+    /// Their places among all members.
+    members: Vec<usize>,
+    /// Pairs of members that are listed one by one, sorted.
+    listed: Vec<[usize; 2]>,
+}
+
+/// What detection keeps in memory.
+#[derive(Debug, Default)]
+struct Kept {
+    places: Places,
+    near: Near,
+    /// The contacts of a pair of which a body has several parts.
+    touches: Vec<Touch>,
 }
 
 impl ShapeDetector {
-    /// A detector of these bodies' shapes, of which the pairs can touch.
+    /// A detector of these bodies' shapes, of which the pairs can touch. Several shapes of one body
+    /// are its parts.
     ///
     /// # Errors
-    /// If a body has two shapes, or one of a pair has none.
-    pub fn new(mut shapes: Vec<(BodyId, Shape)>, mut pairs: Vec<ShapePair>) -> Result<Self, WiringError> {
-        shapes.sort_by_key(|(body, _)| *body);
-        if let Some(twice) = shapes.windows(2).find(|two| two[0].0 == two[1].0) {
-            return Err(WiringError::TwoShapes { body: twice[0].0 });
-        }
-        let mut members: Vec<Member> = Vec::with_capacity(shapes.len());
-        for (body, shape) in shapes {
-            let start = members.last().map_or(0, |member| member.corners.end);
-            let corners = match &shape {
-                Shape::Polygon(polygon) => polygon.corners().len(),
-                Shape::Disc(_) => 0,
-            };
-            members.push(Member { body, shape, corners: start..start + corners });
+    /// If a body of a pair has no shape, or one has too many corners.
+    pub fn new(shapes: Vec<(BodyId, Shape)>, mut pairs: Vec<ShapePair>) -> Result<Self, WiringError> {
+        let shapes = Shapes::new(shapes);
+        if let Some((body, corners)) = shapes.largest().filter(|(_, corners)| *corners > MOST_CORNERS) {
+            return Err(WiringError::Corners { body, corners });
         }
         pairs.sort_by_key(|pair| pair.pair);
         let of = |pair: &ShapePair, body: BodyId| {
-            let found = members.binary_search_by_key(&body, |member| member.body);
-            found.map_err(|_| WiringError::NoShape { pair: pair.pair, body })
+            shapes.member_of(body).ok_or(WiringError::NoShape { pair: pair.pair, body })
         };
         let pairs = pairs.iter().map(|pair| Ok((*pair, [of(pair, pair.bodies[0])?, of(pair, pair.bodies[1])?])));
         let pairs = pairs.collect::<Result<_, WiringError>>()?;
-        Ok(Self { points: PointDetector::default(), members, pairs })
+        Ok(Self { shapes, pairs, ..Self::default() })
+    }
+
+    /// With shapes on surfaces; pairs have numbers of their own.
+    ///
+    /// # Errors
+    /// If a body has no shape.
+    pub fn with_surfaces(mut self, mut surfaces: Vec<SurfacePair>) -> Result<Self, WiringError> {
+        surfaces.sort_by_key(|pair| pair.pair);
+        self.surfaces =
+            surfaces.into_iter().map(|pair| Ok((pair, self.shaped(pair.body)?))).collect::<Result<_, _>>()?;
+        Ok(self)
+    }
+
+    /// With sides of shapes against surfaces that bend or end; pairs have numbers of their own.
+    ///
+    /// # Errors
+    /// If a body has no shape.
+    pub fn with_sides(mut self, mut sides: Vec<SidePair>) -> Result<Self, WiringError> {
+        sides.sort_by_key(|pair| pair.pair);
+        self.sides = sides.into_iter().map(|pair| Ok((pair, self.shaped(pair.body)?))).collect::<Result<_, _>>()?;
+        Ok(self)
+    }
+
+    /// With shapes against ground of this profile, given in the coordinates of the ground's body;
+    /// pairs have numbers of their own.
+    ///
+    /// # Errors
+    /// If a body has no shape.
+    pub fn with_profile(mut self, profile: Profile, mut pairs: Vec<ProfilePair>) -> Result<Self, WiringError> {
+        pairs.sort_by_key(|pair| pair.pair);
+        self.on_profile =
+            pairs.into_iter().map(|pair| Ok((pair, self.shaped(pair.body)?))).collect::<Result<_, _>>()?;
+        self.profile = Some(profile);
+        Ok(self)
+    }
+
+    /// With bodies of which any two can touch, but for those that are listed as pairs. The number
+    /// of the pair of the i-th and the j-th of n bodies, i < j, is `first` + i n + j, and must be
+    /// above those of all other pairs.
+    ///
+    /// # Errors
+    /// If one of them has no shape.
+    pub fn with_groups(mut self, groups: Groups, first: u32) -> Result<Self, WiringError> {
+        let members = groups.bodies().map(|body| self.shaped(body)).collect::<Result<_, _>>()?;
+        let mut listed: Vec<[usize; 2]> = self.pairs.iter().map(|(_, [a, b])| [*a.min(b), *a.max(b)]).collect();
+        listed.sort_unstable();
+        self.groups = Some(InGroups { groups, first, members, listed });
+        Ok(self)
+    }
+
+    /// The number of a body among the shapes.
+    fn shaped(&self, body: BodyId) -> Result<usize, WiringError> {
+        self.shapes.member_of(body).ok_or(WiringError::Shapeless { body })
     }
 
     /// With points against surfaces, too; their pairs have numbers of their own.
@@ -132,61 +181,210 @@ impl ShapeDetector {
         memory: &mut DetectorMemory,
         mut each: impl FnMut(&ShapePair, &Touch),
     ) {
-        if self.pairs.is_empty() {
+        if self.pairs.is_empty() && self.groups.is_none() {
             return;
         }
-        let places = memory.of(Places::default);
-        places.place(&self.members, at);
-        for (pair, [a, b]) in &self.pairs {
-            if !places.boxes[*a].near(&places.boxes[*b], margin) {
-                continue;
+        let Kept { places, touches, near } = memory.of(Kept::default);
+        places.place(&self.shapes, at);
+        let mut of_pair = |pair: &ShapePair, members: [usize; 2]| {
+            let [a, b] = members;
+            if places.boxes[a].near(&places.boxes[b], margin) {
+                self.of_pair(places, members, margin, touches, |touch| each(pair, touch));
             }
-            let (first, second) = (&self.members[*a], &self.members[*b]);
-            if let (Shape::Polygon(mine), Shape::Polygon(other)) = (&first.shape, &second.shape) {
-                let near = polygons(&places.polygon(first, mine), &places.polygon(second, other), margin);
-                near.into_iter().filter(|touch| touch.gap <= margin).for_each(|touch| each(pair, &touch));
-            } else if let Some(touch) = with_disc(at, [first, second])
-                && touch.gap <= margin
-            {
-                each(pair, &touch);
+        };
+        self.pairs.iter().for_each(|(pair, members)| of_pair(pair, *members));
+        let Some(InGroups { groups, first, members, listed }) = &self.groups else { return };
+        // Without a bound on how far apart they are, nobody is out of reach.
+        if margin < f64::INFINITY {
+            near.update(groups, *first, members, listed, places, margin);
+            near.pairs.iter().for_each(|near| of_pair(&self.in_groups(near), near.members));
+            return;
+        }
+        for i in 0..members.len() {
+            for j in i + 1..members.len() {
+                let number = groups.pair(*first, i, j);
+                if let Some(near) = self.near_pair(number) {
+                    of_pair(&self.in_groups(&near), near.members);
+                }
             }
         }
     }
 
-    /// Those of the contacts `ids` that there can be, with how far it is to the end of their side, m.
+    /// The pair of two bodies of groups, by its number; `None` where they don't touch, or are
+    /// listed.
+    fn near_pair(&self, number: u32) -> Option<NearPair> {
+        let InGroups { groups, first, members, listed } = self.groups.as_ref()?;
+        let ([i, j], law) = groups.of_pair(*first, number)?;
+        let [a, b] = [members[i], members[j]];
+        listed.binary_search(&[a.min(b), a.max(b)]).is_err().then_some(NearPair { pair: number, law, members: [a, b] })
+    }
+
+    fn in_groups(&self, NearPair { pair, law, members }: &NearPair) -> ShapePair {
+        ShapePair { pair: *pair, law: *law, bodies: members.map(|member| self.shapes.members[member].body) }
+    }
+
+    /// Hands the contacts of two bodies to `each`, in the order of their features.
+    fn of_pair(
+        &self,
+        places: &Places,
+        [a, b]: [usize; 2],
+        margin: f64,
+        touches: &mut Vec<Touch>,
+        mut each: impl FnMut(&Touch),
+    ) {
+        let [mine, others] = [a, b].map(|member| self.shapes.members[member].parts.clone());
+        let near = |i: usize, j: usize| -> Touches {
+            let (first, second) = (places.part(&self.shapes, i), places.part(&self.shapes, j));
+            if self.are_sharp(i, j) {
+                return polygons(&first, &second, margin);
+            }
+            let outlines = [places.outline(&self.shapes, a, i), places.outline(&self.shapes, b, j)];
+            round([&first, &second], [&outlines[0], &outlines[1]], margin)
+        };
+        if mine.len() * others.len() == 1 {
+            near(mine.start, others.start)
+                .into_iter()
+                .filter(|touch| touch.gap <= margin)
+                .for_each(|touch| each(&touch));
+            return;
+        }
+        touches.clear();
+        for i in mine {
+            for j in others.clone() {
+                touches.extend(near(i, j).into_iter().filter(|touch| touch.gap <= margin));
+            }
+        }
+        touches.sort_unstable_by_key(|touch| touch.feature);
+        touches.iter().for_each(each);
+    }
+
+    /// Those of the contacts `ids` that there can be, with how far it is to the end of their side,
+    /// m.
     fn located<'a>(
         &'a self,
         at: &'a dyn Geometry<2>,
         ids: &'a [ContactId],
     ) -> impl Iterator<Item = (Candidate<2>, f64)> + 'a {
         ids.iter().filter_map(move |id| {
-            let Ok(found) = self.pairs.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair) else {
-                return self.points.located(at, *id).map(|candidate| (candidate, f64::INFINITY));
+            let (pair, members) = match self.pairs.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair) {
+                Ok(found) => self.pairs[found],
+                Err(_) => match self.near_pair(id.pair()) {
+                    Some(near) => (self.in_groups(&near), near.members),
+                    None => return self.located_elsewhere(at, *id),
+                },
             };
-            let (pair, members) = &self.pairs[found];
-            let [first, second] = members.map(|member| &self.members[member]);
-            let touch = match (&first.shape, &second.shape) {
-                (Shape::Polygon(mine), Shape::Polygon(other)) => {
-                    feature_of(at, [(first.body, mine), (second.body, other)], id.point())
-                }
-                _ if id.point() == OF_DISC => with_disc(at, [first, second]),
-                _ => None,
-            }?;
-            Some((candidate(pair, &touch), touch.room))
+            let touch = self.touch(at, members, CornerOnSide::from_number(id.point()))?;
+            Some((candidate(&pair, &touch), touch.room))
         })
     }
 
+    /// Hands the contacts with sides and with the profile of the ground to `each`.
+    fn each_on_ground(&self, at: &dyn Geometry<2>, margin: f64, mut each: impl FnMut(u32, LawId, [BodyId; 2], &Touch)) {
+        for (pair, member) in &self.surfaces {
+            let bodies = [pair.body, pair.surface];
+            feet::each(&self.shapes, *member, pair, at, margin, |touch| each(pair.pair, pair.law, bodies, touch));
+        }
+        for (pair, member) in &self.sides {
+            let bodies = [pair.body, pair.surface];
+            sides::each(&self.shapes, *member, pair, at, margin, |touch| each(pair.pair, pair.law, bodies, touch));
+        }
+        let Some(profile) = &self.profile else { return };
+        for (pair, member) in &self.on_profile {
+            let [body, ground] = [pair.body, pair.ground].map(|body| BodyFrame::of(body, at));
+            for part in self.shapes.members[*member].parts.clone() {
+                profile::each(profile, &self.shapes.outline(part, body), &ground, margin, |touch| {
+                    each(pair.pair, pair.law, [pair.body, pair.ground], touch);
+                });
+            }
+        }
+    }
+
+    /// A contact that is none of two shapes.
+    fn located_elsewhere(&self, at: &dyn Geometry<2>, id: ContactId) -> Option<(Candidate<2>, f64)> {
+        if let Ok(found) = self.surfaces.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair) {
+            let (pair, member) = &self.surfaces[found];
+            let touch = feet::located(&self.shapes, *member, pair, at, id.point() as usize)?;
+            return Some((candidate_of(pair.pair, pair.law, [pair.body, pair.surface], &touch), touch.room));
+        }
+        if let (Some(profile), Ok(found)) =
+            (&self.profile, self.on_profile.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair))
+        {
+            let (pair, member) = &self.on_profile[found];
+            let feature = CornerOnSide::from_number(id.point());
+            let corner = if feature.owner == 0 { feature.corner } else { feature.side };
+            let [body, ground] = [pair.body, pair.ground].map(|body| BodyFrame::of(body, at));
+            let outline = self.shapes.outline(self.shapes.part_of(*member, corner)?, body);
+            let touch = profile::located(profile, &outline, &ground, feature)?;
+            return Some((candidate_of(pair.pair, pair.law, [pair.body, pair.ground], &touch), touch.room));
+        }
+        let Ok(found) = self.sides.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair) else {
+            return self.points.located(at, id).map(|candidate| (candidate, f64::INFINITY));
+        };
+        let (pair, member) = &self.sides[found];
+        let touch = sides::located(&self.shapes, *member, pair, at, OnSide::from_number(id.point())?)?;
+        Some((candidate_of(pair.pair, pair.law, [pair.body, pair.surface], &touch), touch.room))
+    }
+
+    /// The contact of two members by its feature.
+    fn touch(&self, at: &dyn Geometry<2>, members: [usize; 2], feature: CornerOnSide) -> Option<Touch> {
+        let [owner, other] = if feature.owner == 0 { members } else { [members[1], members[0]] };
+        let (part, beside) = (self.shapes.part_of(owner, feature.corner)?, self.shapes.part_of(other, feature.side)?);
+        if feature.round == self.are_sharp(part, beside) {
+            return None;
+        }
+        let bodies = [owner, other].map(|member| self.shapes.members[member].body);
+        let [part, beside] = [(part, bodies[0]), (beside, bodies[1])];
+        if feature.round {
+            let [part, beside] = [part, beside].map(|(part, body)| self.shapes.outline(part, BodyFrame::of(body, at)));
+            return near_outline(feature, &part, &beside);
+        }
+        let first = |part: usize| self.shapes.parts[part].first;
+        let corner = self.shapes.local(part.0)[feature.corner - first(part.0)];
+        let sides = self.shapes.local(beside.0);
+        let side = feature.side - first(beside.0);
+        let local = [sides[side], sides[(side + 1) % sides.len()]];
+        let (mut place, mut ends) = ([Vector::zeros()], [Vector::zeros(); 2]);
+        at.place(part.1, &[corner], &mut place);
+        at.place(beside.1, &local, &mut ends);
+        corner_on_side(feature, (corner, place[0]), &Side { local, ends, normal: outward(&ends[0], &ends[1]) })
+    }
+
+    /// Whether neither of two parts is round.
+    fn are_sharp(&self, i: usize, j: usize) -> bool {
+        self.shapes.parts[i].radius + self.shapes.parts[j].radius == 0.0
+    }
+
+    /// As many contacts as a body can have with the ground: each corner with each piece, and each
+    /// crest.
+    fn profile_capacity(&self, member: usize) -> usize {
+        let points = self.profile.as_ref().map_or(0, |profile| profile.points().count());
+        let parts = self.shapes.members[member].parts.clone();
+        parts.map(|part| (points + 1) * self.shapes.local(part).len() + points).sum()
+    }
+
+    fn side_capacity(&self, member: usize) -> usize {
+        let parts = self.shapes.members[member].parts.clone();
+        // Of a rounding both ends of the surface, too.
+        parts.map(|part| (4 + sides::MOST_SUMMITS) * self.shapes.local(part).len()).sum()
+    }
+
     fn capacity_of(&self, [a, b]: [usize; 2]) -> usize {
-        let is_disc = |member: usize| matches!(self.members[member].shape, Shape::Disc(_));
-        if is_disc(a) || is_disc(b) { 1 } else { 2 }
+        let parts = |member: usize| self.shapes.members[member].parts.clone();
+        let of =
+            |i: usize, j: usize| if self.shapes.local(i).len().min(self.shapes.local(j).len()) == 1 { 1 } else { 2 };
+        parts(a).map(|i| parts(b).map(|j| of(i, j)).sum::<usize>()).sum()
     }
 }
 
 fn candidate(pair: &ShapePair, touch: &Touch) -> Candidate<2> {
-    let [a, b] = [0, 1].map(|side| Anchor { body: pair.bodies[side], point: touch.points[side] });
+    candidate_of(pair.pair, pair.law, pair.bodies, touch)
+}
+
+fn candidate_of(pair: u32, law: LawId, bodies: [BodyId; 2], touch: &Touch) -> Candidate<2> {
+    let [a, b] = [0, 1].map(|side| Anchor { body: bodies[side], point: touch.points[side] });
     Candidate {
-        id: ContactId::new(pair.pair, touch.feature),
-        law: pair.law,
+        id: ContactId::new(pair, touch.feature),
+        law,
         sides: [a, b],
         frame: plane_frame(&touch.normal),
         gap: touch.gap,
@@ -196,11 +394,13 @@ fn candidate(pair: &ShapePair, touch: &Touch) -> Candidate<2> {
 impl ContactDetector<2> for ShapeDetector {
     fn detect(&self, at: &dyn Geometry<2>, margin: f64, memory: &mut DetectorMemory, out: &mut Candidates<2>) {
         self.points.detect(at, margin, memory, out);
+        self.each_on_ground(at, margin, |pair, law, bodies, touch| out.push(candidate_of(pair, law, bodies, touch)));
         self.each(at, margin, memory, |pair, touch| out.push(candidate(pair, touch)));
     }
 
     fn deepest(&self, at: &dyn Geometry<2>, memory: &mut DetectorMemory, scratch: &mut Candidates<2>) -> f64 {
         let mut deepest = self.points.deepest(at, memory, scratch);
+        self.each_on_ground(at, 0.0, |_, _, _, touch| deepest = deepest.max(-touch.gap));
         self.each(at, 0.0, memory, |_, touch| deepest = deepest.max(-touch.gap));
         deepest
     }
@@ -222,7 +422,29 @@ impl ContactDetector<2> for ShapeDetector {
         }
     }
 
+    fn keeps_point(&self, id: ContactId) -> bool {
+        let corner = id.point() as usize;
+        if let Ok(found) = self.surfaces.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair) {
+            return self.shapes.is_sharp_at(self.surfaces[found].1, corner);
+        }
+        if let Ok(found) = self.on_profile.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair) {
+            let CornerOnSide { owner, corner, .. } = CornerOnSide::from_number(id.point());
+            return owner == 0 && self.shapes.is_sharp_at(self.on_profile[found].1, corner);
+        }
+        if self.pairs.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair).is_ok() {
+            let CornerOnSide { owner, round, .. } = CornerOnSide::from_number(id.point());
+            return owner == 0 && !round;
+        }
+        // Points have numbers that no groups and no sides have.
+        self.near_pair(id.pair()).is_none()
+            && self.sides.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair).is_err()
+    }
+
     fn wiring(&self) -> Vec<Wiring> {
+        // Of groups there are too many pairs to be listed: what is found is checked as it comes.
+        if self.groups.is_some() {
+            return Vec::new();
+        }
         let mut wiring = self.points.wiring();
         wiring.extend(self.pairs.iter().map(|(pair, members)| Wiring {
             pair: pair.pair,
@@ -232,10 +454,40 @@ impl ContactDetector<2> for ShapeDetector {
             contacts: self.capacity_of(*members),
             not_finite: None,
         }));
+        wiring.extend(self.sides.iter().map(|(pair, member)| Wiring {
+            pair: pair.pair,
+            law: pair.law,
+            bodies: [pair.body, pair.surface],
+            on_surface: true,
+            contacts: self.side_capacity(*member),
+            not_finite: None,
+        }));
+        wiring.extend(self.surfaces.iter().map(|(pair, member)| Wiring {
+            pair: pair.pair,
+            law: pair.law,
+            bodies: [pair.body, pair.surface],
+            on_surface: true,
+            contacts: self.shapes.corners_of(*member),
+            not_finite: None,
+        }));
+        wiring.extend(self.on_profile.iter().map(|(pair, member)| Wiring {
+            pair: pair.pair,
+            law: pair.law,
+            bodies: [pair.body, pair.ground],
+            on_surface: false,
+            contacts: self.profile_capacity(*member),
+            not_finite: None,
+        }));
         wiring
     }
 
     fn capacity(&self) -> usize {
-        self.points.capacity() + self.pairs.iter().map(|(_, members)| self.capacity_of(*members)).sum::<usize>()
+        let listed = self.pairs.iter().map(|(_, members)| self.capacity_of(*members)).sum::<usize>();
+        let parts = self.shapes.members.iter().map(|member| member.parts.len()).max().unwrap_or(0);
+        let of_groups = self.groups.as_ref().map_or(0, |of| 2 * parts * parts * of.groups.pairs());
+        let sides: usize = self.sides.iter().map(|(_, member)| self.side_capacity(*member)).sum();
+        let on_profile: usize = self.on_profile.iter().map(|(_, member)| self.profile_capacity(*member)).sum();
+        let surfaces: usize = self.surfaces.iter().map(|(_, member)| self.shapes.corners_of(*member)).sum();
+        self.points.capacity() + listed + of_groups + surfaces + sides + on_profile
     }
 }

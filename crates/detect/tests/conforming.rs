@@ -141,7 +141,8 @@ fn the_harness_names_what_is_wrong() {
         let mut found = failing(&Wrong(wrong, points()));
         found.dedup();
         assert!(found.contains(&wrong), "{wrong:?}: {found:?}");
-        // Nothing else follows from one fault, but that detecting into the same list again shows what was left in it.
+        // Nothing else follows from one fault, but that detecting into the same list again shows
+        // what was left in it.
         let others: Vec<&Property> = found.iter().filter(|other| **other != wrong).collect();
         assert_eq!(others, if wrong == Cleared { vec![&Memory] } else { vec![] }, "{wrong:?}");
     }

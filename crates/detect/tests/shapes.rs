@@ -4,8 +4,8 @@
 use nalgebra::{Rotation2, Vector2};
 use teeter_detect::conformance::check;
 use teeter_detect::{
-    BodyId, Candidates, ContactDetector, CornerOnSide, DetectorMemory, Disc, Geometry, Kinematics, LawId, Polygon,
-    Shape, ShapeDetector, ShapePair, SurfacePoint,
+    BodyId, Candidates, ContactDetector, CornerOnSide, DetectorMemory, Disc, Geometry, Groups, Kinematics, LawId,
+    Polygon, Rounded, Shape, ShapeDetector, ShapePair, SurfacePoint,
 };
 
 /// Bodies at (x, y, φ).
@@ -37,6 +37,11 @@ fn disc(radius: f64) -> Shape {
     Disc::new(Vector2::new(0.1 * radius, -0.2 * radius), radius).unwrap().into()
 }
 
+fn rounded(width: f64, height: f64, radius: f64) -> Shape {
+    let polygon = Polygon::new(rectangle(width, height).core().to_vec()).unwrap();
+    Rounded::inside(&polygon, radius).unwrap().into()
+}
+
 fn pair(shapes: [Shape; 2]) -> ShapeDetector {
     let [a, b] = shapes;
     let bodies = [BodyId(0), BodyId(1)];
@@ -52,7 +57,7 @@ fn found(detector: &ShapeDetector, poses: &[[f64; 3]; 2], margin: f64) -> Candid
 
 /// Corners (owner, corner) of what was found, and its gaps.
 fn corners(found: &Candidates<2>) -> (Vec<(usize, usize)>, Vec<f64>) {
-    let feature = |number| CornerOnSide::from_number(number).unwrap();
+    let feature = |number| CornerOnSide::from_number(number);
     let owners = found.iter().map(|c| feature(c.id.point())).map(|f| (f.owner, f.corner)).collect();
     (owners, found.iter().map(|c| c.gap).collect())
 }
@@ -68,7 +73,8 @@ fn shapes_of_all_kinds_keep_the_contract() {
         Poses(vec![[0.0, 0.0, 0.3], [9.0, 0.4, 2.5]]),
     ];
     let poses: Vec<&dyn Geometry<2>> = poses.iter().map(|poses| poses as &dyn Geometry<2>).collect();
-    let shapes = [rectangle(2.0, 1.0), wedge, disc(0.7)];
+    let stadium = Shape::from(Rounded::new(vec![Vector2::new(-0.7, 0.1), Vector2::new(0.6, -0.2)], 0.3).unwrap());
+    let shapes = [rectangle(2.0, 1.0), wedge, disc(0.7), rounded(2.0, 1.0, 0.1), stadium];
     for a in &shapes {
         for b in &shapes {
             assert_eq!(check(&pair([a.clone(), b.clone()]), &poses), []);
@@ -111,15 +117,17 @@ fn blocks_in_line_keep_their_features_through_rounding() {
 
 #[test]
 fn a_block_that_tips_stays_on_the_corner_that_it_tips_about() {
-    // Its bottom lies on the other's corner, which is its place of turning, from 1e-12 to 40 degrees.
+    // Its bottom lies on the other's corner, which is its place of turning, from 1e-12 to 40
+    // degrees.
     let plank = pair([rectangle(4.0, 0.2), rectangle(1.0, 1.0)]);
     for angle in [1e-12_f64, 1e-6, 0.01, 0.3, 0.7] {
         let (sin, cos) = angle.sin_cos();
-        // The point of the plank that stays on (½, ½), 0.7 left of its middle: the plank turns clockwise about it.
+        // The point of the plank that stays on (½, ½), 0.7 left of its middle: the plank turns
+        // clockwise about it.
         let (x, y) = (0.5 + 0.7 * cos + 0.1 * sin, 0.5 - 0.7 * sin + 0.1 * cos);
         let found = found(&plank, &[[x, y, -angle], [0.0, 0.0, 0.0]], 1e-9);
         let at_corner =
-            found.iter().filter(|c| CornerOnSide::from_number(c.id.point()).unwrap().corner == 2).collect::<Vec<_>>();
+            found.iter().filter(|c| CornerOnSide::from_number(c.id.point()).corner == 2).collect::<Vec<_>>();
         assert_eq!(at_corner.len(), 1, "{angle}: {found:?}");
         assert!(at_corner[0].gap.abs() < 1e-15);
         let normal = at_corner[0].frame.row(0).transpose();
@@ -149,8 +157,9 @@ fn past_the_end_of_its_side_a_corner_is_followed_along_the_sides_line() {
     for x in [0.7, 1.5, 1.9, 2.1, -0.1, -30.0] {
         bricks.locate_past_ends(&Poses(vec![[x, 1.2, 0.0], [0.0, 0.0, 0.0]]), &ids, &mut out, &mut rooms);
         assert_eq!((out.len(), rooms.len()), (2, 2), "{x}");
-        // The upper brick's left corner is at x − 1 on a side from −1 to 1; the lower one's right corner at 1 − x on the upper one's.
-        // What is known counts as over its side for 1e-9 of its length more.
+        // The upper brick's left corner is at x − 1 on a side from −1 to 1; the lower one's right
+        // corner at 1 − x on the upper one's. What is known counts as over its side for 1e-9 of its
+        // length more.
         for room in &rooms {
             assert!((room - f64::min(x, 2.0 - x) - 2e-9).abs() < 1e-13, "{x}: {room}");
         }
@@ -177,6 +186,124 @@ fn discs_touch_at_the_nearest_points() {
     }
 }
 
+#[test]
+fn a_rounded_block_stands_where_its_roundings_begin_and_rolls_about_them() {
+    let block = pair([rounded(1.0, 2.0, 0.1), rectangle(4.0, 1.0)]);
+    let flat = found(&block, &[[0.3, 1.5, 0.0], [0.0, 0.0, 0.0]], 1e-6);
+    assert_eq!(corners(&flat).0, [(0, 0), (0, 1)]);
+    for (contact, x) in flat.iter().zip([-0.4, 0.4]) {
+        assert!(contact.gap.abs() < 1e-15 && (contact.sides[0].point - Vector2::new(x, -1.0)).norm() < 1e-15);
+        assert!((contact.sides[1].point - Vector2::new(x + 0.3, 0.5)).norm() < 1e-15);
+    }
+    // Turned by any angle about the middle of its rounding it touches below that, with the same
+    // identity.
+    for angle in [1e-12, 0.01, 0.3, 1.0, 1.5] {
+        let turn = Rotation2::new(angle);
+        let centre = Vector2::new(-0.1, 0.6) - turn * Vector2::new(-0.4, -0.9);
+        let rolled = found(&block, &[[centre.x, centre.y, angle], [0.0, 0.0, 0.0]], 1e-6);
+        let touching = rolled.iter().find(|contact| contact.id == flat[0].id).unwrap();
+        assert!(touching.gap.abs() < 1e-15, "{angle}: {}", touching.gap);
+        let below = Vector2::new(-0.4, -0.9) + turn.inverse() * Vector2::new(0.0, -0.1);
+        assert!((touching.sides[0].point - below).norm() < 1e-15, "{angle}");
+    }
+}
+
+#[test]
+fn rounded_corners_touch_beside_each_other() {
+    let blocks = pair([rounded(1.0, 1.0, 0.1), rounded(1.0, 1.0, 0.2)]);
+    // The middle of the first one's left bottom rounding is at (−0.4, −0.4) from its centre, of the
+    // other's right top at (0.3, 0.3).
+    let there = found(&blocks, &[[1.0, 1.1, 0.0], [0.0, 0.0, 0.0]], 1.0);
+    assert_eq!(there.len(), 1);
+    let apart = Vector2::new(0.3_f64, 0.4);
+    assert!((there[0].gap - (apart.norm() - 0.3)).abs() < 1e-15);
+    assert!((there[0].frame.row(0).transpose() - apart.normalize()).norm() < 1e-15);
+}
+
+#[test]
+fn a_body_of_parts_touches_by_each_of_them() {
+    // A table: a board on two legs, of which one ends in a disc; over a long block, and turned over
+    // it.
+    let board = polygon(&[[-1.0, 0.4], [1.0, 0.4], [1.0, 0.5], [-1.0, 0.5]]);
+    let leg = polygon(&[[-0.9, 0.0], [-0.8, 0.0], [-0.8, 0.4], [-0.9, 0.4]]);
+    let foot = Shape::from(Disc::new(Vector2::new(0.85, 0.1), 0.1).unwrap());
+    let bodies = [BodyId(0), BodyId(1)];
+    let shapes = vec![(BodyId(0), board), (BodyId(0), leg), (BodyId(1), rectangle(4.0, 1.0)), (BodyId(0), foot)];
+    let table = ShapeDetector::new(shapes, vec![ShapePair { pair: 0, law: LawId(0), bodies }]).unwrap();
+    let on = found(&table, &[[0.0, 0.5, 0.0], [0.0, 0.0, 0.0]], 1e-6);
+    // Corners are numbered over all parts: four of the board, four of the leg, the middle of the
+    // disc.
+    assert_eq!(corners(&on).0, [(0, 4), (0, 5), (0, 8)]);
+    assert!(on.iter().all(|contact| contact.gap.abs() < 1e-15));
+    let poses = [[0.0, 0.5, 0.0], [0.0, 0.52, 0.3], [0.2, 1.0, 2.9], [1.7, 0.8, 1.2]];
+    let poses: Vec<_> = poses.map(|pose| Poses(vec![pose, [0.0, 0.0, 0.1]])).into();
+    let poses: Vec<&dyn Geometry<2>> = poses.iter().map(|poses| poses as &dyn Geometry<2>).collect();
+    assert_eq!(check(&table, &poses), []);
+}
+
+/// Bodies that drift and turn, all against all but for one pair of classes, of which nothing
+/// touches: the same contacts as of pairs that are listed one by one, whatever was kept in memory.
+#[test]
+fn groups_find_what_listed_pairs_find() {
+    let n = 40_u32;
+    let shapes = |k: u32| match k % 3 {
+        0 => rectangle(1.0, 0.6),
+        1 => disc(0.4),
+        _ => polygon(&[[-0.4, -0.4], [0.5, -0.3], [0.1, 0.6]]),
+    };
+    let shapes: Vec<_> = (0..n).map(|k| (BodyId(k), shapes(k))).collect();
+    let class = |k: u32| usize::from(k.is_multiple_of(5));
+    let laws = vec![vec![Some(LawId(2)), Some(LawId(3))], vec![None, None]];
+    let groups = Groups::new((0..n).map(|k| (BodyId(k), class(k))).collect(), laws).unwrap();
+    let first = 7;
+    let mut pairs = vec![ShapePair { pair: 3, law: LawId(1), bodies: [BodyId(1), BodyId(2)] }];
+    let listed = ShapeDetector::new(shapes.clone(), pairs.clone()).unwrap();
+    for i in 0..n {
+        for j in i + 1..n {
+            if (i, j) != (1, 2)
+                && let Some(law) = groups.law(BodyId(i), BodyId(j))
+            {
+                pairs.push(ShapePair { pair: first + i * n + j, law, bodies: [BodyId(i), BodyId(j)] });
+            }
+        }
+    }
+    let pairwise = ShapeDetector::new(shapes, pairs).unwrap();
+    let grouped = listed.with_groups(groups, first).unwrap();
+    let mut memory = DetectorMemory::default();
+    let place = |k: u32, t: f64| {
+        let (a, b) = (f64::from(k % 7), f64::from(k / 7));
+        [0.9 * a + 0.3 * (b + t).sin(), 0.8 * b + 0.2 * (a + 2.0 * t).cos(), a * b + t]
+    };
+    let (mut out, mut fresh, mut all, mut found) = (Candidates::new(), Candidates::new(), Candidates::new(), 0);
+    let mut configurations = Vec::new();
+    for k in 0..300 {
+        let poses = Poses((0..n).map(|body| place(body, 0.01 * f64::from(k))).collect());
+        let margin = [0.0, 0.01, 0.3][k as usize % 3];
+        grouped.detect(&poses, margin, &mut memory, &mut out);
+        grouped.detect(&poses, margin, &mut DetectorMemory::default(), &mut fresh);
+        pairwise.detect(&poses, margin, &mut DetectorMemory::default(), &mut all);
+        assert_eq!(out, fresh, "{k}");
+        assert_eq!(out, all, "{k}");
+        found += out.len();
+        if k % 100 == 0 {
+            configurations.push(poses);
+        }
+    }
+    assert!(found > 3000, "{found}");
+    let configurations: Vec<&dyn Geometry<2>> = configurations.iter().map(|poses| poses as &dyn Geometry<2>).collect();
+    assert_eq!(check(&grouped, &configurations), []);
+}
+
+#[test]
+fn groups_that_cannot_work_are_refused() {
+    let laws = vec![vec![Some(LawId(0))]];
+    assert!(Groups::new(vec![(BodyId(0), 0), (BodyId(0), 0)], laws.clone()).is_err());
+    assert!(Groups::new(vec![(BodyId(0), 1)], laws.clone()).is_err());
+    let groups = Groups::new(vec![(BodyId(0), 0), (BodyId(9), 0)], laws).unwrap();
+    let error = pair([disc(1.0), disc(1.0)]).with_groups(groups, 1).unwrap_err();
+    assert_eq!(error.to_string(), "body 9 has no shape: give it one");
+}
+
 /// The distance of two polygons apart from each other: the least of any corner from any side.
 fn distance(poses: &[[f64; 3]; 2], shapes: [&[Vector2<f64>]; 2]) -> f64 {
     let place = |k: usize| {
@@ -199,8 +326,8 @@ fn distance(poses: &[[f64; 3]; 2], shapes: [&[Vector2<f64>]; 2]) -> f64 {
     least
 }
 
-/// Random polygons in random places: the smallest gap is the distance, but where corner is beside corner; the two see each other alike,
-/// in whatever order, and turned or moved as a whole.
+/// Random polygons in random places: the smallest gap is the distance, but where corner is beside
+/// corner; the two see each other alike, in whatever order, and turned or moved as a whole.
 #[test]
 fn random_polygons_are_as_far_apart_as_their_nearest_points() {
     let mut seed = 12_345_u64;
@@ -232,10 +359,41 @@ fn random_polygons_are_as_far_apart_as_their_nearest_points() {
         let least = mine.iter().map(|contact| contact.gap).fold(f64::INFINITY, f64::min);
         let expected = distance(&poses, [&a, &b]);
         if least < f64::INFINITY && least > 0.0 {
-            // Not nearer than they are; and that near where the nearest points are a corner's and a side's.
+            // Not nearer than they are; and that near where the nearest points are a corner's and a
+            // side's.
             assert!(least >= expected - 1e-12, "{least} {expected}");
             apart += usize::from((least - expected).abs() < 1e-12);
         }
     }
     assert!(apart > 1000, "{apart}");
+}
+
+/// Random rounded polygons: apart they are as far as their cores less both radii, corner beside
+/// corner too.
+#[test]
+fn random_rounded_polygons_are_as_far_apart_as_their_cores_less_the_radii() {
+    let mut seed = 54_321_u64;
+    let mut random = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let mut apart = 0;
+    for _ in 0..3000 {
+        let mut shape = || {
+            let corners = 3 + (random() * 6.0) as usize;
+            let angles = |k: usize| (k as f64 + 0.8 * random()) / corners as f64 * std::f64::consts::TAU;
+            (0..corners).map(angles).map(|a| Vector2::new(a.cos(), 0.7 * a.sin())).collect::<Vec<_>>()
+        };
+        let (a, b) = (shape(), shape());
+        let poses = [[0.0, 0.0, 6.0 * random()], [3.0 * random(), 3.0 * random(), 6.0 * random()]];
+        let shapes = [(a.clone(), 0.1), (b.clone(), 0.05)].map(|(core, radius)| Rounded::new(core, radius).unwrap());
+        let mine = found(&pair(shapes.map(Shape::from)), &poses, f64::INFINITY);
+        let least = mine.iter().map(|contact| contact.gap).fold(f64::INFINITY, f64::min);
+        let expected = distance(&poses, [&a, &b]) - 0.15;
+        if least > -0.15 {
+            assert!((least - expected).abs() < 1e-12, "{least} {expected}");
+            apart += 1;
+        }
+    }
+    assert!(apart > 1500, "{apart}");
 }

@@ -1,49 +1,49 @@
-//! What can be wrong with a file.
+//! Errors of reading and writing files.
 
 use teeter_contact::ProblemError;
 
-/// Why a file isn't a contact problem that can be solved, or can't be written. Names are paths inside the file; contacts
-/// count from 0.
+/// Why a file can't be read as a contact problem, or can't be written. Names are paths inside the
+/// file; contacts count from 0.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FclibError {
     /// The file can't be opened, read or written.
     #[error("{0}")]
     Io(#[from] std::io::Error),
-    /// The bytes aren't HDF5, or not HDF5 that can be read.
+    /// The bytes aren't HDF5, or use HDF5 features that aren't supported.
     #[error("not a readable HDF5 file: {reason}")]
     NotHdf5 {
-        /// What the HDF5 reader says.
+        /// The message of the HDF5 reader.
         reason: String,
     },
-    /// HDF5, but no contact problem.
+    /// An HDF5 file without a contact problem.
     #[error("no contact problem: the file has no group /fclib_local")]
     NoProblem,
     /// A global problem (mass matrix and Jacobian); only local ones are read.
     #[error("a global problem (group /fclib_global); only local problems (/fclib_local: W, q, mu) are read")]
     GlobalProblem,
-    /// A part that must be there.
+    /// A required part is missing.
     #[error("/{name} is missing")]
     Missing {
         /// Its path.
         name: String,
     },
-    /// A part that is there, but can't be read.
+    /// A part exists but can't be read.
     #[error("/{name} can't be read: {reason}")]
     Unreadable {
         /// Its path.
         name: String,
-        /// What the HDF5 reader says.
+        /// The message of the HDF5 reader.
         reason: String,
     },
-    /// Data of another kind than needed.
-    #[error("/{name} holds {found}, but must hold {expected}")]
+    /// A part has the wrong data type.
+    #[error("/{name} contains {found}, but must contain {expected}")]
     Type {
         /// Its path.
         name: String,
-        /// The kind of data found.
+        /// The data type found.
         found: String,
-        /// The kind of data needed.
+        /// The data type needed.
         expected: &'static str,
     },
     /// A part with too few or too many numbers.
@@ -56,20 +56,20 @@ pub enum FclibError {
         /// Entries needed (at least, for the arrays of W).
         expected: u64,
     },
-    /// A part that claims more than its file can plausibly hold; refused before memory is taken for it.
+    /// A part claims a size implausible for its file; refused before memory is allocated.
     #[error("/{name} claims {bytes} bytes, in a file of {file} bytes: refused")]
     TooLarge {
         /// Its path.
         name: String,
-        /// Bytes that it would take (`u64::MAX` if that overflows).
+        /// The size it claims in bytes (`u64::MAX` on overflow).
         bytes: u64,
-        /// Bytes of the file.
+        /// The size of the file in bytes.
         file: u64,
     },
-    /// Neither 2 nor 3 dimensions.
+    /// The dimension is neither 2 nor 3.
     #[error("/fclib_local/spacedim is {0}, but must be 2 or 3")]
     SpaceDimension(i64),
-    /// A matrix storage that fclib doesn't know.
+    /// A matrix storage that isn't part of the format.
     #[error("/fclib_local/W/nz is {0}, but must be -1 (columns), -2 (rows) or the number of triplets")]
     Storage(i64),
     /// A matrix that is not square, or of a negative size.
@@ -91,7 +91,7 @@ pub enum FclibError {
     /// A pointer array that doesn't ascend from 0.
     #[error("/fclib_local/W/p[{at}] is {value}, but must ascend from 0 (the one before it is {before})")]
     Pointer {
-        /// Place in the array.
+        /// Index in the array.
         at: usize,
         /// The pointer.
         value: i64,
@@ -103,13 +103,13 @@ pub enum FclibError {
     Index {
         /// `i` or `p`.
         array: &'static str,
-        /// Place in the array.
+        /// Index in the array.
         at: usize,
         /// The index.
         value: i64,
         /// Rows of the matrix.
         rows: usize,
-        /// Where the entry belongs: `contact 3`, or `triplet` if both may be wrong.
+        /// Where the entry belongs, such as `contact 3` or `a triplet of contact 3`.
         of: String,
     },
     /// Equality constraints beside the contacts.
@@ -125,16 +125,16 @@ pub enum FclibError {
         /// The number.
         value: f64,
     },
-    /// A problem that this format can't hold.
+    /// A problem that can't be stored in this format.
     #[error("can't be written: {reason}")]
     Unwritable {
-        /// Why.
+        /// The reason.
         reason: String,
     },
     /// A negative number of guesses.
     #[error("/guesses/number_of_guesses is {0}")]
     Guesses(i64),
-    /// The data are read, but no contact problem.
+    /// The data were read but aren't a valid contact problem.
     #[error(transparent)]
     Problem(#[from] ProblemError),
 }

@@ -1,8 +1,9 @@
-//! Reads and writes frictional contact problems in FCLIB's form, an HDF5 layout that other programs of the field share
-//! (Acary, Brémond, Koziara, Pérignon 2014, hal-00945820).
+//! Reads and writes frictional contact problems in the FCLIB format, an HDF5 layout shared by
+//! other contact codes (Acary, Brémond, Koziara, Pérignon 2014, hal-00945820).
 //!
-//! Of FCLIB's problems this crate knows the *local* ones: given W, q and μ, find the impulses r with u = W r + q and
-//! Coulomb's law between u and r. That is [`teeter_contact`]'s problem with H = W and p = r.
+//! The crate supports FCLIB's *local* problems: given W, q and μ, find the impulses r with u = W
+//! r + q and Coulomb's law between u and r. That is [`teeter_contact`]'s problem with H = W and p =
+//! r.
 //!
 //! ```text
 //! /fclib_local/spacedim                        int32 [1]      2 or 3
@@ -10,17 +11,18 @@
 //! /fclib_local/W/p, i, x                       int32, int32, float64
 //! /fclib_local/vectors/q, mu                   float64
 //! /fclib_local/info/title, description, math_info   strings
-//! /guesses/number_of_guesses, /guesses/1/u, r …     starts, as many as given
+//! /guesses/number_of_guesses, /guesses/1/u, r …     initial guesses, as many as given
 //! /solution/u, r                               a solution
 //! ```
 //!
-//! Optional are `info`, `guesses` and `solution`. A file of an older fclib that names q `vectors/a` is read too.
-//! Triplets are read as CSparse has them, and as Siconos writes them: `i` are rows, `p` are columns. Entries that name the
-//! same place twice are added up. Refused, with an error that says so: equality constraints (V, R, s) and global problems.
-//! Not kept: attributes, and the matrix information (`W/rank`, `W/conditioning` …) that some files hold.
+//! The groups `info`, `guesses` and `solution` are optional. Files of older fclib versions, which
+//! name q `vectors/a`, are read too. Triplets are read as CSparse and Siconos write them: `i` are
+//! rows, `p` are columns. Duplicate entries are added up. Equality constraints (V, R, s) and global
+//! problems are refused with an error that says so. Attributes and the matrix information
+//! (`W/rank`, `W/conditioning` …) of some files are ignored.
 //!
-//! What is read is checked, so that a file from elsewhere can't do harm: sizes before memory is taken, indices, finiteness,
-//! μ ≥ 0 and H_NN > 0 for each contact.
+//! Files from untrusted sources are safe to read: sizes are checked before memory is allocated,
+//! then indices, finiteness, and μ ≥ 0 and H_NN > 0 for each contact.
 //!
 //! ```no_run
 //! use teeter_fclib::FclibProblem;

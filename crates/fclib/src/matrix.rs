@@ -1,4 +1,4 @@
-//! W between the sparse storages of a file and blocks in memory.
+//! Conversion of W between a file's sparse storage and blocks in memory.
 
 use crate::FclibError;
 use crate::store::Store;
@@ -6,15 +6,15 @@ use crate::write::{fit, integers, numbers};
 use hdf5_pure::GroupBuilder;
 use teeter_contact::{Block, BlockSparse};
 
-/// Entry (row, column) of the matrix.
+/// One entry of the matrix.
 struct Entry {
     row: u32,
     column: u32,
     value: f64,
 }
 
-/// Reads W of `rows` rows, which are a whole number of contacts. The caller has checked that the file holds vectors of
-/// that length, so memory for so many rows is fair.
+/// Reads W with `rows` rows, a whole number of contacts. The caller has checked that the file
+/// contains vectors of that length, so allocating memory for as many rows is safe.
 pub(crate) fn read<const D: usize>(store: &Store, rows: usize) -> Result<BlockSparse<D>, FclibError> {
     let storage = store.integer("fclib_local/W/nz")?;
     let pointers = store.integers("fclib_local/W/p")?;
@@ -26,7 +26,7 @@ pub(crate) fn read<const D: usize>(store: &Store, rows: usize) -> Result<BlockSp
         count if count >= 0 => triplets::<D>(rows, count as u64, &pointers, &indices, &values)?,
         other => return Err(FclibError::Storage(other)),
     };
-    // Stable, so that equal places add up in the file's order.
+    // A stable sort, so that duplicate entries are added in the file's order.
     let block = |e: &Entry| (e.row as usize / D, e.column as usize / D);
     entries.sort_by_key(block);
     Ok(blocks(rows / D, &entries, block))
@@ -43,7 +43,7 @@ fn blocks<const D: usize>(
         let mut sum = Block::<D>::zeros();
         for e in group {
             let place = &mut sum[(e.row as usize % D, e.column as usize % D)];
-            // 0 + (-0) would lose the sign: the first value is taken as it is.
+            // The first value is assigned, not added: 0 + (-0) would lose the sign.
             *place = if place.to_bits() == 0 { e.value } else { *place + e.value };
         }
         if i == j || sum.iter().any(|c| c.to_bits() != 0) {
@@ -52,15 +52,15 @@ fn blocks<const D: usize>(
     }
     for (i, row) in rows.iter_mut().enumerate() {
         if let Err(at) = row.binary_search_by_key(&i, |(j, _)| *j) {
-            // An empty diagonal block is a mistake that the problem's own check names.
+            // An empty diagonal block is reported by the problem's own check.
             row.insert(at, (i, Block::zeros()));
         }
     }
-    // The rows ascend, lie inside and have their diagonals: by construction this can't fail.
+    // Can't fail: by construction the rows ascend, lie inside the matrix and have their diagonals.
     BlockSparse::from_rows(&rows).unwrap_or_default()
 }
 
-/// Compressed columns or rows; `place` turns (outer, inner) into (row, column).
+/// Reads compressed columns or rows; `place` turns (outer, inner) into (row, column).
 fn compressed<const D: usize>(
     rows: usize,
     pointers: &[i64],
@@ -110,7 +110,7 @@ fn triplets<const D: usize>(
     Ok(entries)
 }
 
-/// The number of stored entries, if the arrays hold as many; they may be longer (`nzmax`).
+/// The number of stored entries, if the arrays have at least as many (they may be longer: `nzmax`).
 fn enough(stored: u64, indices: &[i64], values: &[f64]) -> Result<usize, FclibError> {
     if (indices.len() as u64) < stored {
         return Err(size("i", indices.len(), stored));
@@ -138,7 +138,7 @@ fn size(array: &str, found: usize, expected: u64) -> FclibError {
     FclibError::Size { name: format!("fclib_local/W/{array}"), found: found as u64, expected }
 }
 
-/// Writes W by compressed columns, rows ascending, zeros left out.
+/// Writes W in compressed columns, rows ascending, without zeros.
 pub(crate) fn write<const D: usize>(h: &BlockSparse<D>, group: &mut GroupBuilder) -> Result<(), FclibError> {
     let size = fit("fclib_local/W/m", D * h.contacts())?;
     let entries = || {
@@ -149,7 +149,8 @@ pub(crate) fn write<const D: usize>(h: &BlockSparse<D>, group: &mut GroupBuilder
         })
     };
     let stored = || entries().filter(|(_, _, value)| value.to_bits() != 0);
-    // Counted first, so that each entry has its place; by rows within a column, as the rows come in order.
+    // Entries are counted first to get the column pointers, then stored row by row, so that rows
+    // ascend within each column.
     let mut pointers = vec![0_usize; D * h.contacts() + 1];
     stored().for_each(|(_, column, _)| pointers[column + 1] += 1);
     for k in 1..pointers.len() {
@@ -162,7 +163,7 @@ pub(crate) fn write<const D: usize>(h: &BlockSparse<D>, group: &mut GroupBuilder
     for (row, column, value) in stored() {
         let at = next[column];
         next[column] += 1;
-        // `size` and `count` fit 32 bits, and so does what is below them.
+        // `size` and `count` fit into 32 bits, so all smaller numbers do too.
         (indices[at], values[at]) = (row as i32, value);
     }
     let pointers: Vec<i32> = pointers.iter().map(|&p| p as i32).collect();

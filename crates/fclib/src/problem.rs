@@ -30,7 +30,7 @@ impl FclibProblem {
         }
     }
 
-    /// What the file says of the problem.
+    /// The description of the problem.
     #[must_use]
     pub fn info(&self) -> &Info {
         match self {
@@ -40,7 +40,7 @@ impl FclibProblem {
     }
 }
 
-/// A contact problem that owns its data, with what FCLIB keeps beside it.
+/// A contact problem that owns its data, with FCLIB's additional information.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LocalProblem<const D: usize> {
     /// The Delassus operator W, 1/kg (or its inverse stiffness, for a quasi-static problem).
@@ -49,16 +49,17 @@ pub struct LocalProblem<const D: usize> {
     pub q: Vec<Vector<D>>,
     /// The friction coefficient of each contact.
     pub mu: Vec<f64>,
-    /// What the problem is.
+    /// Title and description.
     pub info: Info,
-    /// Starts for a solver.
+    /// Initial guesses for a solver.
     pub guesses: Vec<Solution<D>>,
     /// A solution.
     pub solution: Option<Solution<D>>,
 }
 
 impl<const D: usize> LocalProblem<D> {
-    /// A problem as it is written to a file, with nothing beside it. Zero blocks are left out.
+    /// A problem as it is written to a file, without additional information. Zero blocks are left
+    /// out.
     #[must_use]
     pub fn of(problem: &ContactProblem<'_, D>) -> Self {
         let mut local = Self { q: problem.q().to_vec(), mu: problem.mu().to_vec(), ..Self::default() };
@@ -66,24 +67,24 @@ impl<const D: usize> LocalProblem<D> {
         local
     }
 
-    /// The problem that owns this data, without what FCLIB keeps beside it.
+    /// The contact problem with this data, without FCLIB's additional information.
     ///
     /// # Errors
-    /// As [`ContactProblem::new`]; not for a problem as read.
+    /// As [`ContactProblem::new`]; never for a problem read from a file.
     pub fn into_owned(self) -> Result<OwnedProblem<D>, ProblemError> {
         OwnedProblem::sparse(self.h, self.q, self.mu)
     }
 
-    /// The problem that borrows this data.
+    /// The contact problem borrowing this data.
     ///
     /// # Errors
-    /// As [`ContactProblem::new`]; not for a problem as read.
+    /// As [`ContactProblem::new`]; never for a problem read from a file.
     pub fn problem(&self) -> Result<ContactProblem<'_, D>, ProblemError> {
         ContactProblem::new(Delassus::Blocks(&self.h), &self.q, &self.mu)
     }
 }
 
-/// What a file says of its problem; `None` where it says nothing.
+/// A file's description of its problem; `None` where it has none.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Info {
     /// A short title.
@@ -94,15 +95,15 @@ pub struct Info {
     pub math_info: Option<String>,
 }
 
-/// A solution of a problem, or a guess of one.
+/// A solution of a problem, or an initial guess.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Solution<const D: usize> {
     /// The relative velocities.
     pub u: Vec<Vector<D>>,
     /// The impulses.
     pub r: Vec<Vector<D>>,
-    /// Global velocities; local problems have none as a rule.
+    /// Global velocities; usually empty for local problems.
     pub v: Vec<f64>,
-    /// Multipliers of equality constraints; problems without such constraints have none as a rule.
+    /// Multipliers of equality constraints; usually empty for problems without such constraints.
     pub l: Vec<f64>,
 }

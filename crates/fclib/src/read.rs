@@ -1,4 +1,4 @@
-//! From a file to a problem.
+//! Reading a file into a problem.
 
 use crate::store::Store;
 use crate::{FclibError, FclibProblem, Info, LocalProblem, Solution, matrix};
@@ -9,10 +9,11 @@ use teeter_contact::Vector;
 /// Reads a file.
 ///
 /// # Errors
-/// If it can't be read, is no HDF5 file, or holds no local contact problem that a solver could take; see [`FclibError`].
+/// If the file can't be read, isn't HDF5, or doesn't contain a valid local contact problem; see
+/// [`FclibError`].
 pub fn read(path: impl AsRef<Path>) -> Result<FclibProblem, FclibError> {
     let mut file = std::fs::File::open(path)?;
-    // What is no HDF5 shows in the beginning: no need to take all of a huge file, or of a device that has no end.
+    // The signature is checked first, so that a huge file or an endless device isn't read in full.
     let mut bytes = Vec::new();
     file.by_ref().take(HEAD).read_to_end(&mut bytes)?;
     if hdf5_pure::is_hdf5_bytes(&bytes) {
@@ -21,10 +22,10 @@ pub fn read(path: impl AsRef<Path>) -> Result<FclibProblem, FclibError> {
     open(bytes)
 }
 
-/// The signature of an HDF5 file stands within so many bytes, but for files with a larger block of the user's before it.
+/// Bytes within which the HDF5 signature is searched, unless a larger user block precedes it.
 const HEAD: u64 = 1 << 20;
 
-/// Reads a file's content.
+/// Reads a problem from the content of a file.
 ///
 /// # Errors
 /// As [`read`].
@@ -48,7 +49,8 @@ fn open(bytes: Vec<u8>) -> Result<FclibProblem, FclibError> {
 fn local<const D: usize>(store: &Store) -> Result<LocalProblem<D>, FclibError> {
     let rows = size_of_matrix::<D>(store)?;
     no_constraints(store)?;
-    // The vectors first: they have as many entries as W has rows, so that nothing is made room for that isn't there.
+    // The vectors are read first: they have as many entries as W has rows, so memory for W is only
+    // allocated when the file is large enough to justify it.
     let q = contact_vectors(constant_vector(store)?, "fclib_local/vectors/q", rows)?;
     let mu = store.numbers("fclib_local/vectors/mu")?;
     expect("fclib_local/vectors/mu", mu.len(), rows / D)?;
@@ -63,7 +65,7 @@ fn local<const D: usize>(store: &Store) -> Result<LocalProblem<D>, FclibError> {
     Ok(problem)
 }
 
-/// Rows of W: as many as columns, a whole number of contacts.
+/// The number of rows of W, checked to be square and a whole number of contacts.
 fn size_of_matrix<const D: usize>(store: &Store) -> Result<usize, FclibError> {
     let (rows, columns) = (store.integer("fclib_local/W/m")?, store.integer("fclib_local/W/n")?);
     match u32::try_from(rows) {
@@ -78,7 +80,7 @@ fn size_of_matrix<const D: usize>(store: &Store) -> Result<usize, FclibError> {
 }
 
 fn no_constraints(store: &Store) -> Result<(), FclibError> {
-    // R is p x p, V is m x p; p = 0 is as good as no constraints.
+    // R is p x p, V is m x p; p = 0 means no constraints.
     for (group, size) in [("fclib_local/R", "fclib_local/R/m"), ("fclib_local/V", "fclib_local/V/n")] {
         if store.has_group(group)? {
             let count = store.integer(size)?;
@@ -93,7 +95,7 @@ fn no_constraints(store: &Store) -> Result<(), FclibError> {
     }
 }
 
-/// q; an older fclib wrote it by the name of `a`.
+/// q; older versions of fclib wrote it as `a`.
 fn constant_vector(store: &Store) -> Result<Vec<f64>, FclibError> {
     match store.numbers_if_any("fclib_local/vectors/q")? {
         Some(q) => Ok(q),

@@ -1,11 +1,12 @@
-//! Typed access to the parts of an HDF5 file, sizes checked before anything is read.
+//! Typed access to the parts of an HDF5 file; sizes are checked before anything is read.
 
 use crate::FclibError;
 use hdf5_pure::{DType, Dataset, Error, File, FormatError};
 
-/// A part may always take this many bytes …
+/// A part of up to this many bytes is always accepted …
 const ALWAYS: u64 = 16 << 20;
-/// … and above that no more than this many times the file: compression of numbers doesn't reach it, a bomb does.
+/// … and a larger one up to this many times the file's size: compressed numbers stay below this
+/// ratio, a decompression bomb doesn't.
 const RATIO: u64 = 100;
 
 /// An open file.
@@ -30,7 +31,7 @@ impl Store {
         }
     }
 
-    /// A single whole number, whatever the shape that holds it.
+    /// A single integer, from a dataset of any shape.
     pub(crate) fn integer(&self, name: &str) -> Result<i64, FclibError> {
         let values = self.integers(name)?;
         match values.as_slice() {
@@ -49,7 +50,7 @@ impl Store {
         dataset.read_i64().map_err(|error| unreadable(name, &error))
     }
 
-    /// Numbers; `None` if there is no such part.
+    /// Numbers; `None` if the part doesn't exist.
     pub(crate) fn numbers_if_any(&self, name: &str) -> Result<Option<Vec<f64>>, FclibError> {
         let Some(dataset) = self.find(name)? else { return Ok(None) };
         let dtype = dataset.dtype().map_err(|error| unreadable(name, &error))?;
@@ -64,7 +65,7 @@ impl Store {
         self.numbers_if_any(name)?.ok_or_else(|| FclibError::Missing { name: name.to_owned() })
     }
 
-    /// A text; `None` if there is no such part.
+    /// A text; `None` if the part doesn't exist.
     pub(crate) fn text_if_any(&self, name: &str) -> Result<Option<String>, FclibError> {
         let Some(dataset) = self.find(name)? else { return Ok(None) };
         let dtype = dataset.dtype().map_err(|error| unreadable(name, &error))?;
@@ -73,7 +74,7 @@ impl Store {
         }
         self.checked_length(&dataset, name)?;
         let texts = dataset.read_string().map_err(|error| unreadable(name, &error))?;
-        // Up to the first NUL, as C has it.
+        // Up to the first NUL, as in C.
         let text = texts.first().and_then(|text| text.split('\0').next()).unwrap_or_default();
         Ok(Some(text.to_owned()))
     }
@@ -90,15 +91,15 @@ impl Store {
         self.find(name)?.ok_or_else(|| FclibError::Missing { name: name.to_owned() })
     }
 
-    /// Refuses what claims more than the file can plausibly hold: the whole of it, and the pieces that it is stored in, which
-    /// are unpacked whole.
+    /// Refuses a part whose claimed size is implausible for the file. This holds for the whole part
+    /// and for each of its chunks, which are decompressed as a whole.
     fn checked_length(&self, dataset: &Dataset, name: &str) -> Result<(), FclibError> {
         let shape = dataset.shape().map_err(|error| unreadable(name, &error))?;
         let chunk = dataset.chunk_shape().map_err(|error| unreadable(name, &error))?.unwrap_or_default();
         let element = dataset.element_size().map_err(|error| unreadable(name, &error))?;
         let allowed = ALWAYS.max(self.bytes.saturating_mul(RATIO));
         for extents in [shape, chunk] {
-            // Numbers are widened to 8 bytes when read.
+            // Numbers are converted to 8 bytes when read.
             let bytes = extents.iter().try_fold(element.max(8), |bytes, &extent| bytes.checked_mul(extent));
             let bytes = bytes.unwrap_or(u64::MAX);
             if bytes > allowed {

@@ -1,4 +1,4 @@
-//! From a problem to a file.
+//! Writing a problem to a file.
 
 use crate::{FclibError, FclibProblem, LocalProblem, Solution, matrix};
 use hdf5_pure::{CharacterSet, Datatype, FileBuilder, GroupBuilder, LibVer, StringPadding};
@@ -17,7 +17,7 @@ impl FclibProblem {
         }
     }
 
-    /// Writes a file, over one that is there.
+    /// Writes a file, replacing an existing one.
     ///
     /// # Errors
     /// As [`LocalProblem::write`].
@@ -27,22 +27,25 @@ impl FclibProblem {
 }
 
 impl<const D: usize> LocalProblem<D> {
-    /// Writes a file, over one that is there.
+    /// Writes a file, replacing an existing one.
     ///
     /// # Errors
-    /// If the data are no contact problem, as [`LocalProblem::to_bytes`], or the file can't be written.
+    /// As [`LocalProblem::to_bytes`], or if the file can't be written.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), FclibError> {
         Ok(std::fs::write(path, self.to_bytes()?)?)
     }
 
-    /// The content of a file that reads back to the same doubles and texts, to the bit. W is stored by compressed columns,
-    /// rows ascending, zeros left out; an off-diagonal block of zeros alone is therefore not there when read.
+    /// The content of a file. Reading it returns the same numbers and texts, bit for bit. W is
+    /// stored in compressed columns, rows ascending, without zeros; an off-diagonal block of zeros
+    /// is therefore missing when the file is read.
     ///
-    /// The file is of HDF5 1.8's form, uncompressed, each array in one piece: libfclib, Siconos and h5py read it.
+    /// The file has the HDF5 1.8 format, uncompressed, with contiguous arrays: libfclib, Siconos
+    /// and h5py read it.
     ///
     /// # Errors
-    /// If the data are no contact problem (sizes, finiteness, μ, H_NN), a guess or a solution is of another size or not
-    /// finite, a text holds the character NUL, or a size exceeds the format's 32 bits.
+    /// If the data aren't a valid contact problem (sizes, finiteness, μ, H_NN), a guess or a
+    /// solution has another size or isn't finite, a text contains the character NUL, or a size
+    /// exceeds the format's 32 bits.
     pub fn to_bytes(&self) -> Result<Vec<u8>, FclibError> {
         if D != 2 && D != 3 {
             return Err(FclibError::SpaceDimension(D as i64));
@@ -116,7 +119,7 @@ fn flat<const D: usize>(vectors: &[Vector<D>]) -> Vec<f64> {
     vectors.iter().flat_map(|v| v.iter().copied()).collect()
 }
 
-/// A whole number of the format's 32 bits.
+/// Converts a size to the format's 32-bit integer.
 pub(crate) fn fit(name: &str, value: usize) -> Result<i32, FclibError> {
     i32::try_from(value).map_err(|_| FclibError::Size {
         name: name.to_owned(),
@@ -133,11 +136,11 @@ pub(crate) fn numbers(group: &mut GroupBuilder, name: &str, values: &[f64]) {
     group.create_dataset(name).with_f64_data(values).with_shape(&[values.len() as u64]);
 }
 
-/// A text as fclib writes it: one string of fixed length that ends with NUL.
+/// Writes a text as fclib does: one string of fixed length that ends with NUL.
 fn text(group: &mut GroupBuilder, name: &str, value: &str) -> Result<(), FclibError> {
     let too_long = || FclibError::Unwritable { reason: format!("the {name} is too long") };
     if value.contains('\0') {
-        return Err(FclibError::Unwritable { reason: format!("the {name} holds the character NUL") });
+        return Err(FclibError::Unwritable { reason: format!("the {name} contains the character NUL") });
     }
     let size = u32::try_from(value.len() + 1).map_err(|_| too_long())?;
     let charset = if value.is_ascii() { CharacterSet::Ascii } else { CharacterSet::Utf8 };

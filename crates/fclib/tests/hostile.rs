@@ -1,5 +1,5 @@
-//! Files that are wrong: each is refused with an error that names what and where; nothing panics or takes memory without
-//! bound. The fuzzer (`fuzz/`) goes further; its seeds are replayed here.
+//! Files that are wrong: each is refused with an error that names what and where; nothing panics or
+//! takes memory without bound. The fuzzer (`fuzz/`) goes further; its seeds are replayed here.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use hdf5_pure::FileBuilder;
@@ -155,7 +155,7 @@ fn what_is_no_local_problem_is_said_to_be_none() {
     group.create_dataset("spacedim").with_strings(&["two"]).unwrap();
     file.add_group(group.finish());
     let error = from_bytes(&file.finish().unwrap()).unwrap_err().to_string();
-    assert_eq!(error, "/fclib_local/spacedim holds string, but must hold integers");
+    assert_eq!(error, "/fclib_local/spacedim contains string, but must contain integers");
 }
 
 fn seeds() -> Vec<(String, Vec<u8>)> {

@@ -1,4 +1,5 @@
-//! The published problems beside the repository, where they are: all are read, and are what their table says.
+//! The published problems beside the repository, where they are: all are read, and are what their
+//! table says.
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
 use std::path::{Path, PathBuf};

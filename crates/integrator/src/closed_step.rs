@@ -14,11 +14,15 @@ use crate::step_motion::StepMotion;
 use crate::theta_step::ThetaStep;
 use crate::{
     ContactError, ContactStage, ImpactLaw, Mismatch, Model, Over, PairLaw, PhaseEnd, PhaseKind, Rule, SpringStep,
-    State, StepError, StepSpan, Vector, Workspace,
+    State, StepError, StepSpan, Vector, WarmStart, Workspace,
 };
 pub(crate) use guard::{Guard, Guarded};
 use teeter_contact::Outcome;
 use teeter_detect::{Candidate, Candidates, ContactId};
+
+/// Up to so many contacts a solution doesn't depend on where its search starts: it is enumerated,
+/// or polished.
+const FEW: usize = 12;
 
 /// θ: the step's account of work holds for the trapezoidal rule.
 pub(crate) const THETA: f64 = 0.5;
@@ -38,8 +42,8 @@ pub(crate) struct ClosedStep<const D: usize, M = ThetaStep> {
     middle: Candidates<D>,
     /// Of each of these, at q̃_m and at q̃, how far it is to the end of its surface, m.
     rooms: [Vec<f64>; 2],
-    /// Whether contacts that pass the end of their surface within the step act as if it went on; if not, those act that pass it in the
-    /// second half.
+    /// Whether contacts that pass the end of their surface within the step act as if it went on; if
+    /// not, those act that pass it in the second half.
     goes_past_ends: bool,
     ahead: Candidates<D>,
     start: Candidates<D>,
@@ -50,6 +54,8 @@ pub(crate) struct ClosedStep<const D: usize, M = ThetaStep> {
     pub(crate) closed: Vec<ContactId>,
     /// As many of them have been looked at in this step.
     looked_for: usize,
+    /// The impulses of the attempt before, of many contacts: where the solver starts.
+    tried: WarmStart,
     /// The part of the step that is taken: an approach that forces make within a whole step is no
     /// impact.
     pub(crate) of_step: f64,
@@ -96,6 +102,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             row: ContactRows::default(),
             closed: Vec::new(),
             looked_for: 0,
+            tried: WarmStart::default(),
             of_step: 1.0,
             resting_shift: Vec::new(),
             slides: Vec::new(),
@@ -104,7 +111,8 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         }
     }
 
-    /// With contacts that act past the end of their surface as if it went on, for a scheme that ends the step there.
+    /// With contacts that act past the end of their surface as if it went on, for a scheme that
+    /// ends the step there.
     pub(crate) fn past_ends(self) -> Self {
         Self { goes_past_ends: true, ..self }
     }
@@ -171,6 +179,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         self.v_free.clear();
         self.v_free.extend_from_slice(self.step.v_end());
         self.looked_for = 0;
+        self.tried.clear();
         Ok(())
     }
 
@@ -191,7 +200,8 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         let outcome = loop {
             let outcome =
                 self.solve(model, from, span, work).map_err(|source| StepError::Problem { t: from.t, source })?;
-            // Frames and gaps stay those of the first round: its fixed point is then that of one problem.
+            // Frames and gaps stay those of the first round: its fixed point is then that of one
+            // problem.
             if !self.step.takes_another_round(model, from, span.h, work) {
                 break self.step.judge(outcome, work.settings.tolerance);
             }
@@ -265,8 +275,9 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         work.locate_past_ends(model, &self.q_mid, &self.closed, &mut self.middle, &mut self.rooms[0])
     }
 
-    /// Whether contact `i` of an attempt of `h` (s) may be past the end of its surface after it. It is if it was at q̃, unless impulses
-    /// have moved it since: by half the difference of the slides that are summed here, so that twice their sum leaves room for turns.
+    /// Whether contact `i` of an attempt of `h` (s) may be past the end of its surface after it. It
+    /// is if it was at q̃, unless impulses have moved it since: by half the difference of the
+    /// slides that are summed here, so that twice their sum leaves room for turns.
     pub(crate) fn may_leave(&self, i: usize, h: f64) -> bool {
         let Ok(at) = self.ahead.binary_search_by_key(&self.stage.contacts()[i].id, |ahead| ahead.id) else {
             return true;
@@ -329,6 +340,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         posed?;
         let (over, responses) = (Over::Step { h: span.h, weight: THETA }, self.step.responses(span.h));
         self.guarded.restart(self.stage.len());
+        self.stage.start_from(&self.tried);
         let (guarded, v_free) = (&mut self.guarded, &self.v_free);
         // Each round guards one contact more at least, so it ends.
         let outcome = self.stage.solve_guarded(model, work, &responses, over, |stage, problem, laws, members| {
@@ -337,6 +349,12 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         })?;
         self.step.respond(model, &self.stage, span.h, work)?;
         self.stage.complete(self.step.v_end())?;
+        self.tried.clear();
+        if self.stage.len() > FEW {
+            for (contact, p) in self.stage.contacts().iter().zip(&self.stage.problem.p) {
+                self.tried.push(contact.id, p);
+            }
+        }
         Ok(outcome)
     }
 

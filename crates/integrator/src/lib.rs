@@ -76,6 +76,7 @@ mod free_velocity;
 mod generalized_alpha;
 mod laws;
 mod ledger;
+mod matrices;
 mod memory;
 mod mismatch;
 mod model;
@@ -109,7 +110,7 @@ mod workspace;
 #[cfg(feature = "beam")]
 pub use adapters::beam::forces::{BeamForces, SpanLoads};
 #[cfg(feature = "beam")]
-pub use adapters::beam::{BeamBody, BeamSurface, MovingForce, SignalLoad, WBackend};
+pub use adapters::beam::{BeamBody, BeamFace, BeamSurface, MovingForce, SignalLoad, WBackend};
 #[cfg(feature = "bodies")]
 pub use adapters::blocks::{Block, BlockCoordinate, BlockLoad, Blocks};
 #[cfg(feature = "bodies")]
@@ -124,6 +125,7 @@ pub use event_driven::{EventDriven, EventDrivenSettings};
 pub use factors::{Keep, Responses};
 pub use generalized_alpha::{GeneralizedAlpha, GeneralizedAlphaSettings};
 pub use ledger::{Ledger, PositiveWork, StepEnergy};
+pub use matrices::ConstantMatrices;
 pub use memory::Memory;
 pub use mismatch::Mismatch;
 pub use model::{Model, ModelBuilder, ModelError, Part, PartPlace, Placed};

@@ -567,4 +567,22 @@ impl<const D: usize> Geometry<D> for Placed<'_, D> {
         let (_, part, number) = self.model.owner(body)?;
         part.system.reach(number, &self.q[part.q.clone()], margin)
     }
+
+    fn summits(
+        &self,
+        body: BodyId,
+        _: Kinematics,
+        direction: &Vector<D>,
+        between: &[Vector<D>; 2],
+        each: &mut dyn FnMut(SurfacePoint<D>),
+    ) {
+        if let Some((_, part, number)) = self.model.owner(body) {
+            part.system.summits(number, &self.q[part.q.clone()], direction, between, each);
+        }
+    }
+
+    fn ends(&self, body: BodyId, _: Kinematics) -> [Option<SurfacePoint<D>>; 2] {
+        let owner = self.model.owner(body);
+        owner.map_or([None, None], |(_, part, number)| part.system.ends(number, &self.q[part.q.clone()]))
+    }
 }

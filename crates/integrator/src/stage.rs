@@ -564,6 +564,15 @@ impl<const D: usize> ContactStage<D> {
         self.problem.p.get(i).copied()
     }
 
+    /// Lets the solver start from these impulses, of the contacts that have one there.
+    pub(crate) fn start_from(&mut self, impulses: &WarmStart) {
+        for (contact, p) in self.contacts.iter().zip(&mut self.problem.p) {
+            if let Some(known) = impulses.impulse(contact.id) {
+                *p = known;
+            }
+        }
+    }
+
     /// Completes the contacts after [`respond`](Self::respond), with velocities `v` at the end (m/s).
     ///
     /// # Errors

@@ -342,6 +342,27 @@ pub trait Bodies<const D: usize>: Send + Sync {
         None
     }
 
+    /// Hands the points of a body's surface to `each`, from the left, at which it comes out furthest in
+    /// a direction, more so than beside them, and whose feet lie between those of two places; see
+    /// [`teeter_detect::Geometry::summits`]. None, the default, for a surface that is flat.
+    fn summits(
+        &self,
+        body: u32,
+        q: &[f64],
+        direction: &Vector<D>,
+        between: &[Vector<D>; 2],
+        each: &mut dyn FnMut(SurfacePoint<D>),
+    ) {
+        let _ = (body, q, direction, between, each);
+    }
+
+    /// The points at which a body's surface ends, left and right; `None`, the default, where it
+    /// doesn't.
+    fn ends(&self, body: u32, q: &[f64]) -> [Option<SurfacePoint<D>>; 2] {
+        let _ = (body, q);
+        [None, None]
+    }
+
     /// Fills the Jacobian rows of a body's point (in the body coordinates that detection uses) in
     /// `frame`, and returns the number of columns used. The previous content of `out` is arbitrary.
     /// The point's velocity is rows · v, with prescribed velocities included in v.

@@ -1,9 +1,9 @@
-//! Axes: which values they show, and where a value lies on them.
+//! Axes: their range, and the position of a value on them.
 
 use crate::AxisError;
 use crate::ticks::Ticks;
 
-/// A labelled axis over a range that is finite and not empty.
+/// A labelled axis over a finite, non-empty range.
 ///
 /// The label should name the quantity, its symbol and its unit, as in "Time t (s)".
 #[derive(Clone, Debug, PartialEq)]
@@ -20,21 +20,21 @@ enum Scale {
     Logarithmic,
 }
 
-/// Values beyond are drawn there, so that no width overflows.
+/// Larger values are drawn here, so that no width overflows.
 const LARGEST: f64 = 1e300;
 
-/// Powers of ten of the ends of a logarithmic axis, at most: those of [`LARGEST`].
+/// Largest exponent of the ends of a logarithmic axis: that of [`LARGEST`].
 const MOST_DECADES: f64 = 300.0;
 
-/// What differs by less than this part of its size is drawn as constant.
+/// Values that differ by less than this relative amount are drawn as constant.
 const CONSTANT: f64 = 1e-9;
 
-/// Least width of a range that is given, as part of its ends: the round numbers in it are still different numbers.
+/// Least relative width of a given range; the round numbers in it can still be distinguished.
 const NARROWEST: f64 = 1e-12;
 
 impl Axis {
-    /// A linear axis over all of the values with a margin of 5 %; it starts at zero where that is no farther away than
-    /// the values are apart. Of no values at all, from 0 to 1.
+    /// A linear axis over all values with a margin of 5 %. It starts at zero if zero is no farther
+    /// away than the range of the values is wide. Without values, it goes from 0 to 1.
     ///
     /// # Errors
     /// [`AxisError::NotFinite`] if a value is not finite.
@@ -46,11 +46,12 @@ impl Axis {
         Ok(Self::between(label, if from_zero { 0.0 } else { low - margin }, high + margin))
     }
 
-    /// A logarithmic axis around all of the values with a margin of 3 %, up to the next 1, 2 or 5 times a power of ten. Of
-    /// no values at all, from 1 to 10. The axis ends at 1e±300, even if values are beyond.
+    /// A logarithmic axis over all values with a margin of 3 %, extended to the next 1, 2 or 5
+    /// times a power of ten. Without values, it goes from 1 to 10. The axis is limited to 1e±300.
     ///
     /// # Errors
-    /// [`AxisError::NotFinite`] if a value is not finite, [`AxisError::NotPositive`] if one is zero or negative.
+    /// [`AxisError::NotFinite`] if a value is not finite, [`AxisError::NotPositive`] if one is zero
+    /// or negative.
     pub fn logarithmic(label: impl Into<String>, values: impl IntoIterator<Item = f64>) -> Result<Self, AxisError> {
         let label = label.into();
         let (low, high) = match extent(&label, values)? {
@@ -58,7 +59,7 @@ impl Axis {
             Some((low, _)) if low <= 0.0 => return Err(AxisError::NotPositive { axis: label, value: low }),
             Some((low, high)) => {
                 let (low, high) = (low.log10(), high.log10());
-                // Of values that are about the same, half a decade.
+                // Half a decade for values that are about equal.
                 let margin = (0.03 * (high - low)).max(0.5 * (0.5 - (high - low)));
                 (round_down(low - margin).max(-MOST_DECADES), round_up(high + margin).min(MOST_DECADES))
             }
@@ -66,16 +67,17 @@ impl Axis {
         Ok(Self { label, scale: Scale::Logarithmic, low, high })
     }
 
-    /// A linear axis with a margin of 6 % around those of the values that are finite, at least `least` wide in the
-    /// unit of the values: what varies by less is at rest, and its rounding not for the eye. Of no values, from −1 to 1.
+    /// A linear axis over the finite values with a margin of 6 %, at least `least` wide in their
+    /// unit, so that rounding errors of constant values aren't magnified. Without values, from −1
+    /// to 1.
     #[must_use]
     pub fn around(label: impl Into<String>, values: impl IntoIterator<Item = f64>, least: f64) -> Self {
         let (low, high) = range_around(values.into_iter(), least);
         Self { label: label.into(), scale: Scale::Linear, low, high }
     }
 
-    /// A linear axis with given ends. Where these are no range that can be drawn (not finite, not ascending, the same
-    /// but for rounding), the axis is one [around](Axis::around) them.
+    /// A linear axis with given ends. If these aren't a valid range (not finite, not ascending, or
+    /// equal up to rounding), the axis is placed [around](Axis::around) them.
     #[must_use]
     pub fn between(label: impl Into<String>, low: f64, high: f64) -> Self {
         if is_drawable(low, high) {
@@ -85,7 +87,7 @@ impl Axis {
         }
     }
 
-    /// The axis from another low end on, if that is below its high end and, on a logarithmic axis, positive.
+    /// Sets the low end, if it is below the high end and, on a logarithmic axis, positive.
     #[must_use]
     pub fn starting_at(mut self, low: f64) -> Self {
         let low = self.scaled(low);
@@ -104,18 +106,18 @@ impl Axis {
         }
     }
 
-    /// How far a value lies from the low end of an axis of this length.
+    /// The distance of a value from the low end of an axis of this length.
     pub(crate) fn above_low(&self, x: f64, length: f64) -> f64 {
         length * (self.scaled(x) - self.low) / (self.high - self.low)
     }
 
-    /// How far a value lies from the high end of an axis of this length.
+    /// The distance of a value from the high end of an axis of this length.
     pub(crate) fn below_high(&self, x: f64, length: f64) -> f64 {
         length * (self.high - self.scaled(x)) / (self.high - self.low)
     }
 
-    /// Whether a value lies on the axis, up to rounding.
-    pub(crate) fn holds(&self, x: f64) -> bool {
+    /// Whether a value is within the axis, up to rounding.
+    pub(crate) fn contains(&self, x: f64) -> bool {
         let (x, slack) = (self.scaled(x), 1e-9 * (self.high - self.low));
         (self.low - slack..=self.high + slack).contains(&x)
     }
@@ -132,7 +134,7 @@ impl Axis {
         }
     }
 
-    /// NaN or infinite where the axis has no place.
+    /// NaN or infinite for a value that isn't on the axis.
     fn scaled(&self, x: f64) -> f64 {
         match self.scale {
             Scale::Linear => x,
@@ -141,7 +143,7 @@ impl Axis {
     }
 }
 
-/// Whether there are numbers between the ends, and the distance of two of them is a number.
+/// Whether the range is wide enough and its width finite.
 fn is_drawable(low: f64, high: f64) -> bool {
     let width = high - low;
     width.is_finite() && width > f64::MIN_POSITIVE.max(NARROWEST * low.abs().max(high.abs()))
@@ -160,8 +162,8 @@ fn extent(label: &str, values: impl IntoIterator<Item = f64>) -> Result<Option<(
     Ok(ends)
 }
 
-/// The logarithm of the largest of the numbers 1, 2, 5, 10 … that is not above a number, given its logarithm. A number
-/// that is one of them but for rounding stays.
+/// Rounds a number down to one of 1, 2, 5, 10 …, with both given by their logarithms. A number
+/// equal to one of them up to rounding is kept.
 fn round_down(power: f64) -> f64 {
     let decade = power.floor();
     let beside = power - decade + 1e-9;
@@ -169,12 +171,12 @@ fn round_down(power: f64) -> f64 {
     decade + step.unwrap_or(0.0)
 }
 
-/// The same upwards: the reciprocals of 1, 2, 5, 10 … are such numbers too.
+/// The same upwards, as the reciprocals of 1, 2, 5, 10 … belong to the same series.
 fn round_up(power: f64) -> f64 {
     -round_down(-power)
 }
 
-/// The range of the finite values with a little room, at least `least` wide; never empty.
+/// The range of the finite values with a margin, at least `least` wide; never empty.
 fn range_around(values: impl Iterator<Item = f64>, least: f64) -> (f64, f64) {
     let finite = values.filter(|x| x.is_finite()).map(|x| x.clamp(-LARGEST, LARGEST));
     let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
@@ -182,7 +184,8 @@ fn range_around(values: impl Iterator<Item = f64>, least: f64) -> (f64, f64) {
         return (-1.0, 1.0);
     }
     let room = 0.06 * (high - low) + 0.5 * (least - (high - low)).max(0.0);
-    // Of constant values, wide enough for the ends to be other numbers than the values, however large these are.
+    // For constant values wide enough that the ends differ from the values, however large these
+    // are.
     let least = CONSTANT * low.abs().max(high.abs());
     if room > least {
         (low - room, high + room)
@@ -216,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn ends_that_are_no_range_are_drawn_around() {
+    fn invalid_ends_give_an_axis_around_them() {
         assert_eq!(Axis::between("x", 2.0, 3.0).ends(), (2.0, 3.0));
         for ends in [(1.0, 1.0), (3.0, 2.0), (0.0, 5e-324), (f64::NAN, 1.0), (f64::MIN, f64::MAX), (1e9, 1e9 + 1e-6)] {
             let axis = Axis::between("x", ends.0, ends.1);
@@ -242,7 +245,7 @@ mod tests {
     fn a_logarithmic_axis_ends_at_round_numbers() {
         let ends = |values: &[f64]| {
             let (low, high) = Axis::logarithmic("x", values.iter().copied()).unwrap().ends();
-            // As they are read, without the rounding of the logarithm.
+            // Without the rounding of the logarithm.
             [low, high].map(|x| format!("{x:.6e}").parse::<f64>().unwrap())
         };
         assert_eq!(ends(&[0.3, 40.0]), [0.2, 50.0]);
@@ -259,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn round_numbers_stay_what_they_are() {
+    fn round_numbers_are_kept() {
         for x in [1e-5, 2e-5 * (1.0 - 1e-15), 5e4 * (1.0 + 1e-15), 1.0] {
             let power = f64::log10(x);
             assert!((round_down(power) - power).abs() < 1e-9 && (round_up(power) - power).abs() < 1e-9, "{x}");
@@ -268,15 +271,21 @@ mod tests {
     }
 
     #[test]
-    fn places_on_a_logarithmic_axis_go_by_powers() {
+    fn positions_on_a_logarithmic_axis() {
         let axis = Axis::logarithmic("x", [0.3, 80.0]).unwrap().starting_at(0.1);
         let (above, below) = (axis.above_low(1.0, 300.0), axis.below_high(1.0, 300.0));
         assert!((above - 100.0).abs() < 1e-9 && (below - 200.0).abs() < 1e-9, "{above} {below}");
-        assert!(axis.holds(0.1) && axis.holds(100.0) && !axis.holds(0.09) && !axis.holds(0.0) && !axis.holds(-1.0));
+        assert!(
+            axis.contains(0.1)
+                && axis.contains(100.0)
+                && !axis.contains(0.09)
+                && !axis.contains(0.0)
+                && !axis.contains(-1.0)
+        );
     }
 
     #[test]
-    fn a_low_end_that_leaves_no_axis_is_ignored() {
+    fn an_invalid_low_end_is_ignored() {
         let axis = Axis::logarithmic("x", [0.3, 80.0]).unwrap();
         assert!([0.0, -1.0, f64::NAN, 100.0, 1e9].into_iter().all(|low| axis.clone().starting_at(low) == axis));
         assert_eq!(Axis::between("x", 1.0, 2.0).starting_at(0.0).ends(), (0.0, 2.0));

@@ -1,9 +1,9 @@
-//! Why an axis can't be made.
+//! Errors of creating an axis.
 
 use std::error::Error;
 use std::fmt;
 
-/// A value that an axis has no place for.
+/// A value that can't be shown on an axis.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum AxisError {

@@ -1,6 +1,6 @@
-//! Text inside XML.
+//! Escaping text for XML.
 
-/// Text with the characters that XML takes for its own replaced; fit for content and for quoted attributes.
+/// Replaces the special characters of XML; for content and quoted attributes.
 ///
 /// ```
 /// assert_eq!(teeter_plot::escaped("a < b & c"), "a &lt; b &amp; c");
@@ -15,7 +15,7 @@ pub fn escaped(text: &str) -> String {
             '>' => out.push_str("&gt;"),
             '"' => out.push_str("&quot;"),
             '\'' => out.push_str("&#39;"),
-            // Control characters, which XML can't hold.
+            // Control characters aren't allowed in XML.
             c if c < ' ' && !matches!(c, '\n' | '\t') => out.push('\u{fffd}'),
             c => out.push(c),
         }

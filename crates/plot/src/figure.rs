@@ -1,4 +1,4 @@
-//! A figure: panels above each other with one x axis, as SVG.
+//! A figure: stacked panels with a common x axis, as SVG.
 
 use crate::legend::Legend;
 use crate::theme::{Colour, Theme};
@@ -6,7 +6,7 @@ use crate::ticks::Ticks;
 use crate::{Axis, Panel, escaped};
 use std::fmt::Write;
 
-/// Panels above each other with one x axis.
+/// Stacked panels with a common x axis.
 ///
 /// ```
 /// use teeter_plot::{Axis, Figure, Panel, Series};
@@ -30,20 +30,21 @@ pub struct Figure {
     headed: bool,
 }
 
-/// 4 units are a millimetre: 480 fill a page's column of 12 cm, and type of 11 is 2.75 mm or 7.8 pt.
+/// 4 units are a millimetre: a width of 480 is a page column of 12 cm, and a font size of 11 is
+/// 2.75 mm or 7.8 pt.
 pub(crate) const WIDTH: f64 = 480.0;
 const UNITS_PER_MM: f64 = 4.0;
 pub(crate) const LEFT: f64 = 64.0;
 pub(crate) const RIGHT: f64 = 12.0;
 const HEADING: f64 = 18.0;
 const HEADER: f64 = 24.0;
-/// Above a panel that has nothing above it.
+/// Height above a panel without legend or note.
 const BARE_HEADER: f64 = 12.0;
 const FOOTER: f64 = 40.0;
-/// Height of a panel alone, and of one of several.
+/// Height of a single panel, and of one of several.
 const HEIGHTS: [f64; 2] = [210.0, 140.0];
 
-/// Where a panel is in the figure.
+/// The position of a panel in the figure.
 pub(crate) struct Frame<'a> {
     pub(crate) top: f64,
     pub(crate) height: f64,
@@ -65,8 +66,8 @@ impl Frame<'_> {
 }
 
 impl Figure {
-    /// A figure without panels. The `id` tells it from others in the same document; the title is what readers of the
-    /// document without eyes or pictures get, and a [heading](Figure::headed) if wanted.
+    /// A figure without panels. The `id` must be unique in the document. The title is the text for
+    /// screen readers and, if requested, a [heading](Figure::headed).
     #[must_use]
     pub fn new(id: &str, title: impl Into<String>, x: Axis) -> Self {
         let id = id.chars().map(|c| if c.is_ascii_alphanumeric() || c == '_' { c } else { '-' }).collect();
@@ -74,35 +75,35 @@ impl Figure {
         Self { id, title: title.into(), x, panels: Vec::new(), legend, theme, headed: false }
     }
 
-    /// With another panel below the others.
+    /// Adds a panel below the others.
     #[must_use]
     pub fn panel(mut self, panel: Panel) -> Self {
         self.panels.push(panel);
         self
     }
 
-    /// With the names of series elsewhere. Default: in a row above each panel.
+    /// Sets the position of the legend. Default: in a row above each panel.
     #[must_use]
     pub fn legend(mut self, legend: Legend) -> Self {
         self.legend = legend;
         self
     }
 
-    /// With the colours of another place. Default: of paper.
+    /// Sets the colours. Default: those for paper.
     #[must_use]
     pub fn theme(mut self, theme: Theme) -> Self {
         self.theme = theme;
         self
     }
 
-    /// With its title above it. Default: without, as papers and pages have captions.
+    /// Shows the title above the figure. Default: not shown, as papers and pages have captions.
     #[must_use]
     pub fn headed(mut self) -> Self {
         self.headed = true;
         self
     }
 
-    /// The figure as an SVG document, which can stand inside an HTML page too.
+    /// The figure as an SVG document, which can also be embedded in an HTML page.
     #[must_use]
     pub fn to_svg(&self) -> String {
         let heights: Vec<(f64, f64)> = self.panels.iter().map(|panel| self.heights(panel)).collect();
@@ -138,7 +139,7 @@ impl Figure {
         svg
     }
 
-    /// Heights of what is above a panel's frame, and of the frame.
+    /// Heights of the space above a panel's frame and of the frame.
     fn heights(&self, panel: &Panel) -> (f64, f64) {
         let (entries, note) = (panel.entries(), panel.note_text());
         let named = self.legend != Legend::Beside && (!entries.is_empty() || !self.headed);

@@ -1,4 +1,4 @@
-//! The names of what a panel shows, and where they stand.
+//! The legend and its position.
 
 use crate::figure::{LEFT, RIGHT, WIDTH};
 use crate::series::{Drawn, Mark};
@@ -6,43 +6,44 @@ use crate::theme::{Colour, Theme};
 use crate::{Series, escaped};
 use std::fmt::Write;
 
-/// Where the names of the series stand. Never on the plot: they can't hide what it shows.
+/// The position of the legend; always outside the plot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Legend {
-    /// In a row above each panel. Names for which there is no room run out of the figure: [`LEGEND_WIDTH`] is what there
-    /// is, [`legend_width`] what a name takes.
+    /// In a row above each panel. Names beyond [`LEGEND_WIDTH`] run out of the figure;
+    /// [`legend_width`] is the width that a name takes.
     #[default]
     Row,
-    /// Above each panel in as many rows as the names need.
+    /// Above each panel, in as many rows as needed.
     Rows,
-    /// In a column at the right of each panel; the figure is wider by it.
+    /// In a column at the right of each panel, which widens the figure.
     Beside,
 }
 
-/// Room for the names of series in a row above a panel, in the figure's units (a quarter of a millimetre).
+/// Width of a legend row above a panel, in the figure's units (a quarter of a millimetre).
 pub const LEGEND_WIDTH: f64 = WIDTH - LEFT - RIGHT;
 
-/// What a name takes of [`LEGEND_WIDTH`], with its symbol and the gap to the next.
+/// Width of an entry within [`LEGEND_WIDTH`], including its symbol and the gap to the next.
 #[must_use]
 pub fn legend_width(label: &str) -> f64 {
     text_width(label) + SYMBOL + GAP
 }
 
-/// About the width of a text at the size of the labels, in the figure's units (a quarter of a millimetre).
+/// The approximate width of a text in label size, in the figure's units (a quarter of a
+/// millimetre).
 #[must_use]
 pub fn text_width(text: &str) -> f64 {
     5.6 * text.chars().count() as f64
 }
 
-/// From the left of a symbol to its name, and from a name to the next symbol.
+/// Distance from the left of a symbol to its name, and from a name to the next symbol.
 const SYMBOL: f64 = 18.0;
 const GAP: f64 = 14.0;
 
-/// Distance of the rows above a panel, and of those beside it.
+/// Row distance above a panel, and beside it.
 const ROW: f64 = 14.0;
 const ROW_BESIDE: f64 = 15.0;
 
-/// From the lowest row of names to the panel below.
+/// Distance from the lowest row to the panel below.
 const ABOVE: f64 = 8.0;
 
 /// A symbol with its name.
@@ -60,7 +61,7 @@ pub(crate) enum Symbol {
 }
 
 impl<'a> Entry<'a> {
-    /// The entry of a series that has a name.
+    /// The entry of a series; none without a name.
     pub(crate) fn of(series: &'a Series, number: usize) -> Option<Self> {
         let symbol = match series.drawn {
             Drawn::Line => Symbol::Line(number),
@@ -91,7 +92,7 @@ impl<'a> Entry<'a> {
 }
 
 impl Legend {
-    /// Row and left end of each entry above a panel; a note at the right takes its part of the first row.
+    /// Row and left end of each entry above a panel; a note takes up the right of the first row.
     fn rows(self, entries: &[Entry], note: Option<&str>) -> Vec<(usize, f64)> {
         let (mut row, mut x) = (0, LEFT);
         let noted = note.map_or(0.0, |note| text_width(note) + GAP);
@@ -108,7 +109,7 @@ impl Legend {
         entries.iter().map(place).collect()
     }
 
-    /// What the legend takes above a panel beyond a single row.
+    /// Height of the legend above a panel beyond the first row.
     pub(crate) fn more_height(self, entries: &[Entry], note: Option<&str>) -> f64 {
         ROW * self.last_row(entries, note) as f64
     }
@@ -120,7 +121,7 @@ impl Legend {
         }
     }
 
-    /// What the legend takes at the right of a panel: width and height.
+    /// Width and height of the legend at the right of a panel.
     pub(crate) fn beside(self, entries: &[Entry]) -> (f64, f64) {
         if self != Self::Beside || entries.is_empty() {
             return (0.0, 0.0);
@@ -153,7 +154,7 @@ impl Legend {
     }
 }
 
-/// Dashes that tell lines of one colour apart.
+/// Dash patterns that distinguish lines of the same colour.
 const DASHES: [&str; 3] = ["none", "5 2.5", "1.5 2"];
 
 /// Colour and dash of a line.
@@ -162,8 +163,8 @@ pub(crate) fn stroke(number: usize, theme: Theme) -> String {
     format!("stroke=\"{}\" stroke-dasharray=\"{dash}\"", colour.value(theme))
 }
 
-/// Colours of marks: hollow ones are open, filled ones have a thin edge of the background, so that neither hides what it
-/// overlaps.
+/// Colours of marks: hollow ones are open, filled ones have a thin edge in the background colour,
+/// so that overlapping marks remain visible.
 pub(crate) fn mark_style(number: usize, hollow: bool, theme: Theme) -> String {
     let colour = Colour::Series(number).value(theme);
     if hollow {
@@ -173,7 +174,7 @@ pub(crate) fn mark_style(number: usize, hollow: bool, theme: Theme) -> String {
     }
 }
 
-/// The outline of a mark. All shapes have about the same area.
+/// The outline of a mark. All shapes have similar areas.
 pub(crate) fn mark_path(mark: Mark, x: f64, y: f64) -> String {
     match mark {
         Mark::Circle => format!("M{:.2} {y:.2}a2.6 2.6 0 1 0 5.2 0a2.6 2.6 0 1 0 -5.2 0z", x - 2.6),
@@ -192,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn names_go_to_the_next_row_where_there_is_no_room() {
+    fn names_wrap_to_the_next_row() {
         let long = "n".repeat(30);
         let entries = entries(&["a", &long, &long, "b"]);
         let rows = |legend: Legend, note| legend.rows(&entries, note).iter().map(|place| place.0).collect::<Vec<_>>();
@@ -203,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_that_fits_in_no_row_has_one_of_its_own() {
+    fn a_name_too_long_for_a_row_gets_its_own() {
         let endless = "n".repeat(300);
         let places = Legend::Rows.rows(&entries(&[&endless, &endless]), None);
         assert_eq!(places, [(0, LEFT), (1, LEFT)]);

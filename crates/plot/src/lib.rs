@@ -1,18 +1,19 @@
-//! Plots as SVG for papers and pages: thin lines, round numbers on the axes, colours that the colour-blind tell apart.
+//! SVG plots for papers and web pages: thin lines, round numbers on the axes, colours suitable for
+//! colour-blind readers.
 //!
-//! A [`Figure`] is one or more [`Panel`]s above each other that share an x [`Axis`]. A panel has a y axis with
-//! [`Series`] (lines, staircases, marks), or rows of [`Band`]s such as the states of a contact. A figure is 120 mm wide,
-//! has no script and loads nothing; the same figure gives the same text.
+//! A [`Figure`] is one or more stacked [`Panel`]s that share an x [`Axis`]. A panel has a y axis
+//! with [`Series`] (lines, staircases, marks), or rows of [`Band`]s such as the states of a
+//! contact. A figure is 120 mm wide, without scripts or external resources. Output is
+//! deterministic.
 //!
-//! An axis is made before the figure is, from the values that it has to show. What can't be shown on it is found there:
-//! [`Axis::linear`] and [`Axis::logarithmic`] return an [`AxisError`] for values that are not finite, or have no
-//! logarithm. Once the axes are there, drawing can't fail: lines are broken where a value is not finite, and what lies
-//! off the axes is cut.
+//! Axes are created first, from the values to be shown: [`Axis::linear`] and [`Axis::logarithmic`]
+//! return an [`AxisError`] for values that are not finite or have no logarithm. Drawing can't fail
+//! afterwards: lines are broken where a value is not finite and clipped at the axes.
 //!
 //! ```
 //! use teeter_plot::{Axis, Figure, Mark, Panel, Series};
 //!
-//! // An error that falls with the square of the step.
+//! // An error that decreases with the square of the step.
 //! let steps = [1e-3, 1e-2, 1e-1];
 //! let measured = [1.1e-6, 0.9e-4, 1.0e-2];
 //! let x = Axis::logarithmic("Step size h (s)", steps)?;
@@ -24,7 +25,7 @@
 //! let svg = Figure::new("order", "Error over step size", x).panel(panel).to_svg();
 //! assert!(svg.starts_with("<svg") && svg.contains("Step size h (s)"));
 //!
-//! // Zero has no place on a logarithmic axis.
+//! // Zero can't be shown on a logarithmic axis.
 //! assert!(Axis::logarithmic("Error (m)", [1e-3, 0.0]).is_err());
 //! # Ok::<(), teeter_plot::AxisError>(())
 //! ```

@@ -1,4 +1,4 @@
-//! A panel: axes with series, or rows of bands.
+//! A panel: series on axes, or rows of bands.
 
 use crate::figure::{Frame, LEFT};
 use crate::legend::{Entry, Legend, Symbol, mark_path, mark_style, stroke};
@@ -7,25 +7,25 @@ use crate::theme::{Colour, Theme};
 use crate::{Axis, Series, escaped};
 use std::fmt::Write;
 
-/// A row of coloured stretches along the x axis, such as the states of a contact.
+/// A row of coloured intervals along the x axis, such as the states of a contact.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Band {
-    /// The name at its left.
+    /// The name, shown at the left.
     pub label: String,
-    /// From, to, colour.
+    /// Intervals: from, to, colour.
     pub stretches: Vec<(f64, f64, Colour)>,
 }
 
 impl Band {
-    /// A band with its stretches: from, to, colour.
+    /// A band with its intervals: from, to, colour.
     #[must_use]
     pub fn new(label: impl Into<String>, stretches: Vec<(f64, f64, Colour)>) -> Self {
         Self { label: label.into(), stretches }
     }
 }
 
-/// One of the plots above each other in a [`Figure`](crate::Figure), whose x axis it shares.
+/// One of the stacked plots of a [`Figure`](crate::Figure), with its common x axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
     content: Content,
@@ -42,7 +42,7 @@ enum Content {
     Bands { bands: Vec<Band>, key: Vec<(Colour, String)> },
 }
 
-/// Height of a band with the gap to the next.
+/// Height of a band including the gap to the next.
 const ROW: f64 = 16.0;
 
 impl Panel {
@@ -52,7 +52,7 @@ impl Panel {
         Self::with_content(Content::Plot { y, series: Vec::new() })
     }
 
-    /// A panel of bands, with the meaning of their colours.
+    /// A panel of bands, with the legend of their colours.
     #[must_use]
     pub fn bands(bands: Vec<Band>, key: impl IntoIterator<Item = (Colour, impl Into<String>)>) -> Self {
         let key = key.into_iter().map(|(colour, word)| (colour, word.into())).collect();
@@ -63,7 +63,8 @@ impl Panel {
         Self { content, note: None, ticks_at: Vec::new(), guides: Vec::new(), shaded: None, height: None }
     }
 
-    /// With more series, later ones above earlier ones, marks above lines; a panel of bands has none.
+    /// Adds series: later ones are drawn above earlier ones, marks above lines. No effect on a
+    /// panel of bands.
     #[must_use]
     pub fn with(mut self, more: impl IntoIterator<Item = Series>) -> Self {
         if let Content::Plot { series, .. } = &mut self.content {
@@ -72,36 +73,36 @@ impl Panel {
         self
     }
 
-    /// With a note above its right end, or without.
+    /// Sets or removes a note above the right end.
     #[must_use]
     pub fn note(mut self, note: impl Into<Option<String>>) -> Self {
         self.note = note.into();
         self
     }
 
-    /// With short ticks at its top, such as at the times of impacts.
+    /// Draws short ticks at the top, for example at the times of impacts.
     #[must_use]
     pub fn ticks_at(mut self, x: Vec<f64>) -> Self {
         self.ticks_at = x;
         self
     }
 
-    /// With dashed vertical lines at these x.
+    /// Draws dashed vertical lines at these x.
     #[must_use]
     pub fn guides(mut self, x: Vec<f64>) -> Self {
         self.guides = x;
         self
     }
 
-    /// With all below this y shaded, and what that means in the legend.
+    /// Shades the region below this y, with a label in the legend.
     #[must_use]
     pub fn shaded_below(mut self, y: f64, label: impl Into<String>) -> Self {
         self.shaded = Some((y, label.into()));
         self
     }
 
-    /// With a frame of this height, mm. Default: 52.5 mm for a panel alone, 35 mm for one of several; bands have a
-    /// height of their own.
+    /// Sets the frame's height, mm. Default: 52.5 mm for a single panel, 35 mm for one of several.
+    /// No effect on bands.
     #[must_use]
     pub fn height_mm(mut self, height: f64) -> Self {
         self.height = Some(height);
@@ -112,7 +113,7 @@ impl Panel {
         matches!(self.content, Content::Plot { .. })
     }
 
-    /// Height of the frame in mm, if it is not the default.
+    /// Height of the frame in mm, if set.
     pub(crate) fn own_height_mm(&self) -> Option<f64> {
         self.height.filter(|height| height.is_finite() && *height > 0.0)
     }
@@ -129,7 +130,7 @@ impl Panel {
         self.note.as_deref()
     }
 
-    /// The names of its legend.
+    /// The entries of the legend.
     pub(crate) fn entries(&self) -> Vec<Entry<'_>> {
         match &self.content {
             Content::Plot { series, .. } => {
@@ -169,7 +170,7 @@ impl Panel {
             "<clipPath id=\"{id}\"><rect x=\"{LEFT}\" y=\"{top:.2}\" width=\"{width}\" height=\"{height}\"/>\
              </clipPath>\n<g clip-path=\"url(#{id})\" fill=\"none\" stroke-linejoin=\"round\">"
         );
-        for &x in self.guides.iter().filter(|x| frame.x.holds(**x)) {
+        for &x in self.guides.iter().filter(|x| frame.x.contains(**x)) {
             let _ = writeln!(
                 svg,
                 "<path d=\"M{:.2} {top:.2}v{height}\" stroke=\"{}\" stroke-dasharray=\"4 3\" stroke-width=\".8\"/>",
@@ -184,13 +185,13 @@ impl Panel {
         svg.push_str("</g>\n");
         for (k, marks) in series.iter().enumerate() {
             let Drawn::Marks { mark, hollow } = marks.drawn else { continue };
-            let shown = marks.points().iter().filter(|point| frame.x.holds(point.0) && y.holds(point.1));
+            let shown = marks.points().iter().filter(|point| frame.x.contains(point.0) && y.contains(point.1));
             let path: String = shown.map(|&(x, y)| mark_path(mark, frame.px(x), py(y))).collect();
             if !path.is_empty() {
                 let _ = writeln!(svg, "<path d=\"{path}\" {}/>", mark_style(marks.number_at(k), hollow, theme));
             }
         }
-        let ticks = self.ticks_at.iter().filter(|x| frame.x.holds(**x));
+        let ticks = self.ticks_at.iter().filter(|x| frame.x.contains(**x));
         let ticks: String = ticks.map(|&x| format!("M{:.2} {top:.2}v5", frame.px(x))).collect();
         let ink = Colour::Ink.value(theme);
         if !ticks.is_empty() {
@@ -206,7 +207,7 @@ impl Panel {
     }
 }
 
-/// Lines across the frame at the round numbers of both axes, of x only where it is logarithmic; labels of y.
+/// Grid lines at the ticks of both axes (of x only if it is logarithmic), and the labels of y.
 fn draw_grid(svg: &mut String, frame: &Frame, theme: Theme, y: &Axis) {
     let (top, height, width) = (frame.top, frame.height, frame.width());
     let y_ticks = y.ticks(if height > 180.0 { 6 } else { 4 });
@@ -269,12 +270,13 @@ fn draw_bands(svg: &mut String, frame: &Frame, theme: Theme, bands: &[Band]) {
     }
 }
 
-/// A line through all points that are finite, broken where one isn't; steps that no printer resolves are left out.
+/// A line through the finite points, broken where one isn't finite; points too close for print
+/// resolution are omitted.
 fn line_path(points: &[(f64, f64)], px: impl Fn(f64) -> f64, py: impl Fn(f64) -> f64) -> String {
     let mut path = String::new();
     let mut last: Option<(f64, f64)> = None;
     for &(x, y) in points {
-        // Far beyond the panel a coordinate would only cost digits.
+        // Coordinates far outside the panel are clamped to save digits.
         let (a, b) = (px(x), py(y).clamp(-1e4, 1e4));
         if !(a.is_finite() && b.is_finite()) {
             last = None;

@@ -1,9 +1,10 @@
-//! What is drawn on the axes of a panel.
+//! The data series of a panel.
 
-/// Points with a name: a line, a staircase, or marks.
+/// A named series of points: a line, a staircase, or marks.
 ///
-/// A line is broken where a value is not finite (on a logarithmic axis, not positive), and marks are left out there: an
-/// [`Axis`](crate::Axis) made from the same values says so beforehand.
+/// Where a value is not finite (on a logarithmic axis, not positive), a line is broken and a mark
+/// omitted. Creating an [`Axis`](crate::Axis) from the same values reports such a value as an
+/// error.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
     label: String,
@@ -19,7 +20,7 @@ pub(crate) enum Drawn {
     Marks { mark: Mark, hollow: bool },
 }
 
-/// Shape of the marks of a series.
+/// The marker shape of a series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
     /// A circle.
@@ -28,12 +29,12 @@ pub enum Mark {
     Square,
     /// A triangle that points up.
     Triangle,
-    /// A square on its corner.
+    /// A diamond.
     Diamond,
 }
 
 impl Mark {
-    /// Shapes in turn, so that series can be told apart without their colours.
+    /// Shapes in turn, so that series can be distinguished without colours.
     #[must_use]
     pub fn of(number: usize) -> Self {
         [Self::Circle, Self::Square, Self::Triangle, Self::Diamond][number % 4]
@@ -41,13 +42,13 @@ impl Mark {
 }
 
 impl Series {
-    /// A line through points. Without a label, it is not in the legend.
+    /// A line through points. Without a label it isn't in the legend.
     #[must_use]
     pub fn line(label: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         Self { label: label.into(), number: None, points: points.into_iter().collect(), drawn: Drawn::Line }
     }
 
-    /// A line of steps: each value holds from its x to the x of the next point, the last one up to `end`.
+    /// A step line: each value is constant up to the x of the next point, the last one up to `end`.
     #[must_use]
     pub fn staircase(label: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>, end: f64) -> Self {
         let points: Vec<(f64, f64)> = points.into_iter().collect();
@@ -56,21 +57,22 @@ impl Series {
         Self::line(label, steps.collect::<Vec<_>>())
     }
 
-    /// Marks at points, filled. Without a label, they are not in the legend.
+    /// Filled marks at points. Without a label they aren't in the legend.
     #[must_use]
     pub fn marks(label: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>, mark: Mark) -> Self {
         Self { drawn: Drawn::Marks { mark, hollow: false }, ..Self::line(label, points) }
     }
 
-    /// With the colour of this number; of lines, seven numbers on the colours repeat with dashes, then dots. Default:
-    /// the place of the series in its panel, from 0.
+    /// Sets the number of the series' colour. There are seven colours; lines with higher numbers
+    /// are dashed, then dotted. Default: the index of the series in its panel, from 0.
     #[must_use]
     pub fn number(mut self, number: usize) -> Self {
         self.number = Some(number);
         self
     }
 
-    /// With hollow marks instead of filled ones, through which others can be seen; a line stays as it is.
+    /// Draws hollow marks instead of filled ones, so that others remain visible; no effect on a
+    /// line.
     #[must_use]
     pub fn hollow(mut self) -> Self {
         if let Drawn::Marks { hollow, .. } = &mut self.drawn {
@@ -79,19 +81,19 @@ impl Series {
         self
     }
 
-    /// What the legend calls it.
+    /// The name in the legend.
     #[must_use]
     pub fn label(&self) -> &str {
         &self.label
     }
 
-    /// Its points; of a staircase, its corners.
+    /// The points; for a staircase, its corners.
     #[must_use]
     pub fn points(&self) -> &[(f64, f64)] {
         &self.points
     }
 
-    /// The number that gives colour and dash, for the series at this place in its panel.
+    /// The number for colour and dash of the series with this index in its panel.
     pub(crate) fn number_at(&self, place: usize) -> usize {
         self.number.unwrap_or(place)
     }
@@ -102,7 +104,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_value_of_a_staircase_holds_until_the_next_and_the_last_to_the_end() {
+    fn a_staircase_keeps_each_value_until_the_next() {
         let series = Series::staircase("", [(0.0, 1.0), (2.0, 3.0)], 5.0);
         assert_eq!(series.points(), [(0.0, 1.0), (2.0, 1.0), (2.0, 3.0), (5.0, 3.0)]);
         assert!(Series::staircase("", [], 5.0).points().is_empty());

@@ -1,30 +1,31 @@
-//! What colours are called by role, and what they look like on paper and on a page.
+//! Colours by role, on paper and in a web page.
 
-/// Where a figure is shown.
+/// The medium in which a figure is shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Theme {
-    /// On its own, in a file or in print: black on white, plain colours.
+    /// A file or print: black on white, fixed colours.
     #[default]
     Paper,
-    /// Inside an HTML page that has the style of the report: its CSS variables (`--bg`, `--fg`, `--muted`, `--grid`,
-    /// `--c0` … `--c6`) decide, so that the figure turns dark with the page; without them, the colours of paper.
+    /// An HTML page in the style of the report. The page's CSS variables (`--bg`, `--fg`,
+    /// `--muted`, `--grid`, `--c0` … `--c6`) set the colours, so that the figure follows its dark
+    /// mode; without them, the colours are those for paper.
     Page,
 }
 
-/// A colour by what it is for.
+/// A colour by its role.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Colour {
-    /// Colour of the series of this number: those of Okabe and Ito, the light yellow left out, as it is too faint for a
-    /// thin line on white. After seven they repeat.
+    /// Colour of the series with this number, from the palette of Okabe and Ito without its yellow,
+    /// which is too faint for thin lines on white. The seven colours repeat.
     Series(usize),
     /// Text and frames.
     Ink,
     /// The background.
     Paper,
-    /// Text that matters less.
+    /// Secondary text.
     Muted,
-    /// The line of zero, and guides.
+    /// The zero line and guides.
     Guide,
     /// Lines of the grid.
     Grid,
@@ -34,11 +35,11 @@ pub enum Colour {
     Shade,
 }
 
-/// How many series have colours of their own.
+/// Number of different series colours.
 pub(crate) const SERIES_COLOURS: usize = 7;
 
 impl Colour {
-    /// The colour as a value of an SVG attribute.
+    /// The colour as an SVG attribute value.
     #[must_use]
     pub fn value(self, theme: Theme) -> &'static str {
         let (paper, page) = self.values();

@@ -1,25 +1,25 @@
 //! Round numbers along an axis, with their labels.
 
-/// Where an axis is marked.
+/// The ticks of an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Ticks {
-    /// Labelled numbers, with the label as SVG text.
+    /// Labelled values, with the label as SVG text.
     pub(crate) major: Vec<(f64, String)>,
-    /// Numbers between them.
+    /// Values between them, without labels.
     pub(crate) minor: Vec<f64>,
 }
 
-/// With at least so many powers of ten on a logarithmic axis, these alone are labelled.
-const ENOUGH: usize = 3;
+/// With at least this many powers of ten on a logarithmic axis, only these are labelled.
+const ENOUGH_DECADES: usize = 3;
 
-/// Most powers of ten that are labelled.
-const MOST: i32 = 9;
+/// Largest number of labelled powers of ten.
+const MOST_LABELS: i32 = 9;
 
-/// Least and largest number for which a logarithmic axis has its numbers written out.
-const WRITTEN_OUT: [f64; 2] = [0.999e-3, 1.001e5];
+/// Range in which the labels of a logarithmic axis are plain decimals.
+const PLAIN_DECIMALS: [f64; 2] = [0.999e-3, 1.001e5];
 
 impl Ticks {
-    /// About `count` multiples of 1, 2 or 5 · 10ⁿ in a range, at most half as many again.
+    /// About `count` multiples of 1, 2 or 5 · 10ⁿ in a range, at most 1.5 times as many.
     pub(crate) fn linear(low: f64, high: f64, count: usize) -> Self {
         let raw = (high - low) / count as f64;
         let power = 10f64.powf(raw.log10().floor());
@@ -33,7 +33,7 @@ impl Ticks {
         let label = |x: f64| {
             let text = match powers {
                 true if x == 0.0 => "0".to_owned(),
-                // As many digits as the step has, however large the number is.
+                // As many digits as the step has, however large the number.
                 true => {
                     let digits = (x.abs().log10() + 1e-9).floor() - (step.log10() + 1e-9).floor();
                     format!("{x:.*e}", digits.max(0.0) as usize)
@@ -46,12 +46,13 @@ impl Ticks {
         Self { major, minor: Vec::new() }
     }
 
-    /// Powers of ten in a range, given by the logarithms of its ends; where these are few, 2 and 5 times them too.
+    /// Powers of ten in a range, given by the logarithms of its ends; if there are few, also 2 and
+    /// 5 times each.
     pub(crate) fn logarithmic(low: f64, high: f64) -> Self {
         let (first, last) = ((low - 1e-9).ceil() as i32, (high + 1e-9).floor() as i32);
-        let enough = last - first + 1 >= ENOUGH as i32;
-        let every = 1 + (last - first).max(0) / MOST;
-        let written_out = low >= WRITTEN_OUT[0].log10() && high <= WRITTEN_OUT[1].log10();
+        let enough = last - first + 1 >= ENOUGH_DECADES as i32;
+        let every = 1 + (last - first).max(0) / MOST_LABELS;
+        let written_out = low >= PLAIN_DECIMALS[0].log10() && high <= PLAIN_DECIMALS[1].log10();
         let mut ticks = Self { major: Vec::new(), minor: Vec::new() };
         for power in first - 1..=last {
             for factor in 1..=9 {
@@ -86,7 +87,7 @@ fn written(factor: u32, power: i32) -> String {
     }
 }
 
-/// factor · 10ⁿ with a raised exponent.
+/// factor · 10ⁿ with a superscript exponent.
 fn raised(factor: u32, power: i32) -> String {
     let times = if factor == 1 { String::new() } else { format!("{factor}·") };
     let exponent = power.to_string().replace('-', "\u{2212}");
@@ -110,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn decades_are_labelled_and_what_lies_between_is_not() {
+    fn only_decades_are_labelled() {
         let ticks = Ticks::logarithmic(-2.0, 1.0);
         assert_eq!(labels(&ticks), ["0.01", "0.1", "1", "10"]);
         assert_eq!(ticks.minor.len(), 3 * 8);
@@ -121,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn few_decades_are_divided_and_many_thinned() {
+    fn few_decades_are_subdivided_and_many_thinned() {
         assert_eq!(labels(&Ticks::logarithmic(5f64.log10(), 200f64.log10())), ["5", "10", "20", "50", "100", "200"]);
         assert_eq!(labels(&Ticks::logarithmic(2f64.log10(), 5f64.log10())), ["2", "5"]);
         let wide = Ticks::logarithmic(-300.0, 300.0);

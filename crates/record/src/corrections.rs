@@ -1,4 +1,4 @@
-//! Corrections: each gives a new record.
+//! Corrections, each of which returns a new record.
 
 use std::f64::consts::PI;
 
@@ -9,10 +9,10 @@ use crate::record::Record;
 const HIGHEST_DEGREE: usize = 5;
 
 impl Record {
-    /// All accelerations times a factor, which may be negative (the other direction) or 0.
+    /// Multiplies all accelerations by a factor, which may be negative or 0.
     ///
     /// # Errors
-    /// If the factor isn't finite, or makes an acceleration larger than
+    /// If the factor isn't finite, or an acceleration becomes larger than
     /// [`LARGEST_ACCELERATION`](crate::LARGEST_ACCELERATION).
     pub fn scaled(&self, factor: f64) -> Result<Self, RecordError> {
         if !factor.is_finite() {
@@ -21,7 +21,7 @@ impl Record {
         self.with(self.accelerations().iter().map(|a| factor * a).collect())
     }
 
-    /// Scaled to a peak acceleration, m/s²; signs are kept.
+    /// Scales to a peak acceleration, m/s², keeping the signs.
     ///
     /// # Errors
     /// If the peak isn't positive and finite, or if the record is 0 throughout.
@@ -34,15 +34,15 @@ impl Record {
         if most == 0.0 {
             return Err(RecordError::Still);
         }
-        // Dividing first: the largest value becomes the peak itself.
+        // Dividing first makes the largest value exactly the peak.
         self.with(self.accelerations().iter().map(|a| a / most * peak).collect())
     }
 
-    /// The values with times in [`from`, `to`], s, the time of the first being 0 in the new record.
-    /// A value that is off an end by less than a millionth of the step counts as in it.
+    /// The values with times in [`from`, `to`], s; the new record starts at time 0. The ends have a
+    /// tolerance of a millionth of the step.
     ///
     /// # Errors
-    /// If fewer than two values are left, or a time is NaN (an infinite one is beyond the end).
+    /// If fewer than two values are left, or a time is NaN (an infinite time means no cut).
     pub fn cut(&self, from: f64, to: f64) -> Result<Self, RecordError> {
         let nothing = || RecordError::Cut { from, to, duration: self.duration() };
         let (first, last) = ((from / self.dt() - 1e-6).ceil().max(0.0), (to / self.dt() + 1e-6).floor());
@@ -54,15 +54,15 @@ impl Record {
         self.with(kept.to_vec())
     }
 
-    /// Faded in and out by half a cosine (a Tukey window): at the time τ from either end, below
-    /// `fraction` times the duration T, the acceleration is multiplied by (1 − cos(π τ/(fraction·T)))/2.
-    /// A `fraction` of 0 leaves the record as it is, 0.5 leaves no part between the two fades.
+    /// Tapers both ends by half a cosine (a Tukey window): at the time τ < `fraction`·T from either
+    /// end, T being the duration, the acceleration is multiplied by (1 − cos(π τ/(fraction·T)))/2.
+    /// With a `fraction` of 0 the record is unchanged, with 0.5 the tapers meet.
     ///
     /// # Errors
     /// If the fraction isn't in [0, 0.5].
     pub fn tapered(&self, fraction: f64) -> Result<Self, RecordError> {
         if !(0.0..=0.5).contains(&fraction) {
-            let range = "from 0 to 0.5 (of the duration, at each end)";
+            let range = "in [0, 0.5] (as a fraction of the duration, at each end)";
             return Err(RecordError::Parameter { what: "the taper", value: fraction, range });
         }
         let (last, fade) = (self.len() - 1, fraction * self.duration());
@@ -73,14 +73,14 @@ impl Record {
         self.with(self.accelerations().iter().enumerate().map(|(k, a)| a * window(k)).collect())
     }
 
-    /// Without its baseline: of all polynomials of a degree up to `degree` (0 to 5), the one p with the least
-    /// Σₖ (aₖ − p(tₖ))² over the values aₖ, each of the same weight, is subtracted from the acceleration.
-    /// Neither velocity nor displacement is fitted, nor anything made zero at the ends. It is
-    /// computed in Legendre polynomials of x = 2t/T − 1, T being the duration, so that it is as accurate as
-    /// the values are.
+    /// Corrects the baseline: subtracts from the acceleration its least-squares polynomial p of a
+    /// degree up to `degree` (0 to 5), which minimises Σₖ (aₖ − p(tₖ))² with equal weights.
+    /// Velocity and displacement aren't fitted, and nothing is forced to zero at the ends. The fit
+    /// uses Legendre polynomials of x = 2t/T − 1, T being the duration, so that it is as accurate
+    /// as the values.
     ///
     /// # Errors
-    /// If the degree is over 5, or there are no more values than the degree plus 1.
+    /// If the degree is over 5, or the record has at most `degree` + 1 values.
     pub fn baseline_corrected(&self, degree: usize) -> Result<Self, RecordError> {
         if degree > HIGHEST_DEGREE {
             let (value, range) = (degree as f64, "a whole number from 0 to 5");
@@ -91,7 +91,7 @@ impl Record {
             return Err(RecordError::Parameter { what: "the degree of the baseline", value, range });
         }
         let mut accelerations = self.accelerations().to_vec();
-        // What rounding leaves of a large baseline the second pass takes.
+        // The second pass removes what rounding leaves of a large baseline.
         for _ in 0..2 {
             subtract_fit(&mut accelerations, degree);
         }
@@ -131,7 +131,8 @@ fn legendre(x: f64) -> [f64; HIGHEST_DEGREE + 1] {
     p
 }
 
-/// Solves the symmetric, positive definite system of the lower triangle, by L Lᵀ.
+/// Solves a symmetric positive definite system, given by its lower triangle, by Cholesky
+/// factorisation.
 fn solve(a: &mut [[f64; HIGHEST_DEGREE + 1]; HIGHEST_DEGREE + 1], b: &mut [f64; HIGHEST_DEGREE + 1], n: usize) {
     for i in 0..n {
         for j in 0..=i {
@@ -154,26 +155,26 @@ mod tests {
     }
 
     #[test]
-    fn scaling_meets_its_peak() {
+    fn scaling_reaches_the_peak_exactly() {
         let one = record([0.1, -0.7, 0.3]);
         assert_eq!(one.scaled(-2.0).unwrap().accelerations(), [-0.2, 1.4, -0.6]);
         let to = one.scaled_to_peak(3.0).unwrap();
         assert_eq!((to.peak_acceleration(), to.accelerations()[1]), (3.0, -3.0));
-        let told = |error: RecordError| error.to_string();
-        assert_eq!(told(one.scaled(f64::NAN).unwrap_err()), "the factor is NaN, but must be finite");
+        let message = |error: RecordError| error.to_string();
+        assert_eq!(message(one.scaled(f64::NAN).unwrap_err()), "the factor is NaN, but must be finite");
         assert_eq!(
-            told(one.scaled_to_peak(-1.0).unwrap_err()),
+            message(one.scaled_to_peak(-1.0).unwrap_err()),
             "the peak acceleration is -1, but must be positive and finite"
         );
         assert_eq!(
-            told(record([0.0, 0.0]).scaled_to_peak(1.0).unwrap_err()),
+            message(record([0.0, 0.0]).scaled_to_peak(1.0).unwrap_err()),
             "the acceleration is 0 throughout: it can't be scaled to a peak"
         );
-        assert!(told(one.scaled(1e300).unwrap_err()).contains("at most 1e12 m/s^2"));
+        assert!(message(one.scaled(1e300).unwrap_err()).contains("at most 1e12 m/s^2"));
     }
 
     #[test]
-    fn a_cut_has_both_its_ends() {
+    fn a_cut_includes_both_ends() {
         let whole = record((0..=100).map(f64::from));
         let part = whole.cut(0.07, 0.57).unwrap();
         assert_eq!((part.len(), part.accelerations()[0], part.accelerations()[50]), (51, 7.0, 57.0));
@@ -181,7 +182,7 @@ mod tests {
         assert_eq!(whole.cut(f64::NEG_INFINITY, f64::INFINITY).unwrap(), whole);
         assert_eq!(
             whole.cut(0.5, 0.505).unwrap_err().to_string(),
-            "from 0.5 s to 0.505 s there are fewer than two values; the record goes from 0 s to 1 s"
+            "from 0.5 s to 0.505 s there are fewer than two values; the record covers 0 s to 1 s"
         );
         for (from, to) in [(0.6, 0.5), (2.0, 3.0), (f64::NAN, 1.0), (0.0, f64::NAN), (-2.0, -1.0)] {
             assert!(whole.cut(from, to).is_err(), "{from} {to}");
@@ -199,12 +200,12 @@ mod tests {
         assert_eq!(one.tapered(0.0).unwrap(), one);
         assert_eq!(
             one.tapered(0.6).unwrap_err().to_string(),
-            "the taper is 0.6, but must be from 0 to 0.5 (of the duration, at each end)"
+            "the taper is 0.6, but must be in [0, 0.5] (as a fraction of the duration, at each end)"
         );
     }
 
     #[test]
-    fn a_polynomial_is_taken_away_whole() {
+    fn a_polynomial_is_removed_completely() {
         let polynomial = |x: f64| 3.0 + x * (-2.0 + x * (0.5 + x * (4.0 + x * (-6.0 + x * 5.0))));
         let one = record((0..=2000).map(|k| polynomial(f64::from(k) / 2000.0)));
         let left = one.baseline_corrected(5).unwrap().peak_acceleration();
@@ -214,8 +215,8 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_has_no_polynomial_in_it() {
-        // Noise of a linear congruence, upon a parabola.
+    fn the_residual_is_orthogonal_to_polynomials() {
+        // Noise of a linear congruential generator on a parabola.
         let mut seed = 1_u32;
         let mut noise = || {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

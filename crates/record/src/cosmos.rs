@@ -1,11 +1,13 @@
-//! The COSMOS Strong Motion Data Format, version 1.20 (COSMOS Strong Motion Programs Board, August 15, 2001).
+//! The COSMOS Strong Motion Data Format, version 1.20 (COSMOS Strong Motion Programs Board, August
+//! 15, 2001).
 //!
-//! A file is a row of blocks. Each has lines of text (the first says how many), integers, reals,
-//! comments, and the values, each part behind a line that says how many there are and in which
-//! Fortran format, as `7000  acceleration pts, approx   70 secs, units=cm/sec2(04),Format=(8F10.5)`.
-//! What the headers are asked for: integer 2 is the physical quantity (1: an acceleration), integer
-//! 3 the unit, real 62 the step in ms. A file of velocities beside an acceleration is read as its
-//! acceleration; one with several accelerations is refused, because none of them is the record.
+//! A file is a sequence of blocks. Each has lines of text (the first gives their number), integers,
+//! reals, comments, and the values. Each of these parts follows a line with their number and
+//! Fortran format, such as
+//! `7000  acceleration pts, approx   70 secs, units=cm/sec2(04),Format=(8F10.5)`. Of the headers,
+//! integer 2 (the physical quantity, 1 for an acceleration), integer 3 (the unit) and real 62 (the
+//! step in ms) are used. If a file has velocities besides an acceleration, the acceleration is
+//! read; a file with several accelerations is refused as ambiguous.
 
 use std::iter::Peekable;
 use std::str::Lines;
@@ -16,19 +18,19 @@ use crate::numbers;
 use crate::record::Record;
 use crate::{MOST_VALUES, STANDARD_GRAVITY};
 
-/// Unit codes of the format's table 2 that are accelerations, and what they are in m/s².
-const UNITS: [(i64, f64); 5] =
+/// Codes of acceleration units in the format's table 2, with their value in m/s².
+const ACCELERATION_UNITS: [(i64, f64); 5] =
     [(2, STANDARD_GRAVITY), (4, 0.01), (7, 0.0254), (10, 0.01), (11, STANDARD_GRAVITY / 1000.0)];
 
-/// The lines of a file, with the number of the last one taken.
-struct Reader<'a> {
+/// The remaining lines of a file, with the number of the last one read.
+struct CosmosReader<'a> {
     lines: Peekable<Lines<'a>>,
     line: usize,
 }
 
-/// One block.
-struct Block {
-    /// The line that announces the values.
+/// One block of the file.
+struct CosmosBlock {
+    /// Number of the line that announces the values.
     line: usize,
     is_acceleration: bool,
     dt: f64,
@@ -38,17 +40,16 @@ struct Block {
 }
 
 pub(crate) fn read(text: &str) -> Result<Record, RecordError> {
-    let mut reader = Reader { lines: text.lines().peekable(), line: 0 };
-    let (mut found, mut other): (Option<Block>, Option<usize>) = (None, None);
-    while reader.skip_blank() {
+    let mut reader = CosmosReader { lines: text.lines().peekable(), line: 0 };
+    let (mut found, mut other): (Option<CosmosBlock>, Option<usize>) = (None, None);
+    while reader.skip_blank_lines() {
         let block = reader.block()?;
         if !block.is_acceleration {
             other = other.or(Some(block.line));
         } else if let Some(first) = &found {
             let line = block.line;
             let reason = format!(
-                "a second block of acceleration (the first is in line {}): keep the one that is meant, the others in files \
-                 of their own",
+                "a second acceleration block (the first is in line {}): a file must have one, so move the others to separate files",
                 first.line
             );
             return Err(RecordError::Header { line, reason });
@@ -68,9 +69,9 @@ pub(crate) fn read(text: &str) -> Result<Record, RecordError> {
     }
 }
 
-impl<'a> Reader<'a> {
-    /// Whether anything follows, past blank lines.
-    fn skip_blank(&mut self) -> bool {
+impl<'a> CosmosReader<'a> {
+    /// Skips blank lines; whether anything follows.
+    fn skip_blank_lines(&mut self) -> bool {
         while self.lines.next_if(|line| line.trim().is_empty()).is_some() {
             self.line += 1;
         }
@@ -86,12 +87,12 @@ impl<'a> Reader<'a> {
         Err(RecordError::Header { line: self.line, reason })
     }
 
-    fn block(&mut self) -> Result<Block, RecordError> {
+    fn block(&mut self) -> Result<CosmosBlock, RecordError> {
         let first = self.next("text header")?;
         let count = self.text_lines(first)?;
         let mut text = vec![first];
         for _ in 1..count {
-            text.push(self.next("text header of the length that its first line gives")?);
+            text.push(self.next("complete text header (its first line gives more lines)")?);
         }
         let integers = self.numbers("integer")?;
         let at = self.line;
@@ -100,7 +101,7 @@ impl<'a> Reader<'a> {
         let (values, line) = self.values()?;
         let integer = |k: usize| integers.get(k - 1).map(|value| *value as i64);
         let is_acceleration = integer(2) == Some(1);
-        let mut block = Block {
+        let mut block = CosmosBlock {
             line,
             is_acceleration,
             dt: 0.0,
@@ -109,23 +110,23 @@ impl<'a> Reader<'a> {
             description: text.get(1).map(|line| (*line).to_owned()).unwrap_or_default(),
         };
         if is_acceleration {
-            let unit = UNITS.iter().find(|(code, _)| integer(3) == Some(*code)).map(|(_, unit)| *unit);
+            let unit = ACCELERATION_UNITS.iter().find(|(code, _)| integer(3) == Some(*code)).map(|(_, unit)| *unit);
             let Some(unit) = unit else {
                 let found = integer(3).map_or_else(String::new, |code| format!("unit {code}"));
                 let known = "2 (g), 4 (cm/s^2), 7 (in/s^2), 10 (gal), 11 (mg)";
-                return Err(RecordError::Unit { line: at, found, quantity: "an acceleration", known });
+                return Err(RecordError::Unit { line: at, found, quantity: "acceleration", known });
             };
             let Some(step) = reals.get(61).copied() else {
                 return Err(RecordError::Missing { format: Format::Cosmos, what: "step (real 62)" });
             };
-            // The step of most files is a round number of ms: dividing makes the nearest number of s.
+            // Most files have a round step in ms; dividing gives the number nearest to it in s.
             block.dt = step / 1000.0;
             block.accelerations = values.into_iter().map(|value| value * unit).collect();
         }
         Ok(block)
     }
 
-    /// How many lines of text a block has: `(Format v01.20 with 13 text lines)`.
+    /// The number of text lines of a block, from `(Format v01.20 with 13 text lines)`.
     fn text_lines(&self, first: &str) -> Result<usize, RecordError> {
         let lower = first.to_ascii_lowercase();
         let Some(behind) = lower.split("(format v").nth(1) else {
@@ -136,21 +137,21 @@ impl<'a> Reader<'a> {
         };
         let version = behind.split_whitespace().next().unwrap_or_default();
         if !matches!(numbers::one(version), Some(version) if (1.0..2.0).contains(&version)) {
-            return self.header(format!("format version `{}`, but 1.20 is read", shown(version)));
+            return self.header(format!("format version `{}` isn't supported, only 1.20", shown(version)));
         }
         let count = behind.split_whitespace().nth(2).and_then(|word| word.parse::<usize>().ok());
         match count.filter(|count| (1..=1000).contains(count)) {
             Some(count) => Ok(count),
-            None => self.header("it doesn't say how many text lines there are, as `with 13 text lines`".to_owned()),
+            None => self.header("the number of text lines is missing, such as `with 13 text lines`".to_owned()),
         }
     }
 
-    /// A part of numbers, `kind` the first word behind their count.
+    /// Reads a header of numbers; `kind` is the first word after their count.
     fn numbers(&mut self, kind: &'static str) -> Result<Vec<f64>, RecordError> {
         let text = self.next(if kind == "real" { "real-header values" } else { "integer-header values" })?;
         if !text.to_ascii_lowercase().contains(kind) {
             return self.header(format!(
-                "`{}`, but a line such as `100 {kind}-header values follow on  10 lines, Format= (10I8)` must stand here",
+                "`{}`, but expected a line such as `100 {kind}-header values follow on  10 lines, Format= (10I8)`",
                 shown(text)
             ));
         }
@@ -162,30 +163,30 @@ impl<'a> Reader<'a> {
         let text = self.next("comment lines")?;
         if !text.to_ascii_lowercase().contains("comment") {
             return self.header(format!(
-                "`{}`, but a line such as `2 Comment line(s) follow, each starting with a \"|\":` must stand here",
+                "`{}`, but expected a line such as `2 Comment line(s) follow, each starting with a \"|\":`",
                 shown(text)
             ));
         }
         for _ in 0..self.count(text)? {
-            self.next("comment lines of the number that is announced")?;
+            self.next("complete comments (fewer lines than announced)")?;
         }
         Ok(())
     }
 
-    /// The values of a block, and the line that announces them.
+    /// The values of a block, and the number of the line that announces them.
     fn values(&mut self) -> Result<(Vec<f64>, usize), RecordError> {
         let text = self.next("data line")?;
         let line = self.line;
         let count = self.count(text)?;
         let values = self.fields(count, text)?;
-        // What follows ends the block, if it isn't the next one.
+        // The end-of-data line is optional.
         if self.lines.next_if(|line| line.to_ascii_lowercase().contains("end-of-data")).is_some() {
             self.line += 1;
         }
         Ok((values, line))
     }
 
-    /// The number that a line begins with.
+    /// The number at the beginning of a line.
     fn count(&self, text: &str) -> Result<usize, RecordError> {
         let word = text.split_whitespace().next().unwrap_or_default();
         match word.parse::<usize>() {
@@ -195,10 +196,10 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// `count` numbers in the fields of the Fortran format that a line ends with.
+    /// Reads `count` numbers in the Fortran format at the end of the line `text`.
     fn fields(&mut self, count: usize, text: &str) -> Result<Vec<f64>, RecordError> {
         let Some((per_line, width)) = fortran(text) else {
-            return self.header(format!("`{}` gives no format of numbers such as (8F10.5)", shown(text)));
+            return self.header(format!("`{}` must end with a number format such as (8F10.5)", shown(text)));
         };
         let at = self.line;
         let mut values = Vec::new();
@@ -215,14 +216,14 @@ impl<'a> Reader<'a> {
                 if field.is_empty() {
                     break;
                 }
-                let hint = "; numbers have to stand in the columns of the format";
+                let hint = "; numbers must be in the columns of the format";
                 let value = numbers::one(field);
                 values.push(value.ok_or_else(|| RecordError::Number { line, text: shown(field), hint })?);
                 used += 1;
             }
             let rest = text.get(used * width..).unwrap_or_default().trim();
             if !rest.is_empty() {
-                let hint = "; it stands past the columns of the format, or past as many values as are announced";
+                let hint = "; it is beyond the columns of the format or the announced number of values";
                 return Err(RecordError::Number { line, text: shown(rest), hint });
             }
         }
@@ -230,7 +231,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Numbers a line and characters a number of a format such as `(8F10.5)` or `(1P,5E15.7)`.
+/// Numbers per line and characters per number in a format such as `(8F10.5)` or `(1P,5E15.7)`.
 fn fortran(text: &str) -> Option<(usize, usize)> {
     let upper = text.to_ascii_uppercase();
     let format = upper.rsplit('(').next()?.split(')').next()?;
@@ -243,7 +244,7 @@ fn fortran(text: &str) -> Option<(usize, usize)> {
     ((1..=1000).contains(&repeat) && (1..=100).contains(&width)).then_some((repeat, width))
 }
 
-/// Number and name of the station from the fifth line of text, without its titles.
+/// Number and name of the station from the fifth text line, without the label.
 fn station(line: &str) -> String {
     line.trim().trim_start_matches("Statn No:").trim().to_owned()
 }
@@ -252,7 +253,7 @@ fn station(line: &str) -> String {
 mod tests {
     use crate::Record;
 
-    /// A block of ours: quantity, unit, and the values with the line that announces them.
+    /// A block with this quantity, unit, and values with the line that announces them.
     fn block(quantity: usize, unit: usize, data: &str) -> String {
         let text: Vec<String> = (2..=13)
             .map(|k| if k == 5 { "Statn No: 01-1 Code:XX-A  Here".into() } else { format!("line {k}") })
@@ -294,43 +295,42 @@ mod tests {
         let (velocity, acceleration) = (block(2, 5, DATA), block(1, 4, DATA));
         assert_eq!(read(&format!("{acceleration}{velocity}")).unwrap().len(), 5);
         assert_eq!(read(&format!("{acceleration}\n{velocity}\n")).unwrap().len(), 5);
-        let told = read(&format!("{acceleration}{acceleration}")).unwrap_err();
-        assert!(told.contains("a second block of acceleration (the first is in line 36)"), "{told}");
-        let told = read(&velocity).unwrap_err();
-        assert!(told.ends_with("but a record is an acceleration (integer 2 of the header must be 1)"), "{told}");
+        let message = read(&format!("{acceleration}{acceleration}")).unwrap_err();
+        assert!(message.contains("a second acceleration block (the first is in line 36)"), "{message}");
+        let message = read(&velocity).unwrap_err();
+        assert!(message.ends_with("but a record is an acceleration (integer 2 of the header must be 1)"), "{message}");
     }
 
     #[test]
-    fn what_is_wrong_is_told_with_its_line() {
+    fn errors_name_the_line() {
         let whole = block(1, 4, DATA);
-        let told = |from: &str, to: &str| read(&whole.replace(from, to)).unwrap_err();
-        assert_eq!(told("   5  acc", "   6  acc"), "line 36: the header announces 6 values, but the file has 5");
-        assert!(told("   5  acc", "   4  acc").starts_with("line 38: `.00100` is no number; it stands past"));
+        let message = |from: &str, to: &str| read(&whole.replace(from, to)).unwrap_err();
+        assert_eq!(message("   5  acc", "   6  acc"), "line 36: the header announces 6 values, but the file has 5");
+        assert!(message("   5  acc", "   4  acc").starts_with("line 38: `.00100` is not a number; it is beyond"));
         assert_eq!(
-            told("2.50000    .00100", "2.50000 x  .00100"),
-            "line 38: `x  .00100` is no number; numbers have to stand in the columns of the format"
+            message("2.50000    .00100", "2.50000 x  .00100"),
+            "line 38: `x  .00100` is not a number; numbers must be in the columns of the format"
         );
         assert_eq!(
-            told("12345.6789", "12345.6789 9"),
-            "line 37: `9` is no number; it stands past the columns of the format, or past as many values as are announced"
+            message("12345.6789", "12345.6789 9"),
+            "line 37: `9` is not a number; it is beyond the columns of the format or the announced number of values"
         );
         assert!(
-            told("(3F10.5)", "(3X)").contains("line 36: ") && told("(3F10.5)", "(3X)").contains("such as (8F10.5)")
+            message("(3F10.5)", "(3X)").contains("line 36: ")
+                && message("(3F10.5)", "(3X)").contains("such as (8F10.5)")
         );
-        assert!(told("with 13 text", "with some text").starts_with("line 1: it doesn't say how many text lines"));
-        assert!(told("v01.20", "v02.00").starts_with("line 1: format version `02.00`, but 1.20 is read"));
-        assert!(told(" 100 Real-header", " 100 Other-header").starts_with("line 16: `100 Other-header"));
-        assert!(told("   1 Comment", "   1 Remark").starts_with("line 34: `1 Remark"));
+        assert!(message("with 13 text", "with some text").starts_with("line 1: the number of text lines is missing"));
+        assert!(message("v01.20", "v02.00").starts_with("line 1: format version `02.00` isn't supported, only 1.20"));
+        assert!(message(" 100 Real-header", " 100 Other-header").starts_with("line 16: `100 Other-header"));
+        assert!(message("   1 Comment", "   1 Remark").starts_with("line 34: `1 Remark"));
         assert!(
             read(&block(1, 50, DATA))
                 .unwrap_err()
-                .starts_with("line 15: `unit 50` is no known unit of an acceleration")
+                .starts_with("line 15: `unit 50` is not a known unit of acceleration")
         );
         assert!(
-            read("Corrected (Format v01.20 with 13 text lines)\n")
-                .unwrap_err()
-                .contains("no text header of the length")
+            read("Corrected (Format v01.20 with 13 text lines)\n").unwrap_err().contains("no complete text header")
         );
-        assert!(told("10.000000", " 0.000000").contains("the step is 0 s"));
+        assert!(message("10.000000", " 0.000000").contains("the step is 0 s"));
     }
 }

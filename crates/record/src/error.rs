@@ -1,81 +1,81 @@
-//! What can be wrong with a record.
+//! Errors of reading and changing records.
 
 use crate::format::Format;
 
-/// Why a file isn't a record that can be read, or a record can't be changed as asked. Lines count
+/// Why a file can't be read as a record, or a record can't be changed as requested. Lines count
 /// from 1.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordError {
-    /// More bytes than are read.
-    #[error("{bytes} bytes are more than {} MB, the limit of a record", crate::LARGEST_FILE / 1_000_000)]
+    /// The file is too large.
+    #[error("the file has {bytes} bytes, more than the limit of {} MB", crate::LARGEST_FILE / 1_000_000)]
     TooLarge {
-        /// Bytes of the file.
+        /// Its size in bytes.
         bytes: usize,
     },
-    /// Nothing but blank lines and comments.
+    /// Only blank lines and comments.
     #[error("the file is empty")]
     Empty,
-    /// None of the formats.
+    /// The format isn't recognised.
     #[error(
-        "line {line}: `{text}` begins no known form of a record: PEER .AT2, ESM and COSMOS files are read, and tables of \
+        "line {line}: `{text}` doesn't begin a known record format: PEER .AT2, ESM and COSMOS files are read, and tables of \
          numbers"
     )]
     Unknown {
-        /// The first line that has something.
+        /// The first line that isn't blank.
         line: usize,
-        /// What it has, shortened.
+        /// Its text, shortened.
         text: String,
     },
-    /// A header that lacks what the format requires.
+    /// A header without an entry that the format requires.
     #[error("this {format} file has no {what} in its header")]
     Missing {
         /// The format.
         format: Format,
-        /// What is missing, as the format calls it.
+        /// The missing entry, as named by the format.
         what: &'static str,
     },
-    /// A header line that can't be understood.
+    /// An invalid header line.
     #[error("line {line}: {reason}")]
     Header {
         /// The line.
         line: usize,
-        /// What is wrong, and what would be right.
+        /// What is wrong and what is expected.
         reason: String,
     },
-    /// A velocity, a displacement or another quantity.
-    #[error("line {line}: the file holds `{found}`, but a record is an acceleration{remedy}")]
+    /// The values are a velocity, a displacement or another quantity.
+    #[error("line {line}: the file contains `{found}`, but a record is an acceleration{remedy}")]
     NotAcceleration {
-        /// The line that says so.
+        /// The line with the quantity.
         line: usize,
-        /// The quantity as the file calls it.
+        /// The quantity as named in the file.
         found: String,
-        /// Which file to take instead; may be empty.
+        /// Which file to use instead; may be empty.
         remedy: &'static str,
     },
-    /// A unit that is none of an acceleration, or none that is known.
-    #[error("line {line}: `{found}` is no known unit of {quantity}: {known}")]
+    /// An unknown unit, or one of another quantity.
+    #[error("line {line}: `{found}` is not a known unit of {quantity}: {known}")]
     Unit {
         /// The line.
         line: usize,
         /// The unit as given.
         found: String,
-        /// What it should be a unit of.
+        /// The quantity that it should measure.
         quantity: &'static str,
-        /// The known ones.
+        /// The known units.
         known: &'static str,
     },
-    /// Text where a number must be.
-    #[error("line {line}: `{text}` is no number{hint}")]
+    /// Text where a number is expected.
+    #[error("line {line}: `{text}` is not a number{hint}")]
     Number {
         /// The line.
         line: usize,
         /// The text, shortened.
         text: String,
-        /// What may have happened; may be empty.
+        /// The likely cause; may be empty.
         hint: &'static str,
     },
-    /// A value that is not finite, or larger than any acceleration.
+    /// A value that isn't finite or is implausibly large.
     #[error(
         "line {line}: the acceleration {value:e} must be finite and at most {:e} m/s^2 in size",
         crate::LARGEST_ACCELERATION
@@ -86,7 +86,7 @@ pub enum RecordError {
         /// The value, in the unit of the file.
         value: f64,
     },
-    /// Another number of values than announced.
+    /// The number of values differs from the one announced.
     #[error("line {line}: the header announces {announced} values, but the file has {found}")]
     Count {
         /// The line that announces them.
@@ -103,12 +103,12 @@ pub enum RecordError {
         line: usize,
         /// Columns found.
         found: usize,
-        /// What must be there.
+        /// What is expected.
         wanted: &'static str,
     },
-    /// Times that don't rise by a uniform step.
+    /// Times without a uniform step.
     #[error(
-        "line {line}: the time {time} s is uneven: the other rows are {step} s apart, which makes {expected} s; give even \
+        "line {line}: the time {time} s doesn't fit a uniform step: the other rows are {step} s apart, which gives {expected} s; use uniform \
          times with enough digits, or the accelerations alone with their step"
     )]
     Uneven {
@@ -116,57 +116,57 @@ pub enum RecordError {
         line: usize,
         /// The time there, s.
         time: f64,
-        /// The time that an even step would give, s.
+        /// The time that a uniform step would give, s.
         expected: f64,
         /// The step, s.
         step: f64,
     },
-    /// Accelerations alone, without a step.
-    #[error("the file has accelerations alone: their step must be given")]
+    /// Accelerations without times and without a step.
+    #[error("the file has accelerations without times: the step must be given")]
     StepNeeded,
-    /// A step for a file that says its own.
-    #[error("the {format} file says its own step, {step} s: leave the given one out")]
+    /// A step given for a file that has its own.
+    #[error("the {format} file has its own step, {step} s: omit the given one")]
     StepTwice {
         /// The format.
         format: Format,
         /// The step of the file, s.
         step: f64,
     },
-    /// A step that none can be.
+    /// A step out of range.
     #[error("the step is {0} s, but must be between 1e-9 s and 1e6 s")]
     Step(f64),
     /// Fewer than two values.
-    #[error("a record needs two values or more, got {0}")]
+    #[error("a record must have at least two values, but has {0}")]
     TooFew(usize),
-    /// More values than are read.
-    #[error("more than {} values, the limit of a record", crate::MOST_VALUES)]
+    /// Too many values.
+    #[error("the file has more than {} values, the limit of a record", crate::MOST_VALUES)]
     TooMany,
-    /// A number of a correction or a measure out of its range.
+    /// A parameter of a correction or a measure out of range.
     #[error("{what} is {value}, but must be {range}")]
     Parameter {
-        /// What it is.
+        /// The parameter.
         what: &'static str,
-        /// What was given.
+        /// The value given.
         value: f64,
-        /// What it must be.
+        /// The allowed range.
         range: &'static str,
     },
-    /// A cut that leaves less than two values.
-    #[error("from {from} s to {to} s there are fewer than two values; the record goes from 0 s to {duration} s")]
+    /// A cut that leaves fewer than two values.
+    #[error("from {from} s to {to} s there are fewer than two values; the record covers 0 s to {duration} s")]
     Cut {
-        /// Begin of the cut, s.
+        /// Start of the cut, s.
         from: f64,
         /// End of the cut, s.
         to: f64,
         /// Duration of the record, s.
         duration: f64,
     },
-    /// A record of zeros, which no factor gives a peak.
+    /// A record of zeros, which can't be scaled to a peak.
     #[error("the acceleration is 0 throughout: it can't be scaled to a peak")]
     Still,
 }
 
-/// A piece of a file for a message: without control characters, and not too long.
+/// A text of a file for a message, shortened and without control characters.
 pub(crate) fn shown(text: &str) -> String {
     let clean = |c: char| if c.is_control() { '\u{fffd}' } else { c };
     let mut shown: String = text.trim().chars().take(40).map(clean).collect();

@@ -1,5 +1,5 @@
-//! ESM's ASCII files (also called DYNA): lines `KEY: value`, 64 of them as a rule, then one value of
-//! acceleration a line.
+//! ESM's ASCII files (also called DYNA): usually 64 lines `KEY: value`, then one acceleration per
+//! line.
 
 use crate::MOST_VALUES;
 use crate::error::{RecordError, shown};
@@ -8,9 +8,9 @@ use crate::numbers;
 use crate::record::Record;
 use crate::units;
 
-/// What a header says of the values.
+/// The entries of a header that are used.
 #[derive(Default)]
-struct Header<'a> {
+struct EsmHeader<'a> {
     count: Option<(usize, usize)>,
     step: Option<f64>,
     unit: Option<f64>,
@@ -22,7 +22,7 @@ struct Header<'a> {
     stream: &'a str,
 }
 
-impl<'a> Header<'a> {
+impl<'a> EsmHeader<'a> {
     fn take(&mut self, line: usize, key: &str, value: &'a str) -> Result<(), RecordError> {
         let number = || {
             let reason = format!("{key} is `{}`, but must be a number", shown(value));
@@ -66,7 +66,7 @@ impl<'a> Header<'a> {
 }
 
 pub(crate) fn read(text: &str) -> Result<Record, RecordError> {
-    let mut header = Header::default();
+    let mut header = EsmHeader::default();
     let mut values: Vec<(usize, f64)> = Vec::new();
     for (index, text) in text.lines().enumerate() {
         let (line, text) = (index + 1, text.trim());
@@ -80,7 +80,7 @@ pub(crate) fn read(text: &str) -> Result<Record, RecordError> {
         if values.len() == MOST_VALUES {
             return Err(RecordError::TooMany);
         }
-        let hint = if text.contains(char::is_whitespace) { "; an ESM file has one value a line" } else { "" };
+        let hint = if text.contains(char::is_whitespace) { "; an ESM file has one value per line" } else { "" };
         let bad = RecordError::Number { line, text: shown(text), hint };
         values.push((line, numbers::one(text).ok_or(bad)?));
     }
@@ -125,23 +125,26 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_with_its_line() {
-        let told = |from: &str, to: &str| read(&FILE.replace(from, to)).unwrap_err();
-        assert_eq!(told("NDATA: 3", "NDATA: 4"), "line 8: the header announces 4 values, but the file has 3");
-        assert_eq!(told("NDATA: 3", "NDATA: few"), "line 8: NDATA is `few`, but must be a number");
-        assert!(told("NDATA: 3", "NDATA: -3").starts_with("line 8: NDATA is -3, but must be a whole number from 2"));
-        assert_eq!(told("NDATA: 3\n", ""), "this ESM file has no NDATA in its header");
+    fn errors_name_the_line() {
+        let message = |from: &str, to: &str| read(&FILE.replace(from, to)).unwrap_err();
+        assert_eq!(message("NDATA: 3", "NDATA: 4"), "line 8: the header announces 4 values, but the file has 3");
+        assert_eq!(message("NDATA: 3", "NDATA: few"), "line 8: NDATA is `few`, but must be a number");
+        assert!(message("NDATA: 3", "NDATA: -3").starts_with("line 8: NDATA is -3, but must be a whole number from 2"));
+        assert_eq!(message("NDATA: 3\n", ""), "this ESM file has no NDATA in its header");
         assert_eq!(
-            told("SAMPLING_INTERVAL_S: 0.005000\n", ""),
+            message("SAMPLING_INTERVAL_S: 0.005000\n", ""),
             "this ESM file has no SAMPLING_INTERVAL_S in its header"
         );
-        assert_eq!(told("UNITS: cm/s^2\n", ""), "this ESM file has no UNITS in its header");
-        assert!(told("cm/s^2", "cm/s").starts_with("line 10: `cm/s` is no known unit of an acceleration: m/s^2, "));
+        assert_eq!(message("UNITS: cm/s^2\n", ""), "this ESM file has no UNITS in its header");
+        assert!(message("cm/s^2", "cm/s").starts_with("line 10: `cm/s` is not a known unit of acceleration: m/s^2, "));
         assert_eq!(
-            told(": ACCELERATION", ": VELOCITY"),
-            "line 13: the file holds `VELOCITY`, but a record is an acceleration"
+            message(": ACCELERATION", ": VELOCITY"),
+            "line 13: the file contains `VELOCITY`, but a record is an acceleration"
         );
-        assert_eq!(told("-1.5\n", "-1.5 2\n"), "line 15: `-1.5 2` is no number; an ESM file has one value a line");
-        assert_eq!(told("0.000125", "0.0001x"), "line 17: `0.0001x` is no number");
+        assert_eq!(
+            message("-1.5\n", "-1.5 2\n"),
+            "line 15: `-1.5 2` is not a number; an ESM file has one value per line"
+        );
+        assert_eq!(message("0.000125", "0.0001x"), "line 17: `0.0001x` is not a number");
     }
 }

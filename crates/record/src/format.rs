@@ -1,10 +1,10 @@
-//! The formats, and how they are recognised.
+//! The formats and their recognition.
 
 use std::fmt;
 
 use crate::error::{RecordError, shown};
 
-/// A format of records.
+/// A file format of records.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Format {
@@ -18,16 +18,16 @@ pub enum Format {
     Table,
 }
 
-/// Lines within which a header says what it is: PEER's has 4, ESM's 64.
+/// Lines in which the format is searched: PEER's header has 4, ESM's 64.
 const HEADER: usize = 70;
 
 impl Format {
-    /// The format of a file, by its content: COSMOS by the words `(Format v` in its first line, ESM by
-    /// lines `NDATA:` or `SAMPLING_INTERVAL_S:`, PEER by `NPTS`, and a table by numbers, which a
-    /// heading and comments may precede.
+    /// The format of a file, recognised by its content: COSMOS by `(Format v` in the first line,
+    /// ESM by lines `NDATA:` or `SAMPLING_INTERVAL_S:`, PEER by `NPTS`, and a table by numbers,
+    /// which may follow a heading and comments.
     ///
     /// # Errors
-    /// If it is none, or has nothing but blank lines.
+    /// If no format is recognised, or there are only blank lines.
     pub fn of(text: &str) -> Result<Self, RecordError> {
         let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
         let Some((_, first)) = lines.clone().next() else { return Err(RecordError::Empty) };

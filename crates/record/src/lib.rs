@@ -1,18 +1,19 @@
-//! Accelerograms: read from the files of strong-motion databases, corrected, and measured.
+//! Accelerograms: reading files of strong-motion databases, correcting records, and computing
+//! intensity measures.
 //!
 //! | format | what is read | unit |
 //! |---|---|---|
-//! | PEER `.AT2` | new header (`NPTS=  5437, DT=   .0050 SEC`) and old one (`5437   .0050   NPTS, DT`) | g |
-//! | ESM ASCII | header lines `KEY: value` (`DYNA` 1.0 to 1.2), one value a line | by `UNITS` |
-//! | COSMOS v1.20 | text, integer and real headers, comments, the block of acceleration | by the code of the integer header |
-//! | table | time and acceleration, or acceleration alone; commas, semicolons or blanks between columns; `#` starts a comment | m/s², or by the heading: `t [ms], a [g]` |
+//! | PEER `.AT2` | new header (`NPTS=  5437, DT=   .0050 SEC`) and old header (`5437   .0050   NPTS, DT`) | g |
+//! | ESM ASCII | header lines `KEY: value` (`DYNA` 1.0 to 1.2), one value per line | from `UNITS` |
+//! | COSMOS v1.20 | text, integer and real headers, comments, the acceleration block | from the code in the integer header |
+//! | table | time and acceleration, or acceleration alone; commas, semicolons or blanks between columns; `#` starts a comment | m/s², or from the heading: `t [ms], a [g]` |
 //!
-//! [`Record::read`] recognises the format by the content. All accelerations are m/s² from there on,
+//! [`Record::read`] recognises the format by its content. Accelerations are converted to m/s², with
 //! one g being [`STANDARD_GRAVITY`].
 //!
-//! Between two values the acceleration is linear. What is computed from it holds exactly for that
-//! function, up to rounding: velocities and displacements, their peaks between the values too,
-//! Arias intensity, significant duration and response spectrum.
+//! Between two values the acceleration is linear. Velocities and displacements (including peaks
+//! between the values), Arias intensity, significant duration and response spectrum are exact for
+//! this function, up to rounding.
 //!
 //! ```
 //! use teeter_record::Record;
@@ -48,14 +49,14 @@ pub use measures::Peak;
 pub use record::Record;
 pub use spectrum::Response;
 
-/// Standard gravity, m/s²: the g of records.
+/// Standard gravity, m/s²: the unit g of records.
 pub const STANDARD_GRAVITY: f64 = 9.806_65;
 
-/// Largest file that is read, bytes.
+/// Largest file size accepted, bytes.
 pub const LARGEST_FILE: usize = 64_000_000;
 
-/// Most values of a record.
+/// Largest number of values of a record.
 pub const MOST_VALUES: usize = 2_000_000;
 
-/// Largest size of an acceleration, m/s².
+/// Largest magnitude of an acceleration, m/s².
 pub const LARGEST_ACCELERATION: f64 = 1e12;

@@ -1,32 +1,33 @@
-//! What is read off a record: peaks, Arias intensity, significant duration. All of it holds for the
-//! acceleration that is linear between its values, from rest at the first one.
+//! Intensity measures of a record: peaks, Arias intensity, significant duration. All are exact for
+//! an acceleration linear between its values, with the motion starting at rest.
 
 use crate::STANDARD_GRAVITY;
 use crate::error::RecordError;
 use crate::record::Record;
 
-/// A largest size, and when it is reached first.
+/// A largest magnitude and the time when it is first reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Peak {
-    /// The size, never negative.
+    /// The magnitude, never negative.
     pub size: f64,
-    /// When, s.
+    /// The time, s.
     pub time: f64,
 }
 
 impl Peak {
     const NONE: Self = Self { size: 0.0, time: 0.0 };
 
-    fn see(&mut self, value: f64, time: f64) {
+    fn include(&mut self, value: f64, time: f64) {
         if value.abs() > self.size {
             *self = Self { size: value.abs(), time };
         }
     }
 }
 
-/// One step of the motion: the acceleration a + s τ, with velocity and displacement where it begins.
+/// One step of the motion: the acceleration a + s τ, with velocity and displacement at its
+/// beginning.
 #[derive(Clone, Copy)]
-struct Piece {
+struct LinearSegment {
     begin: f64,
     h: f64,
     a: f64,
@@ -35,7 +36,7 @@ struct Piece {
     d: f64,
 }
 
-impl Piece {
+impl LinearSegment {
     fn velocity(&self, tau: f64) -> f64 {
         self.v + tau * (self.a + 0.5 * self.slope * tau)
     }
@@ -49,14 +50,14 @@ impl Piece {
         tau * (self.a * self.a + tau * self.slope * (self.a + self.slope * tau / 3.0))
     }
 
-    /// Where the velocity is 0 within the step: the roots of a quadratic, up to two.
+    /// The zeros of the velocity within the step: up to two roots of a quadratic.
     fn stops(&self) -> [Option<f64>; 2] {
         let within = |tau: f64| (tau > 0.0 && tau < self.h).then_some(tau);
         let discriminant = self.a * self.a - 2.0 * self.slope * self.v;
         if !(discriminant >= 0.0) {
             return [None, None];
         }
-        // The form without cancellation: q, then 2c/q and q/slope.
+        // The form without cancellation: roots 2c/q and q/slope.
         let q = -(self.a + discriminant.sqrt().copysign(self.a));
         [within(2.0 * self.v / q), within(q / self.slope)]
     }
@@ -69,69 +70,70 @@ impl Record {
         self.accelerations().iter().fold(0.0, |most: f64, a| most.max(a.abs()))
     }
 
-    /// Peak ground acceleration, m/s², and when it is reached.
+    /// Peak ground acceleration, m/s², with its time.
     #[must_use]
     pub fn acceleration_peak(&self) -> Peak {
         let mut peak = Peak::NONE;
-        self.accelerations().iter().enumerate().for_each(|(k, a)| peak.see(*a, self.time(k)));
+        self.accelerations().iter().enumerate().for_each(|(k, a)| peak.include(*a, self.time(k)));
         peak
     }
 
-    /// Peak ground velocity, m/s: the largest size of the integral of the acceleration from rest,
-    /// between the values too.
+    /// Peak ground velocity, m/s: the largest magnitude of the integral of the acceleration from
+    /// rest, between the values too.
     #[must_use]
     pub fn velocity_peak(&self) -> Peak {
         let mut peak = Peak::NONE;
-        for piece in self.pieces() {
-            let turn = -piece.a / piece.slope;
-            for tau in [turn, piece.h].into_iter().filter(|tau| *tau > 0.0 && *tau <= piece.h) {
-                peak.see(piece.velocity(tau), piece.begin + tau);
+        for segment in self.segments() {
+            let turn = -segment.a / segment.slope;
+            for tau in [turn, segment.h].into_iter().filter(|tau| *tau > 0.0 && *tau <= segment.h) {
+                peak.include(segment.velocity(tau), segment.begin + tau);
             }
         }
         peak
     }
 
-    /// Peak ground displacement, m: the largest size of the second integral of the acceleration from rest,
-    /// between the values too.
+    /// Peak ground displacement, m: the largest magnitude of the second integral of the
+    /// acceleration from rest, between the values too.
     #[must_use]
     pub fn displacement_peak(&self) -> Peak {
         let mut peak = Peak::NONE;
-        for piece in self.pieces() {
-            for tau in piece.stops().into_iter().flatten().chain([piece.h]) {
-                peak.see(piece.displacement(tau), piece.begin + tau);
+        for segment in self.segments() {
+            for tau in segment.stops().into_iter().flatten().chain([segment.h]) {
+                peak.include(segment.displacement(tau), segment.begin + tau);
             }
         }
         peak
     }
 
-    /// Velocity (m/s) and displacement (m) at each value's time, from rest.
+    /// Velocity (m/s) and displacement (m) at the times of the values, from rest.
     #[must_use]
     pub fn motion(&self) -> (Vec<f64>, Vec<f64>) {
-        let ends = self.pieces().map(|piece| (piece.velocity(piece.h), piece.displacement(piece.h)));
+        let ends = self.segments().map(|segment| (segment.velocity(segment.h), segment.displacement(segment.h)));
         std::iter::once((0.0, 0.0)).chain(ends).unzip()
     }
 
-    /// Arias intensity π/(2g) ∫ a² dt, m/s, g being [`STANDARD_GRAVITY`] (A. Arias, "A measure of earthquake
-    /// intensity", in Seismic Design for Nuclear Power Plants, MIT Press 1970). The integral is
-    /// that of the linear pieces, h (a₀² + a₀a₁ + a₁²)/3 each, not the sum of the values' squares.
+    /// Arias intensity π/(2g) ∫ a² dt, m/s, g being [`STANDARD_GRAVITY`] (A. Arias, "A measure of
+    /// earthquake intensity", in Seismic Design for Nuclear Power Plants, MIT Press 1970). The
+    /// integral is exact for the linear segments, h (a₀² + a₀a₁ + a₁²)/3 each.
     #[must_use]
     pub fn arias_intensity(&self) -> f64 {
-        self.pieces().map(|piece| piece.squares(piece.h)).sum::<f64>() * std::f64::consts::PI / (2.0 * STANDARD_GRAVITY)
+        self.segments().map(|segment| segment.squares(segment.h)).sum::<f64>() * std::f64::consts::PI
+            / (2.0 * STANDARD_GRAVITY)
     }
 
-    /// When the Arias intensity reaches two parts of the whole, s: `[0.05, 0.95]` are the ends of the
-    /// significant duration (M. D. Trifunac, A. G. Brady 1975). Within a step the cubic that the
-    /// intensity is there is solved.
+    /// The times when the Arias intensity reaches two fractions of its total, s: `[0.05, 0.95]` are
+    /// the ends of the significant duration (M. D. Trifunac, A. G. Brady 1975). Within a step the
+    /// intensity is a cubic, which is solved.
     ///
     /// # Errors
-    /// If the parts don't rise within [0, 1], or the record is 0 throughout.
+    /// If the fractions don't ascend within [0, 1], or the record is 0 throughout.
     pub fn husid_times(&self, parts: [f64; 2]) -> Result<[f64; 2], RecordError> {
         let [first, second] = parts;
         if !(first >= 0.0 && first < second && second <= 1.0) {
-            let range = "in [0, 1], the first part below the second";
-            return Err(RecordError::Parameter { what: "the part of the intensity", value: first, range });
+            let range = "in [0, 1] and below the second fraction";
+            return Err(RecordError::Parameter { what: "the fraction of the intensity", value: first, range });
         }
-        let whole: f64 = self.pieces().map(|piece| piece.squares(piece.h)).sum();
+        let whole: f64 = self.segments().map(|segment| segment.squares(segment.h)).sum();
         if whole == 0.0 {
             return Err(RecordError::Still);
         }
@@ -145,32 +147,32 @@ impl Record {
         self.husid_times([0.05, 0.95]).map_or(0.0, |[begin, end]| end - begin)
     }
 
-    /// When ∫ a² reaches a value.
+    /// The time when ∫ a² reaches a value.
     fn time_of(&self, squares: f64) -> f64 {
         let mut sum = 0.0;
-        for piece in self.pieces() {
-            let whole = piece.squares(piece.h);
+        for segment in self.segments() {
+            let whole = segment.squares(segment.h);
             if sum + whole >= squares {
-                let (mut low, mut high) = (0.0, piece.h);
-                // Bisection: the integral of a square doesn't fall. 53 halvings reach the last bit.
+                let (mut low, mut high) = (0.0, segment.h);
+                // Bisection, as ∫ a² doesn't decrease. 53 halvings reach the last bit.
                 for _ in 0..53 {
                     let middle = 0.5 * (low + high);
-                    if sum + piece.squares(middle) < squares { low = middle } else { high = middle }
+                    if sum + segment.squares(middle) < squares { low = middle } else { high = middle }
                 }
-                return piece.begin + high;
+                return segment.begin + high;
             }
             sum += whole;
         }
         self.duration()
     }
 
-    fn pieces(&self) -> impl Iterator<Item = Piece> + '_ {
+    fn segments(&self) -> impl Iterator<Item = LinearSegment> + '_ {
         let h = self.dt();
         let (mut v, mut d) = (0.0, 0.0);
         self.accelerations().windows(2).enumerate().map(move |(k, a)| {
-            let piece = Piece { begin: self.time(k), h, a: a[0], slope: (a[1] - a[0]) / h, v, d };
+            let segment = LinearSegment { begin: self.time(k), h, a: a[0], slope: (a[1] - a[0]) / h, v, d };
             (v, d) = (v + 0.5 * h * (a[0] + a[1]), d + h * (v + h * (2.0 * a[0] + a[1]) / 6.0));
-            piece
+            segment
         })
     }
 }
@@ -181,7 +183,7 @@ mod tests {
     use std::f64::consts::PI;
 
     #[test]
-    fn a_constant_acceleration_has_its_closed_form() {
+    fn constant_acceleration_matches_closed_form() {
         let (a, dt, n) = (2.0, 0.01, 301_u32);
         let one = Record::new("R", dt, vec![a; n as usize]).unwrap();
         let t = dt * f64::from(n - 1);
@@ -194,21 +196,22 @@ mod tests {
 
     #[test]
     fn peaks_between_the_values_are_found() {
-        // a = 1 - t over [0, 3]: v = t - t²/2 is largest at 1, 0 at 2; d = t²/2 - t³/6 at 2 is 2/3, at 3 it is 0.
+        // a = 1 - t over [0, 3]: v = t - t²/2 is largest at 1, 0 at 2; d = t²/2 - t³/6 at 2 is 2/3,
+        // at 3 it is 0.
         let one = Record::new("R", 3.0, vec![1.0, -2.0]).unwrap();
         let (v, d) = (one.velocity_peak(), one.displacement_peak());
         assert!((v.size - 1.5).abs() < 1e-15 && v.time == 3.0, "{v:?}");
         assert!((d.size - 2.0 / 3.0).abs() < 1e-15 && (d.time - 2.0).abs() < 1e-15, "{d:?}");
         let (v, d) = (one.cut(0.0, 3.0).unwrap().scaled(-1.0).unwrap().motion().0, one.motion().1);
         assert!(v[1] == 1.5 && d[1].abs() < 1e-15);
-        // Without a slope, and with none of an acceleration: nothing to divide by.
+        // Segments without slope and without acceleration: no division by zero.
         let flat = Record::new("R", 1.0, vec![0.0, 0.0, 1.0, 1.0, 0.0]).unwrap();
         assert_eq!(flat.velocity_peak(), Peak { size: 2.0, time: 4.0 });
     }
 
     #[test]
-    fn the_intensity_of_a_ramp_is_that_of_a_cube() {
-        // a = t on [0, 1]: ∫a² = t³/3, so a part p is reached at its cube root, whatever the step.
+    fn intensity_of_a_ramp_matches_closed_form() {
+        // a = t on [0, 1]: ∫a² = t³/3, so the fraction p is reached at its cube root, for any step.
         for n in [2_usize, 11] {
             let dt = 1.0 / (n - 1) as f64;
             let one = Record::new("R", dt, (0..n).map(|k| k as f64 * dt).collect()).unwrap();
@@ -218,6 +221,6 @@ mod tests {
         }
         let still = Record::new("R", 1.0, vec![0.0; 3]).unwrap();
         assert_eq!((still.arias_intensity(), still.significant_duration()), (0.0, 0.0));
-        assert!(still.husid_times([0.9, 0.1]).unwrap_err().to_string().contains("the first part below the second"));
+        assert!(still.husid_times([0.9, 0.1]).unwrap_err().to_string().contains("below the second fraction"));
     }
 }

@@ -1,15 +1,15 @@
-//! Numbers as Fortran programs write them.
+//! Parsing numbers as Fortran programs write them.
 
 use crate::error::{RecordError, shown};
 
-/// Why two numbers may look like one.
-const RUN_TOGETHER: &str = "; numbers have to be apart, or to begin with a sign";
+/// Hint for two numbers without a separator.
+const RUN_TOGETHER: &str = "; numbers must be separated or begin with a sign";
 
-/// Calls `each` for the numbers of a line: separated by blanks or commas, or run together where a
-/// sign begins the next one, or where a point follows an exponent (which has two digits then).
+/// Calls `each` for every number of a line. Numbers are separated by blanks or commas, or adjoin
+/// where a sign starts the next one or where a point follows an exponent (of two digits then).
 ///
 /// # Errors
-/// If something is no number, or what `each` returns.
+/// If a text isn't a number, or the error of `each`.
 pub(crate) fn free(
     line: usize,
     text: &str,
@@ -37,7 +37,7 @@ pub(crate) fn free(
     }
 }
 
-/// Bytes of the number that a text begins with; 0 if it doesn't begin with one.
+/// Length in bytes of the number at the beginning of a text; 0 if there is none.
 fn length(text: &[u8]) -> usize {
     let digits = |from: usize| text.iter().skip(from).take_while(|c| c.is_ascii_digit()).count();
     let is = |at: usize, what: &[u8]| text.get(at).is_some_and(|c| what.contains(c));
@@ -56,14 +56,16 @@ fn length(text: &[u8]) -> usize {
         let begin = end + 1 + usize::from(is(end + 1, b"+-"));
         let power = digits(begin);
         if power > 0 {
-            // A point right behind an exponent is of the next number, and so are digits past the second.
+            // A point directly after an exponent belongs to the next number, and so do digits
+            // beyond the second.
             end = begin + if is(begin + power, b".") { power.min(2) } else { power };
         }
     }
     end
 }
 
-/// A number alone: with or without zeros around its point, with E or D before the exponent.
+/// Parses a single number: with or without zeros around the point, with E or D before the
+/// exponent.
 pub(crate) fn one(text: &str) -> Option<f64> {
     let text = text.trim();
     if length(text.as_bytes()) != text.len() || text.is_empty() {
@@ -87,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_of_fortran_are_told_apart() {
+    fn adjoining_fortran_numbers_are_separated() {
         assert_eq!(read("  .5 -.25E+01,1.D-2  3 ").unwrap(), [0.5, -2.5, 0.01, 3.0]);
         assert_eq!(read("-.1234567E-01-.2345678E-02").unwrap(), [-0.01234567, -0.002345678]);
         assert_eq!(read("0.1234567E-010.2345678E-02").unwrap(), [0.01234567, 0.002345678]);
@@ -98,15 +100,15 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_told() {
-        assert_eq!(read("1 high").unwrap_err(), "line 7: `high` is no number");
-        assert_eq!(read("nan").unwrap_err(), "line 7: `nan` is no number");
+    fn non_numbers_are_reported() {
+        assert_eq!(read("1 high").unwrap_err(), "line 7: `high` is not a number");
+        assert_eq!(read("nan").unwrap_err(), "line 7: `nan` is not a number");
         assert_eq!(
             read("1.25.5").unwrap_err(),
-            "line 7: `1.25.5` is no number; numbers have to be apart, or to begin with a sign"
+            "line 7: `1.25.5` is not a number; numbers must be separated or begin with a sign"
         );
-        assert!(read("1.5E").unwrap_err().starts_with("line 7: `1.5E` is no number"));
-        assert!(read("-").unwrap_err().starts_with("line 7: `-` is no number"));
-        assert!(read("é").unwrap_err().starts_with("line 7: `é` is no number"));
+        assert!(read("1.5E").unwrap_err().starts_with("line 7: `1.5E` is not a number"));
+        assert!(read("-").unwrap_err().starts_with("line 7: `-` is not a number"));
+        assert!(read("é").unwrap_err().starts_with("line 7: `é` is not a number"));
     }
 }

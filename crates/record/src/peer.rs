@@ -1,8 +1,8 @@
-//! PEER's `.AT2`: three lines of words, one with the number of values and the step, then values of
-//! acceleration in g, several a line.
+//! PEER's `.AT2`: three lines of text, one with the number of values and the step, then
+//! accelerations in g, several per line.
 //!
-//! The line of numbers has two forms: `NPTS=  5437, DT=   .0050 SEC`, in any case and spacing and
-//! with or without the unit, and, of older files, `5437   0.0050   NPTS, DT`.
+//! The line with number and step has two forms: `NPTS=  5437, DT=   .0050 SEC`, in any case and
+//! spacing, with or without the unit, and in older files `5437   0.0050   NPTS, DT`.
 
 use crate::error::{RecordError, shown};
 use crate::format::Format;
@@ -11,13 +11,14 @@ use crate::record::Record;
 use crate::units;
 use crate::{MOST_VALUES, STANDARD_GRAVITY};
 
-/// What a right line of numbers looks like.
-const EXAMPLE: &str = "but it must give both, such as `NPTS=  5437, DT=   .0050 SEC` or `5437   .0050   NPTS, DT`";
+/// Examples of a valid line with number and step, for messages.
+const EXAMPLE: &str =
+    "but the line must give both, such as `NPTS=  5437, DT=   .0050 SEC` or `5437   .0050   NPTS, DT`";
 
-/// The sister files of a record, by the quantity that their header names.
+/// The velocity and displacement files of a record, by the quantity in their header.
 const OTHERS: [(&str, &str); 2] = [
-    ("VELOCITY", " (this is the .VT2 file: take the .AT2 beside it)"),
-    ("DISPLACEMENT", " (this is the .DT2 file: take the .AT2 beside it)"),
+    ("VELOCITY", " (this is the .VT2 file: use the .AT2 file of the same record)"),
+    ("DISPLACEMENT", " (this is the .DT2 file: use the .AT2 file of the same record)"),
 ];
 
 pub(crate) fn read(text: &str) -> Result<Record, RecordError> {
@@ -56,12 +57,12 @@ pub(crate) fn read(text: &str) -> Result<Record, RecordError> {
     if accelerations.len() != announced {
         return Err(RecordError::Count { line: at, announced, found: accelerations.len() });
     }
-    // The first line names the database, the one after it event, station and component.
+    // The first line names the database, the second event, station and component.
     let description = words.get(1).or(words.first()).copied().unwrap_or_default();
     Ok(Record::new("", dt, accelerations)?.described(station(description), description))
 }
 
-/// m/s² in the unit of the values, from a line such as `ACCELERATION TIME HISTORY IN UNITS OF G`.
+/// The unit of the values in m/s², from a line such as `ACCELERATION TIME HISTORY IN UNITS OF G`.
 fn unit_of(line: usize, text: &str, upper: &str) -> Result<f64, RecordError> {
     if let Some((_, remedy)) = OTHERS.iter().find(|(quantity, _)| upper.contains(quantity)) {
         return Err(RecordError::NotAcceleration { line, found: shown(text), remedy });
@@ -91,15 +92,15 @@ fn count_and_step(line: usize, text: &str) -> Result<(usize, f64), RecordError> 
     Ok((count as usize, step))
 }
 
-/// The word behind `KEY =`.
+/// The word after `KEY =`.
 fn after<'a>(text: &'a str, key: &str) -> Option<&'a str> {
     let mut behind = text.split(key).skip(1).filter_map(|rest| rest.trim_start().strip_prefix('='));
     let rest = behind.next()?.trim_start();
     rest.split(|c: char| c.is_whitespace() || c == ',').next().filter(|word| !word.is_empty())
 }
 
-/// The station of a line such as `EVENT 01/01/70 1200, STATION, 090 (CDMG STATION 54100)`: what stands
-/// before the last comma, the component being behind it.
+/// The station of a line such as `EVENT 01/01/70 1200, STATION, 090 (CDMG STATION 54100)`: the part
+/// before the last comma, which precedes the component.
 fn station(description: &str) -> &str {
     let mut parts = description.rsplit(',');
     match (parts.next(), parts.next(), parts.next()) {
@@ -147,34 +148,34 @@ mod tests {
     fn units_are_those_of_the_header() {
         let text = HEAD.replace("UNITS OF G", "UNITS OF CM/SEC**2. FILTER POINTS") + "NPTS= 2, DT= 1\n100 50\n";
         assert_eq!(read(&text).unwrap().accelerations(), [1.0, 0.5]);
-        let told = read(&(HEAD.replace("OF G", "OF FURLONGS") + "NPTS= 2, DT= 1\n1 2\n")).unwrap_err();
-        assert_eq!(told, "line 3: `FURLONGS` is no known unit of an acceleration: m/s^2, cm/s^2, mm/s^2, gal, g");
+        let message = read(&(HEAD.replace("OF G", "OF FURLONGS") + "NPTS= 2, DT= 1\n1 2\n")).unwrap_err();
+        assert_eq!(message, "line 3: `FURLONGS` is not a known unit of acceleration: m/s^2, cm/s^2, mm/s^2, gal, g");
     }
 
     #[test]
-    fn what_is_wrong_is_told_with_its_line() {
-        let told = |line: &str, values: &str| read(&format!("{HEAD}{line}\n{values}\n")).unwrap_err();
-        assert_eq!(told("NPTS= 5, DT= .01", "1 2 3"), "line 4: the header announces 5 values, but the file has 3");
-        assert_eq!(told("NPTS= 2, DT= .01", "1 2\n3"), "line 4: the header announces 2 values, but the file has 3");
-        assert_eq!(told("NPTS= 3, DT= .01", "1 2\n\nx"), "line 7: `x` is no number");
-        assert_eq!(told("NPTS= 2, DT= 0", "1 2"), "the step is 0 s, but must be between 1e-9 s and 1e6 s");
-        assert!(told("NPTS= 2.5, DT= 1", "1 2").starts_with("line 4: NPTS is 2.5, but must be a whole number"));
-        assert!(told("NPTS= 1e300, DT= 1", "1 2").starts_with("line 4: NPTS is 1000"));
-        assert!(told("NPTS= many, DT= 1", "1 2").starts_with("line 4: NPTS is `MANY`, but it must give both"));
-        assert!(told("NPTS= 2", "1 2").starts_with("line 4: DT is missing, but it must give both, such as"));
-        assert_eq!(told("NPTS= 1, DT= 1", "1"), "a record needs two values or more, got 1");
+    fn errors_name_the_line() {
+        let message = |line: &str, values: &str| read(&format!("{HEAD}{line}\n{values}\n")).unwrap_err();
+        assert_eq!(message("NPTS= 5, DT= .01", "1 2 3"), "line 4: the header announces 5 values, but the file has 3");
+        assert_eq!(message("NPTS= 2, DT= .01", "1 2\n3"), "line 4: the header announces 2 values, but the file has 3");
+        assert_eq!(message("NPTS= 3, DT= .01", "1 2\n\nx"), "line 7: `x` is not a number");
+        assert_eq!(message("NPTS= 2, DT= 0", "1 2"), "the step is 0 s, but must be between 1e-9 s and 1e6 s");
+        assert!(message("NPTS= 2.5, DT= 1", "1 2").starts_with("line 4: NPTS is 2.5, but must be a whole number"));
+        assert!(message("NPTS= 1e300, DT= 1", "1 2").starts_with("line 4: NPTS is 1000"));
+        assert!(message("NPTS= many, DT= 1", "1 2").starts_with("line 4: NPTS is `MANY`, but the line must give both"));
+        assert!(message("NPTS= 2", "1 2").starts_with("line 4: DT is missing, but the line must give both, such as"));
+        assert_eq!(message("NPTS= 1, DT= 1", "1"), "a record must have at least two values, but has 1");
         assert_eq!(
-            told("NPTS= 2, DT= 1", "1 1e300"),
+            message("NPTS= 2, DT= 1", "1 1e300"),
             "line 5: the acceleration 1e300 must be finite and at most 1e12 m/s^2 in size"
         );
         for (quantity, file) in [("VELOCITY", ".VT2"), ("DISPLACEMENT", ".DT2")] {
             let text = HEAD.replace("ACCELERATION", quantity) + "NPTS= 2, DT= 1\n1 2\n";
-            let told = read(&text).unwrap_err();
+            let message = read(&text).unwrap_err();
             assert!(
-                told.starts_with(&format!("line 3: the file holds `{quantity} TIME SERIES IN UNITS OF G`")),
-                "{told}"
+                message.starts_with(&format!("line 3: the file contains `{quantity} TIME SERIES IN UNITS OF G`")),
+                "{message}"
             );
-            assert!(told.contains(file) && told.contains("take the .AT2 beside it"), "{told}");
+            assert!(message.contains(file) && message.contains("use the .AT2 file of the same record"), "{message}");
         }
     }
 }

@@ -1,11 +1,11 @@
-//! A record, and how it is made.
+//! The type of a record and its construction.
 
 use crate::error::RecordError;
 use crate::format::Format;
 use crate::{LARGEST_ACCELERATION, LARGEST_FILE, MOST_VALUES};
 
-/// An accelerogram: one component of the acceleration of the ground, at a uniform step, linear in
-/// between. Its time counts from its first value.
+/// An accelerogram: one component of ground acceleration, sampled at a uniform step and linear in
+/// between. Time starts at 0 with the first value.
 ///
 /// ```
 /// use teeter_record::Record;
@@ -24,7 +24,8 @@ pub struct Record {
 }
 
 impl Record {
-    /// A record of these accelerations, m/s², `dt` s apart. Station and description are empty.
+    /// A record of accelerations in m/s² with the step `dt` in s. Station and description are
+    /// empty.
     ///
     /// # Errors
     /// If there are fewer than two or more than [`MOST_VALUES`] values, if one isn't finite or is
@@ -45,22 +46,22 @@ impl Record {
         Ok(Self { name: name.to_owned(), station: String::new(), description: String::new(), dt, accelerations })
     }
 
-    /// Reads a file of any known [`Format`], recognised by its content; `name` is what the record
-    /// is called (the stem of the file, say). Bytes that are no UTF-8 are replaced: they can only
-    /// matter in names.
+    /// Reads a file of any known [`Format`], recognised by its content; `name` is the record's name
+    /// (for example the file stem). Invalid UTF-8 is replaced, which can only affect names.
     ///
     /// # Errors
-    /// If the format isn't recognised or the file doesn't keep to it, with the line; if it holds no
-    /// acceleration; if it is a table of accelerations alone (see [`Record::read_with_step`]).
+    /// If the format isn't recognised or the file violates it (with the line), if the file has no
+    /// acceleration, or if it is a table of accelerations without times (see
+    /// [`Record::read_with_step`]).
     pub fn read(file: impl AsRef<[u8]>, name: &str) -> Result<Self, RecordError> {
         Self::read_with_step(file, name, None)
     }
 
-    /// Reads a file as [`Record::read`] does, with the step in s of a table that has accelerations
-    /// alone.
+    /// Reads a file as [`Record::read`] does; `step` in s is for a table of accelerations without
+    /// times.
     ///
     /// # Errors
-    /// As [`Record::read`]; and if a step is given for a file that says its own.
+    /// As [`Record::read`], and if a step is given for a file that has its own.
     pub fn read_with_step(file: impl AsRef<[u8]>, name: &str, step: Option<f64>) -> Result<Self, RecordError> {
         let bytes = file.as_ref();
         if bytes.len() > LARGEST_FILE {
@@ -86,15 +87,15 @@ impl Record {
         self
     }
 
-    /// The record with other accelerations that are known to be in range.
+    /// The record with other accelerations.
     pub(crate) fn with(&self, accelerations: Vec<f64>) -> Result<Self, RecordError> {
         let Self { name, station, description, dt, .. } = self;
         let made = Self::new(name, *dt, accelerations)?;
         Ok(Self { station: station.clone(), description: description.clone(), ..made })
     }
 
-    /// The record as a table that reads back to the same numbers: a heading with units, then time
-    /// and acceleration.
+    /// The record as a table: a heading with units, then time and acceleration. Reading it returns
+    /// the same numbers.
     #[must_use]
     pub fn to_table(&self) -> String {
         let mut text = String::from("t [s],a [m/s^2]\n");
@@ -104,19 +105,19 @@ impl Record {
         text
     }
 
-    /// What it is called.
+    /// The name.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// The station, as its file calls it; may be empty.
+    /// The station as named in the file; may be empty.
     #[must_use]
     pub fn station(&self) -> &str {
         &self.station
     }
 
-    /// The event and what else its file says in words; may be empty.
+    /// The event and other text of the file; may be empty.
     #[must_use]
     pub fn description(&self) -> &str {
         &self.description
@@ -140,13 +141,13 @@ impl Record {
         self.accelerations.len()
     }
 
-    /// Never: a record has two values or more.
+    /// Always false: a record has at least two values.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.accelerations.is_empty()
     }
 
-    /// Time of the k-th value, counted from 0, s.
+    /// Time of the value with index k (from 0), s.
     #[must_use]
     pub fn time(&self, k: usize) -> f64 {
         k as f64 * self.dt
@@ -159,7 +160,7 @@ impl Record {
     }
 }
 
-/// Words of a header, fit for one line.
+/// A header text on a single line.
 fn one_line(text: &str) -> String {
     let blank = |c: char| c.is_whitespace() || c.is_control();
     text.split(blank).filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")

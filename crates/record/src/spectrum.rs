@@ -5,14 +5,15 @@ use std::f64::consts::PI;
 use crate::error::RecordError;
 use crate::record::Record;
 
-/// Steps of a period at the least: longer steps of the record are divided evenly. More would only cost.
-const STEPS_OF_A_PERIOD: f64 = 16.0;
+/// Least number of steps per period: longer steps of the record are subdivided. More would only
+/// cost time.
+const STEPS_PER_PERIOD: f64 = 16.0;
 
-/// Shortest period for the step of a record: 1/1000 of it. Shorter oscillators follow the ground.
-const SHORTEST: f64 = 1e-3;
+/// Shortest period as a fraction of the record's step. Stiffer oscillators follow the ground.
+const SHORTEST_PERIOD: f64 = 1e-3;
 
-/// The largest response of an oscillator ü + 2ζω u̇ + ω² u = −a, from rest, over the duration of a
-/// record.
+/// The peak response of an oscillator ü + 2ζω u̇ + ω² u = −a, starting at rest, over the duration
+/// of a record.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Response {
     /// Natural period T = 2π/ω, s.
@@ -40,22 +41,22 @@ impl Response {
 }
 
 impl Record {
-    /// The response spectrum at these natural periods (s), for a damping ratio ζ in [0, 1).
+    /// The response spectrum at the given natural periods (s), for a damping ratio ζ in [0, 1).
     ///
-    /// From value to value the response is the exact one to a linear acceleration (N. C. Nigam, P. C. Jennings,
-    /// "Calculation of response spectra from strong-motion earthquake records", Bull. Seism. Soc.
-    /// Am. 59 (1969) 909–922). Other than there, a step over 1/16 of the period is divided, and
-    /// extremes are looked for between the values, so that a record's step doesn't flatten the
-    /// peaks of short periods. What comes after the record's last value doesn't count.
+    /// Between values the response to the linear acceleration is exact (N. C. Nigam, P. C.
+    /// Jennings, "Calculation of response spectra from strong-motion earthquake records", Bull.
+    /// Seism. Soc. Am. 59 (1969) 909–922). Unlike there, steps over 1/16 of the period are
+    /// subdivided and extremes between the values are located, so that a record's step doesn't cut
+    /// off the peaks of short periods. The response after the record's last value isn't included.
     ///
     /// # Errors
     /// If ζ isn't in [0, 1), or a period isn't finite and at least 1/1000 of the record's step.
     pub fn spectrum(&self, damping_ratio: f64, periods: &[f64]) -> Result<Vec<Response>, RecordError> {
         if !(0.0..1.0).contains(&damping_ratio) {
-            let range = "at least 0 and less than 1";
+            let range = "in [0, 1)";
             return Err(RecordError::Parameter { what: "the damping ratio", value: damping_ratio, range });
         }
-        let shortest = SHORTEST * self.dt();
+        let shortest = SHORTEST_PERIOD * self.dt();
         if let Some(&value) = periods.iter().find(|period| !(**period >= shortest && period.is_finite())) {
             let range = "finite and at least 1/1000 of the record's step";
             return Err(RecordError::Parameter { what: "the period", value, range });
@@ -64,18 +65,18 @@ impl Record {
     }
 
     fn response(&self, zeta: f64, period: f64) -> Response {
-        let parts = (STEPS_OF_A_PERIOD * self.dt() / period).ceil().max(1.0);
+        let parts = (STEPS_PER_PERIOD * self.dt() / period).ceil().max(1.0);
         let h = self.dt() / parts;
         let oscillator = Oscillator::new(zeta, 2.0 * PI / period);
-        let step = Step::new(&oscillator, h);
-        let mut most = Extremes::default();
+        let step = StepMatrix::new(&oscillator, h);
+        let mut most = PeakResponse::default();
         let mut state = [0.0, 0.0];
         for a in self.accelerations().windows(2) {
             let slope = (a[1] - a[0]) / self.dt();
             for part in 0..parts as usize {
                 let begin = a[0] + slope * (part as f64 * h);
                 let next = step.apply(state, begin, begin + slope * h);
-                most.see(&oscillator, h, state, next, [begin, slope]);
+                most.include(&oscillator, h, state, next, [begin, slope]);
                 state = next;
             }
         }
@@ -84,11 +85,11 @@ impl Record {
     }
 }
 
-/// Terms of the power series of a motion. A step is at most 1/16 of a period, ωτ ≤ 0.4, and the
-/// first term left out below 0.4¹⁶/16! = 2e-20 of the motion.
+/// Terms of the motion's power series. With a step of at most 1/16 of a period, ωτ ≤ 0.4, and the
+/// first omitted term is below 0.4¹⁶/16! = 2e-20 of the motion.
 const TERMS: usize = 16;
 
-/// The oscillator, and its exact motion.
+/// The oscillator with its exact motion.
 struct Oscillator {
     zeta: f64,
     omega: f64,
@@ -99,11 +100,11 @@ impl Oscillator {
         Self { zeta, omega }
     }
 
-    /// Displacement and velocity at τ, from those at 0 under the acceleration a + s τ of the ground.
+    /// Displacement and velocity at τ from those at 0, under the ground acceleration a + s τ.
     ///
-    /// By the power series in τ, whose coefficients the equation of motion gives one after the other. The closed
-    /// form is the difference of terms of the size a/ω² and s/ω³, and of a long period nothing would
-    /// be left of it.
+    /// Uses the power series in τ, with coefficients from the recurrence of the equation of motion.
+    /// The closed form subtracts terms of order a/ω² and s/ω³ and would lose all digits for long
+    /// periods.
     fn at(&self, tau: f64, [u, v]: [f64; 2], [a, slope]: [f64; 2]) -> [f64; 2] {
         let (friction, stiffness) = (2.0 * self.zeta * self.omega, self.omega * self.omega);
         // u = Σ cₙ, v = Σ dₙ with cₙ = kₙ τⁿ and dₙ = (n + 1) kₙ₊₁ τⁿ.
@@ -119,7 +120,7 @@ impl Oscillator {
         sum
     }
 
-    /// Displacement, velocity and absolute acceleration, each with its rate.
+    /// Displacement, velocity and absolute acceleration, each with its time derivative.
     fn quantities(&self, [u, v]: [f64; 2], a: f64) -> [[f64; 2]; 3] {
         let absolute = |u: f64, v: f64| -2.0 * self.zeta * self.omega * v - self.omega * self.omega * u;
         let relative = absolute(u, v) - a;
@@ -127,11 +128,11 @@ impl Oscillator {
     }
 }
 
-/// The step as a matrix: the motion is linear in displacement and velocity at the beginning and in the
-/// accelerations of both ends.
-struct Step([[f64; 4]; 2]);
+/// A time step as a matrix: the motion is linear in the initial displacement and velocity and in
+/// the accelerations at both ends.
+struct StepMatrix([[f64; 4]; 2]);
 
-impl Step {
+impl StepMatrix {
     fn new(oscillator: &Oscillator, h: f64) -> Self {
         let unit = [
             oscillator.at(h, [1.0, 0.0], [0.0, 0.0]),
@@ -147,13 +148,13 @@ impl Step {
     }
 }
 
-/// The largest sizes so far of displacement, velocity and absolute acceleration.
+/// The largest magnitudes so far of displacement, velocity and absolute acceleration.
 #[derive(Default)]
-struct Extremes([f64; 3]);
+struct PeakResponse([f64; 3]);
 
-impl Extremes {
-    /// Looks at a step: at its ends, and where a rate changes its sign in between.
-    fn see(&mut self, oscillator: &Oscillator, h: f64, begin: [f64; 2], end: [f64; 2], ground: [f64; 2]) {
+impl PeakResponse {
+    /// Includes a step: its ends, and the points in between where a derivative changes sign.
+    fn include(&mut self, oscillator: &Oscillator, h: f64, begin: [f64; 2], end: [f64; 2], ground: [f64; 2]) {
         let [a, slope] = ground;
         let (first, second) = (oscillator.quantities(begin, a), oscillator.quantities(end, a + slope * h));
         for k in 0..3 {
@@ -165,7 +166,8 @@ impl Extremes {
             }
             let (mut low, mut high) = (0.0, h);
             let mut top = next;
-            // The extreme is flat: a place to 2⁻²⁷ of the step gives its size to rounding.
+            // At an extreme the derivative is zero: a position to 2⁻²⁷ of the step gives its value
+            // to rounding.
             for _ in 0..27 {
                 let middle = 0.5 * (low + high);
                 let state = oscillator.at(middle, begin, ground);
@@ -183,20 +185,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_step_of_acceleration_overshoots_by_its_closed_form() {
+    fn step_response_overshoot_matches_closed_form() {
         let (a, t) = (3.0, 0.7);
-        // Steps short and long against the period: it is the same motion.
+        // Short and long steps relative to the period give the same motion.
         for dt in [0.001, 0.05, 0.35, 2.0] {
             let one = Record::new("R", dt, vec![a; (4.0 / dt) as usize]).unwrap();
             for zeta in [0.0_f64, 0.02, 0.05, 0.3, 0.7] {
                 let omega = 2.0 * PI / t;
                 let root = (1.0 - zeta * zeta).sqrt();
                 let sd = a / (omega * omega) * (1.0 + (-zeta * PI / root).exp());
-                // The velocity is a/ω_d e^(-ζωt) sin ω_d t, largest where its rate is 0: tan ω_d t = ω_d/(ζω).
+                // The velocity a/ω_d e^(-ζωt) sin ω_d t is largest where its derivative is 0: tan
+                // ω_d t =
+                // ω_d/(ζω).
                 let phase = root.atan2(zeta);
                 let sv = a / omega * (-zeta / root * phase).exp();
                 let got = one.spectrum(zeta, &[t]).unwrap()[0];
-                // Each step rounds by some units in the last place of a/ω², which vibrations keep.
+                // Each step rounds by a few units in the last place of a/ω², which an undamped
+                // vibration
+                // keeps.
                 let allowed = 4.0 * f64::EPSILON * (4.0 / dt).max(100.0);
                 let off = |got: f64, exact: f64| (got / exact - 1.0).abs();
                 assert!(off(got.displacement, sd) < allowed, "{zeta} {dt}: {:e}", off(got.displacement, sd));
@@ -212,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sine_approaches_its_closed_form_with_order_two() {
+    fn sine_response_converges_with_order_two() {
         // From rest, undamped, a = A sin Ωt: u = -A/(ω² - Ω²) (sin Ωt - Ω/ω sin ωt).
         let (amplitude, big, small) = (2.0, 2.0 * PI, 2.0 * PI / 0.4);
         let exact =
@@ -230,24 +236,25 @@ mod tests {
     }
 
     #[test]
-    fn limits_of_the_period_are_the_ground_and_its_displacement() {
+    fn limits_of_short_and_long_periods() {
         let values: Vec<f64> = (0..500).map(|k| (0.13 * f64::from(k)).sin() * (-0.01 * f64::from(k)).exp()).collect();
         let one = Record::new("R", 0.01, values).unwrap().baseline_corrected(1).unwrap();
         let [short, long] = <[Response; 2]>::try_from(one.spectrum(0.05, &[0.002, 1e4]).unwrap()).unwrap();
-        // A stiff oscillator follows the ground but for (ω_ground/ω)² and for where the record begins at once.
+        // A stiff oscillator follows the ground up to (ω_ground/ω)² and the sudden start of the
+        // record.
         assert!(short.acceleration >= one.peak_acceleration() * 0.999);
         assert!((long.displacement / one.displacement_peak().size - 1.0).abs() < 1e-3);
         assert!((long.velocity / one.velocity_peak().size - 1.0).abs() < 1e-3);
     }
 
     #[test]
-    fn what_is_no_oscillator_is_refused() {
+    fn invalid_parameters_are_refused() {
         let one = Record::new("R", 0.01, vec![1.0, 2.0]).unwrap();
-        let told = |zeta: f64, period: f64| one.spectrum(zeta, &[period]).unwrap_err().to_string();
-        assert_eq!(told(1.0, 1.0), "the damping ratio is 1, but must be at least 0 and less than 1");
-        assert!(told(f64::NAN, 1.0).contains("must be at least 0"));
+        let message = |zeta: f64, period: f64| one.spectrum(zeta, &[period]).unwrap_err().to_string();
+        assert_eq!(message(1.0, 1.0), "the damping ratio is 1, but must be in [0, 1)");
+        assert!(message(f64::NAN, 1.0).contains("must be in [0, 1)"));
         for period in [0.0, -1.0, 1e-6, f64::INFINITY, f64::NAN] {
-            assert!(told(0.05, period).ends_with("finite and at least 1/1000 of the record's step"));
+            assert!(message(0.05, period).ends_with("finite and at least 1/1000 of the record's step"));
         }
         assert_eq!(one.spectrum(0.05, &[]).unwrap(), []);
     }

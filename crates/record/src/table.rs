@@ -4,7 +4,7 @@ use crate::error::{RecordError, shown};
 use crate::record::Record;
 use crate::{LARGEST_ACCELERATION, MOST_VALUES, numbers, units};
 
-/// What separates the columns.
+/// The separator of the columns.
 #[derive(Clone, Copy, PartialEq)]
 enum Separator {
     /// Numbers may have a decimal comma.
@@ -13,46 +13,49 @@ enum Separator {
     Blanks,
 }
 
-/// Rows as they are read: of a table with times, the times too, and to how many seconds they are written.
+/// The rows read so far. For a table with times, also the times and the resolution in s to which
+/// they are written.
 #[derive(Default)]
-struct Rows {
+struct TableRows {
     lines: Vec<usize>,
     times: Vec<f64>,
     accelerations: Vec<f64>,
     resolution: f64,
 }
 
-/// Largest part of a step by which a time may be off an even one, however few digits it has.
-const UNEVEN: f64 = 0.05;
+/// Largest deviation of a time from a uniform one, as a fraction of the step, however few digits it
+/// has.
+const LARGEST_DEVIATION: f64 = 0.05;
 
-const WANTED: &str = "a table has time and acceleration, or acceleration alone, as many columns in each row";
+const EXPECTED_COLUMNS: &str =
+    "a table has time and acceleration, or acceleration alone, with equally many columns in each row";
 
-/// Whether a row begins with a number, so that it is no heading.
+/// Whether a row begins with a number, so isn't a heading.
 pub(crate) fn begins_with_number(row: &str) -> bool {
     let cell = row.split([',', ';']).next().unwrap_or_default();
     cell.split_whitespace().next().is_some_and(|cell| numbers::one(cell).is_some())
 }
 
 pub(crate) fn read(text: &str, step: Option<f64>) -> Result<Record, RecordError> {
-    let mut rows = Rows { resolution: f64::INFINITY, ..Rows::default() };
+    let mut rows = TableRows { resolution: f64::INFINITY, ..TableRows::default() };
     let mut heading: Option<(usize, &str)> = None;
-    let mut form: Option<(Separator, usize, [f64; 2])> = None;
+    let mut layout: Option<(Separator, usize, [f64; 2])> = None;
     for (index, text) in text.lines().enumerate() {
         let (line, text) = (index + 1, text.split('#').next().unwrap_or_default().trim());
         if text.is_empty() {
             continue;
         }
-        if form.is_none() && heading.is_none() && !begins_with_number(text) {
+        if layout.is_none() && heading.is_none() && !begins_with_number(text) {
             heading = Some((line, text));
             continue;
         }
-        let (separator, columns, scales) = match form {
-            Some(form) => form,
-            None => *form.insert(form_of(line, text, heading)?),
+        let (separator, columns, scales) = match layout {
+            Some(layout) => layout,
+            None => *layout.insert(layout_of(line, text, heading)?),
         };
         rows.take(line, &cells(text, separator), columns, scales, separator)?;
     }
-    let Some((_, columns, _)) = form else { return Err(RecordError::TooFew(0)) };
+    let Some((_, columns, _)) = layout else { return Err(RecordError::TooFew(0)) };
     if rows.accelerations.len() < 2 {
         return Err(RecordError::TooFew(rows.accelerations.len()));
     }
@@ -70,8 +73,9 @@ pub(crate) fn read(text: &str, step: Option<f64>) -> Result<Record, RecordError>
     Record::new("", step, rows.accelerations)
 }
 
-/// Separator, number of columns, and what their units are in s and m/s² (the last column is the acceleration).
-fn form_of(
+/// Separator, number of columns, and their units in s and m/s² (the last column is the
+/// acceleration).
+fn layout_of(
     line: usize,
     row: &str,
     heading: Option<(usize, &str)>,
@@ -83,7 +87,7 @@ fn form_of(
     };
     let found = cells(row, separator).len();
     if !(1..=2).contains(&found) {
-        return Err(RecordError::Columns { line, found, wanted: WANTED });
+        return Err(RecordError::Columns { line, found, wanted: EXPECTED_COLUMNS });
     }
     let mut scales = [1.0, 1.0];
     let Some((line, heading)) = heading else { return Ok((separator, found, scales)) };
@@ -92,7 +96,7 @@ fn form_of(
         return Err(RecordError::Columns {
             line,
             found: names.len(),
-            wanted: "the rows below the heading have another number",
+            wanted: "the rows below the heading have a different number",
         });
     }
     for (k, name) in names.iter().enumerate() {
@@ -100,7 +104,7 @@ fn form_of(
         let plain = name.trim_matches('"').trim();
         let title = plain.split(['[', '(']).next().unwrap_or_default().trim().to_lowercase();
         if !is_time && matches!(title.as_str(), "t" | "time") {
-            let reason = format!("heading `{}`: time comes first, then acceleration", shown(plain));
+            let reason = format!("heading `{}`: time must come first, then acceleration", shown(plain));
             return Err(RecordError::Header { line, reason });
         }
         if title.starts_with("vel") || title.starts_with("disp") {
@@ -114,11 +118,12 @@ fn form_of(
     Ok((separator, found, scales))
 }
 
-/// The names of the columns; between blanks a unit in brackets belongs to the word before it.
+/// The names of the columns. With blanks as separator, a unit in brackets belongs to the word
+/// before it.
 fn headings(text: &str, separator: Separator, columns: usize) -> Vec<String> {
     match separator {
         _ if columns == 1 => vec![text.to_owned()],
-        // A heading may have a separator of its own.
+        // The heading may have a different separator.
         Separator::Blanks if text.contains([',', ';']) => {
             text.split([',', ';']).map(|name| name.trim().to_owned()).collect()
         }
@@ -136,7 +141,7 @@ fn headings(text: &str, separator: Separator, columns: usize) -> Vec<String> {
     }
 }
 
-/// What stands in brackets at the end of a heading.
+/// The unit in brackets at the end of a heading.
 fn unit_of(name: &str) -> Option<&str> {
     let (open, inner) = match name.strip_suffix(']') {
         Some(inner) => ('[', inner),
@@ -153,7 +158,7 @@ fn cells(row: &str, separator: Separator) -> Vec<&str> {
     }
 }
 
-impl Rows {
+impl TableRows {
     fn take(
         &mut self,
         line: usize,
@@ -163,7 +168,7 @@ impl Rows {
         separator: Separator,
     ) -> Result<(), RecordError> {
         if cells.len() != columns {
-            return Err(RecordError::Columns { line, found: cells.len(), wanted: WANTED });
+            return Err(RecordError::Columns { line, found: cells.len(), wanted: EXPECTED_COLUMNS });
         }
         if self.accelerations.len() == MOST_VALUES {
             return Err(RecordError::TooMany);
@@ -189,7 +194,8 @@ impl Rows {
         Ok(())
     }
 
-    /// The step of the times: the first one or a round one if all rows keep to it, else the mean.
+    /// The step of the times: the first step or the rounded mean if all rows fit it exactly, else
+    /// the mean.
     fn step(&self) -> Result<f64, RecordError> {
         let (first, count) = (self.times[0], (self.times.len() - 1) as f64);
         let mean = (self.times[self.times.len() - 1] - first) / count;
@@ -200,22 +206,22 @@ impl Rows {
         };
         let rounding = 8.0 * f64::EPSILON * self.times.iter().fold(0.0, |most: f64, t| most.max(t.abs()));
         for step in [self.times[1] - first, round] {
-            if step > 0.0 && off(step).all(|(_, _, off)| off <= rounding.min(UNEVEN * step)) {
+            if step > 0.0 && off(step).all(|(_, _, off)| off <= rounding.min(LARGEST_DEVIATION * step)) {
                 return Ok(step);
             }
         }
-        // A row may be off by half its last digit, and so may both ends, which make the mean.
-        let allowed = (self.resolution + rounding).min(UNEVEN * mean);
-        let uneven = self.first_uneven(mean, allowed);
+        // A row may be off by half its last digit, and so may both ends, which determine the mean.
+        let allowed = (self.resolution + rounding).min(LARGEST_DEVIATION * mean);
+        let uneven = self.non_uniform_time(mean, allowed);
         match uneven {
             None => Ok(mean),
             Some(error) => Err(error),
         }
     }
 
-    /// The row that is to blame for uneven times: the first that isn't one step behind the one before it, the
-    /// step being that of most rows.
-    fn first_uneven(&self, mean: f64, allowed: f64) -> Option<RecordError> {
+    /// The error for uneven times: the first row that isn't one median step after the row before
+    /// it.
+    fn non_uniform_time(&self, mean: f64, allowed: f64) -> Option<RecordError> {
         let first = self.times[0];
         let worst = |(k, t): (usize, &f64)| !((t - (first + k as f64 * mean)).abs() <= allowed);
         if !self.times.iter().enumerate().any(worst) && mean > 0.0 {
@@ -224,14 +230,14 @@ impl Rows {
         let mut steps: Vec<f64> = self.times.windows(2).map(|t| t[1] - t[0]).collect();
         steps.sort_by(f64::total_cmp);
         let step = steps[steps.len() / 2];
-        let within = |t: &[f64]| (t[1] - t[0] - step).abs() <= (2.0 * self.resolution).min(UNEVEN * step);
+        let within = |t: &[f64]| (t[1] - t[0] - step).abs() <= (2.0 * self.resolution).min(LARGEST_DEVIATION * step);
         let at = self.times.windows(2).position(|t| !within(t)).map_or(self.times.len() - 1, |k| k + 1);
         let expected = self.times[at - 1] + step;
         Some(RecordError::Uneven { line: self.lines[at], time: self.times[at], expected, step })
     }
 }
 
-/// The worth of the last digit that a number is written with.
+/// The value of one unit in the last digit of a number as written.
 fn resolution(text: &str) -> f64 {
     let lower = text.to_ascii_lowercase().replace(',', ".");
     let (digits, power) = lower.split_once(['e', 'd']).unwrap_or((&lower, "0"));
@@ -268,51 +274,64 @@ mod tests {
     }
 
     #[test]
-    fn times_are_even_as_far_as_they_are_written() {
-        // 256 Hz, to four digits, and a hundred of a second that can't be told from an even one.
+    fn times_are_uniform_to_their_written_digits() {
+        // 256 Hz to four digits, and hundredths of a second that fit a uniform step.
         let table: String = (0..200).map(|k| format!("{:.4},1\n", f64::from(k) / 256.0)).collect();
         assert!((read(&table).unwrap().dt() - 1.0 / 256.0).abs() < 1e-6);
         let table: String = (0..2000).map(|k| format!("{:.2},1\n", 7.0 + 0.01 * f64::from(k))).collect();
         assert_eq!(read(&table).unwrap().dt(), 0.01);
-        let told = read("t,a\n0,1\n0.1,1\n0.2,1\n0.31,1\n0.4,1\n").unwrap_err();
-        assert!(told.starts_with("line 5: the time 0.31 s is uneven: the other rows are 0.1"), "{told}");
-        let told = read("0,1\n0.1,1\n0.2,1\n0.4,1\n0.5,1\n").unwrap_err();
-        assert!(told.starts_with("line 4: the time 0.4 s is uneven"), "a row is missing: {told}");
-        assert!(read("0,1\n0.1,1\n0.1,1\n0.2,1\n").unwrap_err().starts_with("line 3: the time 0.1 s is uneven"));
-        assert!(read("1,1\n0.9,1\n0.8,1\n").unwrap_err().contains("is uneven"));
-        assert!(read("0,1\n0,1\n").unwrap_err().starts_with("line 2: the time 0 s is uneven"));
+        let message = read("t,a\n0,1\n0.1,1\n0.2,1\n0.31,1\n0.4,1\n").unwrap_err();
+        assert!(
+            message.starts_with("line 5: the time 0.31 s doesn't fit a uniform step: the other rows are 0.1"),
+            "{message}"
+        );
+        let message = read("0,1\n0.1,1\n0.2,1\n0.4,1\n0.5,1\n").unwrap_err();
+        assert!(
+            message.starts_with("line 4: the time 0.4 s doesn't fit a uniform step"),
+            "a row is missing: {message}"
+        );
+        assert!(
+            read("0,1\n0.1,1\n0.1,1\n0.2,1\n")
+                .unwrap_err()
+                .starts_with("line 3: the time 0.1 s doesn't fit a uniform step")
+        );
+        assert!(read("1,1\n0.9,1\n0.8,1\n").unwrap_err().contains("doesn't fit a uniform step"));
+        assert!(read("0,1\n0,1\n").unwrap_err().starts_with("line 2: the time 0 s doesn't fit a uniform step"));
     }
 
     #[test]
-    fn what_is_wrong_is_told_with_its_line() {
-        let told = |text: &str| read(text).unwrap_err();
-        assert_eq!(told("1\n2\n"), "the file has accelerations alone: their step must be given");
-        assert_eq!(told("# nothing\n"), "the file is empty");
-        assert_eq!(told(""), "the file is empty");
-        assert_eq!(told("t,a\n0,1\n"), "a record needs two values or more, got 1");
+    fn errors_name_the_line() {
+        let message = |text: &str| read(text).unwrap_err();
+        assert_eq!(message("1\n2\n"), "the file has accelerations without times: the step must be given");
+        assert_eq!(message("# nothing\n"), "the file is empty");
+        assert_eq!(message(""), "the file is empty");
+        assert_eq!(message("t,a\n0,1\n"), "a record must have at least two values, but has 1");
         assert_eq!(
-            told("t,a\n0,1\n1\n"),
-            "line 3: 1 column, but a table has time and acceleration, or acceleration alone, as many columns in each row"
+            message("t,a\n0,1\n1\n"),
+            "line 3: 1 column, but a table has time and acceleration, or acceleration alone, with equally many columns in each row"
         );
-        assert!(told("0,1,2\n1,2,3\n").starts_with("line 1: 3 columns, but a table has"));
-        assert_eq!(told("t,a\n0,1\n1,high\n"), "line 3: `high` is no number");
-        assert_eq!(told("a,t\n1,0\n1,1\n"), "line 1: heading `t`: time comes first, then acceleration");
-        assert_eq!(told("x,y,z\n1,0\n1,1\n"), "line 1: 3 columns, but the rows below the heading have another number");
+        assert!(message("0,1,2\n1,2,3\n").starts_with("line 1: 3 columns, but a table has"));
+        assert_eq!(message("t,a\n0,1\n1,high\n"), "line 3: `high` is not a number");
+        assert_eq!(message("a,t\n1,0\n1,1\n"), "line 1: heading `t`: time must come first, then acceleration");
         assert_eq!(
-            told("t,v [m/s]\n0,1\n1,1\n"),
-            "line 1: `m/s` is no known unit of an acceleration: m/s^2, cm/s^2, mm/s^2, gal, g"
-        );
-        assert_eq!(told("t [h],a\n0,1\n1,1\n"), "line 1: `h` is no known unit of a time: s, ms");
-        assert_eq!(
-            told("t,velocity\n0,1\n1,1\n"),
-            "line 1: the file holds `velocity`, but a record is an acceleration"
+            message("x,y,z\n1,0\n1,1\n"),
+            "line 1: 3 columns, but the rows below the heading have a different number"
         );
         assert_eq!(
-            told("Dear reader,\nthis is a letter\n"),
-            "line 1: `Dear reader,` begins no known form of a record: PEER .AT2, ESM and COSMOS files are read, and tables of \
+            message("t,v [m/s]\n0,1\n1,1\n"),
+            "line 1: `m/s` is not a known unit of acceleration: m/s^2, cm/s^2, mm/s^2, gal, g"
+        );
+        assert_eq!(message("t [h],a\n0,1\n1,1\n"), "line 1: `h` is not a known unit of time: s, ms");
+        assert_eq!(
+            message("t,velocity\n0,1\n1,1\n"),
+            "line 1: the file contains `velocity`, but a record is an acceleration"
+        );
+        assert_eq!(
+            message("Dear reader,\nthis is a letter\n"),
+            "line 1: `Dear reader,` doesn't begin a known record format: PEER .AT2, ESM and COSMOS files are read, and tables of \
              numbers"
         );
         let error = Record::read_with_step("0,1\n1,2\n", "R", Some(1.0)).unwrap_err();
-        assert_eq!(error.to_string(), "the table file says its own step, 1 s: leave the given one out");
+        assert_eq!(error.to_string(), "the table file has its own step, 1 s: omit the given one");
     }
 }

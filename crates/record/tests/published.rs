@@ -53,7 +53,8 @@ fn peaks_and_intensities_are_those_of_the_table() {
         let sum = factor * a.iter().map(|a| a * a).sum::<f64>();
         let digit = 10f64.powf(arias.log10().floor() - 9.0);
         assert!((sum - arias).abs() <= 0.500001 * digit, "{file}: {sum} {arias}");
-        // The table sums squares; of linear pieces each square of a difference counts a sixth less, and both ends half.
+        // The table sums squares; of linear pieces each square of a difference counts a sixth less,
+        // and both ends half.
         let ends = 0.5 * (a[0].powi(2) + a[a.len() - 1].powi(2));
         let differences = a.windows(2).map(|a| (a[1] - a[0]).powi(2)).sum::<f64>() / 6.0;
         let exact = sum - factor * (ends + differences);

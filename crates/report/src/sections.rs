@@ -68,7 +68,7 @@ pub(crate) fn columns_of(number: usize, of: &BeamScene, place: &BeamPlace) -> Ve
 fn supports(beam: &Beam) -> Vec<f64> {
     let q = vec![0.0; beam.dofs()];
     // A vector as long as it must be has forces.
-    let forces = beam.section_forces(&Actions { q: &q, ..Actions::default() });
+    let forces = beam.section_forces(&Actions::at(&q));
     forces.map(|forces| forces.reactions().iter().map(|r| as_given(beam, r.x)).collect()).unwrap_or_default()
 }
 

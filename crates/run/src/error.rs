@@ -1,4 +1,4 @@
-//! Why a scene can't be loaded, a run not be prepared, or not come to its end.
+//! Errors of loading a scene, preparing a run, and running it.
 
 use std::io;
 use std::path::PathBuf;
@@ -13,16 +13,16 @@ use teeter_study::NoStep;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneFileError {
-    /// The path leads to a folder.
+    /// The path is a folder.
     #[error("is a folder, not a scene file")]
     Folder,
     /// There is no file.
     #[error("no such file")]
     Missing,
-    /// The system forbids it.
+    /// There is no permission.
     #[error("no permission to read it")]
     Permission,
-    /// Anything else.
+    /// Another error.
     #[error("can't be read: {0}")]
     Io(#[source] io::Error),
 }
@@ -37,7 +37,7 @@ impl From<io::Error> for SceneFileError {
     }
 }
 
-/// Why there is no scene to run.
+/// Why a scene can't be loaded.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LoadError {
@@ -46,22 +46,22 @@ pub enum LoadError {
     Unreadable {
         /// The scene's name.
         name: String,
-        /// Why.
+        /// The error.
         #[source]
         error: SceneFileError,
     },
-    /// The scene is wrong.
+    /// The scene has errors.
     #[error("{found}")]
     Invalid {
-        /// The text that the spans of the findings count in; empty for a file that is no text.
+        /// The text to which the spans of the findings refer; empty for a file that is not text.
         text: String,
-        /// All that is wrong.
+        /// All errors.
         found: Diagnostics,
     },
 }
 
 impl LoadError {
-    /// A scene that reads well, but has no model.
+    /// A valid scene whose model can't be built.
     pub(crate) fn of_build(error: &BuildError, resolved: &Resolved) -> Self {
         let document = &resolved.document;
         Self::Invalid { text: document.source().to_owned(), found: error.diagnostic(document).into() }
@@ -75,22 +75,22 @@ pub enum PrepareError {
     /// There is no scene to run.
     #[error(transparent)]
     Load(#[from] LoadError),
-    /// There is no step for the accuracy that the scene asks for.
+    /// No step reaches the accuracy of the scene.
     #[error(transparent)]
     Step(#[from] NoStep),
-    /// The time between checkpoints is no time, s.
-    #[error("the time between checkpoints must be greater than 0 s, and is {0} s")]
+    /// The time between checkpoints is invalid, s.
+    #[error("the time between checkpoints must be greater than 0 s, got {0} s")]
     Interval(f64),
-    /// The results can't go to that folder, or would replace a file that the run reads.
+    /// The folder can't be used for the results, or a file that the run reads would be replaced.
     #[error(transparent)]
     Folder(#[from] ResultsError),
     /// The state to start from can't be used.
     #[error(transparent)]
     State(CheckpointError),
-    /// What the folder holds can't be resumed.
+    /// The run in the folder can't be resumed.
     #[error(transparent)]
     Resume(CheckpointError),
-    /// The run to be resumed has ended: it is complete, or would end the same way again.
+    /// The run to be resumed has ended: it is complete, or would end in the same way again.
     #[error("the run in {} {}", folder.display(), ended_how(*.ended))]
     AlreadyEnded {
         /// The folder.
@@ -98,16 +98,16 @@ pub enum PrepareError {
         /// How it ended.
         ended: EndedWord,
     },
-    /// The file of the running program, by which a checkpoint knows its program, can't be read.
+    /// The file of the running program, whose hash identifies it in checkpoints, can't be read.
     #[error("the program's own file can't be read: {0}")]
     Program(#[source] io::Error),
     /// The file for the state before the first unsolved step is a folder.
     #[error("{} is a folder, not a file for a state", .0.display())]
     DumpIsFolder(PathBuf),
-    /// That file is there already.
-    #[error("{} is there already", .0.display())]
+    /// That file already exists.
+    #[error("{} already exists", .0.display())]
     DumpExists(PathBuf),
-    /// There is no folder for that file.
+    /// The folder of that file doesn't exist.
     #[error("there is no folder {}", .0.display())]
     NoDumpFolder(PathBuf),
 }
@@ -115,26 +115,26 @@ pub enum PrepareError {
 fn ended_how(ended: EndedWord) -> String {
     match ended {
         EndedWord::Complete => "is complete: there is nothing to resume".to_owned(),
-        ended => format!("{ended}: it would end the same way again"),
+        ended => format!("{ended}: it would end in the same way again"),
     }
 }
 
-/// Why a run has no results, or not all of them. How its motion ended is no error, but
-/// [`Done::ended`](crate::Done::ended).
+/// Why a run has no results, or not all of them. How its motion ended is not an error, but
+/// [`FinishedRun::ended`](crate::FinishedRun::ended).
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RunError {
-    /// A folder can't be taken for results or contact problems, such as one that another run is
-    /// writing to. Nothing was simulated.
+    /// A folder can't be used for results or contact problems, for example because another run is
+    /// writing to it. Nothing was simulated.
     #[error(transparent)]
     Folder(ResultsError),
-    /// A file can't be written, for another reason than a full disk.
+    /// A file can't be written, for a reason other than a full disk.
     #[error(transparent)]
     Write(ResultsError),
-    /// What a run remembers can't be stored.
+    /// The state of a run can't be stored.
     #[error(transparent)]
     Observer(ObserverError),
-    /// The steps could not go on for a reason outside the mechanics.
+    /// The steps could not continue, for a reason outside the mechanics.
     #[error(transparent)]
     Steps(teeter_integrator::RunError),
     /// The summary can't be written as JSON: a number in it is not finite.

@@ -1,32 +1,31 @@
-//! What a front end learns of a run while it runs, and how it ends one.
+//! Hooks with which a front end follows and cancels a run.
 
 use std::fmt;
 use std::ops::ControlFlow;
 use std::sync::atomic::AtomicBool;
 use teeter_integrator::{Model, Observer, ObserverError, State, StepReport};
 
-/// How far a run is.
+/// Progress of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Progress {
     /// The number of the last step taken, counted from t = 0.
     pub step: u64,
-    /// The number of the step with which the run is complete.
+    /// The number of the last step of the run.
     pub of: u64,
     /// The time reached, s.
     pub t: f64,
 }
 
-/// Progress is told once in this many steps: less often than a screen needs it, more often than a
-/// person does.
+/// Number of steps between calls of the progress hook.
 pub const PROGRESS_STEPS: u64 = 256;
 
 type OnStart<'a> = Box<dyn FnOnce() + 'a>;
 type OnProgress<'a> = Box<dyn FnMut(Progress) + 'a>;
 type OnWarning<'a> = Box<dyn FnMut(&str) + 'a>;
 
-/// What to call while a run runs, all on the thread of [`Prepared::run`](crate::Prepared::run); by
-/// default nothing.
+/// Callbacks during a run, all on the thread of [`Prepared::run`](crate::Prepared::run); none by
+/// default.
 #[derive(Default)]
 pub struct Hooks<'a> {
     pub(crate) start: Option<OnStart<'a>>,
@@ -42,7 +41,7 @@ impl<'a> Hooks<'a> {
         Self::default()
     }
 
-    /// Called once, when the folders for the results are taken and before anything is simulated.
+    /// Called once, after the folders for the results are locked and before anything is simulated.
     #[must_use]
     pub fn on_start(mut self, hook: impl FnOnce() + 'a) -> Self {
         self.start = Some(Box::new(hook));
@@ -58,7 +57,7 @@ impl<'a> Hooks<'a> {
         self
     }
 
-    /// Called with the text of each warning as it comes; of many of one kind, with a few of them.
+    /// Called with the text of each warning when it occurs; only for the first few of each kind.
     /// All are counted in [`Summary::warnings`](crate::Summary::warnings).
     #[must_use]
     pub fn on_warning(mut self, hook: impl FnMut(&str) + 'a) -> Self {
@@ -87,20 +86,20 @@ impl fmt::Debug for Hooks<'_> {
     }
 }
 
-/// The observer that tells how far the run is.
-pub(crate) struct Teller<'a> {
+/// The observer that calls the progress hook.
+pub(crate) struct ProgressObserver<'a> {
     hook: Option<OnProgress<'a>>,
     of: u64,
-    /// The step that was told last.
+    /// The last reported step.
     told: Option<u64>,
 }
 
-impl<'a> Teller<'a> {
+impl<'a> ProgressObserver<'a> {
     pub(crate) fn new(hook: Option<OnProgress<'a>>, of: u64) -> Self {
         Self { hook, of, told: None }
     }
 
-    /// Tells of this state, unless that was done already.
+    /// Reports this state, unless it was already reported.
     pub(crate) fn tell(&mut self, state: &State) {
         let Some(hook) = self.hook.as_mut().filter(|_| self.told != Some(state.step)) else { return };
         self.told = Some(state.step);
@@ -108,7 +107,7 @@ impl<'a> Teller<'a> {
     }
 }
 
-impl Observer<2> for Teller<'_> {
+impl Observer<2> for ProgressObserver<'_> {
     fn start(&mut self, _: &Model<2>, state: &State) -> Result<(), ObserverError> {
         self.tell(state);
         Ok(())

@@ -1,19 +1,20 @@
-//! Until when the motion of a run can be told, and what is said of it.
+//! The horizon of a run, up to which its motion is predictable, and its warning.
 
 use std::sync::atomic::AtomicBool;
 use teeter_report::{HORIZON, Record};
 use teeter_scenario::scene::Scene;
-use teeter_study::{Failure, NUDGE, PARTED, Parting};
+use teeter_study::{DIVERGED, Divergence, Failure, PERTURBATION};
 
-/// Enters the horizon into the record, and a warning where it is before the end of the run. Whether it was not interrupted.
+/// Enters the horizon into the record, with a warning if it is before the end of the run. Returns
+/// false if interrupted.
 pub(crate) fn find(scene: &Scene, cancel: Option<&AtomicBool>, record: &mut Record) -> bool {
     let never = AtomicBool::new(false);
-    match teeter_study::parting(scene, cancel.unwrap_or(&never)) {
-        Ok(parting) => {
-            record.horizon = Some(parting.horizon());
-            if !parting.is_whole() {
-                let text = text(&parting, record.reclosure_count);
-                record.warnings.enter(HORIZON, Some(parting.horizon()), || text);
+    match teeter_study::divergence(scene, cancel.unwrap_or(&never)) {
+        Ok(divergence) => {
+            record.horizon = Some(divergence.horizon());
+            if !divergence.is_whole() {
+                let text = text(&divergence, record.reclosure_count);
+                record.warnings.enter(HORIZON, Some(divergence.horizon()), || text);
             }
         }
         Err(Failure::Interrupted) => return false,
@@ -24,30 +25,30 @@ pub(crate) fn find(scene: &Scene, cancel: Option<&AtomicBool>, record: &mut Reco
     true
 }
 
-fn text(parting: &Parting, reclosures: u64) -> String {
-    let Parting { by_start, by_step, end, .. } = *parting;
-    let percent = 100.0 * PARTED;
+fn text(divergence: &Divergence, reclosures: u64) -> String {
+    let Divergence { by_start, by_step, end, .. } = *divergence;
+    let percent = 100.0 * DIVERGED;
     let until = |what: &str, t: f64| match t < end {
-        true => format!("{what} it is {percent:.0} % off from t = {t:.4} s on"),
-        false => format!("{what} it is the same to the end"),
+        true => format!("{what} it differs by {percent:.0} % from t = {t:.4} s on"),
+        false => format!("{what} it agrees to the end"),
     };
     let sensitive = by_start < end;
     let chatter = match reclosures {
         _ if !sensitive => String::new(),
-        0 => "; so small a change decides it there, as where a block just overturns or not".to_owned(),
+        0 => "; the motion is that sensitive there, for example because a block almost overturns".to_owned(),
         count => format!(
-            "; {count} contacts were lost and closed again within three steps (chatter): small changes decide the order in which corners strike"
+            "; {count} contacts were lost and closed again within three steps (chatter): the order of impacts of corners depends on small changes"
         ),
     };
     let remedy = if by_step < by_start {
-        "; a shorter step (`time.step`) carries further"
+        "; a shorter step (`time.step`) extends this"
     } else {
-        "; no step carries further than a start is known"
+        "; a shorter step doesn't extend this"
     };
     format!(
-        "the motion can be told up to t = {:.4} s: {}, {}{chatter}{remedy}",
-        parting.horizon(),
+        "the motion is predictable up to t = {:.4} s: {}, {}{chatter}{remedy}",
+        divergence.horizon(),
         until("with half the step", by_step),
-        until(&format!("started {NUDGE:.0e} beside itself"), by_start),
+        until(&format!("with the initial state perturbed by {PERTURBATION:.0e}"), by_start),
     )
 }

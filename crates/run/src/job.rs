@@ -1,19 +1,19 @@
-//! What is to be run, where its results go, and how.
+//! A run: its scene, the folder of its results, and its options.
 
 use crate::SceneSource;
 use std::path::{Path, PathBuf};
 use teeter_report::ExportWhen;
 use teeter_scenario::Extent;
 
-/// What becomes of the results that a folder holds already.
+/// What to do with existing results in the folder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Existing {
+pub enum ExistingResults {
     /// The run is refused.
     #[default]
     Refuse,
-    /// They are replaced, with the contact problems and the state that go beside them.
+    /// They are replaced, including saved contact problems and the dumped state.
     Replace,
-    /// The run goes on from the checkpoint that they hold; without one it starts at the beginning.
+    /// The run continues from their checkpoint; without one it starts at the beginning.
     Resume,
 }
 
@@ -25,7 +25,7 @@ pub struct RunJob {
     pub(crate) scene: SceneSource,
     pub(crate) sets: Vec<(String, String)>,
     folder: Option<PathBuf>,
-    pub(crate) existing: Existing,
+    pub(crate) existing: ExistingResults,
     pub(crate) checkpoint_every: Option<f64>,
     pub(crate) from: Option<PathBuf>,
     pub(crate) export: Option<(PathBuf, ExportWhen)>,
@@ -36,13 +36,13 @@ pub struct RunJob {
 }
 
 impl RunJob {
-    /// A run of the scene as it is written, to the folder `runs/STEM` of the working directory.
+    /// A run of the scene as written, to the folder `runs/STEM` of the working directory.
     pub fn new(scene: SceneSource) -> Self {
         Self {
             scene,
             sets: Vec::new(),
             folder: None,
-            existing: Existing::default(),
+            existing: ExistingResults::default(),
             checkpoint_every: None,
             from: None,
             export: None,
@@ -54,38 +54,37 @@ impl RunJob {
     }
 
     /// Overrides the key `path` of the scene, such as `beam.table.thickness`, by `value`, such as
-    /// `2 mm`. The default is what the scene says; of several overrides of a key the last one
+    /// `2 mm`. The default is the value in the scene; of several overrides of a key the last one
     /// counts.
     pub fn set(mut self, path: impl Into<String>, value: impl Into<String>) -> Self {
         self.sets.push((path.into(), value.into()));
         self
     }
 
-    /// The folder for the results, made if it is missing. The default is `runs/STEM`, with the
+    /// The folder for the results, created if it is missing. The default is `runs/STEM`, with the
     /// scene's stem.
     pub fn folder(mut self, folder: impl Into<PathBuf>) -> Self {
         self.folder = Some(folder.into());
         self
     }
 
-    /// What becomes of the results that the folder holds already. The default is
-    /// [`Existing::Refuse`].
-    pub fn existing(mut self, existing: Existing) -> Self {
+    /// What to do with existing results in the folder. The default is
+    /// [`ExistingResults::Refuse`].
+    pub fn existing(mut self, existing: ExistingResults) -> Self {
         self.existing = existing;
         self
     }
 
     /// Writes a checkpoint at the first step at or past each multiple of `seconds` of simulated
-    /// time, greater than 0, and at the step after which the run is cancelled. The default is to
-    /// write none.
+    /// time, greater than 0, and when the run is cancelled. The default is to write none.
     pub fn checkpoint_every(mut self, seconds: f64) -> Self {
         self.checkpoint_every = Some(seconds);
         self
     }
 
     /// Starts from the state or checkpoint in the file `path`, of a run with the same bodies. Its
-    /// clock goes on, up to the end of the scene; the model is the full one. The default is the
-    /// start that the scene describes.
+    /// clock continues, up to the end of the scene; the model is the full one. The default is the
+    /// initial state of the scene.
     pub fn from_state(mut self, path: impl Into<PathBuf>) -> Self {
         self.from = Some(path.into());
         self
@@ -105,27 +104,28 @@ impl RunJob {
         self
     }
 
-    /// Finds until when the motion can be told, by three more runs after this one: with half the step, and from 1e-12 beside the start. It is
-    /// `horizon` of the summary. Not for runs [from a state](Self::from_state), nor for those whose step was found for an accuracy, which
-    /// have one.
+    /// Finds the horizon, up to which the motion is predictable, by three more runs, among them one
+    /// with half the step and one with the initial state perturbed by 1e-12. It is `horizon` of the
+    /// summary. Not for runs [from a state](Self::from_state), nor for those whose step was found
+    /// for an accuracy, which already have one.
     pub fn horizon(mut self) -> Self {
         self.horizon = true;
         self
     }
 
     /// How much of the scene is modelled. The default is [`Extent::Required`]: what nothing can
-    /// touch or move is left out. What that is, is known of the scene's own start only: a run [from
+    /// touch or move is left out. This is only known for the scene's own initial state: a run [from
     /// a state](Self::from_state) has the full model.
     pub fn extent(mut self, extent: Extent) -> Self {
         self.extent = extent;
         self
     }
 
-    /// The SHA-256 by which checkpoints and states know the program that wrote them: a checkpoint
-    /// is resumed by the same program only. The default is that of the file of the running program
-    /// ([`teeter_report::program_hash`]), which is right where this library is linked into that
-    /// file; a front end that is loaded by another program, such as an extension module, gives that
-    /// of its own file.
+    /// The SHA-256 that identifies the program in checkpoints and states: a checkpoint is resumed
+    /// only by the same program. The default is the hash of the running program's file
+    /// ([`teeter_report::program_hash`]), which is right if this library is linked into that file;
+    /// a front end loaded by another program, such as an extension module, must give the hash of
+    /// its own file.
     pub fn program(mut self, hash: [u8; 32]) -> Self {
         self.program = Some(hash);
         self
@@ -137,13 +137,13 @@ impl RunJob {
         self.folder.clone().unwrap_or_else(|| Path::new("runs").join(self.scene.stem()))
     }
 
-    /// How much of the scene is modelled, with what the start has to say in it.
+    /// How much of the scene is modelled, considering the start.
     pub(crate) fn modelled(&self) -> Extent {
         if self.from.is_some() { Extent::Full } else { self.extent }
     }
 
-    /// Whether a file has to know of which run it is.
+    /// Whether a file must identify its run.
     pub(crate) fn is_identified(&self) -> bool {
-        self.checkpoint_every.is_some() || self.existing == Existing::Resume || self.dump.is_some()
+        self.checkpoint_every.is_some() || self.existing == ExistingResults::Resume || self.dump.is_some()
     }
 }

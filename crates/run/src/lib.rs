@@ -1,10 +1,10 @@
 //! Runs a scene of teeter to a folder: tables, summary, page and figures, with checkpoints from
-//! which a run goes on to the same bytes, and hooks by which a front end shows its progress or ends
-//! it.
+//! which a run continues to the same bytes, and hooks with which a front end shows its progress or
+//! cancels it.
 //!
-//! A [`RunJob`] says what is to be run, where to and how. [`RunJob::prepare`] finds all bad input
-//! while nothing is written yet; [`Prepared::run`] runs and returns what was done. Nothing here
-//! prints, listens to signals or decides by a clock.
+//! A [`RunJob`] describes the run. [`RunJob::prepare`] finds all bad input before anything is
+//! written; [`Prepared::run`] runs it and returns the results. Nothing here prints, listens to
+//! signals or decides by a clock.
 //!
 //! ```
 //! use teeter_run::{EndedWord, Hooks, RunJob, SceneSource};
@@ -25,12 +25,12 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A run that is cancelled by a flag goes on later, to the same files byte for byte (but for the
-//! times that the steps took):
+//! A cancelled run can be continued later, to the same files byte for byte (except for the times
+//! that the steps took):
 //!
 //! ```
 //! use std::sync::atomic::{AtomicBool, Ordering};
-//! use teeter_run::{EndedWord, Existing, Hooks, RunJob, SceneSource, Start};
+//! use teeter_run::{EndedWord, ExistingResults, Hooks, RunJob, SceneSource, RunStart};
 //!
 //! # let scene = r#"
 //! #     time = { end = "1 s", step = "1 ms" }
@@ -43,13 +43,13 @@
 //! let job = RunJob::new(SceneSource::bytes(scene, "cube.toml", "cube"))
 //!     .folder(&folder)
 //!     .checkpoint_every(0.1)
-//!     .existing(Existing::Resume);
+//!     .existing(ExistingResults::Resume);
 //! let cancel = AtomicBool::new(false);
 //! let hooks = Hooks::new().cancelled_by(&cancel).on_progress(|progress| cancel.store(progress.step > 0, Ordering::Relaxed));
 //! assert_eq!(job.clone().prepare()?.run(hooks)?.ended(), EndedWord::Interrupted);
 //!
 //! let prepared = job.prepare()?;
-//! assert!(matches!(prepared.start(), Start::Checkpoint { t } if t > 0.0));
+//! assert!(matches!(prepared.start(), RunStart::Checkpoint { t } if t > 0.0));
 //! assert_eq!(prepared.run(Hooks::new())?.ended(), EndedWord::Complete);
 //! # std::fs::remove_dir_all(folder)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -66,10 +66,10 @@ mod start;
 
 pub use error::{LoadError, PrepareError, RunError, SceneFileError};
 pub use hooks::{Hooks, PROGRESS_STEPS, Progress};
-pub use job::{Existing, RunJob};
+pub use job::{ExistingResults, RunJob};
 pub use prepare::Prepared;
-pub use run::{Done, Dump, Exported};
+pub use run::{Exported, FinishedRun, StateDump};
 pub use source::SceneSource;
-pub use start::Start;
+pub use start::RunStart;
 pub use teeter_report::{EndedWord, ExportWhen, Summary};
 pub use teeter_scenario::Extent;

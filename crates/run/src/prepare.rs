@@ -1,6 +1,6 @@
-//! All that is settled before anything is written.
+//! Preparation of a run, before anything is written.
 
-use crate::start::{self, Start};
+use crate::start::{self, RunStart};
 use crate::{LoadError, PrepareError, RunJob};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -12,8 +12,8 @@ use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Simulation;
 use teeter_study::ChosenStep;
 
-/// A job with its scene read, its model built and its start found. Nothing was written so far, and
-/// dropping it leaves no trace. Its folder is taken by [`run`](Self::run) only: until then nobody
+/// A job with its scene read, its model built and its start found. Nothing has been written, and
+/// dropping it leaves no trace. Its folder is locked only by [`run`](Self::run): until then nothing
 /// else should write there.
 #[derive(Debug)]
 pub struct Prepared {
@@ -21,23 +21,22 @@ pub struct Prepared {
     pub(crate) folder: PathBuf,
     pub(crate) resolved: Resolved,
     pub(crate) simulation: Simulation,
-    /// Sees the contact problems, if they are to be saved.
+    /// Records the contact problems, if they are to be saved.
     pub(crate) watch: Option<Watch>,
     pub(crate) identity: Option<Identity>,
-    pub(crate) start: Start,
+    pub(crate) start: RunStart,
     pub(crate) checkpoint: Option<Checkpoint>,
     pub(crate) chosen: Option<ChosenStep>,
 }
 
 impl RunJob {
     /// Reads the scene and the files that it names, builds the model, finds where to start, and
-    /// checks that the results can go to their folder. Writes nothing, with the exception that
+    /// checks that the folder can be used. Writes nothing, except that
     /// [`PrepareError::AlreadyEnded`] may clean up after a run that was killed at its very end.
     ///
     /// # Errors
-    /// Whatever is wrong with the job and its scene. What only shows when the folders are taken,
-    /// such as another run that is writing there, is a
-    /// [`RunError::Folder`](crate::RunError::Folder).
+    /// Any error in the job and its scene. What is only found when the folders are locked, such as
+    /// another run that is writing there, is a [`RunError::Folder`](crate::RunError::Folder).
     pub fn prepare(self) -> Result<Prepared, PrepareError> {
         if let Some(every) = self.checkpoint_every.filter(|every| !(*every > 0.0 && every.is_finite())) {
             return Err(PrepareError::Interval(every));
@@ -50,15 +49,15 @@ impl RunJob {
         })
         .map_err(|error| LoadError::of_build(&error, &resolved))?;
         let folder = self.results_folder();
-        self.spare_inputs(&folder, &resolved)?;
-        // Before its whole content is hashed: it may be of another kind.
+        self.check_inputs_kept(&folder, &resolved)?;
+        // Before its whole content is hashed, as it may be a device.
         if let Some(path) = &self.from {
             simulation.state = state_from(path, &resolved.scene, &simulation)?;
         }
         let identity = start::identity(&self, &resolved)?;
         self.check_dump()?;
         let scene = self.scene_as_run(&folder, &resolved);
-        let (start, checkpoint) = Start::find(&self, &folder, identity.as_ref(), &scene)?;
+        let (start, checkpoint) = RunStart::find(&self, &folder, identity.as_ref(), &scene)?;
         let former = start.former(self.existing);
         if former != Former::Keep {
             Results::replaced(&FILES, &folder, former == Former::Remove)?;
@@ -69,14 +68,15 @@ impl RunJob {
         Ok(Prepared { job: self, folder, resolved, simulation, watch, identity, start, checkpoint, chosen })
     }
 
-    /// The scene with every override and default, with the files that it names as seen from the
-    /// folder, if that exists.
+    /// The scene with every override and default, with the paths of files relative to the folder,
+    /// if that exists.
     pub(crate) fn scene_as_run(&self, folder: &Path, resolved: &Resolved) -> String {
         resolved.document.to_toml_elsewhere(|file| self.scene.seen_from(folder, file))
     }
 
-    /// Refuses to replace what the run reads: scene, files that it names, a state to start from.
-    fn spare_inputs(&self, folder: &Path, resolved: &Resolved) -> Result<(), PrepareError> {
+    /// Refuses to replace files that the run reads: the scene, files that it names, a state to
+    /// start from.
+    fn check_inputs_kept(&self, folder: &Path, resolved: &Resolved) -> Result<(), PrepareError> {
         let mut inputs = self.scene.inputs(resolved);
         inputs.extend(self.from.clone());
         Results::spares(&FILES, folder, &inputs)?;
@@ -86,13 +86,13 @@ impl RunJob {
         Ok(())
     }
 
-    /// Refuses a file for a state where there is one, or no folder for it.
+    /// Refuses an existing file for the state, or one whose folder doesn't exist.
     fn check_dump(&self) -> Result<(), PrepareError> {
         let Some(path) = &self.dump else { return Ok(()) };
         if path.is_dir() {
             return Err(PrepareError::DumpIsFolder(path.clone()));
         }
-        if path.exists() && self.existing == crate::Existing::Refuse {
+        if path.exists() && self.existing == crate::ExistingResults::Refuse {
             return Err(PrepareError::DumpExists(path.clone()));
         }
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -100,7 +100,7 @@ impl RunJob {
     }
 }
 
-/// A scene that asks for an accuracy, with the step that reaches it.
+/// A scene with an accuracy, with the step that reaches it.
 fn with_step(resolved: Resolved) -> Result<(Resolved, Option<ChosenStep>), PrepareError> {
     let Some(accuracy) = resolved.scene.time.accuracy else { return Ok((resolved, None)) };
     let chosen = teeter_study::step_for(&resolved.scene, accuracy, &AtomicBool::new(false))?;
@@ -124,13 +124,13 @@ impl Prepared {
         &self.folder
     }
 
-    /// The scene, with its document and what was found on the way.
+    /// The scene, with its document and findings.
     #[must_use]
     pub fn resolved(&self) -> &Resolved {
         &self.resolved
     }
 
-    /// What looks wrong with the scene, but can be run; the spans count in the source of
+    /// Warnings about the scene; the spans refer to the source of
     /// [`resolved`](Self::resolved)'s document.
     #[must_use]
     pub fn warnings(&self) -> &[Diagnostic] {
@@ -143,7 +143,7 @@ impl Prepared {
         &self.simulation
     }
 
-    /// The step that was found for the accuracy that the scene asks for; `None` if it gives a step.
+    /// The step found for the accuracy of the scene; `None` if it gives a step.
     #[must_use]
     pub fn chosen_step(&self) -> Option<&ChosenStep> {
         self.chosen.as_ref()
@@ -151,7 +151,7 @@ impl Prepared {
 
     /// Where the run starts.
     #[must_use]
-    pub fn start(&self) -> Start {
+    pub fn start(&self) -> RunStart {
         self.start
     }
 
@@ -161,7 +161,7 @@ impl Prepared {
         self.simulation.state.step
     }
 
-    /// The number of the step with which the run is complete.
+    /// The number of the last step of the run.
     #[must_use]
     pub fn steps(&self) -> u64 {
         self.resolved.scene.time.steps()

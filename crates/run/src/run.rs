@@ -1,6 +1,6 @@
-//! From a prepared job to results in a folder.
+//! Runs a prepared job and writes its results.
 
-use crate::hooks::Teller;
+use crate::hooks::ProgressObserver;
 use crate::{Hooks, Prepared, RunError, start};
 use std::path::PathBuf;
 use teeter_integrator::{Ended, State};
@@ -11,44 +11,43 @@ use teeter_report::{
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Layout;
 
-/// A run that has ended, with what it wrote.
+/// A run that has ended, with its results.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Done {
-    /// What `summary.json` holds.
+pub struct FinishedRun {
+    /// The contents of `summary.json`.
     pub summary: Summary,
     /// The folder of the results.
     pub folder: PathBuf,
-    /// The contact problems that were saved; `None` if none were asked for.
+    /// The saved contact problems; `None` if they were not requested.
     pub exported: Option<Exported>,
-    /// What became of the file for the state before the first unsolved step; `None` if it was not
-    /// asked for.
-    pub dump: Option<Dump>,
+    /// The file for the state before the first unsolved step; `None` if it was not requested.
+    pub dump: Option<StateDump>,
 }
 
-/// Contact problems that a run saved.
+/// Contact problems saved by a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Exported {
     /// Their folder.
     pub folder: PathBuf,
-    /// How many they are.
+    /// Their number.
     pub count: u64,
 }
 
-/// What became of the file for the state before the first unsolved step.
+/// The file for the state before the first unsolved step.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Dump {
-    /// Steps were not solved: the state before the first of them is in this file. That of a resumed
-    /// run whose steps before the checkpoint were not all solved is as the earlier part of the run
+pub enum StateDump {
+    /// Some steps were not solved: the state before the first of them is in this file. In a resumed
+    /// run with unsolved steps before the checkpoint, the file is as the earlier part of the run
     /// left it.
     Written(PathBuf),
     /// Every step was solved: this file was not written.
     NotNeeded(PathBuf),
 }
 
-impl Done {
+impl FinishedRun {
     /// How the run ended.
     #[must_use]
     pub fn ended(&self) -> EndedWord {
@@ -56,28 +55,28 @@ impl Done {
     }
 }
 
-/// What a run leaves in memory.
-struct Recorded {
+/// The data that a run leaves in memory.
+struct RecordedRun {
     record: Record,
     page: PageRecorder,
     exporter: Option<Exporter>,
     ended: EndedWord,
-    /// Time that its steps took, s.
+    /// Time of its steps, s.
     seconds: f64,
 }
 
 impl Prepared {
-    /// Takes the folders, runs to the end of the scene, and writes the results. The summary is
-    /// written last: a folder without one holds a run that didn't end. A run that is cancelled,
-    /// diverges, or finds the disk full has ended too, with all that it could write.
+    /// Locks the folders, runs to the end of the scene, and writes the results. The summary is
+    /// written last: a folder without one contains an unfinished run. A run that is cancelled,
+    /// diverges, or finds the disk full also ends, with everything that it could write.
     ///
     /// # Errors
-    /// If a folder can't be taken, or a file can't be written for another reason than a full disk.
-    pub fn run(mut self, hooks: Hooks<'_>) -> Result<Done, RunError> {
+    /// If a folder can't be locked, or a file can't be written for a reason other than a full disk.
+    pub fn run(mut self, hooks: Hooks<'_>) -> Result<FinishedRun, RunError> {
         let former = self.start.former(self.job.existing);
         let exporter = self.exporter(former).map_err(RunError::Folder)?;
         let results = start::take(&self.folder, former).map_err(RunError::Folder)?;
-        // The folder exists from here on: paths in the scene are relative to it.
+        // From here on the folder exists: paths in the scene are relative to it.
         let scene_as_run = self.job.scene_as_run(&self.folder, &self.resolved);
         let layout = self.simulation.layout.clone();
         let cancel = hooks.cancel;
@@ -88,21 +87,24 @@ impl Prepared {
             && recorded.ended == EndedWord::Complete
             && !crate::horizon::find(&self.resolved.scene, cancel, &mut recorded.record)
         {
-            // What was asked for isn't there: a resumed run takes the end again, and finds it.
+            // The horizon is missing: a resumed run repeats the end, and finds it.
             recorded.ended = EndedWord::Interrupted;
         }
         let exporter = recorded.exporter.as_ref().map(Exporter::written);
         let summary = write(&results, recorded, &self.resolved.scene, &layout, &self.simulation.state, &scene_as_run)?;
         let unsolved = summary.contact.unconverged_steps > 0;
-        Ok(Done {
+        Ok(FinishedRun {
             exported: exporter.zip(self.job.export).map(|(count, (folder, _))| Exported { folder, count }),
-            dump: self.job.dump.map(|path| if unsolved { Dump::Written(path) } else { Dump::NotNeeded(path) }),
+            dump: self
+                .job
+                .dump
+                .map(|path| if unsolved { StateDump::Written(path) } else { StateDump::NotNeeded(path) }),
             folder: self.folder,
             summary,
         })
     }
 
-    /// Takes the folder for contact problems, if they are to be saved.
+    /// Locks the folder for contact problems, if they are to be saved.
     fn exporter(&self, former: Former) -> Result<Option<Exporter>, ResultsError> {
         let (Some((folder, when)), Some(watch)) = (&self.job.export, &self.watch) else { return Ok(None) };
         let (scene, stem) = (&self.resolved.scene, self.job.scene.stem());
@@ -110,7 +112,7 @@ impl Prepared {
         Exporter::create(watch, folder, stem, &scene.title, steps, *when, tolerance, former).map(Some)
     }
 
-    /// Runs, and writes the tables on the way.
+    /// Runs, writing the tables meanwhile.
     fn simulate(
         &mut self,
         results: &Results,
@@ -118,14 +120,14 @@ impl Prepared {
         exporter: Option<Exporter>,
         layout: &Layout,
         hooks: Hooks<'_>,
-    ) -> Result<Recorded, RunError> {
+    ) -> Result<RecordedRun, RunError> {
         let Hooks { start, progress, warning, cancel } = hooks;
         if let Some(start) = start {
             start();
         }
         let mut warning = warning.unwrap_or_else(|| Box::new(|_| ()));
-        let mut teller = Teller::new(progress, self.steps());
-        // Before the tables: it says whose they are.
+        let mut teller = ProgressObserver::new(progress, self.steps());
+        // Before the tables, as it identifies them.
         results.write("scene.toml", scene_as_run).map_err(RunError::Write)?;
         let scene = &self.resolved.scene;
         let mut recorder = RunRecorder::new(results, scene, layout, exporter, self.checkpoint.take(), warning.as_mut())
@@ -164,24 +166,24 @@ impl Prepared {
             },
             Err(error) => return Err(RunError::Steps(error)),
         };
-        Ok(Recorded { record, page, exporter, ended, seconds })
+        Ok(RecordedRun { record, page, exporter, ended, seconds })
     }
 }
 
-/// Writes what is written at the end of a run, the summary last.
+/// Writes the files at the end of a run, the summary last.
 fn write(
     results: &Results,
-    recorded: Recorded,
+    recorded: RecordedRun,
     scene: &Scene,
     layout: &Layout,
     state: &State,
     scene_as_run: &str,
 ) -> Result<Summary, RunError> {
-    let Recorded { record, page, ended, seconds, .. } = recorded;
+    let RecordedRun { record, page, ended, seconds, .. } = recorded;
     let summary = Summary::new(scene, layout, state, &record, ended, seconds);
     let written = write_files(results, &record, layout, &page, &summary, scene_as_run);
     match written {
-        // No room for these either; the reason is told all the same.
+        // There is no room for these either; the summary still has the reason.
         Err(RunError::Write(error)) if ended == EndedWord::DiskFull && error.is_disk_full() => {}
         written => written?,
     }

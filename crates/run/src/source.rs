@@ -1,4 +1,4 @@
-//! Where a scene comes from: a file, or bytes in memory; and the files that it names.
+//! The source of a scene: a file, or bytes in memory; and the files that it names.
 
 use crate::{LoadError, SceneFileError};
 use std::borrow::Cow;
@@ -6,38 +6,38 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 use teeter_scenario::decode::LARGEST_FILE;
-use teeter_scenario::diagnostic::steers;
-use teeter_scenario::record::LARGEST_RECORD;
+use teeter_scenario::diagnostic::is_display_control;
+use teeter_scenario::number_table::LARGEST_RECORD;
 use teeter_scenario::resolve::Resolved;
 
-/// A scene file or the bytes of one, with its name in messages and the stem of the names of its
-/// results.
+/// A scene file or its bytes, with its name in messages and the stem of the names of its results.
 #[derive(Clone, Debug)]
 pub struct SceneSource {
-    content: Content,
+    content: SceneContent,
     name: String,
     stem: String,
-    /// Where the files that the scene names are looked for; empty: in the working directory.
+    /// Folder of the files that the scene names; empty for the working directory.
     folder: PathBuf,
 }
 
 #[derive(Clone, Debug)]
-enum Content {
+enum SceneContent {
     File(PathBuf),
     Bytes(Vec<u8>),
 }
 
 impl SceneSource {
-    /// The scene file `path`, read when it is needed. Messages call it by its path, results by its
-    /// file stem; the files that it names are relative to its folder.
+    /// The scene file `path`, read when needed. Messages use its path, results its file stem; the
+    /// files that it names are relative to its folder.
     #[must_use]
     pub fn file(path: impl Into<PathBuf>) -> Self {
         let path = path.into();
         let stem = path.file_stem().map_or("scene".into(), |stem| stem.to_string_lossy().into_owned());
-        // The name is printed: it must not steer a terminal.
-        let name = path.display().to_string().chars().map(|c| if steers(c) { '\u{fffd}' } else { c }).collect();
+        // The name is printed, so it must not control a terminal.
+        let name =
+            path.display().to_string().chars().map(|c| if is_display_control(c) { '\u{fffd}' } else { c }).collect();
         let folder = path.parent().map(Path::to_owned).unwrap_or_default();
-        Self { content: Content::File(path), name, stem, folder }
+        Self { content: SceneContent::File(path), name, stem, folder }
     }
 
     /// The text of a scene file, in UTF-8. `name` stands for the file in messages; `stem` is the
@@ -46,7 +46,12 @@ impl SceneSource {
     /// the working directory unless [`beside`](Self::beside) says otherwise.
     #[must_use]
     pub fn bytes(bytes: impl Into<Vec<u8>>, name: impl Into<String>, stem: impl Into<String>) -> Self {
-        Self { content: Content::Bytes(bytes.into()), name: name.into(), stem: stem.into(), folder: PathBuf::new() }
+        Self {
+            content: SceneContent::Bytes(bytes.into()),
+            name: name.into(),
+            stem: stem.into(),
+            folder: PathBuf::new(),
+        }
     }
 
     /// The same scene with the files that it names relative to `folder`.
@@ -72,19 +77,19 @@ impl SceneSource {
     #[must_use]
     pub fn path(&self) -> Option<&Path> {
         match &self.content {
-            Content::File(path) => Some(path),
-            Content::Bytes(_) => None,
+            SceneContent::File(path) => Some(path),
+            SceneContent::Bytes(_) => None,
         }
     }
 
-    /// The bytes of the scene. Of a file that is too large for a scene, only as many as show that.
+    /// The bytes of the scene. Of a file that is too large for a scene, only enough to detect that.
     ///
     /// # Errors
     /// If the file can't be read.
     pub fn read(&self) -> Result<Cow<'_, [u8]>, LoadError> {
         let path = match &self.content {
-            Content::Bytes(bytes) => return Ok(Cow::Borrowed(bytes)),
-            Content::File(path) => path,
+            SceneContent::Bytes(bytes) => return Ok(Cow::Borrowed(bytes)),
+            SceneContent::File(path) => path,
         };
         let read = if path.is_dir() {
             Err(SceneFileError::Folder)
@@ -98,27 +103,27 @@ impl SceneSource {
     /// that it names.
     ///
     /// # Errors
-    /// If the file can't be read, or all that is wrong with the scene.
+    /// If the file can't be read, or the scene has errors.
     pub fn load(&self, sets: &[(String, String)]) -> Result<Resolved, LoadError> {
         let bytes = self.read()?;
         teeter_scenario::load_with(&bytes, &self.name, &self.stem, sets, &mut self.companions()).map_err(|found| {
-            // Findings about a file that is no text have no place in it.
+            // Findings about a file that is not text have no position.
             let text = std::str::from_utf8(&bytes).unwrap_or_default().to_owned();
             LoadError::Invalid { text, found }
         })
     }
 
     /// Reads the files that the scene names, for [`teeter_scenario::load_with`]. Of one that is too
-    /// large, only as many bytes as show that.
+    /// large, only enough bytes to detect that.
     pub fn companions(&self) -> impl FnMut(&str) -> Result<Vec<u8>, String> + use<> {
         let folder = self.folder.clone();
         move |file| {
             let path = folder.join(file);
-            // A pipe would be waited for without end, and a device is read without end.
+            // A pipe could block, and a device has no end.
             match std::fs::metadata(&path) {
                 Ok(found) if found.is_dir() => return Err("is a folder, not a file".to_owned()),
                 Ok(found) if !found.is_file() => {
-                    return Err("is no regular file, but a pipe or a device: give a file that stays on disk".to_owned());
+                    return Err("is a pipe or a device: give a regular file".to_owned());
                 }
                 _ => {}
             }
@@ -130,13 +135,13 @@ impl SceneSource {
         }
     }
 
-    /// Where a file that the scene names is.
+    /// The path of a file that the scene names.
     #[must_use]
     pub fn place(&self, file: &str) -> PathBuf {
         self.folder.join(file)
     }
 
-    /// The files that the scene is read from: its own, if it is one, and those that it names.
+    /// The files from which the scene is read: its own, if it is a file, and those that it names.
     #[must_use]
     pub fn inputs(&self, resolved: &Resolved) -> Vec<PathBuf> {
         let named = resolved.files.iter().map(|(file, _)| self.place(file));
@@ -144,7 +149,7 @@ impl SceneSource {
     }
 
     /// The path of a file that the scene names, relative to `folder` and with `/` between its
-    /// parts, for a copy of the scene in that folder. Where `folder` doesn't exist, or there is no
+    /// parts, for a copy of the scene in that folder. If `folder` doesn't exist, or there is no
     /// relative path, it is that of [`place`](Self::place).
     #[must_use]
     pub fn seen_from(&self, folder: &Path, file: &str) -> String {
@@ -167,7 +172,7 @@ impl SceneSource {
     }
 }
 
-/// A file, or one byte more than `most` of a larger one.
+/// The contents of a file, or `most` + 1 bytes of a larger one.
 fn read_at_most(path: &Path, most: usize) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     File::open(path)?.take(most as u64 + 1).read_to_end(&mut bytes)?;

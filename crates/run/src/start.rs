@@ -1,6 +1,6 @@
 //! Where a run starts: at its beginning, or from its own checkpoint.
 
-use crate::{Existing, PrepareError, RunJob};
+use crate::{ExistingResults, PrepareError, RunJob};
 use std::path::Path;
 use teeter_report::{
     CHECKPOINT, Checkpoint, CheckpointError, ExportWhen, Former, Found, Identity, Results, ResultsError, program_hash,
@@ -11,10 +11,10 @@ use teeter_scenario::resolve::Resolved;
 /// Where a run starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum Start {
-    /// At the beginning: of the scene, or at the state that was given.
+pub enum RunStart {
+    /// At the beginning: of the scene, or at the given state.
     Beginning,
-    /// At the beginning, as there is no run in the folder that could be resumed.
+    /// At the beginning, as there is no run in the folder to resume.
     NothingToResume,
     /// At the beginning, as the run in the folder was ended before its first checkpoint; its files
     /// are replaced.
@@ -26,16 +26,16 @@ pub enum Start {
     },
 }
 
-impl Start {
-    /// Looks where the job starts, and changes nothing but this: a checkpoint beside the summary of
-    /// a run that has ended is removed, as that run was killed while it was about to do so.
+impl RunStart {
+    /// Finds where the job starts, without changes except that a checkpoint beside the summary of a
+    /// finished run is removed, as that run was killed just before doing so.
     pub(crate) fn find(
         job: &RunJob,
         folder: &Path,
         identity: Option<&Identity>,
         scene_as_run: &str,
     ) -> Result<(Self, Option<Checkpoint>), PrepareError> {
-        let Some(identity) = identity.filter(|_| job.existing == Existing::Resume) else {
+        let Some(identity) = identity.filter(|_| job.existing == ExistingResults::Resume) else {
             return Ok((Self::Beginning, None));
         };
         match Found::look(folder, identity, scene_as_run).map_err(PrepareError::Resume)? {
@@ -49,19 +49,19 @@ impl Start {
         }
     }
 
-    /// What becomes of the files of an earlier run.
-    pub(crate) fn former(self, existing: Existing) -> Former {
+    /// What to do with the files of an earlier run.
+    pub(crate) fn former(self, existing: ExistingResults) -> Former {
         match self {
             Self::Checkpoint { .. } => Former::Keep,
             Self::NoCheckpoint => Former::Remove,
             Self::NothingToResume => Former::Refuse,
-            Self::Beginning if existing == Existing::Replace => Former::Remove,
+            Self::Beginning if existing == ExistingResults::Replace => Former::Remove,
             Self::Beginning => Former::Refuse,
         }
     }
 }
 
-/// Takes the folder for results.
+/// Locks the folder for results.
 pub(crate) fn take(folder: &Path, former: Former) -> Result<Results, ResultsError> {
     match former {
         Former::Keep => Results::reopen(folder),
@@ -70,15 +70,14 @@ pub(crate) fn take(folder: &Path, former: Former) -> Result<Results, ResultsErro
     }
 }
 
-/// Program, scene with the contents of its files, and options of the run; `None` where no file has
-/// to know them.
+/// Program, scene with the contents of its files, and options of the run; `None` if no file needs
+/// them.
 pub(crate) fn identity(job: &RunJob, resolved: &Resolved) -> Result<Option<Identity>, PrepareError> {
     if !job.is_identified() {
         return Ok(None);
     }
     let program = job.program.map_or_else(program_hash, Ok).map_err(PrepareError::Program)?;
-    // The words of the program's options: two runs of which one is resumed as the other must be
-    // told apart.
+    // The options that distinguish runs, as a run must not be resumed with other options.
     let mut deciding = Vec::new();
     if let Some((_, when)) = &job.export {
         let when = match when {

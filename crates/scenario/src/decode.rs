@@ -1,4 +1,4 @@
-//! From the text of a scene file to a [`Document`], by the rules of [`teeter_text::decode`].
+//! Decodes the text of a scene file to a [`Document`], by the rules of [`teeter_text::decode`].
 
 use crate::diagnostic::Diagnostics;
 use crate::document::Document;
@@ -7,10 +7,12 @@ use crate::keys::SCENE;
 pub use teeter_text::decode::LARGEST_FILE;
 pub(crate) use teeter_text::decode::{Decoded, in_order};
 
-/// Reads a scene. `file` is its name for messages; each of `sets` is a key's path and a value that take precedence over the file.
+/// Reads a scene. `file` is its name in messages; each of `sets` is a key's path and a value that
+/// takes precedence over the file.
 ///
-/// The text may start with a byte order mark and may have Windows line ends. The value of a setting is taken as
-/// TOML if it is TOML, else as a text: `("time.step", "50 us")` needs no inner quotes.
+/// The text may start with a byte order mark and may have Windows line ends. The value of a setting
+/// is parsed as TOML if possible, otherwise taken as text: `("time.step", "50 us")` needs no inner
+/// quotes.
 ///
 /// ```
 /// use teeter_scenario::decode;
@@ -29,12 +31,13 @@ pub(crate) use teeter_text::decode::{Decoded, in_order};
 /// ```
 ///
 /// # Errors
-/// All that is wrong in the file and the settings, in the order of the file (of a hopeless file, the first hundreds).
+/// Everything wrong in the file and the settings, in the order of the file (limited to some
+/// hundreds of findings).
 pub fn parse(source: &str, file: &str, sets: &[(String, String)]) -> Result<Document, Diagnostics> {
     teeter_text::decode::parse(&SCENE, source, file, sets)
 }
 
-/// Reads a scene, going on after errors.
+/// Reads a scene, continuing after errors.
 pub(crate) fn decode(source: &str, file: &str, sets: &[(String, String)]) -> Decoded {
     teeter_text::decode::decode(&SCENE, source, file, sets)
 }

@@ -1,4 +1,4 @@
-//! Where a beam deflects out of the theory of small slopes.
+//! Deflections too large for the theory of small slopes.
 
 use std::fmt;
 use teeter_beam::{Beam, Dof};
@@ -6,12 +6,12 @@ use teeter_beam::{Beam, Dof};
 /// A deflection over this part of the span is large.
 pub const LARGE_DEFLECTION: f64 = 0.1;
 
-/// A slope over this is large: its square, which the theory leaves out beside 1, is worth 9 %.
+/// A slope over this is large: the theory neglects its square, here 9 %, against 1.
 pub const LARGE_SLOPE: f64 = 0.3;
 
-/// A deflection or a slope that is large.
+/// A large deflection or slope.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Large {
+pub struct LargeDeflection {
     /// Where, m from the left end.
     pub x: f64,
     /// Deflection w there, m.
@@ -20,8 +20,8 @@ pub struct Large {
     pub slope: f64,
 }
 
-/// The leftmost node at which the deflection or the slope of a beam with coordinates `q` is large; `None` where all are small,
-/// and for coordinates that are not those of its nodes.
+/// The leftmost node at which the deflection or the slope of a beam with coordinates `q` is large;
+/// `None` if all are small, or if the coordinates are not those of its nodes.
 ///
 /// ```
 /// use teeter_beam::{Beam, BeamSpec, Section};
@@ -32,7 +32,7 @@ pub struct Large {
 /// # Ok::<(), teeter_beam::BeamError>(())
 /// ```
 #[must_use]
-pub fn large(beam: &Beam, q: &[f64]) -> Option<Large> {
+pub fn large(beam: &Beam, q: &[f64]) -> Option<LargeDeflection> {
     if q.len() != beam.dofs() {
         return None;
     }
@@ -40,16 +40,16 @@ pub fn large(beam: &Beam, q: &[f64]) -> Option<Large> {
     let value = |node, kind| beam.dof(node, kind).map_or(0.0, |dof| q[dof]);
     let nodes = beam.node_positions().iter().enumerate();
     nodes
-        .map(|(node, x)| Large { x: *x, w: value(node, Dof::Deflection), slope: value(node, Dof::Slope) })
+        .map(|(node, x)| LargeDeflection { x: *x, w: value(node, Dof::Deflection), slope: value(node, Dof::Slope) })
         .find(|at| at.w.abs() > most || at.slope.abs() > LARGE_SLOPE)
 }
 
-impl fmt::Display for Large {
+impl fmt::Display for LargeDeflection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { x, w, slope } = self;
         write!(
             f,
-            "w = {w:.3e} m, slope {slope:.3} at x = {x:.4} m; the theory is for small slopes, and past {LARGE_DEFLECTION} of the span or \
+            "w = {w:.3e} m, slope {slope:.3} at x = {x:.4} m; the theory is for small slopes, and beyond {LARGE_DEFLECTION} of the span or \
              a slope of {LARGE_SLOPE} not to be trusted"
         )
     }

@@ -1,4 +1,4 @@
-//! The bodies of a scene with what drives them: loads, and prescribed motion.
+//! The bodies of a scene with their loads and prescribed motion.
 
 use crate::scene::{BeamScene, ForceScene, GroundScene, LoadKind, Scene};
 use crate::simulation::BuildError;
@@ -10,7 +10,7 @@ use teeter_integrator::{
     Signal, SignalLoad, SpanLoads, Subsystem,
 };
 
-/// The blocks under their weight and forces, with what is prescribed of their motion.
+/// The blocks under their weight and forces, with their prescribed motion.
 pub(crate) fn blocks(scene: &Scene, blocks: Vec<Block>) -> Result<Blocks, ModelError> {
     let mut system = Blocks::new(blocks, Vector2::from(scene.gravity));
     for force in &scene.forces {
@@ -27,17 +27,17 @@ pub(crate) fn blocks(scene: &Scene, blocks: Vec<Block>) -> Result<Blocks, ModelE
     Ok(system)
 }
 
-/// A force of the scene, on the block that has this number.
+/// A force of the scene, on the block with this number.
 pub(crate) fn block_load(force: &ForceScene, block: usize) -> BlockLoad {
     BlockLoad { block, force: Vector2::from(force.force), couple: force.couple, signal: force.history.signal() }
 }
 
-/// A beam of the scene, of which bodies are made.
+/// A beam of the scene, from which subsystems are made.
 pub(crate) struct BeamModel {
     pub(crate) beam: Arc<Beam>,
-    /// The shapes in which it moves, where these are not those of all its nodes.
+    /// The modal basis in which it moves, if it doesn't move in the coordinates of all nodes.
     pub(crate) basis: Option<Arc<ModalBasis>>,
-    /// How far its supports are from where the scene has them, x and y; nothing where they don't move.
+    /// Initial displacements x and y of its supports; empty if they don't move.
     pub(crate) displaced: Vec<f64>,
 }
 
@@ -49,7 +49,7 @@ impl BeamModel {
         Ok(Self { beam: Arc::new(beam), basis, displaced: Vec::new() })
     }
 
-    /// Its coordinates for a shape given by its dofs, or for none.
+    /// Its coordinates for a shape given by its dofs, or for the straight shape.
     pub(crate) fn coordinates(&self, shape: &[f64]) -> Vec<f64> {
         let given = shape.len() == self.beam.dofs();
         match &self.basis {
@@ -60,7 +60,7 @@ impl BeamModel {
         }
     }
 
-    /// Without loads, its supports at rest where they are displaced to.
+    /// Without loads, its supports at rest at their initial displacement.
     pub(crate) fn still(&self, of: &BeamScene) -> Result<BeamSystem, BuildError> {
         let surface = if of.top { BeamSurface::Top { offset: 0.5 * of.thickness } } else { BeamSurface::Axis };
         let mut position = Vector2::from(of.position);
@@ -77,13 +77,13 @@ impl BeamModel {
         })
     }
 
-    /// Under the loads of the scene, its own weight among them where it has any.
+    /// Under the loads of the scene, including its own weight if enabled.
     pub(crate) fn loaded(&self, scene: &Scene, number: usize) -> Result<BeamSystem, BuildError> {
         let of = &scene.beams[number];
         loaded(scene, number, &self.beam, self.still(of)?).map_err(|error| BuildError::Beam(of.name.clone(), error))
     }
 
-    /// Under its loads, on supports that may move.
+    /// Under its loads, with supports that may move.
     pub(crate) fn body(&self, scene: &Scene, number: usize) -> Result<BeamSystem, BuildError> {
         let of = &scene.beams[number];
         let body = match self.loaded(scene, number)? {
@@ -145,7 +145,7 @@ impl BeamSystem {
     }
 }
 
-/// A beam with the loads of the scene on it, its own weight among them where it has any.
+/// A beam with the loads of the scene, including its own weight if enabled.
 fn loaded(scene: &Scene, number: usize, beam: &Beam, mut body: BeamSystem) -> Result<BeamSystem, BeamError> {
     if scene.beams[number].self_weight {
         body = body.with_weight(Vector2::from(scene.gravity));
@@ -169,17 +169,17 @@ fn loaded(scene: &Scene, number: usize, beam: &Beam, mut body: BeamSystem) -> Re
     Ok(body)
 }
 
-/// The loads of the scene on a beam, by their places: those of [`loaded`].
+/// The loads of the scene on a beam with their positions: those of [`loaded`].
 #[derive(Debug)]
 pub(crate) struct PlacedLoads {
-    /// Acceleration of gravity along y, where the beam has weight.
+    /// Acceleration of gravity along y, if the beam has weight.
     weight: Option<f64>,
     standing: Vec<(SpanLoad, Arc<dyn Signal>)>,
     moving: Vec<MovingForce>,
     beam: Arc<Beam>,
 }
 
-/// The loads of the scene on a beam by their places; `None` where there are none.
+/// The loads of the scene on a beam with their positions; `None` if there are none.
 pub(crate) fn placed_loads(scene: &Scene, number: usize, beam: &Arc<Beam>) -> Option<PlacedLoads> {
     let weight = scene.beams[number].self_weight.then(|| scene.gravity[1]);
     let mut placed = PlacedLoads { weight, standing: Vec::new(), moving: Vec::new(), beam: Arc::clone(beam) };
@@ -201,7 +201,7 @@ pub(crate) fn placed_loads(scene: &Scene, number: usize, beam: &Arc<Beam>) -> Op
 }
 
 impl PlacedLoads {
-    /// Weight, and what doesn't move.
+    /// Adds weight, and loads that don't move.
     fn add_standing(&self, factor: impl Fn(&dyn Signal) -> f64, loads: &mut Vec<SpanLoad>) {
         loads.extend(self.weight.map(|gravity| SpanLoad::Weight { gravity }));
         loads.extend(self.standing.iter().map(|(load, signal)| {

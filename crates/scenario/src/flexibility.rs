@@ -1,83 +1,88 @@
-//! What a mesh, or modes, leave out of a beam's flexibility where something presses on it.
+//! Flexibility of a beam that is missing in a mesh, or in modes, at its loaded points.
 //!
-//! A block that rocks feels its beam through both feet: by how much they sink together, and by how much one sinks more than the other. Few modes, or
-//! an element as long as the block is wide, have the first and little of the second, and the motion is another one with every step.
-//! A load makes the beam sag everywhere, so what lacks is the largest error of that sag, relative to the largest that the load makes anywhere.
-//! Measured on the paper's scene (`docs/resolution.md`): what lacks 0.71, 0.14, 0.08, 0.04 of it (1, 3, 2, 5 elements) is off by 60, 13, 2, 1 % however
-//! fine the step.
+//! The motion of a rocking block depends on how far both of its feet sink together, and on how much
+//! more one sinks than the other. Few modes, or an element as long as the block is wide, represent
+//! the first and little of the second, and the motion is wrong with any step. A load deflects the
+//! whole beam, so for a load the missing part is the largest error of the deflection, relative to
+//! the largest deflection. Measured on the paper's scene (`docs/resolution.md`): models that lack
+//! 0.71, 0.14, 0.08, 0.04 of it (1, 3, 2, 5 elements) are off by 60, 13, 2, 1 % however fine the
+//! step.
 
-use crate::scene::{BeamScene, BlockScene, Placement, Scene, Support};
-use crate::stability;
+use crate::scene::{BeamScene, BlockScene, Placement, Scene, SupportingBody};
+use crate::stable_step;
 use teeter_beam::{Beam, BeamSpec, MatrixWeights, ShapeAt};
 
-/// A part of the flexibility that lacks, from which on motions are likely off by more than 10 %: between the 13.3 % of four modes (off by 1 to 2 %) and
-/// the 14.1 % of three elements (off by 13 %).
-pub(crate) const LACKING: f64 = 0.135;
+/// If more than this part of the flexibility is missing, motions are likely off by more than 10 %:
+/// between the 13.3 % of four modes (off by 1 to 2 %) and the 14.1 % of three elements (off by 13
+/// %).
+pub(crate) const MOST_MISSING: f64 = 0.135;
 
-/// A mesh or a basis that lacks no more than this is advised in place of one that lacks too much.
+/// A mesh or a basis that lacks no more than this is recommended instead of one that lacks too
+/// much.
 const ENOUGH: f64 = 0.03;
 
-/// Places along the span at which a load that moves, or one somewhere, is taken.
+/// Positions along the span at which a moving or distributed load is evaluated.
 const PLACES: usize = 16;
 
-/// Elements that stand for the exact beam, at least; nodes at the feet make them exact in statics there.
+/// Least number of elements that represent the exact beam; nodes at the feet make them exact there
+/// in statics.
 const FINE: usize = 48;
 
-/// Most elements that are tried for advice.
+/// Most elements tried for a recommendation.
 const MOST_TRIED: usize = 320;
 
-/// Most modes that are: more of them take longer to find than the full model to step.
+/// Most modes tried: more take longer to find than to step the full model.
 const MOST_MODES: usize = 20;
 
-/// What lacks of the flexibility of a beam.
+/// The missing part of the flexibility of a beam.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Lack {
-    /// The largest part of it, over all ways to press.
+pub(crate) struct MissingFlexibility {
+    /// The largest missing part, over all load patterns.
     pub(crate) part: f64,
-    /// What presses.
+    /// What loads the beam.
     pub(crate) what: String,
-    /// What to take.
+    /// The remedy.
     pub(crate) advice: String,
 }
 
-/// What presses on a beam, and where it may.
-struct Press {
+/// A load on a beam, and where it may act.
+struct LoadedPoints {
     what: String,
     at: Vec<f64>,
-    how: How,
+    how: LoadPattern,
 }
 
 #[derive(Clone, Copy)]
-enum How {
-    /// With both feet of a block that rocks, or with its only one on the beam: as much with either as it comes.
+enum LoadPattern {
+    /// Both feet of a rocking block, or its only one on the beam: any distribution between them.
     Rocking,
-    /// With both feet alike.
+    /// Both feet equally.
     Standing,
-    /// At one place after the other.
+    /// At one of several positions.
     Along,
 }
 
-/// The worst that lacks of a beam, if that is more than [`LACKING`].
-pub(crate) fn lacking(scene: &Scene, number: usize) -> Option<Lack> {
+/// The largest missing part for a beam, if that is more than [`MOST_MISSING`].
+pub(crate) fn missing_flexibility(scene: &Scene, number: usize) -> Option<MissingFlexibility> {
     let of = &scene.beams[number];
-    let presses = presses(scene, number);
-    // Of a beam that nothing presses on nothing lacks.
-    if presses.is_empty() {
+    let loaded_points = loaded_points(scene, number);
+    // An unloaded beam lacks nothing.
+    if loaded_points.is_empty() {
         return None;
     }
-    let (omega, _) = stability::first_frequency(&of.spec)?;
-    // At the pace of the first mode, so that a beam without supports has a flexibility too.
+    let (omega, _) = stable_step::first_frequency(&of.spec)?;
+    // At the frequency of the first mode, so that a beam without supports has a flexibility too.
     let mass = omega * omega;
-    let exact: Vec<Matrix> = presses
+    let exact: Vec<FlexibilityMatrix> = loaded_points
         .iter()
-        .map(|press| Beam::new(fine(of, &press.at)).ok().and_then(|beam| of_mesh(&beam, &press.at, mass)))
+        .map(|points| Beam::new(fine(of, &points.at)).ok().and_then(|beam| of_mesh(&beam, &points.at, mass)))
         .collect::<Option<_>>()?;
-    let worst = |has: &dyn Fn(&[f64]) -> Option<Matrix>| {
+    let worst = |has: &dyn Fn(&[f64]) -> Option<FlexibilityMatrix>| {
         let mut worst: Option<(f64, &str)> = None;
-        for (press, exact) in presses.iter().zip(&exact) {
-            let part = exact.lacks(&has(&press.at)?, press.how);
+        for (points, exact) in loaded_points.iter().zip(&exact) {
+            let part = exact.missing(&has(&points.at)?, points.how);
             if worst.is_none_or(|(most, _)| part > most) {
-                worst = Some((part, &press.what));
+                worst = Some((part, &points.what));
             }
         }
         worst
@@ -93,7 +98,7 @@ pub(crate) fn lacking(scene: &Scene, number: usize) -> Option<Lack> {
         }
     };
     let (part, what) = of_spec(of.spec.clone(), of.reduction)?;
-    if part <= LACKING {
+    if part <= MOST_MISSING {
         return None;
     }
     let mesh = |elements: usize| {
@@ -104,8 +109,8 @@ pub(crate) fn lacking(scene: &Scene, number: usize) -> Option<Lack> {
     let enough = |found: Option<(f64, &str)>| found.is_some_and(|(part, _)| part <= ENOUGH);
     let full = of_spec(of.spec.clone(), None)?;
     let advice = match of.reduction {
-        Some(_) if full.0 <= LACKING => {
-            // One basis has all the smaller ones in it.
+        Some(_) if full.0 <= MOST_MISSING => {
+            // A basis contains all smaller ones.
             let basis = Beam::new(of.spec.clone()).ok().and_then(|beam| {
                 let most = MOST_MODES.min(beam.free_dofs());
                 Some((crate::scene::Reduction::Modes(most).basis(&beam).ok()?, beam, most))
@@ -115,16 +120,16 @@ pub(crate) fn lacking(scene: &Scene, number: usize) -> Option<Lack> {
                 doublings(2).take_while(|&count| count <= most).find(|&count| enough(modes(count)))
             });
             match count {
-                Some(count) => format!("take modes = {{ count = {count} }} or more, or leave the number out"),
-                None => "take model = \"full\"".to_owned(),
+                Some(count) => format!("use modes = {{ count = {count} }} or more, or leave the number out"),
+                None => "use model = \"full\"".to_owned(),
             }
         }
         _ => match doublings(2).find(|&elements| enough(mesh(elements))) {
-            Some(elements) => format!("take elements = {elements} or more"),
-            None => "take more elements where it is pressed".to_owned(),
+            Some(elements) => format!("use elements = {elements} or more"),
+            None => "use more elements where it is loaded".to_owned(),
         },
     };
-    Some(Lack { part, what: what.to_owned(), advice })
+    Some(MissingFlexibility { part, what: what.to_owned(), advice })
 }
 
 /// 2, 4, 6, 8, 10, 20, 40, …
@@ -132,11 +137,11 @@ fn doublings(from: usize) -> impl Iterator<Item = usize> {
     [from, 4, 6, 8].into_iter().chain(std::iter::successors(Some(10), |n| Some(2 * n))).take_while(|n| *n <= MOST_TRIED)
 }
 
-fn presses(scene: &Scene, number: usize) -> Vec<Press> {
+fn loaded_points(scene: &Scene, number: usize) -> Vec<LoadedPoints> {
     let of = &scene.beams[number];
     let on = |x: &f64| *x > 0.0 && *x < of.spec.span;
-    let mut presses = Vec::new();
-    for contact in scene.contacts.iter().filter(|contact| contact.surface == Support::Beam(number)) {
+    let mut loaded_points = Vec::new();
+    for contact in scene.contacts.iter().filter(|contact| contact.surface == SupportingBody::Beam(number)) {
         let block: &BlockScene = &scene.blocks[contact.block];
         let middle = match block.placement {
             Placement::On { at, .. } => at,
@@ -146,18 +151,22 @@ fn presses(scene: &Scene, number: usize) -> Vec<Press> {
         let at: Vec<f64> = feet.into_iter().filter(on).collect();
         if !at.is_empty() {
             let stands = matches!(block.placement, Placement::On { tilt: 0.0, .. });
-            let how = if at.len() < 2 || !stands || scene.is_driven(contact) { How::Rocking } else { How::Standing };
-            presses.push(Press { what: format!("the feet of `{}`", block.name), at, how });
+            let how = if at.len() < 2 || !stands || scene.is_driven(contact) {
+                LoadPattern::Rocking
+            } else {
+                LoadPattern::Standing
+            };
+            loaded_points.push(LoadedPoints { what: format!("the feet of `{}`", block.name), at, how });
         }
     }
     for load in scene.loads.iter().filter(|load| load.beam == number) {
         let at = (1..PLACES).map(|place| of.spec.span * place as f64 / PLACES as f64).collect();
-        presses.push(Press { what: format!("the load `{}`", load.name), at, how: How::Along });
+        loaded_points.push(LoadedPoints { what: format!("the load `{}`", load.name), at, how: LoadPattern::Along });
     }
-    presses
+    loaded_points
 }
 
-/// The beam with a mesh that is as good as exact for forces at some places.
+/// The beam with a mesh that is practically exact for forces at the given positions.
 fn fine(of: &BeamScene, at: &[f64]) -> BeamSpec {
     let span = of.spec.span;
     let mut nodes: Vec<f64> = Beam::new(of.spec.clone()).map(|beam| beam.node_positions().to_vec()).unwrap_or_default();
@@ -167,7 +176,7 @@ fn fine(of: &BeamScene, at: &[f64]) -> BeamSpec {
         .flat_map(|ends| (1..parts).map(|k| ends[0] + (ends[1] - ends[0]) * k as f64 / parts as f64))
         .collect();
     nodes.extend(between);
-    // Nodes nearer to each other than this would make a sliver of an element.
+    // Nodes nearer to each other than this would create a very short element.
     let apart = 1e-4 * span;
     for x in at {
         if nodes.iter().all(|node| (node - x).abs() > apart) {
@@ -178,13 +187,13 @@ fn fine(of: &BeamScene, at: &[f64]) -> BeamSpec {
     of.spec.clone().meshed(nodes)
 }
 
-/// How far places sink under unit forces at them, m/N: a row each.
-struct Matrix {
+/// Deflections of points under unit forces at these points, m/N, by rows.
+struct FlexibilityMatrix {
     places: usize,
     entries: Vec<f64>,
 }
 
-impl Matrix {
+impl FlexibilityMatrix {
     fn of(places: usize, entry: &dyn Fn(usize, usize) -> f64) -> Self {
         let entries = (0..places * places).map(|k| entry(k / places, k % places)).collect();
         Self { places, entries }
@@ -194,13 +203,13 @@ impl Matrix {
         self.entries[i * self.places + j]
     }
 
-    /// The largest part that `has` lacks, or has too much, of this one, over the ways to press.
-    fn lacks(&self, has: &Self, how: How) -> f64 {
+    /// The largest relative error of `has` against this one, over the load patterns.
+    fn missing(&self, has: &Self, how: LoadPattern) -> f64 {
         let sum = |entries: &[f64]| entries.iter().sum::<f64>();
         match how {
-            How::Rocking => self.lacks_over_all(has),
-            How::Standing => (1.0 - sum(&has.entries) / sum(&self.entries)).abs(),
-            How::Along => {
+            LoadPattern::Rocking => self.missing_over_all(has),
+            LoadPattern::Standing => (1.0 - sum(&has.entries) / sum(&self.entries)).abs(),
+            LoadPattern::Along => {
                 let largest = (0..self.places).map(|i| self.at(i, i)).fold(0.0, f64::max);
                 let errors = self.entries.iter().zip(&has.entries).map(|(exact, has)| (exact - has).abs());
                 errors.fold(0.0, f64::max) / largest
@@ -209,7 +218,7 @@ impl Matrix {
     }
 
     /// The largest |λ| of (F − F') p = λ F p, for one place or two.
-    fn lacks_over_all(&self, has: &Self) -> f64 {
+    fn missing_over_all(&self, has: &Self) -> f64 {
         let a = self.at(0, 0);
         if self.places < 2 {
             return (1.0 - has.at(0, 0) / a).abs();
@@ -217,7 +226,7 @@ impl Matrix {
         let (b, c) = (self.at(0, 1), self.at(1, 1));
         let (d, e, f) = (a - has.at(0, 0), b - has.at(0, 1), c - has.at(1, 1));
         let determinant = a * c - b * b;
-        // Feet that sink as one, as near a support, have one way to press only.
+        // Feet that sink together, as near a support, have only one load pattern.
         if determinant <= 1e-9 * a * c {
             return (d / a).abs().max((f / c).abs());
         }
@@ -228,7 +237,7 @@ impl Matrix {
     }
 }
 
-fn of_mesh(beam: &Beam, at: &[f64], mass: f64) -> Option<Matrix> {
+fn of_mesh(beam: &Beam, at: &[f64], mass: f64) -> Option<FlexibilityMatrix> {
     let factor = beam.factor(MatrixWeights { mass, damping: 0.0, stiffness: 1.0 }).ok()?;
     let shapes: Vec<ShapeAt> = at.iter().map(|x| beam.shape_clamped(*x)).collect();
     let sunk: Vec<Vec<f64>> = shapes
@@ -240,11 +249,17 @@ fn of_mesh(beam: &Beam, at: &[f64], mass: f64) -> Option<Matrix> {
             q
         })
         .collect();
-    Some(Matrix::of(at.len(), &|i, j| shapes[i].deflection(&sunk[j]).w))
+    Some(FlexibilityMatrix::of(at.len(), &|i, j| shapes[i].deflection(&sunk[j]).w))
 }
 
 /// With the first `count` shapes of a basis.
-fn of_modes(beam: &Beam, basis: &teeter_beam::ModalBasis, count: usize, at: &[f64], mass: f64) -> Option<Matrix> {
+fn of_modes(
+    beam: &Beam,
+    basis: &teeter_beam::ModalBasis,
+    count: usize,
+    at: &[f64],
+    mass: f64,
+) -> Option<FlexibilityMatrix> {
     let shapes: Vec<ShapeAt> = at.iter().map(|x| beam.shape_clamped(*x)).collect();
     let entry = |i: usize, j: usize| {
         let modes = basis.circular_frequencies()[..count].iter().enumerate();
@@ -255,12 +270,12 @@ fn of_modes(beam: &Beam, basis: &teeter_beam::ModalBasis, count: usize, at: &[f6
             })
             .sum()
     };
-    Some(Matrix::of(at.len(), &entry))
+    Some(FlexibilityMatrix::of(at.len(), &entry))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::lacking;
+    use super::missing_flexibility;
     use crate::resolve::Resolved;
 
     fn resolved(sets: &[(&str, &str)]) -> Resolved {
@@ -274,7 +289,7 @@ mod tests {
 
     #[test]
     fn what_a_mesh_or_modes_lack_under_two_feet_is_that_of_an_independent_solution() {
-        let elements = |n: &str| lacking(&resolved(&[("beam.t.elements", n)]).scene, 0);
+        let elements = |n: &str| missing_flexibility(&resolved(&[("beam.t.elements", n)]).scene, 0);
         // By a dense solve of the same matrices in another language.
         assert!((elements("1").unwrap().part - 0.705).abs() < 2e-3, "{:?}", elements("1"));
         assert!((elements("3").unwrap().part - 0.1411).abs() < 1e-3, "{:?}", elements("3"));
@@ -284,7 +299,7 @@ mod tests {
         }
         let modes = |n: &str| {
             let count = format!("{{ count = {n} }}");
-            lacking(&resolved(&[("beam.t.model", "modes"), ("beam.t.modes", &count)]).scene, 0)
+            missing_flexibility(&resolved(&[("beam.t.model", "modes"), ("beam.t.modes", &count)]).scene, 0)
         };
         // One mode is level at midspan: both feet sink together, and no couple turns them.
         assert!((modes("1").unwrap().part - 1.0).abs() < 1e-3, "{:?}", modes("1"));

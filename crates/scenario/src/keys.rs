@@ -1,48 +1,49 @@
-//! The table of keys: what a scene may say.
+//! The table of keys of scenes.
 //!
-//! The columns are those of [`teeter_text::keys`]. Decoding, the defaults written out, the lists of allowed keys in
-//! messages and the addressing by `--set` all follow from [`TABLES`]; so do the program's JSON schema and reference page.
+//! The columns are those of [`teeter_text::keys`]. Decoding, written defaults, the lists of allowed
+//! keys in messages and `--set` all follow from [`TABLES`]; so do the program's JSON schema and
+//! reference page.
 
 pub use crate::table::TABLES;
 pub use teeter_text::keys::{
-    Bound, Found, Key, Kind, LONGEST_TITLE, Occurrence, OnlyWith, Presence, Range, Reserved, Table,
+    Bound, Key, Kind, LONGEST_TITLE, Occurrence, OnlyWith, PathTarget, Presence, Range, Reserved, TableSchema,
 };
 
-use teeter_text::schema::{Advice, Namespace, Reference, Schema};
+use teeter_text::schema::{FileAdvice, NameReference, Namespace, Schema};
 
-/// What a scene may say, for the engine that reads it.
+/// The schema of scenes.
 pub static SCENE: Schema = Schema::new("scene", TABLES)
     .with_namespaces(&[Namespace { groups: &["beam", "block"], taken: &["ground"] }])
-    .with_references(&[Reference { group: "material", from: &["beam", "block"], key: "material" }])
+    .with_references(&[NameReference { group: "material", from: &["beam", "block"], key: "material" }])
     .with_advice(ADVICE);
 
-const ADVICE: Advice = Advice {
-    empty: Some("a scene has at least a table [time] with end and step"),
+const ADVICE: FileAdvice = FileAdvice {
+    empty: Some("a scene needs at least a table [time] with end and step"),
     other_file: Some("a scene is a TOML file; see the scenarios that come with the program"),
-    too_deep: Some("no key of a scene has more than five parts, as in beam.table.support.middle.at"),
+    too_deep: Some("keys of a scene have at most five parts, as in beam.table.support.middle.at"),
 };
 
-/// The tables right below a table.
-pub fn children(table: &Table) -> impl Iterator<Item = &'static Table> + use<> {
+/// The tables directly below a table.
+pub fn children(table: &TableSchema) -> impl Iterator<Item = &'static TableSchema> + use<> {
     SCENE.children(table)
 }
 
-/// What a dotted path such as `beam.table.thickness` addresses.
+/// What a dotted path such as `beam.table.thickness` refers to.
 ///
 /// ```
-/// use teeter_scenario::keys::{self, Found};
-/// assert!(matches!(keys::find("beam.table.thickness"), Some(Found::Key(..))));
-/// assert!(matches!(keys::find("beam.table"), Some(Found::Table(_))));
-/// assert!(matches!(keys::find("beam"), Some(Found::Group(_))));
+/// use teeter_scenario::keys::{self, PathTarget};
+/// assert!(matches!(keys::find("beam.table.thickness"), Some(PathTarget::Key(..))));
+/// assert!(matches!(keys::find("beam.table"), Some(PathTarget::Table(_))));
+/// assert!(matches!(keys::find("beam"), Some(PathTarget::Group(_))));
 /// assert!(keys::find("beam.table.colour").is_none());
 /// ```
-pub fn find(path: &str) -> Option<Found> {
+pub fn find(path: &str) -> Option<PathTarget> {
     SCENE.find(path)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Found, TABLES, children, find};
+    use super::{PathTarget, TABLES, children, find};
 
     #[test]
     fn each_key_is_found_by_its_path_and_no_name_is_used_twice() {
@@ -52,7 +53,7 @@ mod tests {
                 let path = path.trim_start_matches('.');
                 let found = find(path);
                 assert!(
-                    matches!(found, Some(Found::Key(t, k)) if k == key && t.pattern == table.pattern),
+                    matches!(found, Some(PathTarget::Key(t, k)) if k == key && t.pattern == table.pattern),
                     "{path}: {found:?}"
                 );
                 assert_eq!(table.keys.iter().filter(|other| other.name == key.name).count(), 1, "{path}");
@@ -62,6 +63,6 @@ mod tests {
         }
         assert!(find("").is_none());
         assert!(find("time.end.x").is_none());
-        assert!(find("beam.").is_some_and(|found| matches!(found, Found::Table(_))));
+        assert!(find("beam.").is_some_and(|found| matches!(found, PathTarget::Table(_))));
     }
 }

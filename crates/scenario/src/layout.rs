@@ -1,61 +1,64 @@
-//! Who is where in model and state.
+//! The places of bodies and contacts in model and state.
 
-use crate::carrier::Carrier;
 use crate::driven;
 use crate::required::Required;
 use crate::scene::{ContactScene, Scene};
+use crate::tilt_reference::TiltReference;
 use std::ops::Range;
 use std::sync::Arc;
 use teeter_beam::{Beam, Deflection, ModalBasis, ShapeAt, SpanLoad};
 use teeter_detect::{BodyId, ContactId, CornerOnSide};
 use teeter_integrator::{BeamForces, Opening};
 
-/// Where a block is in the state.
+/// The place of a block in the state.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BlockPlace {
     /// Its name.
     pub name: String,
-    /// Its coordinates X, Y, φ; its velocities have the same places.
+    /// Indices of its coordinates X, Y, φ, and of its velocities.
     pub range: Range<usize>,
     /// The shorter of its sides, m.
     pub side: f64,
-    /// From its mass centre to a corner, m.
+    /// Largest distance from its mass centre to a corner, m.
     pub reach: f64,
-    /// A swing up to this angle, at which no corner is off its surface by more than counts as open, is none, rad.
+    /// Swings up to this angle, at which no corner is lifted enough to count as open, are ignored,
+    /// rad.
     pub still: f64,
-    /// What carries it: its rocking is measured from there.
-    pub carrier: Carrier,
+    /// The reference from which its tilt is measured.
+    pub tilt_reference: TiltReference,
 }
 
-/// Where a beam is in the state.
+/// The place of a beam in the state.
 #[derive(Debug, Clone)]
 pub struct BeamPlace {
     /// Its name.
     pub name: String,
     /// The beam.
     pub beam: Arc<Beam>,
-    /// The shapes in which it moves: its coordinates are theirs. `None`: its coordinates are its dofs.
+    /// The modal basis to which its coordinates belong; `None` if its coordinates are its dofs.
     pub basis: Option<Arc<ModalBasis>>,
-    /// Its coordinates; its velocities have the same places.
+    /// Indices of its coordinates and velocities.
     pub range: Range<usize>,
-    /// The displacements x and y of its supports, where they move; deflections are relative to them.
+    /// Indices of the displacements x and y of its supports, if they move; deflections are relative
+    /// to them.
     pub supports: Option<Range<usize>>,
-    /// Places whose deflection is written, m from its left end.
+    /// Positions of the probes, m from its left end.
     pub probes: Vec<f64>,
     /// Its number as a body.
     pub body: BodyId,
-    /// Where it starts in equilibrium: the forces of contacts that press on it there.
+    /// If it starts in equilibrium, the contact forces on it.
     pub pressed: Option<Vec<SpanLoad>>,
 }
 
 impl BeamPlace {
-    /// How many velocities it has that no support holds.
+    /// Number of its velocities that no support holds.
     #[must_use]
     pub fn free_dofs(&self) -> usize {
         self.basis.as_ref().map_or_else(|| self.beam.free_dofs(), |basis| basis.len())
     }
 
-    /// Midspan, and the middle between two supports, as midspan may be one, m from its left end.
+    /// Midspan, and the midpoints between supports, as midspan may be a support, m from its left
+    /// end.
     #[must_use]
     pub fn middles(&self) -> Vec<f64> {
         let mut places = vec![0.5 * self.beam.spec().span];
@@ -68,14 +71,15 @@ impl BeamPlace {
         places
     }
 
-    /// The quarters between two supports, their middles among them, m from its left end: none of its lower modes is 0 at all of them.
+    /// The quarter points between supports, including the midpoints, m from its left end: none of
+    /// its lower modes is 0 at all of them.
     #[must_use]
     pub fn quarters(&self) -> Vec<f64> {
         let quarters = |[from, to]: [f64; 2]| [0.25, 0.5, 0.75].map(|part| from + part * (to - from));
         self.spans().into_iter().flat_map(quarters).collect()
     }
 
-    /// From where to where there is no support, m from its left end.
+    /// The intervals between supports, m from its left end.
     fn spans(&self) -> Vec<[f64; 2]> {
         let spec = self.beam.spec();
         let mut stops: Vec<f64> = spec.inner_supports.iter().map(|inner| inner.x).chain([0.0, spec.span]).collect();
@@ -83,7 +87,8 @@ impl BeamPlace {
         stops.windows(2).map(|stops| [stops[0], stops[1]]).collect()
     }
 
-    /// The deflection at a place of the beam for its own coordinates `q` (its rate for velocities); allocates nothing.
+    /// The deflection at a position on the beam for its own coordinates `q` (its rate for
+    /// velocities); doesn't allocate.
     #[must_use]
     pub fn deflection(&self, at: &ShapeAt, q: &[f64]) -> Deflection {
         let Some(basis) = &self.basis else { return at.deflection(q) };
@@ -96,7 +101,8 @@ impl BeamPlace {
         sum
     }
 
-    /// The deflection at x (m, along the beam) for its own coordinates `q`; `None` off the beam.
+    /// The deflection at x (m, along the beam) for its own coordinates `q`; `None` outside the
+    /// beam.
     #[must_use]
     pub fn deflection_at(&self, q: &[f64], x: f64) -> Option<Deflection> {
         Some(self.deflection(&self.beam.shape_at(x)?, q))
@@ -109,29 +115,29 @@ impl BeamPlace {
     }
 }
 
-/// A contact pair: its names, and the points at which it can touch.
+/// A contact pair: names, and the points that can touch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PairPlace {
     /// The contact's name.
     pub name: String,
     /// The bodies, in the order of the file.
     pub between: [String; 2],
-    /// The points at which it can touch.
+    /// The points that can touch.
     pub points: Vec<ContactPoint>,
-    /// Whether the two are blocks: each has corners that the other's sides can touch.
+    /// Whether both are blocks: each has corners that can touch the other's sides.
     pub of_shapes: bool,
-    /// How many corners its (first) block has.
+    /// Number of corners of its (first) block.
     pub corners: usize,
 }
 
-/// A point at which a pair can touch: a corner of a block.
+/// A point of a pair that can touch: a corner of a block.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactPoint {
-    /// What it is called in tables: the corner, with its block before it where both have corners.
+    /// Its name in tables: the corner, preceded by its block if both have corners.
     pub name: String,
     /// The block, by its number in the scene.
     pub block: usize,
-    /// The corner, counter-clockwise; of a rectangle from the bottom left.
+    /// The corner, counter-clockwise; for a rectangle from the bottom left.
     pub corner: usize,
 }
 
@@ -155,11 +161,12 @@ impl ContactPoint {
 }
 
 impl PairPlace {
-    /// The number of a contact's point among the pair's [points](Self::points); `None` for an identity that is not one of them.
+    /// The index of a contact's point among the pair's [points](Self::points); `None` if it is not
+    /// one of them.
     #[must_use]
     pub fn point(&self, id: ContactId) -> Option<usize> {
         let number = if self.of_shapes {
-            let CornerOnSide { owner, corner, .. } = CornerOnSide::from_number(id.point())?;
+            let CornerOnSide { owner, corner, .. } = CornerOnSide::from_number(id.point());
             owner * self.corners + corner
         } else {
             id.point() as usize
@@ -168,7 +175,7 @@ impl PairPlace {
     }
 }
 
-/// Who is where in model and state.
+/// The places of bodies and contacts in model and state.
 #[derive(Debug, Clone, Default)]
 pub struct Layout {
     /// The blocks, in the order of the file.
@@ -177,16 +184,16 @@ pub struct Layout {
     pub beams: Vec<BeamPlace>,
     /// The pairs, by their number in the model.
     pub pairs: Vec<PairPlace>,
-    /// The coordinates of ground that moves: the place of its origin, x and y, and its slope.
+    /// Indices of the coordinates of moving ground: its origin, x and y, and its slope.
     pub ground: Option<Range<usize>>,
-    /// When the contacts of a pair count as truly open, by its number in the model.
+    /// When the contacts of a pair count as open, by its number in the model.
     pub openings: Vec<Opening>,
-    /// What the model does without.
+    /// What is left out of the model.
     pub required: Required,
 }
 
 impl Layout {
-    /// What watches the section forces of a beam, by its number, in a run of `scene`.
+    /// Computes the section forces of a beam, by its number, in a run of `scene`.
     #[must_use]
     pub fn beam_forces(&self, scene: &Scene, number: usize) -> BeamForces {
         let place = &self.beams[number];

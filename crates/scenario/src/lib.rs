@@ -1,9 +1,10 @@
 //! Scene files of teeter: TOML with units, read against one table of keys.
 //!
-//! [`decode::parse`] takes the text of a scene file and returns a [`document::Document`]: every value by its path, in SI units, with
-//! the defaults filled in, or all that is wrong as [`diagnostic::Diagnostics`] that point into the file. What a scene
-//! may say stands in one place, [`keys::TABLES`]. [`resolve::resolve`] makes it a [`scene::Scene`], and
-//! [`simulation::Simulation`] a model with its start, ready to run in memory.
+//! [`decode::parse`] takes the text of a scene file and returns a [`document::Document`]: every
+//! value by its path, in SI units, with the defaults filled in, or all errors as
+//! [`diagnostic::Diagnostics`] that point into the file. [`keys::TABLES`] defines what a scene may
+//! contain. [`resolve::resolve`] turns it into a [`scene::Scene`], and [`simulation::Simulation`]
+//! into a model with its initial state, ready to run in memory.
 //!
 //! ```
 //! use teeter_scenario::simulation::Simulation;
@@ -32,61 +33,62 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod carrier;
+mod build_diagnostics;
 pub mod decode;
 pub mod deflection;
-mod doubts;
 mod driven;
-mod faults;
-mod fineness;
 mod flexibility;
-mod idle;
 pub mod keys;
 mod layout;
 mod left_out;
 mod meeting;
 pub mod mesh_error;
+pub mod number_table;
 mod opening;
-pub mod outlook;
+pub mod output_size;
 mod overlap;
 mod placement;
-pub mod record;
+pub mod preview;
 mod required;
 pub mod resolve;
 mod rocking;
 pub mod scene;
-mod settling;
+mod scene_checks;
+mod signal_resolution;
 pub mod simulation;
-mod stability;
+mod stable_step;
+mod static_start;
 pub mod swing;
 mod table;
-pub mod volume;
+mod tilt_reference;
+mod unused_keys;
 pub mod wording;
 mod words;
 
 pub use teeter_text::{diagnostic, dimension, document, measure, quantity, source, suggest, units, value};
 
-pub use carrier::Carrier;
-pub use fineness::FAR_TURN;
 pub use left_out::left_out;
 pub use meeting::{Meeting, Shapes};
 pub use opening::OPEN_GAP;
-pub use placement::{Departure, PlacementError};
+pub use placement::{InstabilityMode, PlacementError};
 pub use required::{Extent, Limits, Removed, Required};
-pub use settling::{ContactForce, StaticStart};
+pub use signal_resolution::FAR_TURN;
+pub use static_start::{ContactForce, StaticStart};
+pub use tilt_reference::TiltReference;
 
-/// Reads a scene: text, keys, units, references. `file` is its name in messages, `stem` its title if it has none,
-/// `sets` are overrides by path. A scene that names other files is refused: see [`load_with`].
+/// Reads a scene: text, keys, units, references. `file` is its name in messages, `stem` its title
+/// if it has none, `sets` are overrides by path. A scene that names other files is refused: see
+/// [`load_with`].
 ///
 /// # Errors
-/// All that is wrong with it, at once.
+/// All errors at once.
 pub fn load(
     bytes: &[u8],
     file: &str,
     stem: &str,
     sets: &[(String, String)],
 ) -> Result<resolve::Resolved, diagnostic::Diagnostics> {
-    load_with(bytes, file, stem, sets, &mut |_| Err("no other file can be read here".to_owned()))
+    load_with(bytes, file, stem, sets, &mut |_| Err("other files can't be read here".to_owned()))
 }
 
 /// As [`load`]; `read` reads the files that the scene names.
@@ -107,7 +109,7 @@ pub fn load_with(
             found
         });
     }
-    // Not where a part could not be read: it may be what the rest refers to.
+    // Not if a part could not be read, as the rest may refer to it.
     if whole {
         found.0.extend(resolve::mistakes(&document, read));
         decode::in_order(&mut found, sets);

@@ -1,58 +1,61 @@
-//! Bodies that meet where the model has no contact: until it has contact of whole shapes, this is told and not prevented.
+//! Overlaps of bodies where the model has no contact: they are reported, not prevented.
 
-use crate::overlap::{Box2, Outline, each_overlap};
-use crate::scene::{Scene, Support};
+use crate::overlap::{Outline, PlacedOutline, each_overlap};
+use crate::scene::{Scene, SupportingBody};
 use crate::simulation::Layout;
 use std::collections::BTreeSet;
 
-/// Two bodies, by their numbers in the scene, that are inside each other where nothing keeps them apart.
+/// Two overlapping bodies, by their numbers in the scene, without a contact that separates them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Meeting {
     /// Two blocks.
     Blocks(usize, usize),
-    /// A block, below ground that no contact joins it to.
+    /// A block below ground with which it has no contact.
     Ground(usize),
-    /// A block, and a beam that no contact joins it to.
+    /// A block and a beam without a contact.
     Beam(usize, usize),
-    /// A block, and a beam that it touches with its corners only: the beam is inside the block between them.
+    /// A block and a beam that it touches only with its corners: the beam is inside the block
+    /// between them.
     BetweenCorners(usize, usize),
     /// A block with corners past the end of a beam, below its surface.
     PastEnd(usize, usize),
 }
 
-/// Overlap up to this part of a block's shorter side is rounding and drift of corners, and no meeting.
+/// Overlap up to this fraction of a block's shorter side is attributed to rounding and drift of
+/// corners.
 const MEETS: f64 = 3e-3;
 
-/// Pairs of neighbouring blocks looked at; past it a heap is judged by what was found.
+/// Most pairs of neighbouring blocks that are checked; in a larger heap only what was found is
+/// reported.
 const MOST_PAIRS: usize = 20_000;
 
-/// Places along a beam that are looked at under a block.
+/// Positions along a beam that are checked under a block.
 const PLACES: usize = 12;
 
 /// A beam's line in the plane.
 #[derive(Debug, Clone, Copy)]
 struct BeamShape {
-    /// The contact surface at the left end when nothing is displaced, m.
+    /// The contact surface at the left end without displacements, m.
     left: [f64; 2],
     span: f64,
 }
 
-/// The shapes of a scene's bodies, which tells who meets whom.
+/// The shapes of a scene's bodies, to find their overlaps.
 #[derive(Debug, Clone)]
 pub struct Shapes {
     outlines: Vec<Outline>,
-    /// How deep each may be in what it meets, for rounding and drift, m.
+    /// How deep each may penetrate, for rounding and drift, m.
     allowed: Vec<f64>,
     beams: Vec<BeamShape>,
-    /// Slope of ground that stands still; `None` without ground.
+    /// Slope of fixed ground; `None` without ground.
     incline: Option<f64>,
-    /// Which blocks a contact joins to the ground, and to each beam.
+    /// Blocks that have a contact with the ground, and with each beam.
     on_ground: Vec<bool>,
-    /// Which blocks a contact joins to each other, the lower number first.
+    /// Pairs of blocks with a contact, the lower number first.
     blocks: BTreeSet<(usize, usize)>,
     on_beam: Vec<Vec<bool>>,
-    boxes: Vec<Box2>,
+    boxes: Vec<PlacedOutline>,
     order: Vec<usize>,
 }
 
@@ -60,7 +63,7 @@ impl Shapes {
     /// The shapes of a scene.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
-        let joined = |surface: Support| {
+        let joined = |surface: SupportingBody| {
             let mut joined = vec![false; scene.blocks.len()];
             let contacts = scene.contacts.iter().filter(|contact| contact.surface == surface);
             contacts.for_each(|contact| joined[contact.block] = true);
@@ -75,26 +78,26 @@ impl Shapes {
             allowed: scene.blocks.iter().map(|block| MEETS * block.width.min(block.height)).collect(),
             beams: scene.beams.iter().map(line).collect(),
             incline: scene.ground.as_ref().map(|ground| ground.incline),
-            on_ground: joined(Support::Ground),
+            on_ground: joined(SupportingBody::Ground),
             blocks: scene
                 .contacts
                 .iter()
                 .filter_map(|contact| Some((contact.block, contact.other_block()?)))
                 .map(|(a, b)| (a.min(b), a.max(b)))
                 .collect(),
-            on_beam: (0..scene.beams.len()).map(|beam| joined(Support::Beam(beam))).collect(),
+            on_beam: (0..scene.beams.len()).map(|beam| joined(SupportingBody::Beam(beam))).collect(),
             boxes: Vec::with_capacity(scene.blocks.len()),
             order: Vec::with_capacity(scene.blocks.len()),
         }
     }
 
-    /// Hands who meets whom at coordinates `q` of the whole model to `each`, with the depth, m.
+    /// Passes each overlap at coordinates `q` of the whole model to `each`, with its depth, m.
     pub fn meetings(&mut self, layout: &Layout, q: &[f64], mut each: impl FnMut(Meeting, f64)) {
         let Self { outlines, allowed, beams, incline, on_ground, blocks, on_beam, boxes, order } = self;
         boxes.clear();
         boxes.extend(layout.blocks.iter().zip(outlines.iter()).map(|(place, outline)| {
             let q = &q[place.range.clone()];
-            Box2::new([q[0], q[1]], q[2], outline)
+            PlacedOutline::new([q[0], q[1]], q[2], outline)
         }));
         let allowed = |block: usize| allowed[block];
         if boxes.len() > 1 {
@@ -112,7 +115,7 @@ impl Shapes {
             let up = [-slope.sin(), slope.cos()];
             let level = x * up[0] + y * up[1];
             for (block, _) in on_ground.iter().enumerate().filter(|(_, joined)| !**joined) {
-                let depth = level - boxes[block].shadow(up)[0];
+                let depth = level - boxes[block].projection(up)[0];
                 if depth > allowed(block) {
                     each(Meeting::Ground(block), depth);
                 }
@@ -121,12 +124,12 @@ impl Shapes {
         for (number, ((shape, place), joined)) in beams.iter().zip(&layout.beams).zip(on_beam.iter()).enumerate() {
             let moved = place.supports.as_ref().map_or([0.0; 2], |range| [q[range.start], q[range.start + 1]]);
             let (left, bottom) = (shape.left[0] + moved[0], shape.left[1] + moved[1]);
-            let depth_at = |block: &Box2, along: f64| {
+            let depth_at = |block: &PlacedOutline, along: f64| {
                 let w = place.deflection_at(&q[place.range.clone()], along).map_or(f64::NAN, |at| at.w);
                 block.depth_of([left + along, bottom + w])
             };
             for (block, of) in boxes.iter().enumerate() {
-                let [low, high] = of.shadow([1.0, 0.0]);
+                let [low, high] = of.projection([1.0, 0.0]);
                 let (from, to) = ((low - left).max(0.0), (high - left).min(shape.span));
                 if from > to {
                     continue;

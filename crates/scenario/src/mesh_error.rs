@@ -1,30 +1,30 @@
-//! What a mesh makes of its beam: numbers of the model, beside those of the beam that it stands for.
+//! Discretisation errors: values of a mesh compared with those of the beam itself.
 //!
-//! With few elements the two part: one element between pins has 11 % more than the first frequency, and sags by 4/5 of what it should
-//! under an even load.
+//! With few elements they differ: a single pinned element has a first frequency 11 % too high, and
+//! 4/5 of the sag under a uniform load.
 
 use crate::placement::weight_of;
-use crate::scene::{Reduction, Scene, Support};
+use crate::scene::{Reduction, Scene, SupportingBody};
 use std::f64::consts::TAU;
 use teeter_beam::{Beam, BeamSpec, ModalBasis};
 
-/// A number of a model, and what it would be without the error of its mesh, or of its few shapes.
+/// A value of a model, and its value without the error of the mesh or of a few modes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct OfMesh {
-    /// That of the model.
+pub struct MeshComparison {
+    /// Value of the model.
     pub model: f64,
-    /// That of the beam, in closed form or of a mesh eight times as fine; `None` where it is not known.
+    /// Value of the beam, in closed form or from a mesh eight times as fine; `None` if unknown.
     pub beam: Option<f64>,
 }
 
-/// The two are told apart from this part of the beam's on.
-const PARTED: f64 = 0.01;
+/// Relative difference from which on both values are shown.
+const DIFFERENT: f64 = 0.01;
 
-impl OfMesh {
-    /// That of the beam, where the model is off by more than 1 %.
+impl MeshComparison {
+    /// The value of the beam, if the model is off by more than 1 %.
     #[must_use]
-    pub fn parted(&self) -> Option<f64> {
-        self.beam.filter(|beam| (self.model - beam).abs() > PARTED * beam.abs())
+    pub fn exact_if_different(&self) -> Option<f64> {
+        self.beam.filter(|beam| (self.model - beam).abs() > DIFFERENT * beam.abs())
     }
 
     /// The larger of the two.
@@ -34,13 +34,14 @@ impl OfMesh {
     }
 }
 
-/// How much finer the mesh is that stands for the beam itself: errors of order n⁻⁴ fall to 1/4096.
+/// Refinement of the mesh that represents the beam itself: errors of order n⁻⁴ decrease to 1/4096.
 const FINER: usize = 8;
 
-/// Meshes with more elements are not refined: their errors don't show, and a check should not take longer than it must.
+/// Meshes with more elements are not refined: their errors are negligible, and a check should be
+/// fast.
 const COARSE: usize = 100;
 
-/// A mesh with each element divided into eight; `None` where it is fine already.
+/// A mesh with each element divided into eight; `None` if it is fine already.
 fn refined(spec: &BeamSpec) -> Option<BeamSpec> {
     let mut fine = spec.clone();
     if spec.nodes.is_empty() {
@@ -61,26 +62,30 @@ fn mesh_frequency(beam: &Beam) -> Option<f64> {
     modes.circular_frequencies().get(modes.rigid()).copied()
 }
 
-/// The first elastic frequency of a beam as modelled, Hz, and its own, and whether that is of the continuous beam: else it is one of a finer mesh.
-pub(crate) fn first_frequency(beam: &Beam, basis: Option<&ModalBasis>) -> Option<(OfMesh, bool)> {
+/// The first elastic frequency of a beam, Hz, in the model and exactly, and whether the latter is
+/// that of the continuous beam; otherwise it is that of a finer mesh.
+pub(crate) fn first_frequency(beam: &Beam, basis: Option<&ModalBasis>) -> Option<(MeshComparison, bool)> {
     let spec = beam.spec();
     let exact = spec.circular_frequency(1).ok();
     let fine = || refined(spec).and_then(|spec| mesh_frequency(&Beam::new(spec).ok()?));
     let model = match basis {
         Some(basis) => basis.circular_frequencies().get(basis.rigid()).copied(),
-        // Of a fine mesh the formula is as good as the finite elements.
+        // For a fine mesh the formula is as accurate as the finite elements.
         None if exact.is_some() && refined(spec).is_none() => exact,
         None => mesh_frequency(beam),
     };
-    Some((OfMesh { model: model? / TAU, beam: exact.or_else(fine).map(|omega| omega / TAU) }, exact.is_some()))
+    Some((MeshComparison { model: model? / TAU, beam: exact.or_else(fine).map(|omega| omega / TAU) }, exact.is_some()))
 }
 
-/// The largest static deflection (m) of a beam of the scene under its own weight, where it has any, and that of the blocks that stand on
-/// it, anywhere along it; `None` where neither is there, or where it has no equilibrium.
-pub(crate) fn sag(scene: &Scene, number: usize) -> Option<OfMesh> {
+/// The largest static deflection (m), anywhere along a beam of the scene, under its own weight if
+/// enabled and that of the blocks on it; `None` if there is neither, or no equilibrium.
+pub(crate) fn sag(scene: &Scene, number: usize) -> Option<MeshComparison> {
     let beam = &scene.beams[number];
-    let mut standing =
-        scene.blocks.iter().filter_map(|block| weight_of(block, Support::Beam(number), scene.gravity)).peekable();
+    let mut standing = scene
+        .blocks
+        .iter()
+        .filter_map(|block| weight_of(block, SupportingBody::Beam(number), scene.gravity))
+        .peekable();
     if !beam.self_weight {
         standing.peek()?;
     }
@@ -106,10 +111,10 @@ pub(crate) fn sag(scene: &Scene, number: usize) -> Option<OfMesh> {
     };
     let own = of_mesh(beam.spec.clone(), beam.reduction)?;
     let fine = refined(&beam.spec).and_then(|fine| of_mesh(fine, None));
-    Some(OfMesh { model: own, beam: fine })
+    Some(MeshComparison { model: own, beam: fine })
 }
 
-/// The equilibrium in the shapes of a basis: mass-orthonormal, so of stiffness ω².
+/// The equilibrium in a modal basis: mass-orthonormal, so with stiffness ω².
 fn settled(basis: &ModalBasis, load: &[f64]) -> Option<Vec<f64>> {
     let coordinate = |(k, omega): (usize, &f64)| {
         let force: f64 = basis.shape(k).iter().zip(load).map(|(shape, force)| shape * force).sum();

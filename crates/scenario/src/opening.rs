@@ -1,13 +1,16 @@
-//! When a contact counts as open, so that its closing is an impact (`docs/impacts.md`).
+//! The conditions for a contact to count as open, so that its closing is an impact
+//! (`docs/impacts.md`).
 
 use crate::scene::Scene;
 use teeter_integrator::Opening;
 
-/// A gap up to this part of the block's shorter side is none: 3 µm for a block of 3 cm.
+/// A gap up to this fraction of the block's shorter side doesn't count as open: 3 µm for a block of
+/// 3 cm.
 pub const OPEN_GAP: f64 = 1e-4;
 
-/// By contact, when it counts as truly open: a gap of more than [`OPEN_GAP`] of its block's shorter side, for longer than a bounce of
-/// that height takes under the scene's gravity g, 2 √(2 gap/g). Without gravity the gap alone counts.
+/// The condition for each contact to count as open: a gap of more than [`OPEN_GAP`] of its block's
+/// shorter side, for longer than a bounce of that height under the scene's gravity g, 2 √(2 gap/g).
+/// Without gravity only the gap counts.
 pub(crate) fn openings(scene: &Scene) -> Vec<Opening> {
     let fall = scene.gravity[0].hypot(scene.gravity[1]);
     let opening = |block: usize| {

@@ -1,4 +1,4 @@
-//! Rectangles and polygons that overlap: the separating-axis test.
+//! Overlaps of rectangles and polygons by the separating-axis test.
 
 use crate::scene::BlockScene;
 use nalgebra::Vector2;
@@ -7,7 +7,7 @@ use std::sync::Arc;
 /// The outline of a block, about its mass centre.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Outline {
-    /// A rectangle by its sides.
+    /// A rectangle, by its sides.
     Rectangle([f64; 2]),
     /// The corners of a convex polygon, counter-clockwise, and its largest distance across.
     Polygon(Arc<[Vector2<f64>]>, f64),
@@ -24,26 +24,26 @@ impl Outline {
 
 /// A rectangle or a polygon in the plane.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Box2 {
+pub(crate) struct PlacedOutline {
     centre: [f64; 2],
     /// Unit vectors along its sides.
     axes: [[f64; 2]; 2],
-    /// Halves of its sides; of a polygon of a square round it.
+    /// Half its sides; for a polygon, those of a square around it.
     half: [f64; 2],
     /// The corners of a polygon about its centre, in the coordinates of its axes.
     corners: Option<Arc<[Vector2<f64>]>>,
 }
 
-/// Two rectangles that overlap, by their numbers.
+/// Two overlapping outlines, by their numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Overlap {
     pub(crate) first: usize,
     pub(crate) second: usize,
-    /// The shortest way out.
+    /// The least displacement that separates them, m.
     pub(crate) depth: f64,
 }
 
-impl Box2 {
+impl PlacedOutline {
     pub(crate) fn new(centre: [f64; 2], angle: f64, outline: &Outline) -> Self {
         let (sin, cos) = angle.sin_cos();
         let (sides, corners) = match outline {
@@ -57,7 +57,7 @@ impl Box2 {
         [0, 1].map(|k| self.centre[k] + corner.x * self.axes[0][k] + corner.y * self.axes[1][k])
     }
 
-    /// The sides of a polygon: a corner and the unit normal outwards of the side from it.
+    /// The sides of a polygon: a corner, and the outward unit normal of the side that starts there.
     fn sides<'a>(&'a self, corners: &'a [Vector2<f64>]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> + 'a {
         corners.iter().zip(corners.iter().cycle().skip(1)).map(|(from, to)| {
             let side = (to - from).normalize();
@@ -77,8 +77,8 @@ impl Box2 {
         room(0).min(room(1))
     }
 
-    /// From where to where it reaches along a direction.
-    pub(crate) fn shadow(&self, direction: [f64; 2]) -> [f64; 2] {
+    /// Its projection on a direction: from where to where it extends.
+    pub(crate) fn projection(&self, direction: [f64; 2]) -> [f64; 2] {
         let Some(corners) = &self.corners else {
             let (centre, reach) = (dot(self.centre, direction), self.reach(direction));
             return [centre - reach, centre + reach];
@@ -87,7 +87,7 @@ impl Box2 {
         along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
     }
 
-    /// Half of its shadow on a direction, of a rectangle.
+    /// Half the projection of a rectangle on a direction.
     fn reach(&self, direction: [f64; 2]) -> f64 {
         self.half[0] * dot(self.axes[0], direction).abs() + self.half[1] * dot(self.axes[1], direction).abs()
     }
@@ -96,10 +96,10 @@ impl Box2 {
         2.0 * self.half[0].max(self.half[1])
     }
 
-    /// The shortest way out of each other; at most 0 where some side's direction separates the two.
+    /// The least displacement that separates the two; at most 0 if they are separate.
     fn depth(&self, other: &Self) -> f64 {
         if self.corners.is_some() || other.corners.is_some() {
-            return self.room_beside(other).min(other.room_beside(self));
+            return self.depth_across_sides(other).min(other.depth_across_sides(self));
         }
         let between = [other.centre[0] - self.centre[0], other.centre[1] - self.centre[1]];
         self.axes
@@ -109,15 +109,15 @@ impl Box2 {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// How deep the other is inside, across the side over which it is the least.
-    fn room_beside(&self, other: &Self) -> f64 {
-        let over = |(on, normal): ([f64; 2], [f64; 2])| dot(on, normal) - other.shadow(normal)[0];
+    /// How deep the other is inside, measured across the side with the least depth.
+    fn depth_across_sides(&self, other: &Self) -> f64 {
+        let over = |(on, normal): ([f64; 2], [f64; 2])| dot(on, normal) - other.projection(normal)[0];
         let [[ax, ay], up] = self.axes;
         match &self.corners {
             Some(corners) => self.sides(corners).map(over).fold(f64::INFINITY, f64::min),
             None => [[ax, ay], up, [-ax, -ay], [-up[0], -up[1]]]
                 .into_iter()
-                .map(|normal| self.shadow(normal)[1] - other.shadow(normal)[0])
+                .map(|normal| self.projection(normal)[1] - other.projection(normal)[0])
                 .fold(f64::INFINITY, f64::min),
         }
     }
@@ -127,20 +127,21 @@ fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
-/// Pairs that are looked at; past it a heap of blocks is judged by what was found.
+/// Most pairs that are checked; in a larger heap of blocks only what was found counts.
 const MOST_PAIRS: usize = 1_000_000;
 
-/// Hands all that overlap by more than both allow, m, to `each`, as far as `most` pairs of neighbours along x tell; `order` is memory.
+/// Passes all pairs that overlap by more than both allow, m, to `each`, checking at most `most`
+/// pairs of neighbours along x; `order` is a buffer.
 pub(crate) fn each_overlap(
-    boxes: &[Box2],
+    boxes: &[PlacedOutline],
     allowed: impl Fn(usize) -> f64,
     most: usize,
     order: &mut Vec<usize>,
     mut each: impl FnMut(Overlap),
 ) {
-    // By their left ends: only neighbours along x can overlap.
-    let left = |k: usize| boxes[k].shadow([1.0, 0.0])[0];
-    let right = |k: usize| boxes[k].shadow([1.0, 0.0])[1];
+    // Sorted by their left ends, as only neighbours along x can overlap.
+    let left = |k: usize| boxes[k].projection([1.0, 0.0])[0];
+    let right = |k: usize| boxes[k].projection([1.0, 0.0])[1];
     order.clear();
     order.extend(0..boxes.len());
     order.sort_unstable_by(|&a, &b| left(a).total_cmp(&left(b)).then(a.cmp(&b)));
@@ -159,8 +160,9 @@ pub(crate) fn each_overlap(
     }
 }
 
-/// The two that overlap the most, of all that do by more than `tolerance` of the smaller one's larger side.
-pub(crate) fn deepest_overlap(boxes: &[Box2], tolerance: f64) -> Option<Overlap> {
+/// The pair with the largest overlap, if it is more than `tolerance` times the smaller one's larger
+/// side.
+pub(crate) fn deepest_overlap(boxes: &[PlacedOutline], tolerance: f64) -> Option<Overlap> {
     let mut deepest: Option<Overlap> = None;
     each_overlap(
         boxes,
@@ -181,8 +183,8 @@ mod tests {
     use super::*;
     use std::f64::consts::FRAC_PI_4;
 
-    fn square(x: f64, y: f64, angle: f64) -> Box2 {
-        Box2::new([x, y], angle, &Outline::Rectangle([2.0, 2.0]))
+    fn square(x: f64, y: f64, angle: f64) -> PlacedOutline {
+        PlacedOutline::new([x, y], angle, &Outline::Rectangle([2.0, 2.0]))
     }
 
     #[test]
@@ -199,7 +201,7 @@ mod tests {
         for (x, y, angle) in [(1.5, 1.0, 0.0_f64), (0.3, 1.2, 0.4), (1.8, -0.6, 2.1), (2.4, 0.9, 5.0)] {
             let (sin, cos) = angle.sin_cos();
             let off = [x + 0.5 * cos + 0.5 * sin, y + 0.5 * sin - 0.5 * cos];
-            let (by_corners, by_sides) = (Box2::new(off, angle, &polygon), square(x, y, angle));
+            let (by_corners, by_sides) = (PlacedOutline::new(off, angle, &polygon), square(x, y, angle));
             let still = square(0.0, 0.0, 0.0);
             assert!((still.depth(&by_corners) - still.depth(&by_sides)).abs() < 1e-14);
             assert!((by_corners.depth(&still) - still.depth(&by_sides)).abs() < 1e-14);

@@ -1,7 +1,7 @@
-//! Where blocks are put: by their mass centre, or on a surface.
+//! Initial positions of blocks: by their mass centre, or on a surface.
 
 use crate::driven::BeamModel;
-use crate::scene::{BlockScene, Placement, Scene, Support};
+use crate::scene::{BlockScene, Placement, Scene, SupportingBody};
 use crate::simulation::BuildError;
 use nalgebra::{Vector2, Vector3};
 use std::f64::consts::FRAC_PI_2;
@@ -10,7 +10,7 @@ use teeter_detect::Kinematics;
 use teeter_integrator::{EquilibriumError, Subsystem};
 use teeter_rigid::Pose;
 
-/// Why a scene has no start.
+/// Why a scene has no initial state.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlacementError {
@@ -22,27 +22,27 @@ pub enum PlacementError {
         /// Why.
         source: StaticError,
     },
-    /// A block doesn't stay where it was put.
+    /// A block doesn't stay in its place.
     #[error("no static equilibrium: block `{block}` {motion}")]
     NoEquilibrium {
         /// The block.
         block: String,
-        /// What it does.
-        motion: Departure,
+        /// How it moves.
+        motion: InstabilityMode,
     },
-    /// The equilibrium was not found.
+    /// The iteration for the equilibrium didn't converge.
     #[error(
-        "beam `{beam}`: no static equilibrium found after {rounds} rounds (the last one moved by {change:e}, relative)"
+        "beam `{beam}`: no static equilibrium found after {rounds} iterations (relative change in the last one: {change:e})"
     )]
     Unsettled {
         /// The beam, or the first of several.
         beam: String,
-        /// Rounds taken.
+        /// Iterations.
         rounds: u32,
         /// Size of the last step, in the norm of energy, relative to the scene.
         change: f64,
     },
-    /// The search itself failed.
+    /// The computation of the equilibrium failed.
     #[error("beam `{beam}`: no static equilibrium found: {source}")]
     Search {
         /// The beam, or the first of several.
@@ -50,53 +50,53 @@ pub enum PlacementError {
         /// Why.
         source: EquilibriumError,
     },
-    /// A corner is not over the surface that it should stand on.
-    #[error("block `{block}`: the corner {corner} at x = {x} m is not over what the block stands on")]
+    /// A corner is not above the surface that it should stand on.
+    #[error("block `{block}`: the corner {corner} at x = {x} m is not above the surface that the block stands on")]
     OffSurface {
         /// The block.
         block: String,
         /// The corner.
         corner: String,
-        /// Where it is, m.
+        /// Its position, m.
         x: f64,
     },
 }
 
-/// How a block leaves its place.
+/// How a block leaves its position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Departure {
+pub enum InstabilityMode {
     /// Its feet slide.
     Slides,
     /// It turns about a foot.
     Tips,
-    /// It is pulled off.
+    /// It is lifted off.
     LiftsOff,
-    /// Held at its tilt, it comes to stand on its other foot.
+    /// Held at its tilt, it would stand on its other foot.
     ChangesFoot,
 }
 
-impl std::fmt::Display for Departure {
+impl std::fmt::Display for InstabilityMode {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
-            Self::Slides => "slides: friction can't hold it where it was put",
+            Self::Slides => "slides, as friction can't hold it",
             Self::Tips => {
-                "tips: its weight and the forces on it don't pass between its feet, or the beam gives way under them"
+                "tips: the resultant of its weight and the forces on it doesn't pass between its feet, or the beam yields too much under them"
             }
-            Self::LiftsOff => "lifts off: the forces on it are upwards",
-            Self::ChangesFoot => "comes to stand on its other foot: the slope under it is more than its tilt",
+            Self::LiftsOff => "lifts off, as the forces on it point upwards",
+            Self::ChangesFoot => "would stand on its other foot, as the slope under it exceeds its tilt",
         })
     }
 }
 
-/// A foot under a block: its corner, and where it stands.
+/// A foot of a block: its corner, and its position.
 #[derive(Clone, Copy, Debug)]
 struct Foot {
     corner: usize,
     x: f64,
 }
 
-/// The feet that a block stands on, by its tilt: the corner that it is turned about, or both.
+/// The feet that a block stands on: the corner about which it is tilted, or both.
 fn feet(block: &BlockScene, at: f64, tilt: f64) -> ([Foot; 2], usize) {
     let half = 0.5 * block.width;
     let (left, right) = (Foot { corner: 0, x: at - half }, Foot { corner: 1, x: at + half });
@@ -109,16 +109,16 @@ fn feet(block: &BlockScene, at: f64, tilt: f64) -> ([Foot; 2], usize) {
     }
 }
 
-/// Where and how hard (m, N) a block presses on what it stands on, its weight shared evenly between its feet; `None` for a block
-/// that stands on something else or nothing.
-pub(crate) fn weight_of(block: &BlockScene, on: Support, gravity: [f64; 2]) -> Option<Vec<(f64, f64)>> {
+/// Positions and forces (m, N) of a block on `on`, with its weight divided equally between its
+/// feet; `None` for a block that stands on something else or nothing.
+pub(crate) fn weight_of(block: &BlockScene, on: SupportingBody, gravity: [f64; 2]) -> Option<Vec<(f64, f64)>> {
     let Placement::On { support, at, tilt, .. } = block.placement else { return None };
     let (feet, count) = feet(block, at, tilt);
     let force = weight(block, gravity) / count as f64;
     (support == on).then(|| feet[..count].iter().map(|foot| (foot.x, force)).collect())
 }
 
-/// Contact can't pull: gravity that points up leaves the beam alone.
+/// Contact can't pull, so upward gravity doesn't load the beam.
 fn weight(block: &BlockScene, gravity: [f64; 2]) -> f64 {
     (-block.mass() * gravity[1]).max(0.0)
 }
@@ -138,8 +138,8 @@ fn surface_height(
     surface.surface(0, q, kinematics, &at).map(|point| point.place.y).ok_or_else(|| off_surface(block, foot))
 }
 
-/// The configurations (X, Y, φ) of all blocks at the start: on beams with these deflections, on ground whose line is given, on each
-/// other. Where supports start, a beam and what stands on it are placed as if they stood still.
+/// The initial configurations (X, Y, φ) of all blocks: on beams with these deflections, on ground
+/// along the given line, on each other. Moving supports count as not displaced.
 pub(crate) fn starting_poses(
     scene: &Scene,
     beams: &[BeamModel],
@@ -149,7 +149,7 @@ pub(crate) fn starting_poses(
     let mut poses: Vec<Option<Vector3<f64>>> = vec![None; scene.blocks.len()];
     let mut pile = Vec::new();
     for block in 0..scene.blocks.len() {
-        // What is below comes first; the resolver refuses circles.
+        // Blocks below come first; the resolver refuses cycles.
         let mut lower = Some(block).filter(|&block| poses[block].is_none());
         while let Some(block) = lower {
             pile.push(block);
@@ -158,20 +158,20 @@ pub(crate) fn starting_poses(
         while let Some(number) = pile.pop() {
             let block = &scene.blocks[number];
             let pose = match block.placement {
-                Placement::On { support: Support::Beam(k), .. } => {
+                Placement::On { support: SupportingBody::Beam(k), .. } => {
                     let still = beams[k].still(&scene.beams[k])?.boxed();
-                    block_pose(scene, block, &Standing::Surface(still.as_ref(), &deflections[k]))?
+                    block_pose(scene, block, &SupportSurface::Surface(still.as_ref(), &deflections[k]))?
                 }
-                Placement::On { support: Support::Block(below), at, tilt, stacked, .. } => {
-                    let carrier = &scene.blocks[below];
-                    let top = Top::of(carrier, &poses[below].unwrap_or_default());
+                Placement::On { support: SupportingBody::Block(below), at, tilt, stacked, .. } => {
+                    let lower = &scene.blocks[below];
+                    let top = TopSide::of(lower, &poses[below].unwrap_or_default());
                     let at = if stacked { top.line[0] + at * top.line[2].cos() } else { at };
                     if !top.is_under(block, at) {
                         return Err(off_surface(block, &Foot { corner: 0, x: at - 0.5 * block.width }).into());
                     }
                     pose_on_line(block, at, tilt, &top.line)
                 }
-                _ => block_pose(scene, block, &Standing::Line(ground))?,
+                _ => block_pose(scene, block, &SupportSurface::Line(ground))?,
             };
             poses[number] = Some(pose);
         }
@@ -179,25 +179,25 @@ pub(crate) fn starting_poses(
     Ok(poses.into_iter().map(Option::unwrap_or_default).collect())
 }
 
-/// The block that a block stands on.
+/// The block on which a block stands.
 pub(crate) fn below(scene: &Scene, block: usize) -> Option<usize> {
     match scene.blocks[block].placement {
-        Placement::On { support: Support::Block(below), .. } => Some(below),
+        Placement::On { support: SupportingBody::Block(below), .. } => Some(below),
         _ => None,
     }
 }
 
-/// The side of a block that is on top.
-struct Top {
-    /// Its middle, and its slope, rad.
+/// The upper side of a block.
+struct TopSide {
+    /// Its midpoint, and its slope, rad.
     line: [f64; 3],
-    /// From where to where it reaches along x, m.
+    /// Its extent along x, m.
     x: [f64; 2],
 }
 
-impl Top {
+impl TopSide {
     fn of(block: &BlockScene, pose: &Vector3<f64>) -> Self {
-        // Quarters of a turn by which the side that was on top has left it.
+        // Quarter turns that bring another side to the top.
         let quarters = (pose.z / FRAC_PI_2).round();
         let slope = pose.z - quarters * FRAC_PI_2;
         let sides =
@@ -208,7 +208,8 @@ impl Top {
         Self { line: [middle.x, middle.y, slope], x: [left.x, right.x] }
     }
 
-    /// Whether it is under some of the base of a block whose middle is at `at` (m) before it is tilted.
+    /// Whether it is under a part of the base of a block, whose midpoint is at `at` (m) before it
+    /// is tilted.
     fn is_under(&self, block: &BlockScene, at: f64) -> bool {
         let half = 0.5 * block.width * self.line[2].cos();
         at + half > self.x[0] && at - half < self.x[1]
@@ -216,27 +217,32 @@ impl Top {
 }
 
 /// What a block can stand on.
-pub(crate) enum Standing<'a> {
-    /// A surface at its coordinates.
+pub(crate) enum SupportSurface<'a> {
+    /// The surface of a body with its coordinates.
     Surface(&'a dyn Subsystem<2>, &'a [f64]),
     /// A straight line through a point x, y with a slope (rad): the ground.
     Line([f64; 3]),
 }
 
-/// The configuration (X, Y, φ) of a block at the start: as placed by its mass centre, or on what it stands on.
-pub(crate) fn block_pose(scene: &Scene, block: &BlockScene, on: &Standing<'_>) -> Result<Vector3<f64>, PlacementError> {
+/// The initial configuration (X, Y, φ) of a block: as placed by its mass centre, or on what it
+/// stands on.
+pub(crate) fn block_pose(
+    scene: &Scene,
+    block: &BlockScene,
+    on: &SupportSurface<'_>,
+) -> Result<Vector3<f64>, PlacementError> {
     let (at, tilt, contact) = match block.placement {
         Placement::Free { position, angle } => return Ok(Vector3::new(position[0], position[1], angle)),
         Placement::On { at, tilt, contact, .. } => (at, tilt, contact),
     };
     let (surface, q) = match on {
-        Standing::Surface(surface, q) => (*surface, *q),
-        Standing::Line(line) => return Ok(pose_on_line(block, at, tilt, line)),
+        SupportSurface::Surface(surface, q) => (*surface, *q),
+        SupportSurface::Line(line) => return Ok(pose_on_line(block, at, tilt, line)),
     };
     let kinematics = scene.contacts[contact].kinematics;
     let (feet, count) = feet(block, at, tilt);
     let height_at = |foot: &Foot| surface_height(block, surface, q, kinematics, foot);
-    // Upright it stands on the higher of its feet.
+    // An upright block stands on the higher of its feet.
     let mut height = height_at(&feet[0])?;
     if count == 2 {
         height = height.max(height_at(&feet[1])?);
@@ -245,7 +251,8 @@ pub(crate) fn block_pose(scene: &Scene, block: &BlockScene, on: &Standing<'_>) -
     Ok(turned_about(block, &feet[0], Vector2::new(feet[0].x, height), tilt))
 }
 
-/// On a line the middle of the base is at x = `at`, the base lies along it, and the tilt is counted from it.
+/// On a line the midpoint of the base is at x = `at`, the base lies along the line, and the tilt is
+/// relative to it.
 fn pose_on_line(block: &BlockScene, at: f64, tilt: f64, &[x, y, slope]: &[f64; 3]) -> Vector3<f64> {
     let line = Pose::new(&Vector3::new(at, y + (at - x) * slope.tan(), slope));
     let (feet, count) = feet(block, 0.0, tilt);

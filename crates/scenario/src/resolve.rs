@@ -1,4 +1,5 @@
-//! From a decoded document to a resolved scene: references, choices that exclude each other, numbers that must fit.
+//! Resolves a decoded document to a scene: references, mutually exclusive keys, consistency of
+//! values.
 
 mod beam_output;
 mod beams;
@@ -17,40 +18,41 @@ use std::collections::BTreeMap;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::document::Document;
-use crate::doubts;
-use crate::scene::{ContactScene, GroundScene, Scene, SignalScene, SolverScene, Support};
+use crate::scene::{ContactScene, GroundScene, Scene, SignalScene, SolverScene, SupportingBody};
+use crate::scene_checks;
 use crate::value::Value;
 use crate::words::Word;
-use crate::{volume, wording};
+use crate::{output_size, wording};
 use teeter_contact::Law;
 use teeter_solvers::SOLVERS;
 
 pub use timing::MAX_STEPS;
 
-/// A scene with what was found on the way.
+/// A resolved scene with its findings.
 #[derive(Debug, Clone)]
 pub struct Resolved {
     /// The scene.
     pub scene: Scene,
     /// The document with every default filled in.
     pub document: Document,
-    /// What looks wrong but can be run.
+    /// Warnings: what looks wrong but can be run.
     pub warnings: Vec<Diagnostic>,
-    /// What looks wrong beforehand of what a run measures and says by itself: for who doesn't run it.
+    /// Predicted warnings that a run measures and gives itself; for use without a run.
     pub foreseen: Vec<Diagnostic>,
-    /// What is worth knowing, with nothing wrong.
+    /// Notes: information; nothing is wrong.
     pub notes: Vec<Diagnostic>,
-    /// The files that the scene names, by the path in the scene, with their bytes as they were read.
+    /// The files named by the scene, by the path in the scene, with their bytes as read.
     pub files: Vec<(String, Vec<u8>)>,
 }
 
-/// Reads a file that a scene names, by the path in the scene; or says why it can't be read, in words that end an error message.
+/// Reads a file named by a scene, by the path in the scene; an error is the end of a message that
+/// says why it can't be read.
 pub type ReadFile<'a> = dyn FnMut(&str) -> Result<Vec<u8>, String> + 'a;
 
 /// Resolves a document; `stem` is the title of a scene that has none.
 ///
 /// # Errors
-/// All that is wrong, at once.
+/// All errors at once.
 pub fn resolve(mut document: Document, stem: &str, read: &mut ReadFile<'_>) -> Result<Resolved, Diagnostics> {
     let mut resolver = Resolver::new(&document, false, read);
     let scene = resolver.scene(stem);
@@ -68,20 +70,20 @@ pub fn resolve(mut document: Document, stem: &str, read: &mut ReadFile<'_>) -> R
                     errors.push(document.error(path, error.to_string(), "give the key in the scene"));
                 }
             }
-            // Whoever runs it again has the scheme that was chosen, whatever is written out beside it.
+            // The written scene names the chosen scheme, so that running it gives the same result.
             if document.text("time.scheme") != Some(scene.time.scheme.word())
                 && let Err(error) = document.set("time.scheme", Value::Text(scene.time.scheme.word().to_owned()))
             {
                 errors.push(document.error("time.scheme", error.to_string(), "name a scheme in the scene"));
             }
-            // A default that does nothing is not written out as if it were meant.
+            // A default without effect is not written, as it would look intended.
             if !scene.time.scheme.predicts() {
                 document.forget_default("time.activation_gamma");
             }
             if errors.is_empty() {
-                let doubts = doubts::of(&scene, &document);
-                warnings.extend(doubts.warnings);
-                let (foreseen, notes) = (doubts.foreseen, doubts.notes);
+                let findings = scene_checks::check(&scene, &document);
+                warnings.extend(findings.warnings);
+                let (foreseen, notes) = (findings.foreseen, findings.notes);
                 return Ok(Resolved { scene, document, warnings, foreseen, notes, files });
             }
         }
@@ -92,7 +94,8 @@ pub fn resolve(mut document: Document, stem: &str, read: &mut ReadFile<'_>) -> R
     Err(diagnostics)
 }
 
-/// What is wrong over several keys in a document some of whose values were refused already: of those nothing is said again.
+/// Errors about several keys in a document of which some values were already refused; these are not
+/// reported again.
 pub(crate) fn mistakes(document: &Document, read: &mut ReadFile<'_>) -> Vec<Diagnostic> {
     let mut resolver = Resolver::new(document, true, read);
     let _ = resolver.scene("");
@@ -100,18 +103,18 @@ pub(crate) fn mistakes(document: &Document, read: &mut ReadFile<'_>) -> Vec<Diag
 }
 
 impl Resolved {
-    /// The scene with a step (s) in place of the accuracy that it was to be found for.
+    /// The scene with a step (s) instead of the accuracy for which it was found.
     ///
     /// # Errors
-    /// All that is wrong with it then.
+    /// All errors of the scene with that step.
     pub fn with_step(self, step: f64) -> Result<Self, Diagnostics> {
         let Self { mut document, files, scene, .. } = self;
         document.leave_out("time.accuracy");
         if let Err(error) = document.set("time.step", Value::Number(step)) {
-            let remedy = "give a step in place of the accuracy";
+            let remedy = "give a step instead of the accuracy";
             return Err(document.error("time.accuracy", error.to_string(), remedy).into());
         }
-        // A default that does nothing was left out, but is read all the same.
+        // Defaults without effect were left out, but are still read.
         if !document.has("time.activation_gamma") {
             let _ = document.set("time.activation_gamma", Value::Number(scene.time.activation_gamma));
         }
@@ -125,10 +128,10 @@ impl Resolved {
 
 struct Resolver<'a, 'f> {
     read: &'f mut ReadFile<'f>,
-    /// What was read.
+    /// The files read so far.
     files: Vec<(String, Vec<u8>)>,
     doc: &'a Document,
-    /// Whether values are missing that have their message already.
+    /// Whether values are missing for which there is already a message.
     partial: bool,
     beams: BTreeMap<&'a str, usize>,
     block_names: Vec<BlockName>,
@@ -145,7 +148,7 @@ impl<'a, 'f> Resolver<'a, 'f> {
         let block_names = BlockName::all(doc);
         let mut errors = Vec::new();
         let blocks = names::numbered(&block_names, |block| {
-            let rule = format!("there are two blocks `{}`: one of its own table, one by repeat", block.name);
+            let rule = format!("there are two blocks `{}`: one from its own table, one from repeat", block.name);
             errors.push(doc.error(&format!("block.{}", block.table), rule, "give one of them another name"));
         });
         Self {
@@ -166,9 +169,9 @@ impl<'a, 'f> Resolver<'a, 'f> {
         self.errors.push(self.doc.error(path, rule, remedy));
     }
 
-    /// A value that the decoder guarantees unless it has refused it; its absence elsewhere would be a mistake of the table
-    /// of keys, and is said as such.
-    fn need<T>(&mut self, path: &str, value: Option<T>) -> Option<T> {
+    /// A value that the decoder guarantees unless it has refused it; otherwise its absence is a bug
+    /// in the table of keys, and reported as such.
+    fn required<T>(&mut self, path: &str, value: Option<T>) -> Option<T> {
         if value.is_none() && !self.partial {
             self.error(path, "missing key", "add it");
         }
@@ -177,40 +180,40 @@ impl<'a, 'f> Resolver<'a, 'f> {
 
     fn quantity(&mut self, path: &str) -> Option<f64> {
         let value = self.doc.quantity(path);
-        self.need(path, value)
+        self.required(path, value)
     }
 
     fn number(&mut self, path: &str) -> Option<f64> {
         let value = self.doc.number(path);
-        self.need(path, value)
+        self.required(path, value)
     }
 
     fn pair(&mut self, path: &str) -> Option<[f64; 2]> {
         let value = self.doc.pair(path);
-        self.need(path, value)
+        self.required(path, value)
     }
 
     fn word(&mut self, path: &str) -> Option<String> {
         let value = self.doc.text(path).map(str::to_owned);
-        self.need(path, value)
+        self.required(path, value)
     }
 
-    /// What the word of a key means.
+    /// The choice made by the word of a key.
     fn choice<W: Word>(&mut self, path: &str) -> Option<W> {
         let word = self.word(path)?;
-        let meant = W::of(&word);
-        if meant.is_none() {
+        let bodies_matching = W::of(&word);
+        if bodies_matching.is_none() {
             let words: Vec<&str> = W::ALL.iter().map(|(word, _)| *word).collect();
-            self.error(path, format!("`{word}` is none of its words"), format!("one of {}", words.join(", ")));
+            self.error(path, format!("`{word}` is not a valid word"), format!("choose one of {}", words.join(", ")));
         }
-        meant
+        bodies_matching
     }
 
     fn scene(&mut self, stem: &str) -> Option<Scene> {
         let doc = self.doc;
         let title = doc.text("title").unwrap_or(stem).to_owned();
         let gravity = self.pair("world.gravity");
-        // Each part is resolved whatever became of the others, so that all errors are found.
+        // Each part is resolved even if others have failed, so that all errors are found.
         let signals: Vec<_> = doc.names("signal").into_iter().map(|name| self.signal(name)).collect();
         let ground = self.ground(&signals);
         let mut beams: Vec<_> = doc.names("beam").into_iter().map(|name| self.beam(name, &signals)).collect();
@@ -221,17 +224,17 @@ impl<'a, 'f> Resolver<'a, 'f> {
         self.contacts_fit_memory(&contacts);
         let names = self.block_names.clone();
         let blocks: Vec<_> = names.iter().map(|name| self.block(name, &beams, &contacts, &joined, &signals)).collect();
-        self.stand_on_something(&blocks);
-        self.gives_way(&blocks, &contacts);
+        self.check_support_cycles(&blocks);
+        self.check_contacts_can_move(&blocks, &contacts);
         let forces: Vec<_> = doc.names("force").into_iter().map(|name| self.force(name, &signals)).collect();
         let loads: Vec<_> = doc.names("load").into_iter().map(|name| self.load(name, &beams, &signals)).collect();
         if self.blocks.is_empty() && self.beams.is_empty() && !self.partial {
-            self.error("block", "the scene holds no body", "add a [block.NAME] or a [beam.NAME]");
+            self.error("block", "the scene has no bodies", "add a [block.NAME] or a [beam.NAME]");
         }
         let time = self.time(&blocks, &beams);
         if let Some(time) = &time {
-            self.refuse_springs(time.scheme, &contacts, &beams);
-            self.covered(&signals, time.steps() as f64 * time.step);
+            self.check_contact_laws(time.scheme, &contacts, &beams);
+            self.check_table_covers_run(&signals, time.steps() as f64 * time.step);
         }
         let solver = self.solver();
         let every = doc.quantity("output.every");
@@ -253,7 +256,7 @@ impl<'a, 'f> Resolver<'a, 'f> {
         Some(scene)
     }
 
-    /// The ground, if there is any; `None` where something is wrong with it.
+    /// The ground, if there is any; `None` on error.
     fn ground(&mut self, signals: &[Option<SignalScene>]) -> Option<Option<GroundScene>> {
         if !self.doc.has_table("ground") {
             return Some(None);
@@ -262,7 +265,7 @@ impl<'a, 'f> Resolver<'a, 'f> {
         Some(Some(GroundScene { incline: incline?, motion: motion? }))
     }
 
-    /// The bytes of a file that the scene names; each is read once.
+    /// The bytes of a file named by the scene; each file is read once.
     fn file(&mut self, path: &str) -> Result<Vec<u8>, String> {
         if let Some((_, bytes)) = self.files.iter().find(|(read, _)| read == path) {
             return Ok(bytes.clone());
@@ -302,20 +305,21 @@ impl<'a, 'f> Resolver<'a, 'f> {
         }
     }
 
-    /// What a name stands for, as something to touch.
-    fn surface(&self, name: &str) -> Option<Support> {
+    /// The body with this name that a block can touch, except blocks.
+    fn surface(&self, name: &str) -> Option<SupportingBody> {
         if name == "ground" {
-            return self.doc.has_table("ground").then_some(Support::Ground);
+            return self.doc.has_table("ground").then_some(SupportingBody::Ground);
         }
-        self.beams.get(name).copied().map(Support::Beam)
+        self.beams.get(name).copied().map(SupportingBody::Beam)
     }
 
-    /// What a block can stand on.
-    fn support(&self, name: &str) -> Option<Support> {
-        self.surface(name).or_else(|| self.blocks.get(name).copied().map(Support::Block))
+    /// The body with this name that a block can stand on.
+    fn support(&self, name: &str) -> Option<SupportingBody> {
+        self.surface(name).or_else(|| self.blocks.get(name).copied().map(SupportingBody::Block))
     }
 
-    /// A name that is no body of the scene; nothing is said where bodies may have been lost.
+    /// Reports a name that is not a body of the scene, unless bodies may have been lost to other
+    /// errors.
     fn no_body(&mut self, path: &str, name: &str) {
         if ["beam", "block", "ground"].iter().any(|group| self.doc.is_refused(group)) {
             return;
@@ -334,29 +338,26 @@ impl<'a, 'f> Resolver<'a, 'f> {
             names.push("ground");
         }
         if names.is_empty() {
-            "the scene has none".to_owned()
+            "the scene has no bodies".to_owned()
         } else {
             format!("bodies of the scene: {}", listed(&names))
         }
     }
 
-    /// Refuses more contacts than whose dense operator memory can be asked for: a run would end in the middle, without a word.
+    /// Refuses scenes whose dense operator would take too much memory, as the run would be killed
+    /// without a message.
     fn contacts_fit_memory(&mut self, contacts: &[Option<ContactScene>]) {
-        // Of blocks in a plane few touch each other at a time.
+        // In a plane only few of the blocks touch each other at a time.
         let between = contacts.iter().flatten().filter(|contact| contact.other_block().is_some()).count();
         let pairs = contacts.len() - between + between.min(3 * self.block_names.len());
-        let most = volume::operator_bytes(2 * pairs);
-        if most > volume::MOST_OPERATOR_BYTES {
+        let most = output_size::operator_bytes(2 * pairs);
+        if most > output_size::MOST_OPERATOR_BYTES {
             let rule = format!(
-                "{pairs} contacts of blocks, each on two corners, take {} of memory for their operator, over the limit of {}",
+                "{pairs} contacts of blocks, with two corners each, need {} of memory for their operator, over the limit of {}",
                 wording::bytes(most),
-                wording::bytes(volume::MOST_OPERATOR_BYTES)
+                wording::bytes(output_size::MOST_OPERATOR_BYTES)
             );
-            self.error(
-                "contact",
-                rule,
-                "take fewer blocks, or run those that don't feel each other in scenes of their own",
-            );
+            self.error("contact", rule, "use fewer blocks, or separate scenes for blocks that don't interact");
         }
     }
 
@@ -366,27 +367,27 @@ impl<'a, 'f> Resolver<'a, 'f> {
         // A block rests on two corners, so three pairs can have six contacts at once.
         let pairs = doc.names("contact").len();
         if let Some(most) = known.and_then(|info| info.most_contacts).filter(|most| 2 * pairs > *most) {
-            let rule = format!("takes up to {most} contacts at once, but {pairs} pairs can have {}", 2 * pairs);
-            let remedy = "take auto or pgs: a step with more contacts is not solved, and bodies fall through";
+            let rule = format!("solves up to {most} contacts at once, but {pairs} pairs can have {}", 2 * pairs);
+            let remedy = "use auto or pgs: a step with more contacts is not solved, and bodies fall through each other";
             self.warnings.push(doc.error("solver.method", rule, remedy).as_warning());
         }
         if known.is_some_and(|info| info.law == Law::Convex) && pairs > 0 {
-            let rule = "solves the associated (convex) law, not Coulomb's: a contact that slides lifts off, by its friction coefficient times \
+            let rule = "solves the associated (convex) law, not Coulomb's: a sliding contact separates, at its friction coefficient times \
                         its sliding speed";
-            let remedy = "take auto for Coulomb's law; the residuals of this run are told by Coulomb's law too";
+            let remedy = "use auto for Coulomb's law; the residuals of this run are also computed for Coulomb's law";
             self.warnings.push(doc.error("solver.method", rule.to_owned(), remedy).as_warning());
         }
         let max_iterations = doc.integer("solver.max_iterations").and_then(|n| u32::try_from(n).ok());
         Some(SolverScene {
             method: self.word("solver.method")?,
             tolerance: self.number("solver.tolerance")?,
-            max_iterations: self.need("solver.max_iterations", max_iterations)?,
+            max_iterations: self.required("solver.max_iterations", max_iterations)?,
             require_convergence: doc.flag("solver.require_convergence").unwrap_or(false),
         })
     }
 }
 
-/// Names in a message, the first of them where there are many.
+/// Names in a message, only the first ones if there are many.
 fn listed(names: &[&str]) -> String {
     const MOST: usize = 20;
     match names.get(..MOST) {

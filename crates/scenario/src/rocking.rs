@@ -1,25 +1,26 @@
-//! What a step does to a block that is let go tilted, before anything is run.
+//! Predicts, before a run, the effect of the step on a block released at a tilt.
 //!
-//! Each impact is caught up to a step late, so the foot is off by up to h b |ω|, b the block's width. Added up over the impacts, carried on by the swings after them and
-//! relative to the swing b Δφ this is what a run measures as `under-resolved` (`docs/resolution.md`). Housner's block (1963, doi 10.1785/BSSA0530020403) says
-//! beforehand how many impacts there are and how fast.
+//! Each impact occurs up to a step late, so the foot is off by up to h b |ω|, b the block's width.
+//! Summed over the impacts, carried on by the swings after them and relative to the swing b Δφ,
+//! this is what a run measures as `under-resolved` (`docs/resolution.md`). Housner's formulas
+//! (1963, doi 10.1785/BSSA0530020403) predict number and speed of the impacts.
 
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;
-use crate::scene::{ContactScene, Placement, Scene, Support};
+use crate::scene::{ContactScene, Placement, Scene, SupportingBody};
 use teeter_integrator::ImpactLaw;
 
-/// A sum above this part of the swing: on a beam a run's own is larger than on rigid ground, and a block that overturns has few impacts, so only what is
-/// twice as much as a run may show is warned of before it.
+/// A sum above this fraction of the swing gives a warning: on a beam the sum is smaller than
+/// predicted, and a block that overturns has few impacts, so the limit is twice that of a run.
 const COARSE: f64 = 0.02;
 
-/// Impacts that are counted at the most.
+/// Most impacts that are counted.
 const MOST_IMPACTS: u64 = 1000;
 
-/// A swing that is this part of the first is at rest.
+/// Swings below this fraction of the first count as rest.
 const STILL: f64 = 1e-3;
 
-/// A block whose impacts the step makes too coarse.
+/// Warns of a block whose impacts the step doesn't resolve.
 pub(crate) fn coarse(scene: &Scene, document: &Document) -> Option<Diagnostic> {
     if scene.time.scheme.locates() {
         return None;
@@ -33,21 +34,22 @@ pub(crate) fn coarse(scene: &Scene, document: &Document) -> Option<Diagnostic> {
         return None;
     }
     let rule = format!(
-        "under-resolved: `{}` rocks with some {impacts} impacts, each up to a step late, {:.0} % of its swing together: the motion is likely off by more \
+        "under-resolved: `{}` rocks with some {impacts} impacts, each up to a step late, together {:.0} % of its swing: the motion is likely off by more \
          than 10 %",
         block.name,
         100.0 * part
     );
     let step = 0.25 * COARSE / part * scene.time.step;
-    let remedy = format!("take a step of at most {step:.0e} s; `teeter tradeoff` measures what accuracy it gives");
+    let remedy = format!("use a step of at most {step:.0e} s; `teeter tradeoff` measures the accuracy");
     Some(document.error("time.step", rule, remedy).as_warning())
 }
 
-/// Whether a block does as Housner's does: nothing but its weight moves it, on level ground or a beam that doesn't let it slide or bounce.
+/// Whether a block behaves like Housner's: only its weight acts on it, on level ground or a beam
+/// where it doesn't slide or bounce.
 fn is_housners(scene: &Scene, contact: &ContactScene) -> bool {
     let block = &scene.blocks[contact.block];
     let inclined =
-        contact.surface == Support::Ground && scene.ground.as_ref().is_some_and(|ground| ground.incline != 0.0);
+        contact.surface == SupportingBody::Ground && scene.ground.as_ref().is_some_and(|ground| ground.incline != 0.0);
     let level = !inclined && scene.gravity[0] == 0.0;
     let law = &contact.law;
     let compliant = matches!(law.impact, ImpactLaw::KelvinVoigt { .. } | ImpactLaw::HuntCrossley { .. });
@@ -56,7 +58,8 @@ fn is_housners(scene: &Scene, contact: &ContactScene) -> bool {
     level && !(bounces || slides || scene.is_driven(contact))
 }
 
-/// The number of impacts of a block let go tilted, and how late they are, as a part of its swing: what a run measures as `under-resolved`.
+/// The number of impacts of a block released at a tilt, and their total delay as a fraction of its
+/// swing: what a run measures as `under-resolved`.
 fn late(scene: &Scene, contact: &ContactScene) -> Option<(u64, f64)> {
     let block = &scene.blocks[contact.block];
     let Placement::On { tilt, .. } = block.placement else { return None };
@@ -73,7 +76,7 @@ fn late(scene: &Scene, contact: &ContactScene) -> Option<(u64, f64)> {
     if !(p > 0.0 && p.is_finite()) {
         return None;
     }
-    // Housner's coefficient of restitution. All angles are parts of the critical one.
+    // Housner's coefficient of restitution. All angles are relative to the critical one.
     let kept = 1.0 - 1.5 * critical.sin().powi(2);
     let quarter = |amplitude: f64| (1.0 - amplitude).recip().acosh() / p;
     let (mut t, mut impacts) = (quarter(amplitude), 0);

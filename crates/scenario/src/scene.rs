@@ -1,4 +1,4 @@
-//! A scene resolved: plain SI numbers, references checked, nothing left to guess.
+//! A resolved scene: plain SI numbers, checked references, all defaults filled in.
 
 mod beam_output;
 mod history;
@@ -15,9 +15,9 @@ use teeter_rigid::{MassProperties, Rectangle, RigidError};
 /// A scene that can be run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
-    /// What it is called.
+    /// Its title.
     pub title: String,
-    /// How long, in which steps, by which scheme.
+    /// Duration, steps and scheme.
     pub time: Time,
     /// Acceleration of gravity, m/s².
     pub gravity: [f64; 2],
@@ -41,14 +41,14 @@ pub struct Scene {
     pub every: Option<f64>,
 }
 
-/// How a scene is stepped.
+/// Time stepping of a scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Time {
-    /// The time asked for, s.
+    /// The given end time, s.
     pub end: f64,
-    /// Step size, s. Where an accuracy is asked for, one to go on with until a step is found.
+    /// Step size, s. If an accuracy is given, a provisional one until a step is found.
     pub step: f64,
-    /// The accuracy that a step is to be found for; `None` once there is a step.
+    /// The accuracy for which a step must be found; `None` once there is a step.
     pub accuracy: Option<f64>,
     /// The scheme.
     pub scheme: SchemeName,
@@ -63,7 +63,8 @@ pub struct Time {
 }
 
 impl Scene {
-    /// The motions of all that can be moved as prescribed, whether it is or not, with their tables: blocks, beams' supports, ground.
+    /// The prescribed motions, possibly empty, of all blocks, beam supports and the ground, with
+    /// their tables.
     pub fn motions(&self) -> impl Iterator<Item = (String, &MotionScene)> {
         let blocks = self.blocks.iter().map(|block| (format!("block.{}.motion", block.name), &block.motion));
         let beams = self.beams.iter().map(|beam| (format!("beam.{}.motion", beam.name), &beam.motion));
@@ -71,26 +72,27 @@ impl Scene {
         blocks.chain(beams).chain(ground)
     }
 
-    /// The name of what a block can stand on or touch.
+    /// The name of a body that a block can stand on or touch.
     #[must_use]
-    pub fn name_of(&self, support: Support) -> &str {
+    pub fn name_of(&self, support: SupportingBody) -> &str {
         match support {
-            Support::Ground => "ground",
-            Support::Beam(beam) => &self.beams[beam].name,
-            Support::Block(block) => &self.blocks[block].name,
+            SupportingBody::Ground => "ground",
+            SupportingBody::Beam(beam) => &self.beams[beam].name,
+            SupportingBody::Block(block) => &self.blocks[block].name,
         }
     }
 
-    /// Whether anything but weight moves the block of a contact: its own start or motion, a force on it, or what carries it.
+    /// Whether anything but weight moves the block of a contact: its initial velocity or prescribed
+    /// motion, a force, or the body that carries it.
     pub(crate) fn is_driven(&self, contact: &ContactScene) -> bool {
         let block = &self.blocks[contact.block];
         let carried = match contact.surface {
-            Support::Ground => self.ground.as_ref().is_some_and(|ground| ground.motion.is_given()),
-            Support::Beam(beam) => {
+            SupportingBody::Ground => self.ground.as_ref().is_some_and(|ground| ground.motion.is_given()),
+            SupportingBody::Beam(beam) => {
                 self.beams[beam].motion.is_given() || self.loads.iter().any(|load| load.beam == beam)
             }
-            // It moves as it likes.
-            Support::Block(_) => true,
+            // Its motion is unknown.
+            SupportingBody::Block(_) => true,
         };
         let pushed = self.forces.iter().any(|force| force.block == contact.block);
         carried || pushed || block.motion.is_given() || block.spin != 0.0 || block.velocity != [0.0; 2]
@@ -100,7 +102,7 @@ impl Scene {
 impl Time {
     /// Steps of the run: up to the first time at or past `end`.
     ///
-    /// They follow from `end` and `step`, whoever changes those:
+    /// They follow from `end` and `step`, also when these are changed:
     ///
     /// ```
     /// # let text = "[time]\nend = '0.5 s'\nstep = '1 ms'\n[ground]\n[material.m]\ndensity = '1 kg/m^3'\n[block.b]\n\
@@ -114,13 +116,14 @@ impl Time {
     #[must_use]
     pub fn steps(&self) -> u64 {
         let steps = self.end / self.step;
-        // Up to rounding of the quotient a whole number of steps is one; of very many, a thousandth of a step is more than that.
+        // A whole number of steps up to rounding of the quotient counts as one; for very many steps
+        // a thousandth of a step is more than that.
         let whole = steps.round();
         let rounding = (1e-9 * whole).min(1e-3);
         (if (steps - whole).abs() <= rounding { whole } else { steps.ceil() }) as u64
     }
 
-    /// The θ by which the scheme steps: the closed one has ½, whatever is given.
+    /// The θ that the scheme uses: ½ for all but `moreau-jean`, whatever is given.
     #[must_use]
     pub fn theta_of_scheme(&self) -> f64 {
         if self.scheme.is_trapezoidal() { 0.5 } else { self.theta }
@@ -136,20 +139,20 @@ pub enum SchemeName {
     MoreauJean,
     /// The same with contacts that stay closed by a flag.
     MoreauJeanClosed,
-    /// The closed one, divided where a contact closes.
+    /// The closed one, with steps divided where a contact closes.
     MoreauJeanLocated,
     /// Smooth motion of high order between events.
     EventDriven,
-    /// Contact with beams as a force, in steps halved where contacts close.
+    /// Contact with beams as a force, with steps halved where contacts close.
     Resolved,
-    /// The closed one, with places projected onto what contacts allow.
+    /// The closed one, with positions projected to remove penetrations.
     MoreauJeanProjected,
     /// Generalized-α with impacts.
     GeneralizedAlpha,
 }
 
 impl SchemeName {
-    /// The word for it in scenes and summaries.
+    /// Its word in scenes and summaries.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -163,7 +166,7 @@ impl SchemeName {
         }
     }
 
-    /// Whether it takes no θ but ½, or none.
+    /// Whether it allows only θ = ½, or has no θ.
     #[must_use]
     pub fn is_trapezoidal(self) -> bool {
         match self {
@@ -173,8 +176,8 @@ impl SchemeName {
         }
     }
 
-    /// The θ with which prescribed velocities at the end of a step are means about it; `None` where
-    /// they are those of that time.
+    /// The θ of the mean that gives prescribed velocities at the end of a step; `None` if they are
+    /// those at that time.
     #[must_use]
     pub fn drives_about(self, theta: f64) -> Option<f64> {
         match self {
@@ -185,7 +188,7 @@ impl SchemeName {
         }
     }
 
-    /// Whether it takes contacts with duration.
+    /// Whether it supports compliant contacts.
     #[must_use]
     pub fn takes_springs(self) -> bool {
         match self {
@@ -195,15 +198,14 @@ impl SchemeName {
         }
     }
 
-    /// Whether contact with a beam is a force that holds the gap closed, so that there is nothing that
-    /// could be given back.
+    /// Whether contact with a beam is a force that keeps the gap closed, so that there is no
+    /// restitution.
     #[must_use]
     pub fn holds_beams(self) -> bool {
         self == Self::Resolved
     }
 
-    /// Whether it takes steps of its own within those of the scene, so that these only say when it
-    /// reports.
+    /// Whether it takes its own steps within those of the scene, which only determine the output.
     #[must_use]
     pub fn has_own_steps(self) -> bool {
         match self {
@@ -213,7 +215,7 @@ impl SchemeName {
         }
     }
 
-    /// Whether it takes beams held along their axis.
+    /// Whether it supports beams held along their axis.
     #[must_use]
     pub fn takes_held_beams(self) -> bool {
         match self {
@@ -232,7 +234,7 @@ impl SchemeName {
         }
     }
 
-    /// Whether impacts have times of their own, rather than those of the steps in which they fall.
+    /// Whether impacts have their own times, rather than those of steps.
     #[must_use]
     pub fn locates(self) -> bool {
         match self {
@@ -242,8 +244,8 @@ impl SchemeName {
         }
     }
 
-    /// Whether no contact gives energy, but for contacts with what is moved as prescribed. A
-    /// projection may: it lifts what has sunk in.
+    /// Whether contacts generate no energy, except those with bodies of prescribed motion. A
+    /// projection may, as it lifts blocks that have penetrated.
     #[must_use]
     pub fn keeps_energy(self) -> bool {
         match self {
@@ -256,7 +258,7 @@ impl SchemeName {
 /// The rigid ground of a scene.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct GroundScene {
-    /// Its slope at the start, before a given turn, rad.
+    /// Its initial slope, before any prescribed rotation, rad.
     pub incline: f64,
     /// Its prescribed motion.
     pub motion: MotionScene,
@@ -267,29 +269,29 @@ pub struct GroundScene {
 pub struct BeamScene {
     /// Its name.
     pub name: String,
-    /// Its numbers.
+    /// Its specification.
     pub spec: teeter_beam::BeamSpec,
-    /// Thickness, m; 0 where a section that is given directly has none.
+    /// Thickness, m; 0 for a section given directly without one.
     pub thickness: f64,
-    /// Stress at which its material yields, Pa.
+    /// Yield strength of its material, Pa.
     pub yield_strength: Option<f64>,
-    /// Whether contacts lie on the top fibre, not on the axis.
+    /// Whether contacts are on the top fibre, not on the axis.
     pub top: bool,
     /// Whether it starts in equilibrium under the blocks that stand on it.
     pub static_start: bool,
-    /// The coordinates of the shape that it starts in; empty for none of its own.
+    /// The coordinates of its given initial shape; empty without one.
     pub shape: Vec<f64>,
     /// Whether gravity acts on it.
     pub self_weight: bool,
-    /// In which shapes it moves; `None` for those of all its nodes.
+    /// Its modal basis; `None` if it moves in the coordinates of all its nodes.
     pub reduction: Option<Reduction>,
-    /// How its matrices answer forces and contacts.
+    /// How W is applied to forces and contacts.
     pub backend: teeter_integrator::WBackend,
-    /// Place of its left end, m.
+    /// Position of its left end, m.
     pub position: [f64; 2],
-    /// Places along the span whose deflection is written, m.
+    /// Positions of the probes along the span, m.
     pub probes: Vec<f64>,
-    /// What is written of what it bears.
+    /// Its output of section forces and reactions.
     pub output: BeamOutput,
     /// The prescribed motion of its supports; the third axis has none.
     pub motion: MotionScene,
@@ -300,11 +302,12 @@ pub struct BeamScene {
 pub struct BlockScene {
     /// Its name.
     pub name: String,
-    /// Width b, m; of a polygon the largest of its extents across its sides.
+    /// Width b, m; for a polygon the largest of its extents across its sides.
     pub width: f64,
-    /// Height H, m; of a polygon the smallest of its extents across its sides.
+    /// Height H, m; for a polygon the smallest of its extents across its sides.
     pub height: f64,
-    /// Corners about its mass centre, counter-clockwise, m, of a block that is no rectangle of these sides.
+    /// Corners of a polygon relative to its mass centre, counter-clockwise, m; `None` for a
+    /// rectangle with these sides.
     pub polygon: Option<Arc<[Vector2<f64>]>>,
     /// Depth out of the plane, m.
     pub depth: f64,
@@ -316,7 +319,7 @@ pub struct BlockScene {
     pub velocity: [f64; 2],
     /// Angular velocity, rad/s.
     pub spin: f64,
-    /// What is prescribed of its motion; the rest is free.
+    /// Its prescribed motion; the rest is free.
     pub motion: MotionScene,
 }
 
@@ -333,21 +336,22 @@ pub enum Placement {
     /// Standing on a surface.
     On {
         /// What it stands on.
-        support: Support,
-        /// x of the middle of its base before it is tilted, m; of a stacked one from the middle of the side below, along it.
+        support: SupportingBody,
+        /// x of the midpoint of its base before it is tilted, m; for a stacked block relative to
+        /// the midpoint of the side below, along it.
         at: f64,
-        /// Whether it was put on the block below by `stacked`.
+        /// Whether it is placed on the block below by `stacked`.
         stacked: bool,
         /// Turn about the corner that it stays on, rad.
         tilt: f64,
-        /// The contact that joins the two.
+        /// The contact between the two.
         contact: usize,
     },
 }
 
-/// What a block can stand on or touch.
+/// A body that a block can stand on or touch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Support {
+pub enum SupportingBody {
     /// The ground.
     Ground,
     /// A beam, by its number in the scene.
@@ -363,13 +367,13 @@ pub struct ContactScene {
     pub name: String,
     /// The bodies by name, as in the file.
     pub between: [String; 2],
-    /// The block, by its number in the scene; of two, the one that is named first.
+    /// The block, by its number in the scene; the first of two.
     pub block: usize,
-    /// What it touches.
-    pub surface: Support,
-    /// Friction, and what happens along the normal.
+    /// The body that it touches.
+    pub surface: SupportingBody,
+    /// Friction and the law along the normal.
     pub law: teeter_integrator::PairLaw,
-    /// How the surface's deflection enters.
+    /// Whether contact frames follow the deflection of the surface.
     pub kinematics: teeter_detect::Kinematics,
 }
 
@@ -378,13 +382,13 @@ impl ContactScene {
     #[must_use]
     pub fn other_block(&self) -> Option<usize> {
         match self.surface {
-            Support::Block(other) => Some(other),
-            Support::Ground | Support::Beam(_) => None,
+            SupportingBody::Block(other) => Some(other),
+            SupportingBody::Ground | SupportingBody::Beam(_) => None,
         }
     }
 
-    /// Whether it gives back what struck it, beyond what its bodies' own elasticity does: by
-    /// restitution, or by a law with duration.
+    /// Whether its law causes a rebound, beyond the elasticity of the bodies: by restitution, or by
+    /// a compliant law.
     #[must_use]
     pub fn gives_back(&self) -> bool {
         use teeter_integrator::ImpactLaw;
@@ -408,7 +412,7 @@ pub struct SolverScene {
 }
 
 impl BeamScene {
-    /// Whether its theory is Timoshenko's.
+    /// Whether it uses Timoshenko's theory.
     #[must_use]
     pub fn is_sheared(&self) -> bool {
         self.spec.section.shear_stiffness.is_finite()
@@ -436,7 +440,8 @@ impl BlockScene {
         }
     }
 
-    /// The corners about its mass centre, counter-clockwise, m; those of a rectangle from the bottom left.
+    /// The corners relative to its mass centre, counter-clockwise, m; for a rectangle from the
+    /// bottom left.
     #[must_use]
     pub fn corners(&self) -> Vec<Vector2<f64>> {
         let (x, y) = (0.5 * self.width, 0.5 * self.height);
@@ -446,13 +451,13 @@ impl BlockScene {
         )
     }
 
-    /// How many corners it has.
+    /// Number of corners.
     #[must_use]
     pub fn corner_count(&self) -> usize {
         self.polygon.as_ref().map_or(Rectangle::CORNER_NAMES.len(), |corners| corners.len())
     }
 
-    /// What a corner is called in tables: bottom-left and so on, or corner-1 and so on of a polygon.
+    /// The name of a corner in tables: bottom-left and so on, or corner-1 and so on for a polygon.
     #[must_use]
     pub fn corner_name(&self, corner: usize) -> String {
         match &self.polygon {
@@ -470,7 +475,7 @@ impl BlockScene {
         }
     }
 
-    /// The critical angle α = atan(b/H), rad; `None` for a polygon, which has no base of its own.
+    /// The critical angle α = atan(b/H), rad; `None` for a polygon, which has no base.
     #[must_use]
     pub fn critical_angle(&self) -> Option<f64> {
         self.polygon.is_none().then(|| self.width.atan2(self.height))

@@ -1,13 +1,13 @@
-//! A resolved scene made into a model and its start: ready to run in memory.
+//! Builds the model and initial state of a resolved scene, ready to run in memory.
 
-use crate::carrier::{Carrier, carriers};
 use crate::driven::{self, BeamModel};
 use crate::opening::{OPEN_GAP, openings};
-use crate::overlap::{Box2, Outline, Overlap, deepest_overlap};
-use crate::placement::{PlacementError, starting_poses};
-use crate::required::{AtRest, Extent, Required};
-use crate::scene::{Scene, SchemeName, Support, Time};
-use crate::settling::{Start, StaticStart};
+use crate::overlap::{Outline, Overlap, PlacedOutline, deepest_overlap};
+use crate::placement::PlacementError;
+use crate::required::{Extent, Required, RestingBody};
+use crate::scene::{BlockScene, Scene, SchemeName, SupportingBody, Time};
+use crate::static_start::{InitialConfiguration, StaticStart};
+use crate::tilt_reference::{TiltReference, tilt_references};
 use nalgebra::Vector2;
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -27,57 +27,57 @@ use teeter_rigid::RigidError;
 
 pub use crate::layout::{BeamPlace, BlockPlace, ContactPoint, Layout, PairPlace};
 
-/// Why a scene can't be made into a model.
+/// Why the model of a scene can't be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BuildError {
-    /// A block's numbers.
+    /// Invalid values of a block.
     #[error("block `{0}`: {1}")]
     Block(String, RigidError),
-    /// A beam's numbers.
+    /// Invalid values of a beam.
     #[error("beam `{0}`: {1}")]
     Beam(String, BeamError),
-    /// The shapes in which a beam is to move.
+    /// The modal basis of a beam can't be found.
     #[error("beam `{0}`: {1}")]
     Modes(String, ModalError),
-    /// A start that doesn't exist.
+    /// There is no initial state.
     #[error(transparent)]
     Placement(#[from] PlacementError),
-    /// A contact law.
+    /// An invalid contact law.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// The initial state.
+    /// An invalid initial state.
     #[error(transparent)]
     State(#[from] StateError),
-    /// Parts that don't belong together.
+    /// Parts that don't match.
     #[error(transparent)]
     Mismatch(#[from] Mismatch),
-    /// The scheme's settings.
+    /// Invalid settings of the scheme.
     #[error(transparent)]
     Scheme(#[from] SettingError),
-    /// A solver that is not built in.
+    /// An unknown solver.
     #[error("there is no solver `{0}`")]
     Solver(String),
     /// A corner that starts below its surface.
     #[error(
-        "block `{block}`: the corner {corner} starts {depth:e} m below the surface of `{surface}`; up to {tolerance:e} m is taken for rounding"
+        "block `{block}`: the corner {corner} starts {depth:e} m below the surface of `{surface}`; up to {tolerance:e} m are allowed for rounding"
     )]
     Penetration {
         /// The block.
         block: String,
         /// The corner.
         corner: String,
-        /// What it is in.
+        /// The body that it penetrates.
         surface: String,
-        /// How deep, m.
+        /// Depth, m.
         depth: f64,
-        /// What is allowed, m.
+        /// Largest allowed depth, m.
         tolerance: f64,
     },
-    /// A shape of a block.
+    /// An invalid shape of a block.
     #[error(transparent)]
     Shape(#[from] ShapeError),
-    /// Shapes and pairs that don't belong together.
+    /// Shapes and pairs that don't match.
     #[error(transparent)]
     Wiring(#[from] WiringError),
     /// Two blocks that start in the same place.
@@ -87,7 +87,7 @@ pub enum BuildError {
         first: String,
         /// The other one.
         second: String,
-        /// How far one must be moved to be clear of the other, m.
+        /// Displacement needed to separate them, m.
         depth: f64,
     },
 }
@@ -100,9 +100,9 @@ pub struct Simulation {
     pub state: State,
     /// Who is where.
     pub layout: Layout,
-    /// How far it runs.
+    /// When it ends.
     pub plan: Plan,
-    /// What was found for the beams that start static; `None` where none does.
+    /// The result for beams with a static start; `None` without any.
     pub static_start: Option<StaticStart>,
     scheme: Box<dyn Scheme<2>>,
     work: Workspace<2>,
@@ -117,17 +117,19 @@ impl std::fmt::Debug for Simulation {
 }
 
 impl Simulation {
-    /// Makes the model of a scene, and its start. What the scene can't need from there on is left out of the model (`docs/required.md`):
-    /// who starts from another state takes [`Simulation::with_extent`] and the full model.
+    /// Builds the model of a scene and its initial state. What can't affect the motion from there
+    /// on is left out of the model (`docs/required.md`); to start from another state, use
+    /// [`Simulation::with_extent`] and the full model.
     ///
     /// # Errors
-    /// If a number doesn't make sense to a layer, a beam has no equilibrium, a corner starts inside a surface or a block inside
-    /// another.
+    /// If a value is invalid, a beam has no equilibrium, or a corner starts inside a surface or a
+    /// block inside another.
     pub fn new(scene: &Scene) -> Result<Self, BuildError> {
         Self::with_solver(scene, |solver| solver)
     }
 
-    /// As [`Simulation::new`]; `wrap` may put something around the scene's contact solver, such as one that watches it.
+    /// As [`Simulation::new`]; `wrap` may wrap the scene's contact solver, for example to observe
+    /// it.
     ///
     /// # Errors
     /// As [`Simulation::new`].
@@ -138,7 +140,7 @@ impl Simulation {
         Self::with_extent(scene, Extent::Required, wrap)
     }
 
-    /// As [`Simulation::with_solver`], with as much of the scene as asked for.
+    /// As [`Simulation::with_solver`], with the given extent of the model.
     ///
     /// # Errors
     /// As [`Simulation::new`].
@@ -147,64 +149,30 @@ impl Simulation {
         extent: Extent,
         wrap: impl FnOnce(Box<dyn ContactSolver<2>>) -> Box<dyn ContactSolver<2>>,
     ) -> Result<Self, BuildError> {
-        let mut blocks = Vec::new();
-        for block in &scene.blocks {
-            let named = |error| BuildError::Block(block.name.clone(), error);
-            let mass = block.mass_properties().map_err(named)?;
-            blocks.push((Block::within(mass, block.radius()), block.corners()));
-        }
-        let mut beams = Vec::new();
-        for (number, scene_beam) in scene.beams.iter().enumerate() {
-            let mut model = BeamModel::new(scene_beam)?;
-            model.displaced = model.body(scene, number)?.displacements(0.0);
-            beams.push(model);
-        }
-        let ground = scene.ground.as_ref().map(driven::ground);
-        let ground_start = ground.as_ref().map(|ground| ground.coordinates(0.0)).unwrap_or_default();
+        let blocks = block_bodies(scene)?;
+        let beams = beam_models(scene)?;
+        let ground_start = scene.ground.as_ref().map(|of| driven::ground(of).coordinates(0.0)).unwrap_or_default();
         let required = Required::all(scene);
-        let mut assembled = assemble(scene, &blocks, &beams, &required)?;
+        let assembled = assemble(scene, &blocks, &beams, &required)?;
         let mut layout = lay_out(scene, &beams, &assembled, required);
-        let slope = layout.ground.as_ref().map(|ground| ground.start + 2);
-        let all_carriers = carriers(scene, &layout.blocks, slope);
-        for (place, carrier) in layout.blocks.iter_mut().zip(all_carriers) {
-            place.carrier = carrier;
-        }
-        let dofs = assembled.model.size().q;
-        let incline = scene.ground.as_ref().map_or(0.0, |ground| ground.incline);
-        let line = if let [x, y, slope] = *ground_start { [x, y, slope] } else { [0.0, 0.0, incline] };
 
-        let deflections: Vec<Vec<f64>> =
-            scene.beams.iter().zip(&beams).map(|(of, model)| model.coordinates(&of.shape)).collect();
-        let poses = starting_poses(scene, &beams, &deflections, line)?;
-        let mut start =
-            Start { blocks: &blocks, poses, beams: &beams, deflections, ground: &ground_start, pressed: Vec::new() };
+        let mut start = InitialConfiguration::placed(scene, &blocks, &beams, &ground_start)?;
         let static_start = start.settle(scene)?;
-        let Start { poses, deflections, pressed, .. } = start;
-        for (k, pressed) in pressed {
+        let (q, v) = start.coordinates(scene, assembled.model.size().q);
+        for (k, pressed) in start.pressed {
             layout.beams[k].pressed = Some(pressed);
         }
-
-        let (mut q, mut v) = (Vec::with_capacity(dofs), Vec::with_capacity(dofs));
-        for (pose, block) in poses.iter().zip(&scene.blocks) {
-            q.extend(pose.iter());
-            v.extend([block.velocity[0], block.velocity[1], block.spin]);
-        }
-        for (deflection, model) in deflections.iter().zip(&beams) {
-            q.extend(deflection.iter().chain(&model.displaced));
-        }
-        q.extend(&ground_start);
-        v.resize(dofs, 0.0);
-
         check_start(scene, &assembled.model, &layout, &q)?;
         check_apart(scene, &q)?;
+
+        let mut model = assembled.model;
         if extent == Extent::Required {
-            layout.required = Required::of(scene, &layout, &assembled.model, &q, &v);
+            layout.required = Required::of(scene, &layout, &model, &q, &v);
             if !layout.required.removed.is_empty() {
-                // With everything in the same place.
-                assembled = assemble(scene, &blocks, &beams, &layout.required)?;
+                // The layout of the state stays the same.
+                model = assemble(scene, &blocks, &beams, &layout.required)?.model;
             }
         }
-        let model = assembled.model;
 
         let state = State::new(&model, &q, &v, scene.time.step)?;
         let solver = teeter_solvers::plane_solver(&scene.solver.method)
@@ -227,13 +195,14 @@ impl Simulation {
         self.scheme.name()
     }
 
-    /// How much work its steps have taken so far, by count.
+    /// Work counts of its steps so far.
     #[must_use]
     pub fn work_counts(&self) -> WorkCounts {
         self.work.counts
     }
 
-    /// Velocities of the model that something moves: what supports hold, and beams at rest, have a place in the state only.
+    /// Number of free velocities of the model, without those of held dofs and of beams at rest,
+    /// which are only stored in the state.
     #[must_use]
     pub fn dofs(&self) -> usize {
         let held = |k: usize, place: &BeamPlace| match self.layout.required.rests(k) {
@@ -243,7 +212,8 @@ impl Simulation {
         self.model.size().v - self.layout.beams.iter().enumerate().map(|(k, place)| held(k, place)).sum::<usize>()
     }
 
-    /// Runs to the plan's end, showing every step to the observers. The state is left at the last step taken.
+    /// Runs to the plan's end, passing every step to the observers. The state is that after the
+    /// last step taken.
     ///
     /// # Errors
     /// If an observer fails.
@@ -252,7 +222,8 @@ impl Simulation {
         self.run_by(&plan, observers)
     }
 
-    /// As [`Simulation::run`], but to time `t` (s) in place of the plan's end: the last step is cut short where it would go past.
+    /// As [`Simulation::run`], but to time `t` (s) instead of the plan's end: the last step is
+    /// shortened if necessary.
     ///
     /// # Errors
     /// If an observer fails.
@@ -265,7 +236,7 @@ impl Simulation {
         run(&self.model, self.scheme.as_mut(), &mut self.state, &mut self.work, plan, observers)
     }
 
-    /// Takes one step, whatever the plan says, and tells what happened in it.
+    /// Takes one step, independent of the plan, and returns its report.
     ///
     /// ```
     /// # use teeter_scenario::simulation::Simulation;
@@ -295,7 +266,7 @@ impl Simulation {
     /// ```
     ///
     /// # Errors
-    /// If the step can't be taken: the state is as it was.
+    /// If the step can't be taken; the state is then unchanged.
     pub fn step(&mut self) -> Result<StepReport<'_, 2>, StepError> {
         let Self { model, state, scheme, work, started, .. } = self;
         if !*started {
@@ -305,14 +276,36 @@ impl Simulation {
         scheme.advance(model, state, f64::INFINITY, work)
     }
 
-    /// Says whether steps keep the account of energies; they do unless told otherwise. Without it they are faster, and
-    /// `state.ledger` and the penetration in `state.tally` know nothing of them.
+    /// Sets whether steps keep the energy account (default: yes). Without it they are faster, and
+    /// `state.ledger` and the penetration in `state.tally` are not updated.
     pub fn keep_account(&mut self, account: Account) {
         self.work.account = account;
     }
 }
 
-/// A model, and where in it everything is.
+/// The body of a block, with its corners.
+pub(crate) type BlockBody = (Block, Vec<Vector2<f64>>);
+
+/// The bodies of the blocks.
+fn block_bodies(scene: &Scene) -> Result<Vec<BlockBody>, BuildError> {
+    let body = |block: &BlockScene| {
+        let mass = block.mass_properties().map_err(|error| BuildError::Block(block.name.clone(), error))?;
+        Ok((Block::within(mass, block.radius()), block.corners()))
+    };
+    scene.blocks.iter().map(body).collect()
+}
+
+/// The beams, with the initial displacements of their supports.
+fn beam_models(scene: &Scene) -> Result<Vec<BeamModel>, BuildError> {
+    let model = |(number, of)| {
+        let mut model = BeamModel::new(of)?;
+        model.displaced = model.body(scene, number)?.displacements(0.0);
+        Ok(model)
+    };
+    scene.beams.iter().enumerate().map(model).collect()
+}
+
+/// A model, and the places of its parts.
 struct Assembled {
     model: Model<2>,
     blocks: PartPlace,
@@ -320,18 +313,24 @@ struct Assembled {
     ground: Option<PartPlace>,
 }
 
-/// Who is where, by the places that the builder gave.
+/// The layout, from the places returned by the model builder.
 fn lay_out(scene: &Scene, beams: &[BeamModel], assembled: &Assembled, required: Required) -> Layout {
+    let ground = assembled.ground.as_ref().map(|place| place.q.clone()).filter(|q| !q.is_empty());
     let blocks = scene.blocks.iter().zip(assembled.blocks.q.clone().step_by(3)).map(|(block, start)| BlockPlace {
         name: block.name.clone(),
         range: start..start + 3,
         side: block.width.min(block.height),
         reach: block.radius(),
         still: OPEN_GAP * block.width.min(block.height) / block.width,
-        carrier: Carrier::Level,
+        tilt_reference: TiltReference::Level,
     });
+    let mut blocks: Vec<BlockPlace> = blocks.collect();
+    let references = tilt_references(scene, &blocks, ground.as_ref().map(|ground| ground.start + 2));
+    for (place, reference) in blocks.iter_mut().zip(references) {
+        place.tilt_reference = reference;
+    }
     let beams = scene.beams.iter().zip(beams).zip(&assembled.beams).map(|((of, model), place)| {
-        // The displacements of supports that move come last.
+        // The displacements of moving supports come last.
         let end = place.q.end - model.displaced.len();
         BeamPlace {
             name: of.name.clone(),
@@ -352,20 +351,13 @@ fn lay_out(scene: &Scene, beams: &[BeamModel], assembled: &Assembled, required: 
         of_shapes: contact.other_block().is_some(),
         corners: scene.blocks[contact.block].corner_count(),
     });
-    Layout {
-        blocks: blocks.collect(),
-        beams: beams.collect(),
-        pairs: pairs.collect(),
-        ground: assembled.ground.as_ref().map(|place| place.q.clone()).filter(|q| !q.is_empty()),
-        openings: openings(scene),
-        required,
-    }
+    Layout { blocks, beams: beams.collect(), pairs: pairs.collect(), ground, openings: openings(scene), required }
 }
 
-/// The model of a scene, of what is required of it.
+/// The model of the required parts of a scene.
 fn assemble(
     scene: &Scene,
-    blocks: &[(Block, Vec<Vector2<f64>>)],
+    blocks: &[BlockBody],
     beams: &[BeamModel],
     required: &Required,
 ) -> Result<Assembled, BuildError> {
@@ -375,7 +367,7 @@ fn assemble(
     let mut surfaces = Vec::with_capacity(beams.len());
     for (number, model) in beams.iter().enumerate() {
         let body: Box<dyn Subsystem<2>> = match required.rests(number) {
-            Some(energy) => Box::new(AtRest::new(model.coordinates(&[]).len(), energy)),
+            Some(energy) => Box::new(RestingBody::new(model.coordinates(&[]).len(), energy)),
             None => model.body(scene, number)?.boxed(),
         };
         surfaces.push(parts.add_boxed(body));
@@ -385,12 +377,12 @@ fn assemble(
     for (number, contact) in scene.contacts.iter().enumerate() {
         let law = parts.law(contact.law);
         let surface = match contact.surface {
-            Support::Beam(k) => surfaces[k].body(),
-            Support::Ground => match &ground {
+            SupportingBody::Beam(k) => surfaces[k].body(),
+            SupportingBody::Ground => match &ground {
                 Some(ground) => ground.body(),
-                None => continue, // the resolver refuses a contact with ground that isn't there
+                None => continue, // the resolver refuses contacts with missing ground
             },
-            Support::Block(other) => {
+            SupportingBody::Block(other) => {
                 let bodies = [contact.block, other].map(|block| all_blocks.nth_body(block as u32));
                 shape_pairs.push(ShapePair { pair: number as u32, law, bodies });
                 continue;
@@ -413,7 +405,7 @@ fn assemble(
     Ok(Assembled { model, blocks: all_blocks, beams: surfaces, ground })
 }
 
-/// What detects contacts of blocks with surfaces, and with each other.
+/// The detector for contacts of blocks with surfaces and with each other.
 pub(crate) fn detector<'a>(
     points: Vec<PointPair<2>>,
     pairs: Vec<ShapePair>,
@@ -453,11 +445,11 @@ fn scheme(time: &Time) -> Result<Box<dyn Scheme<2>>, SettingError> {
 
 /// Refuses a start with blocks inside each other.
 fn check_apart(scene: &Scene, q: &[f64]) -> Result<(), BuildError> {
-    let boxes: Vec<Box2> = scene
+    let boxes: Vec<PlacedOutline> = scene
         .blocks
         .iter()
         .zip(q.chunks_exact(3))
-        .map(|(block, q)| Box2::new([q[0], q[1]], q[2], &Outline::of(block)))
+        .map(|(block, q)| PlacedOutline::new([q[0], q[1]], q[2], &Outline::of(block)))
         .collect();
     match deepest_overlap(&boxes, START_TOLERANCE) {
         None => Ok(()),
@@ -469,8 +461,8 @@ fn check_apart(scene: &Scene, q: &[f64]) -> Result<(), BuildError> {
     }
 }
 
-/// A corner may start below its surface by this part of its block's larger side, for the rounding of places given in
-/// decimals.
+/// A corner may start below its surface by this fraction of its block's larger side, because of the
+/// rounding of decimal positions.
 const START_TOLERANCE: f64 = 1e-9;
 
 /// Refuses a start with a corner inside a surface.
@@ -480,7 +472,7 @@ fn check_start(scene: &Scene, model: &Model<2>, layout: &Layout, q: &[f64]) -> R
     for candidate in &candidates {
         let pair = candidate.id.pair() as usize;
         let contact = &scene.contacts[pair];
-        // Of blocks the whole is looked at.
+        // Blocks are compared as a whole.
         if contact.other_block().is_some() {
             continue;
         }

@@ -1,33 +1,34 @@
-//! What steps make of a free swing (`docs/resolution.md`).
+//! Errors of steps in a free vibration (`docs/resolution.md`).
 //!
-//! A step of the θ rule multiplies a free swing of circular frequency ω by λ,
+//! A step of the θ rule multiplies a free vibration of circular frequency ω by λ,
 //!
 //! ```text
 //! λ² − (2 − 2θh²ω²/D) λ + 1 + (1 − 2θ)h²ω²/D = 0,        D = 1 + θ²h²ω²
 //! ```
 //!
-//! instead of by exp(iωh): with θ = ½ it comes late, with more it dies out besides. ρ = exp(iωh)/λ says by how much, a step.
+//! instead of by exp(iωh): with θ = ½ it lags, with a larger θ it also decays. ρ = exp(iωh)/λ gives
+//! the error per step.
 
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;
 use crate::scene::Scene;
 use teeter_beam::{Beam, MatrixWeights};
 
-/// A part of the largest deflection that is off, from which on a run is told of.
+/// An error above this fraction of the largest deflection gives a warning.
 pub const SWING_OFF: f64 = 0.1;
 
-/// How a beam swings by itself.
+/// Free vibration of a beam.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Swing {
     /// Circular frequency ω, rad/s.
     pub omega: f64,
-    /// ζω: a swing is multiplied by exp(−ζωt), 1/s.
+    /// ζω: a vibration decays as exp(−ζωt), 1/s.
     pub decay: f64,
 }
 
 impl Swing {
-    /// By Rayleigh's quotient of a shape, the beam's dofs; of the sag under a uniform load where the shape is none. `None` for a beam that can move
-    /// rigidly.
+    /// From Rayleigh's quotient of a shape, given by the beam's dofs, or of the sag under a uniform
+    /// load if the shape is zero. `None` for a beam that can move rigidly.
     #[must_use]
     pub fn of(beam: &Beam, shape: &[f64]) -> Option<Self> {
         let statics = MatrixWeights { mass: 0.0, damping: 0.0, stiffness: 1.0 };
@@ -54,7 +55,7 @@ impl Swing {
         let (half, product) = (1.0 - theta * x * x / d, 1.0 + (1.0 - 2.0 * theta) * x * x / d);
         let beneath = product - half * half;
         if beneath <= 0.0 {
-            // No swing is left: the slower one of two decays.
+            // Overdamped: the slower one of two decays.
             let decay = half + (-beneath).sqrt();
             return [x.cos() / decay - 1.0, x.sin() / decay];
         }
@@ -63,15 +64,15 @@ impl Swing {
         [(x.cos() * re + x.sin() * im) / product - 1.0, (x.sin() * re - x.cos() * im) / product]
     }
 
-    /// How far a swing that begins with a run is off in it at the most, as a part of itself.
+    /// Largest error, within a run, of a vibration that starts with it, relative to the vibration.
     fn off(&self, theta: f64, h: f64, end: f64) -> f64 {
-        /// Times that are looked at.
+        /// Number of times that are evaluated.
         const LOOKS: u32 = 500;
         let [re, im] = self.off_a_step(theta, h);
         let (ln, angle) = ((1.0 + re).hypot(im).ln(), im.atan2(1.0 + re));
         let off = |k: u32| {
             let t = end * f64::from(k) / f64::from(LOOKS);
-            // 1/ρⁿ: what the steps leave of it.
+            // 1/ρⁿ: the ratio of the computed to the exact vibration.
             let (left, late) = ((-ln * t / h).exp(), angle * t / h);
             (-self.decay * t).exp() * (left * late.cos() - 1.0).hypot(left * late.sin())
         };
@@ -79,7 +80,7 @@ impl Swing {
     }
 }
 
-/// Beams that are let go deformed and swing faster than the steps show.
+/// Warns of beams released from a deformed shape that vibrate too fast for the steps.
 pub(crate) fn coarse(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
     let theta = scene.time.theta_of_scheme();
     let end = scene.time.steps() as f64 * scene.time.step;
@@ -91,24 +92,26 @@ pub(crate) fn coarse(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
         let part = swing.off(theta, scene.time.step, end);
         (part > SWING_OFF).then(|| {
             let rule = format!(
-                "under-resolved: steps of {:e} s let the swing that `{}` begins with, at {:.4} Hz, come late or die out by up to {:.0} % of itself",
+                "under-resolved: with steps of {:e} s the initial vibration of `{}`, at {:.4} Hz, lags or decays by up to {:.0} % of its amplitude",
                 scene.time.step,
                 beam.name,
                 swing.omega / std::f64::consts::TAU,
                 100.0 * part
             );
             let step = finer(scene.time.step, part, theta);
-            document.error("time.step", rule, format!("take a step of at most {step:.0e} s")).as_warning()
+            document.error("time.step", rule, format!("use a step of at most {step:.0e} s")).as_warning()
         })
     };
     scene.beams.iter().filter_map(of).collect()
 }
 
-/// A step that leaves 2 % where one of `step` has `part` off: of second order with θ = ½, else of first.
+/// A step with an error of 2 %, if `step` has the error `part`: of second order with θ = ½,
+/// otherwise of first.
 #[must_use]
 pub fn finer(step: f64, part: f64, theta: f64) -> f64 {
     const LEFT: f64 = 0.02;
-    // What is off altogether says only that it is: more than a hundredth of the step would be a guess.
+    // A very large error only shows that the step is far too long: recommending less than a
+    // hundredth of it would be a guess.
     step * (LEFT / part.min(2.0)).powf(if theta == 0.5 { 0.5 } else { 1.0 })
 }
 

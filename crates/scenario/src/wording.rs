@@ -1,4 +1,4 @@
-//! Words for messages: those of every document, and those for beams.
+//! Wording of messages: that of every document, and of beams.
 
 use crate::scene::BeamScene;
 use teeter_beam::Support;
@@ -6,7 +6,7 @@ use teeter_integrator::WBackend;
 
 pub use teeter_text::wording::{bytes, duration, expected};
 
-/// The word for a support of a beam.
+/// The word of a beam support.
 #[must_use]
 pub fn support(support: Support) -> &'static str {
     match support {
@@ -18,13 +18,13 @@ pub fn support(support: Support) -> &'static str {
     }
 }
 
-/// How the matrices of a beam are solved.
+/// How the matrices of a beam are factorised, in words.
 #[must_use]
 pub fn backend(beam: &BeamScene) -> &'static str {
     match beam.backend {
         _ if beam.reduction.is_some() => "diagonal",
         WBackend::Sparse => "sparse Cholesky, factorised once",
-        WBackend::CachedColumns => "banded Cholesky, factorised once, columns of W kept",
+        WBackend::CachedColumns => "banded Cholesky, factorised once, with stored columns of W",
         _ => "banded Cholesky, factorised once",
     }
 }

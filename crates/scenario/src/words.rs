@@ -1,5 +1,5 @@
-//! Words of the scene that choose something: each list is written once, here, and both the table of keys and the decoding take it from here. A word
-//! that is added is a variant that is added, and every place that decides by it has to say what it means.
+//! Words of scenes that make a choice: each list is defined once, here, and used by both the table
+//! of keys and the decoding. A new word is a new variant, which every match on it must handle.
 
 use crate::scene::SchemeName;
 use teeter_integrator::{
@@ -11,7 +11,7 @@ pub(crate) trait Word: Copy + Sized + 'static {
     /// All of them, in the order of the table of keys.
     const ALL: &'static [(&'static str, Self)];
 
-    /// What a word means; `None` for any other.
+    /// The choice of a word; `None` for other words.
     fn of(word: &str) -> Option<Self> {
         Self::ALL.iter().find(|(name, _)| *name == word).map(|(_, meant)| *meant)
     }
@@ -43,16 +43,16 @@ words! {
         HuntCrossley = "hunt-crossley",
     }
     /// Whether contact frames follow the deformed beam.
-    Frames { Deformed = "deformed", Linear = "linear" }
-    /// Where contacts of a beam lie.
-    Lies { Axis = "axis", Top = "top" }
-    /// What a beam does along its axis.
-    Along { Free = "free", Held = "held", Elastic = "elastic" }
-    /// How a beam's matrices answer.
+    ContactFrames { Deformed = "deformed", Linear = "linear" }
+    /// Where contacts of a beam are.
+    ContactSurface { Axis = "axis", Top = "top" }
+    /// Axial model of a beam.
+    AxialModel { Free = "free", Held = "held", Elastic = "elastic" }
+    /// How W of a beam is applied.
     Backend { Auto = "auto", Banded = "banded", Sparse = "sparse", CachedColumns = "cached-columns" }
     /// A beam's theory.
     Theory { EulerBernoulli = "euler-bernoulli", Timoshenko = "timoshenko" }
-    /// What a section looks like.
+    /// Shape of a section.
     Shape {
         Rectangle = "rectangle",
         Circle = "circle",
@@ -60,7 +60,7 @@ words! {
         ISection = "i-section",
         Direct = "direct",
     }
-    /// What a signal looks like.
+    /// Shape of a signal.
     History {
         Constant = "constant",
         Ramp = "ramp",
@@ -84,7 +84,7 @@ pub(crate) const SCHEMES: &[&str] = &[
     GeneralizedAlpha::<2>::NAME,
 ];
 
-/// A scheme by name, or the one that suits the scene.
+/// A scheme by name, or the automatic choice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SchemeChoice {
     Auto,
@@ -119,9 +119,9 @@ mod tests {
     fn no_word_is_taken_for_another() {
         each_means_something_of_its_own::<SchemeChoice>();
         each_means_something_of_its_own::<Law>();
-        each_means_something_of_its_own::<Frames>();
-        each_means_something_of_its_own::<Lies>();
-        each_means_something_of_its_own::<Along>();
+        each_means_something_of_its_own::<ContactFrames>();
+        each_means_something_of_its_own::<ContactSurface>();
+        each_means_something_of_its_own::<AxialModel>();
         each_means_something_of_its_own::<Backend>();
         each_means_something_of_its_own::<Theory>();
         each_means_something_of_its_own::<Shape>();

@@ -1,19 +1,21 @@
 //! Scenes damaged at random never crash the reader or the making of a model, and are answered fast.
 //!
-//! The generator has a fixed seed: a failure comes again. `TEETER_MUTATIONS=100000` looks further than CI does.
+//! The generator has a fixed seed: a failure comes again. `TEETER_MUTATIONS=100000` looks further
+//! than CI does.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use cpu_time::ThreadTime;
 use std::path::Path;
 use std::time::Duration;
 use teeter_scenario::load;
-use teeter_scenario::outlook::Outlook;
+use teeter_scenario::preview::Preview;
 use teeter_scenario::simulation::Simulation;
 
 /// Mutated scenes of each seed in CI.
 const FEW: usize = 300;
 
-/// For one scene, in an unoptimised build; a release build takes a tenth. Of the thread's own time, so that a busy machine is no failure.
+/// For one scene, in an unoptimised build; a release build takes a tenth. Of the thread's own time,
+/// so that a busy machine is no failure.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Marsaglia's xorshift.
@@ -178,7 +180,7 @@ fn answer(bytes: &[u8]) -> bool {
                 false
             }
             Ok(simulation) => {
-                let outlook = Outlook::new(&resolved, &simulation);
+                let outlook = Preview::new(&resolved, &simulation);
                 assert!(outlook.volume.rows >= 1.0);
                 let written = resolved.document.to_toml();
                 load(written.as_bytes(), "again.toml", "scene", &[])

@@ -1,60 +1,66 @@
-//! Acary and Cadoux's fixed point: the exact law from a sequence of cone programs.
+//! Acary and Cadoux's fixed point: the exact law by a sequence of cone programs.
 //!
-//! **Solves** the exact Coulomb law, 2D and 3D. With the shift s_i = μ_i‖u_T,i‖ held, the law is the optimality of `min ½ pᵀHp +
-//! (q + s)ᵀp` over the cones; Clarabel solves that, s is renewed from its velocities, and so on until s stands still (Acary,
-//! Cadoux, Lemaréchal and Malick 2011, doi 10.1002/zamm.201000073). Where that map has a fixed point the law has a
-//! solution: this is also how existence is proved.
+//! **Solves** the exact Coulomb law, 2D and 3D. With a fixed shift s_i = μ_i‖u_T,i‖, the law is the
+//! optimality condition of `min ½ pᵀHp + (q + s)ᵀp` over the cones. Clarabel solves this, s is
+//! updated from the velocities, and so on until s is stationary (Acary, Cadoux, Lemaréchal and
+//! Malick 2011, doi 10.1002/zamm.201000073). A fixed point of this map is a solution of the law,
+//! which is also how existence is proved.
 //!
 //! **Departures.**
-//! - The shift starts from that of the impulses given, not from 0.
-//! - The interior point floors at some 1e-8 in 3D, and the fixed point converges linearly (a factor of about 0.4 a program). So once
-//!   the residual is below 1e-5, or a program no longer halves it, another solver polishes from there
-//!   (ADMM where the crate has it, else Gauss–Seidel), and the fixed point goes on only if that fails.
-//! - With μ above 100 a contact that sticks has no shift, whatever slip the interior point leaves it: μ would make much of it.
+//! - The initial shift is that of the given impulses, not 0.
+//! - The interior-point method reaches about 1e-8 in 3D, and the fixed point converges linearly (a
+//!   factor of about 0.4 per program). So once the residual is below 1e-5, or a program no longer
+//!   halves it, another solver refines the result (ADMM if the crate is built with it, else
+//!   Gauss–Seidel), and the fixed point continues only if this fails.
+//! - With μ above 100 a sticking contact has no shift, as μ would amplify the slip that the
+//!   interior point leaves.
 //! - A skew part of H lags like the shift.
 //!
-//! **Take it** where robustness counts more than time: each program is solved whatever the condition of H.
-//! **Cost**: that of a cone program (a KKT factorisation an interior-point iteration, 10 to 15 of them) times about
-//! ten. `iterations` counts programs and the polish's own. Clarabel is set up anew for each problem, and
-//! allocates in its solve: an exception to "kept over steps it allocates nothing".
-//! With its polish it takes spheres-in-a-box (256 contacts) to 1e-12 and Capsules-i103 (275) too, where no solver of Siconos
-//! gets within 10 s.
-//! **Fails**: with large μ the fixed point may cycle (μ = 0.9 of FrictionContactProblem00727, 367 contacts in 2D, stalls);
-//! then the polish decides. `stalled` says that neither helped.
+//! **When to use it**: where robustness matters more than time, as each program is solved for any
+//! condition of H.
+//! **Cost**: about ten cone programs, each of 10 to 15 interior-point iterations with one KKT
+//! factorisation. `iterations` counts programs and iterations of the refinement. Clarabel is set up
+//! for each problem and allocates in its solve; other solvers don't allocate when reused. With the
+//! refinement, spheres-in-a-box (256 contacts) and Capsules-i103 (275) are solved to 1e-12, which
+//! no solver of Siconos reaches within 10 s.
+//! **How it fails**: with large μ the fixed point may cycle (FrictionContactProblem00727, 367
+//! contacts in 2D, stalls with μ = 0.9); then the result depends on the refinement. `stalled` means
+//! that neither succeeded.
 
 use crate::cone_program::ConeProgram;
 use crate::operator::{row_product, slip_shift};
 use crate::upper::Upper;
 use teeter_contact::{BlockSparse, ContactProblem, ContactSolver, Law, Outcome, Residual, Status, Stop, Vector, judge};
 
-/// The solver that polishes.
+/// The solver for the refinement.
 #[cfg(feature = "sparse")]
-type Polisher<const D: usize> = crate::Admm<D>;
-/// The solver that polishes.
+type Refiner<const D: usize> = crate::Admm<D>;
+/// The solver for the refinement.
 #[cfg(not(feature = "sparse"))]
-type Polisher<const D: usize> = crate::Pgs<D>;
+type Refiner<const D: usize> = crate::Pgs<D>;
 
-/// Most programs.
+/// Largest number of programs.
 const PROGRAMS: u32 = 60;
-/// The residual below which polishing is cheaper than another program.
-const CLOSE: f64 = 1e-5;
-/// A program that leaves more of the residual than this is a poor one; after so many of them in a row polishing is tried.
+/// The residual below which refinement is cheaper than another program.
+const REFINABLE: f64 = 1e-5;
+/// A program that leaves more than this part of the residual counts as poor; after `PATIENCE` poor
+/// ones in a row refinement is tried.
 const POOR: f64 = 0.5;
 /// See [`POOR`].
 const PATIENCE: u32 = 3;
-/// Most iterations of one polish.
-const POLISH: u32 = 5000;
+/// Largest number of iterations of one refinement.
+const REFINEMENT_ITERATIONS: u32 = 5000;
 
 /// The fixed-point solver; see its [page](self).
 #[derive(Debug, Default)]
 pub struct AcaryCadoux<const D: usize> {
     h: BlockSparse<D>,
     upper: Upper<D>,
-    polisher: Polisher<D>,
+    refiner: Refiner<D>,
     shift: Vec<f64>,
     skew: Vec<Vector<D>>,
     candidate: Vec<Vector<D>>,
-    polished: Vec<Vector<D>>,
+    refined: Vec<Vector<D>>,
 }
 
 impl<const D: usize> AcaryCadoux<D> {
@@ -67,8 +73,8 @@ impl<const D: usize> AcaryCadoux<D> {
         Self::default()
     }
 
-    /// Renews shift and skew part from impulses.
-    fn renew(&mut self, problem: &ContactProblem<'_, D>, p: &[Vector<D>], skewed: bool) {
+    /// Updates shift and skew part from impulses.
+    fn update_shift(&mut self, problem: &ContactProblem<'_, D>, p: &[Vector<D>], skewed: bool) {
         self.skew.fill(Vector::zeros());
         if skewed {
             self.upper.product(p, &mut self.skew);
@@ -82,20 +88,21 @@ impl<const D: usize> AcaryCadoux<D> {
         }
     }
 
-    /// Iterates another method from `p`, and takes what it finds if that is better. Returns the iterations.
-    fn polish(
+    /// Iterates another method from `p` and takes its result if that is better. Returns the
+    /// iterations.
+    fn refine(
         &mut self,
         problem: &ContactProblem<'_, D>,
         stop: &Stop<'_>,
         p: &mut [Vector<D>],
         residual: &mut Residual,
     ) -> u32 {
-        self.polished.clear();
-        self.polished.extend_from_slice(p);
-        let outcome = self.polisher.solve(problem, stop, &mut self.polished);
+        self.refined.clear();
+        self.refined.extend_from_slice(p);
+        let outcome = self.refiner.solve(problem, stop, &mut self.refined);
         if outcome.residual.global < residual.global {
             *residual = outcome.residual;
-            p.copy_from_slice(&self.polished);
+            p.copy_from_slice(&self.refined);
         }
         outcome.iterations
     }
@@ -112,7 +119,7 @@ impl<const D: usize> ContactSolver<D> for AcaryCadoux<D> {
 
     fn reserve(&mut self, contacts: usize, blocks: usize) {
         self.h.reserve(contacts, blocks);
-        self.polisher.reserve(contacts, blocks);
+        self.refiner.reserve(contacts, blocks);
     }
 
     fn solve(&mut self, problem: &ContactProblem<'_, D>, stop: &Stop<'_>, p: &mut [Vector<D>]) -> Outcome {
@@ -131,7 +138,7 @@ impl<const D: usize> ContactSolver<D> for AcaryCadoux<D> {
             return Outcome::new(Status::Breakdown, Self::NAME, 0, residual);
         };
         let (skewed, q) = (self.h.asymmetry() > f64::EPSILON, problem.q());
-        self.renew(problem, p, skewed);
+        self.update_shift(problem, p, skewed);
         let (mut iterations, mut programs, mut poor, mut before) = (0, 0, 0, f64::INFINITY);
         let status = loop {
             if residual.global <= stop.tolerance {
@@ -159,7 +166,7 @@ impl<const D: usize> ContactSolver<D> for AcaryCadoux<D> {
             );
             let reached = judge(problem, &candidate);
             if usable && reached.global.is_finite() {
-                self.renew(problem, &candidate, skewed);
+                self.update_shift(problem, &candidate, skewed);
                 if reached.global < residual.global || !residual.global.is_finite() {
                     residual = reached;
                     p.copy_from_slice(&candidate);
@@ -171,13 +178,13 @@ impl<const D: usize> ContactSolver<D> for AcaryCadoux<D> {
             }
             poor = if reached.global <= POOR * before { 0 } else { poor + 1 };
             before = reached.global;
-            let close = residual.global <= CLOSE && residual.global > stop.tolerance;
+            let close = residual.global <= REFINABLE && residual.global > stop.tolerance;
             if (close || poor >= PATIENCE) && iterations < stop.max_iterations {
                 poor = 0;
-                let rest = stop.with_max_iterations(POLISH.min(stop.max_iterations - iterations));
-                iterations += self.polish(problem, &rest, p, &mut residual);
+                let rest = stop.with_max_iterations(REFINEMENT_ITERATIONS.min(stop.max_iterations - iterations));
+                iterations += self.refine(problem, &rest, p, &mut residual);
                 if close && residual.global > stop.tolerance {
-                    // Neither the fixed point, so near, nor the polish gets there.
+                    // Neither the fixed point, though close, nor the refinement converges.
                     break if stop.cancelled() { Status::Cancelled } else { Status::Stalled };
                 }
             }

@@ -1,20 +1,21 @@
 //! Anderson acceleration of a fixed-point iteration (type II, limited memory).
 //!
-//! From the last few pairs of a point's image T(v) and its residual g = T(v) − v, the combination of images whose residual
-//! would be smallest if T were affine (Walker and Ni 2011, doi 10.1137/10078356X). The least squares go by normal equations
-//! with a small multiple of their trace added: a poor combination costs an iteration, and the caller checks it.
+//! From the last images T(v) with their residuals g = T(v) − v, it forms the combination of images
+//! whose residual would be smallest if T were affine (Walker and Ni 2011, doi 10.1137/10078356X).
+//! The least-squares problem is solved by normal equations with a small multiple of their trace
+//! added. A poor combination costs one iteration, as the caller checks it.
 
 use crate::memory::reserve;
 use nalgebra::{SMatrix, SVector};
 use teeter_contact::Vector;
 
-/// Differences kept.
+/// Number of differences kept.
 const DEPTH: usize = 8;
 
 /// Added to the normal equations, relative to their trace.
 const REGULARISATION: f64 = 1e-12;
 
-/// The memory of the acceleration.
+/// The history of the acceleration.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Anderson<const D: usize> {
     image: Vec<Vector<D>>,
@@ -34,15 +35,15 @@ impl<const D: usize> Anderson<D> {
         reserve(&mut self.residual_steps, contacts * DEPTH);
     }
 
-    /// Forgets all, for a new problem or after the map has changed.
+    /// Clears the history, for a new problem or after the map has changed.
     pub(crate) fn clear(&mut self) {
         self.image.clear();
         self.known = 0;
         self.next = 0;
     }
 
-    /// Takes a point's image and residual, and overwrites the image with the accelerated next point; `weight` is the
-    /// metric, contact by contact. The image stays where nothing is known yet.
+    /// Adds a point's image and residual, and replaces the image by the accelerated next point;
+    /// `weight` is the metric per contact. Without history the image is unchanged.
     pub(crate) fn accelerate(&mut self, image: &mut [Vector<D>], residual: &[Vector<D>], weight: &[f64]) {
         let n = image.len();
         if self.image.len() != n {

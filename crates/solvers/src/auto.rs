@@ -1,16 +1,17 @@
-//! The choice for those who don't want to choose.
+//! Automatic choice of the method.
 //!
-//! Contacts that don't feel each other (blocks that stand apart on the ground) are problems of their own: a problem is
-//! split into its [`Islands`], along the zero blocks of H, whether these are stored or not. Up to three plane contacts are
-//! enumerated; the rest goes along a chain (`chain.rs`) of methods until the judge is satisfied. If it never is, four and
-//! five plane contacts are enumerated too: that takes milliseconds, but it has the solution if there is one.
+//! Contacts that aren't coupled (separate blocks on the ground) are independent problems, so a
+//! problem is split into its [`Islands`] along the zero blocks of H, stored or not. Islands of up
+//! to three plane contacts are solved by enumeration, larger ones by a chain of methods
+//! (`chain.rs`) until one converges. If none does, islands of four and five plane contacts are
+//! enumerated too: this takes milliseconds, but finds a solution if one exists.
 //!
-//! Of a block-sparse problem of many small islands, time and memory grow with the number of contacts. An operator that is
-//! given by what it does is not split: nothing is known of its blocks.
+//! For a block-sparse problem of many small islands, time and memory grow linearly with the number
+//! of contacts. A matrix-free operator isn't split, as its blocks are unknown.
 
 use crate::chain::{Chain, Pivots};
 use crate::ending::ended;
-use crate::enumeration::{FEW, MAX_CONTACTS};
+use crate::enumeration::{MAX_CONTACTS, TREE_CONTACTS};
 use crate::memory::reserve;
 use crate::pairs::Small;
 use crate::{Enumeration, Lemke};
@@ -18,22 +19,24 @@ use teeter_contact::{
     ContactProblem, ContactSolver, Delassus, Islands, Law, Outcome, OwnedProblem, Stop, Vector, judge,
 };
 
-/// The exact methods of a dimension: for islands of a few contacts, and for those that the chain doesn't solve.
+/// The exact methods of a dimension: for islands of a few contacts, and for islands that the chain
+/// doesn't solve.
 #[derive(Clone, Copy)]
 struct Exact<const D: usize> {
     first: Small<D>,
     last: Small<D>,
 }
 
-/// The solver that chooses; see the [crate's table](crate). `used` of the outcome says which method gave the result;
-/// `iterations` are those of all methods tried; of a problem in islands, those of the island that took most.
+/// The solver with automatic choice; see the [crate's table](crate). The outcome's `used` names the
+/// method that gave the result. `iterations` counts those of all methods tried, for a problem with
+/// several islands the largest count of one island.
 ///
 /// ```
 /// use teeter_contact::nalgebra::Vector2;
 /// use teeter_contact::{ContactSolver, InverseMass, Jacobian, OwnedProblem, Stop};
 /// use teeter_solvers::Auto;
 ///
-/// // A thousand blocks of 1 kg and 0.5 kg m² that stand apart and fall on two corners each: islands of two contacts.
+/// // A thousand separate blocks of 1 kg and 0.5 kg m² fall on two corners each: islands of two contacts.
 /// let mut jacobian = Jacobian::new();
 /// for block in 0..1000 {
 ///     for x in [-0.4, 0.4] {
@@ -54,12 +57,12 @@ struct Exact<const D: usize> {
 pub struct Auto<const D: usize> {
     chain: Chain<D>,
     islands: Islands,
-    /// The island at hand, as a problem of its own, and its impulses.
+    /// The current island as a separate problem, and its impulses.
     own: OwnedProblem<D>,
     p: Vec<Vector<D>>,
-    /// The impulses to start from, of all.
+    /// The initial impulses of all contacts.
     start: Vec<Vector<D>>,
-    /// Pivots, in the plane.
+    /// Lemke's method, in the plane.
     lemke: Lemke,
 }
 
@@ -73,7 +76,7 @@ impl<const D: usize> Auto<D> {
         Self::default()
     }
 
-    /// Solves one island on its own, from and into the impulses of all.
+    /// Solves one island, reading and writing the impulses of all contacts.
     fn solve_island(
         &mut self,
         problem: &ContactProblem<'_, D>,
@@ -100,7 +103,7 @@ impl<const D: usize> Auto<D> {
         Some(outcome)
     }
 
-    /// Solves what isn't few contacts that enumeration has solved: island by island, or along the chain.
+    /// Solves what enumeration hasn't solved: island by island, or by the chain.
     fn solve_beyond(
         &mut self,
         problem: &ContactProblem<'_, D>,
@@ -124,41 +127,43 @@ impl<const D: usize> Auto<D> {
                 used = outcome.used;
             }
         }
-        // Each island is judged in its own scale; what counts is the whole.
+        // Each island was judged in its own scale; the residual of the whole problem counts.
         let residual = judge(problem, p);
-        let apart = Outcome::new(ended(stop, iterations, &residual), used, iterations, residual);
-        if apart.converged() { apart } else { self.solve_whole(problem, exact, pivots, stop, apart, p) }
+        let by_islands = Outcome::new(ended(stop, iterations, &residual), used, iterations, residual);
+        if by_islands.converged() { by_islands } else { self.solve_whole(problem, exact, pivots, stop, by_islands, p) }
     }
 
-    /// The whole problem along the chain, after its islands, solved each for itself, have not satisfied the judge: `apart` is what came of
-    /// that. A dense problem goes on from there. A block-sparse one is solved as if it had not been split, and keeps the better result:
-    /// of a hard problem (RockPile of the published ones) some ways to the solution exist for the whole only, and where they start matters.
+    /// Solves the whole problem by the chain after its islands, solved separately with the outcome
+    /// `by_islands`, haven't converged. A dense problem continues from their result. A block-sparse
+    /// problem is solved as if it hadn't been split, and the better result is kept: for hard
+    /// problems (the published RockPile) the whole problem may converge where its parts don't,
+    /// depending on the initial impulses.
     fn solve_whole(
         &mut self,
         problem: &ContactProblem<'_, D>,
         exact: Exact<D>,
         pivots: Pivots<'_, D>,
         stop: &Stop<'_>,
-        apart: Outcome,
+        by_islands: Outcome,
         p: &mut [Vector<D>],
     ) -> Outcome {
         let anew = matches!(problem.delassus(), Delassus::Blocks(_));
         if anew {
             p.swap_with_slice(&mut self.start);
         }
-        let rest = stop.with_max_iterations(stop.max_iterations.saturating_sub(apart.iterations));
+        let rest = stop.with_max_iterations(stop.max_iterations.saturating_sub(by_islands.iterations));
         let mut outcome = self.chain.solve(problem, exact.first, pivots, &rest, p);
-        outcome.iterations = outcome.iterations.saturating_add(apart.iterations);
-        if anew && !(outcome.residual.global <= apart.residual.global) {
+        outcome.iterations = outcome.iterations.saturating_add(by_islands.iterations);
+        if anew && !(outcome.residual.global <= by_islands.residual.global) {
             p.copy_from_slice(&self.start);
-            return Outcome::new(outcome.status, apart.used, outcome.iterations, apart.residual);
+            return Outcome::new(outcome.status, by_islands.used, outcome.iterations, by_islands.residual);
         }
         outcome
     }
 
     fn reserve_all(&mut self, contacts: usize, blocks: usize) {
         self.chain.reserve(contacts, blocks);
-        // The largest island is no larger than the problem.
+        // The largest island is at most as large as the problem.
         self.islands.reserve(contacts);
         self.own.reserve(contacts, blocks);
         reserve(&mut self.p, contacts);
@@ -166,7 +171,7 @@ impl<const D: usize> Auto<D> {
     }
 }
 
-/// The chain, and if it fails the exact method.
+/// Solves by the chain and, if it fails, by the exact method.
 fn along<const D: usize>(
     chain: &mut Chain<D>,
     exact: Exact<D>,
@@ -188,7 +193,8 @@ fn along<const D: usize>(
     }
 }
 
-/// Enumerates `p.len()` contacts, if they are in the range; leaves `p` as it is if the judge isn't satisfied.
+/// Enumerates `p.len()` contacts if their number is in the range; leaves `p` unchanged if this
+/// doesn't converge.
 fn enumerate(
     range: std::ops::RangeInclusive<usize>,
     problem: &ContactProblem<'_, 2>,
@@ -220,16 +226,17 @@ impl ContactSolver<2> for Auto<2> {
     }
 
     fn solve(&mut self, problem: &ContactProblem<'_, 2>, stop: &Stop<'_>, p: &mut [Vector<2>]) -> Outcome {
-        // Nearly every step of a few bodies ends here, without a look at islands and chain.
-        if p.len() <= FEW {
+        // Nearly every step of a few bodies ends here, without islands and chain.
+        if p.len() <= TREE_CONTACTS {
             let outcome = Enumeration.solve(problem, stop, p);
             if outcome.converged() {
                 return outcome;
             }
         }
-        let first: Small<2> =
-            |problem, stop, p| (p.len() <= FEW).then(|| Enumeration.solve(problem, stop, p)).filter(Outcome::converged);
-        let last: Small<2> = |problem, stop, p| enumerate(FEW + 1..=MAX_CONTACTS, problem, stop, p);
+        let first: Small<2> = |problem, stop, p| {
+            (p.len() <= TREE_CONTACTS).then(|| Enumeration.solve(problem, stop, p)).filter(Outcome::converged)
+        };
+        let last: Small<2> = |problem, stop, p| enumerate(TREE_CONTACTS + 1..=MAX_CONTACTS, problem, stop, p);
         let mut lemke = std::mem::take(&mut self.lemke);
         let outcome = self.solve_beyond(problem, Exact { first, last }, Some(&mut lemke), stop, p);
         self.lemke = lemke;
@@ -282,14 +289,14 @@ mod tests {
     }
 
     #[test]
-    fn says_which_method_gave_the_result() {
+    fn the_outcome_names_the_method() {
         let of = |points: &[(f64, f64)]| outcome(&body_on_floor("feet", 0.3, points, [0.3, -1.0, 0.2], 0.5)).0.used;
         assert_eq!(of(&[(-0.5, -1.0), (0.5, -1.0)]), "enumeration");
         assert_eq!(of(&[(-0.5, -1.0), (-0.1, -1.0), (0.2, -1.0), (0.5, -1.0)]), "newton");
     }
 
     #[test]
-    fn bodies_that_stand_apart_are_enumerated_one_by_one() {
+    fn separate_bodies_are_enumerated_one_by_one() {
         let feet = [(-0.5, -1.0), (0.5, -1.0)];
         let bodies = [
             body_on_floor("slides", 0.3, &feet, [2.0, -1.0, 0.0], 0.2),
@@ -313,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn a_few_coupled_contacts_are_solved_further_than_asked() {
+    fn a_few_coupled_contacts_are_solved_beyond_the_tolerance() {
         let points = [(-0.5, -1.0), (-0.1, -1.0), (0.2, -1.0), (0.5, -1.0)];
         let (outcome, _) = outcome(&body_on_floor("feet", 0.3, &points, [0.3, -1.0, 0.2], 0.5));
         assert!(outcome.residual.global < 1e-13, "{outcome:?}");

@@ -1,37 +1,41 @@
-//! LU factorisation of sparse matrices of small blocks, for Newton's method on contact problems.
+//! LU factorisation of sparse block matrices, for Newton's method on contact problems.
 //!
-//! The pattern is that of the Delassus operator, made symmetric; it is ordered by approximate minimum degree (feature
-//! `sparse`; in the order given without it) and analysed once. Values change in every Newton step, and so does the set
-//! of contacts that take part: an open contact is left out by a flag, with no new analysis. Pivots are chosen inside the D × D
-//! diagonal blocks only. That is safe where the matrix is a regularised one of a contact problem; the caller sees from the
-//! residual of its step whether it was.
+//! The pattern is that of the Delassus operator, made symmetric. It is ordered by approximate
+//! minimum degree (with feature `sparse`, else in the given order) and analysed once. The values
+//! change in every Newton step, and so does the set of active contacts: an open contact is left out
+//! by a flag, without a new analysis. Pivots are chosen only inside the D × D diagonal blocks. This
+//! is safe for regularised matrices of contact problems; the caller checks the residual of its
+//! step.
 //!
-//! Written here because a general sparse LU pivots between rows, has to make room for the pattern of AᵀA to do so, where
-//! these matrices are structurally symmetric, and has no notion of a left-out contact: its analysis would be anew in every
-//! step. Factorising H + 1e-3 I of published problems (best of several, one run): Capsules-i100 0.047 ms to 0.53 of faer's
-//! sparse LU, spheres-in-a-box 0.15 to 9.1, RockPile 0.17 to 9.7, KaplasTower 3.5 to 18.7.
+//! A general sparse LU isn't used because it pivots between rows, for which it needs the pattern of
+//! AᵀA although these matrices are structurally symmetric, and because leaving out contacts would
+//! need a new analysis in every step. Factorising H + 1e-3 I of published problems (best of
+//! several, one run): Capsules-i100 0.047 ms to 0.53 of faer's sparse LU, spheres-in-a-box 0.15 to
+//! 9.1, RockPile 0.17 to 9.7, KaplasTower 3.5 to 18.7.
 
 use crate::memory::{refill, reserve};
-use crate::ordering::{NATURAL, Ordering};
+use crate::ordering::{Ordering, UNORDERED};
 use teeter_contact::{Block, BlockSparse, Vector};
 
-/// The analysis and the factors `A = L U` in the order of elimination; L has unit diagonal blocks.
+/// The analysis and the factors `A = L U` in elimination order; L has unit diagonal blocks.
 #[derive(Debug, Default)]
 pub(crate) struct BlockLu<const D: usize> {
-    /// The pattern analysed: start of each row, and columns.
+    /// The analysed pattern: start of each row, and columns.
     known_start: Vec<usize>,
     known_columns: Vec<usize>,
     ordering: Ordering,
     /// `order[k]` is the contact eliminated at step k, `place` its inverse.
     order: Vec<usize>,
     place: Vec<usize>,
-    /// Structure of column k of L below the diagonal (and, mirrored, of row k of U): `below[start[k]..start[k + 1]]`.
+    /// Structure of column k of L below the diagonal (and, mirrored, of row k of U):
+    /// `below[start[k]..start[k + 1]]`.
     start: Vec<usize>,
     below: Vec<usize>,
-    /// The elimination tree as lists: the first child of each column, and the next of the same parent.
+    /// The elimination tree as lists: the first child of each column, and the next child of the
+    /// same parent.
     first_child: Vec<usize>,
     sibling: Vec<usize>,
-    /// For each step j, the earlier columns k that reach it: (k, index of j in `below`).
+    /// For each step j, the earlier columns k with an entry in row j: (k, index of j in `below`).
     reach_start: Vec<usize>,
     reach: Vec<(usize, usize)>,
     lower: Vec<Block<D>>,
@@ -39,12 +43,12 @@ pub(crate) struct BlockLu<const D: usize> {
     pivot: Vec<Block<D>>,
     pivot_inverse: Vec<Block<D>>,
     active: Vec<bool>,
-    /// Where a row lies in the column at hand.
+    /// The position of a row in the current column.
     map: Vec<usize>,
     rhs: Vec<Vector<D>>,
 }
 
-/// A clone has the memory of its own to build: analysis and factors belong to the problems that were solved.
+/// A clone starts empty: analysis and factors belong to the problems solved.
 impl<const D: usize> Clone for BlockLu<D> {
     fn clone(&self) -> Self {
         Self::default()
@@ -54,9 +58,9 @@ impl<const D: usize> Clone for BlockLu<D> {
 const NONE: usize = usize::MAX;
 
 impl<const D: usize> BlockLu<D> {
-    /// Makes room for `contacts` contacts; how much they fill in is known for few of them only.
+    /// Reserves memory for `contacts` contacts; the fill-in is known only for few contacts.
     pub(crate) fn reserve(&mut self, contacts: usize, blocks: usize) {
-        let filled = if contacts <= NATURAL { contacts * contacts / 2 } else { blocks };
+        let filled = if contacts <= UNORDERED { contacts * contacts / 2 } else { blocks };
         for x in [&mut self.known_start, &mut self.start, &mut self.reach_start] {
             reserve(x, contacts + 1);
         }
@@ -75,7 +79,7 @@ impl<const D: usize> BlockLu<D> {
         self.ordering.reserve(contacts, blocks);
     }
 
-    /// Analyses the pattern of `h`, unless it is the one analysed last. Returns whether it had to.
+    /// Analyses the pattern of `h` if it has changed, and returns whether it has.
     pub(crate) fn analyse(&mut self, h: &BlockSparse<D>) -> bool {
         let n = h.contacts();
         let same_start = self.known_start.len() == n && (0..n).all(|i| h.range(i).end == self.known_start[i]);
@@ -100,7 +104,7 @@ impl<const D: usize> BlockLu<D> {
         true
     }
 
-    /// Blocks of L and U together, the diagonal included.
+    /// Number of blocks of L and U together, including the diagonal.
     pub(crate) fn filled_blocks(&self) -> usize {
         2 * self.below.len() + self.order.len()
     }
@@ -110,13 +114,13 @@ impl<const D: usize> BlockLu<D> {
         self.start.windows(2).map(|w| (w[1] - w[0]) * (w[1] - w[0] + 1)).sum()
     }
 
-    /// The structure of each column is what the pattern holds below it and what its children in the elimination tree
-    /// pass on.
+    /// The structure of each column is the pattern below its diagonal and the structures of its
+    /// children in the elimination tree.
     fn eliminate_symbolically(&mut self) {
         let n = self.order.len();
         refill(&mut self.first_child, n, NONE);
         refill(&mut self.sibling, n, NONE);
-        // Which column last took a row in.
+        // The last column that included a row.
         refill(&mut self.map, n, NONE);
         self.start.clear();
         self.start.push(0);
@@ -156,7 +160,7 @@ impl<const D: usize> BlockLu<D> {
             self.reach_start[j + 1] += self.reach_start[j];
         }
         refill(&mut self.reach, self.below.len(), (0, 0));
-        // `map` counts what has been entered.
+        // `map` counts the entries so far.
         self.map.copy_from_slice(&self.reach_start[..n]);
         for k in 0..n {
             for at in self.start[k]..self.start[k + 1] {
@@ -167,8 +171,9 @@ impl<const D: usize> BlockLu<D> {
         }
     }
 
-    /// Factorises the matrix with blocks `block(i, t)`, t the index in the pattern's blocks, over the contacts with
-    /// `active(i)`. The pattern must be the analysed one. `false` where a pivot block is singular or not finite.
+    /// Factorises the matrix with blocks `block(i, t)`, t the index in the pattern's blocks, over
+    /// the contacts with `active(i)`. The pattern must be the analysed one. `false` where a pivot
+    /// block is singular or not finite.
     pub(crate) fn factorise(
         &mut self,
         h: &BlockSparse<D>,
@@ -217,7 +222,7 @@ impl<const D: usize> BlockLu<D> {
         true
     }
 
-    /// Puts the matrix where its factors will be.
+    /// Copies the matrix into the storage of its factors.
     fn scatter(&mut self, h: &BlockSparse<D>, block: impl Fn(usize, usize) -> Block<D>) {
         for k in 0..self.order.len() {
             if !self.active[k] {
@@ -239,7 +244,7 @@ impl<const D: usize> BlockLu<D> {
                 } else if m > k {
                     self.upper[self.map[m]] = block(i, t);
                 } else {
-                    // Row k of column m of L: found by bisection in its structure.
+                    // Row k of column m of L, found by bisection in its structure.
                     let column = &self.below[self.start[m]..self.start[m + 1]];
                     if let Ok(at) = column.binary_search(&k) {
                         self.lower[self.start[m] + at] = block(i, t);
@@ -249,7 +254,7 @@ impl<const D: usize> BlockLu<D> {
         }
     }
 
-    /// Solves `A x = b` over the active contacts, in place; the others are left alone.
+    /// Solves `A x = b` in place over the active contacts; the others are unchanged.
     pub(crate) fn solve(&mut self, x: &mut [Vector<D>]) {
         let n = self.order.len();
         for k in 0..n {
@@ -279,8 +284,9 @@ impl<const D: usize> BlockLu<D> {
     }
 }
 
-/// The inverse by Gauss–Jordan elimination with row pivoting; `None` if it is singular or not finite. Adjugate over
-/// determinant would be faster, but loses twice the digits on the nearly singular pivots of hyperstatic contacts.
+/// The inverse by Gauss–Jordan elimination with row pivoting; `None` if it is singular or not
+/// finite. Cofactors over the determinant would be faster, but lose twice as many digits for the
+/// nearly singular pivots of hyperstatic contacts.
 #[inline]
 fn invert<const D: usize>(a: &Block<D>) -> Option<Block<D>> {
     let (mut a, mut inverse) = (*a, Block::<D>::identity());
@@ -317,7 +323,7 @@ mod tests {
     use super::*;
     use nalgebra::DMatrix;
 
-    /// A ring of contacts with some chords, and a few one-way blocks; diagonally heavy.
+    /// A ring of contacts with some chords and a few one-sided blocks; diagonally dominant.
     fn matrix(n: usize) -> BlockSparse<3> {
         let value = |i: usize, j: usize, k: usize| ((i * 31 + j * 17 + k * 7) as f64).sin();
         let coupled = |i: usize, j: usize| i.abs_diff(j) <= 1 || i.abs_diff(j) == n - 1 || (i * j) % 11 == 5;
@@ -330,7 +336,7 @@ mod tests {
     }
 
     #[test]
-    fn solves_what_a_dense_factorisation_solves() {
+    fn solutions_match_a_dense_factorisation() {
         for n in [1, 2, 7, 60] {
             let h = matrix(n);
             let mut lu = BlockLu::default();
@@ -356,7 +362,8 @@ mod tests {
 
     #[test]
     fn nearly_singular_pivots_keep_their_digits() {
-        // One stiff direction of three, turned: what is left of a box's third corner after the first two.
+        // One stiff direction of three, rotated, like the third corner of a box after the first two
+        // are eliminated.
         for (k, epsilon) in [1e-5, 1e-7, 1e-9].into_iter().enumerate() {
             let axis = nalgebra::Vector3::new(0.3 + k as f64, -0.7, 0.5).normalize();
             let a = axis * axis.transpose() * (1.0 - epsilon) + Block::<3>::identity() * epsilon;
@@ -374,8 +381,8 @@ mod tests {
     }
 
     #[test]
-    fn filling_in_is_what_the_pattern_needs() {
-        // A chain fills nothing in, in whatever order a good ordering takes it.
+    fn fill_in_is_minimal_for_a_chain() {
+        // A chain has no fill-in with a good ordering.
         let n = 100;
         let row = |i: usize| {
             let near = |j: &usize| j.abs_diff(i) <= 1;

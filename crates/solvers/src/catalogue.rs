@@ -1,4 +1,4 @@
-//! The solvers by name, for programs that let their users choose.
+//! The list of solvers, for programs that let users choose.
 
 #[cfg(feature = "sparse")]
 use crate::Admm;
@@ -7,21 +7,21 @@ use crate::{AcaryCadoux, Socp};
 use crate::{Apgd, Auto, Enumeration, Lemke, Newton, Pgs, Prox, Smoothing, ViEg};
 use teeter_contact::{ContactSolver, Law};
 
-/// What a user wants to know of a solver before choosing it.
+/// Description of a solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct SolverInfo {
-    /// The name by which it is chosen.
+    /// The name by which users choose it.
     pub name: &'static str,
-    /// The dimensions that it solves.
+    /// The dimensions that it supports.
     pub dimensions: &'static [usize],
-    /// The law of its results.
+    /// The contact law of its results.
     pub law: Law,
-    /// Most contacts that it takes; `None` for one that takes any number.
+    /// Largest number of contacts; `None` if unlimited.
     pub most_contacts: Option<usize>,
-    /// What it does, in a line.
+    /// A one-line description.
     pub summary: &'static str,
-    /// The paper that it comes from.
+    /// The paper of the method.
     pub reference: &'static str,
 }
 
@@ -32,7 +32,7 @@ pub const SOLVERS: &[SolverInfo] = &[
         dimensions: &[2, 3],
         law: Law::Exact,
         most_contacts: None,
-        summary: "chooses: enumeration for few plane contacts, else pgs, admm, newton, smoothing, prox until one succeeds",
+        summary: "automatic: enumeration for few plane contacts, else pgs, admm, newton, smoothing, prox until one succeeds",
         reference: "",
     },
     SolverInfo {
@@ -40,7 +40,7 @@ pub const SOLVERS: &[SolverInfo] = &[
         dimensions: &[2],
         law: Law::Exact,
         most_contacts: Some(Enumeration::MAX_CONTACTS),
-        summary: "all contact states, exactly; up to five contacts",
+        summary: "exact enumeration of contact states; up to five contacts",
         reference: "Klarbring 1990, doi 10.1007/BF00534316",
     },
     SolverInfo {
@@ -56,7 +56,7 @@ pub const SOLVERS: &[SolverInfo] = &[
         dimensions: &[2, 3],
         law: Law::Exact,
         most_contacts: None,
-        summary: "semi-smooth Newton with sparse LU, started and helped by sweeps of pgs",
+        summary: "semi-smooth Newton with sparse LU and sweeps of pgs",
         reference: "Alart and Curnier 1991, doi 10.1016/0045-7825(91)90022-X",
     },
     SolverInfo {
@@ -72,7 +72,7 @@ pub const SOLVERS: &[SolverInfo] = &[
         dimensions: &[2, 3],
         law: Law::Exact,
         most_contacts: None,
-        summary: "proximal point around newton, for singular H",
+        summary: "proximal point method around newton, for singular H",
         reference: "Acary, Bremond and Huber 2018, doi 10.1007/978-3-319-75972-2_10",
     },
     SolverInfo {
@@ -89,7 +89,7 @@ pub const SOLVERS: &[SolverInfo] = &[
         dimensions: &[2, 3],
         law: Law::Exact,
         most_contacts: None,
-        summary: "a fixed point on the slip over cone programs, polished",
+        summary: "fixed point over cone programs, with refinement",
         reference: "Acary, Cadoux, Lemarechal, Malick 2011, doi 10.1002/zamm.201000073",
     },
     #[cfg(feature = "sparse")]
@@ -98,7 +98,7 @@ pub const SOLVERS: &[SolverInfo] = &[
         dimensions: &[2, 3],
         law: Law::Exact,
         most_contacts: None,
-        summary: "alternating directions with one factorisation, accelerated",
+        summary: "alternating directions (ADMM) with one factorisation, accelerated",
         reference: "Boyd et al. 2011, doi 10.1561/2200000016",
     },
     SolverInfo {
@@ -106,7 +106,7 @@ pub const SOLVERS: &[SolverInfo] = &[
         dimensions: &[2, 3],
         law: Law::Exact,
         most_contacts: None,
-        summary: "accelerated projected gradients, the slip's shift in an outer loop",
+        summary: "accelerated projected gradients with an outer loop for the exact law",
         reference: "Mazhar, Heyn, Negrut, Tasora 2015, doi 10.1145/2735627",
     },
     #[cfg(feature = "clarabel")]
@@ -115,7 +115,7 @@ pub const SOLVERS: &[SolverInfo] = &[
         dimensions: &[2, 3],
         law: Law::Convex,
         most_contacts: None,
-        summary: "the associated law as a cone program: a sliding contact separates",
+        summary: "associated law as a cone program: a sliding contact separates",
         reference: "Anitescu 2006, doi 10.1007/s10107-005-0590-7",
     },
     SolverInfo {
@@ -123,12 +123,12 @@ pub const SOLVERS: &[SolverInfo] = &[
         dimensions: &[2, 3],
         law: Law::Exact,
         most_contacts: None,
-        summary: "projections with a step that adapts itself",
+        summary: "projections with an adaptive step",
         reference: "Khobotov 1987, doi 10.1016/0041-5553(87)90058-9",
     },
 ];
 
-/// The plane solver of that name; `None` for an unknown one.
+/// The plane solver with this name; `None` if it is unknown.
 ///
 /// ```
 /// assert_eq!(teeter_solvers::plane_solver("pgs").unwrap().name(), "pgs");
@@ -156,7 +156,8 @@ pub fn plane_solver(name: &str) -> Option<Box<dyn ContactSolver<2>>> {
     }
 }
 
-/// The solver of that name for contacts in space; `None` for an unknown one, and for one that knows the plane only.
+/// The solver with this name for contacts in space; `None` if it is unknown or supports only the
+/// plane.
 ///
 /// ```
 /// assert_eq!(teeter_solvers::space_solver("pgs").unwrap().name(), "pgs");
@@ -187,7 +188,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_listed_solver_can_be_made_and_agrees_with_its_entry() {
+    fn every_listed_solver_matches_its_entry() {
         for info in SOLVERS {
             assert_eq!(info.dimensions.contains(&2), plane_solver(info.name).is_some());
             assert_eq!(info.dimensions.contains(&3), space_solver(info.name).is_some());

@@ -1,21 +1,25 @@
-//! The methods that `auto` goes through, cheap ones first, until the judge is satisfied.
+//! The sequence of methods that `auto` tries, cheap ones first, until one converges.
 //!
-//! 1. **Gauss–Seidel** ([`Pgs`]): some sweeps, and more as long as the rate at which the residual falls says that it arrives before Newton
-//!    would.
-//! 2. **Pairs** (`pairs.rs`): where that left little, but contacts hold a body twice, sweeps over pairs of them.
-//! 3. **Alternating directions** ([`Admm`](crate::Admm), feature `sparse`) where rows of H are long: factors fill in there, and this takes
-//!    one or two where Newton takes ten.
-//! 4. **Semi-smooth Newton** ([`Newton`]): a round of steps from there; where they fail, more sweeps for about the same
-//!    work, and another round, a few times.
-//! 5. **Pivots** ([`Lemke`](crate::Lemke)), in the plane and up to some hundred contacts: where blocks lean on each other, contacts that
-//!    press against each other without end leave all that goes by the residual at about 1e-10; pivots are exact.
-//! 6. **The central path** ([`Smoothing`]): for what is degenerate.
-//! 7. **The proximal point** ([`Prox`]), Newton with more sweeps between its steps, and sweeps until the iterations run out.
+//! 1. **Gauss–Seidel** ([`Pgs`]): some sweeps, and more as long as their convergence rate predicts
+//!    less work than Newton's method.
+//! 2. **Pairs** (`pairs.rs`): if the residual is small but some bodies are constrained twice
+//!    (hyperstatic), sweeps over pairs of contacts.
+//! 3. **Alternating directions** ([`Admm`](crate::Admm), feature `sparse`) if H has long rows, so
+//!    that factors fill in: this needs one or two factorisations where Newton needs ten.
+//! 4. **Semi-smooth Newton** ([`Newton`]): a round of steps; if they fail, more sweeps of about the
+//!    same work and another round, a few times.
+//! 5. **Pivots** ([`Lemke`](crate::Lemke)), in the plane for up to some hundred contacts. If blocks
+//!    lean on each other, the contact forces may be nearly undetermined, and methods that follow
+//!    the residual stop at about 1e-10; pivoting is exact.
+//! 6. **The central path** ([`Smoothing`]): for degenerate problems.
+//! 7. **The proximal point** ([`Prox`]), Newton with more sweeps between its steps, and sweeps
+//!    until the iterations are used up.
 //!
-//! What decides is counted work (blocks, block products), never time: the same problem takes the same way on every machine.
+//! Decisions depend on counted work (blocks, block products), never on time, so the same problem
+//! takes the same path on every machine.
 //!
-//! A problem of a few contacts is solved further than asked, towards 1e-14: it costs little there, and the motion of a
-//! few blocks is then as exact as an enumerated one.
+//! A problem of a few contacts is solved beyond the tolerance, towards 1e-14: this costs little,
+//! and the motion of a few blocks is then as exact as with enumeration.
 
 #[cfg(feature = "sparse")]
 use crate::Admm;
@@ -25,34 +29,37 @@ use crate::pairs::{Pairs, Small};
 use crate::{Newton, Pgs, Prox, Smoothing};
 use teeter_contact::{ContactProblem, ContactSolver, Outcome, Status, Stop, Vector, judge};
 
-/// Up to so many contacts a solution is polished, to this residual.
+/// Up to `SMALL` contacts a solution is refined to the residual `REFINED`.
 const SMALL: usize = 12;
-const POLISHED: f64 = 1e-14;
-/// More of them are polished to this part of the tolerance where the factors of H have no more than so many times its blocks, as along a
-/// stack: what rests then starts every step from a solution, and what the tolerance leaves doesn't add up over the steps.
-const PART: f64 = 1e-3;
+const REFINED: f64 = 1e-14;
+/// Larger problems are refined to this part of the tolerance if the factors of H have at most
+/// `FILL` times its blocks, as for a stack. A structure at rest then starts every step from a
+/// solution, and errors within the tolerance don't accumulate.
+const REFINED_PART: f64 = 1e-3;
 const FILL: usize = 4;
-/// Sweeps of the first two batches; the rate comes from the second.
-const FIRST: u32 = 12;
-/// Rounds of Newton steps, each after a batch of sweeps; and for each, the work in Newton steps within which Gauss–Seidel must
-/// be expected to arrive to go on instead. After the last round comes the central path, which takes tens of steps.
-const WORTH: [f64; 4] = [4.0, 8.0, 16.0, 40.0];
-/// Impulses that are right to this residual after the first sweeps may want sweeps over pairs.
+/// Sweeps in each of the first two batches; the rate is measured in the second.
+const FIRST_SWEEPS: u32 = 12;
+/// For each round of Newton steps: Gauss–Seidel continues instead if its predicted work is below
+/// this number of Newton steps. After the last round comes the central path, which takes tens of
+/// steps.
+const WORTHWHILE_WORK: [f64; 4] = [4.0, 8.0, 16.0, 40.0];
+/// Sweeps over pairs are tried if the first sweeps reach this residual.
 const NEARLY: f64 = 1e-4;
-/// Work of a Newton step and of a sweep in one measure (times a block product): per block of the factors and per contact. Measured
-/// on the published problems; a factor of two either way changes no choice among them that matters.
+/// StepWork of a Newton step and of a sweep in units of a block product: per block and per contact.
+/// Measured on the published problems; a factor of two either way changes no important choice.
 const STEP_BLOCK: f64 = 1.3;
 const STEP_CONTACT: f64 = 16.0;
 const SWEEP_BLOCK: f64 = 0.4;
 const SWEEP_CONTACT: f64 = 5.0;
 
-/// Up to so many contacts Lemke's tableau is no more work than what it spares.
-const PIVOTED: usize = 200;
+/// Largest number of contacts for which Lemke's tableau is worth its work.
+const MOST_PIVOTED: usize = 200;
 
 /// Lemke's method, in the plane.
 pub(crate) type Pivots<'a, const D: usize> = Option<&'a mut dyn ContactSolver<D>>;
 
-/// From so many contacts with so many blocks a row on, alternating directions come before Newton; and their iterations.
+/// From `MANY` contacts with `LONG_ROW` blocks per row on, alternating directions come before
+/// Newton, with `DIRECTIONS` iterations.
 #[cfg(feature = "sparse")]
 const MANY: usize = 64;
 #[cfg(feature = "sparse")]
@@ -72,14 +79,14 @@ pub(crate) struct Chain<const D: usize> {
     best: Vec<Vector<D>>,
 }
 
-/// The outcome so far: of the best impulses, with the iterations of all.
+/// The outcome so far: that of the best impulses, with the iterations of all methods.
 struct Progress {
     best: Outcome,
     iterations: u32,
 }
 
 impl Progress {
-    /// Counts a stage's iterations and takes its outcome if it is better.
+    /// Adds the iterations of a stage and takes its outcome if it is better.
     fn add(&mut self, outcome: Outcome) {
         self.iterations = self.iterations.saturating_add(outcome.iterations);
         if outcome.residual.global < self.best.residual.global || outcome.converged() {
@@ -87,7 +94,8 @@ impl Progress {
         }
     }
 
-    /// The outcome of the whole, for the impulses that are left: how a stage ended within its own limits is not how the solve ended.
+    /// The outcome of the solve for the final impulses. A stage has its own limits, so its status
+    /// isn't that of the solve.
     fn end<const D: usize>(&self, problem: &ContactProblem<'_, D>, stop: &Stop<'_>, p: &[Vector<D>]) -> Outcome {
         if self.best.converged() {
             return Outcome::new(Status::Converged, self.best.used, self.iterations, self.best.residual);
@@ -118,7 +126,7 @@ impl<const D: usize> Chain<D> {
         reserve(&mut self.best, contacts);
     }
 
-    /// `small` solves a few contacts exactly.
+    /// Solves a problem; `small` solves a few contacts exactly.
     pub(crate) fn solve(
         &mut self,
         problem: &ContactProblem<'_, D>,
@@ -129,7 +137,7 @@ impl<const D: usize> Chain<D> {
     ) -> Outcome {
         let mut outcome = self.approach(problem, small, pivots, stop, p);
         let few = p.len() <= SMALL;
-        let goal = if few { POLISHED } else { POLISHED.max(PART * stop.tolerance) };
+        let goal = if few { REFINED } else { REFINED.max(REFINED_PART * stop.tolerance) };
         if outcome.converged() && outcome.residual.global > goal {
             let work = self.newton.prepare(problem);
             if !few && work.filled > FILL * work.blocks {
@@ -138,11 +146,11 @@ impl<const D: usize> Chain<D> {
             self.best.clear();
             self.best.extend_from_slice(p);
             let left = stop.max_iterations.saturating_sub(outcome.iterations);
-            let polish = stop.with_tolerance(goal).with_max_iterations(left);
-            let polished = self.newton.round(problem, &polish, p);
-            outcome.iterations = outcome.iterations.saturating_add(polished.iterations);
-            if polished.residual.global < outcome.residual.global {
-                (outcome.residual, outcome.used) = (polished.residual, polished.used);
+            let refinement = stop.with_tolerance(goal).with_max_iterations(left);
+            let refined = self.newton.round(problem, &refinement, p);
+            outcome.iterations = outcome.iterations.saturating_add(refined.iterations);
+            if refined.residual.global < outcome.residual.global {
+                (outcome.residual, outcome.used) = (refined.residual, refined.used);
             } else {
                 p.copy_from_slice(&self.best);
             }
@@ -159,7 +167,7 @@ impl<const D: usize> Chain<D> {
         p: &mut [Vector<D>],
     ) -> Outcome {
         let within = |left: u32, most: u32| stop.with_max_iterations(left.min(most));
-        let first = self.pgs.solve(problem, &within(stop.max_iterations, FIRST), p);
+        let first = self.pgs.solve(problem, &within(stop.max_iterations, FIRST_SWEEPS), p);
         let mut progress = Progress { best: first, iterations: first.iterations };
         if !progress.over(stop)
             && first.residual.global < NEARLY
@@ -176,7 +184,7 @@ impl<const D: usize> Chain<D> {
             self.sweeps_and_steps(problem, stop, p, &mut progress);
         }
         if !progress.over(stop)
-            && p.len() <= PIVOTED
+            && p.len() <= MOST_PIVOTED
             && let Some(pivots) = pivots
         {
             self.best.clear();
@@ -214,10 +222,10 @@ impl<const D: usize> Chain<D> {
         progress: &mut Progress,
     ) {
         let within = |left: u32, most: u32| stop.with_max_iterations(left.min(most));
-        // Sweeps that cost as much as a Newton step.
+        // Number of sweeps with the cost of a Newton step.
         let mut ratio = None;
-        let mut batch = FIRST;
-        for (round, worth) in WORTH.into_iter().enumerate() {
+        let mut batch = FIRST_SWEEPS;
+        for (round, worth) in WORTHWHILE_WORK.into_iter().enumerate() {
             let before = progress.best.residual.global;
             let outcome = self.pgs.solve(problem, &within(progress.left(stop), batch), p);
             let swept = outcome.iterations.max(1);
@@ -233,9 +241,9 @@ impl<const D: usize> Chain<D> {
             let after = progress.best.residual.global;
             let rate = (after / before).ln() / f64::from(swept);
             let expected = (stop.tolerance / after).ln() / rate;
-            // Written so that a rate that is no number doesn't count.
+            // The comparison is false if the rate is NaN.
             if rate < 0.0 && expected < worth * work {
-                let most = ((1.5 * expected) as u32).saturating_add(FIRST);
+                let most = ((1.5 * expected) as u32).saturating_add(FIRST_SWEEPS);
                 progress.add(self.pgs.solve(problem, &within(progress.left(stop), most), p));
                 if progress.over(stop) {
                     return;
@@ -245,12 +253,12 @@ impl<const D: usize> Chain<D> {
             if progress.over(stop) {
                 return;
             }
-            batch = ((2.0 * work) as u32).saturating_mul(1 << round).saturating_add(FIRST);
+            batch = ((2.0 * work) as u32).saturating_mul(1 << round).saturating_add(FIRST_SWEEPS);
         }
     }
 }
 
-/// Whether the rows of H hold so many blocks that factors of it would fill in.
+/// Whether the rows of H have so many blocks that its factors would fill in.
 #[cfg(feature = "sparse")]
 fn has_long_rows<const D: usize>(problem: &ContactProblem<'_, D>) -> bool {
     let n = problem.contacts();

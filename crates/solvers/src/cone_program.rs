@@ -1,25 +1,25 @@
-//! The convex problem `min ½ pᵀSp + (q + s)ᵀp`, ‖p_T‖ ≤ μ p_N, as Clarabel takes it.
+//! The convex problem `min ½ pᵀSp + (q + s)ᵀp`, ‖p_T‖ ≤ μ p_N, in Clarabel's form.
 
 use crate::upper::Upper;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SupportedConeT};
 use teeter_contact::{BlockSparse, ContactProblem, Vector};
 
-/// Asked of Clarabel; what it reaches is judged by us.
+/// The tolerance passed to Clarabel; the result is checked by the residual.
 const TOLERANCE: f64 = 1e-12;
 
-/// One problem's cone programs: the same H and μ, any linear term.
+/// The cone programs of one problem: fixed H and μ, any linear term.
 pub(crate) struct ConeProgram<const D: usize> {
     solver: DefaultSolver<f64>,
     /// The linear term in Clarabel's units.
     linear: Vec<f64>,
-    /// What a velocity is divided by, and an impulse multiplied with.
+    /// The factor that velocities are divided and impulses multiplied by.
     speed: f64,
     impulse: f64,
 }
 
 impl<const D: usize> ConeProgram<D> {
-    /// `None` where Clarabel refuses the data.
+    /// `None` if Clarabel refuses the data.
     pub(crate) fn new(problem: &ContactProblem<'_, D>, h: &BlockSparse<D>, upper: &mut Upper<D>) -> Option<Self> {
         let (n, rho) = (problem.contacts(), problem.scale());
         upper.load(h);
@@ -32,7 +32,7 @@ impl<const D: usize> ConeProgram<D> {
             upper.rows.clone(),
             upper.values.iter().map(|value| value * rho).collect(),
         );
-        // Rows by contact; s = b − A p lies in the cone with b = 0, so the signs of A are turned.
+        // Rows by contact; s = b − A p lies in the cone with b = 0, so the signs of A are reversed.
         let (mut of_row, mut of_column, mut values) = (Vec::new(), Vec::new(), Vec::new());
         let (mut cones, mut rows) = (Vec::new(), 0);
         let mut entry = |row: usize, column: usize, value: f64| {
@@ -45,7 +45,7 @@ impl<const D: usize> ConeProgram<D> {
             // ‖p_T‖ ≤ μ p_N divided by the larger of 1 and μ, so that no row is large.
             let (normal, tangential) = if mu > 1.0 { (1.0, mu.recip()) } else { (mu, 1.0) };
             if mu == 0.0 {
-                // A cone of friction 0 would lose p_N ≥ 0.
+                // A cone with μ = 0 would lose p_N ≥ 0.
                 entry(rows, i * D, 1.0);
                 cones.push(SupportedConeT::NonnegativeConeT(1));
                 (1..D).for_each(|k| entry(rows + k, i * D + k, 1.0));
@@ -83,8 +83,9 @@ impl<const D: usize> ConeProgram<D> {
         Some(Self { solver, linear, speed, impulse: rho * speed })
     }
 
-    /// Solves for the linear term `term(i)` of each contact into `p`; whether it gave numbers at all. Its own status is
-    /// not asked: "almost solved" is often as good, and the judge decides.
+    /// Solves with the linear term `term(i)` of each contact into `p`; false if the result isn't
+    /// finite. Clarabel's status is ignored: "almost solved" is often as good, and the residual is
+    /// checked.
     pub(crate) fn solve(&mut self, term: impl Fn(usize) -> Vector<D>, p: &mut [Vector<D>]) -> bool {
         for i in 0..p.len() {
             for (to, from) in self.linear[i * D..(i + 1) * D].iter_mut().zip(term(i).iter()) {

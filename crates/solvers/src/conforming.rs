@@ -1,9 +1,11 @@
-//! The conformance run of the methods that don't solve a block whose diagonal spans 13 powers of ten, and say so.
+//! The conformance run of methods that don't solve a block whose diagonal spans 13 powers of ten,
+//! and report this.
 
 use teeter_contact::conformance::{plane_cases, run, space_cases};
 use teeter_contact::{ContactSolver, Stop, Vector, judge};
 
-/// All cases to 1e-12 but those of uneven scales: there, what is said of the result must be true.
+/// All cases must be solved to 1e-12 except those of uneven scales, for which the reported outcome
+/// must be correct.
 pub(crate) fn conforms_but_for_uneven_scales(plane: &mut dyn ContactSolver<2>, space: &mut dyn ContactSolver<3>) {
     run(plane, &plane_cases(), 1e-12).unwrap();
     let (uneven, even): (Vec<_>, Vec<_>) =

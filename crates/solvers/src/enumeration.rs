@@ -1,25 +1,29 @@
 //! Exact enumeration of contact states, for up to five plane contacts.
 //!
-//! Each contact is open, sticks, or slides to the right or left; each of the 4ⁿ combinations is a small linear system
-//! (n ≤ 5: at most 10 × 10) whose solution is checked against the inequalities of the law. There is no iteration and no
-//! tolerance of its own beyond rounding.
+//! Each contact is open, sticks, or slides to the right or left. Each of the 4ⁿ combinations is a
+//! linear system (n ≤ 5: at most 10 × 10) whose solution is checked against the inequalities of the
+//! law. There is no iteration and no tolerance except for rounding.
 //!
-//! Up to three contacts the combinations are the leaves of a tree. On the way down each contact is eliminated in one of its states, so that a
-//! leaf is left with the 2 × 2 problem of the last contact: all leaves share the work above them, and most fail a
-//! sign there.
+//! For up to three contacts the combinations are the leaves of a tree. On the way down each contact
+//! is eliminated in one of its states, so that a leaf is the 2 × 2 problem of the last contact. All
+//! leaves share the work above them, and most fail a sign check.
 //!
-//! Before the walk through the tree the likely states are tried, one by one (`likely.rs`): that is the whole solve wherever they
-//! fit with room to spare. The tree is for the rest: borders between states, and problems where a contact can't choose alone.
+//! Before the tree is searched, likely states are tried (`likely.rs`). If they are valid with a
+//! margin, the solve is complete. The tree handles the rest: boundaries between states, and
+//! problems with strongly coupled states.
 //!
-//! Four and five contacts have 256 and 1024 combinations. They are gone through one by one, each by a solve with complete pivoting: some
-//! tenths of a millisecond and some milliseconds, which [`Auto`](crate::Auto) spends where all else has failed.
+//! Four and five contacts have 256 and 1024 combinations, which are tried one by one, each with a
+//! completely pivoted solve. This takes tenths of a millisecond and some milliseconds;
+//! [`Auto`](crate::Auto) uses it when all else has failed.
 //!
-//! Hyperstatic contacts (two sticking corners of one body) make the system of a state singular: its solution of least
-//! norm is taken. The least-norm point of all impulses that obey the law lies on a face of the cones, and a face is a
-//! state; so of the states that fit, the one of smallest norm is that point.
+//! Hyperstatic contacts (two sticking corners of one body) make the system of a state singular;
+//! then its least-norm solution is taken. The least-norm point of all impulses that satisfy the law
+//! lies on a face of the cones, and each face is a state, so the valid state with the least norm
+//! gives this point.
 //!
-//! The enumeration of states is as old as the linear complementarity form of plane friction (Klarbring 1990,
-//! doi 10.1007/BF00534316); choosing by the norm is ours, and so is trying the likely states first.
+//! The enumeration of states is as old as the linear complementarity form of plane friction
+//! (Klarbring 1990, doi 10.1007/BF00534316); the choice by the norm and trying likely states first
+//! are additions here.
 
 use crate::least_norm::{MAX, System};
 use crate::{likely, one_contact};
@@ -28,27 +32,28 @@ use teeter_contact::{
     ContactProblem, ContactSolver, Delassus, Law, Outcome, Residual, Status, Stop, judge, judge_velocities,
 };
 
-/// Up to so many contacts the states are a tree: 4³ = 64 leaves.
-pub(crate) const FEW: usize = 3;
-/// Most contacts that are enumerated: 4⁵ = 1024 states.
+/// Up to this number of contacts the states are searched as a tree: 4³ = 64 leaves.
+pub(crate) const TREE_CONTACTS: usize = 3;
+/// Largest number of contacts: 4⁵ = 1024 states.
 pub(crate) const MAX_CONTACTS: usize = 5;
-/// How far an inequality may be missed, relative to the terms that its left side is the sum of: rounding of a 10 × 10 solve.
+/// Tolerance of an inequality, relative to the terms summed on its left side: the rounding of a 10
+/// × 10 solve.
 pub(crate) const ROUNDING: f64 = 1e-13;
-/// The same of a good solve: some units of the last digit.
-const SHARP: f64 = 16.0 * f64::EPSILON;
+/// The same for a well-conditioned solve: some units in the last digit.
+const SHARP_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// The exact 2D solver for up to five contacts; see the [crate's table](crate).
 ///
-/// `iterations` counts the states tried. With more than five contacts, or where no state fits, the status is
-/// [`Status::Breakdown`].
+/// `iterations` counts the states tried. With more than five contacts, or if no state is valid, the
+/// status is [`Status::Breakdown`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Enumeration;
 
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) enum State {
+pub(crate) enum ContactState {
     Open,
     Stick,
-    /// Slides; the sign of u_T.
+    /// Sliding, with the sign of u_T.
     Slide(f64),
 }
 
@@ -56,7 +61,7 @@ impl Enumeration {
     /// The name by which users choose it.
     pub const NAME: &'static str = "enumeration";
 
-    /// Most contacts that it takes.
+    /// Largest number of contacts.
     pub const MAX_CONTACTS: usize = MAX_CONTACTS;
 
     /// A solver.
@@ -95,7 +100,7 @@ impl ContactSolver<2> for Enumeration {
 /// The outcome of a search that tried so many states.
 #[inline]
 fn judged(found: bool, tried: u32, residual: Residual, stop: &Stop<'_>) -> Outcome {
-    // Written so that a NaN counts as not solved.
+    // The comparison is false for a NaN.
     let status = if found && residual.global <= stop.tolerance { Status::Converged } else { Status::Breakdown };
     Outcome::new(status, Enumeration::NAME, tried, residual)
 }
@@ -104,8 +109,8 @@ fn judged(found: bool, tried: u32, residual: Residual, stop: &Stop<'_>) -> Outco
 fn solve_several(problem: &ContactProblem<'_, 2>, stop: &Stop<'_>, p: &mut [Vector2<f64>]) -> Outcome {
     let n = problem.contacts();
     let (found, tried, residual) = match n {
-        2..=FEW => {
-            let table = Table::<FEW>::new(problem);
+        2..=TREE_CONTACTS => {
+            let table = BlockTable::<TREE_CONTACTS>::new(problem);
             let (likely, tried) = likely::find(&table, p);
             if let Some((impulses, velocities)) = likely {
                 let residual = judge_velocities(problem, &impulses[..n], &velocities[..n]);
@@ -114,11 +119,11 @@ fn solve_several(problem: &ContactProblem<'_, 2>, stop: &Stop<'_>, p: &mut [Vect
                     return Outcome::new(Status::Converged, Enumeration::NAME, tried, residual);
                 }
             }
-            let (found, searched, residual) = sharply(problem, stop, table, p, |table, p| table.search(p));
+            let (found, searched, residual) = search_with_retry(problem, stop, table, p, |table, p| table.search(p));
             (found, tried + searched, residual)
         }
-        4 => sharply(problem, stop, Table::<4>::new(problem), p, |table, p| table.try_all::<8>(p)),
-        MAX_CONTACTS => sharply(problem, stop, Table::<MAX_CONTACTS>::new(problem), p, |table, p| {
+        4 => search_with_retry(problem, stop, BlockTable::<4>::new(problem), p, |table, p| table.try_all::<8>(p)),
+        MAX_CONTACTS => search_with_retry(problem, stop, BlockTable::<MAX_CONTACTS>::new(problem), p, |table, p| {
             table.try_all::<{ 2 * MAX_CONTACTS }>(p)
         }),
         _ => (n == 0, 0, judge(problem, p)),
@@ -126,22 +131,23 @@ fn solve_several(problem: &ContactProblem<'_, 2>, stop: &Stop<'_>, p: &mut [Vect
     judged(found, tried, residual, stop)
 }
 
-/// Searches the states for impulses that obey the law to rounding; where those aren't good enough for the tolerance, for such that obey it to the
-/// last digits. Corners of one body that can't quite both stick have states that fit to rounding and others that fit. Returns whether there are any, how
-/// many states were tried, and the residual.
-fn sharply<const N: usize>(
+/// Searches the states for impulses that satisfy the law to rounding; if these miss the tolerance,
+/// searches again with the sharper limit. (If two corners of one body can't quite both stick, some
+/// states satisfy the law only to rounding.) Returns whether a state is valid, how many were tried,
+/// and the residual.
+fn search_with_retry<const N: usize>(
     problem: &ContactProblem<'_, 2>,
     stop: &Stop<'_>,
-    mut table: Table<N>,
+    mut table: BlockTable<N>,
     p: &mut [Vector2<f64>],
-    search: impl Fn(&Table<N>, &mut [Vector2<f64>]) -> (bool, u32),
+    search: impl Fn(&BlockTable<N>, &mut [Vector2<f64>]) -> (bool, u32),
 ) -> (bool, u32, Residual) {
     let (found, tried) = search(&table, p);
     let mut residual = judge(problem, p);
     if !found || residual.global <= stop.tolerance {
         return (found, tried, residual);
     }
-    table.slack = SHARP;
+    table.slack = SHARP_ROUNDING;
     let mut sharp = [Vector2::zeros(); N];
     let sharp = &mut sharp[..problem.contacts()];
     let (found, more) = search(&table, sharp);
@@ -153,20 +159,20 @@ fn sharply<const N: usize>(
     (true, tried + more, residual)
 }
 
-/// The problem with its blocks at hand.
-pub(crate) struct Table<const N: usize = FEW> {
+/// The blocks of the problem in a dense table.
+pub(crate) struct BlockTable<const N: usize = TREE_CONTACTS> {
     pub(crate) n: usize,
     pub(crate) h: [[Matrix2<f64>; N]; N],
     pub(crate) q: [Vector2<f64>; N],
     pub(crate) mu: [f64; N],
-    /// How far an inequality may be missed, relative to the terms that its left side is the sum of.
+    /// Tolerance of an inequality, relative to the terms summed on its left side.
     slack: f64,
 }
 
 /// Impulses, or velocities, of all contacts.
-pub(crate) type Impulses<const N: usize = FEW> = [Vector2<f64>; N];
+pub(crate) type Impulses<const N: usize = TREE_CONTACTS> = [Vector2<f64>; N];
 
-impl<const N: usize> Table<N> {
+impl<const N: usize> BlockTable<N> {
     fn new(problem: &ContactProblem<'_, 2>) -> Self {
         let n = problem.contacts();
         let mut table =
@@ -203,8 +209,8 @@ impl<const N: usize> Table<N> {
         table
     }
 
-    /// Whether impulses obey the law in these states, up to rounding.
-    fn obeys(&self, states: &[State; N], p: &Impulses<N>) -> bool {
+    /// Whether impulses satisfy the law in these states, up to rounding.
+    fn obeys(&self, states: &[ContactState; N], p: &Impulses<N>) -> bool {
         for i in 0..self.n {
             let mut u = self.q[i];
             let mut size = u.abs();
@@ -216,9 +222,11 @@ impl<const N: usize> Table<N> {
             let slack_p = slack_n / self.h[i][i][(0, 0)];
             let presses = p[i][0] >= -slack_p && u[0].abs() <= slack_n;
             let fits = match states[i] {
-                State::Open => u[0] >= -slack_n,
-                State::Slide(sigma) => presses && (sigma * u[1] >= -slack_t || self.mu[i] == 0.0),
-                State::Stick => presses && p[i][1].abs() <= self.mu[i] * p[i][0] + slack_p && u[1].abs() <= slack_t,
+                ContactState::Open => u[0] >= -slack_n,
+                ContactState::Slide(sigma) => presses && (sigma * u[1] >= -slack_t || self.mu[i] == 0.0),
+                ContactState::Stick => {
+                    presses && p[i][1].abs() <= self.mu[i] * p[i][0] + slack_p && u[1].abs() <= slack_t
+                }
             };
             if !fits {
                 return false;
@@ -227,21 +235,22 @@ impl<const N: usize> Table<N> {
         true
     }
 
-    /// The impulses of a combination of states by a pivoted solve, of least norm where it leaves a choice.
-    fn pivoted<const M: usize>(&self, states: &[State; N]) -> Option<Impulses<N>> {
-        // Unknown k is the size of an impulse along (1, −σμ) at a contact, or a component of a sticking one's; its
-        // equation is a row of u = 0.
+    /// The impulses of a combination of states by a pivoted solve, with the least norm if they
+    /// aren't unique.
+    fn pivoted<const M: usize>(&self, states: &[ContactState; N]) -> Option<Impulses<N>> {
+        // Unknown k is the magnitude of an impulse along (1, −σμ) at a sliding contact, or a
+        // component at a sticking one; its equation is a row of u = 0.
         let mut rows = [(0, 0); M];
         let mut tangent = [0.0; M];
         let mut m = 0;
         for i in 0..self.n {
-            if states[i] == State::Open {
+            if states[i] == ContactState::Open {
                 continue;
             }
             rows[m] = (i, 0);
             m += 1;
             match states[i] {
-                State::Slide(sigma) => tangent[m - 1] = -sigma * self.mu[i],
+                ContactState::Slide(sigma) => tangent[m - 1] = -sigma * self.mu[i],
                 _ => {
                     rows[m] = (i, 1);
                     m += 1;
@@ -267,17 +276,18 @@ impl<const N: usize> Table<N> {
         Some(p)
     }
 
-    /// Tries the combinations of states one by one, `M` = 2 `N`; leaves the smallest impulses that fit in `p`. Returns
-    /// whether one fits, and how many were tried.
+    /// Tries the combinations of states one by one, with `M` = 2 `N`, and leaves the smallest valid
+    /// impulses in `p`. Returns whether a combination is valid, and how many were tried.
     fn try_all<const M: usize>(&self, p: &mut [Vector2<f64>]) -> (bool, u32) {
         let mut best: Option<(f64, Impulses<N>)> = None;
         let mut tried = 0;
-        // The combination's number, its digits to the base of four the states.
+        // The base-4 digits of the combination's number are the states.
         'combinations: for number in 0..1_u32 << (2 * self.n) {
-            let mut states = [State::Open; N];
+            let mut states = [ContactState::Open; N];
             for (i, state) in states[..self.n].iter_mut().enumerate() {
                 let digit = (number >> (2 * i) & 3) as usize;
-                // Without friction there is nothing to stick, and sliding to the left is sliding to the right.
+                // Without friction there is no sticking, and sliding left is the same as sliding
+                // right.
                 if self.mu[i] == 0.0 && digit > 1 {
                     continue 'combinations;
                 }
@@ -297,13 +307,14 @@ impl<const N: usize> Table<N> {
     }
 }
 
-impl Table {
-    /// Tries the states; leaves the smallest impulses that fit in `p`. Returns whether one fits, and how many were tried.
+impl BlockTable {
+    /// Tries the states and leaves the smallest valid impulses in `p`. Returns whether a state is
+    /// valid, and how many were tried.
     fn search(&self, p: &mut [Vector2<f64>]) -> (bool, u32) {
-        let mut search = Search {
+        let mut search = TreeSearch {
             table: self,
-            states: [State::Open; FEW],
-            gains: [Matrix2::zeros(); FEW],
+            states: [ContactState::Open; TREE_CONTACTS],
+            gains: [Matrix2::zeros(); TREE_CONTACTS],
             speed: self.q.iter().map(Vector2::amax).fold(0.0, f64::max),
             best: None,
             tried: 0,
@@ -316,34 +327,37 @@ impl Table {
     }
 }
 
-/// A walk through the tree of states.
-struct Search<'a> {
-    table: &'a Table,
-    states: [State; FEW],
-    /// p_k = −gain (velocity of contact k without its own impulse), for the contacts eliminated so far.
-    gains: [Matrix2<f64>; FEW],
-    /// The largest component of q: what velocities are small against.
+/// A search through the tree of states.
+struct TreeSearch<'a> {
+    table: &'a BlockTable,
+    states: [ContactState; TREE_CONTACTS],
+    /// p_k = −gain · (velocity of contact k without its own impulse), for the contacts eliminated
+    /// so far.
+    gains: [Matrix2<f64>; TREE_CONTACTS],
+    /// The largest component of q, the scale of velocities.
     speed: f64,
     best: Option<(f64, Impulses)>,
     tried: u32,
 }
 
-const STATES: [State; 4] = [State::Open, State::Slide(1.0), State::Slide(-1.0), State::Stick];
+const STATES: [ContactState; 4] =
+    [ContactState::Open, ContactState::Slide(1.0), ContactState::Slide(-1.0), ContactState::Stick];
 
-impl Search<'_> {
-    /// The states of contact `k` that differ: without friction there is nothing to stick, and sliding to the left is
-    /// sliding to the right.
-    fn states_of(&self, k: usize) -> &'static [State] {
+impl TreeSearch<'_> {
+    /// The distinct states of contact `k`: without friction there is no sticking, and sliding left
+    /// is the same as sliding right.
+    fn states_of(&self, k: usize) -> &'static [ContactState] {
         if self.table.mu[k] == 0.0 { &STATES[..2] } else { &STATES }
     }
 
-    /// Whether impulses as small as can be were found.
+    /// Whether the smallest possible impulses were found.
     fn done(&self) -> bool {
         self.best.is_some_and(|(norm, _)| norm == 0.0)
     }
 
-    /// Eliminates contact `k` in each of its states from the problem (h, q) of the contacts from `k` on.
-    fn descend(&mut self, k: usize, h: &[[Matrix2<f64>; FEW]; FEW], q: &Impulses) {
+    /// Eliminates contact `k` in each of its states from the problem (h, q) of the contacts from
+    /// `k` on.
+    fn descend(&mut self, k: usize, h: &[[Matrix2<f64>; TREE_CONTACTS]; TREE_CONTACTS], q: &Impulses) {
         let n = self.table.n;
         for &state in self.states_of(k) {
             if self.done() {
@@ -358,14 +372,14 @@ impl Search<'_> {
             if k + 1 == n {
                 self.tried += 1;
                 let p = -(gain * q[k]);
-                let slack = ROUGHLY * self.speed;
+                let slack = SIGN_TOLERANCE * self.speed;
                 if plausible(state, &(q[k] + h[k][k] * p), slack, &p, slack * gain.amax(), self.table.mu[k]) {
                     self.leaf(&p);
                 }
                 continue;
             }
             let (mut reduced, mut rest) = (*h, *q);
-            if state != State::Open {
+            if state != ContactState::Open {
                 for i in k + 1..n {
                     let back = h[i][k] * gain;
                     rest[i] -= back * q[k];
@@ -378,28 +392,29 @@ impl Search<'_> {
         }
     }
 
-    /// Goes back up from the last contact's impulse, and offers the impulses of all.
+    /// Computes all impulses from the last contact's, and offers them.
     fn leaf(&mut self, last: &Vector2<f64>) {
         let table = self.table;
-        let mut p = [Vector2::zeros(); FEW];
+        let mut p = [Vector2::zeros(); TREE_CONTACTS];
         p[table.n - 1] = *last;
-        // Contact k was eliminated before those after it, in the velocities that those before it had left.
+        // Contact k was eliminated before the later contacts, with the velocities left by the
+        // earlier ones.
         for k in (0..table.n - 1).rev() {
             p[k] = self.eliminated(k, &p);
         }
         if !self.offer(&p) {
-            // Small pivots on the way down cost digits that the pivoted solve keeps.
+            // Small pivots in the elimination lose digits that the pivoted solve keeps.
             self.offer_pivoted();
         }
     }
 
-    /// The impulse of contact `k` given those after it, with those before it eliminated.
+    /// The impulse of contact `k` given the later ones, with the earlier ones eliminated.
     fn eliminated(&self, k: usize, p: &Impulses) -> Vector2<f64> {
         let table = self.table;
         let velocity = |i: usize| (k + 1..table.n).fold(table.q[i], |u, j| u + table.h[i][j] * p[j]);
         match k {
             0 => -(self.gains[0] * velocity(0)),
-            // Contact 1 of three: contact 0 gives way to it and to contact 2.
+            // Contact 1 of three: contact 0, already eliminated, responds to it and to contact 2.
             _ => {
                 let give = table.h[1][0] * self.gains[0];
                 let u = velocity(1) - give * velocity(0);
@@ -408,7 +423,8 @@ impl Search<'_> {
         }
     }
 
-    /// Offers the pivoted solutions of all combinations of states from contact `k` on, those before it as they are.
+    /// Offers the pivoted solutions of all combinations of states from contact `k` on, with the
+    /// earlier states fixed.
     fn all_pivoted(&mut self, k: usize) {
         if k < self.table.n {
             for &state in self.states_of(k) {
@@ -427,7 +443,8 @@ impl Search<'_> {
         }
     }
 
-    /// Keeps impulses that obey the law if none smaller are known; false for impulses that don't obey it.
+    /// Keeps impulses that satisfy the law if they are the smallest so far; false if they don't
+    /// satisfy it.
     fn offer(&mut self, p: &Impulses) -> bool {
         let norm: f64 = p.iter().map(Vector2::norm_squared).sum();
         if self.best.is_some_and(|(best, _)| norm >= best) {
@@ -441,40 +458,42 @@ impl Search<'_> {
     }
 }
 
-/// How the impulse of a contact in a state answers its velocity: p = −gain u. `h` is its block with other contacts
-/// eliminated, `original` the block itself. `None` where the state leaves the impulse undetermined, or nearly.
-fn gain(state: State, h: &Matrix2<f64>, mu: f64, original: &Matrix2<f64>) -> Option<Matrix2<f64>> {
+/// The matrix `gain` of a contact in a state, p = −gain u. `h` is its block with other contacts
+/// eliminated, `original` the original block. `None` if the impulse is (nearly) undetermined.
+fn gain(state: ContactState, h: &Matrix2<f64>, mu: f64, original: &Matrix2<f64>) -> Option<Matrix2<f64>> {
     match state {
-        State::Open => Some(Matrix2::zeros()),
-        State::Slide(sigma) => {
+        ContactState::Open => Some(Matrix2::zeros()),
+        ContactState::Slide(sigma) => {
             let compliance = h[(0, 0)] - sigma * mu * h[(0, 1)];
             let size = original[(0, 0)] + mu * original[(0, 1)].abs();
-            (compliance.abs() > DOUBTFUL * size)
+            (compliance.abs() > LEAST_PIVOT * size)
                 .then(|| Matrix2::new(1.0 / compliance, 0.0, -sigma * mu / compliance, 0.0))
         }
-        State::Stick => {
+        ContactState::Stick => {
             let determinant = h[(0, 0)] * h[(1, 1)] - h[(0, 1)] * h[(1, 0)];
             let size = original[(0, 0)] * original[(1, 1)];
-            (determinant.abs() > DOUBTFUL * size)
+            (determinant.abs() > LEAST_PIVOT * size)
                 .then(|| Matrix2::new(h[(1, 1)], -h[(0, 1)], -h[(1, 0)], h[(0, 0)]) / determinant)
         }
     }
 }
 
-/// A pivot below this part of its block is left to the pivoted solve: the one after it would hold the rounding that this one
-/// magnifies, and a vanishing one couldn't be told from that. Two such steps in a row stay far above rounding.
-const DOUBTFUL: f64 = 1e-4;
+/// A pivot below this fraction of its block is left to the pivoted solve. A small pivot amplifies
+/// the rounding of the next one, and a zero pivot couldn't be detected. Two steps with this limit
+/// stay far above rounding.
+const LEAST_PIVOT: f64 = 1e-4;
 
-/// What a sign of the last contact may be missed by, relative to the speeds of the problem, before the exact test is not
-/// worth its cost: far above rounding on the way down.
-const ROUGHLY: f64 = 1e-9;
+/// Tolerance of the sign checks at the last contact, relative to the speeds of the problem, before
+/// the exact check is made: far above the rounding of the elimination.
+const SIGN_TOLERANCE: f64 = 1e-9;
 
-/// Whether the last contact's velocity `u` and impulse `p` may belong to its state, up to `slack_u` and `slack_p`.
-fn plausible(state: State, u: &Vector2<f64>, slack_u: f64, p: &Vector2<f64>, slack_p: f64, mu: f64) -> bool {
+/// Whether the last contact's velocity `u` and impulse `p` fit its state up to `slack_u` and
+/// `slack_p`.
+fn plausible(state: ContactState, u: &Vector2<f64>, slack_u: f64, p: &Vector2<f64>, slack_p: f64, mu: f64) -> bool {
     match state {
-        State::Open => u[0] >= -slack_u,
-        State::Slide(sigma) => p[0] >= -slack_p && (sigma * u[1] >= -slack_u || mu == 0.0),
-        State::Stick => p[1].abs() <= mu * p[0] + slack_p * (1.0 + mu),
+        ContactState::Open => u[0] >= -slack_u,
+        ContactState::Slide(sigma) => p[0] >= -slack_p && (sigma * u[1] >= -slack_u || mu == 0.0),
+        ContactState::Stick => p[1].abs() <= mu * p[0] + slack_p * (1.0 + mu),
     }
 }
 
@@ -505,8 +524,9 @@ mod tests {
     }
 
     #[test]
-    fn where_even_shares_would_leave_a_cone_the_nearest_point_inside_is_taken() {
-        // The body tips forward: the rear foot is light, and half of the tangential impulse would be beyond its cone.
+    fn uneven_shares_are_taken_if_even_ones_violate_a_cone() {
+        // The body tips forward, so the rear foot has a small normal impulse and half of the
+        // tangential impulse would violate its cone.
         let feet = [(-0.5, -1.0), (0.5, -1.0)];
         let p = solve(&body_on_floor("tips", 0.3, &feet, [0.4, -1.0, 0.0], 0.5));
         let (rear, front) = if p[0][0] < p[1][0] { (p[0], p[1]) } else { (p[1], p[0]) };
@@ -527,7 +547,7 @@ mod tests {
     }
 
     #[test]
-    fn more_than_five_contacts_are_a_breakdown_not_a_panic() {
+    fn more_than_five_contacts_give_a_breakdown() {
         let feet = [(-0.5, -1.0), (-0.2, -1.0), (-0.1, -1.0), (0.2, -1.0), (0.4, -1.0), (0.5, -1.0)];
         let case = body_on_floor("six", 0.3, &feet, [0.0, -1.0, 0.0], 0.5);
         let mut p = vec![Vector2::zeros(); 6];
@@ -536,7 +556,7 @@ mod tests {
     }
 
     #[test]
-    fn contacts_of_very_different_mass_are_not_mistaken_for_hyperstatic_ones() {
+    fn contacts_of_very_different_mass_are_not_hyperstatic() {
         let mut case = body_on_floor("light", 0.3, &[(-0.5, -1.0)], [0.0, -1.0, 0.0], 0.5);
         let heavy = body_on_floor("heavy", 0.3, &[(-0.5, -1.0)], [1.0, -1.0, 0.0], 0.5);
         case.h = vec![

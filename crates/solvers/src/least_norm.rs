@@ -1,10 +1,12 @@
-//! Small linear systems, singular ones included, in the least norm.
+//! Least-norm solution of small linear systems, including singular ones.
 
-/// Unknowns of a small problem: a normal and a tangential impulse for each of three contacts.
-pub(crate) const MAX: usize = 2 * crate::enumeration::FEW;
+/// Number of unknowns of a small problem: a normal and a tangential impulse for each of three
+/// contacts.
+pub(crate) const MAX: usize = 2 * crate::enumeration::TREE_CONTACTS;
 
-/// A pivot below this, relative to the compliances of its row and column, is taken for zero: hyperstatic contacts leave
-/// pivots of some 1e-16, while two corners on a beam that slopes by w' leave w'² and more.
+/// A pivot below this, relative to the compliances of its row and column, counts as zero.
+/// Hyperstatic contacts leave pivots of about 1e-16, two corners on a beam with the slope w' at
+/// least w'².
 pub(crate) const RANK_TOLERANCE: f64 = 1e-12;
 
 /// A square system `a x = b` of order `m` ≤ `M`.
@@ -12,9 +14,9 @@ pub(crate) struct System<const M: usize = MAX> {
     m: usize,
     pub(crate) a: [[f64; M]; M],
     pub(crate) b: [f64; M],
-    /// Natural sizes of rows and columns: pivots are judged relative to `scale[r] scale[c]`.
+    /// Scales of rows and columns: pivots are compared with `scale[r] scale[c]`.
     pub(crate) scale: [f64; M],
-    /// Lengths of what the unknowns stand for: the norm is that of `length[k] x[k]`.
+    /// Weights of the norm, which is that of `length[k] x[k]`.
     pub(crate) length: [f64; M],
 }
 
@@ -23,8 +25,9 @@ impl<const M: usize> System<M> {
         Self { m, a: [[0.0; M]; M], b: [0.0; M], scale: [1.0; M], length: [1.0; M] }
     }
 
-    /// The solution of least norm, by Gaussian elimination with complete pivoting; `None` where a number overflows.
-    /// Whether a singular system was consistent, the caller has to see from the residual.
+    /// The solution of least norm, by Gaussian elimination with complete pivoting; `None` if a
+    /// number overflows. Whether a singular system was consistent, the caller must check by the
+    /// residual.
     pub(crate) fn solve(mut self) -> Option<[f64; M]> {
         let m = self.m;
         let mut column: [usize; M] = std::array::from_fn(|k| k);
@@ -61,7 +64,7 @@ impl<const M: usize> System<M> {
         }
         // Back substitution with the free unknowns at zero …
         let mut solution = self.back_substitute(rank, &column, &self.b);
-        // … then out of it what lies in the null space, so that the norm is least.
+        // … then remove the part in the null space, so that the norm is least.
         let mut basis = [[0.0; M]; M];
         for free in rank..m {
             let mut b = [0.0; M];
@@ -97,7 +100,7 @@ impl<const M: usize> System<M> {
         (0..self.m).map(|k| self.length[k] * self.length[k] * x[k] * y[k]).sum()
     }
 
-    /// Removes from `x` its part along `e`, of length 1.
+    /// Removes from `x` its component along the unit vector `e`.
     fn subtract_projection(&self, x: &mut [f64; M], e: &[f64; M]) {
         let along = self.inner(x, e);
         for (a, b) in x.iter_mut().zip(e) {
@@ -111,7 +114,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_singular_system_gets_its_solution_of_least_norm() {
+    fn a_singular_system_gets_the_least_norm_solution() {
         // x + y = 2 twice, and z = 3.
         let mut system = System::<MAX>::new(3);
         system.a[0][0] = 1.0;
@@ -124,8 +127,8 @@ mod tests {
     }
 
     #[test]
-    fn the_norm_counts_lengths() {
-        // x + y = 5 with y of length 2: x = 4, y = 1 is nearest to zero.
+    fn the_norm_is_weighted() {
+        // x + y = 5 with the weight 2 for y: x = 4, y = 1 has the least norm.
         let mut system = System::<MAX>::new(2);
         system.a[0][..2].fill(1.0);
         system.a[1][..2].fill(1.0);

@@ -1,68 +1,71 @@
 //! Lemke's pivoting on the linear complementarity problem of plane friction.
 //!
-//! **What it solves**: exact Signorini–Coulomb in the plane, by a finite number of pivots; H may be asymmetric or singular.
+//! **What it solves**: exact Signorini–Coulomb in the plane, by a finite number of pivots; H may be
+//! asymmetric or singular.
 //!
-//! **When to take it**: some tens to some hundred contacts in the plane where Gauss–Seidel crawls.
+//! **When to use it**: for some tens to some hundred plane contacts where Gauss–Seidel is slow.
 //!
-//! **How**: with p_T = λ − μ p_N and u_T = u⁺ − u⁻ the law of contact i is three complementary pairs (Klarbring 1986, doi
-//! 10.1016/0045-7825(86)90074-8)
+//! **How**: with p_T = λ − μ p_N and u_T = u⁺ − u⁻ the law of contact i is three complementary
+//! pairs (Klarbring 1986, doi 10.1016/0045-7825(86)90074-8)
 //!
 //! ```text
 //! 0 ≤ u_N ⊥ p_N ≥ 0,   0 ≤ u⁺ = u_T + u⁻ ⊥ λ ≥ 0,   0 ≤ 2 μ p_N − λ ⊥ u⁻ ≥ 0
 //! ```
 //!
-//! (one where μ = 0), in all w = M z + q. Lemke's method (Cottle, Pang and Stone 1992, doi 10.1137/1.9780898719000, §4.4) adds an
-//! artificial z₀ to every row and pivots it out again. Ties are broken lexicographically, so it can't cycle in exact
-//! arithmetic.
+//! (one pair if μ = 0), together w = M z + q. Lemke's method (Cottle, Pang and Stone 1992, doi
+//! 10.1137/1.9780898719000, §4.4) adds an artificial variable z₀ to every row and pivots it out
+//! again. Ties are broken lexicographically, so it can't cycle in exact arithmetic.
 //!
-//! **Cost**: a dense tableau of (3n)² numbers, kept; a pivot costs as many multiplications at most, in practice what isn't
-//! zero of them; there are some 1 to 4 pivots a contact. So O(n³), and the memory of 72 n² bytes is why
-//! it refuses more than [`Lemke::MAX_CONTACTS`]. `iterations` counts pivots.
+//! **Cost**: a dense tableau of (3n)² numbers, which is kept. A pivot costs at most as many
+//! multiplications (zeros are skipped), and there are about 1 to 4 pivots per contact, so O(n³).
+//! Because of the memory of 72 n² bytes it refuses more than [`Lemke::MAX_CONTACTS`] contacts.
+//! `iterations` counts pivots.
 //!
-//! **How it fails**: `breakdown` where z₀ can't be pivoted out (a ray: the problem may have no solution, or the method doesn't
-//! find it, as with large μ), where there are too many contacts, and where rounding has spoilt the tableau, which the
-//! judge sees. With μ beyond some thousands λ − μ p_N loses the digits that μ has.
+//! **How it fails**: `breakdown` if z₀ can't be pivoted out (a ray: the problem may have no
+//! solution, or the method doesn't find it, as with large μ), if there are too many contacts, and
+//! if rounding has spoilt the tableau, which the residual shows. With μ above some thousands, λ − μ
+//! p_N loses as many digits as μ has.
 //!
-//! Departures: the start is judged, and returned if it is solved already, but doesn't help otherwise; two steps of iterative refinement with
-//! the final tableau take the pivots' rounding out; the pairs are scaled by ρ and the largest |q|, so that units change
-//! nothing.
+//! Departures: the initial impulses are returned if they already solve the problem, but aren't used
+//! otherwise; two steps of iterative refinement with the final tableau remove the rounding of the
+//! pivots; the pairs are scaled by ρ and the largest |q|, so that units don't matter.
 
 use crate::memory::reserve;
 use nalgebra::Vector2;
 use teeter_contact::{BlockSparse, ContactProblem, ContactSolver, Law, Outcome, Status, Stop, judge};
 
-/// A pivot must be this part of its column's largest number: less is rounding.
+/// Least pivot relative to the largest number of its column; smaller ones are rounding.
 const PIVOT: f64 = 1e-10;
 
-/// Ratios that differ by less (where the largest |q| is 1) are tied.
+/// Ratios that differ by less (with the largest |q| scaled to 1) are tied.
 const TIE: f64 = 1e-13;
 
 /// The pivoting solver; see the [crate's table](crate).
 #[derive(Clone, Debug, Default)]
 pub struct Lemke {
     h: BlockSparse<2>,
-    /// First row of each contact, and the number of rows.
+    /// First row of each contact, and at the end the number of rows.
     base: Vec<usize>,
     /// x_B = `constant` + `tableau` x_N; by rows, one column more than rows.
     tableau: Vec<f64>,
     constant: Vec<f64>,
-    /// The variable of each row and of each column: w_k is k, z_k is m + k, z₀ is 2 m.
+    /// The variables of rows and columns: w_k is k, z_k is m + k, z₀ is 2 m.
     basic: Vec<usize>,
     nonbasic: Vec<usize>,
-    /// Where each variable is: row r is r, column c is m + c.
+    /// The place of each variable: row r is r, column c is m + c.
     place: Vec<usize>,
-    /// The pivot row, and the places of what isn't zero in it.
+    /// The pivot row, and the indices of its nonzeros.
     pivot_row: Vec<f64>,
     nonzero: Vec<usize>,
-    /// Rows that tie.
+    /// Tied rows.
     tied: Vec<usize>,
     values: Vec<f64>,
     missing: Vec<f64>,
     found: Vec<Vector2<f64>>,
 }
 
-/// How the pivoting ended.
-enum End {
+/// The end of the pivoting.
+enum PivotEnd {
     Solved,
     Ray,
     Cap,
@@ -73,7 +76,7 @@ impl Lemke {
     /// The name by which users choose it.
     pub const NAME: &'static str = "lemke";
 
-    /// Most contacts that it takes: 72 MB of tableau.
+    /// Largest number of contacts: 72 MB of tableau.
     pub const MAX_CONTACTS: usize = 1000;
 
     /// A solver.
@@ -86,8 +89,9 @@ impl Lemke {
         self.constant.len()
     }
 
-    /// The complementarity problem, velocities in units of `speed` and impulses in units of ρ `speed`.
-    fn pose(&mut self, problem: &ContactProblem<'_, 2>, rho: f64, speed: f64) {
+    /// Sets up the complementarity problem, with velocities in units of `speed` and impulses in
+    /// units of ρ `speed`.
+    fn set_up(&mut self, problem: &ContactProblem<'_, 2>, rho: f64, speed: f64) {
         let (n, mu) = (problem.contacts(), problem.mu());
         self.h.gather(problem);
         self.base.clear();
@@ -153,7 +157,7 @@ impl Lemke {
             if r == row || factor == 0.0 {
                 continue;
             }
-            // The column takes part in the dense loop with what it will be.
+            // The column enters the dense loop with its final values.
             other[column] = 0.0;
             if sparse {
                 for &c in &self.nonzero {
@@ -174,7 +178,7 @@ impl Lemke {
         self.place[self.nonbasic[column]] = m + column;
     }
 
-    /// What x_B of row `r` gains from a unit of q_j: a number of the basis' inverse.
+    /// The derivative of x_B in row `r` with respect to q_j, an entry of the basis inverse.
     fn sensitivity(&self, r: usize, j: usize) -> f64 {
         let m = self.rows();
         match self.place[j] {
@@ -183,7 +187,8 @@ impl Lemke {
         }
     }
 
-    /// Of the tied rows the lexicographically first, with ratios over −`column`; z₀ before all.
+    /// The lexicographically first of the tied rows, with ratios over −`column`; z₀ takes
+    /// precedence.
     fn first_of_ties(&mut self, column: usize) -> Option<usize> {
         let (m, width) = (self.rows(), self.rows() + 1);
         let mut tied = std::mem::take(&mut self.tied);
@@ -204,31 +209,31 @@ impl Lemke {
         row
     }
 
-    fn run(&mut self, stop: &Stop<'_>, pivots: &mut u32) -> End {
+    fn run(&mut self, stop: &Stop<'_>, pivots: &mut u32) -> PivotEnd {
         let (m, width) = (self.rows(), self.rows() + 1);
         let least = self.constant.iter().copied().fold(0.0, f64::min);
         if least >= 0.0 {
-            return End::Solved;
+            return PivotEnd::Solved;
         }
-        // z₀ enters, as large as the most negative row needs.
+        // z₀ enters, large enough for the most negative row.
         let mut column = m;
         self.tied.clear();
         self.tied.extend((0..m).filter(|&row| self.constant[row] <= least + TIE));
-        let Some(mut row) = self.first_of_ties(column) else { return End::Ray };
+        let Some(mut row) = self.first_of_ties(column) else { return PivotEnd::Ray };
         loop {
             if *pivots >= stop.max_iterations {
-                return End::Cap;
+                return PivotEnd::Cap;
             }
             if stop.cancelled() {
-                return End::Cancelled;
+                return PivotEnd::Cancelled;
             }
             let leaving = self.basic[row];
             self.pivot(row, column);
             *pivots += 1;
             if leaving == 2 * m {
-                return End::Solved;
+                return PivotEnd::Solved;
             }
-            // The partner of what left enters.
+            // The complement of the leaving variable enters.
             let partner = if leaving < m { leaving + m } else { leaving - m };
             column = self.place[partner] - m;
             let largest = (0..m).fold(0.0, |size: f64, r| size.max(self.tableau[r * width + column].abs()));
@@ -240,7 +245,7 @@ impl Lemke {
                 }
             }
             if !least.is_finite() {
-                return End::Ray;
+                return PivotEnd::Ray;
             }
             self.tied.clear();
             for r in 0..m {
@@ -251,7 +256,7 @@ impl Lemke {
             }
             match self.first_of_ties(column) {
                 Some(next) => row = next,
-                None => return End::Ray,
+                None => return PivotEnd::Ray,
             }
         }
     }
@@ -265,7 +270,7 @@ impl Lemke {
         }
     }
 
-    /// The impulses of the basis as pivoting left it, in `found`.
+    /// The impulses of the final basis, in `found`.
     fn impulses(&mut self, problem: &ContactProblem<'_, 2>, unit: f64) {
         self.evaluate();
         let m = self.rows();
@@ -279,7 +284,8 @@ impl Lemke {
         self.confine(problem);
     }
 
-    /// Puts impulses that the basis wants on the border of their cone there, and keeps rounding from taking others out.
+    /// Moves impulses that the basis puts on the boundary of their cone onto it, and keeps the
+    /// others inside despite rounding.
     fn confine(&mut self, problem: &ContactProblem<'_, 2>) {
         let m = self.rows();
         for (i, (p, &mu)) in self.found.iter_mut().zip(problem.mu()).enumerate() {
@@ -297,8 +303,9 @@ impl Lemke {
         }
     }
 
-    /// Iterative refinement: how far w = M z + q is missed, from H and the impulses themselves, taken out with the basis'
-    /// inverse. It acts on p_T, not on λ, which has lost the digits that μ has.
+    /// Iterative refinement: the residual of w = M z + q, computed from H and the impulses, is
+    /// corrected with the basis inverse. It acts on p_T, not on λ, which has lost as many digits as
+    /// μ has.
     fn refine(&mut self, problem: &ContactProblem<'_, 2>, rho: f64, speed: f64) {
         let (m, unit) = (self.rows(), rho * speed);
         self.evaluate();
@@ -381,17 +388,17 @@ impl ContactSolver<2> for Lemke {
         }
         let rho = problem.scale();
         let speed = problem.q().iter().map(Vector2::amax).fold(f64::MIN_POSITIVE, f64::max);
-        self.pose(problem, rho, speed);
+        self.set_up(problem, rho, speed);
         let mut pivots = 0;
         let end = self.run(stop, &mut pivots);
         self.impulses(problem, rho * speed);
         for _ in 0..2 {
-            if matches!(end, End::Solved) {
+            if matches!(end, PivotEnd::Solved) {
                 self.refine(problem, rho, speed);
             }
         }
         let mut residual = judge(problem, &self.found);
-        // What pivoting left behind may be worse than what was given, or no number.
+        // The result of pivoting may be worse than the initial impulses, or NaN.
         if residual.global < start.global || !start.global.is_finite() {
             p.copy_from_slice(&self.found);
         } else {
@@ -399,9 +406,9 @@ impl ContactSolver<2> for Lemke {
         }
         let status = match end {
             _ if residual.global <= stop.tolerance => Status::Converged,
-            End::Solved | End::Ray => Status::Breakdown,
-            End::Cap => Status::MaxIterations,
-            End::Cancelled => Status::Cancelled,
+            PivotEnd::Solved | PivotEnd::Ray => Status::Breakdown,
+            PivotEnd::Cap => Status::MaxIterations,
+            PivotEnd::Cancelled => Status::Cancelled,
         };
         Outcome::new(status, Self::NAME, pivots, residual)
     }
@@ -435,7 +442,7 @@ mod tests {
 
     #[test]
     fn a_problem_without_solution_is_a_breakdown() {
-        // H is not definite: to press makes it approach the faster, whatever it does.
+        // H is indefinite: a normal impulse increases the approach velocity.
         let h = [nalgebra::Matrix2::new(1.0, 0.0, 0.0, 1.0), nalgebra::Matrix2::new(-2.0, 0.0, 0.0, 0.0)];
         let h = [h[0], h[1], h[1], h[0]];
         let (q, mu) = ([Vector2::new(-1.0, 5.0); 2], [0.5; 2]);

@@ -1,33 +1,36 @@
-//! Solvers for the frictional contact problems of [`teeter_contact`]: one file each, one trait for all.
+//! Solvers for the frictional contact problems of [`teeter_contact`], with a common trait.
 //!
-//! Take [`Auto`]. It goes from cheap methods to robust ones until the judge is satisfied, and says which one did it. The
-//! others are for who knows their problems, or compares; each one's page says what it costs and how it fails.
+//! Use [`Auto`] by default. It tries cheap methods first, then robust ones, until one converges,
+//! and names the method that did. The others are for known problems and for comparisons; the page
+//! of each describes its cost and how it fails.
 //!
-//! | name | dim. | law | how | take it when |
+//! | name | dim. | law | method | use it when |
 //! |---|---|---|---|---|
-//! | [`Auto`] | 2D, 3D | exact | a chain of the others | you don't want to choose |
-//! | [`Enumeration`] | 2D | exact | all contact states, up to five contacts | up to three: always; four, five: to be sure |
-//! | [`Pgs`] | 2D, 3D | exact | Gauss–Seidel over contacts | 1e-4 or so is enough, or contacts couple weakly |
-//! | [`Newton`] | 2D, 3D | exact | semi-smooth Newton, sparse LU | the start is good, or pgs crawls |
-//! | [`Smoothing`] | 2D, 3D | exact | Newton along the central path | it is degenerate: packings, hyperstatic contacts by the hundred |
+//! | [`Auto`] | 2D, 3D | exact | a sequence of the others | by default |
+//! | [`Enumeration`] | 2D | exact | all contact states, up to five contacts | always for up to three contacts; four or five for a sure result |
+//! | [`Pgs`] | 2D, 3D | exact | Gauss–Seidel over contacts | 1e-4 or so is enough, or contacts are weakly coupled |
+//! | [`Newton`] | 2D, 3D | exact | semi-smooth Newton, sparse LU | the initial guess is good, or pgs is slow |
+//! | [`Smoothing`] | 2D, 3D | exact | Newton along the central path | the problem is degenerate: packings, hundreds of hyperstatic contacts |
 //! | [`Prox`] | 2D, 3D | exact | proximal point around Newton | H is singular and Newton fails |
 //! | [`Admm`] | 2D, 3D | exact | alternating directions, one Cholesky factorisation | walls, towers, stacks of up to some thousand contacts |
-//! | [`Lemke`] | 2D | exact | pivoting, up to 1000 contacts | some tens of contacts in the plane on which pgs crawls |
-//! | [`AcaryCadoux`] | 2D, 3D | exact | a fixed point over cone programs | robustness counts more than time |
-//! | [`ViEg`] | 2D, 3D | exact | projections with an adaptive step | 1e-4 on many contacts with nothing factorised |
+//! | [`Lemke`] | 2D | exact | pivoting, up to 1000 contacts | some tens of plane contacts for which pgs is slow |
+//! | [`AcaryCadoux`] | 2D, 3D | exact | a fixed point over cone programs | robustness matters more than time |
+//! | [`ViEg`] | 2D, 3D | exact | projections with an adaptive step | 1e-4 for many contacts without factorisation |
 //! | [`Apgd`] | 2D, 3D | exact | accelerated projected gradients | the same, for loose packings |
-//! | [`Socp`] | 2D, 3D | **convex** | one cone program | you compare with programs that use that law |
+//! | [`Socp`] | 2D, 3D | **convex** | one cone program | you compare with programs that use this law |
 //!
-//! The convex law isn't Coulomb's: a sliding contact separates at μ‖u_T‖ ([`Law`](teeter_contact::Law)). [`SOLVERS`] lists them all with their papers;
-//! [`plane_solver`] and [`space_solver`] make one by its name.
+//! The convex law isn't Coulomb's: a sliding contact separates at μ‖u_T‖
+//! ([`Law`](teeter_contact::Law)). [`SOLVERS`] lists all solvers with their papers;
+//! [`plane_solver`] and [`space_solver`] create one by its name.
 //!
 //! # Features
 //!
-//! - `sparse` (default): faer. Brings [`Admm`], and the fill-reducing order for the factorisations of [`Newton`], [`Smoothing`], [`Prox`] and
-//!   [`Auto`], which work without it, but slowly on large problems.
+//! - `sparse` (default): faer. Brings [`Admm`], and the fill-reducing order for the factorisations
+//!   of [`Newton`], [`Smoothing`], [`Prox`] and [`Auto`], which are slow on large problems without
+//!   it.
 //! - `clarabel` (default): Clarabel. Brings [`Socp`] and [`AcaryCadoux`].
 //!
-//! Without both the crate needs nalgebra only.
+//! Without both the crate depends only on nalgebra.
 //!
 //! # Example
 //!

@@ -1,97 +1,103 @@
-//! The contact states that are likely, before all states are enumerated.
+//! Trying likely contact states before enumerating all.
 //!
-//! The states of the start's impulses (or, from none, those that the contacts would have alone) are one linear system.
-//! Where its solution misses an inequality, all contacts that miss theirs change state at once, and again a few times. A
-//! solution that obeys every inequality with room to spare is returned.
+//! The states of the initial impulses (if these are zero, the states of the contacts in isolation)
+//! define a linear system. Contacts whose inequality its solution violates all change state at
+//! once, and the system is solved again, a few times. A solution that satisfies every inequality
+//! with a margin is returned.
 //!
-//! Why that is as good as the enumeration's: with room to spare, the impulses near it that give the same velocities are
-//! those of the same states, and all impulses that obey the law with these velocities form a convex set. The point of
-//! least norm among the states' impulses is then that of the whole set. Contacts change state together, so their order
-//! doesn't matter. (Where several *velocities* obey the law, as with much friction, it is the ones next to the start.)
+//! This gives the same result as the enumeration: with a margin, nearby impulses with the same
+//! velocities belong to the same states, and all impulses that satisfy the law with these
+//! velocities form a convex set. So the impulses of least norm within the states have the least
+//! norm of the whole set. Contacts change state together, so their order doesn't matter. (If
+//! several *velocities* satisfy the law, as may happen with large friction, those near the initial
+//! impulses are found.)
 
-use crate::enumeration::{FEW, Impulses, ROUNDING, State, Table};
+use crate::enumeration::{BlockTable, ContactState, Impulses, ROUNDING, TREE_CONTACTS};
 use crate::least_norm::{MAX, RANK_TOLERANCE};
 use nalgebra::Vector2;
 
-/// Most combinations of states that are tried.
+/// Largest number of combinations of states that are tried.
 const TRIES: u32 = 6;
 
-/// How much room an inequality must leave, relative to the terms that its left side is the sum of: far above rounding, so
-/// that no neighbouring state fits as well.
-const ROOM: f64 = 1e-9;
+/// Required margin of an inequality, relative to the terms summed on its left side: far above
+/// rounding, so that no neighbouring state is valid as well.
+const MARGIN: f64 = 1e-9;
 
-/// Rounding of a pivot, relative to its size, times the smallest pivot before it.
-const MAGNIFIED: f64 = 64.0 * f64::EPSILON;
+/// Rounding of a pivot, relative to its magnitude, times the smallest pivot before it.
+const PIVOT_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// A friction impulse this near its limit is at it: the start's impulses are known to rounding.
+/// A friction impulse above this fraction of its limit counts as sliding, as the initial impulses
+/// have rounding errors.
 const AT_LIMIT: f64 = 1.0 - 1e-9;
 
-/// Impulses and velocities that obey the law in likely states, if some are found; and how many were tried.
-pub(crate) fn find(table: &Table, start: &[Vector2<f64>]) -> (Option<(Impulses, Impulses)>, u32) {
+/// Impulses and velocities that satisfy the law in likely states, if found, and the number of
+/// combinations tried.
+pub(crate) fn find(table: &BlockTable, start: &[Vector2<f64>]) -> (Option<(Impulses, Impulses)>, u32) {
     let n = table.n;
     let from_rest = start.iter().all(|p| p[0] == 0.0 && p[1] == 0.0);
-    let mut states = [State::Open; FEW];
+    let mut states = [ContactState::Open; TREE_CONTACTS];
     for i in 0..n {
         states[i] = if from_rest { alone(table, i) } else { of_impulse(&start[i], table.mu[i]) };
     }
     for tried in 1..=TRIES {
         let Some(p) = impulses(table, &states) else { return (None, tried) };
         match check(table, &mut states, &p) {
-            Check::Obeys(u) => return (Some((p, u)), tried),
-            Check::Other => {}
-            Check::Tight => return (None, tried),
+            LikelyCheck::Obeys(u) => return (Some((p, u)), tried),
+            LikelyCheck::Other => {}
+            LikelyCheck::Tight => return (None, tried),
         }
     }
     (None, TRIES)
 }
 
-fn slide_against(impulse: f64) -> State {
-    State::Slide(if impulse > 0.0 { -1.0 } else { 1.0 })
+fn slide_against(impulse: f64) -> ContactState {
+    ContactState::Slide(if impulse > 0.0 { -1.0 } else { 1.0 })
 }
 
-fn of_impulse(p: &Vector2<f64>, mu: f64) -> State {
+fn of_impulse(p: &Vector2<f64>, mu: f64) -> ContactState {
     if !(p[0] > 0.0) {
-        State::Open
+        ContactState::Open
     } else if mu == 0.0 {
-        State::Slide(1.0)
+        ContactState::Slide(1.0)
     } else if p[1].abs() < mu * p[0] * AT_LIMIT {
-        State::Stick
+        ContactState::Stick
     } else {
         slide_against(p[1])
     }
 }
 
-/// The state of contact `i` if there were no other.
-fn alone(table: &Table, i: usize) -> State {
+/// The state of contact `i` without the others.
+fn alone(table: &BlockTable, i: usize) -> ContactState {
     let (h, q, mu) = (&table.h[i][i], &table.q[i], table.mu[i]);
     if q[0] >= 0.0 {
-        return State::Open;
+        return ContactState::Open;
     }
     if mu == 0.0 {
-        return State::Slide(1.0);
+        return ContactState::Slide(1.0);
     }
-    // The sticking impulse, times the determinant.
+    // The sticking impulse times the determinant.
     let p_n = h[(0, 1)] * q[1] - h[(1, 1)] * q[0];
     let p_t = h[(1, 0)] * q[0] - h[(0, 0)] * q[1];
-    if p_t.abs() <= mu * p_n { State::Stick } else { slide_against(p_t) }
+    if p_t.abs() <= mu * p_n { ContactState::Stick } else { slide_against(p_t) }
 }
 
-enum Check {
-    /// With room to spare; the velocities.
+enum LikelyCheck {
+    /// All inequalities hold with a margin; the velocities.
     Obeys(Impulses),
-    /// No; the states were changed to ones that may.
+    /// Some inequality is violated; the states were changed.
     Other,
-    /// Too near a border, or not a solution of the states' system.
+    /// Too close to a boundary, or not a solution of the states' system.
     Tight,
 }
 
 #[inline]
-fn check(table: &Table, states: &mut [State; FEW], p: &Impulses) -> Check {
+fn check(table: &BlockTable, states: &mut [ContactState; TREE_CONTACTS], p: &Impulses) -> LikelyCheck {
     let n = table.n;
-    let mut velocities = [Vector2::zeros(); FEW];
+    let mut velocities = [Vector2::zeros(); TREE_CONTACTS];
     let (mut changed, mut tight) = (false, false);
     for i in 0..n {
-        // In the order of `ContactProblem::velocity`, so that the judge finds the same to the last bit.
+        // In the order of `ContactProblem::velocity`, so that the judge's velocities are identical
+        // to the last bit.
         let mut u = Vector2::zeros();
         let mut size = table.q[i].abs();
         for j in 0..n {
@@ -105,28 +111,28 @@ fn check(table: &Table, states: &mut [State; FEW], p: &Impulses) -> Check {
         u += table.q[i];
         velocities[i] = u;
         let (mu, state) = (table.mu[i], states[i]);
-        if state == State::Open {
+        if state == ContactState::Open {
             changed |= u[0] < 0.0;
-            tight |= u[0] < ROOM * size[0];
+            tight |= u[0] < MARGIN * size[0];
             if u[0] < 0.0 {
-                states[i] = if mu == 0.0 { State::Slide(1.0) } else { State::Stick };
+                states[i] = if mu == 0.0 { ContactState::Slide(1.0) } else { ContactState::Stick };
             }
             continue;
         }
         let size_p = size[0] / table.h[i][i][(0, 0)];
-        tight |= u[0].abs() > ROUNDING * size[0] || p[i][0] < ROOM * size_p;
+        tight |= u[0].abs() > ROUNDING * size[0] || p[i][0] < MARGIN * size_p;
         if p[i][0] < 0.0 {
-            (states[i], changed) = (State::Open, true);
+            (states[i], changed) = (ContactState::Open, true);
             continue;
         }
         match state {
-            // Held by another contact of the same body, it doesn't slide, but for rounding.
-            State::Slide(sigma) if mu > 0.0 && sigma * u[1] < ROOM * (size[0] + size[1]) => {
-                (states[i], changed) = (State::Stick, true);
+            // It is held by another contact of the same body and slides only by rounding.
+            ContactState::Slide(sigma) if mu > 0.0 && sigma * u[1] < MARGIN * (size[0] + size[1]) => {
+                (states[i], changed) = (ContactState::Stick, true);
             }
-            State::Stick => {
+            ContactState::Stick => {
                 let room = mu * p[i][0] - p[i][1].abs();
-                tight |= room < ROOM * size_p || u[1].abs() > ROUNDING * (size[0] + size[1]);
+                tight |= room < MARGIN * size_p || u[1].abs() > ROUNDING * (size[0] + size[1]);
                 if room < 0.0 {
                     (states[i], changed) = (slide_against(p[i][1]), true);
                 }
@@ -135,30 +141,30 @@ fn check(table: &Table, states: &mut [State; FEW], p: &Impulses) -> Check {
         }
     }
     if changed {
-        Check::Other
+        LikelyCheck::Other
     } else if tight {
-        Check::Tight
+        LikelyCheck::Tight
     } else {
-        Check::Obeys(velocities)
+        LikelyCheck::Obeys(velocities)
     }
 }
 
-/// The impulses of a combination of states, of least norm where it leaves a choice.
+/// The impulses of a combination of states, with the least norm if they aren't unique.
 #[inline]
-fn impulses(table: &Table, states: &[State; FEW]) -> Option<Impulses> {
-    // Unknowns and equations as in `Table::pivoted`.
+fn impulses(table: &BlockTable, states: &[ContactState; TREE_CONTACTS]) -> Option<Impulses> {
+    // Unknowns and equations as in `BlockTable::pivoted`.
     let mut rows = [(0, 0); MAX];
     let mut tangent = [0.0; MAX];
     let mut m = 0;
     for i in 0..table.n {
         match states[i] {
-            State::Open => {}
-            State::Slide(sigma) => {
+            ContactState::Open => {}
+            ContactState::Slide(sigma) => {
                 rows[m] = (i, 0);
                 tangent[m] = -sigma * table.mu[i];
                 m += 1;
             }
-            State::Stick => {
+            ContactState::Stick => {
                 rows[m] = (i, 0);
                 rows[m + 1] = (i, 1);
                 m += 2;
@@ -166,7 +172,7 @@ fn impulses(table: &Table, states: &[State; FEW]) -> Option<Impulses> {
         }
     }
     let x = match m {
-        0 => return Some([Vector2::zeros(); FEW]),
+        0 => return Some([Vector2::zeros(); TREE_CONTACTS]),
         1 => solve::<1>(table, &rows, &tangent),
         2 => solve::<2>(table, &rows, &tangent),
         3 => solve::<3>(table, &rows, &tangent),
@@ -174,7 +180,7 @@ fn impulses(table: &Table, states: &[State; FEW]) -> Option<Impulses> {
         5 => solve::<5>(table, &rows, &tangent),
         _ => solve::<6>(table, &rows, &tangent),
     }?;
-    let mut p = [Vector2::zeros(); FEW];
+    let mut p = [Vector2::zeros(); TREE_CONTACTS];
     for (k, &(i, a)) in rows[..m].iter().enumerate() {
         p[i][a] += x[k];
         p[i][1] += tangent[k] * x[k];
@@ -182,10 +188,10 @@ fn impulses(table: &Table, states: &[State; FEW]) -> Option<Impulses> {
     Some(p)
 }
 
-/// Gaussian elimination down the diagonal, which is stable for the positive semidefinite systems that this is for; `None` for
-/// what isn't one of them. The result is checked by the velocities that it gives.
+/// Gaussian elimination along the diagonal, which is stable for positive semidefinite systems;
+/// `None` for other systems. The result is checked by its velocities.
 #[inline]
-fn solve<const M: usize>(table: &Table, rows: &[(usize, usize); MAX], tangent: &[f64; MAX]) -> Option<[f64; MAX]> {
+fn solve<const M: usize>(table: &BlockTable, rows: &[(usize, usize); MAX], tangent: &[f64; MAX]) -> Option<[f64; MAX]> {
     let mut a = [[0.0; M]; M];
     let mut b = [0.0; M];
     let mut size = [0.0; M];
@@ -204,12 +210,12 @@ fn solve<const M: usize>(table: &Table, rows: &[(usize, usize); MAX], tangent: &
     for k in 0..M {
         let pivot = a[k][k];
         let part = pivot.abs() / size[k];
-        // A small pivot magnifies rounding, and a vanishing one after it can't be told from that.
-        if part > RANK_TOLERANCE && part * smallest <= MAGNIFIED {
+        // A small pivot amplifies rounding, and a zero pivot after it can't be detected.
+        if part > RANK_TOLERANCE && part * smallest <= PIVOT_ROUNDING {
             return None;
         }
         if !(pivot.abs() > RANK_TOLERANCE * size[k]) {
-            // A free unknown, if it answers to none of those to come.
+            // A free unknown, if it isn't coupled to the remaining ones.
             for c in k + 1..M {
                 let negligible = RANK_TOLERANCE * RANK_TOLERANCE * size[k] * size[c];
                 if !(a[k][c] * a[k][c] <= negligible && a[c][k] * a[c][k] <= negligible) {
@@ -248,7 +254,8 @@ fn solve<const M: usize>(table: &Table, rows: &[(usize, usize); MAX], tangent: &
     x.iter().all(|x| x.is_finite()).then_some(solution)
 }
 
-/// The solution of least norm of a triangular system with `L` − 1 free unknowns (those without an inverse of their pivot).
+/// The least-norm solution of a triangular system with `L` − 1 free unknowns (those without an
+/// inverse pivot).
 #[inline]
 fn nearest_to_zero<const M: usize, const L: usize>(
     a: &[[f64; M]; M],
@@ -256,7 +263,8 @@ fn nearest_to_zero<const M: usize, const L: usize>(
     inverse: &[f64; M],
     tangent: &[f64; MAX],
 ) -> [f64; M] {
-    // Side by side the solution with the free unknowns at zero, and for each of them a vector of the null space.
+    // The columns are the solution with the free unknowns at zero and, for each of them, a vector
+    // of the null space.
     let mut x = [[0.0; L]; M];
     let mut lane = L - 1;
     for k in (0..M).rev() {
@@ -274,7 +282,8 @@ fn nearest_to_zero<const M: usize, const L: usize>(
         }
         x[k] = sum.map(|sum| sum * inverse[k]);
     }
-    // The normal equations of the least norm, where x counts as long as what it stands for: (1, −σμ) has its length.
+    // The normal equations of the least norm, with each x weighted by the length of its direction
+    // (1, −σμ).
     let mut g = [[0.0; L]; L];
     for k in 0..M {
         let weight = 1.0 + tangent[k] * tangent[k];

@@ -1,54 +1,56 @@
-//! The law of one contact with all others held, exactly: what a sweep of Gauss–Seidel solves at each contact.
+//! Exact solution of the law of one contact with all others fixed, the local solve of Gauss–Seidel.
 //!
-//! What depends on the block and on μ alone is worked out once a solve ([`Local::new`]); what is left for each visit is
-//! some tens of multiplications.
+//! What depends only on the block and μ is computed once per solve ([`Local::new`]); each visit
+//! then takes some tens of multiplications.
 
 use crate::{one_contact, one_contact_space as space};
 use nalgebra::{Matrix2, Vector2};
 use teeter_contact::{Block, Vector, de_saxce, project};
 
-/// A determinant below this, relative to the product of the diagonal, is taken for zero.
+/// A determinant below this, relative to the product of the diagonal, counts as zero.
 const RANK_TOLERANCE: f64 = 1e-12;
 
-/// Above this, it costs its solution two digits at most.
+/// Above this, the solution loses at most two digits.
 const WELL_CONDITIONED: f64 = 1e-2;
 
-/// With more friction than that, the shift μ‖u_T‖ makes rounding of a sticking contact's velocity felt.
-const MUCH: f64 = 10.0;
+/// Above this friction coefficient, the shift μ‖u_T‖ amplifies the rounding of a sticking contact's
+/// velocity noticeably.
+const LARGE_FRICTION: f64 = 10.0;
 
-/// How much `H_NN` must exceed `μ‖H_NT‖` for a block to count as regular: rounding, with room.
+/// Factor by which `H_NN` must exceed `μ‖H_NT‖` for a block to count as regular: a margin for
+/// rounding.
 const MARGIN: f64 = 1.0 + 1e-9;
 
-/// How a block can be solved.
+/// The kind of a block's local solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
-    /// μ = 0, or there is no tangent.
+    /// μ = 0, or no tangent.
     Frictionless,
-    /// The first state that fits is taken: in the plane because there is one only, in space for speed.
+    /// The first valid state is taken: in the plane because it is unique, in space for speed.
     Regular,
     /// All states are tried and the smallest impulse is taken.
     Difficult,
 }
 
-/// One contact's block, friction coefficient, and what follows from them. In this order, as a sliding contact then doesn't
-/// fetch the inverse, which it doesn't need.
+/// One contact's block, friction coefficient, and derived quantities. The order of the fields lets
+/// a sliding contact avoid loading the inverse, which it doesn't need.
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub(crate) struct Local<const D: usize> {
     mu: f64,
     kind: Kind,
-    /// Whether the inverse loses so many digits that its product wants a correction.
+    /// Whether the inverse loses so many digits that its product needs a correction.
     refine: bool,
-    /// Its block, by rows.
+    /// The block, by rows.
     h: [[f64; D]; D],
-    /// `1/H_NN`; in 2D with friction, `1/(H_NN ∓ μ H_NT)` for sliding to the right and to the left.
+    /// `1/H_NN`; in 2D with friction, `1/(H_NN ∓ μ H_NT)` for sliding to the right and left.
     compliance: [f64; 2],
     /// `H⁻¹` by rows; zero where the block is singular to rounding.
     inverse: [[f64; D]; D],
 }
 
 impl<const D: usize> Local<D> {
-    /// Prepares a contact. `H_NN` > 0, as a problem's check sees to.
+    /// Prepares a contact. `H_NN` > 0, as checked by the problem.
     pub(crate) fn new(h: &Block<D>, mu: f64) -> Self {
         let h_nn = h[(0, 0)];
         let mut local = Self {
@@ -78,21 +80,21 @@ impl<const D: usize> Local<D> {
             && let Some(inverse) = space::inverse(&local.h, RANK_TOLERANCE)
         {
             local.inverse = inverse;
-            local.refine = mu > MUCH || space::inverse(&local.h, WELL_CONDITIONED).is_none();
+            local.refine = mu > LARGE_FRICTION || space::inverse(&local.h, WELL_CONDITIONED).is_none();
             local.kind = Kind::Regular;
         }
         local
     }
 
-    /// The velocity that its own impulse gives it.
+    /// The velocity due to the contact's own impulse.
     #[inline]
     pub(crate) fn velocity(&self, p: &Vector<D>) -> Vector<D> {
         Vector::from_fn(|r, _| self.h[r].iter().zip(p.iter()).fold(0.0, |sum, (h, p)| sum + h * p))
     }
 
-    /// The impulse of the contact whose velocity would be `q` without it. `slip` is what the last visit left there, from
-    /// which the next one starts: a measure of the sliding speed, 0 for a contact that stuck (and at first), −1 for an open
-    /// one. `None` where no state fits.
+    /// The impulse of the contact whose velocity would be `q` without it. `slip` carries the state
+    /// from one visit to the next: a measure of the sliding speed, 0 for a sticking contact (and
+    /// initially), −1 for an open one. `None` if no state is valid.
     #[inline(always)]
     pub(crate) fn solve(&self, q: &Vector<D>, slip: &mut f64) -> Option<Vector<D>> {
         if q[0] >= 0.0 {
@@ -108,11 +110,11 @@ impl<const D: usize> Local<D> {
             2 => self.plane(q),
             3 => {
                 let q = [q[0], q[1], q[2]];
-                let usual = match self.kind {
-                    Kind::Regular => space::usual(&self.h, &self.inverse, &q, self.mu, self.refine, slip),
+                let valid_state = match self.kind {
+                    Kind::Regular => space::valid_state(&self.h, &self.inverse, &q, self.mu, self.refine, slip),
                     _ => None,
                 };
-                let p = match usual {
+                let p = match valid_state {
                     Some(p) => p,
                     None => space::smallest(&self.h, &self.inverse, &q, self.mu)?,
                 };
@@ -132,7 +134,7 @@ impl<const D: usize> Local<D> {
             if p_t.abs() <= mu * p_n {
                 return Some(of(p_n, p_t));
             }
-            // The impulse that would hold the contact points to where friction is at its limit.
+            // p_T of the sticking impulse exceeds the limit on one side, which is tried first.
             let first = usize::from(p_t > 0.0);
             for side in [first, 1 - first] {
                 let p_n = -q[0] * self.compliance[side];
@@ -147,7 +149,8 @@ impl<const D: usize> Local<D> {
         one_contact::solve(&block, &Vector2::new(q[0], q[1]), mu).map(|p| of(p[0], p[1]))
     }
 
-    /// A step of the natural map from `p` instead, which has the same fixed points: for a contact that no state fits.
+    /// A step of the natural map from `p`, which has the same fixed points, for a contact without a
+    /// valid state.
     pub(crate) fn step(&self, q: &Vector<D>, p: &Vector<D>) -> Vector<D> {
         let u = self.velocity(p) + q;
         let trace: f64 = (0..D).map(|i| self.h[i][i]).sum();

@@ -1,27 +1,32 @@
-//! Semi-smooth Newton's method on the law written as equations.
+//! The semi-smooth Newton method.
 //!
-//! **What it solves**: exact Signorini–Coulomb in the plane and in space; H may be asymmetric or singular.
+//! **What it solves**: exact Signorini–Coulomb in the plane and in space; H may be asymmetric or
+//! singular.
 //!
-//! **How**: Alart and Curnier's formulation (1991, doi 10.1016/0045-7825(91)90022-X) in the variables (p, u): each contact is open, sticks or
-//! slides at the iterate, and gives D linear equations of that state; a Newton step solves them for all contacts that
-//! press. Slides are linearised with their direction. The equations of sticking contacts are singular where bodies are held
-//! more than once (hyperstatic): H + εI stands in the place of H, which takes of all corrections nearly the smallest. A
-//! step is shortened until the judge's residual falls.
+//! **How**: Alart and Curnier's formulation (1991, doi 10.1016/0045-7825(91)90022-X) in the
+//! variables (p, u): each contact is open, sticks or slides at the iterate, and gives D linear
+//! equations of that state; a Newton step solves them for all active contacts. Sliding is
+//! linearised including its direction. For hyperstatic bodies the equations of sticking contacts
+//! are singular, so H + εI replaces H, which gives nearly the smallest of all corrections. A step
+//! is shortened until the residual decreases.
 //!
-//! **When to take it**: for accuracy, where Gauss–Seidel crawls: from a start that is right about most states it needs three to
-//! ten steps to rounding.
+//! **When to use it**: for high accuracy where Gauss–Seidel is slow. If the initial impulses have
+//! mostly correct states, it takes three to ten steps to rounding.
 //!
-//! **Cost**: one sparse LU of the blocks of the pressing contacts a step (`block_lu.rs`); its analysis is kept while the pattern stays.
+//! **Cost**: one sparse LU of the active contacts' blocks per step (`block_lu.rs`); its analysis is
+//! kept while the pattern is the same.
 //!
-//! **How it fails**: contacts on the border between states can make it cycle or the residual rise along every step. Then it
-//! hands over to a batch of Gauss–Seidel sweeps, each time twice as many, and ends as `stalled` after some of those rounds. Where many contacts
-//! are degenerate, [`Smoothing`](crate::Smoothing) goes through.
+//! **How it fails**: contacts on the boundary between states can make it cycle, or the residual
+//! increase along every step. Then a batch of Gauss–Seidel sweeps follows, each time twice as many;
+//! after some of these rounds it ends as `stalled`. With many degenerate contacts, use
+//! [`Smoothing`](crate::Smoothing).
 //!
 //! Departures from the paper:
-//! - The equations are Newton's for (p, u), not for (displacement, p) of a mesh: there are no other unknowns here.
-//! - Open contacts leave the linear system altogether.
-//! - The globalisation: regularisation raised while steps fail, lowered while they succeed (Levenberg–Marquardt's rule),
-//!   backtracking on the judge's residual, Gauss–Seidel ([`Pgs`]) before and between. The paper has none.
+//! - The unknowns are (p, u), not (displacement, p) of a mesh.
+//! - Open contacts are removed from the linear system.
+//! - Globalisation, which the paper doesn't have: the regularisation is raised when steps fail and
+//!   lowered when they succeed (as in Levenberg–Marquardt), with backtracking on the residual and
+//!   Gauss–Seidel sweeps ([`Pgs`]) before and between rounds.
 
 use crate::Pgs;
 use crate::block_lu::BlockLu;
@@ -31,28 +36,30 @@ use crate::memory::{refill, reserve};
 use crate::scaled::{Scaled, make_finite};
 use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, Stop, Vector, judge};
 
-/// Gauss–Seidel sweeps before the first steps; twice as many before the next ones, and so on.
+/// Gauss–Seidel sweeps before the first round; their number doubles with each round.
 const SWEEPS: u32 = 20;
 /// Rounds of sweeps and steps after which the iteration counts as stalled.
 const ROUNDS: u32 = 8;
-/// Most steps of a round.
+/// Largest number of steps of a round.
 const STEPS: u32 = 12;
 /// Failed steps in a row that end a round.
 const FAILURES: u32 = 3;
-/// The regularisation ε at the start of a round, its bounds, relative to the mean of H's diagonal; and its factors.
+/// The regularisation ε at the start of a round and its bounds, relative to the mean of H's
+/// diagonal, and the factors of its change.
 const EPSILON: f64 = 1e-7;
 const LEAST_EPSILON: f64 = 1e-12;
 const MOST_EPSILON: f64 = 1e-1;
 const RAISED: f64 = 100.0;
 const LOWERED: f64 = 0.1;
-/// The part of the tolerance that is aimed at: the judge sums in another order.
+/// Target residual as a fraction of the tolerance, as the judge sums in a different order.
 const AIM: f64 = 0.9;
-/// A step that leaves more than this of the residual has failed.
+/// A step that leaves more than this fraction of the residual has failed.
 const PROGRESS: f64 = 0.7;
-/// Lengths of a step that are tried: 1, ½, ¼, ⅛.
+/// Number of step lengths tried: 1, ½, ¼, ⅛.
 const HALVINGS: u32 = 4;
 
-/// The semi-smooth Newton solver; see the [crate's table](crate). `iterations` counts Newton steps and the sweeps between them.
+/// The semi-smooth Newton solver; see the [crate's table](crate). `iterations` counts Newton steps
+/// and the sweeps between them.
 #[derive(Clone, Debug, Default)]
 pub struct Newton<const D: usize> {
     scaled: Scaled<D>,
@@ -71,19 +78,21 @@ impl<const D: usize> Newton<D> {
         Self::default()
     }
 
-    /// Takes a problem in for [`Self::round`], and says what one of its steps takes, with all contacts pressing.
-    pub(crate) fn prepare(&mut self, problem: &ContactProblem<'_, D>) -> Work {
+    /// Loads a problem for [`Self::round`], and returns the work of one step with all contacts
+    /// active.
+    pub(crate) fn prepare(&mut self, problem: &ContactProblem<'_, D>) -> StepWork {
         self.scaled.load(problem);
         self.steps.lu.analyse(&self.scaled.h);
-        Work {
+        StepWork {
             blocks: self.scaled.h.blocks().len(),
             filled: self.steps.lu.filled_blocks(),
             products: self.steps.lu.block_products(),
         }
     }
 
-    /// A round of Newton steps alone on the problem prepared last, for solvers that bring their own globalisation. Leaves the last of its impulses in
-    /// `p`: each step lowered the residual, but for rounding.
+    /// A round of Newton steps on the problem prepared last, for solvers with their own
+    /// globalisation. Leaves the last impulses in `p`; each step has reduced the residual, up to
+    /// rounding.
     pub(crate) fn round(&mut self, problem: &ContactProblem<'_, D>, stop: &Stop<'_>, p: &mut [Vector<D>]) -> Outcome {
         let most = stop.max_iterations.min(STEPS);
         let end = self.steps.round(&self.scaled, None, AIM * stop.tolerance, most, stop, p);
@@ -92,14 +101,14 @@ impl<const D: usize> Newton<D> {
     }
 }
 
-/// What a Newton step costs.
+/// The work of a Newton step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Work {
+pub(crate) struct StepWork {
     /// Blocks of H.
     pub(crate) blocks: usize,
     /// Blocks of its factors.
     pub(crate) filled: usize,
-    /// Products of blocks to factorise it.
+    /// Block products of one factorisation.
     pub(crate) products: usize,
 }
 
@@ -172,15 +181,15 @@ pub(crate) struct Proximal<'a, const D: usize> {
     pub(crate) center: &'a [Vector<D>],
 }
 
-/// How a round ended.
+/// The end of a round.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RoundEnd {
     pub(crate) steps: u32,
-    /// Of the (shifted) problem.
+    /// The residual of the (shifted) problem.
     pub(crate) residual: f64,
 }
 
-/// Newton steps on a scaled problem, with the memory that they need.
+/// Newton steps on a scaled problem, with their memory.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Steps<const D: usize> {
     lu: BlockLu<D>,
@@ -200,7 +209,7 @@ impl<const D: usize> Steps<D> {
         }
     }
 
-    /// Takes steps until the residual is within `goal`, `most` are done, or they fail.
+    /// Takes steps until the residual is within `goal`, `most` are done, or the steps fail.
     pub(crate) fn round(
         &mut self,
         scaled: &Scaled<D>,
@@ -270,10 +279,11 @@ impl<const D: usize> Steps<D> {
         }
     }
 
-    /// The Newton direction and what it does to the velocities; `diagonal` is added to H. `false` where there is none.
+    /// The Newton direction and its change of the velocities; `diagonal` is added to H. `false` if
+    /// the factorisation fails.
     fn direction(&mut self, scaled: &Scaled<D>, alpha: f64, diagonal: f64, p: &[Vector<D>]) -> bool {
         let (rows, h) = (&self.rows, &scaled.h);
-        // Open contacts go to zero at once, and the others feel it.
+        // Open contacts go to zero at once, which changes the velocities of the others.
         let mut opening = false;
         for i in 0..p.len() {
             self.change[i] = if rows[i].open { -p[i] } else { Vector::zeros() };

@@ -1,18 +1,20 @@
-//! The plane law of a single contact, exactly: four states, each a closed form.
+//! Exact solution of the plane law of a single contact: four states, each in closed form.
 
 use nalgebra::{Matrix2, Vector2};
 
-/// Rounding of a closed form here, relative to the terms that it is the sum of.
+/// Rounding of a closed form, relative to its summed terms.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// The impulse of one contact with Delassus block `h`, constant vector `q` and friction `mu`; of several that obey the
-/// law (H_NN ≤ μ|H_NT| can have them) the smallest. `None` where none of the four states fits.
+/// The impulse of one contact with Delassus block `h`, constant vector `q` and friction `mu`; the
+/// smallest one if several satisfy the law (possible for H_NN ≤ μ|H_NT|). `None` if no state is
+/// valid.
 ///
 /// - open: `p = 0`, needs `q_N ≥ 0`;
 /// - stick: `H p = −q`, needs `|p_T| ≤ μ p_N`;
 /// - slide to the right (σ = 1) or left (σ = −1): `p_T = −σμ p_N`, `u_N = 0`, needs `σ u_T ≥ 0`.
 ///
-/// On the border between sticking and sliding both inequalities hold up to rounding only, so both get that much slack.
+/// On the boundary between sticking and sliding both inequalities hold only up to rounding, so both
+/// have this tolerance.
 #[inline]
 pub(crate) fn solve(h: &Matrix2<f64>, q: &Vector2<f64>, mu: f64) -> Option<Vector2<f64>> {
     if q[0] >= 0.0 {
@@ -60,7 +62,7 @@ mod tests {
     }
 
     #[test]
-    fn on_the_border_between_sticking_and_sliding_a_state_fits() {
+    fn a_state_is_valid_between_sticking_and_sliding() {
         // |p_T| exceeds μ p_N in the last digit, and u_T of the slide has the wrong sign in its last.
         let h = Matrix2::new(5.150733870361124, 6.94588824968614, 6.94588824968614, 11.535917081603149);
         let p = solve(&h, &Vector2::new(-0.08123220389856224, -0.11976024561611948), 0.5).unwrap();
@@ -69,7 +71,8 @@ mod tests {
 
     #[test]
     fn of_several_solutions_the_smallest_is_taken() {
-        // H_NN < μ H_NT: with q_T > 0 the state "slide right" is not available, "slide left" and "stick" compete.
+        // H_NN < μ H_NT: with q_T > 0 the state "slide right" is not available, "slide left" and
+        // "stick" compete.
         let h = Matrix2::new(1.0, 2.0, 2.0, 5.0);
         let q = Vector2::new(-1.0, -3.0);
         let p = solve(&h, &q, 1.0).unwrap();

@@ -1,38 +1,42 @@
-//! The law of a single contact in space, exactly.
+//! Exact solution of the law of a single contact in space.
 //!
-//! A contact with `q_N < 0` sticks, `H p = −q` inside the cone, or slides along a direction d (‖d‖ = 1) with
-//! `p = p_N (1, −μ d)`, `u_N = 0` and `u_T = s d`, s ≥ 0. With `u_N = 0` put in, `w = H_NN − μ H_NT·d` and λ = s w this is
+//! A contact with `q_N < 0` sticks, `H p = −q` inside the cone, or slides along a direction d
+//! (‖d‖ = 1) with `p = p_N (1, −μ d)`, `u_N = 0` and `u_T = s d`, s ≥ 0. With `w = H_NN − μ H_NT·d` and
+//! λ = s w, eliminating p_N by `u_N = 0` gives
 //!
 //! ```text
 //! (A + λ I) d = g,   ‖d‖ = 1,   λ ≥ 0,   w > 0
 //! A = μ (q_T H_NT − q_N H_TT),   g = H_NN q_T − q_N H_TN
 //! ```
 //!
-//! which reads like the subproblem of a trust-region method: one unknown, λ. The usual way is the roots of the quartic
-//! `det(A + λI)² = ‖adj(A + λI) g‖²` (Bonnefon and Daviet 2011, INRIA RT-0417, hal-00553859), whose closed form fails
-//! where roots coincide, as they do for `H = c I`. Here, as in Moré and Sorensen's method (1983, doi 10.1137/0904038), Newton's
-//! method starts from the last visit's λ, or from ‖g‖ − ½ tr A (for `H = c I` the root itself), and takes one to three
-//! steps. Where it fails, all roots of the quartic in the interval that can hold any are isolated between those of its
-//! derivatives, and the smallest impulse that obeys the law is taken.
+//! the form of a trust-region subproblem with a single unknown λ. Usually the roots of the quartic
+//! `det(A + λI)² = ‖adj(A + λI) g‖²` (Bonnefon and Daviet 2011, INRIA RT-0417, hal-00553859)are
+//! computed, but their closed form fails for coinciding roots, as for `H = c I`. Here, as in Moré
+//! and Sorensen's method (1983, doi 10.1137/0904038), Newton's method starts from the last visit's
+//! λ, or from ‖g‖ − ½ tr A (the exact root for `H = c I`), and takes one to three steps. If it
+//! fails, all roots of the quartic in the admissible interval are isolated between the roots of its
+//! derivatives, and the smallest impulse that satisfies the law is taken.
 
 use teeter_contact::Block;
 
 type Vector = [f64; 3];
-/// By rows. D is 3: the functions here are generic so that a caller that is can pass its own blocks.
+/// A matrix by rows. D is 3; the functions are generic so that generic callers can pass their
+/// blocks.
 type Matrix<const D: usize> = [[f64; D]; D];
 
-/// Most Newton steps before the slow and sure way.
+/// Largest number of Newton steps before the slow, safe method.
 const STEPS: u32 = 12;
 
-/// The equation counts as solved by the next step when it is missed by less: the step squares it.
+/// Below this residual of the equation, the next step counts as the last, as a step squares it.
 const NEARLY: f64 = 1e-8;
 
-/// The same from the last visit's λ, which is the nearer the further the sweeps have come: what one visit misses, the next
-/// makes good. A count of steps that doesn't vary is worth more than digits that the next sweep changes.
+/// The same when starting from the last visit's λ. A constant number of steps is worth more than
+/// digits that the next sweep changes, and the error decreases from visit to visit.
 const WARM: f64 = 1e-2;
 
-/// How far a candidate of the slow way may miss the law, relative to the terms of its velocity: the square root of
-/// rounding, as two roots that coincide are known to no more. The judge has the last word.
+/// Tolerance of the law for a candidate of the slow method, relative to the terms of its velocity:
+/// the square root of rounding, the accuracy of coinciding roots. The residual is checked
+/// afterwards.
 const MISS: f64 = 1e-8;
 
 /// The rows of a block.
@@ -40,7 +44,8 @@ pub(crate) fn rows<const D: usize>(h: &Block<D>) -> Matrix<D> {
     std::array::from_fn(|r| std::array::from_fn(|c| h[(r, c)]))
 }
 
-/// The inverse by cofactors, which no scaling of rows and columns disturbs; `None` for a matrix singular to `tolerance`.
+/// The inverse by cofactors, which is insensitive to scaling of rows and columns; `None` for a
+/// matrix singular to `tolerance`.
 pub(crate) fn inverse<const D: usize>(h: &Matrix<D>, tolerance: f64) -> Option<Matrix<D>> {
     let cofactor = |r: usize, c: usize| {
         let ((r1, r2), (c1, c2)) = (((r + 1) % 3, (r + 2) % 3), ((c + 1) % 3, (c + 2) % 3));
@@ -66,8 +71,8 @@ fn dot<const D: usize>(a: &[f64; D], b: &Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// `p = −H⁻¹ q` where it lies in the cone; if asked for, refined once, so that what is left of the velocity is rounding
-/// however skewed the block is.
+/// `p = −H⁻¹ q` if it lies in the cone, optionally refined once, so that the remaining velocity is
+/// at rounding even for ill-conditioned blocks.
 #[inline(always)]
 fn stick<const D: usize>(h: &Matrix<D>, inverse: &Matrix<D>, q: &Vector, mu: f64, refine: bool) -> Option<Vector> {
     let solve = |q: &Vector| [-dot(&inverse[0], q), -dot(&inverse[1], q), -dot(&inverse[2], q)];
@@ -88,8 +93,8 @@ fn stick<const D: usize>(h: &Matrix<D>, inverse: &Matrix<D>, q: &Vector, mu: f64
     Some(p)
 }
 
-/// The equation for λ: see the page.
-struct Slide {
+/// The equation for λ; see the module page.
+struct SlideEquation {
     a: [[f64; 2]; 2],
     g: [f64; 2],
     /// adj(A) g, so that adj(A + λI) g = `back` + λ g.
@@ -98,7 +103,7 @@ struct Slide {
     determinant: f64,
 }
 
-impl Slide {
+impl SlideEquation {
     #[inline(always)]
     fn new<const D: usize>(h: &Matrix<D>, q: &Vector, mu: f64) -> Self {
         let entry = |i: usize, j: usize| mu * (q[i] * h[0][j] - q[0] * h[i][j]);
@@ -113,9 +118,10 @@ impl Slide {
         }
     }
 
-    /// The impulse one Newton step from `slip`, which takes the step too; or, where that is too far, some steps from it.
+    /// The impulse after one Newton step from `slip`, which is updated too; after several steps if
+    /// one isn't accurate enough.
     #[inline(always)]
-    fn follow<const D: usize>(&self, h: &Matrix<D>, q: &Vector, mu: f64, slip: &mut f64) -> Option<Vector> {
+    fn warm_start<const D: usize>(&self, h: &Matrix<D>, q: &Vector, mu: f64, slip: &mut f64) -> Option<Vector> {
         let lambda = *slip;
         let v = [self.back[0] + lambda * self.g[0], self.back[1] + lambda * self.g[1]];
         let determinant = (lambda + self.trace) * lambda + self.determinant;
@@ -123,7 +129,8 @@ impl Slide {
         let square_of_det = determinant * determinant;
         let half_miss = 0.5 * (square_of_det - (v[0] * v[0] + v[1] * v[1]));
         if half_miss.abs() <= WARM * square_of_det {
-            // As `newton` and then `impulse`, the step's denominator multiplied through: one division less to wait for.
+            // As `newton` and `impulse`, but multiplied by the denominator of the step, which saves
+            // a division.
             let denominator = slope * determinant - (v[0] * self.g[0] + v[1] * self.g[1]);
             let v = [v[0] * denominator - half_miss * self.g[0], v[1] * denominator - half_miss * self.g[1]];
             let determinant = determinant * denominator - half_miss * slope;
@@ -134,16 +141,24 @@ impl Slide {
                 return Some(p);
             }
         }
-        self.pursue(h, q, mu, lambda, slip)
+        self.several_steps(h, q, mu, lambda, slip)
     }
 
     #[inline(never)]
-    fn pursue<const D: usize>(&self, h: &Matrix<D>, q: &Vector, mu: f64, from: f64, slip: &mut f64) -> Option<Vector> {
+    fn several_steps<const D: usize>(
+        &self,
+        h: &Matrix<D>,
+        q: &Vector,
+        mu: f64,
+        from: f64,
+        slip: &mut f64,
+    ) -> Option<Vector> {
         *slip = self.newton(from, NEARLY, STEPS).filter(|&lambda| lambda > 0.0)?;
         self.impulse(h, q, mu, *slip)
     }
 
-    /// The root that Newton's method finds from `start`, or 0 where it would be negative: the contact sticks.
+    /// The root found by Newton's method from `start`, or 0 if it would be negative: the contact
+    /// sticks.
     #[inline]
     fn newton(&self, start: f64, nearly: f64, steps: u32) -> Option<f64> {
         let mut lambda = start;
@@ -157,7 +172,7 @@ impl Slide {
             let square_of_det = determinant * determinant;
             let miss = square_of_det - square;
             let step = 0.5 * miss / (slope * determinant - half_slope);
-            // A NaN ends up at 0, and there at its end.
+            // A NaN becomes 0 and ends the iteration.
             lambda = (lambda - step).max(0.0);
             if miss.abs() <= nearly * square_of_det {
                 return Some(lambda);
@@ -166,8 +181,9 @@ impl Slide {
         None
     }
 
-    /// The root next to where it would be if A were half its trace times the identity; or else the largest one, from above.
-    fn find_afar(&self, nearly: f64) -> [Option<f64>; 2] {
+    /// Roots without a last visit: the one found from the solution for A = ½ tr A times the
+    /// identity; if that is missing or 0, the largest one, found from an upper bound.
+    fn find_without_guess(&self, nearly: f64) -> [Option<f64>; 2] {
         let size = |x: &[f64; 2]| (x[0] * x[0] + x[1] * x[1]).sqrt();
         let g = size(&self.g);
         let near = self.newton((g - 0.5 * self.trace).max(0.0), nearly, STEPS);
@@ -176,8 +192,8 @@ impl Slide {
         [near, if near.is_none_or(|lambda| lambda == 0.0) { above() } else { None }]
     }
 
-    /// The impulse for a root, where it presses. There ‖v‖ = |det|, so d = v/det; with det multiplied through, one division
-    /// is left.
+    /// The impulse for a root, if it is compressive. There ‖v‖ = |det|, so d = v/det; multiplying
+    /// by det leaves one division.
     #[inline]
     fn impulse<const D: usize>(&self, h: &Matrix<D>, q: &Vector, mu: f64, lambda: f64) -> Option<Vector> {
         let v = [self.back[0] + lambda * self.g[0], self.back[1] + lambda * self.g[1]];
@@ -187,7 +203,7 @@ impl Slide {
         (p[0] > 0.0 && p[0] < f64::INFINITY && p[1].is_finite() && p[2].is_finite()).then_some(p)
     }
 
-    /// The direction for a root.
+    /// The slip direction for a root.
     #[inline]
     fn direction(&self, lambda: f64) -> [f64; 2] {
         let v = [self.back[0] + lambda * self.g[0], self.back[1] + lambda * self.g[1]];
@@ -196,7 +212,7 @@ impl Slide {
     }
 }
 
-/// The impulse at the border of the cone against direction `d`, where it presses.
+/// The impulse on the boundary of the cone against direction `d`, if it is compressive.
 #[inline]
 fn slide<const D: usize>(h: &Matrix<D>, q: &Vector, mu: f64, d: &[f64; 2]) -> Option<Vector> {
     let w = h[0][0] - mu * (h[0][1] * d[0] + h[0][2] * d[1]);
@@ -204,10 +220,11 @@ fn slide<const D: usize>(h: &Matrix<D>, q: &Vector, mu: f64, d: &[f64; 2]) -> Op
     (w > 0.0 && p_n.is_finite()).then(|| [p_n, -mu * p_n * d[0], -mu * p_n * d[1]])
 }
 
-/// The state that fits: the last visit's if it still does, else sticking, else the slide that Newton's method finds from
-/// afar. `slip` is λ of the last visit, 0 for a contact that stuck. `None` if nothing fits, or Newton's method fails.
+/// The valid state: the last visit's if it still is, else sticking, else sliding as found by
+/// Newton's method from generic starting values. `slip` is λ of the last visit, 0 for a sticking
+/// contact. `None` if no state is valid or Newton's method fails.
 #[inline(always)]
-pub(crate) fn usual<const D: usize>(
+pub(crate) fn valid_state<const D: usize>(
     h: &Matrix<D>,
     inverse: &Matrix<D>,
     q: &Vector,
@@ -216,8 +233,8 @@ pub(crate) fn usual<const D: usize>(
     slip: &mut f64,
 ) -> Option<Vector> {
     if *slip > 0.0 {
-        let equation = Slide::new(h, q, mu);
-        if let Some(p) = equation.follow(h, q, mu, slip) {
+        let equation = SlideEquation::new(h, q, mu);
+        if let Some(p) = equation.warm_start(h, q, mu, slip) {
             return Some(p);
         }
     }
@@ -225,14 +242,14 @@ pub(crate) fn usual<const D: usize>(
         *slip = 0.0;
         return Some(p);
     }
-    begin_to_slide(h, q, mu, slip)
+    start_sliding(h, q, mu, slip)
 }
 
-/// The slide of a contact that stuck or was open before.
+/// The sliding impulse of a contact that was sticking or open before.
 #[inline(never)]
-fn begin_to_slide<const D: usize>(h: &Matrix<D>, q: &Vector, mu: f64, slip: &mut f64) -> Option<Vector> {
-    let equation = Slide::new(h, q, mu);
-    for lambda in equation.find_afar(NEARLY).into_iter().flatten() {
+fn start_sliding<const D: usize>(h: &Matrix<D>, q: &Vector, mu: f64, slip: &mut f64) -> Option<Vector> {
+    let equation = SlideEquation::new(h, q, mu);
+    for lambda in equation.find_without_guess(NEARLY).into_iter().flatten() {
         if let Some(p) = equation.impulse(h, q, mu, lambda) {
             *slip = lambda;
             return Some(p);
@@ -241,7 +258,7 @@ fn begin_to_slide<const D: usize>(h: &Matrix<D>, q: &Vector, mu: f64, slip: &mut
     None
 }
 
-/// The smallest impulse of all states that fit a contact with `q_N < 0`, μ > 0.
+/// The smallest impulse of all valid states of a contact with `q_N < 0`, μ > 0.
 #[cold]
 pub(crate) fn smallest<const D: usize>(h: &Matrix<D>, inverse: &Matrix<D>, q: &Vector, mu: f64) -> Option<Vector> {
     let mut best: Option<(f64, Vector)> = None;
@@ -255,8 +272,8 @@ pub(crate) fn smallest<const D: usize>(h: &Matrix<D>, inverse: &Matrix<D>, q: &V
     if let Some(p) = stick(h, inverse, q, mu, true).filter(|_| regular) {
         offer(p);
     }
-    let equation = Slide::new(h, q, mu);
-    // ‖(A + λI) d‖ = ‖g‖ bounds λ; all in its unit, so that the coefficients are of size 1.
+    let equation = SlideEquation::new(h, q, mu);
+    // ‖(A + λI) d‖ = ‖g‖ bounds λ. Scaling by the bound makes the coefficients of order 1.
     let size = |x: &[f64; 2]| x[0].hypot(x[1]);
     let unit = size(&equation.g) + size(&equation.a[0]).hypot(size(&equation.a[1]));
     let (trace, determinant) = (equation.trace / unit, equation.determinant / (unit * unit));
@@ -273,7 +290,7 @@ pub(crate) fn smallest<const D: usize>(h: &Matrix<D>, inverse: &Matrix<D>, q: &V
     roots(&coefficients, 1.0, &mut candidates);
     candidates.push(0.0);
     for &root in candidates.as_slice() {
-        // Both signs of the determinant: the quartic is an equation of squares.
+        // Both signs of the determinant, as the quartic is an equation of squares.
         for root in [equation.newton(root * unit, NEARLY, STEPS), Some(root * unit)].into_iter().flatten() {
             let d = equation.direction(root);
             for d in [d, [-d[0], -d[1]]] {
@@ -294,7 +311,7 @@ fn slides<const D: usize>(h: &Matrix<D>, q: &Vector, p: &Vector, d: &[f64; 2]) -
     u[0] * d[0] + u[1] * d[1] >= -slack && (u[0] * d[1] - u[1] * d[0]).abs() <= slack
 }
 
-/// Up to four roots and three turning points.
+/// Up to four roots and three stationary points.
 #[derive(Default)]
 struct Roots {
     values: [f64; 8],
@@ -318,8 +335,9 @@ fn value(c: &[f64], x: f64) -> f64 {
     c.iter().rev().fold(0.0, |sum, c| sum * x + c)
 }
 
-/// The roots of a polynomial (ascending coefficients, up to the fourth degree) in [0, end], between the roots of its
-/// derivative; for the quartic these turning points too, as two roots that coincide don't change its sign.
+/// The roots of a polynomial (ascending coefficients, up to degree four) in [0, end], isolated
+/// between the roots of its derivative. For the quartic the stationary points are included, as a
+/// double root doesn't change the sign.
 fn roots(c: &[f64], end: f64, found: &mut Roots) {
     let degree = c.len() - 1;
     if degree == 0 {
@@ -343,7 +361,7 @@ fn roots(c: &[f64], end: f64, found: &mut Roots) {
     }
 }
 
-/// The root of a polynomial that is monotone in [low, high], by halving down to the last digit.
+/// The root of a polynomial that is monotone in [low, high], by bisection to the last digit.
 fn bisect(c: &[f64], mut low: f64, mut high: f64) -> Option<f64> {
     let (at_low, at_high) = (value(c, low), value(c, high));
     if at_low == 0.0 {
@@ -354,7 +372,7 @@ fn bisect(c: &[f64], mut low: f64, mut high: f64) -> Option<f64> {
     }
     loop {
         let middle = 0.5 * (low + high);
-        // Two neighbours, or a NaN.
+        // Two neighbouring numbers, or a NaN.
         if !(low < middle && middle < high) {
             return Some(middle);
         }
@@ -372,7 +390,7 @@ mod tests {
 
     fn solve(h: Matrix<3>, q: Vector, mu: f64) -> [Option<Vector>; 2] {
         let inverse = inverse(&h, 1e-12).unwrap();
-        [usual(&h, &inverse, &q, mu, true, &mut 0.0), smallest(&h, &inverse, &q, mu)]
+        [valid_state(&h, &inverse, &q, mu, true, &mut 0.0), smallest(&h, &inverse, &q, mu)]
     }
 
     fn assert_obeys(h: &Matrix<3>, q: &Vector, mu: f64, p: &Vector, slack: f64) {
@@ -405,12 +423,12 @@ mod tests {
     }
 
     #[test]
-    fn a_multiple_of_the_identity_is_as_good_as_any_block() {
+    fn multiples_of_the_identity_are_solved() {
         let c = 3.7;
         let h = [[c, 0.0, 0.0], [0.0, c, 0.0], [0.0, 0.0, c]];
         let q = [-1.0, 0.3, -0.4];
         for p in solve(h, q, 0.2).into_iter().flatten() {
-            // Friction takes μ|q_N| off the sliding speed.
+            // Friction reduces the sliding speed by μ|q_N|.
             assert!((p[0] - 1.0 / c).abs() < 1e-15);
             assert!((p[1] + 0.2 / c * 0.6).abs() < 1e-15 && (p[2] - 0.2 / c * 0.8).abs() < 1e-15, "{p:?}");
         }
@@ -418,7 +436,7 @@ mod tests {
     }
 
     #[test]
-    fn turning_points_and_roots_of_a_quartic_are_found() {
+    fn stationary_points_and_roots_of_a_quartic_are_found() {
         // (x − 0.2)(x − 0.5)²(x − 0.9)
         let mut c = vec![1.0];
         for root in [0.2, 0.5, 0.5, 0.9] {

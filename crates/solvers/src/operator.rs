@@ -1,16 +1,17 @@
-//! Products with H for the iterative methods that take many of them: the blocks of a row in one run over memory.
+//! Products with H for iterative methods that take many of them, with the blocks of a row
+//! contiguous in memory.
 
 use teeter_contact::{BlockSparse, ContactProblem, Delassus, Vector, de_saxce, project};
 
-/// A friction coefficient above this is a way to say that a contact doesn't slide.
-pub(crate) const STEEP: f64 = 100.0;
+/// A friction coefficient above this means that a contact doesn't slide.
+pub(crate) const VERY_LARGE_FRICTION: f64 = 100.0;
 
-/// What a problem's products are taken from.
+/// The source of a problem's products.
 #[derive(Clone, Copy)]
 pub(crate) enum Operator<'a, const D: usize> {
-    /// Non-zero blocks: the problem's own, or gathered from a dense matrix.
+    /// Nonzero blocks: the problem's own, or gathered from a dense matrix.
     Blocks(&'a BlockSparse<D>),
-    /// An operator that was never formed, and isn't here either.
+    /// A matrix-free operator, which isn't formed here either.
     Product(&'a ContactProblem<'a, D>),
 }
 
@@ -37,7 +38,7 @@ impl<'a, const D: usize> Operator<'a, D> {
     }
 }
 
-/// `start + Σ_j H_ij p_j`, with one sum a column of the blocks: sums that don't wait for each other.
+/// `start + Σ_j H_ij p_j`, with separate sums for the columns of the blocks, which are independent.
 #[inline]
 pub(crate) fn row_product<const D: usize>(
     h: &BlockSparse<D>,
@@ -58,21 +59,22 @@ pub(crate) fn row_product<const D: usize>(
     Vector::from_fn(|r, _| (0..D).fold(start[r], |total, c| total + sums[c][r]))
 }
 
-/// The step that suits contact `i` on its own: the inverse of the mean of its block's diagonal, 1/m.
+/// The step of contact `i` in isolation: the inverse of the mean of its block's diagonal, 1/m.
 #[inline]
 pub(crate) fn own_step<const D: usize>(problem: &ContactProblem<'_, D>, i: usize) -> f64 {
     let block = problem.diagonal(i);
     let (normal, trace) = (block[(0, 0)], block.trace());
-    // The problem promises a positive normal compliance, and nothing of the others.
+    // The problem guarantees only a positive normal compliance.
     if trace > normal { D as f64 / trace } else { normal.recip() }
 }
 
-/// One step of the natural map of Signorini's and Coulomb's law taken apart (Alart and Curnier 1991): the normal impulse
-/// onto the half line, then the tangential one onto the disk of radius μ times that. Its fixed points are those of the
-/// map with De Saxcé's shift, but its slope doesn't grow with μ.
+/// One step of the natural map with separate normal and tangential laws (Alart and Curnier 1991):
+/// the normal impulse is projected onto the half line, then the tangential one onto the disk of
+/// radius μ times the normal one. The fixed points are those of the map with De Saxcé's shift, but
+/// the slope doesn't grow with μ.
 #[inline]
 pub(crate) fn onto_disk<const D: usize>(x: &Vector<D>, mu: f64) -> Vector<D> {
-    // Written so that a NaN stays one.
+    // Keeps a NaN.
     if x[0] <= 0.0 {
         return Vector::zeros();
     }
@@ -92,29 +94,31 @@ pub(crate) fn onto_disk<const D: usize>(x: &Vector<D>, mu: f64) -> Vector<D> {
     p
 }
 
-/// The judge's numerator, from velocities at hand.
+/// The numerator of the residual, for known velocities.
 pub(crate) fn natural_map<const D: usize>(p: &[Vector<D>], u: &[Vector<D>], mu: &[f64], rho: f64) -> f64 {
     let map = |i: usize| p[i] - project(&(p[i] - de_saxce(&u[i], mu[i]) * rho), mu[i]);
     (0..p.len()).map(|i| map(i).norm_squared()).sum::<f64>().sqrt()
 }
 
-/// As [`natural_map`], with the law's two parts taken apart: no shift, so no rounding of `u_T` that a large μ makes larger.
+/// As [`natural_map`], with separate normal and tangential laws: without a shift, so that a large μ
+/// doesn't amplify the rounding of `u_T`.
 pub(crate) fn disk_map<const D: usize>(p: &[Vector<D>], u: &[Vector<D>], mu: &[f64], rho: f64) -> f64 {
     let map = |i: usize| p[i] - onto_disk(&(p[i] - u[i] * rho), mu[i]);
     (0..p.len()).map(|i| map(i).norm_squared()).sum::<f64>().sqrt()
 }
 
-/// Whether some μ is so large that the judge's residual, which holds μ‖u_T‖, can be rounding: then a method asks the judge
-/// itself as soon as [`disk_map`] is small.
-pub(crate) fn is_steep(mu: &[f64]) -> bool {
-    mu.iter().any(|mu| *mu > STEEP)
+/// Whether some μ is so large that the residual, which contains μ‖u_T‖, can be at rounding. Then a
+/// method computes the judge's residual as soon as [`disk_map`] is small.
+pub(crate) fn has_very_large_friction(mu: &[f64]) -> bool {
+    mu.iter().any(|mu| *mu > VERY_LARGE_FRICTION)
 }
 
-/// De Saxcé's shift μ‖u_T‖; but 0 for a very large μ where the contact sticks: there it vanishes at the solution, and until
-/// then μ would make much of a small slip. (For a usual μ the jump between the two would let the fixed point cycle.)
+/// De Saxcé's shift μ‖u_T‖, but 0 for a sticking contact with a very large μ: it vanishes at the
+/// solution, and until then μ would amplify a small slip. (For an ordinary μ this jump would let
+/// the fixed point cycle.)
 pub(crate) fn slip_shift<const D: usize>(p: &Vector<D>, u: &Vector<D>, mu: f64) -> f64 {
     let tangential = |x: &Vector<D>| x.iter().skip(1).fold(0.0, |s: f64, c| s.hypot(*c));
-    if mu > STEEP && tangential(p) < (1.0 - 1e-9) * mu * p[0] { 0.0 } else { mu * tangential(u) }
+    if mu > VERY_LARGE_FRICTION && tangential(p) < (1.0 - 1e-9) * mu * p[0] { 0.0 } else { mu * tangential(u) }
 }
 
 #[cfg(test)]
@@ -123,7 +127,7 @@ mod tests {
     use nalgebra::{Matrix3, Vector2, Vector3};
 
     #[test]
-    fn a_row_product_is_the_problems_own() {
+    fn row_products_match_the_problem() {
         let blocks: Vec<_> =
             (0..4).map(|k| Matrix3::from_fn(|r, c| f64::from(k) + r as f64 - 2.0 * c as f64)).collect();
         let h: Vec<_> = blocks.iter().map(|b| b + Matrix3::identity() * 9.0).collect();

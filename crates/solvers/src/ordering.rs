@@ -1,21 +1,22 @@
-//! The order in which contacts are eliminated.
+//! The elimination order of contacts.
 
 use crate::memory::{refill, reserve};
 #[cfg(feature = "sparse")]
 use faer::dyn_stack::MemBuffer;
 use teeter_contact::BlockSparse;
 
-/// Up to so many contacts the order given is kept: a full factor is small, and ordering costs more than it saves.
-pub(crate) const NATURAL: usize = 24;
+/// Up to this number of contacts the given order is kept: a full factor is small, and ordering
+/// costs more than it saves.
+pub(crate) const UNORDERED: usize = 24;
 
-/// The symmetric pattern of an operator, and the memory to order it.
+/// The symmetric pattern of an operator, with memory for ordering it.
 #[derive(Default)]
 pub(crate) struct Ordering {
-    /// The neighbours of each contact, either way round, ascending, without itself.
+    /// The neighbours of each contact by H or its transpose, ascending, without itself.
     start: Vec<usize>,
     neighbours: Vec<usize>,
     fill: Vec<usize>,
-    /// What approximate minimum degree works on: for each column the rows above the diagonal.
+    /// Input of approximate minimum degree: for each column the rows above the diagonal.
     #[cfg(feature = "sparse")]
     upper_start: Vec<usize>,
     #[cfg(feature = "sparse")]
@@ -40,7 +41,7 @@ impl Ordering {
         reserve(&mut self.neighbours, 2 * blocks);
     }
 
-    /// Takes the pattern of `h`, made symmetric.
+    /// Sets the pattern to that of `h`, made symmetric.
     pub(crate) fn neighbours_of<const D: usize>(&mut self, h: &BlockSparse<D>) {
         let n = h.contacts();
         refill(&mut self.fill, n + 1, 0);
@@ -68,7 +69,7 @@ impl Ordering {
                 }
             }
         }
-        // Most are there twice: once for each way round.
+        // Most appear twice, from H and from its transpose.
         let mut kept = 0;
         for i in 0..n {
             let (first, last) = (self.start[i], self.start[i + 1]);
@@ -90,15 +91,15 @@ impl Ordering {
         &self.neighbours[self.start[i]..self.start[i + 1]]
     }
 
-    /// `order[k]` is the contact eliminated at step k, `place` its inverse; the order given for few contacts, for which
-    /// ordering costs more than it saves.
+    /// `order[k]` is the contact eliminated at step k, `place` its inverse. For few contacts the
+    /// given order is kept.
     pub(crate) fn order(&mut self, order: &mut Vec<usize>, place: &mut Vec<usize>) {
         let n = self.start.len() - 1;
         order.clear();
         order.extend(0..n);
         place.clear();
         place.extend(0..n);
-        if n > NATURAL {
+        if n > UNORDERED {
             self.minimum_degree(order, place);
         }
     }
@@ -106,7 +107,8 @@ impl Ordering {
     #[cfg(not(feature = "sparse"))]
     fn minimum_degree(&mut self, _order: &mut [usize], _place: &mut [usize]) {}
 
-    /// By approximate minimum degree, from the order given to the one found (Amestoy, Davis, Duff 1996, doi 10.1137/S0895479894278952).
+    /// Orders by approximate minimum degree (Amestoy, Davis, Duff 1996, doi
+    /// 10.1137/S0895479894278952).
     #[cfg(feature = "sparse")]
     pub(crate) fn minimum_degree(&mut self, order: &mut [usize], place: &mut [usize]) {
         use faer::dyn_stack::MemStack;
@@ -139,7 +141,7 @@ mod tests {
     use teeter_contact::Block;
 
     #[test]
-    fn neighbours_are_those_of_either_way_round() {
+    fn neighbours_are_symmetric() {
         let one = Block::<2>::identity();
         let h = BlockSparse::from_rows(&[vec![(0, one), (2, one)], vec![(1, one)], vec![(1, one), (2, one)]]).unwrap();
         let mut ordering = Ordering::default();

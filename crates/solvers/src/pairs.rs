@@ -1,32 +1,36 @@
-//! Gauss–Seidel over pairs of contacts that hold one body twice.
+//! Gauss–Seidel over pairs of contacts that constrain one body twice.
 //!
-//! Two corners of a rigid block that both stick can press against each other along the surface as they like: H has nothing to say
-//! against it. Where the surface bends under the block, their velocities can't quite both be zero, by the surface's change of slope times its
-//! height under the block, which may be 1e-10 of the problem's speed. The pressure must then grow until one of the corners slides. Sweeps
-//! over single contacts add 1e-10 of it each time, and the residual of all those impulses is the same 1e-10: nothing that goes by the residual
-//! gets there either. A pair solved exactly, by its states, is at the end at once; and pairs feel each other as weakly as bodies do.
+//! If two corners of a rigid block both stick, opposite tangential impulses at them leave the
+//! velocities unchanged: H is singular. If the surface under the block bends, their velocities
+//! can't both be exactly zero; they differ by the change of slope times the height of the surface
+//! under the block, perhaps 1e-10 of the problem's speed. The opposite impulses must then grow
+//! until one corner slides. Sweeps over single contacts add 1e-10 of them each time, and the
+//! residual stays at 1e-10 on the way, so methods that follow the residual don't get there. Solving
+//! the pair exactly, by its states, gets there at once, and pairs are coupled as weakly as bodies
+//! are.
 
 use crate::Pgs;
 use crate::ending::ended;
 use crate::memory::{refill, reserve};
 use teeter_contact::{ContactProblem, Delassus, Outcome, Stop, Vector, judge};
 
-/// An exact method for a few contacts: what it found, if the judge is satisfied.
+/// An exact method for a few contacts; returns the outcome if it converged.
 pub(crate) type Small<const D: usize> = fn(&ContactProblem<'_, D>, &Stop<'_>, &mut [Vector<D>]) -> Option<Outcome>;
 
-/// Two contacts are a pair if so little of one's tangential compliance is left where the other one is held.
+/// Two contacts are a pair if fixing one leaves at most this part of the other's tangential
+/// compliance.
 const HELD_TWICE: f64 = 1e-3;
-/// Sweeps at the most, and sweeps in which the residual must fall to this part of it.
+/// Largest number of sweeps, and the factor by which the residual must decrease per `BATCH` sweeps.
 const SWEEPS: u32 = 60;
 const BATCH: u32 = 4;
 const PROGRESS: f64 = 0.5;
-/// A pair is solved to this residual.
+/// The residual to which a pair is solved.
 const EXACT: f64 = 1e-13;
 
 /// Memory for the sweeps.
 #[derive(Debug, Default)]
 pub(crate) struct Pairs<const D: usize> {
-    /// The other one of each contact's pair; itself for one that has none.
+    /// The partner of each contact; the contact itself if it has none.
     partner: Vec<usize>,
     best: Vec<Vector<D>>,
 }
@@ -37,7 +41,7 @@ impl<const D: usize> Pairs<D> {
         reserve(&mut self.best, contacts);
     }
 
-    /// Finds the pairs; whether there are any.
+    /// Finds the pairs; returns whether there are any.
     fn find(&mut self, problem: &ContactProblem<'_, D>) -> bool {
         let n = problem.contacts();
         refill(&mut self.partner, n, 0);
@@ -64,8 +68,8 @@ impl<const D: usize> Pairs<D> {
         any
     }
 
-    /// Sweeps from `p` until the judge is satisfied, or it no longer gets better. `None` where there are no pairs, or `small` doesn't take
-    /// them; `p` holds the best impulses of all.
+    /// Sweeps from `p` until it converges or no longer improves. `None` if there are no pairs or
+    /// `small` doesn't support them; `p` contains the best impulses.
     pub(crate) fn solve(
         &mut self,
         problem: &ContactProblem<'_, D>,

@@ -1,29 +1,33 @@
 //! Projected (non-smooth) Gauss–Seidel over contacts with an exact local solve.
 //!
-//! **What it solves**: exact Signorini–Coulomb in the plane and in space; H may be asymmetric or singular.
+//! **What it solves**: exact Signorini–Coulomb in the plane and in space; H may be asymmetric or
+//! singular.
 //!
-//! **How**: Jean and Moreau's NSGS (Jean 1999, doi 10.1016/S0045-7825(98)00383-1): each contact in turn is solved exactly
-//! with the others held, in the plane by its four states, in space by one equation for the sliding speed
-//! (`one_contact_space.rs`).
+//! **How**: Jean and Moreau's NSGS (Jean 1999, doi 10.1016/S0045-7825(98)00383-1): each contact in
+//! turn is solved exactly with the others fixed, in the plane by its four states, in space by one
+//! equation for the sliding speed (`one_contact_space.rs`).
 //!
-//! **When to take it**: to 1e-4 or so for any number of contacts; further where contacts couple weakly or are few.
+//! **When to use it**: to about 1e-4 for any number of contacts; to higher accuracy for weakly
+//! coupled or few contacts.
 //!
-//! **Cost**: a sweep is one product with H, linear in the number of its blocks; nothing is factorised but the diagonal blocks.
-//! The blocks that aren't zero are copied once a solve, in an order made for sweeps; an operator that is given by what it does is asked for its
-//! row products.
+//! **Cost**: a sweep is one product with H, linear in the number of its blocks; only the diagonal
+//! blocks are factorised. The nonzero blocks are copied once per solve, in an order suited to
+//! sweeps; a matrix-free operator provides row products.
 //!
-//! **How it fails**: convergence is linear, and slow where many contacts share few bodies (stacks, hyperstatic supports)
-//! or masses differ much: tens of thousands of sweeps, or `stalled`. With large μ and strong coupling it may cycle; a
-//! relaxation below 1 ([`Pgs::with_relaxation`]) often ends that. A single contact with several solutions gets the one that its
-//! local solver finds first where the block is regular (H_ii positive definite and H_NN > μ‖H_NT‖), else the smallest;
-//! a contact without any gets a step of the natural map.
+//! **How it fails**: convergence is linear, and slow if many contacts share few bodies (stacks,
+//! hyperstatic supports) or masses differ much: tens of thousands of sweeps, or `stalled`. With
+//! large μ and strong coupling it may cycle; a relaxation below 1 ([`Pgs::with_relaxation`]) often
+//! helps. For a contact with several local solutions, the first one found is taken if the block is
+//! regular (H_ii positive definite and H_NN > μ‖H_NT‖), else the smallest; without a local
+//! solution, a step of the natural map is taken.
 //!
 //! Departures from the paper:
-//! - The stop is by the judge's residual, not by the increment: a slowly converging iteration has small increments far
-//!   from the solution. The residual costs as much as a sweep, so it is computed only when the increment says that it may be
-//!   small enough (both fall at the same rate, their ratio is known from the last time), or after some sweeps.
-//! - Relaxation, if asked for, is followed by a projection on the cone.
-//! - The best impulses judged are kept and returned.
+//! - The iteration stops by the residual, not the increment, as a slowly converging iteration has
+//!   small increments far from the solution. The residual costs as much as a sweep, so it is
+//!   computed only if the increment suggests that it is small enough (both decrease at the same
+//!   rate, and their ratio is known from the last time), or after some sweeps.
+//! - Relaxation, if used, is followed by a projection onto the cone.
+//! - The best impulses found are returned.
 
 use crate::local::Local;
 use crate::memory::reserve;
@@ -33,13 +37,13 @@ use teeter_contact::{
     project,
 };
 
-/// Most sweeps between two residuals, unless an eighth of the sweeps done is more.
+/// Largest number of sweeps between residuals, or an eighth of the sweeps done if that is more.
 const CHECK: u32 = 16;
 
-/// Sweeps without any better residual after which the iteration counts as stalled.
+/// Sweeps without a better residual after which the iteration counts as stalled.
 const STALL: u32 = 1000;
 
-/// What rounding in the velocities may do to the residual, for one unit of 1 + μ; with room for long sums.
+/// Rounding error of the residual per unit of 1 + μ, with a margin for long sums.
 const ROUNDING: f64 = 1e-13;
 
 /// The Gauss–Seidel solver; see the [crate's table](crate). `iterations` counts sweeps.
@@ -47,7 +51,7 @@ const ROUNDING: f64 = 1e-13;
 pub struct Pgs<const D: usize> {
     relaxation: f64,
     locals: Vec<Local<D>>,
-    /// What each contact's local solve starts from.
+    /// The state of each contact's local solve from the last visit.
     slips: Vec<f64>,
     velocities: Vec<Vector<D>>,
     best: Vec<Vector<D>>,
@@ -77,8 +81,9 @@ impl<const D: usize> Pgs<D> {
         }
     }
 
-    /// A solver that takes `omega` times the step of the local solve (1: no relaxation), projected on the cone.
-    /// `omega` is kept within 0.05 to 1.95; beyond 0 and 2 the iteration diverges even without friction.
+    /// A solver that takes `omega` times the step of the local solve (1: no relaxation), projected
+    /// onto the cone. `omega` is limited to 0.05 to 1.95; outside 0 to 2 the iteration diverges
+    /// even without friction.
     #[must_use]
     pub fn with_relaxation(omega: f64) -> Self {
         let relaxation = if omega.is_nan() { 1.0 } else { omega.clamp(0.05, 1.95) };
@@ -96,14 +101,14 @@ impl<const D: usize> Pgs<D> {
         self.best.clear();
     }
 
-    /// One sweep. Returns the square of how far the impulses went.
+    /// One sweep. Returns the squared change of the impulses.
     #[inline]
-    fn sweep(&mut self, q: &[Vector<D>], mu: &[f64], p: &mut [Vector<D>], rows: &impl Others<D>) -> f64 {
+    fn sweep(&mut self, q: &[Vector<D>], mu: &[f64], p: &mut [Vector<D>], rows: &impl OffDiagonal<D>) -> f64 {
         let mut moved = 0.0;
         for (i, (local, slip)) in self.locals.iter().zip(&mut self.slips).enumerate() {
-            // The same code three times over, once for each state that the contact was in: the branch on the state is known
-            // long before the sum over the row, and those that wait for the sum then go as they went before. (A quarter of a
-            // sweep's time in space.)
+            // The code is instantiated for each previous state of the contact. The branch on this
+            // state is known before the sum over the row, and the branches that depend on the sum
+            // are then predicted well. (This saves a quarter of a sweep's time in space.)
             let relaxation = self.relaxation;
             moved += if *slip > 0.0 {
                 visit::<SLID, D>(local, slip, q, mu, p, rows, i, relaxation)
@@ -116,11 +121,39 @@ impl<const D: usize> Pgs<D> {
         moved
     }
 
-    fn judged(&mut self, problem: &ContactProblem<'_, D>, p: &mut [Vector<D>], rows: &impl Others<D>) -> Residual {
+    fn judged(&mut self, problem: &ContactProblem<'_, D>, p: &mut [Vector<D>], rows: &impl OffDiagonal<D>) -> Residual {
         for (i, (u, local)) in self.velocities.iter_mut().zip(&self.locals).enumerate() {
             *u = problem.q()[i] + local.velocity(&p[i]) + rows.product(i, p);
         }
         judge_velocities(problem, p, &self.velocities)
+    }
+
+    /// Replaces initial impulses that aren't finite, and computes the residual of the others.
+    fn initial_residual(
+        &mut self,
+        problem: &ContactProblem<'_, D>,
+        stop: &Stop<'_>,
+        p: &mut [Vector<D>],
+        rows: &impl OffDiagonal<D>,
+    ) -> Residual {
+        for x in p.iter_mut() {
+            if !x.iter().all(|c| c.is_finite()) {
+                *x = Vector::zeros();
+            }
+        }
+        // Zero impulses solve the problem only if no contact approaches; else the residual isn't
+        // computed.
+        let is_zero = p.iter().all(|x| x.iter().all(|&c| c == 0.0));
+        if is_zero && stop.max_iterations != 0 && !problem.q().iter().all(|q| q[0] >= 0.0) {
+            return Residual::new(f64::INFINITY, f64::INFINITY, 0);
+        }
+        let residual = self.judged(problem, p, rows);
+        if residual.global.is_finite() {
+            return residual;
+        }
+        // Too large to be squared: start from zero.
+        p.fill(Vector::zeros());
+        self.judged(problem, p, rows)
     }
 
     fn iterate(
@@ -128,36 +161,21 @@ impl<const D: usize> Pgs<D> {
         problem: &ContactProblem<'_, D>,
         stop: &Stop<'_>,
         p: &mut [Vector<D>],
-        rows: &impl Others<D>,
+        rows: &impl OffDiagonal<D>,
     ) -> Outcome {
-        let (q, mu) = (problem.q(), problem.mu());
-        for x in p.iter_mut() {
-            if !x.iter().all(|c| c.is_finite()) {
-                *x = Vector::zeros();
-            }
-        }
-        let unknown = Residual::new(f64::INFINITY, f64::INFINITY, 0);
-        let mut residual = unknown;
-        // Nothing at all solves a problem only if no contact approaches: else it isn't worth judging.
-        let is_zero = |p: &[Vector<D>]| p.iter().all(|x| x.iter().all(|&c| c == 0.0));
-        if !is_zero(p) || stop.max_iterations == 0 || q.iter().all(|q| q[0] >= 0.0) {
-            residual = self.judged(problem, p, rows);
-            if !residual.global.is_finite() {
-                // Too large to be squared: as good as no start.
-                p.fill(Vector::zeros());
-                residual = self.judged(problem, p, rows);
-            }
-        }
+        let mut residual = self.initial_residual(problem, stop, p, rows);
+        let mu = problem.mu();
         let mut best = (residual.global, 0);
         self.best.extend_from_slice(p);
         let rounding = ROUNDING * mu.iter().fold(1.0, |most: f64, &mu| most.max(1.0 + mu));
         let (mut sweep, mut judged_at) = (0, 0);
         let mut moved = 0.0;
-        // The residual over the square root of `moved`, as last seen.
+        // The last ratio of the residual to the square root of `moved`.
         let mut ratio = f64::INFINITY;
         let status = loop {
             if residual.global <= stop.tolerance {
-                // Velocities summed in another order may be judged otherwise where it is as tight as that.
+                // Velocities summed in another order may give a different result near the
+                // tolerance.
                 if !(stop.tolerance - residual.global > rounding) {
                     residual = judge(problem, p);
                 }
@@ -179,9 +197,9 @@ impl<const D: usize> Pgs<D> {
             }
             let latest = (judged_at + CHECK.max(judged_at / 8)).min(stop.max_iterations);
             loop {
-                moved = self.sweep(q, mu, p, rows);
+                moved = self.sweep(problem.q(), mu, p, rows);
                 sweep += 1;
-                // Written so that a NaN is judged.
+                // The comparison is false for a NaN, so that the residual is computed.
                 if sweep >= latest || moved == 0.0 || !(moved.sqrt() * ratio > stop.tolerance) || sweep == 1 {
                     break;
                 }
@@ -206,12 +224,12 @@ impl<const D: usize> Pgs<D> {
     }
 }
 
-/// What a contact did at its last visit.
+/// The state of a contact at its last visit.
 const SLID: u8 = 0;
 const OPEN: u8 = 1;
 const STUCK: u8 = 2;
 
-/// Solves contact `i` with the others held. Returns the square of how far its impulse went.
+/// Solves contact `i` with the others fixed. Returns the squared change of its impulse.
 #[inline(always)]
 fn visit<const WAS: u8, const D: usize>(
     local: &Local<D>,
@@ -219,7 +237,7 @@ fn visit<const WAS: u8, const D: usize>(
     q: &[Vector<D>],
     mu: &[f64],
     p: &mut [Vector<D>],
-    rows: &impl Others<D>,
+    rows: &impl OffDiagonal<D>,
     i: usize,
     relaxation: f64,
 ) -> f64 {
@@ -236,22 +254,22 @@ fn visit<const WAS: u8, const D: usize>(
     (new - old).norm_squared()
 }
 
-/// A way to `Σ_{j≠i} H_ij p_j`.
-trait Others<const D: usize> {
+/// Provides the products `Σ_{j≠i} H_ij p_j`.
+trait OffDiagonal<const D: usize> {
     fn product(&self, i: usize, p: &mut [Vector<D>]) -> Vector<D>;
 }
 
-impl<const D: usize> Others<D> for Rows<D> {
+impl<const D: usize> OffDiagonal<D> for Rows<D> {
     #[inline(always)]
     fn product(&self, i: usize, p: &mut [Vector<D>]) -> Vector<D> {
         Rows::product(self, i, p)
     }
 }
 
-/// A product that is never formed.
-struct Unformed<'a, const D: usize>(&'a dyn teeter_contact::DelassusOperator<D>);
+/// A matrix-free operator.
+struct MatrixFree<'a, const D: usize>(&'a dyn teeter_contact::DelassusOperator<D>);
 
-impl<const D: usize> Others<D> for Unformed<'_, D> {
+impl<const D: usize> OffDiagonal<D> for MatrixFree<'_, D> {
     fn product(&self, i: usize, p: &mut [Vector<D>]) -> Vector<D> {
         let own = std::mem::replace(&mut p[i], Vector::zeros());
         let product = self.0.row_product(i, p);
@@ -280,7 +298,7 @@ impl<const D: usize> ContactSolver<D> for Pgs<D> {
     fn solve(&mut self, problem: &ContactProblem<'_, D>, stop: &Stop<'_>, p: &mut [Vector<D>]) -> Outcome {
         self.prepare(problem);
         if let Delassus::Operator(h) = problem.delassus() {
-            return self.iterate(problem, stop, p, &Unformed(h));
+            return self.iterate(problem, stop, p, &MatrixFree(h));
         }
         let mut rows = std::mem::take(&mut self.rows);
         rows.pack(problem);
@@ -307,8 +325,9 @@ mod tests {
 
     #[test]
     fn conforms_with_relaxation() {
-        // Blocks of uneven scales are left out: relaxed, the soft direction comes to its value step by step, and the judge,
-        // which has one scale for all, is satisfied before the law is obeyed in the soft direction's own.
+        // Blocks of uneven scales are left out: with relaxation the soft direction converges
+        // slowly, and the residual, which has one scale for all, is met before the law is satisfied
+        // in the scale of the soft direction.
         let even: Vec<_> = space_cases().into_iter().filter(|case| !case.name.contains("uneven")).collect();
         for omega in [0.7, 1.2] {
             run(&mut Pgs::with_relaxation(omega), &plane_cases(), 1e-11).unwrap();
@@ -317,7 +336,7 @@ mod tests {
     }
 
     #[test]
-    fn ends_honestly_when_iterations_run_out() {
+    fn exhausted_iterations_are_reported() {
         let feet = [(-0.5, -1.0), (-0.1, -1.0), (0.2, -1.0), (0.5, -1.0)];
         let case = body_on_floor("four", 0.3, &feet, [0.3, -1.0, 0.2], 0.5);
         let mut p = vec![Vector::zeros(); 4];
@@ -332,7 +351,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cancelled_solve_says_so() {
+    fn a_cancelled_solve_is_reported() {
         let case = body_on_floor("two", 0.3, &[(-0.5, -1.0), (0.5, -1.0)], [0.3, -1.0, 0.2], 0.5);
         let flag = std::sync::atomic::AtomicBool::new(true);
         let mut p = vec![Vector::zeros(); 2];
@@ -341,7 +360,7 @@ mod tests {
     }
 
     #[test]
-    fn a_start_that_is_no_number_is_replaced() {
+    fn a_nan_start_is_replaced() {
         let case = body_on_floor("two", 0.3, &[(-0.5, -1.0), (0.5, -1.0)], [0.3, -1.0, 0.2], 0.5);
         let mut p = vec![Vector::<2>::new(f64::NAN, f64::INFINITY); 2];
         assert!(Pgs::new().solve(&case.problem().unwrap(), &Stop::default(), &mut p).converged());

@@ -1,21 +1,25 @@
-//! The proximal point method around Newton's.
+//! The proximal point method, with Newton's method for the inner problems.
 //!
-//! **What it solves**: exact Signorini–Coulomb in the plane and in space; H may be asymmetric or singular.
+//! **What it solves**: exact Signorini–Coulomb in the plane and in space; H may be asymmetric or
+//! singular.
 //!
-//! **How**: the outer iteration (Rockafellar 1976, doi 10.1137/0314056; for contact Acary, Brémond, Huber 2018,
-//! doi 10.1007/978-3-319-75972-2_10) solves, from the last impulses c, the problem with H + αI and q − αc, which is better
-//! conditioned and has the original solution as its fixed point. Each of those is solved by semi-smooth Newton steps
-//! ([`Newton`](crate::Newton)), to a hundredth of the residual at hand.
+//! **How**: the outer iteration (Rockafellar 1976, doi 10.1137/0314056; for contact Acary, Brémond,
+//! Huber 2018, doi 10.1007/978-3-319-75972-2_10) solves the problem with H + αI and q − αc, c being
+//! the last impulses, which is better conditioned and has the original solution as its fixed point.
+//! Each of these is solved by semi-smooth Newton steps ([`Newton`](crate::Newton)) to a hundredth
+//! of the current residual.
 //!
-//! **When to take it**: where Newton's steps alone fail because H is singular: hyperstatic problems of moderate size.
+//! **When to use it**: for hyperstatic problems of moderate size, where Newton's method alone fails
+//! because H is singular.
 //!
-//! **Cost**: some Newton steps, each a sparse LU, for each of 5 to 50 outer steps.
+//! **Cost**: 5 to 50 outer steps, each of some Newton steps with a sparse LU.
 //!
-//! **How it fails**: α must be raised until the inner problem is solved; with a large α the outer iteration is slow, and
-//! ends as `stalled`.
+//! **How it fails**: α must be raised until the inner problem can be solved; with a large α the
+//! outer iteration is slow and ends as `stalled`.
 //!
-//! Departures from the paper: α goes down tenfold after a success and up tenfold after a failure, between which a few sweeps of
-//! Gauss–Seidel move the start; the stop is the judge's, not the increment.
+//! Departures from the paper: α is reduced tenfold after a success and raised tenfold after a
+//! failure, followed by a few Gauss–Seidel sweeps for a new start; the iteration stops by the
+//! residual, not the increment.
 
 use crate::Pgs;
 use crate::ending::ended;
@@ -24,20 +28,21 @@ use crate::newton::{Proximal, Steps};
 use crate::scaled::{Scaled, make_finite};
 use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, Stop, Vector, judge};
 
-/// The proximal parameter α at the start and its bounds, relative to the mean of H's diagonal.
+/// The initial proximal parameter α and its bounds, relative to the mean of H's diagonal.
 const ALPHA: f64 = 1e-3;
 const LEAST_ALPHA: f64 = 1e-12;
 const MOST_ALPHA: f64 = 10.0;
-/// An inner problem is solved to this part of the residual.
+/// An inner problem is solved to this fraction of the residual.
 const INNER: f64 = 0.01;
-/// Newton steps for an inner problem.
+/// Largest number of Newton steps for an inner problem.
 const STEPS: u32 = 15;
 /// Gauss–Seidel sweeps at the start and after a failure.
 const SWEEPS: u32 = 20;
 /// Outer steps without a better residual after which the iteration counts as stalled.
 const PATIENCE: u32 = 40;
 
-/// The proximal point solver; see the [crate's table](crate). `iterations` counts Newton steps and sweeps.
+/// The proximal point solver; see the [crate's table](crate). `iterations` counts Newton steps and
+/// sweeps.
 #[derive(Clone, Debug, Default)]
 pub struct Prox<const D: usize> {
     scaled: Scaled<D>,

@@ -1,19 +1,19 @@
 //! The off-diagonal blocks of H, packed for sweeps.
 //!
-//! Two neighbours of a row lie together, number beside number, so that each pair of numbers is multiplied and added in
-//! one instruction (two lanes are what every x86-64 and ARM64 processor has). A row with an odd number of blocks ends with a
-//! zero block.
+//! Two neighbouring blocks of a row are interleaved, so that each pair of numbers is multiplied and
+//! added in one instruction (every x86-64 and ARM64 processor has two lanes). A row with an odd
+//! number of blocks ends with a zero block.
 
 use crate::memory::reserve;
 use teeter_contact::{Block, ContactProblem, Delassus, Vector};
 
-/// A block and its right neighbour: `[column][row]`, a lane each.
+/// A block and its right neighbour: `[column][row]`, one lane each.
 type Pair<const D: usize> = [[[f64; 2]; D]; D];
 
 /// All rows.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Rows<const D: usize> {
-    /// Where each row starts, and the end of the last one.
+    /// The start of each row, and the end of the last one.
     start: Vec<usize>,
     pairs: Vec<Pair<D>>,
     columns: Vec<[u32; 2]>,
@@ -27,7 +27,7 @@ impl<const D: usize> Rows<D> {
         reserve(&mut self.columns, pairs);
     }
 
-    /// Takes the blocks out of a problem, in memory that is kept. False for an operator that is given by what it does.
+    /// Packs the blocks of a problem into reused memory. False for a matrix-free operator.
     pub(crate) fn pack(&mut self, problem: &ContactProblem<'_, D>) -> bool {
         let n = problem.contacts();
         self.start.clear();
@@ -81,7 +81,7 @@ impl<const D: usize> Rows<D> {
     #[inline(always)]
     pub(crate) fn product(&self, i: usize, p: &[Vector<D>]) -> Vector<D> {
         let range = self.start[i]..self.start[i + 1];
-        // A sum for each number of a block, so that no addition waits for another of the same pair.
+        // A separate sum for each entry of a block, so that additions are independent.
         let mut sums = [[[0.0; 2]; D]; D];
         for (pair, columns) in self.pairs[range.clone()].iter().zip(&self.columns[range]) {
             let (a, b) = (&p[columns[0] as usize], &p[columns[1] as usize]);
@@ -94,8 +94,8 @@ impl<const D: usize> Rows<D> {
                 }
             }
         }
-        // Seen together with what follows, the compiler pairs rows instead of lanes, and shuffles all blocks for it: half as
-        // fast. Through `black_box` it can't see, and the values are what they are.
+        // Without `black_box` the compiler combines this with the following code, pairs rows
+        // instead of lanes, and shuffles all blocks, which is half as fast.
         let sums = if D == 3 { std::hint::black_box(sums) } else { sums };
         let mut lanes = sums[0];
         for sum in &sums[1..] {
@@ -115,7 +115,7 @@ mod tests {
     use teeter_contact::conformance::box_on_floor;
 
     #[test]
-    fn packed_rows_give_the_products_of_the_problem() {
+    fn packed_products_match_the_problem() {
         let points = [[-0.5, -0.3, -1.0], [0.5, -0.3, -1.0], [0.5, 0.3, -1.0], [-0.5, 0.4, -1.1]];
         for n in 1..=4 {
             let mut case = box_on_floor("box", [0.4, 0.5, 0.1], &points[..n], [0.1, 0.2, -1.0, 0.3, 0.1, 0.2], 0.5);

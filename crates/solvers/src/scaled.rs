@@ -1,12 +1,13 @@
-//! A contact problem in its own scale, for solvers that work on a copy of H.
+//! A scaled copy of a contact problem, for solvers that need a copy of H.
 //!
-//! With ρ = 1/mean(diag H) the problem (ρH, ρq, μ) has the same impulses and velocities that are impulses too, so numbers
-//! without unit (a regularisation, a step) mean the same in every system of units, and the judge's natural map is `p − Π(p − û)`.
+//! With ρ = 1/mean(diag H) the problem (ρH, ρq, μ) has the same impulses, and its velocities have
+//! the unit of impulses. Dimensionless parameters (a regularisation, a step) are then independent
+//! of the system of units, and the natural map of the residual is `p − Π(p − û)`.
 
 use crate::memory::reserve;
 use teeter_contact::{BlockSparse, ContactProblem, Vector, de_saxce, project};
 
-/// The scaled problem, in memory that is kept.
+/// The scaled problem; its memory is reused.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scaled<const D: usize> {
     pub(crate) h: BlockSparse<D>,
@@ -38,7 +39,7 @@ impl<const D: usize> Scaled<D> {
         self.q.len()
     }
 
-    /// The size of one contact's impulse: `max(‖p‖, ‖q‖)/√n`.
+    /// The typical magnitude of one contact's impulse: `max(‖p‖, ‖q‖)/√n`.
     pub(crate) fn size(&self, p: &[Vector<D>]) -> f64 {
         norm(p).max(self.q_norm).max(1e-300) / (p.len().max(1) as f64).sqrt()
     }
@@ -57,12 +58,12 @@ impl<const D: usize> Scaled<D> {
         }
     }
 
-    /// The judge's global residual for known velocities.
+    /// The global residual for known velocities.
     pub(crate) fn residual(&self, p: &[Vector<D>], u: &[Vector<D>]) -> f64 {
         self.residual_of(p.iter().copied().zip(u.iter().copied()))
     }
 
-    /// The residual after a step: of `p + s δp` with velocities `u + s δu`.
+    /// The residual of `p + s δp` with velocities `u + s δu`.
     pub(crate) fn residual_after(
         &self,
         p: &[Vector<D>],
@@ -90,7 +91,7 @@ pub(crate) fn norm<const D: usize>(x: &[Vector<D>]) -> f64 {
     x.iter().map(Vector::norm_squared).sum::<f64>().sqrt()
 }
 
-/// Replaces a start that is no number, or too large to be squared, by zero.
+/// Replaces initial impulses that are NaN or too large to be squared by zero.
 pub(crate) fn make_finite<const D: usize>(p: &mut [Vector<D>]) {
     for x in p {
         if !(x.norm_squared() < 1e300) {
@@ -106,7 +107,7 @@ mod tests {
     use teeter_contact::judge;
 
     #[test]
-    fn the_scaled_residual_is_the_judges() {
+    fn the_scaled_residual_matches_the_judge() {
         for case in plane_cases() {
             let problem = case.problem().unwrap();
             let p: Vec<_> = (0..case.q.len()).map(|i| Vector::<2>::new(1.0 + i as f64, 0.3)).collect();

@@ -1,4 +1,5 @@
-//! Sparse factorisation of the symmetric part of H with a positive number added to each contact's diagonal.
+//! Sparse factorisation of the symmetric part of H with a positive number added to each contact's
+//! diagonal.
 
 use crate::ordering::Ordering;
 use crate::upper::Upper;
@@ -10,7 +11,8 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use faer::{Conj, MatMut, Par, Side};
 use teeter_contact::{BlockSparse, Vector};
 
-/// `S + Σ`, S = (H + Hᵀ)/2, Σ one number a contact: analysed once a pattern, factorised without allocating.
+/// `S + Σ` with S = (H + Hᵀ)/2 and Σ one number per contact. A pattern is analysed once;
+/// factorising doesn't allocate.
 #[derive(Default)]
 pub(crate) struct Shifted<const D: usize> {
     symmetric: Upper<D>,
@@ -34,8 +36,8 @@ impl<const D: usize> std::fmt::Debug for Shifted<D> {
 }
 
 impl<const D: usize> Shifted<D> {
-    /// Takes the values of `h`, and analyses its pattern unless that of the last one serves. False where the analysis
-    /// fails (it runs out of memory, or of indices).
+    /// Sets the values of `h`, and analyses its pattern if it has changed. False if the analysis
+    /// fails (out of memory or index range).
     pub(crate) fn load(&mut self, h: &BlockSparse<D>) -> bool {
         if self.symmetric.load(h) || self.analysis.is_none() {
             self.ordering.neighbours_of(h);
@@ -66,7 +68,8 @@ impl<const D: usize> Shifted<D> {
         Some(Analysis { upper, cholesky, buffer: MemBuffer::try_new(scratch).ok()? })
     }
 
-    /// Factorises with `shift(i)` added to the diagonal of contact i. False where that isn't positive definite.
+    /// Factorises with `shift(i)` added to the diagonal of contact i. False if the matrix isn't
+    /// positive definite.
     pub(crate) fn factorise(&mut self, shift: impl Fn(usize) -> f64) -> bool {
         let Some(analysis) = &mut self.analysis else { return false };
         self.values.clear();
@@ -89,7 +92,7 @@ impl<const D: usize> Shifted<D> {
             .is_ok()
     }
 
-    /// Solves for the right-hand side in `x`, in place.
+    /// Solves in place for the right-hand side in `x`.
     pub(crate) fn solve(&mut self, x: &mut [Vector<D>]) {
         let Some(analysis) = &mut self.analysis else { return };
         for (to, from) in self.rhs.iter_mut().zip(x.iter().flatten()) {
@@ -108,7 +111,8 @@ impl<const D: usize> Shifted<D> {
     }
 }
 
-/// The fill-reducing order of the blocks, spelt out for their rows: D² times less to order, and the blocks stay whole.
+/// The fill-reducing order of the blocks, expanded to their rows: D² times less to order, and
+/// blocks stay contiguous.
 fn block_order<const D: usize>(ordering: &mut Ordering, n: usize) -> Perm<usize> {
     let (mut order, mut place): (Vec<_>, Vec<_>) = ((0..n).collect(), (0..n).collect());
     ordering.minimum_degree(&mut order, &mut place);

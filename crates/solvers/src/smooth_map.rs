@@ -1,19 +1,21 @@
 //! The law of one contact as a smooth equation, with a parameter τ that is driven to zero.
 //!
-//! In the variables `x = (√μ p_N, p_T/√μ)` and `z = (û_N/√μ, √μ u_T)` the law is `x, z ∈ L, xᵀz = 0` with the standard
-//! second-order cone L, and `xᵀz = pᵀû`. With `[λ]_τ = (λ + √(λ² + 4τ²))/2` in the place of the positive part on the two
-//! spectral values `w_N ± ‖w_T‖` of `w = x − z`,
+//! In the variables `x = (√μ p_N, p_T/√μ)` and `z = (û_N/√μ, √μ u_T)` the law is
+//! `x, z ∈ L, xᵀz = 0` with the standard second-order cone L, and `xᵀz = pᵀû`. With
+//! `[λ]_τ = (λ + √(λ² + 4τ²))/2` in place of the positive part of the two spectral values
+//! `w_N ± ‖w_T‖` of `w = x − z`,
 //!
 //! ```text
 //! F_τ = x − Π_τ(x − z) = 0      ⟺      x, z ∈ int L,  x ∘ z = τ² e
 //! ```
 //!
-//! (Fukushima, Luo, Tseng 2002, doi 10.1137/S1052623400380365): the points of the central path. In û the norm ‖u_T‖ is
-//! smoothed too, as √(‖u_T‖² + τ²) − τ. Without friction only the normal equation is left, and p_T = 0.
+//! (Fukushima, Luo, Tseng 2002, doi 10.1137/S1052623400380365): the points of the central path. The
+//! norm ‖u_T‖ in û is smoothed too, as √(‖u_T‖² + τ²) − τ. Without friction only the normal
+//! equation remains, and p_T = 0.
 
 use teeter_contact::{Block, Vector};
 
-/// `F_τ` and its derivatives after p and u.
+/// `F_τ` and its derivatives with respect to p and u.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Slope<const D: usize> {
     pub(crate) value: Vector<D>,
@@ -21,7 +23,7 @@ pub(crate) struct Slope<const D: usize> {
     pub(crate) of_u: Block<D>,
 }
 
-/// The spectral decomposition of `w = x − z`, and what both evaluations need of it.
+/// The spectral decomposition of `w = x − z`, with the quantities that both evaluations need.
 struct Spectrum<const D: usize> {
     /// √μ.
     root: f64,
@@ -148,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn derivatives_are_those_of_the_value() {
+    fn derivatives_match_differences() {
         for (p, u, mu) in points() {
             let (tau, e) = (0.3, 1e-6);
             let slope = slope(&p, &u, mu, tau);
@@ -174,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn for_a_vanishing_parameter_the_law_itself_is_left() {
+    fn a_vanishing_parameter_gives_the_law() {
         // Sticks, slides, open.
         for (p, u) in [
             (Vector3::new(1.0, 0.1, 0.2), Vector3::zeros()),

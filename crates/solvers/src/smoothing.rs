@@ -1,27 +1,33 @@
 //! Newton's method along the central path of the smoothed law.
 //!
-//! **What it solves**: exact Signorini–Coulomb in the plane and in space; H may be asymmetric or singular.
+//! **What it solves**: exact Signorini–Coulomb in the plane and in space; H may be asymmetric or
+//! singular.
 //!
-//! **How**: the natural map is smoothed by a parameter τ (`smooth_map.rs`); its zeros are the central path, which leads to a solution
-//! as τ → 0. Newton corrects to the path at one τ, then τ is lowered by a factor that adapts: a correction that takes
-//! few steps lowers it more, one that fails is taken back and tried with less (a non-interior continuation method; Chen and Tseng
-//! 2003, doi 10.1007/s10107-002-0322-8; for second-order cones Hayashi, Yamashita, Fukushima 2005, doi 10.1137/S1052623403421516).
+//! **How**: the natural map is smoothed by a parameter τ (`smooth_map.rs`); its zeros are the
+//! central path, which leads to a solution as τ → 0. Newton corrects to the path at one τ, then τ
+//! is reduced by an adaptive factor: a smaller one after a correction with few steps, a larger one
+//! after a failed correction, which is repeated (a non-interior continuation method; Chen and Tseng
+//! 2003, doi 10.1007/s10107-002-0322-8; for second-order cones Hayashi, Yamashita, Fukushima 2005,
+//! doi 10.1137/S1052623403421516).
 //!
-//! **When to take it**: for hard problems: many hyperstatic or degenerate contacts, where Gauss–Seidel crawls and
-//! semi-smooth Newton cycles. The path stays away from the borders between states, so what is degenerate at the solution
-//! isn't on the way to it.
+//! **When to use it**: for hard problems with many hyperstatic or degenerate contacts, where
+//! Gauss–Seidel is slow and semi-smooth Newton cycles. The path stays away from the boundaries
+//! between contact states, so degeneracy at the solution doesn't disturb the iteration.
 //!
-//! **Cost**: 15 to 80 sparse LU factorisations with all contacts in (`block_lu.rs`), whatever the start.
+//! **Cost**: 15 to 80 sparse LU factorisations with all contacts (`block_lu.rs`), for any start.
 //!
-//! **How it fails**: Coulomb's law is not monotone, so with large μ the path can fold. Then it is left: damped steps at a
-//! smaller τ carry over the fold, a few times; else it starts anew with another regularisation, and ends as `stalled` when
-//! none is left. A friction coefficient of 1e6 costs it six digits.
+//! **How it fails**: Coulomb's law is not monotone, so with large μ the path can fold. A few times,
+//! damped steps at a smaller τ then cross the fold; else the method restarts with another
+//! regularisation, and ends as `stalled` when none is left. A friction coefficient of 1e6 costs six
+//! digits.
 //!
 //! Departures from the papers:
-//! - The law is not a monotone complementarity problem: De Saxcé's shift is in the equations, smoothed as well, with its derivative. No proof
-//!   of convergence comes over; what is said of success is measured.
-//! - H + εI in the linear systems, not in the equations, for singular H.
-//! - No predictor: the Newton step from the last centre at the new τ is one to first order.
+//! - The law is not a monotone complementarity problem: De Saxcé's shift is part of the equations,
+//!   also smoothed, with its derivative. The proofs of convergence don't apply; success rates are
+//!   measured.
+//! - For singular H, H + εI is used in the linear systems, but not in the equations.
+//! - There is no predictor: the Newton step from the last centre at the new τ acts as one to first
+//!   order.
 
 use crate::block_lu::BlockLu;
 use crate::ending::ended;
@@ -30,31 +36,34 @@ use crate::scaled::{Scaled, make_finite};
 use crate::smooth_map::{self, Slope};
 use teeter_contact::{Block, ContactProblem, ContactSolver, Law, Outcome, Stop, Vector, judge, project};
 
-/// τ at the start, relative to the size of one contact's impulse.
-const START: f64 = 0.1;
-/// The factor that lowers τ: at first, its least value, and the value at which the path is given up for damped steps.
+/// Initial τ, relative to the magnitude of one contact's impulse.
+const INITIAL_TAU: f64 = 0.1;
+/// The factor that reduces τ: its initial and least value, and the value above which the path
+/// counts as folded.
 const FACTOR: f64 = 0.1;
 const LEAST_FACTOR: f64 = 0.01;
 const FOLDED: f64 = 0.9;
-/// The factor to leave a fold with, and how often.
+/// The factor after crossing a fold, and the largest number of crossings.
 const ACROSS_FOLD: f64 = 0.6;
 const FOLDS: u32 = 6;
 /// A point counts as on the path when `‖F_τ‖ ≤ CENTRED τ √n`.
 const CENTRED: f64 = 0.1;
-/// Newton steps for one τ: on the path, at its start, over a fold.
+/// Largest number of Newton steps for one τ: on the path, at its start, across a fold.
 const STEPS: u32 = 5;
 const FIRST_STEPS: u32 = 15;
 const FOLD_STEPS: u32 = 20;
-/// Steps shorter than this end a correction: on the path, over a fold.
+/// Shortest damped step of a correction: on the path, across a fold.
 const SHORTEST: f64 = 0.2;
 const SHORTEST_FOLD: f64 = 0.004;
-/// The regularisations tried, relative to the mean of H's diagonal: in this order, and from where `solve` says, the published
-/// problems are all solved. The hardest of them (RockPile, with μ = 1) owes it to the last decimals.
+/// The regularisations tried, relative to the mean of H's diagonal. In this order, and with the
+/// initial impulses chosen in `solve`, all published problems are solved. The hardest of them
+/// (RockPile with μ = 1) is sensitive to the last digits.
 const EPSILONS: [f64; 4] = [1e-6, 1e-5, 1e-4, 1e-7];
-/// Newton steps after which one of them is given up.
+/// Largest number of Newton steps for one regularisation.
 const PATIENCE: u32 = 250;
 
-/// The solver along the central path; see the [crate's table](crate). `iterations` counts Newton steps.
+/// The central-path solver; see the [crate's table](crate). `iterations` counts Newton
+/// steps.
 #[derive(Clone, Debug, Default)]
 pub struct Smoothing<const D: usize> {
     scaled: Scaled<D>,
@@ -71,30 +80,30 @@ pub struct Smoothing<const D: usize> {
     iterations: u32,
 }
 
-/// How a correction to the path ended.
+/// The end of a correction to the path.
 #[derive(Clone, Copy, PartialEq)]
 enum Correction {
-    /// On the path, after so many steps.
+    /// On the path, after this number of steps.
     Centred(u32),
     /// Not reached.
     Missed,
-    /// The judge is satisfied, or the solve has to end.
+    /// The problem is solved, or the solve has to end.
     Over,
 }
 
-/// Where on the path a correction stands.
+/// The stage of a correction.
 #[derive(Clone, Copy, PartialEq)]
 enum Stage {
-    /// At its start, which may lie far from it.
+    /// The first correction, from a point that may be far from the path.
     Start,
     OnPath,
-    /// Where the path folds: damped steps at a smaller τ.
+    /// Across a fold of the path, by damped steps at a smaller τ.
     Fold,
 }
 
-/// How τ is lowered along the path.
+/// The reduction of τ along the path.
 struct Path {
-    /// The τ to correct to, that of the last centre, and the factor between them.
+    /// The current τ, that of the last centre, and the factor between them.
     tau: f64,
     centre_tau: f64,
     factor: f64,
@@ -107,7 +116,7 @@ impl Path {
         Self { tau, centre_tau: tau, factor: FACTOR, stage: Stage::Start, folds: 0 }
     }
 
-    /// Most Newton steps of a correction, and how short they may become.
+    /// The largest number of Newton steps of a correction, and the shortest step.
     fn effort(&self) -> (u32, f64) {
         match self.stage {
             Stage::Start => (FIRST_STEPS, SHORTEST_FOLD),
@@ -116,7 +125,7 @@ impl Path {
         }
     }
 
-    /// A correction that took few steps lowers τ by more.
+    /// Reduces τ after a successful correction; the factor is smaller if it took few steps.
     fn centred(&mut self, steps: u32) {
         self.centre_tau = self.tau;
         self.factor = match steps {
@@ -128,7 +137,7 @@ impl Path {
         self.stage = Stage::OnPath;
     }
 
-    /// Takes a point that is not on the path for its centre; false if that was done too often.
+    /// Accepts a point off the path as centre to cross a fold; false if the crossings are used up.
     fn cross(&mut self) -> bool {
         self.folds += 1;
         self.centre_tau = self.tau;
@@ -137,7 +146,8 @@ impl Path {
         self.folds <= FOLDS
     }
 
-    /// Back at the last centre, τ is lowered by less; where that is next to nothing, over the fold.
+    /// Returns to the last centre and reduces τ by less; if the factor is close to 1, starts to
+    /// cross a fold.
     fn fall_back(&mut self) {
         self.factor = self.factor.sqrt().sqrt();
         if self.factor > FOLDED {
@@ -173,39 +183,48 @@ impl<const D: usize> Smoothing<D> {
         ]
     }
 
-    /// Follows the path with one regularisation; `p` is where the first correction starts. Whether the judge is satisfied, or the solve has
-    /// to end.
+    /// Follows the path with one regularisation; the first correction starts at `p`. Returns
+    /// whether the problem is solved or the solve has to end.
     fn follow(&mut self, epsilon: f64, stop: &Stop<'_>, p: &mut [Vector<D>]) -> bool {
         let size = self.scaled.size(p);
         let until = self.iterations.saturating_add(PATIENCE).min(stop.max_iterations);
-        let mut path = Path::new(START * size);
+        let mut path = Path::new(INITIAL_TAU * size);
         self.center.copy_from_slice(p);
         loop {
             let (most, shortest) = path.effort();
-            match self.correct(path.tau, epsilon, most, shortest, stop, p) {
-                Correction::Over => return true,
-                Correction::Centred(steps) => {
-                    self.center.copy_from_slice(p);
-                    path.centred(steps);
-                }
-                // Where there is no centre to go back to, the path goes on from here, a few times.
-                Correction::Missed if path.stage != Stage::OnPath => {
-                    self.center.copy_from_slice(p);
-                    if !path.cross() {
-                        return false;
-                    }
-                }
-                Correction::Missed => {
-                    p.copy_from_slice(&self.center);
-                    path.fall_back();
-                }
+            let correction = self.correct(path.tau, epsilon, most, shortest, stop, p);
+            if correction == Correction::Over {
+                return true;
+            }
+            if !self.choose_centre(correction, &mut path, p) {
+                return false;
             }
             path.lower();
-            // Below rounding nothing is left to follow.
+            // Below rounding the path can't be followed.
             if self.iterations >= until || path.tau < 1e-18 * size {
                 return false;
             }
         }
+    }
+
+    /// Continues from the new point `p`, or returns to the last centre. False if the path is lost.
+    fn choose_centre(&mut self, correction: Correction, path: &mut Path, p: &mut [Vector<D>]) -> bool {
+        match correction {
+            Correction::Centred(steps) => path.centred(steps),
+            Correction::Missed if path.stage == Stage::OnPath => {
+                p.copy_from_slice(&self.center);
+                path.fall_back();
+                return true;
+            }
+            // Without a centre to return to, the path continues from here, a few times.
+            _ => {
+                if !path.cross() {
+                    return false;
+                }
+            }
+        }
+        self.center.copy_from_slice(p);
+        true
     }
 
     /// Newton steps on `F_τ = 0` from `p`.
@@ -227,14 +246,8 @@ impl<const D: usize> Smoothing<D> {
             }
             self.iterations += 1;
             let Some(before) = self.direction(tau, epsilon, p) else { return Correction::Missed };
-            let mut step = 1.0;
-            loop {
-                merit = self.merit_after(tau, step, p);
-                if merit <= (1.0 - 0.1 * step) * before || step < shortest {
-                    break;
-                }
-                step *= 0.5;
-            }
+            let step;
+            (step, merit) = self.line_search(tau, before, shortest, p);
             if step < shortest && shortest == SHORTEST || !merit.is_finite() {
                 return Correction::Missed;
             }
@@ -253,7 +266,8 @@ impl<const D: usize> Smoothing<D> {
         if merit <= centred { Correction::Centred(most) } else { Correction::Missed }
     }
 
-    /// The Newton direction at `p` and what it does to the velocities. Returns ‖F_τ‖, or `None` without a direction.
+    /// The Newton direction at `p` and its change of the velocities. Returns ‖F_τ‖, or `None` if
+    /// the factorisation fails.
     fn direction(&mut self, tau: f64, epsilon: f64, p: &[Vector<D>]) -> Option<f64> {
         let mut merit = 0.0;
         for i in 0..p.len() {
@@ -276,6 +290,19 @@ impl<const D: usize> Smoothing<D> {
         Some(merit.sqrt())
     }
 
+    /// Halves the step until ‖F_τ‖ decreases enough from `before`, or the step is below `shortest`.
+    /// Returns the step and ‖F_τ‖ after it.
+    fn line_search(&self, tau: f64, before: f64, shortest: f64, p: &[Vector<D>]) -> (f64, f64) {
+        let mut step = 1.0;
+        loop {
+            let merit = self.merit_after(tau, step, p);
+            if merit <= (1.0 - 0.1 * step) * before || step < shortest {
+                return (step, merit);
+            }
+            step *= 0.5;
+        }
+    }
+
     fn merit_after(&self, tau: f64, step: f64, p: &[Vector<D>]) -> f64 {
         let after = |i: usize| {
             let (p, u) = (p[i] + self.change[i] * step, self.u[i] + self.change_u[i] * step);
@@ -284,7 +311,7 @@ impl<const D: usize> Smoothing<D> {
         (0..p.len()).map(after).sum::<f64>().sqrt()
     }
 
-    /// Keeps the point of the cones nearest to `p` if it is the best so far.
+    /// Keeps the projection of `p` onto the cones if it is the best point so far.
     fn offer(&mut self, p: &[Vector<D>]) {
         for i in 0..p.len() {
             self.in_cone[i] = project(&p[i], self.scaled.mu[i]);
@@ -334,8 +361,8 @@ impl<const D: usize> ContactSolver<D> for Smoothing<D> {
         if !(self.best_residual <= stop.tolerance) && stop.max_iterations > 0 {
             self.lu.analyse(&self.scaled.h);
             for epsilon in EPSILONS {
-                // The path is the same from everywhere, but nothing at all is nearer to its start than a bad guess, and
-                // the best point so far another way on to it.
+                // The path doesn't depend on the initial impulses, but zero is nearer to its start
+                // than a bad guess, and the best point so far leads onto it differently.
                 if epsilon == EPSILONS[0] {
                     p.fill(Vector::zeros());
                 } else {
@@ -363,8 +390,9 @@ mod tests {
 
     #[test]
     fn conforms() {
-        // With μ = 1e6 the two parts of a contact's variables lie a million apart, which costs the path six digits. A
-        // block whose diagonal spans 1e8 satisfies the judge, who has one scale for all, before its soft direction is solved.
+        // With μ = 1e6 the two parts of a contact's variables differ by a factor of a million,
+        // which costs six digits. A block whose diagonal spans 1e8 meets the residual, which has
+        // one scale for all, before its soft direction is solved.
         let kept = |name: &str| !name.contains("huge friction") && !name.contains("uneven");
         let (mut plane, mut space) = (plane_cases(), space_cases());
         plane.retain(|case| kept(case.name));

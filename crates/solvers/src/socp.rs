@@ -1,21 +1,25 @@
 //! The convex (associated) law as one second-order cone program, by Clarabel's interior point.
 //!
-//! **Solves** `min ½ pᵀHp + qᵀp` over the cones ‖p_T‖ ≤ μ p_N (Anitescu 2006, doi 10.1007/s10107-005-0590-7). That is **not**
-//! Coulomb's law: its optimality says `K ∋ p ⊥ u ∈ K*`, so a contact that slides at speed ‖u_T‖ separates at μ‖u_T‖. Where
-//! nothing slides (or μ = 0) the two agree. [`AcaryCadoux`](crate::AcaryCadoux) makes the exact law of it.
+//! **Solves** `min ½ pᵀHp + qᵀp` over the cones ‖p_T‖ ≤ μ p_N (Anitescu 2006, doi
+//! 10.1007/s10107-005-0590-7). This is **not** Coulomb's law: the optimality condition is
+//! `K ∋ p ⊥ u ∈ K*`, so a contact sliding at ‖u_T‖ separates at μ‖u_T‖. If nothing slides (or μ
+//! = 0) the two laws agree. [`AcaryCadoux`](crate::AcaryCadoux) solves the exact law by a sequence of
+//! these programs.
 //!
-//! **What the outcome means**: `converged` speaks of the convex law, by the judge's formula with u in the place of û:
-//! `‖p − Π(p − ρu)‖ / max(‖p‖, ρ‖q‖) ≤ tolerance`. The residual reported is the judge's, of the exact law: on a sliding
-//! problem it stays large, and that is the known gap, not a failure.
+//! **Meaning of the outcome**: `converged` refers to the convex law, by the valid_state residual
+//! with u in place of û: `‖p − Π(p − ρu)‖ / max(‖p‖, ρ‖q‖) ≤ tolerance`. The reported residual is
+//! that of the exact law: on a sliding problem it stays large, which is the difference of the laws,
+//! not a failure.
 //!
-//! **Take it** to compare with programs that use the convex law (Project Chrono, Drake's older solvers, MuJoCo's relatives),
-//! or for the rough start that it gives whatever the condition of H.
-//! **Cost**: a KKT factorisation an interior-point iteration, 10 to 15 of them; `iterations` counts these solves and the
-//! gradients of the polish. Clarabel is set up anew for each problem and allocates in its solve: this solver is the exception
-//! to "kept over steps it allocates nothing".
-//! **Fails**: the interior point reaches some 1e-8 in 3D; accelerated gradients ([`Apgd`] with the shift
-//! held at 0) polish from there, and may run out of iterations on badly conditioned problems. A skew part of H belongs to no
-//! objective: it lags (three programs at most) and the polish settles the rest, if it is small.
+//! **When to use it**: to compare with programs that use the convex law (Project Chrono, Drake's
+//! older solvers, MuJoCo's relatives), or for a rough initial guess for any condition of H.
+//! **Cost**: 10 to 15 interior-point iterations with one KKT factorisation each; `iterations`
+//! counts these and the gradients of the refinement. Clarabel is set up for each problem and
+//! allocates in its solve; other solvers don't allocate when reused.
+//! **How it fails**: the interior-point method reaches about 1e-8 in 3D. Accelerated gradients
+//! ([`Apgd`] with zero shift) refine the result, and may run out of iterations on badly conditioned
+//! problems. A skew part of H isn't part of the objective: it is treated explicitly (with at most
+//! three programs), and if it is small the refinement corrects the rest.
 
 use crate::apgd::{Apgd, convex_map};
 use crate::cone_program::ConeProgram;
@@ -23,7 +27,7 @@ use crate::operator::row_product;
 use crate::upper::Upper;
 use teeter_contact::{BlockSparse, ContactProblem, ContactSolver, Law, Outcome, Status, Stop, Vector, judge};
 
-/// Most programs solved for a problem whose H has a skew part.
+/// Largest number of programs for a problem whose H has a skew part.
 const PROGRAMS: u32 = 3;
 
 /// The solver of the convex law; see its [page](self).
@@ -89,7 +93,7 @@ impl<const D: usize> ContactSolver<D> for Socp<D> {
         let mut iterations = 0;
         let ended = |status, iterations, p: &[Vector<D>]| {
             let judged = judge(problem, p);
-            // Its own law is solved; whether Coulomb's is, the judge says.
+            // `converged` refers to the convex law, the residual to Coulomb's.
             let by_own_law = status == Status::Converged && !(judged.global <= stop.tolerance);
             let status = if by_own_law { Status::ConvexLaw } else { status };
             Outcome::new(status, Self::NAME, iterations, judged)
@@ -102,7 +106,7 @@ impl<const D: usize> ContactSolver<D> for Socp<D> {
         };
         let (skewed, q) = (self.h.asymmetry() > f64::EPSILON, problem.q());
         while iterations < PROGRAMS.min(stop.max_iterations) && !stop.cancelled() {
-            // H p − S p at the best impulses known.
+            // H p − S p at the best impulses so far.
             self.skew.fill(Vector::zeros());
             if skewed {
                 self.upper.product(p, &mut self.skew);
@@ -152,7 +156,7 @@ mod tests {
             assert!(outcome.solved_its_own_law(), "{}: {outcome:?}", case.name);
             assert_eq!(outcome.converged(), judge(&problem, &p).global <= 1e-9, "{}: {outcome:?}", case.name);
             assert!((outcome.residual.global - judge(&problem, &p).global).abs() < 1e-15);
-            // Its optimality written out: p in the cone, u in the dual cone, no power.
+            // The optimality conditions: p in the cone, u in the dual cone, no power.
             let (speed, size) = (norm(problem.q()), norm(&p).max(norm(problem.q()) * problem.scale()));
             for i in 0..p.len() {
                 let (u, mu) = (problem.velocity(i, &p), problem.mu()[i]);
@@ -184,8 +188,8 @@ mod tests {
     }
 
     #[test]
-    fn without_friction_nothing_pulls() {
-        // A cone of μ = 0 given as such would lose p_N ≥ 0.
+    fn frictionless_contacts_have_no_tension() {
+        // A cone with μ = 0 alone would lose p_N ≥ 0.
         let (h, q, mu) = ([Matrix2::identity()], [Vector2::new(0.5, 2.0)], [0.0]);
         let problem = ContactProblem::new(Delassus::Dense(&h), &q, &mu).unwrap();
         let mut p = [Vector2::new(0.3, 0.1)];

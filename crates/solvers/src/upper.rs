@@ -1,26 +1,28 @@
-//! The upper triangle of H's symmetric part in compressed columns, as factorisations and cone programs want it.
+//! The upper triangle of H's symmetric part in compressed columns, for factorisations and cone
+//! programs.
 
 use teeter_contact::BlockSparse;
 #[cfg(feature = "clarabel")]
 use teeter_contact::Vector;
 
-/// The upper triangle of S = (H + Hᵀ)/2; its pattern is made once, its values filled in without allocating.
+/// The upper triangle of S = (H + Hᵀ)/2. The pattern is built once; setting values doesn't
+/// allocate.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Upper<const D: usize> {
-    /// The matrix whose pattern was taken.
+    /// The matrix with the current pattern.
     pattern: BlockSparse<D>,
-    /// Of each block of H: how far down its column its first row is stored.
+    /// For each block of H, the offset of its first row in the stored columns.
     down: Vec<usize>,
-    /// Where each scalar diagonal entry is stored.
+    /// The position of each scalar diagonal entry.
     pub(crate) diagonal: Vec<usize>,
-    /// Where each scalar column starts, and the rows of the entries.
+    /// The start of each scalar column, and the rows of the entries.
     pub(crate) starts: Vec<usize>,
     pub(crate) rows: Vec<usize>,
     pub(crate) values: Vec<f64>,
 }
 
 impl<const D: usize> Upper<D> {
-    /// Takes the values of `h`; true if its pattern is another than the last one's.
+    /// Sets the values of `h`; true if its pattern has changed.
     pub(crate) fn load(&mut self, h: &BlockSparse<D>) -> bool {
         let new = self.starts.is_empty() || !self.pattern.same_pattern(h);
         if new {
@@ -39,7 +41,8 @@ impl<const D: usize> Upper<D> {
                             self.values[at + r] = 0.5 * (block[(r, c)] + block[(c, r)]);
                         }
                     } else {
-                        // A block right of the diagonal lies in the upper triangle as it is, one left of it transposed.
+                        // A block right of the diagonal is in the upper triangle; one left of it is
+                        // added transposed.
                         for r in 0..D {
                             self.values[at + r] += 0.5 * if i < j { block[(r, c)] } else { block[(c, r)] };
                         }
@@ -52,7 +55,8 @@ impl<const D: usize> Upper<D> {
 
     fn analyse(&mut self, h: &BlockSparse<D>) {
         let n = h.contacts();
-        // The upper triangle's blocks, by columns; a block may be stored on one side of the diagonal only.
+        // The blocks of the upper triangle by columns; a block may be stored on only one side of
+        // the diagonal.
         let mut upper: Vec<_> = (0..n).flat_map(|i| h.row(i).map(move |(j, _)| (i.max(j), i.min(j)))).collect();
         upper.sort_unstable();
         upper.dedup();
@@ -105,7 +109,8 @@ pub(crate) mod tests {
     use super::*;
     use nalgebra::Matrix2;
 
-    /// (0, 2) is stored above the diagonal only, (1, 0) below only, (1, 2) on both sides, and not symmetric.
+    /// (0, 2) is stored only above the diagonal, (1, 0) only below, (1, 2) on both sides and not
+    /// symmetric.
     pub(crate) fn one_sided() -> BlockSparse<2> {
         let block = |a: f64| Matrix2::new(a, 0.3, -0.1, a + 1.0);
         BlockSparse::from_rows(&[
@@ -117,7 +122,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn holds_the_symmetric_part_of_a_matrix_stored_on_one_side() {
+    fn represents_the_symmetric_part_of_one_sided_blocks() {
         let h = one_sided();
         let entry = |i: usize, j: usize| h.block(i, j).copied().unwrap_or_default();
         let mut upper = Upper::default();

@@ -1,43 +1,45 @@
-//! The step that reaches an accuracy: found by runs, each of half the step of the one before, and
-//! believed where two finer runs confirm it; or foretold where the errors fall so regularly that
-//! five longer steps tell what a shorter one does, and believed where one finer run confirms that.
+//! Finds the step that reaches an accuracy, by runs that each halve the step of the one before,
+//! until two finer runs confirm it; or, if the errors decrease regularly over five steps, by
+//! extrapolation, confirmed by one finer run.
 //!
-//! The error is that of [`Quantity::Accuracy`], the largest of angles, places and deflections. A
-//! step h is taken when the run with it is within the accuracy of the run with h/4, and that with
-//! h/2 is nearer, or all three agree to half the accuracy. Or when the last five runs show errors of second order: that of a
-//! step down to a sixteenth of the finest is then foretold, and measured against a run with half the step. Runs that agree as all of them cut
-//! bounces short on which a landing hangs prove nothing: they are compared up to there. Motions that part from a start 1e-12 beside them are compared up to there, the horizon.
+//! The error is that of [`Quantity::Accuracy`], the largest of angles, positions and deflections. A
+//! step h is accepted if its run agrees with that of h/4 to the accuracy, and that of h/2 is
+//! nearer, or all three agree to half the accuracy. Alternatively, if the last five runs show
+//! errors of second order, a step down to a sixteenth of the finest is extrapolated, and checked
+//! against a run with half of it. Runs that agree because all of them cut the same bounces short
+//! before a landing prove nothing: they are compared only up to the landing. Motions that diverge
+//! from a run with a perturbed initial state are compared only up to there, the horizon.
 
-use crate::pilots::Pilots;
-use crate::reference::NUDGE;
-use crate::{Failure, Motion, Quantity, Ruler, Sampling};
+use crate::reference::PERTURBATION;
+use crate::trial_runs::TrialRuns;
+use crate::{ErrorNorms, Failure, Quantity, SampledMotion, Sampling};
 use std::ops::RangeInclusive;
 use std::sync::atomic::AtomicBool;
 use teeter_scenario::scene::Scene;
 
-/// A step that reaches an accuracy, and how it is known.
+/// A step that reaches an accuracy.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct ChosenStep {
     /// The step, s.
     pub step: f64,
-    /// How far a run with it is from one with a quarter of it, or less, before the horizon; or, where
-    /// the errors are of second order, four thirds of how far it is from one with half of it.
+    /// Error of its run relative to one with a quarter of the step, or less, before the horizon;
+    /// or, by extrapolation, four thirds of the difference from a run with half the step.
     pub error: f64,
-    /// Which of both.
-    pub basis: Basis,
+    /// Which of the two applies.
+    pub basis: ErrorBasis,
     /// The time up to which they were compared, s.
     pub horizon: f64,
     /// Whether that is the end of the run.
     pub whole: bool,
-    /// How many runs it took.
+    /// Number of runs needed.
     pub runs: usize,
 }
 
 /// How the error of a [`ChosenStep`] is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Basis {
+pub enum ErrorBasis {
     /// By runs with a half and a quarter of the step.
     FinerRuns,
     /// By a run with half the step, after longer ones showed errors of second order.
@@ -51,210 +53,282 @@ pub enum NoStep {
     /// The scene can't be run.
     #[error(transparent)]
     Failure(#[from] Failure),
-    /// The next finer run would take longer than is spent on finding a step.
+    /// No step was found: the next finer run would take too long, or runs don't converge.
     #[error(
-        "accuracy = {accuracy:e} is not reached: runs with steps of {step:e} s and of a quarter of it are {error:.1e} apart up to t = {horizon:.3} s, and {}; \
-         ask for less, or give a step", if *dear { "finer ones would take too long" } else { "finer ones come no nearer, as where corners chatter" }
+        "accuracy = {accuracy:e} is not reached: runs with steps of {step:e} s and a quarter of that differ by {error:.1e} up to t = {horizon:.3} s, and {}; \
+         use a larger accuracy value, or give a step", if *too_expensive { "finer ones would take too long" } else { "finer ones don't converge, as when corners chatter" }
     )]
     NotReached {
-        /// The accuracy asked for.
+        /// The requested accuracy.
         accuracy: f64,
-        /// The finest step that could be judged, s.
+        /// The finest step that could be checked, s.
         step: f64,
-        /// How far its run was from the finest.
+        /// Difference of its run from the finest.
         error: f64,
         /// Up to when they were compared, s.
         horizon: f64,
-        /// Whether it ended as finer runs would take too long, rather than as they come no nearer.
-        dear: bool,
+        /// Whether finer runs would take too long; otherwise they don't converge.
+        too_expensive: bool,
     },
 }
 
-/// Samples of a run, and the least number of its steps.
+/// Samples of a run, and its least number of steps.
 const SAMPLES: usize = 512;
 const LEAST_STEPS: f64 = 64.0;
 
-/// Steps for the time in which a tilted block's motion changes by a factor of e.
+/// Steps per time in which a tilted block's motion changes by a factor of e.
 const PER_SWING: f64 = 10.0;
 
-/// The finest run takes no longer than this by counted work, s.
+/// Longest time of the finest run, by counted work, s.
 const MOST_SECONDS: f64 = 2.0;
 
-/// Of the accuracy, what the error may take up by what is measured.
+/// Largest measured error relative to the accuracy.
 const ROOM: f64 = 0.9;
 
-/// The finer run is nearer by this factor at least, where errors don't scatter so far below the accuracy.
+/// The error of the finer run must be smaller by this factor, unless both are below `ALIKE` times
+/// the accuracy, where errors may scatter.
 const NEARER: f64 = 0.75;
 const ALIKE: f64 = 0.5;
 
-/// Runs after which those that don't converge are compared up to a horizon.
+/// Number of runs after which those that don't converge are compared only up to a horizon.
 const PATIENCE: usize = 5;
 
-/// The same of those in which a landing hangs on bounces that were cut short: shorter steps cut less.
+/// The same for runs with a landing that depends on bounces cut short: shorter steps cut less.
 const PATIENCE_WITH_BOUNCES: usize = 8;
 
-/// Errors that have not fallen below this part in five halvings won't.
+/// If errors haven't decreased to this fraction in five halvings, the search is abandoned.
 const STALLED: f64 = 0.5;
 
-/// A horizon before this part of the run shows too little of it.
+/// A horizon before this fraction of the run is too short.
 const SHORT: f64 = 0.05;
 
-/// Errors are of second order where three halvings in a row show such orders, and these on average.
+/// Errors count as second order if three consecutive halvings show orders in the first range, and
+/// an average in the second.
 const REGULAR: RangeInclusive<f64> = 1.2..=2.8;
 const ON_AVERAGE: RangeInclusive<f64> = 1.7..=2.3;
 
-/// What a step of a regular order does is foretold down to this part of the finest that was tried.
+/// Steps are extrapolated down to this fraction of the finest one tried.
 const FURTHEST: f64 = 1.0 / 16.0;
 
-/// What is foretold after that proved wrong is to be shorter by this factor.
+/// After a failed extrapolation the next one must be shorter by this factor.
 const SHORTER: f64 = 0.7;
 
-/// A longer step than the one that was halved to is worth a run of its own from this factor on.
+/// A longer step is tried if it is longer by at least this factor.
 const LONGER: f64 = 1.15;
 
-/// The step that reaches `accuracy` in a scene, with all else as it is.
+/// The step that reaches `accuracy` in a scene, with everything else unchanged.
 ///
 /// # Errors
-/// If the scene can't be run, no step that can be afforded reaches it, or the user interrupts.
+/// If the scene can't be run, no affordable step reaches it, or the user interrupts.
 pub fn step_for(scene: &Scene, accuracy: f64, cancel: &AtomicBool) -> Result<ChosenStep, NoStep> {
-    let end = scene.time.end;
-    let sampling = Sampling { every: end / SAMPLES as f64, count: SAMPLES + 1 };
-    let mut pilots = Pilots { scene, sampling, cancel, most_seconds: MOST_SECONDS, runs: 0 };
-    // The runs so far, from long steps to short ones; none where a run didn't come to its end.
-    let mut motions: Vec<(f64, Option<Motion>)> = Vec::new();
-    // An odd number of steps, and one more than twice as many in the next run: halves of a run, quarters … would fall on ends
-    // of steps in all of them, and what happens there, as where a load begins, would look better than it is elsewhere.
-    let mut count = 2.0 * (0.5 * end / longest(scene)).ceil() + 1.0;
-    let (mut errors, mut failed) = (Vec::new(), None);
-    let mut best = (f64::NAN, f64::INFINITY, end);
-    // The step that was foretold last, and whose error proved too large.
-    let mut refuted = f64::INFINITY;
+    let mut search = StepSearch::new(scene, accuracy, cancel);
     loop {
-        let step = end / count;
-        let fine = match pilots.run(step, 0.0) {
+        search.run()?;
+        if let Some(chosen) = search.judge()? {
+            return Ok(chosen);
+        }
+        search.halve();
+    }
+}
+
+/// A search that halves the step in each round.
+struct StepSearch<'a> {
+    scene: &'a Scene,
+    accuracy: f64,
+    sampling: Sampling,
+    trials: TrialRuns<'a>,
+    /// The steps (s) and runs so far, from long steps to short ones; `None` for a run that didn't
+    /// come to its end, or is no longer compared.
+    motions: Vec<(f64, Option<SampledMotion>)>,
+    /// Steps of the current run.
+    count: f64,
+    /// Errors found so far.
+    errors: Vec<f64>,
+    failed: Option<Failure>,
+    /// Step, error and horizon of the last comparison.
+    last: (f64, f64, f64),
+    /// The step that was extrapolated last, and whose error proved too large.
+    refuted: f64,
+}
+
+impl<'a> StepSearch<'a> {
+    fn new(scene: &'a Scene, accuracy: f64, cancel: &'a AtomicBool) -> Self {
+        let end = scene.time.end;
+        let sampling = Sampling { every: end / SAMPLES as f64, count: SAMPLES + 1 };
+        Self {
+            scene,
+            accuracy,
+            sampling,
+            trials: TrialRuns { scene, sampling, cancel, most_seconds: MOST_SECONDS, runs: 0 },
+            motions: Vec::new(),
+            // An odd number of steps, and one more than twice as many in the next run: halves of a
+            // run, quarters … would be at ends of steps in all of them, and events there, such as
+            // the start of a load, would look more accurate than elsewhere.
+            count: 2.0 * (0.5 * end / longest(scene)).ceil() + 1.0,
+            errors: Vec::new(),
+            failed: None,
+            last: (f64::NAN, f64::INFINITY, end),
+            refuted: f64::INFINITY,
+        }
+    }
+
+    fn end(&self) -> f64 {
+        self.scene.time.end
+    }
+
+    /// The error of a motion against a finer one, over this number of samples.
+    fn error(&self, motion: &SampledMotion, fine: &SampledMotion, samples: usize) -> f64 {
+        let norms = ErrorNorms::new(self.scene, self.sampling).up_to(samples);
+        norms.errors(motion, fine).of(Quantity::Accuracy).unwrap_or(0.0)
+    }
+
+    /// Runs the scene with the current step.
+    fn run(&mut self) -> Result<(), NoStep> {
+        let step = self.end() / self.count;
+        let motion = match self.trials.run(step, 0.0) {
             Ok(Some(motion)) => Some(motion),
             Ok(None) => {
-                let (step, error, horizon) = best;
-                // Where nothing could be compared, as no run came to its end, that is what there is
-                // to say.
-                if let Some(failure) = failed.filter(|_| step.is_nan()) {
+                let (step, error, horizon) = self.last;
+                // If nothing could be compared because no run came to its end, report that.
+                if let Some(failure) = self.failed.take().filter(|_| step.is_nan()) {
                     return Err(NoStep::Failure(failure));
                 }
-                return Err(NoStep::NotReached { accuracy, step, error, horizon, dear: true });
+                return Err(NoStep::NotReached { accuracy: self.accuracy, step, error, horizon, too_expensive: true });
             }
             Err(failure @ Failure::Ended(_)) => {
-                failed = Some(failure);
+                self.failed = Some(failure);
                 None
             }
             Err(failure) => return Err(failure.into()),
         };
-        motions.push((step, fine));
-        if let [.., (coarse_step, Some(coarse)), (_, Some(middle)), (_, Some(fine))] = motions.as_slice() {
-            let mut samples = sampling.count;
-            let ruler = Ruler::new(scene, sampling);
-            let of = |motion: &Motion, fine: &Motion, samples: usize| {
-                ruler.clone().up_to(samples).errors(motion, fine).of(Quantity::Accuracy).unwrap_or(0.0)
-            };
-            if motions.len() > PATIENCE && !(of(coarse, fine, samples) <= ROOM * accuracy) {
-                // As dear as the run beside it, which was not too dear.
-                if let Some(nudged) = pilots.run(step, NUDGE)? {
-                    samples = ruler.agree(&nudged, fine, accuracy).max(1);
-                }
-            }
-            // By steps of its own it follows bounces further than these say.
-            let contested = fine.contested.filter(|_| !scene.time.scheme.has_own_steps());
-            if let Some(t) = contested {
-                if motions.len() <= PATIENCE_WITH_BOUNCES {
-                    halve(&mut motions, &mut count);
-                    continue;
-                }
-                samples = samples.min((t / sampling.every).ceil() as usize).max(1);
-            }
-            if let [.., (_, Some(first)), (_, Some(second)), _, _, _] = motions.as_slice()
-                && samples == sampling.count
-            {
-                let neighbours = [(first, second), (second, coarse), (coarse, middle), (middle, fine)];
-                let apart = neighbours.map(|(a, b)| of(a, b, samples));
-                let foretold = by_order(apart, accuracy).map(|factor| factor * step);
-                if let Some(step) = foretold.filter(|step| *step < SHORTER * refuted) {
-                    let count = (end / step).ceil();
-                    let [run, finer] = [pilots.run(end / count, 0.0)?, pilots.run(end / (2.0 * count + 1.0), 0.0)?];
-                    let error = run.zip(finer).map(|(run, finer)| 4.0 / 3.0 * of(&run, &finer, samples));
-                    if let Some(error) = error.filter(|error| *error <= accuracy) {
-                        let (step, runs, basis) = (end / count, pilots.runs, Basis::Order);
-                        return Ok(ChosenStep { step, error, basis, horizon: end, whole: true, runs });
-                    }
-                    refuted = step;
-                }
-            }
-            let horizon = sampling.time(samples - 1);
-            let [error, nearer] = [coarse, middle].map(|motion| of(motion, fine, samples));
-            best = (*coarse_step, error, horizon);
-            errors.push(error);
-            if let [.., long_ago, _, _, _, _, last] = errors.as_slice()
-                && *last > STALLED * long_ago
-            {
-                return Err(NoStep::NotReached { accuracy, step: *coarse_step, error, horizon, dear: false });
-            }
-            let converges = nearer <= NEARER * error || error.max(nearer) <= ALIKE * accuracy;
-            if error <= ROOM * accuracy && converges && horizon >= SHORT * end {
-                let before = motions.len().checked_sub(4).and_then(|at| motions[at].1.as_ref());
-                let longer = longer(error, before.map(|motion| of(motion, fine, samples)), accuracy, *coarse_step);
-                let mut chosen = ChosenStep {
-                    step: *coarse_step,
-                    error,
-                    basis: Basis::FinerRuns,
-                    horizon,
-                    whole: samples == sampling.count,
-                    runs: pilots.runs,
-                };
-                if let Some(step) = longer.map(|step| end / (end / step).ceil())
-                    && let Some(motion) = pilots.run(step, 0.0)?
-                {
-                    chosen.runs = pilots.runs;
-                    let error = of(&motion, fine, samples);
-                    if error <= ROOM * accuracy {
-                        (chosen.step, chosen.error) = (step, error);
-                    }
-                }
-                return Ok(chosen);
+        self.motions.push((step, motion));
+        Ok(())
+    }
+
+    /// Continues with half the step, and drops the run that is no longer compared.
+    fn halve(&mut self) {
+        let old = self.motions.len().saturating_sub(5);
+        if let Some((_, motion)) = self.motions[..old].last_mut() {
+            *motion = None;
+        }
+        self.count = 2.0 * self.count + 1.0;
+    }
+
+    /// The chosen step, if the runs so far justify one.
+    fn judge(&mut self) -> Result<Option<ChosenStep>, NoStep> {
+        let Some(samples) = self.compared_samples()? else { return Ok(None) };
+        if samples == self.sampling.count
+            && let Some(chosen) = self.extrapolated(samples)?
+        {
+            return Ok(Some(chosen));
+        }
+        self.confirmed(samples)
+    }
+
+    /// Up to which sample the last three runs are compared; `None` if they can't be yet.
+    fn compared_samples(&mut self) -> Result<Option<usize>, NoStep> {
+        let [.., (_, Some(coarse)), (_, Some(_)), (step, Some(fine))] = self.motions.as_slice() else {
+            return Ok(None);
+        };
+        let mut samples = self.sampling.count;
+        if self.motions.len() > PATIENCE && !(self.error(coarse, fine, samples) <= ROOM * self.accuracy) {
+            // As expensive as the run that it is compared with, which was affordable.
+            if let Some(perturbed) = self.trials.run(*step, PERTURBATION)? {
+                let norms = ErrorNorms::new(self.scene, self.sampling);
+                samples = norms.agree(&perturbed, fine, self.accuracy).max(1);
             }
         }
-        halve(&mut motions, &mut count);
+        // A scheme with its own steps follows bounces further than these steps suggest.
+        if let Some(t) = fine.contested.filter(|_| !self.scene.time.scheme.has_own_steps()) {
+            if self.motions.len() <= PATIENCE_WITH_BOUNCES {
+                return Ok(None);
+            }
+            samples = samples.min((t / self.sampling.every).ceil() as usize).max(1);
+        }
+        Ok(Some(samples))
+    }
+
+    /// A step extrapolated from the last five runs, if their errors are of second order and a run
+    /// with half of it confirms it.
+    fn extrapolated(&mut self, samples: usize) -> Result<Option<ChosenStep>, NoStep> {
+        let [.., (_, Some(a)), (_, Some(b)), (_, Some(c)), (_, Some(d)), (step, Some(e))] = self.motions.as_slice()
+        else {
+            return Ok(None);
+        };
+        let apart = [(a, b), (b, c), (c, d), (d, e)].map(|(coarse, fine)| self.error(coarse, fine, samples));
+        let step = by_order(apart, self.accuracy).map(|factor| factor * step);
+        let Some(step) = step.filter(|step| *step < SHORTER * self.refuted) else { return Ok(None) };
+        let end = self.end();
+        let count = (end / step).ceil();
+        let run = self.trials.run(end / count, 0.0)?;
+        let finer = self.trials.run(end / (2.0 * count + 1.0), 0.0)?;
+        let error = run.zip(finer).map(|(run, finer)| 4.0 / 3.0 * self.error(&run, &finer, samples));
+        if let Some(error) = error.filter(|error| *error <= self.accuracy) {
+            let (step, runs, basis) = (end / count, self.trials.runs, ErrorBasis::Order);
+            return Ok(Some(ChosenStep { step, error, basis, horizon: end, whole: true, runs }));
+        }
+        self.refuted = step;
+        Ok(None)
+    }
+
+    /// The step of the coarsest of the last three runs, if the other two confirm it.
+    fn confirmed(&mut self, samples: usize) -> Result<Option<ChosenStep>, NoStep> {
+        let [.., (step, Some(coarse)), (_, Some(middle)), (_, Some(fine))] = self.motions.as_slice() else {
+            return Ok(None);
+        };
+        let (step, horizon, accuracy) = (*step, self.sampling.time(samples - 1), self.accuracy);
+        let [error, nearer] = [coarse, middle].map(|motion| self.error(motion, fine, samples));
+        self.last = (step, error, horizon);
+        self.errors.push(error);
+        if let [.., long_ago, _, _, _, _, last] = self.errors.as_slice()
+            && *last > STALLED * long_ago
+        {
+            return Err(NoStep::NotReached { accuracy, step, error, horizon, too_expensive: false });
+        }
+        let converges = nearer <= NEARER * error || error.max(nearer) <= ALIKE * accuracy;
+        if !(error <= ROOM * accuracy && converges && horizon >= SHORT * self.end()) {
+            return Ok(None);
+        }
+        let (whole, runs) = (samples == self.sampling.count, self.trials.runs);
+        let mut chosen = ChosenStep { step, error, basis: ErrorBasis::FinerRuns, horizon, whole, runs };
+        let before = self.motions.len().checked_sub(4).and_then(|at| self.motions[at].1.as_ref());
+        let twice = before.map(|motion| self.error(motion, fine, samples));
+        let end = self.end();
+        if let Some(step) = longer(error, twice, accuracy, step).map(|step| end / (end / step).ceil())
+            && let Some(motion) = self.trials.run(step, 0.0)?
+        {
+            chosen.runs = self.trials.runs;
+            let error = self.error(&motion, fine, samples);
+            if error <= ROOM * accuracy {
+                (chosen.step, chosen.error) = (step, error);
+            }
+        }
+        Ok(Some(chosen))
     }
 }
 
-/// Goes on to half the step, and drops what is not compared any more.
-fn halve(motions: &mut [(f64, Option<Motion>)], count: &mut f64) {
-    let old = motions.len().saturating_sub(5);
-    if let Some((_, motion)) = motions[..old].last_mut() {
-        *motion = None;
-    }
-    *count = 2.0 * *count + 1.0;
-}
-
-/// The step that should do, as a multiple of the finest of five that were each half of the one
-/// before, by how far the motions of neighbours are `apart`. `None` where these don't fall regularly,
-/// or where that step is out of their reach.
+/// The extrapolated step, as a multiple of the finest of five steps that each halve the one before,
+/// from the differences `apart` of successive runs. `None` if these don't decrease regularly, or if
+/// the step is too short to extrapolate.
 fn by_order(apart: [f64; 4], accuracy: f64) -> Option<f64> {
     let orders = [0, 1, 2].map(|k| (apart[k] / apart[k + 1]).log2());
     let mean = orders.iter().sum::<f64>() / 3.0;
     if !(orders.iter().all(|order| REGULAR.contains(order)) && ON_AVERAGE.contains(&mean)) {
         return None;
     }
-    // Of the finest step, were the errors h² times the largest factor that was seen: how large it is goes by where
-    // in their steps the events are.
+    // The error of the finest step, with the largest factor of h² found: the factor depends on the
+    // positions of events within their steps.
     let found = [0, 1, 2, 3].map(|k| apart[k] * 0.25_f64.powi(3 - k as i32) / 3.0);
     let (least, most) = found.iter().fold((f64::INFINITY, 0.0_f64), |(least, most), e| (least.min(*e), most.max(*e)));
-    // Where they differ much, there may be larger ones.
+    // If the factors differ much, there may be larger ones.
     let error = most * (most / least).sqrt();
-    // Longer than the longest of them it would be told by none.
+    // No longer than the longest step.
     let factor = (ROOM * accuracy / error).sqrt().min(16.0);
     (factor >= FURTHEST).then_some(factor)
 }
 
-/// A step between h and 2h that should do, by the errors of both; `None` if it is hardly longer
-/// than h.
+/// A step between h and 2h that should reach the accuracy, by the errors of both; `None` if it is
+/// hardly longer than h.
 fn longer(error: f64, twice: Option<f64>, accuracy: f64, step: f64) -> Option<f64> {
     let order = (twice? / error).log2();
     let factor = (0.8 * accuracy / error).powf(order.recip()).min(1.9);
@@ -262,8 +336,8 @@ fn longer(error: f64, twice: Option<f64>, accuracy: f64, step: f64) -> Option<f6
     (order > 0.5 && factor > LONGER).then_some(factor * step)
 }
 
-/// The step that a search begins with, s: the motion of a block in it, and some tens of steps in
-/// all.
+/// The first step of a search, s: short enough for the motion of a block, and for some tens of
+/// steps in the run.
 fn longest(scene: &Scene) -> f64 {
     let [x, y] = scene.gravity;
     let gravity = x.hypot(y);
@@ -306,14 +380,15 @@ mod tests {
         let chosen = step_for(scene, accuracy, &cancel).unwrap();
         let end = scene.time.end;
         let sampling = Sampling { every: end / SAMPLES as f64, count: SAMPLES + 1 };
-        let mut pilots = Pilots { scene, sampling, cancel: &cancel, most_seconds: 100.0, runs: 0 };
-        let [run, fine] = [1.0, 8.0].map(|by| pilots.run(end / (by * end / chosen.step).ceil(), 0.0).unwrap().unwrap());
-        (chosen, Ruler::new(scene, sampling).errors(&run, &fine).of(Quantity::Accuracy).unwrap())
+        let mut trials = TrialRuns { scene, sampling, cancel: &cancel, most_seconds: 100.0, runs: 0 };
+        let [run, fine] = [1.0, 8.0].map(|by| trials.run(end / (by * end / chosen.step).ceil(), 0.0).unwrap().unwrap());
+        (chosen, ErrorNorms::new(scene, sampling).errors(&run, &fine).of(Quantity::Accuracy).unwrap())
     }
 
     #[test]
     fn a_step_foretold_reaches_its_accuracy() {
-        // Half a sine pushes it into sliding, and begins and ends where steps that halve the run would all end; Housner's block.
+        // Half a sine pushes it into sliding, and begins and ends where steps that halve the run
+        // would all end; Housner's block.
         let path = |name| format!("{}/../../scenarios/{name}.toml", env!("CARGO_MANIFEST_DIR"));
         for (name, accuracy) in [("free-rocking-on-ground", 1e-5), ("shaken-ground", 1e-5), ("pushed-block", 1e-6)] {
             let step = ("time.step".to_owned(), "1 ms".to_owned());
@@ -321,12 +396,15 @@ mod tests {
             let scene = teeter_scenario::load(&text, &path(name), name, &[step]).unwrap().scene;
             let (chosen, error) = tried(&scene, accuracy);
             assert!(error > 0.1 * accuracy && error <= accuracy, "{name}: {error:e} for {accuracy:e}, {chosen:?}");
-            assert!(name == "pushed-block" || chosen.basis == Basis::Order && chosen.runs == 7, "{name}: {chosen:?}");
+            assert!(
+                name == "pushed-block" || chosen.basis == ErrorBasis::Order && chosen.runs == 7,
+                "{name}: {chosen:?}"
+            );
         }
     }
 
-    /// A slender block slides, and a push topples it: five runs look to be of second order, but what they foretell is 3, 5 and 20
-    /// times too good.
+    /// A slender block slides, and a push topples it: five runs look to be of second order, but
+    /// what they foretell is 3, 5 and 20 times too good.
     #[test]
     fn what_is_foretold_wrongly_is_found_out() {
         let text = "time = { end = '0.6 s', step = '1 ms' }\nground = {}\nmaterial.m = { density = '2700 kg/m^3' }\n\
@@ -342,8 +420,8 @@ mod tests {
         }
     }
 
-    /// A flat block bounces on one corner, e = 0.8, and has just ended that when it lands on the other one: runs that cut the last bounces
-    /// agree to 1e-5, and are 7 % off.
+    /// A flat block bounces on one corner, e = 0.8, and has just ended that when it lands on the
+    /// other one: runs that cut the last bounces agree to 1e-5, and are 7 % off.
     #[test]
     fn runs_that_cut_the_same_bounces_prove_nothing() {
         let text = "time = { end = '0.3 s', step = '1 ms' }\nground = { incline = '10 deg' }\nmaterial.m = { density = '2700 kg/m^3' }\n\

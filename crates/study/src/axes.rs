@@ -1,32 +1,34 @@
-//! What can be varied of a scene to trade speed for accuracy: one entry an axis. A scene has those that mean something in it.
+//! Settings of a scene that trade speed for accuracy: one entry per axis. A scene has those that
+//! apply to it.
 //!
-//! Schemes, kinematics and solvers are the words that the scene file takes, so new ones join by themselves.
+//! Schemes, kinematics and solvers are the words of scene files, so new ones are included
+//! automatically.
 
 use crate::Setting;
 use teeter_scenario::document::Document;
-use teeter_scenario::keys::{self, Found, Kind};
+use teeter_scenario::keys::{self, Kind, PathTarget};
 use teeter_scenario::resolve::Resolved;
-use teeter_scenario::scene::{BeamScene, ContactScene, Scene, SchemeName, Support};
+use teeter_scenario::scene::{BeamScene, ContactScene, Scene, SchemeName, SupportingBody};
 
-/// One thing that can be varied.
+/// An axis of settings.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Axis {
+pub struct SettingAxis {
     /// Its name.
     pub name: &'static str,
     /// The keys that it changes.
     pub keys: Vec<String>,
-    /// What it tries, the scene's own being one without keys.
+    /// Its options; the scene's own has no keys.
     pub options: Vec<Setting>,
 }
 
-impl Axis {
+impl SettingAxis {
     /// A setting with another option of this axis.
     #[must_use]
     pub fn apply(&self, option: &Setting, to: &Setting) -> Setting {
         to.clone().without(&self.keys).with(option)
     }
 
-    /// What a setting has of this axis.
+    /// The part of a setting on this axis.
     #[must_use]
     pub fn part_of(&self, setting: &Setting) -> Setting {
         let others: Vec<String> =
@@ -35,37 +37,38 @@ impl Axis {
     }
 }
 
-/// The axes of a scene. Those of the grid are tried in all their combinations, as what is cheapest in one of them hangs on the others: a coarse mesh
-/// lets few modes do, few modes a long step. The rest is tried one at a time.
+/// The axes of a scene. Those of the grid are tried in all combinations, as the cheapest option on
+/// one axis depends on the others: with a coarse mesh few modes suffice, with few modes a long
+/// step. The others are tried one at a time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axes {
     /// The time schemes.
-    pub scheme: Axis,
+    pub scheme: SettingAxis,
     /// The steps, from coarse to fine.
-    pub step: Axis,
-    /// The others of the grid that the scene has.
-    pub grid: Vec<Axis>,
-    /// The rest that the scene has.
-    pub others: Vec<Axis>,
+    pub step: SettingAxis,
+    /// The other axes of the grid that the scene has.
+    pub grid: Vec<SettingAxis>,
+    /// The axes outside the grid that the scene has.
+    pub others: Vec<SettingAxis>,
 }
 
-/// Makes an axis of the scenes that have it.
-type Make = fn(&Resolved) -> Option<Axis>;
-/// The registry of the grid, beside scheme and step.
+/// Creates an axis, if a scene has it.
+type Make = fn(&Resolved) -> Option<SettingAxis>;
+/// The registry of the grid, besides scheme and step.
 const GRID: [Make; 3] = [theta, mesh, modes];
 /// The registry of the others.
 const OTHERS: [Make; 3] = [kinematics, solver, tolerance];
 
 /// Steps as multiples of the scene's own, from coarse to fine.
 const STEPS: [f64; 12] = [50.0, 20.0, 10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01];
-/// Fewer steps than this are no simulation.
+/// Least number of steps of a run.
 const FEWEST_STEPS: f64 = 20.0;
 
-/// Values of θ that are tried: no dissipation, some, the most.
+/// Values of θ that are tried: no dissipation, some, most.
 const THETAS: [f64; 3] = [0.5, 0.6, 1.0];
 /// Elements as multiples of the scene's own.
 const MESHES: [f64; 4] = [0.25, 0.5, 1.0, 2.0];
-/// Numbers of modes; beside them, as many as the scene file takes when left out.
+/// Numbers of modes; besides these, the default number is tried.
 const MODES: [&str; 4] = ["4", "8", "16", "32"];
 const TOLERANCES: [f64; 4] = [1e-4, 1e-6, 1e-10, 1e-13];
 /// Contact solvers that are tried.
@@ -79,7 +82,7 @@ impl Axes {
         let mut steps: Vec<f64> = STEPS.iter().map(|factor| factor * time.step).collect();
         steps.retain(|step| *step <= time.step || time.end / step >= FEWEST_STEPS);
         let key = "time.step".to_owned();
-        let step = Axis {
+        let step = SettingAxis {
             name: "step",
             options: steps
                 .iter()
@@ -88,7 +91,7 @@ impl Axes {
             keys: vec![key],
         };
         let taken = |scheme: &str| has_steps(scheme) && suits(scheme, &resolved.scene);
-        let scheme = words(resolved, "scheme", &["time.scheme".to_owned()], taken).unwrap_or_else(|| Axis {
+        let scheme = words(resolved, "scheme", &["time.scheme".to_owned()], taken).unwrap_or_else(|| SettingAxis {
             name: "scheme",
             keys: Vec::new(),
             options: vec![Setting::none()],
@@ -97,12 +100,13 @@ impl Axes {
         Self { scheme, step, grid: made(GRID), others: made(OTHERS) }
     }
 
-    /// All of them.
-    pub fn iter(&self) -> impl Iterator<Item = &Axis> {
+    /// All axes.
+    pub fn iter(&self) -> impl Iterator<Item = &SettingAxis> {
         [&self.scheme, &self.step].into_iter().chain(&self.grid).chain(&self.others)
     }
 
-    /// All combinations of the schemes with the options of the grid, without the steps: the scene's own first.
+    /// All combinations of the schemes with the options of the grid, without the steps: the scene's
+    /// own first.
     #[must_use]
     pub fn combinations(&self) -> Vec<Setting> {
         let mut all = self.scheme.options.clone();
@@ -118,7 +122,7 @@ impl Axes {
         self.step.options.iter().map(|option| self.step.apply(option, setting)).collect()
     }
 
-    /// The number of a setting's step on the ladder.
+    /// The index of a setting's step on the ladder.
     pub(crate) fn rung(&self, setting: &Setting) -> Option<usize> {
         let step = self.step.part_of(setting);
         self.step.options.iter().position(|option| *option == step)
@@ -143,31 +147,36 @@ impl Axes {
     }
 }
 
-/// A time as a scene file says it, in the unit that makes it shortest.
+/// A time in the syntax of scene files, in the unit that gives the shortest text.
 #[must_use]
 pub(crate) fn in_seconds(t: f64) -> String {
     const UNITS: [(f64, &str); 4] = [(1.0, "s"), (1e3, "ms"), (1e6, "us"), (1e9, "ns")];
     let (factor, unit) = UNITS.into_iter().find(|(factor, _)| t * factor >= 0.9995).unwrap_or(UNITS[3]);
-    // Twelve digits: what the multiples of a decimal step have, without the rounding of the product.
+    // Twelve digits, as multiples of a decimal step have, without the rounding of the product.
     let digits = format!("{:.11e}", t * factor).parse::<f64>().unwrap_or(t * factor);
     format!("{digits} {unit}")
 }
 
-/// Schemes whose accuracy and work go by the step: `auto` is one of them under another name, and
-/// `event-driven` has steps of its own.
+/// Whether the step determines accuracy and work of a scheme: `auto` is another name of one of
+/// them, and `event-driven` has its own steps.
 fn has_steps(scheme: &str) -> bool {
     !["auto", teeter_integrator::EventDriven::NAME].contains(&scheme)
 }
 
-/// `resolved` is for beams that give nothing back but by their own elasticity.
+/// Whether a scheme suits a scene: `resolved` needs beams, without restitution there.
 fn suits(scheme: &str, scene: &Scene) -> bool {
-    let at_beams = || scene.contacts.iter().filter(|contact| matches!(contact.surface, Support::Beam(_)));
+    let at_beams = || scene.contacts.iter().filter(|contact| matches!(contact.surface, SupportingBody::Beam(_)));
     scheme != SchemeName::Resolved.word() || (at_beams().next().is_some() && !at_beams().any(ContactScene::gives_back))
 }
 
-/// An axis of words: those of the table of keys, for all keys at once.
-fn words(resolved: &Resolved, name: &'static str, keys: &[String], taken: impl Fn(&str) -> bool) -> Option<Axis> {
-    let Some(Found::Key(_, key)) = keys.first().and_then(|key| keys::find(key)) else { return None };
+/// An axis of words of the table of keys, for all keys at once.
+fn words(
+    resolved: &Resolved,
+    name: &'static str,
+    keys: &[String],
+    taken: impl Fn(&str) -> bool,
+) -> Option<SettingAxis> {
+    let Some(PathTarget::Key(_, key)) = keys.first().and_then(|key| keys::find(key)) else { return None };
     let Kind::Choice(words) = key.kind else { return None };
     let mut options = vec![Setting::none()];
     for word in words.iter().filter(|word| taken(word)) {
@@ -176,28 +185,28 @@ fn words(resolved: &Resolved, name: &'static str, keys: &[String], taken: impl F
             options.push(keys.iter().fold(Setting::none(), |setting, key| setting.set(key, *word)));
         }
     }
-    Some(Axis { name, keys: keys.to_vec(), options })
+    Some(SettingAxis { name, keys: keys.to_vec(), options })
 }
 
 /// An axis of one number.
-fn numbers(name: &'static str, key: &str, own: f64, values: &[f64]) -> Axis {
+fn numbers(name: &'static str, key: &str, own: f64, values: &[f64]) -> SettingAxis {
     let others = values.iter().filter(|value| **value != own);
     let options = others.map(|value| Setting::none().set(key, format!("{value:?}")));
-    Axis { name, keys: vec![key.to_owned()], options: std::iter::once(Setting::none()).chain(options).collect() }
+    SettingAxis { name, keys: vec![key.to_owned()], options: std::iter::once(Setting::none()).chain(options).collect() }
 }
 
-fn theta(resolved: &Resolved) -> Option<Axis> {
+fn theta(resolved: &Resolved) -> Option<SettingAxis> {
     Some(numbers("theta", "time.theta", resolved.scene.time.theta, &THETAS))
 }
 
-fn tolerance(resolved: &Resolved) -> Option<Axis> {
+fn tolerance(resolved: &Resolved) -> Option<SettingAxis> {
     let scene = &resolved.scene;
     (!scene.contacts.is_empty()).then(|| numbers("tolerance", "solver.tolerance", scene.solver.tolerance, &TOLERANCES))
 }
 
-fn solver(resolved: &Resolved) -> Option<Axis> {
-    // A convex law is another model, not a cheaper way to this one.
-    // And of the others only those that a scene's few contacts can make faster.
+fn solver(resolved: &Resolved) -> Option<SettingAxis> {
+    // The convex law is another model, not a cheaper method. Of the other solvers only those that
+    // may be faster with a scene's few contacts.
     let exact = |name: &str| {
         if !QUICK.contains(&name) {
             return false;
@@ -209,13 +218,13 @@ fn solver(resolved: &Resolved) -> Option<Axis> {
     (!resolved.scene.contacts.is_empty()).then_some(axis)
 }
 
-fn kinematics(resolved: &Resolved) -> Option<Axis> {
-    let on_beam = resolved.scene.contacts.iter().filter(|contact| matches!(contact.surface, Support::Beam(_)));
+fn kinematics(resolved: &Resolved) -> Option<SettingAxis> {
+    let on_beam = resolved.scene.contacts.iter().filter(|contact| matches!(contact.surface, SupportingBody::Beam(_)));
     let keys: Vec<String> = on_beam.map(|contact| format!("contact.{}.kinematics", contact.name)).collect();
     words(resolved, "kinematics", &keys, |_| true)
 }
 
-/// The beams whose mesh is given by a number of elements, with that.
+/// The beams whose mesh is given by a number of elements, with that number.
 fn meshed(resolved: &Resolved) -> Vec<(&BeamScene, i64)> {
     let of = |document: &Document, beam: &BeamScene| document.integer(&elements_key(beam));
     resolved.scene.beams.iter().filter_map(|beam| Some((beam, of(&resolved.document, beam)?))).collect()
@@ -225,7 +234,8 @@ fn elements_key(beam: &BeamScene) -> String {
     format!("beam.{}.elements", beam.name)
 }
 
-/// All beams with so many times their own elements; the scene's own where that changes nothing.
+/// All beams with their elements multiplied by this factor; the scene's own if that changes
+/// nothing.
 pub(crate) fn refined(resolved: &Resolved, factor: f64) -> Setting {
     meshed(resolved).into_iter().fold(Setting::none(), |setting, (beam, own)| {
         let elements = ((own as f64 * factor).round() as i64).clamp(2, teeter_beam::MAX_ELEMENTS as i64);
@@ -233,10 +243,10 @@ pub(crate) fn refined(resolved: &Resolved, factor: f64) -> Setting {
     })
 }
 
-/// The kinematics of the deformed beam wherever they are not the scene's own, and all dofs of the mesh.
+/// Full beams with deformed kinematics, where the scene has others.
 pub(crate) fn unreduced(resolved: &Resolved) -> Setting {
     let mut setting = Setting::none();
-    for contact in resolved.scene.contacts.iter().filter(|contact| matches!(contact.surface, Support::Beam(_))) {
+    for contact in resolved.scene.contacts.iter().filter(|contact| matches!(contact.surface, SupportingBody::Beam(_))) {
         let key = format!("contact.{}.kinematics", contact.name);
         if resolved.document.text(&key) != Some("deformed") {
             setting = setting.set(key, "deformed");
@@ -245,7 +255,7 @@ pub(crate) fn unreduced(resolved: &Resolved) -> Setting {
     setting
 }
 
-fn mesh(resolved: &Resolved) -> Option<Axis> {
+fn mesh(resolved: &Resolved) -> Option<SettingAxis> {
     let keys: Vec<String> = meshed(resolved).into_iter().map(|(beam, _)| elements_key(beam)).collect();
     if keys.is_empty() {
         return None;
@@ -256,10 +266,10 @@ fn mesh(resolved: &Resolved) -> Option<Axis> {
             options.push(setting);
         }
     }
-    Some(Axis { name: "mesh", keys, options })
+    Some(SettingAxis { name: "mesh", keys, options })
 }
 
-fn modes(resolved: &Resolved) -> Option<Axis> {
+fn modes(resolved: &Resolved) -> Option<SettingAxis> {
     let beams = &resolved.scene.beams;
     if beams.is_empty() {
         return None;
@@ -277,7 +287,7 @@ fn modes(resolved: &Resolved) -> Option<Axis> {
         options.push(all(&|setting, beam| setting.set(model(beam), "full")));
     }
     let keys = beams.iter().flat_map(|beam| [model(beam), shapes(beam)]).collect();
-    Some(Axis { name: "modes", keys, options })
+    Some(SettingAxis { name: "modes", keys, options })
 }
 
 #[cfg(test)]
@@ -324,7 +334,7 @@ mod tests {
         ] {
             let mut read = |_: &str| Err("no other file".to_owned());
             let (source, resolved) =
-                crate::Source::new(text.as_bytes().to_vec(), "s.toml", "s", &[], &mut read).unwrap();
+                crate::StudyScene::new(text.as_bytes().to_vec(), "s.toml", "s", &[], &mut read).unwrap();
             let axes = Axes::of(&resolved);
             assert_eq!(axes.iter().map(|axis| axis.name).collect::<Vec<_>>(), names);
             for axis in axes.iter() {

@@ -1,18 +1,19 @@
-//! How far a motion is from the reference: the errors that a user cares about, each in a norm of its own.
+//! Errors of a motion against the reference, in the quantities that matter to users, each in its
+//! own norm.
 
-use crate::{Motion, Sampling};
+use crate::{SampledMotion, Sampling};
 use teeter_scenario::scene::Scene;
 
 /// A quantity that is compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Quantity {
-    /// The largest of the errors of angle, position and deflection: of all that moves in the scene.
+    /// The largest of the errors of angle, position and deflection: of everything that moves.
     Accuracy,
     /// Angles of the blocks.
     Angle,
-    /// Places of the blocks' mass centres.
+    /// Positions of the blocks' mass centres.
     Position,
-    /// Deflections of the beams, at their probes, at midspan and in the middle between supports.
+    /// Deflections of the beams, at their probes, at midspan and midway between supports.
     Deflection,
     /// Times of impacts.
     ImpactTimes,
@@ -56,7 +57,7 @@ impl Quantity {
         }
     }
 
-    /// Its name for people.
+    /// Its name for users.
     #[must_use]
     pub fn title(self) -> &'static str {
         match self {
@@ -86,14 +87,14 @@ impl Quantity {
                 "largest |x − x_ref| or |y − y_ref| of any block at any sample before the horizon, over its larger side"
             }
             Self::Deflection => {
-                "largest |w − w_ref| of any beam at probes, midspan and the middle between supports at any sample before the horizon, over the largest |w_ref|"
+                "largest |w − w_ref| of any beam at probes, midspan and midway between supports at any sample before the horizon, over the largest |w_ref|"
             }
             Self::ImpactTimes => {
                 "largest |t − t_ref| of the impacts before the horizon, matched in order, over the mean time between them; an impact is a zero crossing of φ \
                  where a block rocks, else a contact that closes with at least 5 % of the largest closing speed; 1 where one is missing"
             }
             Self::Peaks => {
-                "largest |φ_peak/φ_peak,ref − 1| of the peaks between two crossings before the horizon, matched in order; 1 where one is missing"
+                "largest |φ_peak/φ_peak,ref − 1| of the peaks between two crossings before the horizon, matched in order; 1 if one is missing"
             }
             Self::Forces => {
                 "largest |P − P_ref| of the normal impulse P of any contact in any window of 1/50 of the run, over the contact's whole P_ref before the horizon"
@@ -111,13 +112,13 @@ impl Quantity {
 pub struct Errors([Option<f64>; Quantity::ALL.len()]);
 
 impl Errors {
-    /// The error of a quantity; `None` where the scene doesn't have it.
+    /// The error of a quantity; `None` if the scene doesn't have it.
     #[must_use]
     pub fn of(&self, quantity: Quantity) -> Option<f64> {
         self.0[quantity as usize]
     }
 
-    /// Quantity by quantity, the larger one.
+    /// The larger error for each quantity.
     #[must_use]
     pub fn larger(&self, other: &Self) -> Self {
         let mut errors = *self;
@@ -130,7 +131,7 @@ impl Errors {
         errors
     }
 
-    /// An error of the accuracy alone.
+    /// Only an error of the accuracy.
     #[cfg(test)]
     pub(crate) fn of_accuracy(error: f64) -> Self {
         let mut errors = Self::default();
@@ -139,25 +140,26 @@ impl Errors {
     }
 
     fn set(&mut self, quantity: Quantity, error: Option<f64>) {
-        // A motion that is no longer finite is as wrong as can be.
+        // A motion that is not finite has an infinite error.
         self.0[quantity as usize] = error.map(|error| if error.is_nan() { f64::INFINITY } else { error });
     }
 }
 
-/// An angle that stays below this doesn't turn: its error would be relative to rounding, rad.
+/// Angles that stay below this are ignored, as their error would be relative to rounding, rad.
 const TURNS: f64 = 1e-6;
-/// A deflection that stays below this part of the span is none.
+/// Deflections that stay below this fraction of the span are ignored.
 const BENDS: f64 = 1e-12;
-/// Closing speeds below this part of the largest one are no impacts to compare.
+/// Impacts with a closing speed below this fraction of the largest one are not compared.
 const IMPACT_SHARE: f64 = 0.05;
-/// A contact that closes again within this part of the run is the same impact: a corner on a beam closes many times.
+/// A contact that closes again within this fraction of the run counts as the same impact: a corner
+/// on a beam closes many times.
 const SAME_IMPACT: f64 = 0.01;
 /// Samples of a window of forces, 1/50 of a run.
 const WINDOW: usize = 10;
 
-/// What errors are relative to, and how far they are taken.
+/// Scales of the errors, and the time up to which they are taken.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Ruler {
+pub struct ErrorNorms {
     /// The larger side of each block, m.
     sides: Vec<f64>,
     /// The block of each contact.
@@ -168,8 +170,8 @@ pub struct Ruler {
     shortest: f64,
 }
 
-impl Ruler {
-    /// For motions of a scene, all of their samples.
+impl ErrorNorms {
+    /// For motions of a scene, over all samples.
     #[must_use]
     pub fn new(scene: &Scene, sampling: Sampling) -> Self {
         Self {
@@ -181,7 +183,7 @@ impl Ruler {
         }
     }
 
-    /// The same up to so many samples.
+    /// The same, up to this number of samples.
     #[must_use]
     pub fn up_to(mut self, samples: usize) -> Self {
         self.samples = samples;
@@ -194,9 +196,10 @@ impl Ruler {
         self.sampling.time(self.samples.saturating_sub(1))
     }
 
-    /// How many samples from the start on two motions agree, within a share of the motion, in what accuracy is made of.
+    /// Number of initial samples in which two motions agree in all quantities of the accuracy,
+    /// within a share of the motion.
     #[must_use]
-    pub fn agree(&self, a: &Motion, reference: &Motion, share: f64) -> usize {
+    pub fn agree(&self, a: &SampledMotion, reference: &SampledMotion, share: f64) -> usize {
         let (turn, bend) = (self.turn(reference), self.bend(reference));
         let count = self.samples.min(a.samples).min(reference.samples);
         let apart = |sample: usize| {
@@ -204,13 +207,13 @@ impl Ruler {
             let bent = bend.map_or(0.0, |bend| self.deflected(a, reference, sample) / bend);
             worse(worse(angle, bent), self.moved(a, reference, sample))
         };
-        // Written so that NaN fails too.
+        // Negated so that NaN fails too.
         (0..count).find(|&sample| !(apart(sample) <= share)).unwrap_or(count)
     }
 
     /// The errors of a motion.
     #[must_use]
-    pub fn errors(&self, motion: &Motion, reference: &Motion) -> Errors {
+    pub fn errors(&self, motion: &SampledMotion, reference: &SampledMotion) -> Errors {
         let samples = 0..self.samples.min(motion.samples).min(reference.samples);
         let largest = |of: &dyn Fn(usize) -> f64| samples.clone().map(of).fold(0.0, worse);
         let mut errors = Errors::default();
@@ -236,34 +239,34 @@ impl Ruler {
         errors
     }
 
-    /// The largest angle of the reference before the horizon, rad; `None` where nothing turns.
-    fn turn(&self, reference: &Motion) -> Option<f64> {
+    /// The largest angle of the reference before the horizon, rad; `None` if nothing turns.
+    fn turn(&self, reference: &SampledMotion) -> Option<f64> {
         let poses = &reference.poses[..self.sides.len() * self.samples.min(reference.samples)];
         let turn = poses.iter().map(|pose| pose[2].abs()).fold(0.0, f64::max);
         (turn > TURNS).then_some(turn)
     }
 
-    fn bend(&self, reference: &Motion) -> Option<f64> {
+    fn bend(&self, reference: &SampledMotion) -> Option<f64> {
         let points = points(reference);
         let all = &reference.deflections[..points * self.samples.min(reference.samples)];
         let bend = all.iter().map(|w| w.abs()).fold(0.0, f64::max);
         (bend > BENDS).then_some(bend)
     }
 
-    fn turned(&self, a: &Motion, b: &Motion, sample: usize) -> f64 {
+    fn turned(&self, a: &SampledMotion, b: &SampledMotion, sample: usize) -> f64 {
         pairs(&a.poses, &b.poses, self.sides.len(), sample).map(|(a, b)| (a[2] - b[2]).abs()).fold(0.0, worse)
     }
 
-    fn moved(&self, a: &Motion, b: &Motion, sample: usize) -> f64 {
+    fn moved(&self, a: &SampledMotion, b: &SampledMotion, sample: usize) -> f64 {
         let poses = pairs(&a.poses, &b.poses, self.sides.len(), sample).zip(&self.sides);
         poses.map(|((a, b), side)| worse((a[0] - b[0]).abs(), (a[1] - b[1]).abs()) / side).fold(0.0, worse)
     }
 
-    fn deflected(&self, a: &Motion, b: &Motion, sample: usize) -> f64 {
+    fn deflected(&self, a: &SampledMotion, b: &SampledMotion, sample: usize) -> f64 {
         pairs(&a.deflections, &b.deflections, points(b), sample).map(|(a, b)| (a - b).abs()).fold(0.0, worse)
     }
 
-    fn impact_times(&self, motion: &Motion, reference: &Motion) -> Option<f64> {
+    fn impact_times(&self, motion: &SampledMotion, reference: &SampledMotion) -> Option<f64> {
         let horizon = self.horizon();
         let mut worst: Option<f64> = None;
         let mut enter = |times: &[f64], wanted: &[f64]| {
@@ -278,17 +281,17 @@ impl Ruler {
         for (pair, &owner) in self.owners.iter().enumerate() {
             if !rocks(owner) {
                 let fastest = reference.impacts[pair].iter().map(|impact| impact.speed).fold(0.0, f64::max);
-                let of = |motion: &Motion| self.impacts(motion, pair, IMPACT_SHARE * fastest);
+                let of = |motion: &SampledMotion| self.impacts(motion, pair, IMPACT_SHARE * fastest);
                 enter(&of(motion), &of(reference));
             }
         }
         worst
     }
 
-    /// When a block first has an impact and when the next one after it, over the whole run, s: as impact times are compared. `None` where it has
-    /// none.
+    /// Times of a block's first impact and of the next one, over the whole run, s, as they are
+    /// compared. `None` without impacts.
     #[must_use]
-    pub(crate) fn first_impacts(&self, motion: &Motion, block: usize) -> Option<(f64, Option<f64>)> {
+    pub(crate) fn first_impacts(&self, motion: &SampledMotion, block: usize) -> Option<(f64, Option<f64>)> {
         let mut times = motion.crossings.get(block)?.clone();
         if times.is_empty() {
             for pair in (0..self.owners.len()).filter(|&pair| self.owners[pair] == block) {
@@ -300,13 +303,13 @@ impl Ruler {
         Some((*times.first()?, times.iter().copied().find(|t| *t > times[0] + self.shortest)))
     }
 
-    /// Blocks that it measures.
+    /// Number of blocks.
     pub(crate) fn blocks(&self) -> usize {
         self.sides.len()
     }
 
-    /// Times of the impacts of a contact that are no slower than `least`.
-    fn impacts(&self, motion: &Motion, pair: usize, least: f64) -> Vec<f64> {
+    /// Times of the impacts of a contact with at least the closing speed `least`.
+    fn impacts(&self, motion: &SampledMotion, pair: usize, least: f64) -> Vec<f64> {
         let mut times: Vec<f64> = Vec::new();
         for impact in motion.impacts[pair].iter().filter(|impact| impact.speed >= least && least > 0.0) {
             if times.last().is_none_or(|last| impact.t - last > self.shortest) {
@@ -316,7 +319,7 @@ impl Ruler {
         times
     }
 
-    fn peaks(&self, motion: &Motion, reference: &Motion) -> Option<f64> {
+    fn peaks(&self, motion: &SampledMotion, reference: &SampledMotion) -> Option<f64> {
         let horizon = self.horizon();
         let mut worst: Option<f64> = None;
         for (peaks, wanted) in motion.peaks.iter().zip(&reference.peaks) {
@@ -328,19 +331,19 @@ impl Ruler {
         worst
     }
 
-    fn forces(&self, motion: &Motion, reference: &Motion) -> Option<f64> {
+    fn forces(&self, motion: &SampledMotion, reference: &SampledMotion) -> Option<f64> {
         let contacts = self.owners.len();
         let last = self.samples.min(motion.samples).min(reference.samples).checked_sub(1)?;
         let mut worst: Option<f64> = None;
         for contact in 0..contacts {
-            let at = |motion: &Motion, sample: usize| motion.impulses[sample * contacts + contact];
+            let at = |motion: &SampledMotion, sample: usize| motion.impulses[sample * contacts + contact];
             let whole = at(reference, last);
             if !(whole > 0.0) {
                 continue;
             }
             let off = |from: usize| {
                 let to = (from + WINDOW).min(last);
-                let window = |motion: &Motion| at(motion, to) - at(motion, from);
+                let window = |motion: &SampledMotion| at(motion, to) - at(motion, from);
                 (window(motion) - window(reference)).abs() / whole
             };
             let error = (0..last).step_by(WINDOW).map(off).fold(0.0, worse);
@@ -350,25 +353,25 @@ impl Ruler {
     }
 }
 
-/// The larger of two errors; one that is not a number counts as infinite.
+/// The larger of two errors; NaN counts as infinite.
 fn worse(a: f64, b: f64) -> f64 {
     let finite = |x: f64| if x.is_nan() { f64::INFINITY } else { x };
     finite(a).max(finite(b))
 }
 
-/// Deflections in a sample.
-fn points(motion: &Motion) -> usize {
+/// Number of deflections in a sample.
+fn points(motion: &SampledMotion) -> usize {
     motion.deflections.len() / motion.samples.max(1)
 }
 
-/// What two motions have at a sample, `each` numbers long.
+/// The values of two motions at a sample, `each` numbers long.
 fn pairs<'a, T>(a: &'a [T], b: &'a [T], each: usize, sample: usize) -> impl Iterator<Item = (&'a T, &'a T)> {
     let range = sample * each..(sample + 1) * each;
     a[range.clone()].iter().zip(&b[range])
 }
 
-/// The largest difference of times matched in order, over the mean time between the wanted ones up to the horizon; 1 where one is
-/// missing; `None` where none is wanted.
+/// The largest difference of times matched in order, divided by the mean interval of the expected
+/// ones up to the horizon; 1 if one is missing; `None` if none is expected.
 fn matched(times: &[f64], wanted: &[f64], horizon: f64) -> Option<f64> {
     let wanted: Vec<f64> = wanted.iter().copied().take_while(|t| *t <= horizon).collect();
     let mean = wanted.last()? / wanted.len() as f64;
@@ -381,10 +384,10 @@ fn matched(times: &[f64], wanted: &[f64], horizon: f64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motion::Impact;
+    use crate::sampled_motion::Impact;
 
-    fn ruler() -> Ruler {
-        Ruler {
+    fn norms() -> ErrorNorms {
+        ErrorNorms {
             sides: vec![0.5],
             owners: vec![0],
             sampling: Sampling { every: 0.1, count: 11 },
@@ -393,9 +396,9 @@ mod tests {
         }
     }
 
-    fn motion(phi: impl Fn(f64) -> f64, crossings: &[f64], peaks: &[(f64, f64)]) -> Motion {
+    fn motion(phi: impl Fn(f64) -> f64, crossings: &[f64], peaks: &[(f64, f64)]) -> SampledMotion {
         let t = |k: usize| 0.1 * k as f64;
-        Motion {
+        SampledMotion {
             poses: (0..11).map(|k| [0.0, 1.0, phi(t(k))]).collect(),
             energy: vec![2.0; 11],
             impulses: (0..11).map(t).collect(),
@@ -405,7 +408,7 @@ mod tests {
             impacts: vec![vec![]],
             energy_scale: 4.0,
             samples: 11,
-            ..Motion::default()
+            ..SampledMotion::default()
         }
     }
 
@@ -418,7 +421,7 @@ mod tests {
         for k in 5..11 {
             other.impulses[k] += 0.1;
         }
-        let errors = ruler().errors(&other, &reference);
+        let errors = norms().errors(&other, &reference);
         let expect = [
             (Quantity::Angle, 0.05),
             (Quantity::Position, 0.002),
@@ -433,31 +436,33 @@ mod tests {
             assert!((errors.of(quantity).unwrap() - wanted).abs() < 1e-12, "{quantity:?}: {:?}", errors.of(quantity));
         }
         assert_eq!(errors.of(Quantity::Deflection), None);
-        let early = ruler().up_to(3).errors(&other, &reference);
+        let early = norms().up_to(3).errors(&other, &reference);
         assert!(early.of(Quantity::Accuracy).unwrap() < 1e-15, "before anything differs");
         assert_eq!(early.of(Quantity::ImpactTimes), None, "no impact is due by then");
     }
 
     #[test]
     fn a_beam_that_is_off_counts_where_there_is_a_block_too() {
-        let bent =
-            |by: f64| Motion { deflections: (0..11).map(|k| by * f64::from(k)).collect(), ..motion(|t| t, &[], &[]) };
-        let errors = ruler().errors(&bent(1.45e-3), &bent(1e-3));
+        let bent = |by: f64| SampledMotion {
+            deflections: (0..11).map(|k| by * f64::from(k)).collect(),
+            ..motion(|t| t, &[], &[])
+        };
+        let errors = norms().errors(&bent(1.45e-3), &bent(1e-3));
         assert!((errors.of(Quantity::Accuracy).unwrap() - 0.45).abs() < 1e-12, "{errors:?}");
         assert_eq!(errors.of(Quantity::Angle), Some(0.0));
         // At sample 1, by 0.045 of the largest deflection; at sample 0 there is none.
-        assert_eq!(ruler().agree(&bent(1.45e-3), &bent(1e-3), 0.01), 1);
+        assert_eq!(norms().agree(&bent(1.45e-3), &bent(1e-3), 0.01), 1);
     }
 
     #[test]
     fn motions_agree_up_to_where_they_part() {
         let reference = motion(|t| 0.2 - 0.4 * t, &[], &[]);
-        let parting = motion(|t| 0.2 - 0.4 * t + if t > 0.55 { 1e-3 } else { 1e-6 }, &[], &[]);
-        assert_eq!(ruler().agree(&parting, &reference, 1e-4), 6);
-        assert_eq!(ruler().agree(&parting, &reference, 1e-2), 11);
+        let divergence = motion(|t| 0.2 - 0.4 * t + if t > 0.55 { 1e-3 } else { 1e-6 }, &[], &[]);
+        assert_eq!(norms().agree(&divergence, &reference, 1e-4), 6);
+        assert_eq!(norms().agree(&divergence, &reference, 1e-2), 11);
         let lost = motion(|t| if t > 0.25 { f64::NAN } else { 0.2 - 0.4 * t }, &[], &[]);
-        assert_eq!(ruler().agree(&lost, &reference, 1e-2), 3);
-        assert_eq!(ruler().errors(&lost, &reference).of(Quantity::Accuracy), Some(f64::INFINITY));
+        assert_eq!(norms().agree(&lost, &reference, 1e-2), 3);
+        assert_eq!(norms().errors(&lost, &reference).of(Quantity::Accuracy), Some(f64::INFINITY));
     }
 
     #[test]
@@ -473,8 +478,8 @@ mod tests {
         let mut bouncing = motion(|_| 0.0, &[], &[]);
         let impact = |t, speed| Impact { t, speed };
         bouncing.impacts[0] = vec![impact(0.2, 1.0), impact(0.201, 0.5), impact(0.5, 0.04), impact(0.6, 0.8)];
-        assert_eq!(ruler().impacts(&bouncing, 0, 0.05), [0.2, 0.6]);
-        assert_eq!(ruler().errors(&bouncing, &bouncing).of(Quantity::ImpactTimes), Some(0.0));
-        assert_eq!(ruler().errors(&bouncing, &bouncing).of(Quantity::Angle), None, "nothing turns");
+        assert_eq!(norms().impacts(&bouncing, 0, 0.05), [0.2, 0.6]);
+        assert_eq!(norms().errors(&bouncing, &bouncing).of(Quantity::ImpactTimes), Some(0.0));
+        assert_eq!(norms().errors(&bouncing, &bouncing).of(Quantity::Angle), None, "nothing turns");
     }
 }

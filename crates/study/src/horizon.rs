@@ -1,37 +1,39 @@
-//! How far a reference is to be trusted before anything is advised by it: past the first impacts of the scene. What comes before them is free motion,
-//! or rest, which any setting gets right.
+//! The least horizon for advice: beyond the first impacts of the scene. Before these there is only
+//! free motion, or rest, which any setting gets right.
 
-use crate::{Motion, Ruler};
+use crate::{ErrorNorms, SampledMotion};
 
-/// A first impact that is to be compared.
+/// A first impact that must be compared.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FirstImpact {
     /// The block's number.
     pub block: usize,
-    /// When, s.
+    /// Its time, s.
     pub t: f64,
-    /// How far motions must be compared for it to count, s: to the next impact, or half as long again as until this one, so that its effect shows.
+    /// Time up to which motions must be compared to see its effect, s: the next impact, or half as
+    /// long again as until this one.
     pub until: f64,
 }
 
-/// How long the motion after an impact is looked at, as a part of the time until it.
+/// How long the motion after an impact is compared, as a fraction of the time until it.
 const AFTER: f64 = 0.5;
 
-/// The first impact of a block that is the last to be compared; `None` in a scene without impacts.
-pub(crate) fn first_impacts(ruler: &Ruler, reference: &Motion, end: f64) -> Option<FirstImpact> {
+/// The first impact of a block that must be compared for the longest time; `None` in a scene
+/// without impacts.
+pub(crate) fn first_impacts(norms: &ErrorNorms, reference: &SampledMotion, end: f64) -> Option<FirstImpact> {
     let of = |block: usize| {
-        let (t, next) = ruler.first_impacts(reference, block)?;
+        let (t, next) = norms.first_impacts(reference, block)?;
         let until = next.unwrap_or(f64::INFINITY).min((1.0 + AFTER) * t).min(end);
         Some(FirstImpact { block, t, until })
     };
-    (0..ruler.blocks()).filter_map(of).reduce(|a, b| if b.until > a.until { b } else { a })
+    (0..norms.blocks()).filter_map(of).reduce(|a, b| if b.until > a.until { b } else { a })
 }
 
 impl FirstImpact {
-    /// Whether motions that are compared up to the horizon have this impact in them, and what it did.
+    /// Whether this impact and its effect are before the horizon.
     #[must_use]
     pub fn is_within(&self, horizon: f64) -> bool {
-        // A sample may fall just short of the end.
+        // The last sample may be just before the end.
         horizon >= self.until * (1.0 - 1e-9)
     }
 }

@@ -1,51 +1,53 @@
 //! Many runs of one scene: what accuracy costs.
 //!
-//! [`Tradeoff::of`] runs a scene in many settings ([`Axes`]: scheme, step, θ, mesh, modes, kinematics, solver, tolerance), each against a
-//! [`Reference`] that is itself verified, measures their time, and says which one to take for which accuracy. [`runner`] does jobs on all cores,
-//! with results in order.
+//! [`Tradeoff::of`] runs a scene in many settings ([`Axes`]: scheme, step, θ, mesh, modes,
+//! kinematics, solver, tolerance), each against a verified [`Reference`], measures their time, and
+//! recommends one for each accuracy. [`runner`] runs jobs on all cores, with results in order.
 //!
-//! [`step_for`] finds the step that reaches an accuracy, for scenes that ask for that in place of a step.
+//! [`step_for`] finds the step that reaches an accuracy, for scenes that give an accuracy instead
+//! of a step.
 //!
-//! What is tried and what is advised is decided by counted [`Work`] and not by the clock: it is the same in every run. Nothing is advised that
-//! `check` or `run` would warn of, and nothing before the first impacts of the scene have been compared.
+//! Candidates and advice are chosen by counted [`Work`], not by the clock, so they are the same in
+//! every run. Settings with warnings of `check` or `run` are not advised, and nothing is advised
+//! before the first impacts of the scene have been compared.
 
 mod accuracy;
-mod against;
 mod axes;
+mod comparison;
+mod divergence;
 mod errors;
 mod horizon;
-mod motion;
-mod parting;
-mod pilots;
 mod recommend;
 mod reference;
 mod row;
 pub mod runner;
+mod sampled_motion;
 mod search;
 mod setting;
+mod setting_warning;
 mod simulate;
 mod source;
 mod timing;
 mod tradeoff;
-mod warned;
+mod trial_runs;
 mod work;
 pub mod write;
 
-pub use accuracy::{Basis, ChosenStep, NoStep, step_for};
-pub use against::Against;
-pub use axes::{Axes, Axis};
-pub use errors::{Errors, Quantity, Ruler};
+pub use accuracy::{ChosenStep, ErrorBasis, NoStep, step_for};
+pub use axes::{Axes, SettingAxis};
+pub use comparison::ReferenceComparison;
+pub use divergence::{DIVERGED, Divergence, divergence};
+pub use errors::{ErrorNorms, Errors, Quantity};
 pub use horizon::FirstImpact;
-pub use motion::{Impact, Motion, Sampling};
-pub use parting::{PARTED, Parting, parting};
-pub use recommend::{Advice, Held, TARGETS, advise};
-pub use reference::{Check, NUDGE, Reference, SHARES};
-pub use row::{Done, Row, front, front_of};
-pub use search::TOLD as STAGES_TOLD;
+pub use recommend::{Advice, ConfirmedErrors, TARGETS, advise};
+pub use reference::{PERTURBATION, Reference, SHARES, VerifyingRun};
+pub use row::{CompletedRun, Row, pareto_front, pareto_front_of};
+pub use sampled_motion::{Impact, SampledMotion, Sampling};
+pub use search::SEARCH_STAGES;
 pub use setting::Setting;
+pub use setting_warning::SettingWarning;
 pub use simulate::Failure;
-pub use source::Source;
-pub use timing::Cpu;
-pub use tradeoff::{Tell, Tradeoff};
-pub use warned::Warned;
+pub use source::StudyScene;
+pub use timing::CpuTime;
+pub use tradeoff::{ReportProgress, Tradeoff};
 pub use work::Work;

@@ -1,50 +1,54 @@
-//! Which setting to take for which accuracy: by counted work, so that every run of the study says the same.
+//! Recommends settings for accuracies, by counted work, so that every run of the study gives the
+//! same result.
 
 use crate::axes::Axes;
 use crate::row::as_cheap;
-use crate::warned::of_the_scene;
-use crate::{Row, Setting, Warned};
+use crate::setting_warning::of_the_scene;
+use crate::{Row, Setting, SettingWarning};
 use std::collections::BTreeMap;
 
-/// The accuracies that are asked for.
+/// The target accuracies.
 pub const TARGETS: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
 
-/// The advice goes by counted work, so that it is the same in every run. Where another setting was measured in less than this part of the time, it is
-/// told beside it. The least of the runs decides: other work on the machine only adds to a time, by up to a factor of two in the median.
+/// Advice follows counted work, so that it is the same in every run. A setting measured in less
+/// than this fraction of the time is mentioned too. The fastest run counts, as other load on the
+/// machine only adds to the time, by up to a factor of two in the median.
 const CONTRADICTION: f64 = 0.5;
 
-/// What to take for an accuracy.
+/// The advice for an accuracy.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Advice {
-    /// A row, by its number.
+    /// Use the setting of a row.
     Take {
         /// The row.
         row: usize,
-        /// Another row that does as well and was measured in less than half the time, if there is one.
+        /// Another row with this accuracy that was measured in less than half the time, if there is
+        /// one.
         faster: Option<usize>,
-        /// Whether a finer step of the same setting was tried: it holds the accuracy too, then.
+        /// Whether a finer step of the same setting was tried; it then has the accuracy too.
         confirmed: bool,
     },
-    /// No setting that was tried is known to be as accurate.
+    /// No setting tried is known to be as accurate.
     NotReached,
-    /// Every setting that is known to be as accurate is warned of by `check` or `run`: this is the cheapest, by its number.
+    /// `check` or `run` warns of every setting known to be as accurate: this is the index of the
+    /// cheapest.
     Warned(usize),
     /// The horizon ends before the first impacts of the scene have been compared.
     BeforeImpact,
-    /// The reference itself is not known as well as that.
+    /// The reference is not known to this accuracy.
     NotMeasurable,
 }
 
-/// What the finer steps of the same setting leave of the accuracy of each row: the largest error of the row and of all those of its finer steps that
-/// were tried. Accuracy that a finer step doesn't confirm was luck.
+/// The confirmed error of each row: the largest error of the row and of all finer steps of the same
+/// setting that were tried. Accuracy that a finer step doesn't confirm was chance.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Held {
+pub struct ConfirmedErrors {
     worst: Vec<f64>,
     confirmed: Vec<bool>,
 }
 
-impl Held {
-    /// Of rows that were tried.
+impl ConfirmedErrors {
+    /// Of the rows tried so far.
     #[must_use]
     pub fn of(rows: &[Row], axes: &Axes) -> Self {
         let mut ladders: BTreeMap<Setting, Vec<(usize, usize)>> = BTreeMap::new();
@@ -67,22 +71,29 @@ impl Held {
         held
     }
 
-    /// The rows that are known to be as accurate as `target`: their difference from the reference and the reference's error bar together, and so for
-    /// every finer step that was tried.
+    /// The rows known to be as accurate as `target`, counting their difference from the reference
+    /// and its error bar, also for every finer step tried.
     pub fn meeting(&self, target: f64, bar: f64) -> impl Iterator<Item = usize> + '_ {
         (0..self.worst.len()).filter(move |&row| self.worst[row] + bar <= target)
     }
 }
 
-/// The rows that meet a target and that nothing warns of but what is of the scene.
+/// The rows that meet a target, without warnings except those of the scene.
 #[must_use]
-pub(crate) fn eligible(rows: &[Row], held: &Held, target: f64, bar: f64, reference: &[Warned]) -> Vec<usize> {
+pub(crate) fn eligible(
+    rows: &[Row],
+    held: &ConfirmedErrors,
+    target: f64,
+    bar: f64,
+    reference: &[SettingWarning],
+) -> Vec<usize> {
     let scene = of_the_scene(reference, held.meeting(target, bar).map(|k| rows[k].warned()));
     let clean = |&k: &usize| rows[k].warned().iter().all(|warned| scene.contains(&warned.kind));
     held.meeting(target, bar).filter(clean).collect()
 }
 
-/// The least work among these rows; of those within 5 % of it the one that changes least of the scene, then the most accurate, then the first.
+/// The row with the least work; among those within 5 % of it the one with the fewest changes to the
+/// scene, then the most accurate, then the first.
 #[must_use]
 pub(crate) fn cheapest(rows: &[Row], among: &[usize]) -> Option<usize> {
     let value = |x: Option<f64>| x.unwrap_or(f64::INFINITY);
@@ -94,13 +105,14 @@ pub(crate) fn cheapest(rows: &[Row], among: &[usize]) -> Option<usize> {
     })
 }
 
-/// The advice for a target, by a reference that is known to `bar` and warned of `reference`.
+/// The advice for a target, with a reference that has the error bar `bar` and the warnings
+/// `reference`.
 #[must_use]
-pub fn advise(rows: &[Row], axes: &Axes, target: f64, bar: f64, reference: &[Warned]) -> Advice {
+pub fn advise(rows: &[Row], axes: &Axes, target: f64, bar: f64, reference: &[SettingWarning]) -> Advice {
     if bar >= target {
         return Advice::NotMeasurable;
     }
-    let held = Held::of(rows, axes);
+    let held = ConfirmedErrors::of(rows, axes);
     let among = eligible(rows, &held, target, bar, reference);
     let Some(chosen) = cheapest(rows, &among) else {
         let meeting: Vec<usize> = held.meeting(target, bar).collect();
@@ -118,23 +130,24 @@ pub fn advise(rows: &[Row], axes: &Axes, target: f64, bar: f64, reference: &[War
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::axes::Axis;
-    use crate::{Cpu, Done, Errors, Setting, Work};
+    use crate::axes::SettingAxis;
+    use crate::{CompletedRun, CpuTime, Errors, Setting, Work};
 
     fn axes() -> Axes {
         let options = ["4", "", "1"].map(|step| match step {
             "" => Setting::none(),
             step => Setting::none().set("time.step", step),
         });
-        let nothing = |name| Axis { name, keys: Vec::new(), options: vec![Setting::none()] };
-        let step = Axis { name: "step", keys: vec!["time.step".to_owned()], options: options.to_vec() };
+        let nothing = |name| SettingAxis { name, keys: Vec::new(), options: vec![Setting::none()] };
+        let step = SettingAxis { name: "step", keys: vec!["time.step".to_owned()], options: options.to_vec() };
         Axes { scheme: nothing("scheme"), step, grid: Vec::new(), others: Vec::new() }
     }
 
     fn row(setting: Setting, steps: u64, accuracy: f64, time: f64) -> Row {
         let work = Work { steps, ..Work::default() };
-        let result = Ok(Done { errors: Errors::of_accuracy(accuracy), work, unconverged: 0, warned: Vec::new() });
-        Row { setting, stage: 1, result, cpu: Cpu::of(vec![time]) }
+        let result =
+            Ok(CompletedRun { errors: Errors::of_accuracy(accuracy), work, unconverged: 0, warned: Vec::new() });
+        Row { setting, stage: 1, result, cpu: CpuTime::of(vec![time]) }
     }
 
     fn rows() -> Vec<Row> {
@@ -152,7 +165,7 @@ mod tests {
     #[test]
     fn luck_is_no_accuracy() {
         let (rows, axes) = (rows(), axes());
-        let held = Held::of(&rows, &axes);
+        let held = ConfirmedErrors::of(&rows, &axes);
         let meets = |row: usize, target: f64| held.meeting(target, 0.0).any(|one| one == row);
         assert!(!meets(0, 0.01), "its finer step is off by 2 %");
         assert!(meets(0, 0.05));
@@ -163,14 +176,14 @@ mod tests {
     fn what_is_warned_of_is_not_advised_unless_it_is_of_the_scene() {
         let (mut rows, axes) = (rows(), axes());
         let warn = |row: &mut Row, kind: &str| {
-            let warned = Warned { kind: kind.to_owned(), text: String::new() };
+            let warned = SettingWarning { kind: kind.to_owned(), text: String::new() };
             row.result.as_mut().unwrap().warned.push(warned);
         };
-        let advice = |rows: &[Row], reference: &[Warned]| match advise(rows, &axes, 0.01, 0.0, reference) {
+        let advice = |rows: &[Row], reference: &[SettingWarning]| match advise(rows, &axes, 0.01, 0.0, reference) {
             Advice::Take { row, .. } => Ok(row),
             other => Err(other),
         };
-        let tilted = [Warned { kind: "tilt".to_owned(), text: String::new() }];
+        let tilted = [SettingWarning { kind: "tilt".to_owned(), text: String::new() }];
         warn(&mut rows[4], "time.step: too coarse");
         assert_eq!(advice(&rows, &[]), Ok(3), "the cheapest is warned of, and so the other mesh is taken");
         rows.iter_mut().for_each(|row| warn(row, "tilt"));
@@ -198,11 +211,11 @@ mod tests {
         // Every time a different one is measured as the fastest, by less than a factor of two.
         for fastest in 0..rows.len() {
             for (k, row) in rows.iter_mut().enumerate() {
-                row.cpu = Cpu::of(vec![if k == fastest { 1.0 } else { 1.9 }]);
+                row.cpu = CpuTime::of(vec![if k == fastest { 1.0 } else { 1.9 }]);
             }
             assert_eq!(advise(&rows, &axes(), 0.01, 0.0, &[]), Advice::Take { row: 4, faster: None, confirmed: false });
         }
-        rows[2].cpu = Cpu::of(vec![0.9]);
+        rows[2].cpu = CpuTime::of(vec![0.9]);
         assert_eq!(advise(&rows, &axes(), 0.01, 0.0, &[]), Advice::Take { row: 4, faster: Some(2), confirmed: false });
     }
 }

@@ -1,12 +1,13 @@
-//! The reference of a trade-off: a run far finer than any candidate, its error bar from independent runs, and the horizon.
+//! The reference of a trade-off: a run far finer than any candidate, its error bar from independent
+//! runs, and the horizon.
 
 use crate::axes::{Axes, in_seconds, refined, unreduced};
-use crate::errors::{Errors, Quantity, Ruler};
+use crate::errors::{ErrorNorms, Errors, Quantity};
 use crate::horizon::{FirstImpact, first_impacts};
 use crate::runner;
-use crate::simulate::{Ran, expect, simulate};
-use crate::{Failure, Motion, Sampling, Setting, Source, Warned};
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use crate::simulate::{RunResult, expect, simulate};
+use crate::{Failure, SampledMotion, Sampling, Setting, SettingWarning, StudyScene};
+use std::sync::atomic::AtomicBool;
 use teeter_scenario::resolve::Resolved;
 
 /// A verified reference.
@@ -14,62 +15,65 @@ use teeter_scenario::resolve::Resolved;
 pub struct Reference {
     /// Its setting.
     pub setting: Setting,
-    /// What it showed.
-    pub motion: Motion,
-    /// The runs that it is verified by.
-    pub checks: Vec<Check>,
-    /// How well it is known: quantity by quantity, the largest difference from a check before the horizon.
+    /// Its motion.
+    pub motion: SampledMotion,
+    /// The runs that verify it.
+    pub checks: Vec<VerifyingRun>,
+    /// Its error bar: for each quantity the largest difference from a verifying run before the
+    /// horizon.
     pub bar: Errors,
-    /// What errors are relative to, up to the horizon.
-    pub ruler: Ruler,
+    /// The norms of errors, up to the horizon.
+    pub norms: ErrorNorms,
     /// Whether the horizon is the end of the run.
     pub whole: bool,
-    /// The share of the motion that the horizon is found by: the first of [`SHARES`], or a coarser one where that ends before the first impacts.
+    /// The share of the motion that determines the horizon: the first of [`SHARES`], or a coarser
+    /// one if the horizon would end before the first impacts.
     pub share: f64,
-    /// What the horizon must comprise; `None` in a scene without impacts.
+    /// The first impact that must be before the horizon; `None` in a scene without impacts.
     pub first_impact: Option<FirstImpact>,
-    /// What `check` and `run` would warn of in it.
-    pub warned: Vec<Warned>,
+    /// Its warnings by `check` and `run`.
+    pub warned: Vec<SettingWarning>,
 }
 
-/// A run that the reference is compared with.
+/// A run with which the reference is compared.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Check {
-    /// What is different in it.
+pub struct VerifyingRun {
+    /// The difference in its settings.
     pub what: &'static str,
     /// Its setting.
     pub setting: Setting,
     /// Its differences from the reference before the horizon.
     pub errors: Errors,
-    /// Until when the two agree within [`Reference::share`] of the motion, s.
+    /// Up to when the two agree within [`Reference::share`] of the motion, s.
     pub agrees_until: f64,
     /// Whether its differences count for the error bar.
     pub for_bar: bool,
 }
 
-/// The horizon is where the reference and the same with another step, or started 1e-12 beside it, have parted by this share of the
-/// motion: of the largest angle, of the largest side of a block, and of the largest deflection. Where that is before the first impacts have been
-/// compared, the next one is taken; the error bar then tells how well the reference is known.
+/// The horizon is where the reference and a run with another step, or with a perturbed initial
+/// state, differ by this share of the motion: of the largest angle, of the largest side of a block,
+/// and of the largest deflection. If that is before the first impacts have been compared, the next
+/// share is used; the error bar still gives the accuracy of the reference.
 pub const SHARES: [f64; 3] = [1e-3, 1e-2, 3e-2];
-/// By how much of themselves the first body's coordinates are nudged.
-pub const NUDGE: f64 = 1e-12;
-/// The reference's step as a part of the scene's own, unless that is too much work.
+/// Relative perturbation of the first body's coordinates.
+pub const PERTURBATION: f64 = 1e-12;
+/// The reference's step as a fraction of the scene's own, unless that is too much work.
 const STEP: f64 = 0.0025;
-/// Its elements and those of the check, as multiples of the scene's own. With an error that halves from mesh to mesh, the difference of
-/// the two is as large as the error of the finer one.
+/// Elements of the reference and of a verifying run, as multiples of the scene's own. If the error
+/// halves from mesh to mesh, the difference of the two equals the error of the finer one.
 const MESHES: [f64; 2] = [4.0, 2.0];
 /// Modelled work of the reference, s.
 const MOST_WORK: f64 = 1.2;
 /// Tolerance of its contact solver.
 const TOLERANCE: &str = "1e-13";
 
-/// What the reference is made of, for every scheme.
-struct Recipe<'a> {
+/// The settings of the reference, for every scheme.
+struct ReferenceSettings<'a> {
     resolved: &'a Resolved,
     step: f64,
 }
 
-impl Recipe<'_> {
+impl ReferenceSettings<'_> {
     fn setting(&self, scheme: &Setting, coarser: f64, mesh: f64) -> Setting {
         let scene = &self.resolved.scene;
         let mut setting = scheme.clone().with(&unreduced(self.resolved)).with(&refined(self.resolved, mesh));
@@ -81,30 +85,44 @@ impl Recipe<'_> {
     }
 }
 
-/// A scheme as the reference: its own run, and those beside it that are only done where they are asked for.
-struct Candidate {
+/// A scheme that may be the reference: its runs.
+struct ReferenceCandidate {
     /// The run itself, and with twice the step.
-    fine: Ran,
-    twice: Ran,
+    fine: RunResult,
+    twice: RunResult,
     scheme: usize,
-    /// Started beside it; until when they agree is the other part of the horizon.
-    nudged: Option<Ran>,
+    /// With a perturbed initial state, once it has been run: it also limits the horizon.
+    perturbed: Option<RunResult>,
 }
 
-impl Candidate {
-    /// Samples up to the horizon; `None` as long as it has not been started beside itself.
-    fn samples(&self, ruler: &Ruler, share: f64) -> Option<usize> {
-        let agree = |other: &Ran| ruler.agree(&other.motion, &self.fine.motion, share);
-        Some(agree(&self.twice).min(agree(self.nudged.as_ref()?)).max(1))
+impl ReferenceCandidate {
+    /// Samples up to the horizon; `None` before the perturbed run.
+    fn samples(&self, norms: &ErrorNorms, share: f64) -> Option<usize> {
+        let agree = |other: &RunResult| norms.agree(&other.motion, &self.fine.motion, share);
+        Some(agree(&self.twice).min(agree(self.perturbed.as_ref()?)).max(1))
     }
 }
+
+/// The reference that was chosen among the candidates.
+#[derive(Clone, Copy)]
+struct Choice {
+    candidate: usize,
+    /// The share of the motion that determines the horizon.
+    share: f64,
+    /// Samples up to the horizon.
+    samples: usize,
+}
+
+/// A run for comparison with the reference: what is different, the run, and whether it counts for
+/// the error bar.
+type Comparison = (&'static str, Setting, RunResult, bool);
 
 /// Finds the reference of a scene.
 ///
 /// # Errors
 /// If no scheme comes to the end of the scene, or the user interrupts.
 pub(crate) fn find(
-    source: &Source,
+    source: &StudyScene,
     resolved: &Resolved,
     axes: &Axes,
     sampling: Sampling,
@@ -112,129 +130,198 @@ pub(crate) fn find(
     cancel: &AtomicBool,
     done: &mut (dyn FnMut(usize, usize) + Send),
 ) -> Result<Reference, Failure> {
-    let recipe = Recipe { resolved, step: affordable_step(source, resolved, axes)? };
+    let settings = ReferenceSettings { resolved, step: affordable_step(source, resolved, axes)? };
     let schemes = &axes.scheme.options;
-    // Two steps of each scheme: who of them agrees best with itself is the reference.
+    // Each scheme with two steps: the one with the best agreement between them is the reference.
     let jobs: Vec<Setting> =
-        schemes.iter().flat_map(|scheme| [1.0, 2.0].map(|h| recipe.setting(scheme, h, MESHES[0]))).collect();
-    let mut total = jobs.len() + 2 + usize::from(refined(resolved, MESHES[0]) != refined(resolved, MESHES[1]));
-    let count = AtomicUsize::new(0);
-    let mut run = |jobs: &[(f64, Setting)], total: usize| {
-        let mut tell = |_| done(count.fetch_add(1, Ordering::Relaxed) + 1, total);
-        let one = |(nudge, setting): &(f64, Setting)| simulate(source, setting, *nudge, sampling, cancel);
-        let ran = runner::in_order(jobs, threads, cancel, one, &mut tell);
-        ran.into_iter().map(|ran| ran.unwrap_or(Err(Failure::Interrupted))).collect::<Vec<_>>()
-    };
-    let plain: Vec<(f64, Setting)> = jobs.iter().map(|setting| (0.0, setting.clone())).collect();
-    let mut ran = run(&plain, total);
-    if ran.contains(&Err(Failure::Interrupted)) {
-        return Err(Failure::Interrupted);
-    }
-    let why = ran.iter().find_map(|ran| ran.as_ref().err().cloned());
-    let mut singles: Vec<(usize, Ran)> = Vec::new();
-    let mut candidates: Vec<Candidate> = Vec::new();
-    for scheme in (0..schemes.len()).rev() {
-        match (ran.pop(), ran.pop()) {
-            (Some(Ok(twice)), Some(Ok(fine))) => candidates.push(Candidate { fine, twice, scheme, nudged: None }),
-            (Some(twice), Some(fine)) => {
-                singles.extend(twice.ok().map(|ran| (2 * scheme + 1, ran)));
-                singles.extend(fine.ok().map(|ran| (2 * scheme, ran)));
-            }
-            _ => {}
-        }
-    }
-    candidates.reverse();
-    if candidates.is_empty() {
-        return Err(why.unwrap_or_else(|| Failure::Ended("there is no scheme".to_owned())));
-    }
-    let ruler = Ruler::new(&resolved.scene, sampling);
-    let end = sampling.time(sampling.count - 1);
-    let impact_of = |of: &Candidate| first_impacts(&ruler, &of.fine.motion, end);
-    let is_enough = |of: &Candidate, samples: usize| {
-        impact_of(of).is_none_or(|impact| impact.is_within(ruler.clone().up_to(samples).horizon()))
-    };
-    // The scheme that agrees longest with itself comes first; where its horizon ends before the first impacts have been compared, so does the
-    // next one, and then all again with a coarser share.
-    let mut chosen: Option<(usize, f64, usize)> = None;
-    'search: for share in SHARES {
-        for number in in_order_of_agreement(&candidates, &ruler, share) {
-            let reach = ruler.agree(&candidates[number].twice.motion, &candidates[number].fine.motion, share).max(1);
-            if chosen.is_some() && !is_enough(&candidates[number], reach) {
-                continue;
-            }
-            if candidates[number].nudged.is_none() {
-                total += usize::from(chosen.is_some());
-                let job = (NUDGE, jobs[2 * candidates[number].scheme].clone());
-                candidates[number].nudged = run(&[job], total).into_iter().next().transpose()?;
-            }
-            let Some(samples) = candidates[number].samples(&ruler, share) else { continue };
-            if is_enough(&candidates[number], samples) {
-                chosen = Some((number, share, samples));
-                break 'search;
-            }
-            if chosen.is_none_or(|(_, _, most)| samples > most && share == SHARES[0]) {
-                chosen = Some((number, share, samples));
-            }
-        }
-    }
-    let Some((number, share, samples)) = chosen else {
-        return Err(Failure::Ended("no scheme comes to the end of the scene".to_owned()));
-    };
-    let Candidate { fine, twice, scheme: best, nudged } = candidates.remove(number);
-    let scheme = &schemes[best];
-    // An impact falls somewhere into a step: of two steps one may hit its time by luck, of three hardly any.
-    let mut extra = vec![("four times the step", recipe.setting(scheme, 4.0, MESHES[0]))];
-    let other_mesh = recipe.setting(scheme, 1.0, MESHES[1]);
-    if other_mesh != jobs[2 * best] {
+        schemes.iter().flat_map(|scheme| [1.0, 2.0].map(|h| settings.setting(scheme, h, MESHES[0]))).collect();
+    let total = jobs.len() + 2 + usize::from(refined(resolved, MESHES[0]) != refined(resolved, MESHES[1]));
+    let norms = ErrorNorms::new(&resolved.scene, sampling);
+    let mut search = ReferenceSearch { source, sampling, threads, cancel, jobs, norms, total, count: 0, done };
+    let (mut candidates, singles) = search.candidates()?;
+    let choice = search.choose(&mut candidates)?;
+    let chosen = candidates.remove(choice.candidate);
+
+    let scheme = &schemes[chosen.scheme];
+    // The position of an impact within its step is random: one of two steps may have its time
+    // right by chance, but hardly all of three.
+    let mut extra = vec![("four times the step", settings.setting(scheme, 4.0, MESHES[0]))];
+    let other_mesh = settings.setting(scheme, 1.0, MESHES[1]);
+    if other_mesh != search.jobs[2 * chosen.scheme] {
         extra.push(("half the elements", other_mesh));
     }
-    let beside: Vec<(f64, Setting)> = extra.iter().map(|(_, setting)| (0.0, setting.clone())).collect();
-    let beside = run(&beside, total);
+    let plain: Vec<(f64, Setting)> = extra.iter().map(|(_, setting)| (0.0, setting.clone())).collect();
+    let runs = search.run(&plain);
+    let mut comparisons: Vec<Comparison> = Vec::new();
+    for ((what, setting), run) in extra.into_iter().zip(runs) {
+        comparisons.push((what, setting, run?, true));
+    }
+    Ok(search.reference(choice, chosen, comparisons, candidates, singles))
+}
 
-    let mut others = Vec::new();
-    others.extend(nudged.map(|ran| ("started 1e-12 beside it", jobs[2 * best].clone(), ran, false)));
-    others.push(("twice the step", jobs[2 * best + 1].clone(), twice, true));
-    for ((what, setting), ran) in extra.into_iter().zip(beside) {
-        others.push((what, setting, ran?, true));
+/// The search for the reference of a scene.
+struct ReferenceSearch<'a> {
+    source: &'a StudyScene,
+    sampling: Sampling,
+    threads: usize,
+    cancel: &'a AtomicBool,
+    /// Each scheme with the step of the reference, and with twice that.
+    jobs: Vec<Setting>,
+    /// Over the whole run.
+    norms: ErrorNorms,
+    /// Runs in total, and so far.
+    total: usize,
+    count: usize,
+    done: &'a mut (dyn FnMut(usize, usize) + Send),
+}
+
+/// A run with the number of its job.
+type SingleRun = (usize, RunResult);
+
+impl ReferenceSearch<'_> {
+    /// Runs settings, given with the perturbation of the initial state.
+    fn run(&mut self, jobs: &[(f64, Setting)]) -> Vec<Result<RunResult, Failure>> {
+        let Self { source, sampling, cancel, total, count, done, .. } = self;
+        let mut tell = |_| {
+            *count += 1;
+            done(*count, *total);
+        };
+        let one =
+            |(perturbation, setting): &(f64, Setting)| simulate(source, setting, *perturbation, *sampling, cancel);
+        let runs = runner::in_order(jobs, self.threads, cancel, one, &mut tell);
+        runs.into_iter().map(|run| run.unwrap_or(Err(Failure::Interrupted))).collect()
     }
-    singles.extend(
-        candidates.into_iter().flat_map(|other| [(2 * other.scheme, other.fine), (2 * other.scheme + 1, other.twice)]),
-    );
-    singles.sort_by_key(|(at, _)| *at);
-    for (at, ran) in singles {
-        let what = if at % 2 == 0 { "another scheme" } else { "another scheme and twice the step" };
-        if at / 2 != best {
-            others.push((what, jobs[at].clone(), ran, true));
+
+    /// The schemes that come to the end with both steps, and the runs of the others that do, by the
+    /// number of their job.
+    fn candidates(&mut self) -> Result<(Vec<ReferenceCandidate>, Vec<SingleRun>), Failure> {
+        let plain: Vec<(f64, Setting)> = self.jobs.iter().map(|setting| (0.0, setting.clone())).collect();
+        let mut runs = self.run(&plain);
+        if runs.contains(&Err(Failure::Interrupted)) {
+            return Err(Failure::Interrupted);
+        }
+        let why = runs.iter().find_map(|run| run.as_ref().err().cloned());
+        let (mut candidates, mut singles) = (Vec::new(), Vec::new());
+        for scheme in (0..self.jobs.len() / 2).rev() {
+            match (runs.pop(), runs.pop()) {
+                (Some(Ok(twice)), Some(Ok(fine))) => {
+                    candidates.push(ReferenceCandidate { fine, twice, scheme, perturbed: None });
+                }
+                (Some(twice), Some(fine)) => {
+                    singles.extend(twice.ok().map(|run| (2 * scheme + 1, run)));
+                    singles.extend(fine.ok().map(|run| (2 * scheme, run)));
+                }
+                _ => {}
+            }
+        }
+        candidates.reverse();
+        if candidates.is_empty() {
+            return Err(why.unwrap_or_else(|| Failure::Ended("there is no scheme".to_owned())));
+        }
+        Ok((candidates, singles))
+    }
+
+    fn first_impact(&self, motion: &SampledMotion) -> Option<FirstImpact> {
+        first_impacts(&self.norms, motion, self.sampling.time(self.sampling.count - 1))
+    }
+
+    /// Whether the first impacts are within this number of samples.
+    fn is_enough(&self, of: &ReferenceCandidate, samples: usize) -> bool {
+        let horizon = self.norms.clone().up_to(samples).horizon();
+        self.first_impact(&of.fine.motion).is_none_or(|impact| impact.is_within(horizon))
+    }
+
+    /// Chooses the reference: the scheme with the longest agreement between its steps; if its
+    /// horizon ends before the first impacts have been compared, the next one, and then all again
+    /// with a coarser share.
+    fn choose(&mut self, candidates: &mut [ReferenceCandidate]) -> Result<Choice, Failure> {
+        let mut chosen: Option<Choice> = None;
+        for share in SHARES {
+            for candidate in in_order_of_agreement(candidates, &self.norms, share) {
+                let of = &candidates[candidate];
+                let reach = self.norms.agree(&of.twice.motion, &of.fine.motion, share).max(1);
+                if chosen.is_some() && !self.is_enough(of, reach) {
+                    continue;
+                }
+                if of.perturbed.is_none() {
+                    self.total += usize::from(chosen.is_some());
+                    let job = (PERTURBATION, self.jobs[2 * of.scheme].clone());
+                    candidates[candidate].perturbed = self.run(&[job]).into_iter().next().transpose()?;
+                }
+                let Some(samples) = candidates[candidate].samples(&self.norms, share) else { continue };
+                if self.is_enough(&candidates[candidate], samples) {
+                    return Ok(Choice { candidate, share, samples });
+                }
+                if chosen.is_none_or(|best| samples > best.samples && share == SHARES[0]) {
+                    chosen = Some(Choice { candidate, share, samples });
+                }
+            }
+        }
+        chosen.ok_or_else(|| Failure::Ended("no scheme comes to the end of the scene".to_owned()))
+    }
+
+    /// The reference with its horizon and error bar, from the chosen scheme, its further runs,
+    /// and the runs of other schemes.
+    fn reference(
+        &self,
+        choice: Choice,
+        chosen: ReferenceCandidate,
+        further: Vec<Comparison>,
+        others: Vec<ReferenceCandidate>,
+        mut singles: Vec<(usize, RunResult)>,
+    ) -> Reference {
+        let ReferenceCandidate { fine, twice, scheme: best, perturbed } = chosen;
+        let mut comparisons: Vec<Comparison> = Vec::new();
+        // The perturbed run limits the horizon; all others count for the error bar.
+        comparisons.extend(perturbed.map(|run| ("perturbed by 1e-12", self.jobs[2 * best].clone(), run, false)));
+        comparisons.push(("twice the step", self.jobs[2 * best + 1].clone(), twice, true));
+        comparisons.extend(further);
+        singles.extend(
+            others.into_iter().flat_map(|other| [(2 * other.scheme, other.fine), (2 * other.scheme + 1, other.twice)]),
+        );
+        singles.sort_by_key(|(at, _)| *at);
+        for (at, run) in singles {
+            let what = if at % 2 == 0 { "another scheme" } else { "another scheme and twice the step" };
+            if at / 2 != best {
+                comparisons.push((what, self.jobs[at].clone(), run, true));
+            }
+        }
+        let Choice { share, samples, .. } = choice;
+        let motion = fine.motion;
+        let norms = self.norms.clone().up_to(samples);
+        let (mut checks, mut bar) = (Vec::new(), Errors::default());
+        for (what, setting, run, for_bar) in comparisons {
+            let errors = norms.errors(&run.motion, &motion);
+            if for_bar {
+                bar = bar.larger(&errors);
+            }
+            let agree = self.norms.agree(&run.motion, &motion, share);
+            let agrees_until = self.sampling.time(agree.max(1) - 1);
+            checks.push(VerifyingRun { what, setting, errors, agrees_until, for_bar });
+        }
+        Reference {
+            setting: self.jobs[2 * best].clone(),
+            first_impact: self.first_impact(&motion),
+            motion,
+            checks,
+            bar,
+            whole: samples == self.sampling.count,
+            share,
+            warned: fine.warned,
+            norms,
         }
     }
-    let motion = fine.motion;
-    let first_impact = first_impacts(&ruler, &motion, end);
-    // The horizon goes by the two of the first kind; the error bar by all the others.
-    let ruler = ruler.up_to(samples);
-    let mut checks = Vec::new();
-    let mut bar = Errors::default();
-    for (what, setting, ran, for_bar) in others {
-        let errors = ruler.errors(&ran.motion, &motion);
-        if for_bar {
-            bar = bar.larger(&errors);
-        }
-        let agree = Ruler::new(&resolved.scene, sampling).agree(&ran.motion, &motion, share);
-        let agrees_until = sampling.time(agree.max(1) - 1);
-        checks.push(Check { what, setting, errors, agrees_until, for_bar });
-    }
-    let whole = samples == sampling.count;
-    let setting = jobs[2 * best].clone();
-    Ok(Reference { setting, motion, checks, bar, whole, share, first_impact, warned: fine.warned, ruler })
 }
 
 impl Reference {
-    /// Whether the first impacts of the scene, where it has any, are before the horizon with what they did.
+    /// Whether the first impacts of the scene, if any, and their effect are before the horizon.
     #[must_use]
     pub fn has_first_impacts(&self) -> bool {
-        self.first_impact.is_none_or(|impact| impact.is_within(self.ruler.horizon()))
+        self.first_impact.is_none_or(|impact| impact.is_within(self.norms.horizon()))
     }
 
-    /// How well the reference is known in a quantity; 0 where the exact value is known, as that of the penetration.
+    /// The error bar of the reference in a quantity; 0 if the exact value is known, as for the
+    /// penetration.
     #[must_use]
     pub fn bar_of(&self, quantity: Quantity) -> f64 {
         if quantity == Quantity::Penetration { 0.0 } else { self.bar.of(quantity).unwrap_or(0.0) }
@@ -242,27 +329,27 @@ impl Reference {
 }
 
 /// The reference's step: as fine as the work allows, s.
-fn affordable_step(source: &Source, resolved: &Resolved, axes: &Axes) -> Result<f64, Failure> {
+fn affordable_step(source: &StudyScene, resolved: &Resolved, axes: &Axes) -> Result<f64, Failure> {
     let own = resolved.scene.time.step;
     let mut step = STEP * own;
     let work = |step: f64| {
-        let recipe = Recipe { resolved, step };
+        let recipe = ReferenceSettings { resolved, step };
         let works = axes.scheme.options.iter().map(|scheme| expect(source, &recipe.setting(scheme, 1.0, MESHES[0])));
         works.reduce(Result::or).unwrap_or(Err(Failure::Ended("there is no scheme".to_owned())))
     };
-    // Halves and doubles of decimal steps have few digits.
+    // Doubles of decimal steps have few digits.
     while step < own && work(step)?.seconds() > MOST_WORK {
         step *= 2.0;
     }
     Ok(step)
 }
 
-/// The numbers of the candidates, first whose two runs agree the longest, and where several do, the best.
-fn in_order_of_agreement(candidates: &[Candidate], ruler: &Ruler, share: f64) -> Vec<usize> {
-    let of = |candidate: &Candidate| {
+/// The indices of the candidates, by how long their two runs agree, and among equals by how well.
+fn in_order_of_agreement(candidates: &[ReferenceCandidate], norms: &ErrorNorms, share: f64) -> Vec<usize> {
+    let of = |candidate: &ReferenceCandidate| {
         let (fine, twice) = (&candidate.fine.motion, &candidate.twice.motion);
-        let agree = ruler.agree(twice, fine, share);
-        let error = ruler.clone().up_to(agree).errors(twice, fine).of(Quantity::Accuracy);
+        let agree = norms.agree(twice, fine, share);
+        let error = norms.clone().up_to(agree).errors(twice, fine).of(Quantity::Accuracy);
         (agree, error.unwrap_or(f64::INFINITY))
     };
     let found: Vec<(usize, f64)> = candidates.iter().map(of).collect();

@@ -1,17 +1,18 @@
-//! Jobs on all cores, with their results in order.
+//! Runs jobs on all cores, with their results in order.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// As many threads as the machine runs at once.
+/// Number of hardware threads.
 #[must_use]
 pub fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// Does `work` for every job, on up to `threads` threads, and returns the results in the order of the jobs, whatever the order in
-/// which they came to an end. Jobs are begun in their order. Once `cancel` is set none is begun: its result is `None`.
-/// `done` hears of each job that has ended, from the threads, one at a time.
+/// Does `work` for every job, on up to `threads` threads, and returns the results in the order of
+/// the jobs, whatever the order in which they end. Jobs are started in order. Once `cancel` is set
+/// no more are started: their result is `None`. `done` is called after each job, from the threads,
+/// one at a time.
 ///
 /// ```
 /// use std::sync::atomic::AtomicBool;

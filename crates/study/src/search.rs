@@ -1,54 +1,57 @@
-//! Which settings are tried: cheap ones first, by counted work, until none that is left could be cheaper than what is known to do.
+//! Selects the settings to try: cheapest first, by counted work, until no remaining one could be
+//! cheaper than those known to reach the accuracies.
 
 use crate::axes::Axes;
-use crate::recommend::{Held, TARGETS, cheapest, eligible};
+use crate::recommend::{ConfirmedErrors, TARGETS, cheapest, eligible};
 use crate::row::differ;
-use crate::{Row, Setting, Warned, Work};
+use crate::{Row, Setting, SettingWarning, Work};
 use std::collections::BTreeSet;
 
-/// What is tried in order, for people.
-pub const TOLD: [&str; 5] = [
-    "every scheme with every step, all else as in the scene",
-    "every option of every other axis, one at a time, on the scene as it is",
-    "from the cheapest setting so far for each accuracy asked for, all that differ from it in one axis and should be cheaper, as long as that finds something",
-    "all combinations of schemes, steps, θ, meshes and modes, the cheap ones first by counted work, until none that is left could be cheaper than what \
+/// The stages of the search, for users.
+pub const SEARCH_STAGES: [&str; 5] = [
+    "every scheme with every step, everything else as in the scene",
+    "every option of every other axis, one at a time, on the unchanged scene",
+    "from the cheapest setting so far for each accuracy, all settings that differ on one axis and should be cheaper, as long as that finds any",
+    "all combinations of schemes, steps, θ, meshes and modes, cheapest first by counted work, until no remaining one could be cheaper than what \
      is known to reach each accuracy that can be measured, or the work allowed is used up",
-    "beside each of these, the two next finer steps of what is the cheapest so far for an accuracy: accuracy that they do not confirm was luck, and the next cheapest is \
+    "with each of these, the two next finer steps of the cheapest setting so far for an accuracy: accuracy that they don't confirm was chance, and the next cheapest is \
      confirmed in its place",
 ];
 
-/// Settings that are tried between two looks at what they showed. By their number, so that it is the same on any number of cores.
+/// Number of settings tried before their results are used; fixed, so that it is the same on any
+/// number of cores.
 const BATCH: usize = 16;
 
-/// How many finer steps confirm a setting.
+/// Number of finer steps that confirm a setting.
 const CONFIRMING: usize = 2;
 
-/// A setting that is to be tried, with the least that it costs, s.
+/// A setting to be tried, with a lower bound on its cost, s.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Planned {
+pub(crate) struct PlannedSetting {
     pub(crate) setting: Setting,
     pub(crate) least: f64,
 }
 
-/// What is known at some moment of the search.
-pub(crate) struct Known<'a> {
+/// The state of the search.
+pub(crate) struct SearchState<'a> {
     axes: &'a Axes,
     rows: &'a [Row],
     tried: BTreeSet<&'a Setting>,
-    /// The cheapest row for each accuracy that can be measured.
+    /// The cheapest row for each measurable accuracy.
     cheapest: Vec<Option<usize>>,
 }
 
-impl<'a> Known<'a> {
-    /// By rows, the error bar of the accuracy, and what the reference is warned of.
-    pub(crate) fn new(axes: &'a Axes, rows: &'a [Row], bar: f64, warned: &[Warned]) -> Self {
-        let held = Held::of(rows, axes);
+impl<'a> SearchState<'a> {
+    /// From the rows, the error bar of the accuracy, and the warnings of the reference.
+    pub(crate) fn new(axes: &'a Axes, rows: &'a [Row], bar: f64, warned: &[SettingWarning]) -> Self {
+        let held = ConfirmedErrors::of(rows, axes);
         let targets = TARGETS.into_iter().filter(|target| bar < *target);
         let of = |target: f64| cheapest(rows, &eligible(rows, &held, target, bar, warned));
         Self { axes, rows, tried: rows.iter().map(|row| &row.setting).collect(), cheapest: targets.map(of).collect() }
     }
 
-    /// Beyond this cost, s, no setting is of use for any accuracy; infinite while none is known for one of them.
+    /// Settings above this cost, s, can't be the cheapest for any accuracy; infinite while none is
+    /// known for one of them.
     fn bound(&self) -> f64 {
         let cost = |row: &Option<usize>| row.and_then(|row| self.rows[row].modelled()).unwrap_or(f64::INFINITY);
         self.cheapest.iter().map(cost).fold(0.0, f64::max)
@@ -58,7 +61,7 @@ impl<'a> Known<'a> {
         self.cheapest.iter().flatten().map(|&row| &self.rows[row].setting)
     }
 
-    /// What would confirm the cheapest so far, or show that they are luck.
+    /// The settings that would confirm the cheapest ones so far, or refute them.
     pub(crate) fn unconfirmed(&self) -> Vec<Setting> {
         let mut wanted = Vec::new();
         for setting in self.chosen() {
@@ -74,13 +77,14 @@ impl<'a> Known<'a> {
         self.new_ones(schemes.flat_map(|scheme| self.axes.ladder(scheme)).collect())
     }
 
-    /// Every option of every other axis, on the scene as it is.
+    /// Every option of every other axis, on the unchanged scene.
     pub(crate) fn one_at_a_time(&self) -> Vec<Setting> {
         let axes = self.axes.grid.iter().chain(&self.axes.others);
         self.new_ones(axes.flat_map(|axis| axis.options.iter().cloned()).collect())
     }
 
-    /// What differs in one axis from the cheapest so far: steps, and options that changed something on the scene as it is, or can't be known to do so.
+    /// Settings that differ on one axis from the cheapest so far: steps, and options that changed
+    /// something on the unchanged scene, or may do so.
     pub(crate) fn beside_the_cheapest(&self) -> Vec<Setting> {
         let own = self.rows.iter().find(|row| row.setting.is_none());
         let side: Vec<Setting> = self.axes.others.iter().flat_map(|axis| axis.options.clone()).collect();
@@ -100,16 +104,16 @@ impl<'a> Known<'a> {
         self.new_ones(wanted)
     }
 
-    /// Whether a setting that costs at least so much could be what is advised for some accuracy.
+    /// Whether a setting with this least cost could be advised for some accuracy.
     pub(crate) fn could_be_cheapest(&self, least: f64) -> bool {
         least < self.bound()
     }
 
-    /// The next ones of the grid, which stands from cheap to dear; those that could not be advised are passed over.
-    pub(crate) fn next_of_grid(&self, grid: &[Planned], too_dear: &BTreeSet<Setting>) -> Vec<Setting> {
+    /// The next settings of the grid, cheapest first, without those that could not be advised.
+    pub(crate) fn next_of_grid(&self, grid: &[PlannedSetting], too_expensive: &BTreeSet<Setting>) -> Vec<Setting> {
         let bound = self.bound();
         let open = grid.iter().take_while(|one| one.least < bound);
-        let open = open.filter(|one| !self.tried.contains(&one.setting) && !too_dear.contains(&one.setting));
+        let open = open.filter(|one| !self.tried.contains(&one.setting) && !too_expensive.contains(&one.setting));
         open.take(BATCH).map(|one| one.setting.clone()).collect()
     }
 
@@ -124,18 +128,19 @@ impl<'a> Known<'a> {
     }
 }
 
-/// All combinations that can be run, the cheapest first by the least that they cost; `expect` tells what a setting costs, and nothing of those that
-/// can't be run. A step costs the same however many there are: one of each ladder is looked at.
-pub(crate) fn grid(axes: &Axes, steps: &[f64], expect: &dyn Fn(&Setting) -> Option<Work>) -> Vec<Planned> {
+/// All combinations that can be run, sorted by a lower bound on their cost; `expect` returns the
+/// cost of a setting, `None` if it can't be run. The cost of a step doesn't depend on their number,
+/// so one of each ladder is evaluated.
+pub(crate) fn grid(axes: &Axes, steps: &[f64], expect: &dyn Fn(&Setting) -> Option<Work>) -> Vec<PlannedSetting> {
     let mut all = Vec::new();
     for combination in axes.combinations() {
         let Some(work) = expect(&combination) else { continue };
         for (setting, &count) in axes.ladder(&combination).into_iter().zip(steps) {
             let least = Work { steps: count as u64, ..work }.seconds();
-            all.push(Planned { setting, least });
+            all.push(PlannedSetting { setting, least });
         }
     }
-    // Stable: of the equally cheap the first that the axes name.
+    // A stable sort, so that equally cheap settings stay in the order of the axes.
     all.sort_by(|a, b| a.least.total_cmp(&b.least));
     all
 }
@@ -143,12 +148,16 @@ pub(crate) fn grid(axes: &Axes, steps: &[f64], expect: &dyn Fn(&Setting) -> Opti
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::axes::Axis;
-    use crate::{Done, Errors};
+    use crate::axes::SettingAxis;
+    use crate::{CompletedRun, Errors};
 
-    fn axis(name: &'static str, key: &str, words: &[&str]) -> Axis {
+    fn axis(name: &'static str, key: &str, words: &[&str]) -> SettingAxis {
         let options = words.iter().map(|word| Setting::none().set(key, *word));
-        Axis { name, keys: vec![key.to_owned()], options: std::iter::once(Setting::none()).chain(options).collect() }
+        SettingAxis {
+            name,
+            keys: vec![key.to_owned()],
+            options: std::iter::once(Setting::none()).chain(options).collect(),
+        }
     }
 
     /// Steps of 4 (2 own) 1 and ½ ms; the coarser the mesh, the cheaper.
@@ -179,7 +188,8 @@ mod tests {
         Work { steps: steps(setting), nodal_dofs: dofs(setting), beams: 1, ..Work::default() }
     }
 
-    /// The error of a made-up scene in which everything hangs together: with scheme b and few modes long steps do.
+    /// The error of a made-up scene in which everything hangs together: with scheme b and few modes
+    /// long steps do.
     fn error(setting: &Setting) -> f64 {
         let step = 1.0 / steps(setting) as f64;
         let in_time = if setting.get("time.scheme").is_some() { 2.0 * step } else { 20.0 * step };
@@ -190,12 +200,12 @@ mod tests {
 
     fn row(setting: &Setting, error: f64) -> Row {
         let errors = Errors::of_accuracy(error);
-        let result = Ok(Done { errors, work: work(setting), unconverged: 0, warned: Vec::new() });
+        let result = Ok(CompletedRun { errors, work: work(setting), unconverged: 0, warned: Vec::new() });
         Row { setting: setting.clone(), stage: 1, result, cpu: None }
     }
 
-    fn known<'a>(axes: &'a Axes, rows: &'a [Row]) -> Known<'a> {
-        Known::new(axes, rows, 0.0, &[])
+    fn known<'a>(axes: &'a Axes, rows: &'a [Row]) -> SearchState<'a> {
+        SearchState::new(axes, rows, 0.0, &[])
     }
 
     #[test]
@@ -222,9 +232,10 @@ mod tests {
         };
         assert_eq!(costs(&rows), costs(&all));
         assert_eq!(costs(&rows).iter().flatten().count(), 2, "10 % and 1 % can be had");
-        // The finest accuracies can't: all is tried for them. With the bar above them, the search ends early.
+        // The finest accuracies can't: all is tried for them. With the bar above them, the search
+        // ends early.
         assert_eq!(rows.len(), all.len());
-        let coarse = Known::new(&axes, &rows[..2 * BATCH], 0.015, &[]);
+        let coarse = SearchState::new(&axes, &rows[..2 * BATCH], 0.015, &[]);
         assert!(coarse.bound().is_finite() && !coarse.could_be_cheapest(coarse.bound()));
         let open = coarse.next_of_grid(&grid, &BTreeSet::new());
         assert!(open.iter().all(|one| work(one).seconds() < coarse.bound()));

@@ -1,27 +1,27 @@
-//! A setting: what is changed of a scene, as `--set` arguments.
+//! A setting: changes to a scene, as `--set` arguments.
 
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// Keys of a scene with the values that they are given, as texts that `--set` takes. Two that say the same are equal.
+/// Keys of a scene with their values, as texts for `--set`. Settings with the same pairs are equal.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Setting(BTreeMap<String, String>);
 
 impl Setting {
-    /// The scene as it is.
+    /// The unchanged scene.
     #[must_use]
     pub fn none() -> Self {
         Self::default()
     }
 
-    /// The same with one more key; a value that it has already is replaced.
+    /// The same with one more key; an existing value is replaced.
     #[must_use]
     pub fn set(mut self, key: impl Into<String>, value: impl Into<String>) -> Self {
         self.0.insert(key.into(), value.into());
         self
     }
 
-    /// The same with all of `other`, whose values win.
+    /// The same with all of `other`, whose values take precedence.
     #[must_use]
     pub fn with(mut self, other: &Self) -> Self {
         self.0.extend(other.0.iter().map(|(key, value)| (key.clone(), value.clone())));
@@ -35,7 +35,7 @@ impl Setting {
         self
     }
 
-    /// The value of a key; `None` where the scene's own holds.
+    /// The value of a key; `None` if the scene's own applies.
     #[must_use]
     pub fn get(&self, key: &str) -> Option<&str> {
         self.0.get(key).map(String::as_str)
@@ -47,33 +47,33 @@ impl Setting {
         self.0.is_empty()
     }
 
-    /// How many keys are changed.
+    /// Number of changed keys.
     #[must_use]
     pub fn len(&self) -> usize {
         self.0.len()
     }
 
-    /// Whether it is the scene as it is; the same as [`Setting::is_none`].
+    /// The same as [`Setting::is_none`].
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.is_none()
     }
 
-    /// The pairs, as the loader takes them.
+    /// The pairs, for the loader.
     #[must_use]
     pub fn pairs(&self) -> Vec<(String, String)> {
         self.0.iter().map(|(key, value)| (key.clone(), value.clone())).collect()
     }
 }
 
-/// As arguments for a shell: `--set time.step="50 us"`; nothing for the scene as it is.
+/// As arguments for a shell: `--set time.step="50 us"`; nothing for the unchanged scene.
 impl fmt::Display for Setting {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         arguments(self.0.iter().map(|(key, value)| (key.as_str(), value.as_str())), f)
     }
 }
 
-/// Pairs as `--set` arguments that a shell takes as they stand.
+/// Pairs as `--set` arguments, quoted for a shell.
 fn arguments<'a>(pairs: impl Iterator<Item = (&'a str, &'a str)>, f: &mut dyn fmt::Write) -> fmt::Result {
     for (number, (key, value)) in pairs.enumerate() {
         let gap = if number == 0 { "" } else { " " };
@@ -89,7 +89,7 @@ fn arguments<'a>(pairs: impl Iterator<Item = (&'a str, &'a str)>, f: &mut dyn fm
     Ok(())
 }
 
-/// What the user set, in the user's order, as arguments.
+/// The user's own settings, in their order, as arguments.
 pub(crate) fn as_arguments(pairs: &[(String, String)]) -> String {
     let mut text = String::new();
     // Writing to a String can't fail.

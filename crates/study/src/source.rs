@@ -1,4 +1,5 @@
-//! A scene that is run many times with other settings: its text and the files that it names, read once.
+//! A scene that is run many times with different settings: its text and the files that it names,
+//! read once.
 
 use crate::Setting;
 use std::collections::BTreeMap;
@@ -7,7 +8,7 @@ use teeter_scenario::resolve::{ReadFile, Resolved};
 
 /// A scene in memory.
 #[derive(Debug, Clone)]
-pub struct Source {
+pub struct StudyScene {
     bytes: Vec<u8>,
     name: String,
     stem: String,
@@ -15,12 +16,12 @@ pub struct Source {
     files: BTreeMap<String, Vec<u8>>,
 }
 
-impl Source {
-    /// Reads a scene as [`teeter_scenario::load_with`] does, and keeps what it read. `sets` are the user's own, which every
-    /// run has before the setting that is tried.
+impl StudyScene {
+    /// Reads a scene as [`teeter_scenario::load_with`] does, and keeps the data. `sets` are the
+    /// user's own settings, applied in every run before the setting that is tried.
     ///
     /// # Errors
-    /// All that is wrong with the scene.
+    /// All errors of the scene.
     pub fn new(
         bytes: Vec<u8>,
         name: &str,
@@ -36,7 +37,7 @@ impl Source {
     /// The scene with a setting.
     ///
     /// # Errors
-    /// All that is wrong with it then.
+    /// All errors of the scene with it.
     pub fn load(&self, setting: &Setting) -> Result<Resolved, Diagnostics> {
         let sets: Vec<_> = self.sets.iter().cloned().chain(setting.pairs()).collect();
         let mut read = |path: &str| match self.files.get(path) {
@@ -46,7 +47,7 @@ impl Source {
         teeter_scenario::load_with(&self.bytes, &self.name, &self.stem, &sets, &mut read)
     }
 
-    /// What the user set.
+    /// The user's own settings.
     #[must_use]
     pub fn sets(&self) -> &[(String, String)] {
         &self.sets

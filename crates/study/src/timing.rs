@@ -1,23 +1,23 @@
-//! CPU time, measured fairly: one thread at a time, warm, without output, the candidates in turns so that a busy moment of the machine falls on
-//! all of them; the median.
+//! Measures CPU times: one thread at a time, warm, without output, with the candidates alternating
+//! so that load on the machine affects all of them; the median counts.
 
 use crate::simulate::time;
-use crate::{Failure, Setting, Source};
+use crate::{Failure, Setting, StudyScene};
 use std::sync::atomic::AtomicBool;
 
 /// The CPU time of the steps of a run, s.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Cpu {
+pub struct CpuTime {
     /// Median.
     pub median: f64,
-    /// The least.
+    /// Minimum.
     pub least: f64,
-    /// How many were measured.
+    /// Number of measurements.
     pub runs: usize,
 }
 
-impl Cpu {
-    /// Of some measured times; `None` without any.
+impl CpuTime {
+    /// From measured times; `None` without any.
     #[must_use]
     pub fn of(mut times: Vec<f64>) -> Option<Self> {
         times.sort_by(f64::total_cmp);
@@ -28,10 +28,11 @@ impl Cpu {
     }
 }
 
-/// How often a short run is measured.
+/// Number of measurements of a short run.
 const SHORT: usize = 7;
 
-/// How often a run is measured, by its modelled cost (s) and not by the clock: short ones vary the most and cost the least.
+/// Number of measurements of a run, by its modelled cost (s), not by the clock: short ones vary
+/// most and cost least.
 fn runs(modelled: f64) -> usize {
     match modelled {
         short if short < 0.03 => SHORT,
@@ -40,20 +41,21 @@ fn runs(modelled: f64) -> usize {
     }
 }
 
-/// Measures settings, given with their modelled cost (s), in turns. A run of the same setting has been done before, which warms caches of
-/// the long ones; the short ones get one more that doesn't count. `done` hears of each turn.
+/// Measures settings, given with their modelled cost (s), alternately. Each setting has been run
+/// before, which warms the caches for long runs; short ones get one more run that doesn't count.
+/// `done` is called after each turn.
 pub(crate) fn in_turns(
-    source: &Source,
+    source: &StudyScene,
     settings: &[(&Setting, f64)],
     cancel: &AtomicBool,
     done: &mut dyn FnMut(usize, usize),
-) -> Result<Vec<Option<Cpu>>, Failure> {
+) -> Result<Vec<Option<CpuTime>>, Failure> {
     let most = settings.iter().map(|(_, modelled)| runs(*modelled)).max().unwrap_or(0);
     let mut times: Vec<Vec<f64>> = settings.iter().map(|_| Vec::new()).collect();
     for turn in 0..most {
         for ((setting, modelled), times) in settings.iter().zip(&mut times) {
             let runs = runs(*modelled);
-            // The last turns are of all, the first ones of those alone that have more.
+            // The first turns include only settings with more measurements, the last ones all.
             if turn + runs < most {
                 continue;
             }
@@ -64,18 +66,18 @@ pub(crate) fn in_turns(
         }
         done(turn + 1, most);
     }
-    Ok(times.into_iter().map(Cpu::of).collect())
+    Ok(times.into_iter().map(CpuTime::of).collect())
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Cpu;
+    use super::CpuTime;
 
     #[test]
     fn one_bad_moment_does_not_move_the_median() {
-        let cpu = Cpu::of(vec![2.0, 1.0, 900.0]).unwrap();
+        let cpu = CpuTime::of(vec![2.0, 1.0, 900.0]).unwrap();
         assert_eq!((cpu.median, cpu.least, cpu.runs), (2.0, 1.0, 3));
-        assert_eq!(Cpu::of(vec![2.0, 1.0]).map(|cpu| cpu.median), Some(1.5));
-        assert_eq!(Cpu::of(Vec::new()), None);
+        assert_eq!(CpuTime::of(vec![2.0, 1.0]).map(|cpu| cpu.median), Some(1.5));
+        assert_eq!(CpuTime::of(Vec::new()), None);
     }
 }

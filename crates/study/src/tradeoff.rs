@@ -1,22 +1,22 @@
 //! The study of one scene: reference, candidates in stages, times, advice.
 
 use crate::axes::Axes;
-use crate::recommend::{Advice, Held, TARGETS, advise, eligible};
+use crate::recommend::{Advice, ConfirmedErrors, TARGETS, advise, eligible};
 use crate::reference::{self, Reference};
-use crate::row::{Done, Row, front_of};
-use crate::search::{self, Known, Planned};
-use crate::simulate::{expect, simulate_unless_dear};
-use crate::{Failure, Sampling, Setting, Source, runner, timing};
+use crate::row::{CompletedRun, Row, pareto_front_of};
+use crate::search::{self, PlannedSetting, SearchState};
+use crate::simulate::{expect, simulate_within_limit};
+use crate::{Failure, Sampling, Setting, StudyScene, runner, timing};
 use std::collections::BTreeSet;
 use std::sync::atomic::AtomicBool;
 use teeter_scenario::resolve::Resolved;
 
-/// What a study found.
+/// The results of a study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tradeoff {
     /// The scene's title.
     pub title: String,
-    /// What the user set beside what is tried.
+    /// The user's own settings, applied to every candidate.
     pub sets: Vec<(String, String)>,
     /// Simulated time, s.
     pub end: f64,
@@ -24,41 +24,42 @@ pub struct Tradeoff {
     pub step: f64,
     /// The scene's own scheme.
     pub scheme: String,
-    /// When motions are compared.
+    /// The sampling times of motions.
     pub sampling: Sampling,
-    /// What can be varied.
+    /// The axes that are varied.
     pub axes: Axes,
-    /// What errors are against.
+    /// The reference for errors.
     pub reference: Reference,
     /// The candidates, in the order in which they were tried.
     pub rows: Vec<Row>,
-    /// The rows on the front of accuracy over counted work, from cheap to dear.
+    /// The rows on the Pareto front of accuracy over counted work, cheapest first.
     pub front: Vec<usize>,
-    /// Settings that were not run because they are too much work.
-    pub too_dear: BTreeSet<Setting>,
-    /// What to take for each of [`TARGETS`].
+    /// Settings not run because they are too much work.
+    pub too_expensive: BTreeSet<Setting>,
+    /// The advice for each of [`TARGETS`].
     pub advice: [Advice; TARGETS.len()],
 }
 
-/// Modelled work of a candidate, and of all of them, s: what is dearer is left out.
+/// Largest modelled work of a candidate, and of all of them, s: more expensive settings are left
+/// out.
 const MOST_WORK_OF_ONE: f64 = 1.5;
 const MOST_WORK: f64 = 24.0;
-/// Of that, what the first looks at the scene may take.
+/// The part of that for the first stages.
 const MOST_WORK_OF_PLAIN: f64 = 6.0;
-/// Rounds of descent at the most.
+/// Most rounds of descent.
 const DESCENTS: usize = 6;
 
-/// Settings whose time is measured, of those that are nearly as cheap as what is advised.
+/// Number of settings nearly as cheap as the advised one whose time is measured.
 const TIMED_BESIDE: usize = 6;
-/// How near, as a factor of counted work: that is good to some 30 %.
+/// Factor of counted work that counts as nearly as cheap: the estimate is accurate to some 30 %.
 const NEARLY_AS_CHEAP: f64 = 1.6;
 
-/// How far a study is: what it is at, and how much of that is done.
-pub type Tell<'a> = dyn FnMut(&str, usize, usize) + Send + 'a;
+/// Callback for the progress of a study: current activity, number done, total.
+pub type ReportProgress<'a> = dyn FnMut(&str, usize, usize) + Send + 'a;
 
-/// What runs need.
+/// Parameters of runs.
 struct Run<'a> {
-    source: &'a Source,
+    source: &'a StudyScene,
     threads: usize,
     cancel: &'a AtomicBool,
 }
@@ -69,11 +70,11 @@ impl Tradeoff {
     /// # Errors
     /// If no scheme comes to the end of the scene, or the user interrupts.
     pub fn of(
-        source: &Source,
+        source: &StudyScene,
         resolved: &Resolved,
         threads: usize,
         cancel: &AtomicBool,
-        tell: &mut Tell<'_>,
+        tell: &mut ReportProgress<'_>,
     ) -> Result<Self, Failure> {
         let scene = &resolved.scene;
         let axes = Axes::of(resolved);
@@ -91,18 +92,18 @@ impl Tradeoff {
             reference,
             rows: Vec::new(),
             front: Vec::new(),
-            too_dear: BTreeSet::new(),
+            too_expensive: BTreeSet::new(),
             advice: [Advice::NotReached; TARGETS.len()],
         };
         let run = Run { source, threads, cancel };
         study.search(&run, tell)?;
         study.time(source, cancel, tell)?;
-        study.front = front_of(&study.rows);
+        study.front = pareto_front_of(&study.rows);
         study.advise_all();
         Ok(study)
     }
 
-    /// Advises anew by the rows, the bar and the horizon as they are.
+    /// Updates the advice from the current rows, error bar and horizon.
     pub fn advise_all(&mut self) {
         self.advice = TARGETS.map(|target| self.advise(target));
     }
@@ -120,35 +121,35 @@ impl Tradeoff {
         self.reference.bar_of(crate::Quantity::Accuracy)
     }
 
-    /// The row of the scene as it is.
+    /// The row of the unchanged scene.
     #[must_use]
     pub fn own(&self) -> Option<&Row> {
         self.rows.iter().find(|row| row.setting.is_none())
     }
 
-    /// The least error of the accuracy among the candidates.
+    /// The smallest error of the accuracy among the candidates.
     #[must_use]
     pub fn best(&self) -> Option<f64> {
         self.rows.iter().filter_map(Row::accuracy).reduce(f64::min)
     }
 
-    /// How many settings the full grid of the axes would have.
+    /// Number of settings of the full grid of the axes.
     #[must_use]
     pub fn grid(&self) -> usize {
         self.axes.iter().map(|axis| axis.options.len()).product()
     }
 
-    fn known(&self) -> Known<'_> {
-        Known::new(&self.axes, &self.rows, self.bar(), &self.reference.warned)
+    fn known(&self) -> SearchState<'_> {
+        SearchState::new(&self.axes, &self.rows, self.bar(), &self.reference.warned)
     }
 
-    /// Tries settings, as [`search::TOLD`] says.
-    fn search(&mut self, run: &Run<'_>, tell: &mut Tell<'_>) -> Result<(), Failure> {
+    /// Tries settings in the stages of [`search::SEARCH_STAGES`].
+    fn search(&mut self, run: &Run<'_>, tell: &mut ReportProgress<'_>) -> Result<(), Failure> {
         let plain = self.known().plain();
         self.stage(1, plain, MOST_WORK_OF_PLAIN, run, tell)?;
         let single = self.known().one_at_a_time();
         self.stage(2, single, MOST_WORK, run, tell)?;
-        // Without the first impacts, or without motion, nothing will be advised.
+        // Without the first impacts, or without motion, nothing can be advised.
         if !self.reference.has_first_impacts() || self.best().is_none() {
             return Ok(());
         }
@@ -160,22 +161,23 @@ impl Tradeoff {
         }
         let expect = |setting: &Setting| expect(run.source, setting).ok();
         let steps = self.steps(run.source);
-        let grid: Vec<Planned> = search::grid(&self.axes, &steps, &expect);
+        let grid: Vec<PlannedSetting> = search::grid(&self.axes, &steps, &expect);
         loop {
-            let next = self.known().next_of_grid(&grid, &self.too_dear);
+            let next = self.known().next_of_grid(&grid, &self.too_expensive);
             if next.is_empty() {
                 break;
             }
             self.stage(4, next, MOST_WORK, run, tell)?;
             self.confirm(run, tell)?;
         }
-        // What the grid found, with what is tried one at a time.
+        // The results of the grid, combined with the axes that are tried one at a time.
         self.descend(run, tell)?;
         Ok(())
     }
 
-    /// Tries what is beside the cheapest so far and could be cheaper; whether there was anything.
-    fn descend(&mut self, run: &Run<'_>, tell: &mut Tell<'_>) -> Result<bool, Failure> {
+    /// Tries neighbours of the cheapest settings so far that could be cheaper; returns whether
+    /// there were any.
+    fn descend(&mut self, run: &Run<'_>, tell: &mut ReportProgress<'_>) -> Result<bool, Failure> {
         let known = self.known();
         let mut near = known.beside_the_cheapest();
         near.retain(|one| expect(run.source, one).is_ok_and(|work| known.could_be_cheapest(work.seconds())));
@@ -185,8 +187,8 @@ impl Tradeoff {
         Ok(self.rows.len() > tried)
     }
 
-    /// Confirms what is the cheapest for an accuracy, until nothing is left to be confirmed.
-    fn confirm(&mut self, run: &Run<'_>, tell: &mut Tell<'_>) -> Result<(), Failure> {
+    /// Confirms the cheapest setting for each accuracy, until all are confirmed.
+    fn confirm(&mut self, run: &Run<'_>, tell: &mut ReportProgress<'_>) -> Result<(), Failure> {
         loop {
             let finer = self.known().unconfirmed();
             let tried = self.rows.len();
@@ -197,31 +199,31 @@ impl Tradeoff {
         }
     }
 
-    /// How many steps a run has with each step of the ladder.
-    fn steps(&self, source: &Source) -> Vec<f64> {
+    /// Number of steps of a run for each step of the ladder.
+    fn steps(&self, source: &StudyScene) -> Vec<f64> {
         let ladder = self.axes.ladder(&Setting::none());
         let of = |setting: &Setting| source.load(setting).map_or(0.0, |resolved| resolved.scene.time.steps() as f64);
         ladder.iter().map(of).collect()
     }
 
-    /// Runs settings against the reference, one after the other as long as they are not too much work; all of them together up to `most`, with
-    /// those that were run before.
+    /// Compares settings with the reference, except those that are too much work; limits the total
+    /// work, including earlier runs, to `most`.
     fn stage(
         &mut self,
         number: usize,
         wanted: Vec<Setting>,
         most: f64,
         run: &Run<'_>,
-        tell: &mut Tell<'_>,
+        tell: &mut ReportProgress<'_>,
     ) -> Result<(), Failure> {
         let mut left = most - self.rows.iter().filter_map(Row::modelled).sum::<f64>();
         let mut jobs = Vec::new();
         for setting in wanted {
             match expect(run.source, &setting) {
                 Ok(work) if work.seconds() > MOST_WORK_OF_ONE.min(left) => {
-                    // What a first look leaves out may have its turn.
+                    // Settings left out in the first stages may be tried later.
                     if most >= MOST_WORK {
-                        self.too_dear.insert(setting);
+                        self.too_expensive.insert(setting);
                     }
                 }
                 Ok(work) => {
@@ -244,7 +246,7 @@ impl Tradeoff {
         Ok(())
     }
 
-    /// What came of settings, against the reference.
+    /// The results of settings, compared with the reference.
     fn tried(
         &self,
         jobs: Vec<Setting>,
@@ -253,9 +255,9 @@ impl Tradeoff {
         done: impl FnMut(usize) + Send,
     ) -> Result<Vec<Row>, Failure> {
         let one = |setting: &Setting| {
-            let ran = simulate_unless_dear(run.source, setting, self.sampling, run.cancel)?;
-            let errors = self.reference.ruler.errors(&ran.motion, &self.reference.motion);
-            Ok(Done { errors, work: ran.work, unconverged: ran.unconverged, warned: ran.warned })
+            let ran = simulate_within_limit(run.source, setting, self.sampling, run.cancel)?;
+            let errors = self.reference.norms.errors(&ran.motion, &self.reference.motion);
+            Ok(CompletedRun { errors, work: ran.work, unconverged: ran.unconverged, warned: ran.warned })
         };
         let ran = runner::in_order(&jobs, run.threads, run.cancel, one, done);
         let mut rows = Vec::with_capacity(jobs.len());
@@ -269,26 +271,27 @@ impl Tradeoff {
         Ok(rows)
     }
 
-    /// Runs settings against the reference of this study, beside those that it has tried: for who wants to know what it passed over.
+    /// Compares further settings with the reference of this study, for example to check what the
+    /// search left out.
     ///
     /// # Errors
     /// If the user interrupts.
     pub fn beside(
         &self,
         settings: Vec<Setting>,
-        source: &Source,
+        source: &StudyScene,
         threads: usize,
         cancel: &AtomicBool,
     ) -> Result<Vec<Row>, Failure> {
         self.tried(settings, 0, &Run { source, threads, cancel }, |_| {})
     }
 
-    /// The rows whose time is worth measuring: the scene as it is and with other schemes and steps, the front, and for each accuracy those that are
-    /// nearly as cheap as what is advised.
+    /// The rows whose time is measured: the unchanged scene and other schemes and steps, the Pareto
+    /// front, and for each accuracy those nearly as cheap as the advised one.
     fn to_time(&self) -> Vec<usize> {
-        let mut timed = front_of(&self.rows);
+        let mut timed = pareto_front_of(&self.rows);
         timed.extend((0..self.rows.len()).filter(|&row| self.rows[row].stage == 1));
-        let held = Held::of(&self.rows, &self.axes);
+        let held = ConfirmedErrors::of(&self.rows, &self.axes);
         for target in TARGETS {
             let mut among = eligible(&self.rows, &held, target, self.bar(), &self.reference.warned);
             let cost = |row: usize| self.rows[row].modelled().unwrap_or(f64::INFINITY);
@@ -303,7 +306,7 @@ impl Tradeoff {
         timed
     }
 
-    fn time(&mut self, source: &Source, cancel: &AtomicBool, tell: &mut Tell<'_>) -> Result<(), Failure> {
+    fn time(&mut self, source: &StudyScene, cancel: &AtomicBool, tell: &mut ReportProgress<'_>) -> Result<(), Failure> {
         let timed = self.to_time();
         let settings: Vec<(&Setting, f64)> =
             timed.iter().map(|&row| (&self.rows[row].setting, self.rows[row].modelled().unwrap_or(0.0))).collect();

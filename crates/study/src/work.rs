@@ -1,8 +1,9 @@
-//! Counted work: what a run costs, by what it did and not by the clock, so that a choice made by it is the same in every run.
+//! Counted work: the cost of a run by operations, not by the clock, so that choices based on it are
+//! the same in every run.
 
 use teeter_scenario::simulation::Simulation;
 
-/// What a run did.
+/// The work of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Work {
     /// The time scheme.
@@ -11,22 +12,22 @@ pub struct Work {
     pub steps: u64,
     /// Blocks.
     pub blocks: u64,
-    /// Dofs of the beams that move in those of all their nodes.
+    /// Dofs of full beams.
     pub nodal_dofs: u64,
-    /// Shapes of the beams that move in modes.
+    /// Shapes of beams in modes.
     pub shapes: u64,
     /// Beams.
     pub beams: u64,
     /// Contact problems solved.
     pub solves: u64,
-    /// Contacts in them, added up.
+    /// Contacts in them, summed.
     pub contacts: u64,
-    /// Iterations, added up.
+    /// Iterations, summed.
     pub iterations: u64,
 }
 
-/// The model of the cost: ns for each of what is counted, fitted once to the scenarios on the machine of `benches/results`. Only ratios
-/// count in a choice; `tradeoff.csv` has the time that was measured beside them.
+/// The cost model: ns for each counted operation, fitted once to the scenarios on the machine of
+/// `benches/results`. Only ratios affect choices; `tradeoff.csv` also has the measured time.
 mod cost {
     pub(super) const STEP: f64 = 60.0;
     pub(super) const BLOCK: f64 = 160.0;
@@ -40,7 +41,7 @@ mod cost {
     pub(super) const CONTACT_SHAPE: f64 = 9.0;
     pub(super) const ITERATION: f64 = 10.0;
 
-    /// Schemes that detect and try more often in a step than `moreau-jean`: their factor, 1 where nobody has measured it.
+    /// Cost of a scheme relative to `moreau-jean`; 1 if not measured.
     pub(super) const SCHEMES: [(&str, f64); 6] = [
         ("moreau-jean-closed", 1.35),
         ("moreau-jean-located", 1.45),
@@ -52,7 +53,8 @@ mod cost {
 }
 
 impl Work {
-    /// What a simulation will do at least: its steps, without the contacts that nobody knows yet.
+    /// Lower bound on the work of a simulation: its steps, without contacts, which aren't known
+    /// yet.
     #[must_use]
     pub fn expected(simulation: &Simulation) -> Self {
         let layout = &simulation.layout;
@@ -71,8 +73,9 @@ impl Work {
         }
     }
 
-    /// What a simulation has done since it was made.
-    pub(crate) fn of(simulation: &Simulation) -> Self {
+    /// The work of a simulation so far.
+    #[must_use]
+    pub fn of(simulation: &Simulation) -> Self {
         let counts = simulation.work_counts();
         Self {
             steps: simulation.state.step,
@@ -83,14 +86,15 @@ impl Work {
         }
     }
 
-    /// Iterations that cost twenty times as much as all else of this work, and a million for short runs.
+    /// The number of iterations that cost twenty times as much as all other work, but at least a
+    /// million for short runs.
     pub(crate) fn most_iterations(&self) -> u64 {
         const DEAR: f64 = 20.0;
         const ALWAYS: f64 = 1e6;
         (DEAR * self.seconds() * 1e9 / cost::ITERATION + ALWAYS) as u64
     }
 
-    /// What it should cost, s: an estimate that is good for ratios.
+    /// Estimated cost, s; only ratios are meaningful.
     #[must_use]
     pub fn seconds(&self) -> f64 {
         let [steps, blocks, dofs, shapes, beams] =

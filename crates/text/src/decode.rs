@@ -1,28 +1,32 @@
-//! From the text of a file to a [`Document`]: the whole file against the tables of a schema, all errors at once.
+//! Decodes the text of a file to a [`Document`]: the whole file against the tables of a schema,
+//! with all errors at once.
 
 use crate::diagnostic::MOST_FINDINGS;
 use crate::diagnostic::{Diagnostic, Diagnostics, printable};
 use crate::document::{Document, Entry};
 use crate::judge::{Judge, name_rule};
-use crate::keys::{Key, Occurrence, OnlyWith, Presence, Table};
+use crate::keys::{Key, Occurrence, OnlyWith, Presence, TableSchema};
 use crate::schema::{Namespace, Schema};
 use crate::sets::setting;
-use crate::source::{Origin, Source};
-use crate::tree::{Branch, Node, Raw, Twig, lenient_value};
+use crate::source::{Origin, SourceText};
+use crate::tree::{Branch, Node, Raw, TreeEntry, lenient_value};
 use crate::wording::expected;
 
 pub use crate::syntax::LARGEST_FILE;
 use crate::{sets, suggest, syntax};
 
-/// Reads a document. `file` is its name for messages; each of `sets` is a key's path and a value that take precedence over the file.
+/// Reads a document. `file` is its name in messages; each of `sets` is a key's path and a value
+/// that takes precedence over the file.
 ///
-/// The text may start with a byte order mark and may have Windows line ends. The value of a setting is taken as
-/// TOML if it is TOML, else as a text: `("time.step", "50 us")` needs no inner quotes.
+/// The text may start with a byte order mark and may have Windows line ends. The value of a setting
+/// is parsed as TOML if possible, otherwise taken as text: `("time.step", "50 us")` needs no inner
+/// quotes.
 ///
 /// An example is at [`Schema`].
 ///
 /// # Errors
-/// All that is wrong in the file and the settings, in the order of the file (of a hopeless file, the first hundreds).
+/// Everything wrong in the file and the settings, in the order of the file (at most
+/// [`Diagnostics::MOST_FINDINGS`] findings or so).
 pub fn parse(
     schema: &'static Schema,
     source: &str,
@@ -38,45 +42,47 @@ pub fn parse(
 pub struct Decoded {
     /// What could be read.
     pub document: Document,
-    /// What is wrong, in order.
+    /// The findings, in order.
     pub found: Diagnostics,
-    /// Whether every table of the file is in the document, so that what takes several keys can be judged as well.
+    /// Whether every table of the file is in the document, so that rules for several keys can be
+    /// checked too.
     pub whole: bool,
 }
 
 /// Reads a document as [`parse`] does, going on after errors.
 pub fn decode(schema: &'static Schema, source: &str, file: &str, sets: &[(String, String)]) -> Decoded {
-    let source = Source::new(file, source);
+    let source = SourceText::new(file, source);
     let syntax::Parsed { mut root, errors, bad_lines, complete } = syntax::read(schema, &source);
     let mut found = Diagnostics(errors);
     found.0.extend(sets::apply(schema, &mut root, sets, &source));
-    if root.twigs.is_empty() && found.0.is_empty() {
-        let mut empty = Diagnostic::error(file, format!("the file holds no {}: it is empty", schema.noun));
+    if root.entries.is_empty() && found.0.is_empty() {
+        let mut empty = Diagnostic::error(file, format!("the file contains no {}: it is empty", schema.noun));
         empty.remedy = schema.advice.empty.map(str::to_owned);
         return Decoded { document: Document::new(schema, source, sets), found: empty.into(), whole: false };
     }
-    let mut walk = Walk {
+    let mut decoder = Decoder {
         schema,
         judge: Judge { schema, source: &source, findings: Vec::new() },
         missing: Vec::new(),
         document: Document::new(schema, source.clone(), sets),
     };
-    walk.root(&root);
-    let whole = complete && !walk.is_full();
-    let Walk { judge, missing, document, .. } = walk;
-    // What was recovered from a broken line has its message already; and what seems to be missing may stand in it.
+    decoder.root(&root);
+    let whole = complete && !decoder.is_full();
+    let Decoder { judge, missing, document, .. } = decoder;
+    // A broken line already has its message, and a key that seems to be missing may be in it.
     found.0.extend(judge.findings.into_iter().filter(|finding| {
         let place = finding.span.as_ref().map(|span| source.line(span.start));
         place.is_none_or(|line| !bad_lines.contains(&line))
     }));
     if complete {
-        found.0.extend(missing.into_iter().map(|finding| used_by(schema, finding, &document)));
+        found.0.extend(missing.into_iter().map(|finding| with_users(schema, finding, &document)));
     }
     in_order(&mut found, sets);
     Decoded { document, found, whole }
 }
 
-/// Sorts findings as they are told: by their place in the file, then those about settings in the order of the settings.
+/// Sorts findings for output: by position in the file, then those about settings in the order of
+/// the settings.
 pub fn in_order(found: &mut Diagnostics, sets: &[(String, String)]) {
     found.0.sort_by_key(|finding| {
         let text = finding.set.as_ref()?;
@@ -90,8 +96,8 @@ fn uncapitalised(sentence: &str) -> String {
     letters.next().map(|first| first.to_lowercase().chain(letters).collect()).unwrap_or_default()
 }
 
-/// Says of a key that is missing in a table which others refer to it.
-fn used_by(schema: &Schema, mut finding: Diagnostic, document: &Document) -> Diagnostic {
+/// Adds to a finding about a missing key the tables that refer to its table.
+fn with_users(schema: &Schema, mut finding: Diagnostic, document: &Document) -> Diagnostic {
     for reference in schema.references {
         let below = finding.path.strip_prefix(reference.group).and_then(|rest| rest.strip_prefix('.'));
         let Some(name) = below.and_then(|rest| rest.split('.').next()).map(str::to_owned) else { continue };
@@ -122,16 +128,16 @@ pub fn text<'a>(schema: &Schema, bytes: &'a [u8], file: &str) -> Result<&'a str,
     })
 }
 
-/// The walk over the tree beside the table of keys.
-struct Walk<'a> {
+/// Walks over the tree and the table of keys together.
+struct Decoder<'a> {
     schema: &'static Schema,
     judge: Judge<'a>,
-    /// Kept apart: not to be told where a syntax error may have swallowed the key.
+    /// Separate, as they are not reported if a syntax error may have swallowed the key.
     missing: Vec<Diagnostic>,
     document: Document,
 }
 
-/// A path one step longer; quoted where the key is no bare one.
+/// A path with one more key, quoted unless it is a bare key.
 fn join(path: &str, key: &str) -> String {
     let bare = !key.is_empty() && key.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-');
     match (path, bare) {
@@ -142,7 +148,7 @@ fn join(path: &str, key: &str) -> String {
     }
 }
 
-impl Walk<'_> {
+impl Decoder<'_> {
     fn is_full(&self) -> bool {
         self.judge.is_full() || self.missing.len() >= MOST_FINDINGS
     }
@@ -162,14 +168,14 @@ impl Walk<'_> {
         }
     }
 
-    /// Names are unique over all groups of a namespace, and some are taken.
+    /// Names are unique over all groups of a namespace, and some are reserved.
     fn unique_names(&mut self, namespace: &Namespace, root: &Branch) {
-        let mut seen: Vec<(&str, &str, &Twig)> = Vec::new();
+        let mut seen: Vec<(&str, &str, &TreeEntry)> = Vec::new();
         for group in namespace.groups {
             let Some(Raw::Branch(branch)) = root.get(group).map(|node| &node.raw) else {
                 continue;
             };
-            seen.extend(branch.twigs.iter().map(|twig| (twig.key.as_str(), *group, twig)));
+            seen.extend(branch.entries.iter().map(|entry| (entry.key.as_str(), *group, entry)));
         }
         seen.sort_by(|a, b| a.0.cmp(b.0));
         for twins in seen.windows(2) {
@@ -185,61 +191,62 @@ impl Walk<'_> {
                     }
                     _ => String::new(),
                 };
-                let rule = format!("the name `{name}` is taken by {group_1}.{name}{line}");
+                let rule = format!("the name `{name}` is already used by {group_1}.{name}{line}");
                 let found = self.judge.source.error(&twig_2.key_origin, &format!("{group_2}.{name}"), rule);
                 let groups: Vec<String> = namespace.groups.iter().map(|group| format!("{group}s")).collect();
-                self.judge.push(found).remedy = Some(format!("names are unique over {}", groups.join(" and ")));
+                self.judge.push(found).remedy =
+                    Some(format!("use a different name: names must be unique over {}", groups.join(" and ")));
                 self.document.refuse(group_2);
             }
         }
-        for (name, group, twig) in seen.iter().filter(|(name, ..)| namespace.taken.contains(name)) {
-            let rule = format!("the name `{name}` is taken by the {name}");
-            let found = self.judge.source.error(&twig.key_origin, &format!("{group}.{name}"), rule);
+        for (name, group, entry) in seen.iter().filter(|(name, ..)| namespace.taken.contains(name)) {
+            let rule = format!("the name `{name}` is reserved for the {name}");
+            let found = self.judge.source.error(&entry.key_origin, &format!("{group}.{name}"), rule);
             self.judge.push(found);
         }
     }
 
-    fn table(&mut self, table: &'static Table, path: &str, branch: &Branch, origin: &Origin) {
+    fn table(&mut self, table: &'static TableSchema, path: &str, branch: &Branch, origin: &Origin) {
         if !path.is_empty() {
             self.document.add_table(path, origin.clone());
         }
-        for twig in &branch.twigs {
+        for entry in &branch.entries {
             if self.is_full() {
                 return;
             }
-            let inner = join(path, &twig.key);
-            if let Some(key) = table.key(&twig.key) {
-                self.key(table, key, &inner, twig);
-            } else if let Some(child) = self.schema.children(table).find(|child| child.name() == twig.key) {
+            let inner = join(path, &entry.key);
+            if let Some(key) = table.key(&entry.key) {
+                self.key(table, key, &inner, entry);
+            } else if let Some(child) = self.schema.children(table).find(|child| child.name() == entry.key) {
                 if child.occurrence == Occurrence::Named {
-                    self.group(child, &inner, &twig.node);
-                } else if let Some(branch) = self.branch_of(child, &inner, &twig.node) {
-                    self.table(child, &inner, branch, &twig.node.origin);
+                    self.group(child, &inner, &entry.node);
+                } else if let Some(branch) = self.branch_of(child, &inner, &entry.node) {
+                    self.table(child, &inner, branch, &entry.node.origin);
                 }
             } else {
-                self.unknown(table, path, &inner, twig);
+                self.unknown(table, path, &inner, entry);
             }
         }
         self.absent(table, path, branch, origin);
     }
 
-    fn key(&mut self, table: &Table, key: &'static Key, path: &str, twig: &Twig) {
+    fn key(&mut self, table: &TableSchema, key: &'static Key, path: &str, entry: &TreeEntry) {
         if key.presence == Presence::NotYet {
-            let found = self.judge.blame(&twig.node, path, "known, but not built in yet");
+            let found = self.judge.blame(&entry.node, path, "not implemented yet");
             let allowed = self.schema.allowed(table);
             found.remedy = Some(match allowed.as_slice() {
                 [] => "leave it out".to_owned(),
-                built_in => format!("leave it out; built in: {}", built_in.join(", ")),
+                built_in => format!("leave it out; available: {}", built_in.join(", ")),
             });
             return;
         }
-        if let (Some(word), Raw::Text(text)) = (key.left_out_as, &twig.node.raw)
+        if let (Some(word), Raw::Text(text)) = (key.left_out_as, &entry.node.raw)
             && text == word
         {
             return;
         }
-        if let Some(value) = self.judge.value(key, path, &twig.node) {
-            let entry = Entry { key, value, origin: twig.node.origin.clone(), written: twig.node.written.clone() };
+        if let Some(value) = self.judge.value(key, path, &entry.node) {
+            let entry = Entry { key, value, origin: entry.node.origin.clone(), written: entry.node.written.clone() };
             self.document.add(path, entry);
         } else {
             self.document.refuse(path);
@@ -247,35 +254,36 @@ impl Walk<'_> {
     }
 
     /// The tables of a group, one for each name.
-    fn group(&mut self, table: &'static Table, path: &str, node: &Node) {
+    fn group(&mut self, table: &'static TableSchema, path: &str, node: &Node) {
         let Some(group) = self.branch_of(table, path, node) else {
             return;
         };
-        for twig in &group.twigs {
+        for entry in &group.entries {
             if self.is_full() {
                 return;
             }
-            let inner = join(path, &twig.key);
-            if let Raw::Branch(branch) = &twig.node.raw {
-                if let Some(rule) = name_rule(&twig.key) {
-                    let found = self.judge.source.error(&twig.key_origin, &inner, rule);
+            let inner = join(path, &entry.key);
+            if let Raw::Branch(branch) = &entry.node.raw {
+                if let Some(rule) = name_rule(&entry.key) {
+                    let found = self.judge.source.error(&entry.key_origin, &inner, rule);
                     self.judge.push(found);
                     self.document.refuse(path);
                 } else {
-                    self.document.add_name(path, &twig.key);
+                    self.document.add_name(path, &entry.key);
                 }
-                self.table(table, &inner, branch, &twig.node.origin);
+                self.table(table, &inner, branch, &entry.node.origin);
             } else {
-                // `[beam]` with the keys right below it: say so once.
+                // `[beam]` with the keys directly below it: report it once.
                 self.document.refuse(path);
                 let rule = format!("each {} has a name and a table of its own", table.name());
-                self.judge.blame(&twig.node, &inner, rule).remedy = Some(format!("write its keys under [{path}.NAME]"));
+                self.judge.blame(&entry.node, &inner, rule).remedy =
+                    Some(format!("write its keys under [{path}.NAME]"));
                 return;
             }
         }
     }
 
-    fn branch_of<'n>(&mut self, table: &Table, path: &str, node: &'n Node) -> Option<&'n Branch> {
+    fn branch_of<'n>(&mut self, table: &TableSchema, path: &str, node: &'n Node) -> Option<&'n Branch> {
         if let Raw::Branch(branch) = &node.raw {
             return Some(branch);
         }
@@ -292,20 +300,20 @@ impl Walk<'_> {
         None
     }
 
-    fn unknown(&mut self, table: &Table, path: &str, inner: &str, twig: &Twig) {
+    fn unknown(&mut self, table: &TableSchema, path: &str, inner: &str, entry: &TreeEntry) {
         let allowed = self.schema.allowed(table);
-        let mut found = self.judge.source.error(&twig.key_origin, inner, "unknown key");
-        found.did_you_mean = suggest::nearest(&twig.key, allowed.iter().copied()).map(str::to_owned);
+        let mut found = self.judge.source.error(&entry.key_origin, inner, "unknown key");
+        found.did_you_mean = suggest::nearest(&entry.key, allowed.iter().copied()).map(str::to_owned);
         let place = match path {
             "" => format!("at the top of {}", self.schema.a_document()),
             path => format!("in [{}]", printable(path)),
         };
         if let Some(meant) = &found.did_you_mean {
-            // What was meant is not missing as well.
+            // The key that was probably meant is not reported as missing too.
             self.document.refuse(&join(path, meant));
         }
         let mut remedy = format!("the keys allowed {place} are {}", allowed.join(", "));
-        let elsewhere = self.schema.table_with(&twig.key);
+        let elsewhere = self.schema.table_with(&entry.key);
         if let Some(other) = elsewhere
             && found.did_you_mean.is_none()
         {
@@ -313,14 +321,14 @@ impl Walk<'_> {
                 "" => format!("the top of the {}", self.schema.noun),
                 pattern => format!("[{}]", pattern.replace('*', "NAME")),
             };
-            remedy.push_str(&format!("; {} is a key of {name}", twig.key));
+            remedy.push_str(&format!("; {} is a key of {name}", entry.key));
         }
         found.remedy = Some(remedy);
         self.judge.push(found);
     }
 
-    /// Defaults of the keys that are not there, and messages for those that must be.
-    fn absent(&mut self, table: &'static Table, path: &str, branch: &Branch, origin: &Origin) {
+    /// Defaults of absent keys, and messages for absent required keys.
+    fn absent(&mut self, table: &'static TableSchema, path: &str, branch: &Branch, origin: &Origin) {
         let mut required = Vec::new();
         // First those that others depend on.
         let (free, bound): (Vec<&Key>, Vec<&Key>) = table.keys.iter().partition(|key| key.only_with.is_none());
@@ -361,12 +369,11 @@ impl Walk<'_> {
         match origin {
             Origin::Default => {
                 let rule = format!("the table [{path}] is missing");
-                self.missing
-                    .push(self.judge.source.error(origin, path, rule).with_remedy(format!("it must give {names}")));
+                self.missing.push(self.judge.source.error(origin, path, rule).with_remedy(format!("add {names}")));
             }
-            // Made by a --set, and not whole: most likely a slip in the name.
+            // Created by a --set, and incomplete: most likely a misspelt name.
             Origin::Set { .. } if table.occurrence == Occurrence::Named => {
-                let rule = format!("not in the file, and as a new table it lacks {names}");
+                let rule = format!("this table is not in the file, and as a new table it lacks {names}");
                 let (group, name) = path.rsplit_once('.').unwrap_or(("", path));
                 let known = self.document.names(group);
                 let near = suggest::nearest(name, known);
@@ -386,7 +393,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Whether a key has a meaning beside the others of its table; `None` where that can't be said.
+    /// Whether a key applies, given the others of its table; `None` if that is unknown.
     fn has_meaning(&self, key: &Key, path: &str) -> Option<bool> {
         let Some(OnlyWith { sibling, words }) = key.only_with else { return Some(true) };
         self.document.text(&join(path, sibling)).map(|word| words.contains(&word))

@@ -1,17 +1,17 @@
-//! What is wrong with a file, where, and what would be right.
+//! Findings about a file: what is wrong, where, and how to correct it.
 
 use std::fmt;
 use std::ops::Range;
 
-/// How bad it is.
+/// Severity of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Severity {
     /// The file cannot be used.
     Error,
-    /// The file can be used, but probably does not say what was meant.
+    /// The file can be used, but probably doesn't say what was meant.
     Warning,
-    /// Worth knowing, and nothing wrong.
+    /// Information; nothing is wrong.
     Note,
 }
 
@@ -26,21 +26,22 @@ pub enum Severity {
 pub struct Diagnostic {
     /// Error, warning or note.
     pub severity: Severity,
-    /// The file's name as it was given.
+    /// The file's name as given.
     pub file: String,
-    /// Line and column (both from 1; the column in characters), where the finding has a place in the file.
+    /// Line and column (both from 1; the column in characters), if the finding has a position in
+    /// the file.
     pub position: Option<(usize, usize)>,
-    /// Bytes of the source that it is about.
+    /// Range of bytes of the source that it concerns.
     pub span: Option<Range<usize>>,
-    /// `KEY=VALUE`, where it is about a `--set` and not about the file.
+    /// `KEY=VALUE`, if it concerns a `--set` instead of the file.
     pub set: Option<String>,
-    /// Full path of the key, such as `beam.table.thickness`; empty where the finding is about no key.
+    /// Full path of the key, such as `beam.table.thickness`; empty if it concerns no key.
     pub path: String,
     /// The value as written, shortened if long.
     pub written: Option<String>,
-    /// The rule that is broken.
+    /// The violated rule.
     pub rule: String,
-    /// What would be right.
+    /// How to correct it.
     pub remedy: Option<String>,
     /// The word that was probably meant.
     pub did_you_mean: Option<String>,
@@ -126,14 +127,15 @@ impl fmt::Display for Diagnostic {
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Diagnostics(pub Vec<Diagnostic>);
 
-/// Findings that are printed; the rest is counted.
+/// Largest number of findings that are printed; the rest is counted.
 pub const MOST_PRINTED: usize = 50;
 
-/// Findings after which a file is not read on.
+/// Number of findings after which reading stops.
 pub(crate) const MOST_FINDINGS: usize = 200;
 
 impl Diagnostics {
-    /// Sorts by place: findings about the whole file, then by position, then those about `--set` in the order given.
+    /// Sorts by position: findings about the whole file, then by position in it, then those about
+    /// `--set` in the order given.
     pub fn sort(&mut self) {
         self.0.sort_by_key(|found| (found.set.is_some(), found.span.as_ref().map(|s| s.start)));
     }
@@ -143,8 +145,8 @@ impl Diagnostics {
         self.0.iter().any(|found| found.severity == Severity::Error)
     }
 
-    /// What is said of the findings past [`MOST_PRINTED`]; `None` if there are none. Reading ends early where very much is
-    /// wrong, so that their number is then a lower bound.
+    /// A line about the findings beyond [`MOST_PRINTED`]; `None` if there are none. Reading stops
+    /// after many findings, so their number may be a lower bound.
     #[must_use]
     pub fn rest(&self) -> Option<String> {
         match self.0.len().saturating_sub(MOST_PRINTED) {
@@ -154,7 +156,7 @@ impl Diagnostics {
         }
     }
 
-    /// The findings, one after the other.
+    /// Iterates over the findings.
     pub fn iter(&self) -> std::slice::Iter<'_, Diagnostic> {
         self.0.iter()
     }
@@ -180,10 +182,10 @@ impl fmt::Display for Diagnostics {
 
 impl std::error::Error for Diagnostics {}
 
-/// Longest piece of the user's text that a message repeats, in characters.
+/// Longest piece of the user's text quoted in a message, in characters.
 const LONGEST_PIECE: usize = 80;
 
-/// A piece of the user's text made fit for a terminal: shortened, control characters escaped.
+/// A piece of the user's text, safe for a terminal: shortened, control characters escaped.
 #[must_use]
 pub fn printable(text: &str) -> String {
     match text.char_indices().nth(LONGEST_PIECE) {
@@ -192,19 +194,19 @@ pub fn printable(text: &str) -> String {
     }
 }
 
-/// Control characters, and those by which text is shown in another order than it is written: what a terminal obeys and
-/// doesn't show.
+/// Whether `c` is a control character, or one that changes the direction of writing: characters
+/// that a terminal interprets instead of showing.
 #[must_use]
-pub fn steers(c: char) -> bool {
+pub fn is_display_control(c: char) -> bool {
     let turns = matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     turns || c.is_control()
 }
 
-/// Such characters made visible, so that a file cannot steer the terminal.
+/// Makes such characters visible, so that a file can't control the terminal.
 fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
-        if steers(c) {
+        if is_display_control(c) {
             out.extend(c.escape_unicode());
         } else {
             out.push(c);

@@ -1,11 +1,12 @@
-//! Physical dimensions: exponents over kilogram, metre, second, radian and kelvin, and how people call them.
+//! Physical dimensions: exponents over kilogram, metre, second, radian and kelvin, and their common
+//! names.
 
 use std::fmt;
 
 /// The dimension of a quantity, as exponents of the base units kg, m, s, rad, K.
 ///
-/// The radian is kept apart so that an angle can be told from a bare number, but it counts as dimensionless wherever
-/// no angle is wanted: see [`Dimension::accepts`].
+/// The radian is a separate unit, so that an angle can be distinguished from a bare number, but it
+/// counts as dimensionless wherever no angle is expected: see [`Dimension::accepts`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Dimension {
     /// Exponent of the kilogram.
@@ -79,8 +80,9 @@ impl Dimension {
     /// Viscous damping, N s/m.
     pub const DAMPING: Self = Self::new(1, 0, -1, 0, 0);
 
-    /// Whether a quantity of dimension `got` may stand where `self` is wanted. Where an angle is wanted the radian must
-    /// be there; elsewhere it counts as dimensionless (1/s accepts rad/s, N m accepts N m/rad).
+    /// Whether a quantity of dimension `got` is accepted where `self` is expected. An angle needs
+    /// the radian; elsewhere the radian counts as dimensionless (1/s accepts rad/s, N m accepts N
+    /// m/rad).
     ///
     /// ```
     /// use teeter_text::dimension::Dimension;
@@ -95,13 +97,16 @@ impl Dimension {
             && (self.rad == 0 || self.rad == got.rad)
     }
 
-    /// What people call it, with its article: "a length", or "a quantity" where it has no name of its own.
+    /// Its common name with the article: "a length", or "a quantity" if it has none.
     pub fn name(self) -> &'static str {
-        NAMED.iter().find(|named| named.dimension == self).map_or("a quantity", |named| named.name)
+        NAMED
+            .iter()
+            .find(|dimension_row| dimension_row.dimension == self)
+            .map_or("a quantity", |dimension_row| dimension_row.name)
     }
 
-    /// Its SI unit as it is read: `m`, `Pa`, `N s/m^2`; made of base units where it has no usual one, and
-    /// empty for a pure number.
+    /// Its SI unit in the syntax that can be read: `m`, `Pa`, `N s/m^2`; in base units if there is
+    /// no usual one, and empty for a pure number.
     ///
     /// ```
     /// use teeter_text::dimension::Dimension;
@@ -109,8 +114,8 @@ impl Dimension {
     /// assert_eq!(Dimension::new(1, 2, 0, 0, -1).unit(), "kg m^2/K");
     /// ```
     pub fn unit(self) -> String {
-        if let Some(named) = NAMED.iter().find(|named| named.dimension == self) {
-            return named.unit.to_owned();
+        if let Some(dimension_row) = NAMED.iter().find(|dimension_row| dimension_row.dimension == self) {
+            return dimension_row.unit.to_owned();
         }
         let base = [("kg", self.kg), ("m", self.m), ("s", self.s), ("rad", self.rad), ("K", self.kelvin)];
         let power = |symbol: &str, exponent: i32| match exponent {
@@ -130,9 +135,12 @@ impl Dimension {
         text
     }
 
-    /// The units most used for it, the SI one first; for messages.
+    /// Its most common units, the SI one first; for messages.
     pub fn usual_units(self) -> &'static [&'static str] {
-        NAMED.iter().find(|named| named.dimension == self).map_or(&[], |named| named.usual)
+        NAMED
+            .iter()
+            .find(|dimension_row| dimension_row.dimension == self)
+            .map_or(&[], |dimension_row| dimension_row.usual)
     }
 }
 
@@ -143,43 +151,48 @@ impl fmt::Display for Dimension {
     }
 }
 
-struct Named {
+struct NamedDimension {
     dimension: Dimension,
     name: &'static str,
     unit: &'static str,
     usual: &'static [&'static str],
 }
 
-const fn named(dimension: Dimension, name: &'static str, unit: &'static str, usual: &'static [&'static str]) -> Named {
-    Named { dimension, name, unit, usual }
+const fn dimension_row(
+    dimension: Dimension,
+    name: &'static str,
+    unit: &'static str,
+    usual: &'static [&'static str],
+) -> NamedDimension {
+    NamedDimension { dimension, name, unit, usual }
 }
 
-static NAMED: &[Named] = &[
-    named(Dimension::NONE, "a pure number", "", &[]),
-    named(Dimension::LENGTH, "a length", "m", &["m", "cm", "mm", "um", "km"]),
-    named(Dimension::MASS, "a mass", "kg", &["kg", "g", "t"]),
-    named(Dimension::TIME, "a time", "s", &["s", "ms", "us", "min", "h"]),
-    named(Dimension::ANGLE, "an angle", "rad", &["rad", "deg", "mrad"]),
-    named(Dimension::TEMPERATURE, "a temperature", "K", &["K"]),
-    named(Dimension::VELOCITY, "a velocity", "m/s", &["m/s", "mm/s", "km/h"]),
-    named(Dimension::ACCELERATION, "an acceleration", "m/s^2", &["m/s^2", "mm/s^2"]),
-    named(Dimension::ANGULAR_VELOCITY, "an angular velocity", "rad/s", &["rad/s", "deg/s", "rpm"]),
-    named(Dimension::ANGULAR_ACCELERATION, "an angular acceleration", "rad/s^2", &["rad/s^2", "deg/s^2"]),
-    named(Dimension::RATE, "a rate", "1/s", &["1/s", "Hz", "kHz"]),
-    named(Dimension::DENSITY, "a density", "kg/m^3", &["kg/m^3", "g/cm^3", "t/m^3"]),
-    named(Dimension::PRESSURE, "a pressure or elastic modulus", "Pa", &["Pa", "kPa", "MPa", "GPa", "N/mm^2"]),
-    named(Dimension::FORCE, "a force", "N", &["N", "kN", "mN"]),
-    named(Dimension::ENERGY, "an energy or moment", "J", &["J", "N m", "kJ"]),
-    named(Dimension::POWER, "a power", "W", &["W", "kW"]),
-    named(Dimension::IMPULSE, "an impulse", "N s", &["N s"]),
-    named(Dimension::DAMPING_PER_LENGTH, "a viscous damping per length", "N s/m^2", &["N s/m^2", "kg/m/s"]),
-    named(Dimension::STIFFNESS, "a stiffness or force per length", "N/m", &["N/m", "kN/m", "N/mm"]),
-    named(Dimension::DAMPING, "a viscous damping", "N s/m", &["N s/m", "kg/s"]),
-    named(Dimension::ROTATIONAL_DAMPING, "a rotational damping", "N m s", &["N m s"]),
-    named(Dimension::BENDING_STIFFNESS, "a bending stiffness", "N m^2", &["N m^2", "kN m^2"]),
-    named(Dimension::MASS_PER_LENGTH, "a mass per length", "kg/m", &["kg/m", "g/m"]),
-    named(Dimension::INERTIA_PER_LENGTH, "a rotatory inertia per length", "kg m", &["kg m"]),
-    named(Dimension::INERTIA, "a moment of inertia", "kg m^2", &["kg m^2", "g cm^2"]),
-    named(Dimension::new(0, 2, 0, 0, 0), "an area", "m^2", &["m^2", "cm^2", "mm^2"]),
-    named(Dimension::new(0, 3, 0, 0, 0), "a volume", "m^3", &["m^3", "cm^3", "mm^3"]),
+static NAMED: &[NamedDimension] = &[
+    dimension_row(Dimension::NONE, "a pure number", "", &[]),
+    dimension_row(Dimension::LENGTH, "a length", "m", &["m", "cm", "mm", "um", "km"]),
+    dimension_row(Dimension::MASS, "a mass", "kg", &["kg", "g", "t"]),
+    dimension_row(Dimension::TIME, "a time", "s", &["s", "ms", "us", "min", "h"]),
+    dimension_row(Dimension::ANGLE, "an angle", "rad", &["rad", "deg", "mrad"]),
+    dimension_row(Dimension::TEMPERATURE, "a temperature", "K", &["K"]),
+    dimension_row(Dimension::VELOCITY, "a velocity", "m/s", &["m/s", "mm/s", "km/h"]),
+    dimension_row(Dimension::ACCELERATION, "an acceleration", "m/s^2", &["m/s^2", "mm/s^2"]),
+    dimension_row(Dimension::ANGULAR_VELOCITY, "an angular velocity", "rad/s", &["rad/s", "deg/s", "rpm"]),
+    dimension_row(Dimension::ANGULAR_ACCELERATION, "an angular acceleration", "rad/s^2", &["rad/s^2", "deg/s^2"]),
+    dimension_row(Dimension::RATE, "a rate", "1/s", &["1/s", "Hz", "kHz"]),
+    dimension_row(Dimension::DENSITY, "a density", "kg/m^3", &["kg/m^3", "g/cm^3", "t/m^3"]),
+    dimension_row(Dimension::PRESSURE, "a pressure or elastic modulus", "Pa", &["Pa", "kPa", "MPa", "GPa", "N/mm^2"]),
+    dimension_row(Dimension::FORCE, "a force", "N", &["N", "kN", "mN"]),
+    dimension_row(Dimension::ENERGY, "an energy or moment", "J", &["J", "N m", "kJ"]),
+    dimension_row(Dimension::POWER, "a power", "W", &["W", "kW"]),
+    dimension_row(Dimension::IMPULSE, "an impulse", "N s", &["N s"]),
+    dimension_row(Dimension::DAMPING_PER_LENGTH, "a viscous damping per length", "N s/m^2", &["N s/m^2", "kg/m/s"]),
+    dimension_row(Dimension::STIFFNESS, "a stiffness or force per length", "N/m", &["N/m", "kN/m", "N/mm"]),
+    dimension_row(Dimension::DAMPING, "a viscous damping", "N s/m", &["N s/m", "kg/s"]),
+    dimension_row(Dimension::ROTATIONAL_DAMPING, "a rotational damping", "N m s", &["N m s"]),
+    dimension_row(Dimension::BENDING_STIFFNESS, "a bending stiffness", "N m^2", &["N m^2", "kN m^2"]),
+    dimension_row(Dimension::MASS_PER_LENGTH, "a mass per length", "kg/m", &["kg/m", "g/m"]),
+    dimension_row(Dimension::INERTIA_PER_LENGTH, "a rotatory inertia per length", "kg m", &["kg m"]),
+    dimension_row(Dimension::INERTIA, "a moment of inertia", "kg m^2", &["kg m^2", "g cm^2"]),
+    dimension_row(Dimension::new(0, 2, 0, 0, 0), "an area", "m^2", &["m^2", "cm^2", "mm^2"]),
+    dimension_row(Dimension::new(0, 3, 0, 0, 0), "a volume", "m^3", &["m^3", "cm^3", "mm^3"]),
 ];

@@ -1,4 +1,4 @@
-//! A decoded document: values by path, with defaults and origins, and the way back to TOML.
+//! A decoded document: values by path, with defaults and origins, and its conversion back to TOML.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -6,10 +6,10 @@ use std::fmt;
 use crate::decode;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::judge::Judge;
-use crate::keys::{Found, Key, Kind, Occurrence, Table};
+use crate::keys::{Key, Kind, Occurrence, PathTarget, TableSchema};
 use crate::measure::Measure;
 use crate::schema::Schema;
-use crate::source::{Origin, Source};
+use crate::source::{Origin, SourceText};
 use crate::tree::lenient_value;
 use crate::value::{Item, Value};
 
@@ -26,23 +26,24 @@ pub struct Entry {
     pub written: String,
 }
 
-/// A document as decoded by [`crate::decode::parse`]: each value by its path, such as `beam.table.thickness`.
+/// A document as decoded by [`crate::decode::parse`]: each value by its path, such as
+/// `beam.table.thickness`.
 ///
-/// All values are of the kind and in the range that the table of keys gives; the defaults of the table are filled in. Nothing is checked here
-/// that takes two keys: references to names, damping given twice, geometry.
+/// All values have the kind and range given by the table of keys; its defaults are filled in. Rules
+/// for several keys are not checked here: references to names, damping given twice, geometry.
 ///
 /// The getters return `None` for a path that is absent or holds another kind of value.
 #[derive(Debug, Clone)]
 pub struct Document {
     schema: &'static Schema,
-    source: Source,
+    source: SourceText,
     /// The overrides that it was read with.
     sets: Vec<(String, String)>,
     entries: BTreeMap<String, Entry>,
     tables: BTreeMap<String, Origin>,
     /// By the path of the group.
     names: BTreeMap<String, Vec<String>>,
-    /// Paths that were written, but with something that is no value for them.
+    /// Paths that were given an invalid value.
     refused: BTreeSet<String>,
 }
 
@@ -51,10 +52,10 @@ pub struct Document {
 #[non_exhaustive]
 pub enum SetError {
     /// The path is no key of the table of keys, or its table is not in the document.
-    #[error("there is no place for the key {0}")]
+    #[error("there is no key {0} in this document")]
     NoSuchKey(String),
     /// The key holds another type of value.
-    #[error("the value is not of the type of the key {0}")]
+    #[error("the value doesn't have the type of the key {0}")]
     WrongType(String),
     /// The key does not take this value.
     #[error("{0}: {1}")]
@@ -62,7 +63,7 @@ pub enum SetError {
 }
 
 impl Document {
-    pub(crate) fn new(schema: &'static Schema, source: Source, sets: &[(String, String)]) -> Self {
+    pub(crate) fn new(schema: &'static Schema, source: SourceText, sets: &[(String, String)]) -> Self {
         Self {
             schema,
             source,
@@ -90,7 +91,7 @@ impl Document {
         self.refused.insert(path.to_owned());
     }
 
-    /// Whether the path was written with something that is no value for it, so that there is a message about it already.
+    /// Whether the path was given an invalid value, so that there is already a message about it.
     pub fn is_refused(&self, path: &str) -> bool {
         self.refused.contains(path)
     }
@@ -100,12 +101,12 @@ impl Document {
         &self.source.file
     }
 
-    /// The text of the file; the spans of diagnostics count in it.
+    /// The text of the file; spans of diagnostics refer to it.
     pub fn source(&self) -> &str {
         &self.source.text
     }
 
-    /// The value at a path with all that is known about it.
+    /// The value at a path with its key and origin.
     pub fn entry(&self, path: &str) -> Option<&Entry> {
         self.entries.get(path)
     }
@@ -120,13 +121,13 @@ impl Document {
         self.entries.contains_key(path)
     }
 
-    /// Whether the value at the path was given by the file or a `--set`, so that it is no default.
+    /// Whether the value at the path was given by the file or a `--set`, not by default.
     pub fn is_given(&self, path: &str) -> bool {
         self.entries.get(path).is_some_and(|entry| matches!(entry.origin, Origin::File(_) | Origin::Set { .. }))
     }
 
-    /// Whether the document has this table: `ground`, `beam.table`, `beam.table.rayleigh`. Tables that always hold
-    /// are there even if the file does not name them.
+    /// Whether the document has this table: `ground`, `beam.table`, `beam.table.rayleigh`. Tables
+    /// that always exist are included even if the file doesn't name them.
     pub fn has_table(&self, path: &str) -> bool {
         self.tables.contains_key(path)
     }
@@ -160,7 +161,7 @@ impl Document {
         }
     }
 
-    /// A text, name, choice, or the word where a table may stand.
+    /// A text, name or choice, or the word given instead of a table.
     pub fn text(&self, path: &str) -> Option<&str> {
         match &self.entries.get(path)?.value {
             Value::Text(text) | Value::Item(Item::Word(text)) => Some(text),
@@ -263,9 +264,9 @@ impl Document {
         }
     }
 
-    /// An error about the value or table at a path, placed where it was written; a value that was not written is
-    /// blamed on the header of its table. For rules that take more than one key; make it a warning with
-    /// [`Diagnostic::as_warning`].
+    /// An error about the value or table at a path, at its position in the file; for a value that
+    /// was not written, at the header of its table. For rules about several keys; make it a warning
+    /// with [`Diagnostic::as_warning`].
     pub fn error(&self, path: &str, rule: impl Into<String>, remedy: impl Into<String>) -> Diagnostic {
         let entry = self.entries.get(path);
         let given = entry.filter(|_| self.is_given(path));
@@ -275,7 +276,7 @@ impl Document {
         found
     }
 
-    /// Line (from 1) on which the value or table at a path stands, if the file has it.
+    /// Line (from 1) of the value or table at a path, if the file has it.
     pub fn line(&self, path: &str) -> Option<usize> {
         match self.origin(path) {
             Origin::File(span) => Some(self.source.position(span.start).0),
@@ -283,17 +284,18 @@ impl Document {
         }
     }
 
-    /// A copy with one key changed, as if it had been read with `--set key=value` on top: checked in the same way, with all
-    /// that follows from the key (defaults, keys that go with a word of it) read anew. `value` is taken as TOML if it is
-    /// TOML, else as a text. Values that were put in by [`Document::set`] are left out: they are to be derived again.
+    /// A copy with one key changed, as if it had been read with an additional `--set key=value`:
+    /// checked in the same way, with everything that depends on the key (defaults, keys that go
+    /// with a word of it) decoded again. `value` is parsed as TOML if possible, otherwise taken as
+    /// text. Values set by [`Document::set`] are left out, as they must be derived again.
     ///
     /// ```
-    /// # use teeter_text::keys::{Key, Kind, Occurrence, Presence, Range, Table};
+    /// # use teeter_text::keys::{Key, Kind, Occurrence, Presence, Range, TableSchema};
     /// # use teeter_text::{decode, dimension::Dimension, schema::Schema};
     /// # const TIME: Kind = Kind::Quantity(Dimension::TIME, Range::POSITIVE);
-    /// # static TABLES: &[Table] = &[
-    /// #     Table { pattern: "", occurrence: Occurrence::Always, doc: "", keys: &[] },
-    /// #     Table { pattern: "time", occurrence: Occurrence::Always, doc: "", keys: &[
+    /// # static TABLES: &[TableSchema] = &[
+    /// #     TableSchema { pattern: "", occurrence: Occurrence::Always, doc: "", keys: &[] },
+    /// #     TableSchema { pattern: "time", occurrence: Occurrence::Always, doc: "", keys: &[
     /// #         Key::new("end", TIME, Presence::Required, "\"1 s\"", "When it ends."),
     /// #         Key::new("step", TIME, Presence::Default("\"1 ms\""), "\"1 ms\"", "Step."),
     /// #     ] },
@@ -309,20 +311,22 @@ impl Document {
     /// ```
     ///
     /// # Errors
-    /// All that is wrong with the document and this value in it: the path is no key, or the key does not take the value.
+    /// Everything wrong in the document with this value: the path is not a key, or the key doesn't
+    /// accept the value.
     pub fn with(&self, key: &str, value: impl fmt::Display) -> Result<Self, Diagnostics> {
         let mut sets = self.sets.clone();
         sets.push((key.to_owned(), value.to_string()));
         decode::parse(self.schema, &self.source.text, &self.source.file, &sets)
     }
 
-    /// Puts in a value that follows from others, so that [`Document::to_toml`] writes it out.
+    /// Sets a value that follows from others, so that [`Document::to_toml`] writes it.
     ///
     /// # Errors
-    /// The path is no key, its table is not in the document, or the key does not take the value.
+    /// If the path is not a key, its table is not in the document, or the key doesn't accept the
+    /// value.
     pub fn set(&mut self, path: &str, value: Value) -> Result<(), SetError> {
         let no_such_key = || SetError::NoSuchKey(path.to_owned());
-        let Some(Found::Key(_, key)) = self.schema.find(path) else {
+        let Some(PathTarget::Key(_, key)) = self.schema.find(path) else {
             return Err(no_such_key());
         };
         if let Some((table, _)) = path.rsplit_once('.')
@@ -333,7 +337,7 @@ impl Document {
         if !value.fits(key.kind) {
             return Err(SetError::WrongType(path.to_owned()));
         }
-        // By the same judge as the file, so that what is written out can be read again.
+        // Checked by the same code as the file, so that the output can be read again.
         let written = value.to_toml(key.kind);
         let mut judge = Judge { schema: self.schema, source: &self.source, findings: Vec::new() };
         let judged = judge.value(key, path, &lenient_value(&written, Origin::Derived));
@@ -346,20 +350,21 @@ impl Document {
         Ok(())
     }
 
-    /// Leaves a value out that nobody gave, so that [`Document::to_toml`] doesn't write it.
+    /// Removes a value that was not given, so that [`Document::to_toml`] doesn't write it.
     pub fn forget_default(&mut self, path: &str) {
         if !self.is_given(path) {
             self.leave_out(path);
         }
     }
 
-    /// Takes a value out, given or not.
+    /// Removes a value, given or not.
     pub fn leave_out(&mut self, path: &str) {
         self.entries.remove(path);
     }
 
-    /// The document as it stands: every value in the order of the table of keys, defaults written out, quantities in SI units.
-    /// It parses to the same values bit for bit, and writing that out again gives the same bytes.
+    /// The document as TOML: every value in the order of the table of keys, including defaults,
+    /// quantities in SI units. It parses to the same values bit for bit, and writing these again
+    /// gives the same bytes.
     pub fn to_toml(&self) -> String {
         let mut out = String::new();
         if let Some(root) = self.schema.root() {
@@ -368,8 +373,8 @@ impl Document {
         out
     }
 
-    /// The document as it stands, as [`Document::to_toml`], with the files that it names rewritten by `path`: for a document that is
-    /// written to another folder.
+    /// As [`Document::to_toml`], with the names of files rewritten by `path`: for a document that
+    /// is written to another folder.
     pub fn to_toml_elsewhere(&self, path: impl Fn(&str) -> String) -> String {
         let mut moved = self.clone();
         for entry in moved.entries.values_mut() {
@@ -388,7 +393,7 @@ impl Document {
         moved.to_toml()
     }
 
-    fn write_table(&self, table: &Table, path: &str, out: &mut String) {
+    fn write_table(&self, table: &TableSchema, path: &str, out: &mut String) {
         let mut lines = self.lines(table, path);
         for inline in self.schema.children(table).filter(|child| child.occurrence == Occurrence::Inline) {
             let path = format!("{path}.{}", inline.name());
@@ -397,7 +402,7 @@ impl Document {
                 lines.push(format!("{} = {{ {values} }}", inline.name()));
             }
         }
-        // A table that always holds says nothing when empty; [ground] does.
+        // An empty table that always exists means nothing; [ground] does.
         let say = !lines.is_empty() || (table.occurrence != Occurrence::Always && self.has_table(path));
         if say && !path.is_empty() {
             out.push_str(&format!("\n[{path}]\n"));
@@ -420,7 +425,7 @@ impl Document {
         }
     }
 
-    fn lines(&self, table: &Table, path: &str) -> Vec<String> {
+    fn lines(&self, table: &TableSchema, path: &str) -> Vec<String> {
         let line = |key: &Key| {
             let full = match path {
                 "" => key.name.to_owned(),

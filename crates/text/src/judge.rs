@@ -1,12 +1,12 @@
 //! Decoding of one TOML value against one entry of the table of keys.
 
-use crate::diagnostic::{Diagnostic, MOST_FINDINGS, steers};
+use crate::diagnostic::{Diagnostic, MOST_FINDINGS, is_display_control};
 use crate::dimension::Dimension;
 use crate::keys::{Key, Kind, LONGEST_TITLE, Range};
-use crate::measure::{Measure, Unit};
+use crate::measure::{AllowedUnit, Measure};
 use crate::quantity::{self, QuantityError};
 use crate::schema::Schema;
-use crate::source::Source;
+use crate::source::SourceText;
 use crate::suggest;
 use crate::tree::{Branch, Node, Raw};
 use crate::value::{Item, Value};
@@ -16,33 +16,33 @@ use std::collections::BTreeMap;
 /// Decodes nodes and collects what is wrong with them.
 pub(crate) struct Judge<'a> {
     pub(crate) schema: &'static Schema,
-    pub(crate) source: &'a Source,
+    pub(crate) source: &'a SourceText,
     pub(crate) findings: Vec<Diagnostic>,
 }
 
-/// Names longer than this make unreadable tables of results.
+/// Longer names make tables of results unreadable.
 const LONGEST_NAME: usize = 64;
 
-/// Why a name is no name; `None` if it is one.
+/// Why a name is invalid; `None` if it is valid.
 pub(crate) fn name_rule(name: &str) -> Option<String> {
     let letter = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
     if name.is_empty() || !name.chars().all(letter) {
-        Some("a name holds letters (a-z, A-Z), digits, `_`, `-` and nothing else".to_owned())
+        Some("a name may contain only letters (a-z, A-Z), digits, `_` and `-`".to_owned())
     } else if name.len() > LONGEST_NAME {
-        Some(format!("a name has at most {LONGEST_NAME} characters"))
+        Some(format!("a name may have at most {LONGEST_NAME} characters"))
     } else {
         None
     }
 }
 
-/// What an absurd count would take.
+/// The memory that an absurd count would take, for a message.
 fn memory(key: &Key, count: Option<i64>) -> String {
     match (key.bytes_each, count) {
         (0, _) | (_, None) => String::new(),
         // For a message: two digits are enough.
         #[expect(clippy::cast_precision_loss)]
         (bytes, Some(count)) => {
-            format!("; {count} would take some {} of memory", wording::bytes(count as f64 * bytes as f64))
+            format!("; {count} would take about {} of memory", wording::bytes(count as f64 * bytes as f64))
         }
     }
 }
@@ -55,19 +55,19 @@ impl Judge<'_> {
         self.push(found)
     }
 
-    /// Whether so much is wrong that reading on helps nobody.
+    /// Whether there are so many findings that more would not help.
     pub(crate) fn is_full(&self) -> bool {
         self.findings.len() >= MOST_FINDINGS
     }
 
-    /// Adds a finding and hands it back for details.
+    /// Adds a finding and returns it for details.
     pub(crate) fn push(&mut self, found: Diagnostic) -> &mut Diagnostic {
         let at = self.findings.len();
         self.findings.push(found);
         &mut self.findings[at]
     }
 
-    /// The value of `key`, or `None` after saying what is wrong.
+    /// The value of `key`, or `None` after reporting what is wrong.
     pub(crate) fn value(&mut self, key: &Key, path: &str, node: &Node) -> Option<Value> {
         if self.is_reserved(key, path, node) {
             return None;
@@ -84,81 +84,82 @@ impl Judge<'_> {
             Kind::Number(range) => self.number(key, &range, path, node).map(Value::Number),
             Kind::Quantity(dimension, range) => self.quantity(key, dimension, &range, path, node).map(Value::Number),
             Kind::Pair(dimension, range) => {
-                let items = self.items(key, path, node, Some(2))?;
                 let read = |judge: &mut Self, item: &Node| judge.quantity(key, dimension, &range, path, item);
-                self.pair(items, read).map(Value::Pair)
+                self.pair_of(key, path, node, read).map(Value::Pair)
             }
             Kind::Points(dimension, range) => {
-                let items = self.items(key, path, node, None)?;
-                let mut points = Vec::new();
-                for item in items {
-                    let point = self.items(key, path, item, Some(2));
-                    let read = |judge: &mut Self, item: &Node| judge.quantity(key, dimension, &range, path, item);
-                    points.extend(point.and_then(|point| self.pair(point, read)));
-                    if self.is_full() {
-                        return None;
-                    }
-                }
-                (points.len() == items.len()).then_some(Value::Points(points))
+                let read = |judge: &mut Self, item: &Node| judge.quantity(key, dimension, &range, path, item);
+                let point = |judge: &mut Self, item: &Node| judge.pair_of(key, path, item, read);
+                self.list_of(key, path, node, point).map(Value::Points)
             }
             Kind::List(dimension, range) => {
-                let items = self.items(key, path, node, None)?;
-                let mut values = Vec::new();
-                for item in items {
-                    values.extend(self.quantity(key, dimension, &range, path, item));
-                    if self.is_full() {
-                        return None;
-                    }
-                }
-                (values.len() == items.len()).then_some(Value::List(values))
+                let read = |judge: &mut Self, item: &Node| judge.quantity(key, dimension, &range, path, item);
+                self.list_of(key, path, node, read).map(Value::List)
             }
             Kind::Numbers(range) => {
-                let items = self.items(key, path, node, None)?;
-                let mut values = Vec::new();
-                for item in items {
-                    values.extend(self.number(key, &range, path, item));
-                    if self.is_full() {
-                        return None;
-                    }
-                }
-                (values.len() == items.len()).then_some(Value::List(values))
+                let read = |judge: &mut Self, item: &Node| judge.number(key, &range, path, item);
+                self.list_of(key, path, node, read).map(Value::List)
             }
             Kind::Words(choices) => self.words(key, choices, path, node).map(Value::Words),
             Kind::WordOrTable(words, keys) => self.item(key, (words, keys), path, node).map(Value::Item),
             Kind::WordOrTablePair(words, keys) => {
-                let items = self.items(key, path, node, Some(2))?;
                 let read = |judge: &mut Self, item: &Node| {
                     let reserved = judge.is_reserved(key, path, item);
                     if reserved { None } else { judge.item(key, (words, keys), path, item) }
                 };
-                self.pair(items, read).map(Value::ItemPair)
+                self.pair_of(key, path, node, read).map(Value::ItemPair)
             }
             Kind::ChoicePair(choices) => {
-                let items = self.items(key, path, node, Some(2))?;
                 let read = |judge: &mut Self, item: &Node| {
                     if judge.is_reserved(key, path, item) { None } else { judge.choice(key, choices, path, item) }
                 };
-                self.pair(items, read).map(Value::TextPair)
+                self.pair_of(key, path, node, read).map(Value::TextPair)
             }
             Kind::NamePair => {
-                let items = self.items(key, path, node, Some(2))?;
                 let read = |judge: &mut Self, item: &Node| judge.name(key, path, item);
-                self.pair(items, read).map(Value::TextPair)
+                self.pair_of(key, path, node, read).map(Value::TextPair)
             }
             Kind::PatternPair => {
-                let items = self.items(key, path, node, Some(2))?;
                 let read = |judge: &mut Self, item: &Node| judge.pattern(key, path, item);
-                self.pair(items, read).map(Value::TextPair)
+                self.pair_of(key, path, node, read).map(Value::TextPair)
             }
-            Kind::Downward(dimension) => match &node.raw {
-                Raw::Array(_) => {
-                    let items = self.items(key, path, node, Some(2))?;
-                    let read = |judge: &mut Self, item: &Node| judge.quantity(key, dimension, &Range::ANY, path, item);
-                    self.pair(items, read).map(Value::Pair)
-                }
-                _ => self.downward(key, dimension, path, node).map(Value::Number),
-            },
+            Kind::Downward(dimension) if matches!(node.raw, Raw::Array(_)) => {
+                let read = |judge: &mut Self, item: &Node| judge.quantity(key, dimension, &Range::ANY, path, item);
+                self.pair_of(key, path, node, read).map(Value::Pair)
+            }
+            Kind::Downward(dimension) => self.downward(key, dimension, path, node).map(Value::Number),
         }
+    }
+
+    /// An array of two items, each read by `read`.
+    fn pair_of<T>(
+        &mut self,
+        key: &Key,
+        path: &str,
+        node: &Node,
+        read: impl FnMut(&mut Self, &Node) -> Option<T>,
+    ) -> Option<[T; 2]> {
+        let items = self.items(key, path, node, Some(2))?;
+        self.pair(items, read)
+    }
+
+    /// An array of any length, each item read by `read`; `None` if an item is invalid.
+    fn list_of<T>(
+        &mut self,
+        key: &Key,
+        path: &str,
+        node: &Node,
+        mut read: impl FnMut(&mut Self, &Node) -> Option<T>,
+    ) -> Option<Vec<T>> {
+        let items = self.items(key, path, node, None)?;
+        let mut values = Vec::new();
+        for item in items {
+            values.extend(read(self, item));
+            if self.is_full() {
+                return None;
+            }
+        }
+        (values.len() == items.len()).then_some(values)
     }
 
     fn words(&mut self, key: &Key, choices: &[&str], path: &str, node: &Node) -> Option<Vec<String>> {
@@ -167,7 +168,7 @@ impl Judge<'_> {
         for item in items {
             let word = self.choice(key, choices, path, item)?;
             if words.contains(&word) {
-                self.blame(item, path, format!("`{word}` is there twice")).remedy = Some(expected(key));
+                self.blame(item, path, format!("`{word}` is given twice")).remedy = Some(expected(key));
                 return None;
             }
             words.push(word);
@@ -175,7 +176,7 @@ impl Judge<'_> {
         Some(words)
     }
 
-    /// Says so if the value is known but not built in yet.
+    /// Reports a value that is not implemented yet.
     fn is_reserved(&mut self, key: &Key, path: &str, node: &Node) -> bool {
         let reserved = key.reserved.iter().find(|reserved| match &node.raw {
             Raw::Text(text) => text == reserved.value,
@@ -186,7 +187,7 @@ impl Judge<'_> {
         let Some(reserved) = reserved else {
             return false;
         };
-        let rule = format!("`{}` is known, but not built in yet", reserved.value);
+        let rule = format!("`{}` is not implemented yet", reserved.value);
         let remedy = match reserved.instead {
             "" => expected(key),
             instead => instead.to_owned(),
@@ -197,7 +198,7 @@ impl Judge<'_> {
 
     /// The value is of another type than the key's.
     fn mistyped(&mut self, key: &Key, path: &str, node: &Node) {
-        // "true" in quotes, or a number: right but for the quotes.
+        // "true" or a number in quotes: only the quotes are wrong.
         let unquoted = match (&node.raw, key.kind) {
             (Raw::Text(text), Kind::Flag) => matches!(text.as_str(), "true" | "false").then_some(text),
             (Raw::Text(text), Kind::Number(_)) => text.parse::<f64>().is_ok().then_some(text),
@@ -220,30 +221,33 @@ impl Judge<'_> {
         None
     }
 
-    /// A text that is shown to people, in a line.
+    /// A line of text that is shown to users.
     fn title(&mut self, key: &Key, path: &str, node: &Node) -> Option<String> {
         let text = self.text(key, path, node)?;
-        let rule = if let Some(c) = text.chars().find(|&c| steers(c)) {
-            format!("holds the character U+{:04X}, which is not shown but steers how a line is shown", u32::from(c))
+        let rule = if let Some(c) = text.chars().find(|&c| is_display_control(c)) {
+            format!(
+                "contains the character U+{:04X}, which is not shown but is_display_control how a line is shown",
+                u32::from(c)
+            )
         } else if text.chars().nth(LONGEST_TITLE).is_some() {
-            format!("has {} characters, and at most {LONGEST_TITLE} fit", text.chars().count())
+            format!("has {} characters, more than the limit of {LONGEST_TITLE}", text.chars().count())
         } else {
             return Some(text);
         };
-        self.blame(node, path, rule).remedy = Some("a line of text that fits above a figure".to_owned());
+        self.blame(node, path, rule).remedy = Some("give a line of text that fits above a figure".to_owned());
         None
     }
 
     fn file(&mut self, key: &Key, path: &str, node: &Node) -> Option<String> {
         let text = self.text(key, path, node)?;
         if text.is_empty() || text.contains('\0') {
-            self.blame(node, path, "this is no name of a file").remedy = Some(expected(key));
+            self.blame(node, path, "not a valid file name").remedy = Some(expected(key));
             return None;
         }
         Some(text)
     }
 
-    fn measure(&mut self, key: &Key, units: &[Unit], range: &Range, path: &str, node: &Node) -> Option<Measure> {
+    fn measure(&mut self, key: &Key, units: &[AllowedUnit], range: &Range, path: &str, node: &Node) -> Option<Measure> {
         let Raw::Text(text) = &node.raw else {
             self.mistyped(key, path, node);
             return None;
@@ -254,7 +258,7 @@ impl Judge<'_> {
             Err(error) => {
                 let rule = match &error {
                     QuantityError::WrongDimension { got, unit, .. } => match got.name() {
-                        "a quantity" => format!("`{unit}` is no unit for it"),
+                        "a quantity" => format!("`{unit}` is not a unit of this key"),
                         name => format!("{name} ({unit}) is not what is expected"),
                     },
                     _ => error.to_string(),
@@ -285,7 +289,7 @@ impl Judge<'_> {
         let only_stars = plain.is_empty() && !text.is_empty();
         match name_rule(&plain) {
             Some(rule) if !only_stars => {
-                self.blame(node, path, format!("{rule}; `*` stands for any letters of a name"));
+                self.blame(node, path, format!("{rule}; `*` stands for any characters of a name"));
                 None
             }
             _ => Some(text),
@@ -304,7 +308,7 @@ impl Judge<'_> {
         None
     }
 
-    /// A word, or a table of keys each of which is judged like one of a document's tables.
+    /// A word, or a table of keys, each checked like a key of a document's table.
     fn item(&mut self, key: &Key, (words, keys): (&[&str], &'static [Key]), path: &str, node: &Node) -> Option<Item> {
         match &node.raw {
             Raw::Branch(branch) => self.item_table(keys, path, branch).map(Item::Table),
@@ -324,17 +328,17 @@ impl Judge<'_> {
     ) -> Option<BTreeMap<&'static str, Value>> {
         let mut values = BTreeMap::new();
         let mut whole = true;
-        for twig in &branch.twigs {
-            let inner = format!("{path}.{}", twig.key);
-            let Some(key) = keys.iter().find(|key| key.name == twig.key) else {
-                let mut found = self.source.error(&twig.key_origin, &inner, "unknown key");
-                found.did_you_mean = suggest::nearest(&twig.key, keys.iter().map(|key| key.name)).map(str::to_owned);
+        for entry in &branch.entries {
+            let inner = format!("{path}.{}", entry.key);
+            let Some(key) = keys.iter().find(|key| key.name == entry.key) else {
+                let mut found = self.source.error(&entry.key_origin, &inner, "unknown key");
+                found.did_you_mean = suggest::nearest(&entry.key, keys.iter().map(|key| key.name)).map(str::to_owned);
                 found.remedy = Some(format!("the keys allowed there are {}", names(keys)));
                 self.push(found);
                 whole = false;
                 continue;
             };
-            match self.value(key, &inner, &twig.node) {
+            match self.value(key, &inner, &entry.node) {
                 Some(value) => {
                     values.insert(key.name, value);
                 }
@@ -382,7 +386,7 @@ impl Judge<'_> {
     fn number(&mut self, key: &Key, range: &Range, path: &str, node: &Node) -> Option<f64> {
         let value = match node.raw {
             Raw::Float(value) => value,
-            // Whole numbers of a physical meaning are far below 2^53.
+            // Whole numbers with a physical meaning are far below 2^53.
             #[expect(clippy::cast_precision_loss)]
             Raw::Integer(Some(value)) => value as f64,
             Raw::Integer(None) => f64::INFINITY,
@@ -423,7 +427,10 @@ impl Judge<'_> {
                 let rule = match &error {
                     QuantityError::TooLarge | QuantityError::TooSmall => range.sizes_rule(dimension),
                     QuantityError::MissingNumber => {
-                        format!("{} with its unit is expected, got a text that starts with no number", dimension.name())
+                        format!(
+                            "{} with its unit is expected, got a text that doesn't start with a number",
+                            dimension.name()
+                        )
                     }
                     _ => error.to_string(),
                 };
@@ -440,7 +447,9 @@ impl Judge<'_> {
         let value = self.quantity(key, dimension, &range, path, node)?;
         if let Some(rule) = Range::NOT_NEGATIVE.check(value, dimension) {
             let unit = dimension.unit();
-            let remedy = format!("a single number is downwards; upwards is the vector [\"0 {unit}\", \"1 {unit}\"]");
+            let remedy = format!(
+                "a single number points downwards; for upwards write a vector such as [\"0 {unit}\", \"1 {unit}\"]"
+            );
             self.blame(node, path, rule).remedy = Some(remedy);
             return None;
         }

@@ -1,35 +1,35 @@
-//! The table of keys: what a document may say.
+//! The table of keys: what a document may contain.
 //!
-//! One entry per key gives its kind, range, default and meaning. Decoding, the defaults written out, the lists of allowed
-//! keys in messages and the addressing by `--set` all follow from the tables of a [`Schema`](crate::schema::Schema); a
-//! program can make its reference page of them, too.
+//! One entry per key gives its kind, range, default and meaning. Decoding, written defaults, the
+//! lists of allowed keys in messages and `--set` all follow from the tables of a
+//! [`Schema`](crate::schema::Schema); a program can also generate its reference page from them.
 
 use crate::dimension::Dimension;
 
-/// A table of a document, such as `[time]` or `[beam.NAME]`, and its keys.
+/// Schema of a table of a document, such as `[time]` or `[beam.NAME]`: its keys.
 #[derive(Debug)]
-pub struct Table {
+pub struct TableSchema {
     /// Dotted path; a `*` stands for a name chosen by the user; empty for the root.
     pub pattern: &'static str,
-    /// When the table is there.
+    /// When the table exists.
     pub occurrence: Occurrence,
-    /// Its keys in the order in which they are written out.
+    /// Its keys in the order of the output.
     pub keys: &'static [Key],
     /// What it describes.
     pub doc: &'static str,
 }
 
-/// When a table is there.
+/// When a table exists.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Occurrence {
-    /// Always: its defaults and required keys hold even where the file does not name it.
+    /// Always: its defaults and required keys apply even if the file doesn't name it.
     Always,
-    /// Where the file names it; there can be one.
+    /// If the file names it; at most one.
     Optional,
     /// One for each name that the user gives.
     Named,
-    /// A value of its parent, written `key = { … }`; there can be one.
+    /// As a value of its parent, written `key = { … }`; at most one.
     Inline,
 }
 
@@ -38,26 +38,26 @@ pub enum Occurrence {
 pub struct Key {
     /// Name within its table.
     pub name: &'static str,
-    /// What its value is.
+    /// Kind of its value.
     pub kind: Kind,
-    /// Whether it must be given, and what it means when it is not.
+    /// Whether it must be given, and its meaning if it is not.
     pub presence: Presence,
-    /// Values that are known but not built in yet: the value's text and what to do instead.
+    /// Values that are not implemented yet: the value's text and what to do instead.
     pub reserved: &'static [Reserved],
-    /// A word that says the same as leaving the key out.
+    /// A word equivalent to leaving the key out.
     pub left_out_as: Option<&'static str>,
     /// A valid value, in TOML.
     pub example: &'static str,
     /// One sentence.
     pub doc: &'static str,
-    /// Bytes of memory that each one of a count takes; 0 where it takes none.
+    /// For a count, bytes of memory that each one takes; 0 if none.
     pub bytes_each: u64,
-    /// Where the key has a meaning; `None`: wherever its table is.
+    /// Condition for the key to apply; `None`: always.
     pub only_with: Option<OnlyWith>,
 }
 
-/// Words of another key of the same table with which alone a key has a meaning: with others it is refused, and neither
-/// required nor filled in.
+/// Words of another key of the same table for which a key applies: with others it is refused, and
+/// neither required nor filled in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct OnlyWith {
     /// The other key.
@@ -66,7 +66,7 @@ pub struct OnlyWith {
     pub words: &'static [&'static str],
 }
 
-/// A value that is known but not built in yet.
+/// A value that is not implemented yet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Reserved {
     /// The text of the value (`true` for a flag).
@@ -79,46 +79,47 @@ pub struct Reserved {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Presence {
-    /// Must be given wherever its table is.
+    /// Must be given if its table exists.
     Required,
-    /// Must be given with these words of the key that it goes with (`only_with`); optional with the others.
+    /// Must be given with these words of the key named in `only_with`; optional with the others.
     RequiredWith(&'static [&'static str]),
-    /// Must be given where this key of the same table is not.
+    /// Must be given if this key of the same table is not.
     RequiredWithout(&'static str),
-    /// May be left out; nothing stands in for it here.
+    /// May be left out; there is no default here.
     Optional,
-    /// Stands for this TOML value when left out.
+    /// Defaults to this TOML value.
     Default(&'static str),
-    /// Stands for this TOML value when left out, where the sibling key is given; else it stays absent.
+    /// Defaults to this TOML value if the sibling key is given; otherwise it stays absent.
     DefaultWith {
         /// The other key of the same table.
         sibling: &'static str,
         /// In TOML.
         value: &'static str,
     },
-    /// Stands for this TOML value when left out, where the sibling key is not given; else it stays absent.
+    /// Defaults to this TOML value if the sibling key is not given; otherwise it stays absent.
     DefaultWithout {
         /// The other key of the same table.
         sibling: &'static str,
         /// In TOML.
         value: &'static str,
     },
-    /// Known but not built in yet: refused.
+    /// Not implemented yet: refused.
     NotYet,
 }
 
-/// Characters of a [`Kind::Text`].
+/// Largest number of characters of a [`Kind::Text`].
 pub const LONGEST_TITLE: usize = 200;
 
-/// What a key's value is.
+/// The kind of a key's value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Kind {
-    /// A line of text for people, of at most [`LONGEST_TITLE`] characters, none of which steers a terminal.
+    /// A line of text for users, of at most [`LONGEST_TITLE`] characters, none of which controls a
+    /// terminal.
     Text,
     /// A file, relative to the document's own.
     Path,
-    /// A name of something in the document: letters, digits, `_`, `-`.
+    /// A name of an object in the document: letters, digits, `_`, `-`.
     Name,
     /// One of some words.
     Choice(&'static [&'static str]),
@@ -155,11 +156,12 @@ pub enum Kind {
     WordOrTablePair(&'static [&'static str], &'static [Key]),
     /// An array of two names.
     NamePair,
-    /// An array of two names, in which a `*` stands for any letters.
+    /// An array of two names, in which a `*` stands for any characters.
     PatternPair,
-    /// A quantity that may have one of several units, by which it is understood.
-    Measure(&'static [crate::measure::Unit], Range),
-    /// A vector: an array of two quantities x, y, or one quantity that is not negative, for a vector that points downwards.
+    /// A quantity in one of several units, which determines its meaning.
+    Measure(&'static [crate::measure::AllowedUnit], Range),
+    /// A vector: an array of two quantities x, y, or one quantity that is not negative, for a
+    /// vector that points downwards.
     Downward(Dimension),
 }
 
@@ -175,21 +177,21 @@ pub enum Bound {
     Open(f64),
 }
 
-/// Which numbers a key takes, in SI units.
+/// The numbers that a key accepts, in SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
     /// Lower end.
     pub low: Bound,
     /// Upper end.
     pub high: Bound,
-    /// Smallest size of a value other than zero that the program can compute with.
+    /// Smallest absolute value other than zero that the program can compute with.
     pub smallest: f64,
-    /// Largest size that the program can compute with.
+    /// Largest absolute value that the program can compute with.
     pub largest: f64,
 }
 
 impl Range {
-    /// Any number up to 1e12 in size.
+    /// Any number up to 1e12 in absolute value.
     pub const ANY: Self = Self::new(Bound::None, Bound::None);
     /// Greater than zero, from 1e-12 to 1e12.
     pub const POSITIVE: Self = Self::new(Bound::Open(0.0), Bound::None).sizes(1e-12, 1e12);
@@ -200,12 +202,12 @@ impl Range {
     /// From 0 to 1, ends excluded.
     pub const INSIDE_UNIT: Self = Self::new(Bound::Open(0.0), Bound::Open(1.0));
 
-    /// A range between two ends, up to 1e12 in size.
+    /// A range between two ends, up to 1e12 in absolute value.
     pub const fn new(low: Bound, high: Bound) -> Self {
         Self { low, high, smallest: f64::MIN_POSITIVE, largest: 1e12 }
     }
 
-    /// The same range with other limits of size.
+    /// The same range with other limits of the absolute value.
     #[must_use]
     pub const fn sizes(mut self, smallest: f64, largest: f64) -> Self {
         self.smallest = smallest;
@@ -213,7 +215,8 @@ impl Range {
         self
     }
 
-    /// What is wrong with `value`, in the unit of `dimension` (angles in degrees); `None` where it is allowed.
+    /// What is wrong with `value`, in the unit of `dimension` (angles in degrees); `None` if it is
+    /// allowed.
     ///
     /// ```
     /// use teeter_text::{dimension::Dimension, keys::Range};
@@ -245,10 +248,10 @@ impl Range {
         }
     }
 
-    /// The sizes that can be computed with, in words.
+    /// The limits of the absolute value, in words.
     pub(crate) fn sizes_rule(&self, dimension: Dimension) -> String {
         let (smallest, largest) = (in_unit(self.smallest, dimension), in_unit(self.largest, dimension));
-        format!("outside the range that can be computed with: {smallest} to {largest} in size")
+        format!("outside the supported range: {smallest} to {largest} in absolute value")
     }
 
     /// The range in words: "must lie in [0, 1]".
@@ -285,19 +288,19 @@ fn in_unit(value: f64, dimension: Dimension) -> String {
     format!("{number} {unit}").trim_end().to_owned()
 }
 
-/// What became of a path that was looked up.
+/// What a path refers to.
 #[derive(Debug, Clone, Copy)]
-pub enum Found {
+pub enum PathTarget {
     /// A key of a table.
-    Key(&'static Table, &'static Key),
+    Key(&'static TableSchema, &'static Key),
     /// A table.
-    Table(&'static Table),
+    Table(&'static TableSchema),
     /// The group of named tables, such as `beam` of `beam.*`.
-    Group(&'static Table),
+    Group(&'static TableSchema),
 }
 
 impl Key {
-    /// A key that has a meaning wherever its table is; see [`Key::only_with`], [`Key::reserving`] and [`Key::taking`].
+    /// A key that always applies; see [`Key::only_with`], [`Key::reserving`] and [`Key::taking`].
     #[must_use]
     pub const fn new(
         name: &'static str,
@@ -309,28 +312,28 @@ impl Key {
         Self { name, kind, presence, reserved: &[], left_out_as: None, example, doc, bytes_each: 0, only_with: None }
     }
 
-    /// The same key with values that are known but not built in yet.
+    /// The same key with values that are not implemented yet.
     #[must_use]
     pub const fn reserving(mut self, reserved: &'static [Reserved]) -> Self {
         self.reserved = reserved;
         self
     }
 
-    /// The same key with a word that says the same as leaving it out.
+    /// The same key with a word equivalent to leaving it out.
     #[must_use]
     pub const fn left_out_as(mut self, word: &'static str) -> Self {
         self.left_out_as = Some(word);
         self
     }
 
-    /// The same key with a meaning only where `sibling` is one of `words`.
+    /// The same key, which applies only if `sibling` is one of `words`.
     #[must_use]
     pub const fn only_with(mut self, sibling: &'static str, words: &'static [&'static str]) -> Self {
         self.only_with = Some(OnlyWith { sibling, words });
         self
     }
 
-    /// The same key, a count each of which takes so many bytes of memory.
+    /// The same key, a count of objects that take this many bytes of memory each.
     #[must_use]
     pub const fn taking(mut self, bytes_each: u64) -> Self {
         self.bytes_each = bytes_each;
@@ -338,13 +341,14 @@ impl Key {
     }
 }
 
-impl Table {
-    /// The key of this name.
+impl TableSchema {
+    /// The key with this name.
     pub fn key(&self, name: &str) -> Option<&'static Key> {
         self.keys.iter().find(|key| key.name == name)
     }
 
-    /// Last part of the pattern, the star of a named table left off: `time`, `beam`, `damping_ratio`.
+    /// Last part of the pattern, without the star of a named table: `time`, `beam`,
+    /// `damping_ratio`.
     pub fn name(&self) -> &'static str {
         let pattern = self.pattern.strip_suffix(".*").unwrap_or(self.pattern);
         pattern.rsplit('.').next().unwrap_or(pattern)
@@ -365,7 +369,7 @@ mod tests {
         assert_eq!(Range::ANY.check(f64::NAN, number).as_deref(), Some("not a finite number"));
         assert_eq!(
             Range::POSITIVE.check(1e200, Dimension::LENGTH).as_deref(),
-            Some("outside the range that can be computed with: 1e-12 m to 1e12 m in size")
+            Some("outside the supported range: 1e-12 m to 1e12 m in absolute value")
         );
         assert!(Range::POSITIVE.check(1e-13, Dimension::LENGTH).is_some());
     }

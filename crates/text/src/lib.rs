@@ -1,13 +1,14 @@
 //! Configuration in TOML with units, read against a table of keys.
 //!
-//! What a document may say is a [`schema::Schema`]: tables of keys, each with its kind, range, default and meaning.
-//! [`decode::parse`] takes the text of a file and overrides of single keys (`--set KEY=VALUE`), and returns a
-//! [`document::Document`]: every value by its path, in SI units, with the defaults filled in, or all that is wrong at once, as
-//! [`diagnostic::Diagnostics`] that point into the file. [`document::Document::to_toml`] is the way back,
-//! [`document::Document::with`] a copy with one key changed. What the values mean is not known here.
+//! A [`schema::Schema`] defines what a document may contain: tables of keys, each with its kind,
+//! range, default and meaning. [`decode::parse`] takes the text of a file and overrides of single
+//! keys (`--set KEY=VALUE`), and returns a [`document::Document`]: every value by its path, in SI
+//! units, with defaults filled in; or all errors at once, as [`diagnostic::Diagnostics`] that point
+//! into the file. [`document::Document::to_toml`] converts it back, [`document::Document::with`] is
+//! a copy with one key changed. The meaning of the values is not known here.
 //!
-//! Below that stand quantities: [`quantity::parse`] reads "36 cm", checked against a [`dimension::Dimension`], to the double
-//! that the same number in SI units would be.
+//! Quantities can be read separately: [`quantity::parse`] reads "36 cm", checked against a
+//! [`dimension::Dimension`], to the same double as the number written in SI units.
 //!
 //! ```
 //! use teeter_text::{dimension::Dimension, quantity};

@@ -1,15 +1,15 @@
-//! Quantities that may have one of several units, by which they are understood: coefficients of power laws, whose units hold
-//! the exponent.
+//! Quantities in one of several units, which determines their meaning: coefficients of power laws,
+//! whose units contain the exponent.
 
 use std::fmt;
 
 use crate::dimension::Dimension;
 use crate::quantity::{self, QuantityError};
 
-/// A unit that a key may take.
+/// A unit that a key accepts.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Unit {
-    /// Its dimension; of one with a power of the metre, that without the power.
+pub struct AllowedUnit {
+    /// Its dimension, without the power of the metre if there is one.
     pub dimension: Dimension,
     /// Whether the metre may have any power: `N/m^1.5`.
     pub any_power: bool,
@@ -17,7 +17,7 @@ pub struct Unit {
     pub example: &'static str,
 }
 
-impl Unit {
+impl AllowedUnit {
     /// A unit of this dimension.
     #[must_use]
     pub const fn new(dimension: Dimension, example: &'static str) -> Self {
@@ -46,8 +46,8 @@ impl Measure {
     /// Reads a quantity in one of the units.
     ///
     /// # Errors
-    /// What is wrong with the text, as seen from the first of the units.
-    pub fn read(text: &str, units: &[Unit]) -> Result<Self, QuantityError> {
+    /// What is wrong with the text, relative to the first unit.
+    pub fn read(text: &str, units: &[AllowedUnit]) -> Result<Self, QuantityError> {
         for unit in units.iter().filter(|unit| !unit.any_power) {
             if let Ok(value) = quantity::parse(text, unit.dimension) {
                 return Ok(Self { value, dimension: unit.dimension, power: None });
@@ -61,13 +61,13 @@ impl Measure {
                 }
             }
         }
-        // What is wrong with it, seen from the first unit.
+        // The error relative to the first unit.
         let first = units.first().map_or(Dimension::NONE, |unit| unit.dimension);
         quantity::parse(text, first).map(|value| Self { value, dimension: first, power: None })
     }
 }
 
-/// As it is read.
+/// In the syntax that can be read.
 impl fmt::Display for Measure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&quantity::format_si(self.value, self.dimension))?;
@@ -82,12 +82,12 @@ impl fmt::Display for Measure {
 mod tests {
     use super::*;
 
-    const STIFFNESS: &[Unit] =
-        &[Unit::new(Dimension::STIFFNESS, "N/m"), Unit::over_powers_of_metre(Dimension::FORCE, "N/m^n")];
-    const DAMPING: &[Unit] = &[
-        Unit::new(Dimension::DAMPING, "N s/m"),
-        Unit::new(Dimension::INVERSE_VELOCITY, "s/m"),
-        Unit::over_powers_of_metre(Dimension::IMPULSE, "N s/m^(n+1)"),
+    const STIFFNESS: &[AllowedUnit] =
+        &[AllowedUnit::new(Dimension::STIFFNESS, "N/m"), AllowedUnit::over_powers_of_metre(Dimension::FORCE, "N/m^n")];
+    const DAMPING: &[AllowedUnit] = &[
+        AllowedUnit::new(Dimension::DAMPING, "N s/m"),
+        AllowedUnit::new(Dimension::INVERSE_VELOCITY, "s/m"),
+        AllowedUnit::over_powers_of_metre(Dimension::IMPULSE, "N s/m^(n+1)"),
     ];
 
     #[test]

@@ -1,29 +1,31 @@
 //! Quantities with units: reading "36 cm" and writing "0.36 m".
 //!
 //! A quantity is a decimal number, optional blanks, and a product or quotient of powers of units:
-//! `9.81 m/s^2`, `0.4 N s/m^2`, `36cm`, `2700 kg·m⁻³`, `1.5 1/s`, `3 J/(kg K)`. Products and quotients are read from left to right.
+//! `9.81 m/s^2`, `0.4 N s/m^2`, `36cm`, `2700 kg·m⁻³`, `1.5 1/s`, `3 J/(kg K)`. Products and
+//! quotients are evaluated from left to right.
 //!
-//! Powers of ten of the units are added to the exponent in the number's text before it is read, so that "36 cm" is the
-//! double nearest to 0.36, as if it had been written in metres. Multiplying by 0.01 would miss it by one unit in the last place
-//! now and then. The other factors (degree, minute, hour, rpm) multiply.
+//! Powers of ten of the units are added to the exponent in the number's text before it is
+//! converted, so that "36 cm" is the double nearest to 0.36, as if it had been written in metres.
+//! Multiplying by 0.01 would sometimes be off by one unit in the last place. The other factors
+//! (degree, minute, hour, rpm) are multiplied.
 
 use crate::diagnostic::printable;
 use crate::dimension::Dimension;
 use crate::{unit_expression, units};
 
-/// Why a text is no quantity, or not the one wanted.
+/// Why a text is not a quantity, or not of the expected dimension.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum QuantityError {
     /// The text does not start with a number.
     #[error("a number is missing")]
     MissingNumber,
-    /// A comma stands in the number.
-    #[error("cannot read the number `{number}`: a comma is no decimal point")]
+    /// The number contains a comma.
+    #[error("cannot read the number `{number}`: it contains a comma")]
     DecimalComma {
         /// As written.
         number: String,
-        /// The text with a point in place of the comma.
+        /// The text with a point instead of the comma.
         corrected: String,
     },
     /// `nan` or `inf`.
@@ -32,7 +34,7 @@ pub enum QuantityError {
     /// A number with no unit.
     #[error("the unit is missing")]
     MissingUnit,
-    /// A symbol that is no unit.
+    /// An unknown unit symbol.
     #[error("unknown unit `{symbol}`")]
     UnknownUnit {
         /// As written.
@@ -48,20 +50,20 @@ pub enum QuantityError {
         /// What is wrong.
         reason: &'static str,
     },
-    /// Another quantity than the one wanted.
+    /// A quantity of another dimension than expected.
     #[error("{wanted} is expected, got {}", got_text(*.got, .unit))]
     WrongDimension {
-        /// What the key takes.
+        /// The expected dimension.
         wanted: Dimension,
-        /// What was written.
+        /// The dimension found.
         got: Dimension,
         /// The unit as written.
         unit: String,
     },
-    /// Beyond the largest double.
+    /// Larger than the largest double.
     #[error("too large to compute with (the limit is 1.8e308 in SI units)")]
     TooLarge,
-    /// Not zero, but below the smallest normal double.
+    /// Not zero, but smaller than the smallest normal double.
     #[error("too small to compute with (the limit is 2.2e-308 in SI units)")]
     TooSmall,
 }
@@ -74,11 +76,11 @@ fn got_text(got: Dimension, unit: &str) -> String {
 }
 
 impl QuantityError {
-    /// What to write instead, if that can be said without knowing the key.
+    /// What to write instead, if that doesn't depend on the key.
     pub fn remedy(&self) -> Option<String> {
         match self {
             Self::DecimalComma { corrected, .. } => Some(format!("use a decimal point: \"{corrected}\"")),
-            Self::UnknownUnit { .. } => Some(format!("the units known are {}", units::known())),
+            Self::UnknownUnit { .. } => Some(format!("known units are {}", units::known())),
             Self::Syntax { .. } => {
                 Some("a unit is a product or quotient of powers, such as N s/m^2 or kg/m^3".to_owned())
             }
@@ -95,7 +97,7 @@ impl QuantityError {
     }
 }
 
-/// Reads a quantity of the wanted dimension and returns its value in SI units.
+/// Reads a quantity of the expected dimension and returns its value in SI units.
 ///
 /// ```
 /// use teeter_text::{dimension::Dimension, quantity};
@@ -119,8 +121,9 @@ pub fn parse(text: &str, wanted: Dimension) -> Result<f64, QuantityError> {
     Ok(quantity.value)
 }
 
-/// Writes a value in SI so that [`parse`] gives the same double back, bit for bit: shortest digits and the usual unit.
-/// The value should be finite; NaN and infinities are written by name and refused when read.
+/// Writes a value in SI units so that [`parse`] returns the same double, bit for bit: with the
+/// fewest digits and the usual unit. The value should be finite; NaN and infinities are written by
+/// name and refused when read.
 ///
 /// ```
 /// use teeter_text::{dimension::Dimension, quantity};
@@ -132,7 +135,7 @@ pub fn format_si(value: f64, dimension: Dimension) -> String {
     if unit.is_empty() { format!("{value:?}") } else { format!("{value:?} {unit}") }
 }
 
-/// A number and unit as read, before anything is asked of its dimension.
+/// A number with its unit, before its dimension is checked.
 #[derive(Debug)]
 pub(crate) struct Quantity<'a> {
     /// In SI units.
@@ -147,7 +150,7 @@ impl<'a> Quantity<'a> {
     /// Reads a number with its unit, or without one.
     ///
     /// # Errors
-    /// As [`parse`], but for the dimension.
+    /// As [`parse`], except for the dimension.
     pub(crate) fn read(text: &'a str) -> Result<Self, QuantityError> {
         let text = text.trim();
         let number = Number::read(text)?;
@@ -156,7 +159,7 @@ impl<'a> Quantity<'a> {
             return Ok(Self { value: number.value(0)?, dimension: Dimension::NONE, unit });
         }
         let product = unit_expression::read(unit)?;
-        // Checked again after the factors: they could push a normal number out of the normal range.
+        // Checked again, as the factors can take a normal number out of the normal range.
         let value = number.value(product.shift)? * product.above / product.below;
         if !value.is_finite() {
             return Err(QuantityError::TooLarge);
@@ -168,13 +171,13 @@ impl<'a> Quantity<'a> {
     }
 }
 
-/// The number at the start of a text, its exponent apart.
+/// The number at the start of a text, with its exponent separate.
 struct Number {
     /// Sign, digits, point.
     mantissa: String,
     exponent: i64,
     nonzero: bool,
-    /// Bytes of the text that it takes.
+    /// Its length in bytes of the text.
     length: usize,
 }
 
@@ -238,7 +241,7 @@ impl Number {
     }
 }
 
-/// "e-3" at the start of a text: its value and length; `None` where the e belongs to a unit.
+/// "e-3" at the start of a text: its value and length; `None` if the e belongs to a unit.
 fn decimal_exponent(text: &str) -> Option<(i64, usize)> {
     let digits = text.strip_prefix(['e', 'E'])?;
     let unsigned = digits.strip_prefix(['+', '-']).unwrap_or(digits);
@@ -246,7 +249,7 @@ fn decimal_exponent(text: &str) -> Option<(i64, usize)> {
     if count == 0 {
         return None;
     }
-    // Beyond i32 the result is infinite or zero whatever the mantissa; saturate.
+    // Beyond i32 the result is infinite or zero for any mantissa, so saturate.
     let limit = i64::from(i32::MAX);
     let size = unsigned.get(..count)?.parse().map_or(limit, |size: i64| size.min(limit));
     let value = if digits.starts_with('-') { -size } else { size };
@@ -330,7 +333,7 @@ mod tests {
             ("1 1/s", Dimension::ANGULAR_VELOCITY, "an angular velocity (rad/s) is expected, got a rate (1/s)"),
             ("36 furlong", Dimension::LENGTH, "unknown unit `furlong`"),
             ("36 %", Dimension::LENGTH, "unknown unit `%`"),
-            ("1,5 mm", Dimension::LENGTH, "cannot read the number `1,5`: a comma is no decimal point"),
+            ("1,5 mm", Dimension::LENGTH, "cannot read the number `1,5`: it contains a comma"),
             ("nan m", Dimension::LENGTH, "not a finite number"),
             ("-inf m", Dimension::LENGTH, "not a finite number"),
             ("1e999 m", Dimension::LENGTH, "too large to compute with (the limit is 1.8e308 in SI units)"),
@@ -341,11 +344,11 @@ mod tests {
             ),
             ("1e-320 m", Dimension::LENGTH, "too small to compute with (the limit is 2.2e-308 in SI units)"),
             ("5 m^0.5", Dimension::LENGTH, "cannot read the unit `m^0.5`: a unit is missing or a sign is misplaced"),
-            ("5 m^", Dimension::LENGTH, "cannot read the unit `m^`: an exponent is a whole number"),
+            ("5 m^", Dimension::LENGTH, "cannot read the unit `m^`: an exponent must be a whole number"),
             ("5 m 2", Dimension::LENGTH, "cannot read the unit `m 2`: a unit is missing or a sign is misplaced"),
             ("5 m/", Dimension::LENGTH, "cannot read the unit `m/`: a unit is missing or a sign is misplaced"),
             ("5 (m", Dimension::LENGTH, "cannot read the unit `(m`: a closing parenthesis is missing"),
-            ("5 m)", Dimension::LENGTH, "cannot read the unit `m)`: a closing parenthesis too many"),
+            ("5 m)", Dimension::LENGTH, "cannot read the unit `m)`: there is an extra closing parenthesis"),
             ("5 m^999", Dimension::LENGTH, "cannot read the unit `m^999`: the exponents are too large"),
         ];
         for (text, dimension, message) in table {

@@ -1,18 +1,19 @@
-//! A schema: what the documents of one kind may say, and what they are called in messages.
+//! A schema: what documents of one kind may contain, and what messages call them.
 
-use crate::keys::{Found, Occurrence, Presence, Table};
+use crate::keys::{Occurrence, PathTarget, Presence, TableSchema};
 
-/// What a document may say: its tables of keys, the rules about names, and a few words for messages.
+/// What a document may contain: its tables of keys, rules about names, and a few words for
+/// messages.
 ///
 /// ```
 /// use teeter_text::decode;
 /// use teeter_text::dimension::Dimension;
-/// use teeter_text::keys::{Key, Kind, Occurrence, Presence, Range, Table};
+/// use teeter_text::keys::{Key, Kind, Occurrence, Presence, Range, TableSchema};
 /// use teeter_text::schema::Schema;
 ///
-/// static TABLES: &[Table] = &[
-///     Table { pattern: "", occurrence: Occurrence::Always, doc: "The root.", keys: &[] },
-///     Table {
+/// static TABLES: &[TableSchema] = &[
+///     TableSchema { pattern: "", occurrence: Occurrence::Always, doc: "The root.", keys: &[] },
+///     TableSchema {
 ///         pattern: "pump.*",
 ///         occurrence: Occurrence::Named,
 ///         doc: "A pump.",
@@ -36,16 +37,16 @@ use crate::keys::{Found, Occurrence, Presence, Table};
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub struct Schema {
-    /// What a document is, in a word: "scene".
+    /// What a document is called: "scene".
     pub noun: &'static str,
-    /// The tables, in the order in which they are written out. The root is the one with an empty pattern.
-    pub tables: &'static [Table],
+    /// The tables, in the order of the output. The root has an empty pattern.
+    pub tables: &'static [TableSchema],
     /// Groups that share their names; none by default.
     pub namespaces: &'static [Namespace],
     /// Keys that refer to a group's tables by name; none by default.
-    pub references: &'static [Reference],
-    /// What is said of files that are nothing of the kind; nothing by default.
-    pub advice: Advice,
+    pub references: &'static [NameReference],
+    /// Remedies for files of another kind; none by default.
+    pub advice: FileAdvice,
 }
 
 /// Groups of named tables whose names are unique over all of them.
@@ -53,37 +54,38 @@ pub struct Schema {
 pub struct Namespace {
     /// The groups: `beam`, `block`.
     pub groups: &'static [&'static str],
-    /// Names that are taken by something else: `ground`.
+    /// Reserved names: `ground`.
     pub taken: &'static [&'static str],
 }
 
-/// A key by which tables refer to a group's: of a key that is missing there, messages say who uses the table.
+/// A key with which tables refer to tables of a group: if these lack a key, messages say who uses
+/// the table.
 #[derive(Debug, Clone, Copy)]
-pub struct Reference {
+pub struct NameReference {
     /// The group that is referred to.
     pub group: &'static str,
     /// The groups whose tables refer to it.
     pub from: &'static [&'static str],
-    /// The key that holds the name.
+    /// The key whose value is the name.
     pub key: &'static str,
 }
 
-/// Remedies for files that are probably something else.
+/// Remedies for files that are probably of another kind.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Advice {
-    /// For an empty file: what it must have at least.
+pub struct FileAdvice {
+    /// For an empty file: the minimum that it needs.
     pub empty: Option<&'static str>,
-    /// For a file that is no text, or too large: what it should be.
+    /// For a file that is not text, or too large: what it should be.
     pub other_file: Option<&'static str>,
-    /// For keys of too many parts: how many a key has.
+    /// For keys with too many parts: how many a key has.
     pub too_deep: Option<&'static str>,
 }
 
 impl Schema {
-    /// The schema of these tables; `noun` is what a document is called.
+    /// The schema with these tables; `noun` is what a document is called.
     #[must_use]
-    pub const fn new(noun: &'static str, tables: &'static [Table]) -> Self {
-        let advice = Advice { empty: None, other_file: None, too_deep: None };
+    pub const fn new(noun: &'static str, tables: &'static [TableSchema]) -> Self {
+        let advice = FileAdvice { empty: None, other_file: None, too_deep: None };
         Self { noun, tables, namespaces: &[], references: &[], advice }
     }
 
@@ -96,25 +98,25 @@ impl Schema {
 
     /// The same schema with keys that refer to tables by name.
     #[must_use]
-    pub const fn with_references(mut self, references: &'static [Reference]) -> Self {
+    pub const fn with_references(mut self, references: &'static [NameReference]) -> Self {
         self.references = references;
         self
     }
 
-    /// The same schema with remedies for files that are something else.
+    /// The same schema with remedies for files of another kind.
     #[must_use]
-    pub const fn with_advice(mut self, advice: Advice) -> Self {
+    pub const fn with_advice(mut self, advice: FileAdvice) -> Self {
         self.advice = advice;
         self
     }
 
     /// The root table.
-    pub fn root(&self) -> Option<&'static Table> {
+    pub fn root(&self) -> Option<&'static TableSchema> {
         self.tables.iter().find(|table| table.pattern.is_empty())
     }
 
-    /// The tables right below a table.
-    pub fn children(&self, table: &Table) -> impl Iterator<Item = &'static Table> + use<> {
+    /// The tables directly below a table.
+    pub fn children(&self, table: &TableSchema) -> impl Iterator<Item = &'static TableSchema> + use<> {
         let parent = table.pattern;
         self.tables.iter().filter(move |table| {
             let own = table.pattern.strip_suffix(".*").unwrap_or(table.pattern);
@@ -123,30 +125,30 @@ impl Schema {
         })
     }
 
-    /// The names that may stand in a table: its keys that are built in, then its tables.
-    pub fn allowed(&self, table: &Table) -> Vec<&'static str> {
+    /// The names allowed in a table: its implemented keys, then its tables.
+    pub fn allowed(&self, table: &TableSchema) -> Vec<&'static str> {
         let keys = table.keys.iter().filter(|key| key.presence != Presence::NotYet);
-        keys.map(|key| key.name).chain(self.children(table).map(Table::name)).collect()
+        keys.map(|key| key.name).chain(self.children(table).map(TableSchema::name)).collect()
     }
 
-    /// What a dotted path such as `pump.main.pressure` addresses.
-    pub fn find(&self, path: &str) -> Option<Found> {
+    /// What a dotted path such as `pump.main.pressure` refers to.
+    pub fn find(&self, path: &str) -> Option<PathTarget> {
         let mut table = self.root()?;
         let mut segments = path.split('.');
         while let Some(segment) = segments.next() {
             if let Some(key) = table.key(segment) {
-                return segments.next().is_none().then_some(Found::Key(table, key));
+                return segments.next().is_none().then_some(PathTarget::Key(table, key));
             }
             table = self.children(table).find(|child| child.name() == segment)?;
             if table.occurrence == Occurrence::Named && segments.next().is_none() {
-                return Some(Found::Group(table));
+                return Some(PathTarget::Group(table));
             }
         }
-        Some(Found::Table(table))
+        Some(PathTarget::Table(table))
     }
 
     /// The first table that has a key of this name.
-    pub(crate) fn table_with(&self, key: &str) -> Option<&'static Table> {
+    pub(crate) fn table_with(&self, key: &str) -> Option<&'static TableSchema> {
         self.tables.iter().find(|table| table.key(key).is_some())
     }
 

@@ -10,7 +10,7 @@ use crate::diagnostic::{Diagnostic, Severity, printable};
 pub enum Origin {
     /// The file: bytes of its text.
     File(Range<usize>),
-    /// A `--set KEY=VALUE`: its place among them, and its text.
+    /// A `--set KEY=VALUE`: its index among them, and its text.
     Set {
         /// Counted from 0 in the order given.
         index: usize,
@@ -19,13 +19,13 @@ pub enum Origin {
     },
     /// The default of the table of keys.
     Default,
-    /// A default that depends on other values, set by whoever gives the document its meaning.
+    /// A default that depends on other values, set by the code that interprets the document.
     Derived,
 }
 
 /// A file in memory.
 #[derive(Debug, Clone)]
-pub(crate) struct Source {
+pub(crate) struct SourceText {
     /// As given; for messages.
     pub(crate) file: String,
     /// All of it.
@@ -36,7 +36,7 @@ pub(crate) struct Source {
 
 const BOM: char = '\u{feff}';
 
-impl Source {
+impl SourceText {
     /// A file of this name and text.
     pub(crate) fn new(file: &str, text: &str) -> Self {
         let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
@@ -92,11 +92,11 @@ impl Source {
 
 #[cfg(test)]
 mod tests {
-    use super::Source;
+    use super::SourceText;
 
     #[test]
     fn positions_count_characters_and_skip_the_byte_order_mark() {
-        let source = Source::new("f", "\u{feff}a = 1\r\nµ = \"ü\"\n");
+        let source = SourceText::new("f", "\u{feff}a = 1\r\nµ = \"ü\"\n");
         assert_eq!(source.position(3), (1, 1));
         assert_eq!(source.position(10), (2, 1));
         assert_eq!(source.position(12), (2, 2));

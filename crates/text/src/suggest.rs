@@ -1,9 +1,10 @@
-//! "Did you mean": the nearest of the words that would have been right.
+//! "Did you mean": the nearest valid word.
 
-/// Longest word that is compared; nothing that long is a slip of the finger.
+/// Longest word that is compared; longer ones are no typing errors.
 const LONGEST: usize = 96;
 
-/// The candidate nearest to `word`, if one is near: at most 1 + length/3 edits, capitals and `_` against `-` not counted.
+/// The candidate nearest to `word`, if one is close: at most 1 + length/3 edits, ignoring case and
+/// `_` against `-`.
 #[must_use]
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     if word.is_empty() || word.len() > LONGEST {

@@ -1,4 +1,4 @@
-//! From the text of a file to a tree: TOML's own errors, all of them at once.
+//! Parses the text of a file to a tree, reporting all TOML errors at once.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -8,13 +8,13 @@ use toml::de::DeTable;
 use crate::diagnostic::Diagnostic;
 use crate::quantity::Quantity;
 use crate::schema::Schema;
-use crate::source::{Origin, Source};
-use crate::tree::{Branch, Planter};
+use crate::source::{Origin, SourceText};
+use crate::tree::{Branch, TreeBuilder};
 
 /// Largest file that is read, in bytes.
 pub const LARGEST_FILE: usize = 4 << 20;
 
-/// An error about a file that is something else.
+/// An error about a file of another kind.
 pub(crate) fn other_file(schema: &Schema, file: &str, rule: impl Into<String>) -> Diagnostic {
     let default = || format!("{} is a TOML file", schema.a_document());
     Diagnostic::error(file, rule).with_remedy(schema.advice.other_file.map_or_else(default, str::to_owned))
@@ -25,21 +25,22 @@ pub(crate) fn too_large(schema: &Schema, file: &str) -> Diagnostic {
     other_file(schema, file, rule)
 }
 
-/// Syntax errors that are reported; past that the file is probably something else.
+/// Largest number of syntax errors reported; with more, the file is probably of another kind.
 const MOST_ERRORS: usize = 50;
 
 /// A file as a tree, as far as it could be read.
 pub(crate) struct Parsed {
     pub(crate) root: Branch,
     pub(crate) errors: Vec<Diagnostic>,
-    /// Lines (from 0) with syntax errors: what was recovered from them should not be judged again.
+    /// Lines (from 0) with syntax errors: keys recovered from them should not be checked again.
     pub(crate) bad_lines: BTreeSet<usize>,
-    /// Whether no part of the file was lost: a key that is not in the tree is not in the file.
+    /// Whether no part of the file was lost, so that a key missing from the tree is missing from
+    /// the file.
     pub(crate) complete: bool,
 }
 
-/// Reads the TOML of a file, going on after errors.
-pub(crate) fn read(schema: &Schema, source: &Source) -> Parsed {
+/// Parses the TOML of a file, continuing after errors.
+pub(crate) fn read(schema: &Schema, source: &SourceText) -> Parsed {
     let mut parsed =
         Parsed { root: Branch::default(), errors: Vec::new(), bad_lines: BTreeSet::new(), complete: false };
     if source.text.len() > LARGEST_FILE {
@@ -51,8 +52,9 @@ pub(crate) fn read(schema: &Schema, source: &Source) -> Parsed {
         parsed.errors.push(other_file(schema, &source.file, rule));
         return parsed;
     }
-    // The parser gives up the rest of the file at a key without value: blank such lines and read again. After an unclosed
-    // header it is anyone's guess which table the keys belong to: what follows is left out.
+    // At a key without value the parser gives up on the rest of the file: blank such lines and
+    // parse again. After an unclosed header the table of the keys is unknown: what follows is left
+    // out.
     let mut text = source.text.clone();
     let mut seen = BTreeSet::new();
     for round in 1.. {
@@ -63,7 +65,7 @@ pub(crate) fn read(schema: &Schema, source: &Source) -> Parsed {
             let fresh = seen.insert((span.start, error.message().to_owned()));
             if fresh && parsed.errors.len() < MOST_ERRORS {
                 let found = finding(schema, source, &span, error.message());
-                // A value that is missing altogether is reported twice by the parser.
+                // The parser reports a missing value twice.
                 let same_place = |other: &Diagnostic| other.span.as_ref() == Some(&span);
                 if !parsed.errors.iter().any(same_place) {
                     parsed.errors.push(found);
@@ -88,8 +90,8 @@ pub(crate) fn read(schema: &Schema, source: &Source) -> Parsed {
                 text.replace_range(range, &blanks);
             }
         } else {
-            let planter = Planter { source, origin: None };
-            parsed.root = planter.branch(table.get_ref());
+            let builder = TreeBuilder { source, origin: None };
+            parsed.root = builder.branch(table.get_ref());
             break;
         }
     }
@@ -97,40 +99,40 @@ pub(crate) fn read(schema: &Schema, source: &Source) -> Parsed {
     parsed
 }
 
-// Messages of the TOML parser that are told better here.
+// Messages of the TOML parser that are replaced by better ones.
 const DUPLICATE: &str = "duplicate key";
 const NO_VALUE: &str = "key with no value";
 const TOO_DEEP: &str = "recursion limit";
 const UNQUOTED: &str = "string values must be quoted";
-/// Readings of one file, each of which gets past lines that stop the parser.
+/// Largest number of parses of one file, each of which gets past lines that stop the parser.
 const MOST_ROUNDS: u32 = 3;
 
-/// The parser's span, or the whole file's start where it gives none; never past the end.
-fn span_within(span: Option<Range<usize>>, source: &Source) -> Range<usize> {
+/// The parser's span, or the start of the file if it gives none; never past the end.
+fn span_within(span: Option<Range<usize>>, source: &SourceText) -> Range<usize> {
     let end = source.text.len();
     let span = span.unwrap_or(0..0);
     span.start.min(end)..span.end.min(end)
 }
 
-/// The header of the table that a line belongs to, as a dotted path; empty above the first header.
-fn table_of(source: &Source, line: usize) -> String {
+/// The header of the table to which a line belongs, as a dotted path; empty above the first header.
+fn table_of(source: &SourceText, line: usize) -> String {
     (0..=line).rev().find_map(|line| header_of(source, line)).unwrap_or_default()
 }
 
 /// The path in a line that is a table's header.
-fn header_of(source: &Source, line: usize) -> Option<String> {
+fn header_of(source: &SourceText, line: usize) -> Option<String> {
     let text = source.line_text(line).trim_start();
     let text = text.split('#').next().unwrap_or_default();
     text.starts_with('[').then(|| text.trim_matches(['[', ']', ' ', '\t']).to_owned())
 }
 
 /// The key before the `=` of a line.
-fn key_of(source: &Source, line: usize) -> &str {
+fn key_of(source: &SourceText, line: usize) -> &str {
     let text = source.line_text(line);
     text.split('=').next().unwrap_or_default().trim()
 }
 
-fn finding(schema: &Schema, source: &Source, span: &Range<usize>, message: &str) -> Diagnostic {
+fn finding(schema: &Schema, source: &SourceText, span: &Range<usize>, message: &str) -> Diagnostic {
     if message == DUPLICATE {
         return duplicate(source, span);
     }
@@ -161,14 +163,14 @@ fn finding(schema: &Schema, source: &Source, span: &Range<usize>, message: &str)
         .replace("invalid basic string, expected", "the text in quotes does not end, expected")
         .replace("invalid literal string, expected", "the text in quotes does not end, expected")
         .replace("literal string", "a text in quotes");
-    // In a line that assigns, the key before the sign is what is broken.
+    // In an assignment, the key before the sign is at fault.
     let bare = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.');
     let is_key = text.contains('=') && !key.is_empty() && key.chars().all(bare);
     source.error(&origin, if is_key { &key } else { "" }, rule)
 }
 
-/// The parser doesn't say where: at the first of the lines in which most begins that is within something else.
-fn too_deep(schema: &Schema, source: &Source) -> Diagnostic {
+/// The parser gives no position: take the first line with the deepest nesting.
+fn too_deep(schema: &Schema, source: &SourceText) -> Diagnostic {
     let depth = |line: &str| line.matches(['.', '[', '{']).count();
     let (mut start, mut deepest, mut most) = (0, 0, 0);
     for line in source.text.split_inclusive('\n') {
@@ -178,7 +180,7 @@ fn too_deep(schema: &Schema, source: &Source) -> Diagnostic {
         start += line.len();
     }
     let origin = Origin::File(deepest..deepest);
-    let rule = "nested too deeply: a key of too many parts, or too many tables or arrays in each other";
+    let rule = "nested too deeply: a key with too many parts, or too many nested tables or arrays";
     let mut found = source.error(&origin, "", rule);
     found.remedy = schema.advice.too_deep.map(str::to_owned);
     found
@@ -188,7 +190,7 @@ fn join(table: &str, key: &str) -> String {
     if table.is_empty() { key.to_owned() } else { format!("{table}.{key}") }
 }
 
-fn duplicate(source: &Source, span: &Range<usize>) -> Diagnostic {
+fn duplicate(source: &SourceText, span: &Range<usize>) -> Diagnostic {
     let line = source.line(span.start);
     let (path, first) = if let Some(header) = header_of(source, line) {
         let first = (0..line).find(|earlier| header_of(source, *earlier).as_ref() == Some(&header));
@@ -199,7 +201,8 @@ fn duplicate(source: &Source, span: &Range<usize>) -> Diagnostic {
         let key = source.text.get(span.clone()).unwrap_or_default();
         let before = source.line_text(line).get(..span.end.saturating_sub(source.line_range(line).start));
         if let Some(given) = before.filter(|before| !before.contains('=')) {
-            // Of a dotted key the part up to the one that is taken: by the same key, or by a table of that name.
+            // For a dotted key, the part up to the duplicate, which is the same key or a table of
+            // that name.
             let path = join(&table, given.trim());
             let same = |earlier: &usize| match header_of(source, *earlier) {
                 Some(header) => header == path,

@@ -1,10 +1,11 @@
-//! A document as a tree of TOML values in the order of the file, each with its origin; and the reading of TOML into it.
+//! A document as a tree of TOML values in the order of the file, each with its origin, and its
+//! construction from TOML.
 
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
 use crate::diagnostic::printable;
-use crate::source::{Origin, Source};
+use crate::source::{Origin, SourceText};
 
 /// A value and where it came from.
 #[derive(Debug, Clone)]
@@ -19,7 +20,7 @@ pub(crate) struct Node {
 #[derive(Debug, Clone)]
 pub(crate) enum Raw {
     Text(String),
-    /// `None` where it does not fit into 64 bits.
+    /// `None` if it doesn't fit into 64 bits.
     Integer(Option<i64>),
     Float(f64),
     Flag(bool),
@@ -31,12 +32,12 @@ pub(crate) enum Raw {
 /// A TOML table in the order of the file.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Branch {
-    pub(crate) twigs: Vec<Twig>,
+    pub(crate) entries: Vec<TreeEntry>,
 }
 
 /// A key and its value.
 #[derive(Debug, Clone)]
-pub(crate) struct Twig {
+pub(crate) struct TreeEntry {
     pub(crate) key: String,
     pub(crate) key_origin: Origin,
     pub(crate) node: Node,
@@ -44,13 +45,13 @@ pub(crate) struct Twig {
 
 impl Branch {
     pub(crate) fn get(&self, key: &str) -> Option<&Node> {
-        let twig = self.twigs.iter().find(|twig| twig.key == key)?;
-        Some(&twig.node)
+        let entry = self.entries.iter().find(|entry| entry.key == key)?;
+        Some(&entry.node)
     }
 }
 
 impl Raw {
-    /// What it is, with its article.
+    /// Its type in words, with the article.
     pub(crate) fn what(&self) -> &'static str {
         match self {
             Self::Text(_) => "a text",
@@ -64,32 +65,32 @@ impl Raw {
     }
 }
 
-/// Makes nodes out of parsed TOML: from the file, from a `--set`, or from a default.
-pub(crate) struct Planter<'a> {
-    /// The text that the spans count in.
-    pub(crate) source: &'a Source,
+/// Builds nodes from parsed TOML: of the file, of a `--set`, or of a default.
+pub(crate) struct TreeBuilder<'a> {
+    /// The text to which spans refer.
+    pub(crate) source: &'a SourceText,
     /// The origin of all nodes; `None`: their spans in the source.
     pub(crate) origin: Option<Origin>,
 }
 
-impl Planter<'_> {
+impl TreeBuilder<'_> {
     fn origin(&self, span: std::ops::Range<usize>) -> Origin {
         self.origin.clone().unwrap_or(Origin::File(span))
     }
 
-    /// The parser bounds the depth of its tables, so the recursion is bounded as well.
+    /// The parser limits the depth of tables, so the recursion is bounded.
     pub(crate) fn branch(&self, table: &DeTable<'_>) -> Branch {
         let mut entries: Vec<_> = table.iter().collect();
         entries.sort_by_key(|(key, _)| key.span().start);
-        let twigs = entries
+        let entries = entries
             .into_iter()
-            .map(|(key, value)| Twig {
+            .map(|(key, value)| TreeEntry {
                 key: key.get_ref().to_string(),
                 key_origin: self.origin(key.span()),
                 node: self.node(value),
             })
             .collect();
-        Branch { twigs }
+        Branch { entries }
     }
 
     pub(crate) fn node(&self, value: &Spanned<DeValue<'_>>) -> Node {
@@ -110,11 +111,11 @@ impl Planter<'_> {
     }
 }
 
-/// The value of a text: as TOML if it is TOML, else as a string.
+/// The value of a text: parsed as TOML if possible, otherwise a string.
 pub(crate) fn lenient_value(text: &str, origin: Origin) -> Node {
-    let source = Source::new("", text);
+    let source = SourceText::new("", text);
     match DeValue::parse(text) {
-        Ok(value) => Planter { source: &source, origin: Some(origin) }.node(&value),
+        Ok(value) => TreeBuilder { source: &source, origin: Some(origin) }.node(&value),
         Err(_) => Node { raw: Raw::Text(text.to_owned()), origin, written: printable(&format!("\"{text}\"")) },
     }
 }

@@ -20,7 +20,8 @@ impl Product {
         Self { powers: [0; 5], shift: 0, above: 1.0, below: 1.0 }
     }
 
-    /// Multiplies by `other`^`exponent`; absurd exponents saturate and are refused with the dimension.
+    /// Multiplies by `other`^`exponent`; absurd exponents saturate and are refused by
+    /// [`Product::dimension`].
     fn times(&mut self, other: &Self, exponent: i32) {
         for (power, of_other) in self.powers.iter_mut().zip(other.powers) {
             *power = power.saturating_add(of_other.saturating_mul(exponent));
@@ -43,7 +44,7 @@ impl Product {
 /// Reads a unit expression, left to right.
 ///
 /// # Errors
-/// An unknown symbol, or a text that is no product of powers.
+/// If a symbol is unknown, or the text is not a product of powers.
 pub(crate) fn read(text: &str) -> Result<Product, QuantityError> {
     Reader { text, rest: text, depth: 0, factors: 0 }.read()
 }
@@ -55,7 +56,7 @@ struct Reader<'a> {
     factors: u32,
 }
 
-/// Limits that no honest unit meets; they bound the recursion and the work.
+/// Limits that no real unit reaches; they bound recursion and work.
 const DEEPEST: u32 = 3;
 const MOST_FACTORS: u32 = 32;
 const LARGEST_EXPONENT: i32 = 99;
@@ -64,7 +65,7 @@ impl Reader<'_> {
     fn read(mut self) -> Result<Product, QuantityError> {
         let _ = self.take(TIMES);
         let product = self.product()?;
-        if self.rest.is_empty() { Ok(product) } else { Err(self.fail("a closing parenthesis too many")) }
+        if self.rest.is_empty() { Ok(product) } else { Err(self.fail("there is an extra closing parenthesis")) }
     }
 
     fn product(&mut self) -> Result<Product, QuantityError> {
@@ -75,7 +76,7 @@ impl Reader<'_> {
             self.rest = rest;
             self.skip_blanks();
             if !self.rest.starts_with('/') {
-                return Err(self.fail("a 1 can only stand before a `/`"));
+                return Err(self.fail("a 1 is allowed only before a `/`"));
             }
         }
         if self.take(&['/']) {
@@ -104,7 +105,7 @@ impl Reader<'_> {
         let factor = if self.take(&['(']) {
             self.depth += 1;
             if self.depth > DEEPEST {
-                return Err(self.fail("parentheses nest too deep"));
+                return Err(self.fail("parentheses are nested too deeply"));
             }
             let inner = self.product()?;
             if !self.take(&[')']) {
@@ -143,7 +144,7 @@ impl Reader<'_> {
         Ok((factor, exponent))
     }
 
-    /// `^2`, `^-1`, `²`, `⁻¹`, or the bare `2` of `m2`; 1 where there is none.
+    /// `^2`, `^-1`, `²`, `⁻¹`, or the bare `2` of `m2`; 1 if there is none.
     fn exponent(&mut self) -> Result<i32, QuantityError> {
         let caret = self.rest.trim_start().starts_with('^') && self.take(&['^']);
         if caret {
@@ -171,7 +172,7 @@ impl Reader<'_> {
         match digits.parse::<i32>() {
             Ok(exponent) if exponent.abs() <= LARGEST_EXPONENT => Ok(exponent),
             Ok(_) => Err(self.fail("the exponents are too large")),
-            Err(_) => Err(self.fail("an exponent is a whole number")),
+            Err(_) => Err(self.fail("an exponent must be a whole number")),
         }
     }
 

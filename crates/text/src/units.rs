@@ -1,7 +1,8 @@
 //! The table of unit symbols.
 //!
-//! A unit is a power of ten times a factor times base units. The power of ten is kept apart because it goes into the
-//! exponent of the number's text before that is read (see [`crate::quantity`]): "36 cm" is then the double 0.36 itself.
+//! A unit is a power of ten times a factor times base units. The power of ten is stored separately
+//! because it is added to the exponent of the number's text before conversion (see
+//! [`crate::quantity`]): "36 cm" is then exactly the double 0.36.
 
 use std::f64::consts::PI;
 
@@ -29,7 +30,7 @@ const fn odd(symbol: &'static str, dimension: Dimension, factor: f64) -> Unit {
     Unit { symbol, dimension, shift: 0, factor }
 }
 
-/// All units that are known.
+/// All known units.
 pub static UNITS: &[Unit] = &[
     ten("m", Dimension::LENGTH, 0),
     ten("dm", Dimension::LENGTH, -1),
@@ -74,7 +75,7 @@ pub static UNITS: &[Unit] = &[
     ten("K", Dimension::TEMPERATURE, 0),
 ];
 
-/// What people write in words, and the symbol that they mean.
+/// Names of units in words, and their symbols.
 static WORDS: &[(&str, &str)] = &[
     ("metre", "m"),
     ("meter", "m"),
@@ -111,10 +112,11 @@ pub fn find(symbol: &str) -> Option<&'static Unit> {
     UNITS.iter().find(|unit| unit.symbol == plain)
 }
 
-/// Longest symbol, in bytes, for which a suggestion is looked for.
+/// Longest symbol, in bytes, for which a suggestion is searched.
 const LONGEST: usize = 32;
 
-/// What was probably meant by an unknown symbol: a word for a unit, two units run together, or a slip.
+/// What was probably meant by an unknown symbol: a unit in words, two units run together, or a
+/// typing error.
 pub(crate) fn suggest(symbol: &str) -> Option<String> {
     if symbol.len() > LONGEST {
         return None;

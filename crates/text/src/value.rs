@@ -1,4 +1,4 @@
-//! Decoded values, and their way back to TOML.
+//! Decoded values, and their conversion to TOML.
 
 use std::collections::BTreeMap;
 
@@ -29,7 +29,7 @@ pub enum Value {
     TextPair([String; 2]),
     /// Some words.
     Words(Vec<String>),
-    /// A quantity by one of the units that its key takes.
+    /// A quantity in one of the units that its key accepts.
     Measure(Measure),
     /// A word or a table.
     Item(Item),
@@ -37,12 +37,12 @@ pub enum Value {
     ItemPair([Item; 2]),
 }
 
-/// A word, or a table of keys where a word would not say enough.
+/// A word, or a table of keys if a word is not enough.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Item {
     /// A word.
     Word(String),
-    /// The keys that are given, by name.
+    /// The given keys, by name.
     Table(BTreeMap<&'static str, Value>),
 }
 
@@ -97,7 +97,7 @@ impl Item {
 }
 
 impl Value {
-    /// Whether it is of the type that a kind of key holds.
+    /// Whether it has the type of a kind of key.
     pub(crate) fn fits(&self, kind: Kind) -> bool {
         match self {
             Self::Text(_) => matches!(kind, Kind::Text | Kind::Path | Kind::Name | Kind::Choice(_)),
@@ -117,7 +117,7 @@ impl Value {
         }
     }
 
-    /// As a TOML value that reads back to the same value, quantities in SI units.
+    /// As a TOML value that decodes to the same value, quantities in SI units.
     pub(crate) fn to_toml(&self, kind: Kind) -> String {
         let quoted = |value: &f64| format!("\"{}\"", quantity::format_si(*value, dimension_of(kind)));
         match self {
@@ -160,7 +160,7 @@ fn dimension_of(kind: Kind) -> Dimension {
     }
 }
 
-/// The keys of the tables that may stand for words.
+/// The keys of the tables that may replace words.
 fn keys_of(kind: Kind) -> &'static [Key] {
     match kind {
         Kind::WordOrTable(_, keys) | Kind::WordOrTablePair(_, keys) => keys,

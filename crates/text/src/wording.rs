@@ -1,10 +1,10 @@
-//! Words for messages: what a key expects, sizes, durations.
+//! Wording of messages: what a key expects, sizes, durations.
 
 use crate::diagnostic::printable;
 use crate::dimension::Dimension;
 use crate::keys::{Key, Kind};
 
-/// How to give a bare number its unit.
+/// How to add the unit to a bare number.
 pub(crate) fn with_unit(number: &str, dimension: Dimension) -> String {
     let number = printable(number);
     let unit = dimension.unit();
@@ -14,7 +14,7 @@ pub(crate) fn with_unit(number: &str, dimension: Dimension) -> String {
     }
 }
 
-/// What a key's value is, with its article.
+/// The kind of a key's value, with the article.
 pub(crate) fn noun(key: &Key) -> String {
     match key.kind {
         Kind::Text => "a text in quotes".to_owned(),
@@ -53,17 +53,17 @@ pub(crate) fn names(keys: &[Key]) -> String {
     names.join(", ")
 }
 
-/// What would be right for a key: for `help:` lines.
+/// What a key expects: for `help:` lines.
 #[must_use]
 pub fn expected(key: &Key) -> String {
     match key.kind {
-        Kind::Choice(choices) => format!("built in: {}", choices.join(", ")),
+        Kind::Choice(choices) => format!("choose one of {}", choices.join(", ")),
         Kind::ChoicePair(choices) => {
             format!("two of {}, such as {}", choices.join(", "), key.example)
         }
         Kind::Words(words) => format!("some of {}, each once, such as {}", words.join(", "), key.example),
         Kind::WordOrTable(words, keys) => {
-            format!("built in: {}, or a table of {}", words.join(", "), names(keys))
+            format!("available: {}, or a table of {}", words.join(", "), names(keys))
         }
         Kind::WordOrTablePair(words, keys) => {
             format!("two of {}, or tables of {}; such as {}", words.join(", "), names(keys), key.example)
@@ -79,7 +79,7 @@ pub fn expected(key: &Key) -> String {
     }
 }
 
-/// A size of memory or of files, two digits.
+/// A size of memory or files, with two digits.
 #[must_use]
 pub fn bytes(count: f64) -> String {
     let units = [(1e12, "TB"), (1e9, "GB"), (1e6, "MB"), (1e3, "kB")];
@@ -90,7 +90,7 @@ pub fn bytes(count: f64) -> String {
     }
 }
 
-/// A time that a computation takes.
+/// The time of a computation.
 #[must_use]
 pub fn duration(seconds: f64) -> String {
     match seconds {

@@ -5,21 +5,21 @@ use teeter_text::decode::{self, parse};
 use teeter_text::diagnostic::Diagnostics;
 use teeter_text::dimension::Dimension;
 use teeter_text::document::{Document, SetError};
-use teeter_text::keys::{Found, Key, Kind, Occurrence, Presence, Range, Table};
-use teeter_text::schema::{Advice, Namespace, Reference, Schema};
+use teeter_text::keys::{Key, Kind, Occurrence, PathTarget, Presence, Range, TableSchema};
+use teeter_text::schema::{FileAdvice, NameReference, Namespace, Schema};
 use teeter_text::source::Origin;
 use teeter_text::value::Value;
 
 const LENGTH: Kind = Kind::Quantity(Dimension::LENGTH, Range::POSITIVE);
 
-static TABLES: &[Table] = &[
-    Table {
+static TABLES: &[TableSchema] = &[
+    TableSchema {
         pattern: "",
         occurrence: Occurrence::Always,
         doc: "The plant.",
         keys: &[Key::new("title", Kind::Text, Presence::Optional, "\"a plant\"", "What it is called.")],
     },
-    Table {
+    TableSchema {
         pattern: "site",
         occurrence: Occurrence::Always,
         doc: "Where it stands.",
@@ -28,7 +28,7 @@ static TABLES: &[Table] = &[
             Key::new("workers", Kind::Integer { min: 1, max: 100 }, Presence::Default("3"), "3", "Who works there."),
         ],
     },
-    Table {
+    TableSchema {
         pattern: "fluid.*",
         occurrence: Occurrence::Named,
         doc: "What flows.",
@@ -40,7 +40,7 @@ static TABLES: &[Table] = &[
             "Its density.",
         )],
     },
-    Table {
+    TableSchema {
         pattern: "pipe.*",
         occurrence: Occurrence::Named,
         doc: "A pipe.",
@@ -57,7 +57,7 @@ static TABLES: &[Table] = &[
                 .only_with("wall", &["rough"]),
         ],
     },
-    Table {
+    TableSchema {
         pattern: "tank.*",
         occurrence: Occurrence::Named,
         doc: "A tank.",
@@ -67,8 +67,8 @@ static TABLES: &[Table] = &[
 
 static PLANT: Schema = Schema::new("installation", TABLES)
     .with_namespaces(&[Namespace { groups: &["pipe", "tank"], taken: &["site"] }])
-    .with_references(&[Reference { group: "fluid", from: &["pipe", "tank"], key: "fluid" }])
-    .with_advice(Advice { empty: Some("give it a pipe"), other_file: None, too_deep: None });
+    .with_references(&[NameReference { group: "fluid", from: &["pipe", "tank"], key: "fluid" }])
+    .with_advice(FileAdvice { empty: Some("give it a pipe"), other_file: None, too_deep: None });
 
 const TEXT: &str = "[fluid.water]\ndensity = '1 t/m^3'\n[pipe.main]\nfluid = 'water'\nwall = 'rough'\n";
 
@@ -108,7 +108,8 @@ fn a_copy_with_another_value_is_what_reading_with_the_setting_gives() {
     assert!(matches!(both.origin("pipe.main.grain"), Origin::Set { index: 1, .. }));
     let sets = [("site.workers", "2"), ("pipe.main.grain", "3 mm")].map(|(key, value)| (key.into(), value.into()));
     assert_eq!(both.to_toml(), parse(&PLANT, TEXT, "plant.toml", &sets).unwrap().to_toml());
-    // A text of digits needs no quotes, and a word takes the defaults with it that go with another one.
+    // A text of digits needs no quotes, and a word takes the defaults with it that go with another
+    // one.
     assert_eq!(plant.with("title", 7).unwrap().text("title"), Some("7"));
     assert!(!plant.with("pipe.main.wall", "smooth").unwrap().has("pipe.main.grain"));
 }
@@ -142,11 +143,11 @@ fn names_are_unique_over_a_namespace_and_some_are_taken() {
     assert_eq!(
         rules(&found),
         [
-            "tank.main: the name `main` is taken by pipe.main on line 3",
-            "tank.site: the name `site` is taken by the site",
+            "tank.main: the name `main` is already used by pipe.main on line 3",
+            "tank.site: the name `site` is reserved for the site",
         ]
     );
-    assert_eq!(found.0[0].remedy.as_deref(), Some("names are unique over pipes and tanks"));
+    assert_eq!(found.0[0].remedy.as_deref(), Some("use a different name: names must be unique over pipes and tanks"));
 }
 
 #[test]
@@ -159,7 +160,7 @@ fn of_a_key_that_is_missing_it_is_said_who_needs_it() {
 fn messages_call_a_document_by_its_noun() {
     let told = |found: &Diagnostics| (found.0[0].rule.clone(), found.0[0].remedy.clone().unwrap());
     let (rule, remedy) = told(&read("").unwrap_err());
-    assert_eq!((rule.as_str(), remedy.as_str()), ("the file holds no installation: it is empty", "give it a pipe"));
+    assert_eq!((rule.as_str(), remedy.as_str()), ("the file contains no installation: it is empty", "give it a pipe"));
     let (rule, remedy) = told(&decode::text(&PLANT, b"\xff", "plant.toml").unwrap_err());
     assert_eq!(rule, "not a text file in UTF-8: byte 0 cannot be read");
     assert_eq!(remedy, "an installation is a TOML file");
@@ -179,14 +180,14 @@ fn a_vector_that_points_downwards_is_one_number_that_is_not_negative() {
     let found = wind("-2 m/s").unwrap_err();
     assert_eq!(
         found.0[0].remedy.as_deref(),
-        Some("a single number is downwards; upwards is the vector [\"0 m/s\", \"1 m/s\"]")
+        Some("a single number points downwards; for upwards write a vector such as [\"0 m/s\", \"1 m/s\"]")
     );
 }
 
 #[test]
 fn paths_find_keys_tables_and_groups() {
-    assert!(matches!(PLANT.find("pipe.main.grain"), Some(Found::Key(_, key)) if key.name == "grain"));
-    assert!(matches!(PLANT.find("pipe.main"), Some(Found::Table(_))));
-    assert!(matches!(PLANT.find("pipe"), Some(Found::Group(_))));
+    assert!(matches!(PLANT.find("pipe.main.grain"), Some(PathTarget::Key(_, key)) if key.name == "grain"));
+    assert!(matches!(PLANT.find("pipe.main"), Some(PathTarget::Table(_))));
+    assert!(matches!(PLANT.find("pipe"), Some(PathTarget::Group(_))));
     assert!(PLANT.find("pipe.main.colour").is_none() && PLANT.find("site.wind.x").is_none());
 }

@@ -1,15 +1,16 @@
 //! Projected Gauss–Seidel in the plane, a contact solver of one's own.
 //!
-//! Contact by contact, each with the newest impulses of the others: first the normal impulse is set, then the tangential one,
+//! Contact by contact, each with the newest impulses of the others: first the normal impulse is
+//! set, then the tangential one,
 //!
 //! ```text
 //! p_N ← max(p_N − u_N/H_NN, 0),      p_T ← the number nearest to p_T − u_T/H_TT in [−μ p_N, μ p_N]
 //! ```
 //!
 //! An impulse that no longer changes obeys the exact law (Jourdan, Alart and Jean 1998, Comput.
-//! Methods Appl. Mech. Eng. 155, solve the two components of a contact together; this takes one after the other, which is less to
-//! write and takes more sweeps).
-//! Nothing promises that it gets there; so the judge is asked after every sweep, and what it says is what is returned.
+//! Methods Appl. Mech. Eng. 155, solve the two components of a contact together; this takes one
+//! after the other, which is less to write and takes more sweeps). Nothing promises that it gets
+//! there; so the judge is asked after every sweep, and what it says is what is returned.
 
 use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, Status, Stop, Vector, judge};
 

@@ -1,21 +1,28 @@
-//! A body, an observer and a contact solver of one's own, none of which the crates know: a block slides over the floor
-//! against a hanging rod ([`pendulum`]), [`gauss_seidel`] solves the contacts, [`impacts`] writes down each hit.
+//! A body, an observer and a contact solver of one's own, none of which the crates know: a block
+//! slides over the floor against a hanging rod ([`pendulum`]), [`gauss_seidel`] solves the
+//! contacts, [`impacts`] writes down each hit.
 //!
-//! Contact is of the block's corners with the rod's faces; that the rod's tip could meet a side of the block isn't modelled.
+//! Contact is of the block's corners with the rod's faces; that the rod's tip could meet a side of
+//! the block isn't modelled.
+//!
+//! Before that the shortest body that there is: a [`platform`] on a spring, on which the block is
+//! put down.
 
 mod gauss_seidel;
 mod impacts;
 mod pendulum;
+mod platform;
 
 use gauss_seidel::GaussSeidel;
 use impacts::Impacts;
 use nalgebra::Vector2;
 use pendulum::Pendulum;
+use platform::Platform;
 use std::error::Error;
 use teeter_detect::{Kinematics, PointDetector, PointPair};
 use teeter_integrator::{
-    Block, Blocks, Ended, Ground, Model, ModelBuilder, MoreauJean, MoreauJeanSettings, Observer, PairLaw, Plan,
-    SolverSettings, State, Unsolved, Workspace, run,
+    Block, Blocks, ConstantMatrices, Ended, Ground, Model, ModelBuilder, MoreauJean, MoreauJeanSettings, Observer,
+    PairLaw, Plan, SolverSettings, State, Unsolved, Workspace, run,
 };
 use teeter_rigid::{MassProperties, Rectangle, RigidError};
 
@@ -30,7 +37,11 @@ const DENSITY: f64 = 700.0;
 const ROD: Pendulum =
     Pendulum { pivot: Vector2::new(0.0, 0.35), length: 0.3, half_thickness: 0.003, mass: 0.5, gravity: 9.81 };
 
-/// The second pair of the model, the block's corners against the rod; the first is those against the floor.
+/// Mass of the platform, kg.
+const PLATFORM: f64 = 2.0;
+
+/// The second pair of the model, the block's corners against the rod; the first is those against
+/// the floor.
 const HIT: u32 = 1;
 
 struct Scene {
@@ -81,7 +92,8 @@ fn simulate(scene: &mut Scene, steps: u64, observer: &mut dyn Observer<2>) -> Do
     }
 }
 
-/// What the program shows: the block hits the rod and stops under it; the rod comes back, and ends leaning on the block.
+/// What the program shows: the block hits the rod and stops under it; the rod comes back, and ends
+/// leaning on the block.
 fn hit() -> Done<(Scene, Impacts)> {
     let mut scene = scene(&ROD, [PairLaw::new(0.3, 0.0), PairLaw::new(0.1, 0.2)], 1.0, 1e-4)?;
     let mut impacts = Impacts::of(HIT);
@@ -89,7 +101,31 @@ fn hit() -> Done<(Scene, Impacts)> {
     Ok((scene, impacts))
 }
 
+/// A block at rest on a platform at rest, whose spring is slack. Coordinates: the block's (X, Y,
+/// φ), then the platform's height.
+fn put_down(stiffness: f64, step: f64) -> Done<Scene> {
+    let (shape, mass) = block()?;
+    let gravity = 9.81;
+    let platform = Platform {
+        matrices: ConstantMatrices::mass([[PLATFORM]]).with_stiffness([[stiffness]]),
+        weight: PLATFORM * gravity,
+    };
+    let mut parts = ModelBuilder::new();
+    let body = parts.add(Blocks::new(vec![Block::new(mass, &shape)], Vector2::new(0.0, -gravity))).body();
+    let surface = parts.add(platform).body();
+    let law = parts.law(PairLaw::new(0.5, 0.0));
+    let points = shape.corners().to_vec();
+    let pair = PointPair { pair: 0, law, points, body, surface, kinematics: Kinematics::Deformed };
+    let model = parts.build(Box::new(PointDetector::new(vec![pair])))?;
+    let state = State::new(&model, &[0.0, 0.5 * SIDES[1], 0.0, 0.0], &[0.0; 4], step)?;
+    Ok(Scene { model, state })
+}
+
 fn main() -> Done<()> {
+    let mut scene = put_down(800.0, 1e-4)?;
+    simulate(&mut scene, 1000, &mut Impacts::of(HIT))?;
+    println!("put down on a platform on a spring, the block sinks by {:.2} mm in 0.1 s\n", -1e3 * scene.state.q[3]);
+
     let (scene, impacts) = hit()?;
     print!("{}", impacts.csv()?);
 

@@ -1,7 +1,8 @@
-//! A plane pendulum as a subsystem of one's own: a rigid rod that turns about a fixed pivot and can be hit on both faces.
+//! A plane pendulum as a subsystem of one's own: a rigid rod that turns about a fixed pivot and can
+//! be hit on both faces.
 //!
-//! One coordinate θ, counter-clockwise from hanging straight down; I the moment of inertia about the pivot, l the distance of
-//! the mass centre from it:
+//! One coordinate θ, counter-clockwise from hanging straight down; I the moment of inertia about
+//! the pivot, l the distance of the mass centre from it:
 //!
 //! ```text
 //! I θ̈ = −m g l sin θ,      T = ½ I θ̇²,      V = m g (y_pivot − l cos θ)
@@ -9,17 +10,19 @@
 //!
 //! # What the energy account says of it
 //!
-//! The θ step takes the force at q⁰ + hθv⁰ and corrects it by the stiffness K. Its energy identity is exact where −∂V/∂q is
-//! linear with that K: for blocks and beams. Here K is the constant m g l, the stiffness of hanging, because a factor is kept as long as the
-//! step size is; so the identity is exact without gravity only. Otherwise, with θ = ½ and F = −m g l sin θ, a step leaves
+//! The θ step takes the force at q⁰ + hθv⁰ and corrects it by the stiffness K. Its energy identity
+//! is exact where −∂V/∂q is linear with that K: for blocks and beams. Here K is the constant m g l,
+//! the stiffness of hanging, because a factor is kept as long as the step size is; so the identity
+//! is exact without gravity only. Otherwise, with θ = ½ and F = −m g l sin θ, a step leaves
 //!
 //! ```text
 //! residual = −(K + F'(θ)) h² a Δθ/4 − F''(θ) Δθ³/24 + …,       a = Δv/h
 //! ```
 //!
-//! which is O(h³) a step. Both terms are, to this order, a function of θ times dθ (v² is one, by the energy), so that they add up to O(h²) and come
-//! back after each full swing instead of drifting. Nothing is dissipated: it is the price of a force that isn't linear, and
-//! it goes with the square of h and with the fourth power of the swing.
+//! which is O(h³) a step. Both terms are, to this order, a function of θ times dθ (v² is one, by
+//! the energy), so that they add up to O(h²) and come back after each full swing instead of
+//! drifting. Nothing is dissipated: it is the price of a force that isn't linear, and it goes with
+//! the square of h and with the fourth power of the swing.
 
 use nalgebra::Vector2;
 use teeter_detect::{Frame, Kinematics, SurfacePoint};
@@ -31,7 +34,8 @@ pub struct Pendulum {
     pub pivot: Vector2<f64>,
     /// m, from the pivot to the tip.
     pub length: f64,
-    /// Half of the rod's thickness, m. A point is on the side of the nearer face, so this is how deep it may go.
+    /// Half of the rod's thickness, m. A point is on the side of the nearer face, so this is how
+    /// deep it may go.
     pub half_thickness: f64,
     /// kg.
     pub mass: f64,
@@ -98,7 +102,8 @@ impl Bodies<2> for Pendulum {
         true
     }
 
-    /// The foot of the perpendicular from `at` on the nearer face; none beyond the pivot or the tip.
+    /// The foot of the perpendicular from `at` on the nearer face; none beyond the pivot or the
+    /// tip.
     fn surface(&self, _body: u32, q: &[f64], _: Kinematics, at: &Vector2<f64>) -> Option<SurfacePoint<2>> {
         let local = Self::rotate(&[-q[0]], &(at - self.pivot));
         if !(-self.length..=0.0).contains(&local.y) {
@@ -119,7 +124,8 @@ impl Bodies<2> for Pendulum {
     }
 }
 
-/// The 1 × 1 inverse. How contacts feel each other through it, the trait's default finds out by solving.
+/// The 1 × 1 inverse. How contacts feel each other through it, the trait's default finds out by
+/// solving.
 struct PendulumCompliance {
     inertia: f64,
     stiffness: f64,

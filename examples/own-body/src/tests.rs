@@ -21,8 +21,9 @@ impl Observer<2> for UntilHit {
     }
 }
 
-/// Without weight and friction, the block's upper right corner meets the hanging rod at depth a below its pivot, with impulse P,
-/// and is turned; its lower left corner stays on the floor, with impulse N; the lower right one lifts:
+/// Without weight and friction, the block's upper right corner meets the hanging rod at depth a
+/// below its pivot, with impulse P, and is turned; its lower left corner stays on the floor, with
+/// impulse N; the lower right one lifts:
 ///
 /// ```text
 /// m (v⁺ − v) = −P,   J θ̇⁺ = P a,   (I + m b²/4) ω⁺ = P H/2,   N = m b ω⁺/2,
@@ -45,8 +46,9 @@ fn an_impact_has_the_velocities_of_the_closed_form() {
         let spin = push * height / 2.0 / about_foot;
         let exact = [speed - push / mass, 0.5 * b * spin, spin, push * depth / rod.inertia()];
         for (found, exact) in scene.state.v.iter().zip(exact) {
-            // The solver stops at 1e-12 of the impulses, some 0.1 N·s. The contacts' condition number, some 10, and what an
-            // impulse does most, 63 rad/s of spin for 1 N·s, make 6e-11 of it.
+            // The solver stops at 1e-12 of the impulses, some 0.1 N·s. The contacts' condition
+            // number, some 10, and what an impulse does most, 63 rad/s of spin for 1 N·s, make
+            // 6e-11 of it.
             assert!((found - exact).abs() < 6e-11, "{:?}, not {exact:?}", scene.state.v);
         }
         let found: Vec<_> = hit.0.iter().map(|contact| (contact.id.pair(), contact.id.point(), contact.p)).collect();
@@ -54,7 +56,8 @@ fn an_impact_has_the_velocities_of_the_closed_form() {
         assert!((found[2].2 - Vector2::new(push, 0.0)).norm() < 1e-12);
         assert!((found[0].2 - Vector2::new(0.5 * mass * b * spin, 0.0)).norm() < 1e-12 && found[1].2.norm() < 1e-12);
 
-        // The angular momentum about the pivot changes by the floor's impulse only, wherever that acts.
+        // The angular momentum about the pivot changes by the floor's impulse only, wherever that
+        // acts.
         let centre = Vector2::new(scene.state.q[0] - 0.5e-3 * scene.state.v[0], 0.5 * height);
         let about_pivot = |v: &[f64]| {
             let r = centre - rod.pivot;
@@ -71,7 +74,8 @@ fn an_impact_has_the_velocities_of_the_closed_form() {
     }
 }
 
-/// The rod alone, let go at rest: its angle after each step, and the energy that is unexplained by then, J.
+/// The rod alone, let go at rest: its angle after each step, and the energy that is unexplained by
+/// then, J.
 struct Swing {
     angles: Vec<f64>,
     unexplained: Vec<f64>,
@@ -99,7 +103,8 @@ fn swing(from: f64, step: f64, steps: u64) -> (Swing, State) {
     (swing, scene.state)
 }
 
-/// Time between the first and the last fall through zero, each linear between steps, over their number.
+/// Time between the first and the last fall through zero, each linear between steps, over their
+/// number.
 fn period(angles: &[f64], step: f64) -> f64 {
     let falls: Vec<f64> = (1..angles.len())
         .filter(|&k| angles[k - 1] > 0.0 && angles[k] <= 0.0)
@@ -115,8 +120,9 @@ fn small_swings_take_two_pi_root_i_over_mgl() {
     let mut errors = Vec::new();
     for step in [4e-3, 2e-3, 1e-3] {
         let found = period(&swing(1e-5, step, (20.0 / step) as u64).0.angles, step);
-        // The trapezoidal rule turns a linear oscillator by 2 atan(ωh/2) a step, exactly. What is left is the straight
-        // line between steps, √3/108 (ωh)³/ω at most at each end of the 22 periods, and θ²/16 of the swing's own.
+        // The trapezoidal rule turns a linear oscillator by 2 atan(ωh/2) a step, exactly. What is
+        // left is the straight line between steps, √3/108 (ωh)³/ω at most at each end of the 22
+        // periods, and θ²/16 of the swing's own.
         let of_the_scheme = PI * step / (0.5 * omega * step).atan();
         let straight = 3.0_f64.sqrt() / 108.0 * (omega * step).powi(3) / omega;
         let bound = 2.0 * straight / 22.0 + 1e-11;
@@ -152,7 +158,8 @@ fn the_energy_account_of_a_wide_swing_is_open_by_the_square_of_the_step() {
 fn the_programs_rod_is_hit_comes_back_and_ends_leaning_on_the_block() {
     let (scene, impacts) = hit().unwrap();
     assert_eq!(impacts.csv().unwrap().lines().count(), impacts.found.len() + 1);
-    // The first hit: after sliding 0.1 m at −μg from 1 m/s, to a step of 1e-4 s; and back with a fifth of the speed.
+    // The first hit: after sliding 0.1 m at −μg from 1 m/s, to a step of 1e-4 s; and back with a
+    // fifth of the speed.
     let (pull, first) = (0.3 * 9.81, impacts.found[0]);
     let speed = (1.0 - 2.0 * pull * DISTANCE).sqrt();
     assert!((first.t - (1.0 - speed) / pull).abs() < 1.5e-4, "{first:?}");
@@ -163,6 +170,38 @@ fn the_programs_rod_is_hit_comes_back_and_ends_leaning_on_the_block() {
     assert!(impacts.found.len() > 2 && impacts.found.iter().all(|impact| impact.work < 0.0 && impact.point == 2));
     assert!(scene.state.v.iter().all(|v| v.abs() < 1e-10), "at rest: {:?}", scene.state.v);
     assert!(scene.state.q[3] > 0.05 && scene.state.tally.unconverged_steps == 0);
+}
+
+/// Block and platform swing as one mass about their place of rest. The trapezoidal rule turns a
+/// linear oscillator by 2 atan(ωh/2) a step, exactly: what is left is the solver's tolerance.
+#[test]
+fn a_block_on_a_platform_swings_with_it() {
+    let (stiffness, step) = (800.0, 1e-3);
+    let mut scene = put_down(stiffness, step).unwrap();
+    let mass = PLATFORM + block().unwrap().1.mass;
+    let omega = (stiffness / mass).sqrt();
+    let amplitude = mass * 9.81 / stiffness;
+    let turn = 2.0 * (0.5 * omega * step).atan();
+    for steps in [100_u64, 150, 400] {
+        simulate(&mut scene, steps, &mut Impacts::of(HIT)).unwrap();
+        let q = -amplitude * (1.0 - (turn * steps as f64).cos());
+        assert!((scene.state.q[3] - q).abs() < 1e-11, "after {steps} steps {:e}, not {q:e}", scene.state.q[3]);
+        assert!((scene.state.q[1] - 0.5 * SIDES[1] - q).abs() < 1e-11);
+    }
+    assert!(scene.state.ledger.relative_residual() < 1e-14, "{:e}", scene.state.ledger.relative_residual());
+}
+
+#[test]
+fn the_platform_is_what_the_integrator_asks_of_a_subsystem() {
+    let platform = Platform { matrices: ConstantMatrices::mass([[2.0]]).with_stiffness([[500.0]]), weight: 20.0 };
+    let case = Case {
+        q: vec![0.07],
+        weights: Weights { mass: 1.0, damping: 0.05, stiffness: 2.5e-3 },
+        points: vec![(0, Vector2::new(0.3, 0.0))],
+        places: vec![(0, Vector2::new(0.3, 0.3)), (0, Vector2::new(0.1, 0.01))],
+        ..Case::default()
+    };
+    assert_eq!(check(&platform, &case), []);
 }
 
 /// Not at the origin, and with all numbers different.

@@ -22,8 +22,9 @@ impl Case for BeamBuckling {
     }
 
     fn about(&self) -> &'static str {
-        "The least compression under which K has a pivot that isn't positive, by bisection on the factorisation, against Euler's loads of the four \
-         columns and two with a guided end. Cubic elements with the consistent geometric stiffness have order 4."
+        "The least compression for which K has a pivot that isn't positive, by bisection with the factorisation, \
+         compared with Euler's loads of the four columns and two with a guided end. Cubic elements with the \
+         consistent geometric stiffness have order 4."
     }
 
     fn run(&self, _: Depth) -> Result<Findings> {

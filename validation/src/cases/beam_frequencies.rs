@@ -22,10 +22,10 @@ impl Case for BeamFrequencies {
     }
 
     fn about(&self) -> &'static str {
-        "The first three frequencies of the finite elements (inverse iteration with the static solve, Rayleigh's quotient of \
-         the two energies) against (β_i/L)² √(EI/ρA) with the roots β_i of the frequency equations. The error falls with \
-         the fourth power of the element length; for a pinned beam it is (β_i l/L)⁴/1440 to leading order. The order is \
-         fitted over meshes of 8 to 64 elements."
+        "The first three frequencies of the finite elements (inverse iteration with the static solve, Rayleigh \
+         quotient of the two energies), compared with (β_i/L)² √(EI/ρA) with the roots β_i of the frequency \
+         equations. The error decreases with the fourth power of the element length; for a pinned beam it is (β_i \
+         l/L)⁴/1440 to leading order. The order is fitted over meshes of 8 to 64 elements."
     }
 
     fn run(&self, _: Depth) -> Result<Findings> {
@@ -71,7 +71,7 @@ impl Case for BeamFrequencies {
             x: "Element length / span",
             axes: Axes::Logarithmic,
             y: "Relative error of the frequency",
-            caption: "Relative error of the first three frequencies against the element length, with fitted lines.",
+            caption: "Relative error of the first three frequencies over the element length, with fitted lines.",
             series,
         });
         Ok(findings)

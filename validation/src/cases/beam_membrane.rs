@@ -27,10 +27,12 @@ impl Case for BeamMembrane {
     }
 
     fn about(&self) -> &'static str {
-        "The source paper's beam between ends that can't approach each other, under the weight of its block at midspan and at 0.165 m, and spread over \
-         the span: sag and tension against the tie's closed form with the root of N = (EA/2L)∫w'² dx. Between free ends it sags by 5.3 mm. The \
-         shape under tension is no polynomial: order 4 at the nodes, fitted over 8 to 48 elements. Let go in its first mode, at twice the radius of gyration, it swings as Duffing's \
-         equation says (Woinowsky-Krieger), whose period has an elliptic integral: w at midspan after 2 1/4 periods of the θ scheme, θ = 1/2, order 2."
+        "The source paper's beam with axially held ends, under the weight of its block at midspan and at 0.165 m, and \
+         distributed over the span: sag and tension compared with the closed form of a beam in tension with the root \
+         of N = (EA/2L)∫w'² dx. With axially free ends it sags by 5.3 mm. The shape under tension isn't a \
+         polynomial, so the order is 4 at the nodes, fitted over 8 to 48 elements. Released in its first mode at \
+         twice the radius of gyration, it vibrates by Duffing's equation (Woinowsky-Krieger), whose period is an \
+         elliptic integral: w at midspan after 2 1/4 periods of the θ scheme, θ = 1/2, order 2."
     }
 
     fn run(&self, _: Depth) -> Result<Findings> {
@@ -79,11 +81,11 @@ impl Case for BeamMembrane {
         let beam = Uniform { span, bending: section.bending_stiffness, mass: section.mass_per_length };
         let known = Swing { beam, axial: known.axial, mode: 1, amplitude: AMPLITUDE };
         let errors = swing_errors(&known, 40)?;
-        let quantity = "free swing: order in the step, after 2 1/4 periods, 40 elements";
+        let quantity = "free vibration: order in the step, after 2 1/4 periods, 40 elements";
         findings.checks.push(Check::between(quantity, 2.0, power_law(&errors).order, 1.9, 2.1));
         for (step, error) in errors {
             let quantity =
-                format!("free swing: w at midspan, {} steps a period, relative to the amplitude", 1.0 / step);
+                format!("free vibration: w at midspan, {} steps per period, relative to the amplitude", 1.0 / step);
             // A linear swing is late by (ωh)²/12 of its phase, 4.5π; three times that for one that the membrane stiffens.
             findings.checks.push(Check::worst(quantity, error, 4.5 * PI * (2.0 * PI * step).powi(2) / 4.0));
         }

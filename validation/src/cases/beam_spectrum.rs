@@ -47,11 +47,14 @@ impl Case for BeamSpectrum {
     }
 
     fn about(&self) -> &'static str {
-        "Frequencies 1 to 10 (subspace iteration with the beam's products and one factor) against the roots of frequency equations: five pairs of \
-         supports and two with guided ends, Timoshenko (rectangle, h/L = 0.1, ν = 0.3, with rotary inertia), two spans, Winkler's foundation, end \
-         springs, a mass at midspan and at 0.3 of the span, at a cantilever's tip, tension and compression. Orders are fitted over meshes of 30, 40, 60 and 80 elements; the least and the largest of ten modes are told. Timoshenko's has order 2 where elements are shorter than the beam is high. \
-         The error of Euler–Bernoulli elements of length l is (β l/L)⁴/1440 to leading order, whatever the supports; where nothing but them acts, it is told as a multiple of \
-         that."
+        "Frequencies 1 to 10 (subspace iteration with the beam's products and one factor) compared with the roots of \
+         the frequency equations: five pairs of supports and two with guided ends, Timoshenko (rectangle, h/L = 0.1, \
+         ν = 0.3, with rotary inertia), two spans, Winkler's foundation, end springs, a mass at midspan and at 0.3 \
+         of the span, at a cantilever's tip, tension and compression. Orders are fitted over meshes of 30, 40, 60 \
+         and 80 elements; the least and the largest of ten modes are shown. Timoshenko's element has order 2 if \
+         elements are shorter than the beam is high. The error of Euler–Bernoulli elements of length l is (β \
+         l/L)⁴/1440 to leading order for any supports; for beams with supports only, it is shown as a multiple of \
+         this."
     }
 
     fn run(&self, _: Depth) -> Result<Findings> {

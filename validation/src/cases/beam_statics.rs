@@ -19,9 +19,9 @@ impl Case for BeamStatics {
     }
 
     fn about(&self) -> &'static str {
-        "Deflection of a beam at its nodes, meshes of 2, 3, …, 100 elements, under a force at 0.3 of the span and under a \
-         uniform load, against the closed forms. Cubic elements with consistent loads are exact at their nodes; the error, \
-         relative to the largest deflection, is the rounding of the solve."
+        "Deflection of a beam at its nodes, meshes of 2, 3, …, 100 elements, under a force at 0.3 of the span and \
+         under a uniform load, compared with closed forms. Cubic elements with consistent loads are exact at their \
+         nodes; the error, relative to the largest deflection, is the rounding of the solve."
     }
 
     fn run(&self, _: Depth) -> Result<Findings> {

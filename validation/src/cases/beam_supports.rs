@@ -31,11 +31,13 @@ impl Case for BeamSupports {
     }
 
     fn about(&self) -> &'static str {
-        "A beam at rest between all pairs of free, pinned, clamped and guided ends that hold it, and on springs, under a force at 0.3 of \
-         the span, a couple at the right end (within the span where that end can't turn) and a uniform load, Euler–Bernoulli and Timoshenko (EI/(GA_s L²) = 0.04): deflection and rotation \
-         of every node and the reactions, K q less the load where a support holds, against the closed forms. Meshes of 2, 3, …, \
-         100 elements. Both elements are exact at their nodes; the errors (of w and r L relative to the largest of both, of reactions to the load) are \
-         rounding: of reactions that of the entries of q, (12 EI/l³) ε w."
+        "A beam at rest with all statically admissible pairs of free, pinned, clamped and guided ends, and on \
+         springs, under a force at 0.3 of the span, a couple at the right end (inside the span if that end can't \
+         rotate) and a uniform load, Euler–Bernoulli and Timoshenko (EI/(GA_s L²) = 0.04): deflection and rotation \
+         of every node and the reactions, K q minus the load at fixed dofs, compared with closed forms. Meshes of 2, \
+         3, …, 100 elements. Both elements are exact at their nodes; the errors (of w and r L relative to the larger \
+         of both, of reactions relative to the load) are rounding: for reactions that of the entries of q, (12 \
+         EI/l³) ε w."
     }
 
     fn run(&self, depth: Depth) -> Result<Findings> {

@@ -18,11 +18,11 @@ impl Case for Bounce {
     }
 
     fn about(&self) -> &'static str {
-        "The same block dropped flat from 0.1 m, e = 0.8, θ = 1/2: apex n is at e²ⁿ of the height. Flight is exact. The \
-         impact is taken in the step h whose predicted middle reaches the floor, so up to hv/2 too high or too low, with \
-         v the speed there; then y₁ = y₀ − hv(1 − e)/2 and v₁ = ev. Adding up the energy heights y + v²/(2g), an impact \
-         shifts the next apex by at most hv (1 − e)(2 + e)/2, and former shifts enter with e²: these are the bounds, and \
-         gh²/8 for an apex between two steps."
+        "The same block dropped flat from 0.1 m, e = 0.8, θ = 1/2: apex n is at e²ⁿ of the height. Flight is exact. \
+         The impact occurs in the step h whose predicted middle reaches the floor, up to hv/2 too high or too low, \
+         with v the speed there; then y₁ = y₀ − hv(1 − e)/2 and v₁ = ev. By the energy heights y + v²/(2g), an \
+         impact shifts the next apex by at most hv (1 − e)(2 + e)/2, and earlier shifts enter with e²; these are the \
+         bounds, plus gh²/8 for an apex between two steps."
     }
 
     fn run(&self, _: Depth) -> Result<Findings> {

@@ -56,19 +56,21 @@ impl Case for Bouncing {
     }
 
     fn about(&self) -> &'static str {
-        "The block of `bounce` with both schemes. **e = 0.8**, dropped from 0.1 m: ten impact times (the middles of their steps) \
-         and the Zeno time t₁(1 + e)/(1 − e). Let the step of an impact start σhv above the floor, v the speed there: \
-         `moreau-jean` looks half a step ahead, so σ lies in ±½, `moreau-jean-closed` closes what the whole step would sink, so σ \
-         lies in 0 … 1. To leading order in h the bounce leaves the floor late by h(1 + e)(1 − 2σ)/(2e), too fast by \
-         gh(1 − e)(2σ(1 + e) − 1)/(2e), and a speed's error makes the flight longer by 2/g of it: the worst σ of every impact make the \
-         bounds (a tenth on top for the next order). Then it rests: in `moreau-jean` a resting block with e > 0 may hop, by |v| ≤ \
-         gh; in `moreau-jean-closed` an approach slower than what gravity makes in a step is no impact, so that it lies still. \
-         **e = 1**, from 0.01 m: an impact turns the velocity round in place, so that the apex after 1000 bounces (y + v²/(2g) at the \
-         step next to it) is the release to rounding, with both schemes. What drifts is time, by (1 − 2σ)h a bounce, and all bounces \
-         are the same to the step, so σ never changes and nothing evens out: up to 2h too late a bounce with `moreau-jean`, up to h late \
-         or early with `moreau-jean-closed`, as chance has it. Its bound is 1000 times that, at h = 1e-5 s 2e-4 and 1e-4 of the time: neither \
-         scheme has the time of the thousandth apex to 1e-6. event-driven locates impacts: its apex after 100 000 bounces on a point is \
-         judged at 1e-9, place and time."
+        "The block of `bounce` with both schemes. **e = 0.8**, dropped from 0.1 m: ten impact times (the middles of \
+         their steps) and the Zeno time t₁(1 + e)/(1 − e). Let the step of an impact start σhv above the floor, v \
+         the speed there: `moreau-jean` looks half a step ahead, so σ is in ±½; `moreau-jean-closed` closes contacts \
+         that would penetrate within the step, so σ is in 0 … 1. To leading order in h the block leaves the floor \
+         late by h(1 + e)(1 − 2σ)/(2e) and too fast by gh(1 − e)(2σ(1 + e) − 1)/(2e), and an error of the speed \
+         makes the flight longer by 2/g of it. The bounds are those for the worst σ of every impact, plus a tenth \
+         for the next order. Then it rests: with `moreau-jean` a resting block with e > 0 may hop, with |v| ≤ gh; \
+         with `moreau-jean-closed` an approach slower than the velocity gained by gravity in a step isn't an impact, \
+         so the block lies still. **e = 1**, from 0.01 m: an impact reverses the velocity in place, so that with \
+         both schemes the apex after 1000 bounces (y + v²/(2g) at the nearest step) is the initial height, to \
+         rounding. Only the time drifts, by (1 − 2σ)h per bounce; all bounces take the same number of steps, so σ \
+         stays the same and the drift doesn't average out: up to 2h late per bounce with `moreau-jean`, up to h late \
+         or early with `moreau-jean-closed`, depending on the step. The bound is 1000 times this, at h = 1e-5 s 2e-4 \
+         and 1e-4 of the time: neither scheme gives the time of the thousandth apex to 1e-6. event-driven locates \
+         impacts: its apex after 100 000 bounces on a point must be accurate to 1e-9, in place and time."
     }
 
     fn run(&self, depth: Depth) -> Result<Findings> {
@@ -98,11 +100,11 @@ impl Case for Bouncing {
         very_many(depth, &mut findings)?;
         findings.figures.push(Figure {
             file: "bouncing.svg",
-            title: "Bouncing block, e = 0.8: error against step size",
+            title: "Bouncing block, e = 0.8: error over step size",
             x: "Step size h (s)",
             y: "Error of the impact times (s)",
             axes: Axes::Logarithmic,
-            caption: "Worst error of the first ten impact times, with fitted lines.",
+            caption: "Largest error of the first ten impact times, with fitted lines.",
             series,
         });
         Ok(findings)
@@ -226,7 +228,7 @@ fn thousand(runner: &mut Runner, dt: f64, findings: &mut Findings) -> Result<()>
     findings.checks.extend([
         Check::relative(what("apex after 1000 bounces, m, relative"), LOW, height, 1e-6),
         Check::absolute(what("its time, s"), exact, t, 1.01 * worst * BOUNCES as f64 * dt),
-        Check::reported(what("its lateness, steps a bounce"), (t - exact) / (dt * BOUNCES as f64)),
+        Check::reported(what("its delay, steps per bounce"), (t - exact) / (dt * BOUNCES as f64)),
     ]);
     Ok(())
 }

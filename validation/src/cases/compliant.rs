@@ -31,13 +31,14 @@ impl Case for Compliant {
     }
 
     fn about(&self) -> &'static str {
-        "The slender block falls flat, at 1 m/s, on two corners that are springs. *Hunt–Crossley*, d = 0.3 s/m, k = 1e4 … 1e12 N/mⁿ: duration \
-         and speed of the rebound against an integration to rounding; order 2 in the step, relative errors below 1e-6 with 2000 \
-         steps in the contact (orders are fitted over 250 to 4000; the fit is of the larger of both errors). *Kelvin–Voigt*, \
-         c/(2√(km)) = 0.2, closed form; its force ends before the surfaces part, so time and speed are taken where they part. Its \
-         force jumps at first touch, and is of second order all the same: the impulse of that step takes the change of the penetration, not the time. \
+        "The slender block falls flat, at 1 m/s, on two corners that are springs. *Hunt–Crossley*, d = 0.3 s/m, k = \
+         1e4 … 1e12 N/mⁿ: duration and rebound speed compared with an integration to rounding; order 2 in the step, \
+         relative errors below 1e-6 with 2000 steps per contact (orders are fitted over 250 to 4000 steps, for the \
+         larger of both errors). *Kelvin–Voigt*, c/(2√(km)) = 0.2, closed form; its force ends before the surfaces \
+         separate, so time and speed are taken at separation. Its force jumps at first touch, but the scheme is \
+         still of second order, as the impulse of that step uses the change of penetration, not the time. \
          **Stability**: dropped from 1 cm, flat and tilted by 0.1, at h = 1e-4 s, 2000 steps: no step gains energy, \
-         whatever the stiffness."
+         for any stiffness."
     }
 
     fn run(&self, depth: Depth) -> Result<Findings> {
@@ -189,8 +190,9 @@ fn loops() -> Result<Figure> {
         x: "Penetration (mm)",
         y: "Force of both corners (kN)",
         axes: Axes::Linear,
-        caption: "The slender block falls flat at 1 m/s on two springs of 1e6 N/m, steps of 1e-5 s: the loop is the energy lost. Kelvin–Voigt's \
-                  force jumps at first touch and ends before the surfaces part; Hunt–Crossley's goes from zero to zero.",
+        caption: "The slender block falls flat at 1 m/s on two springs of 1e6 N/m, steps of 1e-5 s; the area of the \
+             loop is the energy lost. The Kelvin–Voigt force jumps at first touch and ends before the surfaces \
+             separate; the Hunt–Crossley force starts and ends at zero.",
         series,
     })
 }

@@ -19,11 +19,12 @@ impl Case for ConvexLaw {
     }
 
     fn about(&self) -> &'static str {
-        "One contact, μ = 1/2, pressed at 1 m/s and pushed sideways at 1 to 100 m/s, so that it slides. Coulomb's law keeps it \
-         closed: u_N = 0. The convex law, which `socp` solves and several programs take for Coulomb's, asks the velocity to lie \
-         in the dual cone, so the contact separates at u_N = μ‖u_T‖: the known gap, an identity of that law. \
-         `acary-cadoux` solves a sequence of the same cone programs with the gap shifted away, and must have none. The \
-         bounds are the solvers' tolerance, 1e-10, times the ratio of the largest speed to the smallest."
+        "One contact, μ = 1/2, pressed at 1 m/s and pushed sideways at 1 to 100 m/s, so that it slides. Coulomb's law \
+         keeps it closed: u_N = 0. The convex law, which `socp` solves and several programs use in place of \
+         Coulomb's, requires the velocity to lie in the dual cone, so the contact separates at u_N = μ‖u_T‖, an \
+         identity of that law. `acary-cadoux` solves a sequence of the same cone programs with this separation \
+         removed by a shift, and must have none. The bounds are the solvers' tolerance, 1e-10, times the ratio of \
+         the largest speed to the smallest."
     }
 
     fn run(&self, _: Depth) -> Result<Findings> {
@@ -52,12 +53,12 @@ impl Case for ConvexLaw {
         let [convex, fixed_point, exact] = series;
         let figure = Figure {
             file: "convex-law.svg",
-            title: "A sliding contact: separation against friction times slip",
+            title: "A sliding contact: separation over friction times slip",
             x: "μ‖u_T‖ (m/s)",
             axes: Axes::Logarithmic,
             y: "u_N (m/s)",
-            caption: "`socp` lies on the line u_N = μ‖u_T‖; the other two have no separation but rounding (velocities below \
-                      1e-17 m/s are drawn there).",
+            caption: "`socp` lies on the line u_N = μ‖u_T‖; the other two have no separation except rounding \
+                 (velocities below 1e-17 m/s are drawn there).",
             series: vec![
                 Series::marks("socp", convex),
                 Series::line("u_N = μ‖u_T‖", gap),

@@ -24,11 +24,12 @@ impl Case for EnergyIdentity {
     }
 
     fn about(&self) -> &'static str {
-        "The slender block of the source paper rocks from 5° on rigid ground, and on the paper's beam (20 elements, 1 % \
-         damping, started from the static deflection), μ = 0.5, e = 0, h = 1e-4 s, 1 s. The change of energy of every step is \
-         the sum of viscous loss, loads, contact, friction and numerical dissipation (`docs/theory.md` §7): what is left is \
-         rounding. Friction never gains: U¹_t·p_t ≤ 0. The work of contact can be positive in single steps; that is no error \
-         of the program but of the scheme, so its sum is told, not judged. All relative to the scene's energy scale."
+        "The slender block of the source paper rocks from 5° on rigid ground, and on the paper's beam (20 elements, 1 \
+         % damping, started from the static deflection), μ = 0.5, e = 0, h = 1e-4 s, 1 s. The change of energy of \
+         every step is the sum of viscous loss, loads, contact, friction and numerical dissipation (`docs/theory.md` \
+         §7): the residual is rounding. Friction never gains energy: U¹_t·p_t ≤ 0. The contact work can be positive \
+         in single steps; this is an error of the scheme, not of the program, so its sum is only reported. All \
+         relative to the scene's energy scale."
     }
 
     fn run(&self, _: Depth) -> Result<Findings> {

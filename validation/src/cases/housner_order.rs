@@ -27,12 +27,13 @@ impl Case for HousnerOrder {
     }
 
     fn about(&self) -> &'static str {
-        "Housner's rocking block (0.03 m × 0.135 m, 2700 kg/m³, released at 5° on rigid ground, μ = 0.5, e = 0, θ = 1/2) \
-         against the quadrature of (4/3) R φ̈ = −g sin(α − φ) with the impacts φ̇⁺ = (1 − (3/2) sin²α) φ̇⁻. Compared are the \
-         first six impact times (zero crossings of φ, linear between steps) and the first six peaks, the release \
-         included. Moreau–Jean is of first order across impacts. Errors of single steps are irregular, as the impact falls \
-         early or late in its step; the order is the slope of the least-squares line through 37 step sizes from 1e-3 to \
-         1e-6 s, equally spaced in the logarithm. moreau-jean-located and event-driven give the times of impacts themselves."
+        "Housner's rocking block (0.03 m × 0.135 m, 2700 kg/m³, released at 5° on rigid ground, μ = 0.5, e = 0, θ = \
+         1/2) compared with the quadrature of (4/3) R φ̈ = −g sin(α − φ) with the impacts φ̇⁺ = (1 − (3/2) sin²α) \
+         φ̇⁻: the first six impact times (zero crossings of φ, linear between steps) and the first six peaks, \
+         including the release. Moreau–Jean is of first order across impacts. Errors of single step sizes are \
+         irregular, as impacts fall early or late in a step; the order is the slope of the least-squares line \
+         through 37 step sizes from 1e-3 to 1e-6 s, equally spaced logarithmically. moreau-jean-located and \
+         event-driven give the impact times themselves."
     }
 
     fn run(&self, depth: Depth) -> Result<Findings> {
@@ -89,11 +90,11 @@ impl Case for HousnerOrder {
         let line = |fit: usize| ends.map(|dt| (dt, fits[fit].at(dt))).to_vec();
         findings.figures.push(Figure {
             file: "housner_order.svg",
-            title: "Housner's block: error against step size",
+            title: "Housner's block: error over step size",
             x: "Step size h (s)",
             axes: Axes::Logarithmic,
             y: "Error of times (s) and peaks (relative)",
-            caption: "Worst error of the first six impact times and of the first six peaks, with their fitted lines.",
+            caption: "Largest error of the first six impact times and of the first six peaks, with fitted lines.",
             series: vec![
                 Series::marks("peaks, relative", peaks),
                 Series::line(format!("order {:.3}", fits[1].order), line(1)),

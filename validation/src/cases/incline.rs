@@ -19,8 +19,8 @@ impl Case for Incline {
     }
 
     fn about(&self) -> &'static str {
-        "The same block on an incline (gravity tilted by β, h = 1e-3 s, 1 s), μ = 0.3. At 20° it slides with \
-         a = g (sin β − μ cos β), at every θ: the scheme is exact for a constant force, so the bounds are rounding. At 16° \
+        "The same block on an incline (gravity rotated by β, h = 1e-3 s, 1 s), μ = 0.3. At 20° it slides with a = g \
+         (sin β − μ cos β) for every θ: the scheme is exact for a constant force, so the bounds are rounding. At 16° \
          (tan β = 0.287 < μ) it rests."
     }
 
@@ -35,7 +35,7 @@ impl Case for Incline {
             findings.checks.push(Check::absolute(quantity, exact, vx, BOUND));
         }
         let [_, moved] = after_a_second(&mut runner, 16.0_f64.to_radians(), 0.5)?;
-        findings.checks.push(Check::absolute("16°, θ = 0.5: way, m", 0.0, moved, BOUND));
+        findings.checks.push(Check::absolute("16°, θ = 0.5: distance, m", 0.0, moved, BOUND));
         findings.checks.extend(runner.account());
         Ok(findings)
     }

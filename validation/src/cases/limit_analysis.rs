@@ -22,16 +22,18 @@ impl Case for LimitAnalysis {
     }
 
     fn about(&self) -> &'static str {
-        "What assemblages of rigid blocks are compared with, itself checked. By the static theorem a plane assemblage with \
-         frictional joints that bear no tension can stand only if forces in the friction cones at the ends of all joints hold every \
-         block in equilibrium: a linear programme (`limit_analysis`, solved by Clarabel). Below: the smallest t/R at which an arch of \
-         equal radial voussoirs stands under its weight, R to the centre line, found by bisection, against the thrust line (no \
-         programme: two unknowns, all pairs of hinges). The literature's 0.1067 for the semicircle of 27 is that of polygons: \
-         corners on the circles of intrados and extrados, straight chords, weight at the polygon's centroid. With the weight of true \
-         sectors of the ring it is 0.1068. 181 of these need a little less than the continuous arch: 0.107478 with the weight at \
-         the sector's centroid (Milankovitch), 0.107426 with it on the centre line (Cocchetti, Colasante and Rizzi 2011). A semicircle with \
-         μ = 0.3 slides off its springers whatever its thickness; from 160° down that friction is as good as 0.5. Stacks, overhangs, \
-         piles and pyramids are in `validation/tests/limit_analysis.rs`."
+        "A check of the limit analysis with which assemblages of rigid blocks are compared. By the static theorem a \
+         plane assemblage with frictional, tensionless joints can stand only if forces in the friction cones at the \
+         ends of all joints hold every block in equilibrium: a linear programme (`limit_analysis`, solved by \
+         Clarabel). Below: the smallest t/R at which an arch of equal radial voussoirs stands under its weight, R to \
+         the centre line, found by bisection, compared with the thrust line (without a programme: two unknowns, all \
+         pairs of hinges). The literature's 0.1067 for the semicircle of 27 voussoirs applies to polygons: corners \
+         on the circles of intrados and extrados, straight chords, weight at the polygon's centroid. With the weight \
+         of true ring sectors it is 0.1068. 181 of these need slightly less than the continuous arch: 0.107478 with \
+         the weight at the sector's centroid (Milankovitch), 0.107426 with it on the centre line (Cocchetti, \
+         Colasante and Rizzi 2011). A semicircle with μ = 0.3 slides off its springers at any thickness; from 160° \
+         down this friction is as good as 0.5. Stacks, overhangs, piles and pyramids are in \
+         `validation/tests/limit_analysis.rs`."
     }
 
     fn run(&self, depth: Depth) -> Result<Findings> {

@@ -37,16 +37,17 @@ impl Case for MovingGround {
     }
 
     fn about(&self) -> &'static str {
-        "**Shaken floor**: the flat block on a floor that moves by x = a sin ωt, ω = 10 rad/s, aω² = 5 m/s², 2.7 s, with friction μg of 0.8 and 0.4 \
-         of aω², against its motion in closed form: with 0.8 it slides and sticks by turns, with 0.4 it never sticks. Largest error of the \
-         position over all steps, and times of the changes (the middles of their steps). In the step of a change friction is what keeps \
-         the block on the floor until the step's end. Where it sticks, its velocity is then right again: the error is of second order. \
-         Where the slide turns round, up to (aω² + μg) h of velocity is off until the next change: first order. \
-         In the step of a stop friction \
-         may do work on the block, relative to the floor; with ground that is driven `moreau-jean-closed` allows that, so that its gain is told. **Vertical \
-         shaking**, 0.9 g: the contact stays closed and presses with m(g + Δv_g/h). **Travelling frames**: ground or supports with constant \
-         velocity, the motion relative to them is that on ground at rest: the paper's rocking block, 0.5 s, h = 1e-4 s. The coordinates \
-         differ by rounding, 1e-12 (m and rad), and the velocities by what that is over half a step."
+        "**Shaken floor**: the flat block on a floor that moves by x = a sin ωt, ω = 10 rad/s, aω² = 5 m/s², 2.7 s, \
+         with friction μg of 0.8 and 0.4 of aω², compared with its motion in closed form: with 0.8 it alternately \
+         slides and sticks, with 0.4 it never sticks. Largest error of the position over all steps, and times of the \
+         changes (the middles of their steps). In the step of a change, friction holds the block to the floor until \
+         the end of the step. If it then sticks, its velocity is exact again, and the error is of second order. If \
+         the slide reverses, the velocity is off by up to (aω² + μg) h until the next change: first order. In the \
+         step of a stop, friction may do work on the block relative to the floor; on driven ground \
+         `moreau-jean-closed` allows this, so its gain is only reported. **Vertical shaking**, 0.9 g: the contact \
+         stays closed with the force m(g + Δv_g/h). **Moving frames**: with ground or supports at constant velocity, \
+         the relative motion is that on ground at rest: the paper's rocking block, 0.5 s, h = 1e-4 s. The \
+         coordinates differ by rounding, 1e-12 (m and rad), and the velocities by this over half a step."
     }
 
     fn run(&self, depth: Depth) -> Result<Findings> {
@@ -73,12 +74,12 @@ impl Case for MovingGround {
         }
         findings.figures.push(Figure {
             file: "shaken_block.svg",
-            title: "Block on a shaken floor: error against step size",
+            title: "Block on a shaken floor: error over step size",
             x: "Step size h (s)",
             y: "Largest error of the position (m)",
             axes: Axes::Logarithmic,
-            caption: "Largest error of the block's position in 2.7 s, with fitted lines: with more friction (0.8) the block sticks in between, and \
-                      its velocity is right again; with less (0.4) it never does.",
+            caption: "Largest error of the block's position in 2.7 s, with fitted lines: with more friction (0.8) the \
+                 block sticks in between, after which its velocity is exact again; with less (0.4) it never does.",
             series,
         });
         Ok(findings)

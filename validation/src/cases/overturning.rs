@@ -49,12 +49,15 @@ impl Case for Overturning {
     }
 
     fn about(&self) -> &'static str {
-        "Housner's block (α = 0.25, μ = 100, e = 0) on ground that accelerates by A sin(ω_p t + ψ), ψ = arcsin(g tan α/A), until the sine \
-         ends. The amplitudes at which its fate changes, by bisection to 1e-4, against an integration to rounding of the rocking \
-         equation (`docs/theory.md` §9). It has overturned when |φ| ≥ π/2, or when after the pulse |φ| > α and its energy is above the \
-         saddle's or it moves outwards; it stands when after the pulse |φ| < α and its energy is below. Steps of ω_p h = 1e-3; \
-         what steps half as long change is told. event-driven in steps of ω_p h = 0.05 with μ = 5, by bisection to 1e-8, is judged at 1e-6, limits close to others too. Limits with another one within 1 % are told, not judged: at ω_p/p = 1 overturning \
-         after three impacts (1.1066 … 1.1130), and the gap between one impact and none (1.4159 … 1.4175)."
+        "Housner's block (α = 0.25, μ = 100, e = 0) on ground that accelerates by A sin(ω_p t + ψ), ψ = arcsin(g tan \
+         α/A), until the sine ends. The amplitudes at which the outcome changes, by bisection to 1e-4, compared with \
+         an integration to rounding of the rocking equation (`docs/theory.md` §9). The block has overturned when |φ| \
+         ≥ π/2, or when after the pulse |φ| > α and its energy exceeds that of the saddle or it moves outwards; it \
+         stays up when after the pulse |φ| < α and its energy is below. Steps of ω_p h = 1e-3; the change with half \
+         the step is reported. event-driven in steps of ω_p h = 0.05 with μ = 5, by bisection to 1e-8, must be \
+         accurate to 1e-6, also for limits close to others. Limits with another one within 1 % are only reported: at \
+         ω_p/p = 1 overturning after three impacts (1.1066 … 1.1130), and the gap between one impact and none \
+         (1.4159 … 1.4175)."
     }
 
     fn run(&self, depth: Depth) -> Result<Findings> {
@@ -112,8 +115,9 @@ impl Case for Overturning {
             x: "ω_p / p",
             y: "A / (g tan α)",
             axes: Axes::Linear,
-            caption: "Amplitudes at which the fate of the block changes, α = 0.25: it overturns after one impact between the two lower curves, \
-                      without impact above the upper one. Curves by integration of the rocking equation, marks by the program.",
+            caption: "Amplitudes at which the outcome changes, α = 0.25: it overturns after one impact between the \
+                 two lower curves, without impact above the upper one. Curves by integration of the rocking \
+                 equation, marks by the program.",
             series,
         });
         Ok(findings)

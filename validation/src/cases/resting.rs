@@ -33,13 +33,15 @@ impl Case for Resting {
     }
 
     fn about(&self) -> &'static str {
-        "**The paper's scene at rest**: the slender block rocks from 5° on the paper's beam (20 elements, static start, μ = 0.5, e = 0, \
-         h = 1e-4 s) until it stands, 1e6 steps. Then |v| ≤ 1e-12 m/s (the block's velocities, its spin times half its width, \
-         ẇ of the nodes, ẇ' times the element length), and the forces are in balance: K q = Σ N(x_c)ᵀ p/h, and Σ p/h = mg on the block, to \
-         1e-9 of the weight (moments by the element length). The damping is not the paper's but ζ = 0.1 in mode 1 and a₁ = 1e-5 s: with \
-         ζ = 0.01 the loaded beam's slowest mode, block and all, fades with some 0.15/s, so that 100 s leave 1e-7 of it, and the modes with \
-         ωh ≫ 1 hardly fade at all, as the trapezoidal rule makes ζ in them smaller by (ωh/2)². **The incline**: the flat block on 10°, \
-         μ = 0.5, h = 1e-3 s, moves by less than 1e-12 m in 100 s, whether gravity is turned or the ground, for e = 0 and 0.8."
+        "**The paper's scene at rest**: the slender block rocks from 5° on the paper's beam (20 elements, static \
+         start, μ = 0.5, e = 0, h = 1e-4 s) until it is at rest, 1e6 steps. Then |v| ≤ 1e-12 m/s (the block's \
+         velocities, its angular velocity times half its width, ẇ of the nodes, ẇ' times the element length), and \
+         the forces are in equilibrium: K q = Σ N(x_c)ᵀ p/h, and Σ p/h = mg on the block, to 1e-9 of the weight \
+         (moments divided by the element length). The damping isn't the paper's but ζ = 0.1 in mode 1 and a₁ = 1e-5 \
+         s: with ζ = 0.01 the slowest mode of beam and block decays at some 0.15/s, so that 1e-7 of it remains after \
+         100 s, and the modes with ωh ≫ 1 hardly decay at all, as the trapezoidal rule reduces their ζ by (ωh/2)². \
+         **The incline**: the flat block on 10°, μ = 0.5, h = 1e-3 s, moves by less than 1e-12 m in 100 s, with \
+         gravity rotated or the ground inclined, for e = 0 and 0.8."
     }
 
     fn run(&self, depth: Depth) -> Result<Findings> {
@@ -49,9 +51,9 @@ impl Case for Resting {
             if depth == Depth::Full || stepping == Stepping::MoreauJean {
                 on_beam(&mut runner, &mut findings)?;
             }
-            for (what, turned) in [("gravity turned", true), ("ground inclined", false)] {
+            for (what, turned) in [("gravity rotated", true), ("ground inclined", false)] {
                 for e in [0.0, 0.8] {
-                    let quantity = format!("{}, 10° ({what}), e = {e}: moved in 100 s, m", runner.name());
+                    let quantity = format!("{}, 10° ({what}), e = {e}: displacement in 100 s, m", runner.name());
                     findings.checks.push(Check::worst(quantity, creep(&mut runner, turned, e)?, CREEP));
                 }
             }
@@ -88,7 +90,7 @@ fn on_beam(runner: &mut Runner, findings: &mut Findings) -> Result<()> {
         Check::worst(what("largest velocity, m/s"), fastest(&beam, &end, length), STILL),
         Check::worst(what("K q − Σ N(x_c)ᵀ p/h, relative"), force / weight, BALANCE),
         Check::worst(what("Σ p/h − mg, relative"), block / weight, BALANCE),
-        Check::reported(what("angle left, rad"), end.q[2]),
+        Check::reported(what("remaining angle, rad"), end.q[2]),
         Check::reported(what("contacts"), pressed.len() as f64),
     ]);
     Ok(())

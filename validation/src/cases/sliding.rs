@@ -20,10 +20,11 @@ impl Case for Sliding {
     }
 
     fn about(&self) -> &'static str {
-        "A block of 0.1 m × 0.05 m thrown along a floor at v₀ = 1 m/s, μ = 0.3, θ = 1/2, stops at v₀/(μg) after v₀²/(2μg). \
-         While it slides the scheme is exact; it stops in the step that holds the exact stop. So the time is late by less \
-         than a step h, and the distance, with the mean velocity of that last step, is too long by at most μgh²/8: these \
-         are the bounds. It must not tip: the angle stays rounding."
+        "A block of 0.1 m × 0.05 m slides along a floor from v₀ = 1 m/s, μ = 0.3, θ = 1/2, and stops after the time \
+         v₀/(μg) and the distance v₀²/(2μg). During sliding the scheme is exact; it stops in the step that contains \
+         the exact stop. So the time is late by less than a step h, and the distance, with the mean velocity of that \
+         last step, is too long by at most μgh²/8: these are the bounds. The block must not tip: the angle stays at \
+         rounding."
     }
 
     fn run(&self, _: Depth) -> Result<Findings> {
@@ -48,7 +49,7 @@ impl Case for Sliding {
                 Check::absolute(format!("h = {dt:e} s: time of the stop, s"), stop, stopped, dt),
                 // The rounding of some thousand steps on top.
                 Check::absolute(
-                    format!("h = {dt:e} s: way, m"),
+                    format!("h = {dt:e} s: distance, m"),
                     way,
                     end.q[0],
                     FRICTION * GRAVITY * dt * dt / 8.0 + 1e-13,

@@ -19,10 +19,11 @@ impl Case for StaticStart {
     }
 
     fn about(&self) -> &'static str {
-        "Static equilibria of the quasi-static contact solve. The paper's block stands flat in the middle of the paper's beam (24 \
-         elements: its feet are over nodes, where the elements are exact), μ = 0 and 0.5: deflections are those of two forces \
-         mg/2, and each foot presses with mg/2 upwards (what the inclined normals add sideways cancels). The flat block on an \
-         incline of 20°, μ = 0.5: Σ λ_n = mg cos β, Σ λ_t = mg sin β, and the lower foot carries what moments ask for."
+        "Static equilibria of the quasi-static contact solve. The paper's block stands flat in the middle of the \
+         paper's beam (24 elements: its feet are over nodes, where the elements are exact), μ = 0 and 0.5: the \
+         deflections are those of two forces mg/2, and the vertical force on each foot is mg/2 (the horizontal \
+         components of the inclined normal forces cancel). The flat block on an incline of 20°, μ = 0.5: Σ λ_n = mg \
+         cos β, Σ λ_t = mg sin β, and λ_n of the lower foot follows from moment equilibrium."
     }
 
     fn run(&self, _: Depth) -> Result<Findings> {
@@ -71,7 +72,7 @@ fn on_beam(friction: f64, findings: &mut Findings) -> Result<()> {
         let foot = feet.get(id.point() as usize).ok_or("a contact that is no foot")?;
         let slope = beam.deflection_at(&found.q[3..], *foot).ok_or("beside the beam")?.slope;
         let upwards = (force[0] + slope * force[1]) / (1.0 + slope * slope).sqrt();
-        let quantity = format!("μ = {friction}: foot {} presses upwards with, N", id.point() + 1);
+        let quantity = format!("μ = {friction}: foot {} vertical force, N", id.point() + 1);
         findings.checks.push(Check::relative(quantity, 0.5 * weight, upwards, BOUND));
     }
     findings.checks.push(Check::reported(format!("μ = {friction}: rounds"), f64::from(found.rounds)));

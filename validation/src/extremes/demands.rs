@@ -97,7 +97,8 @@ pub(crate) const KNOWN: &[(&str, Demand, &str)] = &[
     (
         "modulus/1e4/beam/located/e=1",
         Demand::Account,
-        "the block folds a beam of 10 kPa about itself and jams there by impulses of 2e5 N s, 1e5 times its momentum: their rounding shows.",
+        "the block folds a beam of 10 kPa around itself and jams with impulses of 2e5 N s, 1e5 times its momentum, \
+         whose rounding shows.",
     ),
     ("place/support/beam/event-driven", Demand::Account, AT_THE_END),
     ("place/support/beam/event-driven/e=0", Demand::Penetration, AT_THE_END),
@@ -107,27 +108,27 @@ pub(crate) const KNOWN: &[(&str, Demand, &str)] = &[
     (
         "f-dt/1e1/beam/open",
         Demand::Penetration,
-        "the block falls by 0.7 m in a step, from above the beam to below it, and past its end in the next: seen below it once, never active \
-         there. `check` warns of the step.",
+        "the block falls by 0.7 m in a step, from above the beam to below it, and past its end in the next: it is \
+         below the beam once, without an active contact. `check` warns of the step.",
     ),
     (
         "place/last-node/beam",
         Demand::Penetration,
-        "the block falls off the end and turns in under the beam. A surface has no sides and no thickness: what comes in below it counts as \
-         sunk (theory.md §3). Nothing warns of it but `max_penetration`.",
+        "the block falls off the end and swings under the beam. A surface has no sides and no thickness, so a point \
+         below it counts as penetrating (theory.md §3). Only `max_penetration` shows this.",
     ),
     (
         "tolerance/pgs-1e-2/beam/closed",
         Demand::Penetration,
-        "the law is kept to one per cent only, and a contact that lasts sinks by what is left, step after step.",
+        "the law is satisfied only to one per cent, and a lasting contact penetrates by the residual in each step.",
     ),
 ];
 
-const AT_THE_END: &str = "the corner stands where the surface ends, and slides off and on: nothing is smooth there, and steps are handed on \
-                          (`unlocated_steps`).";
+const AT_THE_END: &str = "the corner stands at the end of the surface and slides off and on: the motion isn't smooth \
+     there, and steps are left to the located scheme (`unlocated_steps`).";
 
-const FAST_MODES: &str = "the highest modes of the mesh have ωh of 1e4 and more: their forces are small differences of numbers (ωh)² times \
-                          larger, and so is their rounding.";
+const FAST_MODES: &str = "the highest modes of the mesh have ωh of 1e4 and more: their forces are small differences \
+     of numbers (ωh)² times larger, with correspondingly larger rounding.";
 
 /// The entries of [`KNOWN`] that none of these misses needs.
 pub(crate) fn outlived<'a>(missed: impl Iterator<Item = (&'a Row, Demand)> + Clone) -> Vec<&'static str> {

@@ -119,8 +119,7 @@ pub(crate) fn all() -> Vec<Family> {
 }
 
 fn block_mass() -> Family {
-    let mut family =
-        Family::new("block-mass", "Mass of the block over that of the beam, by the block's density alone.");
+    let mut family = Family::new("block-mass", "Ratio of the block's mass to the beam's, by the block's density.");
     for (value, ratio) in powers(-6, 6, 1) {
         let density = format!("{:e} kg/m^3", 2700.0 * ratio / MASS_RATIO);
         family.add(&value, &[Base::Beam], |_| vec![set("material.aluminium.density", density.as_str())]);
@@ -130,7 +129,7 @@ fn block_mass() -> Family {
 
 fn beam_mass() -> Family {
     let mut family =
-        Family::new("beam-mass", "The same ratio by the beam's density alone: light and heavy beams of one stiffness.");
+        Family::new("beam-mass", "The same ratio by the beam's density: light and heavy beams of the same stiffness.");
     for (value, ratio) in powers(-6, 6, 1) {
         let density = format!("{:e} kg/m^3", 2700.0 * MASS_RATIO / ratio);
         family.add(&value, &[Base::Beam], |_| vec![set("material.spring.density", density.as_str())]);
@@ -140,7 +139,7 @@ fn beam_mass() -> Family {
 
 fn neighbours() -> Family {
     let mut family =
-        Family::new("neighbour", "Two blocks on one beam: the density of the cube over that of the rocking block.");
+        Family::new("neighbour", "Two blocks on one beam: ratio of the cube's density to that of the rocking block.");
     for (value, ratio) in powers(-6, 6, 2) {
         let density = format!("{:e} kg/m^3", 2700.0 * ratio);
         family.add(&value, &[Base::Two], |_| vec![set("material.other.density", density.as_str())]);
@@ -149,10 +148,8 @@ fn neighbours() -> Family {
 }
 
 fn slenderness() -> Family {
-    let mut family = Family::new(
-        "slenderness",
-        "H/b of the block, released from half its critical angle; the density keeps its mass.",
-    );
+    let mut family =
+        Family::new("slenderness", "H/b of the block, released from half its critical angle, at constant mass.");
     for (value, ratio) in
         [("0.1", 0.1), ("0.3", 0.3), ("1", 1.0), ("3", 3.0), ("10", 10.0), ("30", 30.0), ("100", 100.0)]
     {
@@ -170,7 +167,8 @@ fn slenderness() -> Family {
 fn theta() -> Family {
     let mut family = Family::new(
         "theta",
-        "θ of the step. `moreau-jean-closed` knows ½ only, and below ½ a scene must ask for it: refusals that say so.",
+        "θ of the scheme. All schemes but `moreau-jean` require ½, and θ below ½ must be allowed by the scene; other \
+         rows are refused.",
     );
     for value in ["0.4", "0.5", "0.500001", "0.51", "0.6", "0.75", "0.9", "0.999", "1"] {
         family.add(value, &BOTH, |_| vec![set("time.theta", value)]);
@@ -201,7 +199,7 @@ fn velocity(tilt: f64) -> String {
 fn step() -> Family {
     let mut family = Family::new(
         "dt",
-        "The step, 4000 of them: the block turns about its left foot at 1 rad/s towards its right one.",
+        "The step, for 4000 steps: the block rotates about its left foot at 1 rad/s towards its right one.",
     );
     for (value, dt) in powers(-8, 0, 1) {
         family.add(&value, &BOTH, |_| [stepped(dt, STEPS), turning_back(dt * STEPS)].concat());
@@ -210,7 +208,7 @@ fn step() -> Family {
 }
 
 fn frequency_step() -> Family {
-    let mut family = Family::new("f-dt", "The step times the first frequency of the beam, likewise.");
+    let mut family = Family::new("f-dt", "The step times the first frequency of the beam, for the same motion.");
     for (value, steps) in powers(-6, 4, 1) {
         let dt = steps / FREQUENCY;
         family.add(&value, &[Base::Beam], |_| [stepped(dt, STEPS), turning_back(dt * STEPS)].concat());
@@ -227,7 +225,7 @@ fn friction() -> Family {
 }
 
 fn elements() -> Family {
-    let mut family = Family::new("elements", "Elements of the beam. Those of 200 and more take 500 steps only.");
+    let mut family = Family::new("elements", "Elements of the beam; from 200 elements on only 500 steps.");
     for value in ["1", "2", "3", "5", "10", "50", "100", "200", "500", "1000", "2000"] {
         let many = value.len() > 2 && value != "100";
         family.add(value, &[Base::Beam], |_| {
@@ -253,7 +251,8 @@ fn modulus() -> Family {
 fn size() -> Family {
     let mut family = Family::new(
         "size",
-        "All lengths in proportion, the block's width given in m; the step with the root of the size, as gravity has it. Young's modulus stays, so large beams are soft and small ones stiff.",
+        "All lengths scaled, with the block's width given in m; the step scales with the root of the size, as for \
+         motion under gravity. Young's modulus is constant, so large beams are soft and small ones stiff.",
     );
     for (value, width) in powers(-6, 3, 1) {
         family.add(&value, &BOTH, |base| {
@@ -274,7 +273,8 @@ fn size() -> Family {
 fn tilt() -> Family {
     let mut family = Family::new(
         "tilt",
-        "The tilt at the start, rad or in parts of the critical angle α: flat, flat but for rounding, almost overturned, overturned, on its side.",
+        "The initial tilt, in rad or as a fraction of the critical angle α: flat, flat up to rounding, almost \
+         overturned, overturned, on its side.",
     );
     let alpha = (0.03_f64 / 0.135).atan();
     let parts = [("0.9999999α", 0.999_999_9), ("α", 1.0), ("1.0000001α", 1.000_000_1), ("2α", 2.0)];
@@ -289,8 +289,8 @@ fn tilt() -> Family {
 fn place() -> Family {
     let mut family = Family::new(
         "place",
-        "Where the block's left foot stands on the beam of 20 elements: on a node, between nodes, on the mesh's rounding, over a \
-         support, off an end; and a flat block that hangs over an end.",
+        "The position of the block's left foot on the beam of 20 elements: on a node, between nodes, off a node by \
+         rounding, over a support, off an end; and a flat block that overhangs an end.",
     );
     // The left foot is at `at` less half a width.
     let feet = [
@@ -321,8 +321,8 @@ fn place() -> Family {
 fn impacts() -> Family {
     let mut family = Family::new(
         "impacts",
-        "A flat block thrown up so that it bounces a thousand, ten thousand, a million times (e = 1); with e = 0 it falls once and stays, for \
-         as many steps.",
+        "A flat block thrown up so that it bounces a thousand, ten thousand, a million times (e = 1); with e = 0 it \
+         falls once and stays, for the same number of steps.",
     );
     // A flight of 10 steps, or 100; two feet land each time.
     for (value, steps, flight) in [("1e3", 1e4, 10.0), ("1e6", 5.6e6, 10.0), ("1e4-slow", 1e6, 100.0)] {
@@ -357,8 +357,7 @@ fn tolerance() -> Family {
 }
 
 fn restitution() -> Family {
-    let mut family =
-        Family::new("restitution", "Restitution near its ends; the row's own e is that of the name's value.");
+    let mut family = Family::new("restitution", "Restitution near 0 and 1; the row's e is the value in its name.");
     for value in ["1e-15", "0.5", "0.999999"] {
         family.add(value, &BOTH, |_| Sets::new());
         let rows = family.rows.len();

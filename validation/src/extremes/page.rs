@@ -63,8 +63,8 @@ fn page(depth: Depth, found: &[(Family, Vec<Finding>)], maps: &[Map]) -> Result<
     let count = |of: &dyn Fn(&Finding) -> bool| all().filter(|finding| of(finding)).count();
     writeln!(
         page,
-        "\n{} rows: {} complete, {} refused with a reason, {} failed; {} miss something that every run should keep, and are \
-         listed first.\n",
+        "\n{} rows: {} complete, {} refused with a reason, {} failed; {} miss a requirement and are listed \
+         first.\n",
         all().count(),
         count(&|f| f.measured.ending == Ending::Complete),
         count(&|f| matches!(f.measured.ending, Ending::Refused(_))),
@@ -122,8 +122,8 @@ const TABLE: &str = "| row | steps | gain | account | depth, m | of bound | solv
 
 const HEAD: &str = "# The extremes
 
-Scenes at the ends of what can be asked for: each runs without a lost number, without an end that doesn't come, without energy out of
-nothing, or is refused with a reason. This page is written by
+Scenes with extreme parameters: each runs without a NaN, without running endlessly and without generating energy, or is refused with a
+reason. This page is written by
 
 ```sh
 COMMAND
@@ -138,27 +138,27 @@ cargo run --release -- run scene.toml
 ```
 
 Names of rows: value / base scene / scheme (`open` is moreau-jean, `closed`, `located` and `projected` are moreau-jean-closed, -located and
--projected) / restitution. Every scheme takes every family; but `event-driven` takes a tenth of a row's time on beams, and none of the
-families that go to fast modes or on for long there, and the tolerances of the solver are tried with `open` and `closed`, four of them with all.
-What is measured, over all steps:
+-projected) / restitution. Every scheme runs every family, with two exceptions: `event-driven`, which takes a tenth of a row's time on beams,
+skips the families with fast modes or long runs there, and the solver tolerances are varied with `open` and `closed` only, four of them with
+all schemes. Measured over all steps:
 
-- **gain**: the largest gain of energy in a step, Δ(T+V) without the work of loads, over the scene's energy scale. Must be rounding (1e-13, or
-  a thousandth of the contact solver's tolerance) with `closed` and `located`; is reported with the others, which don't promise it.
-- **account**: the largest residual of a step's energy account over the same scale; must be rounding (1e-12; 1e-10 with `event-driven`, which
-  takes many steps of its own, each right to 1e-12).
-- **depth**: the deepest penetration at the end of a step, m, and what part it is **of its bound**
+- **gain**: the largest gain of energy in a step, Δ(T+V) minus the work of loads, over the scene's energy scale. It must be rounding (1e-13, or
+  a thousandth of the contact solver's tolerance) with `closed` and `located`, and is only reported for the others, which don't guarantee it.
+- **account**: the largest residual of a step's energy account over the same scale; it must be rounding (1e-12; 1e-10 with `event-driven`, which
+  takes many steps of its own, each accurate to 1e-12).
+- **depth**: the deepest penetration at the end of a step, m, also as a fraction **of its bound**
 
       h (c |U_n| + 2σ|U|) + 2 R (h ω)² + 2 gap_tolerance,      c = ½ (moreau-jean-closed), 1 (all others; moreau-jean with γ = ½, θ ≥ ½)
 
-  with the fastest approach |U_n| of an active contact, its fastest slide and approach together |U|, the surface's steepest slope σ under one, the fastest
-  spin ω, R from the mass centre to a corner. A contact that is not seen in a step ends it
-  at most (1−γ)h|U_n| + θh²a below, a the free acceleration, and is caught in the next, in which its mean normal velocity still is (1−θ)U_n; the
-  acceleration is in |U_n| as measured there, so together h|U_n|. The closed scheme catches it in the step itself: ½h|U_n|. J is taken once a step, so a turn by hω leaves
-  the corner off its straight path by at most ½R(hω)² before J's place and R(hω)² after; and the normal of a surface that bends can turn
-  by 2σ until the step's end. A depth that comes up only in the last step is left
-  out where no contact was active: its impact is not part of the run.
-- **solver**: the largest residual of a solve that converged, over the tolerance; recomputed by the judge in every solve, and the same as the solver
-  says, or the row fails. **unconverged**: steps that say that they are not solved.
-- **iterations**: most of a step, all its solves together. Nothing is timed: what doesn't end shows as work.
-- **warnings**: what `teeter check` warns of.
+  with the fastest approach |U_n| of an active contact, its fastest relative velocity |U|, the steepest slope σ of the surface under one, the
+  fastest spin ω, and R from the mass centre to a corner. A contact that isn't detected in a step ends it at most (1−γ)h|U_n| + θh²a below the
+  surface, a being the free acceleration, and is detected in the next, in which its mean normal velocity is still (1−θ)U_n; the acceleration is
+  included in |U_n| as measured there, so the sum is h|U_n|. The closed scheme detects it in the step itself: ½h|U_n|. J is evaluated once per
+  step, so a rotation by hω moves the corner off its straight path by at most ½R(hω)² before the position of J and R(hω)² after it, and the normal
+  of a bending surface can rotate by 2σ until the end of the step. A depth that first occurs in the last step, without an active contact, is left
+  out, as its impact is not part of the run.
+- **solver**: the largest residual of a converged solve, over the tolerance; it is recomputed by the judge in every solve, and the row fails if it
+  differs from the solver's. **unconverged**: steps reported as unsolved.
+- **iterations**: the most in a step, over all its solves. Nothing is timed: an endless run shows as work.
+- **warnings**: the number of warnings of `teeter check`.
 ";

@@ -4,12 +4,12 @@ use crate::beam::Beam;
 
 /// Vectors of a beam, one after another.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Block {
+pub(crate) struct VectorBlock {
     dofs: usize,
     entries: Vec<f64>,
 }
 
-impl Block {
+impl VectorBlock {
     pub(crate) fn new(dofs: usize) -> Self {
         Self { dofs, entries: Vec::new() }
     }
@@ -42,14 +42,14 @@ impl Block {
 /// M-orthonormal vectors and their momenta M x.
 #[derive(Debug, Clone)]
 pub(crate) struct Orthonormal {
-    pub(crate) vectors: Block,
-    pub(crate) momenta: Block,
+    pub(crate) vectors: VectorBlock,
+    pub(crate) momenta: VectorBlock,
 }
 
 impl Orthonormal {
     /// Of vectors that are orthonormal already.
-    pub(crate) fn new(beam: &Beam, vectors: Block) -> Self {
-        let mut momenta = Block::new(beam.dofs());
+    pub(crate) fn new(beam: &Beam, vectors: VectorBlock) -> Self {
+        let mut momenta = VectorBlock::new(beam.dofs());
         vectors.iter().for_each(|x| momenta.push(&mass_product(beam, x)));
         Self { vectors, momenta }
     }
@@ -85,7 +85,7 @@ impl Orthonormal {
     }
 
     /// The vectors from number `from` on.
-    pub(crate) fn into_vectors_from(mut self, from: usize) -> Block {
+    pub(crate) fn into_vectors_from(mut self, from: usize) -> VectorBlock {
         self.vectors.entries.drain(..from * self.vectors.dofs);
         self.vectors
     }
@@ -93,7 +93,7 @@ impl Orthonormal {
 
 /// The columns of `x` made orthonormal in M, in their order, and M-orthogonal to `others`, which
 /// are orthonormal; without those of which no more than `least` is new.
-pub(crate) fn orthonormalised(beam: &Beam, others: &Orthonormal, x: &Block, least: f64) -> Block {
+pub(crate) fn orthonormalised(beam: &Beam, others: &Orthonormal, x: &VectorBlock, least: f64) -> VectorBlock {
     let mut all = others.clone();
     x.iter().for_each(|x| all.add(beam, x, least));
     all.into_vectors_from(others.vectors.columns())
@@ -101,7 +101,7 @@ pub(crate) fn orthonormalised(beam: &Beam, others: &Orthonormal, x: &Block, leas
 
 /// The Ritz values and vectors of the space of `y`, M-orthonormal and roughly in rising order;
 /// ascending.
-pub(crate) fn ritz(beam: &Beam, y: &Block) -> (Vec<f64>, Block) {
+pub(crate) fn ritz(beam: &Beam, y: &VectorBlock) -> (Vec<f64>, VectorBlock) {
     let p = y.columns();
     let mut s = vec![0.0; p * p];
     for i in 0..p {
@@ -117,7 +117,7 @@ pub(crate) fn ritz(beam: &Beam, y: &Block) -> (Vec<f64>, Block) {
     let u = jacobi(&mut s, p);
     let mut order: Vec<usize> = (0..p).collect();
     order.sort_by(|a, b| s[a * p + a].total_cmp(&s[b * p + b]));
-    let mut x = Block::new(y.dofs);
+    let mut x = VectorBlock::new(y.dofs);
     let mut values = Vec::with_capacity(p);
     for column in order {
         let mut shape = vec![0.0; y.dofs];

@@ -1,9 +1,9 @@
 //! The shifted inverse A = (K + σM)⁻¹M of the subspace iteration, solved to rounding, and its start
 //! vectors.
 
-use super::block::{Block, Orthonormal, norm, normalise};
+use super::block::{Orthonormal, VectorBlock, norm, normalise};
 use crate::beam::Beam;
-use crate::error::{FactorError, ModesError};
+use crate::error::{CholeskyError, ModesError};
 use crate::factor::{Factor, MatrixWeights};
 use std::ops::Range;
 
@@ -30,7 +30,7 @@ pub(crate) struct Inverse<'a> {
 }
 
 impl<'a> Inverse<'a> {
-    pub(crate) fn new(beam: &'a Beam) -> Result<Self, FactorError> {
+    pub(crate) fn new(beam: &'a Beam) -> Result<Self, CholeskyError> {
         let mass = beam.factor(MatrixWeights::MASS)?;
         let mut x = noise(beam, &mass, 0);
         let mut highest = 0.0_f64;
@@ -61,8 +61,8 @@ impl<'a> Inverse<'a> {
     }
 
     /// Start vectors of these numbers: noise with every mode in it, the same for every call.
-    pub(crate) fn start(&self, numbers: Range<usize>) -> Block {
-        let mut block = Block::new(self.beam.dofs());
+    pub(crate) fn start(&self, numbers: Range<usize>) -> VectorBlock {
+        let mut block = VectorBlock::new(self.beam.dofs());
         for number in numbers {
             block.push(&noise(self.beam, &self.mass, number));
         }
@@ -78,10 +78,10 @@ impl<'a> Inverse<'a> {
     pub(crate) fn apply(
         &self,
         rigid: &Orthonormal,
-        x: &Block,
+        x: &VectorBlock,
         eigenvalues: &[f64],
-    ) -> Result<(Block, Vec<f64>), ModesError> {
-        let mut next = Block::new(self.beam.dofs());
+    ) -> Result<(VectorBlock, Vec<f64>), ModesError> {
+        let mut next = VectorBlock::new(self.beam.dofs());
         let mut residuals = Vec::with_capacity(x.columns());
         let x = Orthonormal::new(self.beam, x.clone());
         for (j, (eigenvalue, own)) in eigenvalues.iter().zip(x.vectors.iter()).enumerate() {

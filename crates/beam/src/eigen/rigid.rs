@@ -1,13 +1,13 @@
 //! The rigid motions that the supports leave.
 
-use super::block::{Block, Orthonormal, orthonormalised, ritz};
+use super::block::{Orthonormal, VectorBlock, orthonormalised, ritz};
 use crate::Dof;
 use crate::beam::Beam;
 
 /// An M-orthonormal basis of the motions a + b x that no support holds and whose ω² is at most
 /// `unmoved`.
-pub(crate) fn motions(beam: &Beam, unmoved: f64) -> Block {
-    let mut block = Block::new(beam.dofs());
+pub(crate) fn motions(beam: &Beam, unmoved: f64) -> VectorBlock {
+    let mut block = VectorBlock::new(beam.dofs());
     let x = beam.node_positions();
     let held = |kind| (0..beam.nodes()).filter(move |node| beam.dof(*node, kind).is_none());
     let pins: Vec<usize> = held(Dof::Deflection).collect();
@@ -23,7 +23,7 @@ pub(crate) fn motions(beam: &Beam, unmoved: f64) -> Block {
         along[2 * bar.held.len()..].fill(1.0);
         block.push(&along);
     }
-    let block = orthonormalised(beam, &Orthonormal::new(beam, Block::new(beam.dofs())), &block, 0.0);
+    let block = orthonormalised(beam, &Orthonormal::new(beam, VectorBlock::new(beam.dofs())), &block, 0.0);
     // Of both, the combination that an elastic support leaves at rest.
     let (values, mut motions) = ritz(beam, &block);
     motions.truncate(values.iter().filter(|value| **value <= unmoved).count());

@@ -133,7 +133,7 @@ fn more_modes_leave_less_out() {
 #[test]
 fn viscous_and_rayleigh_damping_stay_diagonal() {
     let mut spec: BeamSpec = super::spec(30, [Support::Pinned; 2]);
-    spec.damping = Damping { viscous: 0.4, rayleigh_mass: 0.7, rayleigh_stiffness: 1e-5, ..Damping::default() };
+    spec.damping = Damping::none().with_viscous(0.4).with_rayleigh_mass(0.7).with_rayleigh_stiffness(1e-5);
     let beam = Beam::new(spec).unwrap();
     let basis = ModalBasis::new(&beam, 5, &[0.1, 0.18]).unwrap();
     for (d, omega) in basis.damping(&beam).unwrap().iter().zip(basis.circular_frequencies()) {

@@ -53,7 +53,7 @@ fn axial_force() -> impl Strategy<Value = f64> {
 }
 
 fn axial() -> impl Strategy<Value = Axial> {
-    prop_oneof![Just(Axial::Free), Just(Axial::Held), any::<[bool; 2]>().prop_map(|held| Axial::Elastic { held }),]
+    prop_oneof![Just(Axial::Free), Just(Axial::Held), any::<[bool; 2]>().prop_map(Axial::elastic),]
 }
 
 /// What stands, hangs and rests along the span: inner support, lump, foundation, segment.
@@ -85,12 +85,10 @@ fn spec() -> impl Strategy<Value = BeamSpec> {
             let euler = own.bending_stiffness * (std::f64::consts::PI / span).powi(2);
             let mut spec =
                 BeamSpec::new(span, elements, own).supported(supports).axial(axial).axial_force(force * euler).damped(
-                    Damping {
-                        viscous: 0.1 * own.mass_per_length,
-                        rayleigh_stiffness: 1e-6,
-                        modal,
-                        ..Damping::default()
-                    },
+                    Damping::none()
+                        .with_viscous(0.1 * own.mass_per_length)
+                        .with_rayleigh_stiffness(1e-6)
+                        .with_modal(modal),
                 );
             if let Some((x, support)) = inner {
                 spec = spec.support_at(x * span, support);
@@ -153,7 +151,7 @@ fn ask(spec: BeamSpec) {
     let mut q = load.clone();
     if told(beam.solve_static(&mut q)).is_some() {
         finite("statics", &q);
-        let actions = Actions { q: &q, loads: &weight, ..Actions::default() };
+        let actions = Actions::at(&q).with_loads(&weight);
         let forces = beam.section_forces(&actions).unwrap();
         for element in 0..beam.elements() {
             for end in forces.ends(element) {

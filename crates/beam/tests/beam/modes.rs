@@ -206,8 +206,8 @@ fn springs_and_axial_dofs_leave_the_rigid_motions_that_they_leave() {
         (free.clone(), 2),
         (free.clone().support_at(0.3, spring(20.0)), 1),
         (free.clone().support_at(0.3, spring(20.0)).support_at(0.9, spring(5.0)), 0),
-        (free.clone().axial(Axial::Elastic { held: [false; 2] }), 3),
-        (free.clone().axial(Axial::Elastic { held: [true, false] }), 2),
+        (free.clone().axial(Axial::elastic([false; 2])), 3),
+        (free.clone().axial(Axial::elastic([true, false])), 2),
         (free.clone().foundation(Foundation::new(0.2, 0.4, 1.0)), 0),
     ] {
         let beam = Beam::new(spec).unwrap();
@@ -234,7 +234,7 @@ fn a_beam_with_everything_has_the_modes_of_a_dense_solve() {
         .support_at(0.75, Support::Pinned)
         .lump(0.4, 0.5, 0.01)
         .foundation(Foundation::new(0.1, 0.65, 80.0))
-        .axial(Axial::Elastic { held: [true, false] })
+        .axial(Axial::elastic([true, false]))
         .axial_force(3.0);
     let beam = Beam::new(spec).unwrap();
     let dense = circular_frequencies(&beam);

@@ -1,11 +1,12 @@
-//! Patterns of quantities: a number, and a unit that the program knows.
+//! Patterns of quantities: a number, and a known unit.
 //!
-//! A unit of one symbol is one of the dimension wanted. Whether a product or a quotient of units has the right dimension is a sum of
-//! exponents, which no pattern can hold; its symbols are known ones all the same. No look-around: any engine reads these patterns.
+//! A unit of one symbol must have the expected dimension. The dimension of a product or quotient of
+//! units is a sum of exponents, which a pattern can't check; but its symbols must be known. There
+//! is no look-around, so any engine can use these patterns.
 
 use teeter_scenario::dimension::Dimension;
 use teeter_scenario::keys::{Bound, Range};
-use teeter_scenario::measure::Unit;
+use teeter_scenario::measure::AllowedUnit;
 use teeter_scenario::units::UNITS;
 
 /// Digits with or without a point, and with or without an exponent.
@@ -18,7 +19,7 @@ const MINUS: &str = "[-−]";
 const EXPONENT: &str = "(\\s*\\^\\s*[-+−]?[0-9]+|[0-9]+|[⁰¹²³⁴⁵⁶⁷⁸⁹⁻]+)";
 const BETWEEN: &str = "(\\s*[*·⋅×/]\\s*|\\s+)";
 
-/// The numbers that a range takes, as far as their sign goes.
+/// The numbers that a range allows, checked only by sign.
 fn number(range: &Range) -> String {
     match range.low {
         Bound::Open(low) if low >= 0.0 => format!("\\+?{NOT_ZERO}"),
@@ -27,7 +28,7 @@ fn number(range: &Range) -> String {
     }
 }
 
-/// Symbols as alternatives, the longest first; micro in all its letters.
+/// Symbols as alternatives, the longest first; micro in all its forms.
 fn symbols(of: impl Fn(Dimension) -> bool) -> String {
     let mut symbols: Vec<String> =
         UNITS.iter().filter(|unit| of(unit.dimension)).map(|unit| unit.symbol.replacen('u', "[uµμ]", 1)).collect();
@@ -35,13 +36,13 @@ fn symbols(of: impl Fn(Dimension) -> bool) -> String {
     symbols.join("|")
 }
 
-/// A unit: one symbol of the dimension, or something made of known symbols.
+/// A unit: one symbol of the dimension, or an expression of known symbols.
 fn unit(dimension: Dimension) -> String {
     let (own, all) = (symbols(|of| dimension.accepts(of)), symbols(|_| true));
     let factor = format!("\\(*\\s*({all}){EXPONENT}?(\\s*\\)+{EXPONENT}?)?");
     let more = format!("({BETWEEN}{factor})");
     let over = "([*·⋅×]\\s*)?1?\\s*/\\s*";
-    // With an exponent or parentheses, or over something, or of several factors.
+    // With an exponent, parentheses, a division, or several factors.
     let made = format!(
         "{over}{factor}{more}*|{factor}{more}+|({all}){EXPONENT}|\\(+\\s*({all}){EXPONENT}?\\s*\\)+{EXPONENT}?"
     );
@@ -53,9 +54,9 @@ pub(super) fn quantity(dimension: Dimension, range: &Range) -> String {
     format!("^\\s*{}\\s*{}\\s*$", number(range), unit(dimension))
 }
 
-/// A quantity in one of several units, some of which may be over any power of the metre.
-pub(super) fn measure(units: &[Unit], range: &Range) -> String {
-    let of = |of: &Unit| unit(of.dimension) + if of.any_power { "\\s*/m\\^\\s*[0-9.]+" } else { "" };
+/// A quantity in one of several units, some of which may be divided by any power of the metre.
+pub(super) fn measure(units: &[AllowedUnit], range: &Range) -> String {
+    let of = |of: &AllowedUnit| unit(of.dimension) + if of.any_power { "\\s*/m\\^\\s*[0-9.]+" } else { "" };
     let units: Vec<String> = units.iter().map(of).collect();
     format!("^\\s*{}\\s*({})\\s*$", number(range), units.join("|"))
 }

@@ -1,17 +1,18 @@
-//! What several keys of one table have to agree on: exclusive keys, keys that need each other, keys of some words of another one.
+//! Rules for several keys of a table: exclusive keys, keys that need each other, keys that apply
+//! only with some words of another one.
 
 use serde_json::{Map, Value, json};
-use teeter_scenario::keys::{Key, OnlyWith, Presence, Table};
+use teeter_scenario::keys::{Key, OnlyWith, Presence, TableSchema};
 
 /// The conditions on a table, for its `allOf`.
-pub(super) fn of(table: &Table) -> Vec<Value> {
+pub(super) fn of(table: &TableSchema) -> Vec<Value> {
     let mut all: Vec<Value> = table.keys.iter().flat_map(|key| of_key(table, key)).collect();
     all.extend(of_pattern(table.pattern));
     all
 }
 
-/// What follows from the row of a key.
-fn of_key(table: &Table, key: &Key) -> Vec<Value> {
+/// The rules that follow from the row of a key.
+fn of_key(table: &TableSchema, key: &Key) -> Vec<Value> {
     let mut all = Vec::new();
     if let Presence::RequiredWithout(other) = key.presence {
         all.push(at_least_one(&[key.name, other]));
@@ -31,7 +32,7 @@ fn of_key(table: &Table, key: &Key) -> Vec<Value> {
 }
 
 /// That a key is one of some words, by its default too.
-fn is_one_of(table: &Table, name: &str, words: &[&str]) -> Value {
+fn is_one_of(table: &TableSchema, name: &str, words: &[&str]) -> Value {
     let by_default = table.key(name).is_some_and(|key| match key.presence {
         Presence::Default(default) => words.iter().any(|word| default == format!("\"{word}\"")),
         _ => false,
@@ -60,19 +61,19 @@ fn at_most_one(keys: &[&str]) -> Vec<Value> {
     pairs.map(|(first, second)| json!({ "not": { "required": [first, second] } })).collect()
 }
 
-/// With the first key none of the others.
+/// The first key excludes the others.
 fn excludes(key: &str, others: &[&str]) -> Value {
     json!({ "if": { "required": [key] }, "then": without(others) })
 }
 
-/// Where the key has this value, the others keep to `then`.
+/// If the key has this value, `then` applies to the others.
 fn where_is(key: &str, value: &Value, then: &Value) -> Value {
     json!({ "if": { "required": [key], "properties": { key: { "const": value } } }, "then": then })
 }
 
 const SHIFTS: [&str; 3] = ["displacement", "velocity", "acceleration"];
 const TURNS: [&str; 3] = ["angle", "angular_velocity", "angular_acceleration"];
-/// How the two motions of a node are held: by a word, or by the others.
+/// Keys for the two motions of a node: a word, or the others.
 const HELD: [[&str; 3]; 2] =
     [["deflection", "spring", "dashpot"], ["rotation", "rotational_spring", "rotational_dashpot"]];
 
@@ -81,7 +82,7 @@ pub(super) fn of_support() -> Vec<Value> {
     HELD.iter().map(|[word, numbers @ ..]| excludes(word, numbers)).collect()
 }
 
-/// The start of a beam: by a mode and its amplitude, or by a file.
+/// The initial shape of a beam: a mode and its amplitude, or a file.
 pub(super) fn of_start() -> Vec<Value> {
     vec![
         json!({ "oneOf": [{ "required": ["mode", "amplitude"] }, { "required": ["file"] }] }),
@@ -97,33 +98,75 @@ fn motion(turns: bool) -> Vec<Value> {
         moved.extend(TURNS);
     }
     all.push(at_least_one(&moved));
-    // `signal` is that of a turn, beside those of x and y.
+    // `signal` is that of the rotation, in addition to those of x and y.
     let turned = if turns { at_least_one(&TURNS) } else { json!(false) };
     all.push(json!({ "if": { "required": ["signal", "signals"] }, "then": turned }));
     all
 }
 
 /// An array with this word.
-fn holds(word: &str) -> Value {
+fn contains(word: &str) -> Value {
     json!({ "contains": { "const": word } })
 }
 
-/// What the resolver asks of a table beyond the rows of its keys.
+/// The rules of `[time]`.
+fn of_time() -> Vec<Value> {
+    vec![
+        where_is("scheme", &json!("moreau-jean-closed"), &properties([("theta", json!({ "const": 0.5 }))])),
+        where_is("scheme", &json!("moreau-jean-located"), &properties([("theta", json!({ "const": 0.5 }))])),
+        where_is("scheme", &json!("moreau-jean-projected"), &properties([("theta", json!({ "const": 0.5 }))])),
+        json!({
+            "if": { "required": ["spectral_radius"] },
+            "then": { "required": ["scheme"], "properties": { "scheme": { "const": "generalized-alpha" } } },
+        }),
+        json!({
+            "if": { "required": ["theta"], "properties": { "theta": { "exclusiveMaximum": 0.5 } } },
+            "then": { "required": ["allow_conditional_stability"], "properties": { "allow_conditional_stability": { "const": true } } },
+        }),
+    ]
+}
+
+/// The rules of a beam.
+fn of_beam() -> Vec<Value> {
+    vec![
+        excludes("nodes", &["elements", "mesh"]),
+        json!({ "not": { "required": ["damping_ratio", "viscous_damping"] } }),
+        json!({ "if": { "required": ["modes"] }, "then": { "required": ["model"], "properties": { "model": { "const": "modes" } } } }),
+        where_is(
+            "model",
+            &json!("modes"),
+            &properties([("axial", json!({ "enum": ["free", "elastic"] })), ("backend", json!({ "const": "auto" }))]),
+        ),
+        json!({
+            "if": { "required": ["surface", "section"], "properties": { "surface": { "const": "top" }, "section": { "const": "direct" } } },
+            "then": { "required": ["thickness"] },
+        }),
+        where_is(
+            "axial",
+            &json!("held"),
+            &properties([("supports", json!({ "items": { "not": { "const": "free" } } }))]),
+        ),
+        where_is("axial", &json!("elastic"), &without(&["motion"])),
+        // A free beam has no equilibrium, and no supports to move.
+        json!({
+            "if": { "required": ["supports"], "properties": { "supports": { "const": ["free", "free"] } } },
+            "then": { "anyOf": [
+                { "required": ["support"] },
+                { "required": ["foundation"] },
+                { "properties": { "start": { "not": { "const": "static" } }, "motion": false } },
+            ] },
+        }),
+        json!({
+            "if": { "required": ["record"], "properties": { "record": { "anyOf": [contains("moment"), contains("shear"), contains("stress")] } } },
+            "then": { "required": ["probes"], "properties": { "probes": { "minItems": 1 } } },
+        }),
+    ]
+}
+
+/// The rules that the resolver checks for a table, beyond the rows of its keys.
 fn of_pattern(pattern: &str) -> Vec<Value> {
     match pattern {
-        "time" => vec![
-            where_is("scheme", &json!("moreau-jean-closed"), &properties([("theta", json!({ "const": 0.5 }))])),
-            where_is("scheme", &json!("moreau-jean-located"), &properties([("theta", json!({ "const": 0.5 }))])),
-            where_is("scheme", &json!("moreau-jean-projected"), &properties([("theta", json!({ "const": 0.5 }))])),
-            json!({
-                "if": { "required": ["spectral_radius"] },
-                "then": { "required": ["scheme"], "properties": { "scheme": { "const": "generalized-alpha" } } },
-            }),
-            json!({
-                "if": { "required": ["theta"], "properties": { "theta": { "exclusiveMaximum": 0.5 } } },
-                "then": { "required": ["allow_conditional_stability"], "properties": { "allow_conditional_stability": { "const": true } } },
-            }),
-        ],
+        "time" => of_time(),
         "ground.motion" => motion(true),
         "block.*.motion" => {
             let mut all = motion(true);
@@ -131,42 +174,7 @@ fn of_pattern(pattern: &str) -> Vec<Value> {
             all
         }
         "beam.*.motion" => motion(false),
-        "beam.*" => vec![
-            excludes("nodes", &["elements", "mesh"]),
-            json!({ "not": { "required": ["damping_ratio", "viscous_damping"] } }),
-            json!({ "if": { "required": ["modes"] }, "then": { "required": ["model"], "properties": { "model": { "const": "modes" } } } }),
-            where_is(
-                "model",
-                &json!("modes"),
-                &properties([
-                    ("axial", json!({ "enum": ["free", "elastic"] })),
-                    ("backend", json!({ "const": "auto" })),
-                ]),
-            ),
-            json!({
-                "if": { "required": ["surface", "section"], "properties": { "surface": { "const": "top" }, "section": { "const": "direct" } } },
-                "then": { "required": ["thickness"] },
-            }),
-            where_is(
-                "axial",
-                &json!("held"),
-                &properties([("supports", json!({ "items": { "not": { "const": "free" } } }))]),
-            ),
-            where_is("axial", &json!("elastic"), &without(&["motion"])),
-            // What nothing holds has no equilibrium, and no supports to move.
-            json!({
-                "if": { "required": ["supports"], "properties": { "supports": { "const": ["free", "free"] } } },
-                "then": { "anyOf": [
-                    { "required": ["support"] },
-                    { "required": ["foundation"] },
-                    { "properties": { "start": { "not": { "const": "static" } }, "motion": false } },
-                ] },
-            }),
-            json!({
-                "if": { "required": ["record"], "properties": { "record": { "anyOf": [holds("moment"), holds("shear"), holds("stress")] } } },
-                "then": { "required": ["probes"], "properties": { "probes": { "minItems": 1 } } },
-            }),
-        ],
+        "beam.*" => of_beam(),
         "beam.*.rayleigh" => vec![
             at_least_one(&["a0", "a1", "frequencies"]),
             excludes("frequencies", &["a0", "a1"]),

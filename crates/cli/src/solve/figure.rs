@@ -2,24 +2,24 @@
 
 use teeter_plot::{Axis, AxisError, Figure, Legend, Panel, Series};
 
-/// A solver's curve: where it steps, and to which part of the problems.
+/// A solver's curve: its steps.
 pub(super) struct Curve {
     pub(super) name: String,
-    /// Ratio to the best time and part solved within it, both ascending.
+    /// Ratio to the best time, and fraction solved within it, both ascending.
     pub(super) steps: Vec<(f64, f64)>,
 }
 
 /// Height of the plot, mm.
 const HEIGHT: f64 = 70.0;
 
-/// The profile of a contest as SVG.
+/// A performance profile as SVG.
 pub(super) fn profile(title: &str, curves: &[Curve]) -> Result<String, String> {
     draw(title, curves).map_err(|error| format!("error: the figure «{title}» can't be drawn: {error}"))
 }
 
 fn draw(title: &str, curves: &[Curve]) -> Result<String, AxisError> {
     let ratios = curves.iter().flat_map(|curve| &curve.steps).map(|step| step.0);
-    // The best time itself, and twice as long where nothing is slower.
+    // At least from the best time to twice that.
     let x = Axis::logarithmic("Time, as a multiple of the best solver's for the problem", ratios.chain([1.0, 2.0]))?;
     let x = x.starting_at(1.0);
     let end = x.ends().1;
@@ -27,7 +27,7 @@ fn draw(title: &str, curves: &[Curve]) -> Result<String, AxisError> {
         let steps = curve.steps.iter().map(|&(ratio, part)| (ratio, 100.0 * part));
         Series::staircase(&curve.name, [(1.0, 0.0)].into_iter().chain(steps), end)
     });
-    let panel = Panel::new(Axis::between("Part of the problems solved (%)", 0.0, 102.0)).with(series);
+    let panel = Panel::new(Axis::between("Problems solved (%)", 0.0, 102.0)).with(series);
     Ok(Figure::new("profile", title, x).headed().legend(Legend::Beside).panel(panel.height_mm(HEIGHT)).to_svg())
 }
 
@@ -40,7 +40,7 @@ mod tests {
         let curve = |k: usize| Curve { name: format!("s{k} (0 of 1)"), steps: vec![(1.0 + k as f64, 1.0); k % 2] };
         let svg = profile("t", &(0..14).map(curve).collect::<Vec<_>>()).unwrap();
         assert!((0..14).all(|k| svg.contains(&format!("s{k} (0 of 1)"))));
-        assert!(svg.starts_with("<svg") && svg.contains("Part of the problems solved"));
+        assert!(svg.starts_with("<svg") && svg.contains("Problems solved (%)"));
         assert!(profile("nobody solves anything", &[]).is_ok());
         assert!(profile("no time", &[Curve { name: String::new(), steps: vec![(f64::NAN, 1.0)] }]).is_err());
     }

@@ -1,4 +1,4 @@
-//! Which problems, which solvers: all of it settled before anything runs.
+//! Selects problems and solvers, before anything runs.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use teeter_fclib::FclibProblem;
 use teeter_scenario::suggest::nearest;
 use teeter_solvers::{SOLVERS, SolverInfo};
 
-/// A problem with the name that its file goes by.
+/// A problem with the name of its file.
 pub(super) struct Input {
     pub(super) file: String,
     /// The file's name without its ending.
@@ -15,7 +15,8 @@ pub(super) struct Input {
     pub(super) asymmetry: f64,
 }
 
-/// The files among `paths`: a folder stands for all `*.hdf5` below it, sorted. All that is wrong is told at once.
+/// The files among `paths`: a folder stands for all `*.hdf5` below it, sorted. All errors are
+/// reported at once.
 pub(super) fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
     let (mut files, mut faults) = (Vec::new(), Vec::new());
     for path in paths {
@@ -42,7 +43,7 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> std::io::Result<()> {
     for entry in std::fs::read_dir(folder)? {
         let entry = entry?;
         let path = entry.path();
-        // A link to a folder is not followed: it may lead around in a circle.
+        // A link to a folder is not followed, as it may form a cycle.
         if entry.file_type()?.is_dir() {
             collect(&path, files)?;
         } else if path.extension().is_some_and(|ending| ending == "hdf5") {
@@ -52,7 +53,7 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> std::io::Result<()> {
     Ok(())
 }
 
-/// Reads all files; all that can't be read are told at once.
+/// Reads all files; all errors are reported at once.
 pub(super) fn read(files: &[PathBuf]) -> Result<Vec<Input>, String> {
     let (mut inputs, mut faults) = (Vec::new(), Vec::new());
     for path in files {
@@ -80,10 +81,10 @@ fn read_one(path: &Path) -> Result<(FclibProblem, f64), String> {
     Ok((problem, asymmetry.map_err(|error| error.to_string())?))
 }
 
-/// What `--solver` asks for.
+/// The solvers selected by `--solver`.
 #[derive(Clone, Debug)]
 pub(super) enum Choice {
-    /// Every solver on every problem that it takes.
+    /// Every solver, on every problem that it supports.
     All,
     /// These, on every problem.
     Named(Vec<&'static SolverInfo>),
@@ -100,8 +101,9 @@ impl Choice {
 }
 
 impl Choice {
-    /// Whether a solver is to try a problem: of all of them only those that take so many contacts, one asked for by name in any case.
-    pub(super) fn takes(&self, info: &SolverInfo, input: &Input) -> bool {
+    /// Whether a solver should try a problem: with `all` only if it takes that many contacts,
+    /// otherwise always.
+    pub(super) fn can_solve(&self, info: &SolverInfo, input: &Input) -> bool {
         match self {
             Self::All => info.most_contacts.is_none_or(|most| input.problem.contacts() <= most),
             Self::Named(_) => true,
@@ -109,8 +111,9 @@ impl Choice {
     }
 }
 
-/// Takes the names of `--solver`. What follows it may also be a file, as in `solve --solver pgs problem.hdf5`: whatever is
-/// no solver but there on disk goes to `paths`.
+/// Interprets the names after `--solver`. These may include files, as in
+/// `solve --solver pgs problem.hdf5`: a name that is not a solver but exists on disk is added to
+/// `paths`.
 pub(super) fn choose(names: &[String], paths: &mut Vec<PathBuf>) -> Result<Choice, String> {
     let (mut chosen, mut all) = (Vec::new(), false);
     for name in names {
@@ -139,7 +142,7 @@ pub(super) fn choose(names: &[String], paths: &mut Vec<PathBuf>) -> Result<Choic
     Ok(Choice::Named(chosen))
 }
 
-/// Refuses a solver asked for by name that doesn't take one of the problems.
+/// Refuses a solver requested by name that doesn't support one of the problems.
 pub(super) fn check_dimensions(choice: &Choice, inputs: &[Input]) -> Result<(), String> {
     let Choice::Named(infos) = choice else { return Ok(()) };
     let mut faults = Vec::new();
@@ -147,12 +150,12 @@ pub(super) fn check_dimensions(choice: &Choice, inputs: &[Input]) -> Result<(), 
         let unfit: Vec<_> =
             inputs.iter().filter(|input| !info.dimensions.contains(&input.problem.dimension())).collect();
         if let Some(first) = unfit.first() {
-            let takes: Vec<_> = info.dimensions.iter().map(|d| format!("{d}D")).collect();
+            let taken: Vec<_> = info.dimensions.iter().map(|d| format!("{d}D")).collect();
             let others = if unfit.len() > 1 { format!(" (and {} more)", unfit.len() - 1) } else { String::new() };
             faults.push(format!(
                 "error: solver `{}` takes {} problems only, but {}{others} is {}D",
                 info.name,
-                takes.join(" and "),
+                taken.join(" and "),
                 first.file,
                 first.problem.dimension()
             ));
@@ -161,13 +164,13 @@ pub(super) fn check_dimensions(choice: &Choice, inputs: &[Input]) -> Result<(), 
     if faults.is_empty() { Ok(()) } else { Err(faults.join("\n")) }
 }
 
-/// Refuses two problems of one name, whose solutions would go to one file.
+/// Refuses two problems with the same name, whose solutions would have the same file.
 pub(super) fn check_stems(inputs: &[Input]) -> Result<(), String> {
     let mut seen = BTreeMap::new();
     for input in inputs {
         if let Some(first) = seen.insert(&input.stem, &input.file) {
             return Err(format!(
-                "error: {first} and {} are of one name: their solutions would go to one file",
+                "error: {first} and {} have the same name: their solutions would go to the same file",
                 input.file
             ));
         }

@@ -1,4 +1,4 @@
-//! Where and when something was measured.
+//! The machine and date of a measurement.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -13,7 +13,7 @@ pub(super) fn cores() -> String {
     std::thread::available_parallelism().map_or_else(|_| "unknown".to_owned(), |cores| cores.to_string())
 }
 
-/// The command as given, the program by its name alone.
+/// The command as given, with only the name of the program.
 pub(super) fn command() -> String {
     let quoted = |argument: String| if argument.contains(' ') { format!("\"{argument}\"") } else { argument };
     let arguments = std::env::args().skip(1).map(quoted);
@@ -26,7 +26,7 @@ pub(super) fn date() -> String {
     civil(seconds / 86_400)
 }
 
-/// The date so many days after 1970-01-01, by whole eras of 400 years that begin with a March.
+/// The date a number of days after 1970-01-01, by eras of 400 years that begin in March.
 fn civil(days: u64) -> String {
     let days = days + 719_468; // since 0000-03-01
     let (era, day) = (days / 146_097, days % 146_097);

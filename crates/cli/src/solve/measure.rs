@@ -1,38 +1,39 @@
-//! One solve: its outcome by the one judge, its time by the clock, its end by the time limit.
+//! Measures a solve: its residual, its time, with a time limit.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use teeter_contact::{ContactProblem, ContactSolver, Delassus, Status, Stop, Vector, judge};
 
-/// Iterations are not what ends a solve here; the time limit is.
+/// Iterations don't limit a solve here; the time limit does.
 const MAX_ITERATIONS: u32 = 1_000_000_000;
 
-/// A solve that took less is repeated, until so much time has gone into it …
+/// A shorter solve is repeated, until this much time has been spent …
 const WORTH: Duration = Duration::from_millis(100);
-/// … or so many times have been measured.
+/// … or this many times have been measured.
 const SAMPLES: usize = 51;
-/// One sample repeats the solve until it lasts as long as this: the clock's own cost then doesn't show.
+/// A sample repeats the solve until it takes at least this long, so that the cost of reading the
+/// clock is negligible.
 const SAMPLE: Duration = Duration::from_micros(20);
 
-/// How a solve went.
+/// The result of a solve.
 #[derive(Clone, Debug)]
 pub(super) struct Measured {
     pub(super) used: &'static str,
-    /// The word of the contract: `converged`, `time-limit` …
+    /// The outcome in output: `converged`, `time-limit` …
     pub(super) outcome: &'static str,
-    /// The judge's global residual of the impulses.
+    /// The global residual of the impulses.
     pub(super) residual: f64,
     pub(super) iterations: u32,
     pub(super) time_ms: f64,
     /// The impulses, contact by contact, the normal one first.
     pub(super) impulses: Vec<f64>,
-    /// Something that the user should know of the solver.
+    /// A warning about the solver.
     pub(super) complaint: Option<String>,
 }
 
-/// Solves from p = 0, with a solver that has made its memory ready. A short solve is repeated from the same start with the
-/// same solver, and the median taken; the first one warms it up.
+/// Solves from p = 0, with a solver that has allocated its memory. A short solve is repeated from
+/// the same start with the same solver, and the median taken; the first one is a warm-up.
 pub(super) fn measure<const D: usize>(
     solver: &mut dyn ContactSolver<D>,
     problem: &ContactProblem<'_, D>,
@@ -60,11 +61,11 @@ pub(super) fn measure<const D: usize>(
     let word = match outcome.status {
         Status::Cancelled if cancel.load(Ordering::Relaxed) => "time-limit",
         Status::Converged if !(residual <= tolerance) => {
-            complaint = Some(format!("`{}` says converged, but the judge finds {residual:.1e}", outcome.used));
+            complaint = Some(format!("`{}` reports convergence, but the residual is {residual:.1e}", outcome.used));
             Status::Stalled.as_str()
         }
         Status::ConvexLaw => {
-            let told = "has solved the convex law; the residual is that of Coulomb's, by which a sliding contact doesn't lift off";
+            let told = "has solved the convex law; the residual is for Coulomb's law, in which a sliding contact doesn't separate";
             complaint = Some(format!("`{}` {told}", outcome.used));
             Status::Stalled.as_str()
         }
@@ -73,14 +74,14 @@ pub(super) fn measure<const D: usize>(
 
     let mut time = first;
     if first < WORTH && !cancel.load(Ordering::Relaxed) {
-        // A solver that is slow the second time is no reason to wait for ever either.
+        // The time limit also applies to repetitions.
         let median = within(limit + 10 * WORTH, &cancel, || {
             median_time(first, || {
                 p.fill(Vector::zeros());
                 let _ = solver.solve(problem, &stop, &mut p);
             })
         });
-        // Solves that were cut short say nothing.
+        // Solves that were cut short are not counted.
         if !cancel.load(Ordering::Relaxed) {
             time = median;
         }
@@ -103,7 +104,8 @@ fn median_time(first: Duration, mut solve: impl FnMut()) -> Duration {
         (0..times).for_each(|_| solve());
         clock.elapsed().div_f64(f64::from(times))
     };
-    // The first solve of a solver may be slower than the others: how many make a sample is asked of a second one.
+    // The first solve of a solver may be slower than the others, so the number of solves per sample
+    // is determined from a second one.
     let second = sample(1).min(first).max(Duration::from_nanos(20));
     let times = u32::try_from(SAMPLE.as_nanos() / second.as_nanos() + 1).unwrap_or(1);
     let mut samples = Vec::with_capacity(SAMPLES);
@@ -114,12 +116,12 @@ fn median_time(first: Duration, mut solve: impl FnMut()) -> Duration {
     samples[samples.len() / 2]
 }
 
-/// Does the work; sets `cancel` once `limit` has passed, and leaves it alone if the work is done before.
+/// Does the work; sets `cancel` after `limit`, unless the work is done before.
 fn within<T>(limit: Duration, cancel: &AtomicBool, work: impl FnOnce() -> T) -> T {
     let (done, bell) = (Mutex::new(false), Condvar::new());
     std::thread::scope(|scope| {
         scope.spawn(|| {
-            // A poisoned lock can't be: nobody panics with it in hand.
+            // The lock can't be poisoned, as no thread panics while holding it.
             let guard = done.lock().unwrap_or_else(PoisonError::into_inner);
             let waited = bell.wait_timeout_while(guard, limit, |done| !*done);
             if !*waited.unwrap_or_else(PoisonError::into_inner).0 {
@@ -138,7 +140,7 @@ mod tests {
     use super::*;
     use teeter_contact::{Law, Outcome, Residual};
 
-    /// Goes on until it is cancelled.
+    /// A solver that runs until it is cancelled.
     struct Endless;
 
     impl ContactSolver<2> for Endless {
@@ -162,10 +164,10 @@ mod tests {
         }
     }
 
-    /// Says converged, whatever.
-    struct Boaster;
+    /// A solver that always reports convergence.
+    struct FalselyConverged;
 
-    impl ContactSolver<2> for Boaster {
+    impl ContactSolver<2> for FalselyConverged {
         fn name(&self) -> &'static str {
             "boaster"
         }
@@ -200,7 +202,7 @@ mod tests {
 
     #[test]
     fn a_solver_that_boasts_is_not_believed() {
-        let measured = pressed(Boaster, Duration::from_secs(10));
+        let measured = pressed(FalselyConverged, Duration::from_secs(10));
         assert_eq!((measured.outcome, measured.residual), ("stalled", 1.0));
         assert!(measured.complaint.is_some_and(|text| text.contains("boaster")));
     }

@@ -1,4 +1,4 @@
-//! `teeter solve`: solvers on contact problems from files, timed and judged.
+//! `teeter solve`: runs solvers on contact problems from files, and measures time and residual.
 
 mod figure;
 mod inputs;
@@ -8,11 +8,11 @@ mod profile;
 mod rows;
 
 use crate::console::{Console, print_all};
-use crate::progress::Solves;
+use crate::progress::SolveBar;
 use crate::run::Exit;
 use inputs::{Choice, Input};
 use measure::Measured;
-use rows::{Columns, Row};
+use rows::{Row, RowColumns};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use teeter_fclib::FclibProblem;
@@ -46,13 +46,13 @@ pub(crate) fn time(text: &str) -> Result<Duration, String> {
     let seconds = quantity::parse(text, Dimension::TIME).map_err(|error| error.to_string())?;
     match Duration::try_from_secs_f64(seconds) {
         Ok(time) if !time.is_zero() => Ok(time),
-        _ => Err("a time greater than 0 is wanted, such as \"10 s\"".to_owned()),
+        _ => Err("write a time greater than 0, such as \"10 s\"".to_owned()),
     }
 }
 
 pub(crate) fn solve(options: &Options) -> Exit {
     let console = Console::new(false);
-    let (inputs, choice) = match settle(options) {
+    let (inputs, choice) = match prepare(options) {
         Ok(settled) => settled,
         Err(text) => {
             console.error(&text);
@@ -60,7 +60,7 @@ pub(crate) fn solve(options: &Options) -> Exit {
         }
     };
     match solve_all(console, options, &inputs, &choice) {
-        Ok(()) => Exit::Done,
+        Ok(()) => Exit::FinishedRun,
         Err(text) => {
             console.error(&text);
             Exit::Failed
@@ -68,8 +68,8 @@ pub(crate) fn solve(options: &Options) -> Exit {
     }
 }
 
-/// Everything that can be wrong with what the user asks for is found here: nothing has run, nothing is written.
-fn settle(options: &Options) -> Result<(Vec<Input>, Choice), String> {
+/// Finds all errors of the user's input, before anything runs or is written.
+fn prepare(options: &Options) -> Result<(Vec<Input>, Choice), String> {
     let mut paths = options.paths.clone();
     let choice = inputs::choose(&options.solvers, &mut paths)?;
     if paths.is_empty() {
@@ -91,7 +91,8 @@ fn settle(options: &Options) -> Result<(Vec<Input>, Choice), String> {
     Ok((inputs, choice))
 }
 
-/// Makes a folder where these files can be written; what is there already is replaced by `--force` only, and what is read never.
+/// Creates a folder where these files can be written; existing files are replaced only with
+/// `--force`, and inputs never.
 fn take_folder(folder: &Path, files: &[String], inputs: &[Input], force: bool) -> Result<(), String> {
     let files: Vec<&str> = files.iter().map(String::as_str).collect();
     let inputs: Vec<PathBuf> = inputs.iter().map(|input| PathBuf::from(&input.file)).collect();
@@ -118,13 +119,13 @@ fn solve_all(console: Console, options: &Options, inputs: &[Input], choice: &Cho
     let one = [options.tolerance];
     let tolerances: &[f64] = if options.profile.is_some() { &profile::TOLERANCES } else { &one };
     let mut rows = Vec::new();
-    let mut table = options.profile.as_deref().map(profile::Table::create).transpose()?;
-    let columns = Columns::new(inputs, tolerances.len() > 1);
+    let mut table = options.profile.as_deref().map(profile::ProfileTable::create).transpose()?;
+    let columns = RowColumns::new(inputs, tolerances.len() > 1);
     let taken = |input: &Input| -> (Vec<&SolverInfo>, Vec<&SolverInfo>) {
-        choice.of_dimension(input.problem.dimension()).into_iter().partition(|info| choice.takes(info, input))
+        choice.of_dimension(input.problem.dimension()).into_iter().partition(|info| choice.can_solve(info, input))
     };
     let count: usize = inputs.iter().map(|input| taken(input).0.len()).sum();
-    let progress = Solves::new(console, (count * tolerances.len()) as u64);
+    let progress = SolveBar::new(console, (count * tolerances.len()) as u64);
     if !options.json {
         progress.print(&columns.header())?;
     }
@@ -159,7 +160,7 @@ fn solve_all(console: Console, options: &Options, inputs: &[Input], choice: &Cho
     Ok(())
 }
 
-/// Why a solver doesn't take a problem.
+/// Why a solver doesn't support a problem.
 fn too_many(info: &SolverInfo, input: &Input) -> String {
     let most = info.most_contacts.unwrap_or(usize::MAX);
     format!("it takes up to {most} contacts, and the problem has {}", input.problem.contacts())
@@ -193,14 +194,14 @@ fn row(input: &Input, info: &SolverInfo, tolerance: f64, limit: Duration) -> Res
     })
 }
 
-/// The catalogue lists what this build doesn't have: a solver behind a feature.
+/// The catalogue lists a solver that this build doesn't have, as it needs a feature.
 fn no_solver(info: &SolverInfo, dimension: usize) -> String {
     format!("error: this build has no solver `{}` for {dimension}D problems", info.name)
 }
 
 fn write_solution(folder: &Path, stem: &str, row: &Row) -> Result<(), String> {
     let Measured { impulses, .. } = &row.measured;
-    // The shortest digits that read back to the same double.
+    // The fewest digits that give the same double.
     let text: String = impulses.iter().map(|p| format!("{p:?}\n")).collect();
     let path = folder.join(solution_file(stem, row.solver));
     std::fs::write(&path, text).map_err(|error| format!("error: {}: {error}", path.display()))

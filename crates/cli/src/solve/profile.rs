@@ -1,8 +1,9 @@
-//! `teeter solve --profile`: a table, performance profiles, and a page that says what was measured where.
+//! `teeter solve --profile`: a table, performance profiles, and a page about the measurement.
 //!
-//! A performance profile (Dolan and Moré 2002, doi 10.1007/s101070100263) shows, for each solver, the part of the problems
-//! that it solves within τ times the time of the best solver for that problem. At τ = 1 it shows how often a solver is the
-//! fastest, at the right end how many problems it solves at all.
+//! A performance profile (Dolan and Moré 2002, doi 10.1007/s101070100263) shows, for each solver,
+//! the fraction of the problems that it solves within τ times the time of the best solver for each
+//! problem. At τ = 1 this is how often a solver is the fastest, at the right end how many problems
+//! it solves at all.
 
 use super::figure::{self, Curve};
 use super::machine;
@@ -13,11 +14,11 @@ use std::fs::File;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-/// The tolerances that are compared.
+/// The compared tolerances.
 pub(super) const TOLERANCES: [f64; 3] = [1e-4, 1e-8, 1e-12];
 
-/// Solvers on the problems of a dimension at a tolerance.
-struct Contest<'a> {
+/// Comparison of solvers on the problems of a dimension at a tolerance.
+struct SolverComparison<'a> {
     dimension: usize,
     tolerance: f64,
     solvers: Vec<&'static str>,
@@ -26,7 +27,7 @@ struct Contest<'a> {
     times: Vec<Vec<Option<f64>>>,
 }
 
-impl<'a> Contest<'a> {
+impl<'a> SolverComparison<'a> {
     fn new(rows: &'a [Row], dimension: usize, tolerance: f64) -> Self {
         let mut contest = Self { dimension, tolerance, solvers: Vec::new(), files: Vec::new(), times: Vec::new() };
         let ours = || rows.iter().filter(|row| row.dimension == dimension && row.tolerance == tolerance);
@@ -48,7 +49,7 @@ impl<'a> Contest<'a> {
         contest
     }
 
-    /// A solver's times relative to the best solver of each problem, those that it solved, ascending.
+    /// A solver's times relative to the best solver of each problem that it solved, ascending.
     fn ratios(&self, solver: usize) -> Vec<f64> {
         let mut ratios: Vec<f64> = self
             .times
@@ -66,7 +67,8 @@ impl<'a> Contest<'a> {
         self.times.iter().filter(|times| times[solver].is_some()).count()
     }
 
-    /// Geometric mean of a solver's times over the files that `counts` picks; `None` if there are none.
+    /// Geometric mean of a solver's times over the files selected by `counts`; `None` if there are
+    /// none.
     fn mean(&self, solver: usize, counts: impl Fn(&[Option<f64>]) -> bool) -> Option<f64> {
         let logs: Vec<f64> =
             self.times.iter().filter(|times| counts(times)).filter_map(|times| times[solver]).map(f64::ln).collect();
@@ -99,7 +101,7 @@ impl<'a> Contest<'a> {
             "| solver | solved | fastest | time / ms, of those it solved | time / ms, of those all solved |"
         );
         let _ = writeln!(page, "|---|---|---|---|---|");
-        // A solver that solves nothing would leave nothing that all solve.
+        // Solvers that solve nothing are excluded, as there would be no common problems.
         let able: Vec<usize> = (0..self.solvers.len()).filter(|&k| self.solved(k) > 0).collect();
         let by_all = |times: &[Option<f64>]| able.iter().all(|&k| times[k].is_some());
         let shown = |mean: Option<f64>| mean.map_or("–".to_owned(), significant);
@@ -123,13 +125,13 @@ impl<'a> Contest<'a> {
     }
 }
 
-/// `table.csv`, a row as soon as it is there: a long comparison that is ended early leaves what it found.
-pub(super) struct Table {
+/// `table.csv`, written row by row, so that an interrupted comparison leaves its results.
+pub(super) struct ProfileTable {
     path: PathBuf,
     file: File,
 }
 
-impl Table {
+impl ProfileTable {
     pub(super) fn create(folder: &Path) -> Result<Self, String> {
         let path = folder.join("table.csv");
         let file = File::create(&path).map_err(|error| format!("error: {}: {error}", path.display()))?;
@@ -164,7 +166,7 @@ pub(super) fn write(folder: &Path, rows: &[Row], limit: std::time::Duration) -> 
     let dimensions: BTreeSet<usize> = rows.iter().map(|row| row.dimension).collect();
     for dimension in dimensions {
         for tolerance in TOLERANCES {
-            let contest = Contest::new(rows, dimension, tolerance);
+            let contest = SolverComparison::new(rows, dimension, tolerance);
             contest.section(&mut page);
             put(&contest.figure_name(), &contest.figure()?)?;
         }
@@ -176,9 +178,9 @@ fn heading(rows: &[Row], limit: std::time::Duration) -> String {
     let files: BTreeSet<&str> = rows.iter().map(|row| row.file.as_str()).collect();
     format!(
         "# Contact solvers compared\n\n\
-         {} problems, each solved from p = 0. Solved: the solver says so, and the judge's residual is within the tolerance.\n\
-         A time is the solver's alone (problem read, memory ready), median of repeats where one solve takes under 0.1 s.\n\
-         A solve has {} s; what fails in them is not solved. Every number: [table.csv](table.csv).\n\n\
+         {} problems, each solved from p = 0. Solved: the solver reports convergence, and the residual is within the tolerance.\n\
+         Times are of the solver alone (after reading the problem and allocating memory), medians of repetitions if one solve takes under 0.1 s.\n\
+         Each solve has a limit of {} s, after which it counts as not solved. All numbers: [table.csv](table.csv).\n\n\
          | | |\n|---|---|\n\
          | date | {} |\n| command | `{}` |\n| teeter | {} |\n| rustc | {} |\n| processor | {} |\n| cores | {} |\n| system | {} |\n",
         files.len(),
@@ -193,7 +195,7 @@ fn heading(rows: &[Row], limit: std::time::Duration) -> String {
     )
 }
 
-/// 1e-04 and its like, as in names of files.
+/// A power of ten as in names of files: 1e-04.
 fn power(tolerance: f64) -> String {
     format!("1e-{:02}", -tolerance.log10().round() as i32)
 }
@@ -226,7 +228,7 @@ mod tests {
             row("c", "x", "time-limit", 9.0),
             row("c", "y", "breakdown", 0.1),
         ];
-        let contest = Contest::new(&rows, 2, 1e-8);
+        let contest = SolverComparison::new(&rows, 2, 1e-8);
         // A failure is no time to beat, and counts in the whole all the same.
         assert_eq!((contest.ratios(0), contest.ratios(1)), (vec![1.0], vec![1.0, 4.0]));
         assert_eq!((contest.solved(0), contest.solved(1), contest.files.len()), (1, 2, 3));

@@ -1,10 +1,10 @@
-//! The rows of `teeter solve`: for people, for programs, for a table.
+//! The rows of `teeter solve`: as text, JSON and CSV.
 
 use super::inputs::Input;
 use super::measure::Measured;
 use serde_json::Value;
 
-/// A file and a solver at a tolerance.
+/// The result of a solver on a file at a tolerance.
 #[derive(Clone, Debug)]
 pub(super) struct Row {
     pub(super) file: String,
@@ -16,19 +16,20 @@ pub(super) struct Row {
     pub(super) measured: Measured,
 }
 
-/// Asymmetry below this is rounding, and not told.
+/// Asymmetry below this is rounding, and not shown.
 const ASYMMETRIC: f64 = 1e-12;
 
 impl Row {
-    /// Solved means: the solver says so, and so does the judge.
+    /// Whether it is solved: the solver reports convergence, and the residual is within the
+    /// tolerance.
     pub(super) fn solved(&self) -> bool {
         self.measured.outcome == "converged"
     }
 
-    /// An object on a line; the names are a contract.
+    /// A line with a JSON object; its names are a stable interface.
     pub(super) fn json(&self) -> String {
         let text = |text: &str| Value::from(text).to_string();
-        // A number that JSON can't hold is null.
+        // A number that JSON can't represent is null.
         let number = |x: f64| Value::from(x).to_string();
         let m = &self.measured;
         format!(
@@ -47,7 +48,7 @@ impl Row {
         )
     }
 
-    /// A row of a CSV table, under [`CSV_HEADER`].
+    /// A row of a CSV table with the header [`CSV_HEADER`].
     pub(super) fn csv(&self) -> String {
         let quoted = if self.file.contains([',', '"', '\n']) {
             format!("\"{}\"", self.file.replace('"', "\"\""))
@@ -74,9 +75,9 @@ impl Row {
 pub(super) const CSV_HEADER: &str =
     "file,solver,used,dimension,contacts,tolerance,outcome,residual,iterations,time_ms,asymmetry\n";
 
-/// The table for people; a row can be printed as soon as it is there, as all widths are known before.
+/// The text table; rows can be printed one by one, as all widths are known in advance.
 #[derive(Debug)]
-pub(super) struct Columns {
+pub(super) struct RowColumns {
     file: usize,
     solver: usize,
     used: usize,
@@ -84,14 +85,14 @@ pub(super) struct Columns {
     asymmetry: bool,
 }
 
-impl Columns {
+impl RowColumns {
     pub(super) fn new(inputs: &[Input], several_tolerances: bool) -> Self {
         let widest = |names: &mut dyn Iterator<Item = usize>, title: &str| names.max().unwrap_or(0).max(title.len());
         let solver = widest(&mut teeter_solvers::SOLVERS.iter().map(|info| info.name.len()), "solver");
         Self {
             file: widest(&mut inputs.iter().map(|input| input.file.chars().count()), "file"),
             solver,
-            // What a chain used is a solver too.
+            // The method used by a chain is also a solver name.
             used: solver,
             tolerance: several_tolerances,
             asymmetry: inputs.iter().any(|input| input.asymmetry > ASYMMETRIC),
@@ -138,7 +139,7 @@ impl Columns {
     }
 }
 
-/// Three digits that say something.
+/// A number with three significant digits.
 pub(super) fn significant(x: f64) -> String {
     let decimals = if x > 0.0 && x.is_finite() { (2.0 - x.log10().floor()).clamp(0.0, 7.0) } else { 0.0 };
     format!("{x:.0$}", decimals as usize)

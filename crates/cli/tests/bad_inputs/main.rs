@@ -1,6 +1,7 @@
 //! Inputs that must be refused, each with a message that helps: the rows of the table in `rows.rs`.
 //!
-//! All messages stand in `messages.txt`, compared byte for byte. After a change on purpose, write it anew and read it as a user would:
+//! All messages stand in `messages.txt`, compared byte for byte. After a change on purpose, write
+//! it anew and read it as a user would:
 //!
 //! ```text
 //! TEETER_WRITE_MESSAGES=1 cargo test -p teeter --test bad_inputs
@@ -16,7 +17,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::time::{Duration, Instant};
 
-/// What the table asks for is one second of a release build; this is a debug build beside other tests.
+/// What the table asks for is one second of a release build; this is a debug build beside other
+/// tests.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// The scene that most rows break.

@@ -1,4 +1,5 @@
-//! The rows: number, input, and what the message must name. Numbers are those of the table that the project was given.
+//! The rows: number, input, and what the message must name. Numbers are those of the table that the
+//! project was given.
 
 /// How a row's scene is made.
 pub(crate) enum Input {
@@ -10,7 +11,8 @@ pub(crate) enum Input {
     Text(&'static str),
     /// A scene of two blocks on each other with pieces replaced.
     Stack(&'static [(&'static str, &'static str)]),
-    /// The base scene on ground that is shaken by this record; what is absent is a file that isn't there.
+    /// The base scene on ground that is shaken by this record; what is absent is a file that isn't
+    /// there.
     Record(Option<&'static str>),
     /// The base scene with two elements, that start in the shape of this file.
     Shape(&'static str),
@@ -153,7 +155,7 @@ fn values() -> Vec<Row> {
         refused(13, "negative end", Set(&["time.end=-1 s"]), &["time.end", "greater than 0 s"]),
         refused(13, "no end", Set(&["time.end=0 s"]), &["time.end", "greater than 0 s"]),
         refused(14, "too many steps", Set(&["time.end=1e6 s", "time.step=1e-9 s"]), &["1.0e15 steps", "limit of 1e12", "32 years"]),
-        warned(15, "end between two steps", Edit(&[("end  = \"0.5 s\"", "end  = \"0.50005 s\"")]), &["warning: time.end = \"0.50005 s\"", "goes on to 0.5001 s"]),
+        warned(15, "end between two steps", Edit(&[("end  = \"0.5 s\"", "end  = \"0.50005 s\"")]), &["warning: time.end = \"0.50005 s\"", "continues to 0.5001 s"]),
         refused(16, "no elements", Edit(&[("elements      = 20", "elements = 0")]), &["beam.table.elements = 0", "at least 1"]),
         refused(16, "negative elements", Edit(&[("elements      = 20", "elements = -3")]), &["beam.table.elements = -3", "at least 1"]),
         refused(16, "half an element", Edit(&[("elements      = 20", "elements = 2.5")]), &["beam.table.elements = 2.5", "whole number"]),
@@ -176,16 +178,16 @@ fn geometry() -> Vec<Row> {
         refused(22, "corner off the beam", Edit(&[("at       = \"18 cm\"", "at = \"35 cm\""), (TILT, "")]), &["block.rocker.at = \"35 cm\"", "bottom-right", "x = 0.365 m", "0.36 m"]),
         refused(23, "corner below the surface", Edit(&[(PLACE, "position = [\"18 cm\", \"6.65 cm\"]"), ("start         = \"static\"", "")]), &["block.rocker.position", "[\"18 cm\", \"6.65 cm\"]", "1.0e-3 m below", "bottom-left", "`table`", "1.4e-10 m"]),
         refused(24, "two blocks in one place", Text(OVERLAPPING), &["block.right.at = \"19 cm\"", "`left`", "`right`", "1.0e-2 m"]),
-        refused(24, "block on a block without a contact", Stack(&[("\"upper\", \"lower\"", "\"upper\", \"ground\"")]), &["block.upper.on = \"lower\"", "no contact joins the two", "[contact.NAME]"]),
+        refused(24, "block on a block without a contact", Stack(&[("\"upper\", \"lower\"", "\"upper\", \"ground\"")]), &["block.upper.on = \"lower\"", "there is no contact between the two", "[contact.NAME]"]),
         refused(24, "block on itself", Stack(&[("on = \"lower\"", "on = \"upper\"")]), &["block.upper.on = \"upper\"", "can't stand on itself"]),
-        refused(24, "blocks on each other", Stack(&[("on = \"ground\"", "on = \"upper\"")]), &["block.lower.on = \"upper\"", "in a circle"]),
-        refused(24, "block beside the block that it stands on", Stack(&[("at = \"1 cm\"", "at = \"30 cm\"")]), &["block.upper.at = \"30 cm\"", "not over what the block stands on"]),
-        refused(24, "blocks joined twice", Stack(&[("friction = 0.4", "friction = 0.4\n[contact.again]\nbetween = [\"lower\", \"upper\"]\nfriction = 0.3")]), &["contact.again", "joins the same two bodies"]),
+        refused(24, "blocks on each other", Stack(&[("on = \"ground\"", "on = \"upper\"")]), &["block.lower.on = \"upper\"", "in a cycle"]),
+        refused(24, "block beside the block that it stands on", Stack(&[("at = \"1 cm\"", "at = \"30 cm\"")]), &["block.upper.at = \"30 cm\"", "not above the surface that the block stands on"]),
+        refused(24, "blocks joined twice", Stack(&[("friction = 0.4", "friction = 0.4\n[contact.again]\nbetween = [\"lower\", \"upper\"]\nfriction = 0.3")]), &["contact.again", "between the same two bodies"]),
         refused(24, "kinematics between blocks", Stack(&[("friction = 0.4", "friction = 0.4\nkinematics = \"linear\"")]), &["contact.joint.kinematics", "between two blocks"]),
-        refused(24, "two blocks that are prescribed", Stack(&[("at = \"0 cm\"", RAIL_0), ("at = \"1 cm\"", RAIL_1)]), &["contact.joint.between", "`lower` can't give way"]),
+        refused(24, "two blocks that are prescribed", Stack(&[("at = \"0 cm\"", RAIL_0), ("at = \"1 cm\"", RAIL_1)]), &["contact.joint.between", "`lower` can't yield"]),
         refused(25, "static start of a free beam", Edit(&[("\"pinned\", \"pinned\"", "\"free\", \"free\"")]), &["beam.table.start = \"static\"", "rigid body", "both ends are free", "clamp one end or pin both"]),
         refused(25, "static start of a beam on one pin", Edit(&[("\"pinned\", \"pinned\"", "\"pinned\", \"free\"")]), &["beam.table.start = \"static\"", "pinned left end", "support the right end"]),
-        refused(25, "static start on a slope without friction", Edit(&[("at       = \"18 cm\"", "at = \"10 cm\""), (TILT, ""), ("friction = 0.5", "friction = 0")]), &["block.rocker.at = \"10 cm\"", "no static equilibrium", "slides", "more friction"]),
+        refused(25, "static start on a slope without friction", Edit(&[("at       = \"18 cm\"", "at = \"10 cm\""), (TILT, ""), ("friction = 0.5", "friction = 0")]), &["block.rocker.at = \"10 cm\"", "no static equilibrium", "slides", "increase the friction"]),
         refused(25, "static start that tips", Edit(&[("at       = \"18 cm\"", "at = \"34 cm\""), (TILT, ""), ("\"pinned\", \"pinned\"", "\"clamped\", \"free\"")]), &["block.rocker.at = \"34 cm\"", "no static equilibrium", "tips", "stiffer beam"]),
         refused(25, "static start on the other foot", Edit(&[("at       = \"18 cm\"", "at = \"7 cm\""), (TILT, "tilt = \"-0.5 deg\"")]), &["block.rocker.at = \"7 cm\"", "no static equilibrium", "other foot", "tilt it more"]),
         refused(27, "probe off the beam", Edit(&[(SPAN, "probes = [\"9 cm\", \"40 cm\"]\nspan = \"36 cm\"")]), &["beam.table.probes", "0.4 m", "[0, 0.36]"]),
@@ -214,20 +216,20 @@ fn names() -> Vec<Row> {
         refused(36, "a table by a dotted key too", Edit(&[("[block.rocker]", "[beam]\ntable.elements = 5\n[block.rocker]")]), &["scene.toml:29:1", "beam.table: given twice, first on line 18"]),
         refused(37, "unknown solver", Set(&["solver.method=foo"]), &["solver.method", "unknown method", "auto, pgs, enumeration"]),
         refused(38, "version of the future", Edit(&[("version = 1", "version = 99")]), &["scene.toml:8:11", "version = 99", "version 1", "got 99"]),
-        refused(38, "profile of the ground", Edit(&[("[contact.feet]", "[ground]\nprofile = \"hills.csv\"\n[contact.feet]")]), &["ground.profile", "known, but not built in yet"]),
+        refused(38, "profile of the ground", Edit(&[("[contact.feet]", "[ground]\nprofile = \"hills.csv\"\n[contact.feet]")]), &["ground.profile", "not implemented yet"]),
     ]
 }
 
 #[rustfmt::skip] // a row a line
 fn limits() -> Vec<Row> {
     vec![
-        refused(39, "empty file", Text(""), &["holds no scene", "[time]"]),
-        refused(39, "comments only", Text("# nothing\n\n   # here\n"), &["holds no scene", "[time]"]),
+        refused(39, "empty file", Text(""), &["contains no scene", "[time]"]),
+        refused(39, "comments only", Text("# nothing\n\n   # here\n"), &["contains no scene", "[time]"]),
         refused(42, "cut off file", Text("[time]\nend = \"1 s\"\nstep = \"1 m"), &["scene.toml:3:"]),
         refused(49, "no time between rows", Set(&["output.every=0 s"]), &["output.every", "greater than 0 s"]),
         refused(49, "too much output", Set(&["time.end=1e6 s", "time.step=1 ms", "output.every=1 ms"]), &["output.every", "1.0e9 rows", "GB", "10 GB"]),
-        refused(50, "a key of a hundred parts", Edit(&[("[output]", DEEP)]), &["nested too deeply", "more than five parts"]),
-        refused(51, "name with a path", Edit(&[("[block.rocker]", "[block.\"../../x\"]")]), &["../../x", "letters (a-z, A-Z), digits, `_`, `-`"]),
+        refused(50, "a key of a hundred parts", Edit(&[("[output]", DEEP)]), &["nested too deeply", "at most five parts"]),
+        refused(51, "name with a path", Edit(&[("[block.rocker]", "[block.\"../../x\"]")]), &["../../x", "letters (a-z, A-Z), digits, `_` and `-`"]),
     ]
 }
 
@@ -239,20 +241,20 @@ fn histories() -> Vec<Row> {
         refused(45, "record with NaN", Record(Some("t,a\n0,0\n0.1,1\n0.2,1\n0.3,1\n0.4,1\n0.5,nan\n")), &["signal.quake.file", "line 7", "the value is NaN", "finite"]),
         refused(45, "record whose times go back", Record(Some("t,a\n0,0\n0.2,1\n0.1,1\n0.5,0\n")), &["signal.quake.file", "line 4", "0.1 s is not later than 0.2 s"]),
         refused(45, "record with one row", Record(Some("0,1\n")), &["signal.quake.file", "1 row of numbers", "two or more"]),
-        refused(45, "record with a word", Record(Some("0,1\n1,high\n")), &["line 2", "`high` is no number"]),
+        refused(45, "record with a word", Record(Some("0,1\n1,high\n")), &["line 2", "`high` is not a number"]),
         refused(45, "record by semicolons", Record(Some("t;a\n0;1\n1;2\n")), &["line 2", "1 column", "separated by a comma"]),
-        warned(46, "record shorter than the run", Record(Some("0,0\n0.1,2\n")), &["warning: signal.quake.file", "ends at 0.1 s", "lasts 0.5 s", "last value, 2, is kept"]),
+        warned(46, "record shorter than the run", Record(Some("0,0\n0.1,2\n")), &["warning: signal.quake.file", "ends at 0.1 s", "the run at 0.5 s", "last value, 2, is kept"]),
         refused(38, "signal that is not defined", Edit(&[("[contact.feet]", "[ground]\nmotion = { velocity = [\"1 m/s\", \"0 m/s\"], signal = \"quake\" }\n[contact.feet]")]), &["ground.motion.signal = \"quake\"", "not defined", "[signal.quake]"]),
-        refused(38, "two motions in one", Edit(&[("[contact.feet]", "[ground]\nmotion = { velocity = [\"1 m/s\", \"0 m/s\"], displacement = [\"1 m\", \"0 m\"] }\n[contact.feet]")]), &["ground.motion", "both prescribe the same motion"]),
+        refused(38, "two motions in one", Edit(&[("[contact.feet]", "[ground]\nmotion = { velocity = [\"1 m/s\", \"0 m/s\"], displacement = [\"1 m\", \"0 m\"] }\n[contact.feet]")]), &["ground.motion", "prescribe the same motion"]),
         refused(38, "a displacement that jumps", Edit(&[("[contact.feet]", "[signal.late]\nshape = \"constant\"\nstart = \"0.1 s\"\n[ground]\nmotion = { displacement = [\"1 m\", \"0 m\"], signal = \"late\" }\n[contact.feet]")]), &["ground.motion.displacement", "jumps at 0.1 s"]),
-        refused(38, "motion without amount", Edit(&[("[contact.feet]", "[ground]\nmotion = {}\n[contact.feet]")]), &["ground.motion", "doesn't say what moves"]),
+        refused(38, "motion without amount", Edit(&[("[contact.feet]", "[ground]\nmotion = {}\n[contact.feet]")]), &["ground.motion", "the motion is missing"]),
         refused(38, "supports of a free beam that move", Edit(&[("[\"pinned\", \"pinned\"]", "[\"free\", \"free\"]\nmotion = { velocity = [\"1 m/s\", \"0 m/s\"] }"), ("start         = \"static\"", "")]), &["beam.table.motion", "the beam has none"]),
         refused(38, "phase of a ramp", Edit(&[("[contact.feet]", "[signal.s]\nshape = \"ramp\"\nduration = \"1 s\"\nphase = \"5 deg\"\n[contact.feet]")]), &["signal.s.phase", "has no meaning with shape = ramp", "harmonic, one-sine"]),
         refused(38, "sine without frequency", Edit(&[("[contact.feet]", "[signal.s]\nshape = \"harmonic\"\n[contact.feet]")]), &["signal.s", "neither frequency nor period"]),
         refused(38, "ramp without duration", Edit(&[("[contact.feet]", "[signal.s]\nshape = \"ramp\"\n[contact.feet]")]), &["signal.s.duration", "missing"]),
-        refused(38, "force on a beam", Edit(&[("[contact.feet]", "[force.f]\non = \"table\"\nforce = [\"1 N\", \"0 N\"]\n[contact.feet]")]), &["force.f.on = \"table\"", "is no block", "[load.NAME]"]),
+        refused(38, "force on a beam", Edit(&[("[contact.feet]", "[force.f]\non = \"table\"\nforce = [\"1 N\", \"0 N\"]\n[contact.feet]")]), &["force.f.on = \"table\"", "is not a block", "[load.NAME]"]),
         refused(38, "load off the beam", Edit(&[("[contact.feet]", "[load.f]\non = \"table\"\nat = \"40 cm\"\nforce = \"1 N\"\n[contact.feet]")]), &["load.f.at = \"40 cm\"", "[0, 0.36] m"]),
-        refused(38, "load at a point and all along", Edit(&[("[contact.feet]", "[load.f]\non = \"table\"\nat = \"4 cm\"\ndistributed = \"1 N/m\"\n[contact.feet]")]), &["load.f.at", "distributed along the beam"]),
+        refused(38, "load at a point and all along", Edit(&[("[contact.feet]", "[load.f]\non = \"table\"\nat = \"4 cm\"\ndistributed = \"1 N/m\"\n[contact.feet]")]), &["load.f.at", "doesn't apply to a distributed load"]),
         refused(38, "a velocity given twice", Edit(&[("[contact.feet]", "velocity = [\"1 m/s\", \"0 m/s\"]\nmotion = { velocity = [\"1 m/s\", \"0 m/s\"], only = \"x\" }\n[contact.feet]")]), &["block.rocker.velocity", "the motion of the block prescribes"]),
         refused(38, "a wall for ground", Edit(&[("[contact.feet]", "[ground]\nincline = \"85 deg\"\n[contact.feet]")]), &["ground.incline = \"85 deg\"", "[-80 deg, 80 deg]"]),
     ]
@@ -295,9 +297,9 @@ fn beams() -> Vec<Row> {
         refused(25, "springs that hold nothing", Edit(&[("[\"pinned\", \"pinned\"]", "[{ spring = \"1e-12 N/m\" }, { spring = \"1e-12 N/m\" }]")]), &["beam.table.s", "soft"]),
         refused(18, "one ratio for two frequencies", Edit(&[("damping_ratio = { mode = 1, ratio = 0.01 }", "rayleigh = { frequencies = [\"10 Hz\", \"80 Hz\"], ratios = [0.01] }")]), &["beam.table.rayleigh.ratios", "two ratios are expected, one for each frequency, got 1"]),
         refused(38, "beam in modes held along its axis", Set(&["beam.table.model=modes", "beam.table.axial=held"]), &["beam.table.model", "stretches as it deflects"]),
-        refused(38, "modes of a full beam", Set(&["beam.table.modes={ count = 12 }"]), &["beam.table.modes", "goes with model = modes only"]),
-        refused(38, "count and tolerance of modes", Set(&["beam.table.model=modes", "beam.table.modes={ count = 12, tolerance = 1e-4 }"]), &["beam.table.modes.tolerance", "count already says"]),
-        refused(38, "more modes than there are", Set(&["beam.table.model=modes", "beam.table.modes={ count = 200 }"]), &["beam.table.modes.count", "200 modes of a beam with 40 dofs"]),
+        refused(38, "modes of a full beam", Set(&["beam.table.modes={ count = 12 }"]), &["beam.table.modes", "applies only with model = modes"]),
+        refused(38, "count and tolerance of modes", Set(&["beam.table.model=modes", "beam.table.modes={ count = 12, tolerance = 1e-4 }"]), &["beam.table.modes.tolerance", "count already gives"]),
+        refused(38, "more modes than there are", Set(&["beam.table.model=modes", "beam.table.modes={ count = 200 }"]), &["beam.table.modes.count", "200 modes are more than the 40 dofs"]),
         refused(38, "tolerance of modes without digits", Set(&["beam.table.model=modes", "beam.table.modes={ tolerance = 1e-9 }"]), &["beam.table.modes.tolerance", "at least 1e-8 and less than 1"]),
         refused(38, "region of modes beyond the beam", Set(&["beam.table.model=modes", "beam.table.modes={ to = '40 cm' }"]), &["beam.table.modes.to", "[0, 0.36] m"]),
         refused(38, "backend of a beam in modes", Set(&["beam.table.model=modes", "beam.table.backend=sparse"]), &["beam.table.backend", "a beam in modes has a diagonal matrix"]),
@@ -305,7 +307,7 @@ fn beams() -> Vec<Row> {
         refused(18, "Rayleigh damping of nothing", Edit(&[("damping_ratio = { mode = 1, ratio = 0.01 }", "rayleigh = {}")]), &["beam.table.rayleigh", "give a0 and a1, or frequencies and ratios"]),
         refused(25, "beam held along its axis with a free end", Edit(&[("[\"pinned\", \"pinned\"]", "[\"clamped\", \"free\"]\naxial = \"held\"")]), &["beam.table.axial", "the right end is free"]),
         warned(38, "mesh too fine for its digits", Set(&["beam.table.elements=9000"]), &["warning: beam.table.elements", "digits of"]),
-        refused(21, "block by its points and by its sides", Set(&["block.rocker.points=[['0 m', '0 m'], ['1 cm', '0 m'], ['0 m', '1 cm']]"]), &["block.rocker.width", "points already say"]),
+        refused(21, "block by its points and by its sides", Set(&["block.rocker.points=[['0 m', '0 m'], ['1 cm', '0 m'], ['0 m', '1 cm']]"]), &["block.rocker.width", "points already give"]),
         refused(21, "block by its points on a beam", Edit(&[("width    = \"3 cm\"", "points = [[\"0 cm\", \"0 cm\"], [\"3 cm\", \"0 cm\"], [\"0 cm\", \"9 cm\"]]"), ("height   = \"13.5 cm\"", "")]), &["block.rocker.on", "no base to stand on"]),
         refused(21, "point without y", Set(&["block.rocker.points=[['0 m'], ['1 cm', '0 m'], ['0 m', '1 cm']]"]), &["block.rocker.points", "an array of two is expected, got 1"]),
         warned(38, "thick beam without shear", Set(&["beam.table.thickness=4 cm"]), &["warning: beam.table.theory", "0.11 of the span", "timoshenko"]),

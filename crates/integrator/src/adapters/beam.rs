@@ -22,7 +22,8 @@ use std::sync::Arc;
 use teeter_beam::{Beam, Deflection, Load, MatrixWeights};
 use teeter_detect::{Frame, HalfSpace, Kinematics, SurfacePoint};
 
-/// A beam with more dofs has no motion in closed form: the time that a step takes grows with their square.
+/// A beam with more dofs has no motion in closed form: the time that a step takes grows with their
+/// square.
 const MOST_DOFS: usize = 100;
 
 /// The fibre of a beam that is its contact surface.
@@ -46,11 +47,51 @@ impl BeamSurface {
     }
 }
 
+/// A side of a beam that others touch, by its [body](Self::body); or whose points touch others, by
+/// its [fibre](Self::fibre).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BeamFace {
+    /// What lies on the beam touches it.
+    Upper,
+    /// What is under it touches it: the axis, or the bottom fibre where the [surface](BeamSurface)
+    /// is the top one.
+    Lower,
+}
+
+impl BeamFace {
+    /// The number of the body, within the beam's, that has the face as its surface: points of
+    /// others touch it.
+    #[must_use]
+    pub fn body(self) -> u32 {
+        match self {
+            Self::Upper => 0,
+            Self::Lower => 1,
+        }
+    }
+
+    /// The number of the body that has the points of the face: they touch sides of others.
+    #[must_use]
+    pub fn fibre(self) -> u32 {
+        self.body() + 2
+    }
+
+    pub(crate) fn of_body(body: u32) -> Self {
+        if body.is_multiple_of(2) { Self::Upper } else { Self::Lower }
+    }
+
+    pub(crate) fn is_fibre(body: u32) -> bool {
+        body >= 2
+    }
+}
+
+/// A beam is as many bodies.
+pub(crate) const BEAM_BODIES: usize = 4;
+
 /// A straight level beam in the world.
 ///
-/// Its coordinates are those of [`Beam`]. If its supports [move](Self::with_motion), deflections
-/// are relative to them, and the displacements x and y of the supports follow as two more,
-/// prescribed coordinates.
+/// It is four bodies, by [face](BeamFace): the upper one is the first. Its coordinates are those of
+/// [`Beam`]. If its supports [move](Self::with_motion), deflections are relative to them, and the
+/// displacements x and y of the supports follow as two more, prescribed coordinates.
 pub struct BeamBody {
     beam: Arc<Beam>,
     position: Vector2<f64>,
@@ -179,6 +220,10 @@ impl Deflecting for Beam {
         self.spec().span
     }
 
+    fn nodes(&self) -> &[f64] {
+        self.node_positions()
+    }
+
     fn deflection_at(&self, q: &[f64], x: f64) -> Option<Deflection> {
         Beam::deflection_at(self, q, x)
     }
@@ -211,7 +256,7 @@ impl Dynamics<2> for BeamBody {
         let driven = self.driven().len();
         let dofs = self.beam.dofs() + driven;
         let axial = if self.beam.has_axial_dofs() { 2 } else { 0 };
-        Size { q: dofs, v: dofs, bodies: 1, row: 4 + axial + driven }
+        Size { q: dofs, v: dofs, bodies: BEAM_BODIES, row: 4 + axial + driven }
     }
 
     fn traits(&self) -> Traits {
@@ -333,14 +378,35 @@ impl Bodies<2> for BeamBody {
         true
     }
 
-    fn surface(&self, _: u32, q: &[f64], kinematics: Kinematics, at: &Vector2<f64>) -> Option<SurfacePoint<2>> {
+    fn surface(&self, body: u32, q: &[f64], kinematics: Kinematics, at: &Vector2<f64>) -> Option<SurfacePoint<2>> {
         let (q, line) = self.split(q);
-        line.foot(&*self.beam, q, kinematics, at)
+        line.of_body(body).foot(&*self.beam, q, kinematics, at)
     }
 
-    fn reach(&self, _: u32, q: &[f64], margin: f64) -> Option<HalfSpace<2>> {
+    fn reach(&self, body: u32, q: &[f64], margin: f64) -> Option<HalfSpace<2>> {
         let (q, line) = self.split(q);
-        Some(line.reach(self.beam.deflection_bounds(q), margin))
+        // Nobody has asked how far down a beam hangs.
+        match BeamFace::of_body(body) {
+            BeamFace::Upper => Some(line.reach(self.beam.deflection_bounds(q), margin)),
+            BeamFace::Lower => None,
+        }
+    }
+
+    fn summits(
+        &self,
+        body: u32,
+        q: &[f64],
+        direction: &Vector2<f64>,
+        between: &[Vector2<f64>; 2],
+        each: &mut dyn FnMut(SurfacePoint<2>),
+    ) {
+        let (q, line) = self.split(q);
+        line.of_body(body).summits(&*self.beam, q, direction, between, each);
+    }
+
+    fn ends(&self, body: u32, q: &[f64]) -> [Option<SurfacePoint<2>>; 2] {
+        let (q, line) = self.split(q);
+        line.of_body(body).ends(&*self.beam, q)
     }
 
     fn bias(&self, _: u32, q: &[f64], v: &[f64], point: &Vector2<f64>, frame: &Frame<2>) -> Option<Vector<2>> {
@@ -348,8 +414,8 @@ impl Bodies<2> for BeamBody {
         line::bias(&*self.beam, [&q[..n], &v[..n]], point, frame)
     }
 
-    fn rows(&self, _: u32, _q: &[f64], point: &Vector2<f64>, frame: &Frame<2>, out: &mut Rows<'_, 2>) -> usize {
-        line::rows(&*self.beam, point, frame, self.driven(), out)
+    fn rows(&self, body: u32, q: &[f64], point: &Vector2<f64>, frame: &Frame<2>, out: &mut Rows<'_, 2>) -> usize {
+        line::rows(&*self.beam, (body, self.split(q).0), point, frame, self.driven(), out)
     }
 }
 

@@ -15,8 +15,8 @@ use super::modal_motion::{self, ModalMotion};
 use crate::small::{self, add_outer};
 use crate::subsystem::{couple_by_solving, dot};
 use crate::{
-    BeamSurface, Bodies, Compliance, Coupling, Dynamics, Energy, FactorError, Motion, PartRows, Propagator, Rows,
-    SignalLoad, Size, Traits, Vector, Weights,
+    BeamFace, BeamSurface, Bodies, Compliance, Coupling, Dynamics, Energy, FactorError, Motion, PartRows, Propagator,
+    Rows, SignalLoad, Size, Traits, Vector, Weights,
 };
 use nalgebra::{Matrix2, Vector2};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -258,6 +258,10 @@ impl Deflecting for Shapes {
         self.beam.spec().span
     }
 
+    fn nodes(&self) -> &[f64] {
+        self.beam.node_positions()
+    }
+
     fn deflection_at(&self, q: &[f64], x: f64) -> Option<Deflection> {
         let shape = self.beam.shape_at(x)?;
         let mut d = Deflection { w: 0.0, slope: 0.0 };
@@ -303,7 +307,7 @@ impl Dynamics<2> for ModalBeam {
     fn size(&self) -> Size {
         let all = self.coordinates() + self.driven().len();
         let axial = if self.shapes.has_axial_dofs() { self.coordinates() } else { 0 };
-        Size { q: all, v: all, bodies: 1, row: all + axial }
+        Size { q: all, v: all, bodies: beam::BEAM_BODIES, row: all + axial }
     }
 
     fn traits(&self) -> Traits {
@@ -420,14 +424,34 @@ impl Bodies<2> for ModalBeam {
         true
     }
 
-    fn surface(&self, _: u32, q: &[f64], kinematics: Kinematics, at: &Vector2<f64>) -> Option<SurfacePoint<2>> {
+    fn surface(&self, body: u32, q: &[f64], kinematics: Kinematics, at: &Vector2<f64>) -> Option<SurfacePoint<2>> {
         let (q, line) = self.split(q);
-        line.foot(&self.shapes, q, kinematics, at)
+        line.of_body(body).foot(&self.shapes, q, kinematics, at)
     }
 
-    fn reach(&self, _: u32, q: &[f64], margin: f64) -> Option<HalfSpace<2>> {
+    fn reach(&self, body: u32, q: &[f64], margin: f64) -> Option<HalfSpace<2>> {
         let (q, line) = self.split(q);
-        Some(line.reach(self.shapes.deflection_bounds(q), margin))
+        match BeamFace::of_body(body) {
+            BeamFace::Upper => Some(line.reach(self.shapes.deflection_bounds(q), margin)),
+            BeamFace::Lower => None,
+        }
+    }
+
+    fn summits(
+        &self,
+        body: u32,
+        q: &[f64],
+        direction: &Vector2<f64>,
+        between: &[Vector2<f64>; 2],
+        each: &mut dyn FnMut(SurfacePoint<2>),
+    ) {
+        let (q, line) = self.split(q);
+        line.of_body(body).summits(&self.shapes, q, direction, between, each);
+    }
+
+    fn ends(&self, body: u32, q: &[f64]) -> [Option<SurfacePoint<2>>; 2] {
+        let (q, line) = self.split(q);
+        line.of_body(body).ends(&self.shapes, q)
     }
 
     fn bias(&self, _: u32, q: &[f64], v: &[f64], point: &Vector2<f64>, frame: &Frame<2>) -> Option<Vector<2>> {
@@ -435,8 +459,8 @@ impl Bodies<2> for ModalBeam {
         line::bias(&self.shapes, [&q[..n], &v[..n]], point, frame)
     }
 
-    fn rows(&self, _: u32, _q: &[f64], point: &Vector2<f64>, frame: &Frame<2>, out: &mut Rows<'_, 2>) -> usize {
-        line::rows(&self.shapes, point, frame, self.driven(), out)
+    fn rows(&self, body: u32, q: &[f64], point: &Vector2<f64>, frame: &Frame<2>, out: &mut Rows<'_, 2>) -> usize {
+        line::rows(&self.shapes, (body, self.split(q).0), point, frame, self.driven(), out)
     }
 }
 

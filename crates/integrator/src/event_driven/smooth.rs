@@ -299,8 +299,8 @@ impl Smooth {
         Ok(())
     }
 
-    /// J̇v. On ground that stands still the frame does, too, and bodies know it; else it is the
-    /// difference of J v along the motion.
+    /// J̇v. Of a corner on ground that stands still the frame does, too, and bodies know it; else it is
+    /// the difference of J v along the motion.
     pub(super) fn turning(
         &mut self,
         model: &Model<2>,
@@ -310,7 +310,8 @@ impl Smooth {
         candidate: &Candidate<2>,
     ) -> Result<Vector<2>, StepError> {
         let t = self.between[0];
-        if model.owner(candidate.sides[1].body).is_some_and(|(_, part, _)| part.row == 0) {
+        let is_still = model.owner(candidate.sides[1].body).is_some_and(|(_, part, _)| part.row == 0);
+        if is_still && model.detector().keeps_point(candidate.id) {
             return self.stage.bias_at(row, model, q, &self.v).map_err(|source| StepError::Problem { t, source });
         }
         let mut fastest = 0.0_f64;

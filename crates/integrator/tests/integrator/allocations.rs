@@ -108,12 +108,10 @@ fn a_step_with_closed_contacts_or_another_law_allocates_nothing() {
 
 fn beam() -> Arc<Beam> {
     Arc::new(
-        Beam::new(BeamSpec::new(0.36, 20, Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap()).damped(Damping {
-            viscous: 0.4,
-            rayleigh_mass: 0.1,
-            rayleigh_stiffness: 1e-6,
-            ..Damping::default()
-        }))
+        Beam::new(
+            BeamSpec::new(0.36, 20, Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap())
+                .damped(Damping::none().with_viscous(0.4).with_rayleigh_mass(0.1).with_rayleigh_stiffness(1e-6)),
+        )
         .unwrap(),
     )
 }
@@ -122,7 +120,7 @@ fn beam() -> Arc<Beam> {
 #[test]
 fn a_step_on_a_held_beam_allocates_nothing() {
     let section = Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap();
-    let damping = Damping { viscous: 0.4, rayleigh_stiffness: 1e-6, ..Damping::default() };
+    let damping = Damping::none().with_viscous(0.4).with_rayleigh_stiffness(1e-6);
     let spec = BeamSpec::new(0.36, 20, section).axial(Axial::Held).damped(damping);
     let beam = Arc::new(Beam::new(spec).unwrap());
     for scheme in all_schemes(&[0.75]) {

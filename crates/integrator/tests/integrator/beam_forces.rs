@@ -12,7 +12,7 @@ fn spec() -> BeamSpec {
 }
 
 fn damped(spec: BeamSpec) -> BeamSpec {
-    spec.damped(Damping { viscous: 0.4, rayleigh_stiffness: 1e-6, rayleigh_mass: 0.2, ..Damping::default() })
+    spec.damped(Damping::none().with_viscous(0.4).with_rayleigh_stiffness(1e-6).with_rayleigh_mass(0.2))
 }
 
 fn moreau_jean(theta: f64) -> Box<dyn Scheme<2>> {

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 use std::sync::Arc;
-use teeter_beam::{Axial, Beam, BeamSpec, Damping, Section, Support};
+use teeter_beam::{Axial, Beam, BeamSpec, Damping, ModalBasis, Section, Support};
 use teeter_detect::{Frame, Kinematics, SurfacePoint};
 use teeter_integrator::conformance::{Case, Property, check, check_scheme};
 use teeter_integrator::*;
@@ -60,7 +60,7 @@ fn beam(elements: usize, supports: [Support; 2]) -> Arc<Beam> {
 
 fn axial_beam(elements: usize, supports: [Support; 2], axial: Axial) -> Arc<Beam> {
     let section = Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap();
-    let damping = Damping { viscous: 0.4, rayleigh_mass: 0.3, rayleigh_stiffness: 1e-5, ..Damping::default() };
+    let damping = Damping::none().with_viscous(0.4).with_rayleigh_mass(0.3).with_rayleigh_stiffness(1e-5);
     Arc::new(
         Beam::new(BeamSpec::new(0.36, elements, section).supported(supports).damped(damping).axial(axial)).unwrap(),
     )
@@ -99,9 +99,80 @@ fn beams_conform_however_w_is_held() {
     }
 }
 
+/// All four bodies of a beam, on its elements and in its modes: places below are feet of the lower surface, points of both fibres move
+/// as the sections turn.
+#[test]
+fn both_faces_of_beams_and_their_fibres_conform() {
+    let beam = beam(8, [Support::Pinned, Support::Clamped]);
+    let basis = ModalBasis::new(&beam, 6, &[]).unwrap();
+    for offset in [0.0, 0.00075] {
+        let surface = if offset > 0.0 { BeamSurface::Top { offset } } else { BeamSurface::Axis };
+        let mut case = touched(&beam, 3);
+        case.places.extend([0.15, 0.3].map(|x| (BeamFace::Lower.body(), Vector2::new(x, -0.2))));
+        case.points = [0.0, 0.07, 0.36]
+            .iter()
+            .flat_map(|x| {
+                [(BeamFace::Upper, offset), (BeamFace::Lower, -offset)]
+                    .map(|(face, y)| (face.fibre(), Vector2::new(*x, y)))
+            })
+            .collect();
+        let elements = BeamBody::new(Arc::clone(&beam), Vector2::new(0.1, 0.2), surface);
+        assert_eq!(check(&elements, &case), [], "offset {offset}");
+        let place = Vector2::new(0.1, 0.2);
+        let ratios = vec![0.01; basis.len()];
+        let modes = ModalBeam::with_ratios(Arc::clone(&beam), basis.clone(), &ratios, place, surface).unwrap();
+        case.q = (0..basis.len()).map(|k| 1e-3 / (k + 1) as f64).collect();
+        assert_eq!(check(&modes, &case), [], "in modes, offset {offset}");
+    }
+}
+
+/// Where a beam comes out furthest along a direction, against a fine search over its surface; and its ends.
+#[test]
+fn summits_of_a_beam_are_where_a_fine_search_finds_them() {
+    let beam = beam(8, [Support::Pinned, Support::Clamped]);
+    let mut q = vec![0.0; beam.dofs()];
+    for (x, force) in [(0.06, 3.0), (0.16, -5.0), (0.27, 9.0)] {
+        beam.add_point_load(x, force, &mut q).unwrap();
+    }
+    beam.solve_static(&mut q).unwrap();
+    let at = Vector2::new(0.1, 0.2);
+    for surface in [BeamSurface::Axis, BeamSurface::Top { offset: 0.002 }] {
+        let body = BeamBody::new(Arc::clone(&beam), at, surface);
+        for (face, sign) in [(BeamFace::Upper, 1.0), (BeamFace::Lower, -1.0)] {
+            let number = face.fibre();
+            let offset = sign * if surface == BeamSurface::Axis { 0.0 } else { 0.002 };
+            let place = |x: f64| {
+                let mut out = [Vector2::zeros()];
+                body.place(number, &q, &[Vector2::new(x, offset)], &mut out);
+                out[0]
+            };
+            for tilt in [-0.01_f64, 0.0, 0.02] {
+                let direction = Vector2::new(-tilt.sin(), tilt.cos()) * sign;
+                let between = [Vector2::new(0.12, 0.2), Vector2::new(0.44, 0.2)];
+                let mut found = Vec::new();
+                body.summits(number, &q, &direction, &between, &mut |summit| found.push(summit));
+                let n = 20_000;
+                let height = |k: usize| direction.dot(&place(0.02 + 0.32 * k as f64 / n as f64));
+                let searched: Vec<usize> =
+                    (1..n).filter(|k| height(*k) > height(k - 1) && height(*k) >= height(k + 1)).collect();
+                assert_eq!(found.len(), searched.len(), "{surface:?} {face:?} {tilt}");
+                for (summit, k) in found.iter().zip(searched) {
+                    assert!((summit.material.x - 0.02 - 0.32 * k as f64 / n as f64).abs() < 2e-5);
+                    assert!((summit.place - place(summit.material.x)).norm() < 1e-15);
+                    assert!((summit.normal - direction).norm() < 1e-9, "{} {direction}", summit.normal);
+                }
+            }
+            for (end, x) in body.ends(number, &q).iter().zip([0.0, 0.36]) {
+                let end = end.unwrap();
+                assert_eq!((end.material, end.place), (Vector2::new(x, offset), place(x)));
+            }
+        }
+    }
+}
+
 #[test]
 fn beams_with_axial_forces_conform() {
-    for axial in [Axial::Held, Axial::Elastic { held: [true, false] }] {
+    for axial in [Axial::Held, Axial::elastic([true, false])] {
         let beam = axial_beam(24, [Support::Pinned, Support::Clamped], axial);
         let mut case = touched(&axial_beam(24, [Support::Pinned, Support::Clamped], Axial::Free), 5);
         case.q.resize(beam.dofs(), 0.0);

@@ -17,7 +17,7 @@ fn moving_ground() -> Ground {
 }
 
 fn beam(supports: [Support; 2]) -> Arc<Beam> {
-    let damping = Damping { viscous: 0.7, rayleigh_mass: 0.3, rayleigh_stiffness: 0.01, ..Damping::default() };
+    let damping = Damping::none().with_viscous(0.7).with_rayleigh_mass(0.3).with_rayleigh_stiffness(0.01);
     let section = Section::new(2.0, 3.0).unwrap();
     Arc::new(Beam::new(BeamSpec::new(1.0, 4, section).supported(supports).damped(damping)).unwrap())
 }
@@ -218,7 +218,7 @@ fn the_energy_account_holds_the_work_of_the_drives() {
         || Box::new(Ground::moving(0.0, [0.05, 0.02, 0.05].map(|a| sine(Given::Velocity, a)))),
         || {
             let spec = BeamSpec::new(0.36, 20, Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap())
-                .damped(Damping { viscous: 0.4, rayleigh_mass: 0.1, rayleigh_stiffness: 1e-6, ..Damping::default() });
+                .damped(Damping::none().with_viscous(0.4).with_rayleigh_mass(0.1).with_rayleigh_stiffness(1e-6));
             let beam = BeamBody::new(Arc::new(Beam::new(spec).unwrap()), Vector2::new(-0.18, 0.0), BeamSurface::Axis);
             Box::new(beam.with_motion([sine(Given::Velocity, 0.05), sine(Given::Acceleration, 2.0)]))
         },

@@ -84,7 +84,7 @@ fn compare(name: &str) {
         Arc::new(
             Beam::new(
                 BeamSpec::new(number(&b["L"]), b["n_el"].as_u64().unwrap() as usize, section)
-                    .damped(Damping { viscous: number(&b["c"]), ..Damping::default() }),
+                    .damped(Damping::none().with_viscous(number(&b["c"]))),
             )
             .unwrap(),
         )

@@ -70,7 +70,7 @@ fn the_large_vibration_of_a_held_beam_is_duffing_s_and_the_step_of_second_order(
 
 #[test]
 fn the_account_of_a_stretched_beam_closes_to_rounding_and_its_energy_stays() {
-    for damping in [Damping::default(), Damping { viscous: 0.4, rayleigh_stiffness: 1e-6, ..Damping::default() }] {
+    for damping in [Damping::default(), Damping::none().with_viscous(0.4).with_rayleigh_stiffness(1e-6)] {
         let damped = damping != Damping::default();
         let beam = beam(20, Axial::Held, damping);
         let model = alone(&beam);
@@ -97,7 +97,7 @@ fn the_account_of_a_stretched_beam_closes_to_rounding_and_its_energy_stays() {
 #[test]
 fn axial_dofs_vibrate_as_a_bar_and_leave_bending_alone() {
     let n = 40;
-    let beam = beam(n, Axial::Elastic { held: [true, false] }, Damping::default());
+    let beam = beam(n, Axial::elastic([true, false]), Damping::default());
     let model = alone(&beam);
     let (span, section) = (beam.spec().span, beam.spec().section);
     let omega = FRAC_PI_2 / span * (section.axial_stiffness.unwrap() / section.mass_per_length).sqrt();
@@ -152,10 +152,10 @@ fn a_beam_at_rest_under_its_weight_stays_at_rest_however_it_is_damped() {
     let section = Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap();
     for damping in [
         Damping::default(),
-        Damping { viscous: 0.4, ..Damping::default() },
-        Damping { rayleigh_mass: 3.0, ..Damping::default() },
-        Damping { rayleigh_stiffness: 1e-5, ..Damping::default() },
-        Damping { modal: vec![0.01], ..Damping::default() },
+        Damping::none().with_viscous(0.4),
+        Damping::none().with_rayleigh_mass(3.0),
+        Damping::none().with_rayleigh_stiffness(1e-5),
+        Damping::none().with_modal(vec![0.01]),
     ] {
         let beam = Arc::new(Beam::new(BeamSpec::new(0.36, 20, section).damped(damping.clone())).unwrap());
         let mut q = vec![0.0; beam.dofs()];

@@ -25,7 +25,7 @@ fn a_strip_comes_to_rest_at_the_sag_of_statics_however_long_the_step() {
     let section = Section::rectangle(0.05, 0.001, 210e9, 7850.0).unwrap();
     let spec = BeamSpec::new(2.0, 20, section).axial(Axial::Held);
     let first = Beam::new(spec.clone()).unwrap().circular_frequency(1).unwrap();
-    let damping = Damping { viscous: 2.0 * 0.1 * first * section.mass_per_length, ..Damping::default() };
+    let damping = Damping::none().with_viscous(2.0 * 0.1 * first * section.mass_per_length);
     let beam = Arc::new(Beam::new(spec.damped(damping)).unwrap());
     let mut exact = vec![0.0; beam.dofs()];
     beam.add_point_load(0.7, -10.0, &mut exact).unwrap();
@@ -52,7 +52,7 @@ fn a_strip_comes_to_rest_at_the_sag_of_statics_however_long_the_step() {
 /// The paper's block rocks on it, in steps that don't resolve the beam.
 #[test]
 fn contacts_on_a_held_beam_leave_the_identity_of_energy_one() {
-    let beam = held(Damping { viscous: 0.4, ..Damping::default() });
+    let beam = held(Damping::none().with_viscous(0.4));
     let theta_schemes = [
         MoreauJean::<2>::NAME,
         MoreauJeanClosed::<2>::NAME,
@@ -113,7 +113,7 @@ fn more_than_half_of_theta_takes_energy_and_never_gives_any() {
 /// A long block stands with one foot on each of two held beams: what one yields changes the other's load.
 #[test]
 fn two_held_beams_under_one_block_find_their_tensions_together() {
-    let beam = held(Damping { viscous: 40.0, ..Damping::default() });
+    let beam = held(Damping::none().with_viscous(40.0));
     let shape = Rectangle::new(0.5, 0.02).unwrap();
     let mass = MassProperties::rectangle(&shape, 0.02, 2700.0).unwrap();
     let mut parts = ModelBuilder::new();

@@ -132,7 +132,7 @@ impl Scenery {
                     .iter()
                     .map(|inner| (inner.x, wording::support(inner.support)))
                     .collect(),
-                held: matches!(drawn.spec.axial, Axial::Held | Axial::Elastic { held: [_, true] }),
+                held: matches!(drawn.spec.axial, Axial::Held | Axial::Elastic { held: [_, true], .. }),
                 points: pieces + 1,
                 places: (0..=pieces).map(|k| at(span * (k as f64 / pieces as f64))).collect(),
                 middle: at(0.5 * span),
@@ -153,8 +153,8 @@ impl Scenery {
                 block: contact.block,
                 surface: scene.name_of(contact.surface).to_owned(),
                 beam: match contact.surface {
-                    scene::Support::Beam(k) => Some(k),
-                    scene::Support::Ground | scene::Support::Block(_) => None,
+                    scene::SupportingBody::Beam(k) => Some(k),
+                    scene::SupportingBody::Ground | scene::SupportingBody::Block(_) => None,
                 },
                 other: contact.other_block(),
                 linear: contact.kinematics == teeter_detect::Kinematics::Linear,

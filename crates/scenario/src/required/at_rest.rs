@@ -1,32 +1,34 @@
 //! Beams that never move.
 
-use super::{Removed, Start};
+use super::{InitialMotion, Removed};
 use nalgebra::Vector2;
 use teeter_beam::{Beam, DeflectionExtremes};
 use teeter_detect::Frame;
 use teeter_integrator::{Bodies, Compliance, Dynamics, Energy, FactorError, Rows, Size, Traits, Weights};
 
-/// A beam that stays as it starts unless something touches it.
+/// A beam that stays in its initial state unless something touches it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Rest {
-    /// Its energy there.
+pub(super) struct BeamAtRest {
+    /// Its energy.
     pub(super) energy: Energy,
-    /// What rounding moves it by in the full model, m; 0 where its forces are 0 to the last bit.
+    /// Its motion due to rounding in the full model, m; 0 if its forces are exactly 0.
     pub(super) trembles: f64,
-    /// How far it is deflected, between its nodes too.
+    /// Its deflection, including between its nodes.
     pub(super) shape: DeflectionExtremes,
 }
 
-/// A trembling of this part of the deflection is no longer rounding.
+/// Rounding motion over this fraction of the deflection is too large.
 const ROUNDING: f64 = 1e-9;
 
-/// The trembling may be so many times the deflection that the rounding of the forces makes in one step, and as many times as there are steps if those
-/// are more: steps add to each other, at worst in time with a mode.
+/// Rounding motion is bounded by this many times the deflection due to the rounding of the forces
+/// in one step, or by the number of steps if that is more: the contributions of steps add up, in
+/// the worst case in phase with a mode.
 const STEPS_ADD: f64 = 1e3;
 
-impl Rest {
-    /// The rest of a beam, by its number, in a run of so many steps; `None` for one that moves by itself or is moved.
-    pub(super) fn of(start: &Start<'_>, beam: usize, steps: u64) -> Option<Self> {
+impl BeamAtRest {
+    /// The rest state of a beam, by its number, in a run of `steps` steps; `None` for one that
+    /// moves.
+    pub(super) fn of(start: &InitialMotion<'_>, beam: usize, steps: u64) -> Option<Self> {
         let place = &start.layout.beams[beam];
         let (_, part, _) = start.model.owner(place.body)?;
         let system = &part.system;
@@ -42,7 +44,7 @@ impl Rest {
         if force.iter().all(|f| *f == 0.0) && q.iter().all(|q| *q == 0.0) {
             return Some(Self { energy, trembles: 0.0, shape: DeflectionExtremes::default() });
         }
-        // Below θ = ½ rounding grows from step to step.
+        // For θ < ½ rounding grows from step to step.
         if place.basis.is_some() || place.beam.is_stretched() || start.scene.time.theta < 0.5 {
             return None;
         }
@@ -56,23 +58,28 @@ impl Rest {
         let deflection = self.shape.largest();
         let (why, accuracy) = if deflection == 0.0 {
             (
-                "nothing touches, loads or drives it, and it starts undeformed at rest: no force acts on it".to_owned(),
+                "nothing touches, loads or drives it, and it starts undeformed and at rest, so no force acts on it"
+                    .to_owned(),
                 None,
             )
         } else {
             (
                 format!(
-                    "nothing touches or drives it, and it starts in equilibrium, deflected by {deflection:.3e} m: its forces are 0 to rounding"
+                    "nothing touches or drives it, and it starts in equilibrium, deflected by {deflection:.3e} m, so its forces are 0 to rounding"
                 ),
-                Some(format!("{:.1e} m: a thousand times what the rounding of its forces moves it by", self.trembles)),
+                Some(format!(
+                    "{:.1e} m, a thousand times its deflection due to the rounding of its forces",
+                    self.trembles
+                )),
             )
         };
         Removed { what: format!("beam `{name}`: its motion"), why, accuracy }
     }
 }
 
-/// What no point of a beam is moved by more than, m, across its axis or along it: from all its dofs, so that it is 0 for the straight
-/// beam alone. In an element of length l the shape functions of the two w sum to 1, those of the two rotations to l/4 at most.
+/// A bound on the displacement of any point of a beam, m, transverse or axial: from all its dofs,
+/// so that it is 0 only for the straight beam. In an element of length l the shape functions of the
+/// two w sum to 1, those of the two rotations to l/4 at most.
 fn size(beam: &Beam, q: &[f64]) -> f64 {
     let longest = beam.node_positions().windows(2).map(|ends| ends[1] - ends[0]).fold(0.0, f64::max);
     let [w, rotation] =
@@ -81,21 +88,21 @@ fn size(beam: &Beam, q: &[f64]) -> f64 {
     w + 0.25 * longest * rotation + along
 }
 
-/// A body that stays where it is: it has its places in the state, and no part in any step.
+/// A body at rest: it has coordinates in the state, but takes no part in any step.
 #[derive(Debug)]
-pub(crate) struct AtRest {
+pub(crate) struct RestingBody {
     held: Vec<usize>,
     energy: Energy,
 }
 
-impl AtRest {
-    /// With so many coordinates.
+impl RestingBody {
+    /// A body with this number of coordinates.
     pub(crate) fn new(coordinates: usize, energy: Energy) -> Self {
         Self { held: (0..coordinates).collect(), energy }
     }
 }
 
-impl Dynamics<2> for AtRest {
+impl Dynamics<2> for RestingBody {
     fn size(&self) -> Size {
         Size { q: self.held.len(), v: self.held.len(), bodies: 1, row: 0 }
     }
@@ -109,12 +116,12 @@ impl Dynamics<2> for AtRest {
     }
 
     fn factor(&self, w: Weights, _q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
-        Ok(Box::new(Immovable(w)))
+        Ok(Box::new(ZeroCompliance(w)))
     }
 }
 
-impl Bodies<2> for AtRest {
-    /// Nothing refers to its points.
+impl Bodies<2> for RestingBody {
+    /// No contact refers to its points.
     fn place(&self, _body: u32, _q: &[f64], local: &[Vector2<f64>], out: &mut [Vector2<f64>]) {
         out.copy_from_slice(local);
     }
@@ -125,9 +132,9 @@ impl Bodies<2> for AtRest {
 }
 
 /// W = 0.
-struct Immovable(Weights);
+struct ZeroCompliance(Weights);
 
-impl Compliance<2> for Immovable {
+impl Compliance<2> for ZeroCompliance {
     fn weights(&self) -> Weights {
         self.0
     }

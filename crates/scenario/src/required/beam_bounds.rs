@@ -1,36 +1,38 @@
-//! How far a beam gives way to an energy: bounds of deflection, slope and velocity.
+//! Bounds of deflection, slope and velocity of a beam by its energy.
 
 use super::barrier::STATIC;
 use teeter_beam::Beam;
 
-/// Bounds of a beam's motion by its energy: |w| ≤ √(2 `deflection` U), |w'| ≤ √(2 `slope` U) for an elastic energy U, |ẇ| ≤ √(2 `velocity` T)
-/// for a kinetic energy T, all along the beam.
+/// Bounds of a beam's motion by its energy: |w| ≤ √(2 `deflection` U), |w'| ≤ √(2 `slope` U) for an
+/// elastic energy U, |ẇ| ≤ √(2 `velocity` T) for a kinetic energy T, everywhere on the beam.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct BeamBounds {
     /// Largest N K⁻¹ Nᵀ, m/N.
     pub(super) deflection: f64,
     /// Largest N' K⁻¹ N'ᵀ, 1/(N m).
     pub(super) slope: f64,
-    /// Not less than the largest N M⁻¹ Nᵀ, 1/kg.
+    /// Upper bound on N M⁻¹ Nᵀ, 1/kg.
     pub(super) velocity: f64,
 }
 
-/// Solves that lose more than this part of their result bound nothing.
+/// With a larger relative error of the solves there is no bound.
 const MOST_LOST: f64 = 1e-3;
 
-/// What is lost is taken so many times.
+/// Safety factor on the estimated error of the solves.
 const SAFETY: f64 = 10.0;
 
-/// Places in an element at which the flexibility, a polynomial of degree six there, is taken: the zeros of a Chebyshev polynomial.
+/// Points of an element at which the flexibility, a polynomial of degree six there, is evaluated:
+/// the zeros of a Chebyshev polynomial.
 const PLACES: usize = 16;
 
 impl BeamBounds {
-    /// Those of a beam without axial dofs; `None` where supports leave it a rigid motion.
+    /// The bounds of a beam without axial dofs; `None` if its supports allow a rigid motion.
     ///
-    /// A polynomial of degree six is nowhere more than 1/cos(6π/32) = 1.203 times as large as it is at the `PLACES` = 16 zeros of a Chebyshev
-    /// polynomial (Ehlich & Zeller 1964). Of the flexibility that is taken of the part that varies over the element.
+    /// A polynomial of degree six is nowhere larger than 1/cos(6π/32) = 1.203 times its maximum at
+    /// the `PLACES` = 16 zeros of a Chebyshev polynomial (Ehlich & Zeller 1964). This is applied to
+    /// the part of the flexibility that varies over the element.
     pub(super) fn of(beam: &Beam) -> Option<Self> {
-        // Springs that are soft beside the beam leave the solves few digits, or none.
+        // With springs that are soft relative to the beam, the solves have few digits, or none.
         let lost = beam.digits(STATIC).ok()?.solve;
         if lost > MOST_LOST {
             return None;
@@ -39,7 +41,7 @@ impl BeamBounds {
         let mut bounds = Self { deflection: 0.0, slope: 0.0, velocity: 0.0 };
         for ends in nodes.windows(2) {
             let (from, length) = (ends[0], ends[1] - ends[0]);
-            let (mut w, mut slope) = (Range::EMPTY, Range::EMPTY);
+            let (mut w, mut slope) = (MinMax::EMPTY, MinMax::EMPTY);
             for k in 0..PLACES {
                 let angle = std::f64::consts::PI * (k as f64 + 0.5) / PLACES as f64;
                 let shape = beam.shape_clamped(from + 0.5 * length * (1.0 - angle.cos()));
@@ -56,7 +58,7 @@ impl BeamBounds {
             // A cubic p over a length l has max p² ≤ 16/l ∫p² dx.
             bounds.velocity = bounds.velocity.max(16.0 / (length * least_mass(beam)));
         }
-        // The estimate of what is lost may be short of it by a factor of two.
+        // The estimated error may be too small by a factor of two.
         bounds.deflection *= 1.0 + SAFETY * lost;
         bounds.slope *= 1.0 + SAFETY * lost;
         Some(bounds)
@@ -81,18 +83,19 @@ impl BeamBounds {
     }
 }
 
-/// Least and largest value found.
-struct Range([f64; 2]);
+/// Smallest and largest value found.
+struct MinMax([f64; 2]);
 
-impl Range {
+impl MinMax {
     const EMPTY: Self = Self([f64::INFINITY, f64::NEG_INFINITY]);
 
     fn take(&mut self, x: f64) {
         self.0 = [self.0[0].min(x), self.0[1].max(x)];
     }
 
-    /// Not less than the polynomial anywhere in the element: its part about the middle of the range is as large as half the range at the
-    /// places, and at most `EXCEEDS` times that between them.
+    /// Upper bound on the polynomial in the element: relative to the middle of the range, its
+    /// absolute value at the points is half the range, and at most `EXCEEDS` times that between
+    /// them.
     fn bound(&self) -> f64 {
         let [low, high] = self.0;
         0.5 * (low + high) + 0.5 * EXCEEDS * (high - low)

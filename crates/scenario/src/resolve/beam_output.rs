@@ -1,11 +1,11 @@
-//! What is to be written of what a beam bears.
+//! Resolves the output of section forces and reactions of beams.
 
 use super::Resolver;
 use crate::scene::{BeamOutput, BeamQuantity};
 use teeter_beam::Section;
 
 impl Resolver<'_, '_> {
-    /// What is written of the beam at `path`, which has these sections.
+    /// The output of the beam at `path`, which has these sections.
     pub(super) fn beam_output<'s>(
         &mut self,
         path: &str,
@@ -13,7 +13,7 @@ impl Resolver<'_, '_> {
     ) -> Option<BeamOutput> {
         let at = |key: &str| format!("{path}.{key}");
         let words = self.doc.words(&at("record")).map(<[String]>::to_vec);
-        let words = self.need(&at("record"), words)?;
+        let words = self.required(&at("record"), words)?;
         let output = BeamOutput {
             quantities: words.iter().filter_map(|word| BeamQuantity::of(word)).collect(),
             reactions: self.doc.flag(&at("reactions")).unwrap_or(false),
@@ -27,14 +27,14 @@ impl Resolver<'_, '_> {
             && self.doc.list(&at("probes")).is_none_or(<[f64]>::is_empty)
             && !self.doc.is_refused(&at("probes"))
         {
-            let rule = format!("{} is written at probes, and the beam has none", quantity.word());
-            self.error(&at("record"), rule, "add probes = [\"9 cm\"], places along the beam");
+            let rule = format!("{} is written at probes, but the beam has none", quantity.word());
+            self.error(&at("record"), rule, "add probes = [\"9 cm\"], positions along the beam");
         }
         if output.quantities.contains(&BeamQuantity::Stress)
             && sections.any(|section| section.section_modulus.is_none())
         {
-            let rule = "a section that is given directly has no section modulus, and so no stress";
-            self.error(&at("record"), rule, "give it a profile, or leave stress out");
+            let rule = "a section given directly has no section modulus, and therefore no stress";
+            self.error(&at("record"), rule, "use a profile, or leave stress out");
         }
         Some(output)
     }

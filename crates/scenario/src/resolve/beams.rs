@@ -1,4 +1,4 @@
-//! Beams: what they are made of, how they are held and damped, where they start.
+//! Resolves beams: sections, supports, damping, initial shapes.
 
 use teeter_beam::{
     Axial, Beam, BeamError, BeamSpec, Damping, DampingRatio, Foundation, Hold, MAX_ELEMENTS, ModesError, StaticError,
@@ -7,10 +7,10 @@ use teeter_beam::{
 use teeter_integrator::WBackend;
 
 use super::Resolver;
-use super::sections::Profiled;
-use crate::faults;
+use super::sections::SectionProfile;
+use crate::build_diagnostics;
 use crate::scene::{BeamScene, Reduction, SignalScene};
-use crate::words::{Along, Backend, Lies};
+use crate::words::{AxialModel, Backend, ContactSurface};
 
 /// The same support without dashpots.
 fn undamped(support: Support) -> Support {
@@ -21,8 +21,7 @@ fn undamped(support: Support) -> Support {
     Support::Elastic { deflection, rotation }
 }
 
-/// Most elements of all beams together: their memory and the time to factorise them stay within what a scene's check may
-/// take.
+/// Most elements of all beams together: limits memory and the time to factorise in `check`.
 const MOST_ELEMENTS: usize = 2 * MAX_ELEMENTS;
 
 impl Resolver<'_, '_> {
@@ -45,21 +44,21 @@ impl Resolver<'_, '_> {
         let probes = self.probes(&at("probes"), span);
         let static_start = self.doc.text(&at("start")) == Some("static");
         let top = self.choice(&at("surface")).map(|lies| match lies {
-            Lies::Axis => false,
-            Lies::Top => true,
+            ContactSurface::Axis => false,
+            ContactSurface::Top => true,
         });
         let self_weight = self.doc.flag(&at("self_weight"));
         let motion = self.motion(&path, signals);
-        self.damped_twice(&path);
-        self.held_at_its_ends(&path, axial, supports);
+        self.check_damping_given_once(&path);
+        self.check_ends_held(&path, axial, supports);
         let parts = segments.iter().flatten().map(|segment| &segment.section);
         let output = self.beam_output(&path, profiled.iter().map(|profiled| &profiled.section).chain(parts));
-        let Profiled { section, thickness } = profiled?;
+        let SectionProfile { section, thickness } = profiled?;
         if top == Some(true) && thickness.is_none() {
             self.error(
                 &at("thickness"),
                 "missing, where surface = top",
-                "add it: contacts lie half of it above the axis",
+                "add it: contacts are half of it above the axis",
             );
         }
         let (elements, nodes) = mesh?;
@@ -87,7 +86,7 @@ impl Resolver<'_, '_> {
             output: output?,
             motion: motion?,
         };
-        self.supported(&beam);
+        self.check_moving_supports(&beam);
         Some(beam)
     }
 
@@ -98,18 +97,18 @@ impl Resolver<'_, '_> {
             self.error(
                 path,
                 format!("the probe at {x} m lies outside the span [0, {span}] m"),
-                "give places along the beam, from its left end",
+                "give positions along the beam, from its left end",
             );
         }
         if let Some(twice) = (1..probes.len()).find(|&k| probes[..k].contains(&probes[k])) {
-            // Two columns of one name could not be told apart.
-            let rule = format!("the probe at {} m is there twice", probes[twice]);
-            self.error(path, rule, "give each place once");
+            // Two columns would have the same name.
+            let rule = format!("the probe at {} m is given twice", probes[twice]);
+            self.error(path, rule, "give each position once");
         }
         (!self.doc.is_refused(path)).then_some(probes)
     }
 
-    /// A beam in modes has no choice, and no such key.
+    /// A beam in modes has no such key.
     fn backend(&mut self, path: &str) -> Option<WBackend> {
         let word = if self.doc.text(path).is_some() { self.choice(path)? } else { Backend::Auto };
         Some(match word {
@@ -122,35 +121,35 @@ impl Resolver<'_, '_> {
 
     fn axial(&mut self, path: &str) -> Option<Axial> {
         Some(match self.choice(&format!("{path}.axial"))? {
-            Along::Held => Axial::Held,
-            Along::Elastic => {
+            AxialModel::Held => Axial::Held,
+            AxialModel::Elastic => {
                 let ends = self.doc.text_pair(&format!("{path}.axial_supports"));
                 let held = ends.map(|ends| ends.map(|end| end == "held"));
-                Axial::Elastic { held: self.need(&format!("{path}.axial_supports"), held)? }
+                Axial::elastic(self.required(&format!("{path}.axial_supports"), held)?)
             }
-            Along::Free => Axial::Free,
+            AxialModel::Free => Axial::Free,
         })
     }
 
-    /// The shapes of a beam in modes.
+    /// The modal basis of a beam.
     fn reduction(&mut self, path: &str, span: Option<f64>) -> Option<Option<Reduction>> {
         let (table, model) = (format!("{path}.modes"), format!("{path}.model"));
         let at = |key: &str| format!("{table}.{key}");
         let (doc, given) = (self.doc, self.doc.has_table(&table));
         if self.word(&model)? != "modes" {
             if given {
-                self.error(&table, "goes with model = modes only", "write model = \"modes\", or leave it out");
+                self.error(&table, "applies only with model = modes", "write model = \"modes\", or leave it out");
             }
             return (!given).then_some(None);
         }
         if doc.text(&format!("{path}.axial")) == Some("held") {
-            let rule = "a beam held along its axis stretches as it deflects, which no mode does";
-            self.error(&model, rule, "take model = \"full\", or axial = \"free\"");
+            let rule = "a beam held along its axis stretches as it deflects, which modes can't represent";
+            self.error(&model, rule, "use model = \"full\", or axial = \"free\"");
             return None;
         }
         let backend = format!("{path}.backend");
         if doc.text(&backend).is_some_and(|word| word != "auto") {
-            self.error(&backend, "a beam in modes has a diagonal matrix", "leave it out, or take model = \"full\"");
+            self.error(&backend, "a beam in modes has a diagonal matrix", "leave it out, or use model = \"full\"");
             return None;
         }
         if doc.is_refused(&at("count")) || doc.is_refused(&at("tolerance")) {
@@ -159,7 +158,7 @@ impl Resolver<'_, '_> {
         if let Some(count) = doc.integer(&at("count")) {
             if let Some(key) = ["tolerance", "from", "to"].into_iter().find(|key| doc.has(&at(key))) {
                 let remedy = "keep count, or tolerance with from and to";
-                self.error(&at(key), "count already says how many modes there are", remedy);
+                self.error(&at(key), "count already gives the number of modes", remedy);
                 return None;
             }
             return Some(Some(Reduction::Modes(usize::try_from(count).ok()?)));
@@ -169,15 +168,15 @@ impl Resolver<'_, '_> {
         Some(Some(Reduction::Flexibility { tolerance, region }))
     }
 
-    /// Bounds what all beams take together; what a single one takes is bounded by the table of keys. Whether they stay
-    /// within it.
+    /// Limits the elements of all beams together; those of a single beam are limited by the table
+    /// of keys. Returns whether they are within the limit.
     pub(super) fn mesh_sizes(&mut self, beams: &[Option<BeamScene>]) -> bool {
         let mut sum = 0;
         for beam in beams.iter().flatten() {
             sum += beam.spec.nodes.len().saturating_sub(1).max(beam.spec.elements);
             if sum > MOST_ELEMENTS {
                 let rule = format!("with this beam the scene has {sum} elements, over the limit of {MOST_ELEMENTS}");
-                let remedy = "20 to 100 elements a beam give more digits than the model has";
+                let remedy = "20 to 100 elements per beam are more accurate than the model";
                 self.error(&format!("beam.{}.elements", beam.name), rule, remedy);
                 return false;
             }
@@ -185,14 +184,15 @@ impl Resolver<'_, '_> {
         true
     }
 
-    /// What only the assembled beam can tell: whether its numbers fit together, whether it stands, and the shape of a file.
+    /// Checks that need the assembled beam: consistency of its values, rigid motions, and the shape
+    /// from a file.
     pub(super) fn assembled(&mut self, beam: &mut BeamScene) {
         let path = format!("beam.{}", beam.name);
         let start = format!("{path}.start");
         let model = match Beam::new(beam.spec.clone()) {
             Ok(model) => model,
             Err(error) => {
-                self.errors.push(faults::beam(&beam.name, &error, self.doc));
+                self.errors.push(build_diagnostics::beam(&beam.name, &error, self.doc));
                 return;
             }
         };
@@ -201,8 +201,8 @@ impl Resolver<'_, '_> {
             let rule = format!("the beam can move as a rigid body, so it has no static equilibrium: {motion}");
             self.error(&start, rule, format!("{remedy} (supports), or start undeformed"));
         }
-        // Whatever the start. Its modes would only say the same again, of keys that are not to blame.
-        if !self.bears(&path, &model) {
+        // For any initial shape. Its modes would only repeat the error at the wrong keys.
+        if !self.check_axial_force(&path, &model) {
             return;
         }
         beam.shape = self.start_shape(&start, &model).unwrap_or_default();
@@ -213,8 +213,9 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// Whether the beam bears its axial force, or the error: beyond the buckling load the straight beam is no equilibrium.
-    fn bears(&mut self, path: &str, model: &Beam) -> bool {
+    /// Reports an axial force beyond the buckling load, at which the straight beam is not stable;
+    /// returns whether it is within.
+    fn check_axial_force(&mut self, path: &str, model: &Beam) -> bool {
         if model.spec().axial_force >= 0.0 {
             return true;
         }
@@ -227,35 +228,40 @@ impl Resolver<'_, '_> {
         false
     }
 
-    /// Why the modes of a beam that a key asks for can't be found: where its axial force or its springs are to blame, at their keys.
+    /// Reports why the modes requested by a key can't be found: if its axial force or its springs
+    /// are the cause, at their keys.
     fn no_modes<T>(&mut self, path: &str, beam: &Beam, error: &ModesError) -> Option<T> {
         let of = path.rsplit_once('.').map_or(path, |(beam, _)| beam);
-        let asked = format!("the modes that {path} asks for can't be found");
+        let asked = format!("the modes requested by {path} can't be found");
         let soft = || matches!(beam.solve_static(&mut vec![0.0; beam.dofs()]), Err(StaticError::Soft));
         if beam.spec().axial_force < 0.0 && matches!(error, ModesError::Unstable { .. } | ModesError::Factor(_)) {
             let rule = format!("the straight beam is not stable under it: {asked}");
             self.error(
                 &format!("{of}.axial_force"),
                 rule,
-                "tension is positive; take less compression, or leave that key out",
+                "tension is positive; reduce the compression, or leave that key out",
             );
         } else if soft() {
             let rule = format!("{asked}: {}", StaticError::Soft);
-            self.error(&self.holding(of), rule, "a free end needs no spring: leave out springs that hold nothing");
+            self.error(
+                &self.holding(of),
+                rule,
+                "a free end needs no spring: leave out springs that are too soft to hold the beam",
+            );
         } else {
-            self.error(path, error.to_string(), "ask for a lower mode, take fewer elements, or leave it out");
+            self.error(path, error.to_string(), "use a lower mode, or fewer elements, or leave it out");
         }
         None
     }
 
-    /// The key that holds a beam by springs: its ends, or else what is between them.
+    /// The key whose springs support a beam: its ends, otherwise the supports between them.
     fn holding(&self, path: &str) -> String {
         let keys = ["supports", "support", "foundation"].map(|key| format!("{path}.{key}"));
         let given = keys.iter().find(|key| self.doc.has(key) || !self.doc.names(key).is_empty());
         given.unwrap_or(&keys[0]).clone()
     }
 
-    /// The coordinates at the start where these are of a file or a mode.
+    /// The initial coordinates, if they come from a file or a mode.
     fn start_shape(&mut self, path: &str, beam: &Beam) -> Option<Vec<f64>> {
         let item = self.doc.item(path)?;
         if self.doc.text(path).is_some() {
@@ -274,7 +280,7 @@ impl Resolver<'_, '_> {
             }
             _ => {
                 let remedy = "write { mode = 1, amplitude = \"1 mm\" }, or { file = \"shape.csv\" }";
-                self.error(path, "it doesn't say which shape", remedy);
+                self.error(path, "the shape is missing", remedy);
                 None
             }
         }
@@ -285,7 +291,7 @@ impl Resolver<'_, '_> {
         const MOST_MODES: usize = 20;
         let rule = if mode > MOST_MODES {
             format!(
-                "mode {mode} of this beam is one of the finite elements, of which the first {MOST_MODES} can be asked for"
+                "mode {mode} of this beam must be computed by finite elements, which is possible for the first {MOST_MODES} only"
             )
         } else {
             let rigid = usize::from(beam.rigid_motion().is_some()) * RIGID;
@@ -298,19 +304,20 @@ impl Resolver<'_, '_> {
                 Err(error) => return self.no_modes(path, beam, &error),
             }
         };
-        self.error(path, rule, "ask for a lower mode, or take more elements");
+        self.error(path, rule, "use a lower mode, or more elements");
         None
     }
 
-    /// The viscous damping c that gives a mode of the finite elements its damping ratio: φᵀC φ = 2ζω.
+    /// The viscous damping c for a given damping ratio of a mode of the finite elements: φᵀC φ =
+    /// 2ζω.
     fn viscous_for_ratio(&mut self, path: &str, beam: &Beam) -> Option<f64> {
         let path = format!("{path}.damping_ratio");
         let mode = self.doc.integer(&format!("{path}.mode")).and_then(|mode| usize::try_from(mode).ok())?;
         let ratio = self.doc.number(&format!("{path}.ratio"))?;
         let (omega, shape) = self.elastic_mode(&path, beam, mode)?;
-        // Without what supports and foundations damp: that is on top, and may be so much that it hides the rest.
+        // Without the damping of supports and foundations, which is added and may be much larger.
         let mut alone = beam.spec().clone();
-        alone.damping = Damping { viscous: 1.0, ..Damping::default() };
+        alone.damping = Damping::none().with_viscous(1.0);
         alone.supports = alone.supports.map(undamped);
         alone.inner_supports.iter_mut().for_each(|inner| inner.support = undamped(inner.support));
         alone.foundations.iter_mut().for_each(|foundation| foundation.damping = 0.0);
@@ -320,18 +327,18 @@ impl Resolver<'_, '_> {
         Some(2.0 * ratio * omega / unit)
     }
 
-    /// What is to stretch has to be held at both ends.
-    fn held_at_its_ends(&mut self, path: &str, axial: Option<Axial>, supports: Option<[Support; 2]>) {
+    /// Reports free ends of a beam with axial = held.
+    fn check_ends_held(&mut self, path: &str, axial: Option<Axial>, supports: Option<[Support; 2]>) {
         let (Some(Axial::Held), Some(supports)) = (axial, supports) else { return };
         let ends = supports.iter().zip(["left", "right"]);
         if let Some((_, end)) = ends.into_iter().find(|(support, _)| support.holds() == [Hold::Free; 2]) {
-            let rule = format!("the {end} end is free: nothing holds it along the axis");
-            let remedy = "support that end, or take axial = free or elastic";
+            let rule = format!("the {end} end is free, so nothing holds it along the axis");
+            let remedy = "support that end, or use axial = free or elastic";
             self.error(&format!("{path}.axial"), rule, remedy);
         }
     }
 
-    fn damped_twice(&mut self, path: &str) {
+    fn check_damping_given_once(&mut self, path: &str) {
         let given = ["damping_ratio", "viscous_damping"].map(|key| format!("{path}.{key}"));
         if given.iter().all(|path| self.doc.has(path) || self.doc.has_table(path)) {
             let rule = "damping_ratio and viscous_damping both set the same coefficient";
@@ -349,10 +356,10 @@ impl Resolver<'_, '_> {
             let zeta = self.number(&format!("{ratio}.ratio"))?;
             damping.viscous = match spec.viscous_for_ratio(mode, zeta) {
                 Ok(c) => c,
-                // By the finite elements, once they are there.
+                // Computed from the finite elements, later.
                 Err(BeamError::NoFrequencyEquation) => 0.0,
                 Err(error) => {
-                    self.error(&ratio, error.to_string(), "give a mode of the beam and a ratio of at least 0");
+                    self.error(&ratio, error.to_string(), "give the number of a mode and a ratio of at least 0");
                     return None;
                 }
             };
@@ -374,20 +381,20 @@ impl Resolver<'_, '_> {
             }
             if doc.has(&at("ratios")) {
                 let remedy = "add frequencies = [\"10 Hz\", \"80 Hz\"], at which these are the damping ratios";
-                self.error(&at("ratios"), "ratios of which frequencies", remedy);
+                self.error(&at("ratios"), "the frequencies of these ratios are missing", remedy);
                 return None;
             }
-            // Both have a default.
+            // Both have defaults.
             if ["a0", "a1"].iter().all(|key| !doc.is_given(&at(key)) && !doc.is_refused(&at(key))) {
                 let remedy = "give a0 and a1, or frequencies and ratios";
-                self.error(path, "it doesn't say how much", remedy);
+                self.error(path, "the amount of damping is missing", remedy);
                 return None;
             }
             let (mass, stiffness) = (self.quantity(&at("a0")), self.quantity(&at("a1")));
-            return Some(Damping { rayleigh_mass: mass?, rayleigh_stiffness: stiffness?, ..Damping::default() });
+            return Some(Damping::none().with_rayleigh_mass(mass?).with_rayleigh_stiffness(stiffness?));
         };
         if let Some(key) = ["a0", "a1"].into_iter().find(|key| doc.has(&at(key))) {
-            self.error(&at(key), "frequencies and ratios already give the factors", "keep these, or a0 and a1");
+            self.error(&at(key), "frequencies and ratios already determine the factors", "keep these, or a0 and a1");
             return None;
         }
         let &[first, second] = ratios.unwrap_or_default() else {
@@ -403,7 +410,7 @@ impl Resolver<'_, '_> {
             Ok(damping) => Some(damping),
             Err(BeamError::Value { field, rule, .. }) => {
                 let key = if field == "ratio" { "ratios" } else { "frequencies" };
-                let remedy = "equal ratios fit any two different frequencies";
+                let remedy = "equal ratios are possible for any two different frequencies";
                 self.error(&at(key), format!("the second one must be {rule}"), remedy);
                 None
             }
@@ -414,7 +421,7 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// The part [from, to] of the span that a table is about.
+    /// The interval [from, to] of the span of a table.
     pub(super) fn part(&mut self, path: &str, span: Option<f64>) -> Option<[f64; 2]> {
         let span = span?;
         let (key, doc) = (|key: &str| format!("{path}.{key}"), self.doc);
@@ -425,13 +432,13 @@ impl Resolver<'_, '_> {
         for (key, x) in [(key("from"), from), (key("to"), to)] {
             if x > span {
                 let rule = format!("{x} m lies outside the span [0, {span}] m");
-                self.error(&key, rule, "give a place along the beam, from its left end");
+                self.error(&key, rule, "give a position along the beam, from its left end");
                 return None;
             }
         }
         if to <= from {
             let rule = format!("must be greater than from, {from} m");
-            self.error(&key("to"), rule, "give the right end of the part");
+            self.error(&key("to"), rule, "give the right end of the interval");
             return None;
         }
         Some([from, to])
@@ -454,8 +461,8 @@ impl Resolver<'_, '_> {
     }
 }
 
-/// The size of the largest deflection with its sign, of equal ones that of the leftmost: also inside elements, where a mode may
-/// have all of it.
+/// The deflection of largest absolute value, the leftmost of equal ones, including the interior of
+/// elements, where a mode may have its whole deflection.
 fn largest_deflection(beam: &Beam, shape: &[f64]) -> f64 {
     const PLACES: u32 = 16;
     /// Deflections that differ by less are equal: rounding must not choose a mode's sign.
@@ -472,5 +479,5 @@ fn largest_deflection(beam: &Beam, shape: &[f64]) -> f64 {
     size.copysign(first.unwrap_or(size))
 }
 
-/// Most rigid motions of a beam: up and down, turning, and along its axis.
+/// Most rigid motions of a beam: vertical, rotational, and axial.
 const RIGID: usize = 3;

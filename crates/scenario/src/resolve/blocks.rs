@@ -1,4 +1,4 @@
-//! Blocks: sides, place, and whether they fit on what they stand on.
+//! Resolves blocks: shape, position, and whether they fit on what they stand on.
 
 use std::sync::Arc;
 
@@ -9,16 +9,16 @@ use teeter_rigid::MassProperties;
 use super::Resolver;
 use super::contacts::Joined;
 use super::names::BlockName;
-use crate::scene::{BeamScene, BlockScene, ContactScene, Placement, SignalScene, Support};
+use crate::scene::{BeamScene, BlockScene, ContactScene, Placement, SignalScene, SupportingBody};
 
-/// What was said to be wrong.
-struct Refused;
+/// An error that has been reported.
+struct AlreadyReported;
 
-/// A block by its points.
+/// The polygon of a block given by its points.
 struct PolygonScene {
-    /// About its mass centre.
+    /// Corners relative to its mass centre.
     corners: Arc<[Vector2<f64>]>,
-    /// The mass centre, where it is drawn, m.
+    /// Its mass centre in the coordinates of the points, m.
     centre: [f64; 2],
     /// The largest and the smallest of its extents across its sides, m.
     extents: [f64; 2],
@@ -58,7 +58,7 @@ impl Resolver<'_, '_> {
                 (Some(polygon), Some(width), Some(height))
             }
             Ok(None) => (None, self.quantity(&at("width")), self.quantity(&at("height"))),
-            Err(Refused) => return None,
+            Err(AlreadyReported) => return None,
         };
         let depth = self.quantity(&at("depth"));
         let velocity = self.pair(&at("velocity"));
@@ -67,7 +67,8 @@ impl Resolver<'_, '_> {
         if let (Some(motion), Some([x, y]), Some(spin)) = (&motion, velocity, spin) {
             for (key, value, axis) in [("velocity", x, 0), ("velocity", y, 1), ("spin", spin, 2)] {
                 if value != 0.0 && motion.0[axis].is_some() {
-                    let remedy = "leave it out, or 0 where the motion is prescribed: the motion has a velocity at 0 s";
+                    let remedy =
+                        "leave it out, or set the prescribed components to 0: the motion has its own velocity at 0 s";
                     self.error(&at(key), "the motion of the block prescribes this velocity", remedy);
                 }
             }
@@ -98,155 +99,181 @@ impl Resolver<'_, '_> {
         contacts: &[Option<ContactScene>],
         joined: &Joined,
     ) -> Option<Placement> {
-        let doc = self.doc;
-        let (name, path) = (block.name.as_str(), format!("block.{}", block.table));
-        let shift =
-            doc.pair(&format!("{path}.repeat.shift")).unwrap_or_default().map(|shift| block.copy as f64 * shift);
+        let path = format!("block.{}", block.table);
         let at = |key: &str| format!("{path}.{key}");
-        let written = |key: &str| doc.is_given(&at(key)) || doc.is_refused(&at(key));
-        if drawn.is_some()
-            && let Some(key) = ["on", "at", "tilt"].into_iter().find(|key| written(key))
-        {
-            let remedy = "leave it out: the block starts where its points are, or give position and angle";
-            self.error(&at(key), "a block by its points has no base to stand on", remedy);
-            return None;
-        }
-        if written("position") {
-            if let Some(key) = ["on", "at", "tilt"].into_iter().find(|key| written(key)) {
-                self.error(
-                    &at(key),
-                    "position already says where the block is",
-                    "keep position and angle, or on, at and tilt",
-                );
-                return None;
-            }
-            if doc.flag(&at("repeat.stacked")) == Some(true) {
-                let rule = "stacked blocks stand on each other, but position says where they are";
-                self.error(&at("repeat.stacked"), rule, "give on and at, or shift in place of stacked");
-                return None;
-            }
+        let shift = self.doc.pair(&at("repeat.shift")).unwrap_or_default().map(|shift| block.copy as f64 * shift);
+        self.check_placement_keys(&path, drawn.is_some()).ok()?;
+        if self.is_written(&at("position")) {
             let (position, angle) = (self.pair(&at("position")), self.quantity(&at("angle")));
             let [x, y] = position?;
             return Some(Placement::Free { position: [x + shift[0], y + shift[1]], angle: angle? });
         }
-        if written("angle") {
-            self.error(&at("angle"), "angle goes with position", "write tilt, or give position");
-            return None;
-        }
         if let Some([x, y]) = drawn {
             return Some(Placement::Free { position: [x + shift[0], y + shift[1]], angle: 0.0 });
         }
-        if !written("on") {
-            self.error(&path, "the block has no place", "give on and at (and tilt), or position (and angle)");
+        self.placement_on(block, shift, contacts, joined)
+    }
+
+    /// Whether the document has a value at a path, valid or not.
+    fn is_written(&self, path: &str) -> bool {
+        self.doc.is_given(path) || self.doc.is_refused(path)
+    }
+
+    /// Refuses mutually exclusive keys of the placement of a block, which may be drawn by its
+    /// points.
+    fn check_placement_keys(&mut self, path: &str, drawn: bool) -> Result<(), AlreadyReported> {
+        let at = |key: &str| format!("{path}.{key}");
+        let standing = ["on", "at", "tilt"].into_iter().find(|key| self.is_written(&at(key)));
+        let position = self.is_written(&at("position"));
+        let (key, rule, remedy) = match standing {
+            Some(key) if drawn => (
+                key,
+                "a block given by its points has no base to stand on",
+                "leave it out, as the block starts where its points are, or give position and angle",
+            ),
+            Some(key) if position => {
+                (key, "position already gives the place of the block", "keep position and angle, or on, at and tilt")
+            }
+            _ if position && self.doc.flag(&at("repeat.stacked")) == Some(true) => (
+                "repeat.stacked",
+                "stacked blocks stand on each other, but position gives their place",
+                "give on and at, or shift instead of stacked",
+            ),
+            _ if !position && self.is_written(&at("angle")) => {
+                ("angle", "angle applies only with position", "use tilt instead, or give position")
+            }
+            _ => return Ok(()),
+        };
+        self.error(&at(key), rule, remedy);
+        Err(AlreadyReported)
+    }
+
+    /// The placement of a block on a body.
+    fn placement_on(
+        &mut self,
+        block: &BlockName,
+        shift: [f64; 2],
+        contacts: &[Option<ContactScene>],
+        joined: &Joined,
+    ) -> Option<Placement> {
+        let doc = self.doc;
+        let (name, path) = (block.name.as_str(), format!("block.{}", block.table));
+        let at = |key: &str| format!("{path}.{key}");
+        if !self.is_written(&at("on")) {
+            let remedy = "give on and at (and tilt), or position (and angle)";
+            self.error(&path, "the position of the block is missing", remedy);
             return None;
         }
-        if !written("at") {
-            self.error(
-                &at("at"),
-                "missing, where on is given",
-                "the place x of the middle of its base, such as \"18 cm\"",
-            );
+        if !self.is_written(&at("at")) {
+            self.error(&at("at"), "required with on", "give x of the midpoint of its base, such as at = \"18 cm\"");
         }
         if shift[1] != 0.0 {
-            let rule = "what stands on something is shifted along x only";
-            self.error(&at("repeat.shift"), rule, "let y be 0, or give a position in place of on and at");
+            let rule = "blocks that stand on something can be shifted only along x";
+            self.error(&at("repeat.shift"), rule, "set y to 0, or give a position instead of on and at");
         }
         let on = block.stands_on.as_deref().map_or_else(|| doc.text(&at("on")), Some)?;
         let (x, tilt) = (doc.quantity(&at("at")), doc.quantity(&at("tilt")));
-        let Some(support) = self.support(on) else {
-            self.no_body(&at("on"), on);
-            return None;
-        };
-        if on == name {
-            self.error(&at("on"), "a block can't stand on itself", self.known_bodies());
-            return None;
-        }
-        if let Support::Block(below) = support
-            && doc.is_given(&format!("block.{}.points", self.block_names[below].table))
-        {
-            let rule = format!("`{on}` is a block by its points, which has no upper side to be put on");
-            self.error(&at("on"), rule, "give position and angle in place of on, at and tilt");
-            return None;
-        }
+        let support = self.supporting_body(&at("on"), name, on).ok()?;
         let contact = joined.get(&(self.blocks.get(name).copied()?, support)).copied();
         if contact.is_none() && contacts.iter().all(Option::is_some) && !doc.is_refused("contact") {
-            let rule = format!("the block stands on `{on}`, but no contact joins the two");
+            let rule = format!("the block stands on `{on}`, but there is no contact between the two");
             let remedy = format!("add [contact.NAME] with between = [\"{name}\", \"{on}\"]");
             self.error(&at("on"), rule, remedy);
         }
-        // What is stacked lies flat on the one before.
+        // A stacked block lies flat on the one before.
         let stacked = block.stands_on.is_some();
         let (at, tilt) = if stacked { (shift[0] / block.copy as f64, 0.0) } else { (x? + shift[0], tilt?) };
         Some(Placement::On { support, at, stacked, tilt, contact: contact? })
     }
 
-    /// The polygon of a block that is given by its points.
-    fn polygon(&mut self, block: &BlockName) -> Result<Option<PolygonScene>, Refused> {
+    /// The body `on` on which the block `name` stands, given at `path`.
+    fn supporting_body(&mut self, path: &str, name: &str, on: &str) -> Result<SupportingBody, AlreadyReported> {
+        let Some(support) = self.support(on) else {
+            self.no_body(path, on);
+            return Err(AlreadyReported);
+        };
+        if on == name {
+            self.error(path, "a block can't stand on itself", self.known_bodies());
+            return Err(AlreadyReported);
+        }
+        if let SupportingBody::Block(below) = support
+            && self.doc.is_given(&format!("block.{}.points", self.block_names[below].table))
+        {
+            let rule = format!("`{on}` is a block given by its points, which has no upper side to stand on");
+            self.error(path, rule, "give position and angle instead of on, at and tilt");
+            return Err(AlreadyReported);
+        }
+        Ok(support)
+    }
+
+    /// The polygon of a block, if it is given by its points.
+    fn polygon(&mut self, block: &BlockName) -> Result<Option<PolygonScene>, AlreadyReported> {
         let path = format!("block.{}.points", block.table);
         if self.doc.is_refused(&path) {
-            return Err(Refused);
+            return Err(AlreadyReported);
         }
         let Some(points) = self.doc.points(&path) else { return Ok(None) };
         for key in ["width", "height"] {
             let at = format!("block.{}.{key}", block.table);
             if self.doc.is_given(&at) {
-                self.error(&at, "points already say what shape the block has", "keep points, or width and height");
-                return Err(Refused);
+                self.error(&at, "points already give the shape of the block", "keep points, or width and height");
+                return Err(AlreadyReported);
             }
         }
         PolygonScene::new(points)
             .map_err(|why| {
-                self.error(&path, why, "three corners or more of a convex polygon, in order round it");
-                Refused
+                self.error(&path, why, "give at least three corners of a convex polygon, in order around it");
+                AlreadyReported
             })
             .map(Some)
     }
 
-    /// Blocks that stand on each other in a circle stand on nothing.
-    pub(super) fn stand_on_something(&mut self, blocks: &[Option<BlockScene>]) {
+    /// Reports blocks that stand on each other in a cycle.
+    pub(super) fn check_support_cycles(&mut self, blocks: &[Option<BlockScene>]) {
         let below = |block: usize| match blocks.get(block) {
-            Some(Some(BlockScene { placement: Placement::On { support: Support::Block(below), .. }, .. })) => {
-                Some(*below)
-            }
+            Some(Some(BlockScene {
+                placement: Placement::On { support: SupportingBody::Block(below), .. }, ..
+            })) => Some(*below),
             _ => None,
         };
-        // From a pile's lowest block nothing leads further down; a way of as many steps as there are blocks leads round in a circle.
+        // The lowest block of a pile stands on no block; following more blocks than there are means
+        // a cycle.
         let circle = (0..blocks.len()).find(|&block| (0..blocks.len()).try_fold(block, |at, _| below(at)).is_some());
         if let Some(Some(block)) = circle.and_then(|block| blocks.get(block)) {
-            let rule = "blocks stand on each other in a circle, and none of them on anything else";
+            let rule = "blocks stand on each other in a cycle, and none of them on anything else";
             self.error(
                 &format!("block.{}.on", block.name),
                 rule,
-                "put one of them on the ground or a beam, or give it a position",
+                "place one of them on the ground or a beam, or give it a position",
             );
         }
     }
 
-    /// Whether a block fits on the beam it stands on.
+    /// Reports a block that doesn't fit on the beam it stands on.
     fn stands(&mut self, name: &str, width: f64, placement: &Placement, beams: &[Option<BeamScene>]) {
-        let Placement::On { support: Support::Beam(number), at, tilt, .. } = *placement else { return };
+        let Placement::On { support: SupportingBody::Beam(number), at, tilt, .. } = *placement else { return };
         let path = |key: &str| format!("block.{name}.{key}");
         let Some(Some(beam)) = beams.get(number) else { return };
         let (left, span) = (beam.position[0], beam.spec.span);
         if width > span {
             let rule = format!("the block is {width} m wide, but the span of `{}` is {span} m", beam.name);
-            self.error(&path("width"), rule, "a block on a beam must be narrower than its span");
+            self.error(&path("width"), rule, "use a block narrower than the span");
             return;
         }
         let feet = [("bottom-left", at - 0.5 * width), ("bottom-right", at + 0.5 * width)];
-        // The ends belong to the beam, and places in decimals reach them up to rounding only.
+        // The ends belong to the beam, and decimal positions reach them only up to rounding.
         let rounding = 4.0 * f64::EPSILON * (left.abs() + span + at.abs());
         for (corner, x) in feet {
-            // The corner that a tilt lifts may hang over the end.
+            // The corner lifted by a tilt may be beyond the end.
             let lifted = if tilt > 0.0 { "bottom-right" } else { "bottom-left" };
             if (tilt == 0.0 || corner != lifted) && !(left - rounding..=left + span + rounding).contains(&x) {
                 let rule = format!(
-                    "the corner {corner} at x = {x} m lies outside `{}`, which reaches from {left} m to {} m",
+                    "the corner {corner} at x = {x} m is outside `{}`, which extends from {left} m to {} m",
                     beam.name,
                     left + span
                 );
                 let (low, high) = (left + 0.5 * width, left + span - 0.5 * width);
-                self.error(&path("at"), rule, format!("place the middle of its base between {low} m and {high} m"));
+                self.error(&path("at"), rule, format!("place the midpoint of its base between {low} m and {high} m"));
             }
         }
     }

@@ -1,13 +1,14 @@
-//! What signals drive: prescribed motion of the ground, of supports and of blocks, forces on blocks, loads on beams.
+//! Resolves prescribed motion of the ground, of supports and of blocks, forces on blocks, loads on
+//! beams.
 
 use super::Resolver;
 use crate::scene::{
     AxisScene, BeamScene, BlockScene, ContactScene, ForceScene, History, LoadKind, LoadScene, MotionScene, SignalScene,
-    Support,
+    SupportingBody,
 };
 use teeter_integrator::{Formula, Given};
 
-/// The keys of a motion: of the displacement x, y, and of the turn.
+/// The keys of a motion: translation x, y, and rotation.
 const SHIFTS: [(&str, Given); 3] =
     [("displacement", Given::Displacement), ("velocity", Given::Velocity), ("acceleration", Given::Acceleration)];
 const TURNS: [(&str, Given); 3] = [
@@ -17,7 +18,7 @@ const TURNS: [(&str, Given); 3] = [
 ];
 
 impl Resolver<'_, '_> {
-    /// The motion `owner.motion`; none where there is no such table.
+    /// The motion `owner.motion`; empty if there is no such table.
     pub(super) fn motion(&mut self, owner: &str, signals: &[Option<SignalScene>]) -> Option<MotionScene> {
         let path = format!("{owner}.motion");
         if !self.doc.has_table(&path) {
@@ -32,7 +33,7 @@ impl Resolver<'_, '_> {
                 "give one of displacement, velocity, acceleration, or one of angle, angular_velocity, \
                  angular_acceleration, or one of each"
             };
-            self.error(&path, "it doesn't say what moves", remedy);
+            self.error(&path, "the motion is missing", remedy);
             return None;
         }
         let [across, up] = self.pair_of_signals(&path, turn.is_some(), signals)?;
@@ -46,7 +47,7 @@ impl Resolver<'_, '_> {
                 }
             }
         } else if self.doc.has(&at("only")) {
-            self.error(&at("only"), "it goes with displacement, velocity or acceleration", "leave it out");
+            self.error(&at("only"), "it applies only with displacement, velocity or acceleration", "leave it out");
         }
         if let Some((key, given)) = turn {
             let amplitude = self.quantity(&at(key))?;
@@ -56,14 +57,14 @@ impl Resolver<'_, '_> {
         Some(MotionScene(axes))
     }
 
-    /// Which one of three keys is given.
+    /// The one of several keys that is given.
     fn one_of(&mut self, path: &str, keys: &[(&'static str, Given)]) -> Option<Option<(&'static str, Given)>> {
         let doc = self.doc;
         let at = |key: &str| format!("{path}.{key}");
         let mut given = keys.iter().filter(|(key, _)| doc.has(&at(key)) || doc.is_refused(&at(key)));
         match (given.next(), given.next()) {
             (Some((first, _)), Some((second, _))) => {
-                let rule = format!("{first} and {second} both prescribe the same motion");
+                let rule = format!("{first} and {second} prescribe the same motion");
                 self.error(&at(second), rule, "keep one of them");
                 None
             }
@@ -80,14 +81,14 @@ impl Resolver<'_, '_> {
             return Some([history.clone(), history]);
         };
         if self.doc.has(&one) && !turns {
-            self.error(&two, "signal and signals both multiply the same motion", "keep one of them");
+            self.error(&two, "signal and signals multiply the same motion", "keep one of them");
             return None;
         }
         let [x, y] = names.map(|name| self.named(&two, &name, signals));
         Some([x?, y?])
     }
 
-    /// The history by the name at a path; constant where none is given.
+    /// The history named at a path; constant if none is given.
     fn history(&mut self, path: &str, signals: &[Option<SignalScene>]) -> Option<History> {
         match self.doc.text(path).map(str::to_owned) {
             Some(name) => self.named(path, &name, signals),
@@ -118,7 +119,7 @@ impl Resolver<'_, '_> {
         let jump = history.signal().jump().filter(|_| given == Given::Displacement && amplitude != 0.0);
         let end = self.doc.quantity("time.end").unwrap_or(f64::INFINITY);
         if let Some(t) = jump.filter(|t| *t <= end) {
-            let rule = format!("the displacement jumps at {t} s, and nothing can follow that");
+            let rule = format!("the displacement jumps at {t} s, which is not possible");
             self.error(
                 path,
                 rule,
@@ -129,8 +130,8 @@ impl Resolver<'_, '_> {
         Some(AxisScene { given, amplitude, history })
     }
 
-    /// Supports have to be there to be moved.
-    pub(super) fn supported(&mut self, beam: &BeamScene) {
+    /// Reports prescribed motion of missing supports, or of those that can't move yet.
+    pub(super) fn check_moving_supports(&mut self, beam: &BeamScene) {
         let spec = &beam.spec;
         let none = spec.supports == [teeter_beam::Support::Free; 2]
             && spec.inner_supports.is_empty()
@@ -140,26 +141,26 @@ impl Resolver<'_, '_> {
             self.error(&format!("beam.{}.motion", beam.name), rule, "support an end (supports), or leave motion out");
         }
         if beam.motion.is_given() && matches!(spec.axial, teeter_beam::Axial::Elastic { .. }) {
-            let rule = "supports that move do not take a beam along its axis with them yet";
-            self.error(&format!("beam.{}.motion", beam.name), rule, "take axial = free or held, or leave motion out");
+            let rule = "moving supports can't move an elastic beam along its axis yet";
+            self.error(&format!("beam.{}.motion", beam.name), rule, "use axial = free or held, or leave motion out");
         }
     }
 
-    /// A block none of whose coordinates is free can't give way to ground that no force moves either.
-    pub(super) fn gives_way(&mut self, blocks: &[Option<BlockScene>], contacts: &[Option<ContactScene>]) {
+    /// Reports contacts between two bodies that are both fully prescribed.
+    pub(super) fn check_contacts_can_move(&mut self, blocks: &[Option<BlockScene>], contacts: &[Option<ContactScene>]) {
         let is_prescribed = |block: &BlockScene| block.motion.0.iter().all(Option::is_some);
         for contact in contacts.iter().flatten() {
             let Some(Some(block)) = blocks.get(contact.block) else { continue };
             let other = match contact.surface {
-                Support::Ground => "the ground".to_owned(),
-                Support::Beam(_) => continue,
-                Support::Block(other) => match blocks.get(other) {
+                SupportingBody::Ground => "the ground".to_owned(),
+                SupportingBody::Beam(_) => continue,
+                SupportingBody::Block(other) => match blocks.get(other) {
                     Some(Some(other)) if is_prescribed(other) => format!("`{}`", other.name),
                     _ => continue,
                 },
             };
             if is_prescribed(block) {
-                let rule = format!("all of `{}` is prescribed, and {other} can't give way to it", block.name);
+                let rule = format!("`{}` is fully prescribed, and {other} can't yield to it", block.name);
                 let remedy = "leave a direction or the angle free, or leave the contact out";
                 self.error(&format!("contact.{}.between", contact.name), rule, remedy);
             }
@@ -180,8 +181,8 @@ impl Resolver<'_, '_> {
         let on = on?;
         let Some(block) = self.blocks.get(on.as_str()).copied() else {
             if self.surface(&on).is_some() {
-                let remedy = "put loads on beams under [load.NAME]; ground takes none";
-                self.error(&at("on"), format!("`{on}` is no block"), remedy);
+                let remedy = "name a block; loads on beams go under [load.NAME], and the ground takes none";
+                self.error(&at("on"), format!("`{on}` is not a block"), remedy);
             } else {
                 self.no_body(&at("on"), &on);
             }
@@ -204,7 +205,11 @@ impl Resolver<'_, '_> {
         let on = on?;
         let Some(beam) = self.beams.get(on.as_str()).copied() else {
             if self.blocks.contains_key(on.as_str()) || on == "ground" {
-                self.error(&at("on"), format!("`{on}` is no beam"), "put forces on blocks under [force.NAME]");
+                self.error(
+                    &at("on"),
+                    format!("`{on}` is not a beam"),
+                    "name a beam; forces on blocks go under [force.NAME]",
+                );
             } else {
                 self.no_body(&at("on"), &on);
             }
@@ -212,11 +217,11 @@ impl Resolver<'_, '_> {
         };
         let span = beams.get(beam).and_then(|beam| Some(beam.as_ref()?.spec.span));
         let kind = self.load_kind(&path, span)?;
-        // A force that moves may come from off the beam.
+        // A moving force may start outside the beam.
         if let (LoadKind::Point { at: x, .. }, Some(span)) = (kind, span)
             && !(0.0..=span).contains(&x)
         {
-            let rule = format!("the load at {x} m lies outside the span [0, {span}] m");
+            let rule = format!("the load at {x} m is outside the span [0, {span}] m");
             self.error(&at("at"), rule, "give a place along the beam, from its left end");
             return None;
         }
@@ -229,34 +234,35 @@ impl Resolver<'_, '_> {
         let written = |key: &str| doc.has(&at(key)) || doc.is_refused(&at(key));
         if written("distributed") {
             if let Some(key) = ["at", "force", "couple", "speed"].into_iter().find(|key| written(key)) {
-                let remedy = "keep distributed, or at with force and couple; a second load takes a table of its own";
-                self.error(&at(key), "the load is distributed along the beam", remedy);
+                let remedy =
+                    "keep either distributed, or at with force and couple; use another table for a second load";
+                self.error(&at(key), "it doesn't apply to a distributed load", remedy);
                 return None;
             }
             let ([from, to], load) = (self.part(path, span)?, doc.quantity(&at("distributed"))?);
             return Some(LoadKind::Distributed { load, from, to });
         }
         if let Some(key) = ["from", "to"].into_iter().find(|key| written(key)) {
-            self.error(&at(key), "it goes with distributed", "leave it out, or add distributed = \"-10 N/m\"");
+            self.error(&at(key), "it applies only with distributed", "leave it out, or add distributed = \"-10 N/m\"");
             return None;
         }
         if !(written("force") || written("couple")) {
             let remedy = "add distributed = \"-10 N/m\", or at with force or couple";
-            self.error(path, "it doesn't say how much", remedy);
+            self.error(path, "the size of the load is missing", remedy);
             return None;
         }
         if !written("at") {
             self.error(
                 &at("at"),
-                "missing, where force or couple is given",
-                "a place along the beam, such as \"9 cm\"",
+                "required with force or couple",
+                "give a position along the beam, such as at = \"9 cm\"",
             );
             return None;
         }
         let of = |key: &str| if written(key) { doc.quantity(&at(key)) } else { Some(0.0) };
         if written("speed") {
             if written("couple") {
-                self.error(&at("couple"), "what moves along the beam is a force", "leave couple or speed out");
+                self.error(&at("couple"), "only a force can move along the beam", "leave out couple or speed");
                 return None;
             }
             let (force, speed) = (doc.quantity(&at("force"))?, doc.quantity(&at("speed"))?);

@@ -1,24 +1,24 @@
-//! Names of blocks: those of the file, the copies of a block that is repeated, and patterns that stand for several.
+//! Names of blocks: those of the file, of the copies of a repeated block, and patterns for several.
 
 use std::collections::BTreeMap;
 
 use crate::document::Document;
 
-/// A block of the scene, and where it comes from.
+/// A block of the scene, and its origin.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct BlockName {
-    /// Its own name: that of its table, with `-1`, `-2`, … where it is repeated.
+    /// Its name: that of its table, with `-1`, `-2`, … if it is repeated.
     pub(super) name: String,
     /// The name of its table in the file.
     pub(super) table: String,
-    /// How many copies of the table come before it.
+    /// Number of copies of the table before it.
     pub(super) copy: usize,
-    /// The copy before, which it stands on.
+    /// The previous copy, if it stands on that.
     pub(super) stands_on: Option<String>,
 }
 
 impl BlockName {
-    /// All blocks of a file, in its order.
+    /// All blocks of a file, in order.
     pub(super) fn all(doc: &Document) -> Vec<Self> {
         doc.names("block").into_iter().flat_map(|table| Self::of_table(doc, table)).collect()
     }
@@ -41,7 +41,7 @@ impl BlockName {
     }
 }
 
-/// The name of the table of the file that a block of the scene comes from.
+/// The table of the file that a block of the scene comes from.
 pub(crate) fn table_of<'a>(doc: &Document, block: &'a str) -> &'a str {
     let repeated = |table: &&str| doc.has_table(&format!("block.{table}.repeat"));
     match block.rsplit_once('-').map(|(table, _)| table).filter(repeated) {
@@ -50,7 +50,7 @@ pub(crate) fn table_of<'a>(doc: &Document, block: &'a str) -> &'a str {
     }
 }
 
-/// Whether a name is what a pattern stands for, in which `*` is any letters.
+/// Whether a name matches a pattern, in which `*` stands for any characters.
 pub(super) fn matches(pattern: &str, name: &str) -> bool {
     let Some((start, rest)) = pattern.split_once('*') else { return pattern == name };
     let Some(mut name) = name.strip_prefix(start) else { return false };
@@ -63,7 +63,7 @@ pub(super) fn matches(pattern: &str, name: &str) -> bool {
     name.ends_with(end)
 }
 
-/// Blocks by their names; a name that two have is handed to `twice`.
+/// Blocks by their names; a duplicate is passed to `twice`.
 pub(super) fn numbered(names: &[BlockName], mut twice: impl FnMut(&BlockName)) -> BTreeMap<String, usize> {
     let mut numbers = BTreeMap::new();
     for (number, block) in names.iter().enumerate() {

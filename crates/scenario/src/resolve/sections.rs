@@ -1,20 +1,20 @@
-//! Cross-sections: profiles of a material, or their numbers; of the beam and of its segments.
+//! Resolves cross-sections of beams and segments: profiles of a material, or given stiffnesses.
 
 use teeter_beam::{BeamError, Profile, Section, Segment};
 
 use super::Resolver;
 use crate::words::{Shape, Theory, Word};
 
-/// A section, and how thick it is.
-pub(super) struct Profiled {
+/// A section and its thickness.
+pub(super) struct SectionProfile {
     pub(super) section: Section,
-    /// Its side in the plane, m, where that is known.
+    /// Its height in the plane, m, if known.
     pub(super) thickness: Option<f64>,
 }
 
 impl Resolver<'_, '_> {
-    /// The section of the table at `path`, of a material and of the theory of the beam at `beam`.
-    pub(super) fn section(&mut self, path: &str, material: Option<&str>, beam: &str) -> Option<Profiled> {
+    /// The section of the table at `path`, with a material and the theory of the beam at `beam`.
+    pub(super) fn section(&mut self, path: &str, material: Option<&str>, beam: &str) -> Option<SectionProfile> {
         let at = |key: &str| format!("{path}.{key}");
         let shear = match self.doc.text(&format!("{beam}.theory")).and_then(Theory::of) {
             Some(Theory::Timoshenko) => true,
@@ -33,9 +33,9 @@ impl Resolver<'_, '_> {
             Section::of(profile, modulus, density)
         };
         match section {
-            Ok(section) => Some(Profiled { section, thickness: Some(2.0 * profile.fibre()) }),
+            Ok(section) => Some(SectionProfile { section, thickness: Some(2.0 * profile.fibre()) }),
             Err(BeamError::Value { field, rule, .. }) if self.doc.has(&at(field)) => {
-                self.error(&at(field), format!("must be {rule}"), "check the sides of the section");
+                self.error(&at(field), format!("must be {rule}"), "check the dimensions of the section");
                 None
             }
             Err(error) => {
@@ -48,7 +48,7 @@ impl Resolver<'_, '_> {
     fn profile(&mut self, path: &str, shape: Shape) -> Option<Profile> {
         let mut side = |key: &str| self.quantity(&format!("{path}.{key}"));
         Some(match shape {
-            // Given by numbers, without a profile.
+            // Given directly, without a profile.
             Shape::Direct => return None,
             Shape::Circle => Profile::Circle { diameter: side("diameter")? },
             Shape::Tube => {
@@ -67,7 +67,8 @@ impl Resolver<'_, '_> {
         })
     }
 
-    /// Young's modulus, density, and Poisson's ratio where shear needs it; an inner `None` where one is missing.
+    /// Young's modulus, density, and Poisson's ratio if shear needs it; an inner `None` if one is
+    /// missing.
     fn of_material(&mut self, material: &str, path: &str, shear: bool) -> Option<Option<[f64; 3]>> {
         let density = self.quantity(&format!("{material}.density"));
         let modulus = self.needed(&format!("{material}.youngs_modulus"), path, "youngs_modulus = \"69 GPa\"");
@@ -80,7 +81,7 @@ impl Resolver<'_, '_> {
         Some(Some([modulus?, density?, poisson?]))
     }
 
-    /// A value of a material that only some bodies need.
+    /// A value of a material that is required only by some bodies.
     fn needed(&mut self, key: &str, user: &str, example: &str) -> Option<f64> {
         let value = self.doc.quantity(key).or_else(|| self.doc.number(key));
         let told = self.doc.is_refused(key) || self.errors.iter().any(|error| error.path == key);
@@ -90,8 +91,8 @@ impl Resolver<'_, '_> {
         value
     }
 
-    /// A section by its stiffnesses.
-    fn direct(&mut self, path: &str, shear: bool, axial: bool) -> Option<Profiled> {
+    /// A section given by its stiffnesses.
+    fn direct(&mut self, path: &str, shear: bool, axial: bool) -> Option<SectionProfile> {
         let at = |key: &str| format!("{path}.{key}");
         let doc = self.doc;
         let (bending, mass) = (self.quantity(&at("bending_stiffness")), self.quantity(&at("mass_per_length")));
@@ -101,13 +102,13 @@ impl Resolver<'_, '_> {
             self.error(&at("shear_stiffness"), rule, "add it, such as shear_stiffness = \"1 MN\"");
         }
         if axial && missing("axial_stiffness") {
-            let rule = "missing, where axial is held or elastic";
+            let rule = "required with axial = held or elastic";
             self.error(&at("axial_stiffness"), rule, "add it, such as axial_stiffness = \"3 MN\"");
         }
         let unused = ["shear_stiffness", "rotatory_inertia"].into_iter().find(|key| !shear && doc.has(&at(key)));
         if let Some(key) = unused {
             let rule = format!("{key} has no meaning with theory = euler-bernoulli");
-            self.error(&at(key), rule, "leave it out, or take theory = \"timoshenko\"");
+            self.error(&at(key), rule, "leave it out, or use theory = \"timoshenko\"");
         }
         let value = |key: &str| doc.quantity(&at(key));
         let made = Section::new(bending?, mass?).and_then(|section| {
@@ -118,15 +119,16 @@ impl Resolver<'_, '_> {
             value("axial_stiffness").map_or(Ok(section), |stiffness| section.with_axial_stiffness(stiffness))
         });
         match made {
-            Ok(section) => Some(Profiled { section, thickness: value("thickness") }),
+            Ok(section) => Some(SectionProfile { section, thickness: value("thickness") }),
             Err(error) => {
-                self.error(path, error.to_string(), "check the numbers of the section");
+                self.error(path, error.to_string(), "check the values of the section");
                 None
             }
         }
     }
 
-    /// The parts of the beam with sections of their own; of the beam's material where they name none.
+    /// The segments of the beam with their own sections; with the beam's material unless they name
+    /// one.
     pub(super) fn segments(&mut self, beam: &str, material: Option<&str>) -> Option<Vec<Segment>> {
         let group = format!("{beam}.segment");
         let span = self.doc.quantity(&format!("{beam}.span"));

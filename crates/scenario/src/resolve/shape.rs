@@ -1,19 +1,19 @@
-//! The shape of a beam at the start, from a file: a row for each node.
+//! Reads the initial shape of a beam from a file: a row for each node.
 
 use teeter_beam::{Beam, BeamError, Dof, Hold};
 
 use super::Resolver;
 use crate::dimension::Dimension;
-use crate::{record, wording};
+use crate::{number_table, wording};
 
-/// What its columns are.
+/// Its columns.
 const SHAPE: &[Dimension] = &[Dimension::LENGTH, Dimension::LENGTH, Dimension::ANGLE];
 
-/// A row is about the node that is within this part of the span of its x.
+/// A row belongs to the node within this fraction of the span from its x.
 const SAME_PLACE: f64 = 1e-6;
 
 impl Resolver<'_, '_> {
-    /// The coordinates of a beam in the shape of a file: columns x, w, and w' where it has three.
+    /// The coordinates of a beam for the shape in a file: columns x, w, and w' if it has three.
     pub(super) fn shape(&mut self, path: &str, file: &str, beam: &Beam) -> Option<Vec<f64>> {
         let bytes = match self.file(file) {
             Ok(bytes) => bytes,
@@ -28,7 +28,7 @@ impl Resolver<'_, '_> {
                 self.error(
                     path,
                     why,
-                    "columns x, w and, if known, the slope w', separated by commas; a row for each node",
+                    "give columns x, w and, optionally, the slope w', separated by commas, with a row for each node",
                 );
                 None
             }
@@ -37,7 +37,7 @@ impl Resolver<'_, '_> {
 }
 
 fn read(bytes: &[u8], beam: &Beam) -> Result<Vec<f64>, String> {
-    let table = record::columns(bytes, 2..=3, "two or three, x, w and slope", SHAPE)?;
+    let table = number_table::columns(bytes, 2..=3, "two or three, x, w and slope", SHAPE)?;
     let nodes = beam.node_positions();
     let [x, w, ..] = table.columns.as_slice() else {
         return Err(format!("expected {} rows, one for each node, got none", nodes.len()));
@@ -46,7 +46,7 @@ fn read(bytes: &[u8], beam: &Beam) -> Result<Vec<f64>, String> {
         return Err(format!("expected {} rows, one for each node, got {}", nodes.len(), x.len()));
     }
     let span = beam.spec().span;
-    // Not a number is nowhere.
+    // NaN is at no node.
     let elsewhere = |(x, node): (&f64, &f64)| !((x - node).abs() <= SAME_PLACE * span);
     if let Some(row) = x.iter().zip(nodes).position(elsewhere) {
         let (line, x, node) = (table.lines[row], x[row], nodes[row]);
@@ -71,7 +71,8 @@ fn read(bytes: &[u8], beam: &Beam) -> Result<Vec<f64>, String> {
     })
 }
 
-/// Slopes of the cubic spline through the nodes: no bending moment at ends that may turn, no slope where a support takes it.
+/// Slopes of the cubic spline through the nodes: no bending moment at ends that are free to rotate,
+/// no slope where a support fixes it.
 fn slopes(beam: &Beam, w: &[f64]) -> Vec<f64> {
     let x = beam.node_positions();
     let last = x.len() - 1;
@@ -130,8 +131,8 @@ mod tests {
 
     #[test]
     fn without_slopes_the_shape_is_the_spline_of_the_supports() {
-        // Cubics that fulfil the end conditions are their own spline: a cantilever under an end load, w ~ x²(3 − x), free of
-        // moment at x = 1.
+        // Cubics that fulfil the end conditions are their own spline: a cantilever under an end
+        // load, w ~ x²(3 − x), free of moment at x = 1.
         let q = read(file(|x| x * x * (3.0 - x)).as_bytes(), &beam([Support::Clamped, Support::Free])).unwrap();
         for (k, pair) in q.chunks_exact(2).enumerate() {
             let x = k as f64 / 8.0;
@@ -170,6 +171,9 @@ mod tests {
         assert!(told("1\n", pinned).starts_with("line 1: 1 column, but a table has two or three"));
         assert!(told(&file(|_| f64::NAN), pinned).contains("not finite"));
         let large = file(|x| if x == 0.25 { -1e300 } else { 0.0 });
-        assert_eq!(told(&large, pinned), "line 3, column 2: -1e300 is over 1e12 in size, the limit of numbers");
+        assert_eq!(
+            told(&large, pinned),
+            "line 3, column 2: -1e300 is over 1e12 in absolute value, the limit of numbers"
+        );
     }
 }

@@ -1,15 +1,15 @@
-//! Signals: by formula, or from a file.
+//! Resolves signals: by formula, or from a file.
 
 use std::sync::Arc;
 
 use super::Resolver;
-use crate::record;
+use crate::number_table;
 use crate::scene::{History, SignalScene};
 use crate::words;
 use teeter_integrator::{Formula, SignalError};
 
 /// A formula, or what is wrong with its numbers.
-type Made = Result<Formula, SignalError>;
+type FormulaResult = Result<Formula, SignalError>;
 
 impl Resolver<'_, '_> {
     pub(super) fn signal(&mut self, name: &str) -> Option<SignalScene> {
@@ -17,31 +17,37 @@ impl Resolver<'_, '_> {
         let history = match self.choice(&format!("{path}.shape"))? {
             words::History::Table => History::Table(Arc::new(self.table(&path)?)),
             words::History::Constant => self.formula(&path, Self::constant)?,
-            words::History::Ramp => self.formula(&path, |this, path| this.lasting(path, Formula::ramp))?,
-            words::History::HalfSine => self.formula(&path, |this, path| this.lasting(path, Formula::half_sine))?,
+            words::History::Ramp => self.formula(&path, |this, path| this.with_duration(path, Formula::ramp))?,
+            words::History::HalfSine => {
+                self.formula(&path, |this, path| this.with_duration(path, Formula::half_sine))?
+            }
             words::History::Ricker => self.formula(&path, Self::ricker)?,
-            words::History::Harmonic => self.formula(&path, |this, path| this.waving(path, Formula::harmonic))?,
-            words::History::OneSine => self.formula(&path, |this, path| this.waving(path, Formula::one_sine))?,
+            words::History::Harmonic => {
+                self.formula(&path, |this, path| this.with_frequency(path, Formula::harmonic))?
+            }
+            words::History::OneSine => {
+                self.formula(&path, |this, path| this.with_frequency(path, Formula::one_sine))?
+            }
         };
         Some(SignalScene { name: name.to_owned(), history })
     }
 
-    fn constant(&mut self, path: &str) -> Option<Made> {
+    fn constant(&mut self, path: &str) -> Option<FormulaResult> {
         Some(Formula::constant(self.quantity(&format!("{path}.start"))?))
     }
 
-    fn lasting(&mut self, path: &str, of: fn(f64, f64) -> Made) -> Option<Made> {
+    fn with_duration(&mut self, path: &str, of: fn(f64, f64) -> FormulaResult) -> Option<FormulaResult> {
         let at = |key: &str| format!("{path}.{key}");
         let (start, duration) = (self.quantity(&at("start")), self.quantity(&at("duration")));
         Some(of(start?, duration?))
     }
 
-    fn ricker(&mut self, path: &str) -> Option<Made> {
+    fn ricker(&mut self, path: &str) -> Option<FormulaResult> {
         let (peak, frequency) = (self.quantity(&format!("{path}.peak")), self.frequency(path));
         Some(Formula::ricker(peak?, frequency?))
     }
 
-    fn waving(&mut self, path: &str, of: fn(f64, f64, f64) -> Made) -> Option<Made> {
+    fn with_frequency(&mut self, path: &str, of: fn(f64, f64, f64) -> FormulaResult) -> Option<FormulaResult> {
         let at = |key: &str| format!("{path}.{key}");
         let (start, phase) = (self.quantity(&at("start")), self.quantity(&at("phase")));
         let frequency = self.frequency(path);
@@ -49,29 +55,33 @@ impl Resolver<'_, '_> {
         Some(of(start, frequency, phase))
     }
 
-    fn formula(&mut self, path: &str, make: impl Fn(&mut Self, &str) -> Option<Made>) -> Option<History> {
+    fn formula(&mut self, path: &str, make: impl Fn(&mut Self, &str) -> Option<FormulaResult>) -> Option<History> {
         let at = |key: &str| format!("{path}.{key}");
         match make(self, path)? {
             Ok(formula) => Some(History::Formula(formula)),
             Err(SignalError::Value { what: "the phase", .. }) => {
-                self.error(&at("phase"), "must be at least 0 deg and less than 360 deg", "an angle such as \"20 deg\"");
+                self.error(
+                    &at("phase"),
+                    "must be at least 0 deg and less than 360 deg",
+                    "give an angle such as \"20 deg\"",
+                );
                 None
             }
             Err(error) => {
-                self.error(path, error.to_string(), "check the numbers of this signal");
+                self.error(path, error.to_string(), "check the values of this signal");
                 None
             }
         }
     }
 
-    /// Given as such, or by the period.
+    /// The frequency, given directly or by the period.
     fn frequency(&mut self, path: &str) -> Option<f64> {
         let at = |key: &str| format!("{path}.{key}");
         let doc = self.doc;
         let given = |key: &str| doc.has(&at(key)) || doc.is_refused(&at(key));
         match (given("frequency"), given("period")) {
             (true, true) => {
-                self.error(&at("period"), "frequency and period say the same", "keep one of them");
+                self.error(&at("period"), "frequency and period are equivalent", "keep one of them");
                 None
             }
             (true, false) => doc.quantity(&at("frequency")),
@@ -93,18 +103,19 @@ impl Resolver<'_, '_> {
                 return None;
             }
         };
-        match record::read(&bytes, start?) {
+        match number_table::read(&bytes, start?) {
             Ok(table) => Some(table),
             Err(why) => {
-                let remedy = "two columns, t in s and value, one row for each time, later and later";
+                let remedy = "give two columns, t in s and value, with one row for each time, in ascending order";
                 self.error(&key, why, remedy);
                 None
             }
         }
     }
 
-    /// A table that is over before the run, or begins after it, and is not zero there: what is assumed is said.
-    pub(super) fn covered(&mut self, signals: &[Option<SignalScene>], end: f64) {
+    /// Warns of a table that ends before the run, or begins after its start, with a nonzero value:
+    /// that value is kept.
+    pub(super) fn check_table_covers_run(&mut self, signals: &[Option<SignalScene>], end: f64) {
         for signal in signals.iter().flatten() {
             let History::Table(table) = &signal.history else { continue };
             let [(first, before), (last, after)] = table.ends();
@@ -114,13 +125,13 @@ impl Resolver<'_, '_> {
             };
             if last < end * (1.0 - 1e-9) && after != 0.0 {
                 let rule = format!(
-                    "the table ends at {last} s, the run lasts {end} s: its last value, {after}, is kept from there on"
+                    "the table ends at {last} s, but the run at {end} s: its last value, {after}, is kept until then"
                 );
-                warn(rule, "add rows up to the end of the run; a last value of 0 needs none");
+                warn(rule, "add rows up to the end of the run, or let the last value be 0");
             }
             if first > 0.0 && before != 0.0 {
-                let rule = format!("the table begins at {first} s: up to there its first value, {before}, is taken");
-                warn(rule, "add rows from 0 s on; a first value of 0 needs none");
+                let rule = format!("the table begins at {first} s: its first value, {before}, is used before that");
+                warn(rule, "add rows from 0 s on, or let the first value be 0");
             }
         }
     }

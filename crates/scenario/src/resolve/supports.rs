@@ -1,20 +1,20 @@
-//! How beams are held, what they carry, and where their nodes are.
+//! Resolves supports, masses and meshes of beams.
 
 use teeter_beam::{Hold, InnerSupport, Lump, Support};
 
 use super::Resolver;
 use crate::value::Item;
 
-/// Places within this part of the span are the same: nine digits.
+/// Positions within this fraction of the span are the same: nine digits.
 const SAME_PLACE: f64 = 1e-9;
 
-/// What a support says in numbers and words, by key.
-struct Said<'a> {
+/// The numbers and words of a support, by key.
+struct SupportKeys<'a> {
     number: &'a dyn Fn(&str) -> Option<f64>,
     text: &'a dyn Fn(&str) -> Option<&'a str>,
 }
 
-/// The keys of one motion: the word, the spring, the dashpot.
+/// The keys of each motion: word, spring, dashpot.
 const MOTIONS: [[&str; 3]; 2] =
     [["deflection", "spring", "dashpot"], ["rotation", "rotational_spring", "rotational_dashpot"]];
 
@@ -22,25 +22,25 @@ impl Resolver<'_, '_> {
     /// The supports of both ends.
     pub(super) fn supports(&mut self, path: &str) -> Option<[Support; 2]> {
         let items = self.doc.item_pair(path);
-        let [left, right] = self.need(path, items)?;
+        let [left, right] = self.required(path, items)?;
         let [left, right] = [left, right].map(|item| match item {
             Item::Word(word) => support(word),
             Item::Table(_) => {
-                let said = Said { number: &|key| item.number(key), text: &|key| item.text(key) };
+                let said = SupportKeys { number: &|key| item.number(key), text: &|key| item.text(key) };
                 self.elastic(path, &said)
             }
         });
         Some([left?, right?])
     }
 
-    /// A support by springs and dashpots.
-    fn elastic(&mut self, path: &str, said: &Said<'_>) -> Option<Support> {
+    /// A support with springs and dashpots.
+    fn elastic(&mut self, path: &str, said: &SupportKeys<'_>) -> Option<Support> {
         let [deflection, rotation] = MOTIONS.map(|[word, spring, dashpot]| {
             let (stiffness, damping) = ((said.number)(spring), (said.number)(dashpot));
             match ((said.text)(word), stiffness.or(damping)) {
                 (Some(_), Some(_)) => {
                     let given = if stiffness.is_some() { spring } else { dashpot };
-                    let rule = format!("{word} and {given} both say how the {word} is held");
+                    let rule = format!("{word} and {given} both determine how the {word} is held");
                     self.error(path, rule, "keep one of them");
                     None
                 }
@@ -54,7 +54,7 @@ impl Resolver<'_, '_> {
         Some(Support::Elastic { deflection: deflection?, rotation: rotation? })
     }
 
-    /// The supports between the ends, with their places.
+    /// The supports between the ends, with their positions.
     pub(super) fn inner_supports(&mut self, beam: &str, span: Option<f64>) -> Option<Vec<InnerSupport>> {
         let group = format!("{beam}.support");
         let mut places: Vec<(f64, String)> = Vec::new();
@@ -63,14 +63,14 @@ impl Resolver<'_, '_> {
             let (at, support) = (resolver.place(&path, span), resolver.inner_support(&path));
             let (at, span) = (at?, span?);
             let rule = if at <= SAME_PLACE * span || at >= span * (1.0 - SAME_PLACE) {
-                "must lie between the ends of the beam: these are held by its key supports".to_owned()
+                "must be between the ends of the beam, which are held by its key supports".to_owned()
             } else if let Some((_, other)) = places.iter().find(|(x, _)| (x - at).abs() <= SAME_PLACE * span) {
-                format!("the support `{other}` is there already")
+                format!("the support `{other}` is at the same position")
             } else {
                 places.push((at, name.to_owned()));
                 return Some(InnerSupport::new(at, support?));
             };
-            resolver.error(&format!("{path}.at"), rule, "give another place along the beam, from its left end");
+            resolver.error(&format!("{path}.at"), rule, "give another position along the beam, from its left end");
             None
         };
         let all: Vec<_> = self.doc.names(&group).into_iter().map(|name| of(self, name)).collect();
@@ -84,23 +84,23 @@ impl Resolver<'_, '_> {
         let by_parts = MOTIONS.iter().flatten().find(|key| written(key));
         match (written(&"kind"), by_parts) {
             (true, Some(key)) => {
-                self.error(&at(key), "kind already says how the beam is held", "keep one of them");
+                self.error(&at(key), "kind already determines how the beam is held", "keep one of them");
                 None
             }
             (true, None) => support(doc.text(&at("kind"))?),
             (false, Some(_)) => {
-                let said = Said { number: &|key| doc.quantity(&at(key)), text: &|key| doc.text(&at(key)) };
+                let said = SupportKeys { number: &|key| doc.quantity(&at(key)), text: &|key| doc.text(&at(key)) };
                 self.elastic(path, &said)
             }
             (false, None) => {
                 let remedy = "add kind = \"pinned\", or a spring such as spring = \"1 kN/m\"";
-                self.error(path, "it doesn't say how the beam is held", remedy);
+                self.error(path, "the kind of support is missing", remedy);
                 None
             }
         }
     }
 
-    /// A place on the beam, by the key `at`.
+    /// A position on the beam, given by the key `at`.
     fn place(&mut self, path: &str, span: Option<f64>) -> Option<f64> {
         let key = format!("{path}.at");
         let (at, span) = (self.quantity(&key)?, span?);
@@ -126,14 +126,14 @@ impl Resolver<'_, '_> {
         all.into_iter().collect()
     }
 
-    /// The number of elements, and the places of the nodes where they aren't evenly spread.
+    /// The number of elements, and the positions of the nodes if they aren't uniform.
     pub(super) fn mesh(&mut self, beam: &str, span: Option<f64>) -> Option<(usize, Vec<f64>)> {
         let at = |key: &str| format!("{beam}.{key}");
         let doc = self.doc;
         if let Some(nodes) = doc.list(&at("nodes")) {
             let other = ["elements", "mesh"].into_iter().find(|key| doc.has(&at(key)) || doc.has_table(&at(key)));
             if let Some(other) = other {
-                self.error(&at(other), "nodes already say where the elements are", "keep one of them");
+                self.error(&at(other), "nodes already determine the elements", "keep one of them");
                 return None;
             }
             let nodes = self.nodes(&at("nodes"), nodes, span?)?;
@@ -143,7 +143,7 @@ impl Resolver<'_, '_> {
             return None;
         }
         let elements = doc.integer(&at("elements")).and_then(|elements| usize::try_from(elements).ok());
-        let elements = self.need(&at("elements"), elements);
+        let elements = self.required(&at("elements"), elements);
         if !doc.has_table(&at("mesh")) {
             return Some((elements?, Vec::new()));
         }
@@ -157,12 +157,12 @@ impl Resolver<'_, '_> {
         Some((elements, graded(span, elements, towards, ratio)))
     }
 
-    /// Nodes as given: rising, and from end to end.
+    /// Nodes as given: in ascending order, from end to end.
     fn nodes(&mut self, path: &str, nodes: &[f64], span: f64) -> Option<Vec<f64>> {
         let same = |x: f64, y: f64| (x - y).abs() <= SAME_PLACE * span;
         let rule = match nodes {
             [first, .., last] if !same(*first, 0.0) || !same(*last, span) => {
-                format!("they go from {first} m to {last} m, but must go from 0 m to the span, {span} m")
+                format!("they extend from {first} m to {last} m, but must extend from 0 m to the span, {span} m")
             }
             [_, .., _] => match nodes.windows(2).find(|pair| pair[1] <= pair[0]) {
                 Some(pair) => format!("must rise: {} m follows {} m", pair[1], pair[0]),
@@ -173,7 +173,7 @@ impl Resolver<'_, '_> {
                     return Some(nodes);
                 }
             },
-            _ => format!("two or more are needed, got {}", nodes.len()),
+            _ => format!("at least two are needed, got {}", nodes.len()),
         };
         self.error(path, rule, "give the places of all nodes from the left end to the right end");
         None
@@ -190,8 +190,9 @@ fn support(word: &str) -> Option<Support> {
     }
 }
 
-/// Nodes with elements whose length grows evenly with the distance from a place, up to `ratio` times that at the place. A
-/// length h(d) = h₀(1 + a d) makes ∫dx/h = ln(1 + a d)/a a count of elements; each side of the place gets its whole number.
+/// Nodes of elements whose length increases linearly with the distance from a position, up to
+/// `ratio` times that at the position. With a length h(d) = h₀(1 + a d), ∫dx/h = ln(1 + a d)/a is
+/// the number of elements; each side of the position gets a whole number.
 fn graded(span: f64, elements: usize, towards: f64, ratio: f64) -> Vec<f64> {
     let sides = [towards, span - towards];
     let a = (ratio - 1.0) / sides[0].max(sides[1]);
@@ -199,7 +200,7 @@ fn graded(span: f64, elements: usize, towards: f64, ratio: f64) -> Vec<f64> {
     let distance = |count: f64| if a == 0.0 { count } else { (a * count).exp_m1() / a };
     let [left, right] = sides.map(count);
     let share = (elements as f64 * left / (left + right)).round() as usize;
-    // A side of no length has none, another one at least one.
+    // A side of zero length has none, any other at least one.
     let least = usize::from(left > 0.0);
     let n = share.clamp(least, elements.saturating_sub(usize::from(right > 0.0)).max(least));
     let part = |k: usize, of: usize, whole: f64| distance(whole * (k as f64 / of as f64));
@@ -224,7 +225,8 @@ mod tests {
             let lengths: Vec<f64> = nodes.windows(2).map(|pair| pair[1] - pair[0]).collect();
             let shortest = lengths.iter().copied().fold(f64::INFINITY, f64::min);
             let longest = lengths.iter().copied().fold(0.0, f64::max);
-            // Lengths are means over elements, so the quotient of the extreme ones stays a little below.
+            // Lengths are means over elements, so the quotient of the extreme ones stays a little
+            // below.
             assert!(
                 (0.85 * ratio..=1.0001 * ratio).contains(&(longest / shortest)),
                 "{towards}: {}",

@@ -1,8 +1,8 @@
-//! Steps, their number and their stability; rows of output.
+//! Resolves steps, their number and stability, and rows of output.
 
 use super::Resolver;
-use crate::scene::{BeamScene, BlockScene, ContactScene, Scene, SchemeName, Support, Time};
-use crate::volume::Volume;
+use crate::output_size::OutputSize;
+use crate::scene::{BeamScene, BlockScene, ContactScene, Scene, SchemeName, SupportingBody, Time};
 use crate::wording;
 use crate::words::SchemeChoice;
 use teeter_integrator::{GeneralizedAlphaSettings, ImpactLaw};
@@ -10,18 +10,18 @@ use teeter_integrator::{GeneralizedAlphaSettings, ImpactLaw};
 /// Most steps of a run.
 pub const MAX_STEPS: f64 = 1e12;
 
-/// A gap tolerance beyond this part of the shortest side of a block is refused; one beyond the
-/// second is warned of.
+/// A gap tolerance over the first fraction of the shortest side of a block is refused; one over the
+/// second gives a warning.
 const MOST_GAP: f64 = 1e-3;
 const DOUBTFUL_GAP: f64 = 1e-6;
 
-/// Steps of a run whose step is not found yet.
+/// Number of steps of a run whose step has not been found yet.
 const STEPS_TO_GO_ON: f64 = 10_000.0;
 
-/// No smaller error can be asked for.
+/// Smallest error that can be requested.
 const LEAST_ACCURACY: f64 = 1e-9;
 
-/// Up to so many blocks their impacts are located one by one.
+/// With up to this many blocks their impacts are located one by one.
 const FEW_BLOCKS: usize = 8;
 
 /// Most bytes of the tables of a run.
@@ -36,41 +36,10 @@ impl Resolver<'_, '_> {
         };
         let theta = self.number("time.theta");
         if let Some(theta) = theta {
-            self.stable(theta, beams);
+            self.check_stability(theta, beams);
         }
-        let scheme = self.choice::<SchemeChoice>("time.scheme").map(|choice| match choice {
-            SchemeChoice::Named(scheme) => scheme,
-            SchemeChoice::Auto => self.suitable(blocks.len(), beams),
-        });
-        let held = beams.iter().flatten().find(|beam| beam.spec.axial == teeter_beam::Axial::Held);
-        if let (Some(beam), Some(scheme)) = (held, scheme.filter(|scheme| !scheme.takes_held_beams())) {
-            let rule = format!(
-                "the beam `{}` is held along its axis, so that its stiffness changes as it moves: {} {}",
-                beam.name,
-                scheme.word(),
-                if scheme == SchemeName::GeneralizedAlpha {
-                    "needs forces that are linear"
-                } else {
-                    "needs modes that stay"
-                }
-            );
-            self.error("time.scheme", rule, "take scheme = \"moreau-jean-closed\", or axial = free");
-        }
-        if let (Some(scheme), Some(theta)) = (scheme, theta)
-            && scheme.is_trapezoidal()
-            && theta != 0.5
-        {
-            let rule = format!("{} is a scheme of theta = 0.5: another one is refused", scheme.word());
-            self.error("time.theta", rule, "leave theta out, or take scheme = \"moreau-jean\"");
-        }
+        let scheme = self.scheme(blocks, beams, theta);
         let spectral_radius = self.spectral_radius(scheme);
-        if let (Some(beam), Some(theta)) = (held, theta)
-            && theta != 0.5
-        {
-            let rule =
-                format!("the beam `{}` is held along its axis, and only theta = 0.5 keeps its energy", beam.name);
-            self.error("time.theta", rule, "leave theta out, or take axial = free");
-        }
         let activation_gamma = self.number("time.activation_gamma");
         let gap_tolerance = self.gap_tolerance(blocks);
         let (end, step) = (end?, step?);
@@ -78,7 +47,7 @@ impl Resolver<'_, '_> {
             self.error(
                 "time.step",
                 format!("longer than the whole run of {end} s"),
-                "give a step far shorter than time.end",
+                "use a step much shorter than time.end",
             );
             return None;
         }
@@ -88,7 +57,7 @@ impl Resolver<'_, '_> {
                 "{steps:.1e} steps to {end} s, over the limit of {MAX_STEPS:.0e}; at 1 µs each they would take {}",
                 wording::duration(steps * 1e-6)
             );
-            self.error("time.step", rule, "take a longer step or an earlier end");
+            self.error("time.step", rule, "use a longer step or an earlier end");
             return None;
         }
         let time = Time {
@@ -103,52 +72,91 @@ impl Resolver<'_, '_> {
         };
         let steps = time.steps() as f64;
         if (steps * step - end).abs() > (1e-9 * end).min(1e-3 * step) {
-            let rule = format!("not a whole number of steps of {step} s: the run goes on to {} s", steps * step);
+            let rule = format!("not a whole number of steps of {step} s: the run continues to {} s", steps * step);
             self.warnings
                 .push(self.doc.error("time.end", rule, "choose an end that is a multiple of the step").as_warning());
         }
         Some(time)
     }
 
-    /// ρ∞, which is of one scheme only.
+    /// The scheme, checked against θ and the beams.
+    fn scheme(
+        &mut self,
+        blocks: &[Option<BlockScene>],
+        beams: &[Option<BeamScene>],
+        theta: Option<f64>,
+    ) -> Option<SchemeName> {
+        let scheme = self.choice::<SchemeChoice>("time.scheme").map(|choice| match choice {
+            SchemeChoice::Named(scheme) => scheme,
+            SchemeChoice::Auto => self.automatic_scheme(blocks.len(), beams),
+        });
+        let held = beams.iter().flatten().find(|beam| beam.spec.axial == teeter_beam::Axial::Held);
+        if let (Some(beam), Some(scheme)) = (held, scheme.filter(|scheme| !scheme.takes_held_beams())) {
+            let rule = format!(
+                "the beam `{}` is held along its axis, so its stiffness changes with its motion, but {} {}",
+                beam.name,
+                scheme.word(),
+                if scheme == SchemeName::GeneralizedAlpha { "needs linear forces" } else { "needs constant modes" }
+            );
+            self.error("time.scheme", rule, "use scheme = \"moreau-jean-closed\", or axial = free");
+        }
+        if let (Some(scheme), Some(theta)) = (scheme, theta)
+            && scheme.is_trapezoidal()
+            && theta != 0.5
+        {
+            let rule = format!("{} requires theta = 0.5", scheme.word());
+            self.error("time.theta", rule, "leave theta out, or use scheme = \"moreau-jean\"");
+        }
+        if let (Some(beam), Some(theta)) = (held, theta)
+            && theta != 0.5
+        {
+            let rule =
+                format!("the beam `{}` is held along its axis, and only theta = 0.5 conserves its energy", beam.name);
+            self.error("time.theta", rule, "leave theta out, or use axial = free");
+        }
+        scheme
+    }
+
+    /// ρ∞, which only one scheme has.
     fn spectral_radius(&mut self, scheme: Option<SchemeName>) -> f64 {
         let given = self.doc.number("time.spectral_radius");
         if let (Some(scheme), true) = (scheme, self.doc.is_given("time.spectral_radius"))
             && scheme != SchemeName::GeneralizedAlpha
         {
-            let rule = format!("{} has none: it is a setting of generalized-alpha", scheme.word());
-            self.error("time.spectral_radius", rule, "leave it out, or take scheme = \"generalized-alpha\"");
+            let rule = format!("it is a setting of generalized-alpha, not of {}", scheme.word());
+            self.error("time.spectral_radius", rule, "leave it out, or use scheme = \"generalized-alpha\"");
         }
         given.unwrap_or(GeneralizedAlphaSettings::default().spectral_radius)
     }
 
-    /// The accuracy asked for in place of a step.
+    /// The accuracy given instead of a step.
     fn accuracy(&mut self) -> Option<f64> {
         let accuracy = self.doc.number("time.accuracy");
         match accuracy {
             Some(_) if self.doc.has("time.step") => {
-                let rule = "a step is given beside it, and one follows from the other";
-                self.error("time.accuracy", rule, "leave one of them out; step = \"auto\" is found by the accuracy");
+                let rule = "a step is given too, but the step follows from the accuracy";
+                self.error("time.accuracy", rule, "leave one of them out, or write step = \"auto\"");
                 None
             }
             Some(given) if given < LEAST_ACCURACY => {
                 let rule = format!(
-                    "{given:e} is below {LEAST_ACCURACY:e}, which no step reaches for rounding and the tolerance of contacts"
+                    "{given:e} is below {LEAST_ACCURACY:e}, which no step reaches because of rounding and the tolerance of contacts"
                 );
-                self.error("time.accuracy", rule, "ask for 1e-3 or 1e-6, or give a step");
+                self.error("time.accuracy", rule, "use 1e-3 or 1e-6, or give a step");
                 None
             }
             None if !self.doc.has("time.step") && !self.doc.is_refused("time.step") && self.doc.has("time.end") => {
-                let rule = "auto, but there is no accuracy to find it by";
-                self.error("time.step", rule, "give accuracy = 1e-3 beside it, or a step, such as \"100 us\"");
+                let rule = "auto needs an accuracy";
+                self.error("time.step", rule, "add accuracy = 1e-3, or give a step, such as \"100 us\"");
                 None
             }
             accuracy => accuracy,
         }
     }
 
-    /// Refuses contacts that the scheme doesn't take: with duration, or with what it has no meaning for at a beam.
-    pub(super) fn refuse_springs(
+    /// Refuses contacts that the scheme doesn't support: compliant ones, or with restitution at a
+    /// beam.
+    pub(super) fn check_contact_laws(
         &mut self,
         scheme: SchemeName,
         contacts: &[Option<ContactScene>],
@@ -158,36 +166,35 @@ impl Resolver<'_, '_> {
             matches!(contact.law.impact, ImpactLaw::KelvinVoigt { .. } | ImpactLaw::HuntCrossley { .. })
         };
         if let Some(contact) = contacts.iter().flatten().find(has_duration).filter(|_| !scheme.takes_springs()) {
-            let rule = format!("{} takes no contacts with duration, such as `{}`", scheme.word(), contact.name);
-            self.error("time.scheme", rule, "take scheme = \"moreau-jean-located\", or law = \"newton\"");
+            let rule = format!("{} doesn't support compliant contacts, such as `{}`", scheme.word(), contact.name);
+            self.error("time.scheme", rule, "use scheme = \"moreau-jean-located\", or law = \"newton\"");
         }
         if !scheme.holds_beams() || contacts.iter().any(Option::is_none) {
             return;
         }
-        let at_beam = |contact: &&ContactScene| matches!(contact.surface, Support::Beam(_));
+        let at_beam = |contact: &&ContactScene| matches!(contact.surface, SupportingBody::Beam(_));
         if !contacts.iter().flatten().any(|contact| at_beam(&contact)) {
-            let rule = format!("{} is for contact with beams, and there is none here", scheme.word());
-            self.error("time.scheme", rule, "take scheme = \"moreau-jean-located\", or leave it out");
+            let rule = format!("{} is for contact with beams, but the scene has none", scheme.word());
+            self.error("time.scheme", rule, "use scheme = \"moreau-jean-located\", or leave it out");
         }
         if let Some(beam) = beams.iter().flatten().find(|beam| beam.motion.is_given()) {
-            let rule = format!("{} takes no beams on moving supports, such as `{}`", scheme.word(), beam.name);
-            self.error("time.scheme", rule, "take scheme = \"moreau-jean-located\", or leave it out");
+            let rule = format!("{} doesn't support beams on moving supports, such as `{}`", scheme.word(), beam.name);
+            self.error("time.scheme", rule, "use scheme = \"moreau-jean-located\", or leave it out");
         }
         if let Some(contact) = contacts.iter().flatten().filter(at_beam).find(|contact| contact.gives_back()) {
             let rule = format!(
-                "{} takes no restitution and no law with duration at a beam, as in `{}`: contact there is a force, and all that a beam gives back is its own elasticity",
+                "{} doesn't support restitution or compliant laws at a beam, as in `{}`: contact there is a force, and the rebound comes from the beam's own elasticity",
                 scheme.word(),
                 contact.name
             );
-            self.error("time.scheme", rule, "take scheme = \"moreau-jean-located\", or law = \"newton\" with restitution and tangential_restitution 0");
+            self.error("time.scheme", rule, "use scheme = \"moreau-jean-located\", or law = \"newton\" with restitution and tangential_restitution 0");
         }
     }
 
-    /// The scheme that suits the scene: the most accurate one (`docs/schemes.md`), unless keys of
-    /// another are given. Where many blocks strike in a step there are too many impacts to locate,
-    /// and on held beams locating them has been measured in one scene only; where there are no
-    /// blocks, one is as good as the other.
-    fn suitable(&self, blocks: usize, beams: &[Option<BeamScene>]) -> SchemeName {
+    /// The scheme for `auto`: the most accurate one (`docs/schemes.md`), unless keys of another are
+    /// given. With many blocks there are too many impacts in a step to locate, and on held beams
+    /// locating them has been measured in one scene only; without blocks all are equivalent.
+    fn automatic_scheme(&self, blocks: usize, beams: &[Option<BeamScene>]) -> SchemeName {
         let held = beams.iter().flatten().any(|beam| beam.spec.axial == teeter_beam::Axial::Held);
         let own = ["time.theta", "time.gap_tolerance", "time.activation_gamma"];
         if blocks == 0 || own.iter().any(|key| self.doc.is_given(key)) {
@@ -199,18 +206,18 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// The gap below which a contact counts as closed, m: what is given, if it is small against the
-    /// blocks.
+    /// The gap below which a contact counts as closed, m: the given one, if it is small relative to
+    /// the blocks.
     fn gap_tolerance(&mut self, blocks: &[Option<BlockScene>]) -> f64 {
         let Some(given) = self.doc.quantity("time.gap_tolerance") else { return gap_tolerance(blocks) };
         let shortest = blocks.iter().flatten().map(|block| block.width.min(block.height)).fold(f64::INFINITY, f64::min);
         let part = given / shortest;
-        // As products: the default of a thin block is just that.
+        // Compared as products, so that the default for a thin block passes.
         if given > DOUBTFUL_GAP * shortest {
             let rule = format!(
-                "{part:.1e} of the shortest side of a block, {shortest} m: blocks would hover that far above what carries them"
+                "{part:.1e} of the shortest side of a block, {shortest} m: blocks may float that far above their support"
             );
-            let most = |part: f64| format!("take at most {:.0e} m, or leave it out", part * shortest);
+            let most = |part: f64| format!("use at most {:.0e} m, or leave it out", part * shortest);
             if given > MOST_GAP * shortest {
                 self.error("time.gap_tolerance", rule, most(MOST_GAP));
             } else {
@@ -220,15 +227,15 @@ impl Resolver<'_, '_> {
         given
     }
 
-    /// θ < ½ is allowed only on request; the largest stable step is named either way.
-    fn stable(&mut self, theta: f64, beams: &[Option<BeamScene>]) {
+    /// θ < ½ is allowed only on request; the largest stable step is given in both cases.
+    fn check_stability(&mut self, theta: f64, beams: &[Option<BeamScene>]) {
         if theta >= 0.5 {
             return;
         }
         let limit = beams
             .iter()
             .flatten()
-            .map(|beam| crate::stability::largest_stable_step(&beam.spec, theta))
+            .map(|beam| crate::stable_step::largest_stable_step(&beam.spec, theta))
             .fold(f64::INFINITY, f64::min);
         let rule = if limit == f64::INFINITY {
             "below 0.5 the scheme is not unconditionally stable".to_owned()
@@ -238,19 +245,20 @@ impl Resolver<'_, '_> {
             "below 0.5 the undamped modes of the beam grow at every step size".to_owned()
         };
         if self.doc.flag("time.allow_conditional_stability") == Some(true) {
-            self.warnings
-                .push(self.doc.error("time.theta", rule, "0.5 keeps energy and is always stable").as_warning());
+            self.warnings.push(
+                self.doc.error("time.theta", rule, "use 0.5, which conserves energy and is always stable").as_warning(),
+            );
         } else {
-            self.error("time.theta", rule, "take theta of at least 0.5, or set allow_conditional_stability = true");
+            self.error("time.theta", rule, "use theta of at least 0.5, or set allow_conditional_stability = true");
         }
     }
 
-    /// Whether the tables would grow beyond reason.
+    /// Refuses excessively large tables.
     pub(super) fn output(&mut self, scene: &Scene) {
-        let Volume { rows, bytes } = Volume::of(scene);
+        let OutputSize { rows, bytes } = OutputSize::of(scene);
         if bytes > MAX_BYTES {
             let rule = format!(
-                "{rows:.1e} rows would take some {}, over the limit of {}",
+                "{rows:.1e} rows would take about {}, over the limit of {}",
                 wording::bytes(bytes),
                 wording::bytes(MAX_BYTES)
             );
@@ -259,8 +267,8 @@ impl Resolver<'_, '_> {
     }
 }
 
-/// The gap tolerance that a scene without one gets: 1e-12 m, scaled for blocks outside [0.01, 1] m;
-/// less beside a block so thin that it would be doubtful.
+/// The default gap tolerance: 1e-12 m, scaled for blocks outside [0.01, 1] m; less for a block so
+/// thin that this would give a warning.
 fn gap_tolerance(blocks: &[Option<BlockScene>]) -> f64 {
     let largest = blocks.iter().flatten().map(|block| block.width.max(block.height)).fold(0.0, f64::max);
     let shortest = blocks.iter().flatten().map(|block| block.width.min(block.height)).fold(f64::INFINITY, f64::min);

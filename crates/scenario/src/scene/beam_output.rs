@@ -1,6 +1,6 @@
-//! What is written of what a beam bears.
+//! Output of section forces and reactions of beams.
 
-/// A quantity of a beam that can be written.
+/// A quantity of a beam for output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum BeamQuantity {
@@ -16,14 +16,14 @@ pub enum BeamQuantity {
     AxialForce,
 }
 
-/// The words for them in scenes and in names of columns.
+/// Their words in scenes and in names of columns.
 pub const BEAM_QUANTITIES: &[&str] = &["w", "moment", "shear", "stress", "axial_force"];
 
 impl BeamQuantity {
     /// All of them, in the order of [`BEAM_QUANTITIES`].
     pub const ALL: [Self; 5] = [Self::Deflection, Self::Moment, Self::Shear, Self::Stress, Self::AxialForce];
 
-    /// The word for it.
+    /// Its word.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -35,21 +35,21 @@ impl BeamQuantity {
         }
     }
 
-    /// The quantity of a word.
+    /// The quantity with this word.
     #[must_use]
     pub fn of(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|quantity| quantity.word() == word)
     }
 }
 
-/// What is written of what a beam bears.
+/// The output of a beam.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BeamOutput {
     /// The quantities, in the order of their columns.
     pub quantities: Vec<BeamQuantity>,
-    /// Whether the supports' forces are.
+    /// Whether the reactions of supports are written.
     pub reactions: bool,
-    /// Whether the extremes over all steps are.
+    /// Whether the extremes over all steps are written.
     pub envelope: bool,
 }
 

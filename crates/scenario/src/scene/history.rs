@@ -1,4 +1,4 @@
-//! Time histories in a resolved scene: signals, and what they drive.
+//! Time histories in a resolved scene: signals, and the motions and loads that they drive.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ pub enum History {
 }
 
 impl History {
-    /// The history as the integrator takes it.
+    /// The history for the integrator.
     #[must_use]
     pub fn signal(&self) -> Arc<dyn Signal> {
         match self {
@@ -29,22 +29,22 @@ impl History {
 pub struct SignalScene {
     /// Its name.
     pub name: String,
-    /// What it is.
+    /// Its history.
     pub history: History,
 }
 
 /// The prescribed motion of one coordinate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxisScene {
-    /// What is given.
+    /// The given quantity.
     pub given: Given,
-    /// By how much: m, m/s, m/s², or the same with rad.
+    /// Amplitude: m, m/s, m/s², or the same with rad.
     pub amplitude: f64,
-    /// Times what.
+    /// The signal that multiplies it.
     pub history: History,
 }
 
-/// What is prescribed of a motion: x, y and turn; what is not has `None`.
+/// A prescribed motion: x, y and rotation; `None` for components that are not prescribed.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct MotionScene(pub [Option<AxisScene>; 3]);
 
@@ -55,7 +55,7 @@ impl MotionScene {
         self.0.iter().any(Option::is_some)
     }
 
-    /// The motions of x, y and turn; what is not prescribed stands still.
+    /// The motions of x, y and rotation; those not prescribed are zero.
     #[must_use]
     pub fn motions(&self) -> [Motion; 3] {
         self.0.each_ref().map(|axis| axis.as_ref().map_or_else(Motion::still, AxisScene::motion))
@@ -63,7 +63,7 @@ impl MotionScene {
 }
 
 impl AxisScene {
-    /// The motion as the integrator takes it.
+    /// The motion for the integrator.
     #[must_use]
     pub fn motion(&self) -> Motion {
         Motion::still().with(self.given, self.amplitude, self.history.signal())
@@ -81,7 +81,7 @@ pub struct ForceScene {
     pub force: [f64; 2],
     /// Couple, N·m.
     pub couple: f64,
-    /// Times what.
+    /// The signal that multiplies it.
     pub history: History,
 }
 
@@ -92,9 +92,9 @@ pub struct LoadScene {
     pub name: String,
     /// The beam, by its number in the scene.
     pub beam: usize,
-    /// Where and how much.
+    /// Position and size.
     pub kind: LoadKind,
-    /// Times what.
+    /// The signal that multiplies it.
     pub history: History,
 }
 
@@ -110,7 +110,7 @@ pub enum LoadKind {
         /// N·m, counter-clockwise.
         couple: f64,
     },
-    /// The same all along a part of the beam.
+    /// Uniform over a part of the beam.
     Distributed {
         /// N/m, upwards.
         load: f64,

@@ -1,28 +1,28 @@
-//! A beam in few coordinates, as a scene asks for it.
+//! Modal reduction of a beam.
 
 use std::sync::{Mutex, PoisonError};
 use teeter_beam::{Beam, BeamSpec, ModalBasis, ModalError};
 
-/// In which shapes a beam moves, where these are not those of all its nodes.
+/// The modal basis of a beam.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Reduction {
-    /// So many of its lowest modes, rigid motions included.
+    /// This number of its lowest modes, including rigid motions.
     Modes(usize),
-    /// As few modes and static corrections as its static flexibility needs.
+    /// As few modes and static corrections as its static flexibility requires.
     Flexibility {
         /// Largest relative error of the flexibility in the region.
         tolerance: f64,
-        /// From where to where, m from the left end.
+        /// The region, m from the left end.
         region: [f64; 2],
     },
 }
 
 impl Reduction {
-    /// Its tolerance where a scene gives none, over the whole span.
+    /// Default tolerance, over the whole span.
     pub const TOLERANCE: f64 = 1e-4;
 
-    /// The shapes of this beam.
+    /// The modal basis of this beam.
     ///
     /// # Errors
     /// As [`ModalBasis::new`] and [`ModalBasis::for_tolerance`].
@@ -37,9 +37,9 @@ impl Reduction {
             Self::Flexibility { tolerance, region } => ModalBasis::for_tolerance(beam, region, tolerance)?,
         };
         if beam.dofs() * basis.len() <= MOST_NUMBERS {
-            let known = Known { reduction: *self, spec: beam.spec().clone(), basis: basis.clone() };
+            let known = CachedBasis { reduction: *self, spec: beam.spec().clone(), basis: basis.clone() };
             recent(|recent| {
-                recent.truncate(MOST_KNOWN - 1);
+                recent.truncate(MOST_CACHED - 1);
                 recent.insert(0, known);
             });
         }
@@ -56,26 +56,26 @@ impl Reduction {
     }
 }
 
-/// A basis that was found before. A study takes the same beam in the same shapes hundreds of times, and finding them is most of its work; they depend
-/// on nothing but the beam's numbers.
-struct Known {
+/// A cached basis. A study uses the same beam in the same modes hundreds of times, and finding them
+/// is most of its work; they depend only on the beam's numbers.
+struct CachedBasis {
     reduction: Reduction,
     spec: BeamSpec,
     basis: ModalBasis,
 }
 
-impl Known {
+impl CachedBasis {
     fn is(&self, reduction: &Reduction, beam: &Beam) -> bool {
         self.reduction == *reduction && self.spec == *beam.spec()
     }
 }
 
-/// Bases that are kept, of so many numbers each at the most: 40 MB altogether.
-const MOST_KNOWN: usize = 50;
+/// Largest number of cached bases, and of numbers in each: 40 MB altogether.
+const MOST_CACHED: usize = 50;
 const MOST_NUMBERS: usize = 100_000;
 
-/// The bases found last, the newest first.
-fn recent<T>(of: impl FnOnce(&mut Vec<Known>) -> T) -> T {
-    static RECENT: Mutex<Vec<Known>> = Mutex::new(Vec::new());
+/// The bases found most recently, the newest first.
+fn recent<T>(of: impl FnOnce(&mut Vec<CachedBasis>) -> T) -> T {
+    static RECENT: Mutex<Vec<CachedBasis>> = Mutex::new(Vec::new());
     of(&mut RECENT.lock().unwrap_or_else(PoisonError::into_inner))
 }

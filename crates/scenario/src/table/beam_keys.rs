@@ -1,11 +1,11 @@
-//! The keys of a beam that more than one of its tables has: of sections, of supports, of places.
+//! Keys that several tables of a beam share: sections, supports, positions.
 
 use super::Presence::{Default, Optional, Required, RequiredWith};
 use super::{SIZE, key};
 use crate::dimension::Dimension;
 use crate::keys::{Key, Kind, Range};
 
-/// What a section is of: a profile of a material, or the numbers themselves.
+/// Kinds of sections: a profile of a material, or given directly.
 pub(super) const PROFILES: &[&str] = &["rectangle", "circle", "tube", "i-section"];
 pub(super) const DIRECT: &[&str] = &["direct"];
 pub(super) const STIFFNESS: Range = Range::POSITIVE.sizes(1e-18, 1e18);
@@ -23,7 +23,7 @@ pub(super) const THICKNESS: Key = key(
     SIZE,
     RequiredWith(&["rectangle"]),
     "\"1.5 mm\"",
-    "Side of its section in the plane; with direct for the drawing and a surface at the top.",
+    "Height of its section in the plane; with direct only for drawing and for a surface at the top.",
 )
 .only_with("section", &["rectangle", "direct"]);
 pub(super) const WIDTH: Key = key(
@@ -31,7 +31,7 @@ pub(super) const WIDTH: Key = key(
     SIZE,
     Required,
     "\"3 cm\"",
-    "Side of its section out of the plane; of an I-section that of its flanges.",
+    "Width of its section out of the plane; for an I-section that of its flanges.",
 )
 .only_with("section", &["rectangle", "i-section"]);
 pub(super) const DIAMETER: Key = key("diameter", SIZE, Required, "\"5 cm\"", "Outer diameter of its section.")
@@ -66,7 +66,7 @@ pub(super) const SHEAR_STIFFNESS: Key = key(
     Kind::Quantity(Dimension::FORCE, STIFFNESS),
     Optional,
     "\"1e6 N\"",
-    "G A_s of the theory timoshenko, which needs it.",
+    "G A_s; required with theory = timoshenko.",
 )
 .only_with("section", DIRECT);
 pub(super) const ROTATORY_INERTIA: Key = key(
@@ -74,7 +74,7 @@ pub(super) const ROTATORY_INERTIA: Key = key(
     Kind::Quantity(Dimension::INERTIA_PER_LENGTH, Range::NOT_NEGATIVE),
     Optional,
     "\"1e-6 kg m\"",
-    "Rotatory inertia per length of the theory timoshenko; when left out, 0.",
+    "Rotatory inertia per length, for theory = timoshenko; 0 if left out.",
 )
 .only_with("section", DIRECT);
 pub(super) const AXIAL_STIFFNESS: Key = key(
@@ -82,7 +82,7 @@ pub(super) const AXIAL_STIFFNESS: Key = key(
     Kind::Quantity(Dimension::FORCE, STIFFNESS),
     Optional,
     "\"3 MN\"",
-    "EA, which a beam with axial = held or elastic needs.",
+    "EA; required with axial = held or elastic.",
 )
 .only_with("section", DIRECT);
 
@@ -105,7 +105,7 @@ pub(super) const DEFLECTION: Key = key(
     Kind::Choice(&["fixed", "free"]),
     Optional,
     "\"fixed\"",
-    "In place of spring and dashpot; free when none of them is given.",
+    "Instead of spring and dashpot; free if none of them is given.",
 );
 pub(super) const ROTATIONAL_SPRING: Key = key(
     "rotational_spring",
@@ -126,7 +126,7 @@ pub(super) const ROTATION: Key = key(
     Kind::Choice(&["fixed", "free"]),
     Optional,
     "\"fixed\"",
-    "In place of rotational_spring and rotational_dashpot; free when none of them is given.",
+    "Instead of rotational_spring and rotational_dashpot; free if none of them is given.",
 );
 pub(super) const SUPPORTS: &[&str] = &["pinned", "clamped", "free", "guided"];
 pub(super) const SUPPORT_KEYS: &[Key] = &[SPRING, DASHPOT, DEFLECTION, ROTATIONAL_SPRING, ROTATIONAL_DASHPOT, ROTATION];
@@ -136,7 +136,7 @@ pub(super) const START_KEYS: &[Key] = &[
         Kind::Integer { min: 1, max: 20 },
         Optional,
         "1",
-        "Number of an elastic mode of the finite elements, from 1; goes with amplitude.",
+        "Number of an elastic mode of the finite elements, from 1; only with amplitude.",
     ),
     key(
         "amplitude",
@@ -159,7 +159,7 @@ pub(super) const FROM: Key = key(
     Kind::Quantity(Dimension::LENGTH, Range::NOT_NEGATIVE),
     Required,
     "\"10 cm\"",
-    "Where it begins, from the beam's left end.",
+    "Its start, from the beam's left end.",
 );
 pub(super) const TO: Key =
     key("to", Kind::Quantity(Dimension::LENGTH, Range::NOT_NEGATIVE), Required, "\"26 cm\"", "Where it ends.");
@@ -168,5 +168,5 @@ pub(super) const PLACE: Key = key(
     Kind::Quantity(Dimension::LENGTH, Range::NOT_NEGATIVE),
     Required,
     "\"18 cm\"",
-    "Place along the beam, from its left end.",
+    "Position along the beam, from its left end.",
 );

@@ -1,4 +1,5 @@
-//! `event-driven` against exact motions, in steps of any size: the size of the step is that of the output only.
+//! `event-driven` against exact motions, in steps of any size: the size of the step is that of the
+//! output only.
 
 use std::f64::consts::PI;
 use teeter_integrator::Ended;
@@ -104,12 +105,13 @@ fn what_it_does_not_take_is_refused_with_the_reason() {
     let sets = [("time.scheme".to_owned(), "event-driven".to_owned())];
     let refused = teeter_scenario::load(scene.as_bytes(), "s", "s", &sets).unwrap_err().to_string();
     assert!(
-        refused.contains("takes no contacts with duration") && refused.contains("moreau-jean-located"),
+        refused.contains("doesn't support compliant contacts") && refused.contains("moreau-jean-located"),
         "{refused}"
     );
 }
 
-/// Two feet share the friction of a slab up to 1e-8 only: were one let slide before the other, it would stop at once, hundreds of times in a row.
+/// Two feet share the friction of a slab up to 1e-8 only: were one let slide before the other, it
+/// would stop at once, hundreds of times in a row.
 #[test]
 fn a_slab_that_sticks_and_slips_does_so_with_both_feet() {
     for (width, mu, shake, push) in [(36.7, 0.309, (3.69, 3.68), (5.3, 8.8)), (14.3, 0.21, (4.1, 1.3), (3.7, 5.1))] {
@@ -131,7 +133,8 @@ fn a_slab_that_sticks_and_slips_does_so_with_both_feet() {
     }
 }
 
-/// Where one foot of a block alone is at the limit of friction the other holds it: found to slip alone, it would be so at every event.
+/// Where one foot of a block alone is at the limit of friction the other holds it: found to slip
+/// alone, it would be so at every event.
 #[test]
 fn a_shaken_block_rocks_alike_in_steps_of_any_size() {
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/shaken-ground.toml");

@@ -1,4 +1,5 @@
-//! `moreau-jean-located` against exact motions: impacts at their times, second order through them, bounces that end.
+//! `moreau-jean-located` against exact motions: impacts at their times, second order through them,
+//! bounces that end.
 
 use std::ops::ControlFlow;
 use teeter_integrator::{Ended, Model, Observer, ObserverError, PhaseKind, State, StepReport};
@@ -108,7 +109,8 @@ fn a_block_that_bounces_flat_keeps_its_times_and_ends_at_rest() {
     }
 }
 
-/// The two corners of a block that falls with a tilt of 1e-3 rad come down one after the other, in one step.
+/// The two corners of a block that falls with a tilt of 1e-3 rad come down one after the other, in
+/// one step.
 #[test]
 fn two_impacts_in_a_step_are_told_apart() {
     let scene = block("position = ['0 m', '8 cm']\nangle = '1e-3 rad'", "0.1 s", "friction = 0.3");
@@ -139,7 +141,8 @@ fn a_block_that_starts_with_an_impact_has_it_at_the_start() {
     assert!((simulation.state.q[1] - y.max(0.0675)).abs() < 1e-9 || t > 0.1 / G, "{}", simulation.state.q[1]);
 }
 
-/// Ground that rises and falls under a block that bounces on it: work of the drive and impacts, all accounted for.
+/// Ground that rises and falls under a block that bounces on it: work of the drive and impacts, all
+/// accounted for.
 #[test]
 fn impacts_on_moving_ground_are_in_the_account() {
     let scene = block(
@@ -173,7 +176,8 @@ fn impacts_on_moving_ground_are_in_the_account() {
     assert!(order > 1.6, "order {order}: {coarse} {middle} {fine}");
 }
 
-/// Tangential restitution acts though nothing bounces: a spinning block slides onto one corner and its tangential velocity turns about.
+/// Tangential restitution acts though nothing bounces: a spinning block slides onto one corner and
+/// its tangential velocity turns about.
 #[test]
 fn tangential_restitution_needs_no_bounce() {
     let scene = block(
@@ -233,7 +237,8 @@ fn what_is_driven_moves_on_through_divided_steps() {
     }
 }
 
-/// Where a block on ground that moves by A sin ωt is after time `end`: parabolas while it slides, the ground's sine while it sticks.
+/// Where a block on ground that moves by A sin ωt is after time `end`: parabolas while it slides,
+/// the ground's sine while it sticks.
 fn slides_on_shaken_ground(amplitude: f64, omega: f64, mu: f64, end: f64) -> f64 {
     let ground = |t: f64| [amplitude * (omega * t).sin(), amplitude * omega * (omega * t).cos()];
     let pull = |t: f64| amplitude * omega * omega * -(omega * t).sin();
@@ -273,7 +278,8 @@ fn slides_on_shaken_ground(amplitude: f64, omega: f64, mu: f64, end: f64) -> f64
     x
 }
 
-/// Some hundred slides that stop or turn: without their times it was off by 6e-4 m at 1 ms, and friction made energy.
+/// Some hundred slides that stop or turn: without their times it was off by 6e-4 m at 1 ms, and
+/// friction made energy.
 #[test]
 fn slides_stop_at_their_times() {
     let slab = |place: &str| {
@@ -339,7 +345,8 @@ fn what_rests_isnt_touched_by_another_blocks_impact() {
     }
 }
 
-/// Less than a tolerance in each step is no approach, or so it was: steps of 10 ns let a foot fall freely to 5e-10 m.
+/// Less than a tolerance in each step is no approach, or so it was: steps of 10 ns let a foot fall
+/// freely to 5e-10 m.
 #[test]
 fn no_step_is_so_short_that_a_foot_sinks_unseen() {
     let (simulation, _) = run(&block("on = 'ground'\nat = '0 m'\ntilt = '1 deg'", "20 us", "friction = 0.5"), "10 ns");

@@ -1,4 +1,5 @@
-//! Scene files from outside: what is accepted, what is refused, and with which words; and the motions they give.
+//! Scene files from outside: what is accepted, what is refused, and with which words; and the
+//! motions they give.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stderr)]
 
 mod beams;

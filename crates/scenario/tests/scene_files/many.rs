@@ -4,8 +4,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, Stop, Vector};
 use teeter_scenario::load;
+use teeter_scenario::output_size::{MOST_OPERATOR_BYTES, accuracy_of_seconds, expected_seconds, operator_bytes};
 use teeter_scenario::simulation::Simulation;
-use teeter_scenario::volume::{MOST_OPERATOR_BYTES, accuracy_of_seconds, expected_seconds, operator_bytes};
 
 /// So many blocks of 1 cm beside each other, on the ground or on a beam.
 fn row_of_blocks(blocks: usize, on: &str) -> String {
@@ -26,7 +26,8 @@ fn row_of_blocks(blocks: usize, on: &str) -> String {
 
 #[test]
 fn many_contacts_are_told_to_cost_more_than_their_number() {
-    // Times of a trial: 20 cubes on a beam 0.12 s, 3000 blocks on the ground 0.7 s a step; either was told as less than a tenth.
+    // Times of a trial: 20 cubes on a beam 0.12 s, 3000 blocks on the ground 0.7 s a step; either
+    // was told as less than a tenth.
     let told = |blocks, on, dofs| {
         let scene = load(row_of_blocks(blocks, on).as_bytes(), "f", "f", &[]).unwrap().scene;
         assert!(accuracy_of_seconds(&scene).contains("order of magnitude"));

@@ -132,7 +132,8 @@ fn a_shape_of_a_file_or_mode_starts_in_the_shapes_that_there_are() {
     assert_eq!(place.dofs(eta).len(), place.beam.dofs());
 }
 
-/// F − F_Φ is the square of the error in the norm of energy, so that moments have the root of the tolerance in the mean.
+/// F − F_Φ is the square of the error in the norm of energy, so that moments have the root of the
+/// tolerance in the mean.
 #[test]
 fn moments_of_modes_are_those_of_the_elements_to_the_root_of_the_tolerance() {
     let moments = |model: &[(&str, &str)]| {

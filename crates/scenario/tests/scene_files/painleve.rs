@@ -1,5 +1,6 @@
-//! Painlevé's rod: where it slides on rough ground, a push with the friction that belongs to it may pull the contact together, so that no
-//! acceleration, or several, fit the law. Every scheme goes on, in the same way.
+//! Painlevé's rod: where it slides on rough ground, a push with the friction that belongs to it may
+//! pull the contact together, so that no acceleration, or several, fit the law. Every scheme goes
+//! on, in the same way.
 
 use teeter_integrator::Ended;
 use teeter_scenario::simulation::Simulation;
@@ -17,7 +18,8 @@ fn rod(angle: f64, speed: f64, mu: f64) -> String {
     )
 }
 
-/// Where the rod is at the end, and in how many steps not every event was located; `None` where the scheme refuses the scene.
+/// Where the rod is at the end, and in how many steps not every event was located; `None` where the
+/// scheme refuses the scene.
 fn run(scene: &str, scheme: &str) -> Option<([f64; 3], u64)> {
     let sets = [("time.scheme".to_owned(), format!("\"{scheme}\""))];
     let resolved = match teeter_scenario::load(scene.as_bytes(), "rod", "rod", &sets) {
@@ -37,7 +39,8 @@ fn run(scene: &str, scheme: &str) -> Option<([f64; 3], u64)> {
     Some(([q[0], q[1], q[2]], tally.unlocated_steps))
 }
 
-/// H_nn − μ|H_nt| of a thin rod is 1 + 3 sin²θ − 3μ |sin θ cos θ| over its mass, θ from the upright.
+/// H_nn − μ|H_nt| of a thin rod is 1 + 3 sin²θ − 3μ |sin θ cos θ| over its mass, θ from the
+/// upright.
 fn is_paradox(angle: f64, speed: f64, mu: f64) -> bool {
     let (sin, cos) = f64::to_radians(angle).sin_cos();
     1.0 + 3.0 * sin * sin - 3.0 * mu * (sin * cos).abs() < 0.0 && angle * speed > 0.0

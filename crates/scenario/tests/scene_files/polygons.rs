@@ -21,7 +21,8 @@ fn points(points: &[[f64; 2]]) -> String {
     format!("points = [{}]", points.join(", "))
 }
 
-/// A half-circle arch of equal voussoirs about (0, 0), of radius 1 m to its middle line, on the ground.
+/// A half-circle arch of equal voussoirs about (0, 0), of radius 1 m to its middle line, on the
+/// ground.
 fn arch(voussoirs: usize, thickness: f64) -> String {
     let corner = |r: f64, k: usize| {
         let angle = PI * (1.0 - k as f64 / voussoirs as f64);
@@ -51,7 +52,8 @@ fn moved(text: &str) -> f64 {
     ways.map(|(q, start)| (q[0] - start[0]).hypot(q[1] - start[1])).fold(0.0, f64::max)
 }
 
-/// Limit analysis: a half-circle arch of 27 voussoirs stands from t/R = 0.1067 on, where it falls by hinges.
+/// Limit analysis: a half-circle arch of 27 voussoirs stands from t/R = 0.1067 on, where it falls
+/// by hinges.
 #[test]
 fn an_arch_stands_where_limit_analysis_says_so() {
     for (voussoirs, falls, stands) in [(27, 0.1064, 0.107), (15, 0.1058, 0.1064)] {
@@ -91,8 +93,9 @@ fn a_rectangle_by_its_points_moves_as_one_by_its_sides() {
     }
 }
 
-/// A triangle falls when the line down from its mass centre passes its toe: one with a right angle, 30 cm wide and 15 cm high, its steep side
-/// downhill, at atan(10/5); where its steep side is uphill, at atan(20/5).
+/// A triangle falls when the line down from its mass centre passes its toe: one with a right angle,
+/// 30 cm wide and 15 cm high, its steep side downhill, at atan(10/5); where its steep side is
+/// uphill, at atan(20/5).
 #[test]
 fn a_triangle_falls_where_its_mass_centre_passes_its_toe() {
     let triangle = [[0.0, 0.0], [0.3, 0.0], [0.0, 0.15]];
@@ -132,7 +135,7 @@ fn points_that_are_no_convex_polygon_are_refused_with_the_corner() {
     assert!(of(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]).contains("straight on"));
     assert!(of(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]).contains("turns inwards"), "it crosses itself");
     let triangle = points(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
-    assert!(told(&format!("{triangle}\nwidth = '1 m'")).contains("points already say"));
+    assert!(told(&format!("{triangle}\nwidth = '1 m'")).contains("points already give"));
     assert!(told(&format!("{triangle}\non = 'ground'\nat = '0 m'")).contains("no base to stand on"));
     assert!(told("points = [['0 m'], ['1 m', '0 m'], ['0 m', '1 m']]").contains("an array of two is expected, got 1"));
 }

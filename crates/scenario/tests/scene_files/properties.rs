@@ -1,8 +1,9 @@
-//! What must hold of any scene, over random ones (`docs/properties.md`): symmetries of the motion, and balances of each step.
+//! What must hold of any scene, over random ones (`docs/properties.md`): symmetries of the motion,
+//! and balances of each step.
 //!
-//! A scene that fails is shrunk, shown as TOML, and left for `teeter run` in `target/tmp/PROPERTY.toml`; its seed goes to
-//! `proptest-regressions/`, and is tried first from then on. `PROPTEST_CASES=10000` looks further than CI does,
-//! `PROPTEST_RNG_SEED` elsewhere.
+//! A scene that fails is shrunk, shown as TOML, and left for `teeter run` in
+//! `target/tmp/PROPERTY.toml`; its seed goes to `proptest-regressions/`, and is tried first from
+//! then on. `PROPTEST_CASES=10000` looks further than CI does, `PROPTEST_RNG_SEED` elsewhere.
 
 mod balances;
 mod drawn;
@@ -31,7 +32,8 @@ pub(crate) struct Checked {
 /// Tries a property on random scenes, each with a random choice of its own.
 ///
 /// # Panics
-/// If it fails for one; or if most scenes are refused, or most of the motion lies beyond the horizon: it would show nothing.
+/// If it fails for one; or if most scenes are refused, or most of the motion lies beyond the
+/// horizon: it would show nothing.
 pub(crate) fn check<C: std::fmt::Debug>(
     name: &str,
     regressions: &'static str,

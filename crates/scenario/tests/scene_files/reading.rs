@@ -1,7 +1,7 @@
 //! What a scene means.
 
 use teeter_scenario::document::Document;
-use teeter_scenario::keys::{Key, Kind, OnlyWith, Presence, TABLES, Table};
+use teeter_scenario::keys::{Key, Kind, OnlyWith, Presence, TABLES, TableSchema};
 use teeter_scenario::source::Origin;
 
 use crate::{ROCKING, findings, read};
@@ -67,14 +67,15 @@ fn byte_order_mark_and_windows_line_ends_are_no_mistake() {
     assert_eq!(findings("\u{feff}titel = 'x'\r\n", &[])[1], "1:1 titel: unknown key");
 }
 
-/// A table by its path; where keys have a meaning with some words of another key only, once for each of its words.
+/// A table by its path; where keys have a meaning with some words of another key only, once for
+/// each of its words.
 struct Variant {
     path: String,
     word: Option<(&'static str, &'static str)>,
 }
 
 impl Variant {
-    fn all(table: &'static Table) -> Vec<Self> {
+    fn all(table: &'static TableSchema) -> Vec<Self> {
         let name = match table.pattern {
             pattern if pattern.starts_with("block") => "b",
             // What belongs to a beam belongs to the one of the first word.
@@ -109,7 +110,7 @@ impl Variant {
 }
 
 /// A scene of the keys of all tables that are `wanted`.
-fn scene_of(wanted: impl Fn(&Table, &Key) -> bool) -> Document {
+fn scene_of(wanted: impl Fn(&TableSchema, &Key) -> bool) -> Document {
     let mut source = String::new();
     for table in TABLES {
         for variant in Variant::all(table) {

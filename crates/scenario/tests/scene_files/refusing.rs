@@ -14,7 +14,7 @@ fn mistakes_are_told_at_once_in_the_order_of_the_file() {
             "2:7 time.end: a time needs its unit, got a bare number",
             "3:8 time.step: a time (s) is expected, got a mass (kg)",
             "4:1 time.thetaa: unknown key",
-            "6:11 world.gravity: an acceleration with its unit is expected, got a text that starts with no number",
+            "6:11 world.gravity: an acceleration with its unit is expected, got a text that doesn't start with a number",
             "9:12 contact.c.friction: must be at least 0",
             "10:15 contact.c.restitution: must lie in [0, 1]",
         ]
@@ -51,7 +51,7 @@ fn missing_keys_are_told_at_the_header_of_their_table() {
     let source = format!("{SHORT}[material.steel]\nyoungs_modulus = '210 GPa'\n");
     assert_eq!(findings(&source, &[]), ["4:1 material.steel.density: missing"]);
     assert_eq!(findings("[world]\n", &[]), ["time: the table [time] is missing"]);
-    assert_eq!(findings(" \n# nothing\n", &[]), [": the file holds no scene: it is empty"]);
+    assert_eq!(findings(" \n# nothing\n", &[]), [": the file contains no scene: it is empty"]);
 }
 
 #[test]
@@ -79,9 +79,9 @@ fn names_are_of_few_letters_and_unique_over_bodies() {
     assert_eq!(
         findings(&source, &[]),
         [
-            "4:8 block.a: the name `a` is taken by beam.a on line 9",
-            "15:8 block.ground: the name `ground` is taken by the ground",
-            "20:8 block.\"../x\": a name holds letters (a-z, A-Z), digits, `_`, `-` and nothing else",
+            "4:8 block.a: the name `a` is already used by beam.a on line 9",
+            "15:8 block.ground: the name `ground` is reserved for the ground",
+            "20:8 block.\"../x\": a name may contain only letters (a-z, A-Z), digits, `_` and `-`",
         ]
     );
 }
@@ -90,7 +90,7 @@ fn names_are_of_few_letters_and_unique_over_bodies() {
 fn what_is_known_but_not_built_in_says_so() {
     let found = findings(ROCKING, &[("ground.profile", "hills.csv")]);
     assert_eq!(found.len(), 1, "{found:#?}");
-    assert!(found[0].ends_with("known, but not built in yet"), "{found:#?}");
+    assert!(found[0].ends_with("not implemented yet"), "{found:#?}");
 }
 
 #[test]

@@ -1,4 +1,5 @@
-//! What a model does without: a run with it gives the same numbers, and each bound holds against scenes that try to break it.
+//! What a model does without: a run with it gives the same numbers, and each bound holds against
+//! scenes that try to break it.
 
 mod random;
 
@@ -323,7 +324,8 @@ fn an_unstable_scheme_moves_a_beam_from_its_equilibrium() {
     assert!(!has_removed(&same(&scene), "its motion"));
 }
 
-/// A beam with one element has no deflection at its nodes: the bulge of its own weight in gravity that points up is between them.
+/// A beam with one element has no deflection at its nodes: the bulge of its own weight in gravity
+/// that points up is between them.
 #[test]
 fn a_block_hits_a_beam_that_bulges_between_its_nodes() {
     let text = "[time]\nend = '0.3 s'\nstep = '100 us'\n[world]\ngravity = ['0 m/s^2', '9.81 m/s^2']\n[beam.t]\nsection = 'direct'\n\

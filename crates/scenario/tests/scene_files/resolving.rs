@@ -1,4 +1,5 @@
-//! What takes two keys to be wrong: each refused with a message that names the key, the rule and the remedy.
+//! What takes two keys to be wrong: each refused with a message that names the key, the rule and
+//! the remedy.
 
 use crate::ROCKING;
 use teeter_scenario::load;
@@ -59,17 +60,17 @@ fn references_to_nothing() {
 fn a_block_needs_a_contact_with_what_it_stands_on() {
     says(
         &refused(&[("[\"rocker\", \"table\"]", "[\"rocker\", \"ground\"]"), ("[world]", "[ground]\n[world]")]),
-        &["block.rocker.on", "no contact joins the two", "between = [\"rocker\", \"table\"]"],
+        &["block.rocker.on", "there is no contact between the two", "between = [\"rocker\", \"table\"]"],
     );
 }
 
 #[test]
 fn places_given_twice_or_not_at_all() {
     let position = "position = [\"18 cm\", \"6.75 cm\"]\non = \"table\"";
-    says(&refused(&[("on       = \"table\"", position)]), &["position already says where the block is"]);
+    says(&refused(&[("on       = \"table\"", position)]), &["position already gives the place of the block"]);
     says(
         &refused(&[("on       = \"table\"", ""), ("at       =", "# at ="), ("tilt     =", "# tilt =")]),
-        &["block.rocker", "the block has no place"],
+        &["block.rocker", "the position of the block is missing"],
     );
 }
 
@@ -120,7 +121,7 @@ fn times_that_do_not_fit_together() {
     says(&of(&[("time.end", "1e6 s"), ("time.step", "1e-9 s")]), &["1.0e15 steps", "limit", "years"]);
     let (resolved, _) = set(&[("time.end", "0.50005 s")]).unwrap();
     assert_eq!(resolved.scene.time.steps(), 5001);
-    says(&resolved.warnings[0].to_string(), &["warning", "time.end", "goes on to 0.5001 s"]);
+    says(&resolved.warnings[0].to_string(), &["warning", "time.end", "continues to 0.5001 s"]);
     let (resolved, _) = set(&[("time.end", "0.3 s"), ("time.step", "0.1 s")]).unwrap();
     assert_eq!(resolved.scene.time.steps(), 3, "0.3/0.1 is 2.9999999999999996");
     assert!(resolved.warnings.iter().all(|warning| warning.path != "time.end"));
@@ -167,7 +168,10 @@ fn a_gap_tolerance_at_which_blocks_hover_is_refused_or_warned_of() {
     // The shortest side is 3 cm.
     let of = |given: &str| set(&[("time.gap_tolerance", given), ("time.step", "10 us")]);
     let refused = of("0.2 m").map(|_| ()).expect_err("accepted");
-    says(&refused, &["time.gap_tolerance", "6.7e0 of the shortest side of a block, 0.03 m", "hover", "3e-5 m"]);
+    says(
+        &refused,
+        &["time.gap_tolerance", "6.7e0 of the shortest side of a block, 0.03 m", "float that far above", "3e-5 m"],
+    );
     assert!(of("31 um").is_err());
     let warns = |given: &str| {
         let (resolved, _) = of(given).unwrap();
@@ -197,7 +201,7 @@ fn the_scene_as_run_runs_again_to_the_same_bytes() {
 #[test]
 fn a_probe_given_twice_and_a_solver_for_fewer_contacts() {
     let of = |sets: &[(&str, &str)]| set(sets).map(|_| ()).expect_err("accepted");
-    says(&of(&[("beam.table.probes", "['9 cm', '90 mm']")]), &["beam.table.probes", "0.09 m is there twice"]);
+    says(&of(&[("beam.table.probes", "['9 cm', '90 mm']")]), &["beam.table.probes", "0.09 m is given twice"]);
     let second = [
         ("solver.method", "enumeration"),
         ("contact.more", "{ between = ['rocker', 'ground'], friction = 0.1 }"),

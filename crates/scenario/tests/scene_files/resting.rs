@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use teeter_integrator::{Model, Observer, ObserverError, State, StepReport};
 use teeter_rigid::{Pose, Rectangle};
 use teeter_scenario::simulation::{BuildError, Simulation};
-use teeter_scenario::{Departure, PlacementError, load};
+use teeter_scenario::{InstabilityMode, PlacementError, load};
 
 /// Of a block, N.
 const WEIGHT: f64 = 2700.0 * 0.03 * 0.135 * 0.03 * 9.81;
@@ -31,7 +31,8 @@ fn build(text: &str) -> Result<Simulation, BuildError> {
     Simulation::new(&resolved.scene)
 }
 
-/// By what the forces of a static start miss the balance of blocks and beam, in parts of a block's weight.
+/// By what the forces of a static start miss the balance of blocks and beam, in parts of a block's
+/// weight.
 fn unbalanced(simulation: &Simulation, top: bool, deformed: bool) -> f64 {
     let place = &simulation.layout.beams[0];
     let (beam, state) = (&place.beam, &simulation.state);
@@ -46,7 +47,8 @@ fn unbalanced(simulation: &Simulation, top: bool, deformed: bool) -> f64 {
         let (mut force, mut couple) = (Vector2::new(0.0, -WEIGHT), 0.0);
         for pressed in simulation.static_start.as_ref().unwrap().forces.iter().filter(|f| f.contact == number) {
             let corner = Pose::new(&centre).point(&corners[pressed.point as usize]);
-            // The foot on the top fibre: x_f − offset sin ψ(x_f) = x_c where the surface is taken as deformed.
+            // The foot on the top fibre: x_f − offset sin ψ(x_f) = x_c where the surface is taken
+            // as deformed.
             let (mut foot, mut psi) = (corner.x, 0.0_f64);
             for _ in 0..50 {
                 psi = beam.deflection_at(q, foot).unwrap().slope.atan();
@@ -109,7 +111,8 @@ fn a_static_start_is_in_balance_under_any_placement() {
     }
 }
 
-/// The largest velocity (m/s; rad/s times half a width) of the first block in the first step, and in the run.
+/// The largest velocity (m/s; rad/s times half a width) of the first block in the first step, and
+/// in the run.
 struct Fastest {
     first: f64,
     ever: f64,
@@ -146,11 +149,12 @@ fn flat_blocks_that_start_static_stay_at_rest() {
                 let mut simulation = build(&text).unwrap();
                 let mut seen = Fastest { first: 0.0, ever: 0.0 };
                 assert_eq!(simulation.run(&mut [&mut seen]).unwrap(), teeter_integrator::Ended::Complete);
-                // The closed scheme takes J where the free step's middle would be: on a top fibre, whose feet wander as the
-                // unloaded sections turn, that is not J at rest.
+                // The closed scheme takes J where the free step's middle would be: on a top fibre,
+                // whose feet wander as the unloaded sections turn, that is not J at rest.
                 let wanders = scheme == "moreau-jean-closed" && (surface, kinematics) == ("top", "deformed");
                 let first = if wanders { 1e-8 } else { 1e-10 };
-                // 2000 solves to a residual of 1e-10, of g h = 1e-3 m/s each, when more than three contacts are iterated.
+                // 2000 solves to a residual of 1e-10, of g h = 1e-3 m/s each, when more than three
+                // contacts are iterated.
                 let ever = if wanders { 1e-7 } else { 1e-8 };
                 let what = format!("{blocks:?} on {surface}, {kinematics}, {scheme}");
                 eprintln!("{what}: {:.1e} m/s in the first step, {:.1e} in 0.2 s", seen.first, seen.ever);
@@ -169,26 +173,29 @@ fn what_cannot_rest_is_refused_by_name() {
         other => panic!("{blocks:?}: {other:?}"),
     };
     let slope = [("still", "at = '18 cm'"), ("slider", "at = '6 cm'")];
-    assert_eq!(refused("", &slope, "friction = 0.01", ""), ("slider".into(), Departure::Slides));
-    assert_eq!(refused("", &[("a", "at = '14 cm'")], "friction = 0", ""), ("a".into(), Departure::Slides));
+    assert_eq!(refused("", &slope, "friction = 0.01", ""), ("slider".into(), InstabilityMode::Slides));
+    assert_eq!(refused("", &[("a", "at = '14 cm'")], "friction = 0", ""), ("a".into(), InstabilityMode::Slides));
     let tip = [("a", "at = '34 cm'")];
     let cantilever = "supports = ['clamped', 'free']";
-    assert_eq!(refused(cantilever, &tip, "friction = 0.5", ""), ("a".into(), Departure::Tips));
+    assert_eq!(refused(cantilever, &tip, "friction = 0.5", ""), ("a".into(), InstabilityMode::Tips));
     // 3.2 N on a lever of 1.5 cm hold 48 mN m.
     let push = |couple| format!("[force.f]\non = 'a'\ncouple = '{couple}'\n");
     assert_eq!(
         refused("", &[("a", "at = '18 cm'")], "friction = 0.5", &push("60 mN m")),
-        ("a".into(), Departure::Tips)
+        ("a".into(), InstabilityMode::Tips)
     );
     assert!(build(&(scene("", &[("a", "at = '18 cm'")], "friction = 0.5") + &push("20 mN m"))).is_ok());
     let pull = "[force.f]\non = 'a'\nforce = ['0 N', '4 N']\n";
-    assert_eq!(refused("", &[("a", "at = '18 cm'")], "friction = 0.5", pull), ("a".into(), Departure::LiftsOff));
+    assert_eq!(refused("", &[("a", "at = '18 cm'")], "friction = 0.5", pull), ("a".into(), InstabilityMode::LiftsOff));
     let tilted = [("a", "at = '7 cm'\ntilt = '-0.5 deg'"), ("b", "at = '7 cm'\ntilt = '0.5 deg'")];
     for (block, leans) in [(tilted[0], true), (tilted[1], false)] {
-        // The beam falls to the right there by 1.3 degrees: a block leaning less to the right comes onto its left foot.
+        // The beam falls to the right there by 1.3 degrees: a block leaning less to the right comes
+        // onto its left foot.
         let text = scene("", &[block], "friction = 0.5");
         match build(&text) {
-            Err(BuildError::Placement(PlacementError::NoEquilibrium { motion: Departure::ChangesFoot, .. })) => {
+            Err(BuildError::Placement(PlacementError::NoEquilibrium {
+                motion: InstabilityMode::ChangesFoot, ..
+            })) => {
                 assert!(leans, "{block:?}");
             }
             Ok(_) => assert!(!leans, "{block:?}"),
@@ -216,8 +223,8 @@ fn loads_and_forces_of_the_first_instant_act_in_a_static_start() {
     }
 }
 
-/// Two feet land at once and stick. How they share the friction between them is any solver's choice, so that one may seem to give
-/// energy: nothing comes back of it.
+/// Two feet land at once and stick. How they share the friction between them is any solver's
+/// choice, so that one may seem to give energy: nothing comes back of it.
 #[test]
 fn what_lands_flat_and_sticks_has_landed() {
     for friction in ["3", "5", "1000"] {

@@ -1,4 +1,5 @@
-//! Scenes run in memory: the numbers of an independent implementation, and what every scenario must keep.
+//! Scenes run in memory: the numbers of an independent implementation, and what every scenario must
+//! keep.
 
 use serde_json::Value;
 use std::ops::ControlFlow;
@@ -258,8 +259,9 @@ fn gauss_seidel_gives_the_motion_of_the_exact_solver() {
 
 #[test]
 fn a_static_start_stays_in_equilibrium_while_the_block_is_upright() {
-    // Off the middle, so that the two feet share the weight unevenly; held upright by the couple of the two feet
-    // themselves as long as both carry. A step then changes nothing but by the tilt that the sag would bring.
+    // Off the middle, so that the two feet share the weight unevenly; held upright by the couple of
+    // the two feet themselves as long as both carry. A step then changes nothing but by the tilt
+    // that the sag would bring.
     for (surface, kinematics) in [("axis", "deformed"), ("axis", "linear"), ("top", "deformed"), ("top", "linear")] {
         let simulation = scenario(
             "free-rocking-on-beam",
@@ -269,7 +271,8 @@ fn a_static_start_stays_in_equilibrium_while_the_block_is_upright() {
         simulation.model.candidates(&simulation.state.q, 1e-12, &mut candidates).unwrap();
         assert_eq!(candidates.len(), 2, "both feet touch ({surface}, {kinematics})");
         assert!(candidates.iter().all(|c| c.gap.abs() < 1e-14), "{candidates:?}");
-        // Symmetric: half the weight under each foot, and the beam's strain energy is half the work of the weight.
+        // Symmetric: half the weight under each foot, and the beam's strain energy is half the work
+        // of the weight.
         let place = &simulation.layout.beams[0];
         let q = &simulation.state.q[place.range.clone()];
         let sag = -place.beam.deflection_at(q, 0.165).unwrap().w;

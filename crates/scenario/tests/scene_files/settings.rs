@@ -48,7 +48,7 @@ fn wrong_settings_cite_themselves() {
         [
             "--set time.end=2 time.end: a time needs its unit, got a bare number",
             "--set beam.table.thicknes=1 mm beam.table.thicknes: unknown key",
-            "--set beam.tabel.width=1 cm beam.tabel: not in the file, and as a new table it lacks material, span, thickness, elements",
+            "--set beam.tabel.width=1 cm beam.tabel: this table is not in the file, and as a new table it lacks material, span, thickness, elements",
             "--set beam=2 beam: a name and a key are missing",
             "--set beam.table=2 beam.table: this is a table, got an integer",
             "--set contact.feet.friction=-1 contact.feet.friction: must be at least 0",

@@ -67,7 +67,8 @@ fn every_joint_bears_the_weight_above_it() {
     }
 }
 
-/// Case S5 of the reference: five blocks of half the height, at rest for a second, by the scheme of the theory page.
+/// Case S5 of the reference: five blocks of half the height, at rest for a second, by the scheme of
+/// the theory page.
 #[test]
 fn every_scheme_keeps_a_stack_at_rest() {
     let repeat = "on = 'ground'\nat = '0 m'\nrepeat = { count = 5, stacked = true }";
@@ -167,7 +168,8 @@ fn patterns_join_what_is_not_joined_by_name() {
     assert_eq!(joined, expected.map(|(name, between)| (name, between.to_owned())));
 }
 
-/// Two blocks in free flight that meet and glide off each other: where a corner passes the end of a side is an event.
+/// Two blocks in free flight that meet and glide off each other: where a corner passes the end of a
+/// side is an event.
 #[test]
 fn a_corner_that_glides_off_a_side_is_located() {
     let text = "[time]\nend = '0.3 s'\nstep = '1 ms'\n[world]\ngravity = '0 m/s^2'\n[ground]\n[material.a]\ndensity = '1000 kg/m^3'\n\
@@ -185,7 +187,8 @@ fn a_corner_that_glides_off_a_side_is_located() {
     };
     let off = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     let reference = end("event-driven", "10 us", true);
-    // They did touch, and what touched has parted: the spins have changed, and the motion is not that of a free flight.
+    // They did touch, and what touched has parted: the spins have changed, and the motion is not
+    // that of a free flight.
     assert!(off(&reference[..1], &[-1.4975 + 3.0709 * 0.3]) > 0.1, "{reference:?}");
     for (step, order) in [("1 ms", true), ("100 us", true), ("1 ms", false)] {
         let off = off(&end("event-driven", step, order), &reference);

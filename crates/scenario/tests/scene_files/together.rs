@@ -66,7 +66,7 @@ fn what_was_refused_is_not_missing_as_well() {
 #[test]
 fn a_place_is_asked_for_where_a_block_stands_on_something() {
     let found = told(&[("at       = \"18 cm\"", "")], &[]);
-    assert_eq!(found, ["block.rocker.at: missing, where on is given"]);
+    assert_eq!(found, ["block.rocker.at: required with on"]);
 }
 
 #[test]

@@ -70,7 +70,7 @@ fn tables_with_more_in_a_step_than_it_shows_are_warned_of() {
     let slow = table((0..=600).map(|k| (f64::from(k), f64::from(k).sin())));
     let found = resolved(&format!("{BLOCK}{push}"), &slow);
     assert!(found.warnings.is_empty() && found.notes.len() == 1, "{:?} {:?}", found.warnings, found.notes);
-    assert!(found.notes[0].rule.contains("goes on to 600 s, 1.2e3 times the run"), "{}", found.notes[0].rule);
+    assert!(found.notes[0].rule.contains("extends to 600 s, 1.2e3 times the run"), "{}", found.notes[0].rule);
     let found = resolved(&format!("{BLOCK}{push}"), &format!("t [ms], F\n{slow}"));
     assert!(found.notes.is_empty(), "with its unit it is no longer than the run");
 }
@@ -144,8 +144,8 @@ fn thousands_of_unused_signals_make_twenty_warnings() {
     let signals: String = (0..5000).map(|k| format!("[signal.s{k}]\nshape = 'constant'\n")).collect();
     let found = warned(&signals, "");
     assert_eq!(found.len(), 20);
-    assert_eq!(found[0], ("signal.s0".to_owned(), "nothing uses this signal".to_owned()));
-    assert_eq!(found[19].1, "nothing uses this signal, nor 4980 more");
+    assert_eq!(found[0], ("signal.s0".to_owned(), "this signal is not used".to_owned()));
+    assert_eq!(found[19].1, "this signal is not used, nor 4980 more");
 }
 
 #[test]
@@ -199,9 +199,9 @@ fn what_a_step_keeps_of_a_signal_is_told_by_its_use() {
     let moving = BLOCK.replace("[ground]", "[ground]\nmotion = { velocity = ['1 m/s', '0 m/s'], signal = 's' }");
     let rule = |text: String| resolved(&text, "").warnings.remove(0).rule;
     let motion = rule(format!("{moving}{fast}"));
-    assert!(motion.contains("the place stays right") && !motion.contains("impulse"), "{motion}");
+    assert!(motion.contains("the position stays right") && !motion.contains("impulse"), "{motion}");
     let load = rule(format!("{BLOCK}{PUSH}shape = 'harmonic'\nfrequency = '1000 Hz'\n"));
-    assert!(load.contains("no impulse is lost") && !load.contains("place"), "{load}");
+    assert!(load.contains("no impulse is lost") && !load.contains("position"), "{load}");
 }
 
 #[test]

@@ -1,5 +1,6 @@
-//! What a run costs, by count: the same on every machine, so that work can't grow unseen. The counts that hold are in
-//! `work_counts.txt`; after a change that is meant, write them anew and read the difference:
+//! What a run costs, by count: the same on every machine, so that work can't grow unseen. The
+//! counts that hold are in `work_counts.txt`; after a change that is meant, write them anew and
+//! read the difference:
 //!
 //! ```text
 //! TEETER_WRITE_COUNTS=1 cargo test -p teeter-scenario --test scene_files work
@@ -10,8 +11,8 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use teeter_scenario::simulation::Simulation;
 
-/// A count may be above the one that holds by this part, and by this much: a contact that closes a step earlier by another machine's sine
-/// is no growth.
+/// A count may be above the one that holds by this part, and by this much: a contact that closes a
+/// step earlier by another machine's sine is no growth.
 const SLACK: (f64, u64) = (0.01, 3);
 
 /// Long enough for what a scene shows: impacts, sliding, rest.

@@ -5,7 +5,8 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 thread_local! {
-    // Per thread, so that tests beside this one don't count; const, so that the counter itself allocates nothing.
+    // Per thread, so that tests beside this one don't count; const, so that the counter itself
+    // allocates nothing.
     static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
     static BYTES: Cell<u64> = const { Cell::new(0) };
 }

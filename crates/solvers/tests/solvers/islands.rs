@@ -1,4 +1,5 @@
-//! Problems of many islands: dense and block-sparse are solved alike, and memory grows with the contacts, not with their square.
+//! Problems of many islands: dense and block-sparse are solved alike, and memory grows with the
+//! contacts, not with their square.
 
 use crate::allocations::{bytes_so_far, so_far};
 use proptest::prelude::*;
@@ -8,7 +9,8 @@ use teeter_contact::{
 };
 use teeter_solvers::{Auto, SOLVERS, plane_solver, space_solver};
 
-/// The problem of several bodies that stand apart, its contacts in any order: contact k of the result is `order[k]` of those in a row.
+/// The problem of several bodies that stand apart, its contacts in any order: contact k of the
+/// result is `order[k]` of those in a row.
 fn together<const D: usize>(bodies: &[Case<D>], order: &[usize]) -> Case<D> {
     let n = order.len();
     let of: Vec<(usize, usize)> =
@@ -44,7 +46,8 @@ where
 {
     let mut p = vec![Vector::zeros(); problem.contacts()];
     let outcome = Auto::new().solve(problem, &Stop::default(), &mut p);
-    // As in `conformance::run`: methods of a chain judge by velocities that they have summed themselves.
+    // As in `conformance::run`: methods of a chain judge by velocities that they have summed
+    // themselves.
     let judged = judge(problem, &p).global;
     assert!((outcome.residual.global - judged).abs() <= 1e-3 * judged + 1e-16, "{outcome:?} {judged:e}");
     (outcome, p)
@@ -112,8 +115,8 @@ fn islands_in_space_obey_the_law() {
     }
 }
 
-/// A row of blocks that stand apart on two corners each, posed as an integrator does: the pattern from the bodies that contacts touch,
-/// then the blocks.
+/// A row of blocks that stand apart on two corners each, posed as an integrator does: the pattern
+/// from the bodies that contacts touch, then the blocks.
 struct Row {
     incidence: Incidence,
     h: BlockSparse<2>,

@@ -1,5 +1,5 @@
-//! Random problems through every solver of the catalogue: the law contact by contact, a change of units, the order of
-//! contacts, and two solvers against each other.
+//! Random problems through every solver of the catalogue: the law contact by contact, a change of
+//! units, the order of contacts, and two solvers against each other.
 
 use crate::many::{in_other_units, turned};
 use nalgebra::DMatrix;
@@ -9,7 +9,8 @@ use teeter_contact::conformance::Case;
 use teeter_contact::{Block, ContactSolver, Law, Outcome, Stop, Vector, judge};
 use teeter_solvers::{SOLVERS, plane_solver, space_solver};
 
-/// A random problem: `H = J Jᵀ`, with J of `columns` columns; singular where those are fewer than its rows.
+/// A random problem: `H = J Jᵀ`, with J of `columns` columns; singular where those are fewer than
+/// its rows.
 #[derive(Clone, Debug)]
 struct Drawn {
     contacts: usize,
@@ -24,7 +25,8 @@ impl Drawn {
         &self.rows[(D * i + a) * self.columns..][..self.columns]
     }
 
-    /// q lies in the range of J, as the velocities of bodies do: else a singular problem may have no solution.
+    /// q lies in the range of J, as the velocities of bodies do: else a singular problem may have
+    /// no solution.
     fn case<const D: usize>(&self) -> Case<D> {
         let n = self.contacts;
         let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();
@@ -75,8 +77,8 @@ fn solve<const D: usize>(
     (outcome, p)
 }
 
-/// Signorini's and Coulomb's law in their cases, written out here once more, with nothing of the crate but the problem's
-/// numbers: violations relative to the problem's speed and impulse.
+/// Signorini's and Coulomb's law in their cases, written out here once more, with nothing of the
+/// crate but the problem's numbers: violations relative to the problem's speed and impulse.
 fn violation<const D: usize>(case: &Case<D>, p: &[Vector<D>]) -> f64 {
     let n = p.len();
     let velocity = |i: usize| (0..n).fold(case.q[i], |u, j| u + case.h[i * n + j] * p[j]);
@@ -90,7 +92,8 @@ fn violation<const D: usize>(case: &Case<D>, p: &[Vector<D>]) -> f64 {
         let (u, mu) = (velocity(i) / speed, case.mu[i]);
         let p = p[i] * (mean / speed);
         worst = worst.max(-u[0]).max(-p[0]).max(tangential(&p) - mu * p[0]);
-        // Pressing and separating, and friction that doesn't oppose a slide at its limit: as powers, which count what is both.
+        // Pressing and separating, and friction that doesn't oppose a slide at its limit: as
+        // powers, which count what is both.
         worst = worst.max((p[0] * u[0]).abs());
         let power: f64 = (1..D).map(|k| p[k] * u[k]).sum();
         worst = worst.max((power + mu * p[0].max(0.0) * tangential(&u)).abs());
@@ -117,7 +120,8 @@ fn obeys<const D: usize>(drawn: &Drawn) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// Other units of mass and speed, by powers of two: the same numbers but for the scale, and the same way there.
+/// Other units of mass and speed, by powers of two: the same numbers but for the scale, and the
+/// same way there.
 fn keeps_units<const D: usize>(drawn: &Drawn) -> Result<(), TestCaseError> {
     let case = drawn.case::<D>();
     let (mass, speed) = (1024.0, 1.0 / 4096.0);
@@ -135,8 +139,9 @@ fn keeps_units<const D: usize>(drawn: &Drawn) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// Condition number of H, and the largest μ for which De Saxcé's shift, of size μ‖u_T‖, can't outweigh H's smallest
-/// eigenvalue: below it the map p → û is strongly monotone, and the solution is unique.
+/// Condition number of H, and the largest μ for which De Saxcé's shift, of size μ‖u_T‖, can't
+/// outweigh H's smallest eigenvalue: below it the map p → û is strongly monotone, and the solution
+/// is unique.
 fn conditioning<const D: usize>(case: &Case<D>) -> (f64, f64) {
     let n = case.q.len();
     let h = DMatrix::from_fn(D * n, D * n, |r, c| case.h[r / D * n + c / D][(r % D, c % D)]);
@@ -181,8 +186,9 @@ fn agrees<const D: usize>(drawn: &Drawn) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// The same problems in every run, unless PROPTEST_RNG_SEED asks for others: of problems with friction and fewer degrees of
-/// freedom than impulses, `auto` fails on some two in a hundred thousand, and a build must not fail by chance.
+/// The same problems in every run, unless PROPTEST_RNG_SEED asks for others: of problems with
+/// friction and fewer degrees of freedom than impulses, `auto` fails on some two in a hundred
+/// thousand, and a build must not fail by chance.
 fn seed() -> RngSeed {
     match ProptestConfig::default().rng_seed {
         RngSeed::Random => RngSeed::Fixed(1),

@@ -1,5 +1,5 @@
-//! Random problems of several contacts, in the plane and in space: the law contact by contact, units, order, solvers that
-//! agree, starts that are no numbers.
+//! Random problems of several contacts, in the plane and in space: the law contact by contact,
+//! units, order, solvers that agree, starts that are no numbers.
 
 use proptest::prelude::*;
 use teeter_contact::conformance::{Case, check_law};
@@ -47,8 +47,8 @@ fn solve<const D: usize>(
     (outcome.status, outcome.iterations, p)
 }
 
-/// Lengths and masses in other units: H by 1/mass, q by speed. Powers of two, so that rounding is the same and all that
-/// can differ is a threshold that has a unit.
+/// Lengths and masses in other units: H by 1/mass, q by speed. Powers of two, so that rounding is
+/// the same and all that can differ is a threshold that has a unit.
 pub(crate) fn in_other_units<const D: usize>(case: &Case<D>, mass: f64, speed: f64) -> Case<D> {
     Case {
         name: case.name,
@@ -124,7 +124,8 @@ proptest! {
     #[test]
     fn a_single_contact_in_space_is_solved_at_once(case in cases::<3>(1, 3.0, 0.05)) {
         let (status, sweeps, p) = solve(&mut Pgs::new(), &case, 1e-11);
-        // What has H_NN > μ‖H_NT‖ has a solution, and the local solver finds it without a second visit.
+        // What has H_NN > μ‖H_NT‖ has a solution, and the local solver finds it without a second
+        // visit.
         let h = case.h[0];
         if h[(0, 0)] > case.mu[0] * h[(0, 1)].hypot(h[(0, 2)]) {
             prop_assert!(status == Status::Converged && sweeps <= 1, "{:?} {}", status, sweeps);
@@ -193,7 +194,8 @@ proptest! {
         entries in prop::collection::vec(-1.0..1.0f64, 9 * 9), q in prop::collection::vec(-1.0..1.0f64, 9),
         mu in prop::collection::vec(prop_oneof![Just(0.0), 0.0..2.0f64, Just(1e6)], 3),
     ) {
-        // Neither symmetric nor definite, but for a diagonal that pushes back nowhere; `solve` checks that converged is what the judge says.
+        // Neither symmetric nor definite, but for a diagonal that pushes back nowhere; `solve`
+        // checks that converged is what the judge says.
         let mut space = Case::<3> { name: "any", h: vec![], q: vec![], mu: mu.clone() };
         let mut plane = Case::<2> { name: "any", h: vec![], q: vec![], mu };
         for i in 0..3 {

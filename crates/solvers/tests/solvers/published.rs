@@ -1,4 +1,5 @@
-//! The projection, splitting and cone-program solvers on published problems; skipped where those aren't at hand.
+//! The projection, splitting and cone-program solvers on published problems; skipped where those
+//! aren't at hand.
 
 use crate::allocations::so_far;
 use std::path::Path;
@@ -89,7 +90,8 @@ fn alternating_directions_solve_hyperstatic_problems_to_rounding() {
     solve_all(&mut Admm::new(), &mut Admm::new(), 1e-4, PILES);
     solve_all(&mut Admm::new(), &mut Admm::new(), 1e-12, HYPERSTATIC);
     solve_all(&mut Admm::new(), &mut Admm::new(), 1e-12, EASY);
-    // Strongly asymmetric, from a file that holds half a matrix: the skew part lags, and it converges all the same.
+    // Strongly asymmetric, from a file that holds half a matrix: the skew part lags, and it
+    // converges all the same.
     solve_all(&mut Admm::new(), &mut Admm::new(), 1e-12, &["3d/LMGC_GlobalFrictionContactProblem00046.hdf5"]);
 }
 
@@ -162,7 +164,8 @@ fn a_solver_kept_over_steps_allocates_nothing() {
     }
 }
 
-/// The problems that any of Siconos' solvers solves to a tolerance, by the results that lie with them.
+/// The problems that any of Siconos' solvers solves to a tolerance, by the results that lie with
+/// them.
 fn solved_by_siconos(tolerance: &str) -> Vec<String> {
     let table = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/problems/siconos_baseline.csv");
     let Ok(text) = std::fs::read_to_string(&table) else {
@@ -181,7 +184,8 @@ fn solved_by_siconos(tolerance: &str) -> Vec<String> {
     names
 }
 
-/// With the default iterations, and with the law checked contact by contact on what is solved tightly.
+/// With the default iterations, and with the law checked contact by contact on what is solved
+/// tightly.
 #[test]
 fn auto_solves_what_any_siconos_solver_solves() {
     let (mut plane, mut space) = (plane_solver("auto").unwrap(), space_solver("auto").unwrap());

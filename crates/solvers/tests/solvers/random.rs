@@ -1,4 +1,5 @@
-//! Random plane problems: the law contact by contact, two solvers that agree, independence of order.
+//! Random plane problems: the law contact by contact, two solvers that agree, independence of
+//! order.
 
 use crate::many::turned;
 use nalgebra::{Matrix2, Vector2};
@@ -7,7 +8,8 @@ use teeter_contact::conformance::{Case, check_law};
 use teeter_contact::{ContactSolver, Status, Stop};
 use teeter_solvers::{Enumeration, Pgs};
 
-/// H = J Jᵀ with J of `2 n` rows and `m` columns: singular where m < 2n. A diagonal keeps each contact compliant.
+/// H = J Jᵀ with J of `2 n` rows and `m` columns: singular where m < 2n. A diagonal keeps each
+/// contact compliant.
 fn problem(n: usize, m: usize, rows: &[f64], q: &[f64], mu: &[f64]) -> Case<2> {
     let row = |i: usize, a: usize| &rows[(2 * i + a) * m..(2 * i + a + 1) * m];
     let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();
@@ -17,7 +19,8 @@ fn problem(n: usize, m: usize, rows: &[f64], q: &[f64], mu: &[f64]) -> Case<2> {
             h.push(Matrix2::from_fn(|a, b| dot(row(i, a), row(j, b))));
         }
     }
-    // q in the range of J, as a velocity of bodies is: else a singular problem may have no solution.
+    // q in the range of J, as a velocity of bodies is: else a singular problem may have no
+    // solution.
     let q = (0..n).map(|i| Vector2::new(dot(row(i, 0), q), dot(row(i, 1), q))).collect();
     Case { name: "random", h, q, mu: mu[..n].to_vec() }
 }
@@ -44,8 +47,8 @@ proptest! {
 
     #[test]
     fn enumeration_obeys_the_law(case in cases()) {
-        // With a large friction coefficient and coupled contacts a problem may have no solution (Painlevé); those drawn
-        // here are small enough to be rare, and then it has to say so.
+        // With a large friction coefficient and coupled contacts a problem may have no solution
+        // (Painlevé); those drawn here are small enough to be rare, and then it has to say so.
         let (status, p) = solve(&mut Enumeration::new(), &case, 1e-11);
         if status == Status::Converged {
             prop_assert_eq!(check_law(&case.problem().unwrap(), &p, 1e-9), Ok(()));
@@ -83,8 +86,9 @@ proptest! {
         }
     }
 
-    /// Much friction can leave a problem several velocities, and then the order may decide which is found; each obeys the law.
-    /// Where the velocities agree the impulses do: they are those of least norm.
+    /// Much friction can leave a problem several velocities, and then the order may decide which is
+    /// found; each obeys the law. Where the velocities agree the impulses do: they are those of
+    /// least norm.
     #[test]
     fn the_order_of_contacts_does_not_matter(case in cases()) {
         let n = case.q.len();
@@ -112,8 +116,9 @@ proptest! {
 
 #[test]
 fn the_impulses_of_least_norm_are_found_in_any_order() {
-    // Two frictionless contacts and one that may stick, on three degrees of freedom: one impulse too many. Of the states that
-    // fit, a slide with its friction at the limit lies at the end of the set of impulses, far from the least.
+    // Two frictionless contacts and one that may stick, on three degrees of freedom: one impulse
+    // too many. Of the states that fit, a slide with its friction at the limit lies at the end of
+    // the set of impulses, far from the least.
     let (a, b, c) = (0.2277068178427905, 1.13563331436215, 1.3367919806432091);
     let (ab, at, ac) = (-0.3362831737571558, -0.48590343038185024, -0.15499256031564718);
     let (bt, tt, bc, tc) = (1.0431597913182666, 1.2028062130608024, -0.3839208971356568, 0.024969537039786993);

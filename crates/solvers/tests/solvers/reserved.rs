@@ -1,5 +1,5 @@
-//! A solver that is kept allocates nothing for problems no larger than those before, or than what was reserved: proved by
-//! a counting allocator.
+//! A solver that is kept allocates nothing for problems no larger than those before, or than what
+//! was reserved: proved by a counting allocator.
 
 use crate::allocations::so_far;
 use teeter_contact::conformance::{Case, body_on_floor, box_on_floor, plane_cases, space_cases};

@@ -1,11 +1,13 @@
-//! Rigid blocks that stand on something that bends under them: their two corners can't both stick, but for the last digits.
+//! Rigid blocks that stand on something that bends under them: their two corners can't both stick,
+//! but for the last digits.
 
 use teeter_contact::conformance::Case;
 use teeter_contact::{Block, ContactSolver, Stop, Vector, judge};
 use teeter_solvers::Auto;
 
-/// Blocks of mass 1 in a row on a beam that gives way up and down only. Of each, one corner is lower by `lower`; as the beam tilts under
-/// it, the block has to turn, and its corners slide apart, at that part of the speed.
+/// Blocks of mass 1 in a row on a beam that gives way up and down only. Of each, one corner is
+/// lower by `lower`; as the beam tilts under it, the block has to turn, and its corners slide
+/// apart, at that part of the speed.
 fn blocks_on_a_beam(blocks: usize, lower: f64) -> Case<2> {
     let corners: Vec<(f64, f64, f64)> = (0..2 * blocks)
         .map(|k| {
@@ -53,7 +55,8 @@ fn corners_that_have_to_slide_by_the_last_digits_are_solved_at_once() {
     }
 }
 
-/// A block that rests on turning ground, a step of a run: two states of its corners fit to rounding, and only one of them to the last digits.
+/// A block that rests on turning ground, a step of a run: two states of its corners fit to
+/// rounding, and only one of them to the last digits.
 #[test]
 fn of_states_that_fit_to_rounding_the_one_that_fits_to_the_last_digits_is_found() {
     let h = [

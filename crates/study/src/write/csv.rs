@@ -1,11 +1,13 @@
-//! `tradeoff.csv`: a row a candidate.
+//! `tradeoff.csv`: one row per candidate.
 
 use crate::{Quantity, Tradeoff};
 use std::fmt::Write;
 
-/// The table, with its header: `number, stage, setting` (as arguments; empty: the scene as it is), a column for each error (empty where the scene doesn't have
-/// it), `steps, solves, contacts, iterations, unconverged_steps, modelled_ms` (counted work), `cpu_ms, cpu_ms_least, cpu_runs`, `front` (of
-/// accuracy over counted work: yes or no), `failure` (empty where it came to its end), `warnings` (what `check` and `run` warn of, with semicolons between).
+/// The table, with its header: `number, stage, setting` (as arguments; empty for the unchanged
+/// scene), a column for each error (empty if the scene doesn't have it),
+/// `steps, solves, contacts, iterations, unconverged_steps, modelled_ms` (counted work),
+/// `cpu_ms, cpu_ms_least, cpu_runs`, `front` (of accuracy over counted work: yes or no), `failure`
+/// (empty if it came to its end), `warnings` (of `check` and `run`, separated by semicolons).
 #[must_use]
 pub fn csv(study: &Tradeoff) -> String {
     let mut text = "number,stage,setting".to_owned();
@@ -51,7 +53,7 @@ pub fn csv(study: &Tradeoff) -> String {
     text
 }
 
-/// A field that holds whatever a text holds.
+/// Quotes a field for any text.
 fn quoted(field: &str) -> String {
     if field.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", field.replace('"', "\"\""))

@@ -1,19 +1,19 @@
-//! Error over time, both logarithmic, as SVG: a figure a quantity.
+//! Error over time, both logarithmic, as SVG: one figure per quantity.
 
 use super::short;
-use crate::{Quantity, Tradeoff, front};
+use crate::{Quantity, Tradeoff, pareto_front};
 use teeter_plot::{Axis, AxisError, Figure, Legend, Mark, Panel, Series, Theme};
 
 /// Errors below this are rounding: drawn at the bottom.
 const LEAST: f64 = 1e-15;
 
-/// Times below this are no clock's: drawn at the left. In s.
+/// Times below the resolution of clocks, drawn at the left, s.
 const SHORTEST: f64 = 1e-9;
 
 /// Height of the plot, mm.
 const HEIGHT: f64 = 57.0;
 
-/// Number of the colour, black, of what belongs to no scheme.
+/// Index of the colour black, for series that belong to no scheme.
 const BLACK: usize = 6;
 
 /// A candidate in the figure.
@@ -22,19 +22,19 @@ struct Point {
     time: f64,
     error: f64,
     scheme: usize,
-    /// Whether scheme and step alone are changed of the scene.
+    /// Whether only scheme and step are changed.
     plain: bool,
 }
 
-/// The figures for files, with their names: one for each quantity that the scene has.
+/// The figures for files, with their names: one for each quantity of the scene.
 ///
 /// # Errors
-/// [`AxisError`] if a measured time or error has no place on a logarithmic axis.
+/// [`AxisError`] if a measured time or error can't be shown on a logarithmic axis.
 pub fn figures(study: &Tradeoff) -> Result<Vec<(String, String)>, AxisError> {
     themed(study, Theme::Paper)
 }
 
-/// The figures in the colours of files, or of pages.
+/// The figures in the colours of files or of pages.
 pub(super) fn themed(study: &Tradeoff, theme: Theme) -> Result<Vec<(String, String)>, AxisError> {
     let shown = Quantity::ALL.into_iter().map(|quantity| (quantity, points(study, quantity)));
     let figure = |(quantity, points): (Quantity, Vec<Point>)| {
@@ -66,9 +66,9 @@ fn figure(study: &Tradeoff, quantity: Quantity, points: &[Point]) -> Result<Figu
         format!("{}, relative error", quantity.title()),
         points.iter().map(|point| point.error).chain(bar),
     )?;
-    // The least error that can be had within each time.
+    // The smallest error achievable within each time.
     let all: Vec<(f64, f64)> = points.iter().map(|point| (ms(point), point.error)).collect();
-    let steps = front(&all).into_iter().map(|k| all[k]);
+    let steps = pareto_front(&all).into_iter().map(|k| all[k]);
     let mut series = vec![Series::staircase("least error within the time", steps, x.ends().1).number(BLACK)];
     let axis = &study.axes.scheme;
     for (number, option) in axis.options.iter().enumerate() {

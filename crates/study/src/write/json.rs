@@ -1,7 +1,8 @@
-//! `tradeoff.json`: reference, error bars, horizon, advice, pruning; the rows are in `tradeoff.csv`.
+//! `tradeoff.json`: reference, error bars, horizon, advice, pruning; the rows are in
+//! `tradeoff.csv`.
 
 use super::{advice, pruning};
-use crate::{Advice, Errors, NUDGE, Quantity, Setting, TARGETS, Tradeoff, Warned};
+use crate::{Advice, Errors, PERTURBATION, Quantity, Setting, SettingWarning, TARGETS, Tradeoff};
 use serde_json::{Map, Value, json};
 
 /// The study as JSON text. Numbers that are not finite are null.
@@ -60,12 +61,12 @@ pub fn json(study: &Tradeoff) -> String {
         "end": study.end,
         "step": study.step,
         "set": study.sets.iter().map(|(key, value)| (key.clone(), value.clone().into())).collect::<Map<String, Value>>(),
-        "horizon": reference.ruler.horizon(),
+        "horizon": reference.norms.horizon(),
         "whole": reference.whole,
         "horizon_share": reference.share,
         "first_impact": reference.first_impact.map(|impact| json!({ "block": impact.block, "t": impact.t, "until": impact.until })),
         "first_impacts_compared": reference.has_first_impacts(),
-        "nudge": NUDGE,
+        "perturbation": PERTURBATION,
         "sample_every": study.sampling.every,
         "reference": {
             "setting": setting(&reference.setting), "checks": checks, "warnings": warnings(&reference.warned)
@@ -75,14 +76,14 @@ pub fn json(study: &Tradeoff) -> String {
         "recommendations": recommendations,
         "candidates": study.rows.len(),
         "grid": study.grid(),
-        "too_dear": study.too_dear.len(),
+        "too_expensive": study.too_expensive.len(),
         "pruning": pruning(study),
     });
     // A value of strings, finite numbers and nulls always serialises.
     serde_json::to_string_pretty(&value).unwrap_or_default() + "\n"
 }
 
-fn warnings(warned: &[Warned]) -> Value {
+fn warnings(warned: &[SettingWarning]) -> Value {
     warned.iter().map(|warned| Value::from(warned.text.as_str())).collect()
 }
 

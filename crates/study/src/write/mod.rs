@@ -1,4 +1,4 @@
-//! What a study writes: a table, the same as JSON, figures, a page, and the sentences for people.
+//! Output of a study: a table, the same as JSON, figures, a page, and sentences for users.
 
 mod csv;
 mod figure;
@@ -12,7 +12,7 @@ pub use json::json;
 pub use page::page;
 pub use sentences::{advice, findings, pruning};
 
-/// All files that a study may write; which of the figures, depends on its scene.
+/// All files that a study may write; the figures depend on its scene.
 pub const FILES: [&str; 13] = [
     "tradeoff.json",
     "tradeoff.csv",
@@ -29,7 +29,7 @@ pub const FILES: [&str; 13] = [
     "scene.toml",
 ];
 
-/// A number with two significant digits, as people write it.
+/// A number with two significant digits.
 pub(crate) fn short(x: f64) -> String {
     if x == 0.0 || !x.is_finite() {
         return x.to_string();
@@ -38,12 +38,12 @@ pub(crate) fn short(x: f64) -> String {
     if (1e-3..1e4).contains(&rounded.abs()) { format!("{rounded}") } else { format!("{rounded:e}") }
 }
 
-/// A part as a percentage with two significant digits.
+/// A fraction as a percentage with two significant digits.
 pub(crate) fn percent(x: f64) -> String {
     format!("{} %", short(100.0 * x))
 }
 
-/// A time with two significant digits and the unit that suits it.
+/// A time with two significant digits and a suitable unit.
 pub(crate) fn duration(seconds: f64) -> String {
     const UNITS: [(f64, &str); 3] = [(1.0, "s"), (1e3, "ms"), (1e6, "µs")];
     let (factor, unit) = UNITS.into_iter().find(|(factor, _)| seconds * factor >= 0.9995).unwrap_or(UNITS[2]);

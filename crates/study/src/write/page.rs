@@ -1,4 +1,4 @@
-//! `tradeoff.html`: one page that loads nothing, in the style of a run's report.
+//! `tradeoff.html`: a self-contained page in the style of a run's report.
 
 use super::figure::themed;
 use super::{advice, duration, findings, percent, pruning, short};
@@ -18,7 +18,7 @@ td:first-child, td:last-child { text-align: left; }\n";
 /// The page.
 ///
 /// # Errors
-/// As of [`figures`](super::figures).
+/// As [`figures`](super::figures).
 pub fn page(study: &Tradeoff) -> Result<String, AxisError> {
     let title = escaped(&format!("Speed against accuracy: {}", study.title));
     let mut html = format!(
@@ -32,16 +32,18 @@ pub fn page(study: &Tradeoff) -> Result<String, AxisError> {
         study.end,
         env!("CARGO_PKG_VERSION")
     );
-    html.push_str("<section id=\"advice\" class=\"panel\"><h3>What to take</h3>\n<ul>\n");
+    html.push_str("<section id=\"advice\" class=\"panel\"><h3>Advice</h3>\n<ul>\n");
     for sentence in advice(study) {
         let _ = writeln!(html, "<li>{}</li>", with_code(&sentence));
     }
-    html.push_str("</ul></section>\n<section id=\"findings\" class=\"panel\"><h3>What that rests on</h3>\n<ul>\n");
+    html.push_str(
+        "</ul></section>\n<section id=\"findings\" class=\"panel\"><h3>How the numbers are obtained</h3>\n<ul>\n",
+    );
     for sentence in findings(study) {
         let _ = writeln!(html, "<li>{}</li>", with_code(&sentence));
     }
     html.push_str(
-        "</ul></section>\n<section class=\"panel\"><h3>Error over CPU time</h3>\n<p class=\"note\">A point is a candidate whose time was measured, the line the least error within a time; grey: \
+        "</ul></section>\n<section class=\"panel\"><h3>Error over CPU time</h3>\n<p class=\"note\">A point is a candidate with a measured time, the line the smallest error within a time; grey: \
          below what the reference is known to.</p>\n<div id=\"front\">\n",
     );
     for (_, svg) in themed(study, Theme::Page)? {
@@ -54,7 +56,7 @@ pub fn page(study: &Tradeoff) -> Result<String, AxisError> {
     for quantity in Quantity::ALL {
         let _ = writeln!(html, "<dt>{}</dt><dd>{}</dd>", quantity.title(), escaped(quantity.norm()));
     }
-    html.push_str("</dl></section>\n<section class=\"panel\"><h3>What was tried</h3>\n<ul>\n");
+    html.push_str("</dl></section>\n<section class=\"panel\"><h3>Settings tried</h3>\n<ul>\n");
     for sentence in pruning(study) {
         let _ = writeln!(html, "<li>{}</li>", escaped(&sentence));
     }
@@ -68,7 +70,7 @@ pub fn page(study: &Tradeoff) -> Result<String, AxisError> {
     Ok(html)
 }
 
-/// The settings in a sentence, which stand between backquotes, as code.
+/// The settings in a sentence, between backquotes, as code.
 fn with_code(sentence: &str) -> String {
     let mut html = String::new();
     for (number, piece) in sentence.split('`').enumerate() {
@@ -96,9 +98,9 @@ fn errors(html: &mut String, errors: &crate::Errors) {
 
 fn checks(html: &mut String, study: &Tradeoff) {
     html.push_str(
-        "<section id=\"checks\" class=\"panel\"><h3>How well the reference is known</h3>\n<div class=\"scroll\" tabindex=\"0\"><table>\n",
+        "<section id=\"checks\" class=\"panel\"><h3>Accuracy of the reference</h3>\n<div class=\"scroll\" tabindex=\"0\"><table>\n",
     );
-    header(html, &["Against the reference", "agrees until"], &["Setting"]);
+    header(html, &["ReferenceComparison the reference", "agrees until"], &["Setting"]);
     for check in &study.reference.checks {
         let _ = write!(html, "<tr><td>{}</td><td>{} s</td>", escaped(check.what), short(check.agrees_until));
         errors(html, &check.errors);
@@ -109,13 +111,13 @@ fn checks(html: &mut String, study: &Tradeoff) {
 
 fn candidates(html: &mut String, study: &Tradeoff) {
     html.push_str(
-        "<section id=\"candidates\" class=\"panel\"><h3>The candidates</h3>\n<p class=\"note\">Bold: on the front of accuracy over counted work. Of the later stages those that \
+        "<section id=\"candidates\" class=\"panel\"><h3>The candidates</h3>\n<p class=\"note\">Bold: on the Pareto front of accuracy over counted work. Of the later stages, those that \
          were near the front; tradeoff.csv has all. A setting that `check` or `run` \
          warns of is not advised.</p>\n\
          <div class=\"scroll\" tabindex=\"0\"><table>\n",
     );
     header(html, &["Stage"], &["CPU time", "by counted work", "Setting"]);
-    // Of hundreds, those that say something; the table in the file has all.
+    // Only the informative ones of hundreds; the table in the file has all.
     let shown = |number: usize, row: &crate::Row| {
         row.stage <= 2 || row.cpu.is_some() || row.result.is_err() || study.front.contains(&number)
     };
@@ -123,7 +125,7 @@ fn candidates(html: &mut String, study: &Tradeoff) {
         let class = if study.front.contains(&number) { " class=\"on\"" } else { "" };
         let _ = write!(html, "<tr{class}><td>{}</td>", row.stage);
         let setting =
-            if row.setting.is_none() { "the scene as it is".to_owned() } else { escaped(&row.setting.to_string()) };
+            if row.setting.is_none() { "the unchanged scene".to_owned() } else { escaped(&row.setting.to_string()) };
         match &row.result {
             Ok(done) => {
                 errors(html, &done.errors);
@@ -147,7 +149,7 @@ fn candidates(html: &mut String, study: &Tradeoff) {
     }
     let _ = writeln!(
         html,
-        "</tbody></table></div><p class=\"note\">Accuracies below {} are not known.</p></section>",
+        "</tbody></table></div><p class=\"note\">Accuracies below {} can't be measured.</p></section>",
         percent(study.bar())
     );
 }

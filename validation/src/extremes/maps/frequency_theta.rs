@@ -85,20 +85,20 @@ pub(super) fn map() -> Result<Map> {
         wrong.push(!(error(&rock(Scheme::CLOSED, 0.5, steps)?, &reference) <= ERROR));
     }
     let closed = border(&wrong);
-    let told = |points: &[(f64, f64)], theta: f64| {
+    let limit = |points: &[(f64, f64)], theta: f64| {
         let at = points.iter().find(|point| point.1 == theta);
         at.map_or("none of the steps tried".to_owned(), |point| format!("{:.2e}", point.0))
     };
     let says = format!(
         "Within 10 % of the angle up to f·dt = {} at θ = ½, {} at θ = ¾, {} at θ = 1 with moreau-jean, and up to {} with \
-         moreau-jean-closed; θ above ½ buys no longer step. Contacts give less than 1 % of the energy up to {} at θ = ½ and {} at \
-         θ = 1.",
-        told(&accurate, 0.5),
-        told(&accurate, 0.75),
-        told(&accurate, 1.0),
+         moreau-jean-closed; θ above ½ allows no longer steps. Contacts generate less than 1 % of the energy up to {} at θ = ½ \
+         and {} at θ = 1.",
+        limit(&accurate, 0.5),
+        limit(&accurate, 0.75),
+        limit(&accurate, 1.0),
         closed.map_or("none of the steps tried".to_owned(), |f_dt| format!("{f_dt:.2e}")),
-        told(&gaining, 0.5),
-        told(&gaining, 1.0),
+        limit(&gaining, 0.5),
+        limit(&gaining, 1.0),
     );
     let mut series = vec![
         Series::marks("10 % of the angle, moreau-jean", accurate.clone()),
@@ -111,10 +111,11 @@ pub(super) fn map() -> Result<Map> {
     }
     Ok(Map {
         title: "f·dt × θ",
-        about: "The paper's scene from its static start (e = 0) up to 0.15 s, so through its first impacts, against moreau-jean-closed at 1 µs: \
-                the border of the steps that keep the angle within 10 % of its largest value at every 5 ms, and of those in which all gains by \
-                contact together are under 1 % of the energy scale. f is the beam's first frequency, 26.5 Hz. Right of a border at least one \
-                step fails; steps are 5 ms over 1 to 250, the border between two of them.",
+        about: "The paper's scene from its static start (e = 0) up to 0.15 s, which includes its first impacts, \
+             compared with moreau-jean-closed at 1 µs: the largest steps with errors of the angle within 10 % of its \
+             largest value, compared every 5 ms, and those with a total energy gain by contact below 1 % of the \
+             energy scale. f is the beam's first frequency, 26.5 Hz. Right of a limit at least one step fails; the \
+             steps are 5 ms divided by 1 to 250, and limits lie between two of them.",
         says,
         figures: vec![Figure {
             file: "extremes-frequency-theta.svg",

@@ -94,9 +94,11 @@ pub(super) fn map() -> Result<Map> {
     };
     Ok(Map {
         title: "Mass ratio × iterations of each solver",
-        about: "A tower of eight points (for `enumeration` three, its limit), the topmost heavier or lighter than the rest by the ratio, falling on \
-                the floor while each second is pushed aside: H and q given to every solver of the exact law, from zero impulses, tolerance 1e-8, 100 000 iterations \
-                at most. What an iteration is differs from solver to solver ([solvers.md](solvers.md)); each is judged by the same residual.",
+        about: "A tower of eight points (three for `enumeration`, its limit), the topmost heavier or lighter than the \
+             others by the ratio, falling on the floor while every second point is pushed sideways: H and q are \
+             given to every solver of the exact law, from zero impulses, tolerance 1e-8, at most 100 000 iterations. \
+             The meaning of an iteration differs between solvers ([solvers.md](solvers.md)); all are judged by the \
+             same residual.",
         says,
         figures: vec![
             figure("extremes-mass-few.svg", "Solvers that need few iterations", &solved[..half]),

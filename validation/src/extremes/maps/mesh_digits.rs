@@ -88,8 +88,8 @@ pub(super) fn map() -> Result<Map> {
     let told = |n: usize| if n == MESHES[MESHES.len() - 1] { format!("{n} and more") } else { n.to_string() };
     let finest = |points: &[(f64, f64)]| points.last().map_or(f64::NAN, |point| point.1);
     let says = format!(
-        "One solve keeps six digits up to {} elements in statics, {} in a step of 10 ms and {} in one of 100 µs; refined, as a static start is, \
-         {:.0e} is lost at 2000 elements (one solve: {:.0e}).",
+        "One solve keeps six digits up to {} elements in statics, {} in a step of 10 ms and {} in one of 100 µs; with refinement, as for a \
+         static start, {:.0e} is lost at 2000 elements (one solve: {:.0e}).",
         told(kept[0]),
         told(kept[1]),
         told(kept[2]),
@@ -106,13 +106,14 @@ pub(super) fn map() -> Result<Map> {
     series.extend(names.into_iter().zip(of_steps).map(|(name, points)| Series::curve(name, points)));
     Ok(Map {
         title: "n_el × digits lost",
-        about: "A cantilever with the section of the paper's beam, of all supports the one that loses most, under a force at 0.3 of the span: the worst \
-                node against the closed form, which cubic elements meet exactly, so all of it is rounding; and what the program estimates of itself, which `check` warns \
-                of below six digits. For a step the matrix has the mass too.",
+        about: "A cantilever with the section of the paper's beam, the supports that lose most digits, under a force \
+             at 0.3 of the span: the largest nodal error relative to the closed form, which is all rounding, as \
+             cubic elements are exact there; and the program's own estimate, of which `check` warns below six \
+             digits. For a step the matrix includes the mass.",
         says,
         figures: vec![Figure {
             file: "extremes-mesh-digits.svg",
-            title: "What rounding takes of a solve",
+            title: "Digits lost to rounding in a solve",
             x: "Elements",
             y: "Error / largest deflection",
             axes: Axes::Logarithmic,

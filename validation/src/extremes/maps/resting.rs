@@ -76,7 +76,7 @@ pub(super) fn map() -> Result<Map> {
             format!("On {on} with {} the block rests at every step and restitution.", scheme.word())
         } else {
             format!(
-                "On {on} with {} it goes on buzzing in {} of {} cases, from e = {least} up, at up to {worst:.0e} g·dt.",
+                "On {on} with {} it keeps buzzing in {} of {} cases, from e = {least} up, at up to {worst:.0e} g·dt.",
                 scheme.word(),
                 buzzes.len(),
                 buzzes.len() + rests.len()
@@ -106,9 +106,10 @@ pub(super) fn map() -> Result<Map> {
     }
     Ok(Map {
         title: "dt × restitution at rest",
-        about: "A cube of 3 cm, tilted by 2°, is thrown up at 0.05 m/s from rigid ground, and from the paper's beam. The bounces of a point end at 2v/(g(1 − e)); four times as \
-                long and a second more, 1000 steps at least, it is let be, and watched for the last 500 steps. It buzzes where it is faster than 1e-6 g·dt; on the beam, \
-                which goes on swinging for longer, where a contact still closes anew faster than that.",
+        about: "A cube of 3 cm, tilted by 2°, is thrown up at 0.05 m/s from rigid ground, and from the paper's beam. \
+             The bounces of a point end at 2v/(g(1 − e)); the run is four times as long plus a second, at least 1000 \
+             steps, and its last 500 steps are examined. The block buzzes if it is faster than 1e-6 g·dt; on the \
+             beam, which vibrates for longer, if a contact still closes faster than that.",
         says: says.join(" "),
         figures,
     })

@@ -81,9 +81,9 @@ impl BeamCompliance {
     }
 }
 
-fn refusal(weights: Weights, error: &teeter_beam::FactorError) -> FactorError {
+fn refusal(weights: Weights, error: &teeter_beam::CholeskyError) -> FactorError {
     let mut reason = error.to_string();
-    if let teeter_beam::FactorError::MissingFeature { .. } = error {
+    if let teeter_beam::CholeskyError::MissingFeature { .. } = error {
         reason += ", which the feature `sparse` of teeter-integrator switches on";
     }
     FactorError { weights, reason }
@@ -443,7 +443,7 @@ mod tests {
     /// The tests have the feature, so the error is that of a beam without.
     #[test]
     fn a_missing_backend_is_refused_with_the_feature_that_brings_it() {
-        let error = teeter_beam::FactorError::MissingFeature { backend: Backend::Sparse, feature: "faer" };
+        let error = teeter_beam::CholeskyError::MissingFeature { backend: Backend::Sparse, feature: "faer" };
         let text = refusal(WEIGHTS, &error).to_string();
         assert!(["Sparse", "`faer` of teeter-beam", "`sparse` of teeter-integrator"].iter().all(|s| text.contains(s)));
     }

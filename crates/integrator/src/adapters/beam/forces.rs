@@ -11,7 +11,8 @@
 //! phase, and balance to rounding. If a step takes forces and impulses together, the impulse p of
 //! an impact is spread over it as p/τ: its peaks grow as the step shrinks.
 
-use super::line::lift_and_turn;
+use super::BEAM_BODIES;
+use super::line::{lift_and_turn, section_of};
 use crate::{Contact, Phase, State, StepReport, Vector};
 use std::ops::Range;
 use std::sync::Arc;
@@ -59,7 +60,7 @@ pub struct BeamForces {
 const LOADS: usize = 32;
 
 impl BeamForces {
-    /// For the beam that is `body`, with its coordinates at `range` of the state.
+    /// For the beam whose first body is `body`, with its coordinates at `range` of the state.
     #[must_use]
     pub fn new(beam: &Arc<Beam>, body: BodyId, range: Range<usize>) -> Self {
         let none = vec![0.0; beam.dofs()];
@@ -141,12 +142,16 @@ impl BeamForces {
         &self.v_mean
     }
 
-    /// A force on a point of a beam's surface, in a contact's frame (N), as a load on the axis of a
-    /// beam of this span (m).
+    /// A force on a point of a beam's upper surface, in a contact's frame (N), as a load on the
+    /// axis of a beam of this span (m).
     #[must_use]
     pub fn surface_load(side: &Anchor<2>, frame: &Frame<2>, force: &Vector<2>, span: f64) -> SpanLoad {
-        let [up, turn] = lift_and_turn(&side.point, frame);
-        SpanLoad::Point { x: side.point.x.clamp(0.0, span), force: up.dot(force), couple: turn.dot(force) }
+        load_on_axis(&side.point, frame, &frame.row(0).transpose(), force, span)
+    }
+
+    /// Whether a body is one of the beam's.
+    fn is_own(&self, body: BodyId) -> bool {
+        (body.0.wrapping_sub(self.body.0) as usize) < BEAM_BODIES
     }
 
     /// The section forces of a state: those of a beam at rest in equilibrium under its loads and
@@ -163,7 +168,7 @@ impl BeamForces {
             }
             self.span_loads.extend_from_slice(pressing);
         }
-        let actions = Actions { q: &self.q[1], loads: &self.span_loads, ..Actions::default() };
+        let actions = Actions::at(&self.q[1]).with_loads(&self.span_loads);
         self.forces.update(&self.beam, &actions)?;
         Ok(&self.forces)
     }
@@ -186,8 +191,8 @@ impl BeamForces {
     }
 
     /// The section forces of a step, as means over all of its phases that take time: of a step in
-    /// several parts, the mean of theirs by their durations. Impacts, which take no time, are not in
-    /// it. `None` for a step without such a phase. Of a step in one phase it is what
+    /// several parts, the mean of theirs by their durations. Impacts, which take no time, are not
+    /// in it. `None` for a step without such a phase. Of a step in one phase it is what
     /// [`enter`](Self::enter) gives.
     ///
     /// # Errors
@@ -217,7 +222,6 @@ impl BeamForces {
         if let Some(loads) = &self.loads {
             loads.add_mean(times, &mut self.span_loads);
         }
-        let span = self.beam.spec().span;
         let mut tension = 0.0;
         for phase in phases {
             let (part, weight) = (phase.duration / whole, phase.balance.weight());
@@ -257,28 +261,28 @@ impl BeamForces {
                 let lift = (phase.v[1][y] - phase.v[0][y]) / whole;
                 self.acceleration[..2 * self.beam.nodes()].iter_mut().step_by(2).for_each(|a| *a += lift);
             }
-            self.span_loads.extend(phase.contacts.iter().flat_map(|contact| pushes(contact, self.body, span, whole)));
+            let mut loads = std::mem::take(&mut self.span_loads);
+            loads.extend(phase.contacts.iter().flat_map(|contact| self.pushes(contact, whole)));
+            self.span_loads = loads;
         }
-        let actions = Actions {
-            q: &self.q_mean,
-            velocity: &self.v_mean,
-            acceleration: &self.acceleration,
-            loads: &self.span_loads,
-            tension: self.beam.is_stretched().then_some(tension),
-        };
+        let actions = Actions::at(&self.q_mean)
+            .with_velocity(&self.v_mean)
+            .with_acceleration(&self.acceleration)
+            .with_loads(&self.span_loads)
+            .with_tension(self.beam.is_stretched().then_some(tension));
         self.forces.update(&self.beam, &actions)
     }
 
-    /// What the deflection adds to the axial force of a beam held along its axis in a phase from the
-    /// dofs that were read to `end`, N: the mean of both, EA/(4L) (s⁰ + s¹).
+    /// What the deflection adds to the axial force of a beam held along its axis in a phase from
+    /// the dofs that were read to `end`, N: the mean of both, EA/(4L) (s⁰ + s¹).
     fn tension_between(&self, end: &[f64]) -> f64 {
         let ends = [&self.q[0], end].map(|q| self.beam.slope_form(q, q));
         0.5 * self.beam.stretching_stiffness() * (ends[0] + ends[1])
     }
 
     /// The same where the scheme knows the mean of the coordinates, which is in `known` and becomes
-    /// the end that it is the mean towards, q̄ = w q¹ + (1 − w) q⁰: the coordinates at the end of the
-    /// phase may have been projected to elsewhere.
+    /// the end that it is the mean towards, q̄ = w q¹ + (1 − w) q⁰: the coordinates at the end of
+    /// the phase may have been projected to elsewhere.
     fn tension_towards_known(&mut self, weight: f64) -> f64 {
         if !self.beam.is_stretched() || weight <= 0.0 {
             return 0.0;
@@ -316,14 +320,22 @@ impl BeamForces {
     fn basis_dofs(&self) -> usize {
         self.basis.as_ref().map_or(self.beam.dofs(), |basis| basis.shape(0).len())
     }
+
+    /// The loads on the beam by a contact's impulse, spread over h: one for each side that is the
+    /// beam's.
+    fn pushes(&self, contact: &Contact<2>, h: f64) -> impl Iterator<Item = SpanLoad> + use<'_> {
+        let Contact { sides, frame, p, .. } = *contact;
+        sides.into_iter().zip([1.0, -1.0]).filter(|(side, _)| self.is_own(side.body)).map(move |(side, sign)| {
+            let number = side.body.0.wrapping_sub(self.body.0);
+            let section = section_of(&*self.beam, (number, &self.q[1]), &side.point, &frame);
+            load_on_axis(&side.point, &frame, &section, &(p * (sign / h)), self.beam.spec().span)
+        })
+    }
 }
 
-/// The loads on a beam by a contact's impulse, spread over h: one for each side that is the beam's.
-fn pushes(contact: &Contact<2>, body: BodyId, span: f64, h: f64) -> impl Iterator<Item = SpanLoad> {
-    let Contact { sides, frame, p, .. } = *contact;
-    sides
-        .into_iter()
-        .zip([1.0, -1.0])
-        .filter(move |(side, _)| side.body == body)
-        .map(move |(side, sign)| BeamForces::surface_load(&side, &frame, &(p * (sign / h)), span))
+/// A force in a contact's frame (N) on a point of a beam whose section there has this normal, as a
+/// load on the axis.
+fn load_on_axis(point: &Vector<2>, frame: &Frame<2>, section: &Vector<2>, force: &Vector<2>, span: f64) -> SpanLoad {
+    let [up, turn] = lift_and_turn(point, frame, section);
+    SpanLoad::Point { x: point.x.clamp(0.0, span), force: up.dot(force), couple: turn.dot(force) }
 }

@@ -1,7 +1,7 @@
 //! The contact kinematics of a straight beam (`docs/theory.md` §3), whatever its coordinates:
 //! elements or modes.
 
-use super::BeamSurface;
+use super::{BeamFace, BeamSurface};
 use crate::Rows;
 use nalgebra::Vector2;
 use teeter_beam::{Deflection, DeflectionBounds};
@@ -11,6 +11,9 @@ use teeter_detect::{Frame, HalfSpace, Kinematics, SurfacePoint};
 pub(crate) trait Deflecting {
     /// m.
     fn span(&self) -> f64;
+
+    /// Where its elements meet, from 0 to the span, m: within an element the deflection is a cubic.
+    fn nodes(&self) -> &[f64];
 
     /// Deflection and slope at x in [0, span] for coordinates `q`; `None` elsewhere.
     fn deflection_at(&self, q: &[f64], x: f64) -> Option<Deflection>;
@@ -34,7 +37,10 @@ pub(crate) trait Deflecting {
 pub(crate) struct Line {
     /// Its left end, m.
     position: Vector2<f64>,
-    surface: BeamSurface,
+    /// How far the surface is above the axis, m.
+    offset: f64,
+    /// 1 where the surface faces up, −1 where it faces down.
+    facing: f64,
 }
 
 /// Most iterations for the foot on the top fibre.
@@ -47,7 +53,15 @@ impl Line {
             [x, y] => Vector2::new(x, y),
             _ => Vector2::zeros(),
         };
-        Self { position: position + moved, surface }
+        Self { position: position + moved, offset: surface.offset(), facing: 1.0 }
+    }
+
+    /// The surface that is that of one of its bodies.
+    pub(crate) fn of_body(self, body: u32) -> Self {
+        match BeamFace::of_body(body) {
+            BeamFace::Upper => self,
+            BeamFace::Lower => Self { offset: -self.offset, facing: -1.0, ..self },
+        }
     }
 
     /// The coordinate along the beam of a place in the world. The ends belong to the beam, so a
@@ -69,7 +83,7 @@ impl Line {
         at: &Vector2<f64>,
     ) -> Option<SurfacePoint<2>> {
         let x = self.along(beam.span(), at.x);
-        let offset = self.surface.offset();
+        let (offset, facing) = (self.offset, self.facing);
         let d = beam.deflection_at(q, x)?; // None beyond the ends, which belong to the beam
         // The material point that is at x now.
         let moves = beam.has_axial_dofs() && kinematics == Kinematics::Deformed;
@@ -81,12 +95,8 @@ impl Line {
         };
         if kinematics == Kinematics::Linear {
             let place = Vector2::new(at.x, self.position.y + d.w + offset);
-            return Some(SurfacePoint { place, normal: Vector2::y(), material: Vector2::new(x, offset) });
+            return Some(SurfacePoint { place, normal: Vector2::y() * facing, material: Vector2::new(x, offset) });
         }
-        let normal_of = |slope: f64| {
-            let cos = (1.0 + slope * slope).sqrt().recip();
-            Vector2::new(-slope * cos, cos)
-        };
         let (mut foot, mut w, mut normal) = (x, d.w, normal_of(d.slope));
         if offset != 0.0 {
             // x_f − offset sin ψ(x_f) = x: each round gains a factor offset·w'' on the last, a
@@ -103,7 +113,54 @@ impl Line {
             }
         }
         let place = Vector2::new(at.x, self.position.y + w + offset * normal.y);
-        Some(SurfacePoint { place, normal, material: Vector2::new(foot, offset) })
+        Some(SurfacePoint { place, normal: normal * facing, material: Vector2::new(foot, offset) })
+    }
+
+    /// The point of the surface that belongs to the section at x, m along the beam.
+    fn at(&self, beam: &impl Deflecting, q: &[f64], x: f64) -> Option<SurfacePoint<2>> {
+        let d = beam.deflection_at(q, x)?;
+        let normal = normal_of(d.slope);
+        let along = Vector2::new(x + beam.axial_displacement(q, x), d.w);
+        let place = self.position + along + normal * self.offset;
+        Some(SurfacePoint { place, normal: normal * self.facing, material: Vector2::new(x, self.offset) })
+    }
+
+    /// Both ends of the surface.
+    pub(crate) fn ends(&self, beam: &impl Deflecting, q: &[f64]) -> [Option<SurfacePoint<2>>; 2] {
+        [0.0, beam.span()].map(|x| self.at(beam, q, x))
+    }
+
+    /// Hands the points at which the surface comes out furthest along `direction`, between two
+    /// places, to `each`, from the left. The surface runs parallel to the axis, so that they belong
+    /// to the sections at which the axis is at right angles to the direction; in an element the
+    /// slope is a parabola.
+    pub(crate) fn summits(
+        &self,
+        beam: &impl Deflecting,
+        q: &[f64],
+        direction: &Vector2<f64>,
+        between: &[Vector2<f64>; 2],
+        each: &mut dyn FnMut(SurfacePoint<2>),
+    ) {
+        let level = -direction.x / direction.y;
+        if !level.is_finite() {
+            return;
+        }
+        let [a, b] = between.map(|place| place.x - self.position.x);
+        // A point of the surface is beside its section by no more than the offset.
+        let beside = self.offset.abs();
+        let (low, high) = ((a.min(b) - beside).max(0.0), (a.max(b) + beside).min(beam.span()));
+        let rise = |x: f64| beam.deflection_at(q, x).map_or(0.0, |d| direction.y.signum() * (d.slope - level));
+        let nodes = beam.nodes();
+        let first = nodes.partition_point(|node| *node <= low).max(1);
+        for two in nodes[first - 1..].windows(2).take_while(|two| two[0] < high) {
+            let (from, to) = (two[0].max(low), two[1].min(high));
+            if let Some(t) = falls_through_zero([rise(from), rise(0.5 * (from + to)), rise(to)])
+                && let Some(point) = self.at(beam, q, from + t * (to - from))
+            {
+                each(point);
+            }
+        }
     }
 
     /// A half space with all points whose gap is at most `margin`: the foot of a point lies
@@ -111,7 +168,7 @@ impl Line {
     /// times cos ψ.
     pub(crate) fn reach(&self, bounds: DeflectionBounds, margin: f64) -> HalfSpace<2> {
         let DeflectionBounds { highest, steepest } = bounds;
-        let top = self.position.y + highest + self.surface.offset().max(0.0);
+        let top = self.position.y + highest + self.offset.max(0.0);
         HalfSpace { normal: Vector2::y(), offset: top + margin * (1.0 + steepest) }
     }
 
@@ -125,6 +182,27 @@ impl Line {
             *place = self.position + Vector2::new(point.x + u - point.y * slope * cos, w + point.y * cos);
         }
     }
+}
+
+/// The normal of a line of this slope, upwards.
+fn normal_of(slope: f64) -> Vector2<f64> {
+    let cos = (1.0 + slope * slope).sqrt().recip();
+    Vector2::new(-slope * cos, cos)
+}
+
+/// Where in (0, 1] a parabola with these values at 0, ½ and 1 goes from above zero to below.
+fn falls_through_zero([start, middle, end]: [f64; 3]) -> Option<f64> {
+    let [square, linear] = [2.0 * (start + end) - 4.0 * middle, 4.0 * middle - 3.0 * start - end];
+    // The root at which the derivative is negative, −√(linear² − 4 square start), written without
+    // cancellation.
+    let root = linear * linear - 4.0 * square * start;
+    // Written so that NaN fails too.
+    if !(root > 0.0) {
+        return None;
+    }
+    let fall = root.sqrt();
+    let t = if linear > 0.0 { -(linear + fall) / (2.0 * square) } else { 2.0 * start / (fall - linear) };
+    (t > 0.0 && t <= 1.0).then_some(t)
 }
 
 /// The material point that axial motion has brought to x: x_m + u(x_m) = x. Strains are far below
@@ -146,17 +224,17 @@ fn before_moving(beam: &impl Deflecting, q: &[f64], x: f64) -> f64 {
 /// of the prescribed velocities `driven`, which move all points along x and y; returns the number
 /// of columns.
 ///
-/// The frame is taken to be that of the surface point, so its normal (−sin ψ, cos ψ) gives the
-/// rotation of the section: v_s = (−offset cos ψ·ψ̇, ẇ − offset sin ψ·ψ̇) with ψ̇ = ẇ' cos² ψ; for
-/// linear kinematics ψ = 0.
+/// v_s = (−offset cos ψ·ψ̇, ẇ − offset sin ψ·ψ̇) with ψ̇ = ẇ' cos² ψ, ψ the slope of the
+/// [section](section_of).
 pub(crate) fn rows(
     beam: &impl Deflecting,
+    (body, q): (u32, &[f64]),
     point: &Vector2<f64>,
     frame: &Frame<2>,
     driven: &[usize],
     out: &mut Rows<'_, 2>,
 ) -> usize {
-    let [up, turn] = lift_and_turn(point, frame);
+    let [up, turn] = lift_and_turn(point, frame, &section_of(beam, (body, q), point, frame));
     let mut taken = 0;
     let mut put = |column: usize, value: Vector2<f64>| {
         out.columns[taken] = column;
@@ -199,10 +277,55 @@ pub(crate) fn bias(
     Some(frame * (Vector2::new(along, up) * point.y))
 }
 
+/// The normal (−sin ψ, cos ψ) of the section at a point of the beam. Of a surface that others touch
+/// it is that of the contact's frame, up or down; for linear kinematics that has ψ = 0. Of a fibre
+/// that touches others it is the section's own.
+pub(crate) fn section_of(
+    beam: &impl Deflecting,
+    (body, q): (u32, &[f64]),
+    point: &Vector2<f64>,
+    frame: &Frame<2>,
+) -> Vector2<f64> {
+    let normal: Vector2<f64> = frame.row(0).transpose();
+    if point.y == 0.0 {
+        // On the axis it doesn't matter.
+        normal
+    } else if BeamFace::is_fibre(body) {
+        let x = point.x.clamp(0.0, beam.span());
+        beam.deflection_at(q, x).map_or(normal, |d| normal_of(d.slope))
+    } else {
+        match BeamFace::of_body(body) {
+            BeamFace::Upper => normal,
+            BeamFace::Lower => -normal,
+        }
+    }
+}
+
 /// The velocities `[up, turn]` of a surface point in a contact's frame per unit of ẇ and of ẇ'
-/// there. So an impulse p acts on the beam as the vertical impulse up·p and the couple turn·p about
-/// the axis.
-pub(crate) fn lift_and_turn(point: &Vector2<f64>, frame: &Frame<2>) -> [Vector2<f64>; 2] {
-    let (sin, cos) = (-frame[(0, 0)], frame[(0, 1)]);
+/// there, with the normal of the section. So an impulse p acts on the beam as the vertical impulse
+/// up·p and the couple turn·p about the axis.
+pub(crate) fn lift_and_turn(point: &Vector2<f64>, frame: &Frame<2>, section: &Vector2<f64>) -> [Vector2<f64>; 2] {
+    let (sin, cos) = (-section.x, section.y);
     [frame.column(1).into(), frame * Vector2::new(-cos, -sin) * (point.y * cos * cos)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_parabola_is_followed_to_where_it_falls_through_zero() {
+        let of = |a: f64, b: f64, c: f64| [0.0, 0.5, 1.0].map(|t| (a * t + b) * t + c);
+        let close = |found: Option<f64>, wanted: f64| found.is_some_and(|t| (t - wanted).abs() < 1e-14);
+        assert!(close(falls_through_zero(of(0.0, -2.0, 1.0)), 0.5), "a line");
+        assert!(close(falls_through_zero(of(0.0, -2.0, 2.0)), 1.0), "at the end");
+        assert_eq!(falls_through_zero(of(0.0, -2.0, 0.0)), None, "at the start: the piece before has it");
+        assert_eq!(falls_through_zero(of(0.0, 2.0, -1.0)), None, "it rises");
+        // −(t − 0.2)(t − 0.7) is above zero in between; (t − 0.2)(t − 0.7) falls at 0.2.
+        assert!(close(falls_through_zero(of(-1.0, 0.9, -0.14)), 0.7));
+        assert!(close(falls_through_zero(of(1.0, -0.9, 0.14)), 0.2));
+        assert!(close(falls_through_zero(of(1e-18, -2.0, 1.0)), 0.5), "as good as a line");
+        assert_eq!(falls_through_zero([0.0; 3]), None);
+        assert_eq!(falls_through_zero([f64::NAN, 1.0, -1.0]), None);
+    }
 }

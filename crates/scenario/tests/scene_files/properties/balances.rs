@@ -11,7 +11,8 @@ use teeter_integrator::{BeamForces, Contact, Ended, Model, Observer, ObserverErr
 use teeter_scenario::resolve::Resolved;
 use teeter_scenario::simulation::{BeamPlace, Simulation};
 
-/// Rounding of a sum of some ten terms, each of some operations, as a part of the sum of their sizes.
+/// Rounding of a sum of some ten terms, each of some operations, as a part of the sum of their
+/// sizes.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// A step with the state before it.
@@ -57,9 +58,9 @@ impl<F: FnMut(&Step<'_>) -> Result<(), String>> Observer<2> for Judge<F> {
 
 /// What solutions that are not exact may be wrong by.
 ///
-/// The residual of a solve is ‖r‖ = err·S with S = max(‖p‖, ρ‖q‖): p − r obeys the law exactly with velocities changed by r/ρ
-/// (`docs/theory.md` §6). So a product u·p that the law makes ≤ 0 is up to ‖r‖ (‖p‖/ρ + ‖û‖ + ‖r‖/ρ), and ‖û‖ ≤ (1 + μ)(‖q‖ + ‖H‖‖p‖)
-/// with ‖H‖ ≤ 2n/ρ.
+/// The residual of a solve is ‖r‖ = err·S with S = max(‖p‖, ρ‖q‖): p − r obeys the law exactly with
+/// velocities changed by r/ρ (`docs/theory.md` §6). So a product u·p that the law makes ≤ 0 is up
+/// to ‖r‖ (‖p‖/ρ + ‖û‖ + ‖r‖/ρ), and ‖û‖ ≤ (1 + μ)(‖q‖ + ‖H‖‖p‖) with ‖H‖ ≤ 2n/ρ.
 #[derive(Clone, Copy, Default)]
 struct Open {
     energy: f64,
@@ -175,7 +176,8 @@ fn friction_opposes_the_slide_and_stays_in_its_cone() {
                     }
                     let work = match law {
                         Law::Instant { .. } => contact.u_law[1] * p_t,
-                        // By the velocity at the end, or by the mean one where that would give energy.
+                        // By the velocity at the end, or by the mean one where that would give
+                        // energy.
                         Law::KelvinVoigt { .. } | Law::HuntCrossley { .. } => {
                             (contact.u_law[1] * p_t).min(u_mean * p_t)
                         }
@@ -255,12 +257,14 @@ fn a_beam_gains_the_momentum_that_supports_and_contacts_give() {
     check("beam-momentum", "proptest-regressions/beam-momentum.txt", Just(()), |drawn, ()| {
         let mut drawn = drawn.clone();
         for beam in &mut drawn.beams {
-            // Of these the whole is not known without the beam's own matrices, or balances only as far as modes reach.
+            // Of these the whole is not known without the beam's own matrices, or balances only as
+            // far as modes reach.
             (beam.foundation, beam.modes, beam.motion) = (None, None, None);
             if let Damping::Rayleigh(_) = beam.damping {
                 beam.damping = Damping::None;
             }
-            // There a couple of friction turns the axis in the motion, and the section in the account (`docs/beams.md`).
+            // There a couple of friction turns the axis in the motion, and the section in the
+            // account (`docs/beams.md`).
             beam.timoshenko &= !beam.top;
         }
         let drawn = &drawn;
@@ -290,7 +294,8 @@ fn a_beam_gains_the_momentum_that_supports_and_contacts_give() {
     });
 }
 
-/// Of a beam: the change of ∫ρA ẇ by reactions, weight, damping and the impulses of contacts, all vertical.
+/// Of a beam: the change of ∫ρA ẇ by reactions, weight, damping and the impulses of contacts, all
+/// vertical.
 fn beam_balance(
     drawn: &Drawn,
     number: usize,
@@ -379,7 +384,8 @@ fn energy_is_accounted_for_and_never_made() {
                     let (g, q) = (drawn.gravity, &step.state.q[3 * k..3 * k + 2]);
                     drawn.mass(k) * ((g[0] * q[0]).abs() + (g[1] * q[1]).abs())
                 });
-                // A beam that moves as a whole stores nothing, but for the rounding of its stiffest element.
+                // A beam that moves as a whole stores nothing, but for the rounding of its stiffest
+                // element.
                 let bent = beams.iter().zip(&drawn.beams).map(|(place, beam)| {
                     beam.stiffness(place.beam.node_positions()) * largest_deflection(place, &step.state.q).powi(2)
                 });
@@ -408,7 +414,8 @@ fn energy_is_accounted_for_and_never_made() {
     });
 }
 
-/// Found by the property above: a block that slides, and beside it on the same beam one by Poisson's law, whose blow is handed on to it.
+/// Found by the property above: a block that slides, and beside it on the same beam one by
+/// Poisson's law, whose blow is handed on to it.
 #[test]
 fn a_blow_handed_on_beside_friction_gives_no_energy() {
     let text = include_bytes!("found/poisson-gain.toml");
@@ -428,7 +435,8 @@ fn largest_deflection(place: &BeamPlace, q: &[f64]) -> f64 {
 }
 
 impl super::drawn::Beam {
-    /// The largest entry of its stiffness for deflections, N/m: 12 EI/l³ of the stiffest element, and springs.
+    /// The largest entry of its stiffness for deflections, N/m: 12 EI/l³ of the stiffest element,
+    /// and springs.
     fn stiffness(&self, nodes: &[f64]) -> f64 {
         let shortest = nodes.windows(2).map(|x| x[1] - x[0]).fold(f64::INFINITY, f64::min);
         let thickest = self.segment.map_or(0.0, |segment| segment.thickness).max(self.thickness);

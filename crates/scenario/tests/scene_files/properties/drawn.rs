@@ -1,4 +1,5 @@
-//! A random scene as data: numbers in SI units and a few words, which a property can change and which can be written as a scene file.
+//! A random scene as data: numbers in SI units and a few words, which a property can change and
+//! which can be written as a scene file.
 
 use std::f64::consts::PI;
 
@@ -227,7 +228,8 @@ impl Drawn {
             || self.ground.is_some_and(|ground| ground.motion.is_some())
     }
 
-    /// Shows every number of the scene that has more than one sensible value, with its unit; 0 stays what it is by symmetry.
+    /// Shows every number of the scene that has more than one sensible value, with its unit; 0
+    /// stays what it is by symmetry.
     pub(crate) fn each_number(&mut self, visit: &mut dyn FnMut(&mut f64, Dimension, Use)) {
         visit(&mut self.step, TIME, Use::Steps);
         visit(&mut self.gap_tolerance, LENGTH, Use::Steps);

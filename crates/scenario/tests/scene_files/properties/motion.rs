@@ -13,7 +13,8 @@ use teeter_scenario::simulation::{BeamPlace, Simulation};
 /// Relative change of every number of a scene, for the runs that show how far rounding may grow.
 pub(crate) const NUDGE: f64 = 1e-12;
 
-/// Nudged runs that have come apart by this part of the largest block are past the horizon: a growth of 10⁴.
+/// Nudged runs that have come apart by this part of the largest block are past the horizon: a
+/// growth of 10⁴.
 const HORIZON: f64 = 1e4 * NUDGE;
 
 /// The same where more than rounding parts them.
@@ -126,21 +127,24 @@ pub(crate) fn motion(drawn: &Drawn) -> Result<Motion, NoMotion> {
     run(&mut simulation(drawn)?)
 }
 
-/// How far a motion may be from one that differs from it by rounding, step by step, up to its horizon.
+/// How far a motion may be from one that differs from it by rounding, step by step, up to its
+/// horizon.
 ///
-/// Four runs whose numbers are all nudged by a part of 1e-12, two by two in opposite directions, show what the scene makes of
-/// a small difference; what they are apart by at most so far, D(t), is what 1e-12 grows to. A step rounds by some 1e-16, so
-/// 100 steps put in less than a tenth of 1e-12: rounding alone may not part two motions by more than D(t). Where a solver stops at a tolerance τ,
-/// it is 100 times what the tolerance makes of the motion: τ/1e-12 D(t), or what a hundredth of τ changes, if that is more
-/// (in an ill-conditioned problem the impulses are off by far more than the residual). Scaled restitution puts in 1e-7.
+/// Four runs whose numbers are all nudged by a part of 1e-12, two by two in opposite directions,
+/// show what the scene makes of a small difference; what they are apart by at most so far, D(t), is
+/// what 1e-12 grows to. A step rounds by some 1e-16, so 100 steps put in less than a tenth of
+/// 1e-12: rounding alone may not part two motions by more than D(t). Where a solver stops at a
+/// tolerance τ, it is 100 times what the tolerance makes of the motion: τ/1e-12 D(t), or what a
+/// hundredth of τ changes, if that is more (in an ill-conditioned problem the impulses are off by
+/// far more than the residual). Scaled restitution puts in 1e-7.
 pub(crate) struct Horizon {
     /// By row; as many as there are before the horizon.
     pub(crate) allowed: Vec<f64>,
 }
 
 impl Horizon {
-    /// The horizon of the motion `base` of a scene; `extent` (m) is how far from the origin either motion gets, which is what
-    /// places are rounded by.
+    /// The horizon of the motion `base` of a scene; `extent` (m) is how far from the origin either
+    /// motion gets, which is what places are rounded by.
     pub(crate) fn of(drawn: &Drawn, base: &Motion, extent: f64) -> Result<Self, NoMotion> {
         let length = drawn.length();
         let mut apart = vec![NUDGE * (extent / length).max(1.0); base.solved];
@@ -194,14 +198,15 @@ pub(crate) fn extent(drawn: &Drawn, motion: &Motion) -> f64 {
     places.fold(0.0, |largest, x| largest.max(x.abs()))
 }
 
-/// What a step may put in beside a nudge's 1e-12, relative: no more where every contact problem is enumerated, and is one problem.
+/// What a step may put in beside a nudge's 1e-12, relative: no more where every contact problem is
+/// enumerated, and is one problem.
 fn put_in(drawn: &Drawn, motion: &Motion) -> f64 {
     let newton = |law: &Law| matches!(law, Law::Instant { word: "newton", .. });
     let exact =
         drawn.method != "pgs" && motion.contacts <= 3 && drawn.contacts.iter().all(|contact| newton(&contact.law));
     let solved = if exact { NUDGE } else { 100.0 * drawn.tolerance };
-    // Restitution is scaled until its work is none up to rounding, 1e-14 of the impact's: the velocity that comes back is then
-    // known to the root of that.
+    // Restitution is scaled until its work is none up to rounding, 1e-14 of the impact's: the
+    // velocity that comes back is then known to the root of that.
     let scaled = |law: &Law| match law {
         Law::Instant { word: "energetic", normal, .. } => *normal > 0.0,
         Law::Instant { word: "newton", normal, .. } => *normal > 0.0 && drawn.scheme.is_closed(),

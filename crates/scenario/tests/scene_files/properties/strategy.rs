@@ -1,4 +1,5 @@
-//! Which scenes are drawn: one to three blocks that stand, slide, tip, fly or fall on ground and beams.
+//! Which scenes are drawn: one to three blocks that stand, slide, tip, fly or fall on ground and
+//! beams.
 
 use super::drawn::{
     Beam, Block, Contact, Damping, Drawn, Ground, Law, Motion, Placement, Scheme, Segment, Signal, Support, Surface,
@@ -16,7 +17,8 @@ fn decades(range: std::ops::Range<f64>) -> impl Strategy<Value = f64> + Clone {
     range.prop_map(|exponent| 10.0_f64.powf(exponent))
 }
 
-/// A place on a beam that makes no element much shorter than others: such a mesh rounds by more than a nudge.
+/// A place on a beam that makes no element much shorter than others: such a mesh rounds by more
+/// than a nudge.
 fn eighth(from: u32, to: u32) -> impl Strategy<Value = f64> + Clone {
     (from..=to).prop_map(|eighths| 0.125 * f64::from(eighths))
 }
@@ -193,7 +195,8 @@ impl Beam {
     }
 }
 
-/// Any scene. Blocks that turn out to overlap, or beams without an equilibrium, are refused by the program: such a draw is none.
+/// Any scene. Blocks that turn out to overlap, or beams without an equilibrium, are refused by the
+/// program: such a draw is none.
 pub(crate) fn scene() -> impl Strategy<Value = Drawn> {
     let grid = (decades(-4.0..-2.3), 10..120_u32);
     let scheme = prop_oneof![
@@ -261,7 +264,8 @@ pub(crate) fn scene() -> impl Strategy<Value = Drawn> {
                 }
             }
             if drawn.contacts.iter().any(|contact| contact.law.is_poisson()) {
-                // Who parts in expansion is told to 1e-11; a solver that stops before that can't tell a tie from a choice.
+                // Who parts in expansion is told to 1e-11; a solver that stops before that can't
+                // tell a tie from a choice.
                 (drawn.method, drawn.tolerance) = ("auto", 1e-12);
             }
             drawn

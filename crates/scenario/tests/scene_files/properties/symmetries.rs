@@ -119,14 +119,17 @@ fn unscaled(drawn: &Drawn, length: f64, row: &[f64]) -> Vec<f64> {
 
 #[test]
 fn units_by_powers_of_two_change_no_bit() {
-    // Of length and mass powers of four: the numbers of N/m^1.5 and of a mode's shape (1/√kg) are in units with their square roots.
+    // Of length and mass powers of four: the numbers of N/m^1.5 and of a mode's shape (1/√kg) are
+    // in units with their square roots.
     let units = [-4..=4, -4..=4, -8..=8].prop_map(|[l, m, t]| [4.0_f64.powi(l), 4.0_f64.powi(m), 2.0_f64.powi(t)]);
     check("units-exact", "proptest-regressions/units-exact.txt", units, |drawn, units| {
-        // The search for an equilibrium begins with a time of its own, 1e-5 s: its rounding depends on units.
+        // The search for an equilibrium begins with a time of its own, 1e-5 s: its rounding depends
+        // on units.
         let mut drawn = drawn.clone();
         drawn.beams.iter_mut().for_each(|beam| beam.static_start = false);
         let mut units = *units;
-        // A power rounds as it likes; and of a beam the last bit has been seen to follow the unit of length.
+        // A power rounds as it likes; and of a beam the last bit has been seen to follow the unit
+        // of length.
         let powers = drawn.contacts.iter().any(|contact| matches!(contact.law, Law::HuntCrossley { .. }));
         if powers || !drawn.beams.is_empty() {
             units[0] = 1.0;
@@ -170,7 +173,8 @@ fn a_later_start_changes_nothing() {
                 false => Err("nothing depends on time, yet bits differ".to_owned()),
             });
         }
-        // Times are rounded as they grow, and what depends on them with them: a length at the speed of the signal.
+        // Times are rounded as they grow, and what depends on them with them: a length at the speed
+        // of the signal.
         let t = f64::from(drawn.steps + later) * drawn.step;
         let extent = extent(drawn, &base).max(drawn.length() * t * drawn.signal.frequency * std::f64::consts::TAU);
         let horizon = Horizon::of(drawn, &base, extent)?;
@@ -235,7 +239,8 @@ fn the_order_of_tables_changes_nothing() {
     });
 }
 
-/// Found by the mirror image: both corners press, and one of the two scenes dropped a corner by a velocity of 1e-18 m/s.
+/// Found by the mirror image: both corners press, and one of the two scenes dropped a corner by a
+/// velocity of 1e-18 m/s.
 #[test]
 fn a_wedged_block_stays_at_rest_on_either_side() {
     let scene = |side: &str| {

@@ -1,7 +1,9 @@
-//! Random scenes made to be on the border of what may be left out, with and without it: the same bytes where a removal is called exact,
-//! and beams within the stated accuracy of their rest elsewhere.
+//! Random scenes made to be on the border of what may be left out, with and without it: the same
+//! bytes where a removal is called exact, and beams within the stated accuracy of their rest
+//! elsewhere.
 //!
-//! `TEETER_REQUIRED=2000` tries so many scenes from which something is removed, `TEETER_REQUIRED_SEED=7` others.
+//! `TEETER_REQUIRED=2000` tries so many scenes from which something is removed,
+//! `TEETER_REQUIRED_SEED=7` others.
 
 use super::{Dice, MATERIALS, simulation};
 use std::fmt::Write as _;
@@ -38,7 +40,8 @@ struct Trace<'a> {
     all: Vec<u64>,
     /// The same of all but the beams whose rest is not exact, and the energies.
     others: Vec<u64>,
-    /// The beams whose rest is not exact: their places, start, and how far any of their points was from it, m.
+    /// The beams whose rest is not exact: their places, start, and how far any of their points was
+    /// from it, m.
     resting: Vec<(&'a BeamPlace, Vec<f64>, f64)>,
     /// The first step that is past the limits of the model.
     broken: Option<usize>,
@@ -151,7 +154,8 @@ const BULGE: f64 = 0.05;
 /// What a scene is for.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
-    /// Stiff beams, slow blocks that stand, nothing that gives energy: blocks may stay in their wells.
+    /// Stiff beams, slow blocks that stand, nothing that gives energy: blocks may stay in their
+    /// wells.
     Calm,
     /// Anything, with theta = 0.5.
     Wild,

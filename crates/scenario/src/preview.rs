@@ -1,21 +1,21 @@
-//! What a run of a scene will be like: the numbers to look at before it is started.
+//! Preview of a run: the numbers to check before it is started.
 
 use crate::left_out::left_out;
-use crate::mesh_error::{self, OfMesh};
+use crate::mesh_error::{self, MeshComparison};
+use crate::output_size::{OutputSize, expected_seconds};
 use crate::required::Removed;
 use crate::resolve::Resolved;
 use crate::scene::{BeamScene, BlockScene, Placement, Scene};
 use crate::simulation::{BeamPlace, Simulation};
-use crate::volume::{Volume, expected_seconds};
-use crate::{stability, wording};
+use crate::{stable_step, wording};
 use std::f64::consts::TAU;
 use teeter_beam::{Axial, Beam, MatrixWeights};
 use teeter_detect::ContactId;
 use teeter_integrator::coupled_modes;
 
-/// A block, as far as one wants to check it.
+/// Properties of a block to check.
 #[derive(Debug, Clone, PartialEq)]
-pub struct BlockOutlook {
+pub struct BlockPreview {
     /// Its name.
     pub name: String,
     /// Mass, kg.
@@ -24,22 +24,22 @@ pub struct BlockOutlook {
     pub critical_angle: Option<f64>,
     /// Angle at the start, rad.
     pub angle: f64,
-    /// Name of what it stands on; `None` for a block placed by its mass centre.
+    /// Name of the body that it stands on; `None` for a block placed by its mass centre.
     pub on: Option<String>,
 }
 
-/// A beam, as far as one wants to check it.
+/// Properties of a beam to check.
 #[derive(Debug, Clone, PartialEq)]
-pub struct BeamOutlook {
+pub struct BeamPreview {
     /// Its name.
     pub name: String,
     /// Its elements.
     pub elements: usize,
     /// Its degrees of freedom.
     pub dofs: usize,
-    /// The shapes in which it moves, where these are not those of all its nodes.
-    pub shapes: Option<ShapesOutlook>,
-    /// How its matrix is solved.
+    /// Its modal basis, if it moves in modes.
+    pub shapes: Option<ShapesPreview>,
+    /// How its matrix is factorised.
     pub backend: &'static str,
     /// Its theory, as in a scene.
     pub theory: &'static str,
@@ -47,76 +47,80 @@ pub struct BeamOutlook {
     pub supports: [&'static str; 2],
     /// Supports between the ends.
     pub inner_supports: usize,
-    /// What happens along its axis; `None` where nothing is modelled.
+    /// Its axial model; `None` without one.
     pub axial: Option<&'static str>,
-    /// First elastic frequency, Hz: of the model, and without the error of its mesh.
-    pub first_frequency: Option<OfMesh>,
-    /// Whether the latter is that of the continuous beam; else it is of a finer mesh.
+    /// First elastic frequency, Hz: in the model, and without the error of its mesh.
+    pub first_frequency: Option<MeshComparison>,
+    /// Whether the latter is that of the continuous beam; otherwise it is that of a finer mesh.
     pub frequency_is_exact: bool,
-    /// Circular frequency of the highest mode of the mesh times the step: over 1, the mode is not resolved in time (the scheme is
-    /// stable all the same for θ ≥ ½).
+    /// Circular frequency of the highest mode of the mesh times the step: above 1, the mode is not
+    /// resolved in time (for θ ≥ ½ the scheme is still stable).
     pub highest_frequency_step: Option<f64>,
     /// Correct decimal digits of a solve with the matrix of a step, estimated.
     pub digits: Option<f64>,
     /// Span, m.
     pub span: f64,
-    /// Largest static deflection under the blocks' weight and its own, where that acts, m: of the model, and without the error of its mesh.
-    pub sag: Option<OfMesh>,
+    /// Largest static deflection under the blocks' weight and its own if enabled, m: in the model,
+    /// and without the error of its mesh.
+    pub sag: Option<MeshComparison>,
     /// Whether its own weight acts.
     pub self_weight: bool,
-    /// Bending moment at which its own section (not that of a segment) begins to yield, N m, where that is known.
+    /// Bending moment at which its main section (not that of a segment) begins to yield, N m, if
+    /// known.
     pub yield_moment: Option<f64>,
 }
 
 /// The shapes of a beam in modes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ShapesOutlook {
+pub struct ShapesPreview {
     /// Its modes, rigid motions included.
     pub modes: usize,
     /// Its static corrections.
     pub corrections: usize,
-    /// Where its flexibility counts, m from the left end.
+    /// The region where its flexibility counts, m from the left end.
     pub region: [f64; 2],
-    /// Largest relative error of its static flexibility there; `None` where there are no digits to tell.
+    /// Largest relative error of its static flexibility there; `None` if there are too few digits
+    /// to tell.
     pub error: Option<f64>,
 }
 
-/// What a run will be like.
+/// Preview of a run.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Outlook {
+pub struct Preview {
     /// The blocks, in the order of the file.
-    pub blocks: Vec<BlockOutlook>,
+    pub blocks: Vec<BlockPreview>,
     /// The beams, in the order of the file.
-    pub beams: Vec<BeamOutlook>,
-    /// Corners that can touch a surface.
+    pub beams: Vec<BeamPreview>,
+    /// Number of corners that can touch a surface.
     pub possible_contacts: usize,
     /// Velocities of blocks and beams together.
     pub dofs: usize,
-    /// Time that the run takes, s; a rule of thumb.
+    /// Estimated time of the run, s.
     pub seconds: f64,
-    /// What its tables hold; an estimate.
-    pub volume: Volume,
-    /// First frequencies of blocks and beams together about a static start in which all blocks stand flat, Hz.
+    /// Estimated size of its tables.
+    pub volume: OutputSize,
+    /// First frequencies of blocks and beams coupled, about a static start in which all blocks
+    /// stand flat, Hz.
     pub coupled_frequencies: Vec<f64>,
-    /// What the model leaves out, and why.
+    /// What the model leaves out, with reasons.
     pub left_out: Vec<&'static str>,
-    /// What of the scene the model does without, as nothing needs it.
+    /// What the model doesn't require of the scene.
     pub removed: Vec<Removed>,
 }
 
-impl Outlook {
-    /// The outlook on a run of a scene; `simulation` is made of it.
+impl Preview {
+    /// The preview of a run of a scene; `simulation` must be built from it.
     #[must_use]
     pub fn new(resolved: &Resolved, simulation: &Simulation) -> Self {
         let scene = &resolved.scene;
-        let beams: Vec<BeamOutlook> = scene
+        let beams: Vec<BeamPreview> = scene
             .beams
             .iter()
             .zip(&simulation.layout.beams)
             .enumerate()
-            .map(|(number, (beam, place))| BeamOutlook {
+            .map(|(number, (beam, place))| BeamPreview {
                 sag: mesh_error::sag(scene, number),
-                ..BeamOutlook::of(beam, place, scene.time.theta, scene.time.step)
+                ..BeamPreview::of(beam, place, scene.time.theta, scene.time.step)
             })
             .collect();
         let block = |block: &BlockScene| {
@@ -125,14 +129,14 @@ impl Outlook {
                 Placement::On { tilt, support, .. } => (tilt, Some(scene.name_of(support).to_owned())),
             };
             let (mass, critical_angle) = (block.mass(), block.critical_angle());
-            BlockOutlook { name: block.name.clone(), mass, critical_angle, angle, on }
+            BlockPreview { name: block.name.clone(), mass, critical_angle, angle, on }
         };
         Self {
             blocks: scene.blocks.iter().map(block).collect(),
             possible_contacts: simulation.model.detector().capacity(),
             dofs: simulation.dofs(),
             seconds: expected_seconds(scene, beams.iter().map(|beam| beam.dofs).sum()),
-            volume: Volume::of(scene),
+            volume: OutputSize::of(scene),
             coupled_frequencies: coupled_frequencies(scene, simulation),
             left_out: left_out(scene),
             removed: simulation.layout.required.removed.clone(),
@@ -141,14 +145,14 @@ impl Outlook {
     }
 }
 
-impl BeamOutlook {
+impl BeamPreview {
     fn of(beam: &BeamScene, place: &BeamPlace, theta: f64, step: f64) -> Self {
         let (spec, model) = (&beam.spec, place.beam.as_ref());
         let full = place.basis.is_none();
         let shapes = beam.reduction.zip(place.basis.as_ref()).map(|(reduction, basis)| {
             let region = reduction.region(spec.span);
             let corrections = basis.len() - basis.modes();
-            ShapesOutlook {
+            ShapesPreview {
                 modes: basis.modes(),
                 corrections,
                 region,
@@ -157,7 +161,7 @@ impl BeamOutlook {
         });
         let highest = match &place.basis {
             Some(basis) => basis.circular_frequencies().last().copied(),
-            None => stability::highest_eigenvalue(spec).map(f64::sqrt),
+            None => stable_step::highest_eigenvalue(spec).map(f64::sqrt),
         };
         let first = mesh_error::first_frequency(model, place.basis.as_deref());
         Self {
@@ -170,14 +174,14 @@ impl BeamOutlook {
             supports: spec.supports.map(wording::support),
             inner_supports: spec.inner_supports.len(),
             axial: match spec.axial {
-                Axial::Held => Some("held along its axis, a deflection stretches it"),
+                Axial::Held => Some("held along its axis, stretched by deflection"),
                 Axial::Elastic { .. } => Some("elastic along its axis"),
                 _ => None,
             },
             first_frequency: first.map(|(frequency, _)| frequency),
             frequency_is_exact: first.is_some_and(|(_, exact)| exact),
             highest_frequency_step: highest.map(|omega| omega * step),
-            // A diagonal matrix keeps all.
+            // A diagonal matrix loses no digits.
             digits: if full { step_digits(model, theta, step) } else { None },
             span: spec.span,
             sag: None,
@@ -187,13 +191,14 @@ impl BeamOutlook {
     }
 }
 
-/// With fewer correct digits of a step's solve a run deserves a warning.
+/// Fewer correct digits of a step's solve give a warning.
 pub const FEW_DIGITS: f64 = teeter_beam::Digits::FEW;
 
-/// How many frequencies of the whole are told.
+/// Number of coupled frequencies shown.
 const COUPLED: usize = 3;
 
-/// The frequencies of small vibrations about a static start, Hz; none where a block is held tilted, and so doesn't rest.
+/// The frequencies of small vibrations about a static start, Hz; none if a block is held tilted,
+/// and so isn't at rest.
 fn coupled_frequencies(scene: &Scene, simulation: &Simulation) -> Vec<f64> {
     let tilted = |block: &BlockScene| !matches!(block.placement, Placement::On { tilt, .. } if tilt == 0.0);
     let Some(start) =
@@ -201,7 +206,7 @@ fn coupled_frequencies(scene: &Scene, simulation: &Simulation) -> Vec<f64> {
     else {
         return Vec::new();
     };
-    let force = |f: &crate::settling::ContactForce| {
+    let force = |f: &crate::static_start::ContactForce| {
         (ContactId::new(f.contact as u32, f.point), nalgebra::Vector2::from(f.force))
     };
     let forces: Vec<_> = start.forces.iter().map(force).collect();
@@ -209,14 +214,14 @@ fn coupled_frequencies(scene: &Scene, simulation: &Simulation) -> Vec<f64> {
     modes.map_or_else(|_| Vec::new(), |modes| modes.circular_frequencies().map(|omega| omega / TAU).collect())
 }
 
-/// Digits of a step's solve.
+/// Correct digits of a step's solve.
 pub(crate) fn step_digits(model: &Beam, theta: f64, step: f64) -> Option<f64> {
     let ht = theta * step;
     let weights = MatrixWeights { mass: 1.0, damping: ht, stiffness: ht * ht };
     model.digits(weights).ok().map(|digits| digits.of_solve())
 }
 
-/// σ_y I/c; none of a section given directly.
+/// σ_y I/c; `None` for a section given directly.
 fn yield_moment(beam: &BeamScene) -> Option<f64> {
     beam.yield_strength.zip(beam.spec.section.section_modulus).map(|(strength, modulus)| strength * modulus)
 }

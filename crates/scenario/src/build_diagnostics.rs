@@ -1,15 +1,16 @@
-//! What building a model refuses, told as a finding about the scene: which key, what it says, what would be right.
+//! Errors of building a model as diagnostics of the scene: the key, its value, and how to correct
+//! it.
 
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;
-use crate::placement::{Departure, PlacementError};
+use crate::placement::{InstabilityMode, PlacementError};
 use crate::resolve::names::table_of;
 use crate::simulation::BuildError;
 use teeter_beam::{BeamError, ModalError, ModesError, StaticError};
 use teeter_integrator::{EquilibriumError, ModelError};
 
 impl BuildError {
-    /// The refusal as an error about the scene it came from, at the key that is to blame.
+    /// The error as a diagnostic of its scene, at the key that causes it.
     ///
     /// ```
     /// use teeter_scenario::simulation::Simulation;
@@ -19,9 +20,9 @@ impl BuildError {
     ///     [contact.floor]\nbetween = ['cube', 'ground']\nfriction = 0.5\n";
     /// let resolved = teeter_scenario::load(text.as_bytes(), "cube.toml", "cube", &[])?;
     /// let error = Simulation::new(&resolved.scene).unwrap_err();
-    /// let told = error.diagnostic(&resolved.document);
-    /// assert_eq!((told.path.as_str(), told.position), ("block.cube.position", Some((12, 12))));
-    /// assert!(told.rule.contains("1.0e-1 m below the surface of `ground`"));
+    /// let found = error.diagnostic(&resolved.document);
+    /// assert_eq!((found.path.as_str(), found.position), ("block.cube.position", Some((12, 12))));
+    /// assert!(found.rule.contains("1.0e-1 m below the surface of `ground`"));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
@@ -38,25 +39,25 @@ impl BuildError {
             Self::Model(error) => law(error, document),
             Self::State(error) => document.error(
                 "",
-                format!("the start can't be computed: {error}"),
-                "check sizes, places and velocities for numbers that are out of proportion",
+                format!("the initial state can't be computed: {error}"),
+                "check sizes, positions and velocities for extreme values",
             ),
             Self::Mismatch(error) => document.error(
                 "",
-                format!("the parts of the model don't belong together: {error}"),
-                "this is a mistake of the program: report it with the scene",
+                format!("the parts of the model are inconsistent: {error}"),
+                "this is a bug of the program: report it with the scene",
             ),
             Self::Scheme(error) => {
                 document.error("time", error.to_string(), "check theta, activation_gamma and gap_tolerance")
             }
-            Self::Solver(_) => document.error("solver.method", self.to_string(), "name one of the solvers built in"),
+            Self::Solver(_) => document.error("solver.method", self.to_string(), "use one of the available solvers"),
             Self::Penetration { block, corner, surface, depth, tolerance } => {
                 let rule = format!(
-                    "the corner {corner} starts {depth:.1e} m below the surface of `{surface}`; up to {tolerance:.1e} m is \
+                    "the corner {corner} starts {depth:.1e} m below the surface of `{surface}`; up to {tolerance:.1e} m are \
                      taken for rounding"
                 );
                 let remedy = if document.has(&format!("block.{}.position", table_of(document, block))) {
-                    "move the block up, or give on, at and tilt in place of position: it then stands on the surface"
+                    "move the block up, or give on, at and tilt instead of position: it then stands on the surface"
                 } else {
                     "move one of the two, so that the corner is clear of the surface"
                 };
@@ -69,14 +70,14 @@ impl BuildError {
             ),
             Self::Shape(_) | Self::Wiring(_) => document.error(
                 "",
-                format!("the shapes of blocks make no contact: {self}"),
-                "check widths and heights for numbers that are out of proportion",
+                format!("contact can't be computed with the shapes of the blocks: {self}"),
+                "check widths and heights for extreme values",
             ),
         }
     }
 }
 
-/// The key that says where a block is.
+/// The key that gives the position of a block.
 fn place_of(block: &str, document: &Document) -> String {
     let key = if document.has(&format!("block.{}.position", table_of(document, block))) { "position" } else { "at" };
     format!("block.{}.{key}", table_of(document, block))
@@ -88,20 +89,20 @@ pub(crate) fn beam(name: &str, error: &BeamError, document: &Document) -> Diagno
         BeamError::Value { field: "span", rule, .. } => document.error(
             &path("span"),
             format!("must be {rule}"),
-            "check span, thickness and elements: they are out of proportion",
+            "check span, thickness and elements for extreme values",
         ),
         BeamError::Value { field: "nodes", value, rule } => document.error(
             &path("nodes"),
             format!("the node at {value} m must be {rule}"),
-            "give the places of all nodes from the left end to the right end",
+            "give the positions of all nodes from the left end to the right end",
         ),
         BeamError::Count { field: "damping.modal", value, rule } => document.error(
             &path("modal_damping"),
             format!("{value} ratios: must be {rule}"),
-            "give the ratios of the first modes only",
+            "give ratios only for the first modes",
         ),
         BeamError::Count { field: "elements", rule, .. } => {
-            document.error(&path("elements"), format!("must be {rule}"), "20 to 100 elements fit most beams")
+            document.error(&path("elements"), format!("must be {rule}"), "20 to 100 elements suit most beams")
         }
         _ => document.error(&format!("beam.{name}"), error.to_string(), "check the keys of this beam and its material"),
     }
@@ -112,20 +113,20 @@ fn modes(name: &str, error: &ModalError, document: &Document) -> Diagnostic {
     match error {
         ModalError::CoupledDamping { relative, .. } => document.error(
             &path("model"),
-            format!("the damping of this beam couples its modes ({relative:.1e} of their own damping), and they must move one by one"),
-            "leave out dashpots and damped foundations and what else is not in proportion to mass or stiffness, or take model = \"full\"",
+            format!("the damping of this beam couples its modes ({relative:.1e} of their own damping), which must be uncoupled"),
+            "leave out dashpots, damped foundations and other damping that is not proportional to mass or stiffness, or use model = \"full\"",
         ),
         ModalError::Modes(ModesError::Count { count, unknowns }) => document.error(
             &path("modes.count"),
-            format!("{count} modes of a beam with {} that can move", plural(*unknowns, "dof")),
-            "ask for fewer, or take more elements",
+            format!("{count} modes are more than the {} of the beam that can move", plural(*unknowns, "dof")),
+            "use fewer modes, or more elements",
         ),
         ModalError::Tolerance { .. } => document.error(
             &path("modes.tolerance"),
-            "must be at least 1e-8 and less than 1: the flexibilities that are compared have no more digits",
+            "must be at least 1e-8 and less than 1: the compared flexibilities have no more digits",
             "1e-4 is usual",
         ),
-        _ => document.error(&path("model"), error.to_string(), "take model = \"full\", or a coarser mesh"),
+        _ => document.error(&path("model"), error.to_string(), "use model = \"full\", or a coarser mesh"),
     }
 }
 
@@ -142,39 +143,39 @@ fn placement(error: &PlacementError, document: &Document) -> Diagnostic {
         PlacementError::Static { beam, source } => start(
             beam,
             format!("no static equilibrium: {source}"),
-            "take fewer elements or a stiffer beam, or start undeformed",
+            "use fewer elements or a stiffer beam, or start undeformed",
         ),
         PlacementError::NoEquilibrium { block, motion } => document.error(
             &format!("block.{}.at", table_of(document, block)),
             format!("no static equilibrium: the block {motion}"),
             match motion {
-                Departure::Slides => "give more friction, put it where the beam stays level, or start undeformed",
-                Departure::Tips => "move the block, take a stiffer beam, or start undeformed",
-                Departure::ChangesFoot => "tilt it more, or the other way, take a stiffer beam, or start undeformed",
-                Departure::LiftsOff => "check gravity and forces at t = 0, or start undeformed",
+                InstabilityMode::Slides => "increase the friction, place the block where the beam stays level, or start undeformed",
+                InstabilityMode::Tips => "move the block, use a stiffer beam, or start undeformed",
+                InstabilityMode::ChangesFoot => "tilt it more, or the other way, use a stiffer beam, or start undeformed",
+                InstabilityMode::LiftsOff => "check gravity and forces at t = 0, or start undeformed",
             },
         ),
         PlacementError::Unsettled { beam, rounds, change } => start(
             beam,
             format!(
-                "no static equilibrium found in {rounds} rounds (the last one still moved by {change:.1e}, relative)"
+                "no static equilibrium found in {rounds} iterations (relative change in the last one: {change:.1e})"
             ),
-            "take a stiffer beam or lighter blocks, or start undeformed",
+            "use a stiffer beam or lighter blocks, or start undeformed",
         ),
         PlacementError::Search { beam, source: EquilibriumError::Factor(_) } => start(
             beam,
-            "no static equilibrium found: what is soft in the beam and its supports is lost in the rounding of what is stiff".to_owned(),
-            "take stiffer springs or foundations, a support, or a coarser mesh, or start undeformed",
+            "no static equilibrium found: the softest of beam and supports is too soft, relative to the stiffest, for double precision".to_owned(),
+            "use stiffer springs or foundations, a support, or a coarser mesh, or start undeformed",
         ),
         PlacementError::Search { beam, source } => start(
             beam,
             format!("no static equilibrium found: {source}"),
-            "check the numbers of the beam and of what stands on it, or start undeformed",
+            "check the values of the beam and of the blocks on it, or start undeformed",
         ),
         PlacementError::OffSurface { block, corner, x } => document.error(
             &format!("block.{}.at", table_of(document, block)),
-            format!("the corner {corner} at x = {x} m is not over what the block stands on"),
-            "move the block, such that the corners it stands on are over the surface",
+            format!("the corner {corner} at x = {x} m is not above the surface that the block stands on"),
+            "move the block so that the corners it stands on are above the surface",
         ),
     }
 }
@@ -184,7 +185,7 @@ fn law(error: &ModelError, document: &Document) -> Diagnostic {
         return document.error("contact", error.to_string(), "check the keys of the contacts");
     };
     let names = document.names("contact");
-    // Each contact of a scene has a law of its own.
+    // Each contact of a scene has its own law.
     let contact = usize::try_from(law.0).ok().and_then(|law| names.get(law).copied()).unwrap_or_default();
-    document.error(&format!("contact.{contact}"), error.to_string(), "check the numbers of its law")
+    document.error(&format!("contact.{contact}"), error.to_string(), "check the values of its law")
 }

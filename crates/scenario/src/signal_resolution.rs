@@ -1,40 +1,41 @@
-//! What is too fast for the step: signals with more in a step than it can show, blocks that turn
-//! far in one.
+//! Checks for motion too fast for the step: signals that the step doesn't resolve, blocks that turn
+//! far in a step.
 
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;
-use crate::scene::{AxisScene, ContactScene, History, MotionScene, Scene, SignalScene, Support};
+use crate::scene::{AxisScene, ContactScene, History, MotionScene, Scene, SignalScene, SupportingBody};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use teeter_integrator::{Formula, Given, Signal, Table};
 
-/// Steps that a swing should get.
+/// Least number of steps per period of a signal.
 const STEPS_A_SWING: f64 = 10.0;
 
-/// Of a table's largest value, by how much a row may be beyond the values at both ends of its step:
-/// what the peak of a sine of [`STEPS_A_SWING`] steps does. (A jump stays between them, and is no
-/// worse than any other.)
+/// A row may exceed the values at both ends of its step by this fraction of the table's largest
+/// value, as the peak of a sine of [`STEPS_A_SWING`] steps does. (A jump stays between these
+/// values, and counts like any other row.)
 const BEYOND_THE_ENDS: f64 = 0.05;
 
-/// Steps that a displacement should take from one place to another, or its velocity shows in none of them: a pulse as long as half a swing.
+/// Least number of steps for a change of displacement, as otherwise no step resolves its velocity,
+/// a pulse as long as half a period.
 const STEPS_A_RISE: f64 = 0.5 * STEPS_A_SWING;
 
-/// A displacement that takes this part of a step is not meant to be resolved.
+/// A change of displacement within this fraction of a step is not meant to be resolved.
 const A_JUMP: f64 = 0.01;
 
-/// Of the largest velocity of supports, the part from which on a beam that starts with them is told of.
+/// An initial velocity of supports of at least this fraction of their largest one gives a warning.
 const STARTS_FAST: f64 = 0.01;
 
-/// A block that turns by more than this in a step, rad, is no longer followed.
+/// Largest rotation of a block in a step that can be followed, rad.
 pub const FAR_TURN: f64 = 0.1;
 
-/// A table that goes on for so many times the run has probably another unit of time.
+/// A table this many times longer than the run probably has another unit of time.
 const FAR_TOO_LONG: f64 = 1000.0;
 
-/// Signals of one kind that are listed; the rest is counted.
+/// Largest number of signals listed in a message; the rest is counted.
 const LISTED: usize = 20;
 
-/// Warnings, and what is worth a note.
+/// Warnings and notes.
 pub(crate) fn of(scene: &Scene, document: &Document) -> (Vec<Diagnostic>, Vec<Diagnostic>) {
     let used = used(document);
     let (mut warnings, mut notes) = (Vec::new(), Vec::new());
@@ -47,7 +48,7 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> (Vec<Diagnostic>, Vec<Di
         };
         let path = format!("signal.{}", signal.name);
         if is_silent(&signal.history, end) {
-            let rule = format!("it is 0 all through the run, which ends at {end} s: what it multiplies does nothing");
+            let rule = format!("it is 0 during the whole run, which ends at {end} s, and has no effect");
             warnings.push(document.error(&path, rule, "check its times and their unit").as_warning());
             continue;
         }
@@ -72,21 +73,21 @@ struct Used {
 }
 
 impl Used {
-    /// What a step that doesn't resolve the signal makes of it.
+    /// The effect of a step that doesn't resolve the signal.
     fn in_the_mean(self) -> &'static str {
         match self {
             Self { motion: true, load: true } => {
-                "a step takes the mean of a load and of a velocity, so that no impulse is lost, but what they do in a step doesn't show"
+                "a step takes the mean of a load and of a velocity: no impulse is lost, but the variation within a step is ignored"
             }
             Self { motion: true, .. } => {
-                "a step takes the mean of the velocity, so that the place stays right, but how fast it goes within a step doesn't show"
+                "a step takes the mean of the velocity: the position stays right, but the variation within a step is ignored"
             }
-            _ => "a step takes its mean, so that no impulse is lost, but what it does in a step doesn't show",
+            _ => "a step takes its mean: no impulse is lost, but the variation within a step is ignored",
         }
     }
 }
 
-/// The names of the signals that something uses.
+/// The names of the signals that are used.
 fn used(document: &Document) -> BTreeMap<&str, Used> {
     let mut used = BTreeMap::<&str, Used>::new();
     for (path, _) in document.entries() {
@@ -109,17 +110,17 @@ fn used(document: &Document) -> BTreeMap<&str, Used> {
 
 fn nothing_uses(names: &[&str], document: &Document) -> Vec<Diagnostic> {
     let listed = names.iter().take(LISTED).enumerate().map(|(k, name)| {
-        let mut rule = "nothing uses this signal".to_owned();
+        let mut rule = "this signal is not used".to_owned();
         if k + 1 == LISTED && names.len() > LISTED {
             let _ = write!(rule, ", nor {} more", names.len() - LISTED);
         }
-        let remedy = format!("write signal = \"{name}\" where it is meant to act, or leave it out");
+        let remedy = format!("add signal = \"{name}\" to the table that should use it, or leave the signal out");
         document.error(&format!("signal.{name}"), rule, remedy).as_warning()
     });
     listed.collect()
 }
 
-/// Whether a history is 0 from the start of the run to its end.
+/// Whether a history is 0 during the whole run.
 fn is_silent(history: &History, end: f64) -> bool {
     match history {
         History::Formula(formula) => formula.is_silent_until(end),
@@ -131,7 +132,7 @@ fn is_silent(history: &History, end: f64) -> bool {
     }
 }
 
-/// A signal by formula that swings with less than ten steps for it.
+/// Warns of a formula with less than ten steps per period.
 fn swing(path: &str, formula: &Formula, in_the_mean: &str, scene: &Scene, document: &Document) -> Option<Diagnostic> {
     let step = scene.time.step;
     let (period, [from, until]) = formula.swings()?;
@@ -146,11 +147,11 @@ fn swing(path: &str, formula: &Formula, in_the_mean: &str, scene: &Scene, docume
         let key = if document.has(&at("period")) { at("period") } else { at("frequency") };
         (key, format!("its period of {period:.3e} s is {:.2} steps of {step:e} s: {in_the_mean}", period / step))
     };
-    let remedy = format!("take a step of at most {:.1e} s", period / STEPS_A_SWING);
+    let remedy = format!("use a step of at most {:.1e} s", period / STEPS_A_SWING);
     Some(document.error(&key, rule, remedy).as_warning())
 }
 
-/// A table with peaks between the ends of steps.
+/// Warns of a table with peaks between the ends of steps.
 fn rows(path: &str, table: &Table, in_the_mean: &str, scene: &Scene, document: &Document) -> Option<Diagnostic> {
     let step = scene.time.step;
     let last = scene.time.steps() as f64;
@@ -170,36 +171,36 @@ fn rows(path: &str, table: &Table, in_the_mean: &str, scene: &Scene, document: &
         return None;
     }
     let rule = format!(
-        "its rows are as close as {closest:.3e} s, finer than the step of {step:e} s, with peaks between the ends of steps of up to \
+        "its rows are as close as {closest:.3e} s, closer than the step of {step:e} s, with peaks between the ends of steps of up to \
          {:.0} % of its largest value: {in_the_mean}",
         100.0 * worst
     );
-    let remedy = format!("take a shorter step: one of {closest:.1e} s shows every row");
+    let remedy = format!("use a shorter step: {closest:.1e} s resolves every row");
     Some(document.error(&format!("{path}.file"), rule, remedy).as_warning())
 }
 
-/// A table whose times have probably another unit.
+/// Warns of a table whose times probably have another unit.
 fn too_long(signal: &SignalScene, end: f64, document: &Document) -> Option<Diagnostic> {
     let History::Table(table) = &signal.history else { return None };
     let [_, (last, _)] = table.ends();
     if last <= FAR_TOO_LONG * end {
         return None;
     }
-    let rule = format!("the table goes on to {last} s, {:.1e} times the run of {end} s", last / end);
-    let remedy = "check the unit of its times: s, or what a heading says, such as t [ms]";
+    let rule = format!("the table extends to {last} s, {:.1e} times the run of {end} s", last / end);
+    let remedy = "check the unit of its times: s, or the unit in the heading, such as t [ms]";
     Some(document.error(&format!("signal.{}.file", signal.name), rule, remedy).as_note())
 }
 
-/// Blocks, and ground, that turn far in a step.
+/// Warns of blocks and ground that turn far in a step.
 fn turns(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
     let step = scene.time.step;
     let far = |path: String, rate: f64| {
         let turn = rate.abs() * step;
         (turn >= FAR_TURN).then(|| {
             let rule = format!(
-                "it turns by {turn:.2} rad in a step of {step:e} s, and is no longer followed from {FAR_TURN} on"
+                "it turns by {turn:.2} rad in a step of {step:e} s, more than {FAR_TURN} rad, which a step can't follow"
             );
-            let remedy = format!("take a step of at most {:.1e} s", FAR_TURN / rate.abs());
+            let remedy = format!("use a step of at most {:.1e} s", FAR_TURN / rate.abs());
             document.error(&path, rule, remedy).as_warning()
         })
     };
@@ -222,7 +223,8 @@ fn turns(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
     spins.chain(scene.motions().map(driven)).flatten().take(LISTED).collect()
 }
 
-/// Displacements that go faster from one place to another than steps can show: what a contact feels is their velocity.
+/// Warns of displacements that change faster than steps can resolve, as contacts depend on their
+/// velocity.
 fn rises(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
     let step = scene.time.step;
     let of = |(path, motion): (String, &MotionScene)| {
@@ -239,21 +241,22 @@ fn rises(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
         });
         let (key, lasts) = worst.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
         let rule = format!(
-            "it goes from one place to another in {lasts:.3e} s, {:.2} steps of {step:e} s: its place stays right, but not its velocity, by which it \
+            "it changes within {lasts:.3e} s, {:.2} steps of {step:e} s: the position stays right, but not the velocity with which it \
              pushes what touches it",
             lasts / step
         );
         let remedy = if lasts < A_JUMP * step {
-            "that is a jump: let it take the time that it takes in truth, and some steps at the least".to_owned()
+            "this is a jump: give the change its real duration, of at least some steps".to_owned()
         } else {
-            format!("take a step of at most {:.1e} s", lasts / STEPS_A_RISE)
+            format!("use a step of at most {:.1e} s", lasts / STEPS_A_RISE)
         };
         Some(document.error(&format!("{path}.{key}"), rule, remedy).as_warning())
     };
     scene.motions().filter_map(of).take(LISTED).collect()
 }
 
-/// The time between two rows, shorter than a step, whose slope is the farthest from the mean ones of the steps around, if it is far from them.
+/// The time between two rows, shorter than a step, whose slope differs most from the mean slopes of
+/// the surrounding steps, if it differs much.
 fn fastest_rise(table: &Table, scene: &Scene) -> Option<f64> {
     let (step, last) = (scene.time.step, scene.time.steps() as f64);
     let rows = || table.rows().zip(table.rows().skip(1));
@@ -277,9 +280,10 @@ fn fastest_rise(table: &Table, scene: &Scene) -> Option<f64> {
     lasts
 }
 
-/// The velocity with which a motion that is not uniform begins, if that is much of its largest one.
+/// The initial velocity of a nonuniform motion, if it is a considerable part of its largest
+/// velocity.
 fn fast_start(axis: &AxisScene, end: f64) -> Option<f64> {
-    /// Times at which velocities are looked at, over the run.
+    /// Number of times in the run at which velocities are evaluated.
     const LOOKS: u32 = 1000;
     if is_uniform(axis) {
         return None;
@@ -290,35 +294,36 @@ fn fast_start(axis: &AxisScene, end: f64) -> Option<f64> {
     Some(velocity(0)).filter(|start| start.abs() > STARTS_FAST * fastest)
 }
 
-/// Beams whose supports don't begin from rest, and ground that doesn't under a block that does.
+/// Warns of beams whose supports don't start from rest, and of blocks at rest on ground that
+/// doesn't.
 fn fast_starts(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
     let end = scene.time.steps() as f64 * scene.time.step;
     let beams = scene.beams.iter().filter_map(|beam| {
         let start = fast_start(beam.motion.0[1].as_ref()?, end)?;
         let rule = format!(
-            "the supports begin with {start:.3e} m/s, and the beam starts with them: it is at rest relative to its supports, not in the world"
+            "the supports start with {start:.3e} m/s, and the beam with them: it is at rest relative to its supports, not in the world"
         );
-        let remedy = "where the beam is meant to be pulled along from rest, let the motion begin with a velocity of 0, as shape = \"ricker\" or a \
+        let remedy = "if the beam should start from rest, let the motion start with a velocity of 0, as shape = \"ricker\" or a \
              harmonic displacement of phase = \"90 deg\" does";
         Some(document.error(&format!("beam.{}.motion", beam.name), rule, remedy).as_warning())
     });
     let at_rest = |contact: &ContactScene| {
         let block = &scene.blocks[contact.block];
-        (contact.surface == Support::Ground && block.velocity == [0.0; 2]).then_some(block)
+        (contact.surface == SupportingBody::Ground && block.velocity == [0.0; 2]).then_some(block)
     };
     let left_behind = scene.contacts.iter().find_map(at_rest);
     let ground = scene.ground.as_ref().zip(left_behind).and_then(|(ground, block)| {
         let starts = ground.motion.0.iter().take(2).flatten().filter_map(|axis| fast_start(axis, end));
         let start = starts.max_by(|a, b| a.abs().total_cmp(&b.abs()))?;
-        let rule = format!("the ground begins with {start:.3e} m/s, and `{}` on it is at rest: it begins with a jolt", block.name);
-        let remedy = "let the motion begin with a velocity of 0, as shape = \"ricker\" or a harmonic displacement of phase = \"90 deg\" does, or \
+        let rule = format!("the ground starts with {start:.3e} m/s, but `{}` on it starts at rest: the motion starts with a jolt", block.name);
+        let remedy = "let the motion start with a velocity of 0, as shape = \"ricker\" or a harmonic displacement of phase = \"90 deg\" does, or \
              give the block the velocity of the ground";
         Some(document.error("ground.motion", rule, remedy).as_warning())
     });
     beams.chain(ground).take(LISTED).collect()
 }
 
-/// Whether it is one velocity all the time.
+/// Whether its velocity is constant.
 fn is_uniform(axis: &AxisScene) -> bool {
     axis.given == Given::Velocity
         && matches!(&axis.history, History::Formula(formula) if formula.swings().is_none() && formula.rises_in().is_none())

@@ -1,20 +1,21 @@
-//! What `check` and `run` warn of in a setting, and which of it is of the scene and not of the setting.
+//! Warnings of `check` and `run` about a setting, and which of them belong to the scene.
 
 use teeter_report::Warning;
 use teeter_scenario::diagnostic::Diagnostic;
 
 /// A warning of a setting.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Warned {
-    /// What it is about, the same for two settings that are warned of the same: the key and the rule without its numbers for what is known before
-    /// the run, the code for what the run meets.
+pub struct SettingWarning {
+    /// Its kind, equal for settings with the same warning: key and rule without numbers for
+    /// warnings before the run, the code for those of the run.
     pub kind: String,
-    /// What the user would read.
+    /// Its text for users.
     pub text: String,
 }
 
-impl Warned {
-    /// The warnings of a scene before its run (notes are none), and those of its run; each kind once.
+impl SettingWarning {
+    /// The warnings of a scene before its run (without notes), and those of its run; each kind
+    /// once.
     pub(crate) fn of<'a>(before: impl Iterator<Item = &'a Diagnostic>, run: &[Warning]) -> Vec<Self> {
         let rule = |found: &Diagnostic| {
             let words: String = found.rule.chars().filter(|c| c.is_alphabetic() || *c == ' ').collect();
@@ -31,10 +32,13 @@ impl Warned {
     }
 }
 
-/// The kinds that are of the scene and not of a setting: the reference has them, and so has every one of `rows`. Who can't avoid a warning by what
-/// is chosen is not to be kept from choosing.
-pub(crate) fn of_the_scene<'a>(reference: &[Warned], mut rows: impl Iterator<Item = &'a [Warned]>) -> Vec<String> {
-    let has = |warned: &[Warned], kind: &str| warned.iter().any(|one| one.kind == kind);
+/// The kinds that belong to the scene, not to a setting: the reference and all `rows` have them. A
+/// warning that can't be avoided doesn't exclude a setting.
+pub(crate) fn of_the_scene<'a>(
+    reference: &[SettingWarning],
+    mut rows: impl Iterator<Item = &'a [SettingWarning]>,
+) -> Vec<String> {
+    let has = |warned: &[SettingWarning], kind: &str| warned.iter().any(|one| one.kind == kind);
     let mut kinds: Vec<String> = reference.iter().map(|one| one.kind.clone()).collect();
     rows.all(|row| {
         kinds.retain(|kind| has(row, kind));
@@ -47,8 +51,8 @@ pub(crate) fn of_the_scene<'a>(reference: &[Warned], mut rows: impl Iterator<Ite
 mod tests {
     use super::*;
 
-    fn warned(kinds: &[&str]) -> Vec<Warned> {
-        kinds.iter().map(|kind| Warned { kind: (*kind).to_owned(), text: String::new() }).collect()
+    fn warned(kinds: &[&str]) -> Vec<SettingWarning> {
+        kinds.iter().map(|kind| SettingWarning { kind: (*kind).to_owned(), text: String::new() }).collect()
     }
 
     #[test]
@@ -63,9 +67,9 @@ mod tests {
     #[test]
     fn a_rule_with_other_numbers_is_the_same_warning() {
         let found = |rule: &str| vec![Diagnostic::error("s.toml", rule)];
-        let kind = |rule: &str| Warned::of(found(rule).iter(), &[])[0].kind.clone();
+        let kind = |rule: &str| SettingWarning::of(found(rule).iter(), &[])[0].kind.clone();
         assert_eq!(kind("sags by 1.20e-3 m, 1/48 of the span"), kind("sags by 9.9e-4 m, 1/49 of the span"));
         assert_ne!(kind("sags by 1.20e-3 m"), kind("shortens by 1.20e-3 m"));
-        assert_eq!(Warned::of([found("a 1").remove(0), found("a 2").remove(0)].iter(), &[]).len(), 1);
+        assert_eq!(SettingWarning::of([found("a 1").remove(0), found("a 2").remove(0)].iter(), &[]).len(), 1);
     }
 }

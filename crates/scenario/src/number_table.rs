@@ -1,4 +1,4 @@
-//! Files of columns of numbers: the tables of signals, time and value, and the shapes of beams.
+//! Files with columns of numbers: tables of signals (time and value), and shapes of beams.
 
 use std::ops::RangeInclusive;
 
@@ -8,33 +8,33 @@ use crate::keys::Range;
 use crate::quantity;
 use teeter_integrator::{SignalError, Table};
 
-/// Largest file that is read, bytes.
+/// Largest file accepted, bytes.
 pub const LARGEST_RECORD: usize = 64_000_000;
 
 /// Most rows: a signal takes 32 bytes for each.
 pub const MOST_ROWS: usize = 2_000_000;
 
-/// Shortest time between two rows, s: that of the keys that are times.
+/// Shortest time between two rows, s, as for keys that are times.
 const SHORTEST: f64 = 1e-15;
 
-/// What the columns of a signal's table are. Its value is multiplied by an amplitude that has the unit.
+/// The columns of a signal's table. Its value is multiplied by an amplitude, which has the unit.
 const SIGNAL: &[Dimension] = &[Dimension::TIME, Dimension::NONE];
 
-/// A table read: its columns, and the line of each row.
-pub(crate) struct Columns {
+/// The columns of a table, and the line of each row.
+pub(crate) struct NumberColumns {
     pub(crate) columns: Vec<Vec<f64>>,
     pub(crate) lines: Vec<u64>,
 }
 
-/// Reads a table of two columns, t in s and value, its times moved by `start`.
+/// Reads a table of two columns, t in s and value, with `start` added to its times.
 ///
 /// # Errors
-/// What is wrong, and in which line.
+/// What is wrong, with the line.
 pub(crate) fn read(bytes: &[u8], start: f64) -> Result<Table, String> {
-    let Columns { columns, lines } = columns(bytes, 2..=2, "two, t and value", SIGNAL)?;
+    let NumberColumns { columns, lines } = columns(bytes, 2..=2, "two, t and value", SIGNAL)?;
     let [mut times, values] = <[Vec<f64>; 2]>::try_from(columns).unwrap_or_default();
     times.iter_mut().for_each(|t| *t += start);
-    // Shorter ones are no time that a key would take, and rates over them no number that can be computed with.
+    // Keys accept no shorter times, and rates over them would exceed the range of numbers.
     if let Some(row) = times.windows(2).position(|t| t[1] > t[0] && t[1] - t[0] < SHORTEST) {
         let line = lines.get(row + 1).copied().unwrap_or_default();
         return Err(format!(
@@ -54,18 +54,19 @@ pub(crate) fn read(bytes: &[u8], start: f64) -> Result<Table, String> {
     })
 }
 
-/// Reads a table of numbers: separated by commas, as many columns in each row, a first row of words is a heading, lines that
-/// start with `#` are comments. `names` are the columns in words, for messages; `dimensions` what their numbers are, in SI units but where
-/// the heading gives another one, as `t [ms]`. Numbers are held to the limits of keys.
+/// Reads a table of numbers: separated by commas, with the same number of columns in each row; a
+/// first row of words is a heading, lines that start with `#` are comments. `names` describes the
+/// columns in messages; `dimensions` are theirs, in SI units unless the heading gives another unit,
+/// as `t [ms]`. Numbers must be within the limits of keys.
 ///
 /// # Errors
-/// What is wrong, and in which line.
+/// What is wrong, with the line.
 pub(crate) fn columns(
     bytes: &[u8],
     count_of: RangeInclusive<usize>,
     names: &str,
     dimensions: &[Dimension],
-) -> Result<Columns, String> {
+) -> Result<NumberColumns, String> {
     if bytes.len() > LARGEST_RECORD {
         return Err(format!("larger than {} MB, the limit of a table", LARGEST_RECORD / 1_000_000));
     }
@@ -76,9 +77,9 @@ pub(crate) fn columns(
         .flexible(true)
         .trim(csv::Trim::All)
         .from_reader(bytes);
-    // No memory is taken before there is a row for it.
+    // Memory is allocated only as rows are found.
     let (mut columns, mut lines): (Vec<Vec<f64>>, Vec<u64>) = (Vec::new(), Vec::new());
-    let mut count = Count { bytes, at: 0, line: 1 };
+    let mut count = LineCounter { bytes, at: 0, line: 1 };
     let mut row = csv::ByteRecord::new();
     let mut first = true;
     let mut units: Vec<Option<String>> = Vec::new();
@@ -112,44 +113,49 @@ pub(crate) fn columns(
                 (Some(unit), Some(dimension)) => number_in(cell, unit, *dimension),
                 _ => number(cell),
             };
-            let Some(value) = read else {
-                let text = printable(&String::from_utf8_lossy(cell));
-                let other = match other_separator(&row) {
-                    Some(other) => format!("; these are separated by {other}"),
-                    None => String::new(),
-                };
-                return Err(format!("line {line}: `{text}` is no number{other}"));
-            };
-            // What is not finite has its own message, which says what it is.
-            let (size, limits) = (value.abs(), Range::ANY);
-            let beyond = match size {
-                size if size > limits.largest && size.is_finite() => format!("over {:e}", limits.largest),
-                size if size > 0.0 && size < limits.smallest => format!("below {:.1e}", limits.smallest),
-                _ => String::new(),
-            };
-            if !beyond.is_empty() {
+            let value = read.ok_or_else(|| format!("line {line}: {}", not_a_number(cell, &row)))?;
+            if let Some(beyond) = beyond_limits(value) {
                 let column = k + 1;
                 return Err(format!(
-                    "line {line}, column {column}: {value:e} is {beyond} in size, the limit of numbers"
+                    "line {line}, column {column}: {value:e} is {beyond} in absolute value, the limit of numbers"
                 ));
             }
             column.push(value);
         }
         lines.push(line);
     }
-    Ok(Columns { columns, lines })
+    Ok(NumberColumns { columns, lines })
 }
 
-/// Counts lines. (The reader's own count stands at the end of the row before: ahead of blank lines and comments.)
-struct Count<'a> {
+/// Why a cell of a row can't be read.
+fn not_a_number(cell: &[u8], row: &csv::ByteRecord) -> String {
+    let text = printable(&String::from_utf8_lossy(cell));
+    let other = other_separator(row).map_or_else(String::new, |other| format!("; these are separated by {other}"));
+    format!("`{text}` is not a number{other}")
+}
+
+/// The limit that a number exceeds, in words. Numbers that aren't finite have their own message.
+fn beyond_limits(value: f64) -> Option<String> {
+    let limits = Range::ANY;
+    match value.abs() {
+        size if size > limits.largest && size.is_finite() => Some(format!("over {:e}", limits.largest)),
+        size if size > 0.0 && size < limits.smallest => Some(format!("below {:.1e}", limits.smallest)),
+        _ => None,
+    }
+}
+
+/// Counts lines. (The reader's own count is the end of the row before, ahead of blank lines and
+/// comments.)
+struct LineCounter<'a> {
     bytes: &'a [u8],
-    /// Up to here the lines are counted.
+    /// Lines are counted up to this byte.
     at: usize,
     line: u64,
 }
 
-impl Count<'_> {
-    /// The line of the row that the reader found from a byte on, which is not before that of the last call.
+impl LineCounter<'_> {
+    /// The line of the row that the reader found at or after a byte; the byte must not decrease
+    /// between calls.
     fn line_of(&mut self, byte: u64) -> u64 {
         let byte = usize::try_from(byte).unwrap_or(usize::MAX);
         let mut in_comment = false;
@@ -170,14 +176,14 @@ impl Count<'_> {
     }
 }
 
-/// Whether a cell of the first row is a word of a heading: nothing that begins as a number.
+/// Whether a cell of the first row is a word of a heading, that is, doesn't begin like a number.
 fn is_word(cell: &[u8]) -> bool {
     let unsigned = cell.strip_prefix(b"-").or_else(|| cell.strip_prefix(b"+")).unwrap_or(cell);
     let unsigned = unsigned.strip_prefix(b".").unwrap_or(unsigned);
     number(cell).is_none() && !unsigned.first().is_some_and(u8::is_ascii_digit)
 }
 
-/// What separates the numbers of a row whose columns are too few or too many for commas, in words.
+/// The separator of a row with the wrong number of columns, if it isn't a comma, in words.
 fn other_separator(row: &csv::ByteRecord) -> Option<&'static str> {
     let whole = row.iter().map(String::from_utf8_lossy).collect::<Vec<_>>().join(",");
     if whole.contains(';') {
@@ -188,7 +194,7 @@ fn other_separator(row: &csv::ByteRecord) -> Option<&'static str> {
     numbers.then_some(if whole.contains('\t') { "a tab" } else { "blanks" })
 }
 
-/// The units that a heading gives, by column: `t [ms]`, `t (ms)`; none for the SI unit itself.
+/// The units in a heading, by column: `t [ms]`, `t (ms)`; `None` for the SI unit itself.
 fn heading_units(heading: &csv::ByteRecord, dimensions: &[Dimension]) -> Result<Vec<Option<String>>, String> {
     let is_time = |cell: &[u8]| {
         let cell = String::from_utf8_lossy(cell).to_lowercase();
@@ -200,7 +206,7 @@ fn heading_units(heading: &csv::ByteRecord, dimensions: &[Dimension]) -> Result<
         && cells.next().is_some_and(|cell| !is_time(cell))
         && cells.any(is_time)
     {
-        return Err("the heading has the time in another column: it has to be the first".to_owned());
+        return Err("the heading has the time in another column: it must be in the first".to_owned());
     }
     let mut units = Vec::new();
     for (cell, dimension) in heading.iter().zip(dimensions) {
@@ -215,7 +221,7 @@ fn heading_units(heading: &csv::ByteRecord, dimensions: &[Dimension]) -> Result<
     Ok(units)
 }
 
-/// What stands in brackets at the end of a heading.
+/// The text in brackets at the end of a heading.
 fn unit_of(cell: &str) -> Option<&str> {
     let (open, inner) = match cell.trim_matches('"').trim_end() {
         text if text.ends_with(']') => ('[', text.strip_suffix(']')?),
@@ -225,7 +231,7 @@ fn unit_of(cell: &str) -> Option<&str> {
     Some(inner.rsplit_once(open)?.1.trim())
 }
 
-/// The unit of a column, if its numbers have to be brought to SI.
+/// The unit of a column, if its numbers must be converted to SI.
 fn heading_unit(unit: &str, dimension: Dimension) -> Result<Option<String>, String> {
     let none = dimension == Dimension::NONE;
     let bare = matches!(unit, "" | "-" | "1");
@@ -246,17 +252,17 @@ fn heading_unit(unit: &str, dimension: Dimension) -> Result<Option<String>, Stri
     }
 }
 
-/// A number in another unit than SI's, as if it had been written in a scene.
+/// A number in a unit other than SI's, as if it had been written in a scene.
 fn number_in(cell: &[u8], unit: &str, dimension: Dimension) -> Option<f64> {
     let value = number(cell)?;
-    // Zeros, and what is no finite number, are the same in all units.
+    // Zeros, and numbers that aren't finite, are the same in all units.
     if value == 0.0 || !value.is_finite() {
         return Some(value);
     }
     quantity::parse(&format!("{} {unit}", std::str::from_utf8(cell).ok()?), dimension).ok()
 }
 
-/// NaN and infinities are numbers here, so that they are named as what they are.
+/// NaN and infinities are numbers here, so that they get their own message.
 fn number(cell: &[u8]) -> Option<f64> {
     std::str::from_utf8(cell).ok()?.parse().ok()
 }
@@ -310,12 +316,15 @@ mod tests {
         assert!(told("0,5;1\n1;2\n").ends_with("these are separated by a semicolon"));
         assert!(told("0\t1\n").ends_with("these are separated by a tab"));
         assert!(told("0 1\n").ends_with("these are separated by blanks"));
-        assert!(told("1e400x,2\n0,1\n1,2\n").starts_with("line 1: `1e400x` is no number"));
+        assert!(told("1e400x,2\n0,1\n1,2\n").starts_with("line 1: `1e400x` is not a number"));
         assert_eq!(told("0,1\n1,2,3\n"), "line 2: 3 columns, but a table has two, t and value, separated by a comma");
-        assert_eq!(told("0,1\n1,high\n"), "line 2: `high` is no number");
+        assert_eq!(told("0,1\n1,high\n"), "line 2: `high` is not a number");
         assert!(told(&"0,1\n".repeat(MOST_ROWS + 1)).starts_with("line 2000001: more than 2000000 rows"));
-        assert_eq!(told("0,1\n1,1e308\n"), "line 2, column 2: 1e308 is over 1e12 in size, the limit of numbers");
-        assert!(told("0,1\n1e-320,2\n").ends_with("is below 2.2e-308 in size, the limit of numbers"));
+        assert_eq!(
+            told("0,1\n1,1e308\n"),
+            "line 2, column 2: 1e308 is over 1e12 in absolute value, the limit of numbers"
+        );
+        assert!(told("0,1\n1e-320,2\n").ends_with("is below 2.2e-308 in absolute value, the limit of numbers"));
         assert!(told("0,1\n1e-20,2\n").starts_with("line 2: 1e-20 s after the row before, below 1e-15 s"));
         assert!(read(&vec![b'1'; LARGEST_RECORD + 1], 0.0).unwrap_err().contains("64 MB"));
     }

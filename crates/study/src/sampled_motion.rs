@@ -1,4 +1,4 @@
-//! What a run shows, at the same times for all runs of a study.
+//! Samples of a run, at the same times for all runs of a study.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,21 +8,21 @@ use teeter_report::{Bounces, Record};
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::{BeamPlace, Layout};
 
-/// When samples are taken: `count` of them, `every` seconds apart, from t = 0.
+/// Sampling times: `count` samples, `every` seconds apart, from t = 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sampling {
-    /// Time between two, s.
+    /// Interval, s.
     pub every: f64,
-    /// How many.
+    /// Number of samples.
     pub count: usize,
 }
 
-/// Samples of a run, about.
+/// Approximate number of samples of a run.
 const SAMPLES: f64 = 500.0;
 
 impl Sampling {
     /// For a scene: some 500 samples, a whole number of the scene's own steps apart. Steps that
-    /// divide this hit the samples; for others the motion is taken in between.
+    /// divide this interval end at the samples; for others the motion is interpolated.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let (end, step) = (scene.time.end, scene.time.step);
@@ -46,12 +46,12 @@ pub struct Impact {
     pub speed: f64,
 }
 
-/// What a run showed. A sample's numbers stand together, one sample after the other.
+/// The sampled motion of a run. The numbers of a sample are contiguous, one sample after the other.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Motion {
+pub struct SampledMotion {
     /// X, Y, φ of the blocks.
     pub poses: Vec<[f64; 3]>,
-    /// Deflections of the beams at their probes, at midspan and in the middle between supports, m.
+    /// Deflections of the beams at their probes, at midspan and midway between supports, m.
     pub deflections: Vec<f64>,
     /// Mechanical energy, J.
     pub energy: Vec<f64>,
@@ -61,19 +61,19 @@ pub struct Motion {
     pub penetration: Vec<f64>,
     /// Times at which the angle of each block crosses zero, s.
     pub crossings: Vec<Vec<f64>>,
-    /// Its peaks between two crossings, rad; the release is none.
+    /// Peaks of each block's angle between crossings, without the release, rad.
     pub peaks: Vec<Vec<(f64, f64)>>,
-    /// The impacts of each contact, of the first 1000 of the run.
+    /// The impacts of each contact, among the first 1000 of the run.
     pub impacts: Vec<Vec<Impact>>,
     /// The energy scale of the ledger, J.
     pub energy_scale: f64,
-    /// Samples taken: fewer than asked for in a run that ended early.
+    /// Number of samples: fewer than requested if the run ended early.
     pub samples: usize,
-    /// When a landing hung on bounces that the steps had cut short, s.
+    /// Time of a landing that depended on bounces cut short by the steps, s.
     pub contested: Option<f64>,
 }
 
-/// The observer that fills a [`Motion`].
+/// The observer that fills a [`SampledMotion`].
 #[derive(Debug)]
 pub(crate) struct Sampler<'a> {
     sampling: Sampling,
@@ -82,14 +82,14 @@ pub(crate) struct Sampler<'a> {
     watched: Vec<(&'a BeamPlace, Vec<ShapeAt>)>,
     /// Names of the contacts.
     contacts: Vec<&'a str>,
-    before: Before,
+    before: LastStep,
     bounces: Bounces,
-    pub(crate) motion: Motion,
+    pub(crate) motion: SampledMotion,
 }
 
-/// What the last step ended with, of what is sampled.
+/// The sampled values at the end of the last step.
 #[derive(Debug, Default)]
-struct Before {
+struct LastStep {
     t: f64,
     q: Vec<f64>,
     v: Vec<f64>,
@@ -110,17 +110,17 @@ impl<'a> Sampler<'a> {
             blocks: layout.blocks.len(),
             watched: layout.beams.iter().map(watched).collect(),
             contacts: layout.pairs.iter().map(|pair| pair.name.as_str()).collect(),
-            before: Before { impulses: vec![0.0; pairs], now: vec![0.0; pairs], ..Before::default() },
+            before: LastStep { impulses: vec![0.0; pairs], now: vec![0.0; pairs], ..LastStep::default() },
             bounces: Bounces::default(),
-            motion: Motion { impacts: vec![Vec::new(); pairs], ..Motion::default() },
+            motion: SampledMotion { impacts: vec![Vec::new(); pairs], ..SampledMotion::default() },
         }
     }
 
-    /// The motion, when the run has ended.
-    pub(crate) fn finish(mut self, state: &State, record: &Record) -> Motion {
+    /// The motion at the end of the run.
+    pub(crate) fn finish(mut self, state: &State, record: &Record) -> SampledMotion {
         self.motion.energy_scale = state.ledger.scale;
         self.motion.contested = self.bounces.contested().map(|contested| contested.t);
-        // Impacts, crossings and peaks are those that the summary lists.
+        // Impacts, crossings and peaks are those of the summary.
         for impact in &record.impacts {
             if let Some(pair) = self.contacts.iter().position(|contact| *contact == impact.contact) {
                 self.motion.impacts[pair].push(Impact { t: impact.t, speed: -impact.u_n_before });
@@ -133,10 +133,10 @@ impl<'a> Sampler<'a> {
         self.motion
     }
 
-    /// Takes the sample at the share `s` of the step that ended with `state`: `piece` is the part
-    /// of it without impacts in which that is.
-    fn take(&mut self, s: f64, piece: &Piece<'_>, state: &State) {
-        let Piece { s: within, h, q: [q0, q1], v: [v0, v1] } = *piece;
+    /// Takes the sample at the fraction `s` of the step that ended with `state`; `piece` is the
+    /// part without impacts that contains it.
+    fn take(&mut self, s: f64, piece: &SmoothPart<'_>, state: &State) {
+        let SmoothPart { s: within, h, q: [q0, q1], v: [v0, v1] } = *piece;
         let (before, motion) = (&self.before, &mut self.motion);
         let between = |k: usize| hermite(within, h, [q0[k], q1[k]], [v0[k], v1[k]]);
         for block in 0..self.blocks {
@@ -144,7 +144,8 @@ impl<'a> Sampler<'a> {
         }
         for (place, shapes) in &self.watched {
             let range = place.range.clone();
-            // Deflections are linear in the coordinates: of q and of v at both ends.
+            // Deflections are linear in the coordinates, so they are evaluated from q and v at both
+            // ends.
             let of = |shape: &ShapeAt, x: &[f64]| place.deflection(shape, &x[range.clone()]).w;
             for shape in shapes {
                 let (q, v) = ([of(shape, q0), of(shape, q1)], [of(shape, v0), of(shape, v1)]);
@@ -159,7 +160,7 @@ impl<'a> Sampler<'a> {
     }
 
     fn keep(&mut self, state: &State) {
-        let Before { t, q, v, energy, impulses, now } = &mut self.before;
+        let LastStep { t, q, v, energy, impulses, now } = &mut self.before;
         (*t, *energy) = (state.t, state.ledger.current.total());
         q.clone_from(&state.q);
         v.clone_from(&state.v);
@@ -167,25 +168,25 @@ impl<'a> Sampler<'a> {
     }
 }
 
-/// A part of a step without impacts, and a place in it.
+/// A part of a step without impacts, and a time in it.
 #[derive(Clone, Copy)]
-struct Piece<'a> {
-    /// The share of the part that has passed.
+struct SmoothPart<'a> {
+    /// The elapsed fraction of the part.
     s: f64,
-    /// How long it takes, s.
+    /// Its duration, s.
     h: f64,
     /// Coordinates and velocities at both of its ends.
     q: [&'a [f64]; 2],
     v: [&'a [f64]; 2],
 }
 
-impl<'a> Piece<'a> {
+impl<'a> SmoothPart<'a> {
     /// The end of a step.
     fn end(state: &'a State) -> Self {
         Self { s: 1.0, h: 0.0, q: [&state.q; 2], v: [&state.v; 2] }
     }
 
-    /// The part of a step in which time `t` (s) is, the share `s` of the whole.
+    /// The part of a step that contains time `t` (s), at the fraction `s` of the step.
     fn of(step: &StepReport<'a, 2>, t: f64, s: f64) -> Option<Self> {
         let mut lasting = step.phases().filter(|phase| phase.end > phase.start);
         let phase = lasting.find(|phase| phase.end > t)?;
@@ -196,8 +197,7 @@ impl<'a> Piece<'a> {
     }
 }
 
-/// Where the deflection of a beam is watched, m from its left end: in the middles and at its
-/// probes.
+/// Where the deflection of a beam is sampled, m from its left end: at midpoints and probes.
 fn watched_places(place: &BeamPlace) -> Vec<f64> {
     let mut places = place.middles();
     for x in &place.probes {
@@ -208,8 +208,8 @@ fn watched_places(place: &BeamPlace) -> Vec<f64> {
     places
 }
 
-/// The cubic with these values and derivatives at both ends of a step of length `h`, at its share
-/// `s`.
+/// The cubic with these values and derivatives at both ends of a step of length `h`, at its
+/// fraction `s`.
 fn hermite(s: f64, h: f64, q: [f64; 2], v: [f64; 2]) -> f64 {
     if s >= 1.0 {
         return q[1];
@@ -219,13 +219,13 @@ fn hermite(s: f64, h: f64, q: [f64; 2], v: [f64; 2]) -> f64 {
     a * q[0] + b * q[1] + h * (c * v[0] + d * v[1])
 }
 
-/// A step that ends this share of itself before a sample's time is meant to end at it.
+/// A step that ends within this fraction of itself before a sample's time counts as ending at it.
 const ROUNDING: f64 = 1e-6;
 
 impl Observer<2> for Sampler<'_> {
     fn start(&mut self, _: &Model<2>, state: &State) -> Result<(), ObserverError> {
         self.keep(state);
-        self.take(1.0, &Piece::end(state), state);
+        self.take(1.0, &SmoothPart::end(state), state);
         Ok(())
     }
 
@@ -246,9 +246,9 @@ impl Observer<2> for Sampler<'_> {
                 break;
             }
             if s > 1.0 - ROUNDING {
-                self.take(1.0, &Piece::end(state), state);
+                self.take(1.0, &SmoothPart::end(state), state);
             } else {
-                self.take(s, &Piece::of(step, start + s * h, s).unwrap_or(Piece::end(state)), state);
+                self.take(s, &SmoothPart::of(step, start + s * h, s).unwrap_or(SmoothPart::end(state)), state);
             }
         }
         self.keep(state);

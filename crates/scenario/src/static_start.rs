@@ -1,105 +1,143 @@
 //! `start = "static"`: beams in equilibrium under what stands on them (`docs/theory.md` §8).
 //!
-//! The equilibrium is that of a model of its own: the beams that ask for it, the blocks that stand on them, and the ground.
-//! Blocks are put on the straight beam; then weight, and the loads and forces of t = 0, act. A flat block follows the beam,
-//! held by friction where there is any. A beam in modes settles in its modes: it is at rest in the model that runs. A tilted one is held as placed by a couple that is let go at t = 0: its angle stays,
-//! and the place of its foot.
+//! The equilibrium is computed in a separate model: the beams with this start, the blocks on them,
+//! and the ground. Blocks are placed on the straight beam; then weight, and the loads and forces of
+//! t = 0, act. A flat block follows the beam, held by friction if there is any. A tilted one is
+//! held as placed by a couple that is released at t = 0: its angle and the position of its foot
+//! stay. A beam in modes settles in its modes, so it is at rest in the model that runs.
 
 use crate::driven::{self, BeamModel};
-use crate::placement::{Departure, PlacementError, below};
-use crate::scene::{Placement, Scene, Support};
-use crate::simulation::{BuildError, detector};
+use crate::placement::{InstabilityMode, PlacementError, below, starting_poses};
+use crate::scene::{Placement, Scene, SupportingBody};
+use crate::simulation::{BlockBody, BuildError, detector};
 use nalgebra::{Vector2, Vector3};
 use teeter_beam::SpanLoad;
 use teeter_detect::{BodyId, PointPair, ShapePair};
 use teeter_integrator::{
-    BeamForces, Block, BlockCoordinate, Blocks, Equilibrium, EquilibriumError, Mismatch, Model, ModelBuilder, Motion,
-    PairLaw, SettlingLimits, SolverSettings, Workspace, settle,
+    BeamForces, BlockCoordinate, Blocks, Equilibrium, EquilibriumError, Mismatch, Model, ModelBuilder, Motion, PairLaw,
+    SettlingLimits, SolverSettings, Workspace, settle,
 };
 use teeter_rigid::Pose;
 use teeter_solvers::Auto;
 
-/// The start of what moves, before and after settling.
-pub(crate) struct Start<'a> {
-    /// The bodies of the blocks, and their shapes.
-    pub(crate) blocks: &'a [(Block, Vec<Vector2<f64>>)],
+/// The initial configuration, before and after settling.
+pub(crate) struct InitialConfiguration<'a> {
+    /// The bodies of the blocks, and their corners.
+    pub(crate) blocks: &'a [BlockBody],
     /// X, Y, φ of each block.
     pub(crate) poses: Vec<Vector3<f64>>,
     /// The beams.
     pub(crate) beams: &'a [BeamModel],
     /// Their coordinates.
     pub(crate) deflections: Vec<Vec<f64>>,
-    /// The coordinates of ground that moves.
+    /// The coordinates of moving ground.
     pub(crate) ground: &'a [f64],
-    /// The beams that are in equilibrium, with the forces of contacts on them; none before settling.
+    /// The beams in equilibrium, with the contact forces on them; empty before settling.
     pub(crate) pressed: Vec<(usize, Vec<SpanLoad>)>,
 }
 
-/// A block that moves this part of its width from where it was put is on its way.
-const REACH: f64 = 0.1;
+/// A block that moves by this fraction of its width from its place has no equilibrium there.
+const MOST_DISPLACEMENT: f64 = 0.1;
 
-/// Friction under the foot of a block that is held: it doesn't slide. Its other corners have none.
-const HELD: f64 = 1e3;
+/// Friction under the foot of a held block, which doesn't slide. Its other corners have none.
+const HELD_FRICTION: f64 = 1e3;
 
-/// Residual of the contact problems: what the forces are exact to.
+/// Residual of the contact problems, which limits the accuracy of the forces.
 const TOLERANCE: f64 = 1e-13;
 
 /// Iterations of a contact solve.
 const ITERATIONS: u32 = 10_000;
 
-/// Times that held blocks are put back: the top fibre of a section that turns carries them along.
-const RETURNS: usize = 20;
+/// Most times that held blocks are moved back: the top fibre of a rotating section carries them
+/// along.
+const MOST_RESETS: usize = 20;
 
-/// A foot that is this near to its place, as a part of its block's width, is there.
-const THERE: f64 = 1e-15;
+/// Distance of a foot from its place, relative to its block's width, that counts as zero.
+const FOOT_TOLERANCE: f64 = 1e-15;
 
-impl Start<'_> {
-    /// Moves beams that start static, and the blocks on them, to their equilibrium; `None` where no beam does.
+impl<'a> InitialConfiguration<'a> {
+    /// The configuration before settling: blocks on beams in their given shapes.
     ///
     /// # Errors
-    /// If there is none, or it is not found.
+    /// If a corner is not above the surface that it should stand on, or a beam can't be evaluated.
+    pub(crate) fn placed(
+        scene: &Scene,
+        blocks: &'a [BlockBody],
+        beams: &'a [BeamModel],
+        ground: &'a [f64],
+    ) -> Result<Self, BuildError> {
+        let incline = scene.ground.as_ref().map_or(0.0, |ground| ground.incline);
+        let line = if let [x, y, slope] = *ground { [x, y, slope] } else { [0.0, 0.0, incline] };
+        let deflections: Vec<Vec<f64>> =
+            scene.beams.iter().zip(beams).map(|(of, model)| model.coordinates(&of.shape)).collect();
+        let poses = starting_poses(scene, beams, &deflections, line)?;
+        Ok(Self { blocks, poses, beams, deflections, ground, pressed: Vec::new() })
+    }
+
+    /// Coordinates and velocities of the whole model, which has this number of coordinates.
+    pub(crate) fn coordinates(&self, scene: &Scene, dofs: usize) -> (Vec<f64>, Vec<f64>) {
+        let (mut q, mut v) = (Vec::with_capacity(dofs), Vec::with_capacity(dofs));
+        for (pose, block) in self.poses.iter().zip(&scene.blocks) {
+            q.extend(pose.iter());
+            v.extend([block.velocity[0], block.velocity[1], block.spin]);
+        }
+        for (deflection, model) in self.deflections.iter().zip(self.beams) {
+            q.extend(deflection.iter().chain(&model.displaced));
+        }
+        q.extend(self.ground);
+        v.resize(dofs, 0.0);
+        (q, v)
+    }
+
+    /// Moves beams with a static start, and the blocks on them, to their equilibrium; `None` if
+    /// there are no such beams.
+    ///
+    /// # Errors
+    /// If there is no equilibrium, or it is not found.
     pub(crate) fn settle(&mut self, scene: &Scene) -> Result<Option<StaticStart>, BuildError> {
         let beams: Vec<usize> = (0..scene.beams.len()).filter(|&k| scene.beams[k].static_start).collect();
         let Some(&first) = beams.first() else { return Ok(None) };
         for &k in &beams {
-            // Nothing bends it yet: this is about its supports.
+            // It is still straight, so an error here concerns its supports.
             let beam = &self.beams[k].beam;
             let refused = |source| PlacementError::Static { beam: scene.beams[k].name.clone(), source };
             beam.solve_static(&mut vec![0.0; beam.dofs()]).map_err(refused)?;
         }
         let blocks =
             (0..scene.blocks.len()).filter(|&k| carried_by(scene, k).is_some_and(|beam| beams.contains(&beam)));
-        let taking_part = TakingPart { blocks: blocks.collect(), beams };
-        let (model, pairs) = taking_part.model(scene, self)?;
-        let reach: Vec<f64> =
-            pairs.iter().map(|pair| REACH * scene.blocks[scene.contacts[pair.contact].block].width).collect();
+        let bodies = StaticModel { blocks: blocks.collect(), beams };
+        let (model, pairs) = bodies.model(scene, self)?;
+        let reach: Vec<f64> = pairs
+            .iter()
+            .map(|pair| MOST_DISPLACEMENT * scene.blocks[scene.contacts[pair.contact].block].width)
+            .collect();
         let mut limits = SettlingLimits {
             reach: &reach,
             margin: reach.iter().copied().fold(0.0, f64::max),
             tau: SettlingLimits::FIRST_TAU,
         };
-        let held: Vec<HeldFoot> = taking_part.blocks.iter().filter_map(|&k| HeldFoot::of(scene, self, k)).collect();
+        let held: Vec<HeldFoot> = bodies.blocks.iter().filter_map(|&k| HeldFoot::of(scene, self, k)).collect();
         let settings = SolverSettings { tolerance: TOLERANCE, max_iterations: ITERATIONS };
         let mut summary = StaticStart::default();
-        for _ in 0..RETURNS {
+        for _ in 0..MOST_RESETS {
             let mut work = Workspace::new(&model, Box::new(Auto::new()), settings);
-            let found = settle(&model, 0.0, &taking_part.coordinates(self), &limits, &mut work)
+            let found = settle(&model, 0.0, &bodies.coordinates(self), &limits, &mut work)
                 .map_err(|error| refusal(scene, &scene.beams[first].name, &pairs, error))?;
             limits.tau = found.tau;
-            taking_part.take(self, &found.q);
-            self.pressed = taking_part.pressed(scene, &model, &found)?;
+            bodies.take(self, &found.q);
+            self.pressed = bodies.pressed(scene, &model, &found)?;
             summary.rounds += found.rounds;
             summary.change = found.change;
             summary.forces.clear();
             for (id, force) in &found.forces {
                 let Some(pair) = pairs.get(id.pair() as usize) else { continue };
-                // The detector of a run numbers features of blocks as this one does.
+                // The detector of a run numbers features of blocks in the same way.
                 let point = pair.corners.get(id.point() as usize).map_or(id.point(), |&corner| corner as u32);
                 let force = [force[0], force[1]];
                 summary.forces.push(ContactForce { contact: pair.contact, point, force });
             }
             if let Some(foot) = held.iter().find(|foot| foot.is_left(scene, &summary.forces)) {
-                let (block, motion) = (scene.blocks[foot.block].name.clone(), Departure::ChangesFoot);
+                let (block, motion) = (scene.blocks[foot.block].name.clone(), InstabilityMode::ChangesFoot);
                 return Err(PlacementError::NoEquilibrium { block, motion }.into());
             }
             let mut there = true;
@@ -114,15 +152,15 @@ impl Start<'_> {
     }
 }
 
-/// What was found for a static start.
+/// The result for a static start.
 #[derive(Debug, Clone, Default, PartialEq)]
 #[non_exhaustive]
 pub struct StaticStart {
-    /// The contacts that press.
+    /// The loaded contacts.
     pub forces: Vec<ContactForce>,
-    /// Rounds of the search.
+    /// Number of iterations.
     pub rounds: u32,
-    /// Size of the last round's step, in the norm of energy, relative to the scene.
+    /// Size of the last iteration's change, in the energy norm, relative to the scene.
     pub change: f64,
 }
 
@@ -131,24 +169,26 @@ pub struct StaticStart {
 pub struct ContactForce {
     /// The contact, by its number in the scene.
     pub contact: usize,
-    /// The point of the pair that touches, as in the identity of its contact: of a pair with a surface the corner of the block, as in
-    /// [`Rectangle::CORNER_NAMES`](teeter_rigid::Rectangle::CORNER_NAMES) or of a polygon counter-clockwise.
+    /// The touching point of the pair, as in the identity of its contact: for a pair with a surface
+    /// the corner of the block, as in
+    /// [`Rectangle::CORNER_NAMES`](teeter_rigid::Rectangle::CORNER_NAMES) or for a polygon
+    /// counter-clockwise.
     pub point: u32,
     /// The force on the block along the contact's normal and tangent, N.
     pub force: [f64; 2],
 }
 
-/// The beam that a block stands on, be it on top of others.
+/// The beam that carries a block, directly or through other blocks.
 fn carried_by(scene: &Scene, block: usize) -> Option<usize> {
     let piled = |of: &usize| below(scene, *of);
     let lowest = std::iter::successors(Some(block), piled).take(scene.blocks.len()).last()?;
     match scene.blocks[lowest].placement {
-        Placement::On { support: Support::Beam(k), .. } => Some(k),
+        Placement::On { support: SupportingBody::Beam(k), .. } => Some(k),
         _ => None,
     }
 }
 
-/// The corner that a tilted block stands on, and is held at.
+/// The corner on which a tilted block stands and is held.
 fn foot_of(scene: &Scene, block: usize) -> Option<usize> {
     match scene.blocks[block].placement {
         Placement::On { tilt, .. } if tilt != 0.0 => Some(usize::from(tilt < 0.0)),
@@ -157,14 +197,14 @@ fn foot_of(scene: &Scene, block: usize) -> Option<usize> {
 }
 
 /// A pair of the equilibrium's model.
-struct Pair {
+struct EquilibriumPair {
     /// The contact of the scene.
     contact: usize,
-    /// Its points: corners of the block; empty where it is with another block.
+    /// Its points: corners of the block; empty for a pair of two blocks.
     corners: Vec<usize>,
 }
 
-/// The foot of a block that is held, and where it stays.
+/// The foot of a held block, and its position.
 struct HeldFoot {
     block: usize,
     corner: usize,
@@ -175,14 +215,14 @@ struct HeldFoot {
 }
 
 impl HeldFoot {
-    fn of(scene: &Scene, start: &Start<'_>, block: usize) -> Option<Self> {
+    fn of(scene: &Scene, start: &InitialConfiguration<'_>, block: usize) -> Option<Self> {
         let corner = foot_of(scene, block)?;
         let point = start.blocks[block].1[corner];
         let x = Pose::new(&start.poses[block]).point(&point).x;
         Some(Self { block, corner, point, x, width: scene.blocks[block].width })
     }
 
-    /// Whether the block presses elsewhere only.
+    /// Whether only other corners of the block are loaded.
     fn is_left(&self, scene: &Scene, forces: &[ContactForce]) -> bool {
         let of_block = || {
             forces.iter().filter(|force| {
@@ -193,24 +233,28 @@ impl HeldFoot {
         of_block().next().is_some() && of_block().all(|force| force.point != self.corner as u32)
     }
 
-    /// Puts the block back to where its foot was; whether it was there.
-    fn put_back(&self, start: &mut Start<'_>) -> bool {
+    /// Moves the block back so that its foot is in its place; returns whether it already was.
+    fn put_back(&self, start: &mut InitialConfiguration<'_>) -> bool {
         let pose = &mut start.poses[self.block];
         let off = self.x - Pose::new(pose).point(&self.point).x;
         pose.x += off;
-        off.abs() <= THERE * (self.width + self.x.abs())
+        off.abs() <= FOOT_TOLERANCE * (self.width + self.x.abs())
     }
 }
 
-/// What the equilibrium is of, by number in the scene.
-struct TakingPart {
+/// The bodies of the equilibrium, by number in the scene.
+struct StaticModel {
     blocks: Vec<usize>,
     beams: Vec<usize>,
 }
 
-impl TakingPart {
-    /// The model, and what its pairs are in the scene.
-    fn model(&self, scene: &Scene, start: &Start<'_>) -> Result<(Model<2>, Vec<Pair>), BuildError> {
+impl StaticModel {
+    /// The model, with its pairs.
+    fn model(
+        &self,
+        scene: &Scene,
+        start: &InitialConfiguration<'_>,
+    ) -> Result<(Model<2>, Vec<EquilibriumPair>), BuildError> {
         let mut parts = ModelBuilder::new();
         let bodies = self.blocks.iter().map(|&k| start.blocks[k].0).collect();
         let mut blocks = Blocks::new(bodies, Vector2::from(scene.gravity));
@@ -218,7 +262,8 @@ impl TakingPart {
             for force in scene.forces.iter().filter(|force| force.block == k) {
                 blocks = blocks.with_load(driven::block_load(force, number))?;
             }
-            // What is prescribed stays where it is put, but for the height: the block rests on the beam.
+            // Prescribed coordinates stay in place, except for the height: the block rests on the
+            // beam.
             let [x, _, angle] = scene.blocks[k].motion.0.each_ref().map(Option::is_some);
             for (coordinate, stays) in
                 [(BlockCoordinate::X, x), (BlockCoordinate::Turn, angle || foot_of(scene, k).is_some())]
@@ -229,12 +274,12 @@ impl TakingPart {
             }
         }
         let first = parts.add(blocks).body();
-        let mut surfaces: Vec<(Support, BodyId)> = Vec::new();
+        let mut surfaces: Vec<(SupportingBody, BodyId)> = Vec::new();
         for &k in &self.beams {
-            surfaces.push((Support::Beam(k), parts.add_boxed(start.beams[k].loaded(scene, k)?.boxed()).body()));
+            surfaces.push((SupportingBody::Beam(k), parts.add_boxed(start.beams[k].loaded(scene, k)?.boxed()).body()));
         }
         if let Some(ground) = &scene.ground {
-            surfaces.push((Support::Ground, parts.add(driven::ground(ground)).body()));
+            surfaces.push((SupportingBody::Ground, parts.add(driven::ground(ground)).body()));
         }
         let (mut pairs, mut shape_pairs, mut contacts) = (Vec::new(), Vec::new(), Vec::new());
         let part = |block: usize| self.blocks.iter().position(|&k| k == block);
@@ -244,17 +289,19 @@ impl TakingPart {
             if let Some(other) = contact.other_block() {
                 let (Some(block), Some(other_part)) = (block, part(other)) else { continue };
                 let held = [contact.block, other].into_iter().any(|block| foot_of(scene, block).is_some());
-                let law = parts.law(PairLaw::new(if held { HELD } else { contact.law.friction }, 0.0));
+                let law = parts.law(PairLaw::new(if held { HELD_FRICTION } else { contact.law.friction }, 0.0));
                 let (pair, bodies) = (contacts.len() as u32, [block, other_part].map(body));
                 shape_pairs.push(ShapePair { pair, law, bodies });
-                contacts.push(Pair { contact: number, corners: Vec::new() });
+                contacts.push(EquilibriumPair { contact: number, corners: Vec::new() });
                 continue;
             }
             let surface = surfaces.iter().find(|(support, _)| *support == contact.surface);
             let (Some(block), Some(&(_, surface))) = (block, surface) else { continue };
             let corners = &start.blocks[contact.block].1;
             let groups = match foot_of(scene, contact.block) {
-                Some(foot) => vec![(HELD, vec![foot]), (0.0, (0..corners.len()).filter(|&k| k != foot).collect())],
+                Some(foot) => {
+                    vec![(HELD_FRICTION, vec![foot]), (0.0, (0..corners.len()).filter(|&k| k != foot).collect())]
+                }
                 None => vec![(contact.law.friction, (0..corners.len()).collect())],
             };
             for (friction, numbers) in groups {
@@ -266,20 +313,20 @@ impl TakingPart {
                     surface,
                     kinematics: contact.kinematics,
                 });
-                contacts.push(Pair { contact: number, corners: numbers });
+                contacts.push(EquilibriumPair { contact: number, corners: numbers });
             }
         }
         let shapes = self.blocks.iter().enumerate().map(|(number, &k)| (body(number), start.blocks[k].1.as_slice()));
         Ok((parts.build(detector(pairs, shape_pairs, shapes)?)?, contacts))
     }
 
-    fn coordinates(&self, start: &Start<'_>) -> Vec<f64> {
+    fn coordinates(&self, start: &InitialConfiguration<'_>) -> Vec<f64> {
         let poses = self.blocks.iter().flat_map(|&k| start.poses[k].data.0[0]);
         let beams = self.beams.iter().flat_map(|&k| start.deflections[k].iter().copied());
         poses.chain(beams).chain(start.ground.iter().copied()).collect()
     }
 
-    fn take(&self, start: &mut Start<'_>, q: &[f64]) {
+    fn take(&self, start: &mut InitialConfiguration<'_>, q: &[f64]) {
         let (poses, mut q) = q.split_at(3 * self.blocks.len());
         for (&k, pose) in self.blocks.iter().zip(poses.chunks_exact(3)) {
             start.poses[k] = Vector3::from_column_slice(pose);
@@ -292,8 +339,8 @@ impl TakingPart {
     }
 }
 
-impl TakingPart {
-    /// The forces of contacts on each beam.
+impl StaticModel {
+    /// The contact forces on each beam.
     fn pressed(
         &self,
         scene: &Scene,
@@ -319,8 +366,8 @@ impl TakingPart {
     }
 }
 
-/// Why there is no start, with the block that doesn't stay.
-fn refusal(scene: &Scene, beam: &str, pairs: &[Pair], error: EquilibriumError) -> PlacementError {
+/// The error, with the block that doesn't stay in place.
+fn refusal(scene: &Scene, beam: &str, pairs: &[EquilibriumPair], error: EquilibriumError) -> PlacementError {
     let beam = beam.to_owned();
     match error {
         EquilibriumError::Leaves { contact, lifted, slid, .. } => {
@@ -329,14 +376,14 @@ fn refusal(scene: &Scene, beam: &str, pairs: &[Pair], error: EquilibriumError) -
             let forces = scene.forces.iter().filter(|force| force.block == block);
             let pushed: f64 = forces.map(|force| force.force[1] * force.history.signal().value(0.0)).sum();
             let motion = if of.mass() * scene.gravity[1] + pushed >= 0.0 {
-                Departure::LiftsOff
+                InstabilityMode::LiftsOff
             } else if foot_of(scene, block).is_some() {
-                // Its angle is held and its foot doesn't slide.
-                Departure::ChangesFoot
+                // Its angle is held, and its foot doesn't slide.
+                InstabilityMode::ChangesFoot
             } else if lifted > LIFTED * slid {
-                Departure::Tips
+                InstabilityMode::Tips
             } else {
-                Departure::Slides
+                InstabilityMode::Slides
             };
             PlacementError::NoEquilibrium { block: of.name.clone(), motion }
         }
@@ -345,5 +392,5 @@ fn refusal(scene: &Scene, beam: &str, pairs: &[Pair], error: EquilibriumError) -
     }
 }
 
-/// A block that lifts a foot by more than this part of a slide tips.
+/// A block that lifts a foot by more than this fraction of its slide counts as tipping.
 const LIFTED: f64 = 0.3;

@@ -4,9 +4,10 @@ use teeter_beam::{Beam, BeamError, BeamSpec, MatrixWeights};
 
 /// Largest step (s) at which no mode of the beam grows, for θ < ½; 0 without damping.
 ///
-/// The scheme multiplies a mode of eigenvalue λ by (1 + (1−θ)hλ)/(1 − θhλ) a step, so it is stable for
-/// `h ≤ −2 Re λ / ((1−2θ)|λ|²)`. That is 2ζ/((1−2θ)ω) for an underdamped mode, least for the highest mode of the mesh, and
-/// 2/((1−2θ)|λ|) for an overdamped one, where |λ| comes near to 2ζω; with d = c/ρA + a₀ that is d for the low modes.
+/// The scheme multiplies a mode of eigenvalue λ by (1 + (1−θ)hλ)/(1 − θhλ) a step, so it is stable
+/// for `h ≤ −2 Re λ / ((1−2θ)|λ|²)`. That is 2ζ/((1−2θ)ω) for an underdamped mode, least for the
+/// highest mode of the mesh, and 2/((1−2θ)|λ|) for an overdamped one, where |λ| approaches 2ζω;
+/// with d = c/ρA + a₀ that is d for the low modes.
 #[must_use]
 pub(crate) fn largest_stable_step(spec: &BeamSpec, theta: f64) -> f64 {
     let damping = &spec.damping;
@@ -22,8 +23,8 @@ pub(crate) fn largest_stable_step(spec: &BeamSpec, theta: f64) -> f64 {
     highest.min(lowest) / (1.0 - 2.0 * theta)
 }
 
-/// The first elastic circular frequency, rad/s: of the continuous beam where an equation gives it (then `true`), else of the
-/// finite elements.
+/// The first elastic circular frequency, rad/s: that of the continuous beam if there is a frequency
+/// equation (then `true`), otherwise that of the finite elements.
 pub(crate) fn first_frequency(spec: &BeamSpec) -> Option<(f64, bool)> {
     match spec.circular_frequency(1) {
         Err(BeamError::NoFrequencyEquation) => {
@@ -36,14 +37,16 @@ pub(crate) fn first_frequency(spec: &BeamSpec) -> Option<(f64, bool)> {
     }
 }
 
-/// Rounds of the power iteration; the estimate rises towards ω² from below.
+/// Iterations of the power method; the estimate converges to ω² from below.
 const ROUNDS: usize = 400;
 
-/// ω² of the highest mode of the mesh, by power iteration with M⁻¹K, to some 1 %: the bound that it serves is a guide.
+/// ω² of the highest mode of the mesh, by power iteration with M⁻¹K, to some 1 %, which is enough
+/// for a guideline.
 pub(crate) fn highest_eigenvalue(spec: &BeamSpec) -> Option<f64> {
     let beam = Beam::new(spec.clone()).ok()?;
     let inverse_mass = beam.factor(MatrixWeights { mass: 1.0, damping: 0.0, stiffness: 0.0 }).ok()?;
-    // Fixed, with a part along every mode: signs alternate like the highest mode's, sizes don't repeat.
+    // A fixed start vector with a component of every mode: signs alternate as in the highest mode,
+    // magnitudes don't repeat.
     let mut x: Vec<f64> =
         (0..beam.dofs()).map(|k| (if k % 4 < 2 { 1.0 } else { -1.0 }) + 0.3 * (k as f64).sin()).collect();
     x.iter_mut().enumerate().filter(|(k, _)| beam.is_held(*k)).for_each(|(_, x)| *x = 0.0);
@@ -71,7 +74,7 @@ mod tests {
 
     fn spec(elements: usize) -> BeamSpec {
         BeamSpec::new(0.36, elements, Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap())
-            .damped(Damping { viscous: 0.4, ..Damping::default() })
+            .damped(Damping::none().with_viscous(0.4))
     }
 
     #[test]
@@ -111,7 +114,7 @@ mod tests {
         // The highest mode underdamped; overdamped by Rayleigh's a₁; the low modes overdamped by c.
         for (viscous, rayleigh_stiffness) in [(300.0, 0.0), (0.0, 1e-3), (1e4, 0.0)] {
             let mut spec = spec(4);
-            spec.damping = Damping { viscous, rayleigh_stiffness, ..Damping::default() };
+            spec.damping = Damping::none().with_viscous(viscous).with_rayleigh_stiffness(rayleigh_stiffness);
             let limit = largest_stable_step(&spec, 0.4);
             assert!(!grows(spec.clone(), 0.4, 0.9 * limit), "{viscous} {rayleigh_stiffness}: {limit:e} is too large");
             assert!(grows(spec, 0.4, 1.2 * limit), "{viscous} {rayleigh_stiffness}: {limit:e} is too small");

@@ -1,0 +1,106 @@
+//! A pile of polygons in a trough that grows with their number: time a step, by what it goes into,
+//! while they fall and once they lie.
+//!
+//! ```text
+//! cargo bench -p teeter-benches --bench pile -- 100 300 1000
+//! ```
+#![allow(clippy::expect_used, clippy::print_stdout)] // a measurement that can't be set up has nothing to go on with
+
+use nalgebra::Vector2;
+use std::time::Instant;
+use teeter_detect::{Groups, Polygon, Profile, ProfilePair, Shape, ShapeDetector};
+use teeter_integrator::*;
+use teeter_rigid::MassProperties;
+
+/// Mean diameter of a stone, m.
+const SIZE: f64 = 0.1;
+
+/// Step, s.
+const H: f64 = 1e-3;
+
+/// Numbers in [0, 1), the same in every run.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// A model of so many stones, and where they start: in rows above a trough.
+fn pile(n: usize) -> (Model<2>, Vec<f64>) {
+    let mut random = Random(n as u64);
+    let columns = ((n as f64).sqrt() * 1.2).ceil() as usize;
+    let width = columns as f64 * 1.25 * SIZE;
+    let mut parts = ModelBuilder::new();
+    let (mut bodies, mut outlines, mut q) = (Vec::new(), Vec::new(), Vec::new());
+    for k in 0..n {
+        let corners = 4 + (random.next() * 4.0) as usize;
+        let radius = 0.5 * SIZE * (0.7 + 0.5 * random.next());
+        let turn = random.next();
+        let angle = |i: usize, r: f64| std::f64::consts::TAU * (i as f64 + 0.5 * r + turn) / corners as f64;
+        let points: Vec<_> =
+            (0..corners).map(|i| angle(i, random.next())).map(|a| radius * Vector2::new(a.cos(), a.sin())).collect();
+        let (mass, centre) = MassProperties::polygon(&points, 0.1, 2000.0).expect("a stone");
+        let points: Vec<_> = points.iter().map(|x| x - centre).collect();
+        let reach = points.iter().map(|x| x.norm()).fold(0.0, f64::max);
+        bodies.push(Block::within(mass, reach));
+        outlines.push(points);
+        let (column, row) = (k % columns, k / columns);
+        let x = (column as f64 + 0.5 + 0.1 * random.next()) * 1.25 * SIZE - 0.5 * width;
+        q.extend([x, (row as f64 + 1.0) * 1.25 * SIZE, 0.0]);
+    }
+    let blocks = parts.add(Blocks::new(bodies, Vector2::new(0.0, -9.81)));
+    let ground = parts.add(Ground::flat(0.0)).body();
+    let law = parts.law(PairLaw::new(0.5, 0.0));
+    let shapes = outlines.into_iter().enumerate();
+    let shapes: Vec<(_, Shape)> =
+        shapes.map(|(k, points)| (blocks.nth_body(k as u32), Polygon::new(points).expect("a stone").into())).collect();
+    let pairs = (0..n as u32).map(|k| ProfilePair { pair: k, law, body: blocks.nth_body(k), ground }).collect();
+    let groups =
+        Groups::new((0..n as u32).map(|k| (blocks.nth_body(k), 0)).collect(), vec![vec![Some(law)]]).expect("groups");
+    let half = 0.5 * width + 0.5 * SIZE;
+    let walls = [[-half - 10.0, 100.0], [-half, 0.0], [half, 0.0], [half + 10.0, 100.0]].map(Vector2::from).to_vec();
+    let detector = ShapeDetector::new(shapes, Vec::new()).expect("shapes");
+    let detector = detector.with_profile(Profile::new(walls).expect("a trough"), pairs).expect("pairs");
+    let model = parts.build(Box::new(detector.with_groups(groups, n as u32).expect("groups"))).expect("a model");
+    (model, q)
+}
+
+fn main() {
+    let counts: Vec<usize> = std::env::args().skip(1).filter_map(|word| word.parse().ok()).collect();
+    let seconds = std::env::var("SECONDS_RUN").ok().and_then(|s| s.parse().ok()).unwrap_or(2.0);
+    let tolerance = std::env::var("TOLERANCE").ok().and_then(|s| s.parse().ok()).unwrap_or(1e-10);
+    let method = std::env::var("METHOD").unwrap_or("auto".into());
+    for n in counts {
+        let (model, q) = pile(n);
+        let mut state = State::new(&model, &q, &vec![0.0; q.len()], H).expect("a state");
+        let settings = SolverSettings { tolerance, ..SolverSettings::default() };
+        let mut work = Workspace::new(&model, teeter_solvers::plane_solver(&method).expect("a solver"), settings);
+        let mut scheme = MoreauJeanClosed::new(MoreauJeanClosedSettings::default()).expect("a scheme");
+        let steps = (seconds / H).round() as u64;
+        let part = steps / 10;
+        for k in 0..10 {
+            let counts = work.counts;
+            let clock = Instant::now();
+            let ended =
+                run(&model, &mut scheme, &mut state, &mut work, &Plan::steps((k + 1) * part), &mut []).expect("a run");
+            let spent = clock.elapsed().as_secs_f64();
+            let now = work.counts;
+            let most = state.v.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+            println!(
+                "{n} t {:.2} {:.1} us/step, contacts {:.0}, problems/step {:.2}, iterations/step {:.1}, detections {:.1}, unsolved {}, v {most:.1e}, kinetic {:.2e}, penetration {:.1e} {ended:?}",
+                state.t,
+                1e6 * spent / part as f64,
+                (now.contacts - counts.contacts) as f64 / (now.problems - counts.problems).max(1) as f64,
+                (now.problems - counts.problems) as f64 / part as f64,
+                (now.iterations - counts.iterations) as f64 / part as f64,
+                (now.detections - counts.detections) as f64 / part as f64,
+                state.tally.unconverged_steps,
+                state.ledger.current.kinetic,
+                state.tally.max_penetration,
+            );
+        }
+    }
+}
