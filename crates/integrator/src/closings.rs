@@ -151,8 +151,8 @@ impl<const D: usize> ClosingMonitor<D> {
         self.follow_lost(model, step, state, openings)
     }
 
-    /// Whether a contact that was held strikes at an impact at time `t` (s). Such an impact has a time of its own and is no work of the
-    /// step.
+    /// Whether a contact that was held strikes at an impact at time `t` (s). Such an impact has a
+    /// time of its own and is no work of the step.
     fn strikes(
         &self,
         step: &StepReport<'_, D>,
@@ -168,7 +168,8 @@ impl<const D: usize> ClosingMonitor<D> {
         contact.u_before[0] < 0.0 && lifted && t - held.pressed > opening.time
     }
 
-    /// Looks how far contacts have opened that don't carry any more, and forgets those that are truly open.
+    /// Looks how far contacts have opened that don't carry any more, and forgets those that are
+    /// truly open.
     fn follow_lost(
         &mut self,
         model: &Model<D>,

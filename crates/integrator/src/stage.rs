@@ -447,7 +447,8 @@ impl<const D: usize> ContactStage<D> {
                 None => by_law(law, &self.contacts[i], &u_before, &u_free),
                 Some(spring) => {
                     let gap = self.springs.gap(self.contacts[i].id, &state.memory);
-                    // With w < ½ the force at the end of the step would count for less than half, or nothing, of the work.
+                    // With w < ½ the force at the end of the step would count for less than half,
+                    // or nothing, of the work.
                     let step = SpringStep { spring, gap, u_before: u_before[0], h, theta: weight.max(0.5) };
                     (Vector::zeros(), Rule::Spring(step))
                 }

@@ -577,7 +577,8 @@ impl<'a, const D: usize> PartRows<'a, D> {
 }
 
 impl<'a, const D: usize> PartRows<'a, D> {
-    /// The row of the only contact, if there is one contact, and one of its sides acts on the subsystem: columns and entries.
+    /// The row of the only contact, if there is one contact, and one of its sides acts on the
+    /// subsystem: columns and entries.
     #[inline]
     pub fn only(&self) -> Option<(&'a [usize], &'a [Vector<D>])> {
         let [sides] = self.spans else { return None };

@@ -167,7 +167,8 @@ impl ThetaStep {
 
     // What few parts have is apart, so that the others don't carry its variables along.
 
-    /// Leaves the end without impulses of a part that has its motion in closed form; whether it has.
+    /// Leaves the end without impulses of a part that has its motion in closed form; whether it
+    /// has.
     #[inline(never)]
     fn begin_in_closed_form<const D: usize>(
         &mut self,

@@ -463,7 +463,8 @@ impl<const D: usize> Workspace<D> {
         Ok(self.phases.report(state.step, penetration))
     }
 
-    /// Keeps the contacts of the last phase that stay, and springs that were pressed before an impact at its end.
+    /// Keeps the contacts of the last phase that stay, and springs that were pressed before an
+    /// impact at its end.
     #[inline(never)]
     fn remember_with_springs(&self, state: &mut State, mut stays: impl FnMut(usize, &Contact<D>) -> bool) {
         let mut springs = self.phases.springs_before_impact().peekable();

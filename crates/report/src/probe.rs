@@ -3,7 +3,8 @@
 use teeter_beam::ShapeAt;
 use teeter_scenario::simulation::BeamPlace;
 
-/// How the own coordinates of a beam move one of its places: what [`BeamPlace::deflection`] finds there, to the same bytes.
+/// How the own coordinates of a beam move one of its places: what [`BeamPlace::deflection`] finds
+/// there, to the same bytes.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Probe {
     /// By the dofs of its element.

@@ -14,7 +14,8 @@ pub(crate) struct ContactRows<const D: usize> {
     /// Columns within their subsystems.
     columns: Vec<usize>,
     values: Vec<Vector<D>>,
-    /// The round in which a contact last acted on each subsystem, up to the last that any has acted on.
+    /// The round in which a contact last acted on each subsystem, up to the last that any has acted
+    /// on.
     acted_on: Vec<u64>,
     /// Counts up where all contacts are dropped.
     round: u64,
@@ -134,7 +135,8 @@ impl<const D: usize> ContactRows<D> {
         Ok(Span { part: index, first: part.v.start, start, len })
     }
 
-    /// Makes room for entries; never less again, so that a step with known contacts has none to make.
+    /// Makes room for entries; never less again, so that a step with known contacts has none to
+    /// make.
     #[cold]
     fn grow(&mut self, entries: usize) {
         self.columns.resize(entries, 0);

@@ -212,7 +212,8 @@ impl PageRecorder {
         for part in step.active() {
             for contact in part.contacts {
                 let Some((pair, point)) = place(&self.layout, contact) else { continue };
-                // Impulses are those of the whole step; what a contact does in it is what it does in its last part.
+                // Impulses are those of the whole step; what a contact does in it is what it does
+                // in its last part.
                 let does = if part.is_last_lasting { contact.state() } else { ContactState::Open };
                 let curve = self.scenery.contacts[pair].first + point;
                 self.kept.curves.add(curve, [contact.p[0], contact.p[1]], does);

@@ -17,7 +17,8 @@ const UNACCOUNTED: f64 = 1e-8;
 /// Who meets whom is looked at again when a body may have moved by this part of the shortest side of a block.
 const LOOK_AFTER: f64 = 0.1;
 
-/// No corner of a block is faster than this past ground and supports, m/s; and how fast whatever turns the fastest turns, rad/s.
+/// No corner of a block is faster than this past ground and supports, m/s; and how fast whatever
+/// turns the fastest turns, rad/s.
 fn fastest(layout: &Layout, state: &State) -> [f64; 2] {
     let (mut fastest, mut turning) = (0.0, 0.0);
     for place in &layout.blocks {
@@ -106,7 +107,8 @@ impl Recorder<'_> {
         });
     }
 
-    /// Warns of what turns far in a step; looks who meets whom between rows, too, as soon as something may have come far enough to matter.
+    /// Warns of what turns far in a step; looks who meets whom between rows, too, as soon as
+    /// something may have come far enough to matter.
     ///
     /// `swing` is the largest rate of deflection of beams, m/s: what a beam does where it is watched stands for what it does elsewhere.
     pub(super) fn warn_of_motion(&mut self, step: &StepReport<'_, 2>, state: &State, swing: f64) {
