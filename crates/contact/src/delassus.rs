@@ -61,7 +61,7 @@ impl<const D: usize> Delassus<'_, D> {
     }
 
     /// `Σ_j H_ij p_j`; `n` is the number of contacts.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn row_product(&self, i: usize, p: &[Vector<D>]) -> Vector<D> {
         match self {
             Self::Dense(blocks) => {

@@ -50,10 +50,14 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 ///
 /// # Panics
 /// If `p` doesn't hold one impulse a contact: a mistake of the calling code.
+#[inline]
 #[must_use]
 pub fn judge<const D: usize>(problem: &ContactProblem<'_, D>, p: &[Vector<D>]) -> Residual {
     assert_eq!(p.len(), problem.contacts(), "one impulse a contact");
-    judge_with(problem, p, |i| problem.velocity(i, p))
+    match p {
+        [only] => judge_single(problem, only, &problem.velocity(0, p)),
+        _ => judge_several(problem, p, |i| problem.velocity(i, p)),
+    }
 }
 
 /// As [`judge()`], for a caller that already has the velocities `u = H p + q`: this saves the
@@ -64,11 +68,13 @@ pub fn judge<const D: usize>(problem: &ContactProblem<'_, D>, p: &[Vector<D>]) -
 #[must_use]
 pub fn judge_velocities<const D: usize>(problem: &ContactProblem<'_, D>, p: &[Vector<D>], u: &[Vector<D>]) -> Residual {
     assert!(p.len() == problem.contacts() && u.len() == p.len(), "one impulse and one velocity a contact");
-    judge_with(problem, p, |i| u[i])
+    match p {
+        [only] => judge_single(problem, only, &u[0]),
+        _ => judge_several(problem, p, |i| u[i]),
+    }
 }
 
-#[inline]
-fn judge_with<const D: usize>(
+fn judge_several<const D: usize>(
     problem: &ContactProblem<'_, D>,
     p: &[Vector<D>],
     velocity: impl Fn(usize) -> Vector<D>,
@@ -76,9 +82,6 @@ fn judge_with<const D: usize>(
     let mut residual = Residual { global: 0.0, worst: 0.0, worst_contact: 0 };
     if p.is_empty() {
         return residual;
-    }
-    if let [p] = p {
-        return judge_single(problem, p, &velocity(0));
     }
     let rho = problem.scale();
     let (mut p_norm, mut q_norm, mut map_norm) = (0.0, 0.0, 0.0);
@@ -109,7 +112,7 @@ fn judge_with<const D: usize>(
 }
 
 /// The residual of a single contact, whose two scales are one.
-#[inline]
+#[inline(always)]
 fn judge_single<const D: usize>(problem: &ContactProblem<'_, D>, p: &Vector<D>, u: &Vector<D>) -> Residual {
     let (mu, q, trace) = (problem.mu()[0], problem.q()[0], problem.diagonal(0).trace());
     let rho = if trace > 0.0 { D as f64 / trace } else { 1.0 };

@@ -110,38 +110,74 @@ impl<const D: usize> ClosingMonitor<D> {
         openings: &[Opening],
         mut each: impl FnMut(f64, &Contact<D>, Closing),
     ) -> Result<(), Mismatch> {
-        let (t, h) = (step.t_end, step.t_end - step.t_start);
-        let before = step.t_start;
-        let carrying = step.phases().flat_map(|phase| phase.contacts.iter().map(move |contact| (phase, contact)));
-        for (phase, contact) in carrying.filter(|(_, contact)| contact.p[0] > 0.0) {
-            let at_time = phase.end;
-            let now = Held { id: contact.id, last: t, pressed: at_time, carried: true, opened: false, lifted: false };
-            match self.held.binary_search_by_key(&contact.id, |held| held.id) {
-                Ok(at) => {
-                    let held = std::mem::replace(&mut self.held[at], now);
-                    // An impact with a time of its own is no work of the step.
-                    let struck = phase.kind == PhaseKind::Impact && contact.u_before[0] < 0.0;
-                    let opening = opening_of(openings, contact.id);
-                    // A fall as fast as it comes, where nobody looked at its gap within the step.
-                    let fell = contact.u_before[0].powi(2) > 2.0 * opening.fall * opening.gap && opening.fall > 0.0;
-                    let lifted = held.lifted || (fell && held.pressed > before);
-                    if struck && lifted && at_time - held.pressed > opening.time {
-                        self.impacts += 1;
-                        each(at_time, contact, Closing::Impact);
-                    } else if held.carried && held.last < before {
-                        self.reclosures += 1;
-                        each(at_time, contact, Closing::Reclosure);
+        for phase in step.active() {
+            for (number, contact) in phase.contacts.iter().enumerate().filter(|(_, contact)| contact.p[0] > 0.0) {
+                // Usually it is one that went on pressing, in the place that it had.
+                let near = self.held.get(number).is_some_and(|held| held.id == contact.id).then_some(number);
+                let found = near.ok_or(()).or_else(|()| self.held.binary_search_by_key(&contact.id, |held| held.id));
+                let now = Held {
+                    id: contact.id,
+                    last: step.t_end,
+                    pressed: phase.end,
+                    carried: true,
+                    opened: false,
+                    lifted: false,
+                };
+                match found {
+                    Ok(at) => {
+                        let held = std::mem::replace(&mut self.held[at], now);
+                        let was_lost = held.carried && held.last < step.t_start;
+                        if phase.kind == PhaseKind::Impact && self.strikes(step, &held, phase.end, contact, openings) {
+                            self.impacts += 1;
+                            each(phase.end, contact, Closing::Impact);
+                        } else if was_lost {
+                            self.reclosures += 1;
+                            each(phase.end, contact, Closing::Reclosure);
+                        }
                     }
-                }
-                Err(at) => {
-                    self.held.insert(at, now);
-                    // A contact that closes without approaching is no impact.
-                    let approaches = contact.u_before[0] < 0.0;
-                    *if approaches { &mut self.impacts } else { &mut self.reclosures } += 1;
-                    each(at_time, contact, if approaches { Closing::Impact } else { Closing::Reclosure });
+                    Err(at) => {
+                        self.held.insert(at, now);
+                        // A contact that closes without approaching is no impact.
+                        let approaches = contact.u_before[0] < 0.0;
+                        *if approaches { &mut self.impacts } else { &mut self.reclosures } += 1;
+                        each(phase.end, contact, if approaches { Closing::Impact } else { Closing::Reclosure });
+                    }
                 }
             }
         }
+        if self.held.iter().all(|held| held.last >= step.t_end) {
+            return Ok(());
+        }
+        self.follow_lost(model, step, state, openings)
+    }
+
+    /// Whether a contact that was held strikes at an impact at time `t` (s). Such an impact has a
+    /// time of its own and is no work of the step.
+    fn strikes(
+        &self,
+        step: &StepReport<'_, D>,
+        held: &Held,
+        t: f64,
+        contact: &Contact<D>,
+        openings: &[Opening],
+    ) -> bool {
+        let opening = opening_of(openings, contact.id);
+        // A fall as fast as it comes, where nobody looked at its gap within the step.
+        let fell = contact.u_before[0].powi(2) > 2.0 * opening.fall * opening.gap && opening.fall > 0.0;
+        let lifted = held.lifted || (fell && held.pressed > step.t_start);
+        contact.u_before[0] < 0.0 && lifted && t - held.pressed > opening.time
+    }
+
+    /// Looks how far contacts have opened that don't carry any more, and forgets those that are
+    /// truly open.
+    fn follow_lost(
+        &mut self,
+        model: &Model<D>,
+        step: &StepReport<'_, D>,
+        state: &State,
+        openings: &[Opening],
+    ) -> Result<(), Mismatch> {
+        let (t, h) = (step.t_end, step.t_end - step.t_start);
         self.lost.clear();
         self.lost.extend(self.held.iter().filter(|held| held.last < t && !held.opened).map(|held| held.id));
         if !self.lost.is_empty() {

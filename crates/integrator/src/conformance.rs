@@ -526,8 +526,8 @@ impl Arena {
     fn new(touches: &[Touch]) -> Self {
         let mut arena = Self { spans: Vec::new(), columns: Vec::new(), values: Vec::new() };
         for touch in touches {
-            let span = Span { part: 0, start: arena.columns.len(), len: touch.columns.len() };
-            arena.spans.push([span, Span { part: 1, start: 0, len: 0 }]);
+            let span = Span { start: arena.columns.len(), len: touch.columns.len(), ..Span::default() };
+            arena.spans.push([span, Span { part: 1, ..Span::default() }]);
             arena.columns.extend_from_slice(&touch.columns);
             arena.values.extend_from_slice(&touch.values);
         }

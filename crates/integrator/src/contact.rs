@@ -5,6 +5,7 @@ use teeter_detect::{Anchor, Candidate, ContactId, Frame, LawId};
 
 /// What a contact does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ContactState {
     /// No impulse.
     Open,

@@ -73,6 +73,22 @@ pub(crate) enum Answer<'a, const D: usize> {
     Motion(&'a mut dyn Propagator<D>),
 }
 
+/// The response to rows of which a factor may have kept nothing in coupling.
+#[inline(never)]
+fn respond_uncoupled<const D: usize>(
+    factor: &mut dyn Compliance<D>,
+    rows: &PartRows<'_, D>,
+    p: &[Vector<D>],
+    scratch: &mut [f64],
+    v: &mut [f64],
+) {
+    if factor.is_diagonal() {
+        factor.respond(rows, p, scratch, v);
+    } else {
+        respond_by_solving(rows, p, scratch, v, |f| factor.solve(f));
+    }
+}
+
 impl<const D: usize> Answer<'_, D> {
     pub(crate) fn is_diagonal(&self) -> bool {
         match self {
@@ -111,9 +127,28 @@ impl<const D: usize> Answer<'_, D> {
         coupled: bool,
     ) {
         match self {
-            Self::Inverse(factor) if coupled || factor.is_diagonal() => factor.respond(rows, p, scratch, v),
-            Self::Inverse(factor) => respond_by_solving(rows, p, scratch, v, |f| factor.solve(f)),
+            Self::Inverse(factor) if coupled => factor.respond(rows, p, scratch, v),
+            Self::Inverse(factor) => respond_uncoupled(*factor, rows, p, scratch, v),
             Self::Motion(motion) => motion.respond(rows, p, v),
+        }
+    }
+}
+
+/// How the subsystems respond to contacts, one by one.
+pub(crate) struct Answers<'f, const D: usize> {
+    factors: &'f mut Factors<D>,
+    responses: &'f Responses<'f>,
+    /// Whether it is the factors that were asked for last, as nearly always.
+    in_front: bool,
+}
+
+impl<const D: usize> Answers<'_, D> {
+    /// How a subsystem responds.
+    #[inline]
+    pub(crate) fn of(&mut self, part: usize) -> Option<Answer<'_, D>> {
+        match self.in_front {
+            true => Some(Answer::Inverse(self.factors.first(part)?)),
+            false => self.factors.answer(part, self.responses),
         }
     }
 }
@@ -211,12 +246,15 @@ impl<const D: usize> Factors<D> {
     /// The factor of a subsystem; `None` where it was not made.
     #[inline]
     pub(crate) fn of(&mut self, part: usize, w: Weights) -> Option<&mut dyn Compliance<D>> {
-        if self.front == Some(w) {
-            return Some(self.parts.get_mut(part)?.first_mut()?.factor.as_mut());
-        }
-        self.of_further_back(part, w)
+        if self.front == Some(w) { Some(self.first(part)?) } else { self.of_further_back(part, w) }
     }
 
+    #[inline]
+    fn first(&mut self, part: usize) -> Option<&mut (dyn Compliance<D> + 'static)> {
+        Some(self.parts.get_mut(part)?.first_mut()?.factor.as_mut())
+    }
+
+    #[inline(never)]
     fn of_further_back(&mut self, part: usize, w: Weights) -> Option<&mut dyn Compliance<D>> {
         if is_blend(w) {
             return self.blends.of(part, w);
@@ -237,8 +275,15 @@ impl<const D: usize> Factors<D> {
         self.propagators.get_mut(part)?.as_deref_mut()
     }
 
-    /// How a subsystem responds.
+    /// How the subsystems respond.
     #[inline]
+    pub(crate) fn answers<'f>(&'f mut self, responses: &'f Responses<'f>) -> Answers<'f, D> {
+        let in_front = self.has_in_front(responses);
+        Answers { factors: self, responses, in_front }
+    }
+
+    /// How a subsystem responds.
+    #[inline(never)]
     pub(crate) fn answer(&mut self, part: usize, responses: &Responses<'_>) -> Option<Answer<'_, D>> {
         let w = match responses {
             Responses::Of(w) => *w,
@@ -261,11 +306,17 @@ impl<const D: usize> Factors<D> {
     /// The first subsystem that lacks the factor asked for.
     #[inline]
     pub(crate) fn missing(&mut self, model: &Model<D>, responses: &Responses<'_>) -> Option<usize> {
-        if let (Responses::Of(w), Some(front)) = (responses, self.front)
-            && *w == front
-        {
-            return None;
-        }
+        if self.has_in_front(responses) { None } else { self.missing_further_back(model, responses) }
+    }
+
+    #[inline(never)]
+    fn missing_further_back(&mut self, model: &Model<D>, responses: &Responses<'_>) -> Option<usize> {
         (0..model.parts().len()).find(|part| responses.of(*part).is_none_or(|w| self.of(*part, w).is_none()))
+    }
+
+    /// Whether these are the factors that were asked for last.
+    #[inline]
+    fn has_in_front(&self, responses: &Responses<'_>) -> bool {
+        matches!((responses, self.front), (Responses::Of(w), Some(front)) if *w == front)
     }
 }

@@ -135,7 +135,7 @@ pub use moreau_jean_closed::{MoreauJeanClosed, MoreauJeanClosedSettings};
 pub use moreau_jean_located::{MoreauJeanLocated, MoreauJeanLocatedSettings};
 pub use moreau_jean_projected::{MoreauJeanProjected, MoreauJeanProjectedSettings};
 pub use pair_law::{ImpactLaw, PairLaw};
-pub use phases::{Balance, Phase, PhaseEnd, PhaseKind, StepReport};
+pub use phases::{Active, Balance, Phase, PhaseEnd, PhaseKind, StepReport};
 pub use propagator::{Dissipated, Propagator};
 pub use registry::{SchemeEntry, schemes};
 pub use resolved::{Resolved, ResolvedSettings};

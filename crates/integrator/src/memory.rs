@@ -79,6 +79,12 @@ impl Memory {
         self.active.binary_search(&id).is_ok()
     }
 
+    /// The same for one that likely has this number among them.
+    #[inline]
+    pub(crate) fn is_active_near(&self, id: ContactId, number: usize) -> bool {
+        self.active.get(number) == Some(&id) || self.is_active(id)
+    }
+
     /// Gap of the spring of an active contact with duration, m: negative while it is compressed;
     /// `None` for a contact that is not active.
     #[must_use]

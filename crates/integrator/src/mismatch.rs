@@ -83,8 +83,14 @@ pub enum Mismatch {
 }
 
 /// Whether a slice is as long as it must be.
+#[inline]
 pub(crate) fn length<T>(what: &'static str, x: &[T], expected: usize) -> Result<(), Mismatch> {
-    if x.len() == expected { Ok(()) } else { Err(Mismatch::Length { what, found: x.len(), expected }) }
+    if x.len() == expected { Ok(()) } else { Err(other_length(what, x.len(), expected)) }
+}
+
+#[cold]
+fn other_length(what: &'static str, found: usize, expected: usize) -> Mismatch {
+    Mismatch::Length { what, found, expected }
 }
 
 /// Identity of a model: no two models built in one process have the same. It is compared for

@@ -2,7 +2,7 @@
 
 use crate::mismatch::{Identity, length};
 use crate::stage::ContactRows;
-use crate::{Energy, ImpactLaw, Linearised, Mismatch, PairLaw, Size, Subsystem, Traits, Vector};
+use crate::{Energy, ImpactLaw, Linearised, Mismatch, PairLaw, Size, Stretching, Subsystem, Traits, Vector};
 use std::collections::HashSet;
 use std::ops::Range;
 use teeter_detect::{
@@ -122,6 +122,8 @@ pub struct Part<const D: usize> {
     pub(crate) mass_damping: f64,
     /// The same among the velocities that are not prescribed.
     pub(crate) free_mass_damping: f64,
+    /// Whether it has a part of its potential that [stretches](crate::Dynamics::stretching).
+    stretches: bool,
     /// Most columns of a row.
     pub(crate) row: usize,
 }
@@ -161,6 +163,12 @@ impl<const D: usize> Part<D> {
     #[must_use]
     pub fn traits(&self) -> &Traits {
         &self.traits
+    }
+
+    /// The part of its potential that stretches; that there is none is known without asking it.
+    #[inline]
+    pub(crate) fn stretching(&self) -> Option<&dyn Stretching> {
+        if self.stretches { self.system.stretching() } else { None }
     }
 
     /// Whether all of its velocities are prescribed: no impulse changes any.
@@ -244,7 +252,8 @@ impl<const D: usize> ModelBuilder<D> {
         let traits = system.traits();
         let mass_damping = system.linearised().map_or(0.0, Linearised::mass_damping);
         let free_mass_damping = system.linearised().map_or(0.0, Linearised::free_mass_damping);
-        self.parts.push(Part { system, q, v, traits, mass_damping, free_mass_damping, row: size.row });
+        let stretches = system.stretching().is_some();
+        self.parts.push(Part { system, q, v, traits, mass_damping, free_mass_damping, stretches, row: size.row });
         self.size = Size {
             q: self.size.q + size.q,
             v: self.size.v + size.v,

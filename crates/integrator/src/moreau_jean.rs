@@ -99,7 +99,7 @@ impl<const D: usize> Scheme<D> for MoreauJean<D> {
     ) -> Result<StepReport<'w, D>, StepError> {
         let MoreauJeanSettings { theta, activation_gamma, gap_tolerance } = self.settings;
         let span = state.next_step(until);
-        let (h, t) = (span.h, state.t);
+        let h = span.h;
         work.begin(model, state, span)?;
         self.step.check(model)?;
         let w = weights(h, theta);
@@ -107,7 +107,6 @@ impl<const D: usize> Scheme<D> for MoreauJean<D> {
 
         self.step.free_velocity(model, state, work, theta, &span);
         let (over, responses) = (Over::Step { h, weight: theta }, Responses::Of(w));
-        let problem = |source| StepError::Problem { t, source };
         let outcome = loop {
             if model.has_springs() {
                 self.step.move_freely(model, state, h, theta)?;
@@ -117,10 +116,7 @@ impl<const D: usize> Scheme<D> for MoreauJean<D> {
             }
             let ThetaStep { q_at, q_free, v_end: v_free, .. } = &mut self.step;
             self.stage.find(model, state, &Look::new(q_at, gap_tolerance).with_free_end(q_free), work)?;
-            self.stage.pose(model, state, &state.v, v_free, over).map_err(problem)?;
-            let outcome = self.stage.solve(model, work, &responses, over).map_err(problem)?;
-            self.stage.respond(model, work, &responses, v_free).map_err(problem)?;
-            self.stage.complete(v_free)?;
+            let outcome = self.stage.resolve(model, state, v_free, over, &responses, work)?;
             if !self.step.takes_another_round(model, state, work, theta, h) {
                 break self.step.judge(outcome, work.settings.tolerance);
             }

@@ -161,7 +161,7 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {
         // Their modified energy depends on the size of the step: each change of it would take or
         // give some.
-        let refused = |part: &Part<D>| part.traits.follows_coordinates && part.system.stretching().is_none();
+        let refused = |part: &Part<D>| part.traits.follows_coordinates && part.stretching().is_none();
         if model.parts().iter().any(refused) {
             return Err(StepError::Unsupported { what: FOLLOWERS });
         }

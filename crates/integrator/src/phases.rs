@@ -144,7 +144,10 @@ impl<'a> PhaseEnd<'a> {
 #[derive(Clone, Debug)]
 struct Kept<const D: usize> {
     kind: PhaseKind,
+    start: f64,
     end: f64,
+    /// Whether none comes after it that takes time.
+    is_last_lasting: bool,
     duration: Option<f64>,
     balance: Balance,
     contacts: Vec<Contact<D>>,
@@ -165,7 +168,9 @@ impl<const D: usize> Kept<D> {
     fn new() -> Self {
         Self {
             kind: PhaseKind::Step,
+            start: 0.0,
             end: 0.0,
+            is_last_lasting: false,
             duration: None,
             balance: Balance::Weighted(0.5),
             contacts: Vec::new(),
@@ -239,7 +244,7 @@ impl<const D: usize> Phases<D> {
 
     /// Takes a phase in; the contacts of `stage` go over to it. `now` are the energies at its end, without those of contacts; `None` where
     /// no account is kept.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn enter(
         &mut self,
         model: &Model<D>,
@@ -250,8 +255,14 @@ impl<const D: usize> Phases<D> {
         if self.kept.len() == self.used {
             self.kept.push(Kept::new());
         }
-        let kept = &mut self.kept[self.used];
+        let (before, rest) = self.kept.split_at_mut(self.used);
+        let kept = &mut rest[0];
         self.used += 1;
+        kept.start = before.last().map_or(self.span.start, |before| before.end);
+        kept.is_last_lasting = phase.kind != PhaseKind::Impact;
+        if kept.is_last_lasting {
+            before.iter_mut().for_each(|before| before.is_last_lasting = false);
+        }
         (kept.kind, kept.end, kept.balance, kept.outcome) = (phase.kind, phase.end, phase.balance, phase.outcome);
         kept.duration = phase.duration;
         (kept.energy, kept.stored, kept.largest_slip_work) = (phase.energy, 0.0, f64::NEG_INFINITY);
@@ -270,7 +281,7 @@ impl<const D: usize> Phases<D> {
     }
 }
 
-#[inline]
+#[inline(always)]
 fn copy(from: &[f64], to: &mut Vec<f64>) {
     if from.len() == to.len() {
         to.copy_from_slice(from);
@@ -305,7 +316,7 @@ impl<const D: usize> Kept<D> {
 
 impl<const D: usize> Phases<D> {
     /// Enters the phases into the state's account, and moves places and velocities to the end of the last.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn settle(&mut self, state: &mut State, account: bool) {
         for kept in &mut self.kept[..self.used] {
             if account {
@@ -336,6 +347,7 @@ impl<const D: usize> Phases<D> {
     }
 
     /// The contacts of the last phase.
+    #[inline(always)]
     pub(crate) fn last_contacts(&self) -> &[Contact<D>] {
         self.kept[..self.used].last().map_or(&[], |kept| &kept.contacts)
     }
@@ -368,9 +380,35 @@ impl<const D: usize> Phases<D> {
     }
 
     /// The contacts of the phase that has most.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn most_contacts(&self) -> usize {
         self.kept[..self.used].iter().map(|kept| kept.contacts.len()).max().unwrap_or(0)
+    }
+
+    /// Phase `k` of those that were ended.
+    #[inline]
+    fn phase(&self, k: usize) -> Phase<'_, D> {
+        let Self { kept, q, v, span, .. } = self;
+        let (q, v) = match k.checked_sub(1).map(|before| &kept[before]) {
+            Some(before) => (before.q.as_slice(), before.v.as_slice()),
+            None => (q.as_slice(), v.as_slice()),
+        };
+        let own = &kept[k];
+        let whole = own.start == span.start && own.end == span.end;
+        Phase {
+            kind: own.kind,
+            start: own.start,
+            end: own.end,
+            duration: own.duration.unwrap_or(if whole { span.h } else { own.end - own.start }),
+            balance: own.balance,
+            contacts: &own.contacts,
+            outcome: own.outcome,
+            energy: own.energy,
+            q: [q, own.q.as_slice()],
+            v: [v, own.v.as_slice()],
+            mean: (!own.mean.is_empty()).then_some(own.mean.as_slice()),
+            mean_velocity: (!own.mean_velocity.is_empty()).then_some(own.mean_velocity.as_slice()),
+        }
     }
 
     #[inline]
@@ -409,6 +447,22 @@ pub struct Phase<'w, const D: usize> {
     pub mean_velocity: Option<&'w [f64]>,
 }
 
+/// The contacts that were active in a phase.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct Active<'w, const D: usize> {
+    /// What happened in it.
+    pub kind: PhaseKind,
+    /// Its start, s.
+    pub start: f64,
+    /// Its end, s.
+    pub end: f64,
+    /// Whether it is the [last that takes time](StepReport::last_lasting).
+    pub is_last_lasting: bool,
+    /// The contacts, in order of identity.
+    pub contacts: &'w [Contact<D>],
+}
+
 /// What happened in a step.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
@@ -428,37 +482,35 @@ pub struct StepReport<'w, const D: usize> {
 
 impl<'w, const D: usize> StepReport<'w, D> {
     /// Its phases, in order of time.
-    pub fn phases(&self) -> impl Iterator<Item = Phase<'w, D>> + use<'w, D> {
-        let Phases { kept, used, q, v, span } = self.phases;
-        let (start_q, start_v, span) = (q.as_slice(), v.as_slice(), *span);
-        (0..*used).map(move |k| {
-            let (q, v, start) = match k.checked_sub(1).map(|before| &kept[before]) {
-                Some(before) => (before.q.as_slice(), before.v.as_slice(), before.end),
-                None => (start_q, start_v, span.start),
-            };
-            let own = &kept[k];
-            let whole = start == span.start && own.end == span.end;
-            Phase {
-                kind: own.kind,
-                start,
-                end: own.end,
-                duration: own.duration.unwrap_or(if whole { span.h } else { own.end - start }),
-                balance: own.balance,
-                contacts: &own.contacts,
-                outcome: own.outcome,
-                energy: own.energy,
-                q: [q, own.q.as_slice()],
-                v: [v, own.v.as_slice()],
-                mean: (!own.mean.is_empty()).then_some(own.mean.as_slice()),
-                mean_velocity: (!own.mean_velocity.is_empty()).then_some(own.mean_velocity.as_slice()),
-            }
-        })
+    #[inline]
+    pub fn phases(&self) -> impl DoubleEndedIterator<Item = Phase<'w, D>> + use<'w, D> {
+        let phases = self.phases;
+        (0..phases.used).map(move |k| phases.phase(k))
     }
 
     /// Its last phase that takes time; `None` for a step that is impacts only.
+    #[inline]
     #[must_use]
     pub fn last_lasting(&self) -> Option<Phase<'w, D>> {
-        self.phases().filter(|phase| phase.kind != PhaseKind::Impact).last()
+        let Phases { kept, used, .. } = self.phases;
+        Some(self.phases.phase(kept[..*used].iter().position(|kept| kept.is_last_lasting)?))
+    }
+
+    /// When its contacts were active, phase by phase, without the rest of these.
+    #[inline]
+    pub fn active(&self) -> impl Iterator<Item = Active<'w, D>> + use<'w, D> {
+        let Phases { kept, used, .. } = self.phases;
+        kept[..*used].iter().map(|kept| {
+            let Kept { kind, start, end, is_last_lasting, ref contacts, .. } = *kept;
+            Active { kind, start, end, is_last_lasting, contacts }
+        })
+    }
+
+    /// Whether all of its contact problems were solved.
+    #[inline]
+    #[must_use]
+    pub fn is_solved(&self) -> bool {
+        self.phases.outcomes().all(Outcome::converged)
     }
 
     /// The contacts of all phases: a contact that was active in several comes several times.

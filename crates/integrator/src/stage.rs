@@ -290,6 +290,17 @@ impl<const D: usize> ContactStage<D> {
             }
             return Ok(());
         }
+        self.find_with_springs(model, state, look, work)
+    }
+
+    #[inline(never)]
+    fn find_with_springs(
+        &mut self,
+        model: &Model<D>,
+        state: &State,
+        look: &Look<'_>,
+        work: &mut Workspace<D>,
+    ) -> Result<(), Mismatch> {
         self.springs.look(model, &state.q, look.free.unwrap_or(look.at), work)?;
         work.detect(model, look.at, f64::INFINITY)?;
         self.belong_to(model);
@@ -334,7 +345,7 @@ impl<const D: usize> ContactStage<D> {
     }
 
     /// The same without checks of model and lengths.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn take_in(
         &mut self,
         model: &Model<D>,
@@ -349,9 +360,11 @@ impl<const D: usize> ContactStage<D> {
             self.rows.pop();
             return Ok(false);
         }
-        let before = warm.impulse::<D>(candidate.id);
+        // Usually the contacts are those of the step before.
+        let (id, number) = (candidate.id, self.contacts.len());
+        let before = warm.impulse_near::<D>(id, number);
         self.problem.push(law.friction, before.unwrap_or_else(Vector::zeros));
-        self.contacts.push(Contact::of(candidate, memory.is_active(candidate.id)));
+        self.contacts.push(Contact::of(candidate, memory.is_active_near(id, number)));
         Ok(true)
     }
 
@@ -383,31 +396,65 @@ impl<const D: usize> ContactStage<D> {
     ) -> Result<(), ContactError> {
         self.check_velocities(v_before)?;
         self.check_velocities(v_free)?;
+        self.pose_all(model, state, v_before, v_free, over)
+    }
+
+    /// The same without checks of lengths.
+    #[inline]
+    fn pose_all(
+        &mut self,
+        model: &Model<D>,
+        state: &State,
+        v_before: &[f64],
+        v_free: &[f64],
+        over: Over,
+    ) -> Result<(), ContactError> {
         for i in 0..self.contacts.len() {
             let law = model.law_of(self.contacts[i].law)?;
-            let [u_before, mut u_free] = self.rows.velocities(i, [v_before, v_free]);
-            let (shift, rule) = match over {
-                Over::Acceleration => {
-                    self.without_duration(i, law, over)?;
-                    u_free += self.bias(i, model, state)?;
-                    (Vector::zeros(), Rule::Shifted)
-                }
-                Over::Instant => {
-                    self.without_duration(i, law, over)?;
-                    by_law(law, &self.contacts[i], &u_before, &u_free)
-                }
-                Over::Step { h, weight } => match law.impact.spring() {
-                    None => by_law(law, &self.contacts[i], &u_before, &u_free),
-                    Some(spring) => {
-                        let gap = self.springs.gap(self.contacts[i].id, &state.memory);
-                        // With w < ½ the force at the end of the step would count for less than half, or nothing, of the work.
-                        let step = SpringStep { spring, gap, u_before: u_before[0], h, theta: weight.max(0.5) };
-                        (Vector::zeros(), Rule::Spring(step))
-                    }
-                },
-            };
-            self.put(i, u_before, u_free, shift, rule);
+            let u = self.rows.velocities(i, [v_before, v_free]);
+            if law.impact == ImpactLaw::Newton && over != Over::Acceleration {
+                let shift = newton_shift(law, &self.contacts[i], &u[0]);
+                self.put(i, u, shift, Rule::Shifted);
+            } else {
+                self.pose_otherwise(i, model, state, law, u, over)?;
+            }
         }
+        Ok(())
+    }
+
+    /// Poses a contact of another law than Newton's, or over accelerations.
+    #[inline(never)]
+    fn pose_otherwise(
+        &mut self,
+        i: usize,
+        model: &Model<D>,
+        state: &State,
+        law: &PairLaw,
+        [u_before, mut u_free]: [Vector<D>; 2],
+        over: Over,
+    ) -> Result<(), ContactError> {
+        let (shift, rule) = match over {
+            Over::Acceleration => {
+                self.without_duration(i, law, over)?;
+                u_free += self.bias(i, model, state)?;
+                (Vector::zeros(), Rule::Shifted)
+            }
+            Over::Instant => {
+                self.without_duration(i, law, over)?;
+                by_law(law, &self.contacts[i], &u_before, &u_free)
+            }
+            Over::Step { h, weight } => match law.impact.spring() {
+                None => by_law(law, &self.contacts[i], &u_before, &u_free),
+                Some(spring) => {
+                    let gap = self.springs.gap(self.contacts[i].id, &state.memory);
+                    // With w < ½ the force at the end of the step would count for less than half,
+                    // or nothing, of the work.
+                    let step = SpringStep { spring, gap, u_before: u_before[0], h, theta: weight.max(0.5) };
+                    (Vector::zeros(), Rule::Spring(step))
+                }
+            },
+        };
+        self.put(i, [u_before, u_free], shift, rule);
         Ok(())
     }
 
@@ -453,21 +500,21 @@ impl<const D: usize> ContactStage<D> {
         rule: Rule<D>,
     ) -> Result<(), Mismatch> {
         self.check_index(i)?;
-        self.put(i, u_before, u_free, shift, rule);
+        self.put(i, [u_before, u_free], shift, rule);
         Ok(())
     }
 
-    #[inline]
-    fn put(&mut self, i: usize, u_before: Vector<D>, u_free: Vector<D>, shift: Vector<D>, rule: Rule<D>) {
-        let posed = &mut self.problem.posed[i];
-        (posed.u_before, posed.u_free, posed.rule) = (u_before, u_free, rule);
-        self.problem.reshift(i, shift);
-        self.contacts[i].u_before = u_before;
+    /// Velocities before and free, shift and rule of contact `i`.
+    #[inline(always)] // The usual rule has no data to be copied.
+    fn put(&mut self, i: usize, [u_before, u_free]: [Vector<D>; 2], shift: Vector<D>, rule: Rule<D>) {
+        let (contact, posed) = (&mut self.contacts[i], &mut self.problem.posed[i]);
+        (posed.u_before, posed.u_free, posed.shift, posed.rule) = (u_before, u_free, shift, rule);
+        self.problem.q[i] = u_free + shift;
+        self.problem.mu[i] = if matches!(rule, Rule::Frictionless) { 0.0 } else { posed.friction };
+        (contact.u_before, contact.gap_after) = (u_before, None);
         if let Rule::Spring(spring) = rule {
-            self.contacts[i].gap = spring.gap;
+            contact.gap = spring.gap;
         }
-        self.contacts[i].gap_after = None;
-        self.problem.mu[i] = if rule == Rule::Frictionless { 0.0 } else { self.problem.posed[i].friction };
     }
 
     /// Takes the rows of contact `i`, and its frame and gap, anew from a candidate of the same contact at coordinates `q`: the same contact
@@ -534,19 +581,25 @@ impl<const D: usize> ContactStage<D> {
     #[inline]
     pub fn complete(&mut self, v: &[f64]) -> Result<(), Mismatch> {
         self.check_velocities(v)?;
-        let fastest = self.problem.q.iter().map(Vector::norm_squared).fold(0.0, f64::max).sqrt();
-        for i in 0..self.contacts.len() {
-            let u_after = self.rows.velocity(i, v);
-            let contact = &mut self.contacts[i];
-            (contact.p, contact.u_after, contact.still) = (self.problem.p[i], u_after, STILL * fastest);
-            contact.u_law = u_after + self.problem.shift(i);
-            match self.problem.rule(i) {
+        self.complete_all(v);
+        Ok(())
+    }
+
+    /// The same without a check of lengths.
+    #[inline(always)]
+    fn complete_all(&mut self, v: &[f64]) {
+        let Self { contacts, rows, problem, .. } = self;
+        let fastest = problem.q.iter().map(Vector::norm_squared).fold(0.0, f64::max).sqrt();
+        for (i, (contact, posed)) in contacts.iter_mut().zip(&problem.posed).enumerate() {
+            let u_after = rows.velocity(i, v);
+            (contact.p, contact.u_after, contact.still) = (problem.p[i], u_after, STILL * fastest);
+            contact.u_law = u_after + posed.shift;
+            match &posed.rule {
                 Rule::Spring(spring) => contact.gap_after = Some(spring.gap_after(u_after[0])),
-                Rule::Poisson { tangential: e, .. } => contact.u_law += tangential(&contact.u_before) * e,
+                Rule::Poisson { tangential: e, .. } => contact.u_law += tangential(&contact.u_before) * *e,
                 Rule::Unposed | Rule::Shifted | Rule::Frictionless | Rule::SlidesAlong(_) | Rule::Energetic => {}
             }
         }
-        Ok(())
     }
 
     /// Drops the contact that was added last.
@@ -610,7 +663,7 @@ impl<const D: usize> ContactStage<D> {
 
     /// Σ |J_i v| of contact `i`, m/s: what rounding of its velocity is measured by.
     pub(crate) fn speed(&self, i: usize, v: &[f64]) -> f64 {
-        self.rows.entries(i).map(|(column, value)| value.norm() * v[column].abs()).sum()
+        self.rows.speed(i, v)
     }
 
     /// Whether a contact acts on a part.
@@ -628,24 +681,33 @@ impl<const D: usize> ContactStage<D> {
 /// dense operator of this many takes 2 MB in the plane.
 pub(crate) const RESERVED_CONTACTS: usize = 256;
 
-/// Shift and rule of a contact by an impact law.
+/// The part of the tangential velocity that comes back: of a contact that approaches.
 #[inline]
+fn tangential_restitution<const D: usize>(law: &PairLaw, contact: &Contact<D>, u_before: &Vector<D>) -> f64 {
+    if !contact.persisting && u_before[0] < 0.0 { law.tangential_restitution } else { 0.0 }
+}
+
+/// The shift of a contact by Newton's law.
+#[inline]
+fn newton_shift<const D: usize>(law: &PairLaw, contact: &Contact<D>, u_before: &Vector<D>) -> Vector<D> {
+    let mut shift = tangential(u_before) * tangential_restitution(law, contact, u_before);
+    shift[0] = law.restitution * u_before[0].min(0.0);
+    shift
+}
+
+/// Shift and rule of a contact by an impact law.
 fn by_law<const D: usize>(
     law: &PairLaw,
     contact: &Contact<D>,
     u_before: &Vector<D>,
     u_free: &Vector<D>,
 ) -> (Vector<D>, Rule<D>) {
-    let (e, approaches) = (law.restitution, !contact.persisting && u_before[0] < 0.0);
-    let tangential_restitution = if approaches { law.tangential_restitution } else { 0.0 };
-    let mut shift = tangential(u_before) * tangential_restitution;
+    let (e, tangential_e) = (law.restitution, tangential_restitution(law, contact, u_before));
     match law.impact {
-        ImpactLaw::Newton => {
-            shift[0] = e * u_before[0].min(0.0);
-            (shift, Rule::Shifted)
-        }
-        ImpactLaw::Poisson => (Vector::zeros(), Rule::Poisson { e, tangential: tangential_restitution }),
+        ImpactLaw::Newton => (newton_shift(law, contact, u_before), Rule::Shifted),
+        ImpactLaw::Poisson => (Vector::zeros(), Rule::Poisson { e, tangential: tangential_e }),
         ImpactLaw::Energetic => {
+            let mut shift = tangential(u_before) * tangential_e;
             shift[0] = if is_impact(e, u_before, u_free) { e * u_before[0] } else { 0.0 };
             (shift, Rule::Energetic)
         }

@@ -52,8 +52,18 @@ impl WarmStart {
     /// The impulse of a contact in the last step, N·s; `None` if it was not active.
     #[must_use]
     pub fn impulse<const D: usize>(&self, id: ContactId) -> Option<Vector<D>> {
-        let at = self.ids.binary_search(&id).ok()?;
-        self.impulses.get(at * D..(at + 1) * D).map(Vector::<D>::from_column_slice)
+        self.impulse_at(self.ids.binary_search(&id).ok()?)
+    }
+
+    /// The same for a contact that likely has this number.
+    #[inline]
+    pub(crate) fn impulse_near<const D: usize>(&self, id: ContactId, number: usize) -> Option<Vector<D>> {
+        if self.ids.get(number) == Some(&id) { self.impulse_at(number) } else { self.impulse(id) }
+    }
+
+    #[inline]
+    fn impulse_at<const D: usize>(&self, number: usize) -> Option<Vector<D>> {
+        self.impulses.get(number * D..(number + 1) * D).map(Vector::<D>::from_column_slice)
     }
 }
 
@@ -168,6 +178,7 @@ pub enum StateError {
 impl Tally {
     /// Counts a step: how the contact problems of its phases were solved, its number of contacts,
     /// the penetration (m) at its end.
+    #[inline(always)]
     pub fn count<'a>(&mut self, outcomes: impl Iterator<Item = &'a Outcome>, contacts: usize, penetration: f64) {
         self.max_penetration = self.max_penetration.max(penetration);
         self.max_contacts = self.max_contacts.max(contacts);
@@ -366,11 +377,8 @@ impl State {
     pub(crate) fn count_step(&mut self, span: &StepSpan) {
         self.clock = self.clock.going_on(self.step, self.t, span.h);
         self.step = self.step.saturating_add(1);
-        self.t = self.clock.at(self.step);
-        // A step that was cut short ends there.
-        if self.t != span.end {
-            self.t = span.end;
-        }
+        // By the clock, or where the step was cut short.
+        self.t = span.end;
     }
 
     /// Becomes equal to `other`; allocates only if `other` holds more than this ever has.

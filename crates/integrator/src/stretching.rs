@@ -134,7 +134,7 @@ impl Tensions {
     /// Makes room for the parts of a model that stretch.
     pub(crate) fn reserve<const D: usize>(&mut self, model: &Model<D>) {
         self.clear();
-        let stretching = model.parts().iter().filter(|part| part.system.stretching().is_some());
+        let stretching = model.parts().iter().filter(|part| part.stretching().is_some());
         for (place, part) in stretching.enumerate() {
             if place == self.parts.len() {
                 self.parts.push(Tension::default());

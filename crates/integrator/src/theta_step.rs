@@ -5,8 +5,8 @@ use crate::mismatch::Identity;
 use crate::stretching::{Taken, Tensions};
 use crate::subsystem::{all_finite, dot};
 use crate::{
-    Account, ContactStage, Mismatch, Model, Part, Size, State, StepEnergy, StepError, StepSpan, Stretching, Weights,
-    Workspace,
+    Account, Compliance, ContactStage, Mismatch, Model, Part, Propagator, Size, State, StepEnergy, StepError, StepSpan,
+    Stretching, Weights, Workspace,
 };
 use teeter_contact::Outcome;
 
@@ -120,86 +120,117 @@ impl ThetaStep {
         theta: f64,
         span: &StepSpan,
     ) {
-        let StepSpan { start: t_start, end: t_end, h } = *span;
-        let w = weights(h, theta);
+        let (h, w) = (span.h, weights(span.h, theta));
+        let Workspace { factors, scratch, counts, .. } = work;
         self.tensions.clear();
         for (index, part) in model.parts().iter().enumerate().filter(|(_, part)| !part.v.is_empty()) {
-            let (q, v) = (part.q.clone(), part.v.clone());
-            if let Some(cutoff) = self.cutoff
-                && let Some(motion) = work.factors.propagator(index)
+            let scratch = &mut scratch[..part.v.len()];
+            if self.cutoff.is_some() && self.begin_in_closed_form(part, state, factors.propagator(index), scratch, span)
             {
-                let load = &mut self.load[v.clone()];
-                load.fill(0.0);
-                if part.traits.loaded {
-                    part.system.mean_load([t_start, t_end], &mut work.scratch[..v.len()], load);
-                }
-                motion.take(h, cutoff);
-                motion.begin(&state.q[q], &state.v[v.clone()], load, &mut self.v_end[v]);
                 continue;
             }
             // The factors have been made.
-            let Some(factor) = work.factors.of(index, w) else { continue };
-            let dv = &mut self.dv[v.clone()];
-            let v_start = &state.v[v.clone()];
-            dv.fill(0.0);
+            let Some(factor) = factors.of(index, w) else { continue };
+            let (v_start, dv) = (&state.v[part.v.clone()], &mut self.dv[part.v.clone()]);
             let kept = beside_mass_damping(part.mass_damping, h, theta);
             let ahead = h * theta * (1.0 - kept * theta);
-            part.system.retract(&state.q[q.clone()], v_start, ahead, &mut self.q_forces[q.clone()]);
-            let q = &self.q_forces[q];
-            let stretching = part.system.stretching();
-            if part.traits.follows_coordinates && stretching.is_none() {
-                factor.update(q);
-            }
-            match (stretching, part.system.linearised()) {
-                (Some(stretching), _) => stretching.force_beside(q, v_start, dv),
-                (None, Some(linearised)) if part.mass_damping != 0.0 => linearised.conservative_force(q, dv),
-                _ => part.system.internal_force(q, v_start, dv),
+            let q = &mut self.q_forces[part.q.clone()];
+            part.system.retract(&state.q[part.q.clone()], v_start, ahead, q);
+            dv.fill(0.0);
+            if let Some(stretching) = part.stretching() {
+                stretching.force_beside(q, v_start, dv);
+            } else {
+                if part.traits.follows_coordinates {
+                    factor.update(q);
+                }
+                match if part.mass_damping != 0.0 { part.system.linearised() } else { None } {
+                    Some(linearised) => linearised.conservative_force(q, dv),
+                    None => part.system.internal_force(q, v_start, dv),
+                }
             }
             if part.traits.loaded {
-                let (load, scratch) = (&mut self.load[v.clone()], &mut work.scratch[..v.len()]);
-                load.fill(0.0);
-                part.system.mean_load([t_start, t_end], scratch, load);
-                add(dv, load);
+                add_mean_load(part, &mut self.load[part.v.clone()], dv, scratch, span);
             }
             dv.iter_mut().for_each(|f| *f *= h);
-            let v_end = &mut self.v_end[v.clone()];
-            let step = stretching.map(|stretching| taken(stretching, part, state, h, theta));
-            if !part.is_driven() {
-                if let Some(step) = &step {
-                    v_end.copy_from_slice(v_start);
-                    self.tensions.enter(index, step, [q, dv], factor, v_end);
-                    continue;
-                }
+            if part.is_driven() || part.stretching().is_some() {
+                self.end_beside_drives(index, part, state, factor, scratch, theta, span);
+            } else {
                 factor.solve(dv);
-                for ((free, v0), dv) in v_end.iter_mut().zip(v_start).zip(dv.iter()) {
-                    *free = (1.0 - kept) * v0 + dv;
-                }
-                continue;
+                mix(1.0 - kept, v_start, 1.0, dv, &mut self.v_end[part.v.clone()]);
             }
+        }
+        if !self.tensions.is_empty() {
+            self.tensions.keep(&self.v_end);
+            counts.factorisations += self.tensions.len();
+        }
+    }
+
+    // What few parts have is apart, so that the others don't carry its variables along.
+
+    /// Leaves the end without impulses of a part that has its motion in closed form; whether it
+    /// has.
+    #[inline(never)]
+    fn begin_in_closed_form<const D: usize>(
+        &mut self,
+        part: &Part<D>,
+        state: &State,
+        motion: Option<&mut (dyn Propagator<D> + 'static)>,
+        scratch: &mut [f64],
+        span: &StepSpan,
+    ) -> bool {
+        let (Some(cutoff), Some(motion)) = (self.cutoff, motion) else { return false };
+        let (q, v) = (part.q.clone(), part.v.clone());
+        let load = &mut self.load[v.clone()];
+        load.fill(0.0);
+        if part.traits.loaded {
+            part.system.mean_load([span.start, span.end], scratch, load);
+        }
+        motion.take(span.h, cutoff);
+        motion.begin(&state.q[q], &state.v[v.clone()], load, &mut self.v_end[v]);
+        true
+    }
+
+    /// Leaves v_free of a part with prescribed velocities, or one that stretches; h times its other
+    /// forces are in `dv`.
+    #[inline(never)]
+    fn end_beside_drives<const D: usize>(
+        &mut self,
+        index: usize,
+        part: &Part<D>,
+        state: &State,
+        factor: &mut dyn Compliance<D>,
+        scratch: &mut [f64],
+        theta: f64,
+        span: &StepSpan,
+    ) {
+        let (h, v) = (span.h, part.v.clone());
+        let (q, dv, v_start) = (&self.q_forces[part.q.clone()], &mut self.dv[v.clone()], &state.v[v.clone()]);
+        let v_end = &mut self.v_end[v.clone()];
+        v_end.copy_from_slice(v_start);
+        if part.is_driven() {
             self.impulse[v.clone()].copy_from_slice(dv);
-            v_end.copy_from_slice(v_start);
             // The part θ of the mean lies before the end, so that q = θ d(t + (1 − θ)h) + (1 − θ)
             // d(t − θh). Over a part of a step it is the mean over as long a time: that over a
             // short one would jump from it, and push with what the jump takes.
             let dt = state.dt;
-            part.system.drive_mean([t_end - theta * dt, t_end + (1.0 - theta) * dt], v_end);
-            let (jump, pull) = (&mut work.scratch[..v.len()], &mut self.product[v]);
+            part.system.drive_mean([span.end - theta * dt, span.end + (1.0 - theta) * dt], v_end);
+            let (jump, pull) = (scratch, &mut self.product[v]);
             for ((jump, v1), v0) in jump.iter_mut().zip(v_end.iter()).zip(v_start) {
                 *jump = v1 - v0;
             }
             pull.fill(0.0);
             part.system.apply(weights(h, theta), q, jump, pull);
             dv.iter_mut().zip(pull.iter()).for_each(|(dv, pull)| *dv -= pull);
-            if let Some(step) = &step {
-                self.tensions.enter(index, step, [q, dv], factor, v_end);
-                continue;
-            }
-            factor.solve(dv);
-            add(v_end, dv);
         }
-        if !self.tensions.is_empty() {
-            self.tensions.keep(&self.v_end);
-            work.counts.factorisations += self.tensions.len();
+        match part.stretching() {
+            Some(stretching) => {
+                let step = taken(stretching, part, state, h, theta);
+                self.tensions.enter(index, &step, [q, dv], factor, v_end);
+            }
+            None => {
+                factor.solve(dv);
+                add(v_end, dv);
+            }
         }
     }
 
@@ -228,7 +259,7 @@ impl ThetaStep {
     ) -> bool {
         let step = |index: usize| {
             let part = &model.parts()[index];
-            let stretching = part.system.stretching()?;
+            let stretching = part.stretching()?;
             Some((taken(stretching, part, state, h, theta), part.v.clone()))
         };
         if !self.tensions.look(&self.v_end, step) {
@@ -248,9 +279,7 @@ impl ThetaStep {
     /// Leaves v_θ, and q¹ in `q_at`, for a phase, which refuses what is not finite.
     pub(crate) fn move_to_end<const D: usize>(&mut self, model: &Model<D>, state: &State, h: f64, theta: f64) {
         let Self { q_at, v_end, v_mean, .. } = self;
-        for ((mean, v1), v0) in v_mean.iter_mut().zip(v_end.iter()).zip(&state.v) {
-            *mean = theta * v1 + (1.0 - theta) * v0;
-        }
+        mix(theta, v_end, 1.0 - theta, &state.v, v_mean);
         model.move_along(&state.q, v_mean, h, q_at);
     }
 
@@ -373,6 +402,27 @@ fn taken<'a, const D: usize>(
 /// ```
 fn beside_mass_damping(alpha: f64, h: f64, theta: f64) -> f64 {
     h * alpha / (1.0 + h * theta * alpha)
+}
+
+/// Leaves the mean load of a part in `load`, and adds it to its forces.
+#[inline(never)]
+fn add_mean_load<const D: usize>(
+    part: &Part<D>,
+    load: &mut [f64],
+    forces: &mut [f64],
+    scratch: &mut [f64],
+    span: &StepSpan,
+) {
+    load.fill(0.0);
+    part.system.mean_load([span.start, span.end], scratch, load);
+    add(forces, load);
+}
+
+/// out = a x + b y. (A function of its own, so that the compiler knows that they don't overlap.)
+fn mix(a: f64, x: &[f64], b: f64, y: &[f64], out: &mut [f64]) {
+    for ((out, x), y) in out.iter_mut().zip(x).zip(y) {
+        *out = a * x + b * y;
+    }
 }
 
 fn add(x: &mut [f64], y: &[f64]) {

@@ -251,7 +251,7 @@ impl<const D: usize> Workspace<D> {
     /// # Errors
     /// If the workspace is of another model, or there are too few or too many coordinates, or the detector finds pairs or bodies that the model
     /// doesn't have.
-    #[inline]
+    #[inline(always)]
     pub fn detect(&mut self, model: &Model<D>, q: &[f64], margin: f64) -> Result<(), Mismatch> {
         self.check_at(model, q)?;
         self.candidates.clear();
@@ -325,15 +325,26 @@ impl<const D: usize> Workspace<D> {
             self.counts.solved(p.len(), &outcome);
             return Ok(outcome);
         }
+        self.solve_by_rules(problem, weight, &stop)
+    }
+
+    /// The same for rules that are more than a shift.
+    #[inline(never)]
+    fn solve_by_rules(
+        &mut self,
+        problem: &mut Problem<D>,
+        weight: f64,
+        stop: &Stop<'_>,
+    ) -> Result<Outcome, ContactError> {
         let mut solver = Counted { solver: self.solver.as_mut(), counts: &mut self.counts };
         if problem.has_directions() {
             problem.with_directions(&mut self.directed)?;
             let (posed, p) = self.directed.pose()?;
-            let outcome = solver.solve(&posed, &stop, p);
+            let outcome = solver.solve(&posed, stop, p);
             problem.take_directed(&self.directed);
             return Ok(outcome);
         }
-        Ok(self.laws.solve(problem, weight, &mut solver, &stop)?)
+        Ok(self.laws.solve(problem, weight, &mut solver, stop)?)
     }
 
     /// Begins a step of `span` from `state`. What a scheme does in every step is this, one [`phase`](Self::phase) or more, and
@@ -346,7 +357,7 @@ impl<const D: usize> Workspace<D> {
         state.check(model)?;
         self.check(model)?;
         // Written so that NaN fails too.
-        if !(span.h > 0.0 && span.h < f64::INFINITY && span.start == state.t && span.end >= span.start) {
+        if !(span.h > 0.0 && span.h <= f64::MAX && span.start == state.t && span.end >= span.start) {
             return Err(StateError::StepSize(span.h).into());
         }
         self.phases.begin(span);
@@ -359,7 +370,7 @@ impl<const D: usize> Workspace<D> {
     ///
     /// # Errors
     /// If coordinates, velocities or energies are not finite, or as many as the model needs.
-    #[inline]
+    #[inline(always)]
     pub fn phase(
         &mut self,
         model: &Model<D>,
@@ -410,7 +421,7 @@ impl<const D: usize> Workspace<D> {
     ///
     /// # Errors
     /// If there was no phase.
-    #[inline]
+    #[inline(always)]
     pub fn finish(
         &mut self,
         model: &Model<D>,
@@ -440,26 +451,38 @@ impl<const D: usize> Workspace<D> {
         state.count_step(&self.phases.span);
         state.warm.clear();
         state.memory.forget_contacts();
-        let mut keep = |contact: &Contact<D>| {
-            state.warm.push(contact.id, &contact.p);
-            state.memory.remember(contact);
-        };
-        let contacts = self.phases.last_contacts().iter().enumerate();
         if model.has_springs() {
-            let mut springs = self.phases.springs_before_impact().peekable();
-            for (i, contact) in contacts {
-                while let Some(spring) = springs.next_if(|spring| spring.id < contact.id) {
-                    keep(spring);
-                }
-                if stays(i, contact) {
-                    keep(contact);
-                }
-            }
-            springs.for_each(keep);
+            self.remember_with_springs(state, stays);
         } else {
-            contacts.filter(|(i, contact)| stays(*i, contact)).for_each(|(_, contact)| keep(contact));
+            for (_, contact) in self.phases.last_contacts().iter().enumerate().filter(|(i, contact)| stays(*i, contact))
+            {
+                remember(state, contact);
+            }
         }
         state.tally.count(self.phases.outcomes(), self.phases.most_contacts(), penetration);
         Ok(self.phases.report(state.step, penetration))
     }
+
+    /// Keeps the contacts of the last phase that stay, and springs that were pressed before an
+    /// impact at its end.
+    #[inline(never)]
+    fn remember_with_springs(&self, state: &mut State, mut stays: impl FnMut(usize, &Contact<D>) -> bool) {
+        let mut springs = self.phases.springs_before_impact().peekable();
+        for (i, contact) in self.phases.last_contacts().iter().enumerate() {
+            while let Some(spring) = springs.next_if(|spring| spring.id < contact.id) {
+                remember(state, spring);
+            }
+            if stays(i, contact) {
+                remember(state, contact);
+            }
+        }
+        springs.for_each(|spring| remember(state, spring));
+    }
+}
+
+/// Keeps a contact as active, and its impulse as the solver's next start.
+#[inline]
+fn remember<const D: usize>(state: &mut State, contact: &Contact<D>) {
+    state.warm.push(contact.id, &contact.p);
+    state.memory.remember(contact);
 }

@@ -52,7 +52,7 @@ impl Bounces {
             return;
         }
         let h = step.t_end - step.t_start;
-        for phase in step.phases() {
+        for phase in step.active() {
             let closes = |contact: &&Contact<2>| !contact.persisting && contact.p[0] > 0.0;
             // What has opened bounces again, and is cut again. An impact shows only who takes part in it.
             let lasts = phase.end > phase.start;

@@ -2,9 +2,8 @@
 
 use crate::number::{push, push_next};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 use teeter_detect::{Candidate, ContactId};
-use teeter_integrator::{Contact, Model, State, Vector};
+use teeter_integrator::{Contact, ContactState, Model, State, Vector};
 use teeter_scenario::simulation::Layout;
 
 pub(crate) const HEADER: &str = "t,contact,a,b,point,gap,p_n,p_t,u_n,u_t,state\n";
@@ -12,16 +11,42 @@ pub(crate) const HEADER: &str = "t,contact,a,b,point,gap,p_n,p_t,u_n,u_t,state\n
 /// Impulses since the last row, by contact.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Impulses {
-    sums: BTreeMap<ContactId, Vector<2>>,
+    /// In order of identity.
+    sums: Vec<(ContactId, Vector<2>)>,
     /// Memory of a row.
     #[serde(skip)]
     candidates: Vec<Candidate<2>>,
 }
 
+/// What a contact does at the end of a step.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(crate) struct AtEnd {
+    id: ContactId,
+    /// Its relative velocity, m/s.
+    u: Vector<2>,
+    does: ContactState,
+}
+
+impl AtEnd {
+    #[inline]
+    pub(crate) fn of(contact: &Contact<2>) -> Self {
+        Self { id: contact.id, u: contact.u_after, does: contact.state() }
+    }
+}
+
 impl Impulses {
-    pub(crate) fn add<'c>(&mut self, contacts: impl Iterator<Item = &'c Contact<2>>) {
-        for contact in contacts {
-            *self.sums.entry(contact.id).or_insert_with(Vector::<2>::zeros) += contact.p;
+    #[inline]
+    pub(crate) fn add(&mut self, contacts: &[Contact<2>]) {
+        for (number, contact) in contacts.iter().enumerate() {
+            // Usually it has the place that it had in the step before.
+            if let Some((_, sum)) = self.sums.get_mut(number).filter(|(id, _)| *id == contact.id) {
+                *sum += contact.p;
+                continue;
+            }
+            match self.sums.binary_search_by_key(&contact.id, |(id, _)| *id) {
+                Ok(at) => self.sums[at].1 += contact.p,
+                Err(at) => self.sums.insert(at, (contact.id, Vector::zeros() + contact.p)),
+            }
         }
     }
 
@@ -31,7 +56,7 @@ impl Impulses {
         layout: &Layout,
         model: &Model<2>,
         state: &State,
-        contacts: &[Contact<2>],
+        contacts: &[AtEnd],
         out: &mut String,
     ) {
         if self.sums.is_empty() {
@@ -54,7 +79,7 @@ impl Impulses {
             push_next(out, p[0]);
             push_next(out, p[1]);
             let u = active
-                .map(|contact| contact.u_after)
+                .map(|contact| contact.u)
                 .or_else(|| now.and_then(|candidate| model.relative_velocity(candidate, &state.q, &state.v).ok()));
             match u {
                 Some(u) => {
@@ -64,7 +89,7 @@ impl Impulses {
                 None => out.push_str(",,"),
             }
             out.push(',');
-            out.push_str(active.map_or("open", |contact| contact.state().as_str()));
+            out.push_str(active.map_or("open", |contact| contact.does.as_str()));
             out.push('\n');
         }
         self.sums.clear();

@@ -6,6 +6,7 @@
 
 mod bounces;
 mod checkpoint;
+mod closed;
 mod contacts;
 mod export;
 mod lock;
@@ -13,6 +14,7 @@ mod made_energy;
 mod meetings;
 mod number;
 mod page;
+mod probe;
 mod recorder;
 mod resolution;
 mod results;

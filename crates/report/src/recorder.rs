@@ -1,7 +1,8 @@
 //! The observer that writes the tables and keeps what the summary needs.
 
 use crate::bounces::Bounces;
-use crate::contacts::{self, Impulses, Names};
+use crate::closed::Closed;
+use crate::contacts::{self, AtEnd, Impulses, Names};
 use crate::meetings::Met;
 use crate::number::{push, push_next};
 use crate::resolution::{Bodies, Resolution};
@@ -13,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::ops::ControlFlow;
 use teeter_integrator::{
-    Closing, ClosingMonitor, Contact, Model, Observer, ObserverError, PhaseKind, RockingMonitor, State, StepReport,
+    Closing, ClosingMonitor, Model, Observer, ObserverError, PhaseKind, RockingMonitor, State, StepReport,
 };
 use teeter_scenario::Shapes;
 use teeter_scenario::diagnostic::Diagnostic;
@@ -77,7 +78,7 @@ pub(crate) struct Kept {
     met: Met,
     impulses: Impulses,
     /// The contacts of the last step, for a row after the run's early end.
-    contacts_now: Vec<Contact<2>>,
+    contacts_now: Vec<AtEnd>,
     /// The step of the last row.
     row_at: u64,
     /// Of the last step, for a row after the run's early end too.
@@ -102,9 +103,13 @@ pub struct Recorder<'a> {
     sections: Sections,
     bodies: Bodies,
     watch: Watch,
+    /// The shorter side of the block whose that is the shortest, m.
+    shortest_side: f64,
     /// Whether the scheme locates closings, and ends bounces by its step: of one that locates none the other warnings tell more.
     locates: bool,
     line: String,
+    /// The contacts that closed in the last step.
+    closed: Vec<Closed>,
     kept: Kept,
     tell: &'a mut dyn FnMut(&str),
 }
@@ -194,8 +199,10 @@ impl<'a> Recorder<'a> {
             sections,
             bodies: Bodies::of(scene),
             watch: Watch::of(scene, layout),
+            shortest_side: layout.blocks.iter().map(|place| place.side).fold(f64::INFINITY, f64::min),
             locates: scene.time.scheme == SchemeName::MoreauJeanLocated,
             line: String::new(),
+            closed: Vec::new(),
             kept,
             tell,
         })
@@ -284,38 +291,68 @@ impl<'a> Recorder<'a> {
         self.contacts.rows(&self.line)
     }
 
+    /// Takes the contacts of a step in, for the next row.
+    fn take_contacts(&mut self, step: &StepReport<'_, 2>) {
+        let Kept { impulses, contacts_now, .. } = &mut self.kept;
+        contacts_now.clear();
+        let mut last = None;
+        for part in step.active() {
+            impulses.add(part.contacts);
+            // Those of its last part, and of an impact at its very end.
+            if part.is_last_lasting {
+                contacts_now.extend(part.contacts.iter().map(AtEnd::of));
+            }
+            last = Some(part);
+        }
+        if let Some(last) = last.filter(|part| part.kind == PhaseKind::Impact) {
+            contacts_now.extend(last.contacts.iter().filter(|contact| contact.p[0] > 0.0).map(AtEnd::of));
+        }
+    }
+
     /// Tells impacts from contacts that were lost for a moment, and writes the impacts.
-    fn write_impacts(
+    fn take_closings(
         &mut self,
         model: &Model<2>,
         step: &StepReport<'_, 2>,
         state: &State,
     ) -> Result<(), ObserverError> {
-        let Self { layout, impacts, line, kept: Kept { closings, record, .. }, .. } = self;
-        let mut written = Ok(());
-        closings.enter(model, step, state, &layout.openings, |t, contact, closing| {
-            let names = Names::of(layout, contact.id).filter(|_| closing == Closing::Impact);
-            let (Some(names), Ok(())) = (names, &written) else { return };
+        let Self { layout, closed, kept: Kept { closings, record, .. }, .. } = self;
+        Closed::of_step(closings, model, step, state, layout, closed)?;
+        if self.closed.is_empty() {
+            return Ok(());
+        }
+        (record.impact_count, record.reclosure_count) = (closings.impacts(), closings.reclosures());
+        Ok(self.write_impacts()?)
+    }
+
+    fn write_impacts(&mut self) -> Result<(), ResultsError> {
+        let Self { layout, closed, impacts, line, kept: Kept { record, .. }, .. } = self;
+        for Closed { t, contact, .. } in closed.iter().filter(|closed| closed.closing == Closing::Impact) {
+            let Some(names) = Names::of(layout, contact.id) else { continue };
             line.clear();
-            push(line, t);
+            push(line, *t);
             names.push(line);
             for x in [contact.p[0], contact.p[1], contact.u_before[0], contact.u_after[0]] {
                 push_next(line, x);
             }
             line.push('\n');
-            written = impacts.rows(line);
+            impacts.rows(line)?;
             if record.impacts.len() < LISTED_IMPACTS {
                 record.impacts.push(ImpactRow {
-                    t,
+                    t: *t,
                     contact: names.contact.to_owned(),
                     point: names.point.to_owned().into(),
                     impulse_n: contact.p[0],
                     u_n_before: contact.u_before[0],
                 });
             }
-        })?;
-        (record.impact_count, record.reclosure_count) = (closings.impacts(), closings.reclosures());
-        Ok(written?)
+        }
+        Ok(())
+    }
+
+    /// The contacts that closed in the last step.
+    pub(crate) fn closed(&self) -> &[Closed] {
+        &self.closed
     }
 }
 
@@ -339,13 +376,12 @@ impl Observer<2> for Recorder<'_> {
         step: &StepReport<'_, 2>,
         state: &State,
     ) -> Result<ControlFlow<()>, ObserverError> {
-        self.kept.impulses.add(step.contacts());
-        self.write_impacts(model, step, state)?;
+        self.take_contacts(step);
+        self.take_closings(model, step, state)?;
         self.warn_of_unsolved(step);
         self.warn_of_limits(state);
-        self.warn_of_turns(state);
-        let swing = self.kept.swings.observe(&mut self.watch, self.layout, step.t_end - step.t_start, state);
-        self.warn_of_meetings(step, state, swing);
+        let swing = self.kept.swings.observe(&mut self.watch, self.layout, step.h, state);
+        self.warn_of_motion(step, state, swing);
         self.kept.resolution.observe(&self.bodies, self.layout, step, state);
         self.warn_of_bounces(model, step);
         let Kept { record, section_values, .. } = &mut self.kept;
@@ -355,14 +391,6 @@ impl Observer<2> for Recorder<'_> {
         }
         for (block, monitor) in self.kept.record.rocking.iter_mut().enumerate() {
             monitor.enter(state.t, self.layout.tilt(block, &state.q));
-        }
-        self.kept.contacts_now.clear();
-        // Those of its last part, and of an impact at its very end.
-        if let Some(last) = step.last_lasting() {
-            self.kept.contacts_now.extend_from_slice(last.contacts);
-        }
-        if let Some(last) = step.phases().last().filter(|phase| phase.kind == PhaseKind::Impact) {
-            self.kept.contacts_now.extend(last.contacts.iter().filter(|contact| contact.p[0] > 0.0));
         }
         if self.kept.schedule.takes(state.step, state.t) {
             self.write_rows(model, state)?;

@@ -5,7 +5,7 @@
 //! miss impacts, lose contacts and find them again, or let corners go deep: each of these closes contacts with large h |u_n|.
 
 use serde::{Deserialize, Serialize};
-use teeter_integrator::{Phase, State, StepReport};
+use teeter_integrator::{Active, Contact, State, StepReport};
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Layout;
 
@@ -117,54 +117,73 @@ impl Resolution {
 
     /// Takes a step in.
     pub(crate) fn observe(&mut self, bodies: &Bodies, layout: &Layout, step: &StepReport<'_, 2>, state: &State) {
-        for phase in step.phases() {
-            let lasts = phase.end > phase.start;
-            if lasts {
-                // What presses in the last part of the step counts.
+        for (number, part) in step.active().enumerate() {
+            // What presses in the last part of the step counts.
+            if number > 0 && part.end > part.start {
                 self.blocks.iter_mut().for_each(|seen| seen.pressed = 0);
             }
-            self.take_contacts(bodies, &phase, lasts);
-            for seen in &mut self.blocks {
-                seen.held = seen.gaps.take().map_or(seen.held, |[least, most]| seen.held.max(most - least));
+            self.take_contacts(bodies, &part);
+            if part.contacts.len() > 1 {
+                self.take_gaps(bodies, part.contacts);
             }
         }
         self.take_places(bodies, layout, step.t_end - step.t_start, state);
     }
 
-    fn take_contacts(&mut self, bodies: &Bodies, phase: &Phase<'_, 2>, lasts: bool) {
-        for contact in phase.contacts {
-            let owner = bodies.owners.get(contact.id.pair() as usize);
-            let Some(seen) = owner.and_then(|block| self.blocks.get_mut(*block)) else { continue };
-            seen.pressed += u32::from(contact.p[0] > 0.0 && lasts);
+    fn take_contacts(&mut self, bodies: &Bodies, part: &Active<'_, 2>) {
+        let h = part.end - part.start;
+        for contact in part.contacts {
+            let Some(seen) = self.of(bodies, contact) else { continue };
+            seen.pressed += u32::from(contact.p[0] > 0.0 && h > 0.0);
             seen.normal = [contact.frame[(0, 0)], contact.frame[(0, 1)]];
-            if contact.persisting && contact.gap_after.is_none() && contact.p[0] > 0.0 {
-                let [least, most] = seen.gaps.unwrap_or([contact.gap; 2]);
-                seen.gaps = Some([least.min(contact.gap), most.max(contact.gap)]);
-            }
             // One that closes fast and gets no impulse, as the surface is gone again by the end of the step, is as late. A contact with duration takes
             // its time, and its force begins at nothing.
             if !contact.persisting && contact.gap_after.is_none() {
-                let late = (phase.end - phase.start) * (-contact.u_before[0]).max(0.0);
+                let late = h * (-contact.u_before[0]).max(0.0);
                 seen.late += late;
-                seen.latest = seen.latest.max(late);
+                raise(&mut seen.latest, late);
             }
         }
+    }
+
+    /// By how much the gaps of contacts that go on pressing on a block differ.
+    #[inline(never)]
+    fn take_gaps(&mut self, bodies: &Bodies, contacts: &[Contact<2>]) {
+        for contact in contacts.iter().filter(|contact| contact.persisting && contact.p[0] > 0.0) {
+            let Some(seen) = self.of(bodies, contact).filter(|_| contact.gap_after.is_none()) else { continue };
+            let [least, most] = seen.gaps.unwrap_or([contact.gap; 2]);
+            seen.gaps = Some([least.min(contact.gap), most.max(contact.gap)]);
+        }
+        for seen in &mut self.blocks {
+            if let Some([least, most]) = seen.gaps.take() {
+                raise(&mut seen.held, most - least);
+            }
+        }
+    }
+
+    /// The block that a contact is of.
+    #[inline]
+    fn of(&mut self, bodies: &Bodies, contact: &Contact<2>) -> Option<&mut Seen> {
+        self.blocks.get_mut(*bodies.owners.get(contact.id.pair() as usize)?)
     }
 
     fn take_places(&mut self, bodies: &Bodies, layout: &Layout, h: f64, state: &State) {
         for (block, ((seen, place), width)) in
             self.blocks.iter_mut().zip(&layout.blocks).zip(&bodies.widths).enumerate()
         {
-            let at = place.range.start;
-            let angle = state.q[at + 2];
-            seen.tilted = seen.tilted.max(layout.tilt(block, &state.q).abs());
-            seen.angles = [seen.angles[0].min(angle), seen.angles[1].max(angle)];
+            let [q, v] = [&state.q, &state.v].map(|x| &x[place.range.clone()]);
+            raise(&mut seen.tilted, layout.tilt(block, &state.q).abs());
+            if q[2] < seen.angles[0] {
+                seen.angles[0] = q[2];
+            }
+            raise(&mut seen.angles[1], q[2]);
             // On both feet it goes with what carries it.
-            let mut way = if seen.pressed < 2 { h * width * state.v[at + 2].abs() } else { 0.0 };
+            let mut way = if seen.pressed < 2 { h * width * v[2].abs() } else { 0.0 };
             seen.aloft[0] = if seen.pressed == 0 { seen.aloft[0] + h } else { 0.0 };
-            seen.aloft[1] = seen.aloft[1].max(seen.aloft[0]);
             if seen.pressed == 0 {
-                let flown = h * (seen.normal[0] * state.v[at] + seen.normal[1] * state.v[at + 1]).abs();
+                let [now, longest] = &mut seen.aloft;
+                raise(longest, *now);
+                let flown = h * (seen.normal[0] * v[0] + seen.normal[1] * v[1]).abs();
                 seen.flown += flown;
                 way += flown;
             }
@@ -194,6 +213,14 @@ impl Resolution {
         let all = self.blocks.iter().map(off).zip(&bodies.sides).enumerate();
         let far = all.filter(|(_, (off, side))| *off > FALL_OFF * **side);
         far.map(|(block, (off, _))| (block, off)).max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}
+
+/// Becomes `x` where that is more.
+#[inline]
+pub(crate) fn raise(most: &mut f64, x: f64) {
+    if x > *most {
+        *most = x;
     }
 }
 

@@ -208,19 +208,18 @@ impl Observer<2> for RunRecorder<'_> {
         // None of them ends a run.
         let _ = self.recorder.observe(model, step, state)?;
         self.page.see_sections(self.recorder.section_values());
-        let _ = self.page.observe(model, step, state)?;
+        self.page.see_step(step, state, self.recorder.closed());
         if let Some(exporter) = &mut self.exporter {
             let _ = exporter.observe(model, step, state)?;
         }
-        let solved = step.outcome().is_none_or(|outcome| outcome.converged());
         if let Some(dump) = &mut self.dump {
-            dump.see(self.layout, state, solved)?;
+            dump.see(self.layout, state, step.is_solved())?;
         }
         let ends = self.end.is_some_and(|end| end.load(Ordering::Relaxed));
         if let Some(checkpoints) = &mut self.checkpoints {
             let due = checkpoints.schedule.takes(state.step, state.t) || ends;
             // A run that ends here must not go on from here.
-            if due && (solved || !self.require_convergence) {
+            if due && (step.is_solved() || !self.require_convergence) {
                 self.write_checkpoint(state)?;
             }
         }

@@ -9,8 +9,9 @@
 //!
 //! Of a only the part that turns with ω adds up; ẇ holds it once, and once what turns the other way, which cancels out as all that a load bends slowly.
 
+use crate::probe::Probe;
+use crate::resolution::raise;
 use serde::{Deserialize, Serialize};
-use teeter_beam::ShapeAt;
 use teeter_integrator::State;
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::{BeamPlace, Layout};
@@ -58,7 +59,7 @@ pub(crate) struct Watch {
 #[derive(Debug)]
 struct Watched {
     /// Quarter points and middles between supports.
-    places: Vec<ShapeAt>,
+    places: Vec<Probe>,
     span: f64,
     /// A beam that no frequency is known of is not watched.
     swing: Option<Swing>,
@@ -75,7 +76,7 @@ impl Watch {
         let watched = |place: &BeamPlace| {
             let shape = scene.beams.iter().find(|beam| beam.name == place.name).map_or(&[][..], |beam| &beam.shape);
             let swing = Swing::of(&place.beam, shape);
-            let places = place.quarters().into_iter().map(|x| place.beam.shape_clamped(x)).collect();
+            let places = place.quarters().into_iter().map(|x| Probe::new(place, place.beam.shape_clamped(x))).collect();
             let span = place.beam.spec().span;
             Watched { places, span, swing, step: 0.0, turn: [1.0, 0.0], more: [0.0, 0.0] }
         };
@@ -110,25 +111,26 @@ impl Swings {
 
     /// Takes a step of length `h` (s) in that ended in `state`; returns the largest rate of deflection of all beams at their places, m/s.
     pub(crate) fn observe(&mut self, watch: &mut Watch, layout: &Layout, h: f64, state: &State) -> f64 {
-        let mut fastest = 0.0_f64;
+        let mut fastest = 0.0;
         for ((swung, watched), place) in self.0.iter_mut().zip(&mut watch.beams).zip(&layout.beams) {
             if let Some(swing) = watched.swing {
                 watched.with_step(swing, watch.theta, h);
             }
             let ([c, d], [r, s]) = (watched.turn, watched.more);
-            let mut worst = 0.0_f64;
+            let (q, v) = (&state.q[place.range.clone()], &state.v[place.range.clone()]);
+            let mut worst = 0.0;
             for (off, at) in swung.off.iter_mut().zip(&watched.places) {
-                let [w, rate] = [&state.q, &state.v].map(|x| place.deflection(at, &x[place.range.clone()]).w);
-                fastest = fastest.max(rate.abs());
-                swung.most = swung.most.max(w.abs());
+                let (w, rate) = (at.deflection(q), at.deflection(v));
+                raise(&mut fastest, rate.abs());
+                raise(&mut swung.most, w.abs());
                 let Some(swing) = watched.swing else { continue };
                 // a = 2ẇ/(iω) lies on the imaginary axis.
                 let a = -2.0 * rate / swing.omega;
                 let [x, y] = *off;
                 *off = [c * x - d * y - s * a, d * x + c * y + r * a];
-                worst = worst.max(off[0] * off[0] + off[1] * off[1]);
+                raise(&mut worst, off[0] * off[0] + off[1] * off[1]);
             }
-            swung.worst = swung.worst.max(worst.sqrt());
+            raise(&mut swung.worst, worst.sqrt());
         }
         fastest
     }

@@ -82,44 +82,53 @@ impl ContactSolver<2> for Enumeration {
 
     fn reserve(&mut self, _contacts: usize, _blocks: usize) {}
 
+    #[inline(always)] // Of a single contact, so that `Auto` has no calls on the way to it.
     fn solve(&mut self, problem: &ContactProblem<'_, 2>, stop: &Stop<'_>, p: &mut [Vector2<f64>]) -> Outcome {
-        let n = problem.contacts();
-        let (found, tried, residual) = match n {
-            1 => {
-                let solution = one_contact::solve(&problem.diagonal(0), &problem.q()[0], problem.mu()[0]);
-                p[0] = solution.unwrap_or(p[0]);
-                (solution.is_some(), 1, judge(problem, p))
-            }
-            2..=TREE_CONTACTS => {
-                let table = BlockTable::<TREE_CONTACTS>::new(problem);
-                let (likely, tried) = likely::find(&table, p);
-                if let Some((impulses, velocities)) = likely {
-                    let residual = judge_velocities(problem, &impulses[..n], &velocities[..n]);
-                    if residual.global <= stop.tolerance {
-                        p.copy_from_slice(&impulses[..n]);
-                        return Outcome::new(Status::Converged, Self::NAME, tried, residual);
-                    }
-                }
-                let (found, searched, residual) =
-                    search_with_retry(problem, stop, table, p, |table, p| table.search(p));
-                (found, tried + searched, residual)
-            }
-            4 => search_with_retry(problem, stop, BlockTable::<4>::new(problem), p, |table, p| table.try_all::<8>(p)),
-            MAX_CONTACTS => {
-                search_with_retry(problem, stop, BlockTable::<MAX_CONTACTS>::new(problem), p, |table, p| {
-                    table.try_all::<{ 2 * MAX_CONTACTS }>(p)
-                })
-            }
-            _ => (n == 0, 0, judge(problem, p)),
-        };
-        // The comparison is false for a NaN.
-        let status = if found && residual.global <= stop.tolerance { Status::Converged } else { Status::Breakdown };
-        Outcome::new(status, Self::NAME, tried, residual)
+        if problem.contacts() != 1 {
+            return solve_several(problem, stop, p);
+        }
+        let solution = one_contact::solve(&problem.diagonal(0), &problem.q()[0], problem.mu()[0]);
+        p[0] = solution.unwrap_or(p[0]);
+        judged(solution.is_some(), 1, judge(problem, p), stop)
     }
 
     fn fork(&self) -> Box<dyn ContactSolver<2>> {
         Box::new(*self)
     }
+}
+
+/// The outcome of a search that tried so many states.
+#[inline]
+fn judged(found: bool, tried: u32, residual: Residual, stop: &Stop<'_>) -> Outcome {
+    // The comparison is false for a NaN.
+    let status = if found && residual.global <= stop.tolerance { Status::Converged } else { Status::Breakdown };
+    Outcome::new(status, Enumeration::NAME, tried, residual)
+}
+
+/// Any number of contacts but one.
+fn solve_several(problem: &ContactProblem<'_, 2>, stop: &Stop<'_>, p: &mut [Vector2<f64>]) -> Outcome {
+    let n = problem.contacts();
+    let (found, tried, residual) = match n {
+        2..=TREE_CONTACTS => {
+            let table = BlockTable::<TREE_CONTACTS>::new(problem);
+            let (likely, tried) = likely::find(&table, p);
+            if let Some((impulses, velocities)) = likely {
+                let residual = judge_velocities(problem, &impulses[..n], &velocities[..n]);
+                if residual.global <= stop.tolerance {
+                    p.copy_from_slice(&impulses[..n]);
+                    return Outcome::new(Status::Converged, Enumeration::NAME, tried, residual);
+                }
+            }
+            let (found, searched, residual) = search_with_retry(problem, stop, table, p, |table, p| table.search(p));
+            (found, tried + searched, residual)
+        }
+        4 => search_with_retry(problem, stop, BlockTable::<4>::new(problem), p, |table, p| table.try_all::<8>(p)),
+        MAX_CONTACTS => search_with_retry(problem, stop, BlockTable::<MAX_CONTACTS>::new(problem), p, |table, p| {
+            table.try_all::<{ 2 * MAX_CONTACTS }>(p)
+        }),
+        _ => (n == 0, 0, judge(problem, p)),
+    };
+    judged(found, tried, residual, stop)
 }
 
 /// Searches the states for impulses that satisfy the law to rounding; if these miss the tolerance,

@@ -264,7 +264,21 @@ impl BlockCompliance {
         inverse_of(&self.inverse, columns)
     }
 
+    /// What contacts feel of each other, pair by pair.
+    #[inline(never)]
+    fn couple_few(&self, rows: &PartRows<'_, 2>, h: &mut Coupling<'_, 2>) {
+        for (i, columns_i, values_i) in rows.iter() {
+            for (j, columns_j, values_j) in rows.iter() {
+                // Contacts of different blocks aren't coupled: W is diagonal.
+                if columns_i[0] == columns_j[0] {
+                    h.add(i, j, &felt(self.inverse_of(columns_i), values_i, values_j));
+                }
+            }
+        }
+    }
+
     /// What the contacts of each block feel of each other, block by block.
+    #[inline(never)]
     fn couple_neighbours(&mut self, rows: &PartRows<'_, 2>, h: &mut Coupling<'_, 2>) {
         let Self { touched, inverse, .. } = self;
         touched.clear();
@@ -320,24 +334,21 @@ impl Compliance<2> for BlockCompliance {
     }
 
     fn couple(&mut self, rows: &PartRows<'_, 2>, _scratch: &mut [f64], h: &mut Coupling<'_, 2>) {
-        if rows.contacts() > FEW {
-            return self.couple_neighbours(rows, h);
-        }
-        for (i, columns_i, values_i) in rows.iter() {
-            for (j, columns_j, values_j) in rows.iter() {
-                // Contacts of different blocks aren't coupled: W is diagonal.
-                if columns_i[0] == columns_j[0] {
-                    h.add(i, j, &felt(self.inverse_of(columns_i), values_i, values_j));
-                }
-            }
+        if let Some((columns, values)) = rows.only() {
+            h.add(0, 0, &felt(self.inverse_of(columns), values, values));
+        } else if rows.contacts() > FEW {
+            self.couple_neighbours(rows, h);
+        } else {
+            self.couple_few(rows, h);
         }
     }
 
     fn respond(&mut self, rows: &PartRows<'_, 2>, p: &[Vector<2>], _scratch: &mut [f64], v: &mut [f64]) {
-        for (contact, columns, values) in rows.iter() {
-            let (inverse, first, p) = (self.inverse_of(columns), columns[0], &p[contact]);
-            for ((v, inverse), a) in v[first..first + 3].iter_mut().zip(inverse).zip(values) {
-                *v += inverse * dot(a, p);
+        if let Some((columns, values)) = rows.only() {
+            push(self.inverse_of(columns), values, &p[0], &mut v[columns[0]..]);
+        } else {
+            for (contact, columns, values) in rows.iter() {
+                push(self.inverse_of(columns), values, &p[contact], &mut v[columns[0]..]);
             }
         }
     }
@@ -354,8 +365,20 @@ fn inverse_of<'a>(inverse: &'a [f64], columns: &[usize]) -> &'a [f64; 3] {
 #[inline]
 fn felt(inverse: &[f64; 3], a: &[Vector<2>], b: &[Vector<2>]) -> Matrix2<f64> {
     let mut block = Matrix2::zeros();
-    for ((inverse, a), b) in inverse.iter().zip(a).zip(b) {
-        add_outer(&mut block, a, b, *inverse);
+    if let (Some(a), Some(b)) = (a.first_chunk::<3>(), b.first_chunk::<3>()) {
+        for k in 0..3 {
+            add_outer(&mut block, &a[k], &b[k], inverse[k]);
+        }
     }
     block
+}
+
+/// What an impulse on a block does to its velocities, v += W J_iᵀ p.
+#[inline]
+fn push(inverse: &[f64; 3], a: &[Vector<2>], p: &Vector<2>, v: &mut [f64]) {
+    if let (Some(a), Some(v)) = (a.first_chunk::<3>(), v.first_chunk_mut::<3>()) {
+        for k in 0..3 {
+            v[k] += inverse[k] * dot(&a[k], p);
+        }
+    }
 }

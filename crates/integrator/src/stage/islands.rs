@@ -56,7 +56,7 @@ impl<const D: usize> ContactStage<D> {
     ///
     /// The outcome is that of all islands: converged if all are; residuals are the largest, each in
     /// its island's own scale; iterations the most of an island.
-    #[inline]
+    #[inline(always)]
     pub(super) fn solve_apart(
         &mut self,
         model: &Model<D>,
@@ -65,9 +65,18 @@ impl<const D: usize> ContactStage<D> {
         over: Over,
         guard: &mut impl FnMut(&Self, &mut Problem<D>, &Laws<D>, Members<'_>) -> Result<bool, ContactError>,
     ) -> Result<Option<Outcome>, ContactError> {
-        if self.len() < MANY {
-            return Ok(None);
-        }
+        if self.len() < MANY { Ok(None) } else { self.solve_many_apart(model, work, responses, over, guard) }
+    }
+
+    #[inline(never)]
+    fn solve_many_apart(
+        &mut self,
+        model: &Model<D>,
+        work: &mut Workspace<D>,
+        responses: &Responses<'_>,
+        over: Over,
+        guard: &mut impl FnMut(&Self, &mut Problem<D>, &Laws<D>, Members<'_>) -> Result<bool, ContactError>,
+    ) -> Result<Option<Outcome>, ContactError> {
         let mut islands = std::mem::take(&mut self.islands);
         let outcome = self.solve_islands(&mut islands, model, work, responses, over, guard);
         self.islands = islands;

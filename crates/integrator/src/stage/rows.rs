@@ -11,35 +11,36 @@ pub(crate) struct ContactRows<const D: usize> {
     pub(crate) spans: Vec<[Span; 2]>,
     /// How much of the arena is taken.
     taken: usize,
-    /// Columns within their subsystems, and among the model's velocities.
+    /// Columns within their subsystems.
     columns: Vec<usize>,
-    global: Vec<usize>,
     values: Vec<Vector<D>>,
-    /// Whether a contact may act on a subsystem, up to the last that any has acted on.
-    acts_on: Vec<bool>,
+    /// The round in which a contact last acted on each subsystem, up to the last that any has acted
+    /// on.
+    acted_on: Vec<u64>,
+    /// Counts up where all contacts are dropped.
+    round: u64,
 }
 
 impl<const D: usize> ContactRows<D> {
     pub(crate) fn reserve(&mut self, contacts: usize, row: usize, parts: usize) {
-        self.acts_on.resize(parts, false);
+        self.acted_on.resize(parts, 0);
         let more = |len: usize, wanted: usize| wanted.saturating_sub(len);
         self.spans.reserve(more(self.spans.len(), contacts));
         let entries = 2 * contacts * row;
         self.columns.reserve(more(self.columns.len(), entries));
-        self.global.reserve(more(self.global.len(), entries));
         self.values.reserve(more(self.values.len(), entries));
     }
 
     pub(crate) fn clear(&mut self) {
         self.spans.clear();
-        self.acts_on.fill(false);
+        self.round += 1;
         self.taken = 0;
     }
 
     /// Whether a contact may act on a subsystem: one that was dropped again may have.
     #[inline]
     pub(crate) fn may_act_on(&self, part: usize) -> bool {
-        self.acts_on.get(part).is_some_and(|acts| *acts)
+        self.acted_on.get(part).is_some_and(|round| *round > self.round)
     }
 
     /// Where rows are free: past those of all contacts, as rows that were taken anew may lie behind the last contact's.
@@ -48,6 +49,7 @@ impl<const D: usize> ContactRows<D> {
     }
 
     /// Adds the rows of a candidate at coordinates `q`; leaves nothing behind on an error.
+    #[inline(always)]
     pub(crate) fn push(&mut self, model: &Model<D>, q: &[f64], candidate: &Candidate<D>) -> Result<(), Mismatch> {
         let spans = self.fill(model, q, candidate, self.end())?;
         self.taken = spans[1].start + spans[1].len;
@@ -75,62 +77,74 @@ impl<const D: usize> ContactRows<D> {
             return Ok(());
         }
         self.columns.copy_within(end..end + len, start);
-        self.global.copy_within(end..end + len, start);
         self.values.copy_within(end..end + len, start);
         self.spans[i] = new.map(|span| Span { start: span.start - end + start, ..span });
         Ok(())
     }
 
-    #[inline]
+    /// Writes the rows of both sides into the arena from `start` on.
+    #[inline(always)]
     fn fill(
         &mut self,
         model: &Model<D>,
         q: &[f64],
         candidate: &Candidate<D>,
-        mut start: usize,
+        start: usize,
     ) -> Result<[Span; 2], Mismatch> {
-        let mut spans = [Span { part: 0, start, len: 0 }; 2];
-        for (side, anchor) in candidate.sides.iter().enumerate() {
-            let Some((index, part, body)) = model.owner(anchor.body) else {
-                return Err(Mismatch::Body { body: anchor.body, bodies: model.size().bodies });
-            };
-            spans[side].start = start;
-            if part.row == 0 {
-                continue;
-            }
-            // Never shorter again, so that a step with known contacts has no entries to make.
-            if self.values.len() < start + part.row {
-                self.columns.resize(start + part.row, 0);
-                self.global.resize(start + part.row, 0);
-                self.values.resize(start + part.row, Vector::zeros());
-            }
-            let room = start..start + part.row;
-            let mut rows = Rows { columns: &mut self.columns[room.clone()], values: &mut self.values[room] };
-            let q = &q[part.q.clone()];
-            let len = part.system.rows(body, q, &anchor.point, &candidate.frame, &mut rows).min(part.row);
-            let taken = start..start + len;
-            let (mut last, sign) = (0, if side == 0 { 1.0 } else { -1.0 });
-            let entries = self.global[taken.clone()].iter_mut().zip(&self.columns[taken.clone()]);
-            for ((global, &column), value) in entries.zip(&mut self.values[taken]) {
-                last = last.max(column);
-                *global = part.v.start + column;
-                value.data.0[0].iter_mut().for_each(|x| *x *= sign);
-            }
-            if last >= part.v.len() && len > 0 {
-                return Err(Mismatch::Column { body: anchor.body, column: last, velocities: part.v.len() });
-            }
-            spans[side] = Span { part: index, start, len };
-            start += len;
-            if self.acts_on.len() <= index {
-                self.acts_on.resize(model.parts().len(), false);
-            }
-            self.acts_on[index] = true;
+        let first = self.fill_side(model, q, candidate, 0, start)?;
+        let second = self.fill_side(model, q, candidate, 1, first.range().end)?;
+        Ok([first, second])
+    }
+
+    #[inline(always)]
+    fn fill_side(
+        &mut self,
+        model: &Model<D>,
+        q: &[f64],
+        candidate: &Candidate<D>,
+        side: usize,
+        start: usize,
+    ) -> Result<Span, Mismatch> {
+        let anchor = &candidate.sides[side];
+        let Some((index, part, body)) = model.owner(anchor.body) else {
+            return Err(Mismatch::Body { body: anchor.body, bodies: model.size().bodies });
+        };
+        if part.row == 0 {
+            return Ok(Span { start, ..Span::default() });
         }
-        Ok(spans)
+        let end = start + part.row;
+        if self.values.len() < end {
+            self.grow(end);
+        }
+        let mut rows = Rows { columns: &mut self.columns[start..end], values: &mut self.values[start..end] };
+        let q = &q[part.q.clone()];
+        let len = part.system.rows(body, q, &anchor.point, &candidate.frame, &mut rows).min(part.row);
+        if side == 1 {
+            for value in &mut rows.values[..len] {
+                value.data.0[0].iter_mut().for_each(|x| *x = -*x);
+            }
+        }
+        let velocities = part.v.len();
+        if let Some(&column) = rows.columns[..len].iter().find(|column| **column >= velocities) {
+            return Err(Mismatch::Column { body: anchor.body, column, velocities });
+        }
+        if self.acted_on.len() <= index {
+            self.acted_on.resize(model.parts().len(), 0);
+        }
+        self.acted_on[index] = self.round + 1;
+        Ok(Span { part: index, first: part.v.start, start, len })
+    }
+
+    /// Makes room for entries; never less again, so that a step with known contacts has none to
+    /// make.
+    #[cold]
+    fn grow(&mut self, entries: usize) {
+        self.columns.resize(entries, 0);
+        self.values.resize(entries, Vector::zeros());
     }
 
     /// Whether all that could part the sides of the last rows is prescribed: no impulse changes their normal velocity.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn last_is_prescribed(&self, model: &Model<D>) -> bool {
         let fixed = self.spans.last().is_some_and(|sides| sides.iter().all(|side| side.len == 0));
         fixed || (model.is_driven() && self.last_has_prescribed_sides(model))
@@ -144,11 +158,8 @@ impl<const D: usize> ContactRows<D> {
             if driven.is_empty() {
                 return false;
             }
-            let range = side.start..side.start + side.len;
-            self.columns[range.clone()]
-                .iter()
-                .zip(&self.values[range])
-                .all(|(c, value)| value[0] == 0.0 || driven.contains(c))
+            let (columns, values) = self.of_side(side);
+            columns.iter().zip(values).all(|(c, value)| value[0] == 0.0 || driven.contains(c))
         })
     }
 
@@ -158,52 +169,74 @@ impl<const D: usize> ContactRows<D> {
         }
     }
 
-    /// The entries of contact `i`, with their columns among the model's velocities.
+    /// The columns of a side of a contact within its part, and its entries.
     #[inline]
+    fn of_side(&self, side: &Span) -> (&[usize], &[Vector<D>]) {
+        (&self.columns[side.range()], &self.values[side.range()])
+    }
+
+    /// The entries of contact `i`, with their columns among the model's velocities.
     pub(crate) fn entries(&self, i: usize) -> impl Iterator<Item = (usize, &Vector<D>)> {
-        // The sides of a contact lie beside each other.
-        let [a, b] = self.spans[i];
-        let range = a.start..a.start + a.len + b.len;
-        self.global[range.clone()].iter().copied().zip(&self.values[range])
+        self.spans[i].iter().flat_map(|side| {
+            let (columns, values) = self.of_side(side);
+            columns.iter().map(|column| side.first + column).zip(values)
+        })
     }
 
     /// The columns of one side of a contact, among the model's velocities.
     pub(crate) fn columns_of(&self, side: &Span) -> impl Iterator<Item = usize> {
-        self.global[side.start..side.start + side.len].iter().copied()
+        self.of_side(side).0.iter().map(|column| side.first + column)
     }
 
     /// Adds a x to the normal row of contact `i`, once where both sides have the same column.
     pub(crate) fn add_to_normal(&mut self, i: usize, a: f64, x: &[f64]) {
-        let [first, second] = self.spans[i];
-        let range = first.start..first.start + first.len + second.len;
-        let columns = &self.global[range.clone()];
-        for (k, value) in self.values[range].iter_mut().enumerate() {
-            if !columns[..k].contains(&columns[k]) {
-                value[0] += a * x[columns[k]];
+        let sides = self.spans[i];
+        for side in sides {
+            // The sides of a contact lie beside each other.
+            let start = if side.part == sides[0].part { sides[0].start } else { side.start };
+            for place in side.range() {
+                let column = self.columns[place];
+                if !self.columns[start..place].contains(&column) {
+                    self.values[place][0] += a * x[side.first + column];
+                }
             }
         }
+    }
+
+    /// J_i v of some velocities.
+    #[inline(always)]
+    pub(crate) fn velocities<const N: usize>(&self, i: usize, v: [&[f64]; N]) -> [Vector<D>; N] {
+        let mut u = [Vector::zeros(); N];
+        for side in &self.spans[i] {
+            let (columns, values) = self.of_side(side);
+            let v = v.map(|v| &v[side.first..]);
+            for (&column, value) in columns.iter().zip(values) {
+                for k in 0..N {
+                    add_scaled(&mut u[k], value, v[k][column]);
+                }
+            }
+        }
+        u
     }
 
     /// J_i v.
     #[inline]
     pub(crate) fn velocity(&self, i: usize, v: &[f64]) -> Vector<D> {
-        let mut u = Vector::zeros();
-        for (column, value) in self.entries(i) {
-            add_scaled(&mut u, value, v[column]);
-        }
+        let [u] = self.velocities(i, [v]);
         u
     }
 
-    /// J_i v of two velocities.
-    #[inline]
-    pub(crate) fn velocities(&self, i: usize, v: [&[f64]; 2]) -> [Vector<D>; 2] {
-        let mut u = [Vector::zeros(); 2];
-        for (column, value) in self.entries(i) {
-            for k in 0..2 {
-                add_scaled(&mut u[k], value, v[k][column]);
+    /// Σ |J_i v|: what rounding of the velocity of contact `i` is measured by.
+    pub(crate) fn speed(&self, i: usize, v: &[f64]) -> f64 {
+        let mut sum = 0.0;
+        for side in &self.spans[i] {
+            let (columns, values) = self.of_side(side);
+            let v = &v[side.first..];
+            for (&column, value) in columns.iter().zip(values) {
+                sum += value.norm() * v[column].abs();
             }
         }
-        u
+        sum
     }
 
     /// The rows that act on one part.

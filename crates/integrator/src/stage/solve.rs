@@ -58,15 +58,27 @@ impl<const D: usize> ContactStage<D> {
         if !self.is_ready(model, work, responses)? {
             return Ok(None);
         }
+        self.solve_all(model, work, responses, over).map(Some)
+    }
+
+    /// The same without checks, and with a contact at least.
+    #[inline(always)]
+    pub(super) fn solve_all(
+        &mut self,
+        model: &Model<D>,
+        work: &mut Workspace<D>,
+        responses: &Responses<'_>,
+        over: Over,
+    ) -> Result<Outcome, ContactError> {
         self.forces = over == Over::Acceleration;
         if let Some(outcome) = self.solve_apart(model, work, responses, over, &mut |_, _, _, _| Ok(false))? {
-            return Ok(Some(outcome));
+            return Ok(outcome);
         }
         let Self { rows, problem, extra, .. } = self;
         couple(rows, model, work, responses, &rows.spans, problem);
         add_compliances(extra, problem);
         self.coupled = work.coupled;
-        Ok(Some(work.solve_problem(&mut self.problem, over.weight())?))
+        work.solve_problem(&mut self.problem, over.weight())
     }
 
     /// Computes H of all contacts, dense, without solving anything.
@@ -96,18 +108,34 @@ impl<const D: usize> ContactStage<D> {
         work: &mut Workspace<D>,
         responses: &Responses<'_>,
     ) -> Result<bool, ContactError> {
-        (self.apart, self.forces) = (false, false);
+        self.forget_solution();
         if self.is_empty() {
             return Ok(false);
         }
-        self.check(model)?;
-        work.check(model)?;
-        if let Some(contact) = self.problem.rules().position(|rule| *rule == Rule::Unposed) {
+        if let Some(contact) = self.problem.rules().position(|rule| matches!(rule, Rule::Unposed)) {
             return Err(ContactError::Unposed { contact });
         }
+        self.check_factors(model, work, responses)?;
+        Ok(true)
+    }
+
+    pub(super) fn forget_solution(&mut self) {
+        (self.apart, self.forces) = (false, false);
+    }
+
+    /// Checks that stage, workspace and model belong together, and that there are factors.
+    #[inline(always)]
+    pub(super) fn check_factors(
+        &self,
+        model: &Model<D>,
+        work: &mut Workspace<D>,
+        responses: &Responses<'_>,
+    ) -> Result<(), ContactError> {
+        self.check(model)?;
+        work.check(model)?;
         match work.factors.missing(model, responses) {
             Some(part) => Err(ContactError::Factors { part }),
-            None => Ok(true),
+            None => Ok(()),
         }
     }
 
@@ -196,15 +224,28 @@ impl<const D: usize> ContactStage<D> {
         self.check(model)?;
         work.check(model)?;
         length("the velocities", v, model.size().v)?;
+        self.respond_all(model, work, responses, v)
+    }
+
+    /// The same without checks.
+    #[inline(always)]
+    pub(super) fn respond_all(
+        &self,
+        model: &Model<D>,
+        work: &mut Workspace<D>,
+        responses: &Responses<'_>,
+        v: &mut [f64],
+    ) -> Result<(), ContactError> {
         // What a factor keeps of coupling is of the contacts that were coupled last, and of an island numbered within it.
         let kept = !self.apart && self.coupled == work.coupled;
         let Workspace { factors, scratch, .. } = work;
+        let (mut answers, mut rows) = (factors.answers(responses), self.rows.of_part(0));
         for (index, part) in model.parts().iter().enumerate() {
             if !self.rows.may_act_on(index) {
                 continue;
             }
-            let rows = self.rows.of_part(index);
-            let Some(mut answer) = factors.answer(index, responses) else {
+            rows.part = index;
+            let Some(mut answer) = answers.of(index) else {
                 return Err(ContactError::Factors { part: index });
             };
             let (scratch, v) = (&mut scratch[part.v.clone()], &mut v[part.v.clone()]);
@@ -215,7 +256,7 @@ impl<const D: usize> ContactStage<D> {
 }
 
 /// H = Σ J W Jᵀ over the subsystems, of the contacts with these rows.
-#[inline]
+#[inline(always)]
 pub(super) fn couple<const D: usize>(
     rows: &ContactRows<D>,
     model: &Model<D>,
@@ -230,7 +271,7 @@ pub(super) fn couple<const D: usize>(
 }
 
 /// The same, added to an H that is there.
-#[inline]
+#[inline(always)]
 pub(super) fn couple_into<const D: usize>(
     coupling: &mut Coupling<'_, D>,
     rows: &ContactRows<D>,
@@ -240,12 +281,14 @@ pub(super) fn couple_into<const D: usize>(
     spans: &[[Span; 2]],
 ) {
     let Workspace { factors, scratch, .. } = work;
+    let (mut answers, mut of_part) = (factors.answers(responses), rows.of_island(0, spans));
     for (index, part) in model.parts().iter().enumerate() {
         if !rows.may_act_on(index) {
             continue;
         }
-        if let Some(mut answer) = factors.answer(index, responses) {
-            answer.couple(&rows.of_island(index, spans), &mut scratch[..part.v.len()], coupling);
+        of_part.part = index;
+        if let Some(mut answer) = answers.of(index) {
+            answer.couple(&of_part, &mut scratch[..part.v.len()], coupling);
         }
     }
 }

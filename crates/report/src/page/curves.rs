@@ -19,11 +19,16 @@ impl Extremes {
         Self { low: (t, x), high: (t, x) }
     }
 
-    fn join(self, later: Self) -> Self {
+    /// Takes later extremes in.
+    #[inline]
+    fn take(&mut self, later: Self) {
         // A NaN loses no comparison, so a curve that stops being finite shows its gap only where nothing else is.
-        let low = if later.low.1 < self.low.1 { later.low } else { self.low };
-        let high = if later.high.1 > self.high.1 { later.high } else { self.high };
-        Self { low, high }
+        if later.low.1 < self.low.1 {
+            self.low = later.low;
+        }
+        if later.high.1 > self.high.1 {
+            self.high = later.high;
+        }
     }
 
     fn in_order(self) -> [f64; 2] {
@@ -111,28 +116,32 @@ impl Curves {
 
     /// Enters the values at the end of a step.
     pub(crate) fn enter(&mut self, t: f64, values: &[f64]) {
-        let full = self.buckets.last().is_none_or(|bucket| bucket.steps >= self.stride);
-        if full && self.buckets.len() == self.capacity {
-            self.halve();
-        }
-        let begin = self.buckets.last().map_or(self.start.0, |bucket| bucket.last);
         match self.buckets.last_mut().filter(|bucket| bucket.steps < self.stride) {
             Some(bucket) => {
                 (bucket.last, bucket.steps) = (t, bucket.steps + 1);
                 let at = self.extremes.len() - values.len();
                 for (extremes, &x) in self.extremes[at..].iter_mut().zip(values) {
-                    *extremes = extremes.join(Extremes::of(t, x));
+                    extremes.take(Extremes::of(t, x));
                 }
             }
-            None => {
-                self.buckets.push(Bucket { begin, first: t, last: t, steps: 1 });
-                self.extremes.extend(values.iter().map(|&x| Extremes::of(t, x)));
-                self.works.resize(self.works.len() + self.contacts, Work::default());
-            }
+            None => self.begin_bucket(t, values),
         }
     }
 
+    /// Begins a bucket, as all before it are full, with the values at the end of its first step.
+    #[inline(never)]
+    fn begin_bucket(&mut self, t: f64, values: &[f64]) {
+        if self.buckets.len() == self.capacity {
+            self.halve();
+        }
+        let begin = self.buckets.last().map_or(self.start.0, |bucket| bucket.last);
+        self.buckets.push(Bucket { begin, first: t, last: t, steps: 1 });
+        self.extremes.extend(values.iter().map(|&x| Extremes::of(t, x)));
+        self.works.resize(self.works.len() + self.contacts, Work::default());
+    }
+
     /// Adds what a contact did in the step entered last.
+    #[inline]
     pub(crate) fn add(&mut self, contact: usize, impulse: [f64; 2], state: ContactState) {
         let newest = self.works.len().saturating_sub(self.contacts);
         if let Some(work) = self.works[newest..].get_mut(contact) {
@@ -146,8 +155,10 @@ impl Curves {
             let (a, b) = (self.buckets[2 * i], self.buckets[2 * i + 1]);
             self.buckets[i] = Bucket { begin: a.begin, first: a.first, last: b.last, steps: a.steps + b.steps };
             for k in 0..columns {
-                let (a, b) = (self.extremes[2 * i * columns + k], self.extremes[(2 * i + 1) * columns + k]);
-                self.extremes[i * columns + k] = a.join(b);
+                let (mut joined, later) =
+                    (self.extremes[2 * i * columns + k], self.extremes[(2 * i + 1) * columns + k]);
+                joined.take(later);
+                self.extremes[i * columns + k] = joined;
             }
             for k in 0..self.contacts {
                 let (a, b) = (self.works[2 * i * self.contacts + k], self.works[(2 * i + 1) * self.contacts + k]);

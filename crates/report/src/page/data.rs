@@ -129,7 +129,7 @@ pub(crate) fn json(recorder: &PageRecorder, summary: &Summary) -> String {
                 impulse: i.impulse.map(digits),
             })
             .collect(),
-        impact_count: recorder.impact_count(),
+        impact_count: recorder.kept.impact_count,
         sections: sections(recorder),
     };
     // Strings, vectors and numbers (null where not finite) always serialise.

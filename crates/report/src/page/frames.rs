@@ -22,18 +22,27 @@ impl Frames {
     }
 
     /// Enters a state; `fill` writes its numbers, if it is to be kept.
+    #[inline]
     pub(crate) fn enter(&mut self, t: f64, fill: impl FnOnce(&mut [f64])) {
-        if self.seen.is_multiple_of(self.stride) && self.t.len() == self.capacity {
-            self.halve();
-        }
-        // After halving, the stride need no longer meet this step.
         if self.seen.is_multiple_of(self.stride) {
-            let start = self.values.len();
-            self.t.push(t);
-            self.values.resize(start + self.width, 0.0);
-            fill(&mut self.values[start..]);
+            self.keep(t, fill);
         }
         self.seen += 1;
+    }
+
+    #[inline(never)]
+    fn keep(&mut self, t: f64, fill: impl FnOnce(&mut [f64])) {
+        if self.t.len() == self.capacity {
+            self.halve();
+            // The stride need no longer meet this step.
+            if !self.seen.is_multiple_of(self.stride) {
+                return;
+            }
+        }
+        let start = self.values.len();
+        self.t.push(t);
+        self.values.resize(start + self.width, 0.0);
+        fill(&mut self.values[start..]);
     }
 
     /// Enters the last state again, to be kept in any case, so that the picture ends where the run does.

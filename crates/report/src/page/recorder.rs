@@ -4,6 +4,7 @@ use super::curves::Curves;
 use super::frames::Frames;
 use super::rounded;
 use super::scenery::Scenery;
+use crate::closed::Closed;
 use crate::sections::{BeamRecord, Column, Kind, columns_of};
 use serde::{Deserialize, Serialize};
 use std::ops::{ControlFlow, Range};
@@ -70,9 +71,8 @@ pub(crate) struct Kept {
     pub(crate) frames: Frames,
     pub(crate) curves: Curves,
     pub(crate) impacts: Vec<ImpactMark>,
-    closings: ClosingMonitor<2>,
-    /// The blocks' angular velocities relative to what carries them, rad/s: at the end of the step, and before it.
-    omega: [Vec<f64>; 2],
+    /// All impacts, marked or not.
+    pub(crate) impact_count: u64,
 }
 
 /// Watches a run for [`render`](super::render) and [`figures`](super::figures); its memory doesn't grow with the run.
@@ -104,10 +104,12 @@ pub struct PageRecorder {
     pub(crate) sections: Vec<Column>,
     /// What beams bore in the whole run; nothing before its end.
     pub(crate) beams: Vec<BeamRecord>,
-    /// Their values at the end of the step.
-    section_values: Vec<f64>,
     /// Values of the curves at the end of the step.
     row: Vec<f64>,
+    /// Tells impacts, where nobody else does.
+    closings: ClosingMonitor<2>,
+    /// The contacts that closed in the step.
+    closed: Vec<Closed>,
 }
 
 impl PageRecorder {
@@ -131,15 +133,15 @@ impl PageRecorder {
                 frames: Frames::new(capacity(FRAMES, frame + 1), frame),
                 curves: Curves::new(bucket_capacity, 0.0, vec![0.0; columns], points),
                 impacts: Vec::new(),
-                closings: ClosingMonitor::default(),
-                omega: [vec![0.0; layout.blocks.len()], vec![0.0; layout.blocks.len()]],
+                impact_count: 0,
             },
             layout: layout.clone(),
             bucket_capacity,
-            section_values: vec![f64::NAN; sections.len()],
             sections,
             beams: Vec::new(),
-            row: Vec::with_capacity(columns),
+            row: vec![f64::NAN; columns],
+            closings: ClosingMonitor::default(),
+            closed: Vec::new(),
             scenery,
         }
     }
@@ -167,8 +169,9 @@ impl PageRecorder {
 
     /// Takes the values of what beams bear, to be entered with the next step; without them there are no such curves.
     pub(crate) fn see_sections(&mut self, values: &[f64]) {
-        if values.len() == self.section_values.len() {
-            self.section_values.copy_from_slice(values);
+        if values.len() == self.sections.len() {
+            let before = self.row.len() - values.len();
+            self.row[before..].iter_mut().zip(values).for_each(|(own, value)| *own = *value);
         }
     }
 
@@ -177,17 +180,20 @@ impl PageRecorder {
     }
 
     fn take_row(&mut self, state: &State) {
-        self.row.clear();
-        for block in &self.layout.blocks {
+        let blocks = BLOCK_COLUMNS * self.layout.blocks.len();
+        let (of_blocks, rest) = self.row.split_at_mut(blocks);
+        for (out, block) in of_blocks.chunks_exact_mut(BLOCK_COLUMNS).zip(&self.layout.blocks) {
             let phi = block.range.start + 2;
-            self.row.extend([state.q[phi], state.v[phi]]);
+            out.copy_from_slice(&[state.q[phi], state.v[phi]]);
         }
-        for (place, drawn) in self.layout.beams.iter().zip(&self.scenery.beams) {
-            self.row.push(place.deflection(&drawn.middle, &state.q[place.range.clone()]).w);
+        let (of_beams, rest) = rest.split_at_mut(self.layout.beams.len());
+        for ((out, place), drawn) in of_beams.iter_mut().zip(&self.layout.beams).zip(&self.scenery.beams) {
+            *out = drawn.middle.deflection(&state.q[place.range.clone()]);
         }
+        let energies = &mut rest[..ENERGIES.len()];
         let (now, initial, sum) = (&state.ledger.current, &state.ledger.initial, &state.ledger.sum);
         let gravity = now.gravity - initial.gravity;
-        self.row.extend([
+        energies.copy_from_slice(&[
             now.kinetic,
             now.elastic,
             gravity,
@@ -200,61 +206,57 @@ impl PageRecorder {
             sum.projection,
             sum.residual,
         ]);
-        self.row.extend_from_slice(&self.section_values);
     }
 
-    fn take_contacts(
-        &mut self,
-        model: &Model<2>,
-        step: &StepReport<'_, 2>,
-        state: &State,
-    ) -> Result<(), ObserverError> {
-        let Self { scenery, kept, layout, .. } = self;
-        let Kept { curves, impacts, closings, omega: [now, before], .. } = kept;
-        // Impulses are those of the whole step; what a contact does in it is what it does in its last part.
-        let place = |contact: &Contact<2>| {
-            let pair = contact.id.pair() as usize;
-            Some((pair, layout.pairs.get(pair)?.point(contact.id)?))
-        };
-        let curve = |contact: &Contact<2>| place(contact).map(|(pair, point)| scenery.contacts[pair].first + point);
-        for contact in step.contacts() {
-            if let Some(curve) = curve(contact) {
-                curves.add(curve, [contact.p[0], contact.p[1]], ContactState::Open);
+    fn take_contacts(&mut self, step: &StepReport<'_, 2>) {
+        for part in step.active() {
+            for contact in part.contacts {
+                let Some((pair, point)) = place(&self.layout, contact) else { continue };
+                // Impulses are those of the whole step; what a contact does in it is what it does
+                // in its last part.
+                let does = if part.is_last_lasting { contact.state() } else { ContactState::Open };
+                let curve = self.scenery.contacts[pair].first + point;
+                self.kept.curves.add(curve, [contact.p[0], contact.p[1]], does);
             }
-        }
-        for contact in step.last_lasting().iter().flat_map(|last| last.contacts) {
-            if let Some(curve) = curve(contact) {
-                curves.add(curve, [0.0; 2], contact.state());
-            }
-        }
-        closings.enter(model, step, state, &layout.openings, |t, contact, closing| {
-            let Some((pair, point)) = place(contact) else { return };
-            let drawn = &scenery.contacts[pair];
-            if closing == Closing::Impact && impacts.len() < MARKED_IMPACTS {
-                impacts.push(ImpactMark {
-                    t,
-                    contact: pair,
-                    block: drawn.block,
-                    point,
-                    impulse: [contact.p[0], contact.p[1]],
-                    omega: [before[drawn.block], now[drawn.block]],
-                });
-            }
-        })?;
-        Ok(())
-    }
-
-    fn take_omega(&mut self, state: &State) {
-        self.kept.omega.swap(0, 1);
-        for (block, omega) in self.kept.omega[0].iter_mut().enumerate() {
-            *omega = self.layout.tilt_rate(block, &state.v);
         }
     }
 
-    /// All impacts so far, marked or not.
-    pub(crate) fn impact_count(&self) -> u64 {
-        self.kept.closings.impacts()
+    /// Marks the impacts among the contacts that closed in a step.
+    fn mark(&mut self, step: &StepReport<'_, 2>, state: &State, closed: &[Closed]) {
+        for Closed { t, contact, .. } in closed.iter().filter(|closed| closed.closing == Closing::Impact) {
+            self.kept.impact_count += 1;
+            let Some((pair, point)) = place(&self.layout, contact) else { continue };
+            if self.kept.impacts.len() >= MARKED_IMPACTS {
+                continue;
+            }
+            let block = self.scenery.contacts[pair].block;
+            let before = step.phases().next().map_or(state.v.as_slice(), |first| first.v[0]);
+            self.kept.impacts.push(ImpactMark {
+                t: *t,
+                contact: pair,
+                block,
+                point,
+                impulse: [contact.p[0], contact.p[1]],
+                omega: [before, &state.v].map(|v| self.layout.tilt_rate(block, v)),
+            });
+        }
     }
+
+    /// Takes a step in, with the contacts that closed in it.
+    pub(crate) fn see_step(&mut self, step: &StepReport<'_, 2>, state: &State, closed: &[Closed]) {
+        self.take_frame(state);
+        self.take_row(state);
+        self.kept.curves.enter(state.t, &self.row);
+        self.take_contacts(step);
+        self.mark(step, state, closed);
+    }
+}
+
+/// The numbers of a contact's pair and of its point.
+#[inline]
+fn place(layout: &Layout, contact: &Contact<2>) -> Option<(usize, usize)> {
+    let pair = contact.id.pair() as usize;
+    Some((pair, layout.pairs.get(pair)?.point(contact.id)?))
 }
 
 fn fill_frame(layout: &Layout, scenery: &Scenery, state: &State, row: &mut [f64]) {
@@ -265,7 +267,7 @@ fn fill_frame(layout: &Layout, scenery: &Scenery, state: &State, row: &mut [f64]
     for (place, drawn) in layout.beams.iter().zip(&scenery.beams) {
         let (points, rest) = beams.split_at_mut(drawn.points);
         let q = &state.q[place.range.clone()];
-        points.iter_mut().zip(&drawn.shapes).for_each(|(w, shape)| *w = place.deflection(shape, q).w);
+        points.iter_mut().zip(&drawn.places).for_each(|(w, at)| *w = at.deflection(q));
         beams = rest;
     }
     for range in moved(layout) {
@@ -285,8 +287,7 @@ impl Observer<2> for PageRecorder {
     fn start(&mut self, model: &Model<2>, state: &State) -> Result<(), ObserverError> {
         self.take_frame(state);
         self.take_row(state);
-        self.take_omega(state);
-        self.kept.closings = ClosingMonitor::new(model, state, &self.layout.openings)?;
+        self.closings = ClosingMonitor::new(model, state, &self.layout.openings)?;
         self.kept.curves = Curves::new(self.bucket_capacity, state.t, self.row.clone(), self.scenery.points);
         Ok(())
     }
@@ -297,11 +298,10 @@ impl Observer<2> for PageRecorder {
         step: &StepReport<'_, 2>,
         state: &State,
     ) -> Result<ControlFlow<()>, ObserverError> {
-        self.take_frame(state);
-        self.take_row(state);
-        self.take_omega(state);
-        self.kept.curves.enter(state.t, &self.row);
-        self.take_contacts(model, step, state)?;
+        let mut closed = std::mem::take(&mut self.closed);
+        Closed::of_step(&mut self.closings, model, step, state, &self.layout, &mut closed)?;
+        self.see_step(step, state, &closed);
+        self.closed = closed;
         Ok(ControlFlow::Continue(()))
     }
 

@@ -1,7 +1,8 @@
 //! What stands in the picture: sizes and places that don't change.
 
+use crate::probe::Probe;
 use serde::Serialize;
-use teeter_beam::{Axial, ShapeAt};
+use teeter_beam::Axial;
 use teeter_scenario::scene::{self, Scene};
 use teeter_scenario::simulation::Layout;
 use teeter_scenario::wording;
@@ -36,9 +37,9 @@ pub(crate) struct BeamDrawn {
     /// Points along the span, evenly spread.
     pub(crate) points: usize,
     #[serde(skip)]
-    pub(crate) shapes: Vec<ShapeAt>,
+    pub(crate) places: Vec<Probe>,
     #[serde(skip)]
-    pub(crate) middle: ShapeAt,
+    pub(crate) middle: Probe,
 }
 
 /// A contact pair as drawn.
@@ -116,7 +117,7 @@ impl Scenery {
             let (elements, span) = (place.beam.elements(), drawn.spec.span);
             // A multiple of the elements, so that every node is a point, where that is not too many.
             let pieces = (elements * PIECES.div_ceil(elements)).min(MOST_PIECES);
-            let at = |k: usize| place.beam.shape_clamped(span * (k as f64 / pieces as f64));
+            let at = |x: f64| Probe::new(place, place.beam.shape_clamped(x));
             BeamDrawn {
                 name: drawn.name.clone(),
                 x: drawn.position[0],
@@ -133,8 +134,8 @@ impl Scenery {
                     .collect(),
                 held: matches!(drawn.spec.axial, Axial::Held | Axial::Elastic { held: [_, true], .. }),
                 points: pieces + 1,
-                shapes: (0..=pieces).map(at).collect(),
-                middle: place.beam.shape_clamped(0.5 * span),
+                places: (0..=pieces).map(|k| at(span * (k as f64 / pieces as f64))).collect(),
+                middle: at(0.5 * span),
             }
         });
         let mut points = 0;

@@ -3,7 +3,7 @@
 use super::{Kept, Recorder};
 use crate::bounces::{CONTESTED, Contested};
 use crate::contacts::Names;
-use crate::resolution::Of;
+use crate::resolution::{Of, raise};
 use teeter_integrator::{Model, State, StepReport};
 use teeter_scenario::simulation::Layout;
 use teeter_scenario::{FAR_TURN, deflection};
@@ -17,20 +17,26 @@ const UNACCOUNTED: f64 = 1e-8;
 /// Who meets whom is looked at again when a body may have moved by this part of the shortest side of a block.
 const LOOK_AFTER: f64 = 0.1;
 
-/// No corner of a block is faster than this past ground and supports, m/s.
-fn fastest(layout: &Layout, state: &State) -> f64 {
-    let blocks = layout.blocks.iter().map(|place| {
+/// No corner of a block is faster than this past ground and supports, m/s; and how fast whatever
+/// turns the fastest turns, rad/s.
+fn fastest(layout: &Layout, state: &State) -> [f64; 2] {
+    let (mut fastest, mut turning) = (0.0, 0.0);
+    for place in &layout.blocks {
         let [x, y, spin] = [0, 1, 2].map(|k| state.v[place.range.start + k].abs());
-        x + y + place.reach * spin
-    });
-    let supports = layout.beams.iter().filter_map(|place| place.supports.clone());
-    let supports = supports.map(|range| state.v[range].iter().map(|v| v.abs()).sum());
-    let ground = layout.ground.iter().map(|range| {
+        raise(&mut fastest, x + y + place.reach * spin);
+        raise(&mut turning, spin);
+    }
+    let mut carried = 0.0;
+    for range in layout.beams.iter().filter_map(|place| place.supports.clone()) {
+        raise(&mut carried, state.v[range].iter().map(|v| v.abs()).sum());
+    }
+    if let Some(range) = &layout.ground {
         let far = layout.blocks.iter().map(|place| state.q[place.range.start].hypot(state.q[place.range.start + 1]));
-        let v = &state.v[range.clone()];
-        v[0].abs() + v[1].abs() + v[2].abs() * far.fold(0.0, f64::max)
-    });
-    blocks.fold(0.0, f64::max) + supports.chain(ground).fold(0.0, f64::max)
+        let [x, y, spin] = [0, 1, 2].map(|k| state.v[range.start + k].abs());
+        raise(&mut carried, x + y + spin * far.fold(0.0, f64::max));
+        raise(&mut turning, spin);
+    }
+    [fastest + carried, turning]
 }
 
 impl Recorder<'_> {
@@ -50,13 +56,9 @@ impl Recorder<'_> {
         }
     }
 
-    /// The shorter side of the block whose that is the shortest, m.
-    fn shortest_side(&self) -> f64 {
-        self.layout.blocks.iter().map(|place| place.side).fold(f64::INFINITY, f64::min)
-    }
-
     /// Warns, once, of a block that turns far in a step.
-    pub(super) fn warn_of_turns(&mut self, state: &State) {
+    #[inline(never)]
+    fn warn_of_turns(&mut self, state: &State) {
         let fastest = FAR_TURN / state.dt;
         let blocks = self.layout.blocks.iter().map(|place| (place.name.as_str(), state.v[place.range.start + 2]));
         let ground = self.layout.ground.iter().map(|range| ("ground", state.v[range.start + 2]));
@@ -105,12 +107,17 @@ impl Recorder<'_> {
         });
     }
 
-    /// Looks who meets whom between rows, too, as soon as something may have come far enough to matter.
+    /// Warns of what turns far in a step; looks who meets whom between rows, too, as soon as
+    /// something may have come far enough to matter.
     ///
     /// `swing` is the largest rate of deflection of beams, m/s: what a beam does where it is watched stands for what it does elsewhere.
-    pub(super) fn warn_of_meetings(&mut self, step: &StepReport<'_, 2>, state: &State, swing: f64) {
-        self.kept.travelled += (step.t_end - step.t_start) * (fastest(self.layout, state) + swing);
-        if self.kept.travelled > LOOK_AFTER * self.shortest_side() {
+    pub(super) fn warn_of_motion(&mut self, step: &StepReport<'_, 2>, state: &State, swing: f64) {
+        let [fastest, turning] = fastest(self.layout, state);
+        if turning >= FAR_TURN / state.dt {
+            self.warn_of_turns(state);
+        }
+        self.kept.travelled += (step.t_end - step.t_start) * (fastest + swing);
+        if self.kept.travelled > LOOK_AFTER * self.shortest_side {
             self.look_who_meets(state);
         }
     }
@@ -134,7 +141,7 @@ impl Recorder<'_> {
             }
         }
         let depth = state.tally.max_penetration;
-        if depth > DEEP * self.shortest_side() {
+        if depth > DEEP * self.shortest_side {
             self.warn_once("deep-penetration", state.t, || {
                 format!(
                     "up to t = {} s a corner was {depth:.2e} m deep in a surface, more than {:.0} % of a block's shorter side: that is no contact any \
@@ -202,6 +209,9 @@ impl Recorder<'_> {
 
     /// Warns of a step whose contact problem was not solved.
     pub(super) fn warn_of_unsolved(&mut self, step: &StepReport<'_, 2>) {
+        if step.is_solved() {
+            return;
+        }
         let Some(outcome) = step.outcome().filter(|outcome| !outcome.converged()) else { return };
         self.warn("unconverged", Some(step.t_end), || {
             format!(

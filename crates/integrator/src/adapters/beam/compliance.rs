@@ -171,6 +171,13 @@ fn add_multiple(a: f64, x: &[f64], v: &mut [f64]) {
     }
 }
 
+/// v += Σ f_k x_k, for the entries that all x have.
+fn add_four(f: [f64; 4], [a, b, c, d]: [&[f64]; 4], v: &mut [f64]) {
+    for ((((v, a), b), c), d) in v.iter_mut().zip(a).zip(b).zip(c).zip(d) {
+        *v += (f[0] * a + f[1] * b) + (f[2] * c + f[3] * d);
+    }
+}
+
 /// W Jᵀ of the contacts that were coupled last.
 struct Responses {
     /// Contact and direction of each response.
@@ -306,25 +313,38 @@ impl Columns {
     }
 
     fn couple(&self, rows: &PartRows<'_, 2>, h: &mut Coupling<'_, 2>) {
+        if let Some(row) = rows.only() {
+            return h.add(0, 0, &self.felt(row, row));
+        }
         for (number, (j, dofs_j, values_j)) in rows.iter().enumerate() {
-            let own_j = self.own(dofs_j);
             for (other, (i, dofs_i, values_i)) in rows.iter().take(number + 1).enumerate() {
-                let own_i = self.own(dofs_i);
-                let mut block = Matrix2::zeros();
-                for (&b, value_b) in own_j.iter().zip(values_j) {
-                    let column = self.column(b);
-                    let mut u = Vector::<2>::zeros();
-                    for (&a, value_a) in own_i.iter().zip(values_i) {
-                        add_scaled(&mut u, value_a, column[a]);
-                    }
-                    add_outer(&mut block, &u, value_b, 1.0);
-                }
+                let block = self.felt((dofs_i, values_i), (dofs_j, values_j));
                 h.add(i, j, &block);
                 if other < number {
                     h.add(j, i, &block.transpose());
                 }
             }
         }
+    }
+
+    /// What one row feels of another, J_i W J_jᵀ.
+    #[inline]
+    fn felt(
+        &self,
+        (dofs_i, values_i): (&[usize], &[Vector<2>]),
+        (dofs_j, values_j): (&[usize], &[Vector<2>]),
+    ) -> Matrix2<f64> {
+        let (own_i, own_j) = (self.own(dofs_i), self.own(dofs_j));
+        let mut block = Matrix2::zeros();
+        for (&b, value_b) in own_j.iter().zip(values_j) {
+            let column = self.column(b);
+            let mut u = Vector::<2>::zeros();
+            for (&a, value_a) in own_i.iter().zip(values_i) {
+                add_scaled(&mut u, value_a, column[a]);
+            }
+            add_outer(&mut block, &u, value_b, 1.0);
+        }
+        block
     }
 
     /// The beam's own dofs in a row: the prescribed ones of its supports come last.
@@ -346,9 +366,7 @@ impl Columns {
         for dofs in fours {
             let f = dofs.map(|dof| scratch[dof]);
             let [a, b, c, d] = dofs.map(|dof| self.column(dof));
-            for ((((v, a), b), c), d) in v.iter_mut().zip(a).zip(b).zip(c).zip(d) {
-                *v += (f[0] * a + f[1] * b) + (f[2] * c + f[3] * d);
-            }
+            add_four(f, [a, b, c, d], v);
         }
         for dof in rest {
             add_multiple(scratch[*dof], self.column(*dof), v);
@@ -378,7 +396,7 @@ mod tests {
     fn answer(compliance: &mut BeamCompliance, first: &[usize]) -> (Vec<Block<2>>, Vec<f64>) {
         let columns: Vec<usize> = first.iter().flat_map(|dof| *dof..dof + 4).collect();
         let values: Vec<_> = (0..columns.len()).map(|k| Vector::<2>::new(1.0, 0.1) * (k as f64).cos()).collect();
-        let span = |part, start| Span { part, start, len: 4 * (1 - part) };
+        let span = |part, start| Span { part, first: 0, start, len: 4 * (1 - part) };
         let spans: Vec<_> = (0..first.len()).map(|k| [span(0, 4 * k), span(1, 0)]).collect();
         let rows = PartRows { part: 0, spans: &spans, columns: &columns, values: &values };
         let n = compliance.factor.dofs();
