@@ -1,8 +1,9 @@
 //! What stands in the picture: sizes and places that don't change.
 
 use serde::Serialize;
+use std::sync::Arc;
 use teeter_beam::{Axial, ShapeAt};
-use teeter_scenario::scene::{self, Scene};
+use teeter_scenario::scene::{self, RecordScene, Scene};
 use teeter_scenario::simulation::Layout;
 use teeter_scenario::wording;
 
@@ -86,6 +87,9 @@ pub(crate) struct Scenery {
     /// Points of all contacts.
     #[serde(skip)]
     pub(crate) points: usize,
+    /// The records that prescribe motions.
+    #[serde(skip)]
+    pub(crate) records: Vec<Arc<RecordScene>>,
 }
 
 /// BL of bottom-left, 3 of corner-3.
@@ -169,6 +173,7 @@ impl Scenery {
             beams: beams.collect(),
             contacts,
             points,
+            records: scene.records().cloned().collect(),
         }
     }
 }
