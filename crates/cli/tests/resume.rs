@@ -353,28 +353,39 @@ fn what_does_not_fit_is_refused_and_nothing_changed() {
 
 #[test]
 fn a_file_that_the_scene_refers_to_is_part_of_it() {
-    let place = Place::new("signal");
-    let scene = "
-time = { end = \"1 s\", step = \"5 us\" }
-output.every = \"1 ms\"
+    let by_signal = "
 ground.motion = { acceleration = [\"1 m/s^2\", \"0 m/s^2\"], signal = \"quake\" }
 signal.quake = { shape = \"table\", file = \"quake.csv\" }
-material.wood.density = \"600 kg/m^3\"
-block.box = { material = \"wood\", width = \"10 cm\", height = \"10 cm\", depth = \"10 cm\", on = \"ground\", at = \"0 m\" }
-contact.base = { between = [\"box\", \"ground\"], friction = 0.05 }
 ";
-    let quake = "t,a\n0,0\n0.1,1\n0.3,-1\n0.5,0\n";
-    std::fs::write(place.at.join("scene.toml"), scene).unwrap();
-    std::fs::write(place.at.join("quake.csv"), quake).unwrap();
-    let (wanted, _) = alone(&place, &["scene.toml"], &[]);
-    place.killed_with_checkpoint(&["scene.toml"], &EVERY);
-    std::fs::write(place.at.join("quake.csv"), quake.replace("-1", "-2")).unwrap();
-    let message = place.refused(2, &["scene.toml"], &AGAIN);
-    assert!(message.contains("a file that it refers to has changed"), "{message}");
-    std::fs::write(place.at.join("quake.csv"), quake).unwrap();
-    place.done(&["scene.toml"], &AGAIN);
-    assert_same(&wanted, &place.out(), "with a table");
-    assert!(place.refused(0, &["scene.toml"], &AGAIN).contains("nothing to resume"));
+    let by_record = "ground.motion.x = { record = \"quake.csv\" }\n";
+    let cases = [
+        ("signal", by_signal, "t,a\n0,0\n0.1,1\n0.3,-1\n0.5,0\n"),
+        ("record", by_record, "t,a\n0,0\n0.1,1\n0.2,0\n0.3,-1\n0.4,0\n"),
+    ];
+    for (name, motion, quake) in cases {
+        let place = Place::new(name);
+        let scene = format!(
+            "
+time = {{ end = \"1 s\", step = \"5 us\" }}
+output.every = \"1 ms\"
+{motion}
+material.wood.density = \"600 kg/m^3\"
+block.box = {{ material = \"wood\", width = \"10 cm\", height = \"10 cm\", depth = \"10 cm\", on = \"ground\", at = \"0 m\" }}
+contact.base = {{ between = [\"box\", \"ground\"], friction = 0.05 }}
+"
+        );
+        std::fs::write(place.at.join("scene.toml"), scene).unwrap();
+        std::fs::write(place.at.join("quake.csv"), quake).unwrap();
+        let (wanted, _) = alone(&place, &["scene.toml"], &[]);
+        place.killed_with_checkpoint(&["scene.toml"], &EVERY);
+        std::fs::write(place.at.join("quake.csv"), quake.replace("-1", "-2")).unwrap();
+        let message = place.refused(2, &["scene.toml"], &AGAIN);
+        assert!(message.contains("a file that it refers to has changed"), "{message}");
+        std::fs::write(place.at.join("quake.csv"), quake).unwrap();
+        place.done(&["scene.toml"], &AGAIN);
+        assert_same(&wanted, &place.out(), name);
+        assert!(place.refused(0, &["scene.toml"], &AGAIN).contains("nothing to resume"));
+    }
 }
 
 #[test]

@@ -7,7 +7,7 @@
 //! `7000  acceleration pts, approx   70 secs, units=cm/sec2(04),Format=(8F10.5)`. Of the headers,
 //! integer 2 (the physical quantity, 1 for an acceleration), integer 3 (the unit) and real 62 (the
 //! step in ms) are used. If a file has velocities besides an acceleration, the acceleration is
-//! read; a file with several accelerations is refused as ambiguous.
+//! read; of several accelerations one must be chosen by its number.
 
 use std::iter::Peekable;
 use std::str::Lines;
@@ -39,27 +39,36 @@ struct CosmosBlock {
     description: String,
 }
 
-pub(crate) fn read(text: &str) -> Result<Record, RecordError> {
+pub(crate) fn read(text: &str, component: Option<&str>) -> Result<Record, RecordError> {
     let mut reader = CosmosReader { lines: text.lines().peekable(), line: 0 };
-    let (mut found, mut other): (Option<CosmosBlock>, Option<usize>) = (None, None);
+    let wanted = component.map(|component| component.trim().parse::<usize>().unwrap_or(0));
+    let (mut count, mut found, mut other): (usize, Option<CosmosBlock>, Option<usize>) = (0, None, None);
     while reader.skip_blank_lines() {
         let block = reader.block()?;
         if !block.is_acceleration {
             other = other.or(Some(block.line));
-        } else if let Some(first) = &found {
+            continue;
+        }
+        count += 1;
+        if let (Some(first), None) = (&found, wanted) {
             let line = block.line;
             let reason = format!(
-                "a second acceleration block (the first is in line {}): a file must have one, so move the others to separate files",
+                "a second acceleration block (the first is in line {}): choose one as a component, by its number",
                 first.line
             );
             return Err(RecordError::Header { line, reason });
-        } else {
+        }
+        if wanted.is_none_or(|wanted| wanted == count) {
             found = Some(block);
         }
     }
     match (found, other) {
         (Some(block), _) => {
             Ok(Record::new("", block.dt, block.accelerations)?.described(&block.station, &block.description))
+        }
+        (None, _) if count > 0 => {
+            let known = (1..=count).map(|k| k.to_string()).collect::<Vec<_>>().join(", ");
+            Err(RecordError::Component { component: shown(component.unwrap_or_default()), known })
         }
         (None, Some(line)) => {
             let found = "no acceleration".to_owned();
@@ -297,6 +306,14 @@ mod tests {
         assert_eq!(read(&format!("{acceleration}\n{velocity}\n")).unwrap().len(), 5);
         let message = read(&format!("{acceleration}{acceleration}")).unwrap_err();
         assert!(message.contains("a second acceleration block (the first is in line 36)"), "{message}");
+        let other = block(1, 2, DATA);
+        let component = |name| {
+            let settings = crate::ReadSettings { component: Some(name), ..Default::default() };
+            let read = Record::read_with(format!("{acceleration}{velocity}{other}"), "R", &settings);
+            read.map(|record| record.accelerations()[3]).map_err(|error| error.to_string())
+        };
+        assert_eq!((component("1"), component("2")), (Ok(2.5 * 0.01), Ok(2.5 * 9.80665)));
+        assert_eq!(component("NS").unwrap_err(), "there is no component `NS`: the file has 1, 2");
         let message = read(&velocity).unwrap_err();
         assert!(message.ends_with("but a record is an acceleration (integer 2 of the header must be 1)"), "{message}");
     }

@@ -132,6 +132,32 @@ pub enum RecordError {
         /// The step of the file, s.
         step: f64,
     },
+    /// A unit given for a file that states its own.
+    #[error("line {line}: the unit is `{unit}` by the heading: omit the given one")]
+    UnitTwice {
+        /// The line that states it.
+        line: usize,
+        /// The unit of the file.
+        unit: String,
+    },
+    /// A unit or a component given for a file of a format that has its own.
+    #[error("{what} applies only to {applies_to}, and this is a {format} file: omit it")]
+    NotForFormat {
+        /// What was given.
+        what: &'static str,
+        /// The formats that it applies to.
+        applies_to: &'static str,
+        /// The format of the file.
+        format: Format,
+    },
+    /// A component that the file doesn't have.
+    #[error("there is no component `{component}`: the file has {known}")]
+    Component {
+        /// The component as given.
+        component: String,
+        /// Those of the file.
+        known: String,
+    },
     /// A step out of range.
     #[error("the step is {0} s, but must be between 1e-9 s and 1e6 s")]
     Step(f64),

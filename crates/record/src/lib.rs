@@ -46,7 +46,7 @@ mod units;
 pub use error::RecordError;
 pub use format::Format;
 pub use measures::Peak;
-pub use record::Record;
+pub use record::{ReadSettings, Record};
 pub use spectrum::Response;
 
 /// Standard gravity, m/s²: the unit g of records.

@@ -23,6 +23,20 @@ pub struct Record {
     accelerations: Vec<f64>,
 }
 
+/// What a file doesn't say itself. The default leaves everything to the file.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ReadSettings<'a> {
+    /// Time between two values, s, for a table of accelerations without times; `None`: the file
+    /// gives it.
+    pub step: Option<f64>,
+    /// The unit of a table's accelerations, m/s², where its heading has none; `None`: m/s².
+    pub unit: Option<f64>,
+    /// One of several accelerations: of a table by the heading of its column, without regard to
+    /// case, or by its number from 1; of a COSMOS file by its number from 1. If a step is given too,
+    /// a table has no times. `None`: the file has one only.
+    pub component: Option<&'a str>,
+}
+
 impl Record {
     /// A record of accelerations in m/s² with the step `dt` in s. Station and description are
     /// empty.
@@ -63,6 +77,24 @@ impl Record {
     /// # Errors
     /// As [`Record::read`], and if a step is given for a file that has its own.
     pub fn read_with_step(file: impl AsRef<[u8]>, name: &str, step: Option<f64>) -> Result<Self, RecordError> {
+        Self::read_with(file, name, &ReadSettings { step, ..ReadSettings::default() })
+    }
+
+    /// Reads a file as [`Record::read`] does, with what the file doesn't say itself.
+    ///
+    /// ```
+    /// use teeter_record::{ReadSettings, Record};
+    ///
+    /// let file = "t,east,north\n0,10,0\n0.5,-20,10\n";
+    /// let settings = ReadSettings { unit: Some(0.01), component: Some("east"), ..ReadSettings::default() };
+    /// assert_eq!(Record::read_with(file, "both", &settings)?.accelerations(), [0.1, -0.2]);
+    /// # Ok::<(), teeter_record::RecordError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Record::read`], and if something is given that the file has itself, or that doesn't
+    /// apply to its format, or if there is no such component.
+    pub fn read_with(file: impl AsRef<[u8]>, name: &str, settings: &ReadSettings<'_>) -> Result<Self, RecordError> {
         let bytes = file.as_ref();
         if bytes.len() > LARGEST_FILE {
             return Err(RecordError::TooLarge { bytes: bytes.len() });
@@ -70,13 +102,20 @@ impl Record {
         let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         let text = String::from_utf8_lossy(bytes);
         let format = Format::of(&text)?;
+        if format != Format::Table && settings.unit.is_some() {
+            return Err(RecordError::NotForFormat { what: "a unit", applies_to: "tables", format });
+        }
+        if matches!(format, Format::Peer | Format::Esm) && settings.component.is_some() {
+            let (what, applies_to) = ("a component", "tables and COSMOS files");
+            return Err(RecordError::NotForFormat { what, applies_to, format });
+        }
         let record = match format {
             Format::Peer => crate::peer::read(&text)?,
             Format::Esm => crate::esm::read(&text)?,
-            Format::Cosmos => crate::cosmos::read(&text)?,
-            Format::Table => crate::table::read(&text, step)?,
+            Format::Cosmos => crate::cosmos::read(&text, settings.component)?,
+            Format::Table => crate::table::read(&text, settings)?,
         };
-        match step {
+        match settings.step {
             Some(_) if format != Format::Table => Err(RecordError::StepTwice { format, step: record.dt }),
             _ => Ok(Self { name: name.to_owned(), ..record }),
         }

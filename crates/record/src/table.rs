@@ -1,7 +1,7 @@
 //! Plain tables: time and acceleration, or acceleration alone.
 
 use crate::error::{RecordError, shown};
-use crate::record::Record;
+use crate::record::{ReadSettings, Record};
 use crate::{LARGEST_ACCELERATION, MOST_VALUES, numbers, units};
 
 /// The separator of the columns.
@@ -30,16 +30,35 @@ const LARGEST_DEVIATION: f64 = 0.05;
 const EXPECTED_COLUMNS: &str =
     "a table has time and acceleration, or acceleration alone, with equally many columns in each row";
 
+const ONE_OF_SEVERAL: &str =
+    "a table has time and acceleration, or acceleration alone; of several accelerations a component must be chosen";
+
+const EQUAL_COLUMNS: &str = "the rows before have a different number";
+
 /// Whether a row begins with a number, so isn't a heading.
 pub(crate) fn begins_with_number(row: &str) -> bool {
     let cell = row.split([',', ';']).next().unwrap_or_default();
     cell.split_whitespace().next().is_some_and(|cell| numbers::one(cell).is_some())
 }
 
-pub(crate) fn read(text: &str, step: Option<f64>) -> Result<Record, RecordError> {
+/// Where time and acceleration are in a row.
+#[derive(Clone, Copy)]
+struct TableLayout {
+    separator: Separator,
+    /// Number of columns.
+    columns: usize,
+    /// Whether the first column is the time.
+    timed: bool,
+    /// The column of the acceleration.
+    acceleration: usize,
+    /// The units of time and acceleration, in s and m/s².
+    scales: [f64; 2],
+}
+
+pub(crate) fn read(text: &str, settings: &ReadSettings<'_>) -> Result<Record, RecordError> {
     let mut rows = TableRows { resolution: f64::INFINITY, ..TableRows::default() };
     let mut heading: Option<(usize, &str)> = None;
-    let mut layout: Option<(Separator, usize, [f64; 2])> = None;
+    let mut layout: Option<TableLayout> = None;
     for (index, text) in text.lines().enumerate() {
         let (line, text) = (index + 1, text.split('#').next().unwrap_or_default().trim());
         if text.is_empty() {
@@ -49,20 +68,20 @@ pub(crate) fn read(text: &str, step: Option<f64>) -> Result<Record, RecordError>
             heading = Some((line, text));
             continue;
         }
-        let (separator, columns, scales) = match layout {
+        let layout = match layout {
             Some(layout) => layout,
-            None => *layout.insert(layout_of(line, text, heading)?),
+            None => *layout.insert(layout_of(line, text, heading, settings)?),
         };
-        rows.take(line, &cells(text, separator), columns, scales, separator)?;
+        rows.take(line, &cells(text, layout.separator), &layout)?;
     }
-    let Some((_, columns, _)) = layout else { return Err(RecordError::TooFew(0)) };
+    let Some(layout) = layout else { return Err(RecordError::TooFew(0)) };
     if rows.accelerations.len() < 2 {
         return Err(RecordError::TooFew(rows.accelerations.len()));
     }
-    let step = match (columns, step) {
-        (1, None) => return Err(RecordError::StepNeeded),
-        (1, Some(step)) => step,
-        (_, given) => {
+    let step = match (layout.timed, settings.step) {
+        (false, None) => return Err(RecordError::StepNeeded),
+        (false, Some(step)) => step,
+        (true, given) => {
             let step = rows.step()?;
             if given.is_some() {
                 return Err(RecordError::StepTwice { format: crate::Format::Table, step });
@@ -73,36 +92,49 @@ pub(crate) fn read(text: &str, step: Option<f64>) -> Result<Record, RecordError>
     Record::new("", step, rows.accelerations)
 }
 
-/// Separator, number of columns, and their units in s and m/s² (the last column is the
-/// acceleration).
+/// The layout of the rows, from the first of them and the heading.
 fn layout_of(
     line: usize,
     row: &str,
     heading: Option<(usize, &str)>,
-) -> Result<(Separator, usize, [f64; 2]), RecordError> {
+    settings: &ReadSettings<'_>,
+) -> Result<TableLayout, RecordError> {
     let separator = match row {
         row if row.contains(';') => Separator::Semicolon,
         row if row.contains(',') => Separator::Comma,
         _ => Separator::Blanks,
     };
-    let found = cells(row, separator).len();
-    if !(1..=2).contains(&found) {
-        return Err(RecordError::Columns { line, found, wanted: EXPECTED_COLUMNS });
-    }
-    let mut scales = [1.0, 1.0];
-    let Some((line, heading)) = heading else { return Ok((separator, found, scales)) };
-    let names = headings(heading, separator, found);
-    if names.len() != found {
-        return Err(RecordError::Columns {
-            line,
-            found: names.len(),
-            wanted: "the rows below the heading have a different number",
-        });
-    }
+    let columns = cells(row, separator).len();
+    let names = match heading {
+        None => Vec::new(),
+        Some((line, heading)) => {
+            let names = headings(heading, separator, columns);
+            if names.len() != columns {
+                let wanted = "the rows below the heading have a different number";
+                return Err(RecordError::Columns { line, found: names.len(), wanted });
+            }
+            names
+        }
+    };
+    // Without a component there are one or two columns; with one, a step says that there is no time.
+    let timed = columns > 1 && (settings.component.is_none() || settings.step.is_none());
+    let first = usize::from(timed);
+    let acceleration = match settings.component {
+        None if columns <= 2 => first,
+        None => return Err(RecordError::Columns { line, found: columns, wanted: ONE_OF_SEVERAL }),
+        Some(component) => column_of(component, first..columns, &names)?,
+    };
+    let mut scales = [1.0, settings.unit.unwrap_or(1.0)];
+    let Some((line, _)) = heading else {
+        return Ok(TableLayout { separator, columns, timed, acceleration, scales });
+    };
     for (k, name) in names.iter().enumerate() {
-        let is_time = k + 1 < found;
-        let plain = name.trim_matches('"').trim();
-        let title = plain.split(['[', '(']).next().unwrap_or_default().trim().to_lowercase();
+        let is_time = timed && k == 0;
+        if !is_time && k != acceleration {
+            continue;
+        }
+        let plain = plain(name);
+        let title = title(name);
         if !is_time && matches!(title.as_str(), "t" | "time") {
             let reason = format!("heading `{}`: time must come first, then acceleration", shown(plain));
             return Err(RecordError::Header { line, reason });
@@ -110,12 +142,42 @@ fn layout_of(
         if title.starts_with("vel") || title.starts_with("disp") {
             return Err(RecordError::NotAcceleration { line, found: shown(plain), remedy: "" });
         }
-        if let Some(unit) = unit_of(plain) {
-            let place = if is_time { 0 } else { 1 };
-            scales[place] = if is_time { units::time(line, unit)? } else { units::acceleration(line, unit)? };
+        match unit_of(plain) {
+            Some(unit) if is_time => scales[0] = units::time(line, unit)?,
+            Some(unit) => {
+                scales[1] = units::acceleration(line, unit)?;
+                if settings.unit.is_some() {
+                    return Err(RecordError::UnitTwice { line, unit: shown(unit) });
+                }
+            }
+            None => {}
         }
     }
-    Ok((separator, found, scales))
+    Ok(TableLayout { separator, columns, timed, acceleration, scales })
+}
+
+/// The column with a component: by its heading, or by its number among the accelerations.
+fn column_of(component: &str, columns: std::ops::Range<usize>, names: &[String]) -> Result<usize, RecordError> {
+    let wanted = component.trim().to_lowercase();
+    let by_name = columns.clone().find(|k| names.get(*k).is_some_and(|name| title(name) == wanted));
+    let by_number = wanted.parse::<usize>().ok().and_then(|k| columns.clone().nth(k.checked_sub(1)?));
+    by_name.or(by_number).ok_or_else(|| {
+        let known: Vec<String> = match names.get(columns.clone()) {
+            Some(names) if !names.is_empty() => names.iter().map(|name| shown(&title(name))).collect(),
+            _ => (1..=columns.len()).map(|k| k.to_string()).collect(),
+        };
+        RecordError::Component { component: shown(component), known: known.join(", ") }
+    })
+}
+
+/// The text of a heading without quotes.
+fn plain(name: &str) -> &str {
+    name.trim_matches('"').trim()
+}
+
+/// The title of a column in lower case, without its unit.
+fn title(name: &str) -> String {
+    plain(name).split(['[', '(']).next().unwrap_or_default().trim().to_lowercase()
 }
 
 /// The names of the columns. With blanks as separator, a unit in brackets belongs to the word
@@ -159,33 +221,27 @@ fn cells(row: &str, separator: Separator) -> Vec<&str> {
 }
 
 impl TableRows {
-    fn take(
-        &mut self,
-        line: usize,
-        cells: &[&str],
-        columns: usize,
-        scales: [f64; 2],
-        separator: Separator,
-    ) -> Result<(), RecordError> {
-        if cells.len() != columns {
-            return Err(RecordError::Columns { line, found: cells.len(), wanted: EXPECTED_COLUMNS });
+    fn take(&mut self, line: usize, cells: &[&str], layout: &TableLayout) -> Result<(), RecordError> {
+        if cells.len() != layout.columns {
+            let wanted = if layout.columns > 2 { EQUAL_COLUMNS } else { EXPECTED_COLUMNS };
+            return Err(RecordError::Columns { line, found: cells.len(), wanted });
         }
         if self.accelerations.len() == MOST_VALUES {
             return Err(RecordError::TooMany);
         }
         let number = |cell: &str| {
-            let value = match separator {
+            let value = match layout.separator {
                 Separator::Semicolon => numbers::one(&cell.replace(',', ".")),
                 _ => numbers::one(cell),
             };
             value.ok_or_else(|| RecordError::Number { line, text: shown(cell), hint: "" })
         };
-        let [time, acceleration] = scales;
-        if let [t, _] = cells {
+        let [time, acceleration] = layout.scales;
+        if let (true, Some(t)) = (layout.timed, cells.first()) {
             self.times.push(number(t)? * time);
             self.resolution = self.resolution.min(resolution(t) * time);
         }
-        let value = number(cells.last().copied().unwrap_or_default())?;
+        let value = number(cells.get(layout.acceleration).copied().unwrap_or_default())?;
         if !((value * acceleration).abs() <= LARGEST_ACCELERATION) {
             return Err(RecordError::Value { line, value });
         }
@@ -248,7 +304,7 @@ fn resolution(text: &str) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use crate::{Record, STANDARD_GRAVITY};
+    use crate::{ReadSettings, Record, STANDARD_GRAVITY};
 
     fn read(text: &str) -> Result<Record, String> {
         Record::read(text, "R").map_err(|error| error.to_string())
@@ -271,6 +327,34 @@ mod tests {
         }
         let record = Record::read_with_step("acc (g)\n1\n-2\n", "R", Some(0.02)).unwrap();
         assert_eq!((record.dt(), record.accelerations()), (0.02, &[STANDARD_GRAVITY, -2.0 * STANDARD_GRAVITY][..]));
+    }
+
+    #[test]
+    fn a_component_is_chosen_by_its_heading_or_number() {
+        let table = "t [s],EW [g],NS [cm/s^2],UD\n0,1,100,7\n0.5,-2,-200,8\n1,3,300,9\n";
+        let read = |component, unit, step| {
+            let settings = ReadSettings { component: Some(component), unit, step };
+            Record::read_with(table, "R", &settings).map_err(|error| error.to_string())
+        };
+        assert_eq!(read("ns", None, None).unwrap().accelerations(), [1.0, -2.0, 3.0]);
+        assert_eq!(read("2", None, None), read("NS", None, None));
+        assert_eq!(read("UD", Some(0.01), None).unwrap().accelerations(), [0.07, 0.08, 0.09]);
+        assert_eq!(
+            read("EW", Some(0.01), None).unwrap_err(),
+            "line 1: the unit is `g` by the heading: omit the given one"
+        );
+        assert_eq!(read("4", None, None).unwrap_err(), "there is no component `4`: the file has ew, ns, ud");
+        // With a step all columns are accelerations.
+        let plain = "1 2\n3 4\n";
+        let settings = ReadSettings { component: Some("2"), unit: None, step: Some(0.1) };
+        let record = Record::read_with(plain, "R", &settings).unwrap();
+        assert_eq!((record.dt(), record.accelerations()), (0.1, &[2.0, 4.0][..]));
+        let settings = ReadSettings { component: Some("3"), ..settings };
+        let error = Record::read_with(plain, "R", &settings).unwrap_err().to_string();
+        assert_eq!(error, "there is no component `3`: the file has 1, 2");
+        let error =
+            Record::read_with("0 1 2\n1 2\n", "R", &ReadSettings { component: Some("1"), ..Default::default() });
+        assert_eq!(error.unwrap_err().to_string(), "line 2: 2 columns, but the rows before have a different number");
     }
 
     #[test]

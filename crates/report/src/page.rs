@@ -3,6 +3,7 @@
 //! [`PageRecorder`] watches a run and keeps what the page shows, in memory that doesn't grow with the run;
 //! [`render`] makes the page, one file that loads nothing; [`figures`] makes the plots as SVG.
 
+mod accelerograms;
 mod curves;
 mod data;
 mod figures;

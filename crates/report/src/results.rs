@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 /// The files that a run may write; which of the figures, depends on its scene. They are removed in this order: no summary
 /// outlives a table, and while there is anything, `scene.toml` says of what.
-pub const FILES: [&str; 17] = [
+pub const FILES: [&str; 19] = [
     CHECKPOINT,
     "summary.json",
     "trajectory.csv",
@@ -26,6 +26,8 @@ pub const FILES: [&str; 17] = [
     "figures/contact_forces.svg",
     "figures/energy.svg",
     "figures/phase.svg",
+    "figures/records.svg",
+    "figures/spectra.svg",
     "scene.toml",
 ];
 

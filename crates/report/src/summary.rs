@@ -4,7 +4,7 @@ use crate::{BeamRecord, ImpactRow, LargestStress, ReactionRange, Record, Warning
 use crate::{made_energy, taken_energy, unlocated};
 use serde::Serialize;
 use teeter_integrator::{Ended, RockingMonitor, State};
-use teeter_scenario::scene::Scene;
+use teeter_scenario::scene::{RecordScene, Scene};
 use teeter_scenario::simulation::Layout;
 use teeter_scenario::wording;
 
@@ -99,6 +99,9 @@ pub struct Summary {
     /// What beams bore, of those that are asked.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub beams: Vec<BorneSummary>,
+    /// The records that prescribe motions, as used.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub records: Vec<RecordSummary>,
     /// Until when the motion can be trusted, s; not measured yet.
     pub horizon: Option<f64>,
     /// How the run ended.
@@ -198,6 +201,52 @@ impl BorneSummary {
             largest_stress: borne.largest,
             part_of_yield_strength: borne.largest.zip(strength).map(|(largest, strength)| largest.stress / strength),
             reactions: borne.reactions.clone(),
+        }
+    }
+}
+
+/// A recorded acceleration that prescribes a component of a motion, as used: cut, corrected, scaled.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RecordSummary {
+    /// The table of the scene that names it, such as `ground.motion.x`.
+    pub motion: String,
+    /// The file, as named in the scene.
+    pub file: String,
+    /// The station as named in the file; may be empty.
+    pub station: String,
+    /// The event and other text of the file; may be empty.
+    pub description: String,
+    /// Time between two values, s.
+    pub step: f64,
+    /// Time from the first value to the last, s.
+    pub duration: f64,
+    /// Peak ground acceleration, m/s².
+    pub peak_acceleration: f64,
+    /// Peak ground velocity, m/s, from rest.
+    pub peak_velocity: f64,
+    /// Peak ground displacement, m, from rest.
+    pub peak_displacement: f64,
+    /// Arias intensity π/(2g) ∫ a² dt, m/s.
+    pub arias_intensity: f64,
+    /// Time from 5 % to 95 % of it, s.
+    pub significant_duration: f64,
+}
+
+impl RecordSummary {
+    fn new(of: &RecordScene) -> Self {
+        let record = &of.record;
+        Self {
+            motion: of.path.clone(),
+            file: of.file.clone(),
+            station: record.station().to_owned(),
+            description: record.description().to_owned(),
+            step: record.dt(),
+            duration: record.duration(),
+            peak_acceleration: record.peak_acceleration(),
+            peak_velocity: record.velocity_peak().size,
+            peak_displacement: record.displacement_peak().size,
+            arias_intensity: record.arias_intensity(),
+            significant_duration: record.significant_duration(),
         }
     }
 }
@@ -332,6 +381,7 @@ impl Summary {
             crossings,
             peaks,
             beams: record.beams.iter().map(|borne| BorneSummary::new(scene, borne)).collect(),
+            records: scene.records().map(|of| RecordSummary::new(of)).collect(),
             horizon: record.horizon,
             ended,
             model: ModelSummary::new(scene, layout),

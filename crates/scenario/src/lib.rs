@@ -49,6 +49,7 @@ pub mod output_size;
 mod overlap;
 mod placement;
 pub mod preview;
+mod record_checks;
 mod required;
 pub mod resolve;
 mod rocking;

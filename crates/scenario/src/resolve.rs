@@ -7,6 +7,7 @@ mod blocks;
 mod contacts;
 mod motions;
 pub(crate) mod names;
+mod records;
 mod sections;
 mod shape;
 mod signals;

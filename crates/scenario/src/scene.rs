@@ -5,7 +5,7 @@ mod history;
 mod reduction;
 
 pub use beam_output::{BEAM_QUANTITIES, BeamOutput, BeamQuantity};
-pub use history::{AxisScene, ForceScene, History, LoadKind, LoadScene, MotionScene, SignalScene};
+pub use history::{AxisScene, ForceScene, History, LoadKind, LoadScene, MotionScene, RecordScene, SignalScene};
 pub use reduction::Reduction;
 
 use nalgebra::Vector2;
@@ -70,6 +70,14 @@ impl Scene {
         let beams = self.beams.iter().map(|beam| (format!("beam.{}.motion", beam.name), &beam.motion));
         let ground = self.ground.iter().map(|ground| ("ground.motion".to_owned(), &ground.motion));
         blocks.chain(beams).chain(ground)
+    }
+
+    /// The records that prescribe motions, in the order of [`Scene::motions`].
+    pub fn records(&self) -> impl Iterator<Item = &Arc<RecordScene>> {
+        self.motions().flat_map(|(_, motion)| motion.0.iter().flatten()).filter_map(|axis| match &axis.history {
+            History::Record(record) => Some(record),
+            History::Formula(_) | History::Table(_) => None,
+        })
     }
 
     /// The name of a body that a block can stand on or touch.

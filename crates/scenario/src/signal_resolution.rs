@@ -3,6 +3,7 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;
+use crate::record_checks;
 use crate::scene::{AxisScene, ContactScene, History, MotionScene, Scene, SignalScene, SupportingBody};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -54,11 +55,22 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> (Vec<Diagnostic>, Vec<Di
         }
         warnings.extend(match &signal.history {
             History::Formula(formula) => swing(&path, formula, used.in_the_mean(), scene, document),
-            History::Table(table) => rows(&path, table, used.in_the_mean(), scene, document),
+            // Records are not signals.
+            History::Table(_) | History::Record(_) => signal
+                .history
+                .table()
+                .and_then(|table| rows(&format!("{path}.file"), table, used.in_the_mean(), scene, document)),
         });
         notes.extend(too_long(signal, end, document));
     }
     warnings.extend(nothing_uses(&unused, document));
+    for record in scene.records().take(LISTED) {
+        let (worrying, worth_noting) = record_checks::of(record, end, document);
+        warnings.extend(worrying);
+        notes.extend(worth_noting);
+        let in_the_mean = Used { motion: true, load: false }.in_the_mean();
+        warnings.extend(rows(&format!("{}.record", record.path), record.table(), in_the_mean, scene, document));
+    }
     warnings.extend(turns(scene, document));
     warnings.extend(rises(scene, document));
     warnings.extend(fast_starts(scene, document));
@@ -124,11 +136,11 @@ fn nothing_uses(names: &[&str], document: &Document) -> Vec<Diagnostic> {
 fn is_silent(history: &History, end: f64) -> bool {
     match history {
         History::Formula(formula) => formula.is_silent_until(end),
-        History::Table(table) => {
+        History::Table(_) | History::Record(_) => history.table().is_none_or(|table| {
             table.value(0.0) == 0.0
                 && table.value(end) == 0.0
                 && table.rows().all(|(t, y)| y == 0.0 || t <= 0.0 || t >= end)
-        }
+        }),
     }
 }
 
@@ -152,7 +164,7 @@ fn swing(path: &str, formula: &Formula, in_the_mean: &str, scene: &Scene, docume
 }
 
 /// Warns of a table with peaks between the ends of steps.
-fn rows(path: &str, table: &Table, in_the_mean: &str, scene: &Scene, document: &Document) -> Option<Diagnostic> {
+fn rows(key: &str, table: &Table, in_the_mean: &str, scene: &Scene, document: &Document) -> Option<Diagnostic> {
     let step = scene.time.step;
     let last = scene.time.steps() as f64;
     let largest = table.rows().map(|(_, y)| y.abs()).fold(0.0, f64::max);
@@ -176,7 +188,7 @@ fn rows(path: &str, table: &Table, in_the_mean: &str, scene: &Scene, document: &
         100.0 * worst
     );
     let remedy = format!("use a shorter step: {closest:.1e} s resolves every row");
-    Some(document.error(&format!("{path}.file"), rule, remedy).as_warning())
+    Some(document.error(key, rule, remedy).as_warning())
 }
 
 /// Warns of a table whose times probably have another unit.
@@ -210,6 +222,8 @@ fn turns(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
         let most = match &axis.history {
             History::Formula(_) => 1.0,
             History::Table(table) => table.rows().map(|(_, y)| y.abs()).fold(0.0, f64::max),
+            // Records prescribe no rotation.
+            History::Record(_) => return None,
         };
         let (key, rate) = match (axis.given, &axis.history) {
             (Given::Velocity, _) => ("angular_velocity", most),
@@ -236,6 +250,8 @@ fn rises(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
                     formula.rises_in().filter(|lasts| *lasts < STEPS_A_RISE * step * (1.0 - 1e-9))
                 }
                 History::Table(table) => fastest_rise(table, scene),
+                // Records are accelerations.
+                History::Record(_) => None,
             };
             Some((key, lasts?))
         });

@@ -94,6 +94,29 @@ const TURN_ACCELERATION: Key = key(
     "Amplitude of the angular acceleration; angular velocity and rotation start at 0.",
 );
 
+/// A recorded component of a motion.
+#[rustfmt::skip] // a row per key
+const RECORD: &[Key] = &[
+    key("record", Kind::Path, Required, "\"quake.at2\"", "File of the record: PEER .AT2, ESM or COSMOS ASCII, or a table of time and acceleration, or of accelerations alone; told apart by its content. Relative to the scene's file."),
+    key("component", Kind::Text, Optional, "\"EW\"", "One of several accelerations: of a table by the heading of its column or by its number from 1, of a COSMOS file by its number."),
+    key("unit", Kind::Choice(words::RecordUnit::WORDS), Optional, "\"gn\"", "Unit of the accelerations of a table whose heading has none; m/s^2 if left out."),
+    key("step", TIME, Optional, "\"10 ms\"", "Time between two values of a table of accelerations without times; with component no column is then a time."),
+    key("from", Kind::Quantity(Dimension::TIME, Range::NOT_NEGATIVE), Optional, "\"5 s\"", "Start of the part that is used, in the time of the record; the run starts there. The record's start if left out."),
+    key("to", Kind::Quantity(Dimension::TIME, Range::NOT_NEGATIVE), Optional, "\"25 s\"", "Its end; the record's end if left out."),
+    key("baseline", Kind::Choice(words::Baseline::WORDS), Default("\"none\""), "\"linear\"", "Least-squares polynomial that is subtracted from the acceleration, after the cut by from and to."),
+    key("taper", Kind::Number(TAPER), Default("0.0"), "0.05", "Fraction of the duration over which each end is then faded by half a cosine."),
+    key("scale", Kind::Number(Range::ANY), Optional, "0.5", "Factor of the acceleration, applied last."),
+    key("peak", Kind::Quantity(Dimension::ACCELERATION, Range::POSITIVE), Optional, "\"0.4 gn\"", "Instead of scale: the peak acceleration to which the record is scaled; its signs are kept."),
+];
+const TAPER: Range = Range::new(Bound::Closed(0.0), Bound::Closed(0.5));
+
+/// A horizontal or vertical component given by a record.
+const fn recorded(pattern: &'static str, doc: &'static str) -> TableSchema {
+    TableSchema { pattern, occurrence: Occurrence::Inline, doc, keys: RECORD }
+}
+const RECORDED_X: &str = "The motion along x by a recorded acceleration, linear between its values; velocity and displacement start at 0. Instead of displacement, velocity and acceleration.";
+const RECORDED_Y: &str = "The same along y.";
+
 /// All tables of a scene, in the order of the output.
 #[rustfmt::skip] // a row per key
 pub static TABLES: &[TableSchema] = &[
@@ -154,6 +177,8 @@ pub static TABLES: &[TableSchema] = &[
         doc: "Prescribed motion of the ground: a displacement, velocity or acceleration, a rotation about the point that is the origin when nothing is displaced, or both.",
         keys: &[DISPLACEMENT, VELOCITY, ACCELERATION, TURN, TURN_VELOCITY, TURN_ACCELERATION, SIGNAL, SIGNALS],
     },
+    recorded("ground.motion.x", RECORDED_X),
+    recorded("ground.motion.y", RECORDED_Y),
     TableSchema {
         pattern: "beam.*",
         occurrence: Occurrence::Named,
@@ -273,6 +298,8 @@ pub static TABLES: &[TableSchema] = &[
         doc: "Prescribed motion of its supports, which move together; damping acts on the motion relative to them.",
         keys: &[DISPLACEMENT, VELOCITY, ACCELERATION, SIGNAL, SIGNALS],
     },
+    recorded("beam.*.motion.x", RECORDED_X),
+    recorded("beam.*.motion.y", RECORDED_Y),
     TableSchema {
         pattern: "block.*",
         occurrence: Occurrence::Named,
@@ -302,6 +329,8 @@ pub static TABLES: &[TableSchema] = &[
             TURN, TURN_VELOCITY, TURN_ACCELERATION, SIGNAL, SIGNALS,
         ],
     },
+    recorded("block.*.motion.x", RECORDED_X),
+    recorded("block.*.motion.y", RECORDED_Y),
     TableSchema {
         pattern: "block.*.repeat",
         occurrence: Occurrence::Inline,

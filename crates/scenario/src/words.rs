@@ -60,6 +60,25 @@ words! {
         ISection = "i-section",
         Direct = "direct",
     }
+    /// Baseline of a record that is subtracted.
+    Baseline {
+        None = "none",
+        Mean = "mean",
+        Linear = "linear",
+        Quadratic = "quadratic",
+        Cubic = "cubic",
+        Quartic = "quartic",
+        Quintic = "quintic",
+    }
+    /// Unit of the accelerations of a record.
+    RecordUnit {
+        MetrePerSecondSquared = "m/s^2",
+        CentimetrePerSecondSquared = "cm/s^2",
+        MillimetrePerSecondSquared = "mm/s^2",
+        Gal = "gal",
+        StandardGravity = "gn",
+        G = "g",
+    }
     /// Shape of a signal.
     History {
         Constant = "constant",
@@ -126,5 +145,7 @@ mod tests {
         each_means_something_of_its_own::<Theory>();
         each_means_something_of_its_own::<Shape>();
         each_means_something_of_its_own::<History>();
+        each_means_something_of_its_own::<Baseline>();
+        each_means_something_of_its_own::<RecordUnit>();
     }
 }

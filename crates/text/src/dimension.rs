@@ -175,7 +175,7 @@ static NAMED: &[NamedDimension] = &[
     dimension_row(Dimension::ANGLE, "an angle", "rad", &["rad", "deg", "mrad"]),
     dimension_row(Dimension::TEMPERATURE, "a temperature", "K", &["K"]),
     dimension_row(Dimension::VELOCITY, "a velocity", "m/s", &["m/s", "mm/s", "km/h"]),
-    dimension_row(Dimension::ACCELERATION, "an acceleration", "m/s^2", &["m/s^2", "mm/s^2"]),
+    dimension_row(Dimension::ACCELERATION, "an acceleration", "m/s^2", &["m/s^2", "mm/s^2", "gn"]),
     dimension_row(Dimension::ANGULAR_VELOCITY, "an angular velocity", "rad/s", &["rad/s", "deg/s", "rpm"]),
     dimension_row(Dimension::ANGULAR_ACCELERATION, "an angular acceleration", "rad/s^2", &["rad/s^2", "deg/s^2"]),
     dimension_row(Dimension::RATE, "a rate", "1/s", &["1/s", "Hz", "kHz"]),

@@ -394,14 +394,7 @@ impl Document {
     }
 
     fn write_table(&self, table: &TableSchema, path: &str, out: &mut String) {
-        let mut lines = self.lines(table, path);
-        for inline in self.schema.children(table).filter(|child| child.occurrence == Occurrence::Inline) {
-            let path = format!("{path}.{}", inline.name());
-            if self.has_table(&path) {
-                let values = self.lines(inline, &path).join(", ");
-                lines.push(format!("{} = {{ {values} }}", inline.name()));
-            }
-        }
+        let lines = self.lines(table, path);
         // An empty table that always exists means nothing; [ground] does.
         let say = !lines.is_empty() || (table.occurrence != Occurrence::Always && self.has_table(path));
         if say && !path.is_empty() {
@@ -425,6 +418,7 @@ impl Document {
         }
     }
 
+    /// The keys of a table with their values, then its inline tables.
     fn lines(&self, table: &TableSchema, path: &str) -> Vec<String> {
         let line = |key: &Key| {
             let full = match path {
@@ -434,6 +428,13 @@ impl Document {
             let entry = self.entries.get(&full)?;
             Some(format!("{} = {}", key.name, entry.value.to_toml(key.kind)))
         };
-        table.keys.iter().filter_map(line).collect()
+        let mut lines: Vec<String> = table.keys.iter().filter_map(line).collect();
+        for inline in self.schema.children(table).filter(|child| child.occurrence == Occurrence::Inline) {
+            let path = format!("{path}.{}", inline.name());
+            if self.has_table(&path) {
+                lines.push(format!("{} = {{ {} }}", inline.name(), self.lines(inline, &path).join(", ")));
+            }
+        }
+        lines
     }
 }

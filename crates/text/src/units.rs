@@ -73,6 +73,8 @@ pub static UNITS: &[Unit] = &[
     ten("kHz", Dimension::RATE, 3),
     odd("rpm", Dimension::ANGULAR_VELOCITY, PI / 30.0),
     ten("K", Dimension::TEMPERATURE, 0),
+    // Standard gravity; g is the gram.
+    odd("gn", Dimension::ACCELERATION, 9.806_65),
 ];
 
 /// Names of units in words, and their symbols.

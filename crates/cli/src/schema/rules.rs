@@ -72,6 +72,8 @@ fn where_is(key: &str, value: &Value, then: &Value) -> Value {
 }
 
 const SHIFTS: [&str; 3] = ["displacement", "velocity", "acceleration"];
+/// Components given by records.
+const RECORDED: [&str; 2] = ["x", "y"];
 const TURNS: [&str; 3] = ["angle", "angular_velocity", "angular_acceleration"];
 /// Keys for the two motions of a node: a word, or the others.
 const HELD: [[&str; 3]; 2] =
@@ -92,12 +94,16 @@ pub(super) fn of_start() -> Vec<Value> {
 
 fn motion(turns: bool) -> Vec<Value> {
     let mut all = at_most_one(&SHIFTS);
-    let mut moved = SHIFTS.to_vec();
+    let mut moved = [SHIFTS.as_slice(), &RECORDED].concat();
+    // A recorded component excludes the others, and no signal multiplies it.
+    all.extend(RECORDED.map(|component| excludes(component, &[SHIFTS.as_slice(), &["signals", "only"]].concat())));
     if turns {
         all.extend(at_most_one(&TURNS));
         moved.extend(TURNS);
     }
     all.push(at_least_one(&moved));
+    let signal = if turns { at_least_one(&TURNS) } else { json!(false) };
+    all.extend(RECORDED.map(|component| json!({ "if": { "required": [component, "signal"] }, "then": signal })));
     // `signal` is that of the rotation, in addition to those of x and y.
     let turned = if turns { at_least_one(&TURNS) } else { json!(false) };
     all.push(json!({ "if": { "required": ["signal", "signals"] }, "then": turned }));
@@ -175,6 +181,8 @@ fn of_pattern(pattern: &str) -> Vec<Value> {
         }
         "beam.*.motion" => motion(false),
         "beam.*" => of_beam(),
+        "ground.motion.x" | "ground.motion.y" | "beam.*.motion.x" | "beam.*.motion.y" | "block.*.motion.x"
+        | "block.*.motion.y" => vec![json!({ "not": { "required": ["scale", "peak"] } })],
         "beam.*.rayleigh" => vec![
             at_least_one(&["a0", "a1", "frequencies"]),
             excludes("frequencies", &["a0", "a1"]),

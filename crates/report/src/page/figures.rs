@@ -1,5 +1,6 @@
 //! The plots of the page as figures for a paper.
 
+use super::accelerograms;
 use super::recorder::{BLOCK_COLUMNS, ENERGIES, ImpactMark, PageRecorder};
 use super::rounded;
 use crate::sections::Kind;
@@ -8,7 +9,8 @@ use teeter_integrator::ContactState;
 use teeter_plot::{Axis, Band, Colour, Figure, LEGEND_WIDTH, Panel, Series, legend_width, text_width};
 
 /// File names and SVG text of the figures that the scene has: `phi.svg`, `omega.svg` and `phase.svg` with blocks,
-/// `w_mid.svg` with beams, `section_forces.svg` and `envelopes.svg` where the scene asks for what beams bear, `contact_forces.svg` where contacts carried something, `energy.svg` always.
+/// `w_mid.svg` with beams, `section_forces.svg` and `envelopes.svg` where the scene asks for what beams bear, `contact_forces.svg` where contacts carried something, `energy.svg` always, `records.svg` and
+/// `spectra.svg` where records prescribe motions.
 #[must_use]
 pub fn figures(recorder: &PageRecorder) -> Vec<(String, String)> {
     let plots = Plots { recorder, t: recorder.kept.curves.times() };
@@ -33,6 +35,12 @@ pub fn figures(recorder: &PageRecorder) -> Vec<(String, String)> {
         add("contact_forces.svg", figure);
     }
     add("energy.svg", plots.energy());
+    if let Some(figure) = accelerograms::histories(&scenery.records) {
+        add("records.svg", figure);
+    }
+    if let Some(figure) = accelerograms::spectra(&scenery.records) {
+        add("spectra.svg", figure);
+    }
     figures
 }
 

@@ -1,5 +1,6 @@
 //! The page itself: text and numbers as HTML here, pictures by the script from the data.
 
+use super::accelerograms;
 use super::figures::envelopes;
 use super::recorder::PageRecorder;
 use super::rocking::{HalfCycle, half_cycles};
@@ -38,6 +39,7 @@ pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> S
         ("warnings", warnings(summary)),
         ("tiles", tiles(&values, summary)),
         ("residual", scientific(summary.energy.largest_residual)),
+        ("records", accelerograms::section(&recorder.scenery.records, &summary.records)),
         ("borne", borne(recorder, summary)),
         ("rocking", rocking(&half_cycles(recorder, summary))),
         ("model", model(summary)),

@@ -2,8 +2,9 @@
 
 use crate::probe::Probe;
 use serde::Serialize;
+use std::sync::Arc;
 use teeter_beam::Axial;
-use teeter_scenario::scene::{self, Scene};
+use teeter_scenario::scene::{self, RecordScene, Scene};
 use teeter_scenario::simulation::Layout;
 use teeter_scenario::wording;
 
@@ -87,6 +88,9 @@ pub(crate) struct Scenery {
     /// Points of all contacts.
     #[serde(skip)]
     pub(crate) points: usize,
+    /// The records that prescribe motions.
+    #[serde(skip)]
+    pub(crate) records: Vec<Arc<RecordScene>>,
 }
 
 /// BL of bottom-left, 3 of corner-3.
@@ -170,6 +174,7 @@ impl Scenery {
             beams: beams.collect(),
             contacts,
             points,
+            records: scene.records().cloned().collect(),
         }
     }
 }

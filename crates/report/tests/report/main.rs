@@ -6,5 +6,6 @@ mod impacts;
 mod meetings;
 mod memory;
 mod page;
+mod records;
 mod sections;
 mod swings;

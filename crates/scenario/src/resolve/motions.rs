@@ -26,18 +26,35 @@ impl Resolver<'_, '_> {
         }
         let at = |key: &str| format!("{path}.{key}");
         let (shift, turn) = (self.one_of(&path, &SHIFTS)?, self.one_of(&path, &TURNS)?);
-        if shift.is_none() && turn.is_none() {
+        let recorded = self.recorded(&path)?;
+        let first = ["x", "y"].into_iter().zip(&recorded).find_map(|(name, axis)| axis.as_ref().map(|_| name));
+        if let (Some(name), Some((key, _))) = (first, shift) {
+            let rule = format!("{name} and {key} prescribe the same motion");
+            self.error(&at(key), rule, "keep the records or the other; a component without a record is not shaken");
+            return None;
+        }
+        if shift.is_none() && turn.is_none() && first.is_none() {
             let remedy = if owner.starts_with("beam") {
-                "give one of displacement, velocity, acceleration, such as acceleration = [\"3 m/s^2\", \"0 m/s^2\"]"
+                "give one of displacement, velocity, acceleration, such as acceleration = [\"3 m/s^2\", \"0 m/s^2\"], or a \
+                 record, such as x = { record = \"quake.at2\" }"
             } else {
-                "give one of displacement, velocity, acceleration, or one of angle, angular_velocity, \
-                 angular_acceleration, or one of each"
+                "give one of displacement, velocity, acceleration, or a record, such as x = { record = \"quake.at2\" }, or one of \
+                 angle, angular_velocity, angular_acceleration, or one of each"
             };
             self.error(&path, "the motion is missing", remedy);
             return None;
         }
         let [across, up] = self.pair_of_signals(&path, turn.is_some(), signals)?;
-        let mut axes: [Option<AxisScene>; 3] = [None, None, None];
+        if first.is_some() {
+            let given = |key: &str| self.doc.has(&at(key));
+            let idle = if given("signals") { Some("signals") } else { given("signal").then_some("signal") };
+            if let Some(key) = idle.filter(|key| *key == "signals" || turn.is_none()) {
+                self.error(&at(key), "no signal multiplies a record", "leave it out; scale or peak set its size");
+                return None;
+            }
+        }
+        let [x, y] = recorded;
+        let mut axes: [Option<AxisScene>; 3] = [x, y, None];
         if let Some((key, given)) = shift {
             let [x, y] = self.pair(&at(key))?;
             let only = self.doc.text(&at("only"));

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use teeter_integrator::{Formula, Given, Motion, Signal, Table};
+use teeter_integrator::{Formula, Given, Motion, Signal, SignalError, Table};
 
 /// A time history.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,6 +11,8 @@ pub enum History {
     Formula(Formula),
     /// By rows.
     Table(Arc<Table>),
+    /// By a recorded acceleration, m/s²: its amplitude is 1 m/s².
+    Record(Arc<RecordScene>),
 }
 
 impl History {
@@ -20,7 +22,55 @@ impl History {
         match self {
             Self::Formula(formula) => Arc::new(*formula),
             Self::Table(table) => Arc::clone(table) as Arc<dyn Signal>,
+            Self::Record(record) => Arc::clone(&record.table) as Arc<dyn Signal>,
         }
+    }
+
+    /// Its rows, if it has any.
+    #[must_use]
+    pub fn table(&self) -> Option<&Table> {
+        match self {
+            Self::Formula(_) => None,
+            Self::Table(table) => Some(table),
+            Self::Record(record) => Some(&record.table),
+        }
+    }
+}
+
+/// A recorded acceleration that prescribes a component of a motion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordScene {
+    /// The table of the scene that names it, such as `ground.motion.x`.
+    pub path: String,
+    /// The file, as named in the scene.
+    pub file: String,
+    /// The record as used: cut, corrected and scaled.
+    pub record: teeter_record::Record,
+    /// Its accelerations over time, m/s²: linear between the values, and falling to 0 within a step
+    /// after the last one.
+    table: Arc<Table>,
+}
+
+impl RecordScene {
+    /// The motion by a record.
+    ///
+    /// # Errors
+    /// If its values are too large to be integrated.
+    pub fn new(path: &str, file: &str, record: teeter_record::Record) -> Result<Self, SignalError> {
+        let mut values = record.accelerations().to_vec();
+        // Otherwise the last value would go on for ever.
+        if values.last().is_some_and(|last| *last != 0.0) {
+            values.push(0.0);
+        }
+        let times = (0..values.len()).map(|k| record.time(k)).collect();
+        let table = Arc::new(Table::new(times, values)?);
+        Ok(Self { path: path.to_owned(), file: file.to_owned(), record, table })
+    }
+
+    /// Its accelerations over time, m/s².
+    #[must_use]
+    pub fn table(&self) -> &Arc<Table> {
+        &self.table
     }
 }
 

@@ -13,6 +13,7 @@ mod polygons;
 mod projected;
 mod properties;
 mod reading;
+mod records;
 mod refusing;
 mod required;
 mod resolved;

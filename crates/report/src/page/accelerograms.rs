@@ -1,0 +1,145 @@
+//! The records that prescribe motions: their figures, and their section of the page.
+
+use super::rounded;
+use crate::summary::RecordSummary;
+use std::fmt::Write;
+use std::sync::Arc;
+use teeter_plot::{Axis, Figure, Panel, Series, escaped};
+use teeter_scenario::scene::RecordScene;
+
+/// Damping ratio of the response spectra.
+const DAMPING_RATIO: f64 = 0.05;
+
+/// Natural periods of the spectra, s: the ends, and how many, evenly on a logarithmic axis.
+const PERIODS: ([f64; 2], usize) = ([0.02, 10.0], 150);
+
+/// Most pieces of time of which a drawn curve has the least and the largest value.
+const PIECES: usize = 1200;
+
+/// Acceleration, velocity and displacement over time; `None` without records.
+pub(super) fn histories(records: &[Arc<RecordScene>]) -> Option<Figure> {
+    let end = records.iter().map(|of| of.record.duration()).reduce(f64::max)?;
+    let motions: Vec<_> = records.iter().map(|of| of.record.motion()).collect();
+    let panel = |label: &str, factor: f64, values: &dyn Fn(usize) -> Vec<f64>| {
+        let line = |(k, of): (usize, &Arc<RecordScene>)| {
+            let values = values(k).into_iter().map(|y| factor * y).collect::<Vec<_>>();
+            Series::line(name(records, k), thinned(of.record.dt(), &values)).number(k)
+        };
+        let lines: Vec<Series> = records.iter().enumerate().map(line).collect();
+        let heights = lines.iter().flat_map(Series::points).map(|point| point.1);
+        let axis = Axis::around(label, heights.collect::<Vec<_>>(), 1e-9);
+        Panel::new(axis).with(lines)
+    };
+    let x = Axis::between("Time since the start of the record t (s)", 0.0, end);
+    let figure = Figure::new("records", "Recorded acceleration, with the velocity and displacement from rest", x)
+        .panel(panel("Acceleration a (m/s²)", 1.0, &|k| records[k].record.accelerations().to_vec()))
+        .panel(panel("Velocity v (m/s)", 1.0, &|k| motions[k].0.clone()))
+        .panel(panel("Displacement d (mm)", 1e3, &|k| motions[k].1.clone()));
+    Some(figure)
+}
+
+/// Response spectra over the natural period; `None` without records.
+pub(super) fn spectra(records: &[Arc<RecordScene>]) -> Option<Figure> {
+    let ([low, high], count) = PERIODS;
+    let period = |k: usize| low * (high / low).powf(k as f64 / (count - 1) as f64);
+    let periods: Vec<f64> = (0..count).map(period).collect();
+    // A spectrum at periods of a thousandth of the record's step is refused: the ground's own.
+    let responses: Vec<_> = records.iter().filter_map(|of| of.record.spectrum(DAMPING_RATIO, &periods).ok()).collect();
+    if responses.is_empty() || responses.len() < records.len() {
+        return None;
+    }
+    let panel = |label: &str, of: &dyn Fn(&teeter_record::Response) -> f64| {
+        let line = |k: usize| {
+            let points = responses[k].iter().map(|response| (response.period, of(response)));
+            Series::line(name(records, k), points.collect::<Vec<_>>()).number(k)
+        };
+        let lines: Vec<Series> = (0..records.len()).map(line).collect();
+        let heights = lines.iter().flat_map(Series::points).map(|point| point.1);
+        let axis = Axis::around(label, heights.chain([0.0]).collect::<Vec<_>>(), 1e-9);
+        Panel::new(axis).with(lines)
+    };
+    let x = Axis::logarithmic("Natural period T (s)", [low, high]).ok()?;
+    let title = "Response spectra of the records, 5 % damping: pseudo-acceleration and relative displacement";
+    let figure = Figure::new("spectra", title, x)
+        .panel(panel("Pseudo-acceleration Sa (m/s²)", &teeter_record::Response::pseudo_acceleration))
+        .panel(panel("Displacement Sd (mm)", &|response| 1e3 * response.displacement));
+    Some(figure)
+}
+
+/// The name of a record in a legend; empty for a single one.
+fn name(records: &[Arc<RecordScene>], k: usize) -> &str {
+    if records.len() > 1 { &records[k].path } else { "" }
+}
+
+/// The points of a curve, evenly spaced by `dt` (s): of a long one the least and the largest value
+/// of each piece, in their order.
+fn thinned(dt: f64, values: &[f64]) -> Vec<(f64, f64)> {
+    let point = |k: usize| (k as f64 * dt, values[k]);
+    if values.len() <= 2 * PIECES {
+        return (0..values.len()).map(point).collect();
+    }
+    let mut points = Vec::with_capacity(2 * PIECES + 2);
+    let length = values.len().div_ceil(PIECES);
+    for start in (0..values.len()).step_by(length) {
+        let piece = start..(start + length).min(values.len());
+        let by_value = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
+        if let (Some(low), Some(high)) = (piece.clone().min_by(by_value), piece.max_by(by_value)) {
+            points.push(point(low.min(high)));
+            if low != high {
+                points.push(point(low.max(high)));
+            }
+        }
+    }
+    points
+}
+
+/// The section of the page with a table of peaks and both figures; empty without records.
+pub(super) fn section(records: &[Arc<RecordScene>], summaries: &[RecordSummary]) -> String {
+    let mut html = String::new();
+    let Some(histories) = histories(records) else { return html };
+    html.push_str(
+        "<section id=\"records\" class=\"panel\" aria-labelledby=\"records-title\">\n<h3 id=\"records-title\">Recorded \
+         accelerations</h3>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"records-title\"><table>\n\
+         <thead><tr><th scope=\"col\">Motion</th><th scope=\"col\">Record</th><th scope=\"col\">Duration<br><small>s</small></th>\
+         <th scope=\"col\">PGA<br><small>m/s²</small></th><th scope=\"col\">PGV<br><small>m/s</small></th>\
+         <th scope=\"col\">PGD<br><small>m</small></th><th scope=\"col\">Arias intensity<br><small>m/s</small></th>\
+         <th scope=\"col\">5 % to 95 % of it<br><small>s</small></th></tr></thead>\n<tbody>\n",
+    );
+    for of in summaries {
+        let text = if of.description.is_empty() { of.file.clone() } else { format!("{}: {}", of.file, of.description) };
+        let _ = write!(html, "<tr data-record=\"{}\"><td>{0}</td><td>{}</td>", escaped(&of.motion), escaped(&text));
+        for number in [
+            of.duration,
+            of.peak_acceleration,
+            of.peak_velocity,
+            of.peak_displacement,
+            of.arias_intensity,
+            of.significant_duration,
+        ] {
+            let _ = write!(html, "<td>{}</td>", rounded(number, 4));
+        }
+        html.push_str("</tr>\n");
+    }
+    let _ = write!(html, "</tbody></table></div>\n<div class=\"paper\">{}</div>\n", histories.to_svg());
+    if let Some(spectra) = spectra(records) {
+        let _ = write!(html, "<div class=\"paper\">{}</div>\n", spectra.to_svg());
+    }
+    html.push_str("</section>\n");
+    html
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_curve_is_thinned_without_losing_its_extremes() {
+        let mut values: Vec<f64> = (0..50_000).map(|k| f64::from(k % 7)).collect();
+        (values[31_234], values[41_001]) = (99.0, -99.0);
+        let points = thinned(0.01, &values);
+        assert!(points.len() <= 2 * PIECES + 2, "{}", points.len());
+        assert!(points.contains(&(312.34, 99.0)) && points.contains(&(410.01, -99.0)));
+        assert!(points.windows(2).all(|two| two[0].0 < two[1].0));
+        assert_eq!(thinned(0.5, &[1.0, 2.0]), [(0.0, 1.0), (0.5, 2.0)]);
+    }
+}
