@@ -89,7 +89,13 @@ fn bodies(scene: &Scene, preview: &Preview) -> Vec<String> {
 
 fn ground(ground: &GroundScene) -> String {
     let mut text = "ground: rigid".to_owned();
-    if ground.incline == 0.0 {
+    if let Some(profile) = &ground.profile {
+        let (low, high) = (profile.points().next(), profile.points().last());
+        let between = low.zip(high).map_or_else(String::new, |(low, high)| {
+            format!(" from x = {} m to {} m, level beyond", digits(low.x), digits(high.x))
+        });
+        let _ = write!(text, ", with a profile of {}{between}", count(profile.points().count() as u64, "point"));
+    } else if ground.incline == 0.0 {
         text.push_str(", flat at y = 0");
     } else {
         let _ = write!(text, ", inclined by {} deg through the origin", degrees(ground.incline));

@@ -30,7 +30,9 @@ const PLACES: &str = "\
 
 Either on a body: `on` names a beam, another block or `\"ground\"`, `at` is the position x of the midpoint of its base before it
 is tilted, and `tilt` rotates it about the corner on which it then stands, the left one if positive, the right one if negative. A
-contact between the two is required. On inclined ground the base lies along the incline, and `tilt` is relative to it; ground and
+contact between the two is required. On inclined ground the base lies along the incline, and `tilt` is relative to it. On ground
+with a profile the base lies on the lowest line that is nowhere below the ground under it: along a piece, on two crests, or on a
+crest and a corner; `tilt` is relative to that line. Ground and
 supports with an initial displacement are displaced when the block is placed. Or anywhere: `position` is the position of its mass
 centre and `angle` its rotation about it. A corner may not start below a surface with which it has a contact, and no block inside
 another.
@@ -54,6 +56,7 @@ A scene with a warning still runs. `teeter check` and `teeter run` warn of
 - a `gap_tolerance` over 1e-6 of the shortest side of a block, as blocks may float that high (over 1e-3 it is refused), and a
   solver `tolerance` over 1e-4;
 - `theta` below 0.5, with the largest stable step;
+- a record that ends with more than 1 % of its largest velocity before the run does ([signals.md](signals.md));
 - signals, and displacements of prescribed motions, that are faster than the step; supports, or ground under a block at rest, that
   start with a velocity ([signals.md](signals.md));
 - a mesh, or modes, that lack flexibility where a block or a load acts; a key that has no effect.

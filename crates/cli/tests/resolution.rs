@@ -66,6 +66,10 @@ fn runs_that_are_far_off_say_so() {
 fn runs_that_are_right_keep_quiet() {
     for path in std::fs::read_dir(scenarios()).unwrap() {
         let path = path.unwrap().path();
+        // A record beside its scene is none itself.
+        if path.extension().is_none_or(|ending| ending != "toml") {
+            continue;
+        }
         let stem = path.file_stem().unwrap().to_str().unwrap().to_owned();
         assert!(!warned(&stem, 20, &[]), "{stem} as it is");
     }

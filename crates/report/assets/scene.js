@@ -36,6 +36,24 @@ const scene = (() => {
     return beam === undefined ? 0 : (exaggeration - 1) * deflection(beam, at, x - leftOf(beam, at));
   }
 
+  /** The height of the ground's profile, in its own coordinates, and its slope there. */
+  function profileAt(x) {
+    const { profile } = scenery;
+    const next = profile.findIndex((point) => point[0] > x);
+    if (next < 0) return { y: profile[profile.length - 1][1], slope: 0 };
+    if (next === 0) return { y: profile[0][1], slope: 0 };
+    const [[x0, y0], [x1, y1]] = [profile[next - 1], profile[next]];
+    const slope = (y1 - y0) / (x1 - x0);
+    return { y: y0 + slope * (x - x0), slope };
+  }
+
+  /** A place in the ground's coordinates, in the world. */
+  function onGround([x, y], at) {
+    const ground = groundAt(at);
+    const [cos, sin] = [Math.cos(ground.slope), Math.sin(ground.slope)];
+    return [ground.x + cos * x - sin * y, ground.y + sin * x + cos * y];
+  }
+
   function corners(pose, { corners: own }) {
     const [sin, cos] = [Math.sin(pose.phi), Math.cos(pose.phi)];
     return own.map(([x, y]) => [pose.x + cos * x - sin * y, pose.y + sin * x + cos * y]);
@@ -93,7 +111,17 @@ const scene = (() => {
     if (scenery.ground) {
       const { x, y, slope } = groundAt(0);
       const at = (place) => y + (place - x) * Math.tan(slope);
-      home[1] = Math.min(home[1], at(home[0]), at(home[2]));
+      if (scenery.profile.length > 0) {
+        const near = scenery.profile.filter((point) => point[0] > home[0] - x && point[0] < home[2] - x);
+        const ends = [home[0] - x, home[2] - x].map((place) => [place, profileAt(place).y]);
+        const heights = [...near, ...ends].map((point) => onGround(point, 0)[1]);
+        heights.forEach((height) => {
+          home[1] = Math.min(home[1], height);
+          home[3] = Math.max(home[3], height);
+        });
+      } else {
+        home[1] = Math.min(home[1], at(home[0]), at(home[2]));
+      }
     }
     const reach = 1.5 * Math.max(home[2] - home[0], home[3] - home[1], 1e-9);
     const every = Math.max(1, Math.floor(times.length / 250));
@@ -151,6 +179,27 @@ const scene = (() => {
     }
   }
 
+  /** The profile of the ground around its own origin, with rays of this length (px) at its ends. */
+  function drawProfile(ray) {
+    const line = scenery.profile.map(([x, y]) => [x * view.scale, -y * view.scale]);
+    const [first, last] = [line[0], line[line.length - 1]];
+    const middle = view.x * view.scale;
+    line.unshift([Math.min(first[0], middle) - ray, first[1]]);
+    line.push([Math.max(last[0], middle) + ray, last[1]]);
+    let strokes = "";
+    // Only what the picture may show is hatched.
+    for (let k = 1; k < line.length; k++) {
+      const [[x0, y0], [x1, y1]] = [line[k - 1], line[k]];
+      const [from, to] = [Math.max(x0, middle - ray), Math.min(x1, middle + ray)];
+      for (let x = 8 * Math.ceil(from / 8); x < to; x += 8) {
+        strokes += `M${x.toFixed(1)} ${(y0 + ((x - x0) / (x1 - x0)) * (y1 - y0)).toFixed(1)}l-5 7`;
+      }
+    }
+    svgElement("path", { d: strokes, class: "hatch" }, layers.ground);
+    const path = line.map(([x, y]) => `${x.toFixed(2)} ${y.toFixed(2)}`).join("L");
+    svgElement("path", { d: `M${path}`, class: "ground-line", "data-profile": scenery.profile.length }, layers.ground);
+  }
+
   function build() {
     root.replaceChildren();
     const marker = svgElement("marker", {
@@ -161,8 +210,12 @@ const scene = (() => {
       // Long enough to cross the picture wherever it moves and turns.
       const reach = 8 * Math.ceil((width + height) / 4);
       layers.ground = svgElement("g", { "data-body": "ground" }, root);
-      svgElement("path", { d: hatch(4 - reach, 0, 2 * reach, 8, 7), class: "hatch" }, layers.ground);
-      svgElement("path", { d: `M${-reach} 0H${reach}`, class: "ground-line" }, layers.ground);
+      if (scenery.profile.length > 0) {
+        drawProfile(2 * reach);
+      } else {
+        svgElement("path", { d: hatch(4 - reach, 0, 2 * reach, 8, 7), class: "hatch" }, layers.ground);
+        svgElement("path", { d: `M${-reach} 0H${reach}`, class: "ground-line" }, layers.ground);
+      }
     }
     layers.beams = scenery.beams.map((beam) => {
       const group = svgElement("g", { "data-body": beam.name }, root);
@@ -215,25 +268,36 @@ const scene = (() => {
 
   /** The outward normal of the side of a block that a point is at. */
   function outwardAt(block, x, y, at) {
-    const { x: cx, y: cy, phi } = truePose(block, at);
-    const { width, height } = scenery.blocks[block];
-    const [cos, sin] = [Math.cos(phi), Math.sin(phi)];
-    const along = cos * (x - cx) + sin * (y - cy);
-    const up = cos * (y - cy) - sin * (x - cx);
-    if (Math.abs(up) - height / 2 >= Math.abs(along) - width / 2) return [-sin, cos].map((n) => n * Math.sign(up));
-    return [cos, sin].map((n) => n * Math.sign(along));
+    const all = corners(drawnPose(block, at), scenery.blocks[block]);
+    const sides = all.map(([ax, ay], k) => {
+      const [bx, by] = all[(k + 1) % all.length];
+      const size = Math.hypot(bx - ax, by - ay);
+      const normal = [(by - ay) / size, (ax - bx) / size];
+      return { normal, height: normal[0] * (x - ax) + normal[1] * (y - ay) };
+    });
+    return sides.reduce((best, side) => (side.height > best.height ? side : best)).normal;
   }
 
   /** A contact point as drawn, with the directions of the contact's frame. */
   function contactPoint(contact, point, at) {
     const { block: first, beam, other, linear, points: places } = scenery.contacts[contact];
-    const { block, corner } = places[point];
+    const { block, corner, crest } = places[point];
+    if (crest !== null) {
+      const [x, y] = onGround(crest, at);
+      const normal = outwardAt(block, x, y, at).map((n) => -n);
+      return { x: px(x), y: py(y), normal, tangent: [normal[1], -normal[0]] };
+    }
     const [x, y] = corners(drawnPose(block, at), scenery.blocks[block])[corner];
     if (other !== null) {
       const normal = outwardAt(block === first ? other : first, x, y, at).map((n) => (block === first ? n : -n));
       return { x: px(x), y: py(y), normal, tangent: [normal[1], -normal[0]] };
     }
     let slope = beam === null ? Math.tan(groundAt(at).slope) : 0;
+    if (beam === null && scenery.profile.length > 0) {
+      const ground = groundAt(at);
+      const along = (x - ground.x) * Math.cos(ground.slope) + (y - ground.y) * Math.sin(ground.slope);
+      slope = Math.tan(ground.slope + Math.atan(profileAt(along).slope));
+    }
     if (beam !== null && !linear) {
       const { span, points } = scenery.beams[beam];
       const left = leftOf(beam, at);
@@ -265,7 +329,8 @@ const scene = (() => {
       // Drawn around what is nearest to the middle of the picture, by whole hatches from the point that moves.
       const [cos, sin] = [Math.cos(slope), Math.sin(slope)];
       const along = (view.x - x) * cos + (view.y - y) * sin;
-      const shift = (8 * Math.round((along * view.scale) / 8)) / view.scale;
+      const straight = scenery.profile.length === 0;
+      const shift = straight ? (8 * Math.round((along * view.scale) / 8)) / view.scale : 0;
       const at0 = place(x + shift * cos, y + shift * sin);
       layers.ground.setAttribute("transform", `translate(${at0}) rotate(${(-slope * degrees).toFixed(4)})`);
     }

@@ -172,6 +172,11 @@ fn placement(error: &PlacementError, document: &Document) -> Diagnostic {
             format!("no static equilibrium found: {source}"),
             "check the values of the beam and of the blocks on it, or start undeformed",
         ),
+        PlacementError::TooSteep { block, at } => document.error(
+            &format!("block.{}.at", table_of(document, block)),
+            format!("the base of the block finds no rest on the ground at x = {at} m, which is too steep there"),
+            "move the block to where the ground is less steep, or give position and angle",
+        ),
         PlacementError::OffSurface { block, corner, x } => document.error(
             &format!("block.{}.at", table_of(document, block)),
             format!("the corner {corner} at x = {x} m is not above the surface that the block stands on"),

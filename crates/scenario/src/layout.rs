@@ -1,8 +1,9 @@
 //! The places of bodies and contacts in model and state.
 
 use crate::driven;
+use crate::ground_profile;
 use crate::required::Required;
-use crate::scene::{ContactScene, Scene};
+use crate::scene::{ContactScene, Scene, SupportingBody};
 use crate::tilt_reference::TiltReference;
 use std::ops::Range;
 use std::sync::Arc;
@@ -128,6 +129,9 @@ pub struct PairPlace {
     pub of_shapes: bool,
     /// Number of corners of its (first) block.
     pub corners: usize,
+    /// Whether it is one of a block with ground that has a profile: its crests can touch the sides
+    /// of the block.
+    pub on_profile: bool,
 }
 
 /// A point of a pair that can touch: a corner of a block.
@@ -137,8 +141,11 @@ pub struct ContactPoint {
     pub name: String,
     /// The block, by its number in the scene.
     pub block: usize,
-    /// The corner, counter-clockwise; for a rectangle from the bottom left.
+    /// The corner, counter-clockwise; for a rectangle from the bottom left. 0 for a crest.
     pub corner: usize,
+    /// The point of the ground's profile, by its number, if it is that that touches the block, and
+    /// no corner.
+    pub crest: Option<usize>,
 }
 
 impl ContactPoint {
@@ -149,12 +156,16 @@ impl ContactPoint {
             (0..of.corner_count()).map(move |corner| (corner, of.corner_name(corner)))
         };
         let Some(other) = contact.other_block() else {
-            let point = |(corner, name)| Self { name, block: contact.block, corner };
-            return corners(contact.block).map(point).collect();
+            let point = |(corner, name)| Self { name, block: contact.block, corner, crest: None };
+            let profile = ground_profile::of(scene).filter(|_| contact.surface == SupportingBody::Ground);
+            let crests = 0..profile.map_or(0, |profile| profile.points().count());
+            let crest =
+                |k: usize| Self { name: format!("crest-{}", k + 1), block: contact.block, corner: 0, crest: Some(k) };
+            return corners(contact.block).map(point).chain(crests.map(crest)).collect();
         };
         let of = |block: usize| {
             let named = move |name: String| format!("{}.{name}", scene.blocks[block].name);
-            corners(block).map(move |(corner, name)| Self { name: named(name), block, corner })
+            corners(block).map(move |(corner, name)| Self { name: named(name), block, corner, crest: None })
         };
         of(contact.block).chain(of(other)).collect()
     }
@@ -168,6 +179,14 @@ impl PairPlace {
         let number = if self.of_shapes {
             let CornerOnSide { owner, corner, .. } = CornerOnSide::from_number(id.point());
             owner * self.corners + corner
+        } else if self.on_profile {
+            let CornerOnSide { owner, corner, side, round } = CornerOnSide::from_number(id.point());
+            match (owner, round) {
+                (0, false) => corner,
+                // A rounding that touches a crest.
+                (0, true) => self.corners + side,
+                _ => self.corners + corner,
+            }
         } else {
             id.point() as usize
         };

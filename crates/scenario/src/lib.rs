@@ -38,6 +38,7 @@ pub mod decode;
 pub mod deflection;
 mod driven;
 mod flexibility;
+mod ground_profile;
 pub mod keys;
 mod layout;
 mod left_out;

@@ -1,9 +1,13 @@
 //! Overlaps of bodies where the model has no contact: they are reported, not prevented.
 
+use crate::ground_profile;
 use crate::overlap::{Outline, PlacedOutline, each_overlap};
-use crate::scene::{Scene, SupportingBody};
+use crate::scene::{BlockScene, Scene, SupportingBody};
 use crate::simulation::Layout;
+use nalgebra::Vector2;
 use std::collections::BTreeSet;
+use std::sync::Arc;
+use teeter_detect::Profile;
 
 /// Two overlapping bodies, by their numbers in the scene, without a contact that separates them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -50,6 +54,10 @@ pub struct Shapes {
     beams: Vec<BeamShape>,
     /// Slope of fixed ground; `None` without ground.
     incline: Option<f64>,
+    /// The profile of the ground; `None` for a straight line.
+    profile: Option<Arc<Profile>>,
+    /// The corners of the blocks relative to their mass centres, m; empty without a profile.
+    corners: Vec<Vec<Vector2<f64>>>,
     /// Blocks that have a contact with the ground, and with each beam.
     on_ground: Vec<bool>,
     /// Pairs of blocks with a contact, the lower number first.
@@ -78,6 +86,11 @@ impl Shapes {
             allowed: scene.blocks.iter().map(|block| MEETS * block.width.min(block.height)).collect(),
             beams: scene.beams.iter().map(line).collect(),
             incline: scene.ground.as_ref().map(|ground| ground.incline),
+            profile: scene.ground.as_ref().and_then(|ground| ground.profile.clone()),
+            corners: match ground_profile::of(scene) {
+                Some(_) => scene.blocks.iter().map(BlockScene::corners).collect(),
+                None => Vec::new(),
+            },
             on_ground: joined(SupportingBody::Ground),
             blocks: scene
                 .contacts
@@ -93,7 +106,8 @@ impl Shapes {
 
     /// Passes each overlap at coordinates `q` of the whole model to `each`, with its depth, m.
     pub fn meetings(&mut self, layout: &Layout, q: &[f64], mut each: impl FnMut(Meeting, f64)) {
-        let Self { outlines, allowed, beams, incline, on_ground, blocks, on_beam, boxes, order } = self;
+        let Self { outlines, allowed, beams, incline, profile, corners, on_ground, blocks, on_beam, boxes, order } =
+            self;
         boxes.clear();
         boxes.extend(layout.blocks.iter().zip(outlines.iter()).map(|(place, outline)| {
             let q = &q[place.range.clone()];
@@ -107,7 +121,20 @@ impl Shapes {
                 }
             });
         }
-        if let Some(incline) = *incline {
+        if let (Some(profile), Some(_)) = (&*profile, &*incline) {
+            let ground = layout
+                .ground
+                .as_ref()
+                .map_or([0.0; 3], |range| [q[range.start], q[range.start + 1], q[range.start + 2]]);
+            for (block, _) in on_ground.iter().enumerate().filter(|(_, joined)| !**joined) {
+                let place = layout.blocks[block].range.start;
+                let depth =
+                    ground_profile::depth(profile, ground, &corners[block], [q[place], q[place + 1], q[place + 2]]);
+                if depth > allowed(block) {
+                    each(Meeting::Ground(block), depth);
+                }
+            }
+        } else if let Some(incline) = *incline {
             let [x, y, slope] = match &layout.ground {
                 Some(range) => [q[range.start], q[range.start + 1], q[range.start + 2]],
                 None => [0.0, 0.0, incline],

@@ -127,6 +127,90 @@ pub(crate) fn columns(
     Ok(NumberColumns { columns, lines })
 }
 
+/// Reads the points of a line from two columns, x and y in m: the only two, or those named by their
+/// headings, or by their numbers from 1. `unit` is a unit in which 1 m is `per_metre`, for columns
+/// whose heading has none.
+///
+/// # Errors
+/// What is wrong, with the line.
+pub(crate) fn points(
+    bytes: &[u8],
+    names: Option<[&str; 2]>,
+    unit: Option<(&str, f64)>,
+) -> Result<NumberColumns, String> {
+    if bytes.len() > LARGEST_RECORD {
+        return Err(format!("larger than {} MB, the limit of a table", LARGEST_RECORD / 1_000_000));
+    }
+    let text = String::from_utf8_lossy(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes));
+    let heading = text.lines().enumerate().find(|(_, line)| is_row(line));
+    let heading = heading.map(|(index, line)| (index + 1, line.split(',').collect::<Vec<_>>()));
+    let heading = heading.filter(|(_, cells)| cells.iter().all(|cell| is_word(cell.trim().as_bytes())));
+    let cells = heading.as_ref().map(|(_, cells)| cells.as_slice()).unwrap_or_default();
+    let chosen = match names {
+        None => [0, 1],
+        Some([x, y]) => [column_named(x, cells)?, column_named(y, cells)?],
+    };
+    if let (Some((line, _)), Some((unit, _))) = (&heading, unit)
+        && let Some(own) = chosen.iter().find_map(|k| unit_of(cells.get(*k)?.trim()))
+    {
+        let own = printable(own);
+        return Err(format!("line {line}: the heading has the unit `{own}`, so `{unit}` must be left out"));
+    }
+    const LENGTHS: &[Dimension] = &[Dimension::LENGTH, Dimension::LENGTH];
+    let mut found = match names {
+        None => columns(bytes, 2..=2, "two, x and y", LENGTHS)?,
+        Some(_) => columns(chosen_columns(&text, chosen)?.as_bytes(), 2..=2, "two, x and y", LENGTHS)?,
+    };
+    if let Some((_, per_metre)) = unit {
+        found.columns.iter_mut().flatten().for_each(|x| *x /= per_metre);
+    }
+    Ok(found)
+}
+
+/// Whether a line holds cells.
+fn is_row(line: &str) -> bool {
+    !line.trim().is_empty() && !line.starts_with('#')
+}
+
+/// The number of a column, from 0, by its heading or by its number from 1.
+fn column_named(name: &str, heading: &[&str]) -> Result<usize, String> {
+    let title = |cell: &str| {
+        let title = cell.split(['[', '(']).next().unwrap_or_default();
+        title.trim().trim_matches('"').trim().to_lowercase()
+    };
+    let by_name = heading.iter().position(|cell| title(cell) == name.to_lowercase());
+    let by_number = || name.parse::<usize>().ok()?.checked_sub(1);
+    by_name.or_else(by_number).ok_or_else(|| match heading {
+        [] => format!("there is no heading that names a column `{}`: give its number", printable(name)),
+        cells => {
+            let known: Vec<String> = cells.iter().map(|cell| printable(&title(cell))).collect();
+            format!("there is no column `{}`: the heading has {}", printable(name), known.join(", "))
+        }
+    })
+}
+
+/// The text with two of its columns only, in the same lines.
+fn chosen_columns(text: &str, chosen: [usize; 2]) -> Result<String, String> {
+    let mut only = String::with_capacity(text.len());
+    for (index, line) in text.lines().enumerate() {
+        if is_row(line) {
+            let cells: Vec<&str> = line.split(',').collect();
+            let cell = |k: usize| {
+                let (line, count) = (index + 1, cells.len());
+                let plural = if count == 1 { "" } else { "s" };
+                cells
+                    .get(k)
+                    .ok_or_else(|| format!("line {line}: {count} column{plural}, but column {} is asked for", k + 1))
+            };
+            only.push_str(cell(chosen[0])?);
+            only.push(',');
+            only.push_str(cell(chosen[1])?);
+        }
+        only.push('\n');
+    }
+    Ok(only)
+}
+
 /// Why a cell of a row can't be read.
 fn not_a_number(cell: &[u8], row: &csv::ByteRecord) -> String {
     let text = printable(&String::from_utf8_lossy(cell));

@@ -1,6 +1,7 @@
 //! Initial positions of blocks: by their mass centre, or on a surface.
 
 use crate::driven::BeamModel;
+use crate::ground_profile;
 use crate::scene::{BlockScene, Placement, Scene, SupportingBody};
 use crate::simulation::BuildError;
 use nalgebra::{Vector2, Vector3};
@@ -49,6 +50,14 @@ pub enum PlacementError {
         beam: String,
         /// Why.
         source: EquilibriumError,
+    },
+    /// A block can't be laid on the profile of the ground.
+    #[error("block `{block}`: its base finds no rest on the ground at x = {at} m, which is too steep there")]
+    TooSteep {
+        /// The block.
+        block: String,
+        /// The position of its base, m.
+        at: f64,
     },
     /// A corner is not above the surface that it should stand on.
     #[error("block `{block}`: the corner {corner} at x = {x} m is not above the surface that the block stands on")]
@@ -170,6 +179,11 @@ pub(crate) fn starting_poses(
                         return Err(off_surface(block, &Foot { corner: 0, x: at - 0.5 * block.width }).into());
                     }
                     pose_on_line(block, at, tilt, &top.line)
+                }
+                Placement::On { support: SupportingBody::Ground, at, .. } if ground_profile::of(scene).is_some() => {
+                    let pose =
+                        ground_profile::of(scene).and_then(|profile| ground_profile::pose(profile, block, ground));
+                    pose.ok_or_else(|| PlacementError::TooSteep { block: block.name.clone(), at })?
                 }
                 _ => block_pose(scene, block, &SupportSurface::Line(ground))?,
             };

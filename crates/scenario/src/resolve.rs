@@ -5,6 +5,7 @@ mod beam_output;
 mod beams;
 mod blocks;
 mod contacts;
+mod ground;
 mod motions;
 pub(crate) mod names;
 mod records;
@@ -19,7 +20,7 @@ use std::collections::BTreeMap;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::document::Document;
-use crate::scene::{ContactScene, GroundScene, Scene, SignalScene, SolverScene, SupportingBody};
+use crate::scene::{ContactScene, Scene, SolverScene, SupportingBody};
 use crate::scene_checks;
 use crate::value::Value;
 use crate::words::Word;
@@ -227,6 +228,7 @@ impl<'a, 'f> Resolver<'a, 'f> {
         let blocks: Vec<_> = names.iter().map(|name| self.block(name, &beams, &contacts, &joined, &signals)).collect();
         self.check_support_cycles(&blocks);
         self.check_contacts_can_move(&blocks, &contacts);
+        self.check_static_starts_beside_profile(&ground, &beams, &contacts);
         let forces: Vec<_> = doc.names("force").into_iter().map(|name| self.force(name, &signals)).collect();
         let loads: Vec<_> = doc.names("load").into_iter().map(|name| self.load(name, &beams, &signals)).collect();
         if self.blocks.is_empty() && self.beams.is_empty() && !self.partial {
@@ -255,15 +257,6 @@ impl<'a, 'f> Resolver<'a, 'f> {
         };
         self.output(&scene);
         Some(scene)
-    }
-
-    /// The ground, if there is any; `None` on error.
-    fn ground(&mut self, signals: &[Option<SignalScene>]) -> Option<Option<GroundScene>> {
-        if !self.doc.has_table("ground") {
-            return Some(None);
-        }
-        let (incline, motion) = (self.quantity("ground.incline"), self.motion("ground", signals));
-        Some(Some(GroundScene { incline: incline?, motion: motion? }))
     }
 
     /// The bytes of a file named by the scene; each file is read once.

@@ -7,7 +7,7 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;
-use crate::scene::{ContactScene, Placement, Scene, SupportingBody};
+use crate::scene::{ContactScene, GroundScene, Placement, Scene, SupportingBody};
 use teeter_integrator::ImpactLaw;
 
 /// A sum above this fraction of the swing gives a warning: on a beam the sum is smaller than
@@ -48,8 +48,8 @@ pub(crate) fn coarse(scene: &Scene, document: &Document) -> Option<Diagnostic> {
 /// where it doesn't slide or bounce.
 fn is_housners(scene: &Scene, contact: &ContactScene) -> bool {
     let block = &scene.blocks[contact.block];
-    let inclined =
-        contact.surface == SupportingBody::Ground && scene.ground.as_ref().is_some_and(|ground| ground.incline != 0.0);
+    let bent = |ground: &GroundScene| ground.incline != 0.0 || ground.profile.is_some();
+    let inclined = contact.surface == SupportingBody::Ground && scene.ground.as_ref().is_some_and(bent);
     let level = !inclined && scene.gravity[0] == 0.0;
     let law = &contact.law;
     let compliant = matches!(law.impact, ImpactLaw::KelvinVoigt { .. } | ImpactLaw::HuntCrossley { .. });

@@ -268,6 +268,9 @@ impl SchemeName {
 pub struct GroundScene {
     /// Its initial slope, before any prescribed rotation, rad.
     pub incline: f64,
+    /// Its profile, level beyond its ends; `None` for a straight line. It moves and turns with the
+    /// ground.
+    pub profile: Option<Arc<teeter_detect::Profile>>,
     /// Its prescribed motion.
     pub motion: MotionScene,
 }

@@ -1,6 +1,7 @@
 //! Builds the model and initial state of a resolved scene, ready to run in memory.
 
 use crate::driven::{self, BeamModel};
+use crate::ground_profile::{self, OnProfile};
 use crate::opening::{OPEN_GAP, openings};
 use crate::overlap::{Outline, Overlap, PlacedOutline, deepest_overlap};
 use crate::placement::PlacementError;
@@ -14,7 +15,8 @@ use std::sync::Arc;
 use teeter_beam::{BeamError, ModalError};
 use teeter_contact::ContactSolver;
 use teeter_detect::{
-    BodyId, ContactDetector, PointDetector, PointPair, Polygon, ShapeDetector, ShapeError, ShapePair, WiringError,
+    BodyId, ContactDetector, PointDetector, PointPair, Polygon, ProfilePair, ShapeDetector, ShapeError, ShapePair,
+    WiringError,
 };
 use teeter_integrator::{
     Account, Block, Ended, EventDriven, EventDrivenSettings, GeneralizedAlpha, GeneralizedAlphaSettings, Mismatch,
@@ -350,6 +352,7 @@ fn lay_out(scene: &Scene, beams: &[BeamModel], assembled: &Assembled, required: 
         points: ContactPoint::all(scene, contact),
         of_shapes: contact.other_block().is_some(),
         corners: scene.blocks[contact.block].corner_count(),
+        on_profile: contact.surface == SupportingBody::Ground && ground_profile::of(scene).is_some(),
     });
     Layout { blocks, beams: beams.collect(), pairs: pairs.collect(), ground, openings: openings(scene), required }
 }
@@ -373,7 +376,8 @@ fn assemble(
         surfaces.push(parts.add_boxed(body));
     }
     let ground = scene.ground.as_ref().map(|ground| parts.add(driven::ground(ground)));
-    let (mut pairs, mut shape_pairs) = (Vec::new(), Vec::new());
+    let (mut pairs, mut shape_pairs, mut on_profile) = (Vec::new(), Vec::new(), Vec::new());
+    let profile = ground_profile::of(scene);
     for (number, contact) in scene.contacts.iter().enumerate() {
         let law = parts.law(contact.law);
         let surface = match contact.surface {
@@ -389,37 +393,49 @@ fn assemble(
             }
         };
         let points = required.points(number);
-        if points > 0 {
+        let body = all_blocks.nth_body(contact.block as u32);
+        if points > 0 && profile.is_some() && contact.surface == SupportingBody::Ground {
+            on_profile.push(ProfilePair { pair: number as u32, law, body, ground: surface });
+        } else if points > 0 {
             pairs.push(PointPair {
                 pair: number as u32,
                 law,
                 points: blocks[contact.block].1[..points].to_vec(),
-                body: all_blocks.nth_body(contact.block as u32),
+                body,
                 surface,
                 kinematics: contact.kinematics,
             });
         }
     }
     let shapes = |block: usize| (all_blocks.nth_body(block as u32), blocks[block].1.as_slice());
-    let model = parts.build(detector(pairs, shape_pairs, (0..blocks.len()).map(shapes))?)?;
+    let on_profile = profile.map(|profile| (profile, on_profile));
+    let model = parts.build(detector(pairs, shape_pairs, on_profile, (0..blocks.len()).map(shapes))?)?;
     Ok(Assembled { model, blocks: all_blocks, beams: surfaces, ground })
 }
 
-/// The detector for contacts of blocks with surfaces and with each other.
+/// The detector for contacts of blocks with surfaces, with ground that has a profile, and with each
+/// other.
 pub(crate) fn detector<'a>(
     points: Vec<PointPair<2>>,
     pairs: Vec<ShapePair>,
+    on_profile: OnProfile<'_>,
     shapes: impl Iterator<Item = (BodyId, &'a [Vector2<f64>])>,
 ) -> Result<Box<dyn ContactDetector<2>>, BuildError> {
     let points = PointDetector::new(points);
-    if pairs.is_empty() {
+    let on_profile = on_profile.filter(|(_, pairs)| !pairs.is_empty());
+    if pairs.is_empty() && on_profile.is_none() {
         return Ok(Box::new(points));
     }
-    let paired: BTreeSet<BodyId> = pairs.iter().flat_map(|pair| pair.bodies).collect();
+    let grounded = on_profile.iter().flat_map(|(_, pairs)| pairs).map(|pair| pair.body);
+    let paired: BTreeSet<BodyId> = pairs.iter().flat_map(|pair| pair.bodies).chain(grounded).collect();
     let shapes = shapes.filter(|(body, _)| paired.contains(body));
     let shapes = shapes.map(|(body, shape)| Ok((body, Polygon::new(shape.to_vec())?.into())));
     let shapes = shapes.collect::<Result<Vec<_>, ShapeError>>()?;
-    Ok(Box::new(ShapeDetector::new(shapes, pairs)?.with_points(points)))
+    let detector = ShapeDetector::new(shapes, pairs)?.with_points(points);
+    Ok(Box::new(match on_profile {
+        Some((profile, pairs)) => detector.with_profile(profile.clone(), pairs)?,
+        None => detector,
+    }))
 }
 
 fn scheme(time: &Time) -> Result<Box<dyn Scheme<2>>, SettingError> {
@@ -483,7 +499,10 @@ fn check_start(scene: &Scene, model: &Model<2>, layout: &Layout, q: &[f64]) -> R
             let surface = if between[0] == block.name { &between[1] } else { &between[0] };
             return Err(BuildError::Penetration {
                 block: block.name.clone(),
-                corner: block.corner_name(candidate.id.point() as usize),
+                corner: match layout.pairs[pair].point(candidate.id) {
+                    Some(point) => layout.pairs[pair].points[point].name.clone(),
+                    None => candidate.id.point().to_string(),
+                },
                 surface: surface.clone(),
                 depth: -candidate.gap,
                 tolerance,

@@ -317,7 +317,7 @@ impl StaticModel {
             }
         }
         let shapes = self.blocks.iter().enumerate().map(|(number, &k)| (body(number), start.blocks[k].1.as_slice()));
-        Ok((parts.build(detector(pairs, shape_pairs, shapes)?)?, contacts))
+        Ok((parts.build(detector(pairs, shape_pairs, None, shapes)?)?, contacts))
     }
 
     fn coordinates(&self, start: &InitialConfiguration<'_>) -> Vec<f64> {

@@ -33,7 +33,7 @@ const ELEMENT_BYTES: u64 = 1000;
 /// Scales with the blocks, down to 1e-11 of the smallest side allowed.
 const GAP: Range = Range::NOT_NEGATIVE.sizes(1e-30, 1e12);
 
-use Presence::{Default, DefaultWith, DefaultWithout, NotYet, Optional, Required, RequiredWithout};
+use Presence::{Default, DefaultWith, DefaultWithout, Optional, Required, RequiredWithout};
 
 const SIZE: Kind = Kind::Quantity(Dimension::LENGTH, Range::POSITIVE);
 const TIME: Kind = Kind::Quantity(Dimension::TIME, DURATION);
@@ -165,10 +165,20 @@ pub static TABLES: &[TableSchema] = &[
     TableSchema {
         pattern: "ground",
         occurrence: Occurrence::Optional,
-        doc: "Rigid ground, flat at y = 0 or inclined through the origin; its name in contacts is `ground`.",
+        doc: "Rigid ground, flat at y = 0, inclined through the origin, or with a profile; its name in contacts is `ground`.",
         keys: &[
             key("incline", Kind::Quantity(Dimension::ANGLE, INCLINE), Default("\"0 deg\""), "\"10 deg\"", "Slope of the ground, which goes through the origin; counter-clockwise positive, so uphill to the right."),
-            key("profile", Kind::Text, NotYet, "\"profile.csv\"", "File with the heights of the ground."),
+        ],
+    },
+    TableSchema {
+        pattern: "ground.profile",
+        occurrence: Occurrence::Inline,
+        doc: "A profile instead of an incline: straight pieces between points, level beyond the first and the last. It moves and turns with the ground. A block placed on it lies on what is under its base: on a piece, or across a valley or a crest.",
+        keys: &[
+            key("points", Kind::Points(Dimension::LENGTH, Range::ANY), Optional, "[[\"0 m\", \"0 m\"], [\"1 m\", \"0.2 m\"], [\"3 m\", \"0.2 m\"]]", "Points from left to right; each must be to the right of the one before it."),
+            key("file", Kind::Path, Optional, "\"ground.csv\"", "Instead of points: a file with a point in each row, x and y in m, or in the unit in brackets in the heading; relative to the scene's file."),
+            key("columns", Kind::NamePair, Optional, "[\"x\", \"height\"]", "The columns of the file with x and y, by their headings or by their numbers from 1; if left out, it must have two."),
+            key("unit", Kind::Choice(words::LengthUnit::WORDS), Optional, "\"mm\"", "Unit of the file's columns if its heading has none; m if left out."),
         ],
     },
     TableSchema {

@@ -1,5 +1,6 @@
 //! The surface that carries a block, and the block's angle relative to it.
 
+use crate::ground_profile;
 use crate::scene::{Placement, Scene, SupportingBody};
 use crate::simulation::{BlockPlace, Layout};
 use teeter_integrator::RockingMonitor;
@@ -32,8 +33,12 @@ pub(crate) fn tilt_references(scene: &Scene, blocks: &[BlockPlace], slope: Optio
             scene.contacts.iter().find(|contact| contact.block == number).map(|contact| contact.surface)
         }
     };
-    let reference = |block| match support(block) {
-        Some(SupportingBody::Ground) => on_ground,
+    let on_profile = |block: usize| {
+        let ground = scene.ground.as_ref().filter(|_| slope.is_none())?;
+        ground_profile::slope_under(ground, &scene.blocks[block]).map(TiltReference::Incline)
+    };
+    let reference = |block: (usize, &Placement)| match support(block) {
+        Some(SupportingBody::Ground) => on_profile(block.0).unwrap_or(on_ground),
         Some(SupportingBody::Block(below)) if stands(block.1) => TiltReference::Moving(blocks[below].range.start + 2),
         Some(SupportingBody::Beam(_) | SupportingBody::Block(_)) | None => TiltReference::Level,
     };

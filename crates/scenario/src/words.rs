@@ -79,6 +79,8 @@ words! {
         StandardGravity = "gn",
         G = "g",
     }
+    /// Unit of the points of a profile.
+    LengthUnit { Metre = "m", Centimetre = "cm", Millimetre = "mm", Kilometre = "km" }
     /// Shape of a signal.
     History {
         Constant = "constant",
@@ -147,5 +149,6 @@ mod tests {
         each_means_something_of_its_own::<History>();
         each_means_something_of_its_own::<Baseline>();
         each_means_something_of_its_own::<RecordUnit>();
+        each_means_something_of_its_own::<LengthUnit>();
     }
 }

@@ -152,6 +152,10 @@ fn seeds() -> Vec<(String, String)> {
     for folder in ["scenarios", "fuzz/corpus/scene"] {
         for entry in std::fs::read_dir(root.join(folder)).unwrap() {
             let path = entry.unwrap().path();
+            // Records beside the scenarios are no scenes.
+            if path.extension().is_some_and(|ending| ending == "csv") {
+                continue;
+            }
             // Of the corpus, what is text.
             if let Ok(text) = std::fs::read_to_string(&path) {
                 seeds.push((path.display().to_string(), text));

@@ -180,6 +180,12 @@ fn of_pattern(pattern: &str) -> Vec<Value> {
             all
         }
         "beam.*.motion" => motion(false),
+        "ground" => vec![json!({ "if": { "required": ["incline", "profile"] }, "then": false })],
+        "ground.profile" => vec![
+            json!({ "oneOf": [{ "required": ["points"] }, { "required": ["file"] }] }),
+            json!({ "dependentRequired": { "columns": ["file"], "unit": ["file"] } }),
+            properties([("points", json!({ "minItems": 2 }))]),
+        ],
         "beam.*" => of_beam(),
         "ground.motion.x" | "ground.motion.y" | "beam.*.motion.x" | "beam.*.motion.y" | "block.*.motion.x"
         | "block.*.motion.y" => vec![json!({ "not": { "required": ["scale", "peak"] } })],

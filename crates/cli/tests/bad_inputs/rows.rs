@@ -236,6 +236,7 @@ fn limits() -> Vec<Row> {
 #[rustfmt::skip] // a row a line
 fn histories() -> Vec<Row> {
     vec![
+        refused(43, "accelerogram that is not there", Set(&["ground.motion.x.record=none.at2"]), &["ground.motion.x.record = \"none.at2\"", "there is no such file"]),
         refused(43, "record that is not there", Record(None), &["signal.quake.file = \"quake.csv\"", "there is no such file", "relative to the scene's file"]),
         refused(44, "samples declared, but not there", Record(Some("samples 1300000000\n0,0\n")), &["signal.quake.file", "1 row of numbers", "two or more"]),
         refused(45, "record with NaN", Record(Some("t,a\n0,0\n0.1,1\n0.2,1\n0.3,1\n0.4,1\n0.5,nan\n")), &["signal.quake.file", "line 7", "the value is NaN", "finite"]),
@@ -257,6 +258,7 @@ fn histories() -> Vec<Row> {
         refused(38, "load at a point and all along", Edit(&[("[contact.feet]", "[load.f]\non = \"table\"\nat = \"4 cm\"\ndistributed = \"1 N/m\"\n[contact.feet]")]), &["load.f.at", "doesn't apply to a distributed load"]),
         refused(38, "a velocity given twice", Edit(&[("[contact.feet]", "velocity = [\"1 m/s\", \"0 m/s\"]\nmotion = { velocity = [\"1 m/s\", \"0 m/s\"], only = \"x\" }\n[contact.feet]")]), &["block.rocker.velocity", "the motion of the block prescribes"]),
         refused(38, "a wall for ground", Edit(&[("[contact.feet]", "[ground]\nincline = \"85 deg\"\n[contact.feet]")]), &["ground.incline = \"85 deg\"", "[-80 deg, 80 deg]"]),
+        refused(38, "profile and incline", Set(&["ground.incline=5 deg", "ground.profile.points=[['0 m', '0 m'], ['1 m', '1 m']]"]), &["ground.incline", "already gives the slope"]),
     ]
 }
 

@@ -74,6 +74,9 @@ pub(crate) struct PointDrawn {
     pub(crate) corner: usize,
     /// Its initials, or its number.
     pub(crate) short: String,
+    /// The point of the ground's profile that touches, in the ground's coordinates, m; none for a
+    /// corner.
+    pub(crate) crest: Option<[f64; 2]>,
 }
 
 /// All of it.
@@ -82,6 +85,8 @@ pub(crate) struct Scenery {
     pub(crate) ground: bool,
     /// Slope of ground that stands still, rad.
     pub(crate) incline: f64,
+    /// Points of the ground's profile, in its coordinates, m; empty for a straight line.
+    pub(crate) profile: Vec<[f64; 2]>,
     pub(crate) blocks: Vec<BlockDrawn>,
     pub(crate) beams: Vec<BeamDrawn>,
     pub(crate) contacts: Vec<ContactDrawn>,
@@ -142,13 +147,20 @@ impl Scenery {
                 middle: at(0.5 * span),
             }
         });
+        let profile = scene.ground.as_ref().and_then(|ground| ground.profile.as_ref());
+        let profile = profile.map(|profile| profile.points().map(|point| [point.x, point.y]).collect());
+        let profile: Vec<[f64; 2]> = profile.unwrap_or_default();
         let mut points = 0;
         let contacts = scene.contacts.iter().zip(&layout.pairs).map(|(contact, pair)| {
             let drawn = pair.points.iter().map(|point| PointDrawn {
                 label: point.name.replace(['-', '.'], " "),
                 block: point.block,
                 corner: point.corner,
-                short: short(&scene.blocks[point.block].corner_name(point.corner)),
+                short: match point.crest {
+                    Some(crest) => format!("crest {}", crest + 1),
+                    None => short(&scene.blocks[point.block].corner_name(point.corner)),
+                },
+                crest: point.crest.and_then(|crest| profile.get(crest).copied()),
             });
             let first = points;
             points += pair.points.len();
@@ -170,6 +182,7 @@ impl Scenery {
         Self {
             ground: scene.ground.is_some(),
             incline: scene.ground.as_ref().map_or(0.0, |ground| ground.incline),
+            profile,
             blocks: blocks.collect(),
             beams: beams.collect(),
             contacts,

@@ -111,7 +111,7 @@ impl<'a> Assemblage<'a> {
             }
         }
         let ground = match &scene.ground {
-            Some(ground) if !ground.motion.is_given() && ground.incline == 0.0 => {
+            Some(ground) if !ground.motion.is_given() && ground.incline == 0.0 && ground.profile.is_none() => {
                 Some(SupportLevel { y: 0.0, weight: 0.0, bounds: None })
             }
             _ => None,

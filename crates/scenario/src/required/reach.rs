@@ -3,6 +3,7 @@
 use super::at_rest::BeamAtRest;
 use super::barrier::Barrier;
 use super::{InactivePairs, InitialMotion};
+use crate::ground_profile;
 use crate::scene::{ContactScene, SupportingBody};
 use teeter_beam::Axial;
 
@@ -90,6 +91,9 @@ impl Reach {
             SupportingBody::Ground => start.scene.ground.as_ref().is_some_and(|ground| {
                 // The height above the line y = x tan β is smallest at an end of the interval.
                 let height = |x: f64| self.y - x * ground.incline.tan();
+                if let Some(profile) = &ground.profile {
+                    return !ground.motion.is_given() && self.y - ground_profile::top(profile) > gap;
+                }
                 !ground.motion.is_given() && self.x.iter().all(|x| height(*x) * ground.incline.cos() > gap)
             }),
             SupportingBody::Beam(k) => {

@@ -10,6 +10,7 @@ mod many;
 mod modes;
 mod painleve;
 mod polygons;
+mod profiles;
 mod projected;
 mod properties;
 mod reading;

@@ -2,7 +2,7 @@
 //! that every shipped scene runs.
 
 use super::ROCKING;
-use super::running::workspace;
+use super::running::{companion, workspace};
 use teeter_integrator::Ended;
 use teeter_scenario::simulation::Simulation;
 
@@ -23,7 +23,7 @@ fn every_shipped_scene_runs_or_says_why_it_does_not() {
         for scheme in SCHEMES {
             let sets = [("time.scheme", scheme), ("time.end", "0.2 s")];
             let sets: Vec<_> = sets.map(|(key, value)| (key.to_owned(), format!("\"{value}\""))).into();
-            let resolved = match teeter_scenario::load(&bytes, &name, &name, &sets) {
+            let resolved = match teeter_scenario::load_with(&bytes, &name, &name, &sets, &mut companion) {
                 Ok(resolved) => resolved,
                 Err(errors) => {
                     assert!(errors.to_string().contains("held along its axis"), "{name}: {errors}");

@@ -1,7 +1,9 @@
 //! Recorded accelerations as motions, from the scene file to the motion.
 
+use crate::running::companion;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use teeter_integrator::Ended;
+use teeter_integrator::{Ended, Model, Observer, ObserverError, State, StepReport};
 use teeter_record::{ReadSettings, Record, STANDARD_GRAVITY};
 use teeter_scenario::diagnostic::Diagnostics;
 use teeter_scenario::load_with;
@@ -225,6 +227,36 @@ fn the_scene_as_run_reads_back_with_its_records() {
     assert_eq!((again.document.to_toml(), again.scene), (written, first.scene));
     let moved = first.document.to_toml_elsewhere(|file| format!("../{file}"));
     assert!(moved.contains("record = \"../quake.at2\""), "{moved}");
+}
+
+#[test]
+fn the_block_of_the_scenario_rocks_and_stays() {
+    let bytes = companion("rocking-under-earthquake.toml").unwrap();
+    let resolved = load_with(&bytes, "scene", "scene", &[], &mut companion).unwrap_or_else(|errors| panic!("{errors}"));
+    assert!(resolved.warnings.is_empty(), "{:?}", resolved.warnings);
+    let mut run = Simulation::new(&resolved.scene).unwrap();
+    let mut monitor = Largest::default();
+    assert_eq!(run.run(&mut [&mut monitor]).unwrap(), Ended::Complete);
+    let critical = 0.2_f64.atan();
+    assert!(monitor.0 > 0.2 * critical && monitor.0 < 0.4 * critical, "largest angle {}", monitor.0);
+    assert!(run.state.q[2].abs() < 1e-4, "at the end it stands: {}", run.state.q[2]);
+    assert!(run.state.ledger.relative_residual() < 1e-12);
+}
+
+/// The largest angle of the first block.
+#[derive(Default)]
+struct Largest(f64);
+
+impl Observer<2> for Largest {
+    fn observe(
+        &mut self,
+        _: &Model<2>,
+        _: &StepReport<'_, 2>,
+        state: &State,
+    ) -> Result<ControlFlow<()>, ObserverError> {
+        self.0 = self.0.max(state.q[2].abs());
+        Ok(ControlFlow::Continue(()))
+    }
 }
 
 /// The folder of recorded earthquakes beside the working copy; none elsewhere.

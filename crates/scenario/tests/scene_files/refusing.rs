@@ -87,10 +87,10 @@ fn names_are_of_few_letters_and_unique_over_bodies() {
 }
 
 #[test]
-fn what_is_known_but_not_built_in_says_so() {
+fn a_word_in_place_of_an_inline_table_is_refused() {
     let found = findings(ROCKING, &[("ground.profile", "hills.csv")]);
     assert_eq!(found.len(), 1, "{found:#?}");
-    assert!(found[0].ends_with("not implemented yet"), "{found:#?}");
+    assert!(found[0].ends_with("ground.profile: this is a table, got a text"), "{found:#?}");
 }
 
 #[test]

@@ -3,13 +3,14 @@
 
 mod random;
 
+use super::running::companion;
 use super::{ROCKING, sets};
 use std::ops::ControlFlow;
 use std::path::Path;
 use teeter_integrator::{Ended, Model, Observer, ObserverError, State, StepReport};
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Simulation;
-use teeter_scenario::{Extent, Required, load};
+use teeter_scenario::{Extent, Required, load, load_with};
 
 /// All numbers of all steps in one, and whether the limits held.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -53,7 +54,8 @@ impl Observer<2> for Seen {
 }
 
 fn scene(text: &str, pairs: &[(&str, &str)]) -> Scene {
-    load(text.as_bytes(), "scene", "scene", &sets(pairs)).unwrap_or_else(|errors| panic!("{errors}")).scene
+    let loaded = load_with(text.as_bytes(), "scene", "scene", &sets(pairs), &mut companion);
+    loaded.unwrap_or_else(|errors| panic!("{errors}")).scene
 }
 
 fn simulation(scene: &Scene, extent: Extent) -> Simulation {
@@ -81,6 +83,7 @@ fn same(scene: &Scene) -> Seen {
 fn scenarios() -> Vec<(String, String)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
     let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
     files.sort();
     let name = |path: &Path| path.file_stem().unwrap().to_string_lossy().into_owned();
     files.iter().map(|path| (name(path), std::fs::read_to_string(path).unwrap())).collect()

@@ -12,6 +12,11 @@ pub(crate) fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
+/// Reads a scenario's companion, a file that it names.
+pub(crate) fn companion(file: &str) -> Result<Vec<u8>, String> {
+    std::fs::read(workspace().join("scenarios").join(file)).map_err(|error| error.to_string())
+}
+
 fn scenario(name: &str, sets: &[(&str, &str)]) -> Simulation {
     let file = workspace().join("scenarios").join(format!("{name}.toml"));
     let text = std::fs::read(&file).unwrap();

@@ -6,7 +6,7 @@
 //! TEETER_WRITE_COUNTS=1 cargo test -p teeter-scenario --test scene_files work
 //! ```
 
-use super::running::workspace;
+use super::running::{companion, workspace};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use teeter_scenario::simulation::Simulation;
@@ -25,7 +25,7 @@ fn counts(name: &str, scheme: &str) -> Option<[u64; 7]> {
     let bytes = std::fs::read(workspace().join("scenarios").join(format!("{name}.toml"))).unwrap();
     let sets = [("time.end", format!("\"{END}\"")), ("time.scheme", format!("\"{scheme}\""))];
     let sets: Vec<(String, String)> = sets.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
-    let resolved = match teeter_scenario::load(&bytes, name, name, &sets) {
+    let resolved = match teeter_scenario::load_with(&bytes, name, name, &sets, &mut companion) {
         Ok(resolved) => resolved,
         Err(errors) => {
             assert!(errors.to_string().contains("time.scheme"), "{errors}");

@@ -1,0 +1,164 @@
+//! Ground with a profile: where blocks are placed on it, and its contacts.
+
+use crate::scene::{BlockScene, GroundScene, Placement, Scene, SupportingBody};
+use nalgebra::{Vector2, Vector3};
+use teeter_detect::{Profile, ProfilePair};
+use teeter_rigid::Pose;
+
+/// A straight line through a point with a slope: x, y (m), rad.
+type Line = [f64; 3];
+
+/// Iterations for the slope of a base; each is of a few points.
+const ITERATIONS: usize = 200;
+
+/// Slopes that differ by less are the same, rad.
+const SAME_SLOPE: f64 = 1e-15;
+
+/// The profile of the ground of a scene, if it has one.
+pub(crate) fn of(scene: &Scene) -> Option<&Profile> {
+    scene.ground.as_ref()?.profile.as_deref()
+}
+
+/// The line on which the base of a block of this width rests, with the midpoint of the base at x =
+/// `at`: of all lines that are nowhere below the ground under the base, the one that is lowest at
+/// its midpoint. It touches the ground on both sides of the midpoint, or below it; there the least
+/// slope is taken. `None` if no such line is found: on ground too steep to lay a base on.
+fn resting_line(profile: &Profile, at: f64, width: f64) -> Option<Line> {
+    let mut slope = 0.0_f64;
+    for _ in 0..ITERATIONS {
+        let reach = 0.5 * width * slope.cos();
+        let [height, next] = line_over(profile, at, [at - reach, at + reach]);
+        if (next - slope).abs() <= SAME_SLOPE {
+            return Some([at, height, next]);
+        }
+        slope = next;
+    }
+    // The ends of the base may hop between pieces of the ground by less than can be seen.
+    let reach = 0.5 * width * slope.cos();
+    let [height, next] = line_over(profile, at, [at - reach, at + reach]);
+    ((next - slope).abs() <= 1e3 * SAME_SLOPE).then_some([at, height, next])
+}
+
+/// Height (m) at `at` and slope (rad) of the line over the ground between two places.
+fn line_over(profile: &Profile, at: f64, [left, right]: [f64; 2]) -> [f64; 2] {
+    let end = |x: f64| Vector2::new(x, profile.height(x));
+    let within = profile.points().filter(|point| point.x > left && point.x < right);
+    // The upper side of the convex hull, from left to right.
+    let mut hull: Vec<Vector2<f64>> = Vec::new();
+    for point in std::iter::once(end(left)).chain(within).chain(std::iter::once(end(right))) {
+        while let [.., a, b] = hull.as_slice()
+            && (b - a).perp(&(point - a)) >= 0.0
+        {
+            hull.pop();
+        }
+        hull.push(point);
+    }
+    let slope = |two: &[Vector2<f64>]| (two[1].y - two[0].y).atan2(two[1].x - two[0].x);
+    let over = |two: &&[Vector2<f64>]| two[0].x <= at && at <= two[1].x;
+    // Two edges meet at `at` where the ground has a crest there.
+    let edges: Vec<&[Vector2<f64>]> = hull.windows(2).filter(over).collect();
+    match edges.as_slice() {
+        [first, .., last] => {
+            let (steepest, least) = (slope(first), slope(last));
+            [first[1].y, 0.0_f64.clamp(least.min(steepest), steepest.max(least))]
+        }
+        [edge] => {
+            let slope = slope(edge);
+            [edge[0].y + (at - edge[0].x) * slope.tan(), slope]
+        }
+        [] => [profile.height(at), 0.0],
+    }
+}
+
+/// The initial configuration (X, Y, φ) of a block that stands on ground with this profile, which
+/// is displaced by `ground`: x and y (m), and its turn (rad). Tilted, it turns about a lower corner
+/// that is on the ground. `None` if no place is found.
+pub(crate) fn pose(profile: &Profile, block: &BlockScene, ground: Line) -> Option<Vector3<f64>> {
+    let Placement::On { at, tilt, .. } = block.placement else { return None };
+    let moved = Pose::new(&Vector3::from(ground));
+    // The midpoint of the base is at x = `at` in the world.
+    let mut local = at - ground[0];
+    let mut line = resting_line(profile, local, block.width)?;
+    for _ in 0..ITERATIONS {
+        let off = at - moved.point(&Vector2::new(line[0], line[1])).x;
+        if off.abs() <= f64::EPSILON * (at.abs() + block.width) {
+            break;
+        }
+        local += off / ground[2].cos();
+        line = resting_line(profile, local, block.width)?;
+    }
+    let [x, y, slope] = line;
+    let angle = slope + tilt;
+    let base = Pose::new(&Vector3::new(x, y, slope));
+    let centre = if tilt == 0.0 {
+        base.point(&Vector2::new(0.0, 0.5 * block.height))
+    } else {
+        let corner = Vector2::new(if tilt > 0.0 { -0.5 } else { 0.5 } * block.width, 0.0);
+        let foot = base.point(&corner);
+        let foot = Vector2::new(foot.x, profile.height(foot.x));
+        foot - Pose::new(&Vector3::new(0.0, 0.0, angle)).rotate(&Vector2::new(corner.x, -0.5 * block.height))
+    };
+    let centre = moved.point(&centre);
+    Some(Vector3::new(centre.x, centre.y, ground[2] + angle))
+}
+
+/// The slope of the ground under the base of a block that stands on fixed ground with a profile,
+/// rad.
+pub(crate) fn slope_under(ground: &GroundScene, block: &BlockScene) -> Option<f64> {
+    let profile = ground.profile.as_deref()?;
+    let Placement::On { support: SupportingBody::Ground, at, .. } = block.placement else { return None };
+    Some(resting_line(profile, at, block.width)?[2])
+}
+
+/// How deep the corners of a block are below the ground, along y, m; the ground and the block are
+/// at x, y (m) and turned (rad).
+pub(crate) fn depth(profile: &Profile, ground: Line, corners: &[Vector2<f64>], block: Line) -> f64 {
+    let [moved, placed] = [ground, block].map(|line| Pose::new(&Vector3::from(line)));
+    let below = |corner: &Vector2<f64>| {
+        let from = placed.point(corner) - moved.point(&Vector2::zeros());
+        let local = Pose::new(&Vector3::new(0.0, 0.0, -ground[2])).rotate(&from);
+        profile.height(local.x) - local.y
+    };
+    corners.iter().map(below).fold(0.0, f64::max)
+}
+
+/// Height of its highest point, m.
+pub(crate) fn top(profile: &Profile) -> f64 {
+    profile.points().map(|point| point.y).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// The pairs of blocks with ground that has a profile, and that profile.
+pub(crate) type OnProfile<'a> = Option<(&'a Profile, Vec<ProfilePair>)>;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn profile(points: &[[f64; 2]]) -> Profile {
+        Profile::new(points.iter().map(|x| Vector2::new(x[0], x[1])).collect()).unwrap()
+    }
+
+    #[test]
+    fn a_base_lies_on_pieces_over_valleys_and_across_crests() {
+        let hill = profile(&[[0.0, 0.0], [4.0, 3.0], [8.0, 0.0]]);
+        let line = |at: f64, width: f64| resting_line(&hill, at, width).unwrap();
+        let slope = 0.75_f64.atan();
+        for (found, exact) in line(2.0, 1.0).iter().zip([2.0, 1.5, slope]) {
+            assert!((found - exact).abs() < 1e-15, "on the piece: {found} {exact}");
+        }
+        assert_eq!(line(-3.0, 1.0), [-3.0, 0.0, 0.0]);
+        // On the crest it may have any slope between those beside it: the least is 0.
+        assert_eq!(line(4.0, 1.0), [4.0, 3.0, 0.0]);
+        // Beside it, it lies on a piece, and sticks out over the crest.
+        let beside = line(3.9, 1.0);
+        assert!((beside[2] - slope).abs() < 1e-15 && (beside[1] - 2.925).abs() < 1e-15);
+        // Across the valley at the foot its ends are on both pieces.
+        let [x, y, angle] = line(0.0, 1.0);
+        let ends = [-0.5, 0.5].map(|s| Vector2::new(x + s * angle.cos(), y + s * angle.sin()));
+        assert!(ends.iter().all(|end| (end.y - hill.height(end.x)).abs() < 1e-14) && angle > 0.1 && angle < slope);
+        // Between two ridges it lies on both.
+        let trench = profile(&[[-0.1, 0.0], [0.0, 1.0], [0.1, 0.0], [0.9, 0.0], [1.0, 1.5], [1.1, 0.0]]);
+        let [_, y, angle] = resting_line(&trench, 0.5, 2.0).unwrap();
+        assert!((angle - 0.5_f64.atan()).abs() < 1e-15 && (y - 1.25).abs() < 1e-15);
+    }
+}
