@@ -8,6 +8,7 @@
 
 use nalgebra::Vector2;
 use std::time::Instant;
+use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, Stop};
 use teeter_detect::{Groups, Polygon, Profile, ProfilePair, Shape, ShapeDetector};
 use teeter_integrator::*;
 use teeter_rigid::MassProperties;
@@ -68,6 +69,63 @@ fn pile(n: usize) -> (Model<2>, Vec<f64>) {
     (model, q)
 }
 
+/// Seconds that this thread has run, so that other work on the machine doesn't count; wall clock where the system doesn't say.
+fn spent(clock: &Instant) -> f64 {
+    let known = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
+    let nanoseconds = known.and_then(|line| line.split_whitespace().next()?.parse::<f64>().ok());
+    nanoseconds.map_or_else(|| clock.elapsed().as_secs_f64(), |nanoseconds| 1e-9 * nanoseconds)
+}
+
+/// The solver of the run, which hands every problem of some contacts to others as well and measures
+/// all of them.
+struct Comparing {
+    chosen: Box<dyn ContactSolver<2>>,
+    others: Vec<Box<dyn ContactSolver<2>>>,
+    /// By size class and method: solves, solved, iterations, seconds, worst residual.
+    sums: std::sync::Arc<std::sync::Mutex<std::collections::BTreeMap<(usize, String), (u32, u32, u64, f64, f64)>>>,
+}
+
+impl ContactSolver<2> for Comparing {
+    fn name(&self) -> &'static str {
+        self.chosen.name()
+    }
+    fn law(&self) -> Law {
+        self.chosen.law()
+    }
+    fn reserve(&mut self, contacts: usize, blocks: usize) {
+        self.chosen.reserve(contacts, blocks);
+    }
+    fn solve(&mut self, problem: &ContactProblem<'_, 2>, stop: &Stop<'_>, p: &mut [Vector2<f64>]) -> Outcome {
+        let (start, clock) = (p.to_vec(), Instant::now());
+        let class = [3, 12, 40, 100, 200, 400, usize::MAX].iter().position(|most| p.len() <= *most).unwrap_or(0);
+        let mut sums = self.sums.lock().expect("one thread");
+        let mut add = |name: String, o: &Outcome, s: f64| {
+            let sum = sums.entry((class, name)).or_default();
+            sum.0 += 1;
+            sum.1 += u32::from(o.converged());
+            sum.2 += u64::from(o.iterations);
+            sum.3 += s;
+            sum.4 = sum.4.max(o.residual.global);
+        };
+        if p.len() > 3 {
+            for other in &mut self.others {
+                let mut q = start.clone();
+                let before = spent(&clock);
+                let outcome = other.solve(problem, stop, &mut q);
+                add(other.name().into(), &outcome, spent(&clock) - before);
+            }
+        }
+        let before = spent(&clock);
+        let outcome = self.chosen.solve(problem, stop, p);
+        let s = spent(&clock) - before;
+        add(format!("* {}", outcome.used), &outcome, s);
+        outcome
+    }
+    fn fork(&self) -> Box<dyn ContactSolver<2>> {
+        self.chosen.fork()
+    }
+}
+
 fn main() {
     let counts: Vec<usize> = std::env::args().skip(1).filter_map(|word| word.parse().ok()).collect();
     let seconds = std::env::var("SECONDS_RUN").ok().and_then(|s| s.parse().ok()).unwrap_or(2.0);
@@ -77,16 +135,27 @@ fn main() {
         let (model, q) = pile(n);
         let mut state = State::new(&model, &q, &vec![0.0; q.len()], H).expect("a state");
         let settings = SolverSettings { tolerance, ..SolverSettings::default() };
-        let mut work = Workspace::new(&model, teeter_solvers::plane_solver(&method).expect("a solver"), settings);
+        let mut chosen = teeter_solvers::plane_solver(&method).expect("a solver");
+        let sums = std::sync::Arc::default();
+        if let Ok(others) = std::env::var("COMPARE") {
+            let others = others
+                .split(',')
+                .filter(|name| !name.is_empty())
+                .map(|name| teeter_solvers::plane_solver(name).expect("a solver"))
+                .collect();
+            chosen = Box::new(Comparing { chosen, others, sums: std::sync::Arc::clone(&sums) });
+        }
+        let mut work = Workspace::new(&model, chosen, settings);
         let mut scheme = MoreauJeanClosed::new(MoreauJeanClosedSettings::default()).expect("a scheme");
         let steps = (seconds / H).round() as u64;
         let part = steps / 10;
         for k in 0..10 {
             let counts = work.counts;
             let clock = Instant::now();
+            let before = spent(&clock);
             let ended =
                 run(&model, &mut scheme, &mut state, &mut work, &Plan::steps((k + 1) * part), &mut []).expect("a run");
-            let spent = clock.elapsed().as_secs_f64();
+            let spent = spent(&clock) - before;
             let now = work.counts;
             let most = state.v.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
             println!(
@@ -100,6 +169,15 @@ fn main() {
                 state.tally.unconverged_steps,
                 state.ledger.current.kinetic,
                 state.tally.max_penetration,
+            );
+        }
+        let classes = ["1-3", "4-12", "13-40", "41-100", "101-200", "201-400", "401-"];
+        for ((class, name), (solves, solved, iterations, seconds, worst)) in sums.lock().expect("one thread").iter() {
+            println!(
+                "{n} contacts {:8} {name:16} solves {solves:6} solved {solved:6} iterations/solve {:8.1} us/solve {:9.1} worst {worst:.1e}",
+                classes[*class],
+                *iterations as f64 / f64::from(*solves),
+                1e6 * seconds / f64::from(*solves),
             );
         }
     }
