@@ -1,9 +1,14 @@
 //! A pile of polygons in a trough that grows with their number: time a step, by what it goes into,
-//! while they fall and once they lie.
+//! while they fall and once they lie. After the word `tower`, a tower of so many boxes of 0.1 m, and
+//! how far any of them has moved.
 //!
 //! ```text
-//! cargo bench -p teeter-benches --bench pile -- 100 300 1000
+//! cargo bench -p teeter-benches --bench pile -- 100 300 1000 tower 20 1000
 //! ```
+//!
+//! `SECONDS_RUN`, `TOLERANCE` and `METHOD` (a solver) change the run. `COMPARE`, a list of solvers or
+//! nothing, adds what each method was given to solve: those of the list solve every problem of more
+//! than three contacts beside it, from the same start.
 #![allow(clippy::expect_used, clippy::print_stdout)] // a measurement that can't be set up has nothing to go on with
 
 use nalgebra::Vector2;
@@ -126,13 +131,40 @@ impl ContactSolver<2> for Comparing {
     }
 }
 
+/// A model of a tower of so many boxes, and where they stand: exactly on each other.
+fn tower(n: usize) -> (Model<2>, Vec<f64>) {
+    let mut parts = ModelBuilder::new();
+    let half = 0.5 * SIZE;
+    let corners = [[-half, -half], [half, -half], [half, half], [-half, half]].map(Vector2::from).to_vec();
+    let (mass, _) = MassProperties::polygon(&corners, 0.1, 700.0).expect("a box");
+    let bodies = vec![Block::within(mass, SIZE); n];
+    let q = (0..n).flat_map(|k| [0.0, SIZE * (k as f64 + 0.5), 0.0]).collect();
+    let blocks = parts.add(Blocks::new(bodies, Vector2::new(0.0, -9.81)));
+    let ground = parts.add(Ground::flat(0.0)).body();
+    let law = parts.law(PairLaw::new(0.5, 0.0));
+    let shape = |k: u32| (blocks.nth_body(k), Polygon::new(corners.clone()).expect("a box").into());
+    let shapes: Vec<(_, Shape)> = (0..n as u32).map(shape).collect();
+    let pairs = (0..n as u32).map(|k| ProfilePair { pair: k, law, body: blocks.nth_body(k), ground }).collect();
+    let groups =
+        Groups::new((0..n as u32).map(|k| (blocks.nth_body(k), 0)).collect(), vec![vec![Some(law)]]).expect("groups");
+    let level = [[-10.0, 0.0], [10.0, 0.0]].map(Vector2::from).to_vec();
+    let detector = ShapeDetector::new(shapes, Vec::new()).expect("shapes");
+    let detector = detector.with_profile(Profile::new(level).expect("level ground"), pairs).expect("pairs");
+    (parts.build(Box::new(detector.with_groups(groups, n as u32).expect("groups"))).expect("a model"), q)
+}
+
 fn main() {
-    let counts: Vec<usize> = std::env::args().skip(1).filter_map(|word| word.parse().ok()).collect();
+    let mut stands = false;
+    let mut counts: Vec<(usize, bool)> = Vec::new();
+    for word in std::env::args().skip(1) {
+        stands |= word == "tower";
+        counts.extend(word.parse().ok().map(|count| (count, stands)));
+    }
     let seconds = std::env::var("SECONDS_RUN").ok().and_then(|s| s.parse().ok()).unwrap_or(2.0);
     let tolerance = std::env::var("TOLERANCE").ok().and_then(|s| s.parse().ok()).unwrap_or(1e-10);
     let method = std::env::var("METHOD").unwrap_or("auto".into());
-    for n in counts {
-        let (model, q) = pile(n);
+    for (n, stands) in counts {
+        let (model, q) = if stands { tower(n) } else { pile(n) };
         let mut state = State::new(&model, &q, &vec![0.0; q.len()], H).expect("a state");
         let settings = SolverSettings { tolerance, ..SolverSettings::default() };
         let mut chosen = teeter_solvers::plane_solver(&method).expect("a solver");
@@ -158,8 +190,10 @@ fn main() {
             let spent = spent(&clock) - before;
             let now = work.counts;
             let most = state.v.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+            let moved = state.q.iter().zip(&q).fold(0.0_f64, |most, (now, start)| most.max((now - start).abs()));
+            let moved = if stands { format!(", moved {moved:.1e} m") } else { String::new() };
             println!(
-                "{n} t {:.2} {:.1} us/step, contacts {:.0}, problems/step {:.2}, iterations/step {:.1}, detections {:.1}, unsolved {}, v {most:.1e}, kinetic {:.2e}, penetration {:.1e} {ended:?}",
+                "{n} t {:.2} {:.1} us/step, contacts {:.0}, problems/step {:.2}, iterations/step {:.1}, detections {:.1}, unsolved {}, v {most:.1e}, kinetic {:.2e}, penetration {:.1e}{moved} {ended:?}",
                 state.t,
                 1e6 * spent / part as f64,
                 (now.contacts - counts.contacts) as f64 / (now.problems - counts.problems).max(1) as f64,
