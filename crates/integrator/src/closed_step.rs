@@ -53,8 +53,12 @@ pub(crate) struct ClosedStep<const D: usize, M = ThetaStep> {
     row: ContactRows<D>,
     /// The contacts that take part, in order of identity.
     pub(crate) closed: Vec<ContactId>,
-    /// As many of them have been looked at in this step.
-    looked_for: usize,
+    /// Those of them that have been looked at in this step, and those that are new.
+    looked: Vec<ContactId>,
+    new: Vec<ContactId>,
+    /// What was found of the new ones.
+    found: Candidates<D>,
+    found_rooms: Vec<f64>,
     /// The impulses of the attempt before, of many contacts: where the solver starts.
     tried: WarmStart,
     /// The part of the step that is taken: an approach that forces make within a whole step is no
@@ -102,7 +106,10 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             stage: ContactStage::new(),
             row: ContactRows::default(),
             closed: Vec::new(),
-            looked_for: 0,
+            looked: Vec::new(),
+            new: Vec::new(),
+            found: Vec::new(),
+            found_rooms: Vec::new(),
             tried: WarmStart::default(),
             of_step: 1.0,
             resting_shift: Vec::new(),
@@ -125,16 +132,19 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         state: &mut State,
         work: &mut Workspace<D>,
     ) -> Result<(), StepError> {
-        let contacts = model.detector().capacity();
+        let contacts = model.contacts_to_expect();
         self.step.start_motion(model, state, work)?;
         self.resize(model);
-        for candidates in [&mut self.middle, &mut self.ahead, &mut self.start, &mut work.candidates] {
+        for candidates in [&mut self.middle, &mut self.ahead, &mut self.start, &mut self.found, &mut work.candidates] {
             candidates.reserve(contacts);
         }
         self.rooms.iter_mut().for_each(|rooms| rooms.reserve(contacts));
         self.stage.reserve(model);
         self.row.reserve(1, model.size().row, model.parts().len());
-        self.closed.reserve(contacts);
+        self.found_rooms.reserve(contacts);
+        for ids in [&mut self.closed, &mut self.looked, &mut self.new] {
+            ids.reserve(contacts);
+        }
         self.resting_shift.reserve(contacts);
         self.slides.reserve(contacts);
         self.guarded.reserve(contacts);
@@ -179,8 +189,9 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         self.step.move_without_impulses(model, from, span, work);
         self.v_free.clear();
         self.v_free.extend_from_slice(self.step.v_end());
-        self.looked_for = 0;
+        self.looked.clear();
         self.tried.clear();
+        self.stage.keep_islands_anew();
         Ok(())
     }
 
@@ -194,9 +205,8 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         work: &mut Workspace<D>,
     ) -> Result<Option<Outcome>, StepError> {
         // In flight there is nothing to look at.
-        if self.looked_for < self.closed.len() {
+        if self.looked.len() < self.closed.len() {
             self.look_ahead(model, from, span.h, work)?;
-            self.looked_for = self.closed.len();
         }
         let outcome = loop {
             let outcome =
@@ -207,6 +217,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
                 break self.step.judge(outcome, work.settings.tolerance);
             }
             self.v_free.copy_from_slice(self.step.v_end());
+            self.stage.keep_islands_anew();
         };
         self.step.end(model, from, span.h)?;
         work.detect(model, self.step.q_end(), 0.0)?;
@@ -265,15 +276,30 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         self.q_ahead.resize(model.size().q, 0.0);
     }
 
-    /// Finds frames and gaps of the closed contacts at q̃_m and q̃.
+    /// Finds frames and gaps at q̃_m and q̃ of the closed contacts that haven't been looked at in this
+    /// step: the free motion is the same for all its attempts.
     fn look_ahead(&mut self, model: &Model<D>, state: &State, h: f64, work: &mut Workspace<D>) -> Result<(), Mismatch> {
         // ½(v⁰ + v_free), the mean velocity of the free motion.
         let mean = self.step.v_end_mut();
         mean.iter_mut().zip(&self.v_free).zip(&state.v).for_each(|((v, free), v0)| *v = 0.5 * (free + v0));
-        model.move_along(&state.q, mean, h, &mut self.q_ahead);
-        work.locate_past_ends(model, &self.q_ahead, &self.closed, &mut self.ahead, &mut self.rooms[1])?;
-        model.move_along(&state.q, mean, 0.5 * h, &mut self.q_mid);
-        work.locate_past_ends(model, &self.q_mid, &self.closed, &mut self.middle, &mut self.rooms[0])
+        if self.looked.is_empty() {
+            model.move_along(&state.q, mean, h, &mut self.q_ahead);
+            work.locate_past_ends(model, &self.q_ahead, &self.closed, &mut self.ahead, &mut self.rooms[1])?;
+            model.move_along(&state.q, mean, 0.5 * h, &mut self.q_mid);
+            work.locate_past_ends(model, &self.q_mid, &self.closed, &mut self.middle, &mut self.rooms[0])?;
+        } else {
+            let Self { closed, looked, new, found, found_rooms, .. } = self;
+            new.clear();
+            new.extend(closed.iter().filter(|id| looked.binary_search(id).is_err()));
+            let [middle, ahead] = &mut self.rooms;
+            for (q, known, rooms) in [(&self.q_ahead, &mut self.ahead, ahead), (&self.q_mid, &mut self.middle, middle)]
+            {
+                work.locate_past_ends(model, q, new, found, found_rooms)?;
+                merge(known, rooms, found, found_rooms);
+            }
+        }
+        self.looked.clone_from(&self.closed);
+        Ok(())
     }
 
     /// Whether contact `i` of an attempt of `h` (s) may be past the end of its surface after it. It
@@ -348,6 +374,8 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             let guard = Guard { model, stage, laws, members, v_before: &state.v, v_free };
             Ok(guard.apply(problem, guarded)?)
         })?;
+        // Of islands that were solved in an attempt before, too.
+        self.guarded.take_over(&self.stage.problem);
         self.step.respond(model, &self.stage, span.h, work)?;
         self.stage.complete(self.step.v_end())?;
         self.tried.clear();
@@ -428,14 +456,17 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
     /// workspace's candidates), deeper than they began; whether there are any.
     fn close_what_sinks(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>) -> Result<bool, Mismatch> {
         let before = self.closed.len();
-        for k in 0..work.candidates.len() {
-            let Candidate { id, gap, .. } = work.candidates[k];
-            if gap >= -self.gap_tolerance || self.closed[..before].binary_search(&id).is_ok() {
-                continue;
-            }
-            let level = self.gap_at_start(model, state, work, id)?.min(0.0);
-            if gap < level - SINKING * self.gap_tolerance {
-                self.closed.push(id);
+        self.new.clear();
+        let deep = work.candidates.iter().filter(|candidate| candidate.gap < -self.gap_tolerance).map(|deep| deep.id);
+        self.new.extend(deep.filter(|id| self.closed.binary_search(id).is_err()));
+        if self.new.is_empty() {
+            return Ok(false);
+        }
+        work.locate(model, &state.q, &self.new, &mut self.start)?;
+        for id in &self.new {
+            let gap = |candidates: &[Candidate<D>]| find(candidates, *id).map_or(0.0, |candidate| candidate.gap);
+            if gap(&work.candidates) < gap(&self.start).min(0.0) - SINKING * self.gap_tolerance {
+                self.closed.push(*id);
             }
         }
         let found = self.closed.len() > before;
@@ -478,6 +509,26 @@ pub(crate) fn restitute<const D: usize>(
         shift[0] = normal;
     }
     rule
+}
+
+/// Puts what was found, none of which is known, among the `known`; both rise by identity.
+fn merge<const D: usize>(known: &mut Candidates<D>, rooms: &mut Vec<f64>, found: &[Candidate<D>], found_rooms: &[f64]) {
+    let (mut from, mut new) = (known.len(), found.len());
+    known.extend_from_slice(found);
+    rooms.extend_from_slice(found_rooms);
+    // From the end: what is written over has been moved already.
+    for to in (0..known.len()).rev() {
+        if new == 0 {
+            break;
+        }
+        if from > 0 && known[from - 1].id > found[new - 1].id {
+            from -= 1;
+            (known[to], rooms[to]) = (known[from], rooms[from]);
+        } else {
+            new -= 1;
+            (known[to], rooms[to]) = (found[new], found_rooms[new]);
+        }
+    }
 }
 
 pub(crate) fn find<const D: usize>(candidates: &[Candidate<D>], id: ContactId) -> Option<&Candidate<D>> {

@@ -212,7 +212,7 @@ impl Scheme<2> for EventDriven {
         Self::refuse(model)?;
         self.located.start(model, state, work)?;
         self.smooth.reserve(model);
-        let (size, contacts) = (model.size(), model.detector().capacity().min(crate::stage::RESERVED_CONTACTS));
+        let (size, contacts) = (model.size(), model.contacts_to_expect().min(crate::stage::RESERVED_CONTACTS));
         let numbers = 1 + REMEMBERED * contacts;
         self.open.reserve(contacts);
         self.watched.reserve(4 * contacts);

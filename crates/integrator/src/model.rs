@@ -2,6 +2,7 @@
 
 use crate::mismatch::{Identity, length};
 use crate::stage::ContactRows;
+use crate::stage::RESERVED_CONTACTS;
 use crate::{Energy, ImpactLaw, Linearised, Mismatch, PairLaw, Size, Stretching, Subsystem, Traits, Vector};
 use std::collections::HashSet;
 use std::ops::Range;
@@ -347,6 +348,9 @@ impl<const D: usize> ModelBuilder<D> {
     }
 }
 
+/// Contacts to expect for each velocity: twelve of a block in the plane, where half as many touch it in a dense packing.
+const CONTACTS_PER_VELOCITY: usize = 4;
+
 impl<const D: usize> Model<D> {
     /// Coordinates, velocities, bodies, and the longest row.
     #[must_use]
@@ -427,6 +431,13 @@ impl<const D: usize> Model<D> {
     /// Whether anything can ever touch: if not, steps don't look.
     pub(crate) fn has_contacts(&self) -> bool {
         self.contacts
+    }
+
+    /// As many contacts as memory is made for at the start. A detector of groups of bodies counts the contacts of all pairs, whose
+    /// number goes with the square of the bodies'; rigid bodies can't all touch each other at once. A step with more contacts than this
+    /// and than ever before allocates.
+    pub(crate) fn contacts_to_expect(&self) -> usize {
+        self.detector.capacity().min(RESERVED_CONTACTS.max(CONTACTS_PER_VELOCITY * self.size().v))
     }
 
     /// The detector.

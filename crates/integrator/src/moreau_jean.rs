@@ -83,7 +83,7 @@ impl<const D: usize> Scheme<D> for MoreauJean<D> {
 
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {
         self.step.start(model, state, work)?;
-        let contacts = model.detector().capacity();
+        let contacts = model.contacts_to_expect();
         self.stage.reserve(model);
         state.warm.reserve(contacts, D);
         state.memory.reserve(contacts);

@@ -165,7 +165,7 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         if model.parts().iter().any(refused) {
             return Err(StepError::Unsupported { what: FOLLOWERS });
         }
-        let contacts = model.detector().capacity();
+        let contacts = model.contacts_to_expect();
         self.step.start(model, state, work)?;
         self.impact.reserve(model);
         self.one.reserve(model);

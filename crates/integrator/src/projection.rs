@@ -71,7 +71,7 @@ impl<const D: usize> Projection<D> {
 
     /// Makes room for what a step of the model can need.
     pub(crate) fn reserve(&mut self, model: &Model<D>) {
-        let contacts = model.detector().capacity();
+        let contacts = model.contacts_to_expect();
         self.stage.reserve(model);
         self.one.reserve(model);
         self.near.reserve(contacts);

@@ -193,7 +193,7 @@ impl<const D: usize> Scheme<D> for Resolved<D> {
         }
         self.step.start(model, state, work)?;
         self.resize(model);
-        let contacts = model.detector().capacity();
+        let contacts = model.contacts_to_expect();
         for candidates in [&mut self.start, &mut self.middle, &mut self.ahead, &mut work.candidates] {
             candidates.reserve(contacts);
         }

@@ -1,6 +1,7 @@
 //! The contact stage: the way from candidates to impulses, for every scheme.
 
 mod islands;
+mod kept;
 mod posed;
 mod resolve;
 mod rows;
@@ -201,7 +202,7 @@ impl<const D: usize> ContactStage<D> {
         self.contacts.reserve(contacts.saturating_sub(self.contacts.len()));
         self.rows.reserve(contacts, model.size().row, model.parts().len());
         self.problem.reserve(contacts);
-        self.springs.reserve(if model.has_springs() { model.detector().capacity() } else { 0 });
+        self.springs.reserve(if model.has_springs() { model.contacts_to_expect() } else { 0 });
     }
 
     /// Makes room for so many contacts more, so that adding them moves none.
@@ -238,6 +239,12 @@ impl<const D: usize> ContactStage<D> {
         self.model = None;
         self.apart = false;
         self.forces = false;
+    }
+
+    /// Forgets what was found for the islands of the last attempt, and from now on keeps that of each
+    /// solve for the next: the contacts of both must have the same rows and the same factors.
+    pub(crate) fn keep_islands_anew(&mut self) {
+        self.islands.keep_anew();
     }
 
     /// Whether it holds forces in place of impulses.

@@ -8,11 +8,13 @@
 //!    that factors fill in: this needs one or two factorisations where Newton needs ten.
 //! 4. **Semi-smooth Newton** ([`Newton`]): a round of steps; if they fail, more sweeps of about the
 //!    same work and another round, a few times.
-//! 5. **Pivots** ([`Lemke`](crate::Lemke)), in the plane for up to some hundred contacts. If blocks
+//! 5. **A short central path and alternating directions**, with Newton steps from where they end, if
+//!    there are many contacts in the plane: a crowd.
+//! 6. **Pivots** ([`Lemke`](crate::Lemke)), in the plane for up to some hundred contacts. If blocks
 //!    lean on each other, the contact forces may be nearly undetermined, and methods that follow
 //!    the residual stop at about 1e-10; pivoting is exact.
-//! 6. **The central path** ([`Smoothing`]): for degenerate problems.
-//! 7. **The proximal point** ([`Prox`]), Newton with more sweeps between its steps, and sweeps
+//! 7. **The central path** ([`Smoothing`]): for degenerate problems.
+//! 8. **The proximal point** ([`Prox`]), Newton with more sweeps between its steps, and sweeps
 //!    until the iterations are used up.
 //!
 //! Decisions depend on counted work (blocks, block products), never on time, so the same problem
@@ -43,6 +45,19 @@ const FIRST_SWEEPS: u32 = 12;
 /// this number of Newton steps. After the last round comes the central path, which takes tens of
 /// steps.
 const WORTHWHILE_WORK: [f64; 4] = [4.0, 8.0, 16.0, 40.0];
+const ALL_ROUNDS: usize = WORTHWHILE_WORK.len();
+/// More plane contacts than `CROWD` in one island are a crowd. After `CROWD_ROUNDS` such rounds, a
+/// central path of `SHORT_PATH` steps, `CROWD_DIRECTIONS` iterations of alternating directions, and a
+/// path of `LONG_PATH` steps come before pivots, whose work grows with the cube of the contacts; and
+/// there are no last sweeps. Found on the collisions of a pile of polygons (`benches/pile`), where
+/// more than half of the problems that the first rounds leave went to the pivots, at ten times the
+/// time (`benches/results/2026-11-25-many-bodies.md`).
+const CROWD: usize = 40;
+const CROWD_ROUNDS: usize = 2;
+const SHORT_PATH: u32 = 100;
+#[cfg(feature = "sparse")]
+const CROWD_DIRECTIONS: u32 = 200;
+const LONG_PATH: u32 = 400;
 /// Sweeps over pairs are tried if the first sweeps reach this residual.
 const NEARLY: f64 = 1e-4;
 /// StepWork of a Newton step and of a sweep in units of a block product: per block and per contact.
@@ -180,8 +195,12 @@ impl<const D: usize> Chain<D> {
             let outcome = self.admm.solve(problem, &within(progress.left(stop), DIRECTIONS), p);
             progress.add(outcome);
         }
+        let crowd = pivots.is_some() && p.len() > CROWD;
         if !progress.over(stop) {
-            self.sweeps_and_steps(problem, stop, p, &mut progress);
+            self.sweeps_and_steps(problem, if crowd { CROWD_ROUNDS } else { ALL_ROUNDS }, stop, p, &mut progress);
+        }
+        if !progress.over(stop) && crowd {
+            self.path_and_directions(problem, stop, p, &mut progress);
         }
         if !progress.over(stop)
             && p.len() <= MOST_PIVOTED
@@ -195,7 +214,8 @@ impl<const D: usize> Chain<D> {
             }
             progress.add(outcome);
         }
-        if !progress.over(stop) {
+        // The path of a crowd has been followed.
+        if !progress.over(stop) && !crowd {
             let outcome = self.smoothing.solve(problem, &within(progress.left(stop), u32::MAX), p);
             progress.add(outcome);
         }
@@ -207,16 +227,43 @@ impl<const D: usize> Chain<D> {
             let outcome = self.newton.solve(problem, &within(progress.left(stop), u32::MAX), p);
             progress.add(outcome);
         }
-        if !progress.over(stop) {
+        if !progress.over(stop) && !crowd {
             let outcome = self.pgs.solve(problem, &within(progress.left(stop), u32::MAX), p);
             progress.add(outcome);
         }
         progress.end(problem, stop, p)
     }
 
+    /// A short central path; alternating directions, with Newton steps from where they end, as they
+    /// find which contacts slide and open; and a longer path, with other regularisations.
+    fn path_and_directions(
+        &mut self,
+        problem: &ContactProblem<'_, D>,
+        stop: &Stop<'_>,
+        p: &mut [Vector<D>],
+        progress: &mut Progress,
+    ) {
+        let within = |left: u32, most: u32| stop.with_max_iterations(left.min(most));
+        // Both return the best point that they meet, the start among them.
+        progress.add(self.smoothing.solve(problem, &within(progress.left(stop), SHORT_PATH), p));
+        #[cfg(feature = "sparse")]
+        if !progress.over(stop) {
+            progress.add(self.admm.solve(problem, &within(progress.left(stop), CROWD_DIRECTIONS), p));
+            if progress.over(stop) {
+                return;
+            }
+            self.newton.prepare(problem);
+            progress.add(self.newton.round(problem, &within(progress.left(stop), u32::MAX), p));
+        }
+        if !progress.over(stop) {
+            progress.add(self.smoothing.solve(problem, &within(progress.left(stop), LONG_PATH), p));
+        }
+    }
+
     fn sweeps_and_steps(
         &mut self,
         problem: &ContactProblem<'_, D>,
+        rounds: usize,
         stop: &Stop<'_>,
         p: &mut [Vector<D>],
         progress: &mut Progress,
@@ -225,7 +272,7 @@ impl<const D: usize> Chain<D> {
         // Number of sweeps with the cost of a Newton step.
         let mut ratio = None;
         let mut batch = FIRST_SWEEPS;
-        for (round, worth) in WORTHWHILE_WORK.into_iter().enumerate() {
+        for (round, worth) in WORTHWHILE_WORK.into_iter().take(rounds).enumerate() {
             let before = progress.best.residual.global;
             let outcome = self.pgs.solve(problem, &within(progress.left(stop), batch), p);
             let swept = outcome.iterations.max(1);

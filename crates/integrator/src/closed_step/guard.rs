@@ -31,6 +31,13 @@ impl Guarded {
         self.excused.reserve(contacts.saturating_sub(self.excused.len()));
     }
 
+    /// Those that are guarded in a solved problem of all contacts.
+    pub(crate) fn take_over<const D: usize>(&mut self, problem: &Problem<D>) {
+        for (guarded, posed) in self.contacts.iter_mut().zip(&problem.posed) {
+            *guarded |= posed.guarded;
+        }
+    }
+
     /// None is, of so many.
     pub(crate) fn restart(&mut self, contacts: usize) {
         self.contacts.clear();
@@ -95,7 +102,7 @@ impl<const D: usize> Guard<'_, D> {
                 problem.mu[i] = 0.0;
             }
             self.shift_back(problem, i)?;
-            guarded.contacts[number] = true;
+            (guarded.contacts[number], problem.posed[i].guarded) = (true, true);
             found = true;
             if frees {
                 continue;
@@ -106,7 +113,7 @@ impl<const D: usize> Guard<'_, D> {
                 let slides = matches!(problem.rule(j), Rule::Shifted) && contact.persisting && problem.p[j][0] > 0.0;
                 if slides && !guarded.contacts[other] {
                     self.shift_back(problem, j)?;
-                    guarded.contacts[other] = true;
+                    (guarded.contacts[other], problem.posed[j].guarded) = (true, true);
                 }
             }
         }

@@ -7,6 +7,7 @@
 //! that shakes stand apart as those on ground at rest. Memory and time then grow with the number of
 //! islands, not with its square.
 
+use super::kept::Kept;
 use super::solve::{couple, couple_into};
 use super::{ContactError, ContactRows, ContactStage, Members, Over, Problem};
 use crate::laws::{Laws, join};
@@ -30,6 +31,15 @@ pub(super) struct Islands<const D: usize> {
     found: teeter_contact::Islands,
     spans: Vec<[Span; 2]>,
     problem: Problem<D>,
+    /// What is known of the attempt before, if it is to be kept.
+    kept: Option<Kept<D>>,
+    outcomes: Vec<Outcome>,
+}
+
+impl<const D: usize> Islands<D> {
+    pub(super) fn keep_anew(&mut self) {
+        self.kept.get_or_insert_default().forget();
+    }
 }
 
 /// What a contact shares with others: the velocities that it pushes where W is diagonal, else the
@@ -94,7 +104,7 @@ impl<const D: usize> ContactStage<D> {
         over: Over,
         guard: &mut impl FnMut(&Self, &mut Problem<D>, &Laws<D>, Members<'_>) -> Result<bool, ContactError>,
     ) -> Result<Option<Outcome>, ContactError> {
-        let Islands { diagonal, shared, own, found, spans, problem } = islands;
+        let Islands { diagonal, shared, own, found, spans, problem, kept, outcomes } = islands;
         diagonal.clear();
         for part in 0..model.parts().len() {
             let answer = work.factors.answer(part, responses);
@@ -106,8 +116,17 @@ impl<const D: usize> ContactStage<D> {
             return Ok(None);
         }
         self.extra.sort_by_key(|(i, _)| *i);
-        let mut all: Option<Outcome> = None;
+        // What is known is of contacts without more compliance than their rows have.
+        let mut kept = kept.as_mut().filter(|_| self.extra.is_empty());
+        if let Some(kept) = &mut kept {
+            kept.recognise(&self.contacts, &self.problem);
+        }
+        outcomes.clear();
         for members in found.iter() {
+            if let Some(outcome) = kept.as_ref().and_then(|kept| kept.restore(&mut self.problem, members)) {
+                outcomes.push(outcome);
+                continue;
+            }
             spans.clear();
             spans.extend(members.iter().map(|i| self.rows.spans[*i]));
             problem.take_part(&self.problem, members);
@@ -136,9 +155,12 @@ impl<const D: usize> ContactStage<D> {
             }
             outcome.residual.worst_contact = members.get(outcome.residual.worst_contact).copied().unwrap_or(0);
             self.problem.put_part(problem, members);
-            all = Some(all.map_or(outcome, |all| together(all, outcome)));
+            outcomes.push(outcome);
         }
-        Ok(all)
+        if let Some(kept) = kept {
+            kept.keep(&self.contacts, &self.problem, found, outcomes);
+        }
+        Ok(outcomes.iter().copied().reduce(together))
     }
 }
 

@@ -6,7 +6,7 @@ use crate::{Coupling, Vector};
 use teeter_contact::{Block, BlockSparse, ContactProblem, Delassus, Incidence, ProblemError};
 
 /// What the law of a contact acts on, beside what the solver sees.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Posed<const D: usize> {
     pub(crate) u_before: Vector<D>,
     pub(crate) u_free: Vector<D>,
@@ -14,6 +14,8 @@ pub(crate) struct Posed<const D: usize> {
     pub(crate) rule: Rule<D>,
     /// μ of the law.
     pub(crate) friction: f64,
+    /// Whether a guard has changed what holds for it.
+    pub(crate) guarded: bool,
 }
 
 /// A contact problem with its rules. Impulses stand where a solver starts, and at last where it ended.
@@ -64,7 +66,14 @@ impl<const D: usize> Problem<D> {
     #[inline]
     pub(crate) fn push(&mut self, mu: f64, p: Vector<D>) {
         let zero = Vector::zeros();
-        self.posed.push(Posed { u_before: zero, u_free: zero, shift: zero, rule: Rule::Unposed, friction: mu });
+        self.posed.push(Posed {
+            u_before: zero,
+            u_free: zero,
+            shift: zero,
+            rule: Rule::Unposed,
+            friction: mu,
+            guarded: false,
+        });
         self.q.push(zero);
         self.mu.push(mu);
         self.p.push(p);

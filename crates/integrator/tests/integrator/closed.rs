@@ -5,8 +5,9 @@ use nalgebra::Vector2;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use teeter_beam::{Beam, BeamSpec, Section};
-use teeter_detect::Kinematics;
+use teeter_detect::{Kinematics, PointDetector, PointPair};
 use teeter_integrator::*;
+use teeter_rigid::{MassProperties, Rectangle};
 
 /// What a run of the scheme showed.
 #[derive(Debug, Default)]
@@ -178,4 +179,56 @@ fn a_block_that_lands_flat_stays_on_both_feet() {
         assert_eq!(state.warm.ids().len(), 2, "{h}");
         assert!(state.v.iter().all(|v| v.abs() < 1e-14) && state.q[2].abs() < 1e-14, "{h}: {:?}", (state.q, state.v));
     }
+}
+
+/// Forty blocks lie on the ground, and one falls onto it with a corner ahead: the step in which the corner closes is attempted
+/// anew, but only the corner's island is solved in the second attempt, and only the corner is looked at.
+#[test]
+fn an_attempt_solves_only_the_islands_that_changed() {
+    let shape = Rectangle::new(0.1, 0.05).unwrap();
+    let mass = MassProperties::rectangle(&shape, 0.1, 2700.0).unwrap();
+    let mut parts = ModelBuilder::new();
+    let blocks = parts.add(Blocks::new(vec![Block::new(mass, &shape); 41], Vector2::new(0.0, -9.81)));
+    let surface = parts.add(Ground::flat(0.0)).body();
+    let law = parts.law(PairLaw::new(0.5, 0.0));
+    let pair = |pair: u32| PointPair {
+        pair,
+        law,
+        points: shape.corners().to_vec(),
+        body: blocks.nth_body(pair),
+        surface,
+        kinematics: Kinematics::Deformed,
+    };
+    let model = parts.build(Box::new(PointDetector::new((0..41).map(pair).collect()))).unwrap();
+    let mut q: Vec<f64> = (0..41).flat_map(|k| [0.2 * f64::from(k), 0.025, 0.0]).collect();
+    let tilt = 0.2_f64;
+    q[120 + 1] = 0.05 * tilt.sin() + 0.025 * tilt.cos() + 0.0025;
+    q[120 + 2] = tilt;
+    let mut state = State::new(&model, &q, &[0.0; 123], 1e-3).unwrap();
+    let mut work = workspace(&model);
+    let mut scheme = MoreauJeanClosed::new(MoreauJeanClosedSettings::default()).unwrap();
+    let mut step = |steps: u64, state: &mut State| {
+        let before = work.counts;
+        let ended = run(&model, &mut scheme, state, &mut work, &Plan::steps(steps), &mut []).unwrap();
+        assert_eq!(ended, teeter_integrator::Ended::Complete);
+        let now = work.counts;
+        let attempts = now.refused_attempts - before.refused_attempts;
+        (attempts, now.problems - before.problems, now.detections - before.detections)
+    };
+    // All blocks close at once. Between the attempts all are located at their start, then twice ahead.
+    assert_eq!(step(1, &mut state), (1, 40, 5));
+    // At rest: the closed contacts are located twice ahead, and all bodies are looked at once.
+    assert_eq!(step(2, &mut state), (0, 40, 3));
+    let mut struck = false;
+    for n in 3..60 {
+        let (attempts, problems, detections) = step(n, &mut state);
+        if attempts == 1 {
+            // Not 81 problems.
+            assert_eq!((problems, detections), (41, 7), "step {n}");
+            struck = true;
+            break;
+        }
+    }
+    assert!(struck);
+    assert!(state.q[..120].iter().zip(&q).all(|(now, start)| (now - start).abs() <= 1e-12));
 }
