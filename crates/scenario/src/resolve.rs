@@ -7,6 +7,7 @@ mod blocks;
 mod contacts;
 mod motions;
 pub(crate) mod names;
+mod outlines;
 mod sections;
 mod shape;
 mod signals;
@@ -279,6 +280,11 @@ impl<'a, 'f> Resolver<'a, 'f> {
     fn material(&mut self, owner: &str) -> Option<String> {
         let path = format!("{owner}.material");
         let name = self.word(&path)?;
+        self.material_named(&path, &name)
+    }
+
+    /// The table of the material with this name, which is given at `path`.
+    fn material_named(&mut self, path: &str, name: &str) -> Option<String> {
         let table = format!("material.{name}");
         if self.doc.has_table(&table) {
             return Some(table);
@@ -292,8 +298,8 @@ impl<'a, 'f> Resolver<'a, 'f> {
         } else {
             format!("materials defined: {}", listed(&known))
         };
-        let near = crate::suggest::nearest(&name, known).map(str::to_owned);
-        self.error(&path, format!("the material `{name}` is not defined"), remedy);
+        let near = crate::suggest::nearest(name, known).map(str::to_owned);
+        self.error(path, format!("the material `{name}` is not defined"), remedy);
         self.suggest(near);
         None
     }

@@ -195,6 +195,14 @@ impl Document {
         }
     }
 
+    /// An array of tables.
+    pub fn items(&self, path: &str) -> Option<&[Item]> {
+        match &self.entries.get(path)?.value {
+            Value::Items(items) => Some(items),
+            _ => None,
+        }
+    }
+
     /// Two, each a word or a table: the supports of a beam.
     pub fn item_pair(&self, path: &str) -> Option<&[Item; 2]> {
         match &self.entries.get(path)?.value {

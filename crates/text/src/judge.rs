@@ -102,6 +102,10 @@ impl Judge<'_> {
             }
             Kind::Words(choices) => self.words(key, choices, path, node).map(Value::Words),
             Kind::WordOrTable(words, keys) => self.item(key, (words, keys), path, node).map(Value::Item),
+            Kind::Tables(keys) => {
+                let read = |judge: &mut Self, item: &Node| judge.item(key, (&[], keys), path, item);
+                self.list_of(key, path, node, read).map(Value::Items)
+            }
             Kind::WordOrTablePair(words, keys) => {
                 let read = |judge: &mut Self, item: &Node| {
                     let reserved = judge.is_reserved(key, path, item);
@@ -312,7 +316,7 @@ impl Judge<'_> {
     fn item(&mut self, key: &Key, (words, keys): (&[&str], &'static [Key]), path: &str, node: &Node) -> Option<Item> {
         match &node.raw {
             Raw::Branch(branch) => self.item_table(keys, path, branch).map(Item::Table),
-            Raw::Text(_) => self.choice(key, words, path, node).map(Item::Word),
+            Raw::Text(_) if !words.is_empty() => self.choice(key, words, path, node).map(Item::Word),
             _ => {
                 self.mistyped(key, path, node);
                 None
