@@ -46,7 +46,7 @@ fn schema() -> Value {
 const NAME: &str = "^[A-Za-z0-9_-]{1,64}$";
 
 /// The same with `*` for any characters.
-const PATTERN: &str = "^[A-Za-z0-9_*-]{1,}$";
+const PATTERN: &str = "^[A-Za-z0-9_*?-]{1,}$";
 
 fn object(table: &TableSchema) -> Map<String, Value> {
     let mut properties = Map::new();
@@ -197,6 +197,9 @@ fn of_kind_alone(key: &Key) -> Value {
         Kind::ChoicePair(words) => pair(json!({ "enum": words })),
         Kind::NamePair => pair(json!({ "$ref": "#/$defs/name" })),
         Kind::PatternPair => pair(json!({ "type": "string", "pattern": PATTERN })),
+        Kind::PatternPairs => {
+            json!({ "type": "array", "items": pair(json!({ "type": "string", "pattern": PATTERN })) })
+        }
         Kind::Downward(dimension) => {
             let of = |range| quantity(dimension, range);
             json!({ "anyOf": [of(&Range::NOT_NEGATIVE), pair(of(&Range::ANY))] })

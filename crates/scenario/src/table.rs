@@ -324,11 +324,18 @@ pub static TABLES: &[TableSchema] = &[
         ],
     },
     TableSchema {
+        pattern: "contacts",
+        occurrence: Occurrence::Optional,
+        doc: "All contacts together.",
+        keys: &[key("apart", Kind::PatternPairs, Optional, "[[\"wall-*\", \"wall-*\"]]", "Pairs of bodies, by names or patterns, that don't touch, whatever the contacts say.")],
+    },
+    TableSchema {
         pattern: "contact.*",
         occurrence: Occurrence::Named,
         doc: "Contact of a block with a beam, with the ground or with another block, with impact and friction. Bodies without a contact pass through each other.",
         keys: &[
-            key("between", Kind::PatternPair, Required, "[\"rocker\", \"table\"]", "Two blocks, or a block and the beam or `ground` that it touches, in either order. Forces and velocities in the tables are those on the block; between two, on the first. A `*` in a name stands for any characters: [\"brick-*\", \"brick-*\"] stands for all pairs of blocks with such names, except those that already have a contact by their full names, or by an earlier pattern."),
+            key("between", Kind::PatternPair, RequiredWithout("materials"), "[\"rocker\", \"table\"]", "Two blocks, or a block and the beam or `ground` that it touches, in either order. Forces and velocities in the tables are those on the block; between two, on the first. A `*` in a name stands for any characters, a `?` for one: [\"brick-*\", \"brick-*\"] is for all pairs of bodies with such names, [\"*\", \"*\"] for all that can touch. Of several contacts that are for a pair the one with full names holds, else that with the most letters in its patterns, else that by materials, else [\"*\", \"*\"]."),
+            key("materials", Kind::NamePair, Optional, "[\"granite\", \"steel\"]", "Two materials instead of two bodies: for all pairs of blocks and beams of these materials."),
             key("friction", Kind::Number(Range::NOT_NEGATIVE), Required, "0.5", "Coefficient of Coulomb friction."),
             key("restitution", Kind::Number(Range::UNIT), Default("0.0"), "0.0", "Coefficient of restitution: of the normal velocity, or with poisson of the normal impulse.").only_with("law", IMPACTS),
             key("tangential_restitution", Kind::Number(Range::UNIT), Default("0.0"), "0.0", "Fraction of the tangential velocity that is reversed in an impact that sticks.").only_with("law", IMPACTS),

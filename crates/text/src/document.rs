@@ -195,6 +195,14 @@ impl Document {
         }
     }
 
+    /// An array of pairs of texts.
+    pub fn text_pairs(&self, path: &str) -> Option<&[[String; 2]]> {
+        match &self.entries.get(path)?.value {
+            Value::TextPairs(pairs) => Some(pairs),
+            _ => None,
+        }
+    }
+
     /// An array of tables.
     pub fn items(&self, path: &str) -> Option<&[Item]> {
         match &self.entries.get(path)?.value {

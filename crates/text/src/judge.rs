@@ -127,6 +127,11 @@ impl Judge<'_> {
                 let read = |judge: &mut Self, item: &Node| judge.pattern(key, path, item);
                 self.pair_of(key, path, node, read).map(Value::TextPair)
             }
+            Kind::PatternPairs => {
+                let read = |judge: &mut Self, item: &Node| judge.pattern(key, path, item);
+                let pair = |judge: &mut Self, item: &Node| judge.pair_of(key, path, item, read);
+                self.list_of(key, path, node, pair).map(Value::TextPairs)
+            }
             Kind::Downward(dimension) if matches!(node.raw, Raw::Array(_)) => {
                 let read = |judge: &mut Self, item: &Node| judge.quantity(key, dimension, &Range::ANY, path, item);
                 self.pair_of(key, path, node, read).map(Value::Pair)
@@ -286,14 +291,14 @@ impl Judge<'_> {
         }
     }
 
-    /// A name, or one with `*` in it.
+    /// A name, or one with `*` or `?` in it.
     fn pattern(&mut self, key: &Key, path: &str, node: &Node) -> Option<String> {
         let text = self.text(key, path, node)?;
-        let plain: String = text.chars().filter(|c| *c != '*').collect();
+        let plain: String = text.chars().filter(|c| !matches!(c, '*' | '?')).collect();
         let only_stars = plain.is_empty() && !text.is_empty();
         match name_rule(&plain) {
             Some(rule) if !only_stars => {
-                self.blame(node, path, format!("{rule}; `*` stands for any characters of a name"));
+                self.blame(node, path, format!("{rule}; `*` stands for any characters of a name, `?` for one"));
                 None
             }
             _ => Some(text),

@@ -160,8 +160,10 @@ pub enum Kind {
     Tables(&'static [Key]),
     /// An array of two names.
     NamePair,
-    /// An array of two names, in which a `*` stands for any characters.
+    /// An array of two names, in which a `*` stands for any characters and a `?` for one.
     PatternPair,
+    /// An array of such arrays.
+    PatternPairs,
     /// A quantity in one of several units, which determines its meaning.
     Measure(&'static [crate::measure::AllowedUnit], Range),
     /// A vector: an array of two quantities x, y, or one quantity that is not negative, for a

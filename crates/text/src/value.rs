@@ -27,6 +27,8 @@ pub enum Value {
     List(Vec<f64>),
     /// Two texts, names or choices.
     TextPair([String; 2]),
+    /// Any number of pairs of texts.
+    TextPairs(Vec<[String; 2]>),
     /// Some words.
     Words(Vec<String>),
     /// A quantity in one of the units that its key accepts.
@@ -137,6 +139,7 @@ impl Value {
             Self::Points(_) => matches!(kind, Kind::Points(..)),
             Self::List(_) => matches!(kind, Kind::List(..) | Kind::Numbers(_)),
             Self::TextPair(_) => matches!(kind, Kind::ChoicePair(_) | Kind::NamePair | Kind::PatternPair),
+            Self::TextPairs(_) => kind == Kind::PatternPairs,
             Self::Words(_) => matches!(kind, Kind::Words(_)),
             Self::Measure(_) => matches!(kind, Kind::Measure(..)),
             Self::Item(_) => matches!(kind, Kind::WordOrTable(..)),
@@ -166,6 +169,10 @@ impl Value {
                 format!("[{}]", items.join(", "))
             }
             Self::TextPair([a, b]) => format!("[{}, {}]", quote(a), quote(b)),
+            Self::TextPairs(pairs) => {
+                let pairs: Vec<String> = pairs.iter().map(|[a, b]| format!("[{}, {}]", quote(a), quote(b))).collect();
+                format!("[{}]", pairs.join(", "))
+            }
             Self::Words(words) => {
                 let words: Vec<String> = words.iter().map(|word| quote(word)).collect();
                 format!("[{}]", words.join(", "))

@@ -44,6 +44,7 @@ pub(crate) fn noun(key: &Key) -> String {
         Kind::Tables(_) => "an array of tables".to_owned(),
         Kind::WordOrTable(..) => "a word in quotes or a table".to_owned(),
         Kind::WordOrTablePair(..) => "an array of two, each a word in quotes or a table,".to_owned(),
+        Kind::PatternPairs => "an array of pairs, each an array of two words in quotes,".to_owned(),
         Kind::ChoicePair(_) | Kind::NamePair | Kind::PatternPair => "an array of two words in quotes".to_owned(),
         Kind::Downward(dimension) => format!("{} with its unit, or an array of two,", dimension.name()),
     }

@@ -206,8 +206,11 @@ fn of_pattern(pattern: &str) -> Vec<Value> {
         ],
         // A pattern may be paired with itself.
         "contact.*" => {
-            let pattern = json!({ "contains": { "pattern": "\\*" } });
-            vec![properties([("between", json!({ "anyOf": [{ "uniqueItems": true }, pattern] }))])]
+            let pattern = json!({ "contains": { "pattern": "[*?]" } });
+            vec![
+                excludes("between", &["materials"]),
+                properties([("between", json!({ "anyOf": [{ "uniqueItems": true }, pattern] }))]),
+            ]
         }
         "signal.*" => vec![
             json!({ "not": { "required": ["frequency", "period"] } }),

@@ -246,3 +246,83 @@ fn bad_shapes_are_refused_with_what_would_be_right() {
     let found = told("material = 'm'\ndepth = '1 m'");
     assert!(found.contains("block.b.width: missing") && found.contains("block.b.height: missing"), "{found}");
 }
+
+/// The contacts of a scene: their names, and the bodies.
+fn joined(contacts: &str) -> Vec<String> {
+    let text = format!(
+        "{HEAD}[material.s]\ndensity = '8000 kg/m^3'\nyoungs_modulus = '210 GPa'\n\
+         [beam.b]\nmaterial = 's'\nspan = '1 m'\nwidth = '1 cm'\nthickness = '1 cm'\nelements = 4\nposition = ['9 m', '0 m']\n\
+         [block.stone]\nmaterial = 'm'\nradius = '5 cm'\ndepth = '1 m'\nposition = ['0 m', '1 m']\nrepeat = {{ count = 2, shift = ['1 m', '0 m'] }}\n\
+         [block.wall]\nmaterial = 's'\nwidth = '5 cm'\nheight = '1 m'\ndepth = '1 m'\nposition = ['3 m', '1 m']\nfixed = true\n\
+         repeat = {{ count = 2, shift = ['1 m', '0 m'] }}\n{contacts}"
+    );
+    let joined =
+        |contact: &teeter_scenario::scene::ContactScene| format!("{} {}", contact.name, contact.between.join(" "));
+    scene(&text).contacts.iter().map(joined).collect()
+}
+
+#[test]
+fn a_pattern_for_all_joins_all_that_can_touch() {
+    let all = joined("[contact.all]\nbetween = ['*', '*']\nfriction = 0.5\n");
+    // No wall with a wall or the ground, as neither can move, no beam with the ground.
+    let expected = [
+        "stone-1 stone-2",
+        "stone-1 wall-1",
+        "stone-1 wall-2",
+        "stone-1 b",
+        "stone-1 ground",
+        "stone-2 wall-1",
+        "stone-2 wall-2",
+        "stone-2 b",
+        "stone-2 ground",
+        "wall-1 b",
+        "wall-2 b",
+    ];
+    assert_eq!(all, expected.map(|pair| format!("all {pair}")));
+}
+
+#[test]
+fn the_contact_that_says_most_of_a_pair_holds() {
+    let all = joined(
+        "[contact.all]\nbetween = ['*', '*']\nfriction = 0.1\n[contact.steel]\nmaterials = ['m', 's']\nfriction = 0.2\n\
+         [contact.near]\nbetween = ['stone-?', 'wall-1']\nfriction = 0.3\n[contact.own]\nbetween = ['stone-2', 'wall-1']\nfriction = 0.4\n\
+         [contacts]\napart = [['wall-*', 'b'], ['stone-1', 'ground']]\n",
+    );
+    let expected = [
+        "own stone-2 wall-1",
+        "all stone-1 stone-2",
+        "all stone-2 ground",
+        "steel stone-1 b",
+        "steel stone-1 wall-2",
+        "steel stone-2 b",
+        "steel stone-2 wall-2",
+        "near stone-1 wall-1",
+    ];
+    let mut found = all.clone();
+    let mut expected = expected.map(str::to_owned).to_vec();
+    found.sort();
+    expected.sort();
+    assert_eq!(found, expected);
+    assert_eq!(all[0], "own stone-2 wall-1", "full names come first");
+}
+
+#[test]
+fn contacts_that_contradict_each_other_are_refused() {
+    let told = |contacts: &str| {
+        let text = format!(
+            "{HEAD}[block.a]\nmaterial = 'm'\nradius = '5 cm'\ndepth = '1 m'\nposition = ['0 m', '1 m']\n\
+             [block.b]\nmaterial = 'm'\nradius = '5 cm'\ndepth = '1 m'\nposition = ['1 m', '1 m']\n{contacts}"
+        );
+        load(text.as_bytes(), "scene", "scene", &[]).map(|_| ()).unwrap_err().to_string()
+    };
+    let tie =
+        told("[contact.x]\nbetween = ['a', '*']\nfriction = 0.1\n[contact.y]\nbetween = ['*', 'b']\nfriction = 0.2\n");
+    assert!(tie.contains("it says no more of the bodies than `x`") && tie.contains("`a` and `b`"), "{tie}");
+    let apart = told("[contact.x]\nbetween = ['a', 'b']\nfriction = 0.1\n[contacts]\napart = [['a', 'b']]\n");
+    assert!(apart.contains("according to contacts.apart"), "{apart}");
+    assert!(told("[contact.x]\nmaterials = ['m', 'n']\nfriction = 0.1\n").contains("`n` is not defined"));
+    let both = told("[contact.x]\nmaterials = ['m', 'm']\nbetween = ['a', 'b']\nfriction = 0.1\n");
+    assert!(both.contains("between already names the bodies"), "{both}");
+    assert!(told("[contact.x]\nbetween = ['c*', 'b']\nfriction = 0.1\n").contains("no body matches `c*`"));
+    assert!(told("[contact.x]\nfriction = 0.1\n").contains("contact.x.between: missing"));
+}
