@@ -158,6 +158,10 @@ fn default_alone(key: &Key) -> String {
         Presence::Required => "**required**".to_owned(),
         Presence::RequiredWith(words) => format!("**required** with {}", quoted(words)),
         Presence::RequiredWithout(sibling) => format!("**required** without `{sibling}`"),
+        Presence::RequiredWithoutAny(others) => {
+            let others: Vec<String> = others.iter().map(|other| format!("`{other}`")).collect();
+            format!("**required** without {}", others.join(", "))
+        }
         Presence::DefaultWithout { sibling, value } => format!("`{value}`, without `{sibling}`"),
         Presence::Default(value) => format!("`{value}`"),
         Presence::DefaultWith { sibling, value } => format!("`{value}`, with `{sibling}`"),
@@ -214,9 +218,12 @@ fn value_alone(key: &Key) -> String {
         }
         Kind::Numbers(range) => format!("array of numbers, each {}, {such_as}", limits(&range, Dimension::NONE).trim()),
         Kind::Words(words) => format!("array of some of {}", quoted(words)),
+        Kind::WordOrTable([], keys) => table_of(keys),
+        Kind::Tables(keys) => format!("array, each item {}", table_of(keys)),
         Kind::WordOrTable(words, keys) => format!("{}, or {}", quoted(words), table_of(keys)),
         Kind::WordOrTablePair(words, keys) => format!("two of {}, or {}", quoted(words), table_of(keys)),
         Kind::ChoicePair(choices) => format!("two of {}", quoted(choices)),
+        Kind::PatternPairs => format!("array of two names each, {such_as}"),
         Kind::NamePair | Kind::PatternPair => format!("two names, {such_as}"),
         Kind::Downward(dimension) => format!("{}, {such_as}, or `[x, y]`", bare(dimension)),
         _ => such_as,

@@ -46,7 +46,7 @@ fn schema() -> Value {
 const NAME: &str = "^[A-Za-z0-9_-]{1,64}$";
 
 /// The same with `*` for any characters.
-const PATTERN: &str = "^[A-Za-z0-9_*-]{1,}$";
+const PATTERN: &str = "^[A-Za-z0-9_*?-]{1,}$";
 
 fn object(table: &TableSchema) -> Map<String, Value> {
     let mut properties = Map::new();
@@ -190,11 +190,16 @@ fn of_kind_alone(key: &Key) -> Value {
         Kind::List(dimension, range) => json!({ "type": "array", "items": quantity(dimension, &range) }),
         Kind::Numbers(range) => json!({ "type": "array", "items": number(&range) }),
         Kind::Words(words) => json!({ "type": "array", "items": { "enum": words }, "uniqueItems": true }),
+        Kind::WordOrTable([], keys) => table_of(keys, Vec::new()),
+        Kind::Tables(keys) => json!({ "type": "array", "items": table_of(keys, Vec::new()), "minItems": 1 }),
         Kind::WordOrTable(words, keys) => word_or_table(words, keys, rules::of_start()),
         Kind::WordOrTablePair(words, keys) => pair(word_or_table(words, keys, rules::of_support())),
         Kind::ChoicePair(words) => pair(json!({ "enum": words })),
         Kind::NamePair => pair(json!({ "$ref": "#/$defs/name" })),
         Kind::PatternPair => pair(json!({ "type": "string", "pattern": PATTERN })),
+        Kind::PatternPairs => {
+            json!({ "type": "array", "items": pair(json!({ "type": "string", "pattern": PATTERN })) })
+        }
         Kind::Downward(dimension) => {
             let of = |range| quantity(dimension, range);
             json!({ "anyOf": [of(&Range::NOT_NEGATIVE), pair(of(&Range::ANY))] })
@@ -205,9 +210,19 @@ fn of_kind_alone(key: &Key) -> Value {
 }
 
 fn word_or_table(words: &[&str], keys: &[Key], rules: Vec<Value>) -> Value {
+    json!({ "anyOf": [{ "enum": words }, table_of(keys, rules)] })
+}
+
+fn table_of(keys: &[Key], rules: Vec<Value>) -> Value {
     let properties: Map<String, Value> = keys.iter().map(|key| (key.name.to_owned(), property(key))).collect();
-    let table = json!({ "type": "object", "properties": properties, "additionalProperties": false, "allOf": rules });
-    json!({ "anyOf": [{ "enum": words }, table] })
+    let table = json!({ "type": "object", "properties": properties, "additionalProperties": false });
+    // An empty list of rules is no valid schema.
+    if rules.is_empty() { table } else { with(table, "allOf", json!(rules)) }
+}
+
+fn with(mut table: Value, key: &str, value: Value) -> Value {
+    table[key] = value;
+    table
 }
 
 fn number(range: &Range) -> Value {

@@ -96,7 +96,9 @@ const scene = (() => {
       [Infinity, Infinity, -Infinity, -Infinity]);
     const fixedPoints = scenery.beams.flatMap(({ x, y, span }) => [[x, y], [x + span, y]]);
     const moving = (at) => {
-      const points = scenery.blocks.flatMap((block, k) => corners(drawnPose(k, at), block));
+      const points = scenery.blocks.flatMap((block, k) =>
+        partsOf(k, corners(drawnPose(k, at), block)).flatMap(({ core, radius }) =>
+          core.flatMap(([x, y]) => [[x - radius, y - radius], [x + radius, y + radius]])));
       scenery.beams.forEach((beam, k) => {
         const [across, up] = moved(k, at);
         for (let i = 0; i <= 8; i++) {
@@ -244,8 +246,45 @@ const scene = (() => {
     draw(frame);
   }
 
+  /** The outlines of a block's parts; a disc with a radius, by which it is seen to roll. */
   function outline(block, at) {
-    return `M${corners(drawnPose(block, at), scenery.blocks[block]).map(([x, y]) => place(x, y)).join("L")}Z`;
+    const { phi } = drawnPose(block, at);
+    return partsOf(block, corners(drawnPose(block, at), scenery.blocks[block])).map(({ core, radius }) => {
+      if (radius === 0) return `M${core.map(([x, y]) => place(x, y)).join("L")}Z`;
+      const size = (radius * view.scale).toFixed(2);
+      const arc = (x, y) => `A${size} ${size} 0 0 0 ${place(x, y)}`;
+      if (core.length === 1) {
+        const [[x, y]] = core;
+        const [across, up] = [radius * Math.cos(phi), radius * Math.sin(phi)];
+        return `M${place(x + across, y + up)}${arc(x - across, y - up)}${arc(x + across, y + up)}L${place(x, y)}`;
+      }
+      const sides = sidesOf(core).map(({ from, to, out }) =>
+        [from, to].map(([x, y]) => [x + radius * out[0], y + radius * out[1]]));
+      const pieces = sides.map(([, to], k) => {
+        const next = sides[(k + 1) % sides.length][0];
+        return `L${place(...to)}${arc(...next)}`;
+      });
+      return `M${place(...sides[0][0])}${pieces.join("")}Z`;
+    }).join("");
+  }
+
+  /** The parts of a block: their corners out of all of them, and how far they reach beyond those. */
+  function partsOf(block, all) {
+    let first = 0;
+    return scenery.blocks[block].parts.map(([count, radius]) => {
+      first += count;
+      return { core: all.slice(first - count, first), radius, first: first - count };
+    });
+  }
+
+  /** The sides of a part, with their normals out of it. */
+  function sidesOf(core) {
+    return core.map((from, k) => {
+      const to = core[(k + 1) % core.length];
+      const [x, y] = [to[0] - from[0], to[1] - from[1]];
+      const length = Math.hypot(x, y) || 1;
+      return { from, to, out: [y / length, -x / length] };
+    });
   }
 
   function scaleBar() {
@@ -266,16 +305,31 @@ const scene = (() => {
   })();
   const hardest = data.impacts.reduce((most, impact) => Math.max(most, Math.hypot(...impact.impulse)), 1e-300);
 
-  /** The outward normal of the side of a block that a point is at. */
+  /** The way out of a block at a point: that of the side, or away from the corner, that it is nearest to. */
   function outwardAt(block, x, y, at) {
-    const all = corners(drawnPose(block, at), scenery.blocks[block]);
-    const sides = all.map(([ax, ay], k) => {
-      const [bx, by] = all[(k + 1) % all.length];
-      const size = Math.hypot(bx - ax, by - ay);
-      const normal = [(by - ay) / size, (ax - bx) / size];
-      return { normal, height: normal[0] * (x - ax) + normal[1] * (y - ay) };
+    const near = partsOf(block, corners(truePose(block, at), scenery.blocks[block])).map(({ core, radius }) => {
+      const away = core.map(([cx, cy]) => {
+        const distance = Math.hypot(x - cx, y - cy) || 1e-300;
+        return { distance, out: [(x - cx) / distance, (y - cy) / distance] };
+      });
+      const sides = core.length < 2 ? [] : sidesOf(core).map(({ from, to, out }) => {
+        const over = (x - from[0]) * out[0] + (y - from[1]) * out[1];
+        const along = (x - from[0]) * (to[0] - from[0]) + (y - from[1]) * (to[1] - from[1]);
+        const beside = along < 0 || along > (to[0] - from[0]) ** 2 + (to[1] - from[1]) ** 2;
+        return { over, beside, out };
+      });
+      const most = sides.reduce((best, side) => (best === null || side.over > best.over ? side : best), null);
+      const corner = away.reduce((best, one) => (one.distance < best.distance ? one : best));
+      const side = most !== null && (most.over <= 0 || !most.beside);
+      return side ? { gap: most.over - radius, out: most.out } : { gap: corner.distance - radius, out: corner.out };
     });
-    return sides.reduce((best, side) => (side.height > best.height ? side : best)).normal;
+    return near.reduce((best, one) => (one.gap < best.gap ? one : best)).out;
+  }
+
+  /** How far a block reaches beyond one of its corners. */
+  function reachOf(block, corner) {
+    const { radius } = partsOf(block, scenery.blocks[block].corners).find(({ first, core }) => corner < first + core.length);
+    return radius;
   }
 
   /** A contact point as drawn, with the directions of the contact's frame. */
@@ -288,9 +342,11 @@ const scene = (() => {
       return { x: px(x), y: py(y), normal, tangent: [normal[1], -normal[0]] };
     }
     const [x, y] = corners(drawnPose(block, at), scenery.blocks[block])[corner];
+    const reach = reachOf(block, corner);
     if (other !== null) {
-      const normal = outwardAt(block === first ? other : first, x, y, at).map((n) => (block === first ? n : -n));
-      return { x: px(x), y: py(y), normal, tangent: [normal[1], -normal[0]] };
+      const out = outwardAt(block === first ? other : first, x, y, at);
+      const normal = out.map((n) => (block === first ? n : -n));
+      return { x: px(x - reach * out[0]), y: py(y - reach * out[1]), normal, tangent: [normal[1], -normal[0]] };
     }
     let slope = beam === null ? Math.tan(groundAt(at).slope) : 0;
     if (beam === null && scenery.profile.length > 0) {
@@ -306,7 +362,8 @@ const scene = (() => {
       slope = (deflection(beam, at, place + step) - deflection(beam, at, place - step)) / (2 * step);
     }
     const size = Math.hypot(1, slope);
-    return { x: px(x), y: py(y), normal: [-slope / size, 1 / size], tangent: [1 / size, slope / size] };
+    const normal = [-slope / size, 1 / size];
+    return { x: px(x - reach * normal[0]), y: py(y - reach * normal[1]), normal, tangent: [1 / size, slope / size] };
   }
 
   function arrow(at, [normal, tangential], length, className) {

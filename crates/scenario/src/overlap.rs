@@ -1,6 +1,6 @@
-//! Overlaps of rectangles and polygons by the separating-axis test.
+//! Overlaps of blocks by the separating-axis test.
 
-use crate::scene::BlockScene;
+use crate::scene::{BlockPart, BlockScene};
 use nalgebra::Vector2;
 use std::sync::Arc;
 
@@ -9,29 +9,29 @@ use std::sync::Arc;
 pub(crate) enum Outline {
     /// A rectangle, by its sides.
     Rectangle([f64; 2]),
-    /// The corners of a convex polygon, counter-clockwise, and its largest distance across.
-    Polygon(Arc<[Vector2<f64>]>, f64),
+    /// The parts of another block, and its largest distance across.
+    Parts(Arc<[BlockPart]>, f64),
 }
 
 impl Outline {
     pub(crate) fn of(block: &BlockScene) -> Self {
-        match &block.polygon {
+        match &block.parts {
             None => Self::Rectangle([block.width, block.height]),
-            Some(corners) => Self::Polygon(Arc::clone(corners), 2.0 * block.radius()),
+            Some(parts) => Self::Parts(Arc::clone(parts), 2.0 * block.radius()),
         }
     }
 }
 
-/// A rectangle or a polygon in the plane.
+/// The outline of a block in the plane.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct PlacedOutline {
     centre: [f64; 2],
     /// Unit vectors along its sides.
     axes: [[f64; 2]; 2],
-    /// Half its sides; for a polygon, those of a square around it.
+    /// Half its sides; for other shapes, those of a square around it.
     half: [f64; 2],
-    /// The corners of a polygon about its centre, in the coordinates of its axes.
-    corners: Option<Arc<[Vector2<f64>]>>,
+    /// The parts of another shape than a rectangle, in the coordinates of its axes.
+    parts: Option<Arc<[BlockPart]>>,
 }
 
 /// Two overlapping outlines, by their numbers.
@@ -46,44 +46,67 @@ pub(crate) struct Overlap {
 impl PlacedOutline {
     pub(crate) fn new(centre: [f64; 2], angle: f64, outline: &Outline) -> Self {
         let (sin, cos) = angle.sin_cos();
-        let (sides, corners) = match outline {
+        let (sides, parts) = match outline {
             Outline::Rectangle(sides) => (*sides, None),
-            Outline::Polygon(corners, across) => ([*across; 2], Some(Arc::clone(corners))),
+            Outline::Parts(parts, across) => ([*across; 2], Some(Arc::clone(parts))),
         };
-        Self { centre, axes: [[cos, sin], [-sin, cos]], half: sides.map(|side| 0.5 * side), corners }
+        Self { centre, axes: [[cos, sin], [-sin, cos]], half: sides.map(|side| 0.5 * side), parts }
     }
 
     fn world(&self, corner: &Vector2<f64>) -> [f64; 2] {
         [0, 1].map(|k| self.centre[k] + corner.x * self.axes[0][k] + corner.y * self.axes[1][k])
     }
 
-    /// The sides of a polygon: a corner, and the outward unit normal of the side that starts there.
-    fn sides<'a>(&'a self, corners: &'a [Vector2<f64>]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> + 'a {
-        corners.iter().zip(corners.iter().cycle().skip(1)).map(|(from, to)| {
+    /// The sides of a part: its ends, and the outward unit normal.
+    fn sides<'a>(&'a self, core: &'a [Vector2<f64>]) -> impl Iterator<Item = ([[f64; 2]; 2], [f64; 2])> + 'a {
+        let count = if core.len() > 1 { core.len() } else { 0 };
+        core.iter().zip(core.iter().cycle().skip(1)).take(count).map(|(from, to)| {
             let side = (to - from).normalize();
             let normal = [0, 1].map(|k| side.y * self.axes[0][k] - side.x * self.axes[1][k]);
-            (self.world(from), normal)
+            ([self.world(from), self.world(to)], normal)
         })
+    }
+
+    /// How far a point is outside the core of a part, m; negative inside.
+    fn outside(&self, core: &[Vector2<f64>], point: [f64; 2]) -> f64 {
+        let over = |([on, _], normal): ([[f64; 2]; 2], [f64; 2])| dot([point[0] - on[0], point[1] - on[1]], normal);
+        let furthest = self.sides(core).map(over).fold(f64::NEG_INFINITY, f64::max);
+        if furthest <= 0.0 && core.len() > 1 {
+            return furthest;
+        }
+        let corners = core.iter().map(|corner| distance(self.world(corner), point));
+        let sides = self.sides(core).map(|(ends, _)| to_line(ends, point));
+        corners.chain(sides).fold(f64::INFINITY, f64::min)
     }
 
     /// How deep a point is inside, m; negative outside.
     pub(crate) fn depth_of(&self, point: [f64; 2]) -> f64 {
-        if let Some(corners) = &self.corners {
-            let depth = |(on, normal): ([f64; 2], [f64; 2])| dot([on[0] - point[0], on[1] - point[1]], normal);
-            return self.sides(corners).map(depth).fold(f64::INFINITY, f64::min);
+        if let Some(parts) = &self.parts {
+            let depth = |part: &BlockPart| part.shape.radius() - self.outside(part.shape.core(), point);
+            return parts.iter().map(depth).fold(f64::NEG_INFINITY, f64::max);
         }
         let from = [point[0] - self.centre[0], point[1] - self.centre[1]];
         let room = |k: usize| self.half[k] - dot(from, self.axes[k]).abs();
         room(0).min(room(1))
     }
 
-    /// Its projection on a direction: from where to where it extends.
+    /// Its projection on a direction of unit length: from where to where it extends.
     pub(crate) fn projection(&self, direction: [f64; 2]) -> [f64; 2] {
-        let Some(corners) = &self.corners else {
+        let Some(parts) = &self.parts else {
             let (centre, reach) = (dot(self.centre, direction), self.reach(direction));
             return [centre - reach, centre + reach];
         };
-        let along = corners.iter().map(|corner| dot(self.world(corner), direction));
+        let of = |part: &BlockPart| {
+            let [low, high] = self.projection_of(part.shape.core(), direction);
+            [low - part.shape.radius(), high + part.shape.radius()]
+        };
+        let all = parts.iter().map(of);
+        all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], [a, b]| [low.min(a), high.max(b)])
+    }
+
+    /// The projection of a core on a direction.
+    fn projection_of(&self, core: &[Vector2<f64>], direction: [f64; 2]) -> [f64; 2] {
+        let along = core.iter().map(|corner| dot(self.world(corner), direction));
         along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
     }
 
@@ -98,8 +121,12 @@ impl PlacedOutline {
 
     /// The least displacement that separates the two; at most 0 if they are separate.
     fn depth(&self, other: &Self) -> f64 {
-        if self.corners.is_some() || other.corners.is_some() {
-            return self.depth_across_sides(other).min(other.depth_across_sides(self));
+        if self.parts.is_some() || other.parts.is_some() {
+            let (mine, others) = (self.cores(), other.cores());
+            let pairs = mine.iter().flat_map(|one| others.iter().map(move |other| (one, other)));
+            let depth =
+                |(one, two): (&Core, &Core)| one.radius + two.radius - self.apart(&one.corners, other, &two.corners);
+            return pairs.map(depth).fold(f64::NEG_INFINITY, f64::max);
         }
         let between = [other.centre[0] - self.centre[0], other.centre[1] - self.centre[1]];
         self.axes
@@ -109,18 +136,59 @@ impl PlacedOutline {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// How deep the other is inside, measured across the side with the least depth.
-    fn depth_across_sides(&self, other: &Self) -> f64 {
-        let over = |(on, normal): ([f64; 2], [f64; 2])| dot(on, normal) - other.projection(normal)[0];
-        let [[ax, ay], up] = self.axes;
-        match &self.corners {
-            Some(corners) => self.sides(corners).map(over).fold(f64::INFINITY, f64::min),
-            None => [[ax, ay], up, [-ax, -ay], [-up[0], -up[1]]]
-                .into_iter()
-                .map(|normal| self.projection(normal)[1] - other.projection(normal)[0])
-                .fold(f64::INFINITY, f64::min),
+    /// The cores of its parts.
+    fn cores(&self) -> Vec<Core> {
+        let [x, y] = self.half;
+        match &self.parts {
+            None => {
+                let corners = [[-x, -y], [x, -y], [x, y], [-x, y]].map(Vector2::from).to_vec();
+                vec![Core { corners, radius: 0.0 }]
+            }
+            Some(parts) => {
+                let of = |part: &BlockPart| Core { corners: part.shape.core().to_vec(), radius: part.shape.radius() };
+                parts.iter().map(of).collect()
+            }
         }
     }
+
+    /// How far the cores of two parts are apart, m; negative by the least displacement that
+    /// separates them.
+    fn apart(&self, mine: &[Vector2<f64>], other: &Self, theirs: &[Vector2<f64>]) -> f64 {
+        let across = |a: &Self, core: &[Vector2<f64>], b: &Self, against: &[Vector2<f64>]| {
+            let over =
+                |([on, _], normal): ([[f64; 2]; 2], [f64; 2])| b.projection_of(against, normal)[0] - dot(on, normal);
+            a.sides(core).map(over).fold(f64::NEG_INFINITY, f64::max)
+        };
+        let furthest = across(self, mine, other, theirs).max(across(other, theirs, self, mine));
+        if furthest <= 0.0 && furthest > f64::NEG_INFINITY {
+            return furthest;
+        }
+        // Apart, they are nearest at a corner of one.
+        let near = |a: &Self, core: &[Vector2<f64>], b: &Self, against: &[Vector2<f64>]| {
+            core.iter().map(|corner| b.outside(against, a.world(corner))).fold(f64::INFINITY, f64::min)
+        };
+        near(self, mine, other, theirs).min(near(other, theirs, self, mine))
+    }
+}
+
+/// The core of a part.
+struct Core {
+    corners: Vec<Vector2<f64>>,
+    radius: f64,
+}
+
+fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// The distance of a point from the line between two, m; infinite past its ends.
+fn to_line([from, to]: [[f64; 2]; 2], point: [f64; 2]) -> f64 {
+    let (side, off) = ([to[0] - from[0], to[1] - from[1]], [point[0] - from[0], point[1] - from[1]]);
+    let along = dot(side, off) / dot(side, side);
+    if !(0.0..=1.0).contains(&along) {
+        return f64::INFINITY;
+    }
+    distance(point, [from[0] + along * side[0], from[1] + along * side[1]])
 }
 
 fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
@@ -182,9 +250,32 @@ pub(crate) fn deepest_overlap(boxes: &[PlacedOutline], tolerance: f64) -> Option
 mod tests {
     use super::*;
     use std::f64::consts::FRAC_PI_4;
+    use teeter_detect::{Disc, Polygon, Rounded, Shape};
 
     fn square(x: f64, y: f64, angle: f64) -> PlacedOutline {
         PlacedOutline::new([x, y], angle, &Outline::Rectangle([2.0, 2.0]))
+    }
+
+    fn outline(shape: Shape) -> Outline {
+        Outline::Parts(Arc::new([BlockPart { shape, is_rectangle: false }]), 4.0)
+    }
+
+    #[test]
+    fn discs_and_roundings_are_as_far_apart_as_their_circles() {
+        let disc = outline(Disc::new(Vector2::new(0.0, 0.5), 1.0).unwrap().into());
+        let at = |x: f64, y: f64| PlacedOutline::new([x, y], 0.0, &disc);
+        assert!((at(0.0, 0.0).depth(&at(1.2, 1.6)) - 0.0).abs() < 1e-15, "3, 4, 5");
+        assert!((at(0.0, 0.0).depth(&at(0.6, 0.8)) - 1.0).abs() < 1e-15);
+        // Beside the corner of a square: by the distance from that, not from its sides.
+        let off = square(0.0, 0.0, 0.0).depth(&at(1.0 + 0.6, 0.5 + 0.8));
+        assert!(off.abs() < 1e-15, "{off:e}");
+        assert!((square(0.0, 0.0, 0.0).depth(&at(0.0, -0.5)) - 2.0).abs() < 1e-15, "as far out as a side and a radius");
+        let square = Polygon::new([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(Vector2::from).to_vec());
+        let rounded = outline(Rounded::inside(&square.unwrap(), 0.5).unwrap().into());
+        let rounded = PlacedOutline::new([0.0, 0.0], 0.0, &rounded);
+        assert!((rounded.depth_of([0.5 + 0.3, 0.5 + 0.4])).abs() < 1e-15);
+        assert!((rounded.depth_of([0.0, 0.75]) - 0.25).abs() < 1e-15);
+        assert_eq!(rounded.projection([0.0, 1.0]), [-1.0, 1.0]);
     }
 
     #[test]
@@ -197,7 +288,7 @@ mod tests {
     #[test]
     fn a_polygon_is_as_deep_as_the_rectangle_that_it_is() {
         let corners = [[-1.5, -0.5], [0.5, -0.5], [0.5, 1.5], [-1.5, 1.5]].map(Vector2::from);
-        let polygon = Outline::Polygon(Arc::from(corners.as_slice()), 4.0);
+        let polygon = outline(Polygon::new(corners.to_vec()).unwrap().into());
         for (x, y, angle) in [(1.5, 1.0, 0.0_f64), (0.3, 1.2, 0.4), (1.8, -0.6, 2.1), (2.4, 0.9, 5.0)] {
             let (sin, cos) = angle.sin_cos();
             let off = [x + 0.5 * cos + 0.5 * sin, y + 0.5 * sin - 0.5 * cos];

@@ -7,7 +7,7 @@ use crate::simulation::BuildError;
 use nalgebra::{Vector2, Vector3};
 use std::f64::consts::FRAC_PI_2;
 use teeter_beam::StaticError;
-use teeter_detect::Kinematics;
+use teeter_detect::{Kinematics, SurfacePoint};
 use teeter_integrator::{EquilibriumError, Subsystem};
 use teeter_rigid::Pose;
 
@@ -107,9 +107,12 @@ struct Foot {
 
 /// The feet that a block stands on: the corner about which it is tilted, or both.
 fn feet(block: &BlockScene, at: f64, tilt: f64) -> ([Foot; 2], usize) {
-    let half = 0.5 * block.width;
-    let (left, right) = (Foot { corner: 0, x: at - half }, Foot { corner: 1, x: at + half });
-    if tilt > 0.0 {
+    let half = 0.5 * block.base();
+    let [left, right] = block.feet();
+    let (left, right) = (Foot { corner: left, x: at - half }, Foot { corner: right, x: at + half });
+    if left.corner == right.corner {
+        ([left, left], 1)
+    } else if tilt > 0.0 {
         ([left, left], 1)
     } else if tilt < 0.0 {
         ([right, right], 1)
@@ -173,6 +176,11 @@ pub(crate) fn starting_poses(
                 }
                 Placement::On { support: SupportingBody::Block(below), at, tilt, stacked, .. } => {
                     let lower = &scene.blocks[below];
+                    if lower.parts.is_some() {
+                        let on = poses[below].unwrap_or_default();
+                        poses[number] = Some(pose_on_block(block, lower, &on, at, stacked, tilt)?);
+                        continue;
+                    }
                     let top = TopSide::of(lower, &poses[below].unwrap_or_default());
                     let at = if stacked { top.line[0] + at * top.line[2].cos() } else { at };
                     if !top.is_under(block, at) {
@@ -225,7 +233,7 @@ impl TopSide {
     /// Whether it is under a part of the base of a block, whose midpoint is at `at` (m) before it
     /// is tilted.
     fn is_under(&self, block: &BlockScene, at: f64) -> bool {
-        let half = 0.5 * block.width * self.line[2].cos();
+        let half = 0.5 * block.base() * self.line[2].cos();
         at + half > self.x[0] && at - half < self.x[1]
     }
 }
@@ -254,6 +262,10 @@ pub(crate) fn block_pose(
         SupportSurface::Line(line) => return Ok(pose_on_line(block, at, tilt, line)),
     };
     let kinematics = scene.contacts[contact].kinematics;
+    if block.parts.is_some() {
+        let start = pose_on_line(block, at, tilt, &[0.0; 3]);
+        return on_surface(block, start, |at| surface.surface(0, q, kinematics, at));
+    }
     let (feet, count) = feet(block, at, tilt);
     let height_at = |foot: &Foot| surface_height(block, surface, q, kinematics, foot);
     // An upright block stands on the higher of its feet.
@@ -269,12 +281,156 @@ pub(crate) fn block_pose(
 /// relative to it.
 fn pose_on_line(block: &BlockScene, at: f64, tilt: f64, &[x, y, slope]: &[f64; 3]) -> Vector3<f64> {
     let line = Pose::new(&Vector3::new(at, y + (at - x) * slope.tan(), slope));
+    if block.parts.is_some() {
+        let centre = line.point(&centre_above(block, tilt));
+        return Vector3::new(centre.x, centre.y, slope + tilt);
+    }
     let (feet, count) = feet(block, 0.0, tilt);
     if count == 2 {
         let centre = line.point(&Vector2::new(0.0, 0.5 * block.height));
         return Vector3::new(centre.x, centre.y, slope);
     }
     turned_about(block, &feet[0], line.point(&Vector2::new(feet[0].x, 0.0)), slope + tilt)
+}
+
+/// The mass centre of a block above a level line that its lowest point touches, from the midpoint
+/// of its base before it is tilted about an end of that.
+fn centre_above(block: &BlockScene, tilt: f64) -> Vector2<f64> {
+    let corners = block.corners();
+    let [left, right] = block.feet().map(|foot| corners[foot]);
+    let middle = 0.5 * (left + right);
+    let pivot = if tilt > 0.0 {
+        left
+    } else if tilt < 0.0 {
+        right
+    } else {
+        middle
+    };
+    let turned = Pose::new(&Vector3::new(0.0, 0.0, tilt));
+    let height = |k: usize| turned.rotate(&corners[k]).y - block.corner_radius(k);
+    let lowest = (0..corners.len()).map(height).fold(f64::INFINITY, f64::min);
+    Vector2::new(pivot.x - middle.x - turned.rotate(&pivot).x, -lowest)
+}
+
+/// Rounds in which a block is moved up or down until it touches a surface that bends.
+const ROUNDS: usize = 50;
+
+/// A block moved up or down such that its lowest point touches a surface.
+fn on_surface(
+    block: &BlockScene,
+    mut pose: Vector3<f64>,
+    under: impl Fn(&Vector2<f64>) -> Option<SurfacePoint<2>>,
+) -> Result<Vector3<f64>, PlacementError> {
+    let corners = block.corners();
+    for _ in 0..ROUNDS {
+        let place = Pose::new(&pose);
+        let above = |k: usize| {
+            let (centre, radius) = (place.point(&corners[k]), block.corner_radius(k));
+            let mut point = under(&centre)?;
+            let mut lowest = centre;
+            if radius > 0.0 {
+                for _ in 0..ROUNDS {
+                    lowest = centre - radius * point.normal;
+                    point = under(&lowest)?;
+                }
+            }
+            Some(point.normal.dot(&(lowest - point.place)) / point.normal.y)
+        };
+        let Some(gap) = (0..corners.len()).filter_map(above).reduce(f64::min) else {
+            let [corner, _] = block.feet();
+            return Err(off_surface(block, &Foot { corner, x: pose.x }));
+        };
+        pose.y -= gap;
+        if gap.abs() <= f64::EPSILON * (pose.y.abs() + block.radius()) {
+            break;
+        }
+    }
+    Ok(pose)
+}
+
+/// A block dropped on another one that is no rectangle, its base level before it is tilted.
+fn pose_on_block(
+    block: &BlockScene,
+    lower: &BlockScene,
+    on: &Vector3<f64>,
+    at: f64,
+    stacked: bool,
+    tilt: f64,
+) -> Result<Vector3<f64>, PlacementError> {
+    let place = Pose::new(on);
+    let below: Vec<PlacedPart> = PlacedPart::all(lower, &place);
+    let at = if stacked { top_middle(&below) + at } else { at };
+    let centre = centre_above(block, tilt);
+    let pose = Vector3::new(at + centre.x, centre.y, tilt);
+    let above = PlacedPart::all(block, &Pose::new(&pose));
+    let rise = |upper: &PlacedPart| below.iter().filter_map(|lower| upper.rise_above(lower)).reduce(f64::max);
+    match above.iter().filter_map(rise).reduce(f64::max) {
+        Some(rise) => Ok(Vector3::new(pose.x, pose.y + rise, tilt)),
+        None => {
+            let [corner, _] = block.feet();
+            Err(off_surface(block, &Foot { corner, x: pose.x }))
+        }
+    }
+}
+
+/// x of the middle of the highest points, m.
+fn top_middle(parts: &[PlacedPart]) -> f64 {
+    let points = || parts.iter().flat_map(|part| part.core.iter().map(|corner| (corner.x, corner.y + part.radius)));
+    let highest = points().map(|(_, y)| y).fold(f64::NEG_INFINITY, f64::max);
+    let size = points().map(|(_, y)| highest - y).fold(0.0, f64::max);
+    let top = || points().filter(|(_, y)| highest - y <= TOP * size).map(|(x, _)| x);
+    0.5 * (top().fold(f64::INFINITY, f64::min) + top().fold(f64::NEG_INFINITY, f64::max))
+}
+
+/// Points that differ in height by this fraction of a block's height are level.
+const TOP: f64 = 1e-9;
+
+/// A part of a block in the world: all that is within a radius of its core.
+struct PlacedPart {
+    core: Vec<Vector2<f64>>,
+    radius: f64,
+}
+
+impl PlacedPart {
+    fn all(block: &BlockScene, place: &Pose) -> Vec<Self> {
+        let of = |corners: &[Vector2<f64>], radius: f64| Self {
+            core: corners.iter().map(|corner| place.point(corner)).collect(),
+            radius,
+        };
+        match &block.parts {
+            None => vec![of(&block.corners(), 0.0)],
+            Some(parts) => parts.iter().map(|part| of(part.shape.core(), part.shape.radius())).collect(),
+        }
+    }
+
+    /// How far up it must be moved to touch another part from above, m; `None` where it is beside
+    /// that. The two cores are then the sum of their radii apart.
+    fn rise_above(&self, lower: &Self) -> Option<f64> {
+        let reach = self.radius + lower.radius;
+        let over = self.core.iter().filter_map(|corner| Some(lower.height_at(corner.x, reach, 1.0)? - corner.y));
+        let under = lower.core.iter().filter_map(|corner| Some(corner.y + self.height_at(corner.x, reach, -1.0)?));
+        over.chain(under).reduce(f64::max)
+    }
+
+    /// The highest (`sign` 1) point at `x` of all that is within `reach` of the core, or minus the
+    /// lowest one (−1); `None` where it doesn't extend there.
+    fn height_at(&self, x: f64, reach: f64, sign: f64) -> Option<f64> {
+        let arcs = self.core.iter().filter_map(|corner| {
+            let off = x - corner.x;
+            (off.abs() <= reach).then(|| sign * corner.y + (reach * reach - off * off).sqrt())
+        });
+        let n = self.core.len();
+        let sides = (0..n).filter_map(|k| {
+            let (from, to) = (self.core[k], self.core[(k + 1) % n]);
+            let length = (to - from).norm();
+            // Out of the part, as corners are counter-clockwise.
+            let out = reach * Vector2::new(to.y - from.y, from.x - to.x) / length;
+            let (from, to) = (from + out, to + out);
+            let part = (x - from.x) / (to.x - from.x);
+            (length > 0.0 && (0.0..=1.0).contains(&part)).then(|| sign * (from.y + part * (to.y - from.y)))
+        });
+        arcs.chain(sides).reduce(f64::max)
+    }
 }
 
 /// A block with the corner of `foot` at `place`, turned by `angle`.

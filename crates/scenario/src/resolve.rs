@@ -8,6 +8,7 @@ mod contacts;
 mod ground;
 mod motions;
 pub(crate) mod names;
+mod outlines;
 mod records;
 mod sections;
 mod shape;
@@ -273,6 +274,11 @@ impl<'a, 'f> Resolver<'a, 'f> {
     fn material(&mut self, owner: &str) -> Option<String> {
         let path = format!("{owner}.material");
         let name = self.word(&path)?;
+        self.material_named(&path, &name)
+    }
+
+    /// The table of the material with this name, which is given at `path`.
+    fn material_named(&mut self, path: &str, name: &str) -> Option<String> {
         let table = format!("material.{name}");
         if self.doc.has_table(&table) {
             return Some(table);
@@ -286,8 +292,8 @@ impl<'a, 'f> Resolver<'a, 'f> {
         } else {
             format!("materials defined: {}", listed(&known))
         };
-        let near = crate::suggest::nearest(&name, known).map(str::to_owned);
-        self.error(&path, format!("the material `{name}` is not defined"), remedy);
+        let near = crate::suggest::nearest(name, known).map(str::to_owned);
+        self.error(path, format!("the material `{name}` is not defined"), remedy);
         self.suggest(near);
         None
     }

@@ -15,8 +15,8 @@ use std::sync::Arc;
 use teeter_beam::{BeamError, ModalError};
 use teeter_contact::ContactSolver;
 use teeter_detect::{
-    BodyId, ContactDetector, PointDetector, PointPair, Polygon, ProfilePair, ShapeDetector, ShapeError, ShapePair,
-    WiringError,
+    BodyId, ContactDetector, PointDetector, PointPair, ProfilePair, Shape, ShapeDetector, ShapeError, ShapePair,
+    SurfacePair, WiringError,
 };
 use teeter_integrator::{
     Account, Block, Ended, EventDriven, EventDrivenSettings, GeneralizedAlpha, GeneralizedAlphaSettings, Mismatch,
@@ -285,14 +285,27 @@ impl Simulation {
     }
 }
 
-/// The body of a block, with its corners.
-pub(crate) type BlockBody = (Block, Vec<Vector2<f64>>);
+/// The body of a block.
+pub(crate) struct BlockBody {
+    pub(crate) body: Block,
+    /// Its corners, m: of roundings those of the core.
+    pub(crate) corners: Vec<Vector2<f64>>,
+    /// The shapes of its parts.
+    pub(crate) shapes: Vec<Shape>,
+    /// Whether one of them is round.
+    pub(crate) is_round: bool,
+}
 
 /// The bodies of the blocks.
 fn block_bodies(scene: &Scene) -> Result<Vec<BlockBody>, BuildError> {
     let body = |block: &BlockScene| {
         let mass = block.mass_properties().map_err(|error| BuildError::Block(block.name.clone(), error))?;
-        Ok((Block::within(mass, block.radius()), block.corners()))
+        Ok(BlockBody {
+            body: Block::within(mass, block.radius()),
+            corners: block.corners(),
+            shapes: block.shapes()?,
+            is_round: block.is_round(),
+        })
     };
     scene.blocks.iter().map(body).collect()
 }
@@ -365,7 +378,7 @@ fn assemble(
     required: &Required,
 ) -> Result<Assembled, BuildError> {
     let mut parts = ModelBuilder::new();
-    let bodies = blocks.iter().map(|(body, _)| *body).collect();
+    let bodies = blocks.iter().map(|block| block.body).collect();
     let all_blocks = parts.add(driven::blocks(scene, bodies)?);
     let mut surfaces = Vec::with_capacity(beams.len());
     for (number, model) in beams.iter().enumerate() {
@@ -376,7 +389,8 @@ fn assemble(
         surfaces.push(parts.add_boxed(body));
     }
     let ground = scene.ground.as_ref().map(|ground| parts.add(driven::ground(ground)));
-    let (mut pairs, mut shape_pairs, mut on_profile) = (Vec::new(), Vec::new(), Vec::new());
+    let mut pairs = Pairs::default();
+    let mut on_profile = Vec::new();
     let profile = ground_profile::of(scene);
     for (number, contact) in scene.contacts.iter().enumerate() {
         let law = parts.law(contact.law);
@@ -388,50 +402,63 @@ fn assemble(
             },
             SupportingBody::Block(other) => {
                 let bodies = [contact.block, other].map(|block| all_blocks.nth_body(block as u32));
-                shape_pairs.push(ShapePair { pair: number as u32, law, bodies });
+                pairs.shapes.push(ShapePair { pair: number as u32, law, bodies });
                 continue;
             }
         };
         let points = required.points(number);
-        let body = all_blocks.nth_body(contact.block as u32);
-        if points > 0 && profile.is_some() && contact.surface == SupportingBody::Ground {
-            on_profile.push(ProfilePair { pair: number as u32, law, body, ground: surface });
-        } else if points > 0 {
-            pairs.push(PointPair {
-                pair: number as u32,
-                law,
-                points: blocks[contact.block].1[..points].to_vec(),
-                body,
-                surface,
-                kinematics: contact.kinematics,
-            });
+        let block = &blocks[contact.block];
+        let (pair, body) = (number as u32, all_blocks.nth_body(contact.block as u32));
+        let kinematics = contact.kinematics;
+        if points == 0 {
+            continue;
+        }
+        if profile.is_some() && contact.surface == SupportingBody::Ground {
+            on_profile.push(ProfilePair { pair, law, body, ground: surface });
+        } else if block.is_round {
+            pairs.surfaces.push(SurfacePair { pair, law, body, surface, kinematics });
+        } else {
+            let points = block.corners[..points].to_vec();
+            pairs.points.push(PointPair { pair, law, points, body, surface, kinematics });
         }
     }
-    let shapes = |block: usize| (all_blocks.nth_body(block as u32), blocks[block].1.as_slice());
+    let shapes = |block: usize| (all_blocks.nth_body(block as u32), blocks[block].shapes.as_slice());
     let on_profile = profile.map(|profile| (profile, on_profile));
-    let model = parts.build(detector(pairs, shape_pairs, on_profile, (0..blocks.len()).map(shapes))?)?;
+    let model = parts.build(detector(pairs, on_profile, (0..blocks.len()).map(shapes))?)?;
     Ok(Assembled { model, blocks: all_blocks, beams: surfaces, ground })
+}
+
+/// The pairs that a detector looks at.
+#[derive(Default)]
+pub(crate) struct Pairs {
+    /// Sharp blocks on surfaces.
+    pub(crate) points: Vec<PointPair<2>>,
+    /// Round ones.
+    pub(crate) surfaces: Vec<SurfacePair>,
+    /// Blocks and blocks.
+    pub(crate) shapes: Vec<ShapePair>,
 }
 
 /// The detector for contacts of blocks with surfaces, with ground that has a profile, and with each
 /// other.
 pub(crate) fn detector<'a>(
-    points: Vec<PointPair<2>>,
-    pairs: Vec<ShapePair>,
+    pairs: Pairs,
     on_profile: OnProfile<'_>,
-    shapes: impl Iterator<Item = (BodyId, &'a [Vector2<f64>])>,
+    shapes: impl Iterator<Item = (BodyId, &'a [Shape])>,
 ) -> Result<Box<dyn ContactDetector<2>>, BuildError> {
-    let points = PointDetector::new(points);
+    let points = PointDetector::new(pairs.points);
     let on_profile = on_profile.filter(|(_, pairs)| !pairs.is_empty());
-    if pairs.is_empty() && on_profile.is_none() {
+    if pairs.shapes.is_empty() && pairs.surfaces.is_empty() && on_profile.is_none() {
         return Ok(Box::new(points));
     }
+    let of_pairs = pairs.shapes.iter().flat_map(|pair| pair.bodies);
     let grounded = on_profile.iter().flat_map(|(_, pairs)| pairs).map(|pair| pair.body);
-    let paired: BTreeSet<BodyId> = pairs.iter().flat_map(|pair| pair.bodies).chain(grounded).collect();
+    let paired: BTreeSet<BodyId> =
+        of_pairs.chain(pairs.surfaces.iter().map(|pair| pair.body)).chain(grounded).collect();
     let shapes = shapes.filter(|(body, _)| paired.contains(body));
-    let shapes = shapes.map(|(body, shape)| Ok((body, Polygon::new(shape.to_vec())?.into())));
-    let shapes = shapes.collect::<Result<Vec<_>, ShapeError>>()?;
-    let detector = ShapeDetector::new(shapes, pairs)?.with_points(points);
+    let shapes = shapes.flat_map(|(body, shapes)| shapes.iter().map(move |shape| (body, shape.clone())));
+    let detector = ShapeDetector::new(shapes.collect(), pairs.shapes)?;
+    let detector = detector.with_points(points).with_surfaces(pairs.surfaces)?;
     Ok(Box::new(match on_profile {
         Some((profile, pairs)) => detector.with_profile(profile.clone(), pairs)?,
         None => detector,

@@ -9,10 +9,10 @@
 use crate::driven::{self, BeamModel};
 use crate::placement::{InstabilityMode, PlacementError, below, starting_poses};
 use crate::scene::{Placement, Scene, SupportingBody};
-use crate::simulation::{BlockBody, BuildError, detector};
+use crate::simulation::{BlockBody, BuildError, Pairs, detector};
 use nalgebra::{Vector2, Vector3};
 use teeter_beam::SpanLoad;
-use teeter_detect::{BodyId, PointPair, ShapePair};
+use teeter_detect::{BodyId, PointPair, ShapePair, SurfacePair};
 use teeter_integrator::{
     BeamFace, BeamForces, BlockCoordinate, Blocks, Equilibrium, EquilibriumError, Mismatch, Model, ModelBuilder,
     Motion, PairLaw, SettlingLimits, SolverSettings, Workspace, settle,
@@ -191,7 +191,7 @@ fn carried_by(scene: &Scene, block: usize) -> Option<usize> {
 /// The corner on which a tilted block stands and is held.
 fn foot_of(scene: &Scene, block: usize) -> Option<usize> {
     match scene.blocks[block].placement {
-        Placement::On { tilt, .. } if tilt != 0.0 => Some(usize::from(tilt < 0.0)),
+        Placement::On { tilt, .. } if tilt != 0.0 => Some(scene.blocks[block].feet()[usize::from(tilt < 0.0)]),
         _ => None,
     }
 }
@@ -217,7 +217,7 @@ struct HeldFoot {
 impl HeldFoot {
     fn of(scene: &Scene, start: &InitialConfiguration<'_>, block: usize) -> Option<Self> {
         let corner = foot_of(scene, block)?;
-        let point = start.blocks[block].1[corner];
+        let point = start.blocks[block].corners[corner];
         let x = Pose::new(&start.poses[block]).point(&point).x;
         Some(Self { block, corner, point, x, width: scene.blocks[block].width })
     }
@@ -256,7 +256,7 @@ impl StaticModel {
         start: &InitialConfiguration<'_>,
     ) -> Result<(Model<2>, Vec<EquilibriumPair>), BuildError> {
         let mut parts = ModelBuilder::new();
-        let bodies = self.blocks.iter().map(|&k| start.blocks[k].0).collect();
+        let bodies = self.blocks.iter().map(|&k| start.blocks[k].body).collect();
         let mut blocks = Blocks::new(bodies, Vector2::from(scene.gravity));
         for (number, &k) in self.blocks.iter().enumerate() {
             for force in scene.forces.iter().filter(|force| force.block == k) {
@@ -281,7 +281,7 @@ impl StaticModel {
         if let Some(ground) = &scene.ground {
             surfaces.push((SupportingBody::Ground, parts.add(driven::ground(ground)).body()));
         }
-        let (mut pairs, mut shape_pairs, mut contacts) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut pairs, mut contacts) = (Pairs::default(), Vec::new());
         let part = |block: usize| self.blocks.iter().position(|&k| k == block);
         let body = |part: usize| BodyId(first.0 + part as u32);
         for (number, contact) in scene.contacts.iter().enumerate() {
@@ -291,13 +291,22 @@ impl StaticModel {
                 let held = [contact.block, other].into_iter().any(|block| foot_of(scene, block).is_some());
                 let law = parts.law(PairLaw::new(if held { HELD_FRICTION } else { contact.law.friction }, 0.0));
                 let (pair, bodies) = (contacts.len() as u32, [block, other_part].map(body));
-                shape_pairs.push(ShapePair { pair, law, bodies });
+                pairs.shapes.push(ShapePair { pair, law, bodies });
                 contacts.push(EquilibriumPair { contact: number, corners: Vec::new() });
                 continue;
             }
             let surface = surfaces.iter().find(|(support, _)| *support == contact.surface);
             let (Some(block), Some(&(_, surface))) = (block, surface) else { continue };
-            let corners = &start.blocks[contact.block].1;
+            let kinematics = contact.kinematics;
+            let (corners, is_round) = (&start.blocks[contact.block].corners, start.blocks[contact.block].is_round);
+            if is_round {
+                let held = foot_of(scene, contact.block).is_some();
+                let law = parts.law(PairLaw::new(if held { HELD_FRICTION } else { contact.law.friction }, 0.0));
+                let pair = contacts.len() as u32;
+                pairs.surfaces.push(SurfacePair { pair, law, body: body(block), surface, kinematics });
+                contacts.push(EquilibriumPair { contact: number, corners: (0..corners.len()).collect() });
+                continue;
+            }
             let groups = match foot_of(scene, contact.block) {
                 Some(foot) => {
                     vec![(HELD_FRICTION, vec![foot]), (0.0, (0..corners.len()).filter(|&k| k != foot).collect())]
@@ -305,19 +314,20 @@ impl StaticModel {
                 None => vec![(contact.law.friction, (0..corners.len()).collect())],
             };
             for (friction, numbers) in groups {
-                pairs.push(PointPair {
+                pairs.points.push(PointPair {
                     pair: contacts.len() as u32,
                     law: parts.law(PairLaw::new(friction, 0.0)),
                     points: numbers.iter().map(|&k| corners[k]).collect(),
                     body: body(block),
                     surface,
-                    kinematics: contact.kinematics,
+                    kinematics,
                 });
                 contacts.push(EquilibriumPair { contact: number, corners: numbers });
             }
         }
-        let shapes = self.blocks.iter().enumerate().map(|(number, &k)| (body(number), start.blocks[k].1.as_slice()));
-        Ok((parts.build(detector(pairs, shape_pairs, None, shapes)?)?, contacts))
+        let shapes =
+            self.blocks.iter().enumerate().map(|(number, &k)| (body(number), start.blocks[k].shapes.as_slice()));
+        Ok((parts.build(detector(pairs, None, shapes)?)?, contacts))
     }
 
     fn coordinates(&self, start: &InitialConfiguration<'_>) -> Vec<f64> {

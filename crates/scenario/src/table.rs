@@ -1,6 +1,7 @@
 //! The entries of the table of keys. [`crate::keys`] explains the columns.
 
 mod beam_keys;
+mod block_keys;
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -9,6 +10,7 @@ use crate::keys::{Bound, Key, Kind, Occurrence, Presence, Range, TableSchema};
 use crate::measure::AllowedUnit;
 use crate::words;
 use beam_keys::*;
+use block_keys::*;
 
 const fn key(name: &'static str, kind: Kind, presence: Presence, example: &'static str, doc: &'static str) -> Key {
     Key::new(name, kind, presence, example, doc)
@@ -313,21 +315,30 @@ pub static TABLES: &[TableSchema] = &[
     TableSchema {
         pattern: "block.*",
         occurrence: Occurrence::Named,
-        doc: "A rigid block: a rectangle by its sides, or a convex polygon by its corners.",
+        doc: "A rigid block. Its shape: width and height, points, radius, shape, or parts.",
         keys: &[
-            key("material", Kind::Name, Required, "\"aluminium\"", "Name of its material."),
-            key("width", SIZE, RequiredWithout("points"), "\"3 cm\"", "Width of its base."),
-            key("height", SIZE, RequiredWithout("points"), "\"13.5 cm\"", "Height."),
-            key("points", Kind::Points(Dimension::LENGTH, Range::ANY), Optional, "[[\"0 cm\", \"0 cm\"], [\"30 cm\", \"0 cm\"], [\"20 cm\", \"15 cm\"]]", "Corners of a convex polygon, in order around it, instead of width and height. Without a position it starts where they are; with one its mass centre is moved there. Tables call them `corner-1`, `corner-2`, …, counter-clockwise from the first."),
-            key("depth", SIZE, Required, "\"3 cm\"", "Depth out of the plane."),
+            MATERIAL, BLOCK_DENSITY, BLOCK_WIDTH, BLOCK_HEIGHT, POINTS, RADIUS,
+            key("parts", Kind::Tables(PART_KEYS), Optional, "[{ width = \"4 cm\", height = \"2 cm\" }, { radius = \"1 cm\", at = [\"0 cm\", \"2 cm\"] }]", "Parts of a block that is not convex, each with the keys of a shape; where they overlap, mass counts for each of them. Without a position it starts where they are. Tables call their points `part-2.corner-1` and so on."),
+            ROUNDING, CHAMFER,
+            key("depth", SIZE, RequiredWithout("mass"), "\"3 cm\"", "Depth out of the plane."),
+            key("mass", Kind::Quantity(Dimension::MASS, Range::POSITIVE), Optional, "\"2 kg\"", "Mass, instead of material and depth; together with inertia."),
+            key("inertia", Kind::Quantity(Dimension::INERTIA, Range::POSITIVE.sizes(1e-18, 1e12)), Optional, "\"3e-4 kg m^2\"", "Moment of inertia about the mass centre, which is that of the shape; together with mass."),
             key("on", Kind::Name, Optional, "\"table\"", "The body that it stands on: a beam, \"ground\", or another block, on whose upper side it is placed."),
-            key("at", Kind::Quantity(Dimension::LENGTH, Range::ANY), Optional, "\"18 cm\"", "Position x, in the world, of the midpoint of its base before it is tilted."),
-            key("tilt", Kind::Quantity(Dimension::ANGLE, QUARTER_TURN), DefaultWith { sibling: "on", value: "\"0 deg\"" }, "\"5 deg\"", "Rotation about the corner on which it then stands, counter-clockwise positive."),
+            key("at", Kind::Quantity(Dimension::LENGTH, Range::ANY), Optional, "\"18 cm\"", "Position x, in the world, of the midpoint of its base before it is tilted; the base is its lowest side, or lowest point."),
+            key("tilt", Kind::Quantity(Dimension::ANGLE, QUARTER_TURN), DefaultWith { sibling: "on", value: "\"0 deg\"" }, "\"5 deg\"", "Rotation about the end of its base on which it then stands, counter-clockwise positive; it is placed such that its lowest point touches."),
             key("position", POINT, Optional, "[\"18 cm\", \"6.75 cm\"]", "Position of its mass centre, instead of on and at."),
+            key("centre", POINT, Optional, "[\"0 m\", \"0 m\"]", "Position of the arch's centre, for a voussoir, instead of position."),
             key("angle", Kind::Quantity(Dimension::ANGLE, QUARTER_TURN), DefaultWith { sibling: "position", value: "\"0 deg\"" }, "\"5 deg\"", "Rotation about its mass centre, counter-clockwise positive; only with position."),
             key("velocity", Kind::Pair(Dimension::VELOCITY, Range::ANY), Default("[\"0 m/s\", \"0 m/s\"]"), "[\"0.1 m/s\", \"0 m/s\"]", "Initial velocity of its mass centre."),
             key("spin", Kind::Quantity(Dimension::ANGULAR_VELOCITY, Range::ANY), Default("\"0 rad/s\""), "\"1 rad/s\"", "Initial angular velocity, counter-clockwise positive."),
+            key("fixed", Kind::Flag, Optional, "true", "Whether it never moves."),
         ],
+    },
+    TableSchema {
+        pattern: "block.*.shape",
+        occurrence: Occurrence::Inline,
+        doc: "Shape of a block by its kind.",
+        keys: SHAPE_KEYS,
     },
     TableSchema {
         pattern: "block.*.motion",
@@ -352,11 +363,18 @@ pub static TABLES: &[TableSchema] = &[
         ],
     },
     TableSchema {
+        pattern: "contacts",
+        occurrence: Occurrence::Optional,
+        doc: "All contacts together.",
+        keys: &[key("apart", Kind::PatternPairs, Optional, "[[\"wall-*\", \"wall-*\"]]", "Pairs of bodies, by names or patterns, that don't touch, whatever the contacts say.")],
+    },
+    TableSchema {
         pattern: "contact.*",
         occurrence: Occurrence::Named,
         doc: "Contact of a block with a beam, with the ground or with another block, with impact and friction. Bodies without a contact pass through each other.",
         keys: &[
-            key("between", Kind::PatternPair, Required, "[\"rocker\", \"table\"]", "Two blocks, or a block and the beam or `ground` that it touches, in either order. Forces and velocities in the tables are those on the block; between two, on the first. A `*` in a name stands for any characters: [\"brick-*\", \"brick-*\"] stands for all pairs of blocks with such names, except those that already have a contact by their full names, or by an earlier pattern."),
+            key("between", Kind::PatternPair, RequiredWithout("materials"), "[\"rocker\", \"table\"]", "Two blocks, or a block and the beam or `ground` that it touches, in either order. Forces and velocities in the tables are those on the block; between two, on the first. A `*` in a name stands for any characters, a `?` for one: [\"brick-*\", \"brick-*\"] is for all pairs of bodies with such names, [\"*\", \"*\"] for all that can touch. Of several contacts that are for a pair the one with full names holds, else that with the most letters in its patterns, else that by materials, else [\"*\", \"*\"]."),
+            key("materials", Kind::NamePair, Optional, "[\"granite\", \"steel\"]", "Two materials instead of two bodies: for all pairs of blocks and beams of these materials."),
             key("friction", Kind::Number(Range::NOT_NEGATIVE), Required, "0.5", "Coefficient of Coulomb friction."),
             key("restitution", Kind::Number(Range::UNIT), Default("0.0"), "0.0", "Coefficient of restitution: of the normal velocity, or with poisson of the normal impulse.").only_with("law", IMPACTS),
             key("tangential_restitution", Kind::Number(Range::UNIT), Default("0.0"), "0.0", "Fraction of the tangential velocity that is reversed in an impact that sticks.").only_with("law", IMPACTS),

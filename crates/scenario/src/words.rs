@@ -52,6 +52,8 @@ words! {
     Backend { Auto = "auto", Banded = "banded", Sparse = "sparse", CachedColumns = "cached-columns" }
     /// A beam's theory.
     Theory { EulerBernoulli = "euler-bernoulli", Timoshenko = "timoshenko" }
+    /// Kind of a block's shape.
+    ShapeKind { Regular = "regular", Trapezoid = "trapezoid", Voussoir = "voussoir", Stadium = "stadium" }
     /// Shape of a section.
     Shape {
         Rectangle = "rectangle",

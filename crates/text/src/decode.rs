@@ -344,11 +344,17 @@ impl Decoder<'_> {
                 continue;
             }
             match key.presence {
-                Presence::Required | Presence::RequiredWith(_) | Presence::RequiredWithout(_)
+                Presence::Required
+                | Presence::RequiredWith(_)
+                | Presence::RequiredWithout(_)
+                | Presence::RequiredWithoutAny(_)
                     if self.document.is_refused(&join(path, key.name)) => {}
                 Presence::Required => required.push(key),
                 Presence::RequiredWith(words) if self.goes_with(key, words, path) => required.push(key),
                 Presence::RequiredWithout(sibling) if branch.get(sibling).is_none() => required.push(key),
+                Presence::RequiredWithoutAny(others) if others.iter().all(|other| branch.get(other).is_none()) => {
+                    required.push(key);
+                }
                 Presence::Default(text) => self.default(key, text, path),
                 Presence::DefaultWithout { sibling, value } if branch.get(sibling).is_none() => {
                     self.default(key, value, path);

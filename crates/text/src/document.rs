@@ -195,6 +195,22 @@ impl Document {
         }
     }
 
+    /// An array of pairs of texts.
+    pub fn text_pairs(&self, path: &str) -> Option<&[[String; 2]]> {
+        match &self.entries.get(path)?.value {
+            Value::TextPairs(pairs) => Some(pairs),
+            _ => None,
+        }
+    }
+
+    /// An array of tables.
+    pub fn items(&self, path: &str) -> Option<&[Item]> {
+        match &self.entries.get(path)?.value {
+            Value::Items(items) => Some(items),
+            _ => None,
+        }
+    }
+
     /// Two, each a word or a table: the supports of a beam.
     pub fn item_pair(&self, path: &str) -> Option<&[Item; 2]> {
         match &self.entries.get(path)?.value {

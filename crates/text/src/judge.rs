@@ -102,6 +102,10 @@ impl Judge<'_> {
             }
             Kind::Words(choices) => self.words(key, choices, path, node).map(Value::Words),
             Kind::WordOrTable(words, keys) => self.item(key, (words, keys), path, node).map(Value::Item),
+            Kind::Tables(keys) => {
+                let read = |judge: &mut Self, item: &Node| judge.item(key, (&[], keys), path, item);
+                self.list_of(key, path, node, read).map(Value::Items)
+            }
             Kind::WordOrTablePair(words, keys) => {
                 let read = |judge: &mut Self, item: &Node| {
                     let reserved = judge.is_reserved(key, path, item);
@@ -122,6 +126,11 @@ impl Judge<'_> {
             Kind::PatternPair => {
                 let read = |judge: &mut Self, item: &Node| judge.pattern(key, path, item);
                 self.pair_of(key, path, node, read).map(Value::TextPair)
+            }
+            Kind::PatternPairs => {
+                let read = |judge: &mut Self, item: &Node| judge.pattern(key, path, item);
+                let pair = |judge: &mut Self, item: &Node| judge.pair_of(key, path, item, read);
+                self.list_of(key, path, node, pair).map(Value::TextPairs)
             }
             Kind::Downward(dimension) if matches!(node.raw, Raw::Array(_)) => {
                 let read = |judge: &mut Self, item: &Node| judge.quantity(key, dimension, &Range::ANY, path, item);
@@ -282,14 +291,14 @@ impl Judge<'_> {
         }
     }
 
-    /// A name, or one with `*` in it.
+    /// A name, or one with `*` or `?` in it.
     fn pattern(&mut self, key: &Key, path: &str, node: &Node) -> Option<String> {
         let text = self.text(key, path, node)?;
-        let plain: String = text.chars().filter(|c| *c != '*').collect();
+        let plain: String = text.chars().filter(|c| !matches!(c, '*' | '?')).collect();
         let only_stars = plain.is_empty() && !text.is_empty();
         match name_rule(&plain) {
             Some(rule) if !only_stars => {
-                self.blame(node, path, format!("{rule}; `*` stands for any characters of a name"));
+                self.blame(node, path, format!("{rule}; `*` stands for any characters of a name, `?` for one"));
                 None
             }
             _ => Some(text),
@@ -312,7 +321,7 @@ impl Judge<'_> {
     fn item(&mut self, key: &Key, (words, keys): (&[&str], &'static [Key]), path: &str, node: &Node) -> Option<Item> {
         match &node.raw {
             Raw::Branch(branch) => self.item_table(keys, path, branch).map(Item::Table),
-            Raw::Text(_) => self.choice(key, words, path, node).map(Item::Word),
+            Raw::Text(_) if !words.is_empty() => self.choice(key, words, path, node).map(Item::Word),
             _ => {
                 self.mistyped(key, path, node);
                 None

@@ -85,6 +85,8 @@ pub enum Presence {
     RequiredWith(&'static [&'static str]),
     /// Must be given if this key of the same table is not.
     RequiredWithout(&'static str),
+    /// Must be given if none of these keys and tables within the same table is.
+    RequiredWithoutAny(&'static [&'static str]),
     /// May be left out; there is no default here.
     Optional,
     /// Defaults to this TOML value.
@@ -150,14 +152,18 @@ pub enum Kind {
     ChoicePair(&'static [&'static str]),
     /// An array of some of these words, each once.
     Words(&'static [&'static str]),
-    /// One of some words, or a table of some keys.
+    /// One of some words, or a table of some keys; without words a table.
     WordOrTable(&'static [&'static str], &'static [Key]),
     /// An array of two, each one of some words or a table of some keys.
     WordOrTablePair(&'static [&'static str], &'static [Key]),
+    /// An array of tables of some keys.
+    Tables(&'static [Key]),
     /// An array of two names.
     NamePair,
-    /// An array of two names, in which a `*` stands for any characters.
+    /// An array of two names, in which a `*` stands for any characters and a `?` for one.
     PatternPair,
+    /// An array of such arrays.
+    PatternPairs,
     /// A quantity in one of several units, which determines its meaning.
     Measure(&'static [crate::measure::AllowedUnit], Range),
     /// A vector: an array of two quantities x, y, or one quantity that is not negative, for a

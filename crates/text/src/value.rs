@@ -27,6 +27,8 @@ pub enum Value {
     List(Vec<f64>),
     /// Two texts, names or choices.
     TextPair([String; 2]),
+    /// Any number of pairs of texts.
+    TextPairs(Vec<[String; 2]>),
     /// Some words.
     Words(Vec<String>),
     /// A quantity in one of the units that its key accepts.
@@ -35,6 +37,8 @@ pub enum Value {
     Item(Item),
     /// Two of them.
     ItemPair([Item; 2]),
+    /// Any number of tables.
+    Items(Vec<Item>),
 }
 
 /// A word, or a table of keys if a word is not enough.
@@ -47,39 +51,64 @@ pub enum Item {
 }
 
 impl Item {
+    fn value(&self, key: &str) -> Option<&Value> {
+        match self {
+            Self::Table(values) => values.get(key),
+            Self::Word(_) => None,
+        }
+    }
+
     /// The number or quantity (in SI units) of a key of the table.
     #[must_use]
     pub fn number(&self, key: &str) -> Option<f64> {
-        match self {
-            Self::Table(values) => match values.get(key)? {
-                Value::Number(number) => Some(*number),
-                _ => None,
-            },
-            Self::Word(_) => None,
+        match self.value(key)? {
+            Value::Number(number) => Some(*number),
+            _ => None,
         }
     }
 
     /// The whole number of a key of the table.
     #[must_use]
     pub fn integer(&self, key: &str) -> Option<i64> {
-        match self {
-            Self::Table(values) => match values.get(key)? {
-                Value::Integer(number) => Some(*number),
-                _ => None,
-            },
-            Self::Word(_) => None,
+        match self.value(key)? {
+            Value::Integer(number) => Some(*number),
+            _ => None,
         }
     }
 
     /// The text of a key of the table.
     #[must_use]
     pub fn text(&self, key: &str) -> Option<&str> {
-        match self {
-            Self::Table(values) => match values.get(key)? {
-                Value::Text(text) => Some(text),
-                _ => None,
-            },
-            Self::Word(_) => None,
+        match self.value(key)? {
+            Value::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    /// The vector of a key of the table, in SI units.
+    #[must_use]
+    pub fn pair(&self, key: &str) -> Option<[f64; 2]> {
+        match self.value(key)? {
+            Value::Pair(pair) => Some(*pair),
+            _ => None,
+        }
+    }
+
+    /// The points of a key of the table, in SI units.
+    #[must_use]
+    pub fn points(&self, key: &str) -> Option<&[[f64; 2]]> {
+        match self.value(key)? {
+            Value::Points(points) => Some(points),
+            _ => None,
+        }
+    }
+
+    /// The table of a key of the table.
+    #[must_use]
+    pub fn item(&self, key: &str) -> Option<&Self> {
+        match self.value(key)? {
+            Value::Item(item) => Some(item),
+            _ => None,
         }
     }
 
@@ -110,10 +139,12 @@ impl Value {
             Self::Points(_) => matches!(kind, Kind::Points(..)),
             Self::List(_) => matches!(kind, Kind::List(..) | Kind::Numbers(_)),
             Self::TextPair(_) => matches!(kind, Kind::ChoicePair(_) | Kind::NamePair | Kind::PatternPair),
+            Self::TextPairs(_) => kind == Kind::PatternPairs,
             Self::Words(_) => matches!(kind, Kind::Words(_)),
             Self::Measure(_) => matches!(kind, Kind::Measure(..)),
             Self::Item(_) => matches!(kind, Kind::WordOrTable(..)),
             Self::ItemPair(_) => matches!(kind, Kind::WordOrTablePair(..)),
+            Self::Items(_) => matches!(kind, Kind::Tables(_)),
         }
     }
 
@@ -138,6 +169,10 @@ impl Value {
                 format!("[{}]", items.join(", "))
             }
             Self::TextPair([a, b]) => format!("[{}, {}]", quote(a), quote(b)),
+            Self::TextPairs(pairs) => {
+                let pairs: Vec<String> = pairs.iter().map(|[a, b]| format!("[{}, {}]", quote(a), quote(b))).collect();
+                format!("[{}]", pairs.join(", "))
+            }
             Self::Words(words) => {
                 let words: Vec<String> = words.iter().map(|word| quote(word)).collect();
                 format!("[{}]", words.join(", "))
@@ -145,6 +180,10 @@ impl Value {
             Self::Measure(measure) => quote(&measure.to_string()),
             Self::Item(item) => item.to_toml(keys_of(kind)),
             Self::ItemPair([a, b]) => format!("[{}, {}]", a.to_toml(keys_of(kind)), b.to_toml(keys_of(kind))),
+            Self::Items(items) => {
+                let items: Vec<String> = items.iter().map(|item| item.to_toml(keys_of(kind))).collect();
+                format!("[{}]", items.join(", "))
+            }
         }
     }
 }
@@ -163,7 +202,7 @@ fn dimension_of(kind: Kind) -> Dimension {
 /// The keys of the tables that may replace words.
 fn keys_of(kind: Kind) -> &'static [Key] {
     match kind {
-        Kind::WordOrTable(_, keys) | Kind::WordOrTablePair(_, keys) => keys,
+        Kind::WordOrTable(_, keys) | Kind::WordOrTablePair(_, keys) | Kind::Tables(keys) => keys,
         _ => &[],
     }
 }

@@ -40,8 +40,11 @@ pub(crate) fn noun(key: &Key) -> String {
         }
         Kind::Numbers(_) => "an array of bare numbers".to_owned(),
         Kind::Words(_) => "an array of words in quotes".to_owned(),
+        Kind::WordOrTable([], _) => "a table".to_owned(),
+        Kind::Tables(_) => "an array of tables".to_owned(),
         Kind::WordOrTable(..) => "a word in quotes or a table".to_owned(),
         Kind::WordOrTablePair(..) => "an array of two, each a word in quotes or a table,".to_owned(),
+        Kind::PatternPairs => "an array of pairs, each an array of two words in quotes,".to_owned(),
         Kind::ChoicePair(_) | Kind::NamePair | Kind::PatternPair => "an array of two words in quotes".to_owned(),
         Kind::Downward(dimension) => format!("{} with its unit, or an array of two,", dimension.name()),
     }
@@ -62,6 +65,8 @@ pub fn expected(key: &Key) -> String {
             format!("two of {}, such as {}", choices.join(", "), key.example)
         }
         Kind::Words(words) => format!("some of {}, each once, such as {}", words.join(", "), key.example),
+        Kind::WordOrTable([], keys) => format!("a table of {}, such as {}", names(keys), key.example),
+        Kind::Tables(keys) => format!("an array of tables of {}, such as {}", names(keys), key.example),
         Kind::WordOrTable(words, keys) => {
             format!("available: {}, or a table of {}", words.join(", "), names(keys))
         }

@@ -17,6 +17,9 @@ fn of_key(table: &TableSchema, key: &Key) -> Vec<Value> {
     if let Presence::RequiredWithout(other) = key.presence {
         all.push(at_least_one(&[key.name, other]));
     }
+    if let Presence::RequiredWithoutAny(others) = key.presence {
+        all.push(at_least_one(&[&[key.name], others].concat()));
+    }
     if let Some(OnlyWith { sibling, words }) = key.only_with {
         let needed = match key.presence {
             Presence::Required => words,
@@ -203,15 +206,25 @@ fn of_pattern(pattern: &str) -> Vec<Value> {
             all
         }
         "block.*" => vec![
-            at_least_one(&["position", "on", "points"]),
-            excludes("points", &["width", "height", "on", "at", "tilt"]),
-            excludes("position", &["on", "at", "tilt"]),
-            json!({ "dependentRequired": { "on": ["at"] } }),
+            at_least_one(&["position", "centre", "on", "points", "parts"]),
+            excludes("points", &["width", "height", "radius", "shape", "parts"]),
+            excludes("radius", &["width", "height", "shape", "parts", "rounding", "chamfer"]),
+            excludes("shape", &["width", "height", "parts"]),
+            excludes("parts", &["width", "height", "rounding", "chamfer"]),
+            excludes("rounding", &["chamfer"]),
+            excludes("mass", &["density", "depth"]),
+            excludes("material", &["density"]),
+            excludes("position", &["centre", "on", "at", "tilt"]),
+            excludes("centre", &["on", "at", "tilt"]),
+            json!({ "dependentRequired": { "on": ["at"], "mass": ["inertia"], "inertia": ["mass"] } }),
         ],
         // A pattern may be paired with itself.
         "contact.*" => {
-            let pattern = json!({ "contains": { "pattern": "\\*" } });
-            vec![properties([("between", json!({ "anyOf": [{ "uniqueItems": true }, pattern] }))])]
+            let pattern = json!({ "contains": { "pattern": "[*?]" } });
+            vec![
+                excludes("between", &["materials"]),
+                properties([("between", json!({ "anyOf": [{ "uniqueItems": true }, pattern] }))]),
+            ]
         }
         "signal.*" => vec![
             json!({ "not": { "required": ["frequency", "period"] } }),

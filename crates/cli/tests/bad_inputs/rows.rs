@@ -310,7 +310,8 @@ fn beams() -> Vec<Row> {
         refused(25, "beam held along its axis with a free end", Edit(&[("[\"pinned\", \"pinned\"]", "[\"clamped\", \"free\"]\naxial = \"held\"")]), &["beam.table.axial", "the right end is free"]),
         warned(38, "mesh too fine for its digits", Set(&["beam.table.elements=9000"]), &["warning: beam.table.elements", "digits of"]),
         refused(21, "block by its points and by its sides", Set(&["block.rocker.points=[['0 m', '0 m'], ['1 cm', '0 m'], ['0 m', '1 cm']]"]), &["block.rocker.width", "points already give"]),
-        refused(21, "block by its points on a beam", Edit(&[("width    = \"3 cm\"", "points = [[\"0 cm\", \"0 cm\"], [\"3 cm\", \"0 cm\"], [\"0 cm\", \"9 cm\"]]"), ("height   = \"13.5 cm\"", "")]), &["block.rocker.on", "no base to stand on"]),
+        refused(21, "points on one line", Edit(&[("width    = \"3 cm\"", "points = [[\"0 cm\", \"0 cm\"], [\"3 cm\", \"0 cm\"], [\"9 cm\", \"0 cm\"]]"), ("height   = \"13.5 cm\"", "")]), &["block.rocker.points", "all points are on one line"]),
+        refused(21, "block by its radius and by its sides", Set(&["block.rocker.radius=2 cm"]), &["block.rocker.width", "radius already gives the shape"]),
         refused(21, "point without y", Set(&["block.rocker.points=[['0 m'], ['1 cm', '0 m'], ['0 m', '1 cm']]"]), &["block.rocker.points", "an array of two is expected, got 1"]),
         warned(38, "thick beam without shear", Set(&["beam.table.thickness=4 cm"]), &["warning: beam.table.theory", "0.11 of the span", "timoshenko"]),
     ]

@@ -12,8 +12,10 @@ use teeter_scenario::wording;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct BlockDrawn {
     pub(crate) name: String,
-    /// Corners about its mass centre, counter-clockwise, m.
+    /// Corners about its mass centre, counter-clockwise, m: of round parts those of the core.
     pub(crate) corners: Vec<[f64; 2]>,
+    /// How many of them each part has, and how far it reaches beyond them, m.
+    pub(crate) parts: Vec<(usize, f64)>,
     /// Whether it is a rectangle, its first corner bottom left.
     pub(crate) upright: bool,
     /// Critical angle of a rectangle, rad.
@@ -98,8 +100,11 @@ pub(crate) struct Scenery {
     pub(crate) records: Vec<Arc<RecordScene>>,
 }
 
-/// BL of bottom-left, 3 of corner-3.
+/// BL of bottom-left, 3 of corner-3, 2 R of part-2.rim.
 fn short(corner: &str) -> String {
+    if let Some((part, corner)) = corner.strip_prefix("part-").and_then(|rest| rest.split_once('.')) {
+        return format!("{part} {}", short(corner));
+    }
     match corner.strip_prefix("corner-") {
         Some(number) => number.to_owned(),
         None => {
@@ -119,7 +124,11 @@ impl Scenery {
         let blocks = scene.blocks.iter().map(|block| BlockDrawn {
             name: block.name.clone(),
             corners: block.corners().iter().map(|corner| [corner.x, corner.y]).collect(),
-            upright: block.polygon.is_none(),
+            parts: match &block.parts {
+                None => vec![(block.corner_count(), 0.0)],
+                Some(parts) => parts.iter().map(|part| (part.shape.core().len(), part.shape.radius())).collect(),
+            },
+            upright: block.parts.is_none(),
             alpha: block.critical_angle(),
         });
         let beams = scene.beams.iter().zip(&layout.beams).map(|(drawn, place)| {

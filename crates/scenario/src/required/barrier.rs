@@ -219,7 +219,7 @@ impl Barrier {
     /// The proof, if there is one, with these pairs inactive.
     pub(super) fn of(start: &InitialMotion<'_>, pairs: &InactivePairs) -> Option<Self> {
         let scene = start.scene;
-        if scene.blocks.is_empty() || scene.blocks.iter().any(|block| block.polygon.is_some()) || !conserves(start) {
+        if scene.blocks.is_empty() || scene.blocks.iter().any(|block| block.parts.is_some()) || !conserves(start) {
             return None;
         }
         let assemblage = Assemblage::of(start, pairs)?;

@@ -53,7 +53,7 @@ impl Reach {
         }
         let (of, time) = (&start.scene.blocks[block], &start.scene.time);
         let (q, v) = start.block(block);
-        let extent = if v[2] == 0.0 && of.polygon.is_none() {
+        let extent = if v[2] == 0.0 && of.parts.is_none() {
             let (sin, cos) = q[2].sin_cos();
             let half = [0.5 * of.width, 0.5 * of.height];
             [half[0] * cos.abs() + half[1] * sin.abs(), half[0] * sin.abs() + half[1] * cos.abs()]

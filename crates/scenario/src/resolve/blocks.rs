@@ -3,41 +3,33 @@
 use std::sync::Arc;
 
 use nalgebra::Vector2;
-use teeter_detect::Polygon;
-use teeter_rigid::MassProperties;
+use teeter_detect::{MOST_CORNERS, Shape, ShapeError};
+use teeter_integrator::{Formula, Given};
+use teeter_rigid::{MassProperties, RigidError};
 
 use super::Resolver;
 use super::contacts::Joined;
 use super::names::BlockName;
-use crate::scene::{BeamScene, BlockScene, ContactScene, Placement, SignalScene, SupportingBody};
+use super::outlines::{self, Drawn, Refusal, ShapeKeys, Way};
+use crate::scene::{
+    AxisScene, BeamScene, BlockPart, BlockScene, ContactScene, History, Matter, MotionScene, Placement, SignalScene,
+    SupportingBody, mass_of,
+};
 
 /// An error that has been reported.
 struct AlreadyReported;
 
-/// The polygon of a block given by its points.
-struct PolygonScene {
-    /// Corners relative to its mass centre.
-    corners: Arc<[Vector2<f64>]>,
-    /// Its mass centre in the coordinates of the points, m.
+/// A block's shape about its mass centre.
+struct BlockShape {
+    /// `None` for a rectangle with sharp corners.
+    parts: Option<Arc<[BlockPart]>>,
+    /// The mass centre in the coordinates of the drawing, m.
     centre: [f64; 2],
-    /// The largest and the smallest of its extents across its sides, m.
+    /// Whether it starts where it is drawn if no position is given.
+    is_in_place: bool,
+    /// Width and height, or the largest and the smallest extent across sides, m.
     extents: [f64; 2],
-}
-
-impl PolygonScene {
-    fn new(points: &[[f64; 2]]) -> Result<Self, String> {
-        let drawn = Polygon::new(points.iter().copied().map(Vector2::from).collect()).map_err(|why| why.to_string())?;
-        let corners = drawn.corners();
-        let (_, centre) = MassProperties::polygon(corners, 1.0, 1.0).map_err(|why| why.to_string())?;
-        let corners: Arc<[Vector2<f64>]> = corners.iter().map(|corner| corner - centre).collect();
-        let across = |k: usize| {
-            let side = (corners[(k + 1) % corners.len()] - corners[k]).normalize();
-            corners.iter().map(|corner| side.perp(&(corner - corners[k]))).fold(0.0, f64::max)
-        };
-        let extents = (0..corners.len()).map(across);
-        let [large, small] = extents.fold([0.0_f64, f64::INFINITY], |[large, small], x| [large.max(x), small.min(x)]);
-        Ok(Self { corners, centre: [centre.x, centre.y], extents: [large, small] })
-    }
+    matter: Matter,
 }
 
 impl Resolver<'_, '_> {
@@ -51,19 +43,10 @@ impl Resolver<'_, '_> {
     ) -> Option<BlockScene> {
         let path = format!("block.{}", block.table);
         let at = |key: &str| format!("{path}.{key}");
-        let density = self.material(&path).and_then(|m| self.quantity(&format!("{m}.density")));
-        let (polygon, width, height) = match self.polygon(block) {
-            Ok(Some(polygon)) => {
-                let [width, height] = polygon.extents;
-                (Some(polygon), Some(width), Some(height))
-            }
-            Ok(None) => (None, self.quantity(&at("width")), self.quantity(&at("height"))),
-            Err(AlreadyReported) => return None,
-        };
-        let depth = self.quantity(&at("depth"));
+        let shape = self.block_shape(block);
         let velocity = self.pair(&at("velocity"));
         let spin = self.quantity(&at("spin"));
-        let motion = self.motion(&path, signals);
+        let motion = self.block_motion(&path, signals);
         if let (Some(motion), Some([x, y]), Some(spin)) = (&motion, velocity, spin) {
             for (key, value, axis) in [("velocity", x, 0), ("velocity", y, 1), ("spin", spin, 2)] {
                 if value != 0.0 && motion.0[axis].is_some() {
@@ -73,43 +56,67 @@ impl Resolver<'_, '_> {
                 }
             }
         }
-        let drawn = polygon.as_ref().map(|polygon| polygon.centre);
-        let placement = self.placement(block, drawn, contacts, joined);
-        if let (Some(width), Some(placement)) = (width, &placement) {
-            self.stands(&block.table, width, placement, beams);
-        }
-        Some(BlockScene {
+        let shape = shape?;
+        let placement = self.placement(block, &shape, contacts, joined);
+        let [width, height] = shape.extents;
+        let of = BlockScene {
             name: block.name.clone(),
-            width: width?,
-            height: height?,
-            polygon: polygon.map(|polygon| polygon.corners),
-            depth: depth?,
-            density: density?,
+            width,
+            height,
+            parts: shape.parts,
+            matter: shape.matter,
             placement: placement?,
             velocity: velocity?,
             spin: spin?,
             motion: motion?,
-        })
+        };
+        self.stands(&block.table, &of, beams);
+        Some(of)
+    }
+
+    /// The prescribed motion of a block, which is none at all of a fixed one.
+    fn block_motion(&mut self, path: &str, signals: &[Option<SignalScene>]) -> Option<MotionScene> {
+        let motion = self.motion(path, signals);
+        let fixed = format!("{path}.fixed");
+        if self.doc.flag(&fixed) != Some(true) {
+            return motion;
+        }
+        if motion.as_ref().is_none_or(MotionScene::is_given) {
+            self.error(&fixed, "a fixed block has no motion", "leave out fixed or motion");
+            return None;
+        }
+        let still = History::Formula(Formula::constant(0.0).ok()?);
+        let axis = AxisScene { given: Given::Velocity, amplitude: 0.0, history: still };
+        Some(MotionScene([Some(axis.clone()), Some(axis.clone()), Some(axis)]))
     }
 
     fn placement(
         &mut self,
         block: &BlockName,
-        drawn: Option<[f64; 2]>,
+        shape: &BlockShape,
         contacts: &[Option<ContactScene>],
         joined: &Joined,
     ) -> Option<Placement> {
         let path = format!("block.{}", block.table);
         let at = |key: &str| format!("{path}.{key}");
         let shift = self.doc.pair(&at("repeat.shift")).unwrap_or_default().map(|shift| block.copy as f64 * shift);
-        self.check_placement_keys(&path, drawn.is_some()).ok()?;
+        self.check_placement_keys(&path).ok()?;
+        let free = |[x, y]: [f64; 2], angle: f64| Placement::Free { position: [x + shift[0], y + shift[1]], angle };
         if self.is_written(&at("position")) {
             let (position, angle) = (self.pair(&at("position")), self.quantity(&at("angle")));
-            let [x, y] = position?;
-            return Some(Placement::Free { position: [x + shift[0], y + shift[1]], angle: angle? });
+            return Some(free(position?, angle?));
         }
-        if let Some([x, y]) = drawn {
-            return Some(Placement::Free { position: [x + shift[0], y + shift[1]], angle: 0.0 });
+        let [x, y] = shape.centre;
+        if self.is_written(&at("centre")) {
+            if self.doc.text(&at("shape.kind")) != Some("voussoir") {
+                self.error(&at("centre"), "only a voussoir is placed by the arch's centre", "give its position");
+                return None;
+            }
+            let [cx, cy] = self.pair(&at("centre"))?;
+            return Some(free([cx + x, cy + y], 0.0));
+        }
+        if shape.is_in_place && !self.is_written(&at("on")) {
+            return Some(free([x, y], 0.0));
         }
         self.placement_on(block, shift, contacts, joined)
     }
@@ -119,21 +126,20 @@ impl Resolver<'_, '_> {
         self.doc.is_given(path) || self.doc.is_refused(path)
     }
 
-    /// Refuses mutually exclusive keys of the placement of a block, which may be drawn by its
-    /// points.
-    fn check_placement_keys(&mut self, path: &str, drawn: bool) -> Result<(), AlreadyReported> {
+    /// Refuses mutually exclusive keys of the placement of a block.
+    fn check_placement_keys(&mut self, path: &str) -> Result<(), AlreadyReported> {
         let at = |key: &str| format!("{path}.{key}");
         let standing = ["on", "at", "tilt"].into_iter().find(|key| self.is_written(&at(key)));
         let position = self.is_written(&at("position"));
+        let centre = self.is_written(&at("centre"));
         let (key, rule, remedy) = match standing {
-            Some(key) if drawn => (
-                key,
-                "a block given by its points has no base to stand on",
-                "leave it out, as the block starts where its points are, or give position and angle",
-            ),
             Some(key) if position => {
                 (key, "position already gives the place of the block", "keep position and angle, or on, at and tilt")
             }
+            Some(key) if centre => {
+                (key, "centre already gives the place of the block", "keep centre, or on, at and tilt")
+            }
+            _ if position && centre => ("centre", "position already gives the place of the block", "keep one of them"),
             _ if position && self.doc.flag(&at("repeat.stacked")) == Some(true) => (
                 "repeat.stacked",
                 "stacked blocks stand on each other, but position gives their place",
@@ -196,35 +202,179 @@ impl Resolver<'_, '_> {
             self.error(path, "a block can't stand on itself", self.known_bodies());
             return Err(AlreadyReported);
         }
-        if let SupportingBody::Block(below) = support
-            && self.doc.is_given(&format!("block.{}.points", self.block_names[below].table))
-        {
-            let rule = format!("`{on}` is a block given by its points, which has no upper side to stand on");
-            self.error(path, rule, "give position and angle instead of on, at and tilt");
-            return Err(AlreadyReported);
-        }
         Ok(support)
     }
 
-    /// The polygon of a block, if it is given by its points.
-    fn polygon(&mut self, block: &BlockName) -> Result<Option<PolygonScene>, AlreadyReported> {
-        let path = format!("block.{}.points", block.table);
-        if self.doc.is_refused(&path) {
-            return Err(AlreadyReported);
-        }
-        let Some(points) = self.doc.points(&path) else { return Ok(None) };
-        for key in ["width", "height"] {
-            let at = format!("block.{}.{key}", block.table);
-            if self.doc.is_given(&at) {
-                self.error(&at, "points already give the shape of the block", "keep points, or width and height");
-                return Err(AlreadyReported);
+    /// The shape of a block, and what it is made of.
+    fn block_shape(&mut self, block: &BlockName) -> Option<BlockShape> {
+        let path = format!("block.{}", block.table);
+        let doc = self.doc;
+        let keys = ShapeKeys::Block(doc, &path);
+        let way = self.told(&path, keys.way())?;
+        let drawn = if way == Way::Parts {
+            self.parts(&path)?
+        } else {
+            let drawn = self.told(&path, keys.drawn(way));
+            let density = self.given_density(&path);
+            vec![(drawn??, density)]
+        };
+        let depth = doc.quantity(&format!("{path}.depth"));
+        let given = self.given_mass(&path)?;
+        let of_part = |(part, density): &(Drawn, Option<f64>)| {
+            // Where the mass is given only its centre counts, which is that of the area.
+            let (density, depth) = if given.is_some() { (1.0, 1.0) } else { ((*density)?, depth?) };
+            Some(mass_of(&part.shape, depth, density))
+        };
+        let masses: Vec<_> = drawn.iter().map(of_part).collect::<Option<_>>()?;
+        let all = masses.into_iter().collect::<Result<Vec<_>, RigidError>>().and_then(|masses| {
+            let together = if let [one] = *masses { one } else { MassProperties::together(&masses)? };
+            Ok(together)
+        });
+        let (mass, centre) = match all {
+            Ok(all) => all,
+            Err(why) => {
+                self.error(&path, why.to_string(), "correct its sizes or its density");
+                return None;
             }
+        };
+        let matter = match (given, drawn.as_slice()) {
+            (Some(given), _) => Matter::Given(given),
+            (None, [(_, density)]) => Matter::Homogeneous { density: (*density)?, depth: depth? },
+            (None, _) => Matter::Given(mass),
+        };
+        let sharp = matches!(drawn.as_slice(), [(Drawn { shape: Shape::Polygon(_), is_rectangle: true }, _)]);
+        if sharp {
+            let extents = [doc.quantity(&format!("{path}.width"))?, doc.quantity(&format!("{path}.height"))?];
+            return Some(BlockShape { parts: None, centre: [0.0; 2], is_in_place: false, extents, matter });
         }
-        PolygonScene::new(points)
-            .map_err(|why| {
-                self.error(&path, why, "give at least three corners of a convex polygon, in order around it");
-                AlreadyReported
+        let about_centre = |(part, _): (Drawn, Option<f64>)| {
+            let shape = outlines::moved(&part.shape, 0.0, -centre)?;
+            Ok(BlockPart { shape, is_rectangle: part.is_rectangle })
+        };
+        let parts = match drawn.into_iter().map(about_centre).collect::<Result<Vec<_>, ShapeError>>() {
+            Ok(parts) => parts,
+            Err(why) => {
+                self.error(&path, why.to_string(), "correct its shape");
+                return None;
+            }
+        };
+        let extents = match way {
+            // Up to rounding the same, but these are the numbers that are given.
+            Way::Sides => [doc.quantity(&format!("{path}.width"))?, doc.quantity(&format!("{path}.height"))?],
+            _ => parts
+                .iter()
+                .map(|part| outlines::extents(&part.shape))
+                .fold([0.0_f64, f64::INFINITY], |[large, small], [a, b]| [large.max(a), small.min(b)]),
+        };
+        let corners: usize = parts.iter().map(|part| part.shape.core().len()).sum();
+        if corners > MOST_CORNERS {
+            let rule = format!("the block has {corners} corners, more than the limit of {MOST_CORNERS}");
+            self.error(&path, rule, "use fewer or simpler parts");
+            return None;
+        }
+        let is_in_place = matches!(way, Way::Points | Way::Parts);
+        Some(BlockShape { parts: Some(parts.into()), centre: [centre.x, centre.y], is_in_place, extents, matter })
+    }
+
+    /// Reports a refused shape of the table at `path`.
+    fn told<T>(&mut self, path: &str, found: Result<T, Refusal>) -> Option<T> {
+        found
+            .map_err(|Refusal { key, rule, remedy }| {
+                let at = if key.is_empty() { path.to_owned() } else { format!("{path}.{key}") };
+                // A value that was refused has its message, and so has a missing table.
+                if !(self.doc.is_refused(&at) || (key.is_empty() && self.partial)) {
+                    self.error(&at, rule, remedy);
+                }
             })
+            .ok()
+    }
+
+    /// The parts of a block where they are in it, with their densities.
+    fn parts(&mut self, path: &str) -> Option<Vec<(Drawn, Option<f64>)>> {
+        let doc = self.doc;
+        let at = format!("{path}.parts");
+        let parts = doc.items(&at)?;
+        if parts.is_empty() {
+            self.error(&at, "there are no parts", "give at least one, such as { radius = \"2 cm\" }");
+            return None;
+        }
+        if let Some(key) = ["rounding", "chamfer"].into_iter().find(|key| doc.is_given(&format!("{path}.{key}"))) {
+            self.error(&format!("{path}.{key}"), "it belongs to the parts of this block", "give it in the parts");
+            return None;
+        }
+        let own = ["material", "density"].iter().any(|key| doc.is_given(&format!("{path}.{key}")));
+        let of_block = if own { self.given_density(path) } else { None };
+        let mut all = Vec::new();
+        for (number, part) in parts.iter().enumerate() {
+            let keys = ShapeKeys::Part(part);
+            let refused = |Refusal { key, rule, remedy }: Refusal| {
+                let key = if key.is_empty() { String::new() } else { format!("{key}: ") };
+                Refusal { key: "parts", rule: format!("part {}: {key}{rule}", number + 1), remedy }
+            };
+            let drawn = keys.way().and_then(|way| keys.drawn(way)).map_err(refused);
+            let drawn = self.told(path, drawn)??;
+            let by = Vector2::from(part.pair("at").unwrap_or_default());
+            let shape = outlines::moved(&drawn.shape, part.number("angle").unwrap_or_default(), by);
+            let shape = shape
+                .map_err(|why| refused(Refusal { key: "", rule: why.to_string(), remedy: "correct it".to_owned() }));
+            let shape = self.told(path, shape)?;
+            let density = match part.text("material") {
+                Some(name) => {
+                    Some(self.material_named(&at, name)?).and_then(|m| self.quantity(&format!("{m}.density")))
+                }
+                None => of_block,
+            };
+            if density.is_none() && !doc.is_given(&format!("{path}.mass")) {
+                let rule = format!("part {} has no material, and the block has none", number + 1);
+                self.error(&at, rule, "give each part a material, or the block one");
+                return None;
+            }
+            all.push((Drawn { shape, is_rectangle: drawn.is_rectangle }, density));
+        }
+        Some(all)
+    }
+
+    /// The density of a block, by its material or by itself; `None` if its mass is given, too.
+    fn given_density(&mut self, path: &str) -> Option<f64> {
+        let doc = self.doc;
+        let (material, density) = (format!("{path}.material"), format!("{path}.density"));
+        match (doc.is_given(&material), doc.is_given(&density)) {
+            (true, true) => {
+                self.error(&density, "the material has a density already", "give material or density");
+                None
+            }
+            (false, true) => doc.quantity(&density),
+            (false, false) if doc.is_given(&format!("{path}.mass")) || doc.is_refused(&format!("{path}.mass")) => None,
+            _ => self.material(path).and_then(|material| self.quantity(&format!("{material}.density"))),
+        }
+    }
+
+    /// Mass and moment of inertia, if they are given: both or neither.
+    fn given_mass(&mut self, path: &str) -> Option<Option<MassProperties>> {
+        let doc = self.doc;
+        let at = |key: &str| format!("{path}.{key}");
+        let (mass, inertia) = (doc.quantity(&at("mass")), doc.quantity(&at("inertia")));
+        let (mass, inertia) = match (mass, inertia) {
+            (Some(mass), Some(inertia)) => (mass, inertia),
+            (None, None) if self.is_written(&at("mass")) || self.is_written(&at("inertia")) => return None,
+            (None, None) => return Some(None),
+            (one, _) => {
+                let [has, lacks] = if one.is_some() { ["mass", "inertia"] } else { ["inertia", "mass"] };
+                if !doc.is_refused(&at(lacks)) {
+                    let remedy = format!("add {lacks}, or give material and depth instead of both");
+                    self.error(&at(has), format!("{has} needs {lacks}, too"), remedy);
+                }
+                return None;
+            }
+        };
+        let density = ["density", "depth"].into_iter().find(|key| doc.is_given(&at(key)));
+        if let Some(key) = density {
+            self.error(&at(key), "mass and inertia are given already", "give mass and inertia, or material and depth");
+            return None;
+        }
+        MassProperties::new(mass, inertia)
+            .map_err(|why| self.error(&at("mass"), why.to_string(), "give a positive mass and inertia"))
+            .ok()
             .map(Some)
     }
 
@@ -250,23 +400,25 @@ impl Resolver<'_, '_> {
     }
 
     /// Reports a block that doesn't fit on the beam it stands on.
-    fn stands(&mut self, name: &str, width: f64, placement: &Placement, beams: &[Option<BeamScene>]) {
-        let Placement::On { support: SupportingBody::Beam(number), at, tilt, .. } = *placement else { return };
+    fn stands(&mut self, name: &str, block: &BlockScene, beams: &[Option<BeamScene>]) {
+        let Placement::On { support: SupportingBody::Beam(number), at, tilt, .. } = block.placement else { return };
         let path = |key: &str| format!("block.{name}.{key}");
         let Some(Some(beam)) = beams.get(number) else { return };
-        let (left, span) = (beam.position[0], beam.spec.span);
+        let (left, span, width) = (beam.position[0], beam.spec.span, block.base());
         if width > span {
             let rule = format!("the block is {width} m wide, but the span of `{}` is {span} m", beam.name);
-            self.error(&path("width"), rule, "use a block narrower than the span");
+            let key = if block.parts.is_none() { path("width") } else { path("at") };
+            self.error(&key, rule, "use a block narrower than the span");
             return;
         }
-        let feet = [("bottom-left", at - 0.5 * width), ("bottom-right", at + 0.5 * width)];
+        let [first, second] = block.feet().map(|foot| block.corner_name(foot));
+        let feet = [(&first, at - 0.5 * width), (&second, at + 0.5 * width)];
         // The ends belong to the beam, and decimal positions reach them only up to rounding.
         let rounding = 4.0 * f64::EPSILON * (left.abs() + span + at.abs());
-        for (corner, x) in feet {
+        for (number, (corner, x)) in feet.into_iter().enumerate() {
             // The corner lifted by a tilt may be beyond the end.
-            let lifted = if tilt > 0.0 { "bottom-right" } else { "bottom-left" };
-            if (tilt == 0.0 || corner != lifted) && !(left - rounding..=left + span + rounding).contains(&x) {
+            let lifted = usize::from(tilt > 0.0);
+            if (tilt == 0.0 || number != lifted) && !(left - rounding..=left + span + rounding).contains(&x) {
                 let rule = format!(
                     "the corner {corner} at x = {x} m is outside `{}`, which extends from {left} m to {} m",
                     beam.name,

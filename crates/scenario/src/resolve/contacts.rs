@@ -16,16 +16,66 @@ pub(super) type Joined = BTreeMap<(usize, SupportingBody), usize>;
 /// Most pairs that patterns may stand for in total.
 const MOST_PAIRS: usize = 20_000;
 
+/// The block and what it touches, of two bodies that can touch each other; the first block comes
+/// first.
+fn touching(a: SupportingBody, b: SupportingBody) -> Option<(usize, SupportingBody)> {
+    match (a, b) {
+        (SupportingBody::Block(a), SupportingBody::Block(b)) if a == b => None,
+        (SupportingBody::Block(a), surface) | (surface, SupportingBody::Block(a)) => Some((a, surface)),
+        _ => None,
+    }
+}
+
+/// A contact of many pairs: which bodies each side stands for.
+struct Many {
+    /// Its number among the tables of contacts that have no full names.
+    table: usize,
+    name: String,
+    sides: [Side; 2],
+    rank: Rank,
+}
+
+/// One side of a contact of many pairs.
+struct Side {
+    bodies: Vec<(String, SupportingBody)>,
+}
+
+/// How closely a contact names its bodies; of two that stand for a pair the higher one holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Rank {
+    /// All bodies: `["*", "*"]`.
+    All,
+    /// By materials.
+    Materials,
+    /// By patterns with this many letters.
+    Letters(usize),
+}
+
+/// A pair of bodies, whichever comes first.
+type PairKey = (usize, SupportingBody);
+
+fn key_of(block: usize, surface: SupportingBody) -> PairKey {
+    match surface {
+        SupportingBody::Block(other) if other < block => (other, SupportingBody::Block(block)),
+        _ => (block, surface),
+    }
+}
+
+fn is_pattern(name: &str) -> bool {
+    name.contains(['*', '?'])
+}
+
 impl Resolver<'_, '_> {
     /// All contacts, those with full names first, and the pairs that they join.
     pub(super) fn contacts(&mut self) -> (Vec<Option<ContactScene>>, Joined) {
         let (mut contacts, mut joined) = (Vec::new(), Joined::new());
         let names = self.doc.names("contact");
-        let by_pattern = |name: &&str| {
+        let of_many = |name: &&str| {
             let between = self.doc.text_pair(&format!("contact.{name}.between"));
-            between.is_some_and(|between| between.iter().any(|side| side.contains('*')))
+            between.is_some_and(|between| between.iter().any(|side| is_pattern(side)))
+                || self.doc.is_given(&format!("contact.{name}.materials"))
         };
-        let (patterns, plain): (Vec<&str>, Vec<&str>) = names.into_iter().partition(by_pattern);
+        let (many, plain): (Vec<&str>, Vec<&str>) = names.into_iter().partition(of_many);
         for name in plain {
             let contact = self.contact(name);
             if let Some(contact) = &contact {
@@ -33,8 +83,16 @@ impl Resolver<'_, '_> {
             }
             contacts.push(contact);
         }
-        for name in patterns {
-            match self.contacts_by_pattern(name, &joined, contacts.len()) {
+        let apart = self.apart();
+        let many: Vec<Option<Many>> =
+            many.iter().enumerate().map(|(table, name)| self.contact_of_many(table, name)).collect();
+        let holders = self.holders(&many, &joined);
+        for of in many {
+            let Some(of) = of else {
+                contacts.push(None);
+                continue;
+            };
+            match self.pairs_of_many(&of, &holders, &apart, contacts.len()) {
                 Some(found) => {
                     for contact in found {
                         self.join(&contact, contacts.len(), &contacts, &mut joined);
@@ -44,7 +102,125 @@ impl Resolver<'_, '_> {
                 None => contacts.push(None),
             }
         }
+        // Also those with full names, which would otherwise contradict what is said to be apart.
+        let together: Vec<(String, [String; 2])> = contacts
+            .iter()
+            .flatten()
+            .filter(|contact| apart.contains(&key_of(contact.block, contact.surface)))
+            .map(|contact| (contact.name.clone(), contact.between.clone()))
+            .collect();
+        for (name, [a, b]) in together {
+            let rule = format!("`{a}` and `{b}` don't touch, according to contacts.apart");
+            self.error(&format!("contact.{name}.between"), rule, "leave out this contact, or the pair in apart");
+        }
         (contacts, joined)
+    }
+
+    /// The pairs that don't touch, whatever contacts say.
+    fn apart(&mut self) -> BTreeSet<PairKey> {
+        let pairs: Vec<[String; 2]> = self.doc.text_pairs("contacts.apart").map(<[_]>::to_vec).unwrap_or_default();
+        let mut apart = BTreeSet::new();
+        for pair in pairs {
+            let sides = pair.each_ref().map(|side| self.bodies_matching("contacts.apart", side));
+            let [Some(first), Some(second)] = sides else { continue };
+            for (block, surface) in first.iter().flat_map(|a| second.iter().filter_map(|b| touching(a.1, b.1))) {
+                apart.insert(key_of(block, surface));
+            }
+        }
+        apart
+    }
+
+    /// A contact by patterns or materials.
+    fn contact_of_many(&mut self, table: usize, name: &str) -> Option<Many> {
+        let path = format!("contact.{name}");
+        let key = format!("{path}.between");
+        let of_materials = format!("{path}.materials");
+        if let Some(materials) = self.doc.text_pair(&of_materials).map(|pair| pair.map(str::to_owned)) {
+            if self.doc.is_given(&key) {
+                self.error(&of_materials, "between already names the bodies", "keep one of them");
+                return None;
+            }
+            let sides = materials.each_ref().map(|material| self.bodies_of(&of_materials, material));
+            let [Some(first), Some(second)] = sides else { return None };
+            let sides = [first, second].map(|bodies| Side { bodies });
+            return Some(Many { table, name: name.to_owned(), sides, rank: Rank::Materials });
+        }
+        let patterns = self.doc.text_pair(&key).map(|pair| pair.map(str::to_owned))?;
+        let sides = patterns.each_ref().map(|pattern| self.bodies_matching(&key, pattern));
+        let [Some(first), Some(second)] = sides else { return None };
+        let any = first.iter().any(|a| second.iter().any(|b| touching(a.1, b.1).is_some()));
+        let blocks = |side: &[(String, SupportingBody)]| side.iter().any(|of| matches!(of.1, SupportingBody::Block(_)));
+        if !any && !(blocks(&first) || blocks(&second)) {
+            self.error(
+                &key,
+                "a contact is between two blocks, a block and a beam, or a block and the ground",
+                "name blocks",
+            );
+            return None;
+        }
+        let letters: usize =
+            patterns.iter().map(|pattern| pattern.chars().filter(|c| !is_pattern(&c.to_string())).count()).sum();
+        let rank = if letters == 0 { Rank::All } else { Rank::Letters(letters) };
+        let sides = [first, second].map(|bodies| Side { bodies });
+        Some(Many { table, name: name.to_owned(), sides, rank })
+    }
+
+    /// The contact of many, by its table, that holds for each pair; two of one rank are an error.
+    fn holders(&mut self, many: &[Option<Many>], joined: &Joined) -> BTreeMap<PairKey, (usize, Rank)> {
+        let mut holders: BTreeMap<PairKey, (usize, Rank)> = BTreeMap::new();
+        let mut contested: BTreeSet<[usize; 2]> = BTreeSet::new();
+        for of in many.iter().flatten() {
+            let [first, second] = &of.sides;
+            let pairs = first.bodies.iter().flat_map(|a| second.bodies.iter().filter_map(|b| touching(a.1, b.1)));
+            for (block, surface) in pairs.filter(|pair| !joined.contains_key(pair)) {
+                let key = key_of(block, surface);
+                match holders.get(&key).copied() {
+                    Some((table, rank)) if rank == of.rank && table != of.table => {
+                        if contested.insert([table, of.table]) {
+                            let other = many.iter().flatten().find(|other| other.table == table);
+                            let name = other.map_or("", |other| other.name.as_str());
+                            let [a, b] = [SupportingBody::Block(block), surface].map(|body| self.body_name(body));
+                            let rule = format!(
+                                "it says no more of the bodies than `{name}`, and both hold for `{a}` and `{b}`"
+                            );
+                            let remedy = "name the bodies of one of them more closely, or this pair by full names";
+                            self.error(&format!("contact.{}", of.name), rule, remedy);
+                        }
+                    }
+                    Some((_, rank)) if rank >= of.rank => {}
+                    _ => {
+                        holders.insert(key, (of.table, of.rank));
+                    }
+                }
+                // All pairs of a large scene would take too long to enter.
+                if holders.len() > MOST_PAIRS {
+                    return holders;
+                }
+            }
+        }
+        holders
+    }
+
+    /// The name of a body.
+    fn body_name(&self, body: SupportingBody) -> String {
+        match body {
+            SupportingBody::Ground => "ground".to_owned(),
+            SupportingBody::Beam(beam) => {
+                self.doc.names("beam").get(beam).map_or_else(String::new, |name| (*name).to_owned())
+            }
+            SupportingBody::Block(block) => self.block_names[block].name.clone(),
+        }
+    }
+
+    /// Whether a body never moves: two of them have no contact by a pattern.
+    fn is_fixed(&self, body: SupportingBody) -> bool {
+        match body {
+            SupportingBody::Ground => true,
+            SupportingBody::Beam(_) => false,
+            SupportingBody::Block(block) => {
+                self.doc.flag(&format!("block.{}.fixed", self.block_names[block].table)) == Some(true)
+            }
+        }
     }
 
     /// Enters a contact; two contacts of one pair are an error.
@@ -90,66 +266,90 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// The contacts of all pairs that match a pattern, except those that already have one.
-    fn contacts_by_pattern(&mut self, name: &str, joined: &Joined, known: usize) -> Option<Vec<ContactScene>> {
-        let path = format!("contact.{name}");
-        let key = format!("{path}.between");
-        let patterns = self.doc.text_pair(&key).map(|pair| pair.map(str::to_owned))?;
-        let (law, kinematics) = (self.pair_law(&path), self.kinematics(&path));
-        let sides = patterns.each_ref().map(|pattern| self.bodies_matching(&key, pattern));
-        let [Some(first), Some(second)] = sides else { return None };
-        let (law, kinematics) = (law?, kinematics?);
+    /// The contacts of all pairs for which a contact of many holds.
+    fn pairs_of_many(
+        &mut self,
+        of: &Many,
+        holders: &BTreeMap<PairKey, (usize, Rank)>,
+        apart: &BTreeSet<PairKey>,
+        known: usize,
+    ) -> Option<Vec<ContactScene>> {
+        let path = format!("contact.{}", of.name);
+        let (law, kinematics) = (self.pair_law(&path)?, self.kinematics(&path)?);
         let mut found: Vec<ContactScene> = Vec::new();
-        let mut pairs: BTreeSet<(usize, SupportingBody)> = BTreeSet::new();
-        for (a, b) in first.iter().flat_map(|a| second.iter().map(move |b| (a, b))) {
-            let (block, surface) = match (a.1, b.1) {
-                (SupportingBody::Block(a), surface) | (surface, SupportingBody::Block(a)) => (a, surface),
-                _ => {
-                    self.error(
-                        &key,
-                        "a contact is between two blocks, a block and a beam, or a block and the ground",
-                        "name blocks",
-                    );
-                    return None;
-                }
-            };
-            let again = matches!(surface, SupportingBody::Block(other) if other == block || pairs.contains(&(other, SupportingBody::Block(block))));
-            if again || joined.contains_key(&(block, surface)) || !pairs.insert((block, surface)) {
+        let mut entered: BTreeSet<PairKey> = BTreeSet::new();
+        let [first, second] = &of.sides;
+        for (a, b) in first.bodies.iter().flat_map(|a| second.bodies.iter().map(move |b| (a, b))) {
+            let Some((block, surface)) = touching(a.1, b.1) else { continue };
+            let key = key_of(block, surface);
+            let holds = holders.get(&key).is_some_and(|(table, _)| *table == of.table);
+            let still = self.is_fixed(a.1) && self.is_fixed(b.1);
+            if !holds || still || apart.contains(&key) || !entered.insert(key) {
                 continue;
             }
             let between = [a.0.clone(), b.0.clone()];
-            found.push(ContactScene { name: name.to_owned(), between, block, surface, law, kinematics });
+            found.push(ContactScene { name: of.name.clone(), between, block, surface, law, kinematics });
             if known + found.len() > MOST_PAIRS {
                 let rule = format!("the patterns match more than {MOST_PAIRS} pairs of bodies");
-                self.error(&key, rule, "name only bodies that can touch, such as each course of a wall and the next");
+                let remedy = "name only bodies that can touch, such as each course of a wall and the next";
+                self.error(&format!("{path}.between"), rule, remedy);
                 return None;
             }
         }
-        if let Some(contact) = found.first() {
+        let between_blocks = found.iter().all(|contact| contact.other_block().is_some());
+        if let Some(contact) = found.first().filter(|_| between_blocks) {
             self.no_frames_of_blocks(&path, contact.surface, Some(kinematics));
         }
         Some(found)
     }
 
-    /// The bodies that match a name or a pattern.
+    /// The bodies that match a name or a pattern; a pattern matches the ground and beams, too.
     fn bodies_matching(&mut self, key: &str, pattern: &str) -> Option<Vec<(String, SupportingBody)>> {
-        if !pattern.contains('*') {
+        if !is_pattern(pattern) {
             let support = self.support(pattern);
             if support.is_none() {
                 self.no_body(key, pattern);
             }
             return Some(vec![(pattern.to_owned(), support?)]);
         }
-        let blocks = self.block_names.iter().enumerate();
-        let bodies_matching = blocks.filter(|(_, block)| names::matches(pattern, &block.name));
-        let bodies_matching: Vec<_> =
-            bodies_matching.map(|(number, block)| (block.name.clone(), SupportingBody::Block(number))).collect();
-        if bodies_matching.is_empty() {
+        let mut found = self.bodies();
+        found.retain(|(name, _)| names::matches(pattern, name));
+        if found.is_empty() {
             let remedy = self.known_bodies();
-            self.error(key, format!("no block matches `{pattern}`"), remedy);
+            self.error(key, format!("no body matches `{pattern}`"), remedy);
             return None;
         }
-        Some(bodies_matching)
+        Some(found)
+    }
+
+    /// All bodies: blocks, beams, the ground.
+    fn bodies(&self) -> Vec<(String, SupportingBody)> {
+        let blocks = self.block_names.iter().enumerate();
+        let blocks = blocks.map(|(number, block)| (block.name.clone(), SupportingBody::Block(number)));
+        let beams = self.doc.names("beam").into_iter().enumerate();
+        let beams = beams.map(|(number, name)| (name.to_owned(), SupportingBody::Beam(number)));
+        let ground = self.doc.has_table("ground").then(|| ("ground".to_owned(), SupportingBody::Ground));
+        blocks.chain(beams).chain(ground).collect()
+    }
+
+    /// The blocks and beams of a material.
+    fn bodies_of(&mut self, key: &str, material: &str) -> Option<Vec<(String, SupportingBody)>> {
+        self.material_named(key, material)?;
+        let made_of = |table: String| self.doc.text(&format!("{table}.material")) == Some(material);
+        let found: Vec<_> = self
+            .bodies()
+            .into_iter()
+            .filter(|(name, body)| match body {
+                SupportingBody::Block(block) => made_of(format!("block.{}", self.block_names[*block].table)),
+                SupportingBody::Beam(_) => made_of(format!("beam.{name}")),
+                SupportingBody::Ground => false,
+            })
+            .collect();
+        if found.is_empty() {
+            self.error(key, format!("no block or beam is of `{material}`"), "name a material that is used");
+            return None;
+        }
+        Some(found)
     }
 
     fn pair_law(&mut self, path: &str) -> Option<PairLaw> {

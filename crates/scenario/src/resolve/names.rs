@@ -50,17 +50,34 @@ pub(crate) fn table_of<'a>(doc: &Document, block: &'a str) -> &'a str {
     }
 }
 
-/// Whether a name matches a pattern, in which `*` stands for any characters.
+/// Whether a name matches a pattern, in which `*` stands for any characters and `?` for one.
 pub(super) fn matches(pattern: &str, name: &str) -> bool {
-    let Some((start, rest)) = pattern.split_once('*') else { return pattern == name };
-    let Some(mut name) = name.strip_prefix(start) else { return false };
-    let mut parts: Vec<&str> = rest.split('*').collect();
-    let end = parts.pop().unwrap_or_default();
-    for part in parts {
-        let Some(at) = name.find(part) else { return false };
-        name = &name[at + part.len()..];
+    let (pattern, name) = (pattern.as_bytes(), name.as_bytes());
+    let (mut at, mut place) = (0, 0);
+    // Where to go on if the rest doesn't match: behind the last star, which then stands for one
+    // character more.
+    let mut back: Option<(usize, usize)> = None;
+    while place < name.len() {
+        match pattern.get(at) {
+            Some(b'*') => {
+                at += 1;
+                back = Some((at, place));
+            }
+            Some(letter) if *letter == b'?' || *letter == name[place] => {
+                at += 1;
+                place += 1;
+            }
+            _ => match back {
+                Some((star, from)) => {
+                    at = star;
+                    place = from + 1;
+                    back = Some((star, place));
+                }
+                None => return false,
+            },
+        }
     }
-    name.ends_with(end)
+    pattern[at..].iter().all(|letter| *letter == b'*')
 }
 
 /// Blocks by their names; a duplicate is passed to `twice`.
@@ -91,6 +108,10 @@ mod tests {
             ("a*b*c", "a-b-b-c", true),
             ("a*b*c", "acb", false),
             ("a*a", "a", false),
+            ("wall-?", "wall-1", true),
+            ("wall-?", "wall-12", false),
+            ("?a*?", "bab", true),
+            ("?a*?", "ba", false),
         ] {
             assert_eq!(matches(pattern, name), does, "{pattern} {name}");
         }

@@ -22,6 +22,7 @@ mod resolving;
 mod resting;
 mod running;
 mod settings;
+mod shapes;
 mod stacks;
 mod together;
 mod too_fast;

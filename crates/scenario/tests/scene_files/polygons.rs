@@ -132,10 +132,17 @@ fn points_that_are_no_convex_polygon_are_refused_with_the_corner() {
     };
     let of = |corners: &[[f64; 2]]| told(&points(corners));
     assert!(of(&[[0.0, 0.0], [1.0, 0.0]]).contains("a polygon has 3 to"));
-    assert!(of(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]).contains("straight on"));
-    assert!(of(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]).contains("turns inwards"), "it crosses itself");
+    assert!(of(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]).contains("all points are on one line"));
+    let crossing = of(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]);
+    assert!(crossing.contains("the sides from point 1 and from point 3 cross"), "{crossing}");
+    assert!(crossing.contains("in order around the polygon"), "{crossing}");
+    let dent = of(&[[0.0, 0.0], [1.0, 0.0], [0.2, 0.2], [0.0, 1.0]]);
+    assert!(dent.contains("at point 3 the polygon turns inwards") && dent.contains("convex parts"), "{dent}");
+    let straight = of(&[[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [0.0, 1.0]]);
+    assert!(straight.contains("point 2 is on the line between its neighbours"), "{straight}");
+    let twice = of(&[[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
+    assert!(twice.contains("points 2 and 3 are in the same place"), "{twice}");
     let triangle = points(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
     assert!(told(&format!("{triangle}\nwidth = '1 m'")).contains("points already give"));
-    assert!(told(&format!("{triangle}\non = 'ground'\nat = '0 m'")).contains("no base to stand on"));
     assert!(told("points = [['0 m'], ['1 m', '0 m'], ['0 m', '1 m']]").contains("an array of two is expected, got 1"));
 }

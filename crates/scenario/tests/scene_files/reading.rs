@@ -114,6 +114,10 @@ fn scene_of(wanted: impl Fn(&TableSchema, &Key) -> bool) -> Document {
     let mut source = String::new();
     for table in TABLES {
         for variant in Variant::all(table) {
+            if let Some(block) = variant.path.strip_suffix(".shape").filter(|path| path.starts_with("block")) {
+                // A block for each kind of shape, with what that doesn't give.
+                source.push_str(&format!("[{block}]\nmaterial = 'a'\ndepth = '1 m'\n"));
+            }
             if !table.pattern.is_empty() {
                 source.push_str(&format!("[{}]\n", variant.path));
             }
@@ -141,8 +145,13 @@ fn the_examples_and_defaults_of_the_table_are_valid() {
             |other: &Key| matches!(other.presence, Presence::DefaultWith { sibling, .. } if sibling == key.name);
         // The words of the variants.
         let first = table.keys.iter().find_map(|key| key.only_with).map(|only| only.sibling);
-        matches!(key.presence, Presence::Required | Presence::RequiredWith(_) | Presence::RequiredWithout(_))
-            || table.keys.iter().any(is_sibling)
+        matches!(
+            key.presence,
+            Presence::Required
+                | Presence::RequiredWith(_)
+                | Presence::RequiredWithout(_)
+                | Presence::RequiredWithoutAny(_)
+        ) || table.keys.iter().any(is_sibling)
             || first == Some(key.name)
     });
     for table in TABLES {
