@@ -120,9 +120,9 @@ pub(super) fn section(records: &[Arc<RecordScene>], summaries: &[RecordSummary])
         }
         html.push_str("</tr>\n");
     }
-    let _ = write!(html, "</tbody></table></div>\n<div class=\"paper\">{}</div>\n", histories.to_svg());
+    let _ = writeln!(html, "</tbody></table></div>\n<div class=\"paper\">{}</div>", histories.to_svg());
     if let Some(spectra) = spectra(records) {
-        let _ = write!(html, "<div class=\"paper\">{}</div>\n", spectra.to_svg());
+        let _ = writeln!(html, "<div class=\"paper\">{}</div>", spectra.to_svg());
     }
     html.push_str("</section>\n");
     html
