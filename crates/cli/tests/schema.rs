@@ -262,6 +262,7 @@ const BEYOND: &[&str] = &[
     "beam of a material without modulus",
     "contact with nobody",
     "too much output",
+    "accelerogram that is not there",
     "signal that is not defined",
     "a displacement that jumps",
     "force on a beam",

@@ -42,8 +42,9 @@ const THICKNESS: &str = "thickness     = \"0.15 cm\"";
 const SPAN: &str = "span          = \"36 cm\"";
 const MATERIAL: &str = "[block.rocker]\nmaterial = \"aluminium\"";
 const TILT: &str = "tilt     = \"5 deg\"    # about its bottom left corner, counter-clockwise";
-const PLACE: &str = "on       = \"table\"\nat       = \"18 cm\"    # the middle of its base before it is tilted: midspan\n\
-                     tilt     = \"5 deg\"    # about its bottom left corner, counter-clockwise";
+const PLACE: &str = "on       = \"table\"\n\
+     at       = \"18 cm\"    # the middle of the base before tilting: midspan\n\
+     tilt     = \"5 deg\"    # about its bottom left corner, counter-clockwise";
 
 /// A key that TOML could have, and a table after it.
 const DEEP: &str = concat!(
@@ -216,7 +217,7 @@ fn names() -> Vec<Row> {
         refused(36, "a table by a dotted key too", Edit(&[("[block.rocker]", "[beam]\ntable.elements = 5\n[block.rocker]")]), &["scene.toml:29:1", "beam.table: given twice, first on line 18"]),
         refused(37, "unknown solver", Set(&["solver.method=foo"]), &["solver.method", "unknown method", "auto, pgs, enumeration"]),
         refused(38, "version of the future", Edit(&[("version = 1", "version = 99")]), &["scene.toml:8:11", "version = 99", "version 1", "got 99"]),
-        refused(38, "profile of the ground", Edit(&[("[contact.feet]", "[ground]\nprofile = \"hills.csv\"\n[contact.feet]")]), &["ground.profile", "not implemented yet"]),
+        refused(38, "profile of the ground", Edit(&[("[contact.feet]", "[ground]\nprofile = \"hills.csv\"\n[contact.feet]")]), &["ground.profile", "a table is expected", "points", "file"]),
     ]
 }
 

@@ -120,9 +120,9 @@ pub(super) fn section(records: &[Arc<RecordScene>], summaries: &[RecordSummary])
         }
         html.push_str("</tr>\n");
     }
-    let _ = write!(html, "</tbody></table></div>\n<div class=\"paper\">{}</div>\n", histories.to_svg());
+    let _ = writeln!(html, "</tbody></table></div>\n<div class=\"paper\">{}</div>", histories.to_svg());
     if let Some(spectra) = spectra(records) {
-        let _ = write!(html, "<div class=\"paper\">{}</div>\n", spectra.to_svg());
+        let _ = writeln!(html, "<div class=\"paper\">{}</div>", spectra.to_svg());
     }
     html.push_str("</section>\n");
     html
@@ -138,7 +138,7 @@ mod tests {
         (values[31_234], values[41_001]) = (99.0, -99.0);
         let points = thinned(0.01, &values);
         assert!(points.len() <= 2 * PIECES + 2, "{}", points.len());
-        assert!(points.contains(&(312.34, 99.0)) && points.contains(&(410.01, -99.0)));
+        assert!(points.contains(&(31_234.0 * 0.01, 99.0)) && points.contains(&(41_001.0 * 0.01, -99.0)));
         assert!(points.windows(2).all(|two| two[0].0 < two[1].0));
         assert_eq!(thinned(0.5, &[1.0, 2.0]), [(0.0, 1.0), (0.5, 2.0)]);
     }

@@ -391,7 +391,10 @@ mod tests {
         for piece in TEMPLATE.split("{{").skip(1) {
             let name = piece.split_once("}}").unwrap().0;
             let known = ["title", "style", "script", "data", "subtitle", "warnings", "tiles", "residual", "rocking"];
-            assert!(known.contains(&name) || ["borne", "model", "numbers", "settings"].contains(&name), "{name}");
+            assert!(
+                known.contains(&name) || ["borne", "model", "numbers", "records", "settings"].contains(&name),
+                "{name}"
+            );
         }
     }
 
