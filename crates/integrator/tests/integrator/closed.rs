@@ -209,7 +209,8 @@ fn an_attempt_solves_only_the_islands_that_changed() {
     let mut scheme = MoreauJeanClosed::new(MoreauJeanClosedSettings::default()).unwrap();
     let mut step = |steps: u64, state: &mut State| {
         let before = work.counts;
-        run(&model, &mut scheme, state, &mut work, &Plan::steps(steps), &mut []).unwrap();
+        let ended = run(&model, &mut scheme, state, &mut work, &Plan::steps(steps), &mut []).unwrap();
+        assert_eq!(ended, Ended::Complete);
         let now = work.counts;
         let attempts = now.refused_attempts - before.refused_attempts;
         (attempts, now.problems - before.problems, now.detections - before.detections)
