@@ -210,7 +210,7 @@ fn an_attempt_solves_only_the_islands_that_changed() {
     let mut step = |steps: u64, state: &mut State| {
         let before = work.counts;
         let ended = run(&model, &mut scheme, state, &mut work, &Plan::steps(steps), &mut []).unwrap();
-        assert_eq!(ended, teeter_integrator::Ended::Complete);
+        assert_eq!(ended, Ended::Complete);
         let now = work.counts;
         let attempts = now.refused_attempts - before.refused_attempts;
         (attempts, now.problems - before.problems, now.detections - before.detections)
