@@ -287,7 +287,13 @@ impl Resolver<'_, '_> {
             if !holds || still || apart.contains(&key) || !entered.insert(key) {
                 continue;
             }
-            let between = [a.0.clone(), b.0.clone()];
+            let (block, surface, between) = match surface {
+                // The block is the one that moves.
+                SupportingBody::Block(other) if self.is_fixed(a.1) => {
+                    (other, SupportingBody::Block(block), [b.0.clone(), a.0.clone()])
+                }
+                _ => (block, surface, [a.0.clone(), b.0.clone()]),
+            };
             found.push(ContactScene { name: of.name.clone(), between, block, surface, law, kinematics });
             if known + found.len() > MOST_PAIRS {
                 let rule = format!("the patterns match more than {MOST_PAIRS} pairs of bodies");
