@@ -150,7 +150,7 @@ impl Resolver<'_, '_> {
         let [Some(first), Some(second)] = sides else { return None };
         let any = first.iter().any(|a| second.iter().any(|b| touching(a.1, b.1).is_some()));
         let blocks = |side: &[(String, SupportingBody)]| side.iter().any(|of| matches!(of.1, SupportingBody::Block(_)));
-        if !any && !(blocks(&first) || blocks(&second)) {
+        if !(any || blocks(&first) || blocks(&second)) {
             self.error(
                 &key,
                 "a contact is between two blocks, a block and a beam, or a block and the ground",
