@@ -285,6 +285,7 @@ const BEYOND: &[&str] = &[
     "more modes than there are",
     "region of modes beyond the beam",
     "dashpot under a beam in modes",
+    "points on one line",
 ];
 
 #[test]

@@ -110,9 +110,7 @@ fn feet(block: &BlockScene, at: f64, tilt: f64) -> ([Foot; 2], usize) {
     let half = 0.5 * block.base();
     let [left, right] = block.feet();
     let (left, right) = (Foot { corner: left, x: at - half }, Foot { corner: right, x: at + half });
-    if left.corner == right.corner {
-        ([left, left], 1)
-    } else if tilt > 0.0 {
+    if left.corner == right.corner || tilt > 0.0 {
         ([left, left], 1)
     } else if tilt < 0.0 {
         ([right, right], 1)

@@ -150,7 +150,7 @@ impl Resolver<'_, '_> {
         let [Some(first), Some(second)] = sides else { return None };
         let any = first.iter().any(|a| second.iter().any(|b| touching(a.1, b.1).is_some()));
         let blocks = |side: &[(String, SupportingBody)]| side.iter().any(|of| matches!(of.1, SupportingBody::Block(_)));
-        if !any && !(blocks(&first) || blocks(&second)) {
+        if !(any || blocks(&first) || blocks(&second)) {
             self.error(
                 &key,
                 "a contact is between two blocks, a block and a beam, or a block and the ground",
@@ -287,7 +287,13 @@ impl Resolver<'_, '_> {
             if !holds || still || apart.contains(&key) || !entered.insert(key) {
                 continue;
             }
-            let between = [a.0.clone(), b.0.clone()];
+            let (block, surface, between) = match surface {
+                // The block is the one that moves.
+                SupportingBody::Block(other) if self.is_fixed(a.1) => {
+                    (other, SupportingBody::Block(block), [b.0.clone(), a.0.clone()])
+                }
+                _ => (block, surface, [a.0.clone(), b.0.clone()]),
+            };
             found.push(ContactScene { name: of.name.clone(), between, block, surface, law, kinematics });
             if known + found.len() > MOST_PAIRS {
                 let rule = format!("the patterns match more than {MOST_PAIRS} pairs of bodies");
