@@ -81,13 +81,15 @@ fn spent(clock: &Instant) -> f64 {
     nanoseconds.map_or_else(|| clock.elapsed().as_secs_f64(), |nanoseconds| 1e-9 * nanoseconds)
 }
 
+/// By size class and method: solves, solved, iterations, seconds, worst residual.
+type Sums = std::collections::BTreeMap<(usize, String), (u32, u32, u64, f64, f64)>;
+
 /// The solver of the run, which hands every problem of some contacts to others as well and measures
 /// all of them.
 struct Comparing {
     chosen: Box<dyn ContactSolver<2>>,
     others: Vec<Box<dyn ContactSolver<2>>>,
-    /// By size class and method: solves, solved, iterations, seconds, worst residual.
-    sums: std::sync::Arc<std::sync::Mutex<std::collections::BTreeMap<(usize, String), (u32, u32, u64, f64, f64)>>>,
+    sums: std::sync::Arc<std::sync::Mutex<Sums>>,
 }
 
 impl ContactSolver<2> for Comparing {

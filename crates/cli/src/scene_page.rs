@@ -113,7 +113,7 @@ fn section(page: &mut String, table: &TableSchema) {
     // Recorded components of motions have the same keys everywhere.
     let same = TABLES.iter().find(|other| other.keys == table.keys && !table.keys.is_empty());
     if let Some(first) = same.filter(|first| first.pattern != table.pattern) {
-        let _ = write!(page, "Keys: those of `{}`.\n", first.pattern.replace('*', "NAME"));
+        let _ = writeln!(page, "Keys: those of `{}`.", first.pattern.replace('*', "NAME"));
         return;
     }
     let built: Vec<&Key> = table.keys.iter().filter(|key| key.presence != Presence::NotYet).collect();

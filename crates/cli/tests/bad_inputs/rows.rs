@@ -43,7 +43,7 @@ const SPAN: &str = "span          = \"36 cm\"";
 const MATERIAL: &str = "[block.rocker]\nmaterial = \"aluminium\"";
 const TILT: &str = "tilt     = \"5 deg\"    # about its bottom left corner, counter-clockwise";
 const PLACE: &str = "on       = \"table\"\n\
-     at       = \"18 cm\"    # the middle of the base before tilting: midspan\n\
+     at       = \"18 cm\"    # the middle of its base before it is tilted: midspan\n\
      tilt     = \"5 deg\"    # about its bottom left corner, counter-clockwise";
 
 /// A key that TOML could have, and a table after it.
