@@ -151,7 +151,10 @@ pub static TABLES: &[TableSchema] = &[
         pattern: "world",
         occurrence: Occurrence::Always,
         doc: "Global settings.",
-        keys: &[key("gravity", Kind::Downward(Dimension::ACCELERATION), Default("\"9.81 m/s^2\""), "\"9.81 m/s^2\"", "Acceleration of gravity, downwards or as a vector [x, y].")],
+        keys: &[
+            key("gravity", Kind::Downward(Dimension::ACCELERATION), Default("\"9.81 m/s^2\""), "\"9.81 m/s^2\"", "Acceleration of gravity, downwards or as a vector [x, y]."),
+            key("apart", Kind::PatternPairs, Optional, "[[\"wall-*\", \"wall-*\"]]", "Pairs of bodies, by names or patterns, that don't touch, whatever the contacts say."),
+        ],
     },
     TableSchema {
         pattern: "material.*",
@@ -361,12 +364,6 @@ pub static TABLES: &[TableSchema] = &[
             key("shift", Kind::Pair(Dimension::LENGTH, Range::ANY), Default("[\"0 m\", \"0 m\"]"), "[\"8 cm\", \"0 cm\"]", "Distance from one to the next; only along x if they stand on something; if stacked, along the upper side of the one before, from its midpoint."),
             key("stacked", Kind::Flag, Default("false"), "true", "Whether each stands flat on the one before, and the first on the body given by `on`."),
         ],
-    },
-    TableSchema {
-        pattern: "contacts",
-        occurrence: Occurrence::Optional,
-        doc: "All contacts together.",
-        keys: &[key("apart", Kind::PatternPairs, Optional, "[[\"wall-*\", \"wall-*\"]]", "Pairs of bodies, by names or patterns, that don't touch, whatever the contacts say.")],
     },
     TableSchema {
         pattern: "contact.*",

@@ -110,7 +110,7 @@ impl Resolver<'_, '_> {
             .map(|contact| (contact.name.clone(), contact.between.clone()))
             .collect();
         for (name, [a, b]) in together {
-            let rule = format!("`{a}` and `{b}` don't touch, according to contacts.apart");
+            let rule = format!("`{a}` and `{b}` don't touch, according to world.apart");
             self.error(&format!("contact.{name}.between"), rule, "leave out this contact, or the pair in apart");
         }
         (contacts, joined)
@@ -118,10 +118,10 @@ impl Resolver<'_, '_> {
 
     /// The pairs that don't touch, whatever contacts say.
     fn apart(&mut self) -> BTreeSet<PairKey> {
-        let pairs: Vec<[String; 2]> = self.doc.text_pairs("contacts.apart").map(<[_]>::to_vec).unwrap_or_default();
+        let pairs: Vec<[String; 2]> = self.doc.text_pairs("world.apart").map(<[_]>::to_vec).unwrap_or_default();
         let mut apart = BTreeSet::new();
         for pair in pairs {
-            let sides = pair.each_ref().map(|side| self.bodies_matching("contacts.apart", side));
+            let sides = pair.each_ref().map(|side| self.bodies_matching("world.apart", side));
             let [Some(first), Some(second)] = sides else { continue };
             for (block, surface) in first.iter().flat_map(|a| second.iter().filter_map(|b| touching(a.1, b.1))) {
                 apart.insert(key_of(block, surface));

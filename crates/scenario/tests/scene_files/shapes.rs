@@ -286,7 +286,7 @@ fn the_contact_that_says_most_of_a_pair_holds() {
     let all = joined(
         "[contact.all]\nbetween = ['*', '*']\nfriction = 0.1\n[contact.steel]\nmaterials = ['m', 's']\nfriction = 0.2\n\
          [contact.near]\nbetween = ['stone-?', 'wall-1']\nfriction = 0.3\n[contact.own]\nbetween = ['stone-2', 'wall-1']\nfriction = 0.4\n\
-         [contacts]\napart = [['wall-*', 'b'], ['stone-1', 'ground']]\n",
+         [world]\napart = [['wall-*', 'b'], ['stone-1', 'ground']]\n",
     );
     let expected = [
         "own stone-2 wall-1",
@@ -318,8 +318,8 @@ fn contacts_that_contradict_each_other_are_refused() {
     let tie =
         told("[contact.x]\nbetween = ['a', '*']\nfriction = 0.1\n[contact.y]\nbetween = ['*', 'b']\nfriction = 0.2\n");
     assert!(tie.contains("it says no more of the bodies than `x`") && tie.contains("`a` and `b`"), "{tie}");
-    let apart = told("[contact.x]\nbetween = ['a', 'b']\nfriction = 0.1\n[contacts]\napart = [['a', 'b']]\n");
-    assert!(apart.contains("according to contacts.apart"), "{apart}");
+    let apart = told("[contact.x]\nbetween = ['a', 'b']\nfriction = 0.1\n[world]\napart = [['a', 'b']]\n");
+    assert!(apart.contains("according to world.apart"), "{apart}");
     assert!(told("[contact.x]\nmaterials = ['m', 'n']\nfriction = 0.1\n").contains("`n` is not defined"));
     let both = told("[contact.x]\nmaterials = ['m', 'm']\nbetween = ['a', 'b']\nfriction = 0.1\n");
     assert!(both.contains("between already names the bodies"), "{both}");
