@@ -17,6 +17,7 @@ mod bounce;
 mod bouncing;
 mod compliant;
 mod convex_law;
+mod discs;
 mod energy_identity;
 mod housner_order;
 mod impact_laws;
@@ -61,6 +62,7 @@ pub(crate) fn all() -> Vec<Box<dyn Case>> {
         Box::new(moving_ground::MovingGround),
         Box::new(overturning::Overturning),
         Box::new(limit_analysis::LimitAnalysis),
+        Box::new(discs::Discs),
         Box::new(assemblages::Assemblages),
     ]
 }
