@@ -305,8 +305,12 @@ const scene = (() => {
   })();
   const hardest = data.impacts.reduce((most, impact) => Math.max(most, Math.hypot(...impact.impulse)), 1e-300);
 
-  /** The way out of a block at a point: that of the side, or away from the corner, that it is nearest to. */
-  function outwardAt(block, x, y, at) {
+  /**
+   * The way out of a block at a point: that of the side, or away from the corner, that it is nearest to. At a corner of
+   * both blocks it is that of the side which faces the other one's middle.
+   */
+  function outwardAt(block, x, y, at, other) {
+    const { x: middleX, y: middleY } = truePose(other, at);
     const near = partsOf(block, corners(truePose(block, at), scenery.blocks[block])).map(({ core, radius }) => {
       const away = core.map(([cx, cy]) => {
         const distance = Math.hypot(x - cx, y - cy) || 1e-300;
@@ -315,9 +319,16 @@ const scene = (() => {
       const sides = core.length < 2 ? [] : sidesOf(core).map(({ from, to, out }) => {
         const over = (x - from[0]) * out[0] + (y - from[1]) * out[1];
         const along = (x - from[0]) * (to[0] - from[0]) + (y - from[1]) * (to[1] - from[1]);
-        const beside = along < 0 || along > (to[0] - from[0]) ** 2 + (to[1] - from[1]) ** 2;
-        return { over, beside, out };
+        const length = Math.hypot(to[0] - from[0], to[1] - from[1]);
+        const beside = along < 0 || along > length ** 2;
+        const touches = Math.abs(over) <= 1e-3 * length && along >= -1e-3 * length ** 2 && along <= 1.001 * length ** 2;
+        return { over, beside, out, facing: touches ? out[0] * (middleX - x) + out[1] * (middleY - y) : null };
       });
+      const touching = radius > 0 ? [] : sides.filter((side) => side.facing !== null);
+      if (touching.length > 1) {
+        const side = touching.reduce((best, one) => (one.facing > best.facing ? one : best));
+        return { gap: side.over, out: side.out };
+      }
       const most = sides.reduce((best, side) => (best === null || side.over > best.over ? side : best), null);
       const corner = away.reduce((best, one) => (one.distance < best.distance ? one : best));
       const side = most !== null && (most.over <= 0 || !most.beside);
@@ -338,13 +349,14 @@ const scene = (() => {
     const { block, corner, crest } = places[point];
     if (crest !== null) {
       const [x, y] = onGround(crest, at);
-      const normal = outwardAt(block, x, y, at).map((n) => -n);
+      const normal = outwardAt(block, x, y, at, block).map((n) => -n);
       return { x: px(x), y: py(y), normal, tangent: [normal[1], -normal[0]] };
     }
     const [x, y] = corners(drawnPose(block, at), scenery.blocks[block])[corner];
     const reach = reachOf(block, corner);
     if (other !== null) {
-      const out = outwardAt(block === first ? other : first, x, y, at);
+      const touched = block === first ? other : first;
+      const out = outwardAt(touched, x, y, at, block);
       const normal = out.map((n) => (block === first ? n : -n));
       return { x: px(x - reach * out[0]), y: py(y - reach * out[1]), normal, tangent: [normal[1], -normal[0]] };
     }

@@ -1,5 +1,6 @@
 //! Ground with a profile: where blocks are placed on it, and its contacts.
 
+use crate::placement::centre_above;
 use crate::scene::{BlockScene, GroundScene, Placement, Scene, SupportingBody};
 use nalgebra::{Vector2, Vector3};
 use teeter_detect::{Profile, ProfilePair};
@@ -71,32 +72,31 @@ fn line_over(profile: &Profile, at: f64, [left, right]: [f64; 2]) -> [f64; 2] {
 }
 
 /// The initial configuration (X, Y, φ) of a block that stands on ground with this profile, which
-/// is displaced by `ground`: x and y (m), and its turn (rad). Tilted, it turns about a lower corner
-/// that is on the ground. `None` if no place is found.
+/// is displaced by `ground`: x and y (m), and its turn (rad). Tilted, it turns about an end of its
+/// base, and its lowest point is on the ground. `None` if no place is found.
 pub(crate) fn pose(profile: &Profile, block: &BlockScene, ground: Line) -> Option<Vector3<f64>> {
     let Placement::On { at, tilt, .. } = block.placement else { return None };
     let moved = Pose::new(&Vector3::from(ground));
     // The midpoint of the base is at x = `at` in the world.
     let mut local = at - ground[0];
-    let mut line = resting_line(profile, local, block.width)?;
+    let base_width = block.base();
+    let mut line = resting_line(profile, local, base_width)?;
     for _ in 0..ITERATIONS {
         let off = at - moved.point(&Vector2::new(line[0], line[1])).x;
         if off.abs() <= f64::EPSILON * (at.abs() + block.width) {
             break;
         }
         local += off / ground[2].cos();
-        line = resting_line(profile, local, block.width)?;
+        line = resting_line(profile, local, base_width)?;
     }
     let [x, y, slope] = line;
     let angle = slope + tilt;
     let base = Pose::new(&Vector3::new(x, y, slope));
-    let centre = if tilt == 0.0 {
+    let centre = if tilt == 0.0 && block.parts.is_none() {
         base.point(&Vector2::new(0.0, 0.5 * block.height))
     } else {
-        let corner = Vector2::new(if tilt > 0.0 { -0.5 } else { 0.5 } * block.width, 0.0);
-        let foot = base.point(&corner);
-        let foot = Vector2::new(foot.x, profile.height(foot.x));
-        foot - Pose::new(&Vector3::new(0.0, 0.0, angle)).rotate(&Vector2::new(corner.x, -0.5 * block.height))
+        let above = base.point(&centre_above(block, tilt));
+        above + Vector2::new(0.0, lift(profile, block, [above.x, above.y, angle]))
     };
     let centre = moved.point(&centre);
     Some(Vector3::new(centre.x, centre.y, ground[2] + angle))
@@ -107,17 +107,84 @@ pub(crate) fn pose(profile: &Profile, block: &BlockScene, ground: Line) -> Optio
 pub(crate) fn slope_under(ground: &GroundScene, block: &BlockScene) -> Option<f64> {
     let profile = ground.profile.as_deref()?;
     let Placement::On { support: SupportingBody::Ground, at, .. } = block.placement else { return None };
-    Some(resting_line(profile, at, block.width)?[2])
+    Some(resting_line(profile, at, block.base())?[2])
 }
 
-/// How deep the corners of a block are below the ground, along y, m; the ground and the block are
-/// at x, y (m) and turned (rad).
-pub(crate) fn depth(profile: &Profile, ground: Line, corners: &[Vector2<f64>], block: Line) -> f64 {
+/// How far a block of any shape at x, y (m), turned (rad), has to be lifted along y until it touches
+/// the ground and is nowhere below it, m; negative where it has to come down.
+fn lift(profile: &Profile, block: &BlockScene, at: Line) -> f64 {
+    let placed = Pose::new(&Vector3::from(at));
+    let mut most = f64::NEG_INFINITY;
+    let points: Vec<Vector2<f64>> = profile.points().collect();
+    let cores: Vec<(Vec<Vector2<f64>>, f64)> = match &block.parts {
+        None => vec![(block.corners(), 0.0)],
+        Some(parts) => parts.iter().map(|part| (part.shape.core().to_vec(), part.shape.radius())).collect(),
+    };
+    for (core, radius) in cores {
+        let core: Vec<Vector2<f64>> = core.iter().map(|corner| placed.point(corner)).collect();
+        let count = core.len();
+        // A disc or a corner over every piece of the ground, and over the level ground beyond.
+        for centre in &core {
+            for [from, to] in pieces(&points, centre.x - radius, centre.x + radius) {
+                most = most.max(clearance(from, to, centre, radius) - centre.y);
+            }
+        }
+        // The lower sides over every point of the ground.
+        if count > 1 {
+            for k in 0..count {
+                let (from, to) = (core[k], core[(k + 1) % count]);
+                let side = (to - from).normalize();
+                let out = Vector2::new(side.y, -side.x) * radius;
+                let (from, to) = (from + out, to + out);
+                if from.x >= to.x {
+                    continue;
+                }
+                for point in points.iter().filter(|point| point.x > from.x && point.x < to.x) {
+                    let height = from.y + (to.y - from.y) * (point.x - from.x) / (to.x - from.x);
+                    most = most.max(point.y - height);
+                }
+            }
+        }
+    }
+    most
+}
+
+/// The pieces of the ground that reach into a range of x, with the level ground beyond its ends.
+fn pieces(points: &[Vector2<f64>], low: f64, high: f64) -> Vec<[Vector2<f64>; 2]> {
+    let (Some(first), Some(last)) = (points.first(), points.last()) else { return Vec::new() };
+    let ends = [
+        [Vector2::new(low.min(first.x) - 1.0, first.y), *first],
+        [*last, Vector2::new(high.max(last.x) + 1.0, last.y)],
+    ];
+    let inner = points.windows(2).map(|two| [two[0], two[1]]);
+    ends.into_iter().chain(inner).filter(|[from, to]| from.x <= high && to.x >= low).collect()
+}
+
+/// The height of the centre of a disc that rests on a piece of ground, at the disc's x; −∞ where
+/// it passes beside the piece.
+fn clearance(from: Vector2<f64>, to: Vector2<f64>, centre: &Vector2<f64>, radius: f64) -> f64 {
+    let along = (to - from).normalize();
+    // Where the disc would touch the line of the piece: its lowest point across the line.
+    let touch = centre.x + radius * along.y;
+    if (from.x..=to.x).contains(&touch) {
+        let slope = along.y / along.x;
+        return from.y + (touch - from.x) * slope + radius * along.x;
+    }
+    let over = |end: Vector2<f64>| {
+        let off = centre.x - end.x;
+        if off.abs() <= radius { end.y + (radius * radius - off * off).sqrt() } else { f64::NEG_INFINITY }
+    };
+    over(from).max(over(to))
+}
+
+/// How deep the corners of a block, with their radii (m), are below the ground, along y, m; the
+/// ground and the block are at x, y (m) and turned (rad).
+pub(crate) fn depth(profile: &Profile, ground: Line, corners: &[(Vector2<f64>, f64)], block: Line) -> f64 {
     let [moved, placed] = [ground, block].map(|line| Pose::new(&Vector3::from(line)));
-    let below = |corner: &Vector2<f64>| {
+    let below = |(corner, radius): &(Vector2<f64>, f64)| {
         let from = placed.point(corner) - moved.point(&Vector2::zeros());
         let local = Pose::new(&Vector3::new(0.0, 0.0, -ground[2])).rotate(&from);
-        profile.height(local.x) - local.y
+        profile.height(local.x) - (local.y - radius)
     };
     corners.iter().map(below).fold(0.0, f64::max)
 }

@@ -56,8 +56,9 @@ pub struct Shapes {
     incline: Option<f64>,
     /// The profile of the ground; `None` for a straight line.
     profile: Option<Arc<Profile>>,
-    /// The corners of the blocks relative to their mass centres, m; empty without a profile.
-    corners: Vec<Vec<Vector2<f64>>>,
+    /// The corners of the blocks relative to their mass centres, with their radii, m; empty without
+    /// a profile.
+    corners: Vec<Vec<(Vector2<f64>, f64)>>,
     /// Blocks that have a contact with the ground, and with each beam.
     on_ground: Vec<bool>,
     /// Pairs of blocks with a contact, the lower number first.
@@ -88,7 +89,7 @@ impl Shapes {
             incline: scene.ground.as_ref().map(|ground| ground.incline),
             profile: scene.ground.as_ref().and_then(|ground| ground.profile.clone()),
             corners: match ground_profile::of(scene) {
-                Some(_) => scene.blocks.iter().map(BlockScene::corners).collect(),
+                Some(_) => scene.blocks.iter().map(rounded_corners).collect(),
                 None => Vec::new(),
             },
             on_ground: joined(SupportingBody::Ground),
@@ -175,4 +176,9 @@ impl Shapes {
             }
         }
     }
+}
+
+/// The corners of a block with their radii, m.
+fn rounded_corners(block: &BlockScene) -> Vec<(Vector2<f64>, f64)> {
+    block.corners().into_iter().enumerate().map(|(k, corner)| (corner, block.corner_radius(k))).collect()
 }

@@ -71,7 +71,8 @@ impl PlacedOutline {
     fn outside(&self, core: &[Vector2<f64>], point: [f64; 2]) -> f64 {
         let over = |([on, _], normal): ([[f64; 2]; 2], [f64; 2])| dot([point[0] - on[0], point[1] - on[1]], normal);
         let furthest = self.sides(core).map(over).fold(f64::NEG_INFINITY, f64::max);
-        if furthest <= 0.0 && core.len() > 1 {
+        // A segment has no inside.
+        if furthest <= 0.0 && core.len() > 2 {
             return furthest;
         }
         let corners = core.iter().map(|corner| distance(self.world(corner), point));
@@ -160,6 +161,15 @@ impl PlacedOutline {
             a.sides(core).map(over).fold(f64::NEG_INFINITY, f64::max)
         };
         let furthest = across(self, mine, other, theirs).max(across(other, theirs, self, mine));
+        // What is on the line of a segment isn't on the segment: then it also has to be along it.
+        let along = |a: &Self, core: &[Vector2<f64>], b: &Self, against: &[Vector2<f64>]| {
+            let &[from, to] = core else { return f64::NEG_INFINITY };
+            let way = (to - from).normalize();
+            let way = [0, 1].map(|k| way.x * a.axes[0][k] + way.y * a.axes[1][k]);
+            let ([low, high], [first, last]) = (a.projection_of(core, way), b.projection_of(against, way));
+            (first - high).max(low - last)
+        };
+        let furthest = furthest.max(along(self, mine, other, theirs)).max(along(other, theirs, self, mine));
         if furthest <= 0.0 && furthest > f64::NEG_INFINITY {
             return furthest;
         }

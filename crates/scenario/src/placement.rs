@@ -293,7 +293,7 @@ fn pose_on_line(block: &BlockScene, at: f64, tilt: f64, &[x, y, slope]: &[f64; 3
 
 /// The mass centre of a block above a level line that its lowest point touches, from the midpoint
 /// of its base before it is tilted about an end of that.
-fn centre_above(block: &BlockScene, tilt: f64) -> Vector2<f64> {
+pub(crate) fn centre_above(block: &BlockScene, tilt: f64) -> Vector2<f64> {
     let corners = block.corners();
     let [left, right] = block.feet().map(|foot| corners[foot]);
     let middle = 0.5 * (left + right);

@@ -229,7 +229,7 @@ impl<'a, 'f> Resolver<'a, 'f> {
         let blocks: Vec<_> = names.iter().map(|name| self.block(name, &beams, &contacts, &joined, &signals)).collect();
         self.check_support_cycles(&blocks);
         self.check_contacts_can_move(&blocks, &contacts);
-        self.check_static_starts_beside_profile(&ground, &beams, &contacts);
+        self.check_static_starts_beside_profile(&ground, &beams, &blocks, &contacts);
         let forces: Vec<_> = doc.names("force").into_iter().map(|name| self.force(name, &signals)).collect();
         let loads: Vec<_> = doc.names("load").into_iter().map(|name| self.load(name, &beams, &signals)).collect();
         if self.blocks.is_empty() && self.beams.is_empty() && !self.partial {

@@ -17,6 +17,9 @@ pub enum TiltReference {
     Incline(f64),
     /// Moving ground, or a block: the index of its slope in the state.
     Moving(usize),
+    /// Moving ground with a profile: the index of its slope in the state, and the slope of the
+    /// profile under the block relative to it, rad.
+    MovingIncline(usize, f64),
 }
 
 /// The tilt references of the blocks at the given places; `slope` is the index of the slope of
@@ -34,8 +37,8 @@ pub(crate) fn tilt_references(scene: &Scene, blocks: &[BlockPlace], slope: Optio
         }
     };
     let on_profile = |block: usize| {
-        let ground = scene.ground.as_ref().filter(|_| slope.is_none())?;
-        ground_profile::slope_under(ground, &scene.blocks[block]).map(TiltReference::Incline)
+        let under = ground_profile::slope_under(scene.ground.as_ref()?, &scene.blocks[block])?;
+        Some(slope.map_or(TiltReference::Incline(under), |slope| TiltReference::MovingIncline(slope, under)))
     };
     let reference = |block: (usize, &Placement)| match support(block) {
         Some(SupportingBody::Ground) => on_profile(block.0).unwrap_or(on_ground),
@@ -62,6 +65,7 @@ impl Layout {
             TiltReference::Level => phi,
             TiltReference::Incline(slope) => phi - slope,
             TiltReference::Moving(slope) => phi - q[slope],
+            TiltReference::MovingIncline(slope, under) => phi - q[slope] - under,
         }
     }
 
@@ -73,7 +77,7 @@ impl Layout {
         let omega = v[place.range.start + 2];
         match place.tilt_reference {
             TiltReference::Level | TiltReference::Incline(_) => omega,
-            TiltReference::Moving(slope) => omega - v[slope],
+            TiltReference::Moving(slope) | TiltReference::MovingIncline(slope, _) => omega - v[slope],
         }
     }
 

@@ -49,7 +49,7 @@ const ALL_ROUNDS: usize = WORTHWHILE_WORK.len();
 /// More plane contacts than `CROWD` in one island are a crowd. After `CROWD_ROUNDS` such rounds, a
 /// central path of `SHORT_PATH` steps, `CROWD_DIRECTIONS` iterations of alternating directions, and a
 /// path of `LONG_PATH` steps come before pivots, whose work grows with the cube of the contacts; and
-/// there are no last sweeps. Found on the collisions of a pile of polygons (`benches/pile`), where
+/// there are no last sweeps where there are pivots. Found on the collisions of a pile of polygons (`benches/pile`), where
 /// more than half of the problems that the first rounds leave went to the pivots, at ten times the
 /// time (`benches/results/2026-11-25-many-bodies.md`).
 const CROWD: usize = 40;
@@ -227,7 +227,8 @@ impl<const D: usize> Chain<D> {
             let outcome = self.newton.solve(problem, &within(progress.left(stop), u32::MAX), p);
             progress.add(outcome);
         }
-        if !progress.over(stop) && !crowd {
+        // A crowd had pivots instead, unless it is too large for them.
+        if !progress.over(stop) && !(crowd && p.len() <= MOST_PIVOTED) {
             let outcome = self.pgs.solve(problem, &within(progress.left(stop), u32::MAX), p);
             progress.add(outcome);
         }

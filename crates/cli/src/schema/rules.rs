@@ -183,7 +183,11 @@ fn of_pattern(pattern: &str) -> Vec<Value> {
             all
         }
         "beam.*.motion" => motion(false),
-        "ground" => vec![json!({ "if": { "required": ["incline", "profile"] }, "then": false })],
+        // A written scene has incline = "0.0 rad" beside a profile.
+        "ground" => vec![json!({
+            "if": { "required": ["incline", "profile"] },
+            "then": { "properties": { "incline": { "pattern": "^[-+]?0*\\.?0* " } } }
+        })],
         "ground.profile" => vec![
             json!({ "oneOf": [{ "required": ["points"] }, { "required": ["file"] }] }),
             json!({ "dependentRequired": { "columns": ["file"], "unit": ["file"] } }),

@@ -242,8 +242,8 @@ impl Resolver<'_, '_> {
             (None, [(_, density)]) => Matter::Homogeneous { density: (*density)?, depth: depth? },
             (None, _) => Matter::Given(mass),
         };
-        let sharp = matches!(drawn.as_slice(), [(Drawn { shape: Shape::Polygon(_), is_rectangle: true }, _)]);
-        if sharp {
+        let is_sharp = matches!(drawn.as_slice(), [(Drawn { shape: Shape::Polygon(_), is_rectangle: true }, _)]);
+        if is_sharp && way == Way::Sides {
             let extents = [doc.quantity(&format!("{path}.width"))?, doc.quantity(&format!("{path}.height"))?];
             return Some(BlockShape { parts: None, centre: [0.0; 2], is_in_place: false, extents, matter });
         }
@@ -272,7 +272,9 @@ impl Resolver<'_, '_> {
             self.error(&path, rule, "use fewer or simpler parts");
             return None;
         }
-        let is_in_place = matches!(way, Way::Points | Way::Parts);
+        // A voussoir is drawn about the centre of its arch, at the origin.
+        let is_voussoir = doc.text(&format!("{path}.shape.kind")) == Some("voussoir");
+        let is_in_place = is_voussoir || matches!(way, Way::Points | Way::Parts);
         Some(BlockShape { parts: Some(parts.into()), centre: [centre.x, centre.y], is_in_place, extents, matter })
     }
 

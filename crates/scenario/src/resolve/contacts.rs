@@ -86,13 +86,20 @@ impl Resolver<'_, '_> {
         let apart = self.apart();
         let many: Vec<Option<Many>> =
             many.iter().enumerate().map(|(table, name)| self.contact_of_many(table, name)).collect();
-        let holders = self.holders(&many, &joined);
+        let holders = self.holders(&many, &joined, &apart);
+        if holders.len() > MOST_PAIRS {
+            let rule = format!("the patterns match more than {MOST_PAIRS} pairs of bodies");
+            let remedy = "name only bodies that can touch, such as each course of a wall and the next";
+            self.error("contact", rule, remedy);
+            contacts.push(None);
+            return (contacts, joined);
+        }
         for of in many {
             let Some(of) = of else {
                 contacts.push(None);
                 continue;
             };
-            match self.pairs_of_many(&of, &holders, &apart, contacts.len()) {
+            match self.pairs_of_many(&of, &holders) {
                 Some(found) => {
                     for contact in found {
                         self.join(&contact, contacts.len(), &contacts, &mut joined);
@@ -165,8 +172,21 @@ impl Resolver<'_, '_> {
         Some(Many { table, name: name.to_owned(), sides, rank })
     }
 
-    /// The contact of many, by its table, that holds for each pair; two of one rank are an error.
-    fn holders(&mut self, many: &[Option<Many>], joined: &Joined) -> BTreeMap<PairKey, (usize, Rank)> {
+    /// The contact of many, by its table, that holds for each pair that can touch; two of one rank
+    /// are an error. It ends soon after [`MOST_PAIRS`] are found.
+    fn holders(
+        &mut self,
+        many: &[Option<Many>],
+        joined: &Joined,
+        apart: &BTreeSet<PairKey>,
+    ) -> BTreeMap<PairKey, (usize, Rank)> {
+        let still: Vec<bool> =
+            (0..self.block_names.len()).map(|block| self.is_fixed(SupportingBody::Block(block))).collect();
+        let is_still = |body: SupportingBody| match body {
+            SupportingBody::Block(block) => still[block],
+            SupportingBody::Ground => true,
+            SupportingBody::Beam(_) => false,
+        };
         let mut holders: BTreeMap<PairKey, (usize, Rank)> = BTreeMap::new();
         let mut contested: BTreeSet<[usize; 2]> = BTreeSet::new();
         for of in many.iter().flatten() {
@@ -174,6 +194,9 @@ impl Resolver<'_, '_> {
             let pairs = first.bodies.iter().flat_map(|a| second.bodies.iter().filter_map(|b| touching(a.1, b.1)));
             for (block, surface) in pairs.filter(|pair| !joined.contains_key(pair)) {
                 let key = key_of(block, surface);
+                if apart.contains(&key) || (still[block] && is_still(surface)) {
+                    continue;
+                }
                 match holders.get(&key).copied() {
                     Some((table, rank)) if rank == of.rank && table != of.table => {
                         if contested.insert([table, of.table]) {
@@ -267,13 +290,7 @@ impl Resolver<'_, '_> {
     }
 
     /// The contacts of all pairs for which a contact of many holds.
-    fn pairs_of_many(
-        &mut self,
-        of: &Many,
-        holders: &BTreeMap<PairKey, (usize, Rank)>,
-        apart: &BTreeSet<PairKey>,
-        known: usize,
-    ) -> Option<Vec<ContactScene>> {
+    fn pairs_of_many(&mut self, of: &Many, holders: &BTreeMap<PairKey, (usize, Rank)>) -> Option<Vec<ContactScene>> {
         let path = format!("contact.{}", of.name);
         let (law, kinematics) = (self.pair_law(&path)?, self.kinematics(&path)?);
         let mut found: Vec<ContactScene> = Vec::new();
@@ -283,8 +300,7 @@ impl Resolver<'_, '_> {
             let Some((block, surface)) = touching(a.1, b.1) else { continue };
             let key = key_of(block, surface);
             let holds = holders.get(&key).is_some_and(|(table, _)| *table == of.table);
-            let still = self.is_fixed(a.1) && self.is_fixed(b.1);
-            if !holds || still || apart.contains(&key) || !entered.insert(key) {
+            if !holds || !entered.insert(key) {
                 continue;
             }
             let (block, surface, between) = match surface {
@@ -295,12 +311,6 @@ impl Resolver<'_, '_> {
                 _ => (block, surface, [a.0.clone(), b.0.clone()]),
             };
             found.push(ContactScene { name: of.name.clone(), between, block, surface, law, kinematics });
-            if known + found.len() > MOST_PAIRS {
-                let rule = format!("the patterns match more than {MOST_PAIRS} pairs of bodies");
-                let remedy = "name only bodies that can touch, such as each course of a wall and the next";
-                self.error(&format!("{path}.between"), rule, remedy);
-                return None;
-            }
         }
         let between_blocks = found.iter().all(|contact| contact.other_block().is_some());
         if let Some(contact) = found.first().filter(|_| between_blocks) {

@@ -2,14 +2,15 @@
 
 use super::Resolver;
 use crate::number_table;
-use crate::scene::{BeamScene, ContactScene, GroundScene, SignalScene, SupportingBody};
+use crate::scene::{BeamScene, BlockScene, ContactScene, GroundScene, Placement, SignalScene, SupportingBody};
 use crate::words::LengthUnit;
 use nalgebra::Vector2;
 use std::sync::Arc;
 use teeter_detect::{Profile, ShapeError};
 
-/// Most points of a profile: the picture of a report has them all.
-const MOST_POINTS: usize = 100_000;
+/// Most points of a profile: each block that touches it has a place in the report for a contact at
+/// each of them.
+const MOST_POINTS: usize = 5_000;
 
 impl Resolver<'_, '_> {
     /// The ground, if there is any; `None` on error.
@@ -19,7 +20,8 @@ impl Resolver<'_, '_> {
         }
         let (incline, motion) = (self.quantity("ground.incline"), self.motion("ground", signals));
         let profile = if self.doc.has_table("ground.profile") { Some(self.ground_profile()?) } else { None };
-        if profile.is_some() && self.doc.is_given("ground.incline") {
+        // A written scene has all defaults, that of incline too.
+        if profile.is_some() && self.doc.is_given("ground.incline") && incline != Some(0.0) {
             let remedy = "leave out incline, and let the points of the profile rise instead";
             self.error("ground.incline", "the profile already gives the slope of the ground", remedy);
             return None;
@@ -87,17 +89,17 @@ impl Resolver<'_, '_> {
         &mut self,
         ground: &Option<Option<GroundScene>>,
         beams: &[Option<BeamScene>],
+        blocks: &[Option<BlockScene>],
         contacts: &[Option<ContactScene>],
     ) {
         let has_profile = matches!(ground, Some(Some(ground)) if ground.profile.is_some());
         let is_static = |beam: &usize| matches!(beams.get(*beam), Some(Some(beam)) if beam.static_start);
-        let on = |wanted: &dyn Fn(SupportingBody) -> bool| -> Vec<usize> {
-            contacts.iter().flatten().filter(|contact| wanted(contact.surface)).map(|contact| contact.block).collect()
+        let on_ground = |block: usize| {
+            contacts.iter().flatten().any(|of| of.block == block && of.surface == SupportingBody::Ground)
         };
-        let on_ground = on(&|surface| surface == SupportingBody::Ground);
         for (number, beam) in beams.iter().enumerate().filter(|(number, _)| has_profile && is_static(number)) {
             let Some(beam) = beam else { continue };
-            if on(&|surface| surface == SupportingBody::Beam(number)).iter().any(|block| on_ground.contains(block)) {
+            if (0..blocks.len()).any(|block| on_ground(block) && carried_by(blocks, block) == Some(number)) {
                 let rule = "a block on this beam also touches the profile of the ground, where no equilibrium can be found yet";
                 self.error(
                     &format!("beam.{}.start", beam.name),
@@ -152,4 +154,17 @@ impl LengthUnit {
             Self::Kilometre => 0.001,
         }
     }
+}
+
+/// The beam that carries a block, directly or through the blocks below it.
+fn carried_by(blocks: &[Option<BlockScene>], block: usize) -> Option<usize> {
+    let mut block = block;
+    for _ in 0..=blocks.len() {
+        match blocks.get(block)?.as_ref()?.placement {
+            Placement::On { support: SupportingBody::Beam(beam), .. } => return Some(beam),
+            Placement::On { support: SupportingBody::Block(below), .. } => block = below,
+            _ => return None,
+        }
+    }
+    None
 }
