@@ -105,6 +105,27 @@ impl Shapes {
         }
     }
 
+    /// Two blocks with a contact between them that moved past each other in a step of `dt` (s) that
+    /// ended with these coordinates and velocities, by more than half the sum of their shorter
+    /// sides, so that the contact may not have been seen; and by how much, m.
+    #[must_use]
+    pub fn passing(&self, layout: &Layout, q: &[f64], v: &[f64], dt: f64) -> Option<(usize, usize, f64)> {
+        self.blocks.iter().find_map(|&(a, b)| {
+            let (first, second) = (&layout.blocks[a], &layout.blocks[b]);
+            let between = |k: usize, of: &[f64]| of[first.range.start + k] - of[second.range.start + k];
+            let (x, y) = (between(0, q), between(1, q));
+            let (dx, dy) = (dt * between(0, v), dt * between(1, v));
+            let far = dx.hypot(dy);
+            if far <= 0.5 * (first.side + second.side) {
+                return None;
+            }
+            // Where they were nearest on their way here.
+            let back = ((x * dx + y * dy) / (far * far)).clamp(0.0, 1.0);
+            let nearest = (x - back * dx).hypot(y - back * dy);
+            (nearest < first.reach + second.reach).then_some((a, b, far))
+        })
+    }
+
     /// Passes each overlap at coordinates `q` of the whole model to `each`, with its depth, m.
     pub fn meetings(&mut self, layout: &Layout, q: &[f64], mut each: impl FnMut(Meeting, f64)) {
         let Self { outlines, allowed, beams, incline, profile, corners, on_ground, blocks, on_beam, boxes, order } =

@@ -116,10 +116,31 @@ impl Recorder<'_> {
         if turning >= FAR_TURN / state.dt {
             self.warn_of_turns(state);
         }
+        // Two that meet come twice as far, and have two sides.
+        if state.dt * fastest > 0.5 * self.shortest_side {
+            self.warn_of_passing(state);
+        }
         self.kept.travelled += (step.t_end - step.t_start) * (fastest + swing);
         if self.kept.travelled > LOOK_AFTER * self.shortest_side {
             self.look_who_meets(state);
         }
+    }
+
+    /// Warns, once, of two blocks that are so fast that a step may miss their contact.
+    #[inline(never)]
+    fn warn_of_passing(&mut self, state: &State) {
+        let Some((first, second, far)) = self.shapes.passing(self.layout, &state.q, &state.v, state.dt) else { return };
+        let [first, second] = [first, second].map(|block| &self.layout.blocks[block]);
+        self.warn_once("fast-pass", state.t, || {
+            format!(
+                "`{}` and `{}` come {far:.1e} m past each other in the step to t = {} s, more than half of their shorter sides, so that a contact \
+                 between them may not be seen; take a step of at most {:.0e} s",
+                first.name,
+                second.name,
+                state.t,
+                0.4 * (first.side + second.side) * state.dt / far
+            )
+        });
     }
 
     fn look_who_meets(&mut self, state: &State) {

@@ -111,3 +111,21 @@ fn thin_plates_that_pass_through_each_other_are_told() {
     );
     only(&summary("plates", &scene, &[]), "passes-through", &["`a` and `b` overlap"]);
 }
+
+#[test]
+fn blocks_that_a_step_may_take_past_each_other_are_told_once() {
+    let scene = |speed: &str| {
+        format!(
+            "{HEAD}world.gravity = \"1e-9 m/s^2\"\n{}{}contact.c = {{ between = [\"p\", \"q\"], friction = 0.5 }}\n",
+            block("p", "10 cm", &format!("position = [\"-1 m\", \"0 m\"], velocity = [\"{speed}\", \"0 m/s\"]")),
+            block("q", "1 cm", "position = [\"1 m\", \"0 m\"]"),
+        )
+    };
+    let found = summary("bullet", &scene("300 m/s"), &[("time.end", "10 ms")]);
+    let told: Vec<_> = found.warnings.iter().filter(|warning| warning.code == "fast-pass").collect();
+    assert_eq!(told.len(), 1, "{:?}", found.warnings);
+    assert!(told[0].text.contains("`p` and `q` come 3.0e-1 m past each other"), "{}", told[0].text);
+    let slow = summary("no-bullet", &scene("30 m/s"), &[("time.end", "100 ms")]);
+    assert!(slow.warnings.iter().all(|warning| warning.code != "fast-pass"), "{:?}", slow.warnings);
+    assert!(!slow.impacts.is_empty());
+}

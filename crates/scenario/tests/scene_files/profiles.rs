@@ -196,3 +196,85 @@ fn a_profile_excludes_an_incline_and_needs_its_points_in_order() {
     let message = Simulation::new(&resolved(&text).scene).unwrap_err().to_string();
     assert!(message.contains("the corner bottom-left starts 5e-1 m below the surface of `ground`"), "{message}");
 }
+
+/// A block of any shape, given by `keys`, on this ground.
+fn shaped(points: &str, keys: &str) -> Simulation {
+    let sides = "width = '1 m'\nheight = '2 m'\n";
+    let text = scene("10 ms", "1 ms", points, keys, 0.9);
+    assert!(text.contains(sides));
+    Simulation::new(&resolved(&text.replacen(sides, "", 1)).scene).unwrap()
+}
+
+#[test]
+fn every_shape_is_placed_on_a_profile_as_on_straight_ground() {
+    let level = "[['-9 m', '0 m'], ['1 m', '0 m'], ['9 m', '0 m']]";
+    for shape in [
+        "radius = '1 m'",
+        "shape = { kind = 'regular', sides = 3, radius = '1 m' }",
+        "shape = { kind = 'trapezoid', bottom = '2 m', top = '1 m', height = '1 m', shift = '0.2 m' }",
+        "shape = { kind = 'stadium', length = '2 m', radius = '0.5 m' }",
+        "width = '1 m'\nheight = '2 m'\nrounding = '0.1 m'",
+        "parts = [{ width = '1 m', height = '1 m' }, { width = '1 m', height = '3 m', at = ['1 m', '1 m'] }]",
+    ] {
+        for tilt in ["0 deg", "8 deg", "-8 deg"] {
+            let keys = format!("{shape}\non = 'ground'\nat = '0.3 m'\ntilt = '{tilt}'");
+            let found = shaped(level, &keys);
+            let straight = scene("10 ms", "1 ms", "[]", &keys, 0.9)
+                .replace("profile = { points = [] }\n", "")
+                .replacen("width = '1 m'\nheight = '2 m'\n", "", 1);
+            let known = Simulation::new(&resolved(&straight).scene).unwrap();
+            for (found, known) in found.state.q.iter().zip(&known.state.q) {
+                assert!((found - known).abs() < 1e-14, "{keys}: {found}, on straight ground {known}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_disc_lies_in_a_valley_and_against_a_crest() {
+    let disc =
+        |points: &str, at: &str| shaped(points, &format!("radius = '0.2 m'\non = 'ground'\nat = '{at}'")).state.q;
+    let valley = disc("[['-1 m', '1 m'], ['0 m', '0 m'], ['1 m', '1 m']]", "0 m");
+    assert!(valley[0].abs() < 1e-15 && (valley[1] - 0.2 * 2.0_f64.sqrt()).abs() < 1e-15, "{valley:?}");
+    // Beside a ridge of no width, which it touches before the ground.
+    let ridge = disc("[['-1 m', '0 m'], ['0 m', '0 m'], ['1e-6 m', '0.2 m'], ['2e-6 m', '0 m']]", "0.1 m");
+    let known = 0.2 + (0.2_f64.powi(2) - (0.1 - 1e-6_f64).powi(2)).sqrt();
+    assert!((ridge[1] - known).abs() < 1e-15, "{ridge:?} {known}");
+}
+
+#[test]
+fn a_block_tilted_beside_a_crest_touches_it() {
+    let text = scene(
+        "10 ms",
+        "1 ms",
+        "[['-9 m', '0 m'], ['0 m', '1 m'], ['9 m', '0 m']]",
+        "on = 'ground'\nat = '0.2 m'\ntilt = '10 deg'",
+        0.9,
+    );
+    let run = Simulation::new(&resolved(&text).scene).unwrap();
+    let mut candidates = Vec::new();
+    run.model.candidates(&run.state.q, 1e-9, &mut candidates).unwrap();
+    assert!(!candidates.is_empty() && candidates.iter().all(|candidate| candidate.gap.abs() < 1e-14), "{candidates:?}");
+}
+
+#[test]
+fn tilts_on_a_moving_profile_are_those_against_its_piece() {
+    let slope = "[['-9 m', '-0.9 m'], ['9 m', '0.9 m']]";
+    let still = scene("10 ms", "1 ms", slope, "on = 'ground'\nat = '0 m'\ntilt = '5 deg'", 0.9);
+    let moving = still.replace("[ground]\n", "[ground]\nmotion = { velocity = ['1 mm/s', '0 m/s'] }\n");
+    for text in [still, moving] {
+        let run = Simulation::new(&resolved(&text).scene).unwrap();
+        assert!((run.layout.tilt(0, &run.state.q) - 5_f64.to_radians()).abs() < 1e-15);
+    }
+}
+
+#[test]
+fn a_static_start_beside_a_profile_is_refused_also_through_blocks() {
+    let text = scene("10 ms", "1 ms", "[['-9 m', '-5 m'], ['9 m', '-5 m']]", "on = 'a'\nat = '0.5 m'", 0.9)
+        + "[material.s]\ndensity = '8000 kg/m^3'\nyoungs_modulus = '210 GPa'\n\
+           [beam.t]\nmaterial = 's'\nspan = '1 m'\nwidth = '1 m'\nthickness = '5 cm'\nelements = 4\nstart = 'static'\n\
+           [block.a]\nmaterial = 'm'\nwidth = '10 cm'\nheight = '10 cm'\ndepth = '1 m'\non = 't'\nat = '0.5 m'\n\
+           [contact.d]\nbetween = ['a', 't']\nfriction = 0.5\n[contact.e]\nbetween = ['b', 'a']\nfriction = 0.5\n";
+    let message = load(text.as_bytes(), "s", "s", &[]).expect_err("b also touches the ground").to_string();
+    assert!(message.contains("beam.t.start") && message.contains("also touches the profile"), "{message}");
+}

@@ -326,3 +326,53 @@ fn contacts_that_contradict_each_other_are_refused() {
     assert!(told("[contact.x]\nbetween = ['c*', 'b']\nfriction = 0.1\n").contains("no body matches `c*`"));
     assert!(told("[contact.x]\nfriction = 0.1\n").contains("contact.x.between: missing"));
 }
+
+/// More pairs of fixed blocks than a scene may have contacts.
+#[test]
+fn pairs_that_can_not_move_and_those_apart_are_no_contacts() {
+    let text = |more: &str| {
+        format!(
+            "{HEAD}[block.a-wall]\nmaterial = 'm'\nwidth = '1 cm'\nheight = '1 cm'\ndepth = '1 m'\nposition = ['10 m', '1 m']\n\
+             repeat = {{ count = 230, shift = ['2 cm', '0 m'] }}\n{more}\
+             [block.z]\nmaterial = 'm'\nwidth = '1 cm'\nheight = '1 cm'\ndepth = '1 m'\nposition = ['0 m', '1 m']\n\
+             [contact.all]\nbetween = ['*', '*']\nfriction = 0.1\n[contact.near]\nbetween = ['z', 'gr*']\nfriction = 0.5\n"
+        )
+    };
+    let still = scene(&text("fixed = true\n"));
+    assert_eq!(still.contacts.len(), 231);
+    let own = still.contacts.iter().find(|contact| contact.surface == teeter_scenario::scene::SupportingBody::Ground);
+    assert_eq!(own.unwrap().name, "near");
+    let apart = scene(&text("").replace("[ground]", "[world]\napart = [['a-*', 'a-*']]\n[ground]"));
+    assert_eq!(apart.contacts.len(), 230 + 231);
+    let errors = teeter_scenario::load(text("").as_bytes(), "s", "s", &[]).unwrap_err().to_string();
+    assert!(errors.contains("more than 20000 pairs"), "{errors}");
+}
+
+#[test]
+fn one_rectangle_may_be_the_only_part_and_stadiums_may_stand_above_each_other() {
+    let one = block("parts = [{ width = '10 cm', height = '20 cm' }]");
+    assert!((one.mass() - block("width = '10 cm'\nheight = '20 cm'").mass()).abs() < 1e-12);
+    let stadiums = |shift: &str| {
+        let text = format!(
+            "{HEAD}[block.s]\nmaterial = 'm'\ndepth = '1 m'\nshape = {{ kind = 'stadium', length = '10 cm', radius = '2 cm' }}\n\
+             position = ['0 m', '1 m']\nangle = '90 deg'\nrepeat = {{ count = 2, shift = ['0 m', '{shift}'] }}\n\
+             [contact.c]\nbetween = ['s-1', 's-2']\nfriction = 0.5\n"
+        );
+        Simulation::new(&scene(&text)).map(|_| ())
+    };
+    assert!(stadiums("30 cm").is_ok());
+    let overlap = stadiums("9 cm").unwrap_err().to_string();
+    assert!(overlap.contains("overlaps"), "{overlap}");
+}
+
+#[test]
+fn a_voussoir_without_a_place_is_where_its_arch_has_it() {
+    let placed = |keys: &str| {
+        let text = format!(
+            "{HEAD}[block.b]\nmaterial = 'm'\ndepth = '1 m'\n\
+             shape = {{ kind = 'voussoir', inner = '1 m', outer = '2 m', from = '80 deg', to = '100 deg' }}\n{keys}\n"
+        );
+        scene(&text).blocks.remove(0).placement
+    };
+    assert_eq!(placed(""), placed("centre = ['0 m', '0 m']"));
+}
