@@ -228,7 +228,8 @@ impl<const D: usize> Chain<D> {
             progress.add(outcome);
         }
         // A crowd had pivots instead, unless it is too large for them.
-        if !progress.over(stop) && !(crowd && p.len() <= MOST_PIVOTED) {
+        let had_pivots = crowd && p.len() <= MOST_PIVOTED;
+        if !progress.over(stop) && !had_pivots {
             let outcome = self.pgs.solve(problem, &within(progress.left(stop), u32::MAX), p);
             progress.add(outcome);
         }
