@@ -209,7 +209,14 @@ impl Resolver<'_, '_> {
     fn block_shape(&mut self, block: &BlockName) -> Option<BlockShape> {
         let path = format!("block.{}", block.table);
         let doc = self.doc;
-        let keys = ShapeKeys::Block(doc, &path);
+        let is_voussoir = doc.text(&format!("{path}.shape.kind")) == Some("voussoir");
+        let turn = doc.quantity(&format!("{path}.repeat.turn"));
+        if turn.is_some() && !is_voussoir {
+            let rule = "only voussoirs are turned about the centre of their arch";
+            self.error(&format!("{path}.repeat.turn"), rule, "give shift or stacked instead");
+            return None;
+        }
+        let keys = ShapeKeys::Block(doc, &path, turn.unwrap_or_default() * block.copy as f64);
         let way = self.told(&path, keys.way())?;
         let drawn = if way == Way::Parts {
             self.parts(&path)?
@@ -273,7 +280,6 @@ impl Resolver<'_, '_> {
             return None;
         }
         // A voussoir is drawn about the centre of its arch, at the origin.
-        let is_voussoir = doc.text(&format!("{path}.shape.kind")) == Some("voussoir");
         let is_in_place = is_voussoir || matches!(way, Way::Points | Way::Parts);
         Some(BlockShape { parts: Some(parts.into()), centre: [centre.x, centre.y], is_in_place, extents, matter })
     }

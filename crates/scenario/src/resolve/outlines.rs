@@ -11,8 +11,8 @@ use crate::words::{ShapeKind, Word};
 /// The keys that give a shape: of the table of a block, or of one of its parts.
 #[derive(Clone, Copy)]
 pub(super) enum ShapeKeys<'a> {
-    /// The table with this path.
-    Block(&'a Document, &'a str),
+    /// The table with this path; a voussoir is turned by an angle, rad.
+    Block(&'a Document, &'a str, f64),
     /// A part.
     Part(&'a Item),
 }
@@ -53,14 +53,14 @@ const WAYS: &str = "give one of: width and height, points, radius, shape, parts"
 impl<'a> ShapeKeys<'a> {
     fn length(&self, key: &str) -> Option<f64> {
         match self {
-            Self::Block(doc, path) => doc.quantity(&format!("{path}.{key}")),
+            Self::Block(doc, path, _) => doc.quantity(&format!("{path}.{key}")),
             Self::Part(item) => item.number(key),
         }
     }
 
     fn points(&self) -> Option<&'a [[f64; 2]]> {
         match self {
-            Self::Block(doc, path) => doc.points(&format!("{path}.points")),
+            Self::Block(doc, path, _) => doc.points(&format!("{path}.points")),
             Self::Part(item) => item.points("points"),
         }
     }
@@ -68,7 +68,7 @@ impl<'a> ShapeKeys<'a> {
     /// Whether a key is given, validly or not.
     fn is_given(&self, key: &str) -> bool {
         match self {
-            Self::Block(doc, path) => {
+            Self::Block(doc, path, _) => {
                 let path = format!("{path}.{key}");
                 doc.is_given(&path) || doc.is_refused(&path) || doc.has_table(&path)
             }
@@ -82,7 +82,7 @@ impl<'a> ShapeKeys<'a> {
 
     fn kind(&self) -> Option<&'a str> {
         match self {
-            Self::Block(doc, path) => doc.text(&format!("{path}.shape.kind")),
+            Self::Block(doc, path, _) => doc.text(&format!("{path}.shape.kind")),
             Self::Part(item) => item.item("shape")?.text("kind"),
         }
     }
@@ -90,14 +90,17 @@ impl<'a> ShapeKeys<'a> {
     /// A length or an angle of the shape's own table.
     fn of_kind(&self, key: &'static str) -> Option<f64> {
         match self {
-            Self::Block(doc, path) => doc.quantity(&format!("{path}.shape.{key}")),
+            Self::Block(doc, path, turn) => {
+                let given = doc.quantity(&format!("{path}.shape.{key}"))?;
+                Some(if matches!(key, "from" | "to") { given + turn } else { given })
+            }
             Self::Part(item) => item.item("shape")?.number(key),
         }
     }
 
     fn sides(&self) -> Option<i64> {
         match self {
-            Self::Block(doc, path) => doc.integer(&format!("{path}.shape.sides")),
+            Self::Block(doc, path, _) => doc.integer(&format!("{path}.shape.sides")),
             Self::Part(item) => item.item("shape")?.integer("sides"),
         }
     }

@@ -376,3 +376,30 @@ fn a_voussoir_without_a_place_is_where_its_arch_has_it() {
     };
     assert_eq!(placed(""), placed("centre = ['0 m', '0 m']"));
 }
+
+/// Limit analysis (`validation`, case `assemblages`): it stands from t/R = 0.1067 on.
+#[test]
+fn an_arch_of_one_table_stands_if_it_is_thick_enough() {
+    let moved = |thickness: f64| {
+        let (inner, outer) = (1.0 - 0.5 * thickness, 1.0 + 0.5 * thickness);
+        let text = format!(
+            "{HEAD}[block.v]\nmaterial = 'm'\ndepth = '1 m'\n\
+             shape = {{ kind = 'voussoir', inner = '{inner} m', outer = '{outer} m', from = '0 deg', to = '{:?} deg' }}\n\
+             repeat = {{ count = 27, turn = '{:?} deg' }}\n[contact.c]\nbetween = ['v-*', '*']\nfriction = 0.5\n",
+            180.0 / 27.0,
+            180.0 / 27.0
+        );
+        let mut simulation = Simulation::new(&scene(&text)).unwrap();
+        let start = simulation.state.q.clone();
+        assert_eq!(simulation.run(&mut []).unwrap(), Ended::Complete);
+        start.iter().zip(&simulation.state.q).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()))
+    };
+    assert!(moved(0.1078) < 1e-9);
+    assert!(moved(0.1056) > 1e-3);
+}
+
+#[test]
+fn only_voussoirs_are_turned_about_an_arch() {
+    let found = told("material = 'm'\ndepth = '1 m'\nradius = '1 m'\nrepeat = { count = 2, turn = '5 deg' }");
+    assert!(found.contains("block.b.repeat.turn") && found.contains("only voussoirs"), "{found}");
+}
