@@ -125,16 +125,17 @@ const scene = (() => {
         home[1] = Math.min(home[1], at(home[0]), at(home[2]));
       }
     }
-    const reach = 1.5 * Math.max(home[2] - home[0], home[3] - home[1], 1e-9);
+    const size = Math.max(home[2] - home[0], home[3] - home[1], 1e-9);
     const every = Math.max(1, Math.floor(times.length / 250));
-    let box = home;
+    let whole = home;
     for (let at = 0; at < times.length; at += every) {
       const now = around(moving(at));
-      box = [
-        Math.max(home[0] - reach, Math.min(box[0], now[0])), Math.max(home[1] - reach, Math.min(box[1], now[1])),
-        Math.min(home[2] + reach, Math.max(box[2], now[2])), Math.min(home[3] + reach, Math.max(box[3], now[3])),
-      ];
+      whole = [0, 1, 2, 3].map((k) => (k < 2 ? Math.min : Math.max)(whole[k], now[k]));
     }
+    // All of the motion, unless it goes so far that nothing could be seen any more.
+    const far = Math.max(home[0] - whole[0], home[1] - whole[1], whole[2] - home[2], whole[3] - home[3]);
+    const reach = far <= 20 * size ? far : 1.5 * size;
+    const box = [0, 1, 2, 3].map((k) => (k < 2 ? Math.max(home[k] - reach, whole[k]) : Math.min(home[k] + reach, whole[k])));
     return box;
   }
 
