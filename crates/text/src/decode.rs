@@ -25,8 +25,8 @@ use crate::{sets, suggest, syntax};
 /// An example is at [`Schema`].
 ///
 /// # Errors
-/// Everything wrong in the file and the settings, in the order of the file (at most
-/// [`Diagnostics::MOST_FINDINGS`] findings or so).
+/// Everything wrong in the file and the settings, in the order of the file (some
+/// 200 at most; [`Diagnostics`] says how many more).
 pub fn parse(
     schema: &'static Schema,
     source: &str,
