@@ -207,6 +207,25 @@ pub(crate) fn below(scene: &Scene, block: usize) -> Option<usize> {
     }
 }
 
+/// The beam that carries a block, directly or through the blocks below it, by the placements of
+/// that many blocks, as far as they are known.
+pub(crate) fn carried_by<'a>(
+    blocks: usize,
+    block: usize,
+    placement: impl Fn(usize) -> Option<&'a Placement>,
+) -> Option<usize> {
+    let mut block = block;
+    // The resolver refuses cycles, but may ask before.
+    for _ in 0..=blocks {
+        match placement(block)? {
+            Placement::On { support: SupportingBody::Beam(beam), .. } => return Some(*beam),
+            Placement::On { support: SupportingBody::Block(below), .. } => block = *below,
+            _ => return None,
+        }
+    }
+    None
+}
+
 /// The upper side of a block.
 struct TopSide {
     /// Its midpoint, and its slope, rad.

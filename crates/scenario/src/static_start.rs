@@ -7,7 +7,7 @@
 //! stay. A beam in modes settles in its modes, so it is at rest in the model that runs.
 
 use crate::driven::{self, BeamModel};
-use crate::placement::{InstabilityMode, PlacementError, below, starting_poses};
+use crate::placement::{InstabilityMode, PlacementError, carried_by, starting_poses};
 use crate::scene::{Placement, Scene, SupportingBody};
 use crate::simulation::{BlockBody, BuildError, Pairs, detector};
 use nalgebra::{Vector2, Vector3};
@@ -103,8 +103,10 @@ impl<'a> InitialConfiguration<'a> {
             let refused = |source| PlacementError::Static { beam: scene.beams[k].name.clone(), source };
             beam.solve_static(&mut vec![0.0; beam.dofs()]).map_err(refused)?;
         }
-        let blocks =
-            (0..scene.blocks.len()).filter(|&k| carried_by(scene, k).is_some_and(|beam| beams.contains(&beam)));
+        let placement = |block: usize| Some(&scene.blocks[block].placement);
+        let carried =
+            |block: &usize| carried_by(scene.blocks.len(), *block, placement).is_some_and(|beam| beams.contains(&beam));
+        let blocks = (0..scene.blocks.len()).filter(carried);
         let bodies = StaticModel { blocks: blocks.collect(), beams };
         let (model, pairs) = bodies.model(scene, self)?;
         let reach: Vec<f64> = pairs
@@ -176,16 +178,6 @@ pub struct ContactForce {
     pub point: u32,
     /// The force on the block along the contact's normal and tangent, N.
     pub force: [f64; 2],
-}
-
-/// The beam that carries a block, directly or through other blocks.
-fn carried_by(scene: &Scene, block: usize) -> Option<usize> {
-    let piled = |of: &usize| below(scene, *of);
-    let lowest = std::iter::successors(Some(block), piled).take(scene.blocks.len()).last()?;
-    match scene.blocks[lowest].placement {
-        Placement::On { support: SupportingBody::Beam(k), .. } => Some(k),
-        _ => None,
-    }
 }
 
 /// The corner on which a tilted block stands and is held.

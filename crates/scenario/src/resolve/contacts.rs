@@ -86,14 +86,10 @@ impl Resolver<'_, '_> {
         let apart = self.apart();
         let many: Vec<Option<Many>> =
             many.iter().enumerate().map(|(table, name)| self.contact_of_many(table, name)).collect();
-        let holders = self.holders(&many, &joined, &apart);
-        if holders.len() > MOST_PAIRS {
-            let rule = format!("the patterns match more than {MOST_PAIRS} pairs of bodies");
-            let remedy = "name only bodies that can touch, such as each course of a wall and the next";
-            self.error("contact", rule, remedy);
+        let Some(holders) = self.holders(&many, &joined, &apart, contacts.len()) else {
             contacts.push(None);
             return (contacts, joined);
-        }
+        };
         for of in many {
             let Some(of) = of else {
                 contacts.push(None);
@@ -173,13 +169,14 @@ impl Resolver<'_, '_> {
     }
 
     /// The contact of many, by its table, that holds for each pair that can touch; two of one rank
-    /// are an error. It ends soon after [`MOST_PAIRS`] are found.
+    /// are an error, and so are more than [`MOST_PAIRS`] together with the `known` contacts.
     fn holders(
         &mut self,
         many: &[Option<Many>],
         joined: &Joined,
         apart: &BTreeSet<PairKey>,
-    ) -> BTreeMap<PairKey, (usize, Rank)> {
+        known: usize,
+    ) -> Option<BTreeMap<PairKey, (usize, Rank)>> {
         let still: Vec<bool> =
             (0..self.block_names.len()).map(|block| self.is_fixed(SupportingBody::Block(block))).collect();
         let is_still = |body: SupportingBody| match body {
@@ -215,13 +212,16 @@ impl Resolver<'_, '_> {
                         holders.insert(key, (of.table, of.rank));
                     }
                 }
-                // All pairs of a large scene would take too long to enter.
-                if holders.len() > MOST_PAIRS {
-                    return holders;
+                if known + holders.len() > MOST_PAIRS {
+                    let rule = format!("the patterns match more than {MOST_PAIRS} pairs of bodies");
+                    let remedy = "name only bodies that can touch, such as each course of a wall and the next";
+                    let key = if of.rank == Rank::Materials { "materials" } else { "between" };
+                    self.error(&format!("contact.{}.{key}", of.name), rule, remedy);
+                    return None;
                 }
             }
         }
-        holders
+        Some(holders)
     }
 
     /// The name of a body.

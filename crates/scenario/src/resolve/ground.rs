@@ -2,7 +2,8 @@
 
 use super::Resolver;
 use crate::number_table;
-use crate::scene::{BeamScene, BlockScene, ContactScene, GroundScene, Placement, SignalScene, SupportingBody};
+use crate::placement::carried_by;
+use crate::scene::{BeamScene, BlockScene, ContactScene, GroundScene, SignalScene, SupportingBody};
 use crate::words::LengthUnit;
 use nalgebra::Vector2;
 use std::sync::Arc;
@@ -94,12 +95,15 @@ impl Resolver<'_, '_> {
     ) {
         let has_profile = matches!(ground, Some(Some(ground)) if ground.profile.is_some());
         let is_static = |beam: &usize| matches!(beams.get(*beam), Some(Some(beam)) if beam.static_start);
+        let placement = |block: usize| Some(&blocks.get(block)?.as_ref()?.placement);
         let on_ground = |block: usize| {
             contacts.iter().flatten().any(|of| of.block == block && of.surface == SupportingBody::Ground)
         };
         for (number, beam) in beams.iter().enumerate().filter(|(number, _)| has_profile && is_static(number)) {
             let Some(beam) = beam else { continue };
-            if (0..blocks.len()).any(|block| on_ground(block) && carried_by(blocks, block) == Some(number)) {
+            if (0..blocks.len())
+                .any(|block| on_ground(block) && carried_by(blocks.len(), block, placement) == Some(number))
+            {
                 let rule = "a block on this beam also touches the profile of the ground, where no equilibrium can be found yet";
                 self.error(
                     &format!("beam.{}.start", beam.name),
@@ -154,17 +158,4 @@ impl LengthUnit {
             Self::Kilometre => 0.001,
         }
     }
-}
-
-/// The beam that carries a block, directly or through the blocks below it.
-fn carried_by(blocks: &[Option<BlockScene>], block: usize) -> Option<usize> {
-    let mut block = block;
-    for _ in 0..=blocks.len() {
-        match blocks.get(block)?.as_ref()?.placement {
-            Placement::On { support: SupportingBody::Beam(beam), .. } => return Some(beam),
-            Placement::On { support: SupportingBody::Block(below), .. } => block = below,
-            _ => return None,
-        }
-    }
-    None
 }
