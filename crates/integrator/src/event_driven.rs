@@ -2,6 +2,7 @@
 
 mod decide;
 mod events;
+mod instant;
 mod linear;
 mod modes;
 mod runge_kutta;
@@ -12,7 +13,8 @@ use crate::{
     Keep, Model, PhaseEnd, PhaseKind, Scheme, SettingError, State, StepEnergy, StepError, StepReport, StepSpan,
     Workspace,
 };
-use events::{Open, Watch};
+use events::Open;
+use instant::Watch;
 use modes::{Mode, Pressing};
 use runge_kutta::RungeKutta;
 use smooth::{MASSES, Smooth};

@@ -1,6 +1,6 @@
 //! What contacts do from an event on.
 
-use super::events::Kind;
+use super::instant::Kind;
 use super::modes::{Mode, Pressing};
 use super::{EventDriven, LOWEST_BOUNCE, after, smooth::MASSES, still};
 use crate::{Memory, Model, Over, Responses, Rule, State, StepError, Vector, WarmStart, Workspace};

@@ -1,5 +1,6 @@
-//! Events of a smooth phase: what is watched, and when it happens first.
+//! Events of a smooth phase: what is watched.
 
+use super::instant::{Kind, Known, Watch};
 use super::modes::Pressing;
 use super::runge_kutta::RungeKutta;
 use super::{EventDriven, FLOOR, Stop};
@@ -17,40 +18,6 @@ pub(super) struct Open {
     rate: f64,
     /// Whether no force can move it.
     is_prescribed: bool,
-}
-
-/// What can happen to a contact.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
-    /// It closes.
-    Closes,
-    /// Its force is gone.
-    Opens,
-    /// Its surface ends.
-    Leaves,
-    /// Its friction is at the limit.
-    Slips,
-    /// Its slide is at rest.
-    Stops,
-}
-
-/// A quantity that is positive up to an event.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Watch {
-    pub(super) kind: Kind,
-    pub(super) id: ContactId,
-    /// At the start of the step, at its end, and at the time that is looked at.
-    start: f64,
-    end: f64,
-    now: f64,
-    /// The gap at which a contact closes, m.
-    level: f64,
-    /// Up to here it is 0.
-    tolerance: f64,
-    /// To which side friction holds the contact.
-    pub(super) side: f64,
-    /// Whether it happens where the phase ended.
-    pub(super) is_now: bool,
 }
 
 /// Forces and distances from the friction cone are 0 to this, in parts of their scale.
@@ -71,14 +38,11 @@ const ROUNDING_ORDER: f64 = 2.5;
 const MOST_NOISE: f64 = 1e3;
 const LEAST_NOISE: f64 = 0.2;
 
+/// A rest of a step's time that rounding may leave.
+const STEP_LEFT: f64 = 1e-9;
+
 /// A contact that pulls by this part of its scale within a step has opened in it; one whose friction is over its limit by as much slides.
 const PULLED: f64 = 1e-3;
-
-/// Trials at an event: six to ten do.
-const TRIALS: usize = 80;
-
-/// Halvings of a step in search of its start's sign.
-const HALVINGS: usize = 40;
 
 impl EventDriven {
     /// Moves in smooth motion from `from` to the first event, to where loads aren't smooth, or to `end` (s).
@@ -177,7 +141,7 @@ impl EventDriven {
                 continue;
             }
             let mut stop = None;
-            if self.find_watches(model, t + h, work)? {
+            if self.find_watches(model, t, h, work)? {
                 match self.locate_event(model, t, h, work)? {
                     Some(tau) => (h, stop) = (tau, Some(Stop::Event)),
                     // Nothing that a shorter step would confirm.
@@ -239,7 +203,13 @@ impl EventDriven {
     }
 
     /// Takes a step of the method; its error, 1 at most for a good one.
-    fn try_step(&mut self, model: &Model<2>, t: f64, h: f64, work: &mut Workspace<2>) -> Result<f64, StepError> {
+    pub(super) fn try_step(
+        &mut self,
+        model: &Model<2>,
+        t: f64,
+        h: f64,
+        work: &mut Workspace<2>,
+    ) -> Result<f64, StepError> {
         let Self { smooth, rk, y, .. } = self;
         smooth.pulled = None;
         rk.step(h, y, |s, y, slope| {
@@ -320,28 +290,32 @@ impl EventDriven {
         Ok(None)
     }
 
-    /// Lists what has happened by the end of a step; whether anything has.
-    fn find_watches(&mut self, model: &Model<2>, t: f64, work: &mut Workspace<2>) -> Result<bool, StepError> {
+    /// Lists what has happened by the end of a step of `h` (s) from `t`; whether anything has.
+    fn find_watches(&mut self, model: &Model<2>, t: f64, h: f64, work: &mut Workspace<2>) -> Result<bool, StepError> {
         self.watched.clear();
         let (nq, nv) = (model.size().q, model.size().v);
         let tolerance = self.located.tolerance(&self.y[..nq]);
         work.detect(model, &self.rk.end[..nq], 0.0)?;
-        for candidate in &work.candidates {
+        for k in 0..work.candidates.len() {
+            let candidate = work.candidates[k];
             if candidate.gap >= -tolerance || self.smooth.contacts.iter().any(|contact| contact.id == candidate.id) {
                 continue;
             }
             let at = self.open.binary_search_by_key(&candidate.id, |open| open.id);
             // One that comes from beyond the end of its surface has no gap there.
-            let start = at.map_or(f64::INFINITY, |at| self.open[at].gap);
+            let (start, rate) = at.map_or((f64::INFINITY, f64::NAN), |at| (self.open[at].gap, self.open[at].rate));
             let level = start.min(0.0);
             if candidate.gap < level - tolerance && !at.is_ok_and(|at| self.open[at].is_prescribed) {
-                let watch = Watch::new(Kind::Closes, candidate.id, start - level, candidate.gap - level, tolerance);
-                self.watched.push(Watch { level, ..watch });
+                let (q, v) = self.rk.end[..nq + nv].split_at(nq);
+                let end_rate = rate_at(&mut self.smooth.one, model, q, &candidate, v)?;
+                let start = Known { tau: 0.0, value: start - level, rate };
+                let end = Known { tau: h, value: candidate.gap - level, rate: end_rate };
+                self.watched.push(Watch::closing(candidate.id, level, [start, end], tolerance));
             }
         }
         if !self.smooth.contacts.is_empty() {
             let (q, v) = self.rk.end[..nq + nv].split_at(nq);
-            self.smooth.accelerate(model, t, q, v, work)?;
+            self.smooth.accelerate(model, t + h, q, v, work)?;
             for contact in &self.smooth.contacts {
                 let mut watch = |kind, start, end: f64, tolerance: f64| {
                     if end < -tolerance {
@@ -360,138 +334,5 @@ impl EventDriven {
             }
         }
         Ok(!self.watched.is_empty())
-    }
-
-    /// Takes what is watched at the end of the step that was tried last: the least in parts of what it was
-    /// at the end of the whole step, and whether all of it is 0 or more.
-    fn look(&mut self, model: &Model<2>, t: f64, work: &mut Workspace<2>) -> Result<(f64, bool), StepError> {
-        let (nq, nv) = (model.size().q, model.size().v);
-        let (q, v) = self.rk.end[..nq + nv].split_at(nq);
-        if self.watched.iter().any(|watch| watch.kind == Kind::Closes) {
-            self.ids.clear();
-            self.ids.extend(self.watched.iter().filter(|watch| watch.kind == Kind::Closes).map(|watch| watch.id));
-            work.locate(model, q, &self.ids, &mut self.found)?;
-        }
-        if self.watched.iter().any(|watch| watch.kind != Kind::Closes) {
-            self.smooth.accelerate(model, t, q, v, work)?;
-        }
-        let (mut least, mut clear) = (f64::INFINITY, true);
-        for watch in &mut self.watched {
-            let contact = self.smooth.contacts.iter().find(|contact| contact.id == watch.id);
-            watch.now = match (watch.kind, contact) {
-                (Kind::Closes, _) => {
-                    let at = self.found.binary_search_by_key(&watch.id, |candidate| candidate.id);
-                    at.map_or(f64::INFINITY, |at| self.found[at].gap - watch.level)
-                }
-                (_, None) => f64::INFINITY,
-                (Kind::Leaves, Some(contact)) => {
-                    if contact.row.is_some() {
-                        contact.room.min(1.0)
-                    } else {
-                        -1.0
-                    }
-                }
-                (Kind::Opens, Some(contact)) => contact.presses(),
-                (Kind::Slips, Some(contact)) => contact.held,
-                (Kind::Stops, Some(contact)) => contact.slides(),
-            };
-            watch.side = contact.map_or(0.0, |contact| contact.force[1].signum());
-            least = least.min(watch.now / watch.end.abs());
-            clear &= watch.now >= -watch.tolerance;
-        }
-        Ok((least, clear))
-    }
-
-    /// Finds the time from `t` (s) at which the first of what is watched is 0, within a step of `h` (s), and
-    /// leaves the step up to there; returns that time, s.
-    fn locate_event(
-        &mut self,
-        model: &Model<2>,
-        t: f64,
-        h: f64,
-        work: &mut Workspace<2>,
-    ) -> Result<Option<f64>, StepError> {
-        let (mut low, mut high) = (0.0, h);
-        let mut at_low = self.watched.iter().map(|watch| watch.start / watch.end.abs()).fold(f64::INFINITY, f64::min);
-        let mut at_high = -1.0;
-        if self.watched.iter().any(|watch| watch.start <= watch.tolerance) {
-            // What is 0 at the start may become positive first.
-            let mut tau = h;
-            let mut found = false;
-            for _ in 0..HALVINGS {
-                tau *= 0.5;
-                self.try_step(model, t, tau, work)?;
-                work.counts.refused_attempts += 1;
-                let (value, clear) = self.look(model, t + tau, work)?;
-                if clear {
-                    (low, at_low, found) = (tau, value.max(f64::MIN_POSITIVE), true);
-                    break;
-                }
-                (high, at_high) = (tau, value);
-            }
-            if !found {
-                for watch in &mut self.watched {
-                    watch.is_now = watch.start <= watch.tolerance;
-                }
-                return Ok(Some(0.0));
-            }
-        }
-        let mut tau = h;
-        let mut same = 0;
-        for trial in 0..TRIALS {
-            let width = high - low;
-            let narrow = width <= 2.0 * f64::EPSILON * t.abs().max(h);
-            let secant = (low * at_high - high * at_low) / (at_high - at_low);
-            let inside = secant > low && secant < high;
-            tau = if narrow {
-                high
-            } else if inside && trial % 8 != 7 {
-                secant
-            } else {
-                0.5 * (low + high)
-            };
-            self.try_step(model, t, tau, work)?;
-            work.counts.refused_attempts += 1;
-            let (value, clear) = self.look(model, t + tau, work)?;
-            let is_zero = self.watched.iter().any(|watch| watch.now.abs() <= watch.tolerance);
-            if narrow || (clear && is_zero) {
-                break;
-            }
-            // Illinois: the end that stays twice counts for half.
-            if value > 0.0 || clear {
-                (low, at_low) = (tau, value.max(f64::MIN_POSITIVE));
-                if same == 1 {
-                    at_high *= 0.5;
-                }
-                same = 1;
-            } else {
-                (high, at_high) = (tau, value);
-                if same == -1 {
-                    at_low *= 0.5;
-                }
-                same = -1;
-            }
-        }
-        let mut any = false;
-        for watch in &mut self.watched {
-            watch.is_now = watch.now <= watch.tolerance;
-            any |= watch.is_now;
-        }
-        // Where a surface that doesn't go on past its end has left a contact without rows, the phase ends before.
-        let has_left = |watch: &Watch| watch.is_now && watch.kind == Kind::Leaves && watch.now == -1.0;
-        if low > 0.0 && self.watched.iter().any(has_left) {
-            tau = low;
-            self.try_step(model, t, tau, work)?;
-        }
-        Ok(any.then_some(tau))
-    }
-}
-
-/// A rest of a step's time that rounding may leave.
-const STEP_LEFT: f64 = 1e-9;
-
-impl Watch {
-    fn new(kind: Kind, id: ContactId, start: f64, end: f64, tolerance: f64) -> Self {
-        Self { kind, id, start, end, now: end, level: 0.0, tolerance, side: 0.0, is_now: false }
     }
 }

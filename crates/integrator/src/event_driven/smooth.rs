@@ -39,7 +39,8 @@ pub(super) struct Smooth {
     ids: Vec<ContactId>,
     /// Rows of the contacts where accelerations were taken last.
     pub(super) stage: ContactStage<2>,
-    one: ContactStage<2>,
+    /// Of one contact, beside the stage.
+    pub(super) one: ContactStage<2>,
     found: Candidates<2>,
     probes: Candidates<2>,
     /// Of those found, how far it is to the end of their surface, m.
