@@ -5,6 +5,7 @@ use crate::console::{Console, print_all};
 use crate::render::{Presenter, refusal};
 use crate::run::Exit;
 use crate::scene;
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use teeter_scenario::output_size::accuracy_of_seconds;
@@ -241,6 +242,15 @@ fn model(scene: &Scene, preview: &Preview) -> Vec<String> {
         ),
         format!("contact solver {}, to a residual of {:e}", scene.solver.method, scene.solver.tolerance),
     ];
+    if !preview.on_sides.is_empty() {
+        let names: BTreeSet<&str> = preview.on_sides.iter().map(|k| scene.contacts[*k].name.as_str()).collect();
+        let shown: Vec<&str> = names.iter().take(LISTED).copied().collect();
+        let more = if names.len() > LISTED { format!(" and {} more", names.len() - LISTED) } else { String::new() };
+        lines.push(format!(
+            "besides them, ends of beams and humps under the sides of blocks: contact {}{more}",
+            shown.join(", ")
+        ));
+    }
     if let [first, others @ ..] = preview.coupled_frequencies.as_slice() {
         let all = others.iter().fold(digits(*first), |all, next| format!("{all}, {}", digits(*next)));
         lines.push(format!("small vibrations of blocks and beams about the initial state: {all} Hz"));

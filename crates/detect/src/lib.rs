@@ -66,7 +66,7 @@ pub use points::{PointDetector, PointPair};
 pub use profile::{Profile, ProfilePair};
 pub use shape::{Disc, MOST_CORNERS, Polygon, Rounded, Shape, ShapeError};
 pub use shapes::{ShapeDetector, ShapePair};
-pub use sides::{OnSide, SidePair};
+pub use sides::{MOST_SUMMITS, OnSide, SidePair};
 pub use touch::CornerOnSide;
 pub use wiring_error::WiringError;
 
@@ -120,7 +120,8 @@ impl<const D: usize> HalfSpace<D> {
 /// A pair of bodies that a detector looks at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wiring {
-    /// The number of their pair.
+    /// The number of their pair. Two may have the same one if they are of the same body with two bodies
+    /// of one part, such as corners on a beam and sides against its fibre.
     pub pair: u32,
     /// The law of its contacts.
     pub law: LawId,

@@ -124,7 +124,9 @@ impl ShapeDetector {
         Ok(self)
     }
 
-    /// With sides of shapes against surfaces that bend or end; pairs have numbers of their own.
+    /// With sides of shapes against surfaces that bend or end. A pair may have the number of that
+    /// of the same body's corners with the same surface, a [`PointPair`](crate::PointPair) or
+    /// [`SurfacePair`]: what touches sides has [numbers](OnSide) that no corner has.
     ///
     /// # Errors
     /// If a body has no shape.
@@ -299,8 +301,19 @@ impl ShapeDetector {
         }
     }
 
+    /// The pair of a contact with a side, its body among the members, and what touches which side.
+    fn on_side(&self, id: ContactId) -> Option<(&SidePair, usize, (OnSide, usize))> {
+        let found = self.sides.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair).ok()?;
+        let (pair, member) = &self.sides[found];
+        Some((pair, *member, OnSide::from_number(id.point())?))
+    }
+
     /// A contact that is none of two shapes.
     fn located_elsewhere(&self, at: &dyn Geometry<2>, id: ContactId) -> Option<(Candidate<2>, f64)> {
+        if let Some((pair, member, feature)) = self.on_side(id) {
+            let touch = sides::located(&self.shapes, member, pair, at, feature)?;
+            return Some((candidate_of(pair.pair, pair.law, [pair.body, pair.surface], &touch), touch.room));
+        }
         if let Ok(found) = self.surfaces.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair) {
             let (pair, member) = &self.surfaces[found];
             let touch = feet::located(&self.shapes, *member, pair, at, id.point() as usize)?;
@@ -317,12 +330,7 @@ impl ShapeDetector {
             let touch = profile::located(profile, &outline, &ground, feature)?;
             return Some((candidate_of(pair.pair, pair.law, [pair.body, pair.ground], &touch), touch.room));
         }
-        let Ok(found) = self.sides.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair) else {
-            return self.points.located(at, id).map(|candidate| (candidate, f64::INFINITY));
-        };
-        let (pair, member) = &self.sides[found];
-        let touch = sides::located(&self.shapes, *member, pair, at, OnSide::from_number(id.point())?)?;
-        Some((candidate_of(pair.pair, pair.law, [pair.body, pair.surface], &touch), touch.room))
+        self.points.located(at, id).map(|candidate| (candidate, f64::INFINITY))
     }
 
     /// The contact of two members by its feature.
@@ -423,6 +431,9 @@ impl ContactDetector<2> for ShapeDetector {
     }
 
     fn keeps_point(&self, id: ContactId) -> bool {
+        if self.on_side(id).is_some() {
+            return false;
+        }
         let corner = id.point() as usize;
         if let Ok(found) = self.surfaces.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair) {
             return self.shapes.is_sharp_at(self.surfaces[found].1, corner);
@@ -435,9 +446,8 @@ impl ContactDetector<2> for ShapeDetector {
             let CornerOnSide { owner, round, .. } = CornerOnSide::from_number(id.point());
             return owner == 0 && !round;
         }
-        // Points have numbers that no groups and no sides have.
+        // Points have numbers that no groups have.
         self.near_pair(id.pair()).is_none()
-            && self.sides.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair).is_err()
     }
 
     fn wiring(&self) -> Vec<Wiring> {

@@ -10,7 +10,8 @@ use crate::{BodyId, Geometry, Kinematics, LawId, SurfacePoint, Vector};
 /// [`PointPair`](crate::PointPair).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SidePair {
-    /// The pair's number, first part of the identity of its contacts.
+    /// The pair's number, first part of the identity of its contacts. It may be that of the pair of
+    /// the body's corners with the same surface.
     pub pair: u32,
     /// The law of its contacts.
     pub law: LawId,
@@ -74,7 +75,7 @@ const FLAT: f64 = 1e-9;
 const FACING: f64 = -0.25;
 
 /// Summits under one side that are told apart.
-pub(crate) const MOST_SUMMITS: usize = 8;
+pub const MOST_SUMMITS: usize = 8;
 
 /// A side of a part in the world.
 struct PlacedSide {

@@ -4,7 +4,7 @@ use crate::mismatch::{Identity, length};
 use crate::stage::ContactRows;
 use crate::stage::RESERVED_CONTACTS;
 use crate::{Energy, ImpactLaw, Linearised, Mismatch, PairLaw, Size, Stretching, Subsystem, Traits, Vector};
-use std::collections::HashSet;
+use std::collections::HashMap;
 use std::ops::Range;
 use teeter_detect::{
     BodyId, Candidate, Candidates, ContactDetector, DetectorMemory, Geometry, HalfSpace, Kinematics, LawId,
@@ -317,11 +317,8 @@ impl<const D: usize> ModelBuilder<D> {
     }
 
     fn check_wiring(&self, wiring: &[Wiring]) -> Result<(), ModelError> {
-        let mut seen = HashSet::with_capacity(wiring.len());
+        let mut seen: HashMap<u32, [BodyId; 2]> = HashMap::with_capacity(wiring.len());
         for &Wiring { pair, law, bodies: [first, second], on_surface, contacts, not_finite } in wiring {
-            if !seen.insert(pair) {
-                return Err(ModelError::PairTwice { pair });
-            }
             if law.0 as usize >= self.laws.len() {
                 return Err(ModelError::NoLaw { pair, law, laws: self.laws.len() });
             }
@@ -334,6 +331,12 @@ impl<const D: usize> ModelBuilder<D> {
                 return Err(ModelError::Itself { pair, body: first });
             }
             let (part, number) = self.bodies[second.0 as usize];
+            // Corners on a body's surface and sides against its fibre are one pair.
+            if let Some([body, other]) = seen.insert(pair, [first, second])
+                && !(body == first && other != second && self.bodies[other.0 as usize].0 == part)
+            {
+                return Err(ModelError::PairTwice { pair });
+            }
             if on_surface && !self.parts[part].system.has_surface(number) {
                 return Err(ModelError::NoSurface { pair, body: second });
             }

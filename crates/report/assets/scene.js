@@ -13,7 +13,8 @@ const scene = (() => {
 
   /** The beam that a block may stand on: of several, the one below it. */
   const beamsOf = scenery.blocks.map((_, block) =>
-    scenery.contacts.filter((contact) => contact.block === block && contact.beam !== null).map((contact) => contact.beam));
+    scenery.contacts.filter((contact) => contact.block === block && contact.beam !== null && !contact.lower)
+      .map((contact) => contact.beam));
 
   /** How far the supports of a beam have moved. */
   function moved(beam, at) {
@@ -344,12 +345,32 @@ const scene = (() => {
     return radius;
   }
 
+  /** Where a beam touches a side of a block: its end, or where it comes out furthest beside the block. */
+  function onBeam(number, block, onSide, lower, at) {
+    const beam = scenery.beams[number];
+    const [across, up] = moved(number, at);
+    const surface = beam.top ? (lower ? -0.5 : 0.5) * beam.thickness : 0;
+    const height = (x) => exaggeration * deflection(number, at, x);
+    const all = corners(truePose(block, at), scenery.blocks[block]).map(([x]) => x - beam.x - across);
+    const beside = (x) => x >= Math.min(...all) && x <= Math.max(...all);
+    const nodes = Array.from({ length: beam.points }, (_, i) => (i / (beam.points - 1)) * beam.span);
+    const outmost = (a, b) => ((lower ? height(b) < height(a) : height(b) > height(a)) ? b : a);
+    const middle = (Math.min(...all) + Math.max(...all)) / 2;
+    const x = onSide === "hump" ? nodes.filter(beside).reduce(outmost, middle) : onSide.end * beam.span;
+    return [beam.x + across + x, beam.y + up + surface + height(x)];
+  }
+
   /** A contact point as drawn, with the directions of the contact's frame. */
   function contactPoint(contact, point, at) {
-    const { block: first, beam, other, linear, points: places } = scenery.contacts[contact];
-    const { block, corner, crest } = places[point];
+    const { block: first, beam, other, linear, lower, points: places } = scenery.contacts[contact];
+    const { block, corner, crest, on_side: onSide } = places[point];
     if (crest !== null) {
       const [x, y] = onGround(crest, at);
+      const normal = outwardAt(block, x, y, at, block).map((n) => -n);
+      return { x: px(x), y: py(y), normal, tangent: [normal[1], -normal[0]] };
+    }
+    if (onSide !== null) {
+      const [x, y] = onBeam(beam, block, onSide, lower, at);
       const normal = outwardAt(block, x, y, at, block).map((n) => -n);
       return { x: px(x), y: py(y), normal, tangent: [normal[1], -normal[0]] };
     }
@@ -375,8 +396,9 @@ const scene = (() => {
       slope = (deflection(beam, at, place + step) - deflection(beam, at, place - step)) / (2 * step);
     }
     const size = Math.hypot(1, slope);
-    const normal = [-slope / size, 1 / size];
-    return { x: px(x - reach * normal[0]), y: py(y - reach * normal[1]), normal, tangent: [1 / size, slope / size] };
+    const facing = lower ? -1 : 1;
+    const normal = [(-facing * slope) / size, facing / size];
+    return { x: px(x - reach * normal[0]), y: py(y - reach * normal[1]), normal, tangent: [normal[1], -normal[0]] };
   }
 
   function arrow(at, [normal, tangential], length, className) {

@@ -5,7 +5,7 @@ use crate::diagnostic::Diagnostic;
 use crate::document::Document;
 use crate::placement::{InstabilityMode, PlacementError};
 use crate::resolve::names::table_of;
-use crate::simulation::BuildError;
+use crate::simulation::{BuildError, beyond, touching};
 use teeter_beam::{BeamError, ModalError, ModesError, StaticError};
 use teeter_integrator::{EquilibriumError, ModelError};
 
@@ -51,10 +51,11 @@ impl BuildError {
                 document.error("time", error.to_string(), "check theta, activation_gamma and gap_tolerance")
             }
             Self::Solver(_) => document.error("solver.method", self.to_string(), "use one of the available solvers"),
-            Self::Penetration { block, corner, surface, depth, tolerance } => {
+            Self::Penetration { block, corner, on_side, lower, surface, depth, tolerance } => {
                 let rule = format!(
-                    "the corner {corner} starts {depth:.1e} m below the surface of `{surface}`; up to {tolerance:.1e} m are \
-                     taken for rounding"
+                    "{} starts {depth:.1e} m {} `{surface}`; up to {tolerance:.1e} m are taken for rounding",
+                    touching(*on_side, corner),
+                    beyond(*on_side, *lower)
                 );
                 let remedy = if document.has(&format!("block.{}.position", table_of(document, block))) {
                     "move the block up, or give on, at and tilt instead of position: it then stands on the surface"

@@ -8,7 +8,7 @@ use crate::tilt_reference::TiltReference;
 use std::ops::Range;
 use std::sync::Arc;
 use teeter_beam::{Beam, Deflection, ModalBasis, ShapeAt, SpanLoad};
-use teeter_detect::{BodyId, ContactId, CornerOnSide};
+use teeter_detect::{BodyId, ContactId, CornerOnSide, MOST_SUMMITS, OnSide};
 use teeter_integrator::{BeamForces, Opening};
 
 /// The place of a block in the state.
@@ -132,6 +132,9 @@ pub struct PairPlace {
     /// Whether it is one of a block with ground that has a profile: its crests can touch the sides
     /// of the block.
     pub on_profile: bool,
+    /// Whether it is one of a block with a beam that can touch the block's sides, too: its ends and
+    /// humps come after the corners.
+    pub on_sides: bool,
 }
 
 /// A point of a pair that can touch: a corner of a block.
@@ -146,6 +149,15 @@ pub struct ContactPoint {
     /// The point of the ground's profile, by its number, if it is that that touches the block, and
     /// no corner.
     pub crest: Option<usize>,
+    /// What of a beam touches a side of the block, if it is that, and no corner.
+    pub on_side: Option<OnSide>,
+}
+
+/// What of a beam can touch a side of a block, in the order of a pair's points.
+fn on_sides() -> impl Iterator<Item = (OnSide, String)> {
+    let ends = ["end-left", "end-right"].into_iter().enumerate();
+    let humps = (0..MOST_SUMMITS).map(|which| (OnSide::Summit(which), format!("hump-{}", which + 1)));
+    ends.map(|(which, name)| (OnSide::End(which), name.to_owned())).chain(humps)
 }
 
 impl ContactPoint {
@@ -156,16 +168,27 @@ impl ContactPoint {
             (0..of.corner_count()).map(move |corner| (corner, of.corner_name(corner)))
         };
         let Some(other) = contact.other_block() else {
-            let point = |(corner, name)| Self { name, block: contact.block, corner, crest: None };
+            let block = contact.block;
+            let point = |(corner, name)| Self { name, block, corner, crest: None, on_side: None };
+            if contact.sides {
+                let on_side = |(side, name)| Self { name, block, corner: 0, crest: None, on_side: Some(side) };
+                return corners(block).map(point).chain(on_sides().map(on_side)).collect();
+            }
             let profile = ground_profile::of(scene).filter(|_| contact.surface == SupportingBody::Ground);
             let crests = 0..profile.map_or(0, |profile| profile.points().count());
             let crest =
-                |k: usize| Self { name: format!("crest-{}", k + 1), block: contact.block, corner: 0, crest: Some(k) };
-            return corners(contact.block).map(point).chain(crests.map(crest)).collect();
+                |k: usize| Self { name: format!("crest-{}", k + 1), block, corner: 0, crest: Some(k), on_side: None };
+            return corners(block).map(point).chain(crests.map(crest)).collect();
         };
         let of = |block: usize| {
             let named = move |name: String| format!("{}.{name}", scene.blocks[block].name);
-            corners(block).map(move |(corner, name)| Self { name: named(name), block, corner, crest: None })
+            corners(block).map(move |(corner, name)| Self {
+                name: named(name),
+                block,
+                corner,
+                crest: None,
+                on_side: None,
+            })
         };
         of(contact.block).chain(of(other)).collect()
     }
@@ -187,6 +210,13 @@ impl PairPlace {
                 (0, true) => self.corners + side,
                 _ => self.corners + corner,
             }
+        } else if let Some((feature, _)) = OnSide::from_number(id.point()).filter(|_| self.on_sides) {
+            // Alike whichever side of the block it is that touches, and a rounding beside it.
+            self.corners
+                + match feature {
+                    OnSide::End(which) | OnSide::EndAtRounding(which) => which,
+                    OnSide::Summit(which) => 2 + which,
+                }
         } else {
             id.point() as usize
         };

@@ -60,9 +60,9 @@ fn meetings(scene: &Scene, left_out: &mut Vec<&'static str>) {
     if scene.beams.len() > 1 || (!scene.beams.is_empty() && scene.ground.is_some()) {
         left_out.push("contact of beams with each other and with the ground: they pass through it");
     }
-    if scene.contacts.iter().any(|contact| matches!(contact.surface, SupportingBody::Beam(_))) {
+    if scene.contacts.iter().any(|contact| matches!(contact.surface, SupportingBody::Beam(_)) && !contact.sides) {
         left_out.push(
-            "contact of beams with blocks except at the blocks' corners: a hump or a support between two corners penetrates the base, and \
+            "contact of beams with blocks, where it has points = \"corners\" or kinematics = \"linear\", except at the blocks' corners: a hump or a support between two corners penetrates the base, and \
              so does a beam's end when a corner is past it",
         );
     }

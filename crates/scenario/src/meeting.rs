@@ -37,6 +37,24 @@ const MOST_PAIRS: usize = 20_000;
 /// Positions along a beam that are checked under a block.
 const PLACES: usize = 12;
 
+/// With what a block can touch a beam.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum OnBeam {
+    Nothing,
+    Corners,
+    Sides,
+}
+
+impl OnBeam {
+    fn all(scene: &Scene, beam: usize) -> Vec<Self> {
+        let mut all = vec![Self::Nothing; scene.blocks.len()];
+        for contact in scene.contacts.iter().filter(|contact| contact.surface == SupportingBody::Beam(beam)) {
+            all[contact.block] = if contact.sides { Self::Sides } else { Self::Corners };
+        }
+        all
+    }
+}
+
 /// A beam's line in the plane.
 #[derive(Debug, Clone, Copy)]
 struct BeamShape {
@@ -63,7 +81,8 @@ pub struct Shapes {
     on_ground: Vec<bool>,
     /// Pairs of blocks with a contact, the lower number first.
     blocks: BTreeSet<(usize, usize)>,
-    on_beam: Vec<Vec<bool>>,
+    /// For each beam, how each block can touch it.
+    on_beam: Vec<Vec<OnBeam>>,
     boxes: Vec<PlacedOutline>,
     order: Vec<usize>,
 }
@@ -99,7 +118,7 @@ impl Shapes {
                 .filter_map(|contact| Some((contact.block, contact.other_block()?)))
                 .map(|(a, b)| (a.min(b), a.max(b)))
                 .collect(),
-            on_beam: (0..scene.beams.len()).map(|beam| joined(SupportingBody::Beam(beam))).collect(),
+            on_beam: (0..scene.beams.len()).map(|beam| OnBeam::all(scene, beam)).collect(),
             boxes: Vec::with_capacity(scene.blocks.len()),
             order: Vec::with_capacity(scene.blocks.len()),
         }
@@ -177,7 +196,8 @@ impl Shapes {
                 let w = place.deflection_at(&q[place.range.clone()], along).map_or(f64::NAN, |at| at.w);
                 block.depth_of([left + along, bottom + w])
             };
-            for (block, of) in boxes.iter().enumerate() {
+            // What touches with its sides penetrates no deeper than the detector tells.
+            for (block, of) in boxes.iter().enumerate().filter(|(block, _)| joined[*block] != OnBeam::Sides) {
                 let [low, high] = of.projection([1.0, 0.0]);
                 let (from, to) = ((low - left).max(0.0), (high - left).min(shape.span));
                 if from > to {
@@ -188,9 +208,9 @@ impl Shapes {
                 if deepest > allowed(block) {
                     let at_end = [0.0, shape.span].into_iter().any(|end| depth_at(of, end) > allowed(block));
                     let meeting = match (joined[block], at_end) {
-                        (false, _) => Meeting::Beam(block, number),
-                        (true, false) => Meeting::BetweenCorners(block, number),
-                        (true, true) => Meeting::PastEnd(block, number),
+                        (OnBeam::Nothing | OnBeam::Sides, _) => Meeting::Beam(block, number),
+                        (OnBeam::Corners, false) => Meeting::BetweenCorners(block, number),
+                        (OnBeam::Corners, true) => Meeting::PastEnd(block, number),
                     };
                     each(meeting, deepest);
                 }

@@ -2,13 +2,15 @@
 
 use crate::driven::BeamModel;
 use crate::ground_profile;
-use crate::scene::{BlockScene, Placement, Scene, SupportingBody};
+use crate::scene::{self, BlockScene, Placement, Scene, SupportingBody};
 use crate::simulation::BuildError;
 use nalgebra::{Vector2, Vector3};
 use std::f64::consts::FRAC_PI_2;
 use teeter_beam::StaticError;
-use teeter_detect::{Kinematics, SurfacePoint};
-use teeter_integrator::{EquilibriumError, Subsystem};
+use teeter_detect::{
+    BodyId, ContactDetector, DetectorMemory, Geometry, Kinematics, LawId, ShapeDetector, SidePair, SurfacePoint,
+};
+use teeter_integrator::{BeamFace, EquilibriumError, Subsystem};
 use teeter_rigid::Pose;
 
 /// Why a scene has no initial state.
@@ -278,20 +280,83 @@ pub(crate) fn block_pose(
         SupportSurface::Surface(surface, q) => (*surface, *q),
         SupportSurface::Line(line) => return Ok(pose_on_line(block, at, tilt, line)),
     };
-    let kinematics = scene.contacts[contact].kinematics;
+    let scene::ContactScene { kinematics, sides, .. } = scene.contacts[contact];
+    let rest = |pose| if sides { on_sides(block, pose, surface, q) } else { Ok(pose) };
     if block.parts.is_some() {
         let start = pose_on_line(block, at, tilt, &[0.0; 3]);
-        return on_surface(block, start, |at| surface.surface(0, q, kinematics, at));
+        return rest(on_surface(block, start, |at| surface.surface(0, q, kinematics, at))?);
     }
     let (feet, count) = feet(block, at, tilt);
     let height_at = |foot: &Foot| surface_height(block, surface, q, kinematics, foot);
-    // An upright block stands on the higher of its feet.
-    let mut height = height_at(&feet[0])?;
     if count == 2 {
-        height = height.max(height_at(&feet[1])?);
-        return Ok(Vector3::new(at, height + 0.5 * block.height, 0.0));
+        // An upright block stands on the higher of its feet; where one is past the end of the beam,
+        // on the other one, and perhaps on that end.
+        let heights = match (height_at(&feet[0]), height_at(&feet[1])) {
+            (Ok(left), Ok(right)) => left.max(right),
+            (Ok(one), Err(_)) | (Err(_), Ok(one)) if sides => one,
+            (Err(error), _) | (_, Err(error)) => return Err(error),
+        };
+        return rest(Vector3::new(at, heights + 0.5 * block.height, 0.0));
     }
-    Ok(turned_about(block, &feet[0], Vector2::new(feet[0].x, height), tilt))
+    rest(turned_about(block, &feet[0], Vector2::new(feet[0].x, height_at(&feet[0])?), tilt))
+}
+
+/// A block on the surface of a beam, moved up until neither a hump nor an end of the beam is inside
+/// one of its sides.
+fn on_sides(
+    block: &BlockScene,
+    mut pose: Vector3<f64>,
+    surface: &dyn Subsystem<2>,
+    q: &[f64],
+) -> Result<Vector3<f64>, PlacementError> {
+    let invalid = || off_surface(block, &Foot { corner: block.feet()[0], x: pose.x });
+    let (body, law) = (BodyId(0), LawId(0));
+    let pair = SidePair { pair: 0, law, body, surface: BodyId(1), kinematics: Kinematics::Deformed };
+    let shapes = block.shapes().map_err(|_| invalid())?.into_iter().map(|shape| (body, shape)).collect();
+    let detector = ShapeDetector::new(shapes, Vec::new()).and_then(|shapes| shapes.with_sides(vec![pair]));
+    let detector = detector.map_err(|_| invalid())?;
+    let (mut found, mut memory) = (Vec::new(), DetectorMemory::default());
+    for _ in 0..ROUNDS {
+        detector.detect(&OnBeam { pose: Pose::new(&pose), surface, q }, 0.0, &mut memory, &mut found);
+        let rise = found.iter().map(|touch| -touch.gap / touch.frame[(0, 1)]).fold(0.0, f64::max);
+        if rise <= f64::EPSILON * (pose.y.abs() + block.radius()) {
+            break;
+        }
+        pose.y += rise;
+    }
+    Ok(pose)
+}
+
+/// A block in a pose, and a beam.
+struct OnBeam<'a> {
+    pose: Pose,
+    surface: &'a dyn Subsystem<2>,
+    q: &'a [f64],
+}
+
+impl Geometry<2> for OnBeam<'_> {
+    fn place(&self, _: BodyId, local: &[Vector2<f64>], out: &mut [Vector2<f64>]) {
+        out.iter_mut().zip(local).for_each(|(out, local)| *out = self.pose.point(local));
+    }
+
+    fn surface(&self, _: BodyId, kinematics: Kinematics, at: &Vector2<f64>) -> Option<SurfacePoint<2>> {
+        self.surface.surface(BeamFace::Upper.fibre(), self.q, kinematics, at)
+    }
+
+    fn summits(
+        &self,
+        _: BodyId,
+        _: Kinematics,
+        direction: &Vector2<f64>,
+        between: &[Vector2<f64>; 2],
+        each: &mut dyn FnMut(SurfacePoint<2>),
+    ) {
+        self.surface.summits(BeamFace::Upper.fibre(), self.q, direction, between, each);
+    }
+
+    fn ends(&self, _: BodyId, _: Kinematics) -> [Option<SurfacePoint<2>>; 2] {
+        self.surface.ends(BeamFace::Upper.fibre(), self.q)
+    }
 }
 
 /// On a line the midpoint of the base is at x = `at`, the base lies along the line, and the tilt is

@@ -112,6 +112,13 @@ impl Required {
         self.points.get(contact).copied().unwrap_or_default()
     }
 
+    /// Whether the beam of a contact, by its number in the scene, is checked against sides of the
+    /// block, too.
+    #[must_use]
+    pub fn sides(&self, scene: &Scene, contact: usize) -> bool {
+        scene.contacts[contact].sides && self.points(contact) > 0
+    }
+
     /// The energy of a beam at rest; `None` for one that moves.
     pub(crate) fn rests(&self, beam: usize) -> Option<Energy> {
         self.at_rest.get(beam).copied().flatten()
@@ -194,7 +201,14 @@ impl InactivePairs {
             };
             let reaches: Vec<Reach> = (0..scene.blocks.len()).map(reach).collect();
             let stays_dead = |(contact, inactive): (&ContactScene, &bool)| {
-                *inactive && reaches[contact.block].misses(start, contact.surface, rests, &pairs, barrier.as_ref())
+                *inactive
+                    && reaches[contact.block].misses(
+                        start,
+                        (contact.surface, contact.face),
+                        rests,
+                        &pairs,
+                        barrier.as_ref(),
+                    )
             };
             let inactive: Vec<bool> = scene.contacts.iter().zip(&pairs.inactive).map(stays_dead).collect();
             if inactive == pairs.inactive {

@@ -5,6 +5,7 @@ mod beam_output;
 mod beams;
 mod blocks;
 mod contacts;
+mod faces;
 mod ground;
 mod motions;
 pub(crate) mod names;
@@ -59,6 +60,7 @@ pub type ReadFile<'a> = dyn FnMut(&str) -> Result<Vec<u8>, String> + 'a;
 pub fn resolve(mut document: Document, stem: &str, read: &mut ReadFile<'_>) -> Result<Resolved, Diagnostics> {
     let mut resolver = Resolver::new(&document, false, read);
     let scene = resolver.scene(stem);
+    resolver.report_unheld(scene.as_ref());
     let (mut errors, mut warnings, files) = (resolver.errors, resolver.warnings, resolver.files);
     match scene {
         Some(scene) if errors.is_empty() => {
@@ -101,7 +103,8 @@ pub fn resolve(mut document: Document, stem: &str, read: &mut ReadFile<'_>) -> R
 /// reported again.
 pub(crate) fn mistakes(document: &Document, read: &mut ReadFile<'_>) -> Vec<Diagnostic> {
     let mut resolver = Resolver::new(document, true, read);
-    let _ = resolver.scene("");
+    let scene = resolver.scene("");
+    resolver.report_unheld(scene.as_ref());
     resolver.errors
 }
 
@@ -143,6 +146,16 @@ struct Resolver<'a, 'f> {
     signals: BTreeMap<&'a str, usize>,
     errors: Vec<Diagnostic>,
     warnings: Vec<Diagnostic>,
+    /// Beams with a static start that their supports don't hold.
+    unheld: Vec<Unheld>,
+}
+
+/// A beam with a static start that only blocks under it may hold, and what is wrong if there are
+/// none.
+struct Unheld {
+    beam: String,
+    rule: String,
+    remedy: String,
 }
 
 impl<'a, 'f> Resolver<'a, 'f> {
@@ -165,6 +178,7 @@ impl<'a, 'f> Resolver<'a, 'f> {
             signals: numbered("signal"),
             errors,
             warnings: Vec::new(),
+            unheld: Vec::new(),
         }
     }
 
@@ -242,7 +256,7 @@ impl<'a, 'f> Resolver<'a, 'f> {
         }
         let solver = self.solver();
         let every = doc.quantity("output.every");
-        let scene = Scene {
+        let mut scene = Scene {
             title,
             time: time?,
             gravity: gravity?,
@@ -256,6 +270,7 @@ impl<'a, 'f> Resolver<'a, 'f> {
             solver: solver?,
             every,
         };
+        self.faces(&mut scene);
         self.output(&scene);
         Some(scene)
     }

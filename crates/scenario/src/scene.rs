@@ -409,6 +409,11 @@ pub struct ContactScene {
     pub law: teeter_integrator::PairLaw,
     /// Whether contact frames follow the deflection of the surface.
     pub kinematics: teeter_detect::Kinematics,
+    /// The side of a beam that the block touches; upper for other surfaces.
+    pub face: teeter_integrator::BeamFace,
+    /// Whether the block's sides can touch a beam, too, not only its corners; false for other
+    /// surfaces.
+    pub sides: bool,
 }
 
 impl ContactScene {

@@ -15,15 +15,15 @@ use std::sync::Arc;
 use teeter_beam::{BeamError, ModalError};
 use teeter_contact::ContactSolver;
 use teeter_detect::{
-    BodyId, ContactDetector, PointDetector, PointPair, ProfilePair, Shape, ShapeDetector, ShapeError, ShapePair,
-    SurfacePair, WiringError,
+    BodyId, ContactDetector, OnSide, PointDetector, PointPair, ProfilePair, Shape, ShapeDetector, ShapeError,
+    ShapePair, SidePair, SurfacePair, WiringError,
 };
 use teeter_integrator::{
-    Account, Block, Ended, EventDriven, EventDrivenSettings, GeneralizedAlpha, GeneralizedAlphaSettings, Mismatch,
-    Model, ModelBuilder, ModelError, MoreauJean, MoreauJeanClosed, MoreauJeanClosedSettings, MoreauJeanLocated,
-    MoreauJeanLocatedSettings, MoreauJeanProjected, MoreauJeanProjectedSettings, MoreauJeanSettings, Observer,
-    PartPlace, Plan, Resolved, ResolvedSettings, RunError, Scheme, SettingError, SolverSettings, State, StateError,
-    StepError, StepReport, Subsystem, Unsolved, WorkCounts, Workspace, run,
+    Account, BeamFace, Block, Ended, EventDriven, EventDrivenSettings, GeneralizedAlpha, GeneralizedAlphaSettings,
+    Mismatch, Model, ModelBuilder, ModelError, MoreauJean, MoreauJeanClosed, MoreauJeanClosedSettings,
+    MoreauJeanLocated, MoreauJeanLocatedSettings, MoreauJeanProjected, MoreauJeanProjectedSettings, MoreauJeanSettings,
+    Observer, PartPlace, Plan, Resolved, ResolvedSettings, RunError, Scheme, SettingError, SolverSettings, State,
+    StateError, StepError, StepReport, Subsystem, Unsolved, WorkCounts, Workspace, run,
 };
 use teeter_rigid::RigidError;
 
@@ -62,13 +62,18 @@ pub enum BuildError {
     Solver(String),
     /// A corner that starts below its surface.
     #[error(
-        "block `{block}`: the corner {corner} starts {depth:e} m below the surface of `{surface}`; up to {tolerance:e} m are allowed for rounding"
+        "block `{block}`: {} starts {depth:e} m {} `{surface}`; up to {tolerance:e} m are allowed for rounding",
+        touching(*on_side, corner), beyond(*on_side, *lower)
     )]
     Penetration {
         /// The block.
         block: String,
-        /// The corner.
+        /// The corner, or what of a beam touches a side.
         corner: String,
+        /// Whether it is a side that is penetrated.
+        on_side: bool,
+        /// Whether it is the lower face of a beam.
+        lower: bool,
         /// The body that it penetrates.
         surface: String,
         /// Depth, m.
@@ -92,6 +97,20 @@ pub enum BuildError {
         /// Displacement needed to separate them, m.
         depth: f64,
     },
+}
+
+/// What of a block starts inside something, in words.
+pub(crate) fn touching(on_side: bool, corner: &str) -> String {
+    if on_side { format!("a side ({corner})") } else { format!("the corner {corner}") }
+}
+
+/// Where that starts.
+pub(crate) fn beyond(on_side: bool, lower: bool) -> &'static str {
+    match (on_side, lower) {
+        (true, _) => "inside",
+        (false, false) => "below the surface of",
+        (false, true) => "above the lower face of",
+    }
 }
 
 /// A scene ready to run.
@@ -366,6 +385,7 @@ fn lay_out(scene: &Scene, beams: &[BeamModel], assembled: &Assembled, required: 
         of_shapes: contact.other_block().is_some(),
         corners: scene.blocks[contact.block].corner_count(),
         on_profile: contact.surface == SupportingBody::Ground && ground_profile::of(scene).is_some(),
+        on_sides: contact.sides,
     });
     Layout { blocks, beams: beams.collect(), pairs: pairs.collect(), ground, openings: openings(scene), required }
 }
@@ -395,7 +415,7 @@ fn assemble(
     for (number, contact) in scene.contacts.iter().enumerate() {
         let law = parts.law(contact.law);
         let surface = match contact.surface {
-            SupportingBody::Beam(k) => surfaces[k].body(),
+            SupportingBody::Beam(k) => surfaces[k].nth_body(contact.face.body()),
             SupportingBody::Ground => match &ground {
                 Some(ground) => ground.body(),
                 None => continue, // the resolver refuses contacts with missing ground
@@ -412,6 +432,10 @@ fn assemble(
         let kinematics = contact.kinematics;
         if points == 0 {
             continue;
+        }
+        if let (SupportingBody::Beam(k), true) = (contact.surface, required.sides(scene, number)) {
+            let surface = surfaces[k].nth_body(contact.face.fibre());
+            pairs.sides.push(SidePair { pair, law, body, surface, kinematics });
         }
         if profile.is_some() && contact.surface == SupportingBody::Ground {
             on_profile.push(ProfilePair { pair, law, body, ground: surface });
@@ -437,9 +461,11 @@ pub(crate) struct Pairs {
     pub(crate) surfaces: Vec<SurfacePair>,
     /// Blocks and blocks.
     pub(crate) shapes: Vec<ShapePair>,
+    /// Sides of blocks against beams; their corners have a pair of the same number.
+    pub(crate) sides: Vec<SidePair>,
 }
 
-/// The detector for contacts of blocks with surfaces, with ground that has a profile, and with each
+/// The detector for contacts of blocks with surfaces, by corners and sides, with ground that has a profile, and with each
 /// other.
 pub(crate) fn detector<'a>(
     pairs: Pairs,
@@ -448,17 +474,18 @@ pub(crate) fn detector<'a>(
 ) -> Result<Box<dyn ContactDetector<2>>, BuildError> {
     let points = PointDetector::new(pairs.points);
     let on_profile = on_profile.filter(|(_, pairs)| !pairs.is_empty());
-    if pairs.shapes.is_empty() && pairs.surfaces.is_empty() && on_profile.is_none() {
+    if pairs.shapes.is_empty() && pairs.surfaces.is_empty() && pairs.sides.is_empty() && on_profile.is_none() {
         return Ok(Box::new(points));
     }
     let of_pairs = pairs.shapes.iter().flat_map(|pair| pair.bodies);
     let grounded = on_profile.iter().flat_map(|(_, pairs)| pairs).map(|pair| pair.body);
+    let beside = pairs.sides.iter().map(|pair| pair.body);
     let paired: BTreeSet<BodyId> =
-        of_pairs.chain(pairs.surfaces.iter().map(|pair| pair.body)).chain(grounded).collect();
+        of_pairs.chain(pairs.surfaces.iter().map(|pair| pair.body)).chain(beside).chain(grounded).collect();
     let shapes = shapes.filter(|(body, _)| paired.contains(body));
     let shapes = shapes.flat_map(|(body, shapes)| shapes.iter().map(move |shape| (body, shape.clone())));
     let detector = ShapeDetector::new(shapes.collect(), pairs.shapes)?;
-    let detector = detector.with_points(points).with_surfaces(pairs.surfaces)?;
+    let detector = detector.with_points(points).with_surfaces(pairs.surfaces)?.with_sides(pairs.sides)?;
     Ok(Box::new(match on_profile {
         Some((profile, pairs)) => detector.with_profile(profile.clone(), pairs)?,
         None => detector,
@@ -530,6 +557,8 @@ fn check_start(scene: &Scene, model: &Model<2>, layout: &Layout, q: &[f64]) -> R
                     Some(point) => layout.pairs[pair].points[point].name.clone(),
                     None => candidate.id.point().to_string(),
                 },
+                on_side: contact.sides && OnSide::from_number(candidate.id.point()).is_some(),
+                lower: contact.face == BeamFace::Lower,
                 surface: surface.clone(),
                 depth: -candidate.gap,
                 tolerance,

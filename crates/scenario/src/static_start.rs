@@ -7,15 +7,16 @@
 //! stay. A beam in modes settles in its modes, so it is at rest in the model that runs.
 
 use crate::driven::{self, BeamModel};
-use crate::placement::{InstabilityMode, PlacementError, carried_by, starting_poses};
+use crate::placement::{self, InstabilityMode, PlacementError, carried_by, starting_poses};
 use crate::scene::{Placement, Scene, SupportingBody};
 use crate::simulation::{BlockBody, BuildError, Pairs, detector};
 use nalgebra::{Vector2, Vector3};
-use teeter_beam::SpanLoad;
-use teeter_detect::{BodyId, PointPair, ShapePair, SurfacePair};
+use std::collections::BTreeSet;
+use teeter_beam::{SpanLoad, StaticError};
+use teeter_detect::{BodyId, PointPair, ShapePair, SidePair, SurfacePair};
 use teeter_integrator::{
     BeamFace, BeamForces, BlockCoordinate, Blocks, Equilibrium, EquilibriumError, Mismatch, Model, ModelBuilder,
-    Motion, PairLaw, SettlingLimits, SolverSettings, Workspace, settle,
+    Motion, PairLaw, PartPlace, SettlingLimits, SolverSettings, Workspace, settle,
 };
 use teeter_rigid::Pose;
 use teeter_solvers::Auto;
@@ -101,12 +102,17 @@ impl<'a> InitialConfiguration<'a> {
             // It is still straight, so an error here concerns its supports.
             let beam = &self.beams[k].beam;
             let refused = |source| PlacementError::Static { beam: scene.beams[k].name.clone(), source };
-            beam.solve_static(&mut vec![0.0; beam.dofs()]).map_err(refused)?;
+            match beam.solve_static(&mut vec![0.0; beam.dofs()]) {
+                // Blocks under it may hold what its supports don't.
+                Err(StaticError::RigidMotion { .. }) if !props(scene, &[k]).is_empty() => {}
+                found => found.map_err(refused)?,
+            }
         }
         let placement = |block: usize| Some(&scene.blocks[block].placement);
         let carried =
             |block: &usize| carried_by(scene.blocks.len(), *block, placement).is_some_and(|beam| beams.contains(&beam));
-        let blocks = (0..scene.blocks.len()).filter(carried);
+        let props = props(scene, &beams);
+        let blocks = (0..scene.blocks.len()).filter(|block| carried(block) || props.contains(block));
         let bodies = StaticModel { blocks: blocks.collect(), beams };
         let (model, pairs) = bodies.model(scene, self)?;
         let reach: Vec<f64> = pairs
@@ -188,6 +194,21 @@ fn foot_of(scene: &Scene, block: usize) -> Option<usize> {
     }
 }
 
+/// The blocks that prop these beams from below, and those that carry them.
+fn props(scene: &Scene, beams: &[usize]) -> BTreeSet<usize> {
+    let below = scene.contacts.iter().filter(|contact| {
+        contact.face == BeamFace::Lower && matches!(contact.surface, SupportingBody::Beam(k) if beams.contains(&k))
+    });
+    let mut props = BTreeSet::new();
+    for contact in below {
+        let mut block = Some(contact.block);
+        while let Some(number) = block.filter(|block| props.insert(*block)) {
+            block = placement::below(scene, number);
+        }
+    }
+    props
+}
+
 /// A pair of the equilibrium's model.
 struct EquilibriumPair {
     /// The contact of the scene.
@@ -266,12 +287,12 @@ impl StaticModel {
             }
         }
         let first = parts.add(blocks).body();
-        let mut surfaces: Vec<(SupportingBody, BodyId)> = Vec::new();
+        let mut surfaces: Vec<(SupportingBody, PartPlace)> = Vec::new();
         for &k in &self.beams {
-            surfaces.push((SupportingBody::Beam(k), parts.add_boxed(start.beams[k].loaded(scene, k)?.boxed()).body()));
+            surfaces.push((SupportingBody::Beam(k), parts.add_boxed(start.beams[k].loaded(scene, k)?.boxed())));
         }
         if let Some(ground) = &scene.ground {
-            surfaces.push((SupportingBody::Ground, parts.add(driven::ground(ground)).body()));
+            surfaces.push((SupportingBody::Ground, parts.add(driven::ground(ground))));
         }
         let (mut pairs, mut contacts) = (Pairs::default(), Vec::new());
         let part = |block: usize| self.blocks.iter().position(|&k| k == block);
@@ -288,8 +309,15 @@ impl StaticModel {
                 continue;
             }
             let surface = surfaces.iter().find(|(support, _)| *support == contact.surface);
-            let (Some(block), Some(&(_, surface))) = (block, surface) else { continue };
-            let kinematics = contact.kinematics;
+            let (Some(block), Some((_, place))) = (block, surface) else { continue };
+            let (kinematics, surface) = (contact.kinematics, place.nth_body(contact.face.body()));
+            if contact.sides {
+                let held = foot_of(scene, contact.block).is_some();
+                let law = parts.law(PairLaw::new(if held { 0.0 } else { contact.law.friction }, 0.0));
+                let (pair, surface) = (contacts.len() as u32, place.nth_body(contact.face.fibre()));
+                pairs.sides.push(SidePair { pair, law, body: body(block), surface, kinematics });
+                contacts.push(EquilibriumPair { contact: number, corners: Vec::new() });
+            }
             let (corners, is_round) = (&start.blocks[contact.block].corners, start.blocks[contact.block].is_round);
             if is_round {
                 let held = foot_of(scene, contact.block).is_some();

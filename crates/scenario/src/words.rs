@@ -46,6 +46,10 @@ words! {
     ContactFrames { Deformed = "deformed", Linear = "linear" }
     /// Where contacts of a beam are.
     ContactSurface { Axis = "axis", Top = "top" }
+    /// From which side a block touches a beam.
+    Face { Upper = "upper", Lower = "lower" }
+    /// What of a block can touch a beam.
+    TouchingPoints { All = "all", Corners = "corners" }
     /// Axial model of a beam.
     AxialModel { Free = "free", Held = "held", Elastic = "elastic" }
     /// How W of a beam is applied.
@@ -144,6 +148,8 @@ mod tests {
         each_means_something_of_its_own::<Law>();
         each_means_something_of_its_own::<ContactFrames>();
         each_means_something_of_its_own::<ContactSurface>();
+        each_means_something_of_its_own::<Face>();
+        each_means_something_of_its_own::<TouchingPoints>();
         each_means_something_of_its_own::<AxialModel>();
         each_means_something_of_its_own::<Backend>();
         each_means_something_of_its_own::<Theory>();

@@ -4,6 +4,8 @@ use crate::probe::Probe;
 use serde::Serialize;
 use std::sync::Arc;
 use teeter_beam::Axial;
+use teeter_detect::OnSide;
+use teeter_integrator::BeamFace;
 use teeter_scenario::scene::{self, RecordScene, Scene};
 use teeter_scenario::simulation::Layout;
 use teeter_scenario::wording;
@@ -58,6 +60,8 @@ pub(crate) struct ContactDrawn {
     pub(crate) other: Option<usize>,
     /// Whether the normal stays upright.
     pub(crate) linear: bool,
+    /// Whether it is with the lower face of a beam.
+    pub(crate) lower: bool,
     /// Where it can touch.
     pub(crate) points: Vec<PointDrawn>,
     /// The number of its first point among those of all contacts.
@@ -79,6 +83,18 @@ pub(crate) struct PointDrawn {
     /// The point of the ground's profile that touches, in the ground's coordinates, m; none for a
     /// corner.
     pub(crate) crest: Option<[f64; 2]>,
+    /// What of a beam touches a side of the block; none for a corner.
+    pub(crate) on_side: Option<OnSideDrawn>,
+}
+
+/// What of a beam touches a side of a block.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum OnSideDrawn {
+    /// Its left end (0), or its right one (1).
+    End(usize),
+    /// Where it comes up furthest.
+    Hump,
 }
 
 /// All of it.
@@ -165,11 +181,17 @@ impl Scenery {
                 label: point.name.replace(['-', '.'], " "),
                 block: point.block,
                 corner: point.corner,
-                short: match point.crest {
-                    Some(crest) => format!("crest {}", crest + 1),
-                    None => short(&scene.blocks[point.block].corner_name(point.corner)),
+                short: match (point.crest, point.on_side) {
+                    (Some(crest), _) => format!("crest {}", crest + 1),
+                    (None, Some(_)) => point.name.replace('-', " "),
+                    (None, None) => short(&scene.blocks[point.block].corner_name(point.corner)),
                 },
                 crest: point.crest.and_then(|crest| profile.get(crest).copied()),
+                on_side: match point.on_side {
+                    Some(OnSide::End(which) | OnSide::EndAtRounding(which)) => Some(OnSideDrawn::End(which)),
+                    Some(OnSide::Summit(_)) => Some(OnSideDrawn::Hump),
+                    None => None,
+                },
             });
             let first = points;
             points += pair.points.len();
@@ -183,6 +205,7 @@ impl Scenery {
                 },
                 other: contact.other_block(),
                 linear: contact.kinematics == teeter_detect::Kinematics::Linear,
+                lower: contact.face == BeamFace::Lower,
                 points: drawn.collect(),
                 first,
             }

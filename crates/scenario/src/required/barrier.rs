@@ -10,7 +10,7 @@ use super::reach::{ROUNDING, Reach, ReachReason};
 use super::{InactivePairs, InitialMotion, Limits, Removed};
 use crate::scene::{ContactScene, SupportingBody};
 use teeter_beam::{Axial, Beam, MatrixWeights};
-use teeter_integrator::ImpactLaw;
+use teeter_integrator::{BeamFace, ImpactLaw};
 
 /// The proof that no block tips over, with its numbers (`docs/required.md` §3).
 #[derive(Debug, Clone, PartialEq)]
@@ -99,7 +99,10 @@ impl<'a> Assemblage<'a> {
     fn of(start: &'a InitialMotion<'a>, pairs: &InactivePairs) -> Option<Self> {
         let scene = start.scene;
         let support = |live: &Vec<usize>| match live[..] {
-            [contact] => Some(&scene.contacts[contact]).filter(|contact| loses(contact)).map(|contact| contact.surface),
+            [contact] => Some(&scene.contacts[contact])
+                // What is under a beam may be pressed down by it.
+                .filter(|contact| loses(contact) && contact.face == BeamFace::Upper)
+                .map(|contact| contact.surface),
             _ => None,
         };
         let supports: Vec<SupportingBody> = pairs.live.iter().map(support).collect::<Option<_>>()?;

@@ -6,6 +6,7 @@ use super::{InactivePairs, InitialMotion};
 use crate::ground_profile;
 use crate::scene::{ContactScene, SupportingBody};
 use teeter_beam::Axial;
+use teeter_integrator::BeamFace;
 
 /// A region that the corners of a block don't leave: an interval of x, and a lower bound on y.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -76,11 +77,11 @@ impl Reach {
         Self { x: bounds(0), y: bounds(1)[0], by: ReachReason::Flight }
     }
 
-    /// Whether no corner gets near a surface.
+    /// Whether no corner gets near a surface, and with that no side of the block.
     pub(super) fn misses(
         &self,
         start: &InitialMotion<'_>,
-        surface: SupportingBody,
+        (surface, face): (SupportingBody, BeamFace),
         rests: &[Option<BeamAtRest>],
         pairs: &InactivePairs,
         barrier: Option<&Barrier>,
@@ -111,7 +112,7 @@ impl Reach {
                     _ => UNBOUNDED,
                 };
                 // The gap is the height above the surface times the cosine of its slope.
-                let above = self.y - y - w - beam.thickness > gap * slope.hypot(1.0);
+                let above = face == BeamFace::Upper && self.y - y - w - beam.thickness > gap * slope.hypot(1.0);
                 // With an elastic axis the surface also moves along x.
                 let stays = !matches!(beam.spec.axial, Axial::Elastic { .. });
                 above || (stays && (self.x[1] < x || self.x[0] > x + beam.spec.span))

@@ -6,8 +6,8 @@ use teeter_beam::{
 };
 use teeter_integrator::WBackend;
 
-use super::Resolver;
 use super::sections::SectionProfile;
+use super::{Resolver, Unheld};
 use crate::build_diagnostics;
 use crate::scene::{BeamScene, Reduction, SignalScene};
 use crate::words::{AxialModel, Backend, ContactSurface};
@@ -199,7 +199,11 @@ impl Resolver<'_, '_> {
         if let (true, Some(motion)) = (beam.static_start, model.rigid_motion()) {
             let (motion, remedy) = (motion.description(), motion.remedy());
             let rule = format!("the beam can move as a rigid body, so it has no static equilibrium: {motion}");
-            self.error(&start, rule, format!("{remedy} (supports), or start undeformed"));
+            self.unheld.push(Unheld {
+                beam: beam.name.clone(),
+                rule,
+                remedy: format!("{remedy} (supports), or start undeformed"),
+            });
         }
         // For any initial shape. Its modes would only repeat the error at the wrong keys.
         if !self.check_axial_force(&path, &model) {

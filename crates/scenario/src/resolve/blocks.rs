@@ -70,7 +70,7 @@ impl Resolver<'_, '_> {
             spin: spin?,
             motion: motion?,
         };
-        self.stands(&block.table, &of, beams);
+        self.stands(&block.table, &of, beams, contacts);
         Some(of)
     }
 
@@ -408,8 +408,16 @@ impl Resolver<'_, '_> {
     }
 
     /// Reports a block that doesn't fit on the beam it stands on.
-    fn stands(&mut self, name: &str, block: &BlockScene, beams: &[Option<BeamScene>]) {
-        let Placement::On { support: SupportingBody::Beam(number), at, tilt, .. } = block.placement else { return };
+    fn stands(
+        &mut self,
+        name: &str,
+        block: &BlockScene,
+        beams: &[Option<BeamScene>],
+        contacts: &[Option<ContactScene>],
+    ) {
+        let Placement::On { support: SupportingBody::Beam(number), at, tilt, contact, .. } = block.placement else {
+            return;
+        };
         let path = |key: &str| format!("block.{name}.{key}");
         let Some(Some(beam)) = beams.get(number) else { return };
         let (left, span, width) = (beam.position[0], beam.spec.span, block.base());
@@ -423,10 +431,16 @@ impl Resolver<'_, '_> {
         let feet = [(&first, at - 0.5 * width), (&second, at + 0.5 * width)];
         // The ends belong to the beam, and decimal positions reach them only up to rounding.
         let rounding = 4.0 * f64::EPSILON * (left.abs() + span + at.abs());
+        // Its base may overhang an end, if that can touch it.
+        let over = |x: f64| (left - rounding..=left + span + rounding).contains(&x);
+        let on_sides = contacts.get(contact).and_then(Option::as_ref).is_some_and(|contact| contact.sides);
+        if on_sides && tilt == 0.0 && feet.iter().any(|(_, x)| over(*x)) {
+            return;
+        }
         for (number, (corner, x)) in feet.into_iter().enumerate() {
             // The corner lifted by a tilt may be beyond the end.
             let lifted = usize::from(tilt > 0.0);
-            if (tilt == 0.0 || number != lifted) && !(left - rounding..=left + span + rounding).contains(&x) {
+            if (tilt == 0.0 || number != lifted) && !over(x) {
                 let rule = format!(
                     "the corner {corner} at x = {x} m is outside `{}`, which extends from {left} m to {} m",
                     beam.name,

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use teeter_detect::Kinematics;
-use teeter_integrator::{ImpactLaw, PairLaw};
+use teeter_integrator::{BeamFace, ImpactLaw, PairLaw};
 
 use super::{Resolver, names};
 use crate::dimension::Dimension;
@@ -270,7 +270,10 @@ impl Resolver<'_, '_> {
         let between = between?;
         let (block, surface) = self.sides(&at("between"), &between)?;
         self.no_frames_of_blocks(&path, surface, kinematics);
-        Some(ContactScene { name: name.to_owned(), between, block, surface, law: law?, kinematics: kinematics? })
+        self.only_at_beams(&path, [surface]);
+        let kinematics = kinematics?;
+        let (face, sides) = (BeamFace::Upper, self.has_sides(&path, surface, kinematics));
+        Some(ContactScene { name: name.to_owned(), between, block, surface, law: law?, kinematics, face, sides })
     }
 
     fn kinematics(&mut self, path: &str) -> Option<Kinematics> {
@@ -310,8 +313,10 @@ impl Resolver<'_, '_> {
                 }
                 _ => (block, surface, [a.0.clone(), b.0.clone()]),
             };
-            found.push(ContactScene { name: of.name.clone(), between, block, surface, law, kinematics });
+            let (face, sides) = (BeamFace::Upper, self.has_sides(&path, surface, kinematics));
+            found.push(ContactScene { name: of.name.clone(), between, block, surface, law, kinematics, face, sides });
         }
+        self.only_at_beams(&path, found.iter().map(|contact| contact.surface));
         let between_blocks = found.iter().all(|contact| contact.other_block().is_some());
         if let Some(contact) = found.first().filter(|_| between_blocks) {
             self.no_frames_of_blocks(&path, contact.surface, Some(kinematics));

@@ -23,6 +23,7 @@ mod resting;
 mod running;
 mod settings;
 mod shapes;
+mod sides;
 mod stacks;
 mod together;
 mod too_fast;
