@@ -161,7 +161,7 @@ fn placement(error: &PlacementError, document: &Document) -> Diagnostic {
             format!(
                 "no static equilibrium found in {rounds} iterations (relative change in the last one: {change:.1e})"
             ),
-            "use a stiffer beam or lighter blocks, or start undeformed",
+            "use a stiffer beam or lighter blocks, or start undeformed; where a base would lie flush on a part of the beam, try points = \"corners\"",
         ),
         PlacementError::Search { beam, source: EquilibriumError::Factor(_) } => start(
             beam,

@@ -93,9 +93,43 @@ impl<'a> InitialConfiguration<'a> {
     /// Moves beams with a static start, and the blocks on them, to their equilibrium; `None` if
     /// there are no such beams.
     ///
+    /// It is sought on corners alone first: most blocks rest on these, and humps that come and go
+    /// under a base would keep the search from settling. Where a side is inside a beam then, or
+    /// there is no such equilibrium, it is sought with sides.
+    ///
     /// # Errors
     /// If there is no equilibrium, or it is not found.
     pub(crate) fn settle(&mut self, scene: &Scene) -> Result<Option<StaticStart>, BuildError> {
+        let placed = (self.poses.clone(), self.deflections.clone());
+        let on_corners = self.settle_on(scene, Points::Corners);
+        let on_beams = scene.contacts.iter().any(|contact| {
+            contact.sides && matches!(contact.surface, SupportingBody::Beam(k) if scene.beams[k].static_start)
+        });
+        match on_corners {
+            Ok(found) if !on_beams || self.clears_sides(scene)? => Ok(found),
+            Err(error) if !on_beams => Err(error),
+            found => {
+                (self.poses, self.deflections) = placed;
+                self.pressed.clear();
+                self.settle_on(scene, Points::All).map_err(|error| found.err().unwrap_or(error))
+            }
+        }
+    }
+
+    /// Whether no side of a block is inside a beam.
+    fn clears_sides(&self, scene: &Scene) -> Result<bool, BuildError> {
+        let bodies = StaticModel::of(scene);
+        let (model, pairs) = bodies.model(scene, self, Points::All)?;
+        let mut candidates = Vec::new();
+        model.candidates(&bodies.coordinates(self), 0.0, &mut candidates)?;
+        Ok(candidates.iter().all(|candidate| {
+            let pair = &pairs[candidate.id.pair() as usize];
+            !pair.is_of_sides || -candidate.gap <= INSIDE * scene.blocks[scene.contacts[pair.contact].block].radius()
+        }))
+    }
+
+    /// As [`settle`](Self::settle), with these points of blocks on beams.
+    fn settle_on(&mut self, scene: &Scene, points: Points) -> Result<Option<StaticStart>, BuildError> {
         let beams: Vec<usize> = (0..scene.beams.len()).filter(|&k| scene.beams[k].static_start).collect();
         let Some(&first) = beams.first() else { return Ok(None) };
         for &k in &beams {
@@ -108,13 +142,8 @@ impl<'a> InitialConfiguration<'a> {
                 found => found.map_err(refused)?,
             }
         }
-        let placement = |block: usize| Some(&scene.blocks[block].placement);
-        let carried =
-            |block: &usize| carried_by(scene.blocks.len(), *block, placement).is_some_and(|beam| beams.contains(&beam));
-        let props = props(scene, &beams);
-        let blocks = (0..scene.blocks.len()).filter(|block| carried(block) || props.contains(block));
-        let bodies = StaticModel { blocks: blocks.collect(), beams };
-        let (model, pairs) = bodies.model(scene, self)?;
+        let bodies = StaticModel::of(scene);
+        let (model, pairs) = bodies.model(scene, self, points)?;
         let reach: Vec<f64> = pairs
             .iter()
             .map(|pair| MOST_DISPLACEMENT * scene.blocks[scene.contacts[pair.contact].block].width)
@@ -215,7 +244,19 @@ struct EquilibriumPair {
     contact: usize,
     /// Its points: corners of the block; empty for a pair of two blocks.
     corners: Vec<usize>,
+    /// Whether it is of the sides of a block with a beam.
+    is_of_sides: bool,
 }
+
+/// What of blocks touches beams in an equilibrium.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Points {
+    Corners,
+    All,
+}
+
+/// A side of a block is inside a beam if it is so by more than this part of the block's radius.
+const INSIDE: f64 = 1e-12;
 
 /// The foot of a held block, and its position.
 struct HeldFoot {
@@ -262,11 +303,23 @@ struct StaticModel {
 }
 
 impl StaticModel {
+    /// The beams with a static start, what stands on them, and what props them.
+    fn of(scene: &Scene) -> Self {
+        let beams: Vec<usize> = (0..scene.beams.len()).filter(|&k| scene.beams[k].static_start).collect();
+        let placement = |block: usize| Some(&scene.blocks[block].placement);
+        let carried =
+            |block: &usize| carried_by(scene.blocks.len(), *block, placement).is_some_and(|beam| beams.contains(&beam));
+        let props = props(scene, &beams);
+        let blocks = (0..scene.blocks.len()).filter(|block| carried(block) || props.contains(block));
+        Self { blocks: blocks.collect(), beams }
+    }
+
     /// The model, with its pairs.
     fn model(
         &self,
         scene: &Scene,
         start: &InitialConfiguration<'_>,
+        on_beams: Points,
     ) -> Result<(Model<2>, Vec<EquilibriumPair>), BuildError> {
         let mut parts = ModelBuilder::new();
         let bodies = self.blocks.iter().map(|&k| start.blocks[k].body).collect();
@@ -305,18 +358,18 @@ impl StaticModel {
                 let law = parts.law(PairLaw::new(if held { HELD_FRICTION } else { contact.law.friction }, 0.0));
                 let (pair, bodies) = (contacts.len() as u32, [block, other_part].map(body));
                 pairs.shapes.push(ShapePair { pair, law, bodies });
-                contacts.push(EquilibriumPair { contact: number, corners: Vec::new() });
+                contacts.push(EquilibriumPair { contact: number, corners: Vec::new(), is_of_sides: false });
                 continue;
             }
             let surface = surfaces.iter().find(|(support, _)| *support == contact.surface);
             let (Some(block), Some((_, place))) = (block, surface) else { continue };
             let (kinematics, surface) = (contact.kinematics, place.nth_body(contact.face.body()));
-            if contact.sides {
+            if contact.sides && on_beams == Points::All {
                 let held = foot_of(scene, contact.block).is_some();
                 let law = parts.law(PairLaw::new(if held { 0.0 } else { contact.law.friction }, 0.0));
                 let (pair, surface) = (contacts.len() as u32, place.nth_body(contact.face.fibre()));
                 pairs.sides.push(SidePair { pair, law, body: body(block), surface, kinematics });
-                contacts.push(EquilibriumPair { contact: number, corners: Vec::new() });
+                contacts.push(EquilibriumPair { contact: number, corners: Vec::new(), is_of_sides: true });
             }
             let (corners, is_round) = (&start.blocks[contact.block].corners, start.blocks[contact.block].is_round);
             if is_round {
@@ -324,7 +377,8 @@ impl StaticModel {
                 let law = parts.law(PairLaw::new(if held { HELD_FRICTION } else { contact.law.friction }, 0.0));
                 let pair = contacts.len() as u32;
                 pairs.surfaces.push(SurfacePair { pair, law, body: body(block), surface, kinematics });
-                contacts.push(EquilibriumPair { contact: number, corners: (0..corners.len()).collect() });
+                let corners = (0..corners.len()).collect();
+                contacts.push(EquilibriumPair { contact: number, corners, is_of_sides: false });
                 continue;
             }
             let groups = match foot_of(scene, contact.block) {
@@ -342,7 +396,7 @@ impl StaticModel {
                     surface,
                     kinematics,
                 });
-                contacts.push(EquilibriumPair { contact: number, corners: numbers });
+                contacts.push(EquilibriumPair { contact: number, corners: numbers, is_of_sides: false });
             }
         }
         let shapes =

@@ -136,9 +136,13 @@ fn what_stands_on_a_beam_does_not_sink_into_it() {
     let light_beam = [("beam.table.material", "light"), ("time.end", "0.1 s"), ("time.step", "100 us")];
     let lying = [("block.rocker.tilt", "1.5707963267948966 rad"), ("time.end", "0.4 s"), ("time.step", "100 us")];
     for (text, sets) in [(&light, light_beam), (&text, lying)] {
-        let mut simulation = simulation(text, &sets);
-        assert_eq!(simulation.run(&mut []).unwrap(), Ended::Complete);
-        let depth = simulation.state.tally.max_penetration;
-        assert!(depth < 2e-9, "{depth} m");
+        // A hump of a shaking beam comes out under the base between two looks.
+        for (points, most) in [("corners", 2e-9), ("all", 2e-6)] {
+            let sets: Vec<_> = sets.into_iter().chain([("contact.feet.points", points)]).collect();
+            let mut simulation = simulation(text, &sets);
+            assert_eq!(simulation.run(&mut []).unwrap(), Ended::Complete);
+            let depth = simulation.state.tally.max_penetration;
+            assert!(depth < most, "{points}: {depth} m");
+        }
     }
 }

@@ -96,8 +96,12 @@ fn a_static_start_is_in_balance_under_any_placement() {
         for surface in ["axis", "top"] {
             for kinematics in ["deformed", "linear"] {
                 let beam = format!("{supports}\nsurface = '{surface}'");
-                let simulation =
-                    build(&scene(&beam, blocks, &format!("friction = 0.5\nkinematics = '{kinematics}'"))).unwrap();
+                let simulation = build(&scene(
+                    &beam,
+                    blocks,
+                    &format!("friction = 0.5\npoints = 'corners'\nkinematics = '{kinematics}'"),
+                ))
+                .unwrap();
                 let what = format!("{blocks:?} on {surface}, {kinematics}");
                 let found = simulation.static_start.as_ref().unwrap();
                 assert!(found.change < 1e-12, "{what}: {found:?}");
@@ -145,8 +149,9 @@ fn flat_blocks_that_start_static_stay_at_rest() {
         {
             for scheme in ["moreau-jean", "moreau-jean-closed"] {
                 let beam = format!("{supports}\nsurface = '{surface}'");
-                let text = scene(&beam, blocks, &format!("friction = 0.5\nkinematics = '{kinematics}'"))
-                    .replace("step = '100 us'", &format!("step = '100 us'\nscheme = '{scheme}'"));
+                let text =
+                    scene(&beam, blocks, &format!("friction = 0.5\npoints = 'corners'\nkinematics = '{kinematics}'"))
+                        .replace("step = '100 us'", &format!("step = '100 us'\nscheme = '{scheme}'"));
                 let mut simulation = build(&text).unwrap();
                 let mut seen = Fastest { first: 0.0, ever: 0.0 };
                 assert_eq!(simulation.run(&mut [&mut seen]).unwrap(), teeter_integrator::Ended::Complete);
