@@ -242,6 +242,8 @@ const BEYOND: &[&str] = &[
     "tilt over a quarter turn",
     "block wider than the beam",
     "corner off the beam",
+    "lower face of a block above",
+    "face of the ground",
     "corner below the surface",
     "two blocks in one place",
     "block on a block without a contact",

@@ -75,7 +75,7 @@ fn text(meeting: Meeting, layout: &Layout, t: f64, depth: f64) -> String {
             block(k)
         ),
         Meeting::BetweenCorners(k, of) => format!(
-            "`{}` is {depth:.1e} m inside `{}` between its corners at t = {t} s: only the corners of a block touch a beam, so nothing \
+            "`{}` is {depth:.1e} m inside `{}` between its corners at t = {t} s: by their contact only corners of the block touch the beam, so nothing \
              holds it there, and max_penetration doesn't count it",
             beam(of),
             block(k)

@@ -176,7 +176,7 @@ fn values() -> Vec<Row> {
 fn geometry() -> Vec<Row> {
     vec![
         refused(21, "block wider than the beam", Set(&["block.rocker.width=50 cm"]), &["block.rocker.width", "0.5 m wide", "0.36 m"]),
-        refused(22, "corner off the beam", Edit(&[("at       = \"18 cm\"", "at = \"35 cm\""), (TILT, "")]), &["block.rocker.at = \"35 cm\"", "bottom-right", "x = 0.365 m", "0.36 m"]),
+        refused(22, "corner off the beam", Edit(&[("at       = \"18 cm\"", "at = \"38 cm\""), (TILT, "")]), &["block.rocker.at = \"38 cm\"", "bottom-left", "x = 0.365 m", "0.36 m"]),
         refused(23, "corner below the surface", Edit(&[(PLACE, "position = [\"18 cm\", \"6.65 cm\"]"), ("start         = \"static\"", "")]), &["block.rocker.position", "[\"18 cm\", \"6.65 cm\"]", "1.0e-3 m below", "bottom-left", "`table`", "1.4e-10 m"]),
         refused(24, "two blocks in one place", Text(OVERLAPPING), &["block.right.at = \"19 cm\"", "`left`", "`right`", "1.0e-2 m"]),
         refused(24, "block on a block without a contact", Stack(&[("\"upper\", \"lower\"", "\"upper\", \"ground\"")]), &["block.upper.on = \"lower\"", "there is no contact between the two", "[contact.NAME]"]),
@@ -314,6 +314,10 @@ fn beams() -> Vec<Row> {
         refused(21, "points on one line", Edit(&[("width    = \"3 cm\"", "points = [[\"0 cm\", \"0 cm\"], [\"3 cm\", \"0 cm\"], [\"9 cm\", \"0 cm\"]]"), ("height   = \"13.5 cm\"", "")]), &["block.rocker.points", "all points are on one line"]),
         refused(21, "block by its radius and by its sides", Set(&["block.rocker.radius=2 cm"]), &["block.rocker.width", "radius already gives the shape"]),
         refused(21, "point without y", Set(&["block.rocker.points=[['0 m'], ['1 cm', '0 m'], ['0 m', '1 cm']]"]), &["block.rocker.points", "an array of two is expected, got 1"]),
+        refused(8, "lower face of a block above", Set(&["contact.feet.face=lower"]), &["contact.feet.face", "`rocker` starts above `table`", "leave it out"]),
+        refused(8, "face misspelt", Set(&["contact.feet.face=below"]), &["contact.feet.face", "upper", "lower"]),
+        refused(8, "unknown points", Set(&["contact.feet.points=sides"]), &["contact.feet.points", "all", "corners"]),
+        refused(8, "face of the ground", Edit(&[("[contact.feet]", "[ground]\n[contact.floor]\nbetween = [\"rocker\", \"ground\"]\nfriction = 0.5\nface = \"upper\"\n[contact.feet]")]), &["contact.floor.face", "for contacts with beams"]),
         warned(38, "thick beam without shear", Set(&["beam.table.thickness=4 cm"]), &["warning: beam.table.theory", "0.11 of the span", "timoshenko"]),
     ]
 }
