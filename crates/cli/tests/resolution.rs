@@ -71,7 +71,8 @@ fn runs_that_are_right_keep_quiet() {
             continue;
         }
         let stem = path.file_stem().unwrap().to_str().unwrap().to_owned();
-        assert!(!warned(&stem, 20, &[]), "{stem} as it is");
+        // Its columns chatter under the lintel; how they do isn't resolved, and the run says so.
+        assert_eq!(warned(&stem, 20, &[]), stem == "lintel", "{stem} as it is");
     }
     // Within 1 %.
     for (number, (stem, sets)) in [
