@@ -244,6 +244,8 @@ const BEYOND: &[&str] = &[
     "corner off the beam",
     "lower face of a block above",
     "face of the ground",
+    "lower face of a block above",
+    "face of the ground",
     "corner below the surface",
     "two blocks in one place",
     "block on a block without a contact",
