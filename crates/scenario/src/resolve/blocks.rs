@@ -431,10 +431,13 @@ impl Resolver<'_, '_> {
         let feet = [(&first, at - 0.5 * width), (&second, at + 0.5 * width)];
         // The ends belong to the beam, and decimal positions reach them only up to rounding.
         let rounding = 4.0 * f64::EPSILON * (left.abs() + span + at.abs());
-        // Its base may overhang an end, if that can touch it.
+        // Its base may overhang an end where that can touch it; as it is more often a slip, this must be
+        // asked for.
         let over = |x: f64| (left - rounding..=left + span + rounding).contains(&x);
-        let on_sides = contacts.get(contact).and_then(Option::as_ref).is_some_and(|contact| contact.sides);
-        if on_sides && tilt == 0.0 && feet.iter().any(|(_, x)| over(*x)) {
+        let contact = contacts.get(contact).and_then(Option::as_ref);
+        let ask = contact.filter(|contact| contact.sides && tilt == 0.0 && feet.iter().any(|(_, x)| over(*x)));
+        let asking = ask.map(|contact| format!("contact.{}.points", contact.name));
+        if asking.as_ref().is_some_and(|key| self.doc.is_given(key)) {
             return;
         }
         for (number, (corner, x)) in feet.into_iter().enumerate() {
@@ -447,7 +450,11 @@ impl Resolver<'_, '_> {
                     left + span
                 );
                 let (low, high) = (left + 0.5 * width, left + span - 0.5 * width);
-                self.error(&path("at"), rule, format!("place the midpoint of its base between {low} m and {high} m"));
+                let mut remedy = format!("place the midpoint of its base between {low} m and {high} m");
+                if let Some(key) = &asking {
+                    remedy += &format!("; if it is to overhang the end, write {key} = \"all\"");
+                }
+                self.error(&path("at"), rule, remedy);
             }
         }
     }

@@ -155,7 +155,7 @@ fn overhanging(by: &str, more: &str) -> String {
         &format!(
             "span = '1 m'\nwidth = '50 cm'\nthickness = '20 cm'\nelements = 10\nsupports = ['clamped', 'clamped']\n\
              [block.base]\nmaterial = 'stone'\nwidth = '20 cm'\nheight = '6 cm'\ndepth = '3 cm'\non = 'plank'\nat = '{by}'\n{more}\n\
-             [contact.c]\nbetween = ['base', 'plank']\nfriction = 0.6\n"
+             [contact.c]\nbetween = ['base', 'plank']\nfriction = 0.6\npoints = 'all'\n"
         ),
     )
     .replace("self_weight = true\n", "")
