@@ -373,8 +373,11 @@ impl EventDriven {
         work.locate(model, &from.q, active, &mut self.found)?;
         let (h, contacts) = numbers.split_first().map_or((0.0, numbers), |(h, contacts)| (*h, contacts));
         if contacts.len() != REMEMBERED * active.len() || !(h > 0.0 && h.is_finite()) {
-            // They are closed, whatever else they do.
-            let closed = self.found.iter().map(|candidate| Pressing::new(candidate.id, Mode::Stick, 0.0, 0.0));
+            // Those that touch are closed, whatever else they do. The located scheme may have left others
+            // pressing above their surface: they fall, and are not pulled down to it.
+            let near = decide::TOUCHING * self.located.tolerance(&from.q);
+            let touching = self.found.iter().filter(|candidate| candidate.gap <= near);
+            let closed = touching.map(|candidate| Pressing::new(candidate.id, Mode::Stick, 0.0, 0.0));
             self.smooth.contacts.extend(closed);
             return Ok(false);
         }

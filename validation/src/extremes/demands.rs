@@ -88,6 +88,7 @@ pub(crate) const KNOWN: &[(&str, Demand, &str)] = &[
     ("elements/200/beam/generalized-alpha", Demand::Account, FAST_MODES),
     ("modulus/1e4/beam/generalized-alpha/e=1", Demand::Account, FAST_MODES),
     ("modulus/1e15/beam/generalized-alpha/e=1", Demand::Account, FAST_MODES),
+    ("sides/wide-dt-1e-2/beam/generalized-alpha", Demand::Account, FAST_MODES),
     ("size/1e-6/beam/generalized-alpha/e=0", Demand::Account, FAST_MODES),
     (
         "modulus/1e4/beam/resolved",

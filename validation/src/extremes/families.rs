@@ -25,7 +25,7 @@ const END: f64 = 0.4;
 
 /// Families that go to the fastest of modes, or on for long. `event-driven` takes steps as short as these turn, and follows every rattle: its
 /// rows on beams are left out there.
-const TOO_DEAR: [&str; 8] = ["beam-mass", "neighbour", "dt", "f-dt", "elements", "modulus", "size", "impacts"];
+const TOO_DEAR: [&str; 9] = ["beam-mass", "neighbour", "dt", "f-dt", "elements", "modulus", "size", "sides", "impacts"];
 
 /// How much of a row `event-driven` computes on a beam: there it follows every rattle.
 const PART: f64 = 0.1;
@@ -112,6 +112,7 @@ pub(crate) fn all() -> Vec<Family> {
         size(),
         tilt(),
         place(),
+        sides(),
         impacts(),
         tolerance(),
         restitution(),
@@ -314,6 +315,38 @@ fn place() -> Family {
     {
         family
             .add(value, &[Base::Beam], |_| vec![set("block.rocker.at", length(at)), set("block.rocker.tilt", "0 deg")]);
+    }
+    family
+}
+
+fn sides() -> Family {
+    let mut family = Family::new(
+        "sides",
+        "Whole sides of the block against the beam (`points = \"all\"`; the other families have corners only): flat, on \
+         its long side, overturned, across the middle third of the beam, past its end; soft and stiff beams, short and \
+         long steps.",
+    );
+    let wide = [("block.rocker.width", "12 cm"), ("block.rocker.height", "6 cm"), ("block.rocker.tilt", "2 deg")];
+    let flat = [("block.rocker.tilt", "0 deg")];
+    let past_end = [("block.rocker.at", "35 cm"), ("block.rocker.width", "6 cm"), ("block.rocker.tilt", "3 deg")];
+    let mut add = |value: &str, given: &[&[(&str, &str)]]| {
+        let given = given.iter().flat_map(|given| given.iter()).map(|(key, to)| set(key, *to));
+        let all: Sets = given.chain([set("contact.feet.points", "all")]).collect();
+        family.add(value, &[Base::Beam], |_| all.clone());
+    };
+    add("flat", &[&flat]);
+    add("flat-up-to-rounding", &[&[("block.rocker.tilt", "1e-12 rad")]]);
+    add("5deg", &[]);
+    add("2α", &[&[("block.rocker.tilt", "25 deg")]]);
+    add("pi/2", &[&[("block.rocker.tilt", "90 deg")]]);
+    add("wide", &[&wide]);
+    add("past-end", &[&past_end]);
+    for modulus in ["1e8", "1e9", "1e13"] {
+        let modulus_of = format!("{modulus} Pa");
+        add(&format!("wide-{modulus}"), &[&wide, &[("material.spring.youngs_modulus", &modulus_of)]]);
+    }
+    for (value, step, end) in [("1e-6", "1 us", "4 ms"), ("1e-3", "1 ms", "0.4 s"), ("1e-2", "10 ms", "0.4 s")] {
+        add(&format!("wide-dt-{value}"), &[&wide, &[("time.step", step), ("time.end", end)]]);
     }
     family
 }

@@ -165,11 +165,17 @@ struct Seen {
     radius: f64,
     dt: f64,
     tolerance: f64,
+    /// How far the surface comes in a step before its contact with a side is seen, m.
+    unseen: f64,
 }
+
+/// Accelerations of a beam between the corners of a base, m/s².
+const SUMMITS_ACCELERATE: f64 = 100.0;
 
 impl Seen {
     fn new(watch: Watch, scheme: Scheme, scene: &Scene, state: &State) -> Self {
         let blocks = scene.blocks.len();
+        let sides = scene.contacts.iter().any(|contact| contact.sides);
         let mut seen = Self {
             watch,
             finite: true,
@@ -184,10 +190,11 @@ impl Seen {
             slope: 0.0,
             spin: 0.0,
             blocks,
-            late: if scheme == Scheme::CLOSED { 0.5 } else { 1.0 },
+            late: if scheme == Scheme::CLOSED && !sides { 0.5 } else { 1.0 },
             radius: scene.blocks.iter().map(|block| 0.5 * block.width.hypot(block.height)).fold(0.0, f64::max),
             dt: scene.time.step,
             tolerance: scene.time.gap_tolerance,
+            unseen: if sides { SUMMITS_ACCELERATE * scene.time.step.powi(2) } else { 0.0 },
         };
         seen.see_spin(state);
         seen
@@ -203,7 +210,7 @@ impl Seen {
     fn bound(&self) -> f64 {
         let turn = self.dt * self.spin;
         let (approach, slide) = (self.late * self.approach, 2.0 * self.slope * (self.slide + self.approach));
-        self.dt * (approach + slide) + 2.0 * self.radius * turn * turn + 2.0 * self.tolerance
+        self.dt * (approach + slide) + 2.0 * self.radius * turn * turn + 2.0 * self.tolerance + self.unseen
     }
 }
 

@@ -155,7 +155,8 @@ all schemes. Measured over all steps:
   surface, a being the free acceleration, and is detected in the next, in which its mean normal velocity is still (1−θ)U_n; the acceleration is
   included in |U_n| as measured there, so the sum is h|U_n|. The closed scheme detects it in the step itself: ½h|U_n|. J is evaluated once per
   step, so a rotation by hω moves the corner off its straight path by at most ½R(hω)² before the position of J and R(hω)² after it, and the normal
-  of a bending surface can rotate by 2σ until the end of the step. A depth that first occurs in the last step, without an active contact, is left
+  of a bending surface can rotate by 2σ until the end of the step. Against sides of a block (family `sides`) c is 1 and 100 m/s² h² is added: a beam rises
+  between the corners by its own accelerations before its contact is seen. A depth that first occurs in the last step, without an active contact, is left
   out, as its impact is not part of the run.
 - **solver**: the largest residual of a converged solve, over the tolerance; it is recomputed by the judge in every solve, and the row fails if it
   differs from the solver's. **unconverged**: steps reported as unsolved.

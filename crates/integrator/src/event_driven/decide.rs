@@ -7,7 +7,7 @@ use crate::{Memory, Model, Over, Responses, Rule, State, StepError, Vector, Warm
 use teeter_detect::Candidate;
 
 /// Contacts with a gap of up to so many tolerances touch.
-const TOUCHING: f64 = 10.0;
+pub(super) const TOUCHING: f64 = 10.0;
 
 /// A tangential acceleration below this part of what it consists of is none.
 const NONE: f64 = 1e-8;

@@ -119,3 +119,29 @@ fn springs_are_remembered_over_an_impact_that_ends_a_step() {
     assert!(state.memory.active().iter().all(|id| state.memory.spring_gap(*id).unwrap() < 0.0));
     assert!(state.ledger.stored > 0.0);
 }
+
+/// Another scheme's contacts may press above their surface, as where the located one gives up on many bounces: event-driven lets
+/// them fall from there. It pulled them down at once, and took their energy with that.
+#[test]
+fn what_presses_above_its_surface_falls_from_there() {
+    let law = PairLaw::new(0.5, 1.0);
+    let model = model(&FLAT_BLOCK, gravity(), law, Kinematics::Deformed, Box::new(Ground::flat(0.0)));
+    let height = 2e-3;
+    let mut pressing = State::new(&model, &[0.0, 0.025, 0.0], &[0.0; 3], 1e-3).unwrap();
+    steps(&model, &schemes()[0], &mut pressing, 1);
+    assert_eq!(pressing.memory.active().len(), 2);
+    let entry = schemes().into_iter().find(|entry| entry.name == EventDriven::NAME).unwrap();
+    let mut state = State::at(&model, 0, &[0.0, 0.025 + height, 0.0], &[0.0; 3], 1e-3).unwrap();
+    state.take_contacts(&model, &pressing.memory, &pressing.warm);
+    steps(&model, entry, &mut state, 10);
+    assert!((state.q[1] - 0.025 - height + 0.5 * 9.81 * 1e-4).abs() < 1e-14, "{}", state.q[1]);
+    // Down and up again: the impacts are elastic.
+    let fall = (2.0 * height / 9.81_f64).sqrt();
+    steps(&model, entry, &mut state, 90);
+    let ball = |t: f64| {
+        let since = (t + fall).rem_euclid(2.0 * fall) - fall;
+        height - 0.5 * 9.81 * since * since
+    };
+    assert!((state.q[1] - 0.025 - ball(state.t)).abs() < 1e-10, "{} {}", state.q[1] - 0.025, ball(state.t));
+    assert!(state.ledger.sum.projection.abs() < 1e-15 && state.ledger.relative_residual() < 1e-13);
+}
