@@ -18,6 +18,7 @@ mod bouncing;
 mod compliant;
 mod convex_law;
 mod discs;
+mod dominoes;
 mod energy_identity;
 mod housner_order;
 mod impact_laws;
@@ -63,6 +64,7 @@ pub(crate) fn all() -> Vec<Box<dyn Case>> {
         Box::new(overturning::Overturning),
         Box::new(limit_analysis::LimitAnalysis),
         Box::new(discs::Discs),
+        Box::new(dominoes::Dominoes),
         Box::new(assemblages::Assemblages),
     ]
 }

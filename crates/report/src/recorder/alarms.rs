@@ -234,11 +234,12 @@ impl Recorder<'_> {
             return;
         }
         let Some(outcome) = step.outcome().filter(|outcome| !outcome.converged()) else { return };
+        let unsolved = step.phases().find(|phase| phase.outcome.is_some_and(|outcome| !outcome.converged()));
         self.warn("unconverged", Some(step.t_end), || {
             format!(
                 "the contact problem of the step to t = {} s ({} contacts) was not solved: {} after {} iterations of {}, residual {:.1e}",
                 step.t_end,
-                step.contacts().count(),
+                unsolved.map_or(0, |phase| phase.contacts.len()),
                 outcome.status,
                 outcome.iterations,
                 outcome.used,

@@ -143,7 +143,8 @@ impl Line {
         each: &mut dyn FnMut(SurfacePoint<2>),
     ) {
         let level = -direction.x / direction.y;
-        if !level.is_finite() {
+        // There the surface looks along the direction: that of an upper face never looks down.
+        if !(level.is_finite() && direction.y * self.facing > 0.0) {
             return;
         }
         let [a, b] = between.map(|place| place.x - self.position.x);
@@ -153,9 +154,12 @@ impl Line {
         let rise = |x: f64| beam.deflection_at(q, x).map_or(0.0, |d| direction.y.signum() * (d.slope - level));
         let nodes = beam.nodes();
         let first = nodes.partition_point(|node| *node <= low).max(1);
+        let mut at_node = None;
         for two in nodes[first - 1..].windows(2).take_while(|two| two[0] < high) {
             let (from, to) = (two[0].max(low), two[1].min(high));
-            if let Some(t) = falls_through_zero([rise(from), rise(0.5 * (from + to)), rise(to)])
+            let (start, end) = (at_node.unwrap_or_else(|| rise(from)), rise(to));
+            at_node = Some(end);
+            if let Some(t) = falls_through_zero([start, rise(0.5 * (from + to)), end])
                 && let Some(point) = self.at(beam, q, from + t * (to - from))
             {
                 each(point);
