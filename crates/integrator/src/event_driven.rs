@@ -94,7 +94,7 @@ pub struct EventDriven {
     located: MoreauJeanLocated<2>,
     smooth: Smooth,
     rk: RungeKutta,
-    from: Option<State>,
+    from: Option<Box<State>>,
     y: Vec<f64>,
     /// What errors are measured by.
     scale: Vec<f64>,
@@ -234,7 +234,7 @@ impl Scheme<2> for EventDriven {
         from.memory.reserve_numbers(numbers);
         from.memory.reserve(contacts);
         from.warm.reserve(contacts, 2);
-        self.from = Some(from);
+        self.from = Some(Box::new(from));
         work.reserve_directed(model);
         // Many contacts are the located scheme's.
         if model.detector().capacity() <= 4 * Self::MOST_CONTACTS {
@@ -256,7 +256,7 @@ impl Scheme<2> for EventDriven {
         self.smooth.resize(model);
         self.mean.resize(model.size().q, 0.0);
         self.v_before.resize(model.size().v, 0.0);
-        let mut from = self.from.take().unwrap_or_else(|| state.clone());
+        let mut from = self.from.take().unwrap_or_else(|| Box::new(state.clone()));
         from.copy_motion(state);
         let took = self.take_phases(model, &mut from, &span, work);
         self.from = Some(from);

@@ -72,7 +72,7 @@ pub struct MoreauJeanLocated<const D: usize> {
     settings: MoreauJeanLocatedSettings,
     step: ClosedStep<D>,
     /// The state at the start of the part of the step that is taken.
-    from: Option<State>,
+    from: Option<Box<State>>,
     /// The contacts that touch at an impact.
     impact: ContactStage<D>,
     /// Open contacts that the step would end inside of.
@@ -185,7 +185,7 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         from.memory.reserve_numbers(3 * contacts);
         from.warm.reserve(contacts, D);
         from.memory.reserve(contacts);
-        self.from = Some(from);
+        self.from = Some(Box::new(from));
         work.reserve_phases(model, 2 * Self::MOST_IMPACTS + 1);
         // A part of a step will need a factor of its own, and an impact that of the masses.
         work.factors(model, MASSES, &state.q, Keep::Pinned)?;
@@ -207,7 +207,7 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         let span = state.next_step(until);
         work.begin(model, state, span)?;
         self.check(model)?;
-        let mut from = self.from.take().unwrap_or_else(|| state.clone());
+        let mut from = self.from.take().unwrap_or_else(|| Box::new(state.clone()));
         from.copy_motion(state);
         self.lately.clear();
         self.lately.extend_from_slice(state.memory.all_numbers());

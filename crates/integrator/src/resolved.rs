@@ -72,7 +72,7 @@ pub struct Resolved<const D: usize> {
     settings: ResolvedSettings,
     step: ThetaStep,
     /// The state at the start of the part of the step that is taken.
-    from: Option<State>,
+    from: Option<Box<State>>,
     stage: ContactStage<D>,
     /// Rows of one contact.
     one: ContactStage<D>,
@@ -211,7 +211,7 @@ impl<const D: usize> Scheme<D> for Resolved<D> {
         from.memory.reserve_numbers(2);
         from.warm.reserve(contacts, D);
         from.memory.reserve(contacts);
-        self.from = Some(from);
+        self.from = Some(Box::new(from));
         work.factors.make_propagators(model);
         if contacts <= FEW_CONTACTS {
             work.reserve_phases(model, USUAL_PARTS);
@@ -236,7 +236,7 @@ impl<const D: usize> Scheme<D> for Resolved<D> {
         self.step.check(model)?;
         self.resize(model);
         work.factors.make_propagators(model);
-        let mut from = self.from.take().unwrap_or_else(|| state.clone());
+        let mut from = self.from.take().unwrap_or_else(|| Box::new(state.clone()));
         from.copy_motion(state);
         let taken = self.take_parts(model, &mut from, &span, work);
         self.from = Some(from);
