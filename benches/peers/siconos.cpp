@@ -12,6 +12,7 @@
 //   projection        1: the combined projection scheme, which takes the penetration away
 //   modes             the beam in so many of its lowest modes in place of its elements
 //   sparse            1: the beam's matrices in Siconos' sparse storage
+//   top               of a stack: how many times heavier its top box is
 //   newton            1: a search for a fixed point in place of one solve a step
 
 #include <time.h>
@@ -153,6 +154,71 @@ std::shared_ptr<LagrangianLinearTIDS> elements(const BeamMesh& mesh, Siconos::UB
   return beam;
 }
 
+/// Boxes of a stack.
+constexpr double kBox = 0.1, kBoxDensity = 700;
+
+/// A box of the stack with its centre at this height.
+std::shared_ptr<LagrangianLinearTIDS> box(double height, double heavier) {
+  const double mass = heavier * kBoxDensity * kBox * kBox * kBox;
+  const auto M = std::make_shared<SimpleMatrix>(3, 3);
+  M->zero();
+  M->setValue(0, 0, mass);
+  M->setValue(1, 1, mass);
+  M->setValue(2, 2, mass * kBox * kBox / 6);
+  const auto q = std::make_shared<SiconosVector>(3), v = std::make_shared<SiconosVector>(3);
+  q->zero();
+  v->zero();
+  q->setValue(1, height);
+  const auto body = std::make_shared<LagrangianLinearTIDS>(q, v, M);
+  const auto weight = std::make_shared<SiconosVector>(3);
+  weight->zero();
+  weight->setValue(1, -mass * kGravity);
+  body->setFExtPtr(weight);
+  return body;
+}
+
+/// A lower corner of a box over the upper side of the one below it: q = (upper, lower).
+class CornerOverBox : public LagrangianScleronomousR {
+ public:
+  explicit CornerOverBox(double x) : x_(x) {
+    _jachq = std::make_shared<SimpleMatrix>(2, 6);
+    _jachq->zero();
+  }
+
+  void computeh(const BlockVector& q, BlockVector&, SiconosVector& y) override {
+    const auto [dx, dy] = from_lower(q);
+    const double phi = (*q.vector(1))(2);
+    y.setValue(0, -std::sin(phi) * dx + std::cos(phi) * dy - 0.5 * kBox);
+    y.setValue(1, 0.0);
+  }
+
+  void computeJachq(const BlockVector& q, BlockVector&) override {
+    const auto [arm_x, arm_y] = arm(q);
+    const auto [dx, dy] = from_lower(q);
+    const double phi = (*q.vector(1))(2);
+    const double frame[2][2] = {{-std::sin(phi), std::cos(phi)}, {std::cos(phi), std::sin(phi)}};
+    for (unsigned row = 0; row < 2; ++row) {
+      const double* f = frame[row];
+      const double values[6] = {f[0], f[1], f[1] * arm_x - f[0] * arm_y, -f[0], -f[1], -(f[1] * dx - f[0] * dy)};
+      for (unsigned k = 0; k < 6; ++k) _jachq->setValue(row, k, values[k]);
+    }
+  }
+
+ private:
+  std::pair<double, double> arm(const BlockVector& q) const {
+    const double phi = (*q.vector(0))(2), c = std::cos(phi), s = std::sin(phi), y = -0.5 * kBox;
+    return {c * x_ - s * y, s * x_ + c * y};
+  }
+
+  std::pair<double, double> from_lower(const BlockVector& q) const {
+    const auto [arm_x, arm_y] = arm(q);
+    const SiconosVector &upper = *q.vector(0), &lower = *q.vector(1);
+    return {upper(0) + arm_x - lower(0), upper(1) + arm_y - lower(1)};
+  }
+
+  const double x_;
+};
+
 struct Job {
   std::string scene, file;
   int elements = 0, steps = 0;
@@ -219,8 +285,21 @@ struct Run {
           relation = std::make_shared<CornerOverBeam>(mesh, across, below);
         system->link(std::make_shared<Interaction>(law, relation), block, beam);
       }
+    } else if (job.scene == "stack") {
+      std::shared_ptr<LagrangianLinearTIDS> below_it;
+      for (int k = 0; k < job.elements; ++k) {
+        block = box((k + 0.5) * kBox, k + 1 == job.elements ? job.number("top", 1) : 1);
+        system->insertDynamicalSystem(block);
+        for (const double x : {-0.5 * kBox, 0.5 * kBox}) {
+          if (k == 0)
+            system->link(std::make_shared<Interaction>(law, std::make_shared<CornerOverGround>(x, -0.5 * kBox)), block);
+          else
+            system->link(std::make_shared<Interaction>(law, std::make_shared<CornerOverBox>(x)), block, below_it);
+        }
+        below_it = block;
+      }
     } else {
-      throw std::runtime_error("no scene " + job.scene + "; there are ground and beam");
+      throw std::runtime_error("no scene " + job.scene + "; there are ground, beam and stack");
     }
 
     const auto times = std::make_shared<TimeDiscretisation>(0.0, job.step);

@@ -33,6 +33,21 @@ impl Observer<2> for Track {
     }
 }
 
+/// A stack of boxes of 0.1 m, the top one so many times heavier; X, Y, φ are those of the top one.
+fn stack(boxes: usize, heavier: f64) -> String {
+    let size = "width = \"10 cm\"\nheight = \"10 cm\"\ndepth = \"10 cm\"\nat = \"0 cm\"";
+    let below = boxes - 1;
+    format!(
+        "version = 1\n[time]\nend = \"1 s\"\nstep = \"1 ms\"\n[ground]\n\
+         [material.wood]\ndensity = \"700 kg/m^3\"\n[material.load]\ndensity = \"{} kg/m^3\"\n\
+         [block.top]\nmaterial = \"load\"\non = \"box-{below}\"\n{size}\n\
+         [block.box]\nmaterial = \"wood\"\non = \"ground\"\nrepeat = {{ count = {below}, stacked = true }}\n{size}\n\
+         [contact.floor]\nbetween = [\"*\", \"ground\"]\nfriction = 0.5\n\
+         [contact.joints]\nbetween = [\"*\", \"*\"]\nfriction = 0.5\n",
+        700.0 * heavier
+    )
+}
+
 fn load(scene: &str, elements: &str, step: f64, steps: usize, settings: &[&str]) -> Result<Resolved> {
     let set = |key: &str, value: String| (key.to_owned(), value);
     let mut sets = vec![
@@ -40,6 +55,13 @@ fn load(scene: &str, elements: &str, step: f64, steps: usize, settings: &[&str])
         set("time.end", format!("\"{:e} s\"", step * steps as f64)),
         set("output.every", format!("\"{:e} s\"", step * steps as f64)),
     ];
+    if scene == "stack" {
+        let top = settings.iter().find_map(|setting| setting.strip_prefix("top="));
+        let text = stack(elements.parse()?, top.map_or(Ok(1.0), str::parse)?);
+        let settings = settings.iter().filter(|setting| !setting.starts_with("top="));
+        sets.extend(settings.filter_map(|setting| setting.split_once('=')).map(|(key, to)| set(key, to.to_owned())));
+        return Ok(teeter_scenario::load(text.as_bytes(), "stack", "stack", &sets)?);
+    }
     let name = match scene {
         "ground" => "free-rocking-on-ground",
         "beam" => {
@@ -47,7 +69,7 @@ fn load(scene: &str, elements: &str, step: f64, steps: usize, settings: &[&str])
             sets.push(set("beam.table.damping_ratio.ratio", "0.0".to_owned()));
             "free-rocking-on-beam-undeformed-start"
         }
-        other => return Err(format!("no scene «{other}»; there are ground and beam").into()),
+        other => return Err(format!("no scene «{other}»; there are ground, beam and stack").into()),
     };
     for setting in settings {
         let (key, value) = setting.split_once('=').ok_or_else(|| format!("«{setting}» is no KEY=VALUE"))?;

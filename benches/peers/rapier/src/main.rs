@@ -12,6 +12,7 @@
 //! | `unit` | length that counts as 1 |
 //! | `recycle` | whether contacts are kept over steps |
 //! | `bias` | whether friction acts along with the contact's spring |
+//! | `top` | of a stack: how many times heavier its top box is |
 //! | `prediction` | distance from which contacts are made, in units |
 
 use cpu_time::ProcessTime;
@@ -29,6 +30,10 @@ const HEIGHT: f64 = 0.135;
 const DEPTH: f64 = 0.03;
 const DENSITY: f64 = 2700.0;
 const FRICTION: f64 = 0.5;
+
+/// Of a stack: the side of its boxes, m, and their density, kg/m³.
+const BOX: f64 = 0.1;
+const BOX_DENSITY: f64 = 700.0;
 
 const SPAN: f64 = 0.36;
 const THICKNESS: f64 = 0.0015;
@@ -98,8 +103,23 @@ fn chain(world: &mut PhysicsWorld, links: usize) -> Result<()> {
     Ok(())
 }
 
+/// Boxes of 0.1 m on each other, the top one so many times heavier: that one.
+fn stack(world: &mut PhysicsWorld, boxes: usize, heavier: f64) -> RigidBodyHandle {
+    let shape = ColliderBuilder::halfspace(na::Unit::new_unchecked(Vector::Y)).friction(FRICTION);
+    world.insert(RigidBodyBuilder::fixed(), shape);
+    let mut top = RigidBodyHandle::invalid();
+    for k in 0..boxes {
+        let body = RigidBodyBuilder::dynamic().translation(Vector::new(0.0, (k as f64 + 0.5) * BOX)).can_sleep(false);
+        let density = BOX_DENSITY * BOX * if k + 1 == boxes { heavier } else { 1.0 };
+        let shape = ColliderBuilder::cuboid(0.5 * BOX, 0.5 * BOX).density(density).friction(FRICTION).restitution(0.0);
+        top = world.insert(body, shape).0;
+    }
+    top
+}
+
 fn build(scene: &str, elements: usize, step: f64, settings: &[&str]) -> Result<(PhysicsWorld, RigidBodyHandle)> {
     let mut world = PhysicsWorld::default();
+    let mut top = 1.0;
     let parameters = &mut world.integration_parameters;
     parameters.dt = step;
     for setting in settings {
@@ -120,6 +140,7 @@ fn build(scene: &str, elements: usize, step: f64, settings: &[&str]) -> Result<(
             "unit" => parameters.length_unit = number,
             "recycle" => parameters.contact_recycling = number != 0.0,
             "bias" => parameters.friction_in_bias_pass = number != 0.0,
+            "top" => top = number,
             "prediction" => parameters.normalized_prediction_distance = number,
             other => return Err(format!("no setting «{other}»").into()),
         }
@@ -133,7 +154,8 @@ fn build(scene: &str, elements: usize, step: f64, settings: &[&str]) -> Result<(
             chain(&mut world, elements)?;
             block(&mut world, 0.165)
         }
-        other => return Err(format!("no scene «{other}»; there are ground and beam").into()),
+        "stack" => stack(&mut world, elements, top),
+        other => return Err(format!("no scene «{other}»; there are ground, beam and stack").into()),
     };
     Ok((world, body))
 }
