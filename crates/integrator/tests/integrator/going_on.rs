@@ -130,7 +130,7 @@ fn what_presses_above_its_surface_falls_from_there() {
     let mut pressing = State::new(&model, &[0.0, 0.025, 0.0], &[0.0; 3], 1e-3).unwrap();
     steps(&model, &schemes()[0], &mut pressing, 1);
     assert_eq!(pressing.memory.active().len(), 2);
-    let entry = schemes().into_iter().find(|entry| entry.name == EventDriven::NAME).unwrap();
+    let entry = schemes().iter().find(|entry| entry.name == EventDriven::NAME).unwrap();
     let mut state = State::at(&model, 0, &[0.0, 0.025 + height, 0.0], &[0.0; 3], 1e-3).unwrap();
     state.take_contacts(&model, &pressing.memory, &pressing.warm);
     steps(&model, entry, &mut state, 10);
