@@ -5,8 +5,10 @@ mod beam_output;
 mod beams;
 mod blocks;
 mod contacts;
+mod crowd;
 mod faces;
 mod ground;
+mod many;
 mod motions;
 pub(crate) mod names;
 mod outlines;
@@ -237,12 +239,13 @@ impl<'a, 'f> Resolver<'a, 'f> {
         if self.mesh_sizes(&beams) {
             beams.iter_mut().flatten().for_each(|beam| self.assembled(beam));
         }
-        let (contacts, joined) = self.contacts();
+        let (contacts, joined, crowd) = self.contacts();
         self.contacts_fit_memory(&contacts);
         let names = self.block_names.clone();
         let blocks: Vec<_> = names.iter().map(|name| self.block(name, &beams, &contacts, &joined, &signals)).collect();
         self.check_support_cycles(&blocks);
         self.check_contacts_can_move(&blocks, &contacts);
+        self.check_crowd(crowd.as_ref(), &blocks, &beams);
         self.check_static_starts_beside_profile(&ground, &beams, &blocks, &contacts);
         let forces: Vec<_> = doc.names("force").into_iter().map(|name| self.force(name, &signals)).collect();
         let loads: Vec<_> = doc.names("load").into_iter().map(|name| self.load(name, &beams, &signals)).collect();
@@ -251,7 +254,7 @@ impl<'a, 'f> Resolver<'a, 'f> {
         }
         let time = self.time(&blocks, &beams);
         if let Some(time) = &time {
-            self.check_contact_laws(time.scheme, &contacts, &beams);
+            self.check_contact_laws(time.scheme, &contacts, crowd.as_ref(), &beams);
             self.check_table_covers_run(&signals, time.steps() as f64 * time.step);
         }
         let solver = self.solver();
@@ -264,6 +267,7 @@ impl<'a, 'f> Resolver<'a, 'f> {
             beams: beams.into_iter().collect::<Option<_>>()?,
             blocks: blocks.into_iter().collect::<Option<_>>()?,
             contacts: contacts.into_iter().collect::<Option<_>>()?,
+            crowd,
             signals: signals.into_iter().collect::<Option<_>>()?,
             forces: forces.into_iter().collect::<Option<_>>()?,
             loads: loads.into_iter().collect::<Option<_>>()?,
@@ -360,15 +364,15 @@ impl<'a, 'f> Resolver<'a, 'f> {
     }
 
     /// Refuses scenes whose dense operator would take too much memory, as the run would be killed
-    /// without a message.
+    /// without a message. Only contacts on beams all feel each other: those of blocks on the ground
+    /// and with each other are solved by islands and by neighbours.
     fn contacts_fit_memory(&mut self, contacts: &[Option<ContactScene>]) {
-        // In a plane only few of the blocks touch each other at a time.
-        let between = contacts.iter().flatten().filter(|contact| contact.other_block().is_some()).count();
-        let pairs = contacts.len() - between + between.min(3 * self.block_names.len());
+        let at_beam = |contact: &&ContactScene| matches!(contact.surface, SupportingBody::Beam(_));
+        let pairs = contacts.iter().flatten().filter(at_beam).count();
         let most = output_size::operator_bytes(2 * pairs);
         if most > output_size::MOST_OPERATOR_BYTES {
             let rule = format!(
-                "{pairs} contacts of blocks, with two corners each, need {} of memory for their operator, over the limit of {}",
+                "{pairs} contacts of blocks with beams, with two corners each, need {} of memory for their operator, over the limit of {}",
                 wording::bytes(most),
                 wording::bytes(output_size::MOST_OPERATOR_BYTES)
             );
