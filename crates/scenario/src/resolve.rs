@@ -165,6 +165,14 @@ impl<'a, 'f> Resolver<'a, 'f> {
         let numbered = |group| doc.names(group).into_iter().zip(0..).collect();
         let block_names = BlockName::all(doc);
         let mut errors = Vec::new();
+        let copies = |key: &str| doc.integer(key).and_then(|count| u64::try_from(count).ok()).unwrap_or(1);
+        for table in doc.names("block") {
+            let [count, rows] = ["count", "rows"].map(|key| copies(&format!("block.{table}.repeat.{key}")));
+            if count * rows > names::MOST_COPIES as u64 {
+                let rule = format!("{rows} rows of {count} blocks are more than {}, the limit", names::MOST_COPIES);
+                errors.push(doc.error(&format!("block.{table}.repeat.rows"), rule, "use fewer rows or shorter ones"));
+            }
+        }
         let blocks = names::numbered(&block_names, |block| {
             let rule = format!("there are two blocks `{}`: one from its own table, one from repeat", block.name);
             errors.push(doc.error(&format!("block.{}", block.table), rule, "give one of them another name"));

@@ -146,3 +146,25 @@ fn blocks_of_a_crowd_that_start_inside_each_other_are_refused() {
     let error = Simulation::new(&resolved.scene).unwrap_err().to_string();
     assert!(error.contains("overlaps"), "{error}");
 }
+
+#[test]
+fn rows_of_copies_are_numbered_row_after_row() {
+    let rows = |more: &str| {
+        format!(
+            "{HEAD}[block.b]\nmaterial = 'm'\nwidth = '1 cm'\nheight = '1 cm'\ndepth = '10 cm'\n\
+             repeat = {{ count = 3, shift = ['2 cm', '0 cm'], rows = 2, row_shift = ['1 cm', '5 cm']{more} }}\n\
+             [contact.floor]\nbetween = ['*', 'ground']\nfriction = 0.5\n"
+        )
+    };
+    let scene = loaded(&rows("").replace("repeat", "position = ['1 m', '1 m']\nrepeat")).scene;
+    let last = &scene.blocks[4];
+    let teeter_scenario::scene::Placement::Free { position, .. } = last.placement else { panic!("{last:?}") };
+    assert_eq!((last.name.as_str(), scene.blocks.len()), ("b-5", 6));
+    assert!((position[0] - 1.03).abs() < 1e-15 && (position[1] - 1.05).abs() < 1e-15, "{position:?}");
+    let refused = |text: String| load(text.as_bytes(), "f", "f", &[]).map(|_| ()).expect_err("taken").to_string();
+    let piles = refused(rows(", stacked = true").replace("repeat", "on = 'ground'\nat = '1 m'\nrepeat"));
+    assert!(piles.contains("block.b.repeat.rows") && piles.contains("one pile"), "{piles}");
+    let many = rows("").replace("rows = 2", "rows = 9000").replace("count = 3", "count = 9000");
+    let many = refused(many.replace("repeat", "position = ['1 m', '1 m']\nrepeat"));
+    assert!(many.contains("9000 rows of 9000 blocks"), "{many}");
+}
