@@ -89,7 +89,9 @@ impl Impulses {
         self.now.clear();
         self.now.extend(contacts.iter().enumerate().map(|(place, contact)| (contact.id, place)));
         self.now.sort_unstable();
-        for (id, p) in &self.sums {
+        // In a crowd most contacts only come near: those without an impulse are left out.
+        let silent = |p: &Vector<2>| layout.crowd.is_some() && *p == Vector::<2>::zeros();
+        for (id, p) in self.sums.iter().filter(|(_, p)| !silent(p)) {
             let Some(names) = layout.names_of(*id) else { continue };
             let place = self.candidates.partition_point(|candidate| candidate.id < *id);
             let now = self.candidates.get(place).filter(|candidate| candidate.id == *id);

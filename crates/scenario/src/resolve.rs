@@ -24,7 +24,7 @@ use std::collections::BTreeMap;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::document::Document;
-use crate::scene::{ContactScene, Scene, SolverScene, SupportingBody};
+use crate::scene::{ContactScene, Scene, SolverScene, SupportingBody, Time};
 use crate::scene_checks;
 use crate::value::Value;
 use crate::words::Word;
@@ -77,6 +77,11 @@ pub fn resolve(mut document: Document, stem: &str, read: &mut ReadFile<'_>) -> R
                     errors.push(document.error(path, error.to_string(), "give the key in the scene"));
                 }
             }
+            if let Some(every) = scene.every.filter(|_| !document.is_given("output.every"))
+                && let Err(error) = document.set("output.every", Value::Number(every))
+            {
+                errors.push(document.error("output.every", error.to_string(), "give the key in the scene"));
+            }
             // The written scene names the chosen scheme, so that running it gives the same result.
             if document.text("time.scheme") != Some(scene.time.scheme.word())
                 && let Err(error) = document.set("time.scheme", Value::Text(scene.time.scheme.word().to_owned()))
@@ -90,7 +95,8 @@ pub fn resolve(mut document: Document, stem: &str, read: &mut ReadFile<'_>) -> R
             if errors.is_empty() {
                 let findings = scene_checks::check(&scene, &document);
                 warnings.extend(findings.warnings);
-                let (foreseen, notes) = (findings.foreseen, findings.notes);
+                let (foreseen, mut notes) = (findings.foreseen, findings.notes);
+                notes.extend(fewer_rows(&scene, &document));
                 return Ok(Resolved { scene, document, warnings, foreseen, notes, files });
             }
         }
@@ -266,7 +272,8 @@ impl<'a, 'f> Resolver<'a, 'f> {
             self.check_table_covers_run(&signals, time.steps() as f64 * time.step);
         }
         let solver = self.solver();
-        let every = doc.quantity("output.every");
+        let thinned = |time: &Time| output_size::thinned(self.block_names.len(), time.steps(), time.step);
+        let every = doc.quantity("output.every").or_else(|| time.as_ref().and_then(thinned));
         let mut scene = Scene {
             title,
             time: time?,
@@ -412,6 +419,15 @@ impl<'a, 'f> Resolver<'a, 'f> {
             require_convergence: doc.flag("solver.require_convergence").unwrap_or(false),
         })
     }
+}
+
+/// Tells that rows are thinned because of the many blocks.
+fn fewer_rows(scene: &Scene, document: &Document) -> Option<Diagnostic> {
+    let every = scene.every.filter(|_| !document.is_given("output.every"))?;
+    let contacts = if scene.crowd.is_some() { ", and contacts.csv has only contacts that act" } else { "" };
+    let rule = format!("{} blocks, so that the tables have a row only every {every:e} s{contacts}", scene.blocks.len());
+    let remedy = format!("give every = \"{:e} s\" in [output] for a row every step", scene.time.step);
+    Some(document.error("output.every", rule, remedy).as_note())
 }
 
 /// Names in a message, only the first ones if there are many.

@@ -168,3 +168,35 @@ fn rows_of_copies_are_numbered_row_after_row() {
     let many = refused(many.replace("repeat", "position = ['1 m', '1 m']\nrepeat"));
     assert!(many.contains("9000 rows of 9000 blocks"), "{many}");
 }
+
+#[test]
+fn rows_of_many_blocks_are_thinned_and_that_is_told() {
+    let every = |boxes: usize, set: &[(&str, &str)]| {
+        let sets: Vec<_> = set.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
+        let resolved = load(tower(boxes, ALL).replace("50 ms", "1 s").as_bytes(), "f", "f", &sets).unwrap();
+        let told = resolved.notes.iter().any(|note| note.path == "output.every");
+        assert_eq!(resolved.document.quantity("output.every"), resolved.scene.every);
+        (resolved.scene.every.map(|every| (every / 1e-3).round()), told)
+    };
+    assert_eq!(every(300, &[]), (None, false));
+    assert_eq!(every(1000, &[]), (Some(5.0), true));
+    assert_eq!(every(5000, &[]), (Some(10.0), true));
+    assert_eq!(every(5000, &[("output.every", "1 ms")]), (Some(1.0), false));
+}
+
+/// The wall of the file, lower and for a short time: it is not thrown down, and its bricks don't sink into each other.
+#[test]
+fn a_wall_in_running_bond_holds_together() {
+    let sets = [("time.end", "0.1 s"), ("block.odd.repeat.rows", "3"), ("block.even.repeat.rows", "2")];
+    let sets = sets.map(|(key, value)| (key.to_owned(), value.to_owned()));
+    let scene = load(include_bytes!("brick-wall.toml"), "f", "f", &sets).unwrap().scene;
+    // A star stands for the ground, too.
+    assert_eq!((scene.blocks.len(), scene.contacts.len()), (100, 100));
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let start = simulation.state.q.clone();
+    assert_eq!(simulation.run(&mut []).unwrap(), Ended::Complete);
+    let heights = simulation.state.q.iter().zip(&start).skip(1).step_by(3).take(100);
+    let moved = heights.map(|(now, start)| (now - start).abs()).fold(0.0, f64::max);
+    assert!(moved < 1e-3 && simulation.state.tally.max_penetration < 1e-4, "{moved:e}");
+    assert_eq!(simulation.state.tally.unconverged_steps, 0);
+}
