@@ -274,7 +274,7 @@ fn run(scene: &Scene, preview: &Preview) -> Vec<String> {
             time.scheme.word()
         )];
     }
-    vec![
+    let mut lines = vec![
         format!(
             "{} of {} s to {} s, theta = {}{}",
             count(time.steps(), "step"),
@@ -290,7 +290,9 @@ fn run(scene: &Scene, preview: &Preview) -> Vec<String> {
             accuracy_of_seconds(scene)
         ),
         format!("tables: about {} in {} rows", wording::bytes(volume.bytes), volume.rows),
-    ]
+    ];
+    lines.extend(preview.memory.map(|bytes| format!("memory: about {}", wording::bytes(bytes))));
+    lines
 }
 
 fn count(n: u64, what: &str) -> String {

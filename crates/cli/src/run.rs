@@ -179,7 +179,15 @@ fn start_notes(prepared: &Prepared) -> Vec<String> {
         };
         format!("steps of {:e} s, found by {} runs: off by {:.1e} {off}{until}", chosen.step, chosen.runs, chosen.error)
     });
-    start.into_iter().chain(chosen).chain(prepared.warnings().iter().map(|warning| presenter.one(warning))).collect()
+    // What was chosen for the tables, and how to get more.
+    let rows = prepared.resolved().notes.iter().filter(|note| note.path == "output.every");
+    let rows = rows.map(|note| presenter.one(note));
+    start
+        .into_iter()
+        .chain(chosen)
+        .chain(rows)
+        .chain(prepared.warnings().iter().map(|warning| presenter.one(warning)))
+        .collect()
 }
 
 /// Reports how a run ended and what it wrote besides its results.

@@ -22,6 +22,8 @@ pub struct Groups {
     /// The law of each pair of classes, by rows.
     laws: Vec<Option<LawId>>,
     classes: usize,
+    /// Pairs of members, by their numbers, that don't touch whatever their classes say; sorted.
+    apart: Vec<[usize; 2]>,
 }
 
 /// Bodies that one set of groups can have: pairs are numbered by 32 bits.
@@ -48,13 +50,36 @@ impl Groups {
             return Err(WiringError::NoClass { body: *body, class: *class });
         }
         let laws = laws.into_iter().flat_map(|row| row.into_iter().take(classes)).collect();
-        Ok(Self { members, laws, classes })
+        Ok(Self { members, laws, classes, apart: Vec::new() })
+    }
+
+    /// The same, but for single pairs of bodies that don't touch whatever their classes say. Those
+    /// of bodies that are no members are ignored.
+    #[must_use]
+    pub fn without(mut self, pairs: &[[BodyId; 2]]) -> Self {
+        let numbers = |[a, b]: &[BodyId; 2]| {
+            let (i, j) = (self.number_of(*a)?, self.number_of(*b)?);
+            Some([i.min(j), i.max(j)])
+        };
+        let mut apart: Vec<[usize; 2]> = self.apart.iter().copied().chain(pairs.iter().filter_map(numbers)).collect();
+        apart.sort_unstable();
+        apart.dedup();
+        self.apart = apart;
+        self
     }
 
     /// The law between two bodies; `None` where they don't touch, or one is no member.
     #[must_use]
     pub fn law(&self, a: BodyId, b: BodyId) -> Option<LawId> {
-        self.law_of(self.number_of(a)?, self.number_of(b)?)
+        let (i, j) = (self.number_of(a)?, self.number_of(b)?);
+        let apart = i == j || self.apart.binary_search(&[i.min(j), i.max(j)]).is_ok();
+        if apart { None } else { self.law_of(i, j) }
+    }
+
+    /// The pairs that don't touch whatever their classes say, by the numbers of their bodies among
+    /// the members.
+    pub(crate) fn apart(&self) -> &[[usize; 2]] {
+        &self.apart
     }
 
     fn number_of(&self, body: BodyId) -> Option<usize> {

@@ -80,7 +80,7 @@ struct InGroups {
     first: u32,
     /// Their places among all members.
     members: Vec<usize>,
-    /// Pairs of members that are listed one by one, sorted.
+    /// Pairs of members that are listed one by one, or apart, sorted.
     listed: Vec<[usize; 2]>,
 }
 
@@ -149,15 +149,18 @@ impl ShapeDetector {
         Ok(self)
     }
 
-    /// With bodies of which any two can touch, but for those that are listed as pairs. The number
+    /// With bodies of which any two can touch, but for those that are listed as pairs or
+    /// [apart](Groups::without). The number
     /// of the pair of the i-th and the j-th of n bodies, i < j, is `first` + i n + j, and must be
     /// above those of all other pairs.
     ///
     /// # Errors
     /// If one of them has no shape.
     pub fn with_groups(mut self, groups: Groups, first: u32) -> Result<Self, WiringError> {
-        let members = groups.bodies().map(|body| self.shaped(body)).collect::<Result<_, _>>()?;
-        let mut listed: Vec<[usize; 2]> = self.pairs.iter().map(|(_, [a, b])| [*a.min(b), *a.max(b)]).collect();
+        let members: Vec<usize> = groups.bodies().map(|body| self.shaped(body)).collect::<Result<_, _>>()?;
+        let ordered = |[a, b]: [usize; 2]| [a.min(b), a.max(b)];
+        let mut listed: Vec<[usize; 2]> = self.pairs.iter().map(|(_, members)| ordered(*members)).collect();
+        listed.extend(groups.apart().iter().map(|[i, j]| ordered([members[*i], members[*j]])));
         listed.sort_unstable();
         self.groups = Some(InGroups { groups, first, members, listed });
         Ok(self)

@@ -255,6 +255,8 @@ fn groups_find_what_listed_pairs_find() {
     let class = |k: u32| usize::from(k.is_multiple_of(5));
     let laws = vec![vec![Some(LawId(2)), Some(LawId(3))], vec![None, None]];
     let groups = Groups::new((0..n).map(|k| (BodyId(k), class(k))).collect(), laws).unwrap();
+    let groups = groups.without(&[[BodyId(4), BodyId(3)], [BodyId(8), BodyId(9)], [BodyId(9), BodyId(n)]]);
+    assert_eq!([(3, 4), (9, 8)].map(|(a, b)| groups.law(BodyId(a), BodyId(b))), [None; 2]);
     let first = 7;
     let mut pairs = vec![ShapePair { pair: 3, law: LawId(1), bodies: [BodyId(1), BodyId(2)] }];
     let listed = ShapeDetector::new(shapes.clone(), pairs.clone()).unwrap();

@@ -17,6 +17,53 @@ pub struct Opening {
     pub fall: f64,
 }
 
+/// When the contacts of each pair of a model count as truly open.
+///
+/// ```
+/// use teeter_integrator::{Opening, Openings};
+///
+/// let of_gap = |gap| Opening { gap, ..Opening::default() };
+/// // Pair 0 is listed; pairs 1 and up are those of three bodies of groups.
+/// let openings = Openings::of_pairs(vec![of_gap(1e-6)]).with_groups(vec![of_gap(2e-6), of_gap(3e-6), of_gap(4e-6)]);
+/// assert_eq!(openings.of_pair(0).gap, 1e-6);
+/// assert_eq!(openings.of_pair(1 + 3 * 1 + 2).gap, 3e-6, "of the second and the third");
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Openings {
+    pairs: Vec<Opening>,
+    members: Vec<Opening>,
+}
+
+impl Openings {
+    /// Those of listed pairs, by their numbers. A pair that is not among them is open with any gap.
+    #[must_use]
+    pub fn of_pairs(pairs: Vec<Opening>) -> Self {
+        Self { pairs, members: Vec::new() }
+    }
+
+    /// With those of pairs of groups, whose numbers follow the listed ones
+    /// ([`ShapeDetector::with_groups`](teeter_detect::ShapeDetector::with_groups)): for each member
+    /// those of the pairs of which it is the first.
+    #[must_use]
+    pub fn with_groups(mut self, members: Vec<Opening>) -> Self {
+        self.members = members;
+        self
+    }
+
+    /// That of a pair, by its number.
+    #[must_use]
+    pub fn of_pair(&self, pair: u32) -> Opening {
+        let pair = pair as usize;
+        let of_members = || self.members.get((pair - self.pairs.len()).checked_div(self.members.len())?);
+        self.pairs.get(pair).or_else(of_members).copied().unwrap_or_default()
+    }
+
+    /// The largest gap of all, m.
+    fn widest(&self) -> f64 {
+        self.pairs.iter().chain(&self.members).map(|opening| opening.gap).fold(0.0, f64::max)
+    }
+}
+
 /// The kind of a contact's closing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Closing {
@@ -71,18 +118,17 @@ pub struct ClosingMonitor<const D: usize> {
 }
 
 impl<const D: usize> ClosingMonitor<D> {
-    /// A monitor that starts at `state`; `openings` by the numbers of the model's pairs.
+    /// A monitor that starts at `state`; `openings` are those of the model's pairs.
     ///
     /// # Errors
     /// If the state is not one of the model.
-    pub fn new(model: &Model<D>, state: &State, openings: &[Opening]) -> Result<Self, Mismatch> {
+    pub fn new(model: &Model<D>, state: &State, openings: &Openings) -> Result<Self, Mismatch> {
         let mut monitor =
             Self { held: Vec::new(), impacts: 0, reclosures: 0, lost: Vec::new(), candidates: Vec::new() };
-        let widest = openings.iter().map(|opening| opening.gap).fold(0.0, f64::max);
-        model.candidates(&state.q, widest, &mut monitor.candidates)?;
+        model.candidates(&state.q, openings.widest(), &mut monitor.candidates)?;
         for candidate in &monitor.candidates {
             let carried = state.memory.is_active(candidate.id);
-            if carried || candidate.gap <= opening_of(openings, candidate.id).gap {
+            if carried || candidate.gap <= openings.of_pair(candidate.id.pair()).gap {
                 monitor.held.push(Held {
                     id: candidate.id,
                     last: state.t,
@@ -107,7 +153,7 @@ impl<const D: usize> ClosingMonitor<D> {
         model: &Model<D>,
         step: &StepReport<'_, D>,
         state: &State,
-        openings: &[Opening],
+        openings: &Openings,
         mut each: impl FnMut(f64, &Contact<D>, Closing),
     ) -> Result<(), Mismatch> {
         for phase in step.active() {
@@ -159,9 +205,9 @@ impl<const D: usize> ClosingMonitor<D> {
         held: &Held,
         t: f64,
         contact: &Contact<D>,
-        openings: &[Opening],
+        openings: &Openings,
     ) -> bool {
-        let opening = opening_of(openings, contact.id);
+        let opening = openings.of_pair(contact.id.pair());
         // A fall as fast as it comes, where nobody looked at its gap within the step.
         let fell = contact.u_before[0].powi(2) > 2.0 * opening.fall * opening.gap && opening.fall > 0.0;
         let lifted = held.lifted || (fell && held.pressed > step.t_start);
@@ -175,7 +221,7 @@ impl<const D: usize> ClosingMonitor<D> {
         model: &Model<D>,
         step: &StepReport<'_, D>,
         state: &State,
-        openings: &[Opening],
+        openings: &Openings,
     ) -> Result<(), Mismatch> {
         let (t, h) = (step.t_end, step.t_end - step.t_start);
         self.lost.clear();
@@ -188,7 +234,7 @@ impl<const D: usize> ClosingMonitor<D> {
             if held.last >= t {
                 return true;
             }
-            let opening = opening_of(openings, held.id);
+            let opening = openings.of_pair(held.id.pair());
             if !held.opened {
                 let found = candidates.binary_search_by_key(&held.id, |candidate| candidate.id);
                 // Beyond the end of the surface there is nothing to touch.
@@ -213,8 +259,4 @@ impl<const D: usize> ClosingMonitor<D> {
     pub fn reclosures(&self) -> u64 {
         self.reclosures
     }
-}
-
-fn opening_of(openings: &[Opening], id: ContactId) -> Opening {
-    openings.get(id.pair() as usize).copied().unwrap_or_default()
 }

@@ -117,7 +117,7 @@ pub use adapters::blocks::{Block, BlockCoordinate, BlockLoad, Blocks};
 pub use adapters::ground::Ground;
 #[cfg(feature = "beam")]
 pub use adapters::modal_beam::ModalBeam;
-pub use closings::{Closing, ClosingMonitor, Opening};
+pub use closings::{Closing, ClosingMonitor, Opening, Openings};
 pub use contact::{Contact, ContactState, tangential};
 pub use coupled_modes::{CoupledModes, CoupledModesError, MOST_VELOCITIES, coupled_modes};
 pub use equilibrium::{Equilibrium, EquilibriumError, SettlingLimits, settle};

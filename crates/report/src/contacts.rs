@@ -2,9 +2,10 @@
 
 use crate::number::{push, push_next};
 use serde::{Deserialize, Serialize};
+use std::fmt::Write as _;
 use teeter_detect::{Candidate, ContactId};
 use teeter_integrator::{Contact, ContactState, Model, State, Vector};
-use teeter_scenario::simulation::Layout;
+use teeter_scenario::simulation::{ContactNames, Layout};
 
 pub(crate) const HEADER: &str = "t,contact,a,b,point,gap,p_n,p_t,u_n,u_t,state\n";
 
@@ -16,6 +17,11 @@ pub(crate) struct Impulses {
     /// Memory of a row.
     #[serde(skip)]
     candidates: Vec<Candidate<2>>,
+    /// The contacts of the last step and their places in it, in order.
+    #[serde(skip)]
+    now: Vec<(ContactId, usize)>,
+    #[serde(skip)]
+    ids: Vec<ContactId>,
 }
 
 /// What a contact does at the end of a step.
@@ -50,6 +56,20 @@ impl Impulses {
         }
     }
 
+    /// Finds the contacts again, in the order of their identity: in a crowd only these, as all with
+    /// all would be too many.
+    fn find(&mut self, layout: &Layout, model: &Model<2>, state: &State) -> Option<()> {
+        if layout.crowd.is_none() {
+            model.candidates(&state.q, f64::INFINITY, &mut self.candidates).ok()?;
+            self.candidates.sort_unstable_by_key(|candidate| candidate.id);
+            return Some(());
+        }
+        self.ids.clear();
+        self.ids.extend(self.sums.iter().map(|(id, _)| *id));
+        model.detector().locate(&model.placed(&state.q).ok()?, &self.ids, &mut self.candidates);
+        Some(())
+    }
+
     /// Appends the rows at the state's time, and starts over.
     pub(crate) fn rows(
         &mut self,
@@ -62,15 +82,23 @@ impl Impulses {
         if self.sums.is_empty() {
             return;
         }
-        if model.candidates(&state.q, f64::INFINITY, &mut self.candidates).is_err() {
+        if self.find(layout, model, state).is_none() {
             return;
         }
-        for (id, p) in &self.sums {
-            let Some(names) = Names::of(layout, *id) else { continue };
-            let now = self.candidates.iter().find(|candidate| candidate.id == *id);
-            let active = contacts.iter().rev().find(|contact| contact.id == *id);
+        // Of several with one identity the last counts.
+        self.now.clear();
+        self.now.extend(contacts.iter().enumerate().map(|(place, contact)| (contact.id, place)));
+        self.now.sort_unstable();
+        // In a crowd most contacts only come near: those without an impulse are left out.
+        let silent = |p: &Vector<2>| layout.crowd.is_some() && *p == Vector::<2>::zeros();
+        for (id, p) in self.sums.iter().filter(|(_, p)| !silent(p)) {
+            let Some(names) = layout.names_of(*id) else { continue };
+            let place = self.candidates.partition_point(|candidate| candidate.id < *id);
+            let now = self.candidates.get(place).filter(|candidate| candidate.id == *id);
+            let place = self.now.partition_point(|(of, _)| of <= id);
+            let active = self.now[..place].last().filter(|(of, _)| of == id).map(|(_, place)| &contacts[*place]);
             push(out, state.t);
-            names.push(out);
+            push_names(&names, out);
             // A point that has left the surface has no gap to it, and no frame for a velocity.
             match now {
                 Some(candidate) => push_next(out, candidate.gap),
@@ -96,25 +124,11 @@ impl Impulses {
     }
 }
 
-/// The names of a contact in tables.
-pub(crate) struct Names<'a> {
-    pub(crate) contact: &'a str,
-    between: &'a [String; 2],
-    pub(crate) point: &'a str,
-}
-
-impl<'a> Names<'a> {
-    pub(crate) fn of(layout: &'a Layout, id: ContactId) -> Option<Self> {
-        let pair = layout.pairs.get(id.pair() as usize)?;
-        let point = &pair.points[pair.point(id)?].name;
-        Some(Self { contact: &pair.name, between: &pair.between, point })
+/// Appends `,contact,a,b,point`.
+pub(crate) fn push_names(names: &ContactNames<'_>, out: &mut String) {
+    for name in [names.contact, names.between[0], names.between[1]] {
+        out.push(',');
+        out.push_str(name);
     }
-
-    /// `,contact,a,b,point`.
-    pub(crate) fn push(&self, out: &mut String) {
-        for name in [self.contact, &self.between[0], &self.between[1], self.point] {
-            out.push(',');
-            out.push_str(name);
-        }
-    }
+    let _ = write!(out, ",{}", names.point);
 }

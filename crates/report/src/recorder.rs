@@ -2,7 +2,7 @@
 
 use crate::bounces::Bounces;
 use crate::closed::Closed;
-use crate::contacts::{self, AtEnd, Impulses, Names};
+use crate::contacts::{self, AtEnd, Impulses, push_names};
 use crate::meetings::Met;
 use crate::number::{push, push_next};
 use crate::resolution::{Bodies, Resolution};
@@ -328,10 +328,10 @@ impl<'a> Recorder<'a> {
     fn write_impacts(&mut self) -> Result<(), ResultsError> {
         let Self { layout, closed, impacts, line, kept: Kept { record, .. }, .. } = self;
         for Closed { t, contact, .. } in closed.iter().filter(|closed| closed.closing == Closing::Impact) {
-            let Some(names) = Names::of(layout, contact.id) else { continue };
+            let Some(names) = layout.names_of(contact.id) else { continue };
             line.clear();
             push(line, *t);
-            names.push(line);
+            push_names(&names, line);
             for x in [contact.p[0], contact.p[1], contact.u_before[0], contact.u_after[0]] {
                 push_next(line, x);
             }
@@ -341,7 +341,7 @@ impl<'a> Recorder<'a> {
                 record.impacts.push(ImpactRow {
                     t: *t,
                     contact: names.contact.to_owned(),
-                    point: names.point.to_owned().into(),
+                    point: names.point.to_string().into(),
                     impulse_n: contact.p[0],
                     u_n_before: contact.u_before[0],
                 });

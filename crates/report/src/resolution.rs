@@ -6,7 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 use teeter_integrator::{Active, Contact, State, StepReport};
-use teeter_scenario::scene::Scene;
+use teeter_scenario::scene::{Crowd, Scene};
 use teeter_scenario::simulation::Layout;
 
 /// Above this part of the motion, a run is likely off by more than 10 %.
@@ -164,7 +164,9 @@ impl Resolution {
     /// The block that a contact is of.
     #[inline]
     fn of(&mut self, bodies: &Bodies, contact: &Contact<2>) -> Option<&mut Seen> {
-        self.blocks.get_mut(*bodies.owners.get(contact.id.pair() as usize)?)
+        let pair = contact.id.pair();
+        let of_crowd = || bodies.crowd.as_ref()?.blocks_of(bodies.owners.len(), pair).map(|[first, _]| first);
+        self.blocks.get_mut(bodies.owners.get(pair as usize).copied().or_else(of_crowd)?)
     }
 
     fn take_places(&mut self, bodies: &Bodies, layout: &Layout, h: f64, state: &State) {
@@ -245,8 +247,10 @@ impl Seen {
 /// What of the scene it goes by.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Bodies {
-    /// The block of each pair.
+    /// The block of each listed pair.
     owners: Vec<usize>,
+    /// The pairs that are not listed.
+    crowd: Option<Crowd>,
     /// How far the feet of each block are apart, m.
     widths: Vec<f64>,
     /// The larger side of each block, m.
@@ -261,6 +265,7 @@ impl Bodies {
     pub(crate) fn of(scene: &Scene) -> Self {
         Self {
             owners: scene.contacts.iter().map(|contact| contact.block).collect(),
+            crowd: scene.crowd.clone(),
             widths: scene.blocks.iter().map(|block| block.width).collect(),
             sides: scene.blocks.iter().map(|block| block.width.max(block.height)).collect(),
             theta: scene.time.theta_of_scheme(),

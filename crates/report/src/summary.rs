@@ -431,8 +431,8 @@ impl ModelSummary {
             dofs: 3 * layout.blocks.len() + moving.map(|(_, beam)| beam.dofs).sum::<usize>(),
             beams,
             ground: scene.ground.is_some(),
-            contacts: layout.pairs.iter().map(|pair| pair.name.clone()).collect(),
-            possible_contacts: (0..scene.contacts.len()).map(|contact| required.points(contact)).sum(),
+            contacts: layout.contact_names().map(str::to_owned).collect(),
+            possible_contacts: possible_contacts(scene, layout),
             left_out: teeter_scenario::left_out(scene),
             extent: required.extent.word(),
             removed: required
@@ -447,6 +447,12 @@ impl ModelSummary {
                 .collect(),
         }
     }
+}
+
+/// The points of listed contacts, and two for each pair of a crowd.
+fn possible_contacts(scene: &Scene, layout: &Layout) -> usize {
+    let listed: usize = (0..scene.contacts.len()).map(|contact| layout.required.points(contact)).sum();
+    listed + scene.crowd.as_ref().map_or(0, |crowd| 2 * crowd.pair_count())
 }
 
 #[cfg(test)]

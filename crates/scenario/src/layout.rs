@@ -3,13 +3,13 @@
 use crate::driven;
 use crate::ground_profile;
 use crate::required::Required;
-use crate::scene::{ContactScene, Scene, SupportingBody};
+use crate::scene::{ContactScene, Crowd, Scene, SupportingBody};
 use crate::tilt_reference::TiltReference;
 use std::ops::Range;
 use std::sync::Arc;
 use teeter_beam::{Beam, Deflection, ModalBasis, ShapeAt, SpanLoad};
 use teeter_detect::{BodyId, ContactId, CornerOnSide, MOST_SUMMITS, OnSide};
-use teeter_integrator::{BeamForces, Opening};
+use teeter_integrator::{BeamForces, Openings};
 
 /// The place of a block in the state.
 #[derive(Debug, Clone, PartialEq)]
@@ -224,6 +224,59 @@ impl PairPlace {
     }
 }
 
+/// The pairs of blocks that are not listed: their names are found when they are asked for.
+#[derive(Debug, Clone)]
+pub struct CrowdPlace {
+    /// Which contact holds for which blocks.
+    pub crowd: Arc<Crowd>,
+    /// The names of the corners of each block.
+    corners: Vec<Arc<[String]>>,
+}
+
+impl CrowdPlace {
+    pub(crate) fn of(scene: &Scene) -> Option<Self> {
+        let crowd = Arc::new(scene.crowd.clone()?);
+        let mut corners: Vec<Arc<[String]>> = Vec::with_capacity(scene.blocks.len());
+        for block in &scene.blocks {
+            let names: Vec<String> = (0..block.corner_count()).map(|corner| block.corner_name(corner)).collect();
+            // Copies of a block have the names of the one before.
+            match corners.last().filter(|last| last[..] == names[..]) {
+                Some(last) => corners.push(Arc::clone(last)),
+                None => corners.push(names.into()),
+            }
+        }
+        Some(Self { crowd, corners })
+    }
+}
+
+/// A contact by its names.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ContactNames<'a> {
+    /// The contact's name.
+    pub contact: &'a str,
+    /// The bodies: forces in tables are those on the first.
+    pub between: [&'a str; 2],
+    /// The point that touches.
+    pub point: PointName<'a>,
+}
+
+/// The name of a point that touches: of two blocks, that of the block comes first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PointName<'a> {
+    block: Option<&'a str>,
+    point: &'a str,
+}
+
+impl std::fmt::Display for PointName<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if let Some(block) = self.block {
+            f.write_str(block)?;
+            f.write_str(".")?;
+        }
+        f.write_str(self.point)
+    }
+}
+
 /// The places of bodies and contacts in model and state.
 #[derive(Debug, Clone, Default)]
 pub struct Layout {
@@ -231,17 +284,58 @@ pub struct Layout {
     pub blocks: Vec<BlockPlace>,
     /// The beams, in the order of the file.
     pub beams: Vec<BeamPlace>,
-    /// The pairs, by their number in the model.
+    /// The listed pairs, by their number in the model.
     pub pairs: Vec<PairPlace>,
+    /// The pairs of blocks that are not listed, whose numbers follow.
+    pub crowd: Option<CrowdPlace>,
     /// Indices of the coordinates of moving ground: its origin, x and y, and its slope.
     pub ground: Option<Range<usize>>,
-    /// When the contacts of a pair count as open, by its number in the model.
-    pub openings: Vec<Opening>,
+    /// When the contacts of a pair count as open.
+    pub openings: Openings,
     /// What is left out of the model.
     pub required: Required,
 }
 
 impl Layout {
+    /// The names of a contact; `None` if there is none with this identity. Doesn't allocate.
+    #[must_use]
+    pub fn names_of(&self, id: ContactId) -> Option<ContactNames<'_>> {
+        if let Some(pair) = self.pairs.get(id.pair() as usize) {
+            let point = PointName { block: None, point: &pair.points[pair.point(id)?].name };
+            return Some(ContactNames {
+                contact: &pair.name,
+                between: pair.between.each_ref().map(String::as_str),
+                point,
+            });
+        }
+        let of = self.crowd.as_ref()?;
+        let blocks = of.crowd.blocks_of(self.pairs.len(), id.pair())?;
+        let contact = of.crowd.contacts().get(of.crowd.contact_of(blocks[0], blocks[1])?)?;
+        let CornerOnSide { owner, corner, .. } = CornerOnSide::from_number(id.point());
+        let between = blocks.map(|block| self.blocks.get(block).map_or("", |place| place.name.as_str()));
+        let point = of.corners.get(*blocks.get(owner)?)?.get(corner)?;
+        Some(ContactNames { contact: &contact.name, between, point: PointName { block: Some(between[owner]), point } })
+    }
+
+    /// The numbers of all contacts that share a name: listed pairs one by one, then the contacts of
+    /// the crowd; `None` if there is none with this pair.
+    #[must_use]
+    pub fn contact_number(&self, id: ContactId) -> Option<usize> {
+        let pair = id.pair() as usize;
+        if pair < self.pairs.len() {
+            return Some(pair);
+        }
+        let of = self.crowd.as_ref()?;
+        let [a, b] = of.crowd.blocks_of(self.pairs.len(), id.pair())?;
+        Some(self.pairs.len() + of.crowd.contact_of(a, b)?)
+    }
+
+    /// The names of the contacts, by [`Layout::contact_number`].
+    pub fn contact_names(&self) -> impl Iterator<Item = &str> + '_ {
+        let of_crowd = self.crowd.iter().flat_map(|of| of.crowd.contacts().iter().map(|contact| contact.name.as_str()));
+        self.pairs.iter().map(|pair| pair.name.as_str()).chain(of_crowd)
+    }
+
     /// Computes the section forces of a beam, by its number, in a run of `scene`.
     #[must_use]
     pub fn beam_forces(&self, scene: &Scene, number: usize) -> BeamForces {

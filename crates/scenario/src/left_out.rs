@@ -1,6 +1,6 @@
 //! What the model of a scene leaves out, and why, for `check` and the summary.
 
-use crate::scene::{BeamScene, Scene, SupportingBody};
+use crate::scene::{BeamScene, Crowd, Scene, SupportingBody};
 use std::collections::BTreeSet;
 use teeter_beam::Axial;
 
@@ -42,7 +42,8 @@ pub fn left_out(scene: &Scene) -> Vec<&'static str> {
 /// Adds the bodies between which the model has no contact, or only contact at corners.
 fn meetings(scene: &Scene, left_out: &mut Vec<&'static str>) {
     let blocks = scene.blocks.len();
-    let paired = scene.contacts.iter().filter(|contact| contact.other_block().is_some()).count();
+    let listed = scene.contacts.iter().filter(|contact| contact.other_block().is_some()).count();
+    let paired = listed + scene.crowd.as_ref().map_or(0, Crowd::pair_count);
     if paired == 0 && blocks > 1 {
         left_out.push("contact between blocks: they pass through each other");
     } else if paired < blocks * blocks.saturating_sub(1) / 2 {

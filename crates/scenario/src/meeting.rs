@@ -1,8 +1,8 @@
 //! Overlaps of bodies where the model has no contact: they are reported, not prevented.
 
 use crate::ground_profile;
-use crate::overlap::{Outline, PlacedOutline, each_overlap};
-use crate::scene::{BlockScene, Scene, SupportingBody};
+use crate::overlap::{Outline, PlacedOutline, Sweep, each_overlap};
+use crate::scene::{BlockScene, Crowd, Scene, SupportingBody};
 use crate::simulation::Layout;
 use nalgebra::Vector2;
 use std::collections::BTreeSet;
@@ -79,12 +79,16 @@ pub struct Shapes {
     corners: Vec<Vec<(Vector2<f64>, f64)>>,
     /// Blocks that have a contact with the ground, and with each beam.
     on_ground: Vec<bool>,
-    /// Pairs of blocks with a contact, the lower number first.
+    /// Pairs of blocks with a listed contact, the lower number first.
     blocks: BTreeSet<(usize, usize)>,
+    /// The contacts that are not listed.
+    crowd: Option<Crowd>,
+    /// The shortest side of all blocks, m.
+    shortest: f64,
     /// For each beam, how each block can touch it.
     on_beam: Vec<Vec<OnBeam>>,
     boxes: Vec<PlacedOutline>,
-    order: Vec<usize>,
+    sweep: Sweep,
 }
 
 impl Shapes {
@@ -118,9 +122,11 @@ impl Shapes {
                 .filter_map(|contact| Some((contact.block, contact.other_block()?)))
                 .map(|(a, b)| (a.min(b), a.max(b)))
                 .collect(),
+            crowd: scene.crowd.clone(),
+            shortest: scene.blocks.iter().map(|block| block.width.min(block.height)).fold(f64::INFINITY, f64::min),
             on_beam: (0..scene.beams.len()).map(|beam| OnBeam::all(scene, beam)).collect(),
             boxes: Vec::with_capacity(scene.blocks.len()),
-            order: Vec::with_capacity(scene.blocks.len()),
+            sweep: Sweep::with_capacity(scene.blocks.len()),
         }
     }
 
@@ -129,7 +135,7 @@ impl Shapes {
     /// sides, so that the contact may not have been seen; and by how much, m.
     #[must_use]
     pub fn passing(&self, layout: &Layout, q: &[f64], v: &[f64], dt: f64) -> Option<(usize, usize, f64)> {
-        self.blocks.iter().find_map(|&(a, b)| {
+        let passes = |a: usize, b: usize| {
             let (first, second) = (&layout.blocks[a], &layout.blocks[b]);
             let between = |k: usize, of: &[f64]| of[first.range.start + k] - of[second.range.start + k];
             let (x, y) = (between(0, q), between(1, q));
@@ -142,13 +148,39 @@ impl Shapes {
             let back = ((x * dx + y * dy) / (far * far)).clamp(0.0, 1.0);
             let nearest = (x - back * dx).hypot(y - back * dy);
             (nearest < first.reach + second.reach).then_some((a, b, far))
-        })
+        };
+        if let Some(found) = self.blocks.iter().find_map(|&(a, b)| passes(a, b)) {
+            return Some(found);
+        }
+        let crowd = self.crowd.as_ref()?;
+        // Of two that come so far past each other one comes at least half as far.
+        let is_fast = |k: &usize| {
+            let at = layout.blocks[*k].range.start;
+            dt * v[at].hypot(v[at + 1]) > 0.5 * self.shortest
+        };
+        let all = 0..layout.blocks.len();
+        let fast = all.clone().filter(is_fast);
+        let mut pairs = fast.flat_map(|a| all.clone().map(move |b| (a.min(b), a.max(b))));
+        pairs.find_map(|(a, b)| passes(a, b).filter(|_| crowd.contact_of(a, b).is_some()))
     }
 
     /// Passes each overlap at coordinates `q` of the whole model to `each`, with its depth, m.
     pub fn meetings(&mut self, layout: &Layout, q: &[f64], mut each: impl FnMut(Meeting, f64)) {
-        let Self { outlines, allowed, beams, incline, profile, corners, on_ground, blocks, on_beam, boxes, order } =
-            self;
+        let Self {
+            outlines,
+            allowed,
+            beams,
+            incline,
+            profile,
+            corners,
+            on_ground,
+            blocks,
+            crowd,
+            on_beam,
+            boxes,
+            sweep,
+            ..
+        } = self;
         boxes.clear();
         boxes.extend(layout.blocks.iter().zip(outlines.iter()).map(|(place, outline)| {
             let q = &q[place.range.clone()];
@@ -156,8 +188,10 @@ impl Shapes {
         }));
         let allowed = |block: usize| allowed[block];
         if boxes.len() > 1 {
-            each_overlap(boxes, allowed, MOST_PAIRS, order, |overlap| {
-                if !blocks.contains(&(overlap.first, overlap.second)) {
+            each_overlap(boxes, allowed, MOST_PAIRS, sweep, |overlap| {
+                let (a, b) = (overlap.first, overlap.second);
+                let joined = blocks.contains(&(a, b)) || crowd.as_ref().is_some_and(|crowd| crowd.joins(a, b));
+                if !joined {
                     each(Meeting::Blocks(overlap.first, overlap.second), overlap.depth);
                 }
             });

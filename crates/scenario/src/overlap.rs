@@ -208,24 +208,62 @@ fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
 /// Most pairs that are checked; in a larger heap of blocks only what was found counts.
 const MOST_PAIRS: usize = 1_000_000;
 
+/// Memory for [`each_overlap`].
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Sweep {
+    /// Of each outline, from where to where it extends along x and y.
+    spans: Vec<[[f64; 2]; 2]>,
+    order: Vec<usize>,
+}
+
+/// From so many outlines on the sweep is along y where they are spread further along that: in a
+/// tower all are neighbours along x.
+const CHOOSES: usize = 200;
+
+impl Sweep {
+    pub(crate) fn with_capacity(outlines: usize) -> Self {
+        Self { spans: Vec::with_capacity(outlines), order: Vec::with_capacity(outlines) }
+    }
+
+    /// Places the outlines, in the order in which they begin along an axis, which is returned.
+    fn prepare(&mut self, boxes: &[PlacedOutline]) -> usize {
+        let Self { spans, order } = self;
+        spans.clear();
+        spans.extend(boxes.iter().map(|of| [of.projection([1.0, 0.0]), of.projection([0.0, 1.0])]));
+        let extent = |axis: usize| {
+            let low = spans.iter().map(|span| span[axis][0]).fold(f64::INFINITY, f64::min);
+            let high = spans.iter().map(|span| span[axis][1]).fold(f64::NEG_INFINITY, f64::max);
+            high - low
+        };
+        let axis = usize::from(boxes.len() > CHOOSES && extent(1) > extent(0));
+        order.clear();
+        order.extend(0..boxes.len());
+        order.sort_unstable_by(|&a, &b| spans[a][axis][0].total_cmp(&spans[b][axis][0]).then(a.cmp(&b)));
+        axis
+    }
+}
+
 /// Passes all pairs that overlap by more than both allow, m, to `each`, checking at most `most`
-/// pairs of neighbours along x; `order` is a buffer.
+/// pairs of neighbours; `sweep` is a buffer.
 pub(crate) fn each_overlap(
     boxes: &[PlacedOutline],
     allowed: impl Fn(usize) -> f64,
     most: usize,
-    order: &mut Vec<usize>,
+    sweep: &mut Sweep,
     mut each: impl FnMut(Overlap),
 ) {
-    // Sorted by their left ends, as only neighbours along x can overlap.
-    let left = |k: usize| boxes[k].projection([1.0, 0.0])[0];
-    let right = |k: usize| boxes[k].projection([1.0, 0.0])[1];
-    order.clear();
-    order.extend(0..boxes.len());
-    order.sort_unstable_by(|&a, &b| left(a).total_cmp(&left(b)).then(a.cmp(&b)));
+    // Sorted by their beginnings, as only neighbours can overlap.
+    let axis = sweep.prepare(boxes);
+    let Sweep { spans, order } = sweep;
+    let begins = |k: usize, axis: usize| spans[k][axis][0];
+    let ends = |k: usize, axis: usize| spans[k][axis][1];
+    let across = 1 - axis;
     let mut pairs = 0;
     for (place, &a) in order.iter().enumerate() {
-        for &b in order[place + 1..].iter().take_while(|&&b| left(b) < right(a)) {
+        for &b in order[place + 1..].iter().take_while(|&&b| begins(b, axis) < ends(a, axis)) {
+            if begins(b, across) > ends(a, across) || begins(a, across) > ends(b, across) {
+                continue;
+            }
             pairs += 1;
             let depth = boxes[a].depth(&boxes[b]);
             if depth > allowed(a).min(allowed(b)) {
@@ -246,7 +284,7 @@ pub(crate) fn deepest_overlap(boxes: &[PlacedOutline], tolerance: f64) -> Option
         boxes,
         |k| tolerance * boxes[k].largest_side(),
         MOST_PAIRS,
-        &mut Vec::new(),
+        &mut Sweep::default(),
         |overlap| {
             if deepest.is_none_or(|known| overlap.depth > known.depth) {
                 deepest = Some(overlap);
@@ -308,6 +346,26 @@ mod tests {
             assert!((by_corners.depth(&still) - still.depth(&by_sides)).abs() < 1e-14);
             assert!((by_corners.depth_of([0.9, 0.8]) - by_sides.depth_of([0.9, 0.8])).abs() < 1e-14);
         }
+    }
+
+    /// So many that the sweep may be along either axis: the same pairs are found.
+    #[test]
+    fn a_tower_has_the_overlaps_of_a_row() {
+        let (mut row, mut tower) = (Vec::new(), Vec::new());
+        for k in 0..2 * CHOOSES {
+            // Every third one is too near to the one before.
+            let along = 2.0 * k as f64 - if k % 3 == 2 { 0.1 } else { 0.0 };
+            row.push(square(along, 0.0, 0.0));
+            tower.push(square(0.0, along, 0.0));
+        }
+        let found = |boxes: &[PlacedOutline]| {
+            let mut found = Vec::new();
+            each_overlap(boxes, |_| 1e-9, MOST_PAIRS, &mut Sweep::default(), |of| found.push((of.first, of.second)));
+            found
+        };
+        let pairs: Vec<_> = (0..2 * CHOOSES).filter(|k| k % 3 == 2).map(|k| (k - 1, k)).collect();
+        assert_eq!(found(&row), pairs);
+        assert_eq!(found(&tower), pairs);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use crate::left_out::left_out;
 use crate::mesh_error::{self, MeshComparison};
-use crate::output_size::{OutputSize, expected_seconds};
+use crate::output_size::{OutputSize, expected_memory, expected_seconds};
 use crate::required::Removed;
 use crate::resolve::Resolved;
 use crate::scene::{BeamScene, BlockScene, Placement, Scene};
@@ -100,6 +100,8 @@ pub struct Preview {
     pub dofs: usize,
     /// Estimated time of the run, s.
     pub seconds: f64,
+    /// Estimated memory of the run, bytes, if it has very many contacts.
+    pub memory: Option<f64>,
     /// Estimated size of its tables.
     pub volume: OutputSize,
     /// First frequencies of blocks and beams coupled, about a static start in which all blocks
@@ -153,6 +155,7 @@ impl Preview {
             on_sides: (0..scene.contacts.len()).filter(|k| simulation.layout.required.sides(scene, *k)).collect(),
             dofs: simulation.dofs(),
             seconds: expected_seconds(scene, beams.iter().map(|beam| beam.dofs).sum()),
+            memory: expected_memory(scene),
             volume: OutputSize::of(scene),
             coupled_frequencies: coupled_frequencies(scene, simulation),
             left_out: left_out(scene),

@@ -127,6 +127,10 @@ impl Required {
     /// The required parts of the scene, from its initial state (q, v) in the full model.
     pub(crate) fn of(scene: &Scene, layout: &Layout, model: &Model<2>, q: &[f64], v: &[f64]) -> Self {
         let mut required = Self { extent: Extent::Required, ..Self::all(scene) };
+        // Blocks of a crowd may be anywhere, as any of them may be pushed by others.
+        if scene.crowd.is_some() {
+            return required;
+        }
         let start = InitialMotion { scene, layout, model, q, v };
         let rests: Vec<Option<BeamAtRest>> =
             (0..scene.beams.len()).map(|k| BeamAtRest::of(&start, k, scene.time.steps())).collect();

@@ -5,8 +5,10 @@ mod beam_output;
 mod beams;
 mod blocks;
 mod contacts;
+mod crowd;
 mod faces;
 mod ground;
+mod many;
 mod motions;
 pub(crate) mod names;
 mod outlines;
@@ -22,7 +24,7 @@ use std::collections::BTreeMap;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::document::Document;
-use crate::scene::{ContactScene, Scene, SolverScene, SupportingBody};
+use crate::scene::{ContactScene, Scene, SolverScene, SupportingBody, Time};
 use crate::scene_checks;
 use crate::value::Value;
 use crate::words::Word;
@@ -75,6 +77,11 @@ pub fn resolve(mut document: Document, stem: &str, read: &mut ReadFile<'_>) -> R
                     errors.push(document.error(path, error.to_string(), "give the key in the scene"));
                 }
             }
+            if let Some(every) = scene.every.filter(|_| !document.is_given("output.every"))
+                && let Err(error) = document.set("output.every", Value::Number(every))
+            {
+                errors.push(document.error("output.every", error.to_string(), "give the key in the scene"));
+            }
             // The written scene names the chosen scheme, so that running it gives the same result.
             if document.text("time.scheme") != Some(scene.time.scheme.word())
                 && let Err(error) = document.set("time.scheme", Value::Text(scene.time.scheme.word().to_owned()))
@@ -88,7 +95,8 @@ pub fn resolve(mut document: Document, stem: &str, read: &mut ReadFile<'_>) -> R
             if errors.is_empty() {
                 let findings = scene_checks::check(&scene, &document);
                 warnings.extend(findings.warnings);
-                let (foreseen, notes) = (findings.foreseen, findings.notes);
+                let (foreseen, mut notes) = (findings.foreseen, findings.notes);
+                notes.extend(fewer_rows(&scene, &document));
                 return Ok(Resolved { scene, document, warnings, foreseen, notes, files });
             }
         }
@@ -163,6 +171,14 @@ impl<'a, 'f> Resolver<'a, 'f> {
         let numbered = |group| doc.names(group).into_iter().zip(0..).collect();
         let block_names = BlockName::all(doc);
         let mut errors = Vec::new();
+        let copies = |key: &str| doc.integer(key).and_then(|count| u64::try_from(count).ok()).unwrap_or(1);
+        for table in doc.names("block") {
+            let [count, rows] = ["count", "rows"].map(|key| copies(&format!("block.{table}.repeat.{key}")));
+            if count * rows > names::MOST_COPIES as u64 {
+                let rule = format!("{rows} rows of {count} blocks are more than {}, the limit", names::MOST_COPIES);
+                errors.push(doc.error(&format!("block.{table}.repeat.rows"), rule, "use fewer rows or shorter ones"));
+            }
+        }
         let blocks = names::numbered(&block_names, |block| {
             let rule = format!("there are two blocks `{}`: one from its own table, one from repeat", block.name);
             errors.push(doc.error(&format!("block.{}", block.table), rule, "give one of them another name"));
@@ -237,12 +253,13 @@ impl<'a, 'f> Resolver<'a, 'f> {
         if self.mesh_sizes(&beams) {
             beams.iter_mut().flatten().for_each(|beam| self.assembled(beam));
         }
-        let (contacts, joined) = self.contacts();
+        let (contacts, joined, crowd) = self.contacts();
         self.contacts_fit_memory(&contacts);
         let names = self.block_names.clone();
         let blocks: Vec<_> = names.iter().map(|name| self.block(name, &beams, &contacts, &joined, &signals)).collect();
         self.check_support_cycles(&blocks);
         self.check_contacts_can_move(&blocks, &contacts);
+        self.check_crowd(crowd.as_ref(), &blocks, &beams);
         self.check_static_starts_beside_profile(&ground, &beams, &blocks, &contacts);
         let forces: Vec<_> = doc.names("force").into_iter().map(|name| self.force(name, &signals)).collect();
         let loads: Vec<_> = doc.names("load").into_iter().map(|name| self.load(name, &beams, &signals)).collect();
@@ -251,11 +268,12 @@ impl<'a, 'f> Resolver<'a, 'f> {
         }
         let time = self.time(&blocks, &beams);
         if let Some(time) = &time {
-            self.check_contact_laws(time.scheme, &contacts, &beams);
+            self.check_contact_laws(time.scheme, &contacts, crowd.as_ref(), &beams);
             self.check_table_covers_run(&signals, time.steps() as f64 * time.step);
         }
         let solver = self.solver();
-        let every = doc.quantity("output.every");
+        let thinned = |time: &Time| output_size::thinned(self.block_names.len(), time.steps(), time.step);
+        let every = doc.quantity("output.every").or_else(|| time.as_ref().and_then(thinned));
         let mut scene = Scene {
             title,
             time: time?,
@@ -264,6 +282,7 @@ impl<'a, 'f> Resolver<'a, 'f> {
             beams: beams.into_iter().collect::<Option<_>>()?,
             blocks: blocks.into_iter().collect::<Option<_>>()?,
             contacts: contacts.into_iter().collect::<Option<_>>()?,
+            crowd,
             signals: signals.into_iter().collect::<Option<_>>()?,
             forces: forces.into_iter().collect::<Option<_>>()?,
             loads: loads.into_iter().collect::<Option<_>>()?,
@@ -360,15 +379,15 @@ impl<'a, 'f> Resolver<'a, 'f> {
     }
 
     /// Refuses scenes whose dense operator would take too much memory, as the run would be killed
-    /// without a message.
+    /// without a message. Only contacts on beams all feel each other: those of blocks on the ground
+    /// and with each other are solved by islands and by neighbours.
     fn contacts_fit_memory(&mut self, contacts: &[Option<ContactScene>]) {
-        // In a plane only few of the blocks touch each other at a time.
-        let between = contacts.iter().flatten().filter(|contact| contact.other_block().is_some()).count();
-        let pairs = contacts.len() - between + between.min(3 * self.block_names.len());
+        let at_beam = |contact: &&ContactScene| matches!(contact.surface, SupportingBody::Beam(_));
+        let pairs = contacts.iter().flatten().filter(at_beam).count();
         let most = output_size::operator_bytes(2 * pairs);
         if most > output_size::MOST_OPERATOR_BYTES {
             let rule = format!(
-                "{pairs} contacts of blocks, with two corners each, need {} of memory for their operator, over the limit of {}",
+                "{pairs} contacts of blocks with beams, with two corners each, need {} of memory for their operator, over the limit of {}",
                 wording::bytes(most),
                 wording::bytes(output_size::MOST_OPERATOR_BYTES)
             );
@@ -400,6 +419,15 @@ impl<'a, 'f> Resolver<'a, 'f> {
             require_convergence: doc.flag("solver.require_convergence").unwrap_or(false),
         })
     }
+}
+
+/// Tells that rows are thinned because of the many blocks.
+fn fewer_rows(scene: &Scene, document: &Document) -> Option<Diagnostic> {
+    let every = scene.every.filter(|_| !document.is_given("output.every"))?;
+    let contacts = if scene.crowd.is_some() { ", and contacts.csv has only contacts that act" } else { "" };
+    let rule = format!("{} blocks, so that the tables have a row only every {every:e} s{contacts}", scene.blocks.len());
+    let remedy = format!("give every = \"{:e} s\" in [output] for a row every step", scene.time.step);
+    Some(document.error("output.every", rule, remedy).as_note())
 }
 
 /// Names in a message, only the first ones if there are many.

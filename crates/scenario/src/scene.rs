@@ -1,10 +1,12 @@
 //! A resolved scene: plain SI numbers, checked references, all defaults filled in.
 
 mod beam_output;
+mod crowd;
 mod history;
 mod reduction;
 
 pub use beam_output::{BEAM_QUANTITIES, BeamOutput, BeamQuantity};
+pub use crowd::{Crowd, CrowdContact};
 pub use history::{AxisScene, ForceScene, History, LoadKind, LoadScene, MotionScene, RecordScene, SignalScene};
 pub use reduction::Reduction;
 
@@ -28,8 +30,10 @@ pub struct Scene {
     pub beams: Vec<BeamScene>,
     /// The blocks, in the order of the file.
     pub blocks: Vec<BlockScene>,
-    /// The contacts, in the order of the file.
+    /// The contacts, in the order of the file, but for those of a [crowd](Self::crowd).
     pub contacts: Vec<ContactScene>,
+    /// The contacts between blocks that are not listed because there are so many of them.
+    pub crowd: Option<Crowd>,
     /// The signals, in the order of the file.
     pub signals: Vec<SignalScene>,
     /// The forces on blocks, in the order of the file.

@@ -5,11 +5,11 @@ use crate::diagnostic::Diagnostic;
 use crate::document::Document;
 use crate::mesh_error::{self, MeshComparison};
 use crate::resolve::names::table_of;
-use crate::scene::{BeamScene, BlockScene, ContactScene, Placement, Scene, SupportingBody};
+use crate::scene::{BeamScene, BlockScene, Placement, Scene, SupportingBody};
 use crate::{deflection, flexibility, preview, rocking, signal_resolution, stable_step, swing, unused_keys, wording};
 use std::f64::consts::{PI, TAU};
 use teeter_beam::{Axial, Beam, Digits, MatrixWeights};
-use teeter_integrator::ImpactLaw;
+use teeter_integrator::{ImpactLaw, PairLaw};
 
 /// Findings of the checks.
 #[derive(Debug, Default)]
@@ -88,7 +88,16 @@ pub(crate) fn check(scene: &Scene, document: &Document) -> SceneFindings {
     }
     findings.foreseen.extend(swing::coarse(scene, document));
     findings.warnings.extend(loosely_solved(scene, document));
-    findings.warnings.extend(scene.contacts.iter().filter_map(|contact| resolved_in_time(contact, scene, document)));
+    findings.warnings.extend(scene.contacts.iter().filter_map(|contact| {
+        resolved_in_time(&contact.name, &contact.law, scene.blocks[contact.block].mass(), scene, document)
+    }));
+    for (number, contact) in scene.crowd.iter().flat_map(|crowd| crowd.contacts().iter().enumerate()) {
+        // The lightest block stays in contact for the shortest time.
+        let takes_part = |block: &usize| scene.crowd.as_ref().is_some_and(|of| of.takes_part(*block, Some(number)));
+        let masses = (0..scene.blocks.len()).filter(takes_part).map(|block| scene.blocks[block].mass());
+        let lightest = masses.fold(f64::INFINITY, f64::min);
+        findings.warnings.extend(resolved_in_time(&contact.name, &contact.law, lightest, scene, document));
+    }
     findings
 }
 
@@ -233,7 +242,7 @@ const LOOSE: f64 = 1e-4;
 /// Warns of a solver tolerance too loose to solve contacts properly.
 fn loosely_solved(scene: &Scene, document: &Document) -> Option<Diagnostic> {
     let tolerance = scene.solver.tolerance;
-    if tolerance <= LOOSE || scene.contacts.is_empty() {
+    if tolerance <= LOOSE || (scene.contacts.is_empty() && scene.crowd.is_none()) {
         return None;
     }
     let rule =
@@ -248,9 +257,8 @@ const STEPS_A_CONTACT: f64 = 20.0;
 /// Warns of a compliant contact that the step doesn't resolve. On a spring k a mass m stays for
 /// half a period, π√(m/k); for a force k δⁿ the spring is linearised at the depth at which the
 /// contact carries the block.
-fn resolved_in_time(contact: &ContactScene, scene: &Scene, document: &Document) -> Option<Diagnostic> {
-    let mass = scene.blocks[contact.block].mass();
-    let spring = match contact.law.impact {
+fn resolved_in_time(name: &str, law: &PairLaw, mass: f64, scene: &Scene, document: &Document) -> Option<Diagnostic> {
+    let spring = match law.impact {
         ImpactLaw::KelvinVoigt { stiffness, .. } => stiffness,
         ImpactLaw::HuntCrossley { stiffness, exponent, .. } => {
             let weight = mass * scene.gravity[0].hypot(scene.gravity[1]);
@@ -267,7 +275,7 @@ fn resolved_in_time(contact: &ContactScene, scene: &Scene, document: &Document) 
          not resolved"
     );
     let remedy = format!("use a step of at most {:.0e} s, or a softer contact", half_period / STEPS_A_CONTACT);
-    Some(document.error(&format!("contact.{}.stiffness", contact.name), rule, remedy).as_warning())
+    Some(document.error(&format!("contact.{name}.stiffness"), rule, remedy).as_warning())
 }
 
 /// Warns of a step too coarse for the motion in contact. The time scales are those of the model: a
@@ -284,10 +292,14 @@ fn step(scene: &Scene, document: &Document) -> Option<Diagnostic> {
             shortest = Some((time, what));
         }
     };
+    let rocks = |block: &BlockScene, enter: &mut dyn FnMut(f64, String)| {
+        let time = (4.0 * block.radius() / (3.0 * gravity)).sqrt();
+        enter(time, format!("the rocking time sqrt(4R/3g) of `{}`", block.name));
+    };
+    let of_crowd = |block: &usize| scene.crowd.as_ref().is_some_and(|crowd| crowd.takes_part(*block, None));
+    (0..scene.blocks.len()).filter(of_crowd).for_each(|block| rocks(&scene.blocks[block], &mut enter));
     for contact in &scene.contacts {
-        let block = &scene.blocks[contact.block];
-        let radius = block.radius();
-        enter((4.0 * radius / (3.0 * gravity)).sqrt(), format!("the rocking time sqrt(4R/3g) of `{}`", block.name));
+        rocks(&scene.blocks[contact.block], &mut enter);
         if let SupportingBody::Beam(number) = contact.surface {
             let beam = &scene.beams[number];
             let period = stable_step::first_frequency(&beam.spec).map_or(f64::NAN, |(omega, _)| TAU / omega);

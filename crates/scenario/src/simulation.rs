@@ -6,7 +6,7 @@ use crate::opening::{OPEN_GAP, openings};
 use crate::overlap::{Outline, Overlap, PlacedOutline, deepest_overlap};
 use crate::placement::PlacementError;
 use crate::required::{Extent, Required, RestingBody};
-use crate::scene::{BlockScene, Scene, SchemeName, SupportingBody, Time};
+use crate::scene::{BlockScene, Crowd, Scene, SchemeName, SupportingBody, Time};
 use crate::static_start::{InitialConfiguration, StaticStart};
 use crate::tilt_reference::{TiltReference, tilt_references};
 use nalgebra::Vector2;
@@ -15,8 +15,8 @@ use std::sync::Arc;
 use teeter_beam::{BeamError, ModalError};
 use teeter_contact::ContactSolver;
 use teeter_detect::{
-    BodyId, ContactDetector, OnSide, PointDetector, PointPair, ProfilePair, Shape, ShapeDetector, ShapeError,
-    ShapePair, SidePair, SurfacePair, WiringError,
+    BodyId, ContactDetector, Groups, LawId, OnSide, PointDetector, PointPair, ProfilePair, Shape, ShapeDetector,
+    ShapeError, ShapePair, SidePair, SurfacePair, WiringError,
 };
 use teeter_integrator::{
     Account, BeamFace, Block, Ended, EventDriven, EventDrivenSettings, GeneralizedAlpha, GeneralizedAlphaSettings,
@@ -27,7 +27,7 @@ use teeter_integrator::{
 };
 use teeter_rigid::RigidError;
 
-pub use crate::layout::{BeamPlace, BlockPlace, ContactPoint, Layout, PairPlace};
+pub use crate::layout::{BeamPlace, BlockPlace, ContactNames, ContactPoint, CrowdPlace, Layout, PairPlace, PointName};
 
 /// Why the model of a scene can't be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -387,7 +387,8 @@ fn lay_out(scene: &Scene, beams: &[BeamModel], assembled: &Assembled, required: 
         on_profile: contact.surface == SupportingBody::Ground && ground_profile::of(scene).is_some(),
         on_sides: contact.sides,
     });
-    Layout { blocks, beams: beams.collect(), pairs: pairs.collect(), ground, openings: openings(scene), required }
+    let (crowd, openings) = (CrowdPlace::of(scene), openings(scene));
+    Layout { blocks, beams: beams.collect(), pairs: pairs.collect(), crowd, ground, openings, required }
 }
 
 /// The model of the required parts of a scene.
@@ -446,10 +447,25 @@ fn assemble(
             pairs.points.push(PointPair { pair, law, points, body, surface, kinematics });
         }
     }
+    if let Some(crowd) = &scene.crowd {
+        let laws: Vec<LawId> = crowd.contacts().iter().map(|contact| parts.law(contact.law)).collect();
+        pairs.groups = Some((groups(crowd, &laws, &all_blocks)?, scene.contacts.len() as u32));
+    }
     let shapes = |block: usize| (all_blocks.nth_body(block as u32), blocks[block].shapes.as_slice());
     let on_profile = profile.map(|profile| (profile, on_profile));
     let model = parts.build(detector(pairs, on_profile, (0..blocks.len()).map(shapes))?)?;
     Ok(Assembled { model, blocks: all_blocks, beams: surfaces, ground })
+}
+
+/// The blocks of a crowd, with the laws of its contacts.
+fn groups(crowd: &Crowd, laws: &[LawId], blocks: &PartPlace) -> Result<Groups, WiringError> {
+    let body = |block: usize| blocks.nth_body(block as u32);
+    let members = crowd.classes().iter().enumerate().map(|(block, class)| (body(block), *class)).collect();
+    let law = |a: usize, b: usize| crowd.holder(a, b).map(|contact| laws[contact]);
+    let count = crowd.class_count();
+    let table = (0..count).map(|a| (0..count).map(|b| law(a, b)).collect()).collect();
+    let apart: Vec<[BodyId; 2]> = crowd.apart().map(|pair| pair.map(body)).collect();
+    Ok(Groups::new(members, table)?.without(&apart))
 }
 
 /// The pairs that a detector looks at.
@@ -463,6 +479,8 @@ pub(crate) struct Pairs {
     pub(crate) shapes: Vec<ShapePair>,
     /// Sides of blocks against beams; their corners have a pair of the same number.
     pub(crate) sides: Vec<SidePair>,
+    /// Blocks of which any two can touch, and the number of their first pair.
+    pub(crate) groups: Option<(Groups, u32)>,
 }
 
 /// The detector for contacts of blocks with surfaces, by corners and sides, with ground that has a profile, and with each
@@ -474,7 +492,8 @@ pub(crate) fn detector<'a>(
 ) -> Result<Box<dyn ContactDetector<2>>, BuildError> {
     let points = PointDetector::new(pairs.points);
     let on_profile = on_profile.filter(|(_, pairs)| !pairs.is_empty());
-    if pairs.shapes.is_empty() && pairs.surfaces.is_empty() && pairs.sides.is_empty() && on_profile.is_none() {
+    let none_listed = pairs.shapes.is_empty() && pairs.surfaces.is_empty() && pairs.sides.is_empty();
+    if none_listed && on_profile.is_none() && pairs.groups.is_none() {
         return Ok(Box::new(points));
     }
     let of_pairs = pairs.shapes.iter().flat_map(|pair| pair.bodies);
@@ -482,12 +501,17 @@ pub(crate) fn detector<'a>(
     let beside = pairs.sides.iter().map(|pair| pair.body);
     let paired: BTreeSet<BodyId> =
         of_pairs.chain(pairs.surfaces.iter().map(|pair| pair.body)).chain(beside).chain(grounded).collect();
-    let shapes = shapes.filter(|(body, _)| paired.contains(body));
+    let all = pairs.groups.is_some();
+    let shapes = shapes.filter(|(body, _)| all || paired.contains(body));
     let shapes = shapes.flat_map(|(body, shapes)| shapes.iter().map(move |shape| (body, shape.clone())));
     let detector = ShapeDetector::new(shapes.collect(), pairs.shapes)?;
     let detector = detector.with_points(points).with_surfaces(pairs.surfaces)?.with_sides(pairs.sides)?;
-    Ok(Box::new(match on_profile {
+    let detector = match on_profile {
         Some((profile, pairs)) => detector.with_profile(profile.clone(), pairs)?,
+        None => detector,
+    };
+    Ok(Box::new(match pairs.groups {
+        Some((groups, first)) => detector.with_groups(groups, first)?,
         None => detector,
     }))
 }
@@ -541,11 +565,10 @@ fn check_start(scene: &Scene, model: &Model<2>, layout: &Layout, q: &[f64]) -> R
     model.candidates(q, 0.0, &mut candidates)?;
     for candidate in &candidates {
         let pair = candidate.id.pair() as usize;
-        let contact = &scene.contacts[pair];
-        // Blocks are compared as a whole.
-        if contact.other_block().is_some() {
+        // Blocks are compared as a whole, and so are those of a crowd.
+        let Some(contact) = scene.contacts.get(pair).filter(|contact| contact.other_block().is_none()) else {
             continue;
-        }
+        };
         let block = &scene.blocks[contact.block];
         let tolerance = START_TOLERANCE * block.width.max(block.height);
         if -candidate.gap > tolerance {

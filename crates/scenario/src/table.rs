@@ -362,6 +362,8 @@ pub static TABLES: &[TableSchema] = &[
         keys: &[
             key("count", Kind::Integer { min: 1, max: 10_000 }, Required, "20", "Number of blocks."),
             key("shift", Kind::Pair(Dimension::LENGTH, Range::ANY), Default("[\"0 m\", \"0 m\"]"), "[\"8 cm\", \"0 cm\"]", "Distance from one to the next; only along x if they stand on something; if stacked, along the upper side of the one before, from its midpoint."),
+            key("rows", Kind::Integer { min: 1, max: 10_000 }, Default("1"), "12", "Number of rows, each of `count` blocks; they are numbered row after row."),
+            key("row_shift", Kind::Pair(Dimension::LENGTH, Range::ANY), Default("[\"0 m\", \"0 m\"]"), "[\"0 cm\", \"10 cm\"]", "Distance from one row to the next."),
             key("turn", ANGLE, Optional, "\"6.6667 deg\"", "Angle from one voussoir to the next, about the centre of their arch, counter-clockwise positive."),
             key("stacked", Kind::Flag, Default("false"), "true", "Whether each stands flat on the one before, and the first on the body given by `on`."),
         ],
@@ -371,7 +373,7 @@ pub static TABLES: &[TableSchema] = &[
         occurrence: Occurrence::Named,
         doc: "Contact of a block with a beam, with the ground or with another block, with impact and friction. Bodies without a contact pass through each other.",
         keys: &[
-            key("between", Kind::PatternPair, RequiredWithout("materials"), "[\"rocker\", \"table\"]", "Two blocks, or a block and the beam or `ground` that it touches, in either order. Forces and velocities in the tables are those on the block; between two, on the first. A `*` in a name stands for any characters, a `?` for one: [\"brick-*\", \"brick-*\"] is for all pairs of bodies with such names, [\"*\", \"*\"] for all that can touch. Of several contacts that are for a pair the one with full names holds, else that with the most letters in its patterns, else that by materials, else [\"*\", \"*\"]."),
+            key("between", Kind::PatternPair, RequiredWithout("materials"), "[\"rocker\", \"table\"]", "Two blocks, or a block and the beam or `ground` that it touches, in either order. Forces and velocities in the tables are those on the block; between two, on the first. A `*` in a name stands for any characters, a `?` for one: [\"brick-*\", \"brick-*\"] is for all pairs of bodies with such names, [\"*\", \"*\"] for all that can touch. Patterns may match any number of pairs of up to 32 768 blocks; from 400 on, the first of two is the one that comes first in the file. Of several contacts that are for a pair the one with full names holds, else that with the most letters in its patterns, else that by materials, else [\"*\", \"*\"]."),
             key("materials", Kind::NamePair, Optional, "[\"granite\", \"steel\"]", "Two materials instead of two bodies: for all pairs of blocks and beams of these materials."),
             key("friction", Kind::Number(Range::NOT_NEGATIVE), Required, "0.5", "Coefficient of Coulomb friction."),
             key("restitution", Kind::Number(Range::UNIT), Default("0.0"), "0.0", "Coefficient of restitution: of the normal velocity, or with poisson of the normal impulse.").only_with("law", IMPACTS),
@@ -442,6 +444,6 @@ pub static TABLES: &[TableSchema] = &[
         pattern: "output",
         occurrence: Occurrence::Always,
         doc: "Output of results.",
-        keys: &[key("every", TIME, Optional, "\"1 ms\"", "Time between rows; if left out, every step up to 10 000 rows, evenly thinned beyond.")],
+        keys: &[key("every", TIME, Optional, "\"1 ms\"", "Time between rows; if left out, every step up to 10 000 rows, evenly thinned beyond; with more than 300 blocks up to 200 000 rows divided by their number, but at least 100.")],
     },
 ];

@@ -30,11 +30,13 @@ pub(crate) fn tilt_references(scene: &Scene, blocks: &[BlockPlace], slope: Optio
         (None, Some(ground)) if ground.incline != 0.0 => TiltReference::Incline(ground.incline),
         _ => TiltReference::Level,
     };
+    let mut first: Vec<Option<SupportingBody>> = vec![None; scene.blocks.len()];
+    for contact in &scene.contacts {
+        first[contact.block].get_or_insert(contact.surface);
+    }
     let support = |(number, placement): (usize, &Placement)| match placement {
         Placement::On { support, .. } => Some(*support),
-        Placement::Free { .. } => {
-            scene.contacts.iter().find(|contact| contact.block == number).map(|contact| contact.surface)
-        }
+        Placement::Free { .. } => first[number],
     };
     let on_profile = |block: usize| {
         let under = ground_profile::slope_under(scene.ground.as_ref()?, &scene.blocks[block])?;

@@ -2,7 +2,7 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;
-use crate::scene::{LoadKind, Scene};
+use crate::scene::{Crowd, LoadKind, Scene};
 use crate::source::Origin;
 use std::collections::BTreeSet;
 
@@ -53,9 +53,11 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
         );
         idle(&format!("load.{}.at", load.name), rule, "check where it starts, and the sign of its speed");
     }
-    for contact in scene.contacts.iter().filter(|contact| contact.law.friction == 0.0).take(LISTED) {
-        let path = format!("contact.{}.tangential_restitution", contact.name);
-        if contact.law.tangential_restitution > 0.0 {
+    let of_crowd = scene.crowd.iter().flat_map(Crowd::contacts).map(|contact| (&contact.name, &contact.law));
+    let contacts = scene.contacts.iter().map(|contact| (&contact.name, &contact.law)).chain(of_crowd);
+    for (name, law) in contacts.filter(|(_, law)| law.friction == 0.0).take(LISTED) {
+        let path = format!("contact.{name}.tangential_restitution");
+        if law.tangential_restitution > 0.0 {
             let rule = "no effect: without friction the tangential velocity can't be reversed".to_owned();
             idle(&path, rule, "add friction, or leave it out");
         }

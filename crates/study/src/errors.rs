@@ -170,13 +170,23 @@ pub struct ErrorNorms {
     shortest: f64,
 }
 
+/// The block of each contact, by the numbers of [`Layout`](teeter_scenario::simulation::Layout): of
+/// many pairs of a crowd that share a name, the first that takes part.
+fn owners(scene: &Scene) -> Vec<usize> {
+    let of_crowd = scene.crowd.iter().flat_map(|crowd| {
+        let first = |contact: usize| (0..scene.blocks.len()).find(|block| crowd.takes_part(*block, Some(contact)));
+        (0..crowd.contacts().len()).map(move |contact| first(contact).unwrap_or_default())
+    });
+    scene.contacts.iter().map(|contact| contact.block).chain(of_crowd).collect()
+}
+
 impl ErrorNorms {
     /// For motions of a scene, over all samples.
     #[must_use]
     pub fn new(scene: &Scene, sampling: Sampling) -> Self {
         Self {
             sides: scene.blocks.iter().map(|block| block.width.max(block.height)).collect(),
-            owners: scene.contacts.iter().map(|contact| contact.block).collect(),
+            owners: owners(scene),
             sampling,
             samples: sampling.count,
             shortest: SAME_IMPACT * scene.time.end,

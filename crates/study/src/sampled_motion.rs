@@ -76,6 +76,7 @@ pub struct SampledMotion {
 /// The observer that fills a [`SampledMotion`].
 #[derive(Debug)]
 pub(crate) struct Sampler<'a> {
+    layout: &'a Layout,
     sampling: Sampling,
     cancel: &'a AtomicBool,
     blocks: usize,
@@ -103,13 +104,14 @@ impl<'a> Sampler<'a> {
         let watched = |place: &'a BeamPlace| {
             (place, watched_places(place).into_iter().map(|x| place.beam.shape_clamped(x)).collect())
         };
-        let pairs = layout.pairs.len();
+        let pairs = layout.contact_names().count();
         Self {
             sampling,
+            layout,
             cancel,
             blocks: layout.blocks.len(),
             watched: layout.beams.iter().map(watched).collect(),
-            contacts: layout.pairs.iter().map(|pair| pair.name.as_str()).collect(),
+            contacts: layout.contact_names().collect(),
             before: LastStep { impulses: vec![0.0; pairs], now: vec![0.0; pairs], ..LastStep::default() },
             bounces: Bounces::default(),
             motion: SampledMotion { impacts: vec![Vec::new(); pairs], ..SampledMotion::default() },
@@ -237,7 +239,9 @@ impl Observer<2> for Sampler<'_> {
     ) -> Result<ControlFlow<()>, ObserverError> {
         self.bounces.enter(model, step);
         for contact in step.contacts() {
-            self.before.now[contact.id.pair() as usize] += contact.p[0];
+            if let Some(number) = self.layout.contact_number(contact.id) {
+                self.before.now[number] += contact.p[0];
+            }
         }
         let (start, h) = (self.before.t, state.t - self.before.t);
         while self.motion.samples < self.sampling.count {

@@ -113,7 +113,7 @@ fn bodies(layout: &Layout) -> Vec<(String, usize)> {
 }
 
 fn contacts(layout: &Layout) -> Vec<String> {
-    layout.pairs.iter().map(|pair| pair.name.clone()).collect()
+    layout.contact_names().map(str::to_owned).collect()
 }
 
 fn told(bodies: &[(String, usize)]) -> String {

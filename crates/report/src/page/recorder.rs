@@ -215,7 +215,8 @@ impl PageRecorder {
                 // Impulses are those of the whole step; what a contact does in it is what it does
                 // in its last part.
                 let does = if part.is_last_lasting { contact.state() } else { ContactState::Open };
-                let curve = self.scenery.contacts[pair].first + point;
+                let Some(drawn) = self.scenery.contacts.get(pair) else { continue };
+                let curve = drawn.first + point;
                 self.kept.curves.add(curve, [contact.p[0], contact.p[1]], does);
             }
         }
@@ -229,7 +230,7 @@ impl PageRecorder {
             if self.kept.impacts.len() >= MARKED_IMPACTS {
                 continue;
             }
-            let block = self.scenery.contacts[pair].block;
+            let Some(block) = self.scenery.contacts.get(pair).map(|contact| contact.block) else { continue };
             let before = step.phases().next().map_or(state.v.as_slice(), |first| first.v[0]);
             self.kept.impacts.push(ImpactMark {
                 t: *t,

@@ -129,6 +129,10 @@ fn short(corner: &str) -> String {
     }
 }
 
+/// Most points of contacts that are drawn one by one: of more nobody could tell whose curve is
+/// whose, and the page would be large.
+const MOST_POINTS: usize = 2000;
+
 /// Pieces of a beam's line: enough that the eye sees a curve.
 const PIECES: usize = 40;
 
@@ -176,7 +180,9 @@ impl Scenery {
         let profile = profile.map(|profile| profile.points().map(|point| [point.x, point.y]).collect());
         let profile: Vec<[f64; 2]> = profile.unwrap_or_default();
         let mut points = 0;
-        let contacts = scene.contacts.iter().zip(&layout.pairs).map(|(contact, pair)| {
+        let all: usize = layout.pairs.iter().map(|pair| pair.points.len()).sum();
+        let shown = if all > MOST_POINTS { 0 } else { scene.contacts.len() };
+        let contacts = scene.contacts.iter().zip(&layout.pairs).take(shown).map(|(contact, pair)| {
             let drawn = pair.points.iter().map(|point| PointDrawn {
                 label: point.name.replace(['-', '.'], " "),
                 block: point.block,

@@ -2,7 +2,6 @@
 
 use super::{Kept, Recorder};
 use crate::bounces::{CONTESTED, Contested};
-use crate::contacts::Names;
 use crate::resolution::{Of, raise};
 use teeter_integrator::{Model, State, StepReport};
 use teeter_scenario::simulation::Layout;
@@ -81,7 +80,7 @@ impl Recorder<'_> {
         self.kept.bounces.enter(model, step);
         let Some(Contested { t, landed, cut }) = self.kept.bounces.contested() else { return };
         let layout = self.layout;
-        let (Some(landed), Some(cut)) = (Names::of(layout, landed), Names::of(layout, cut)) else { return };
+        let (Some(landed), Some(cut)) = (layout.names_of(landed), layout.names_of(cut)) else { return };
         self.warn(CONTESTED, Some(t), || {
             format!(
                 "contact `{}`: {} landed at t = {t:.6} s while {} was kept closed, whose bounces, shorter than two steps, may still have gone on: which \

@@ -99,7 +99,12 @@ impl Resolver<'_, '_> {
     ) -> Option<Placement> {
         let path = format!("block.{}", block.table);
         let at = |key: &str| format!("{path}.{key}");
-        let shift = self.doc.pair(&at("repeat.shift")).unwrap_or_default().map(|shift| block.copy as f64 * shift);
+        let along = |key: &str, steps: usize| {
+            let shift = self.doc.pair(&at(key)).unwrap_or_default();
+            shift.map(|shift| steps as f64 * shift)
+        };
+        let (shift, of_row) = (along("repeat.shift", block.place[0]), along("repeat.row_shift", block.place[1]));
+        let shift = [shift[0] + of_row[0], shift[1] + of_row[1]];
         self.check_placement_keys(&path).ok()?;
         let free = |[x, y]: [f64; 2], angle: f64| Placement::Free { position: [x + shift[0], y + shift[1]], angle };
         if self.is_written(&at("position")) {
@@ -145,6 +150,11 @@ impl Resolver<'_, '_> {
                 "stacked blocks stand on each other, but position gives their place",
                 "give on and at, or shift instead of stacked",
             ),
+            _ if self.doc.integer(&at("repeat.rows")).is_some_and(|rows| rows > 1)
+                && self.doc.flag(&at("repeat.stacked")) == Some(true) =>
+            {
+                ("repeat.rows", "stacked blocks stand on each other in one pile", "give a table for each pile")
+            }
             _ if !position && self.is_written(&at("angle")) => {
                 ("angle", "angle applies only with position", "use tilt instead, or give position")
             }
@@ -216,7 +226,7 @@ impl Resolver<'_, '_> {
             self.error(&format!("{path}.repeat.turn"), rule, "give shift or stacked instead");
             return None;
         }
-        let keys = ShapeKeys::Block(doc, &path, turn.unwrap_or_default() * block.copy as f64);
+        let keys = ShapeKeys::Block(doc, &path, turn.unwrap_or_default() * block.place[0] as f64);
         let way = self.told(&path, keys.way())?;
         let drawn = if way == Way::Parts {
             self.parts(&path)?
@@ -394,9 +404,21 @@ impl Resolver<'_, '_> {
             })) => Some(*below),
             _ => None,
         };
-        // The lowest block of a pile stands on no block; following more blocks than there are means
-        // a cycle.
-        let circle = (0..blocks.len()).find(|&block| (0..blocks.len()).try_fold(block, |at, _| below(at)).is_some());
+        // The lowest block of a pile stands on no block. What is known to lead there is not followed
+        // again, so that a tall pile is passed through once.
+        let mut ends = vec![false; blocks.len()];
+        let circle = (0..blocks.len()).find(|&block| {
+            let (mut way, mut at) = (Vec::new(), Some(block));
+            while let Some(now) = at.filter(|now| ends.get(*now) == Some(&false)) {
+                if way.len() > blocks.len() {
+                    return true;
+                }
+                way.push(now);
+                at = below(now);
+            }
+            way.into_iter().for_each(|passed| ends[passed] = true);
+            false
+        });
         if let Some(Some(block)) = circle.and_then(|block| blocks.get(block)) {
             let rule = "blocks stand on each other in a cycle, and none of them on anything else";
             self.error(

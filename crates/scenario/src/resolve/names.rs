@@ -4,6 +4,9 @@ use std::collections::BTreeMap;
 
 use crate::document::Document;
 
+/// Most copies of a table: of more, only so many are made, and the rest is an error.
+pub(super) const MOST_COPIES: usize = 50_000;
+
 /// A block of the scene, and its origin.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct BlockName {
@@ -13,6 +16,8 @@ pub(super) struct BlockName {
     pub(super) table: String,
     /// Number of copies of the table before it.
     pub(super) copy: usize,
+    /// Number of copies before it in its row, and of rows before that.
+    pub(super) place: [usize; 2],
     /// The previous copy, if it stands on that.
     pub(super) stands_on: Option<String>,
 }
@@ -27,17 +32,20 @@ impl BlockName {
         let count = doc.integer(&format!("block.{table}.repeat.count")).and_then(|count| usize::try_from(count).ok());
         let Some(count) = count else {
             let (name, table) = (table.to_owned(), table.to_owned());
-            return vec![Self { name, table, copy: 0, stands_on: None }];
+            return vec![Self { name, table, copy: 0, place: [0; 2], stands_on: None }];
         };
+        let rows = doc.integer(&format!("block.{table}.repeat.rows")).and_then(|rows| usize::try_from(rows).ok());
+        let rows = rows.unwrap_or(1).min(MOST_COPIES.div_ceil(count.max(1)));
         let stacked = doc.flag(&format!("block.{table}.repeat.stacked")) == Some(true);
         let name = |copy: usize| format!("{table}-{}", copy + 1);
         let copy = |copy: usize| Self {
             name: name(copy),
             table: table.to_owned(),
             copy,
+            place: [copy % count, copy / count],
             stands_on: (stacked && copy > 0).then(|| name(copy - 1)),
         };
-        (0..count).map(copy).collect()
+        (0..count * rows).map(copy).collect()
     }
 }
 

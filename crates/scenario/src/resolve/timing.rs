@@ -2,10 +2,10 @@
 
 use super::Resolver;
 use crate::output_size::OutputSize;
-use crate::scene::{BeamScene, BlockScene, ContactScene, Scene, SchemeName, SupportingBody, Time};
+use crate::scene::{BeamScene, BlockScene, ContactScene, Crowd, Scene, SchemeName, SupportingBody, Time};
 use crate::wording;
 use crate::words::SchemeChoice;
-use teeter_integrator::{GeneralizedAlphaSettings, ImpactLaw};
+use teeter_integrator::{GeneralizedAlphaSettings, ImpactLaw, PairLaw};
 
 /// Most steps of a run.
 pub const MAX_STEPS: f64 = 1e12;
@@ -160,13 +160,17 @@ impl Resolver<'_, '_> {
         &mut self,
         scheme: SchemeName,
         contacts: &[Option<ContactScene>],
+        crowd: Option<&Crowd>,
         beams: &[Option<BeamScene>],
     ) {
-        let has_duration = |contact: &&ContactScene| {
-            matches!(contact.law.impact, ImpactLaw::KelvinVoigt { .. } | ImpactLaw::HuntCrossley { .. })
+        let listed = contacts.iter().flatten().map(|contact| (&contact.name, &contact.law));
+        let of_crowd = crowd.into_iter().flat_map(Crowd::contacts).map(|contact| (&contact.name, &contact.law));
+        let has_duration = |(_, law): &(&String, &PairLaw)| {
+            matches!(law.impact, ImpactLaw::KelvinVoigt { .. } | ImpactLaw::HuntCrossley { .. })
         };
-        if let Some(contact) = contacts.iter().flatten().find(has_duration).filter(|_| !scheme.takes_springs()) {
-            let rule = format!("{} doesn't support compliant contacts, such as `{}`", scheme.word(), contact.name);
+        let compliant = listed.chain(of_crowd).find(has_duration);
+        if let Some((name, _)) = compliant.filter(|_| !scheme.takes_springs()) {
+            let rule = format!("{} doesn't support compliant contacts, such as `{name}`", scheme.word());
             self.error("time.scheme", rule, "use scheme = \"moreau-jean-located\", or law = \"newton\"");
         }
         if !scheme.holds_beams() || contacts.iter().any(Option::is_none) {

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stderr)]
 
 mod beams;
+mod crowds;
 mod driven;
 mod event_driven;
 mod located;

@@ -344,7 +344,17 @@ fn pairs_that_can_not_move_and_those_apart_are_no_contacts() {
     assert_eq!(own.unwrap().name, "near");
     let apart = scene(&text("").replace("[ground]", "[world]\napart = [['a-*', 'a-*']]\n[ground]"));
     assert_eq!(apart.contacts.len(), 230 + 231);
-    let errors = teeter_scenario::load(text("").as_bytes(), "s", "s", &[]).unwrap_err().to_string();
+    // Pairs of blocks needn't be listed, but those of blocks and beams are.
+    assert!(scene(&text("")).crowd.is_some());
+    let beam = |name: &str| {
+        format!(
+            "[beam.{name}]\nmaterial = 'e'\nspan = '1 m'\nwidth = '1 cm'\nthickness = '1 cm'\nelements = 4\n\
+             supports = ['pinned', 'pinned']\nposition = ['0 m', '-9 m']\n"
+        )
+    };
+    let material = "[material.e]\ndensity = '1000 kg/m^3'\nyoungs_modulus = '1 GPa'\n";
+    let many = text("").replace("count = 230", "count = 7000") + material + &beam("p") + &beam("q");
+    let errors = teeter_scenario::load(many.as_bytes(), "s", "s", &[]).map(|_| ()).unwrap_err().to_string();
     assert!(errors.contains("more than 20000 pairs"), "{errors}");
 }
 

@@ -1,0 +1,202 @@
+//! Scenes of so many blocks that their pairs are not listed one by one.
+
+use teeter_detect::ContactId;
+use teeter_integrator::Ended;
+use teeter_scenario::load;
+use teeter_scenario::resolve::Resolved;
+use teeter_scenario::simulation::Simulation;
+
+const HEAD: &str = "[time]\nend = '50 ms'\nstep = '1 ms'\nscheme = 'moreau-jean-closed'\n[ground]\n[material.m]\ndensity = '700 kg/m^3'\n";
+
+fn loaded(text: &str) -> Resolved {
+    load(text.as_bytes(), "f", "f", &[]).unwrap()
+}
+
+/// So many boxes of 0.1 m on each other.
+fn tower(boxes: usize, contacts: &str) -> String {
+    format!(
+        "{HEAD}[block.box]\nmaterial = 'm'\nwidth = '10 cm'\nheight = '10 cm'\ndepth = '10 cm'\non = 'ground'\nat = '0 m'\n\
+         repeat = {{ count = {boxes}, stacked = true }}\n{contacts}"
+    )
+}
+
+const ALL: &str = "[contact.floor]\nbetween = ['box-*', 'ground']\nfriction = 0.5\n[contact.joints]\nbetween = ['box-*', 'box-*']\nfriction = 0.5\n";
+
+#[test]
+fn few_pairs_are_listed_and_many_are_not() {
+    let few = loaded(&tower(28, ALL)).scene;
+    assert!(few.crowd.is_none());
+    assert_eq!(few.contacts.len(), 28 + 28 * 27 / 2);
+    let many = loaded(&tower(100, ALL)).scene;
+    let crowd = many.crowd.as_ref().unwrap();
+    // Those that stand on each other are listed, as their placement refers to them.
+    assert_eq!(many.contacts.len(), 100 + 99);
+    assert_eq!(crowd.pair_count(), 100 * 99 / 2 - 99);
+    assert_eq!((crowd.contact_of(3, 4), crowd.contact_of(3, 5)), (None, Some(0)));
+    assert!(crowd.joins(3, 4) && crowd.joins(5, 3) && !crowd.joins(3, 3));
+}
+
+#[test]
+fn a_tower_stands_still() {
+    let boxes = if cfg!(debug_assertions) { 60 } else { 300 };
+    let resolved = loaded(&tower(boxes, ALL));
+    let mut simulation = Simulation::new(&resolved.scene).unwrap();
+    let start = simulation.state.q.clone();
+    assert_eq!(simulation.run(&mut []).unwrap(), Ended::Complete);
+    let moved = simulation.state.q.iter().zip(&start).map(|(now, start)| (now - start).abs()).fold(0.0, f64::max);
+    // Weights add up to some kN, gaps stay those of a step's tolerance.
+    assert!(moved < 1e-9, "{moved:e}");
+    assert_eq!(simulation.state.tally.unconverged_steps, 0);
+}
+
+/// Stones fall into a container, some of them pegs that pass each other.
+fn pile(contacts: &str) -> String {
+    let stones = |name: &str, sides: u32, y: &str, count: u32| {
+        format!(
+            "[block.{name}]\nmaterial = 'm'\nshape = {{ kind = 'regular', sides = {sides}, radius = '5 cm' }}\ndepth = '10 cm'\n\
+             position = ['-45 cm', '{y}']\nangle = '7 deg'\nrepeat = {{ count = {count}, shift = ['13 cm', '1 mm'] }}\n"
+        )
+    };
+    let rows = [("a", 3, "6 cm"), ("b", 5, "18 cm"), ("c", 6, "30 cm"), ("peg", 4, "42 cm")];
+    let rows: String = rows.iter().map(|(name, sides, y)| stones(name, *sides, y, 8)).collect();
+    let head = HEAD.replace(
+        "[ground]\n",
+        "[ground.profile]\npoints = [['-6 m', '50 m'], ['-55 cm', '0 m'], ['55 cm', '0 m'], ['6 m', '50 m']]\n",
+    );
+    format!("{}{rows}{contacts}", head.replace("50 ms", "400 ms"))
+}
+
+const RULES: &str = "[contact.floor]\nbetween = ['*', 'ground']\nfriction = 0.5\n[contact.all]\nbetween = ['*', '*']\nfriction = 0.4\n\
+                     [contact.pegs]\nbetween = ['peg-*', '*']\nfriction = 0.2\n[contact.one]\nbetween = ['a-1', 'b-1']\nfriction = 0.9\n";
+const APART: &str = "[world]\napart = [['peg-*', 'peg-*'], ['c-2', 'c-3']]\n";
+
+#[test]
+fn the_contact_of_two_blocks_is_the_one_that_a_list_would_have() {
+    let scene = loaded(&(pile(RULES) + APART)).scene;
+    let crowd = scene.crowd.as_ref().unwrap();
+    let number = |name: &str| scene.blocks.iter().position(|block| block.name == name).unwrap();
+    let name = |a: &str, b: &str| crowd.contact_of(number(a), number(b)).map(|of| crowd.contacts()[of].name.as_str());
+    assert_eq!(name("a-2", "b-3"), Some("all"));
+    assert_eq!(name("c-8", "peg-1"), Some("pegs"), "more letters");
+    assert_eq!(name("peg-2", "peg-1"), None, "apart by a pattern");
+    assert_eq!(name("c-2", "c-3"), None, "apart by names");
+    assert_eq!(name("a-1", "b-1"), None, "listed");
+    assert!(crowd.joins(number("a-1"), number("b-1")) && !crowd.joins(number("c-3"), number("c-2")));
+}
+
+/// The same scene with its pairs written out one by one moves alike until contacts make rounding grow, and has contacts of the same names.
+#[test]
+fn a_crowd_moves_as_the_same_pairs_listed() {
+    let crowded = loaded(&(pile(RULES) + APART));
+    let scene = &crowded.scene;
+    let crowd = scene.crowd.as_ref().unwrap();
+    let mut listed = String::from(
+        "[contact.floor]\nbetween = ['*', 'ground']\nfriction = 0.5\n[contact.one]\nbetween = ['a-1', 'b-1']\nfriction = 0.9\n",
+    );
+    for a in 0..scene.blocks.len() {
+        for b in a + 1..scene.blocks.len() {
+            if let Some(of) = crowd.contact_of(a, b) {
+                let [first, second] = [a, b].map(|k| scene.blocks[k].name.as_str());
+                let friction = crowd.contacts()[of].law.friction;
+                listed += &format!("[contact.x{a}y{b}]\nbetween = ['{first}', '{second}']\nfriction = {friction}\n");
+            }
+        }
+    }
+    let listed = loaded(&pile(&listed));
+    assert!(listed.scene.crowd.is_none() && listed.scene.contacts.len() > 400);
+    let mut one = Simulation::new(scene).unwrap();
+    let mut other = Simulation::new(&listed.scene).unwrap();
+    let mut names = 0;
+    for _ in 0..150 {
+        let step = one.step().unwrap();
+        let ids: Vec<ContactId> = step.contacts().map(|contact| contact.id).collect();
+        other.step().unwrap();
+        for id in ids {
+            let names_now = one.layout.names_of(id).unwrap();
+            names += usize::from(names_now.contact == "all" || names_now.contact == "pegs");
+            assert!(
+                names_now.between.contains(&"ground") || names_now.point.to_string().contains('.'),
+                "{names_now:?}"
+            );
+        }
+    }
+    assert!(names > 100, "{names}");
+    let off = one.state.q.iter().zip(&other.state.q).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(off < 1e-7, "{off:e}");
+    assert!(one.state.tally.max_penetration < 2e-3);
+}
+
+#[test]
+fn what_a_crowd_cannot_have_is_refused() {
+    let refused = |text: &str| load(text.as_bytes(), "f", "f", &[]).expect_err("taken").to_string();
+    let contested = RULES.replace("['peg-*', '*']", "['*', '*']");
+    assert!(refused(&pile(&contested)).contains("says no more of the bodies than `all`"));
+    let driven = pile(RULES) + "[block.c.motion]\nvelocity = ['1 m/s', '0 m/s']\nangular_velocity = '0 rad/s'\n";
+    let driven = refused(&driven);
+    assert!(driven.contains("contact.all") && driven.contains("can't yield"), "{driven}");
+    let own = pile(RULES) + "[world]\napart = [['a-*', 'b-*']]\n";
+    let own = refused(&own);
+    assert!(own.contains("contact.one.between") && own.contains("world.apart"), "{own}");
+}
+
+#[test]
+fn blocks_of_a_crowd_that_start_inside_each_other_are_refused() {
+    let text = pile(RULES).replace("'18 cm'", "'12 cm'");
+    let resolved = loaded(&text);
+    let error = Simulation::new(&resolved.scene).unwrap_err().to_string();
+    assert!(error.contains("overlaps"), "{error}");
+}
+
+#[test]
+fn rows_of_copies_are_numbered_row_after_row() {
+    let rows = |more: &str| {
+        format!(
+            "{HEAD}[block.b]\nmaterial = 'm'\nwidth = '1 cm'\nheight = '1 cm'\ndepth = '10 cm'\n\
+             repeat = {{ count = 3, shift = ['2 cm', '0 cm'], rows = 2, row_shift = ['1 cm', '5 cm']{more} }}\n\
+             [contact.floor]\nbetween = ['*', 'ground']\nfriction = 0.5\n"
+        )
+    };
+    let scene = loaded(&rows("").replace("repeat", "position = ['1 m', '1 m']\nrepeat")).scene;
+    let last = &scene.blocks[4];
+    let teeter_scenario::scene::Placement::Free { position, .. } = last.placement else { panic!("{last:?}") };
+    assert_eq!((last.name.as_str(), scene.blocks.len()), ("b-5", 6));
+    assert!((position[0] - 1.03).abs() < 1e-15 && (position[1] - 1.05).abs() < 1e-15, "{position:?}");
+    let refused = |text: String| load(text.as_bytes(), "f", "f", &[]).map(|_| ()).expect_err("taken").to_string();
+    let piles = refused(rows(", stacked = true").replace("repeat", "on = 'ground'\nat = '1 m'\nrepeat"));
+    assert!(piles.contains("block.b.repeat.rows") && piles.contains("one pile"), "{piles}");
+    let many = rows("").replace("rows = 2", "rows = 9000").replace("count = 3", "count = 9000");
+    let many = refused(many.replace("repeat", "position = ['1 m', '1 m']\nrepeat"));
+    assert!(many.contains("9000 rows of 9000 blocks"), "{many}");
+}
+
+#[test]
+fn rows_of_many_blocks_are_thinned_and_that_is_told() {
+    let every = |boxes: usize, set: &[(&str, &str)]| {
+        let sets: Vec<_> = set.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
+        let resolved = load(tower(boxes, ALL).replace("50 ms", "1 s").as_bytes(), "f", "f", &sets).unwrap();
+        let told = resolved.notes.iter().any(|note| note.path == "output.every");
+        assert_eq!(resolved.document.quantity("output.every"), resolved.scene.every);
+        (resolved.scene.every.map(|every| (every / 1e-3).round()), told)
+    };
+    assert_eq!(every(300, &[]), (None, false));
+    assert_eq!(every(1000, &[]), (Some(5.0), true));
+    assert_eq!(every(5000, &[]), (Some(10.0), true));
+    assert_eq!(every(5000, &[("output.every", "1 ms")]), (Some(1.0), false));
+}
+
+/// The wall of the file, lower and for a short time: it is not thrown down, and its bricks don't sink into each other.
+#[test]
+fn a_wall_in_running_bond_holds_together() {
+    let sets = [("time.end", "0.1 s"), ("block.odd.repeat.rows", "3"), ("block.even.repeat.rows", "2")];
+    let sets = sets.map(|(key, value)| (key.to_owned(), value.to_owned()));
+    let scene = load(include_bytes!("brick-wall.toml"), "f", "f", &sets).unwrap().scene;
+    // A star stands for the ground, too.
+    assert_eq!((scene.blocks.len(), scene.contacts.len()), (100, 100));
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let start = simulation.state.q.clone();
+    assert_eq!(simulation.run(&mut []).unwrap(), Ended::Complete);
+    let heights = simulation.state.q.iter().zip(&start).skip(1).step_by(3).take(100);
+    let moved = heights.map(|(now, start)| (now - start).abs()).fold(0.0, f64::max);
+    assert!(moved < 1e-3 && simulation.state.tally.max_penetration < 1e-4, "{moved:e}");
+    assert_eq!(simulation.state.tally.unconverged_steps, 0);
+}
