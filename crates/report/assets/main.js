@@ -222,7 +222,7 @@
   if (forces.points.length) parts.push("Green arrows: the contact's force on the block, mean since the sample before.");
   if (data.impacts.length) parts.push("Rings, and ticks on the plots: impacts.");
   if (scenery.blocks.length) parts.push("Dotted: the start.");
-  if (data.impact_count > data.impacts.length) parts.push(`The first ${data.impacts.length} of ${data.impact_count} impacts are marked.`);
+  if (data.impact_count > data.impacts.length) parts.push(`${data.impacts.length} of ${data.impact_count} impacts are marked.`);
   byId("scene-key").textContent = parts.join(" ");
 
   function relayout() {

@@ -3,6 +3,7 @@
 use crate::{BeamRecord, ImpactRow, LargestStress, ReactionRange, Record, Warning};
 use crate::{made_energy, taken_energy, unlocated};
 use serde::Serialize;
+use std::collections::BTreeSet;
 use teeter_integrator::{Ended, RockingMonitor, State};
 use teeter_scenario::scene::{RecordScene, Scene};
 use teeter_scenario::simulation::Layout;
@@ -260,7 +261,7 @@ pub struct ModelSummary {
     pub beams: Vec<BeamSummary>,
     /// Whether there is rigid ground.
     pub ground: bool,
-    /// Names of the contact pairs.
+    /// Names of the contacts; one by patterns comes once.
     pub contacts: Vec<String>,
     /// Points that contacts are looked for at.
     pub possible_contacts: usize,
@@ -431,7 +432,7 @@ impl ModelSummary {
             dofs: 3 * layout.blocks.len() + moving.map(|(_, beam)| beam.dofs).sum::<usize>(),
             beams,
             ground: scene.ground.is_some(),
-            contacts: layout.contact_names().map(str::to_owned).collect(),
+            contacts: names_once(layout.contact_names()),
             possible_contacts: possible_contacts(scene, layout),
             left_out: teeter_scenario::left_out(scene),
             extent: required.extent.word(),
@@ -447,6 +448,12 @@ impl ModelSummary {
                 .collect(),
         }
     }
+}
+
+/// Names without those that came before.
+fn names_once<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut seen = BTreeSet::new();
+    names.filter(|name| seen.insert(*name)).map(str::to_owned).collect()
 }
 
 /// The points of listed contacts, and two for each pair of a crowd.

@@ -424,7 +424,7 @@ impl<'a, 'f> Resolver<'a, 'f> {
 /// Tells that rows are thinned because of the many blocks.
 fn fewer_rows(scene: &Scene, document: &Document) -> Option<Diagnostic> {
     let every = scene.every.filter(|_| !document.is_given("output.every"))?;
-    let contacts = if scene.crowd.is_some() { ", and contacts.csv has only contacts that act" } else { "" };
+    let contacts = if scene.crowd.is_some() { ", and contacts.csv has only contacts with an impulse" } else { "" };
     let rule = format!("{} blocks, so that the tables have a row only every {every:e} s{contacts}", scene.blocks.len());
     let remedy = format!("give every = \"{:e} s\" in [output] for a row every step", scene.time.step);
     Some(document.error("output.every", rule, remedy).as_note())

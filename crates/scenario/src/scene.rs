@@ -85,6 +85,12 @@ impl Scene {
         })
     }
 
+    /// Whether any bodies can touch, listed or in a crowd.
+    #[must_use]
+    pub fn has_contacts(&self) -> bool {
+        !self.contacts.is_empty() || self.crowd.is_some()
+    }
+
     /// The name of a body that a block can stand on or touch.
     #[must_use]
     pub fn name_of(&self, support: SupportingBody) -> &str {

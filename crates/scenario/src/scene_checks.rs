@@ -7,6 +7,7 @@ use crate::mesh_error::{self, MeshComparison};
 use crate::resolve::names::table_of;
 use crate::scene::{BeamScene, BlockScene, Placement, Scene, SupportingBody};
 use crate::{deflection, flexibility, preview, rocking, signal_resolution, stable_step, swing, unused_keys, wording};
+use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 use teeter_beam::{Axial, Beam, Digits, MatrixWeights};
 use teeter_integrator::{ImpactLaw, PairLaw};
@@ -88,9 +89,17 @@ pub(crate) fn check(scene: &Scene, document: &Document) -> SceneFindings {
     }
     findings.foreseen.extend(swing::coarse(scene, document));
     findings.warnings.extend(loosely_solved(scene, document));
-    findings.warnings.extend(scene.contacts.iter().filter_map(|contact| {
-        resolved_in_time(&contact.name, &contact.law, scene.blocks[contact.block].mass(), scene, document)
-    }));
+    // A pattern lists one contact for each pair: the lightest block stays for the shortest time.
+    let mut lightest_of: BTreeMap<&str, (f64, &PairLaw)> = BTreeMap::new();
+    for contact in &scene.contacts {
+        let mass = scene.blocks[contact.block].mass();
+        let known = lightest_of.entry(&contact.name).or_insert((mass, &contact.law));
+        known.0 = known.0.min(mass);
+    }
+    let listed = lightest_of.into_iter();
+    findings
+        .warnings
+        .extend(listed.filter_map(|(name, (mass, law))| resolved_in_time(name, law, mass, scene, document)));
     for (number, contact) in scene.crowd.iter().flat_map(|crowd| crowd.contacts().iter().enumerate()) {
         // The lightest block stays in contact for the shortest time.
         let takes_part = |block: &usize| scene.crowd.as_ref().is_some_and(|of| of.takes_part(*block, Some(number)));
@@ -242,7 +251,7 @@ const LOOSE: f64 = 1e-4;
 /// Warns of a solver tolerance too loose to solve contacts properly.
 fn loosely_solved(scene: &Scene, document: &Document) -> Option<Diagnostic> {
     let tolerance = scene.solver.tolerance;
-    if tolerance <= LOOSE || (scene.contacts.is_empty() && scene.crowd.is_none()) {
+    if tolerance <= LOOSE || !scene.has_contacts() {
         return None;
     }
     let rule =

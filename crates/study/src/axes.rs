@@ -201,7 +201,7 @@ fn theta(resolved: &Resolved) -> Option<SettingAxis> {
 
 fn tolerance(resolved: &Resolved) -> Option<SettingAxis> {
     let scene = &resolved.scene;
-    (!scene.contacts.is_empty()).then(|| numbers("tolerance", "solver.tolerance", scene.solver.tolerance, &TOLERANCES))
+    scene.has_contacts().then(|| numbers("tolerance", "solver.tolerance", scene.solver.tolerance, &TOLERANCES))
 }
 
 fn solver(resolved: &Resolved) -> Option<SettingAxis> {
@@ -215,7 +215,7 @@ fn solver(resolved: &Resolved) -> Option<SettingAxis> {
         known.is_some_and(|info| info.law == teeter_contact::Law::Exact && info.dimensions.contains(&2))
     };
     let axis = words(resolved, "solver", &["solver.method".to_owned()], exact)?;
-    (!resolved.scene.contacts.is_empty()).then_some(axis)
+    resolved.scene.has_contacts().then_some(axis)
 }
 
 fn kinematics(resolved: &Resolved) -> Option<SettingAxis> {

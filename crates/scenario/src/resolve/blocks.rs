@@ -183,9 +183,13 @@ impl Resolver<'_, '_> {
         if !self.is_written(&at("at")) {
             self.error(&at("at"), "required with on", "give x of the midpoint of its base, such as at = \"18 cm\"");
         }
-        if shift[1] != 0.0 {
-            let rule = "blocks that stand on something can be shifted only along x";
-            self.error(&at("repeat.shift"), rule, "set y to 0, or give a position instead of on and at");
+        // Told at the key that does it, once for all copies.
+        for (key, of) in [("repeat.shift", [1, 0]), ("repeat.row_shift", [0, 1])] {
+            let lifts = doc.pair(&at(key)).is_some_and(|shift| shift[1] != 0.0);
+            if lifts && block.place == of {
+                let rule = "blocks that stand on something can be shifted only along x";
+                self.error(&at(key), rule, "set y to 0, or give a position instead of on and at");
+            }
         }
         let on = block.stands_on.as_deref().map_or_else(|| doc.text(&at("on")), Some)?;
         let (x, tilt) = (doc.quantity(&at("at")), doc.quantity(&at("tilt")));

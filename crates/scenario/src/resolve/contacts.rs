@@ -60,7 +60,10 @@ impl Resolver<'_, '_> {
         let apart = self.apart();
         let many: Vec<Option<Many>> =
             many.iter().enumerate().map(|(table, name)| self.contact_of_many(table, name)).collect();
-        let crowded = self.crowded(&many, &apart);
+        let Ok(crowded) = self.crowded(&many, &apart) else {
+            contacts.push(None);
+            return (contacts, joined, None);
+        };
         let Some(holders) = self.holders(&many, &joined, &apart, crowded.as_ref(), contacts.len()) else {
             contacts.push(None);
             return (contacts, joined, None);

@@ -35,6 +35,9 @@ pub(super) struct Classes {
     pub(super) standing: Vec<[usize; 2]>,
 }
 
+/// There are too many blocks or classes, which has been reported.
+pub(super) struct TooMany;
+
 impl Classes {
     /// Whether the two sides number `side` and the next one stand for two classes, either way round.
     fn between(&self, side: usize, a: usize, b: usize) -> bool {
@@ -64,12 +67,12 @@ impl Classes {
 
 impl Resolver<'_, '_> {
     /// The classes of the blocks, if contacts of many stand for more pairs of blocks than are
-    /// listed.
-    pub(super) fn crowded(&mut self, many: &[Option<Many>], apart: &Apart) -> Option<Classes> {
+    /// listed; an error where they are too many for that, too.
+    pub(super) fn crowded(&mut self, many: &[Option<Many>], apart: &Apart) -> Result<Option<Classes>, TooMany> {
         let count = self.block_names.len();
         // Of so few blocks there are no more pairs.
         if count * count.saturating_sub(1) / 2 <= MOST_LISTED {
-            return None;
+            return Ok(None);
         }
         let of_contacts = 2 * many.len();
         let width = of_contacts + 2 * apart.sides.len() + 1;
@@ -106,28 +109,32 @@ impl Resolver<'_, '_> {
             classes.of.push(class);
             classes.blocks[class].push(block);
         }
+        let matched = |(a, b): &(usize, usize)| {
+            !classes.are_apart(*a, *b) && (0..of_contacts).step_by(2).any(|side| classes.between(side, *a, *b))
+        };
+        let mut pairs = 0;
+        let more = classes.two().filter(matched).any(|(a, b)| {
+            pairs += classes.pairs(a, b);
+            pairs > MOST_LISTED
+        });
+        if !more {
+            return Ok(None);
+        }
+        if count > MOST_BLOCKS {
+            let rule = format!("{count} blocks of which any two may touch, more than the limit of {MOST_BLOCKS}");
+            self.error("block", rule, "use fewer blocks");
+            return Err(TooMany);
+        }
         if classes.blocks.len() > MOST_CLASSES {
             let rule = format!(
                 "patterns tell {} kinds of blocks apart, more than {MOST_CLASSES}, the most of a scene with so many blocks",
                 classes.blocks.len()
             );
             self.error("contact", rule, "use fewer patterns, each for more blocks");
-            return None;
-        }
-        let matched = |(a, b): &(usize, usize)| {
-            !classes.are_apart(*a, *b) && (0..of_contacts).step_by(2).any(|side| classes.between(side, *a, *b))
-        };
-        let pairs: usize = classes.two().filter(matched).map(|(a, b)| classes.pairs(a, b)).sum();
-        if pairs <= MOST_LISTED {
-            return None;
-        }
-        if count > MOST_BLOCKS {
-            let rule = format!("{count} blocks of which any two may touch, more than the limit of {MOST_BLOCKS}");
-            self.error("block", rule, "use fewer blocks");
-            return None;
+            return Err(TooMany);
         }
         classes.standing = self.standing();
-        Some(classes)
+        Ok(Some(classes))
     }
 
     /// The blocks that stand on another block, with that one.
@@ -152,19 +159,19 @@ impl Resolver<'_, '_> {
         let mut told: Vec<[usize; 2]> = Vec::new();
         for (a, b) in classes.two().filter(|(a, b)| !classes.are_apart(*a, *b) && classes.pairs(*a, *b) > 0) {
             let mut holds: Option<(usize, Rank)> = None;
+            let mut tie = None;
             for of in many.iter().flatten().filter(|of| classes.between(2 * of.table, a, b)) {
                 match holds {
-                    Some((table, rank)) if rank == of.rank => {
-                        let tables = [table, of.table];
-                        let Some(blocks) = self.without_own_contact(classes, joined, apart, a, b) else { continue };
-                        if !told.contains(&tables) {
-                            told.push(tables);
-                            self.contested(many, tables, blocks.map(SupportingBody::Block));
-                        }
-                    }
+                    Some((table, rank)) if rank == of.rank => tie = tie.or(Some([table, of.table])),
                     Some((_, rank)) if rank > of.rank => {}
-                    _ => holds = Some((of.table, of.rank)),
+                    _ => (holds, tie) = (Some((of.table, of.rank)), None),
                 }
+            }
+            if let Some(tables) = tie.filter(|tables| !told.contains(tables))
+                && let Some(blocks) = self.without_own_contact(classes, joined, apart, a, b)
+            {
+                told.push(tables);
+                self.contested(many, tables, blocks.map(SupportingBody::Block));
             }
             holders[a * count + b] = holds.map(|(table, _)| table);
             holders[b * count + a] = holders[a * count + b];

@@ -39,13 +39,13 @@ pub(super) enum Rank {
 impl Many {
     /// The pairs of bodies that are to be listed, by their places in both sides: all of them, or in
     /// a crowd those with surfaces, and blocks that stand on each other.
-    fn pairs(&self, crowded: Option<&Classes>) -> Vec<[usize; 2]> {
+    fn pairs(&self, crowded: Option<&Classes>) -> Box<dyn Iterator<Item = [usize; 2]> + '_> {
         let [first, second] = self.sides.each_ref().map(|side| &side.bodies);
         let all = |i: usize| (0..second.len()).map(move |j| [i, j]);
-        let Some(classes) = crowded else { return (0..first.len()).flat_map(all).collect() };
+        let Some(classes) = crowded else { return Box::new((0..first.len()).flat_map(all)) };
         let is_block = |body: &(String, SupportingBody)| matches!(body.1, SupportingBody::Block(_));
         let surfaces: Vec<usize> = (0..second.len()).filter(|j| !is_block(&second[*j])).collect();
-        let with_surfaces = |i: usize| match is_block(&first[i]) {
+        let with_surfaces = move |i: usize| match is_block(&first[i]) {
             true => surfaces.iter().map(|j| [i, *j]).collect(),
             false => all(i).collect::<Vec<_>>(),
         };
@@ -53,12 +53,17 @@ impl Many {
             bodies.iter().enumerate().map(|(place, (_, body))| (*body, place)).collect()
         };
         let (among_first, among_second) = (places(first), places(second));
-        let standing = classes.standing.iter().filter_map(|pair| {
-            let [upper, lower] = pair.map(SupportingBody::Block);
-            let between = |a, b| Some([*among_first.get(&a)?, *among_second.get(&b)?]);
-            between(upper, lower).or_else(|| between(lower, upper))
+        // The one that comes first in the file is the first of the two, as in pairs that are listed.
+        let between = |a, b| {
+            let [a, b] = [a, b].map(SupportingBody::Block);
+            Some([*among_first.get(&a)?, *among_second.get(&b)?])
+        };
+        let standing = classes.standing.iter().filter_map(|&[upper, lower]| {
+            let (first, second) = (upper.min(lower), upper.max(lower));
+            between(first, second).or_else(|| between(second, first))
         });
-        (0..first.len()).flat_map(with_surfaces).chain(standing).collect()
+        let standing: Vec<[usize; 2]> = standing.collect();
+        Box::new((0..first.len()).flat_map(with_surfaces).chain(standing))
     }
 
     /// The pairs that are to be listed and can touch, the block first.
@@ -67,7 +72,7 @@ impl Many {
         crowded: Option<&Classes>,
     ) -> impl Iterator<Item = ((usize, SupportingBody), [&'a (String, SupportingBody); 2])> + use<'a> {
         let [first, second] = self.sides.each_ref().map(|side| &side.bodies);
-        self.pairs(crowded).into_iter().filter_map(move |[i, j]| {
+        self.pairs(crowded).filter_map(move |[i, j]| {
             let (a, b) = (&first[i], &second[j]);
             Some((touching(a.1, b.1)?, [a, b]))
         })
@@ -163,8 +168,10 @@ impl Resolver<'_, '_> {
             SupportingBody::Ground => true,
             SupportingBody::Beam(_) => false,
         };
+        // In a crowd those are listed that grow with the blocks only.
+        let most = if crowded.is_some() { MOST_PAIRS.max(2 * self.block_names.len()) } else { MOST_PAIRS };
         let mut holders: BTreeMap<PairKey, (usize, Rank)> = BTreeMap::new();
-        let mut contested: BTreeSet<[usize; 2]> = BTreeSet::new();
+        let mut ties: BTreeMap<PairKey, usize> = BTreeMap::new();
         for of in many.iter().flatten() {
             let pairs = of.touching(crowded).map(|(pair, _)| pair);
             for (block, surface) in pairs.filter(|pair| !joined.contains_key(pair)) {
@@ -174,22 +181,28 @@ impl Resolver<'_, '_> {
                 }
                 match holders.get(&key).copied() {
                     Some((table, rank)) if rank == of.rank && table != of.table => {
-                        if contested.insert([table, of.table]) {
-                            self.contested(many, [table, of.table], [SupportingBody::Block(block), surface]);
-                        }
+                        ties.entry(key).or_insert(of.table);
                     }
                     Some((_, rank)) if rank >= of.rank => {}
                     _ => {
                         holders.insert(key, (of.table, of.rank));
+                        ties.remove(&key);
                     }
                 }
-                if known + holders.len() > MOST_PAIRS {
-                    let rule = format!("the patterns match more than {MOST_PAIRS} pairs of bodies");
+                if known + holders.len() > most {
+                    let rule = format!("the patterns match more than {most} pairs of bodies");
                     let remedy = "name only bodies that can touch, such as each course of a wall and the next";
                     let key = if of.rank == Rank::Materials { "materials" } else { "between" };
                     self.error(&format!("contact.{}.{key}", of.name), rule, remedy);
                     return None;
                 }
+            }
+        }
+        let mut told: BTreeSet<[usize; 2]> = BTreeSet::new();
+        for ((block, surface), second) in ties {
+            let Some((first, _)) = holders.get(&(block, surface)) else { continue };
+            if told.insert([*first, second]) {
+                self.contested(many, [*first, second], [SupportingBody::Block(block), surface]);
             }
         }
         Some(holders)
