@@ -89,24 +89,22 @@ pub(crate) fn check(scene: &Scene, document: &Document) -> SceneFindings {
     }
     findings.foreseen.extend(swing::coarse(scene, document));
     findings.warnings.extend(loosely_solved(scene, document));
-    // A pattern lists one contact for each pair: the lightest block stays for the shortest time.
+    // A contact by patterns is for many pairs: the lightest block stays for the shortest time.
     let mut lightest_of: BTreeMap<&str, (f64, &PairLaw)> = BTreeMap::new();
-    for contact in &scene.contacts {
-        let mass = scene.blocks[contact.block].mass();
-        let known = lightest_of.entry(&contact.name).or_insert((mass, &contact.law));
+    let mut enter = |name, mass: f64, law| {
+        let known = lightest_of.entry(name).or_insert((mass, law));
         known.0 = known.0.min(mass);
+    };
+    for contact in &scene.contacts {
+        enter(&contact.name, scene.blocks[contact.block].mass(), &contact.law);
     }
-    let listed = lightest_of.into_iter();
-    findings
-        .warnings
-        .extend(listed.filter_map(|(name, (mass, law))| resolved_in_time(name, law, mass, scene, document)));
     for (number, contact) in scene.crowd.iter().flat_map(|crowd| crowd.contacts().iter().enumerate()) {
-        // The lightest block stays in contact for the shortest time.
         let takes_part = |block: &usize| scene.crowd.as_ref().is_some_and(|of| of.takes_part(*block, Some(number)));
-        let masses = (0..scene.blocks.len()).filter(takes_part).map(|block| scene.blocks[block].mass());
-        let lightest = masses.fold(f64::INFINITY, f64::min);
-        findings.warnings.extend(resolved_in_time(&contact.name, &contact.law, lightest, scene, document));
+        let blocks = (0..scene.blocks.len()).filter(takes_part);
+        blocks.for_each(|block| enter(&contact.name, scene.blocks[block].mass(), &contact.law));
     }
+    let all = lightest_of.into_iter();
+    findings.warnings.extend(all.filter_map(|(name, (mass, law))| resolved_in_time(name, law, mass, scene, document)));
     findings
 }
 

@@ -200,3 +200,62 @@ fn a_wall_in_running_bond_holds_together() {
     assert!(moved < 1e-3 && simulation.state.tally.max_penetration < 1e-4, "{moved:e}");
     assert_eq!(simulation.state.tally.unconverged_steps, 0);
 }
+
+/// Their list would take gigabytes.
+#[test]
+fn too_many_blocks_are_refused_before_anything_is_listed() {
+    let rows = "repeat = { count = 200, rows = 165, shift = ['1 m', '0 m'], row_shift = ['0 m', '1 m'] }";
+    let text = format!(
+        "{HEAD}[block.box]\nmaterial = 'm'\nwidth = '10 cm'\nheight = '10 cm'\ndepth = '10 cm'\nposition = ['0 m', '1 m']\n{rows}\n{ALL}"
+    );
+    let told = load(text.as_bytes(), "f", "f", &[]).unwrap_err();
+    let rules: Vec<&str> = told.0.iter().map(|found| found.rule.as_str()).collect();
+    assert_eq!(rules, ["33000 blocks of which any two may touch, more than the limit of 32768"]);
+}
+
+/// Whatever comes first in the file; the same in a list.
+#[test]
+fn a_closer_contact_settles_what_two_others_leave_open() {
+    let table = |name: &str, a: &str, b: &str| format!("[contact.{name}]\nbetween = ['{a}', '{b}']\nfriction = 0.5\n");
+    let [a, b] = [table("a", "bo*", "*"), table("b", "*ox*", "*")];
+    let closer = table("c", "box-*", "box-*") + &table("d", "box-*", "ground");
+    for boxes in [5, 60] {
+        for contacts in [format!("{a}{b}{closer}"), format!("{closer}{a}{b}")] {
+            let scene = loaded(&tower(boxes, &contacts)).scene;
+            assert!(scene.contacts.iter().all(|contact| ["c", "d"].contains(&contact.name.as_str())), "{boxes}");
+            assert_eq!(scene.crowd.map_or(0, |crowd| crowd.contacts().len()), usize::from(boxes > 28));
+        }
+        let told = load(tower(boxes, &format!("{a}{b}")).as_bytes(), "f", "f", &[]).unwrap_err().to_string();
+        assert!(told.contains("it says no more of the bodies than"), "{told}");
+    }
+}
+
+#[test]
+fn of_two_blocks_on_each_other_the_lower_number_comes_first_in_a_crowd_too() {
+    for boxes in [20, 40] {
+        let scene = loaded(&tower(boxes, ALL)).scene;
+        let joint = scene.contacts.iter().find(|contact| contact.name == "joints").unwrap();
+        assert_eq!(joint.between, ["box-1", "box-2"], "{boxes}");
+    }
+}
+
+#[test]
+fn a_row_that_rises_off_its_support_is_told_where_it_is_written() {
+    let text = tower(6, ALL).replace(
+        "repeat = { count = 6, stacked = true }",
+        "repeat = { count = 3, shift = ['12 cm', '0 cm'], rows = 2, row_shift = ['0 cm', '12 cm'] }",
+    );
+    let told = load(text.as_bytes(), "f", "f", &[]).unwrap_err();
+    let paths: Vec<&str> = told.0.iter().map(|found| found.path.as_str()).collect();
+    assert_eq!(paths, ["block.box.repeat.row_shift"]);
+}
+
+#[test]
+fn a_contact_by_a_pattern_that_is_not_resolved_is_told_once() {
+    for boxes in [20, 40] {
+        let soft = "[contact.all]\nbetween = ['*', '*']\nfriction = 0.5\nlaw = 'kelvin-voigt'\nstiffness = '1e6 N/m'\ndamping = '0 N s/m'\n";
+        let resolved = loaded(&tower(boxes, soft));
+        let told = resolved.warnings.iter().filter(|found| found.rule.contains("it is not resolved"));
+        assert_eq!(told.count(), 1, "{boxes}");
+    }
+}
