@@ -362,7 +362,7 @@ pub static TABLES: &[TableSchema] = &[
         keys: &[
             key("count", Kind::Integer { min: 1, max: 10_000 }, Required, "20", "Number of blocks."),
             key("shift", Kind::Pair(Dimension::LENGTH, Range::ANY), Default("[\"0 m\", \"0 m\"]"), "[\"8 cm\", \"0 cm\"]", "Distance from one to the next; only along x if they stand on something; if stacked, along the upper side of the one before, from its midpoint."),
-            key("rows", Kind::Integer { min: 1, max: 10_000 }, Default("1"), "12", "Number of rows, each of `count` blocks; they are numbered row after row."),
+            key("rows", Kind::Integer { min: 1, max: 10_000 }, Default("1"), "12", "Number of rows, each of `count` blocks; they are numbered row after row. All rows are shifted alike: a wall in running bond is two such tables, one for every other course."),
             key("row_shift", Kind::Pair(Dimension::LENGTH, Range::ANY), Default("[\"0 m\", \"0 m\"]"), "[\"0 cm\", \"10 cm\"]", "Distance from one row to the next."),
             key("turn", ANGLE, Optional, "\"6.6667 deg\"", "Angle from one voussoir to the next, about the centre of their arch, counter-clockwise positive."),
             key("stacked", Kind::Flag, Default("false"), "true", "Whether each stands flat on the one before, and the first on the body given by `on`."),

@@ -251,6 +251,14 @@ fn a_row_that_rises_off_its_support_is_told_where_it_is_written() {
 }
 
 #[test]
+fn a_row_shift_without_rows_is_told() {
+    let rows = "repeat = { count = 3, shift = ['12 cm', '0 cm'], row_shift = ['1 m', '0 cm'] }";
+    let resolved = loaded(&tower(6, ALL).replace("repeat = { count = 6, stacked = true }", rows));
+    let told: Vec<&str> = resolved.warnings.iter().map(|found| found.path.as_str()).collect();
+    assert_eq!(told, ["block.box.repeat.row_shift"]);
+}
+
+#[test]
 fn a_contact_by_a_pattern_that_is_not_resolved_is_told_once() {
     for boxes in [20, 40] {
         let soft = "[contact.all]\nbetween = ['*', '*']\nfriction = 0.5\nlaw = 'kelvin-voigt'\nstiffness = '1e6 N/m'\ndamping = '0 N s/m'\n";
