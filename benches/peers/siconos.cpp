@@ -157,26 +157,6 @@ std::shared_ptr<LagrangianLinearTIDS> elements(const BeamMesh& mesh, Siconos::UB
 /// Boxes of a stack.
 constexpr double kBox = 0.1, kBoxDensity = 700;
 
-/// A box of the stack with its centre at this height.
-std::shared_ptr<LagrangianLinearTIDS> box(double height, double heavier) {
-  const double mass = heavier * kBoxDensity * kBox * kBox * kBox;
-  const auto M = std::make_shared<SimpleMatrix>(3, 3);
-  M->zero();
-  M->setValue(0, 0, mass);
-  M->setValue(1, 1, mass);
-  M->setValue(2, 2, mass * kBox * kBox / 6);
-  const auto q = std::make_shared<SiconosVector>(3), v = std::make_shared<SiconosVector>(3);
-  q->zero();
-  v->zero();
-  q->setValue(1, height);
-  const auto body = std::make_shared<LagrangianLinearTIDS>(q, v, M);
-  const auto weight = std::make_shared<SiconosVector>(3);
-  weight->zero();
-  weight->setValue(1, -mass * kGravity);
-  body->setFExtPtr(weight);
-  return body;
-}
-
 /// A lower corner of a box over the upper side of the one below it: q = (upper, lower).
 class CornerOverBox : public LagrangianScleronomousR {
  public:
@@ -288,7 +268,8 @@ struct Run {
     } else if (job.scene == "stack") {
       std::shared_ptr<LagrangianLinearTIDS> below_it;
       for (int k = 0; k < job.elements; ++k) {
-        block = box((k + 0.5) * kBox, k + 1 == job.elements ? job.number("top", 1) : 1);
+        const double heavier = k + 1 == job.elements ? job.number("top", 1) : 1;
+        block = rectangle(kBox, kBox, heavier * kBoxDensity * kBox * kBox * kBox, 0, (k + 0.5) * kBox, 0);
         system->insertDynamicalSystem(block);
         for (const double x : {-0.5 * kBox, 0.5 * kBox}) {
           if (k == 0)

@@ -1,6 +1,6 @@
 """Stacks of boxes in teeter, Siconos and rapier, in one run: time a step, and how far the top box moves.
 
-    python3 benches/peers/stacks.py [BOXES ...]       # 10 20 50 by default; two minutes
+    python3 benches/peers/stacks.py [BOXES ...]       # 10 20 50 by default; minutes
 
 Boxes of 0.1 m and 700 kg/m^3, exactly on each other, mu 0.5, 1 ms, 1 s; once all equal, once the top one 1000 times
 heavier. teeter and rapier run with their defaults, Siconos with its Moreau-Jean scheme, theta 0.5 and each of its
@@ -8,6 +8,7 @@ plane solvers that serves at 1e-10. Times are CPU time on one core, the median o
 """
 
 import sys
+from statistics import median
 
 import drivers
 from drivers import Driver, Job, Refused, middle
@@ -31,7 +32,7 @@ def measure(servers, job, turns):
         if times[-1] > 5:
             break
     moved = max(abs(place - row[0]) for row in track[:2] for place in row)
-    return sorted(times)[len(times) // 2] / STEPS, moved
+    return median(times) / STEPS, moved
 
 
 def main():

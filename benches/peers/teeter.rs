@@ -55,14 +55,20 @@ fn load(scene: &str, elements: &str, step: f64, steps: usize, settings: &[&str])
         set("time.end", format!("\"{:e} s\"", step * steps as f64)),
         set("output.every", format!("\"{:e} s\"", step * steps as f64)),
     ];
-    if scene == "stack" {
-        let top = settings.iter().find_map(|setting| setting.strip_prefix("top="));
-        let text = stack(elements.parse()?, top.map_or(Ok(1.0), str::parse)?);
-        let settings = settings.iter().filter(|setting| !setting.starts_with("top="));
-        sets.extend(settings.filter_map(|setting| setting.split_once('=')).map(|(key, to)| set(key, to.to_owned())));
-        return Ok(teeter_scenario::load(text.as_bytes(), "stack", "stack", &sets)?);
-    }
+    let (of_stack, settings): (Vec<&str>, Vec<&str>) =
+        settings.iter().partition(|setting| scene == "stack" && setting.starts_with("top="));
+    let given = settings.into_iter().map(|setting| {
+        let (key, value) = setting.split_once('=').ok_or_else(|| format!("«{setting}» is no KEY=VALUE"))?;
+        Ok(set(key, value.to_owned()))
+    });
+    let given = given.collect::<Result<Vec<_>>>()?;
     let name = match scene {
+        "stack" => {
+            let heavier = of_stack.first().map_or(Ok(1.0), |top| top["top=".len()..].parse())?;
+            let text = stack(elements.parse()?, heavier);
+            sets.extend(given);
+            return Ok(teeter_scenario::load(text.as_bytes(), "stack", "stack", &sets)?);
+        }
         "ground" => "free-rocking-on-ground",
         "beam" => {
             sets.push(set("beam.table.elements", elements.to_owned()));
@@ -71,10 +77,7 @@ fn load(scene: &str, elements: &str, step: f64, steps: usize, settings: &[&str])
         }
         other => return Err(format!("no scene «{other}»; there are ground, beam and stack").into()),
     };
-    for setting in settings {
-        let (key, value) = setting.split_once('=').ok_or_else(|| format!("«{setting}» is no KEY=VALUE"))?;
-        sets.push(set(key, value.to_owned()));
-    }
+    sets.extend(given);
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
     let bytes = std::fs::read(folder.join(format!("{name}.toml")))?;
     let mut read = |path: &str| std::fs::read(folder.join(path)).map_err(|error| error.to_string());

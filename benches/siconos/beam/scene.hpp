@@ -67,19 +67,17 @@ inline void assemble(const BeamMesh& mesh, SimpleMatrix& M, SimpleMatrix& K) {
       }
 }
 
-/// The block on its lower left corner, which is at (`corner`, 0), tilted by 5°; its weight is its only force.
-inline std::shared_ptr<LagrangianLinearTIDS> tilted_block(double corner) {
-  const double tilt = 5 * kPi / 180, x = -0.5 * kBlockWidth, y = -0.5 * kBlockHeight;
-  const double mass = kDensity * kBlockWidth * kBlockHeight * kBlockDepth;
+/// A rectangle of this mass at rest, X, Y of its centre and its angle given.
+inline std::shared_ptr<LagrangianLinearTIDS> rectangle(double width, double height, double mass, double x, double y, double tilt) {
   auto M = std::make_shared<SimpleMatrix>(3, 3);
   M->zero();
   M->setValue(0, 0, mass);
   M->setValue(1, 1, mass);
-  M->setValue(2, 2, mass * (kBlockWidth * kBlockWidth + kBlockHeight * kBlockHeight) / 12);
+  M->setValue(2, 2, mass * (width * width + height * height) / 12);
   auto q = std::make_shared<SiconosVector>(3), v = std::make_shared<SiconosVector>(3);
   v->zero();
-  q->setValue(0, corner - (std::cos(tilt) * x - std::sin(tilt) * y));
-  q->setValue(1, -(std::sin(tilt) * x + std::cos(tilt) * y));
+  q->setValue(0, x);
+  q->setValue(1, y);
   q->setValue(2, tilt);
   auto block = std::make_shared<LagrangianLinearTIDS>(q, v, M);
   auto weight = std::make_shared<SiconosVector>(3);
@@ -87,6 +85,14 @@ inline std::shared_ptr<LagrangianLinearTIDS> tilted_block(double corner) {
   weight->setValue(1, -mass * kGravity);
   block->setFExtPtr(weight);
   return block;
+}
+
+/// The block on its lower left corner, which is at (`corner`, 0), tilted by 5°; its weight is its only force.
+inline std::shared_ptr<LagrangianLinearTIDS> tilted_block(double corner) {
+  const double tilt = 5 * kPi / 180, x = -0.5 * kBlockWidth, y = -0.5 * kBlockHeight;
+  const double mass = kDensity * kBlockWidth * kBlockHeight * kBlockDepth;
+  return rectangle(kBlockWidth, kBlockHeight, mass, corner - (std::cos(tilt) * x - std::sin(tilt) * y),
+                   -(std::sin(tilt) * x + std::cos(tilt) * y), tilt);
 }
 
 /// A corner of the block over the beam's axis: y = (gap, ·), the rows of the Jacobian are n and t of theory.md §3. q = (block, beam).

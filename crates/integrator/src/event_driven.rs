@@ -375,7 +375,7 @@ impl EventDriven {
         if contacts.len() != REMEMBERED * active.len() || !(h > 0.0 && h.is_finite()) {
             // Those that touch are closed, whatever else they do. The located scheme may have left others
             // pressing above their surface: they fall, and are not pulled down to it.
-            let near = decide::TOUCHING * self.located.tolerance(&from.q);
+            let near = self.touching_gap(&from.q);
             let touching = self.found.iter().filter(|candidate| candidate.gap <= near);
             let closed = touching.map(|candidate| Pressing::new(candidate.id, Mode::Stick, 0.0, 0.0));
             self.smooth.contacts.extend(closed);

@@ -1,6 +1,6 @@
 //! What the model of a scene leaves out, and why, for `check` and the summary.
 
-use crate::scene::{BeamScene, Crowd, Scene, SupportingBody};
+use crate::scene::{BeamScene, Crowd, Scene, SupportingBody, pairs_between};
 use std::collections::BTreeSet;
 use teeter_beam::Axial;
 
@@ -46,7 +46,7 @@ fn meetings(scene: &Scene, left_out: &mut Vec<&'static str>) {
     let paired = listed + scene.crowd.as_ref().map_or(0, Crowd::pair_count);
     if paired == 0 && blocks > 1 {
         left_out.push("contact between blocks: they pass through each other");
-    } else if paired < blocks * blocks.saturating_sub(1) / 2 {
+    } else if paired < pairs_between(blocks, blocks, true) {
         left_out.push("contact between blocks without a [contact]: they pass through each other");
     }
     let joined: BTreeSet<(usize, SupportingBody)> =

@@ -6,6 +6,7 @@ mod history;
 mod reduction;
 
 pub use beam_output::{BEAM_QUANTITIES, BeamOutput, BeamQuantity};
+pub(crate) use crowd::pairs_between;
 pub use crowd::{Crowd, CrowdContact};
 pub use history::{AxisScene, ForceScene, History, LoadKind, LoadScene, MotionScene, RecordScene, SignalScene};
 pub use reduction::Reduction;

@@ -53,6 +53,13 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
         );
         idle(&format!("load.{}.at", load.name), rule, "check where it starts, and the sign of its speed");
     }
+    for table in document.names("block") {
+        let path = format!("block.{table}.repeat.row_shift");
+        let has_rows = document.integer(&format!("block.{table}.repeat.rows")).is_some_and(|rows| rows > 1);
+        if document.is_given(&path) && !has_rows {
+            idle(&path, "no effect: there is only one row".to_owned(), "give rows = 2 or more, or leave it out");
+        }
+    }
     let of_crowd = scene.crowd.iter().flat_map(Crowd::contacts).map(|contact| (&contact.name, &contact.law));
     let contacts = scene.contacts.iter().map(|contact| (&contact.name, &contact.law)).chain(of_crowd);
     for (name, law) in contacts.filter(|(_, law)| law.friction == 0.0).take(LISTED) {

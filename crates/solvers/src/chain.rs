@@ -55,16 +55,16 @@ const ALL_ROUNDS: usize = WORTHWHILE_WORK.len();
 /// time (`benches/results/2026-11-25-many-bodies.md`).
 const CROWD: usize = 40;
 const CROWD_ROUNDS: usize = 2;
-/// Up to a tolerance of `LOOSE`, plane islands of more than `LARGE` contacts are given to `GRADIENTS` accelerated gradients
-/// first: in a wall of 500 bricks that is shaken they reach 1e-6 four times sooner than Newton's
-/// method. Towards 1e-10 they converge too slowly.
-const LARGE: usize = 200;
-const LOOSE: f64 = 1e-8;
-const GRADIENTS: u32 = 400;
 const SHORT_PATH: u32 = 100;
 #[cfg(feature = "sparse")]
 const CROWD_DIRECTIONS: u32 = 200;
 const LONG_PATH: u32 = 400;
+/// At a tolerance of `LOOSE` or more, plane islands of more than `LARGE` contacts are given to
+/// `GRADIENTS` accelerated gradients first: in a wall of 500 bricks that is shaken they reach 1e-6
+/// four times sooner than Newton's method. Towards 1e-10 they converge too slowly.
+const LARGE: usize = 200;
+const LOOSE: f64 = 1e-8;
+const GRADIENTS: u32 = 400;
 /// Sweeps over pairs are tried if the first sweeps reach this residual.
 const NEARLY: f64 = 1e-4;
 /// StepWork of a Newton step and of a sweep in units of a block product: per block and per contact.
@@ -162,8 +162,8 @@ impl<const D: usize> Chain<D> {
         let mut outcome = self.approach(problem, small, pivots, stop, p);
         let few = p.len() <= SMALL;
         let goal = if few { REFINED } else { REFINED.max(REFINED_PART * stop.tolerance) };
-        // What it costs pays at rest only, where the last step's impulses solve the problem nearly.
-        let moves = is_loose_crowd(problem, stop) && outcome.iterations > FIRST_SWEEPS;
+        // There a refinement pays only at rest, where the last step's impulses nearly solve the problem.
+        let moves = suits_gradients(problem, stop) && outcome.iterations > FIRST_SWEEPS;
         if outcome.converged() && outcome.residual.global > goal && !moves {
             let work = self.newton.prepare(problem);
             if !few && work.filled > FILL * work.blocks {
@@ -195,7 +195,7 @@ impl<const D: usize> Chain<D> {
         let within = |left: u32, most: u32| stop.with_max_iterations(left.min(most));
         let first = self.pgs.solve(problem, &within(stop.max_iterations, FIRST_SWEEPS), p);
         let mut progress = Progress { best: first, iterations: first.iterations };
-        if !progress.over(stop) && is_loose_crowd(problem, stop) {
+        if !progress.over(stop) && suits_gradients(problem, stop) {
             progress.add(self.apgd.solve(problem, &within(progress.left(stop), GRADIENTS), p));
         }
         if !progress.over(stop)
@@ -321,8 +321,8 @@ impl<const D: usize> Chain<D> {
     }
 }
 
-/// Whether accelerated gradients serve: see [`LARGE`].
-fn is_loose_crowd<const D: usize>(problem: &ContactProblem<'_, D>, stop: &Stop<'_>) -> bool {
+/// Whether accelerated gradients are worth trying: see [`LARGE`].
+fn suits_gradients<const D: usize>(problem: &ContactProblem<'_, D>, stop: &Stop<'_>) -> bool {
     D == 2 && problem.contacts() > LARGE && stop.tolerance >= LOOSE
 }
 

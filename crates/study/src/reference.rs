@@ -81,7 +81,7 @@ impl ReferenceSettings<'_> {
         if scene.time.theta != 0.5 {
             setting = setting.set("time.theta", "0.5");
         }
-        if !scene.has_contacts() { setting } else { setting.set("solver.tolerance", TOLERANCE) }
+        if scene.has_contacts() { setting.set("solver.tolerance", TOLERANCE) } else { setting }
     }
 }
 

@@ -169,8 +169,8 @@ struct Seen {
     unseen: f64,
 }
 
-/// Accelerations of a beam between the corners of a base, m/s².
-const SUMMITS_ACCELERATE: f64 = 100.0;
+/// Acceleration that is allowed for of a beam's surface between the corners of a base, m/s².
+const SUMMIT_ACCELERATION: f64 = 100.0;
 
 impl Seen {
     fn new(watch: Watch, scheme: Scheme, scene: &Scene, state: &State) -> Self {
@@ -194,7 +194,7 @@ impl Seen {
             radius: scene.blocks.iter().map(|block| 0.5 * block.width.hypot(block.height)).fold(0.0, f64::max),
             dt: scene.time.step,
             tolerance: scene.time.gap_tolerance,
-            unseen: if sides { SUMMITS_ACCELERATE * scene.time.step.powi(2) } else { 0.0 },
+            unseen: if sides { SUMMIT_ACCELERATION * scene.time.step.powi(2) } else { 0.0 },
         };
         seen.see_spin(state);
         seen

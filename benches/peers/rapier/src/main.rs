@@ -105,8 +105,7 @@ fn chain(world: &mut PhysicsWorld, links: usize) -> Result<()> {
 
 /// Boxes of 0.1 m on each other, the top one so many times heavier: that one.
 fn stack(world: &mut PhysicsWorld, boxes: usize, heavier: f64) -> RigidBodyHandle {
-    let shape = ColliderBuilder::halfspace(na::Unit::new_unchecked(Vector::Y)).friction(FRICTION);
-    world.insert(RigidBodyBuilder::fixed(), shape);
+    ground(world);
     let mut top = RigidBodyHandle::invalid();
     for k in 0..boxes {
         let body = RigidBodyBuilder::dynamic().translation(Vector::new(0.0, (k as f64 + 0.5) * BOX)).can_sleep(false);

@@ -6,8 +6,8 @@ use super::{EventDriven, LOWEST_BOUNCE, after, smooth::MASSES, still};
 use crate::{Memory, Model, Over, Responses, Rule, State, StepError, Vector, WarmStart, Workspace};
 use teeter_detect::Candidate;
 
-/// Contacts with a gap of up to so many tolerances touch.
-pub(super) const TOUCHING: f64 = 10.0;
+/// What [`EventDriven::touching_gap`] is in tolerances of a gap.
+const TOUCHING: f64 = 10.0;
 
 /// A tangential acceleration below this part of what it consists of is none.
 const NONE: f64 = 1e-8;
@@ -52,6 +52,11 @@ impl EventDriven {
         self.decide(model, from, work)
     }
 
+    /// Contacts with a gap of up to this touch, m.
+    pub(super) fn touching_gap(&self, q: &[f64]) -> f64 {
+        TOUCHING * self.located.tolerance(q)
+    }
+
     /// Finds which of the contacts that touch press, and which of them stick; first lets those that
     /// approach strike. Whether there is a motion that goes on.
     pub(super) fn decide(
@@ -64,7 +69,7 @@ impl EventDriven {
         let t = after(from.t);
         self.smooth.between = [t, t];
         self.v_before.copy_from_slice(&from.v);
-        work.detect(model, &from.q, TOUCHING * self.located.tolerance(&from.q))?;
+        work.detect(model, &from.q, self.touching_gap(&from.q))?;
         if work.candidates.len() > EventDriven::MOST_CONTACTS {
             return Ok(false);
         }

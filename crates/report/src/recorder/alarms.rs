@@ -232,13 +232,15 @@ impl Recorder<'_> {
         if step.is_solved() {
             return;
         }
-        let Some(outcome) = step.outcome().filter(|outcome| !outcome.converged()) else { return };
-        let unsolved = step.phases().find(|phase| phase.outcome.is_some_and(|outcome| !outcome.converged()));
+        let unsolved = step.phases().find_map(|phase| {
+            let outcome = phase.outcome.filter(|outcome| !outcome.converged())?;
+            Some((outcome, phase.contacts.len()))
+        });
+        let Some((outcome, contacts)) = unsolved else { return };
         self.warn("unconverged", Some(step.t_end), || {
             format!(
-                "the contact problem of the step to t = {} s ({} contacts) was not solved: {} after {} iterations of {}, residual {:.1e}",
+                "the contact problem of the step to t = {} s ({contacts} contacts) was not solved: {} after {} iterations of {}, residual {:.1e}",
                 step.t_end,
-                unsolved.map_or(0, |phase| phase.contacts.len()),
                 outcome.status,
                 outcome.iterations,
                 outcome.used,

@@ -105,12 +105,6 @@ impl Resolver<'_, '_> {
         };
         let (shift, of_row) = (along("repeat.shift", block.place[0]), along("repeat.row_shift", block.place[1]));
         let shift = [shift[0] + of_row[0], shift[1] + of_row[1]];
-        let rows = self.doc.integer(&at("repeat.rows"));
-        if block.copy == 0 && self.doc.is_given(&at("repeat.row_shift")) && rows.is_none_or(|rows| rows < 2) {
-            let rule = "there is one row only, so that it has no effect";
-            let remedy = "give rows = 2 or more, or leave it out";
-            self.warnings.push(self.doc.error(&at("repeat.row_shift"), rule.to_owned(), remedy).as_warning());
-        }
         self.check_placement_keys(&path).ok()?;
         let free = |[x, y]: [f64; 2], angle: f64| Placement::Free { position: [x + shift[0], y + shift[1]], angle };
         if self.is_written(&at("position")) {

@@ -7,7 +7,7 @@ use super::Resolver;
 use super::contacts::Joined;
 use super::many::{Apart, Many, Rank};
 use crate::placement::carried_by;
-use crate::scene::{BeamScene, BlockScene, Crowd, CrowdContact, SupportingBody};
+use crate::scene::{BeamScene, BlockScene, Crowd, CrowdContact, SupportingBody, pairs_between};
 
 /// Up to so many pairs of blocks that patterns match are listed one by one. Listed or not, the
 /// motion is the same but for rounding, as contacts have another order.
@@ -54,8 +54,7 @@ impl Classes {
 
     /// How many pairs two classes, or one with itself, have.
     fn pairs(&self, a: usize, b: usize) -> usize {
-        let (first, second) = (self.blocks[a].len(), self.blocks[b].len());
-        if a == b { first * first.saturating_sub(1) / 2 } else { first * second }
+        pairs_between(self.blocks[a].len(), self.blocks[b].len(), a == b)
     }
 
     /// The classes two by two, each with itself, too.
@@ -71,7 +70,7 @@ impl Resolver<'_, '_> {
     pub(super) fn crowded(&mut self, many: &[Option<Many>], apart: &Apart) -> Result<Option<Classes>, TooMany> {
         let count = self.block_names.len();
         // Of so few blocks there are no more pairs.
-        if count * count.saturating_sub(1) / 2 <= MOST_LISTED {
+        if pairs_between(count, count, true) <= MOST_LISTED {
             return Ok(None);
         }
         let of_contacts = 2 * many.len();

@@ -36,6 +36,12 @@ pub struct CrowdContact {
     pub law: PairLaw,
 }
 
+/// How many pairs there are of a block of one class and a block of another, by their sizes; or of
+/// two blocks of the `same` class.
+pub(crate) fn pairs_between(first: usize, second: usize, same: bool) -> usize {
+    if same { first * first.saturating_sub(1) / 2 } else { first * second }
+}
+
 /// Two numbers, the lower one first.
 fn ordered(a: usize, b: usize) -> [usize; 2] {
     [a.min(b), a.max(b)]
@@ -120,7 +126,7 @@ impl Crowd {
         let mut pairs = 0;
         for a in 0..self.count {
             for b in (a..self.count).filter(|b| self.holder(a, *b).is_some()) {
-                pairs += if a == b { sizes[a] * sizes[a].saturating_sub(1) / 2 } else { sizes[a] * sizes[b] };
+                pairs += pairs_between(sizes[a], sizes[b], a == b);
             }
         }
         let held = |[a, b]: &&[usize; 2]| self.holder(self.classes[*a], self.classes[*b]).is_some();
