@@ -10,6 +10,7 @@ mod scene;
 mod scene_page;
 mod schema;
 mod solve;
+mod sweep;
 mod tradeoff;
 
 use clap::{Parser, Subcommand};
@@ -122,6 +123,35 @@ enum Command {
         #[arg(long)]
         force: bool,
     },
+    /// Run a scene for many values of its keys; a table with a row for each case
+    #[command(after_help = SWEEP_HELP, args_conflicts_with_subcommands = true)]
+    Sweep {
+        /// The sweep file: a scene, the keys that vary, and the numbers wanted
+        #[arg(value_name = "SWEEP.toml", required_unless_present = "merge", conflicts_with = "merge")]
+        sweep: Option<PathBuf>,
+        /// Folder for the results (default: `runs/` with the name of the sweep file)
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Number of cases that run at once (default: one for each core)
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+        jobs: Option<u16>,
+        /// Run only shard I of N, such as 2/8, for one of several machines
+        #[arg(long, value_name = "I/N")]
+        shard: Option<teeter_study::sweep::Shard>,
+        /// Continue the study in the folder: run only the cases that have no row yet
+        #[arg(long, conflicts_with = "force")]
+        resume: bool,
+        /// Put the results of all shards together into the folder given by --out
+        #[arg(long, value_name = "DIR", num_args = 1.., requires = "out")]
+        #[arg(conflicts_with_all = ["jobs", "shard", "resume"])]
+        merge: Vec<PathBuf>,
+        /// Print only errors
+        #[arg(long)]
+        quiet: bool,
+        /// Replace results of an earlier study
+        #[arg(long)]
+        force: bool,
+    },
     /// List the contact solvers: their dimensions, law (exact or convex) and source
     Solvers,
     /// Solve contact problems from FCLIB files; print residual, iterations and time
@@ -172,6 +202,25 @@ const SOLVE_HELP: &str = "Examples:
 Each solve starts from p = 0. Its residual is that of the one judge, whatever the solver minimised inside; a solver that
 fails is a row. The time is the solver's alone: problem read, memory ready. A solve of less than 0.1 s is repeated from the
 same start, and the median taken.";
+
+const SWEEP_HELP: &str = "Examples:
+  teeter sweep friction.toml
+  teeter sweep friction.toml --out results --resume          # only what is missing, after a kill, too
+  teeter sweep friction.toml --shard 2/8 --out part-2        # on one of eight machines
+  teeter sweep --merge part-1 part-2 part-3 --out results
+
+A sweep file:
+  scene = \"rocking.toml\"
+
+  [grid]                                  # all combinations
+  contact.feet.friction = [0.3, 0.5]
+  block.rocker.tilt = { from = \"1 deg\", to = \"5 deg\", count = 9 }
+
+  [outputs]                               # columns of results.csv
+  largest = { max_abs = \"rocker.phi\" }   # of trajectory.csv
+  impacts = \"impact_count\"               # of summary.json
+
+docs/sweep.md describes it.";
 
 fn key_value(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
@@ -239,6 +288,13 @@ fn main() -> ExitCode {
         Command::Check { scene, set, model } => check::check(&check::Options { scene, set, extent: model }).into(),
         Command::Tradeoff { scene, out, set, quiet, force } => {
             tradeoff::tradeoff(&tradeoff::Options { scene, out, set, quiet, force }).into()
+        }
+        Command::Sweep { sweep: Some(sweep), out, jobs, shard, resume, quiet, force, .. } => {
+            let jobs = jobs.map(usize::from);
+            sweep::sweep(&sweep::Options { sweep, out, jobs, shard, resume, force, quiet }).into()
+        }
+        Command::Sweep { sweep: None, out, merge, quiet, force, .. } => {
+            sweep::merge_shards(&merge, &out.unwrap_or_default(), force, quiet).into()
         }
         Command::Solvers => solve::list().into(),
         Command::Solve { paths, solvers, tolerance, time_limit, json, solutions, profile, force } => {

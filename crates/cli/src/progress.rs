@@ -93,6 +93,51 @@ impl Drop for SolveBar {
     }
 }
 
+/// A bar for the cases of a study, with the time left.
+pub(crate) struct CaseBar {
+    console: Console,
+    begin: Instant,
+    bar: ProgressBar,
+    /// Cases that were done before.
+    before: u64,
+}
+
+impl CaseBar {
+    pub(crate) fn new(console: Console, before: u64, cases: u64) -> Self {
+        let bar = ProgressBar::with_draw_target(Some(cases), ProgressDrawTarget::hidden());
+        bar.set_position(before);
+        if let Ok(style) =
+            ProgressStyle::with_template("{bar:30} {percent:>3} %  {human_pos} of {human_len} cases  {msg}")
+        {
+            bar.set_style(style);
+        }
+        Self { console, begin: Instant::now(), bar, before }
+    }
+
+    /// Counts a case.
+    pub(crate) fn step(&self) {
+        self.bar.inc(1);
+        if !self.console.is_watched() {
+            return;
+        }
+        let elapsed = self.begin.elapsed();
+        let (done, all) = (self.bar.position() - self.before, self.bar.length().unwrap_or(0) - self.before);
+        // The mean over all cases so far: neighbouring cases cost alike, so a mean over the last ones
+        // would swing with the axes.
+        let left = elapsed.as_secs_f64() * (all.saturating_sub(done)) as f64 / done.max(1) as f64;
+        self.bar.set_message(format!("{} left", indicatif::HumanDuration(Duration::from_secs_f64(left))));
+        if self.bar.is_hidden() && elapsed > PATIENCE {
+            self.bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(10));
+        }
+    }
+}
+
+impl Drop for CaseBar {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
+
 /// A bar for work in phases, on standard error.
 pub(crate) struct PhaseBar {
     console: Console,

@@ -142,6 +142,24 @@ impl<'a> Recorder<'a> {
         Self::fresh(|_, _| Ok(Table::nowhere()), scene, layout, tell)
     }
 
+    /// A recorder of a run of `scene` that keeps the rows of its trajectory in memory, for
+    /// [`Self::trajectory`], and writes no tables.
+    ///
+    /// # Errors
+    /// None today; as [`Recorder::new`].
+    pub fn in_memory(scene: &Scene, layout: &'a Layout, tell: &'a mut dyn FnMut(&str)) -> Result<Self, ResultsError> {
+        let table = |k, _: &str| Ok(if k == 0 { Table::in_memory() } else { Table::nowhere() });
+        Self::fresh(table, scene, layout, tell)
+    }
+
+    /// The header of the trajectory table and its rows so far, as `trajectory.csv` would hold them,
+    /// of a recorder made by [`Self::in_memory`].
+    #[must_use]
+    pub fn trajectory(&self) -> (String, &str) {
+        let header = trajectory_header(self.layout, &self.sections);
+        (header, std::str::from_utf8(self.trajectory.kept()).unwrap_or_default())
+    }
+
     fn fresh(
         table: impl Fn(usize, &str) -> Result<Table, ResultsError>,
         scene: &Scene,

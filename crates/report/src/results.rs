@@ -102,11 +102,12 @@ pub struct Reserved {
 }
 
 /// Files that only one command writes.
-const MARKS: [(&str, &str); 4] = [
+const MARKS: [(&str, &str); 5] = [
     ("trajectory.csv", "`teeter run`"),
     ("summary.json", "`teeter run`"),
     (CHECKPOINT, "`teeter run`"),
     ("tradeoff.json", "`teeter tradeoff`"),
+    ("sweep.json", "`teeter sweep`"),
 ];
 
 /// The lock of a folder for results.
@@ -194,14 +195,23 @@ impl Results {
     /// # Errors
     /// If somebody else writes there, or a file can't be removed.
     pub fn reopen(folder: &Path) -> Result<Self, ResultsError> {
-        check_folder(folder)?;
-        check_inner_folders(&FILES, folder)?;
-        let lock = FolderLock::take(folder, LOCK)?;
-        let results = Self { folder: folder.to_owned(), files: &FILES, _lock: lock };
+        let results = Self::reopen_of(&FILES, folder)?;
         // While the summary stands, the folder looks like one of a run that has ended.
-        let (summary, trial) = (folder.join("summary.json"), results.temporary("trial"));
+        results.remove("summary.json")?;
+        Ok(results)
+    }
+
+    /// Takes a folder with results that are other files than a run's, to continue them: all stay.
+    ///
+    /// # Errors
+    /// If somebody else writes there, or what an earlier end left under temporary names can't be removed.
+    pub fn reopen_of(files: &'static [&'static str], folder: &Path) -> Result<Self, ResultsError> {
+        check_folder(folder)?;
+        check_inner_folders(files, folder)?;
+        let lock = FolderLock::take(folder, LOCK)?;
+        let results = Self { folder: folder.to_owned(), files, _lock: lock };
         let parts = results.files.iter().map(|file| results.temporary(file));
-        for path in [summary, trial].into_iter().chain(parts) {
+        for path in [results.temporary("trial")].into_iter().chain(parts) {
             remove_if_there(&path)?;
         }
         Ok(results)

@@ -14,8 +14,10 @@ const BUFFER: usize = 1 << 16;
 #[derive(Debug)]
 pub(crate) struct Table {
     path: PathBuf,
-    /// None where the rows go nowhere.
+    /// None where the rows go nowhere, or stay in the buffer.
     file: Option<File>,
+    /// Whether all rows stay in the buffer.
+    in_memory: bool,
     buffer: Vec<u8>,
     /// Bytes of whole rows on disk.
     written: u64,
@@ -24,14 +26,25 @@ pub(crate) struct Table {
 impl Table {
     /// A table whose rows go nowhere: of a run that is watched and not written.
     pub(crate) fn nowhere() -> Self {
-        Self { path: PathBuf::new(), file: None, buffer: Vec::new(), written: 0 }
+        Self { path: PathBuf::new(), file: None, in_memory: false, buffer: Vec::new(), written: 0 }
+    }
+
+    /// A table whose rows, without a header, stay in memory.
+    pub(crate) fn in_memory() -> Self {
+        Self { in_memory: true, ..Self::nowhere() }
+    }
+
+    /// The rows of a table in memory.
+    pub(crate) fn kept(&self) -> &[u8] {
+        if self.in_memory { &self.buffer } else { &[] }
     }
 
     /// A new table with its header row on disk.
     pub(crate) fn create(folder: &Path, name: &str, header: &str) -> Result<Self, ResultsError> {
         let path = folder.join(name);
         let file = create(&path).map_err(|source| ResultsError::Io { path: path.clone(), source })?;
-        let mut table = Self { path, file: Some(file), buffer: Vec::with_capacity(2 * BUFFER), written: 0 };
+        let mut table =
+            Self { path, file: Some(file), in_memory: false, buffer: Vec::with_capacity(2 * BUFFER), written: 0 };
         table.rows(header)?;
         table.flush()?;
         Ok(table)
@@ -53,7 +66,13 @@ impl Table {
             Ok(file)
         };
         match open() {
-            Ok(file) => Ok(Self { path, file: Some(file), buffer: Vec::with_capacity(2 * BUFFER), written: length }),
+            Ok(file) => Ok(Self {
+                path,
+                file: Some(file),
+                in_memory: false,
+                buffer: Vec::with_capacity(2 * BUFFER),
+                written: length,
+            }),
             Err(source) => Err(ResultsError::Io { path, source }),
         }
     }
@@ -66,6 +85,9 @@ impl Table {
     /// Adds whole rows, each with its line end.
     pub(crate) fn rows(&mut self, text: &str) -> Result<(), ResultsError> {
         if self.file.is_none() {
+            if self.in_memory {
+                self.buffer.extend_from_slice(text.as_bytes());
+            }
             return Ok(());
         }
         self.buffer.extend_from_slice(text.as_bytes());

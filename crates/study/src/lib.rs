@@ -27,6 +27,7 @@ mod setting;
 mod setting_warning;
 mod simulate;
 mod source;
+pub mod sweep;
 mod timing;
 mod tradeoff;
 mod trial_runs;

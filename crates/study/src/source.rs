@@ -34,6 +34,42 @@ impl StudyScene {
         Ok((Self { bytes, name: name.to_owned(), stem: stem.to_owned(), sets: sets.to_vec(), files }, resolved))
     }
 
+    /// A scene that is run with many settings, some of which name files: all files that the scene
+    /// reads with one of `settings` are read once. Settings that are refused count as well.
+    pub fn with_files_of(
+        bytes: Vec<u8>,
+        name: &str,
+        stem: &str,
+        settings: impl Iterator<Item = Setting>,
+        read: &mut ReadFile<'_>,
+    ) -> Self {
+        let mut files: BTreeMap<String, Vec<u8>> = BTreeMap::new();
+        for setting in settings {
+            let mut kept = |path: &str| match files.get(path) {
+                Some(bytes) => Ok(bytes.clone()),
+                None => {
+                    let bytes = read(path)?;
+                    files.insert(path.to_owned(), bytes.clone());
+                    Ok(bytes)
+                }
+            };
+            // What is wrong with a case is told where the case is run.
+            let _ = teeter_scenario::load_with(&bytes, name, stem, &setting.pairs(), &mut kept);
+        }
+        Self { bytes, name: name.to_owned(), stem: stem.to_owned(), sets: Vec::new(), files }
+    }
+
+    /// The bytes of the scene and of the files that it reads, in an order that depends on their
+    /// names alone.
+    pub fn contents(&self) -> impl Iterator<Item = &[u8]> {
+        std::iter::once(self.bytes.as_slice()).chain(self.files.values().map(Vec::as_slice))
+    }
+
+    /// The names of the files that the scene reads.
+    pub fn files(&self) -> impl Iterator<Item = &str> {
+        self.files.keys().map(String::as_str)
+    }
+
     /// The scene with a setting.
     ///
     /// # Errors

@@ -1,0 +1,181 @@
+//! Runs the cases of a study.
+
+use super::Sweep;
+use super::number::in_table;
+use super::output::{Columns, Output, quoted};
+use crate::StudyScene;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+use teeter_integrator::{Ended, Model, Observer, ObserverError, State, StepReport};
+use teeter_report::{EndedWord, Recorder, Summary};
+use teeter_scenario::simulation::Simulation;
+
+/// How a case ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum CaseStatus {
+    /// It ran; the word of its summary.
+    Ran(EndedWord),
+    /// The scene can't be run with its values.
+    Refused,
+    /// Its run broke off without a result.
+    Failed,
+}
+
+impl CaseStatus {
+    /// The word in the table.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Ran(ended) => ended.word(),
+            Self::Refused => "refused",
+            Self::Failed => "failed",
+        }
+    }
+
+    /// Whether the case ran to its end.
+    #[must_use]
+    pub fn is_complete(self) -> bool {
+        !matches!(self, Self::Refused | Self::Failed | Self::Ran(EndedWord::Diverged | EndedWord::Unconverged))
+    }
+}
+
+/// A row of the results.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CaseRow {
+    /// The case, from 0.
+    pub number: u64,
+    /// How it ended.
+    pub status: CaseStatus,
+    /// The outputs, as texts; empty where a case has none.
+    pub outputs: Vec<String>,
+    /// Steps whose contact problem was not solved to tolerance.
+    pub unsolved_steps: u64,
+    /// Why it didn't come to its end, in one line.
+    pub error: String,
+}
+
+impl CaseRow {
+    /// The line of the table, with its end. Numbers are in SI units and read back to the same
+    /// doubles.
+    #[must_use]
+    pub fn line(&self, sweep: &Sweep) -> String {
+        let mut line = self.number.to_string();
+        for (key, value) in sweep.case(self.number) {
+            line.push(',');
+            line.push_str(&quoted(&in_table(&key, &value)));
+        }
+        for output in &self.outputs {
+            line.push(',');
+            line.push_str(output);
+        }
+        let Self { status, unsolved_steps, error, .. } = self;
+        line.push_str(&format!(",{},{unsolved_steps},{}\n", status.word(), quoted(error)));
+        line
+    }
+
+    fn without_outputs(number: u64, sweep: &Sweep, status: CaseStatus, error: String) -> Self {
+        Self { number, status, outputs: vec![String::new(); sweep.outputs().len()], unsolved_steps: 0, error }
+    }
+}
+
+/// Runs cases on up to `threads` threads, in the order in which `cases` gives them, and hands each
+/// row to `done` as it ends, one at a time. Once `cancel` is set none is started, and those that
+/// run break off without a row. `done` returns whether to go on.
+pub fn run_cases(
+    sweep: &Sweep,
+    source: &StudyScene,
+    cases: impl Iterator<Item = u64> + Send,
+    threads: usize,
+    cancel: &AtomicBool,
+    done: impl FnMut(CaseRow) -> bool + Send,
+) {
+    let (cases, done) = (Mutex::new(cases), Mutex::new(done));
+    let broken = AtomicBool::new(false);
+    let ended = || cancel.load(Ordering::Relaxed) || broken.load(Ordering::Relaxed);
+    std::thread::scope(|scope| {
+        for _ in 0..threads.max(1) {
+            scope.spawn(|| {
+                while !ended() {
+                    let next = cases.lock().unwrap_or_else(PoisonError::into_inner).next();
+                    let Some(number) = next else { break };
+                    let Some(row) = run_case(sweep, source, number, cancel) else { break };
+                    if !(done.lock().unwrap_or_else(PoisonError::into_inner))(row) {
+                        broken.store(true, Ordering::Relaxed);
+                    }
+                }
+            });
+        }
+    });
+}
+
+/// Ends a run when the user wants to.
+struct Cancelled<'a>(&'a AtomicBool);
+
+impl Observer<2> for Cancelled<'_> {
+    fn observe(
+        &mut self,
+        _: &Model<2>,
+        _: &StepReport<'_, 2>,
+        _: &State,
+    ) -> Result<std::ops::ControlFlow<()>, ObserverError> {
+        let ended = self.0.load(Ordering::Relaxed);
+        Ok(if ended { std::ops::ControlFlow::Break(()) } else { std::ops::ControlFlow::Continue(()) })
+    }
+}
+
+/// The row of a case; `None` if it was cancelled.
+fn run_case(sweep: &Sweep, source: &StudyScene, number: u64, cancel: &AtomicBool) -> Option<CaseRow> {
+    let refused = |why: String| Some(CaseRow::without_outputs(number, sweep, CaseStatus::Refused, why));
+    let failed = |why: String| Some(CaseRow::without_outputs(number, sweep, CaseStatus::Failed, why));
+    let resolved = match source.load(&sweep.setting(number)) {
+        Ok(resolved) => resolved,
+        Err(found) => return refused(crate::Failure::from(found).to_string()),
+    };
+    let mut simulation = match Simulation::new(&resolved.scene) {
+        Ok(simulation) => simulation,
+        Err(error) => return refused(error.to_string()),
+    };
+    let layout = simulation.layout.clone();
+    let wanted: Vec<&str> = sweep.outputs().iter().filter_map(Output::column).collect();
+    let mut tell = |_: &str| {};
+    let recorder = if wanted.is_empty() {
+        Recorder::watching(&resolved.scene, &layout, &mut tell)
+    } else {
+        Recorder::in_memory(&resolved.scene, &layout, &mut tell)
+    };
+    let mut recorder = match recorder {
+        Ok(recorder) => recorder,
+        Err(error) => return failed(error.to_string()),
+    };
+    let ended = match simulation.run(&mut [&mut Cancelled(cancel), &mut recorder]) {
+        Ok(ended) => ended,
+        Err(error) => return failed(error.to_string()),
+    };
+    let (word, error) = match ended {
+        Ended::Interrupted if cancel.load(Ordering::Relaxed) => return None,
+        Ended::Failed(error) => (EndedWord::Diverged, error.to_string()),
+        Ended::Unconverged => {
+            let t = simulation.state.t;
+            (EndedWord::Unconverged, format!("a step was not solved to tolerance at t = {t} s"))
+        }
+        _ => (EndedWord::Complete, String::new()),
+    };
+    let (header, rows) = recorder.trajectory();
+    let columns = Columns::read(&header, rows, &wanted);
+    let record = recorder.into_record();
+    let state = &simulation.state;
+    let summary = Summary::new(&resolved.scene, &layout, state, &record, word, 0.0);
+    let summary = match serde_json::to_value(&summary) {
+        Ok(summary) => summary,
+        Err(error) => return failed(error.to_string()),
+    };
+    let outputs = sweep.outputs().iter().map(|output| output.cell(&summary, &columns)).collect();
+    Some(CaseRow {
+        number,
+        status: CaseStatus::Ran(word),
+        outputs,
+        unsolved_steps: state.tally.unconverged_steps,
+        error,
+    })
+}

@@ -1,0 +1,556 @@
+//! Sweep files.
+
+use super::number::WrittenNumber;
+use super::output::Output;
+use super::sample::{Distribution, Method, Sampler};
+use super::spec::{Node, Reader, entries};
+use crate::{Setting, StudyScene};
+use teeter_scenario::diagnostic::{Diagnostic, Diagnostics};
+use teeter_scenario::keys::{self, PathTarget};
+use toml::de::DeTable;
+
+/// Lists the files that match a pattern, relative to the sweep file, as a scene names them; or says
+/// why not.
+pub type FilesOf<'a> = dyn Fn(&str) -> Result<Vec<String>, String> + 'a;
+
+/// Largest number of cases.
+const MOST_CASES: u64 = 100_000_000;
+/// Largest number of values of one axis, and of random samples, which are kept in memory.
+const MOST_VALUES: u64 = 1_000_000;
+
+/// A parameter study as its file describes it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sweep {
+    scene: String,
+    /// Keys that vary on their own, and those that vary together; the last one varies fastest.
+    axes: Vec<Axis>,
+    samples: Option<Samples>,
+    outputs: Vec<Output>,
+}
+
+/// Keys that change together, and their values.
+#[derive(Clone, Debug, PartialEq)]
+struct Axis {
+    keys: Vec<String>,
+    /// By keys.
+    values: Vec<Vec<String>>,
+}
+
+impl Axis {
+    fn len(&self) -> u64 {
+        self.values.first().map_or(1, |values| values.len() as u64)
+    }
+}
+
+/// Keys with random values.
+#[derive(Clone, Debug, PartialEq)]
+struct Samples {
+    keys: Vec<RandomKey>,
+    count: u64,
+    sampler: Sampler,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct RandomKey {
+    key: String,
+    distribution: Distribution,
+    /// A number in the unit of its values.
+    unit: WrittenNumber,
+}
+
+const TABLES: [&str; 5] = ["scene", "grid", "zip", "random", "outputs"];
+const RANGE: [&str; 5] = ["from", "to", "count", "spacing", "files"];
+const DISTRIBUTIONS: [&str; 4] = ["uniform", "log_uniform", "normal", "log_normal"];
+const EXAMPLE: &str = "list the values, such as [\"1 mm\", \"2 mm\"], or give { from = \"1 mm\", to = \"9 mm\", count = 5 }, \
+    with spacing = \"log\" for a logarithmic range, or { files = \"records/*.AT2\" }";
+
+/// What is given if a sweep file asks for nothing.
+const DEFAULT_OUTPUTS: [&str; 4] = ["t", "impact_count", "energy.final", "energy.largest_residual"];
+
+impl Sweep {
+    /// Reads the text of a sweep file; `file` is its name in messages.
+    ///
+    /// # Errors
+    /// Everything that is wrong in it.
+    pub fn read(text: &str, file: &str, files: &FilesOf<'_>) -> Result<Self, Diagnostics> {
+        let mut reader = Reader::new(file, text);
+        let root = match DeTable::parse(text) {
+            Ok(root) => root,
+            Err(error) => {
+                let mut finding = Diagnostic::error(file, format!("not valid TOML: {}", error.message()));
+                if let Some(span) = error.span() {
+                    reader.place(&mut finding, span);
+                }
+                return Err(finding.into());
+            }
+        };
+        let mut sweep = Self { scene: String::new(), axes: Vec::new(), samples: None, outputs: Vec::new() };
+        for (name, node) in entries(root.get_ref()) {
+            match (name, node.table()) {
+                ("scene", _) => match node.text() {
+                    Some(scene) if !scene.trim().is_empty() => sweep.scene = scene.to_owned(),
+                    _ => reader.wrong("scene", Some(&node), "the path of a scene file is expected", SCENE_EXAMPLE),
+                },
+                ("grid", Some(table)) => sweep.axes.extend(grid(&mut reader, table, "grid", files)),
+                ("zip", Some(table)) => sweep.axes.extend(together(&mut reader, table, &node, files)),
+                ("random", Some(table)) => sweep.samples = samples(&mut reader, table, &node),
+                ("outputs", Some(table)) => {
+                    for (name, node) in entries(table) {
+                        sweep.outputs.extend(Output::read(&mut reader, name, &node));
+                    }
+                }
+                (known, _) if TABLES.contains(&known) => {
+                    reader.wrong(
+                        known,
+                        Some(&node),
+                        "a table is expected",
+                        &format!("write [{known}], and its keys below"),
+                    );
+                }
+                (other, _) => reader.unknown(other, &node, other, &TABLES),
+            }
+        }
+        if !reader.found.has_errors() {
+            sweep.check(&mut reader);
+        }
+        if sweep.outputs.is_empty() {
+            sweep.outputs.extend(DEFAULT_OUTPUTS.map(Output::summary));
+        }
+        if reader.found.has_errors() { Err(reader.into_findings()) } else { Ok(sweep) }
+    }
+
+    /// The path of the scene in a sweep file, which may have errors elsewhere.
+    #[must_use]
+    pub fn scene_of(text: &str) -> Option<String> {
+        let root = DeTable::parse(text).ok()?;
+        let (_, node) = entries(root.get_ref()).into_iter().find(|(name, _)| *name == "scene")?;
+        node.text().map(str::to_owned)
+    }
+
+    /// The first case, and changes of it that take each key through all values that are not numbers:
+    /// together they name every file that a case can read.
+    pub fn settings_with_files(&self) -> impl Iterator<Item = Setting> + '_ {
+        let first = self.setting(0);
+        let named = self.axes.iter().flat_map(|axis| {
+            let words = |values: &[String]| values.iter().any(|value| WrittenNumber::read(value).is_none());
+            let count = if axis.values.iter().any(|values| words(values)) { axis.len() } else { 0 };
+            (1..usize::try_from(count).unwrap_or(0)).map(move |place| {
+                let pairs = axis.keys.iter().zip(&axis.values);
+                pairs.fold(Setting::none(), |setting, (key, values)| setting.set(key.clone(), values[place].clone()))
+            })
+        });
+        let base = first.clone();
+        std::iter::once(first).chain(named.map(move |setting| base.clone().with(&setting)))
+    }
+
+    /// Refuses keys that the scene can't have, which would make every case a refused one.
+    ///
+    /// # Errors
+    /// What is wrong with them.
+    pub fn check_keys(&self, source: &StudyScene, file: &str) -> Result<(), Diagnostics> {
+        let mut wrong = Diagnostics::default();
+        for (key, value) in self.case(0) {
+            if matches!(keys::find(&key), Some(PathTarget::Key(..))) {
+                continue;
+            }
+            let Err(found) = source.load(&Setting::none().set(key.clone(), value)) else { continue };
+            let about = |finding: &&Diagnostic| finding.set.as_ref().is_some_and(|set| set.starts_with(&key));
+            wrong.0.extend(found.iter().find(about).cloned().map(|finding| Diagnostic {
+                file: file.to_owned(),
+                set: None,
+                position: None,
+                span: None,
+                written: None,
+                path: key.clone(),
+                ..finding
+            }));
+        }
+        if wrong.has_errors() { Err(wrong) } else { Ok(()) }
+    }
+
+    /// Rules for the whole file.
+    fn check(&self, reader: &mut Reader<'_>) {
+        if self.scene.is_empty() {
+            reader.wrong("scene", None, "missing: which scene varies?", SCENE_EXAMPLE);
+        }
+        let keys = self.keys();
+        if keys.is_empty() {
+            let remedy = "give keys with their values under [grid], [zip] or [random], such as \
+                contact.feet.friction = [0.3, 0.5] under [grid]";
+            reader.wrong("", None, "nothing varies", remedy);
+        }
+        for (place, key) in keys.iter().enumerate() {
+            if keys[..place].contains(key) {
+                reader.wrong(key, None, "varies twice", "keep one of the two");
+            }
+        }
+        let names: Vec<&str> = self.outputs.iter().map(Output::name).collect();
+        for (place, name) in names.iter().enumerate() {
+            let reserved = RESERVED.contains(name) || keys.contains(name);
+            if reserved || names[..place].contains(name) {
+                let rule = "a column of that name is in the results already";
+                reader.wrong(&format!("outputs.{name}"), None, rule, "take another name");
+            }
+        }
+        if self.checked_cases().is_none_or(|cases| cases > MOST_CASES) {
+            let rule = format!("more than {MOST_CASES} cases");
+            reader.wrong("", None, &rule, "use fewer values, or random samples of the same keys");
+        }
+    }
+
+    /// The path of the scene file, relative to the sweep file.
+    #[must_use]
+    pub fn scene(&self) -> &str {
+        &self.scene
+    }
+
+    /// The keys that vary, in the order of the columns.
+    #[must_use]
+    pub fn keys(&self) -> Vec<&str> {
+        let fixed = self.axes.iter().flat_map(|axis| &axis.keys);
+        let random = self.samples.iter().flat_map(|samples| samples.keys.iter().map(|random| &random.key));
+        fixed.chain(random).map(String::as_str).collect()
+    }
+
+    /// The outputs, in the order of the columns.
+    #[must_use]
+    pub fn outputs(&self) -> &[Output] {
+        &self.outputs
+    }
+
+    fn checked_cases(&self) -> Option<u64> {
+        let samples = self.samples.as_ref().map_or(1, |samples| samples.count);
+        self.axes.iter().try_fold(samples, |cases, axis| cases.checked_mul(axis.len()))
+    }
+
+    /// Number of cases: all combinations of the axes, each with all samples.
+    #[must_use]
+    pub fn cases(&self) -> u64 {
+        self.checked_cases().unwrap_or(u64::MAX)
+    }
+
+    /// The keys of a case, numbered from 0, with their values, in the order of [`Self::keys`].
+    #[must_use]
+    pub fn case(&self, number: u64) -> Vec<(String, String)> {
+        let mut rest = number;
+        let sample = match &self.samples {
+            Some(samples) => {
+                let sample = rest % samples.count;
+                rest /= samples.count;
+                sample
+            }
+            None => 0,
+        };
+        let mut fixed = Vec::new();
+        for axis in self.axes.iter().rev() {
+            let place = usize::try_from(rest % axis.len()).unwrap_or(0);
+            rest /= axis.len();
+            let pairs = axis.keys.iter().zip(&axis.values);
+            fixed.extend(pairs.rev().filter_map(|(key, values)| Some((key.clone(), values.get(place)?.clone()))));
+        }
+        fixed.reverse();
+        if let Some(samples) = &self.samples {
+            for (place, random) in samples.keys.iter().enumerate() {
+                let value = random.distribution.quantile(samples.sampler.share(place, sample));
+                fixed.push((random.key.clone(), random.unit.text_of(value)));
+            }
+        }
+        fixed
+    }
+
+    /// A case as changes to the scene.
+    #[must_use]
+    pub fn setting(&self, number: u64) -> Setting {
+        self.case(number).into_iter().fold(Setting::none(), |setting, (key, value)| setting.set(key, value))
+    }
+
+    /// The names of the columns of the results.
+    #[must_use]
+    pub fn header(&self) -> String {
+        let keys = self.keys();
+        let outputs = self.outputs.iter().map(Output::name);
+        let names = std::iter::once("case").chain(keys.iter().copied()).chain(outputs).chain(LAST_COLUMNS);
+        names.map(super::output::quoted).collect::<Vec<_>>().join(",") + "\n"
+    }
+}
+
+/// The columns after the outputs.
+const LAST_COLUMNS: [&str; 3] = ["status", "unsolved_steps", "error"];
+/// Names that outputs can't have.
+const RESERVED: [&str; 4] = ["case", "status", "unsolved_steps", "error"];
+const SCENE_EXAMPLE: &str = "name it relative to the sweep file, such as scene = \"rocking.toml\"";
+
+/// Keys with their values: `contact.feet.friction = [0.3, 0.5]`, quoted or not.
+fn leaves<'a, 't>(table: &'a DeTable<'t>, words: &[&str], above: &str) -> Vec<(String, Node<'a, 't>)> {
+    let mut all = Vec::new();
+    for (name, node) in entries(table) {
+        let key = if above.is_empty() { name.to_owned() } else { format!("{above}.{name}") };
+        match node.table() {
+            // A range has only keys of a range, whose values are no tables: other tables are part of the
+            // path.
+            Some(inner) if !is_range(inner, words) => all.extend(leaves(inner, words, &key)),
+            _ => all.push((key, node)),
+        }
+    }
+    all
+}
+
+fn is_range(table: &DeTable<'_>, words: &[&str]) -> bool {
+    table.is_empty() || entries(table).iter().any(|(name, node)| words.contains(name) && node.table().is_none())
+}
+
+fn grid(reader: &mut Reader<'_>, table: &DeTable<'_>, name: &str, files: &FilesOf<'_>) -> Vec<Axis> {
+    let keys = leaves(table, &RANGE, "");
+    let read = |(key, node): (String, Node<'_, '_>)| {
+        let values = values(reader, &format!("{name}.{key}"), &node, files)?;
+        Some(Axis { keys: vec![key], values: vec![values] })
+    };
+    keys.into_iter().filter_map(read).collect()
+}
+
+/// Keys whose first values belong together, and so on.
+fn together(reader: &mut Reader<'_>, table: &DeTable<'_>, node: &Node<'_, '_>, files: &FilesOf<'_>) -> Option<Axis> {
+    let axes = grid(reader, table, "zip", files);
+    let lengths: Vec<u64> = axes.iter().map(Axis::len).collect();
+    if lengths.windows(2).any(|pair| pair[0] != pair[1]) {
+        let count = |axis: &Axis| format!("{} has {}", axis.keys.join(""), axis.len());
+        let rule =
+            format!("lists of one length are expected: {}", axes.iter().map(count).collect::<Vec<_>>().join(", "));
+        reader.wrong("zip", Some(node), &rule, "give each key one value a case, or move a key to [grid]");
+        return None;
+    }
+    let (keys, values) = axes.into_iter().map(|axis| (axis.keys, axis.values)).fold(
+        (Vec::new(), Vec::new()),
+        |(mut keys, mut values), (more_keys, more_values)| {
+            keys.extend(more_keys);
+            values.extend(more_values);
+            (keys, values)
+        },
+    );
+    (!keys.is_empty()).then_some(Axis { keys, values })
+}
+
+/// The values of a key: listed, a range, or files.
+fn values(reader: &mut Reader<'_>, path: &str, node: &Node<'_, '_>, files: &FilesOf<'_>) -> Option<Vec<String>> {
+    if let Some(items) = node.array() {
+        if items.is_empty() {
+            reader.wrong(path, Some(node), "no values", EXAMPLE);
+            return None;
+        }
+        return Some(items.iter().map(|item| reader.setting(item)).collect());
+    }
+    let Some(table) = node.table() else {
+        reader.wrong(path, Some(node), "a list of values is expected", EXAMPLE);
+        return None;
+    };
+    let (mut ends, mut count, mut log) = ([None, None], None, false);
+    for (word, value) in entries(table) {
+        let inner = format!("{path}.{word}");
+        match word {
+            "files" => return listed_files(reader, &inner, &value, files),
+            "from" | "to" => ends[usize::from(word == "to")] = Some(end(reader, &inner, &value)?),
+            "count" => match value.whole() {
+                Some(number) if (2..=MOST_VALUES).contains(&number) => count = Some(number),
+                _ => {
+                    let rule = format!("a whole number from 2 to {MOST_VALUES} is expected");
+                    reader.wrong(&inner, Some(&value), &rule, "both ends are among the values");
+                    return None;
+                }
+            },
+            "spacing" => match value.text() {
+                Some("linear") => {}
+                Some("log") => log = true,
+                _ => {
+                    reader.wrong(
+                        &inner,
+                        Some(&value),
+                        "\"linear\" or \"log\" is expected",
+                        "leave it out for \"linear\"",
+                    );
+                    return None;
+                }
+            },
+            other => {
+                reader.unknown(&inner, &value, other, &RANGE);
+                return None;
+            }
+        }
+    }
+    let ([Some(from), Some(to)], Some(count)) = (&ends, count) else {
+        reader.wrong(path, Some(node), "from, to and count belong together", EXAMPLE);
+        return None;
+    };
+    if !same_unit(reader, path, node, from, to) {
+        return None;
+    }
+    if log && !(from.value > 0.0 && to.value > 0.0) {
+        reader.wrong(
+            path,
+            Some(node),
+            "a logarithmic range is between positive numbers",
+            "leave out spacing = \"log\"",
+        );
+        return None;
+    }
+    let value = |k: u64| {
+        let share = k as f64 / (count - 1) as f64;
+        match k {
+            0 => from.value,
+            k if k == count - 1 => to.value,
+            _ if log => from.value * (to.value / from.value).powf(share),
+            _ => from.value + (to.value - from.value) * share,
+        }
+    };
+    Some((0..count).map(|k| from.text_of(value(k))).collect())
+}
+
+fn end(reader: &mut Reader<'_>, path: &str, node: &Node<'_, '_>) -> Option<WrittenNumber> {
+    let number = WrittenNumber::read(&reader.setting(node));
+    if number.is_none() {
+        reader.wrong(path, Some(node), "a number is expected, with the unit of its key", EXAMPLE);
+    }
+    number
+}
+
+fn same_unit(reader: &mut Reader<'_>, path: &str, node: &Node<'_, '_>, a: &WrittenNumber, b: &WrittenNumber) -> bool {
+    if a.unit == b.unit {
+        return true;
+    }
+    let or_none = |unit: &str| if unit.is_empty() { "none".to_owned() } else { format!("`{unit}`") };
+    let rule = format!("the units differ: {} and {}", or_none(&a.unit), or_none(&b.unit));
+    reader.wrong(path, Some(node), &rule, "write both numbers in one unit; the values between are in it, too");
+    false
+}
+
+fn listed_files(reader: &mut Reader<'_>, path: &str, node: &Node<'_, '_>, files: &FilesOf<'_>) -> Option<Vec<String>> {
+    let patterns: Option<Vec<&str>> = match (node.text(), node.array()) {
+        (Some(text), _) => Some(vec![text]),
+        (None, Some(items)) => items.iter().map(Node::text).collect(),
+        (None, None) => None,
+    };
+    let Some(patterns) = patterns else {
+        reader.wrong(path, Some(node), "a pattern, or a list of file names, is expected", EXAMPLE);
+        return None;
+    };
+    let mut all = Vec::new();
+    for pattern in patterns {
+        match files(pattern) {
+            Ok(found) => all.extend(found),
+            Err(why) => {
+                reader.wrong(
+                    path,
+                    Some(node),
+                    &format!("`{pattern}`: {why}"),
+                    "patterns are relative to the sweep file",
+                );
+                return None;
+            }
+        }
+    }
+    Some(all)
+}
+
+/// Keys with random values: `count`, `seed`, `method`, and the keys.
+fn samples(reader: &mut Reader<'_>, table: &DeTable<'_>, node: &Node<'_, '_>) -> Option<Samples> {
+    let (mut count, mut seed, mut method, mut keys) = (None, 0, Method::Independent, Vec::new());
+    for (name, value) in entries(table) {
+        let path = format!("random.{name}");
+        match name {
+            "count" => match value.whole() {
+                Some(number) if (1..=MOST_VALUES).contains(&number) => count = Some(number),
+                _ => {
+                    let rule = format!("a whole number from 1 to {MOST_VALUES} is expected");
+                    reader.wrong(&path, Some(&value), &rule, "it is the number of samples");
+                }
+            },
+            "seed" => match value.whole() {
+                Some(number) => seed = number,
+                None => reader.wrong(
+                    &path,
+                    Some(&value),
+                    "a whole number from 0 on is expected",
+                    "the same seed gives the same samples",
+                ),
+            },
+            "method" => match value.text() {
+                Some("independent") => method = Method::Independent,
+                Some("latin-hypercube") => method = Method::LatinHypercube,
+                _ => {
+                    let rule = "\"independent\" or \"latin-hypercube\" is expected";
+                    reader.wrong(&path, Some(&value), rule, "leave it out for \"independent\"");
+                }
+            },
+            _ => match value.table() {
+                Some(inner) if !is_range(inner, &DISTRIBUTIONS) => {
+                    for (key, leaf) in leaves(inner, &DISTRIBUTIONS, name) {
+                        keys.extend(random_key(reader, key, &leaf));
+                    }
+                }
+                _ => keys.extend(random_key(reader, name.to_owned(), &value)),
+            },
+        }
+    }
+    let Some(count) = count else {
+        reader.wrong("random.count", Some(node), "missing: how many samples?", "such as count = 100");
+        return None;
+    };
+    if keys.is_empty() {
+        let remedy = "give a key its distribution, such as contact.feet.friction = { uniform = [0.2, 0.6] }";
+        reader.wrong("random", Some(node), "nothing is random", remedy);
+        return None;
+    }
+    let sampler = Sampler::new(seed, method, keys.len(), u32::try_from(count).unwrap_or(u32::MAX));
+    Some(Samples { keys, count, sampler })
+}
+
+fn random_key(reader: &mut Reader<'_>, key: String, node: &Node<'_, '_>) -> Option<RandomKey> {
+    let path = format!("random.{key}");
+    let example = "give one of { uniform = [low, high] }, { log_uniform = [low, high] }, { normal = [mean, standard \
+        deviation] } or { log_normal = [median, standard deviation of the logarithm] }";
+    let words = node.table().map(entries).unwrap_or_default();
+    let [(word, value)] = words.as_slice() else {
+        reader.wrong(&path, Some(node), "a distribution is expected", example);
+        return None;
+    };
+    if !DISTRIBUTIONS.contains(word) {
+        reader.unknown(&format!("{path}.{word}"), value, word, &DISTRIBUTIONS);
+        return None;
+    }
+    let numbers = value.array().unwrap_or_default();
+    let [a, b] = numbers.as_slice() else {
+        reader.wrong(&format!("{path}.{word}"), Some(value), "two numbers are expected", example);
+        return None;
+    };
+    let (first, second) = (end(reader, &path, a)?, end(reader, &path, b)?);
+    // The standard deviation of a logarithm has no unit.
+    if *word != "log_normal" && !same_unit(reader, &path, value, &first, &second) {
+        return None;
+    }
+    let (x, y) = (first.value, second.value);
+    let (distribution, rule) = match *word {
+        "uniform" => {
+            (Distribution::Uniform { low: x, high: y }, (x < y).then_some(()).ok_or("the lower end comes first"))
+        }
+        "log_uniform" => {
+            let fine = 0.0 < x && x < y;
+            (
+                Distribution::LogUniform { low: x, high: y },
+                fine.then_some(()).ok_or("two positive numbers, the smaller one first"),
+            )
+        }
+        "normal" => (
+            Distribution::Normal { mean: x, deviation: y },
+            (y > 0.0).then_some(()).ok_or("a standard deviation is positive"),
+        ),
+        _ => {
+            let fine = x > 0.0 && y > 0.0 && second.unit.is_empty();
+            let rule = "a positive median and the standard deviation of the logarithm, which has no unit";
+            (Distribution::LogNormal { median: x, deviation: y }, fine.then_some(()).ok_or(rule))
+        }
+    };
+    if let Err(rule) = rule {
+        reader.wrong(&format!("{path}.{word}"), Some(value), rule, example);
+        return None;
+    }
+    Some(RandomKey { key, distribution, unit: first })
+}

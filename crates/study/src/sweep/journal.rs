@@ -1,0 +1,261 @@
+//! The rows of a study on disk.
+//!
+//! While a study runs its rows stand in a journal, in the order in which cases end; a kill loses
+//! at most the row that is being written. At the end they are sorted into `results.csv`.
+
+use super::{IDENTITY, Sweep, SweepIdentity, SweepIdentityError};
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::{self, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use teeter_report::{Results, ResultsError};
+
+/// The table of a study that has ended.
+pub const RESULTS: &str = "results.csv";
+/// The rows of a study that hasn't.
+pub const JOURNAL: &str = "journal.csv";
+/// The files that a study may write, in the order in which they are removed.
+pub const FILES: [&str; 3] = [RESULTS, JOURNAL, IDENTITY];
+
+/// Why rows can't be kept, continued or merged.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum JournalError {
+    /// A folder or file can't be read or written.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The folder or file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// A folder of results can't be written.
+    #[error(transparent)]
+    Results(#[from] ResultsError),
+    /// The rows of a folder belong to another study or shard.
+    #[error("{}: {source}", folder.display())]
+    Foreign {
+        /// The folder.
+        folder: PathBuf,
+        /// What differs.
+        source: SweepIdentityError,
+    },
+    /// A shard that has not ended.
+    #[error("{}: {missing} of its cases are still to do; continue it with --resume", folder.display())]
+    Unfinished {
+        /// The folder.
+        folder: PathBuf,
+        /// Number of cases without a row.
+        missing: u64,
+    },
+    /// Shards that are not there.
+    #[error("shards are missing: {0}")]
+    MissingShards(String),
+    /// A shard that is there twice.
+    #[error("shard {shard} is in {} and in {}", first.display(), second.display())]
+    Twice {
+        /// The shard.
+        shard: super::Shard,
+        /// A folder.
+        first: PathBuf,
+        /// The other folder.
+        second: PathBuf,
+    },
+}
+
+fn io_error(path: &Path) -> impl FnOnce(io::Error) -> JournalError + '_ {
+    |source| JournalError::Io { path: path.to_owned(), source }
+}
+
+/// The journal of a study that runs.
+#[derive(Debug)]
+pub struct Journal {
+    path: PathBuf,
+    file: File,
+    done: Done,
+}
+
+/// The cases that have a row, a bit each.
+#[derive(Clone, Debug, Default)]
+struct Done {
+    bits: Vec<u64>,
+    count: u64,
+}
+
+impl Done {
+    fn insert(&mut self, case: u64) {
+        let (word, bit) = ((case / 64) as usize, 1 << (case % 64));
+        if self.bits.len() <= word {
+            self.bits.resize(word + 1, 0);
+        }
+        if self.bits[word] & bit == 0 {
+            self.bits[word] |= bit;
+            self.count += 1;
+        }
+    }
+
+    fn has(&self, case: u64) -> bool {
+        self.bits.get((case / 64) as usize).is_some_and(|word| word >> (case % 64) & 1 == 1)
+    }
+}
+
+impl Journal {
+    /// The journal of a new study in a folder that is free.
+    ///
+    /// # Errors
+    /// If a file can't be written.
+    pub fn create(results: &Results, identity: &SweepIdentity, sweep: &Sweep) -> Result<Self, JournalError> {
+        let path = results.folder().join(JOURNAL);
+        results.write(IDENTITY, identity.to_json())?;
+        results.write(JOURNAL, sweep.header())?;
+        let mut file = File::options().write(true).open(&path).map_err(io_error(&path))?;
+        file.seek(SeekFrom::End(0)).map_err(io_error(&path))?;
+        Ok(Self { path, file, done: Done::default() })
+    }
+
+    /// The journal of the study of `identity` in a folder, with the rows that it holds. A row that a
+    /// kill cut is removed. `None` if the folder holds no study; a study that has ended has all its
+    /// rows.
+    ///
+    /// # Errors
+    /// If the folder holds another study, or a file can't be read or written.
+    pub fn reopen(folder: &Path, identity: &SweepIdentity, sweep: &Sweep) -> Result<Option<Self>, JournalError> {
+        let place = folder.join(IDENTITY);
+        let text = match fs::read_to_string(&place) {
+            Ok(text) => text,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(io_error(&place)(error)),
+        };
+        let foreign = |source| JournalError::Foreign { folder: folder.to_owned(), source };
+        identity.admit(&SweepIdentity::from_json(&text).map_err(foreign)?).map_err(foreign)?;
+        let (ended, path) = (folder.join(RESULTS), folder.join(JOURNAL));
+        if !path.exists() && ended.exists() {
+            fs::rename(&ended, &path).map_err(io_error(&ended))?;
+        }
+        if !path.exists() {
+            fs::write(&path, sweep.header()).map_err(io_error(&path))?;
+        }
+        let bytes = fs::read(&path).map_err(io_error(&path))?;
+        let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
+        let mut file = File::options().write(true).open(&path).map_err(io_error(&path))?;
+        file.set_len(whole as u64).map_err(io_error(&path))?;
+        file.seek(SeekFrom::End(0)).map_err(io_error(&path))?;
+        if whole == 0 {
+            file.write_all(sweep.header().as_bytes()).map_err(io_error(&path))?;
+        }
+        let mut done = Done::default();
+        for line in String::from_utf8_lossy(&bytes[..whole]).lines() {
+            if let Some(case) = number_of(line) {
+                done.insert(case);
+            }
+        }
+        Ok(Some(Self { path, file, done }))
+    }
+
+    /// Number of cases with a row.
+    #[must_use]
+    pub fn done(&self) -> u64 {
+        self.done.count
+    }
+
+    /// The cases of an iterator that have no row yet.
+    pub fn missing<I: Iterator<Item = u64>>(&self, cases: I) -> impl Iterator<Item = u64> + use<I> {
+        let done = self.done.clone();
+        cases.filter(move |case| !done.has(*case))
+    }
+
+    /// Adds the row of a case.
+    ///
+    /// # Errors
+    /// If it can't be written; then it isn't there in part either.
+    pub fn add(&mut self, case: u64, line: &str) -> Result<(), JournalError> {
+        let before = self.file.stream_position().map_err(io_error(&self.path))?;
+        if let Err(error) = self.file.write_all(line.as_bytes()) {
+            // Half a row would read as a wrong one. Where even this fails, the next start cuts it.
+            let _ = self.file.set_len(before);
+            return Err(io_error(&self.path)(error));
+        }
+        self.done.insert(case);
+        Ok(())
+    }
+}
+
+/// The case of a row; `None` for the header.
+fn number_of(line: &str) -> Option<u64> {
+    line.split(',').next()?.parse().ok()
+}
+
+/// Sorts rows by their case. A case that ran twice, as after a kill between its row and the next
+/// start, keeps its first row.
+fn sorted<'t>(texts: impl Iterator<Item = &'t str>) -> Vec<(u64, &'t str)> {
+    let mut rows: Vec<(u64, &str)> =
+        texts.flat_map(|text| text.split_inclusive('\n')).filter_map(|line| Some((number_of(line)?, line))).collect();
+    rows.sort_by_key(|(case, _)| *case);
+    rows.dedup_by_key(|(case, _)| *case);
+    rows
+}
+
+/// Writes `results.csv` from the journal of a folder, whose study has all its rows, and removes the
+/// journal.
+///
+/// # Errors
+/// If a file can't be read or written.
+pub fn write_results(results: &Results, sweep: &Sweep) -> Result<(), JournalError> {
+    let path = results.folder().join(JOURNAL);
+    let text = fs::read_to_string(&path).map_err(io_error(&path))?;
+    results.write(RESULTS, table(&sweep.header(), &sorted(std::iter::once(text.as_str()))))?;
+    Ok(results.remove(JOURNAL)?)
+}
+
+fn table(header: &str, rows: &[(u64, &str)]) -> String {
+    let mut all = header.to_owned();
+    rows.iter().for_each(|(_, line)| all.push_str(line));
+    all
+}
+
+/// Puts the results of all shards of a study together: the text of `results.csv` and that of the
+/// identity of the whole study. The bytes are those of one run of all cases.
+///
+/// # Errors
+/// If a folder holds no study or another one, a shard is missing, twice there or unfinished.
+pub fn merge(folders: &[PathBuf]) -> Result<(String, String), JournalError> {
+    let mut shards: BTreeMap<u64, &PathBuf> = BTreeMap::new();
+    let mut study: Option<SweepIdentity> = None;
+    let mut texts = Vec::new();
+    for folder in folders {
+        let foreign = |source| JournalError::Foreign { folder: folder.clone(), source };
+        let place = folder.join(IDENTITY);
+        let text = fs::read_to_string(&place).map_err(io_error(&place))?;
+        let identity = SweepIdentity::from_json(&text).map_err(foreign)?;
+        if let Some(study) = &study {
+            study.admit_study(&identity).map_err(foreign)?;
+            if study.shard().of() != identity.shard().of() {
+                let source = SweepIdentityError::Shard { then: identity.shard(), now: study.shard() };
+                return Err(foreign(source));
+            }
+        }
+        let shard = identity.shard();
+        if let Some(first) = shards.insert(shard.number(), folder) {
+            return Err(JournalError::Twice { shard, first: first.clone(), second: folder.clone() });
+        }
+        let (ended, running) = (folder.join(RESULTS), folder.join(JOURNAL));
+        let place = if ended.exists() { ended } else { running };
+        let rows = fs::read_to_string(&place).map_err(io_error(&place))?;
+        let (expected, there) = (shard.cases(identity.cases()).count(), sorted(std::iter::once(rows.as_str())).len());
+        if there < expected {
+            return Err(JournalError::Unfinished { folder: folder.clone(), missing: (expected - there) as u64 });
+        }
+        texts.push(rows);
+        study.get_or_insert(identity);
+    }
+    let Some(study) = study else { return Err(JournalError::MissingShards("all".to_owned())) };
+    let of = study.shard().of();
+    let missing: Vec<String> =
+        (1..=of).filter(|number| !shards.contains_key(number)).map(|number| format!("{number}/{of}")).collect();
+    if !missing.is_empty() {
+        return Err(JournalError::MissingShards(missing.join(", ")));
+    }
+    // The same sweep has the same columns.
+    let header = texts.first().and_then(|text| text.split_inclusive('\n').next()).unwrap_or_default();
+    Ok((table(header, &sorted(texts.iter().map(String::as_str))), study.as_whole().to_json()))
+}

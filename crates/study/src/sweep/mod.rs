@@ -1,0 +1,27 @@
+//! Parameter studies: a scene, axes along which its keys vary, and the numbers wanted of each case.
+//!
+//! [`Sweep::read`] reads a sweep file; [`Sweep::case`] gives the settings of a case by its number,
+//! so that a study of any size needs no list of its cases. [`run_cases`] runs those that are still
+//! to do on all cores and hands on each [`CaseRow`] as it ends. [`Journal`] keeps the rows on disk
+//! as they come, in any order, and survives a kill; [`write_results`] sorts them into
+//! `results.csv`. [`merge`] puts the journals of several shards together, to the same bytes as one
+//! run of all cases.
+
+mod case;
+mod file;
+mod identity;
+mod journal;
+mod listing;
+mod number;
+mod output;
+mod sample;
+mod shard;
+mod spec;
+
+pub use case::{CaseRow, CaseStatus, run_cases};
+pub use file::{FilesOf, Sweep};
+pub use identity::{IDENTITY, SweepIdentity, SweepIdentityError};
+pub use journal::{FILES, JOURNAL, Journal, JournalError, RESULTS, merge, write_results};
+pub use listing::matching_files;
+pub use output::Output;
+pub use shard::{Shard, ShardError};

@@ -1,0 +1,268 @@
+//! The numbers that are wanted of each case.
+
+use super::spec::{Node, Reader, entries};
+use serde_json::Value;
+
+/// Which row of a column is wanted.
+#[derive(Clone, Debug, PartialEq)]
+enum Reduction {
+    /// The largest value.
+    Max,
+    /// The smallest value.
+    Min,
+    /// The largest magnitude.
+    MaxAbs,
+    /// The last value.
+    Final,
+    /// The value at a time (s), interpolated linearly between rows.
+    At(f64),
+}
+
+/// Where an output comes from.
+#[derive(Clone, Debug, PartialEq)]
+enum Origin {
+    /// A value of `summary.json`, by the keys and positions that lead to it.
+    Summary(String),
+    /// A column of `trajectory.csv`.
+    Column { name: String, reduction: Reduction },
+}
+
+/// An output of a study: its name and where it comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output {
+    name: String,
+    origin: Origin,
+}
+
+const WORDS: [&str; 6] = ["max", "min", "max_abs", "final", "at", "of"];
+
+impl Output {
+    /// Its name: the header of its column.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The column of `trajectory.csv` that it needs.
+    #[must_use]
+    pub fn column(&self) -> Option<&str> {
+        match &self.origin {
+            Origin::Column { name, .. } => Some(name),
+            Origin::Summary(_) => None,
+        }
+    }
+
+    /// The place in `summary.json` where it is found.
+    #[must_use]
+    pub fn summary_path(&self) -> Option<&str> {
+        match &self.origin {
+            Origin::Summary(path) => Some(path),
+            Origin::Column { .. } => None,
+        }
+    }
+
+    /// A value of the summary under its own path.
+    pub(crate) fn summary(path: &str) -> Self {
+        Self { name: path.to_owned(), origin: Origin::Summary(path.to_owned()) }
+    }
+
+    /// Reads `name = "path.in.summary"` or `name = { max = "column" }`.
+    pub(crate) fn read(reader: &mut Reader<'_>, name: &str, node: &Node<'_, '_>) -> Option<Self> {
+        let path = format!("outputs.{name}");
+        let example = "write the path of a number in summary.json, such as \"energy.largest_residual\", or a column of \
+            trajectory.csv as { max = \"block.phi\" }, min, max_abs, final, or { at = \"0.5 s\", of = \"block.phi\" }";
+        if let Some(place) = node.text() {
+            return Some(Self { name: name.to_owned(), origin: Origin::Summary(place.to_owned()) });
+        }
+        let Some(table) = node.table() else {
+            reader.wrong(&path, Some(node), "not an output", example);
+            return None;
+        };
+        let mut texts = Vec::new();
+        for (word, value) in entries(table) {
+            let inner = format!("{path}.{word}");
+            match value.text() {
+                _ if !WORDS.contains(&word) => {
+                    reader.unknown(&inner, &value, word, &WORDS);
+                    return None;
+                }
+                Some(text) => texts.push((word, text, value)),
+                None => {
+                    reader.wrong(&inner, Some(&value), "a text is expected", example);
+                    return None;
+                }
+            }
+        }
+        let (column, reduction) = match texts.as_slice() {
+            [("max", column, _)] => (*column, Reduction::Max),
+            [("min", column, _)] => (*column, Reduction::Min),
+            [("max_abs", column, _)] => (*column, Reduction::MaxAbs),
+            [("final", column, _)] => (*column, Reduction::Final),
+            [("at", time, value), ("of", column, _)] | [("of", column, _), ("at", time, value)] => {
+                match teeter_scenario::quantity::parse(time, teeter_scenario::dimension::Dimension::TIME) {
+                    Ok(time) if time >= 0.0 => (*column, Reduction::At(time)),
+                    Ok(_) => {
+                        reader.wrong(&format!("{path}.at"), Some(value), "before the start", "give a time from 0 on");
+                        return None;
+                    }
+                    Err(error) => {
+                        reader.wrong(
+                            &format!("{path}.at"),
+                            Some(value),
+                            &error.to_string(),
+                            "give a time with its unit, such as \"0.5 s\"",
+                        );
+                        return None;
+                    }
+                }
+            }
+            _ => {
+                reader.wrong(&path, Some(node), "one of max, min, max_abs, final is expected, or at with of", example);
+                return None;
+            }
+        };
+        Some(Self { name: name.to_owned(), origin: Origin::Column { name: column.to_owned(), reduction } })
+    }
+
+    /// The text of its cell: empty where there is no such value.
+    pub(crate) fn cell(&self, summary: &Value, columns: &Columns) -> String {
+        match &self.origin {
+            Origin::Summary(path) => at_path(summary, path).map(text_of).unwrap_or_default(),
+            Origin::Column { name, reduction } => {
+                columns.reduced(name, reduction).map(|value| format!("{value:?}")).unwrap_or_default()
+            }
+        }
+    }
+}
+
+/// The value at `energy.initial`, `peaks.0.phi` or `peaks.-1.phi`, the last of an array; `peaks.len`
+/// is the length of an array.
+fn at_path<'v>(value: &'v Value, path: &str) -> Option<std::borrow::Cow<'v, Value>> {
+    use std::borrow::Cow;
+    let mut now = value;
+    for part in path.split('.') {
+        now = match now {
+            Value::Object(map) => map.get(part)?,
+            Value::Array(items) if part == "len" => return Some(Cow::Owned(Value::from(items.len()))),
+            Value::Array(items) => match part.strip_prefix('-') {
+                Some(back) => items.get(items.len().checked_sub(back.parse().ok()?)?)?,
+                None => items.get(part.parse::<usize>().ok()?)?,
+            },
+            _ => return None,
+        };
+    }
+    Some(Cow::Borrowed(now))
+}
+
+fn text_of(value: std::borrow::Cow<'_, Value>) -> String {
+    match value.as_ref() {
+        Value::Null => String::new(),
+        Value::String(text) => quoted(text),
+        Value::Number(number) => {
+            number.as_f64().filter(|_| number.is_f64()).map_or_else(|| number.to_string(), |x| format!("{x:?}"))
+        }
+        other => quoted(&other.to_string()),
+    }
+}
+
+/// A text as a cell of a table, in one line.
+pub(crate) fn quoted(text: &str) -> String {
+    let line: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    if line.contains([',', '"']) { format!("\"{}\"", line.replace('"', "\"\"")) } else { line }
+}
+
+/// Columns of a trajectory, by the names that are wanted.
+#[derive(Debug, Default)]
+pub(crate) struct Columns {
+    names: Vec<String>,
+    times: Vec<f64>,
+    values: Vec<Vec<f64>>,
+}
+
+impl Columns {
+    /// Reads those of the names from the text of a table that it has, and the times.
+    pub(crate) fn read(header: &str, rows: &str, wanted: &[&str]) -> Self {
+        let header: Vec<&str> = header.trim_end().split(',').collect();
+        let mut found = Self::default();
+        let mut places = Vec::new();
+        for name in wanted {
+            if let Some(place) = header.iter().position(|column| column == name)
+                && !found.names.iter().any(|known| known == name)
+            {
+                found.names.push((*name).to_owned());
+                found.values.push(Vec::new());
+                places.push(place);
+            }
+        }
+        for line in rows.lines() {
+            let cells: Vec<&str> = line.split(',').collect();
+            let number = |place: usize| cells.get(place).and_then(|cell| cell.parse().ok()).unwrap_or(f64::NAN);
+            found.times.push(number(0));
+            for (values, place) in found.values.iter_mut().zip(&places) {
+                values.push(number(*place));
+            }
+        }
+        found
+    }
+
+    fn reduced(&self, name: &str, reduction: &Reduction) -> Option<f64> {
+        let place = self.names.iter().position(|known| known == name)?;
+        let values = self.values.get(place)?;
+        match reduction {
+            Reduction::Max => values.iter().copied().reduce(f64::max),
+            Reduction::Min => values.iter().copied().reduce(f64::min),
+            Reduction::MaxAbs => values.iter().map(|x| x.abs()).reduce(f64::max),
+            Reduction::Final => values.last().copied(),
+            Reduction::At(time) => self.interpolated(values, *time),
+        }
+    }
+
+    /// `None` outside the times of the table.
+    fn interpolated(&self, values: &[f64], time: f64) -> Option<f64> {
+        let after = self.times.partition_point(|t| *t < time);
+        let (t, x) = (*self.times.get(after)?, *values.get(after)?);
+        if t == time {
+            return Some(x);
+        }
+        let before = after.checked_sub(1)?;
+        let (t0, x0) = (self.times[before], values[before]);
+        Some(x0 + (x - x0) * ((time - t0) / (t - t0)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_found_by_their_path() {
+        let summary = serde_json::json!({
+            "t": 1.0, "steps": 100, "ended": "complete", "horizon": null,
+            "peaks": [{ "phi": 0.1 }, { "phi": -0.05 }], "energy": { "initial": 1e-20 },
+        });
+        let cell = |path: &str| Output::summary(path).cell(&summary, &Columns::default());
+        let cells = ["t", "steps", "ended", "horizon", "peaks.0.phi", "peaks.-1.phi", "peaks.len", "energy.initial"];
+        assert_eq!(cells.map(cell), ["1.0", "100", "complete", "", "0.1", "-0.05", "2", "1e-20"]);
+        assert_eq!(["peaks.2.phi", "peaks.-3.phi", "energy.none", "t.t"].map(cell), ["", "", "", ""]);
+    }
+
+    #[test]
+    fn columns_are_reduced_to_a_number() {
+        let columns = Columns::read("t,b.phi,b.x\n", "0.0,1.0,5\n0.5,-3.0,6\n1.0,2.0,7\n", &["b.phi", "none"]);
+        let value = |reduction| columns.reduced("b.phi", &reduction);
+        assert_eq!(value(Reduction::Max), Some(2.0));
+        assert_eq!(value(Reduction::Min), Some(-3.0));
+        assert_eq!(value(Reduction::MaxAbs), Some(3.0));
+        assert_eq!(value(Reduction::Final), Some(2.0));
+        assert_eq!(value(Reduction::At(0.5)), Some(-3.0));
+        assert_eq!(value(Reduction::At(0.75)), Some(-0.5));
+        assert_eq!(value(Reduction::At(1.25)), None);
+        assert_eq!(columns.reduced("none", &Reduction::Max), None);
+    }
+
+    #[test]
+    fn a_text_stays_in_its_cell() {
+        assert_eq!(quoted("a, \"b\"\nc"), "\"a, \"\"b\"\" c\"");
+        assert_eq!(quoted("plain"), "plain");
+    }
+}

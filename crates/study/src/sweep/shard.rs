@@ -1,0 +1,111 @@
+//! A part of a study that one of several machines runs.
+
+use std::str::FromStr;
+
+/// Shard `number` of `of`: the cases whose number, counted from 0, leaves the remainder
+/// `number − 1` when divided by `of`. Neighbouring cases, which tend to cost the same, go to
+/// different shards.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    number: u64,
+    of: u64,
+}
+
+/// Why a text is not a shard.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ShardError {
+    /// Not two numbers with a slash between them.
+    #[error("write I/N, such as 2/8 for the second of eight shards")]
+    NotAShard,
+    /// A number outside 1 to N.
+    #[error("there is no shard {number} of {of}: the first is 1/{of}, the last {of}/{of}")]
+    OutOfRange {
+        /// The number as given.
+        number: u64,
+        /// Of how many.
+        of: u64,
+    },
+    /// No shards at all.
+    #[error("a study has at least one shard")]
+    None,
+}
+
+impl Shard {
+    /// All cases.
+    pub const ALL: Self = Self { number: 1, of: 1 };
+
+    /// Shard `number` (from 1) of `of`.
+    ///
+    /// # Errors
+    /// If there is no such shard.
+    pub fn new(number: u64, of: u64) -> Result<Self, ShardError> {
+        match of {
+            0 => Err(ShardError::None),
+            _ if (1..=of).contains(&number) => Ok(Self { number, of }),
+            _ => Err(ShardError::OutOfRange { number, of }),
+        }
+    }
+
+    /// Its number, from 1.
+    #[must_use]
+    pub fn number(self) -> u64 {
+        self.number
+    }
+
+    /// Of how many shards.
+    #[must_use]
+    pub fn of(self) -> u64 {
+        self.of
+    }
+
+    /// The cases of a study of so many, in ascending order.
+    pub fn cases(self, total: u64) -> impl Iterator<Item = u64> {
+        let step = usize::try_from(self.of).unwrap_or(usize::MAX);
+        (self.number - 1..total).step_by(step)
+    }
+}
+
+impl FromStr for Shard {
+    type Err = ShardError;
+
+    fn from_str(text: &str) -> Result<Self, ShardError> {
+        let (number, of) = text.split_once('/').ok_or(ShardError::NotAShard)?;
+        let whole = |part: &str| part.trim().parse::<u64>().map_err(|_| ShardError::NotAShard);
+        Self::new(whole(number)?, whole(of)?)
+    }
+}
+
+impl std::fmt::Display for Shard {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}/{}", self.number, self.of)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_case_is_in_one_shard() {
+        for of in 1..=5 {
+            let mut all: Vec<u64> = (1..=of).flat_map(|k| Shard::new(k, of).unwrap().cases(17)).collect();
+            all.sort_unstable();
+            assert_eq!(all, (0..17).collect::<Vec<_>>());
+        }
+    }
+
+    #[test]
+    fn what_is_no_shard_is_refused_with_what_would_be_one() {
+        assert_eq!("2/8".parse(), Shard::new(2, 8));
+        for (text, error) in [
+            ("2", "write I/N, such as 2/8 for the second of eight shards"),
+            ("a/b", "write I/N, such as 2/8 for the second of eight shards"),
+            ("0/4", "there is no shard 0 of 4: the first is 1/4, the last 4/4"),
+            ("5/4", "there is no shard 5 of 4: the first is 1/4, the last 4/4"),
+            ("1/0", "a study has at least one shard"),
+        ] {
+            assert_eq!(text.parse::<Shard>().unwrap_err().to_string(), error);
+        }
+    }
+}
