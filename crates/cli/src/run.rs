@@ -8,7 +8,7 @@ use crate::render::{Presenter, refusal};
 use crate::scene;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use teeter_report::{ENERGY_MADE, ENERGY_TAKEN, HORIZON, UNLOCATED};
+use teeter_report::{ENERGY_MADE, ENERGY_TAKEN, HORIZON, UNLOCATED, with_unit};
 use teeter_run::{
     EndedWord, ExistingResults, ExportWhen, Extent, FinishedRun, Hooks, LoadError, PrepareError, Prepared, RunError,
     RunJob, RunStart, StateDump, Summary,
@@ -142,7 +142,7 @@ pub(crate) fn run(options: &Options) -> Exit {
 
 fn refuse(console: Console, error: &PrepareError) -> Exit {
     match error {
-        PrepareError::AlreadyEnded { ended: EndedWord::Complete, .. } => {
+        PrepareError::AlreadyEnded { ended: EndedWord::Complete | EndedWord::Stopped, .. } => {
             console.note(&error.to_string());
             return Exit::FinishedRun;
         }
@@ -222,7 +222,7 @@ fn report_end(console: Console, options: &Options, summary: &Summary, folder: &P
         console.note(&format!("warning: {}", warning.text));
     }
     match summary.ended {
-        EndedWord::Complete => {
+        EndedWord::Complete | EndedWord::Stopped => {
             console.note(&format_summary(summary, folder, options.horizon));
             Exit::FinishedRun
         }
@@ -252,10 +252,17 @@ fn how_it_ended(summary: &Summary, why: &str) -> String {
 
 /// The summary for the user.
 fn format_summary(summary: &Summary, folder: &Path, horizon: bool) -> String {
-    let mut text = format!(
-        "{}: {} steps of {} s in {:.2} s ({:.2} µs per step)\n",
-        summary.title, summary.steps, summary.dt, summary.wall_seconds, summary.us_per_step
-    );
+    let mut text = format!("{}: {}\n", summary.title, summary.headline);
+    if let Some(reason) = summary.stopped_by {
+        text.push_str(&format!("  stopped at t = {} by `{}` of time.stop\n", with_unit(summary.t, "s"), reason.word()));
+    }
+    text.push_str(&format!(
+        "  {} steps of {} in {:.2} s ({:.2} µs per step)\n",
+        summary.steps,
+        with_unit(summary.dt, "s"),
+        summary.wall_seconds,
+        summary.us_per_step
+    ));
     let count = |n: u64, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
     text.push_str(&format!(
         "  {}{}, {}, deepest penetration of a corner {:.1e} m, energy identity to {:.0e}\n",
