@@ -43,9 +43,13 @@ impl From<Exit> for ExitCode {
 #[derive(Debug)]
 pub(crate) struct Options {
     pub(crate) scene: PathBuf,
+    /// Folder of the files that the scene names, if it is another than by default.
+    pub(crate) base: Option<PathBuf>,
     pub(crate) out: Option<PathBuf>,
     pub(crate) set: Vec<(String, String)>,
     pub(crate) quiet: bool,
+    /// Whether to leave out the report and its figures.
+    pub(crate) no_report: bool,
     pub(crate) existing: ExistingResults,
     /// Folder for contact problems, and which to save.
     pub(crate) export: Option<(PathBuf, ExportWhen)>,
@@ -63,7 +67,7 @@ pub(crate) struct Options {
 
 impl Options {
     fn job(&self) -> Result<RunJob, LoadError> {
-        let mut job = RunJob::new(scene::source(&self.scene)?).existing(self.existing).extent(self.extent);
+        let mut job = RunJob::new(scene::source(&self.scene, self.base.as_deref())?).existing(self.existing).extent(self.extent);
         for (path, value) in &self.set {
             job = job.set(path, value);
         }
@@ -78,6 +82,9 @@ impl Options {
         }
         if let Some(path) = &self.from {
             job = job.from_state(path);
+        }
+        if self.no_report {
+            job = job.without_report();
         }
         if self.horizon {
             job = job.horizon();
@@ -223,7 +230,7 @@ fn report_end(console: Console, options: &Options, summary: &Summary, folder: &P
     }
     match summary.ended {
         EndedWord::Complete | EndedWord::Stopped => {
-            console.note(&format_summary(summary, folder, options.horizon));
+            console.note(&format_summary(summary, folder, options.horizon, !options.no_report));
             Exit::FinishedRun
         }
         EndedWord::Interrupted => {
@@ -251,7 +258,7 @@ fn how_it_ended(summary: &Summary, why: &str) -> String {
 }
 
 /// The summary for the user.
-fn format_summary(summary: &Summary, folder: &Path, horizon: bool) -> String {
+fn format_summary(summary: &Summary, folder: &Path, horizon: bool, report: bool) -> String {
     let mut text = format!("{}: {}\n", summary.title, summary.headline);
     if let Some(reason) = summary.stopped_by {
         text.push_str(&format!("  stopped at t = {} by `{}` of time.stop\n", with_unit(summary.t, "s"), reason.word()));
@@ -283,6 +290,9 @@ fn format_summary(summary: &Summary, folder: &Path, horizon: bool) -> String {
     if horizon && summary.warnings.iter().all(|warning| warning.code != HORIZON) {
         text.push_str("  horizon: with half the step, and with the initial state perturbed by 1e-12, the motion agrees within 1 % to the end\n");
     }
-    text.push_str(&format!("  results in {0}, report in {0}/report.html", folder.display()));
+    text.push_str(&format!("  results in {0}", folder.display()));
+    if report {
+        text.push_str(&format!(", report in {}/report.html", folder.display()));
+    }
     text
 }

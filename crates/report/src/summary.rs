@@ -115,6 +115,8 @@ pub struct Summary {
     pub max_phi_over_alpha: Option<f64>,
     /// When the first block overturned, s.
     pub overturned_at: Option<f64>,
+    /// From when on all blocks rest, s.
+    pub rests_from: Option<f64>,
     /// What of `time.stop` ended the run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stopped_by: Option<StopReason>,
@@ -363,6 +365,7 @@ impl Summary {
             headline: headline(scene, state, &verdict, &beams),
             max_phi_over_alpha: first(|of| of.max_phi_over_alpha, f64::max),
             overturned_at: first(|of| of.overturned_at, f64::min),
+            rests_from: verdict.iter().map(|of| of.rests_from).collect::<Option<Vec<_>>>().and_then(|of| of.into_iter().reduce(f64::max)),
             stopped_by: record.fates.stopped().map(|(_, reason)| reason),
             title: scene.title.clone(),
             version: env!("CARGO_PKG_VERSION"),

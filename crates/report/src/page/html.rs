@@ -35,6 +35,7 @@ pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> S
         ("style", STYLE.to_owned()),
         ("script", script),
         ("data", data::json(recorder, summary)),
+        ("verdict", verdict(summary)),
         ("subtitle", subtitle(summary)),
         ("warnings", warnings(summary)),
         ("tiles", tiles(&values, summary)),
@@ -100,9 +101,14 @@ impl Numbers {
     }
 }
 
-/// What users want to know first.
-const TILES: [&str; 7] = [
+/// What users want to know first: the numbers of the mechanics, then from [`NUMERIC`] on those of the computation.
+const TILES: [&str; 12] = [
+    "max_phi_over_alpha",
+    "overturned_at",
+    "rests_from",
+    "energy.lost",
     "impact_count",
+    "horizon",
     "reclosure_count",
     "max_penetration",
     "energy.largest_residual",
@@ -111,22 +117,49 @@ const TILES: [&str; 7] = [
     "contact.max_iterations",
 ];
 
+/// The first tile that is of the computation.
+const NUMERIC: usize = 6;
+
+/// The sentence at the head of the page, a sequence of Unicode text with names in backquotes.
+fn verdict(summary: &Summary) -> String {
+    let mut html = String::new();
+    for (number, part) in summary.headline.split('`').enumerate() {
+        let part = escaped(part);
+        if number % 2 == 1 { _ = write!(html, "<span class=\"name\">{part}</span>") } else { html.push_str(&part) }
+    }
+    if let Some(reason) = summary.stopped_by {
+        _ = write!(html, "; the run stopped there ({})", reason.word());
+    }
+    html
+}
+
 fn tiles(values: &Numbers, summary: &Summary) -> String {
     let mut html = String::new();
-    for path in TILES {
+    let seconds = |t: Option<f64>| t.map(|t| with_prefix(t, "s"));
+    for (number, path) in TILES.into_iter().enumerate() {
         let (label, shown) = match path {
-            "impact_count" => ("Impacts", summary.impact_count.to_string()),
-            "reclosure_count" => ("Contacts lost and found again", summary.reclosure_count.to_string()),
-            "max_penetration" => ("Deepest penetration of a corner", with_prefix(summary.max_penetration, "m")),
-            "energy.largest_residual" => ("Energy residual", scientific(summary.energy.largest_residual)),
-            "contact.unconverged_steps" => ("Steps not solved", summary.contact.unconverged_steps.to_string()),
-            "contact.max_residual" => ("Contact residual", scientific(summary.contact.max_residual)),
-            _ => ("Most iterations", summary.contact.max_iterations.to_string()),
+            "max_phi_over_alpha" => {
+                ("Largest φ/α", summary.max_phi_over_alpha.map(|part| rounded(part, 3).to_string()))
+            }
+            "overturned_at" => ("First overturned at", seconds(summary.overturned_at)),
+            "rests_from" => ("All at rest from", seconds(summary.rests_from)),
+            "energy.lost" => ("Energy lost", Some(with_prefix(summary.energy.lost, "J"))),
+            "impact_count" => ("Impacts", Some(summary.impact_count.to_string())),
+            "horizon" => ("Predictable up to", seconds(summary.horizon)),
+            "reclosure_count" => ("Contacts lost and found again", Some(summary.reclosure_count.to_string())),
+            "max_penetration" => ("Deepest penetration of a corner", Some(with_prefix(summary.max_penetration, "m"))),
+            "energy.largest_residual" => ("Energy residual", Some(scientific(summary.energy.largest_residual))),
+            "contact.unconverged_steps" => ("Steps not solved", Some(summary.contact.unconverged_steps.to_string())),
+            "contact.max_residual" => ("Contact residual", Some(scientific(summary.contact.max_residual))),
+            _ => ("Most iterations", Some(summary.contact.max_iterations.to_string())),
         };
+        // What has no meaning for this scene, or wasn't measured.
+        let Some(shown) = shown else { continue };
         let bad = path == "contact.unconverged_steps" && summary.contact.unconverged_steps > 0;
         let _ = writeln!(
             html,
-            "<div class=\"tile{}\"><dt>{label}</dt><dd data-summary=\"{path}\" data-value=\"{}\">{shown}</dd></div>",
+            "<div class=\"tile{}{}\"><dt>{label}</dt><dd data-summary=\"{path}\" data-value=\"{}\">{shown}</dd></div>",
+            if number >= NUMERIC { " numeric" } else { "" },
             if bad { " bad" } else { "" },
             escaped(&values.text(path))
         );
@@ -149,7 +182,7 @@ fn numbers(values: &Numbers) -> String {
 fn subtitle(summary: &Summary) -> String {
     let ended = serde_json::to_value(summary.ended).unwrap_or_default();
     let ended = ended.as_str().unwrap_or_default().to_owned();
-    let class = if ended == "complete" { "" } else { " class=\"bad\"" };
+    let class = if ["complete", "stopped"].contains(&ended.as_str()) { "" } else { " class=\"bad\"" };
     format!(
         "{} · {} steps of {} · t = {} s · <span{class}>{ended}</span> · teeter {}",
         escaped(summary.scheme),
@@ -390,7 +423,7 @@ mod tests {
     fn the_template_asks_for_nothing_unknown() {
         for piece in TEMPLATE.split("{{").skip(1) {
             let name = piece.split_once("}}").unwrap().0;
-            let known = ["title", "style", "script", "data", "subtitle", "warnings", "tiles", "residual", "rocking"];
+            let known = ["title", "style", "script", "data", "verdict", "subtitle", "warnings", "tiles", "residual", "rocking"];
             assert!(
                 known.contains(&name) || ["borne", "model", "numbers", "records", "settings"].contains(&name),
                 "{name}"

@@ -108,12 +108,13 @@ fn all(verdict: &[BodyVerdict]) -> String {
         let what = if last == 0.0 { "stood still throughout".to_owned() } else { format!("came to rest{slid}, last at {}", time(last)) };
         tell(&resting, &what, "");
     }
-    tell(&of(&[Fate::Rocks]), "rock on", "");
+    let rocking = of(&[Fate::Rocks]);
+    tell(&rocking, if rocking.len() == 1 { "rocks on" } else { "rock on" }, "");
     let moving: Vec<_> = verdict
         .iter()
         .filter(|of| of.what == Fate::Moves || (of.what == Fate::Slid && of.rests_from.is_none()))
         .collect();
-    tell(&moving, "still move", "");
+    tell(&moving, if moving.len() == 1 { "still moves" } else { "still move" }, "");
     let largest = verdict
         .iter()
         .filter(|of| of.what != Fate::Overturned)
