@@ -8,7 +8,7 @@ use crate::render::{Presenter, refusal};
 use crate::scene;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use teeter_report::{ENERGY_MADE, ENERGY_TAKEN, HORIZON, UNLOCATED, with_unit};
+use teeter_report::{ENERGY_MADE, ENERGY_TAKEN, FILES, HORIZON, Results, UNLOCATED, with_unit};
 use teeter_run::{
     EndedWord, ExistingResults, ExportWhen, Extent, FinishedRun, Hooks, LoadError, PrepareError, Prepared, RunError,
     RunJob, RunStart, StateDump, Summary,
@@ -171,7 +171,7 @@ fn refuse(console: Console, error: &PrepareError) -> Exit {
 fn start_notes(prepared: &Prepared) -> Vec<String> {
     let place = prepared.folder().display();
     let start = match prepared.start() {
-        RunStart::Checkpoint { t } => Some(format!("continuing from t = {t} s")),
+        RunStart::Checkpoint { t } => Some(format!("continuing from t = {}", with_unit(t, "s"))),
         RunStart::NoCheckpoint => Some(format!("{place} has no checkpoint: the run starts again from the beginning")),
         RunStart::NothingToResume => Some(format!("{place} has no run to resume: it starts from the beginning")),
         _ => None,
@@ -184,13 +184,23 @@ fn start_notes(prepared: &Prepared) -> Vec<String> {
             ErrorBasis::Order => "by a run with half of it",
             _ => "from finer ones",
         };
-        format!("steps of {:e} s, found by {} runs: off by {:.1e} {off}{until}", chosen.step, chosen.runs, chosen.error)
+        let step = with_unit(chosen.step, "s");
+        format!("steps of {step}, found by {} runs: off by {:.1e} {off}{until}", chosen.runs, chosen.error)
     });
     // What was chosen for the tables, and how to get more.
     let rows = prepared.resolved().notes.iter().filter(|note| note.path == "output.every");
     let rows = rows.map(|note| presenter.one(note));
+    // It may be a folder that was meant for something else.
+    let foreign = Results::foreign(&FILES, prepared.folder()).map(|(count, first)| {
+        let others = match count {
+            1 => format!("`{first}`, which is not of a run and stays"),
+            _ => format!("{count} files and folders that are not of a run, such as `{first}`; they stay"),
+        };
+        format!("note: {place} also holds {others}")
+    });
     start
         .into_iter()
+        .chain(foreign)
         .chain(chosen)
         .chain(rows)
         .chain(prepared.warnings().iter().map(|warning| presenter.one(warning)))
@@ -249,12 +259,12 @@ fn report_end(console: Console, options: &Options, summary: &Summary, folder: &P
 }
 
 fn how_it_ended(summary: &Summary, why: &str) -> String {
-    let t = summary.t;
+    let t = with_unit(summary.t, "s");
     let rows = match summary.ended {
         EndedWord::DiskFull => "the tables contain the rows for which there was space",
         _ => "the rows up to there are written",
     };
-    format!("the run ended at t = {t} s after {} steps: {why}; {rows}", summary.steps)
+    format!("the run ended at t = {t} after {} steps: {why}; {rows}", summary.steps)
 }
 
 /// The summary for the user.

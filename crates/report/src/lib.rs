@@ -37,7 +37,7 @@ pub use checkpoint::{
 pub use export::{ExportWhen, Exporter, Former, HARD, Watch};
 pub use made_energy::ENERGY_MADE;
 pub use page::{HalfCycle, PageRecorder, STYLE, escaped, figures, half_cycles, render};
-pub use readable::{exact, shortest, with_unit};
+pub use readable::{shortest, with_digits, with_unit};
 pub use recorder::{ImpactRow, Record, Recorder};
 pub use results::{FILES, Reserved, Results, ResultsError};
 pub use run_recorder::{Origin, RunRecorder};

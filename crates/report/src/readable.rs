@@ -16,10 +16,12 @@ pub fn shortest(x: f64, digits: usize) -> String {
 /// in seconds.
 #[must_use]
 pub fn with_unit(x: f64, unit: &str) -> String {
-    prefixed(x, unit, 4)
+    with_digits(x, unit, 4)
 }
 
-fn prefixed(x: f64, unit: &str, digits: usize) -> String {
+/// As [`with_unit`], with so many digits, one or more.
+#[must_use]
+pub fn with_digits(x: f64, unit: &str, digits: usize) -> String {
     let rounded: f64 = format!("{x:.*e}", digits - 1).parse().unwrap_or(x);
     if rounded == 0.0 || !rounded.is_finite() {
         return format!("{} {unit}", rounded.abs());
@@ -43,20 +45,6 @@ fn prefixed(x: f64, unit: &str, digits: usize) -> String {
     }
 }
 
-/// A quantity in the shortest text that reads back to the same double, with the prefix that makes it shortest: `11 GPa`, `12 pm`.
-#[must_use]
-pub fn exact(x: f64, unit: &str) -> String {
-    let text = format!("{x:e}");
-    let Some((mantissa, exponent)) = text.split_once('e') else { return format!("{x} {unit}") };
-    let Ok(exponent) = exponent.parse::<i32>() else { return format!("{x} {unit}") };
-    let shift = |power: i32| format!("{mantissa}e{}", exponent - power).parse::<f64>().unwrap_or(f64::NAN);
-    let fits = |(power, _): &&(i32, &str)| (1.0..1000.0).contains(&shift(*power).abs());
-    match PREFIXES.iter().find(fits).filter(|_| x != 0.0 && x.is_finite()) {
-        Some((power, prefix)) => format!("{} {prefix}{unit}", shift(*power)),
-        None => format!("{x} {unit}"),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -77,12 +65,5 @@ mod tests {
             assert_eq!(with_unit(x, unit), wanted);
         }
         assert_eq!((shortest(0.4321, 3), shortest(7.0, 3), shortest(1e-9, 3)), ("0.432".into(), "7".into(), "1e-9".into()));
-    }
-
-    #[test]
-    fn exact_text_reads_back_to_the_same_double() {
-        assert_eq!(exact(1.1e10, "Pa"), "11 GPa");
-        assert_eq!(exact(1e-4, "s"), "100 µs");
-        assert_eq!(exact(0.0, "m"), "0 m");
     }
 }

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 pub use stance::Way;
 use stance::{Edge, Outline, Stance};
 use teeter_integrator::{RockingMonitor, State};
-use teeter_scenario::scene::{BlockScene, Scene, StopScene};
+use teeter_scenario::scene::{BlockScene, Placement, Scene, StopScene};
 use teeter_scenario::simulation::Layout;
 
 /// A block is still below this part of √(gR): then no point of it rises by more than half a millionth of R by its speed alone.
@@ -101,7 +101,7 @@ pub struct BodyVerdict {
 /// What is known of a block so far.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Seen {
-    /// Its angle at the start, and at the end of the last step, rad.
+    /// The angle that its stance is about, and its angle at the end of the last step, rad.
     began: f64,
     angle: f64,
     /// The largest |φ|/α.
@@ -154,6 +154,8 @@ struct Watched {
     mass: f64,
     inertia: f64,
     gravity: f64,
+    /// Whether it was placed on something.
+    placed: bool,
     /// Whether its motion is prescribed: nothing becomes of it.
     driven: bool,
     /// Its feet, left and right, in its own frame, m; none without a base.
@@ -177,6 +179,7 @@ impl Watch {
                 mass: of.map_or(0.0, |of| of.mass),
                 inertia: of.map_or(0.0, |of| of.inertia),
                 gravity,
+                placed: matches!(block.placement, Placement::On { .. }),
                 driven: block.motion.is_given(),
                 feet: (block.base() > 0.0).then(|| feet.map(|foot| [corners[foot].x, corners[foot].y])),
             }
@@ -229,7 +232,9 @@ impl Fates {
         for (number, watched) in watch.blocks.iter().enumerate() {
             let angle = state.q[layout.blocks[number].range.start + 2];
             let stood = watched.place(layout, number, state);
-            self.blocks.push(Seen { began: angle, angle, stood, ..Seen::default() });
+            // What was placed on something stands there, however far it is tilted.
+            let tilt = if watched.placed { layout.tilt(number, &state.q) } else { 0.0 };
+            self.blocks.push(Seen { began: angle - tilt, angle, stood, ..Seen::default() });
         }
         watch.stand(self);
         self.look(watch, layout, state.t, state);
