@@ -216,18 +216,21 @@ fn warnings(summary: &Summary) -> String {
 /// Rows of the table; the rest is in `summary.json`.
 const ROWS: usize = 300;
 
+/// Rows that are seen without unfolding the others.
+const UNFOLDED: usize = 20;
+
 fn rocking(cycles: &[HalfCycle]) -> String {
     if cycles.is_empty() {
         return String::new();
     }
     let mut html = "<section id=\"rocking\" class=\"panel\" aria-labelledby=\"rocking-title\">\n\
-        <h3 id=\"rocking-title\">Rocking, half cycle by half cycle</h3>\n<div class=\"scroll\" tabindex=\"0\" \
-        role=\"region\" aria-labelledby=\"rocking-title\"><table>\n<thead><tr>"
+        <h3 id=\"rocking-title\">Rocking, half cycle by half cycle</h3>\n"
         .to_owned();
     // With one block its name would be a column of repetitions.
     let several = cycles.iter().any(|cycle| cycle.body != cycles[0].body);
-    html.push_str(if several { "<th scope=\"col\">Block</th>" } else { "" });
-    html.push_str(
+    let mut head = "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"rocking-title\"><table>\n<thead><tr>".to_owned();
+    head.push_str(if several { "<th scope=\"col\">Block</th>" } else { "" });
+    head.push_str(
         "<th scope=\"col\">φ = 0 at<br><small>s</small></th><th scope=\"col\">φ̇⁻<br><small>rad/s</small></th>\
         <th scope=\"col\">φ̇⁺<br><small>rad/s</small></th><th scope=\"col\">φ̇⁺/φ̇⁻</th>\
         <th scope=\"col\">Housner</th><th scope=\"col\">Next peak<br><small>°</small></th>\
@@ -236,24 +239,31 @@ fn rocking(cycles: &[HalfCycle]) -> String {
     let fixed = |x: Option<f64>, digits: usize| {
         x.map_or("–".to_owned(), |x| format!("{x:.digits$}").replace('-', "\u{2212}"))
     };
-    for cycle in cycles.iter().take(ROWS) {
+    html.push_str(&head);
+    for (number, cycle) in cycles.iter().take(ROWS).enumerate() {
+        if number == UNFOLDED {
+            let more = cycles.len().min(ROWS) - UNFOLDED;
+            let rows = if more == 1 { "row" } else { "rows" };
+            let _ = write!(html, "</tbody></table></div>\n<details><summary>{more} more {rows}</summary>\n{head}");
+        }
         let name = escaped(&cycle.body);
-        let head = if several { format!("<th scope=\"row\">{name}</th>") } else { String::new() };
+        let row_head = if several { format!("<th scope=\"row\">{name}</th>") } else { String::new() };
         let _ = writeln!(
             html,
-            "<tr data-body=\"{name}\" data-t=\"{}\">{head}<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>\
+            "<tr data-body=\"{name}\" data-t=\"{}\">{row_head}<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>\
              <td>{}</td><td>{}</td></tr>",
             cycle.t,
             fixed(Some(cycle.t), 5),
             fixed(cycle.omega.map(|omega| omega[0]), 4),
             fixed(cycle.omega.map(|omega| omega[1]), 4),
             fixed(cycle.ratio(), 4),
-            fixed(Some(cycle.housner), 4),
+            fixed(cycle.housner, 4),
             fixed(cycle.peak_after.map(f64::to_degrees), 3),
             fixed(cycle.decay(), 4),
         );
     }
     html.push_str("</tbody></table></div>\n");
+    html.push_str(if cycles.len() > UNFOLDED { "</details>\n" } else { "" });
     if cycles.len() > ROWS {
         let _ = writeln!(html, "<p>… and {} more; all are in summary.json.</p>", cycles.len() - ROWS);
     }
