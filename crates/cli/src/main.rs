@@ -257,7 +257,7 @@ fn main() -> ExitCode {
         }
         Command::Check { scene, base, set, model } => {
             check::check(&check::Options { scene, base, set, extent: model }).into()
-        },
+        }
         Command::Tradeoff { scene, base, out, set, quiet, force } => {
             tradeoff::tradeoff(&tradeoff::Options { scene, base, out, set, quiet, force }).into()
         }

@@ -67,7 +67,8 @@ pub(crate) struct Options {
 
 impl Options {
     fn job(&self) -> Result<RunJob, LoadError> {
-        let mut job = RunJob::new(scene::source(&self.scene, self.base.as_deref())?).existing(self.existing).extent(self.extent);
+        let mut job =
+            RunJob::new(scene::source(&self.scene, self.base.as_deref())?).existing(self.existing).extent(self.extent);
         for (path, value) in &self.set {
             job = job.set(path, value);
         }

@@ -108,7 +108,12 @@ fn check(ran: &Ran, number: usize, what: &str) {
     if overturned {
         let within = (0..=last).rev().find(|k| phi[*k].abs() <= alpha || phi[*k] * phi[last] < 0.0).unwrap();
         let when = said["overturned_at"].as_f64().unwrap();
-        assert!(t[within] <= when && when <= t[within + 1], "{when} between {} and {}, {what}", t[within], t[within + 1]);
+        assert!(
+            t[within] <= when && when <= t[within + 1],
+            "{when} between {} and {}, {what}",
+            t[within],
+            t[within + 1]
+        );
         assert_eq!(said["way"], if phi[last] > 0.0 { "left" } else { "right" }, "{what}");
         assert_eq!(said["t"], said["overturned_at"], "{what}");
     } else {
@@ -208,10 +213,12 @@ fn the_verdict_of_every_scenario_is_what_its_trajectory_says() {
     assert!(checked > 50, "{checked} blocks were checked");
 }
 
-const HEAD: &str = "[world]\ngravity = '9.81 m/s^2'\n[material.a]\ndensity = '2700 kg/m^3'\nyoungs_modulus = '69 GPa'\n";
+const HEAD: &str =
+    "[world]\ngravity = '9.81 m/s^2'\n[material.a]\ndensity = '2700 kg/m^3'\nyoungs_modulus = '69 GPa'\n";
 
 /// Blocks of 3 cm × 13.5 cm on ground: α is 12.53°.
-const ROCKER: &str = "[block.b]\nmaterial = 'a'\nwidth = '3 cm'\nheight = '13.5 cm'\ndepth = '3 cm'\non = 'ground'\nat = '0 m'\n";
+const ROCKER: &str =
+    "[block.b]\nmaterial = 'a'\nwidth = '3 cm'\nheight = '13.5 cm'\ndepth = '3 cm'\non = 'ground'\nat = '0 m'\n";
 const FLOOR: &str = "[contact.f]\nbetween = ['b', 'ground']\nfriction = 0.5\n";
 
 fn scene(name: &str, text: &str) -> Ran {
@@ -236,7 +243,9 @@ const TIME: &str = "[time]\nend = '1.5 s'\nstep = '200 us'\n";
 
 #[test]
 fn a_block_overturns_to_the_side_to_which_it_is_tilted_past_alpha() {
-    for (tilt, wanted) in [(13, ("overturned", Some("left"))), (-13, ("overturned", Some("right"))), (12, ("rocks", None))] {
+    for (tilt, wanted) in
+        [(13, ("overturned", Some("left"))), (-13, ("overturned", Some("right"))), (12, ("rocks", None))]
+    {
         let name = format!("tilt-{tilt}");
         let ran = scene(&name, &format!("{TIME}[ground]\n{ROCKER}tilt = '{tilt} deg'\n{FLOOR}"));
         assert_eq!(what(&ran), wanted, "{}", ran.summary["headline"]);
@@ -296,7 +305,10 @@ fn shaken_past_alpha_and_back_is_not_overturned() {
     let past = ran.summary["max_phi_over_alpha"].as_f64().unwrap();
     let phi = ran.column("b.phi");
     let alpha = (3.0_f64 / 13.5).atan();
-    let came_back = phi.iter().position(|phi| phi.abs() > alpha).is_some_and(|k| phi[k..].iter().any(|phi| phi.abs() < 0.5 * alpha));
+    let came_back = phi
+        .iter()
+        .position(|phi| phi.abs() > alpha)
+        .is_some_and(|k| phi[k..].iter().any(|phi| phi.abs() < 0.5 * alpha));
     assert!(past > 1.0 && came_back, "the scene must pass α and come back: {past}");
     check_all(&ran, "shaken");
     assert_eq!(what(&ran).0, "rocks", "{}", ran.summary["headline"]);
@@ -329,9 +341,16 @@ fn a_run_stops_where_the_scene_says_and_tells() {
     };
     let fall = format!("[ground]\n{ROCKER}tilt = '13 deg'\n{FLOOR}");
     let ran = stop("stop-overturned", "['overturned', 'rest']", &fall);
-    assert_eq!((ran.summary["ended"].as_str(), ran.summary["stopped_by"].as_str()), (Some("stopped"), Some("overturned")));
+    assert_eq!(
+        (ran.summary["ended"].as_str(), ran.summary["stopped_by"].as_str()),
+        (Some("stopped"), Some("overturned"))
+    );
     let end = *ran.column("t").last().unwrap();
-    assert!(end < 3.0 && ran.summary["t"].as_f64() == Some(end) && ran.stderr.contains("stopped at t = "), "{}", ran.stderr);
+    assert!(
+        end < 3.0 && ran.summary["t"].as_f64() == Some(end) && ran.stderr.contains("stopped at t = "),
+        "{}",
+        ran.stderr
+    );
     assert!(*ran.column("b.phi").last().unwrap() > 1.2, "it lies nearly on its side");
     // The rows up to there are those of the run that goes on.
     let on = scene("stop-not", &format!("[time]\nend = '3 s'\nstep = '200 us'\n{fall}"));
@@ -345,7 +364,8 @@ fn a_run_stops_where_the_scene_says_and_tells() {
 
     let through = ROCKER.replace("on = 'ground'\nat = '0 m'", "position = ['9 m', '1 m']");
     let beam = "[beam.t]\nmaterial = 'a'\nspan = '36 cm'\nwidth = '3 cm'\nthickness = '1 cm'\nelements = 4\n";
-    let ran = stop("stop-sunk", "['sunk']", &format!("{beam}{through}[contact.f]\nbetween = ['b', 't']\nfriction = 0.5\n"));
+    let ran =
+        stop("stop-sunk", "['sunk']", &format!("{beam}{through}[contact.f]\nbetween = ['b', 't']\nfriction = 0.5\n"));
     assert_eq!((ran.summary["stopped_by"].as_str(), what(&ran).0), (Some("sunk"), "sunk"));
 }
 

@@ -7,6 +7,7 @@
 mod bounces;
 mod checkpoint;
 mod closed;
+mod columns;
 mod contacts;
 mod export;
 mod lock;
@@ -34,6 +35,7 @@ pub use bounces::{Bounces, CONTESTED, Contested};
 pub use checkpoint::{
     CHECKPOINT, Checkpoint, CheckpointError, Found, Identity, Moment, VERSION as CHECKPOINT_VERSION, program_hash,
 };
+pub use columns::columns;
 pub use export::{ExportWhen, Exporter, Former, HARD, Watch};
 pub use made_energy::ENERGY_MADE;
 pub use page::{HalfCycle, PageRecorder, STYLE, escaped, figures, half_cycles, render};

@@ -1,8 +1,7 @@
 //! Numbers for people: rounded to what is meaningful, in a unit that suits.
 
 /// Prefixes of units, the largest first.
-const PREFIXES: [(i32, &str); 8] =
-    [(9, "G"), (6, "M"), (3, "k"), (0, ""), (-3, "m"), (-6, "µ"), (-9, "n"), (-12, "p")];
+const PREFIXES: [(i32, &str); 8] = [(9, "G"), (6, "M"), (3, "k"), (0, ""), (-3, "m"), (-6, "µ"), (-9, "n"), (-12, "p")];
 
 /// A number with at most so many significant digits, without zeros at its end.
 #[must_use]
@@ -29,7 +28,9 @@ pub fn with_digits(x: f64, unit: &str, digits: usize) -> String {
     let exponent = rounded.abs().log10().floor() as i32;
     // Nobody counts kiloseconds.
     let largest = if unit == "s" { 0 } else { 9 };
-    let suits = |(power, _): &&(i32, &str)| *power <= largest && exponent >= *power && (exponent < power + 3 || *power == largest);
+    let suits = |(power, _): &&(i32, &str)| {
+        *power <= largest && exponent >= *power && (exponent < power + 3 || *power == largest)
+    };
     match PREFIXES.iter().find(suits) {
         // Parsed with its exponent, so that no product is rounded.
         Some((power, prefix)) => {
@@ -64,6 +65,9 @@ mod tests {
         ] {
             assert_eq!(with_unit(x, unit), wanted);
         }
-        assert_eq!((shortest(0.4321, 3), shortest(7.0, 3), shortest(1e-9, 3)), ("0.432".into(), "7".into(), "1e-9".into()));
+        assert_eq!(
+            (shortest(0.4321, 3), shortest(7.0, 3), shortest(1e-9, 3)),
+            ("0.432".into(), "7".into(), "1e-9".into())
+        );
     }
 }

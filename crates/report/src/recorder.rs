@@ -68,9 +68,9 @@ pub struct Record {
 /// The tables, in the order in which a checkpoint has their lengths.
 pub(crate) const TABLES: [&str; 4] = ["trajectory.csv", "contacts.csv", "impacts.csv", "energy.csv"];
 
-const IMPACTS_HEADER: &str = "t,contact,a,b,point,impulse_n,impulse_t,u_n_before,u_n_after\n";
+pub(crate) const IMPACTS_HEADER: &str = "t,contact,a,b,point,impulse_n,impulse_t,u_n_before,u_n_after\n";
 
-const ENERGY_HEADER: &str =
+pub(crate) const ENERGY_HEADER: &str =
     "t,kinetic,elastic,gravity,external,contact,friction,viscous,numerical,projection,residual\n";
 
 /// What a recorder knows of the run so far, beside the lengths of its tables.
@@ -416,7 +416,7 @@ impl Observer<2> for Recorder<'_> {
     }
 }
 
-fn trajectory_header(layout: &Layout, sections: &Sections) -> String {
+pub(crate) fn trajectory_header(layout: &Layout, sections: &Sections) -> String {
     let mut header = String::from("t");
     for block in &layout.blocks {
         for column in ["x", "y", "phi", "vx", "vy", "omega"] {

@@ -1,7 +1,7 @@
 //! `summary.json`: the numbers of a run.
 
-use crate::{BeamRecord, ImpactRow, LargestStress, ReactionRange, Record, Warning};
 use crate::verdict::{BodyVerdict, StopReason, headline};
+use crate::{BeamRecord, ImpactRow, LargestStress, ReactionRange, Record, Warning};
 use crate::{made_energy, taken_energy, unlocated};
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -360,12 +360,17 @@ impl Summary {
         let gains = &ledger.positive_contact_work;
         let verdict = record.fates.verdict(scene, layout, state, &record.rocking);
         let beams: Vec<BorneSummary> = record.beams.iter().map(|borne| BorneSummary::new(scene, borne)).collect();
-        let first = |of: fn(&BodyVerdict) -> Option<f64>, pick: fn(f64, f64) -> f64| verdict.iter().filter_map(of).reduce(pick);
+        let first =
+            |of: fn(&BodyVerdict) -> Option<f64>, pick: fn(f64, f64) -> f64| verdict.iter().filter_map(of).reduce(pick);
         Self {
             headline: headline(scene, state, &verdict, &beams),
             max_phi_over_alpha: first(|of| of.max_phi_over_alpha, f64::max),
             overturned_at: first(|of| of.overturned_at, f64::min),
-            rests_from: verdict.iter().map(|of| of.rests_from).collect::<Option<Vec<_>>>().and_then(|of| of.into_iter().reduce(f64::max)),
+            rests_from: verdict
+                .iter()
+                .map(|of| of.rests_from)
+                .collect::<Option<Vec<_>>>()
+                .and_then(|of| of.into_iter().reduce(f64::max)),
             stopped_by: record.fates.stopped().map(|(_, reason)| reason),
             title: scene.title.clone(),
             version: env!("CARGO_PKG_VERSION"),

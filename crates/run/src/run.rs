@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use teeter_integrator::{Ended, State};
 use teeter_report::{
     CHECKPOINT, EndedWord, Exporter, Former, Origin, PageRecorder, Record, Results, ResultsError, RunRecorder, Summary,
-    envelopes, figures, render,
+    columns, envelopes, figures, render,
 };
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Layout;
@@ -192,7 +192,7 @@ fn write(
 ) -> Result<Summary, RunError> {
     let RecordedRun { record, page, ended, seconds, .. } = recorded;
     let summary = Summary::new(scene, layout, state, &record, ended, seconds);
-    let written = write_files(results, &record, layout, &page, &summary, report.then_some(scene_as_run));
+    let written = write_files(results, &record, scene, layout, &page, &summary, report.then_some(scene_as_run));
     match written {
         // There is no room for these either; the summary still has the reason.
         Err(RunError::Write(error)) if ended == EndedWord::DiskFull && error.is_disk_full() => {}
@@ -207,6 +207,7 @@ fn write(
 fn write_files(
     results: &Results,
     record: &Record,
+    scene: &Scene,
     layout: &Layout,
     page: &PageRecorder,
     summary: &Summary,
@@ -216,6 +217,7 @@ fn write_files(
     if let Some(text) = envelopes(layout, &record.beams) {
         file("envelopes.csv", &text)?;
     }
+    file("columns.json", &columns(scene, layout).map_err(RunError::Summary)?)?;
     if let Some(scene_as_run) = scene_of_report {
         file("report.html", &render(page, summary, scene_as_run))?;
         for (name, svg) in figures(page) {

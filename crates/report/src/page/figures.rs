@@ -75,7 +75,8 @@ impl<'a> Plots<'a> {
             return panel.counts_at(about);
         }
         // So few are among the first that are kept, unless others were before them.
-        let mine = self.recorder.kept.impacts.iter().filter(|impact| contact.is_none_or(|asked| impact.contact == asked));
+        let mine =
+            self.recorder.kept.impacts.iter().filter(|impact| contact.is_none_or(|asked| impact.contact == asked));
         panel.ticks_at(mine.map(|impact| impact.t).collect())
     }
 

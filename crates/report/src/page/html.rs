@@ -120,11 +120,12 @@ const TILES: [&str; 12] = [
 /// The first tile that is of the computation.
 const NUMERIC: usize = 6;
 
-/// The sentence at the head of the page, a sequence of Unicode text with names in backquotes.
+/// The sentence at the head of the page.
 fn verdict(summary: &Summary) -> String {
     let mut html = String::new();
     for (number, part) in summary.headline.split('`').enumerate() {
-        let part = escaped(part);
+        // A number stays with its name and its unit.
+        let part = escaped(part).replace(" = ", "\u{a0}=\u{a0}").replace(" ms", "\u{a0}ms");
         if number % 2 == 1 { _ = write!(html, "<span class=\"name\">{part}</span>") } else { html.push_str(&part) }
     }
     if let Some(reason) = summary.stopped_by {
@@ -228,7 +229,9 @@ fn rocking(cycles: &[HalfCycle]) -> String {
         .to_owned();
     // With one block its name would be a column of repetitions.
     let several = cycles.iter().any(|cycle| cycle.body != cycles[0].body);
-    let mut head = "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"rocking-title\"><table>\n<thead><tr>".to_owned();
+    let mut head =
+        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"rocking-title\"><table>\n<thead><tr>"
+            .to_owned();
     head.push_str(if several { "<th scope=\"col\">Block</th>" } else { "" });
     head.push_str(
         "<th scope=\"col\">φ = 0 at<br><small>s</small></th><th scope=\"col\">φ̇⁻<br><small>rad/s</small></th>\
@@ -433,7 +436,8 @@ mod tests {
     fn the_template_asks_for_nothing_unknown() {
         for piece in TEMPLATE.split("{{").skip(1) {
             let name = piece.split_once("}}").unwrap().0;
-            let known = ["title", "style", "script", "data", "verdict", "subtitle", "warnings", "tiles", "residual", "rocking"];
+            let known =
+                ["title", "style", "script", "data", "verdict", "subtitle", "warnings", "tiles", "residual", "rocking"];
             assert!(
                 known.contains(&name) || ["borne", "model", "numbers", "records", "settings"].contains(&name),
                 "{name}"

@@ -1,8 +1,8 @@
 //! What a recorder warns of while a run goes on, and at its end.
 
 use super::{Kept, Recorder};
-use crate::readable::{with_digits, with_unit};
 use crate::bounces::{CONTESTED, Contested};
+use crate::readable::{with_digits, with_unit};
 use crate::resolution::{Of, raise};
 use teeter_integrator::{Model, State, StepReport};
 use teeter_scenario::simulation::Layout;
@@ -189,7 +189,8 @@ impl Recorder<'_> {
         let layout = self.layout;
         if let Some(coarse) = self.kept.resolution.coarse(&self.bodies, state.dt) {
             let name = layout.blocks.get(coarse.block).map_or("a block", |place| &place.name);
-            let (part, limit, step) = (100.0 * coarse.part, 100.0 * coarse.of.limit(), with_digits(coarse.step, "s", 1));
+            let (part, limit, step) =
+                (100.0 * coarse.part, 100.0 * coarse.of.limit(), with_digits(coarse.step, "s", 1));
             let what = match coarse.of {
                 Of::Impacts => "its contacts close up to a step late, all together by",
                 Of::Impact => "its contacts close up to a step late, at one of them by",

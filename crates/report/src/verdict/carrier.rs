@@ -2,9 +2,9 @@
 
 use super::Way;
 use std::ops::Range;
+use teeter_integrator::State;
 use teeter_scenario::scene::{Placement, Scene, SupportingBody};
 use teeter_scenario::simulation::Layout;
-use teeter_integrator::State;
 
 /// Beams bend down by less than this part of their span: what is below that has left them.
 const BENT: f64 = 0.5;
@@ -38,9 +38,14 @@ enum On {
 enum Floor {
     None,
     /// Ground: its lowest point from its origin, m, and its slope while it doesn't move, rad.
-    Ground { lowest: f64, slope: f64 },
+    Ground {
+        lowest: f64,
+        slope: f64,
+    },
     /// Beams: as low as they may bend, m.
-    Beams { lowest: f64 },
+    Beams {
+        lowest: f64,
+    },
 }
 
 impl Carrier {
@@ -77,9 +82,10 @@ impl Carrier {
         };
         let floor = match &scene.ground {
             Some(ground) => {
-                let lowest = ground.profile.as_ref().map_or(0.0, |profile| {
-                    profile.points().map(|point| point.y).fold(f64::INFINITY, f64::min)
-                });
+                let lowest = ground
+                    .profile
+                    .as_ref()
+                    .map_or(0.0, |profile| profile.points().map(|point| point.y).fold(f64::INFINITY, f64::min));
                 Floor::Ground { lowest, slope: ground.incline }
             }
             None if scene.beams.is_empty() => Floor::None,
@@ -113,7 +119,8 @@ impl Carrier {
             On::Beam(beam, position) => {
                 let place = &layout.beams[*beam];
                 let [x, _] = beam_origin(*beam, *position, layout, &state.q);
-                let [vx, vy] = place.supports.clone().map_or([0.0; 2], |range| [state.v[range.start], state.v[range.start + 1]]);
+                let [vx, vy] =
+                    place.supports.clone().map_or([0.0; 2], |range| [state.v[range.start], state.v[range.start + 1]]);
                 let shape = place.beam.shape_clamped(at[0] - x);
                 let rate = place.deflection(&shape, &state.v[place.range.clone()]);
                 [vx, vy + rate.w, rate.slope]
@@ -151,9 +158,10 @@ impl Carrier {
             Floor::None => false,
             Floor::Beams { lowest } => at[1] + reach < lowest,
             Floor::Ground { lowest, slope } => {
-                let (origin, slope) = layout.ground.as_ref().map_or(([0.0; 2], slope), |range| {
-                    ([q[range.start], q[range.start + 1]], q[range.start + 2])
-                });
+                let (origin, slope) = layout
+                    .ground
+                    .as_ref()
+                    .map_or(([0.0; 2], slope), |range| ([q[range.start], q[range.start + 1]], q[range.start + 2]));
                 let (sin, cos) = slope.sin_cos();
                 cos * (at[1] - origin[1]) - sin * (at[0] - origin[0]) < lowest
             }

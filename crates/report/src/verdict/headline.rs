@@ -80,9 +80,8 @@ fn has_slid(scene: &Scene, of: &BodyVerdict) -> bool {
 /// What became of many blocks.
 fn all(verdict: &[BodyVerdict]) -> String {
     let of = |fates: &[Fate]| verdict.iter().filter(|of| fates.contains(&of.what)).collect::<Vec<_>>();
-    let by_time = |a: &&&BodyVerdict, b: &&&BodyVerdict| {
-        a.t.unwrap_or(f64::INFINITY).total_cmp(&b.t.unwrap_or(f64::INFINITY))
-    };
+    let by_time =
+        |a: &&&BodyVerdict, b: &&&BodyVerdict| a.t.unwrap_or(f64::INFINITY).total_cmp(&b.t.unwrap_or(f64::INFINITY));
     let mut parts = Vec::new();
     let total = verdict.len();
     let mut tell = |found: &[&BodyVerdict], what: &str, first: &str| {
@@ -98,14 +97,16 @@ fn all(verdict: &[BodyVerdict]) -> String {
     tell(&of(&[Fate::Overturned]), "overturned", "first");
     tell(&of(&[Fate::Left]), "left their beam", "first");
     tell(&of(&[Fate::Sunk]), "fell below everything", "first");
-    let resting: Vec<_> = verdict
-        .iter()
-        .filter(|of| matches!(of.what, Fate::Rests | Fate::Slid) && of.rests_from.is_some())
-        .collect();
+    let resting: Vec<_> =
+        verdict.iter().filter(|of| matches!(of.what, Fate::Rests | Fate::Slid) && of.rests_from.is_some()).collect();
     if let Some(last) = resting.iter().filter_map(|of| of.rests_from).reduce(f64::max) {
         let slid = resting.iter().filter(|of| of.what == Fate::Slid).count();
         let slid = if slid > 0 { format!(" ({slid} after sliding)") } else { String::new() };
-        let what = if last == 0.0 { "stood still throughout".to_owned() } else { format!("came to rest{slid}, last at {}", time(last)) };
+        let what = if last == 0.0 {
+            "stood still throughout".to_owned()
+        } else {
+            format!("came to rest{slid}, last at {}", time(last))
+        };
         tell(&resting, &what, "");
     }
     let rocking = of(&[Fate::Rocks]);
@@ -122,7 +123,11 @@ fn all(verdict: &[BodyVerdict]) -> String {
         .fold(0.0, f64::max);
     let mut text = parts.join("; ");
     if largest >= super::ROCKED {
-        text.push_str(&format!("; largest φ/α of {} {}", if parts.len() > 1 { "those that stand" } else { "all" }, digits(largest)));
+        text.push_str(&format!(
+            "; largest φ/α of {} {}",
+            if parts.len() > 1 { "those that stand" } else { "all" },
+            digits(largest)
+        ));
     }
     text
 }

@@ -160,7 +160,11 @@ impl Resolver<'_, '_> {
                 self.error("time.accuracy", rule, "use 1e-3 or 1e-6, or give a step");
                 None
             }
-            None if !self.doc.has("time.step") && !self.doc.is_refused("time.step") && self.doc.has("time.end") => {
+            None if !self.doc.has("time.step")
+                && !self.doc.is_refused("time.step")
+                && !self.doc.is_refused("time.accuracy")
+                && self.doc.has("time.end") =>
+            {
                 let rule = "auto needs an accuracy";
                 self.error("time.step", rule, "add accuracy = 1e-3, or give a step, such as \"100 us\"");
                 None
