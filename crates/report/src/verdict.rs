@@ -304,18 +304,17 @@ impl Fates {
         if !watch.stop.is_given() {
             return None;
         }
-        let mut free = self.blocks.iter().zip(&watch.blocks).filter(|(_, watched)| !watched.driven).peekable();
-        free.peek()?;
-        let all: Vec<_> = free.collect();
-        let rests = |(seen, watched): &(&Seen, &Watched)| Self::rests(seen, watched, t).is_some();
-        let down = |of: &(&Seen, &Watched)| of.0.beyond.is_some() && (of.0.fallen || rests(of));
-        if watch.stop.overturned && all.iter().any(down) {
+        let free = || self.blocks.iter().zip(&watch.blocks).filter(|(_, watched)| !watched.driven);
+        free().next()?;
+        let rests = |(seen, watched): (&Seen, &Watched)| Self::rests(seen, watched, t).is_some();
+        let down = |of: (&Seen, &Watched)| of.0.beyond.is_some() && (of.0.fallen || rests(of));
+        if watch.stop.overturned && free().any(down) {
             return Some(StopReason::Overturned);
         }
-        if watch.stop.sunk && all.iter().any(|(seen, _)| seen.sunk.is_some()) {
+        if watch.stop.sunk && free().any(|(seen, _)| seen.sunk.is_some()) {
             return Some(StopReason::Sunk);
         }
-        (watch.stop.rest && t > watch.settles_at && all.iter().all(rests)).then_some(StopReason::Rest)
+        (watch.stop.rest && t > watch.settles_at && free().all(rests)).then_some(StopReason::Rest)
     }
 
     /// What ended the run before its end, and when, s.
