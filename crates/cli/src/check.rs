@@ -18,6 +18,8 @@ use teeter_scenario::{Extent, Removed, wording};
 #[derive(Debug)]
 pub(crate) struct Options {
     pub(crate) scene: PathBuf,
+    /// Folder of the files that the scene names, if it is another than by default.
+    pub(crate) base: Option<PathBuf>,
     pub(crate) set: Vec<(String, String)>,
     pub(crate) extent: Extent,
 }
@@ -28,10 +30,11 @@ pub(crate) fn check(options: &Options) -> Exit {
         console.error(text);
         Exit::BadInput
     };
-    let resolved = match scene::source(&options.scene).and_then(|source| source.load(&options.set)) {
-        Ok(resolved) => resolved,
-        Err(error) => return refuse(&refusal(&error)),
-    };
+    let resolved =
+        match scene::source(&options.scene, options.base.as_deref()).and_then(|source| source.load(&options.set)) {
+            Ok(resolved) => resolved,
+            Err(error) => return refuse(&refusal(&error)),
+        };
     let presenter = Presenter::new(resolved.document.source());
     let simulation = match Simulation::with_extent(&resolved.scene, options.extent, |solver| solver) {
         Ok(simulation) => simulation,

@@ -39,6 +39,10 @@ enum Command {
     Run {
         /// The scene file; `-` reads standard input
         scene: PathBuf,
+        /// Folder of the files that the scene names (default: the scene file's own; of a scene from
+        /// standard input, the working directory)
+        #[arg(long, value_name = "DIR")]
+        base: Option<PathBuf>,
         /// Folder for the results (default: `runs/` with the name of the scene file)
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
@@ -56,6 +60,9 @@ enum Command {
         /// Print only errors
         #[arg(long)]
         quiet: bool,
+        /// Write the tables and the summary only, no report and no figures
+        #[arg(long)]
+        no_report: bool,
         /// Replace results of an earlier run
         #[arg(long)]
         force: bool,
@@ -94,6 +101,10 @@ enum Command {
     Check {
         /// The scene file; `-` reads standard input
         scene: PathBuf,
+        /// Folder of the files that the scene names (default: the scene file's own; of a scene from
+        /// standard input, the working directory)
+        #[arg(long, value_name = "DIR")]
+        base: Option<PathBuf>,
         /// Override a key of the scene, such as beam.table.thickness="2 mm"; may be repeated
         #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value)]
         set: Vec<(String, String)>,
@@ -109,6 +120,10 @@ enum Command {
     Tradeoff {
         /// The scene file; `-` reads standard input
         scene: PathBuf,
+        /// Folder of the files that the scene names (default: the scene file's own; of a scene from
+        /// standard input, the working directory)
+        #[arg(long, value_name = "DIR")]
+        base: Option<PathBuf>,
         /// Folder for the results (default: `runs/` with the name of the scene file and
         /// `-tradeoff`)
         #[arg(long, value_name = "DIR")]
@@ -249,11 +264,13 @@ fn main() -> ExitCode {
     match arguments.command {
         Command::Run {
             scene,
+            base,
             out,
             mut set,
             accuracy,
             horizon,
             quiet,
+            no_report,
             force,
             export_problems,
             export_when,
@@ -272,9 +289,11 @@ fn main() -> ExitCode {
             };
             let options = run::Options {
                 scene,
+                base,
                 out,
                 set,
                 quiet,
+                no_report,
                 existing,
                 export,
                 checkpoint_every,
@@ -285,9 +304,11 @@ fn main() -> ExitCode {
             };
             run::run(&options).into()
         }
-        Command::Check { scene, set, model } => check::check(&check::Options { scene, set, extent: model }).into(),
-        Command::Tradeoff { scene, out, set, quiet, force } => {
-            tradeoff::tradeoff(&tradeoff::Options { scene, out, set, quiet, force }).into()
+        Command::Check { scene, base, set, model } => {
+            check::check(&check::Options { scene, base, set, extent: model }).into()
+        }
+        Command::Tradeoff { scene, base, out, set, quiet, force } => {
+            tradeoff::tradeoff(&tradeoff::Options { scene, base, out, set, quiet, force }).into()
         }
         Command::Sweep { sweep: Some(sweep), out, jobs, shard, resume, quiet, force, .. } => {
             let jobs = jobs.map(usize::from);

@@ -8,7 +8,7 @@ use crate::render::{Presenter, refusal};
 use crate::scene;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use teeter_report::{ENERGY_MADE, ENERGY_TAKEN, HORIZON, UNLOCATED};
+use teeter_report::{ENERGY_MADE, ENERGY_TAKEN, FILES, HORIZON, Results, UNLOCATED, with_unit};
 use teeter_run::{
     EndedWord, ExistingResults, ExportWhen, Extent, FinishedRun, Hooks, LoadError, PrepareError, Prepared, RunError,
     RunJob, RunStart, StateDump, Summary,
@@ -43,9 +43,13 @@ impl From<Exit> for ExitCode {
 #[derive(Debug)]
 pub(crate) struct Options {
     pub(crate) scene: PathBuf,
+    /// Folder of the files that the scene names, if it is another than by default.
+    pub(crate) base: Option<PathBuf>,
     pub(crate) out: Option<PathBuf>,
     pub(crate) set: Vec<(String, String)>,
     pub(crate) quiet: bool,
+    /// Whether to leave out the report and its figures.
+    pub(crate) no_report: bool,
     pub(crate) existing: ExistingResults,
     /// Folder for contact problems, and which to save.
     pub(crate) export: Option<(PathBuf, ExportWhen)>,
@@ -63,7 +67,8 @@ pub(crate) struct Options {
 
 impl Options {
     fn job(&self) -> Result<RunJob, LoadError> {
-        let mut job = RunJob::new(scene::source(&self.scene)?).existing(self.existing).extent(self.extent);
+        let mut job =
+            RunJob::new(scene::source(&self.scene, self.base.as_deref())?).existing(self.existing).extent(self.extent);
         for (path, value) in &self.set {
             job = job.set(path, value);
         }
@@ -78,6 +83,9 @@ impl Options {
         }
         if let Some(path) = &self.from {
             job = job.from_state(path);
+        }
+        if self.no_report {
+            job = job.without_report();
         }
         if self.horizon {
             job = job.horizon();
@@ -142,7 +150,7 @@ pub(crate) fn run(options: &Options) -> Exit {
 
 fn refuse(console: Console, error: &PrepareError) -> Exit {
     match error {
-        PrepareError::AlreadyEnded { ended: EndedWord::Complete, .. } => {
+        PrepareError::AlreadyEnded { ended: EndedWord::Complete | EndedWord::Stopped, .. } => {
             console.note(&error.to_string());
             return Exit::FinishedRun;
         }
@@ -164,7 +172,7 @@ fn refuse(console: Console, error: &PrepareError) -> Exit {
 fn start_notes(prepared: &Prepared) -> Vec<String> {
     let place = prepared.folder().display();
     let start = match prepared.start() {
-        RunStart::Checkpoint { t } => Some(format!("continuing from t = {t} s")),
+        RunStart::Checkpoint { t } => Some(format!("continuing from t = {}", with_unit(t, "s"))),
         RunStart::NoCheckpoint => Some(format!("{place} has no checkpoint: the run starts again from the beginning")),
         RunStart::NothingToResume => Some(format!("{place} has no run to resume: it starts from the beginning")),
         _ => None,
@@ -177,13 +185,23 @@ fn start_notes(prepared: &Prepared) -> Vec<String> {
             ErrorBasis::Order => "by a run with half of it",
             _ => "from finer ones",
         };
-        format!("steps of {:e} s, found by {} runs: off by {:.1e} {off}{until}", chosen.step, chosen.runs, chosen.error)
+        let step = with_unit(chosen.step, "s");
+        format!("steps of {step}, found by {} runs: off by {:.1e} {off}{until}", chosen.runs, chosen.error)
     });
     // What was chosen for the tables, and how to get more.
     let rows = prepared.resolved().notes.iter().filter(|note| note.path == "output.every");
     let rows = rows.map(|note| presenter.one(note));
+    // It may be a folder that was meant for something else.
+    let foreign = Results::foreign(&FILES, prepared.folder()).map(|(count, first)| {
+        let others = match count {
+            1 => format!("`{first}`, which is not of a run and stays"),
+            _ => format!("{count} files and folders that are not of a run, such as `{first}`; they stay"),
+        };
+        format!("note: {place} also holds {others}")
+    });
     start
         .into_iter()
+        .chain(foreign)
         .chain(chosen)
         .chain(rows)
         .chain(prepared.warnings().iter().map(|warning| presenter.one(warning)))
@@ -222,8 +240,8 @@ fn report_end(console: Console, options: &Options, summary: &Summary, folder: &P
         console.note(&format!("warning: {}", warning.text));
     }
     match summary.ended {
-        EndedWord::Complete => {
-            console.note(&format_summary(summary, folder, options.horizon));
+        EndedWord::Complete | EndedWord::Stopped => {
+            console.note(&format_summary(summary, folder, options.horizon, !options.no_report));
             Exit::FinishedRun
         }
         EndedWord::Interrupted => {
@@ -242,20 +260,27 @@ fn report_end(console: Console, options: &Options, summary: &Summary, folder: &P
 }
 
 fn how_it_ended(summary: &Summary, why: &str) -> String {
-    let t = summary.t;
+    let t = with_unit(summary.t, "s");
     let rows = match summary.ended {
         EndedWord::DiskFull => "the tables contain the rows for which there was space",
         _ => "the rows up to there are written",
     };
-    format!("the run ended at t = {t} s after {} steps: {why}; {rows}", summary.steps)
+    format!("the run ended at t = {t} after {} steps: {why}; {rows}", summary.steps)
 }
 
 /// The summary for the user.
-fn format_summary(summary: &Summary, folder: &Path, horizon: bool) -> String {
-    let mut text = format!(
-        "{}: {} steps of {} s in {:.2} s ({:.2} µs per step)\n",
-        summary.title, summary.steps, summary.dt, summary.wall_seconds, summary.us_per_step
-    );
+fn format_summary(summary: &Summary, folder: &Path, horizon: bool, report: bool) -> String {
+    let mut text = format!("{}: {}\n", summary.title, summary.headline);
+    if let Some(reason) = summary.stopped_by {
+        text.push_str(&format!("  stopped at t = {} by `{}` of time.stop\n", with_unit(summary.t, "s"), reason.word()));
+    }
+    text.push_str(&format!(
+        "  {} steps of {} in {:.2} s ({:.2} µs per step)\n",
+        summary.steps,
+        with_unit(summary.dt, "s"),
+        summary.wall_seconds,
+        summary.us_per_step
+    ));
     let count = |n: u64, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
     text.push_str(&format!(
         "  {}{}, {}, deepest penetration of a corner {:.1e} m, energy identity to {:.0e}\n",
@@ -276,6 +301,9 @@ fn format_summary(summary: &Summary, folder: &Path, horizon: bool) -> String {
     if horizon && summary.warnings.iter().all(|warning| warning.code != HORIZON) {
         text.push_str("  horizon: with half the step, and with the initial state perturbed by 1e-12, the motion agrees within 1 % to the end\n");
     }
-    text.push_str(&format!("  results in {0}, report in {0}/report.html", folder.display()));
+    text.push_str(&format!("  results in {0}", folder.display()));
+    if report {
+        text.push_str(&format!(", report in {}/report.html", folder.display()));
+    }
     text
 }

@@ -6,8 +6,16 @@ use teeter_run::{LoadError, SceneFileError, SceneSource};
 use teeter_scenario::decode::LARGEST_FILE;
 
 /// The scene file with that path, or the scene on standard input for `-`: if it is too large, only
-/// enough to detect that.
-pub(crate) fn source(path: &Path) -> Result<SceneSource, LoadError> {
+/// enough to detect that. The files that it names are relative to `base`, if that is given.
+pub(crate) fn source(path: &Path, base: Option<&Path>) -> Result<SceneSource, LoadError> {
+    let source = of(path)?;
+    Ok(match base {
+        Some(base) => source.beside(base),
+        None => source,
+    })
+}
+
+fn of(path: &Path) -> Result<SceneSource, LoadError> {
     if path != Path::new("-") {
         return Ok(SceneSource::file(path));
     }

@@ -17,6 +17,8 @@ use teeter_study::{Failure, StudyScene, Tradeoff, runner, write};
 #[derive(Debug)]
 pub(crate) struct Options {
     pub(crate) scene: PathBuf,
+    /// Folder of the files that the scene names, if it is another than by default.
+    pub(crate) base: Option<PathBuf>,
     pub(crate) out: Option<PathBuf>,
     pub(crate) set: Vec<(String, String)>,
     pub(crate) quiet: bool,
@@ -84,7 +86,7 @@ pub(crate) fn tradeoff(options: &Options) -> Exit {
 
 /// The scene named on the command line: its source, for the study, and resolved.
 fn load(options: &Options) -> Result<(SceneSource, StudyScene, Resolved), LoadError> {
-    let scene = scene::source(&options.scene)?;
+    let scene = scene::source(&options.scene, options.base.as_deref())?;
     let bytes = scene.read()?.into_owned();
     let text = String::from_utf8(bytes.clone()).unwrap_or_default();
     let (source, resolved) = StudyScene::new(bytes, scene.name(), scene.stem(), &options.set, &mut scene.companions())

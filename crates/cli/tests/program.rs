@@ -47,7 +47,8 @@ fn summary(folder: &Path) -> Value {
     serde_json::from_str(&std::fs::read_to_string(folder.join("out/summary.json")).unwrap()).unwrap()
 }
 
-const FILES: [&str; 8] = [
+const FILES: [&str; 9] = [
+    "columns.json",
     "contacts.csv",
     "energy.csv",
     "figures",

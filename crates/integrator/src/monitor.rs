@@ -119,6 +119,12 @@ impl RockingMonitor {
         self.count
     }
 
+    /// The largest |φ| since the last crossing.
+    #[must_use]
+    pub fn extreme(&self) -> Peak {
+        self.extreme
+    }
+
     /// The crossings so far, the first [`LISTED_CROSSINGS`] of them.
     #[must_use]
     pub fn crossings(&self) -> &[Crossing] {

@@ -30,7 +30,8 @@ impl Band {
 pub struct Panel {
     content: Content,
     note: Option<String>,
-    ticks_at: Vec<f64>,
+    /// Places of ticks, and their length as a part of the longest.
+    ticks_at: Vec<(f64, f64)>,
     guides: Vec<f64>,
     shaded: Option<(f64, String)>,
     height: Option<f64>,
@@ -83,7 +84,17 @@ impl Panel {
     /// Draws short ticks at the top, for example at the times of impacts.
     #[must_use]
     pub fn ticks_at(mut self, x: Vec<f64>) -> Self {
-        self.ticks_at = x;
+        self.ticks_at = x.into_iter().map(|x| (x, 1.0)).collect();
+        self
+    }
+
+    /// Instead of ticks for each of very many: how many there are about each of these x, as ticks whose length grows with the number.
+    #[must_use]
+    pub fn counts_at(mut self, counts: Vec<(f64, u32)>) -> Self {
+        let most = counts.iter().map(|(_, count)| *count).max().unwrap_or(0).max(1);
+        // By the root, so that single ones are seen beside many.
+        let part = |count: u32| (f64::from(count) / f64::from(most)).sqrt();
+        self.ticks_at = counts.into_iter().filter(|(_, count)| *count > 0).map(|(x, count)| (x, part(count))).collect();
         self
     }
 
@@ -191,8 +202,13 @@ impl Panel {
                 let _ = writeln!(svg, "<path d=\"{path}\" {}/>", mark_style(marks.number_at(k), hollow, theme));
             }
         }
-        let ticks = self.ticks_at.iter().filter(|x| frame.x.contains(**x));
-        let ticks: String = ticks.map(|&x| format!("M{:.2} {top:.2}v5", frame.px(x))).collect();
+        let ticks = self.ticks_at.iter().filter(|(x, _)| frame.x.contains(*x));
+        let ticks: String = ticks
+            .map(|&(x, part)| match part {
+                1.0 => format!("M{:.2} {top:.2}v5", frame.px(x)),
+                part => format!("M{:.2} {top:.2}v{:.1}", frame.px(x), 5.0 * part),
+            })
+            .collect();
         let ink = Colour::Ink.value(theme);
         if !ticks.is_empty() {
             let _ = writeln!(svg, "<path d=\"{ticks}\" stroke=\"{ink}\" stroke-width=\".8\"/>");

@@ -220,9 +220,13 @@
 
   const parts = [];
   if (forces.points.length) parts.push("Green arrows: the contact's force on the block, mean since the sample before.");
-  if (data.impacts.length) parts.push("Rings, and ticks on the plots: impacts.");
+  if (data.impacts.length) {
+    parts.push(data.density
+      ? `Rings: impacts. Ticks on the plots: how many of the ${data.impact_count} impacts are about a time, by their length; zoomed in, each one.`
+      : "Rings, and ticks on the plots: impacts.");
+  }
   if (scenery.blocks.length) parts.push("Dotted: the start.");
-  if (data.impact_count > data.impacts.length) parts.push(`${data.impacts.length} of ${data.impact_count} impacts are marked.`);
+  if (data.impact_count > data.impacts.length) parts.push(`Only the first ${data.impacts.length} are ringed.`);
   byId("scene-key").textContent = parts.join(" ");
 
   function relayout() {

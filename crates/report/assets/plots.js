@@ -135,6 +135,23 @@ const plots = (() => {
     return found;
   };
 
+  /** Impacts at the top of a panel: one by one, or where they are many how many about each time, by the length of a tick. */
+  function impactMarks(panel) {
+    const mark = (t, length) => `M${px(t).toFixed(1)} ${margin.top}v${length.toFixed(1)}`;
+    const shown = data.impacts
+      .filter(({ t, contact }) => t >= view[0] && t <= view[1] && (panel.contact ?? contact) === contact);
+    const last = data.impacts.length ? data.impacts[data.impacts.length - 1].t : 0;
+    const listed = data.impact_count <= data.impacts.length || view[1] <= last;
+    if (!data.density || (listed && shown.length <= 60)) return shown.map(({ t }) => mark(t, 7)).join("");
+    const { end, all, contacts } = data.density;
+    const counts = panel.contact === undefined ? all : contacts[panel.contact] ?? [];
+    const most = Math.max(1, ...counts);
+    return counts
+      .map((count, part) => ({ count, t: (part + 0.5) * end / counts.length }))
+      .filter(({ count, t }) => count > 0 && t >= view[0] && t <= view[1])
+      .map(({ count, t }) => mark(t, 9 * Math.sqrt(count / most))).join("");
+  }
+
   function drawPanel(panel) {
     if (panel.portrait) {
       drawPortrait(panel);
@@ -146,9 +163,7 @@ const plots = (() => {
     setAll(panel.svg, { viewBox: `0 0 ${size.width} ${size.height}` });
     const inside = `<clipPath id="${clip}"><rect x="${margin.left}" y="${margin.top}" `
       + `width="${size.width - margin.left - margin.right}" height="${bottom - margin.top}"/></clipPath>`;
-    const impacts = data.impacts
-      .filter(({ t, contact }) => t >= view[0] && t <= view[1] && (panel.contact ?? contact) === contact)
-      .map(({ t }) => `M${px(t).toFixed(1)} ${margin.top}v7`).join("");
+    const impacts = impactMarks(panel);
     let body;
     if (panel.bands) {
       body = bands(panel, size, clip);

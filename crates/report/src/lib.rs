@@ -7,6 +7,7 @@
 mod bounces;
 mod checkpoint;
 mod closed;
+mod columns;
 mod contacts;
 mod export;
 mod lock;
@@ -15,6 +16,7 @@ mod meetings;
 mod number;
 mod page;
 mod probe;
+mod readable;
 mod recorder;
 mod resolution;
 mod results;
@@ -26,15 +28,18 @@ mod swings;
 mod table;
 mod taken_energy;
 mod unlocated;
+mod verdict;
 mod warnings;
 
 pub use bounces::{Bounces, CONTESTED, Contested};
 pub use checkpoint::{
     CHECKPOINT, Checkpoint, CheckpointError, Found, Identity, Moment, VERSION as CHECKPOINT_VERSION, program_hash,
 };
+pub use columns::columns;
 pub use export::{ExportWhen, Exporter, Former, HARD, Watch};
 pub use made_energy::ENERGY_MADE;
 pub use page::{HalfCycle, PageRecorder, STYLE, escaped, figures, half_cycles, render};
+pub use readable::{shortest, with_digits, with_unit};
 pub use recorder::{ImpactRow, Record, Recorder};
 pub use results::{FILES, Reserved, Results, ResultsError};
 pub use run_recorder::{Origin, RunRecorder};
@@ -43,4 +48,5 @@ pub use sections::{BeamRecord, LargestStress, ReactionRange, envelopes};
 pub use summary::{EndedWord, Summary};
 pub use taken_energy::ENERGY_TAKEN;
 pub use unlocated::UNLOCATED;
+pub use verdict::{BodyVerdict, Fate, Fates, StopReason, Way};
 pub use warnings::{HORIZON, Warning, WarningLog};

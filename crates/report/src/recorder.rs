@@ -9,6 +9,7 @@ use crate::resolution::{Bodies, Resolution};
 use crate::sections::{BeamRecord, Sections, Values};
 use crate::swings::{Swings, Watch};
 use crate::table::Table;
+use crate::verdict::{self, Fates};
 use crate::{Results, ResultsError, Schedule, WarningLog};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -58,6 +59,8 @@ pub struct Record {
     pub rocking: Vec<RockingMonitor>,
     /// What beams bore, of those that are asked.
     pub beams: Vec<BeamRecord>,
+    /// What became of the blocks.
+    pub fates: Fates,
     /// What the run warned of.
     pub warnings: WarningLog,
 }
@@ -65,9 +68,9 @@ pub struct Record {
 /// The tables, in the order in which a checkpoint has their lengths.
 pub(crate) const TABLES: [&str; 4] = ["trajectory.csv", "contacts.csv", "impacts.csv", "energy.csv"];
 
-const IMPACTS_HEADER: &str = "t,contact,a,b,point,impulse_n,impulse_t,u_n_before,u_n_after\n";
+pub(crate) const IMPACTS_HEADER: &str = "t,contact,a,b,point,impulse_n,impulse_t,u_n_before,u_n_after\n";
 
-const ENERGY_HEADER: &str =
+pub(crate) const ENERGY_HEADER: &str =
     "t,kinetic,elastic,gravity,external,contact,friction,viscous,numerical,projection,residual\n";
 
 /// What a recorder knows of the run so far, beside the lengths of its tables.
@@ -103,6 +106,7 @@ pub struct Recorder<'a> {
     sections: Sections,
     bodies: Bodies,
     watch: Watch,
+    fate_watch: verdict::Watch,
     /// The shorter side of the block whose that is the shortest, m.
     shortest_side: f64,
     /// Whether the scheme locates closings, and ends bounces by its step: of one that locates none the other warnings tell more.
@@ -217,6 +221,7 @@ impl<'a> Recorder<'a> {
             sections,
             bodies: Bodies::of(scene),
             watch: Watch::of(scene, layout),
+            fate_watch: verdict::Watch::of(scene, layout).since(&kept.record.fates),
             shortest_side: layout.blocks.iter().map(|place| place.side).fold(f64::INFINITY, f64::min),
             locates: scene.time.scheme == SchemeName::MoreauJeanLocated,
             line: String::new(),
@@ -383,6 +388,7 @@ impl Observer<2> for Recorder<'_> {
         self.kept.closings = ClosingMonitor::new(model, state, &self.layout.openings)?;
         self.kept.resolution.start(self.layout, state);
         self.kept.swings.start(&self.watch);
+        self.kept.record.fates.start(&mut self.fate_watch, self.layout, state);
         let (record, values) = (&mut self.kept.record, &mut self.kept.section_values);
         self.sections.start(self.layout, state, &mut record.beams, values);
         Ok(self.write_row(state)?)
@@ -410,10 +416,12 @@ impl Observer<2> for Recorder<'_> {
         for (block, monitor) in self.kept.record.rocking.iter_mut().enumerate() {
             monitor.enter(state.t, self.layout.tilt(block, &state.q));
         }
+        self.kept.record.fates.observe(&self.fate_watch, self.layout, step.t_start, state);
         if self.kept.schedule.takes(state.step, state.t) {
             self.write_rows(model, state)?;
         }
-        Ok(ControlFlow::Continue(()))
+        // The others see the step, too, before it ends the run.
+        Ok(if self.kept.record.fates.stopped().is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     }
 
     /// The last step always is a row, also of a run that ended before its time.
@@ -426,7 +434,7 @@ impl Observer<2> for Recorder<'_> {
     }
 }
 
-fn trajectory_header(layout: &Layout, sections: &Sections) -> String {
+pub(crate) fn trajectory_header(layout: &Layout, sections: &Sections) -> String {
     let mut header = String::from("t");
     for block in &layout.blocks {
         for column in ["x", "y", "phi", "vx", "vy", "omega"] {

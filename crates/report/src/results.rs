@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 /// The files that a run may write; which of the figures, depends on its scene. They are removed in this order: no summary
 /// outlives a table, and while there is anything, `scene.toml` says of what.
-pub const FILES: [&str; 19] = [
+pub const FILES: [&str; 20] = [
     CHECKPOINT,
     "summary.json",
     "trajectory.csv",
@@ -17,6 +17,7 @@ pub const FILES: [&str; 19] = [
     "impacts.csv",
     "energy.csv",
     "envelopes.csv",
+    "columns.json",
     "report.html",
     "figures/phi.svg",
     "figures/omega.svg",
@@ -152,6 +153,18 @@ impl Results {
             return Err(error(folder.to_owned()));
         }
         Ok(old)
+    }
+
+    /// What is in a folder for results that is neither one of `files` nor hidden: how many, and the first by name. It stays where it is.
+    #[must_use]
+    pub fn foreign(files: &[&str], folder: &Path) -> Option<(usize, String)> {
+        let ours: Vec<&str> = files.iter().filter_map(|file| file.split('/').next()).collect();
+        let entries =
+            fs::read_dir(folder).ok()?.flatten().map(|entry| entry.file_name().to_string_lossy().into_owned());
+        let others: Vec<String> =
+            entries.filter(|name| !name.starts_with('.') && !ours.contains(&name.as_str())).collect();
+        let first = others.iter().min()?.clone();
+        Some((others.len(), first))
     }
 
     /// Refuses a folder where one of `inputs` stands in the place of one of `files`, which may also be absolute paths; links

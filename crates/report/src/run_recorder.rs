@@ -205,8 +205,7 @@ impl Observer<2> for RunRecorder<'_> {
         step: &StepReport<'_, 2>,
         state: &State,
     ) -> Result<ControlFlow<()>, ObserverError> {
-        // None of them ends a run.
-        let _ = self.recorder.observe(model, step, state)?;
+        let stops = self.recorder.observe(model, step, state)?.is_break();
         self.page.see_sections(self.recorder.section_values());
         self.page.see_step(step, state, self.recorder.closed());
         if let Some(exporter) = &mut self.exporter {
@@ -218,12 +217,12 @@ impl Observer<2> for RunRecorder<'_> {
         let ends = self.end.is_some_and(|end| end.load(Ordering::Relaxed));
         if let Some(checkpoints) = &mut self.checkpoints {
             let due = checkpoints.schedule.takes(state.step, state.t) || ends;
-            // A run that ends here must not go on from here.
-            if due && (step.is_solved() || !self.require_convergence) {
+            // A run that ends here for good must not go on from here.
+            if due && !stops && (step.is_solved() || !self.require_convergence) {
                 self.write_checkpoint(state)?;
             }
         }
-        Ok(if ends { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+        Ok(if ends || stops { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     }
 
     fn finish(&mut self, model: &Model<2>, state: &State) -> Result<(), ObserverError> {

@@ -339,10 +339,12 @@ impl BeamRecord {
     }
 }
 
+pub(crate) const ENVELOPES_HEADER: &str = "beam,x,w_min,w_max,moment_min,moment_max,shear_min,shear_max,stress_max\n";
+
 /// The text of `envelopes.csv`: the extremes over all steps by nodes, of the beams that ask for it; `None` where none does.
 #[must_use]
 pub fn envelopes(layout: &Layout, records: &[BeamRecord]) -> Option<String> {
-    let mut text = "beam,x,w_min,w_max,moment_min,moment_max,shear_min,shear_max,stress_max\n".to_owned();
+    let mut text = ENVELOPES_HEADER.to_owned();
     let header = text.len();
     for record in records {
         let place = layout.beams.iter().find(|place| place.name == record.beam);

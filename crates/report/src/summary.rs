@@ -1,5 +1,6 @@
 //! `summary.json`: the numbers of a run.
 
+use crate::verdict::{BodyVerdict, StopReason, headline};
 use crate::{BeamRecord, ImpactRow, LargestStress, ReactionRange, Record, Warning};
 use crate::{made_energy, taken_energy, unlocated};
 use serde::Serialize;
@@ -15,6 +16,8 @@ use teeter_scenario::wording;
 pub enum EndedWord {
     /// All steps were taken.
     Complete,
+    /// What the scene names in `time.stop` came to pass.
+    Stopped,
     /// The motion is no longer finite, or a step could not be posed.
     Diverged,
     /// A step was not solved, and the scene requires it.
@@ -31,6 +34,7 @@ impl EndedWord {
     pub fn word(self) -> &'static str {
         match self {
             Self::Complete => "complete",
+            Self::Stopped => "stopped",
             Self::Diverged => "diverged",
             Self::Unconverged => "unconverged",
             Self::Interrupted => "interrupted",
@@ -103,6 +107,19 @@ pub struct Summary {
     /// The records that prescribe motions, as used.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub records: Vec<RecordSummary>,
+    /// What became of the scene, in a sentence.
+    pub headline: String,
+    /// What became of each block whose motion isn't prescribed.
+    pub verdict: Vec<BodyVerdict>,
+    /// The largest |φ|/α of all blocks.
+    pub max_phi_over_alpha: Option<f64>,
+    /// When the first block overturned, s.
+    pub overturned_at: Option<f64>,
+    /// From when on all blocks rest, s.
+    pub rests_from: Option<f64>,
+    /// What of `time.stop` ended the run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stopped_by: Option<StopReason>,
     /// Until when the motion can be trusted, s; not measured yet.
     pub horizon: Option<f64>,
     /// How the run ended.
@@ -140,6 +157,8 @@ pub struct EnergySummary {
     /// The same at the end, J.
     #[serde(rename = "final")]
     pub last: f64,
+    /// What contacts, friction, dampers and the scheme took, J.
+    pub lost: f64,
     /// The scene's energy scale: max |T| + |V_elastic| + |ΔV_gravity|, at least m g R; J.
     pub scale: f64,
     /// Steps in which contacts gave energy to the bodies.
@@ -339,7 +358,20 @@ impl Summary {
             .collect();
         peaks.sort_by(|a, b| a.t.total_cmp(&b.t));
         let gains = &ledger.positive_contact_work;
+        let verdict = record.fates.verdict(scene, layout, state, &record.rocking);
+        let beams: Vec<BorneSummary> = record.beams.iter().map(|borne| BorneSummary::new(scene, borne)).collect();
+        let first =
+            |of: fn(&BodyVerdict) -> Option<f64>, pick: fn(f64, f64) -> f64| verdict.iter().filter_map(of).reduce(pick);
         Self {
+            headline: headline(scene, state, &verdict, &beams),
+            max_phi_over_alpha: first(|of| of.max_phi_over_alpha, f64::max),
+            overturned_at: first(|of| of.overturned_at, f64::min),
+            rests_from: verdict
+                .iter()
+                .map(|of| of.rests_from)
+                .collect::<Option<Vec<_>>>()
+                .and_then(|of| of.into_iter().reduce(f64::max)),
+            stopped_by: record.fates.stopped().map(|(_, reason)| reason),
             title: scene.title.clone(),
             version: env!("CARGO_PKG_VERSION"),
             scheme: scene.time.scheme.word(),
@@ -361,6 +393,7 @@ impl Summary {
                 largest_residual: ledger.relative_residual(),
                 initial: ledger.initial.total(),
                 last: ledger.current.total(),
+                lost: 0.0 - (ledger.sum.contact + ledger.sum.friction + ledger.sum.viscous + ledger.sum.numerical),
                 scale: ledger.scale,
                 positive_contact_work: PositiveWorkSummary {
                     steps: gains.steps,
@@ -381,7 +414,8 @@ impl Summary {
             crossing_count: (counted > crossings.len() as u64).then_some(counted),
             crossings,
             peaks,
-            beams: record.beams.iter().map(|borne| BorneSummary::new(scene, borne)).collect(),
+            beams,
+            verdict,
             records: scene.records().map(|of| RecordSummary::new(of)).collect(),
             horizon: record.horizon,
             ended,

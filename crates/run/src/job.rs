@@ -31,6 +31,7 @@ pub struct RunJob {
     pub(crate) export: Option<(PathBuf, ExportWhen)>,
     pub(crate) dump: Option<PathBuf>,
     pub(crate) horizon: bool,
+    pub(crate) report: bool,
     extent: Extent,
     pub(crate) program: Option<[u8; 32]>,
 }
@@ -48,6 +49,7 @@ impl RunJob {
             export: None,
             dump: None,
             horizon: false,
+            report: true,
             extent: Extent::default(),
             program: None,
         }
@@ -110,6 +112,13 @@ impl RunJob {
     /// for an accuracy, which already have one.
     pub fn horizon(mut self) -> Self {
         self.horizon = true;
+        self
+    }
+
+    /// Writes the tables and the summary only. The default is to also write `report.html` and its
+    /// figures.
+    pub fn without_report(mut self) -> Self {
+        self.report = false;
         self
     }
 

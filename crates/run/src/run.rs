@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use teeter_integrator::{Ended, State};
 use teeter_report::{
     CHECKPOINT, EndedWord, Exporter, Former, Origin, PageRecorder, Record, Results, ResultsError, RunRecorder, Summary,
-    envelopes, figures, render,
+    columns, envelopes, figures, render,
 };
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Layout;
@@ -83,15 +83,21 @@ impl Prepared {
         let mut recorded = self.simulate(&results, &scene_as_run, exporter, &layout, hooks)?;
         recorded.record.horizon = self.chosen.map(|chosen| chosen.horizon);
         let wanted = self.job.horizon && self.chosen.is_none() && self.job.from.is_none();
+        let mut watched = self.resolved.scene.clone();
+        if recorded.ended == EndedWord::Stopped {
+            // Of what was run only.
+            watched.time.end = self.simulation.state.t;
+        }
         if wanted
-            && recorded.ended == EndedWord::Complete
-            && !crate::horizon::find(&self.resolved.scene, cancel, &mut recorded.record)
+            && matches!(recorded.ended, EndedWord::Complete | EndedWord::Stopped)
+            && !crate::horizon::find(&watched, cancel, &mut recorded.record)
         {
             // The horizon is missing: a resumed run repeats the end, and finds it.
             recorded.ended = EndedWord::Interrupted;
         }
         let exporter = recorded.exporter.as_ref().map(Exporter::written);
-        let summary = write(&results, recorded, &self.resolved.scene, &layout, &self.simulation.state, &scene_as_run)?;
+        let (scene, state) = (&self.resolved.scene, &self.simulation.state);
+        let summary = write(&results, recorded, scene, &layout, state, &scene_as_run, self.job.report)?;
         let unsolved = summary.contact.unconverged_steps > 0;
         Ok(FinishedRun {
             exported: exporter.zip(self.job.export).map(|(count, (folder, _))| Exported { folder, count }),
@@ -154,7 +160,11 @@ impl Prepared {
                 if let Ended::Failed(error) = &ended {
                     record.warnings.enter("ended", error.t(), || error.to_string());
                 }
-                EndedWord::from(&ended)
+                match ended {
+                    // Not by the user.
+                    Ended::Interrupted if record.fates.stopped().is_some() => EndedWord::Stopped,
+                    ended => EndedWord::from(&ended),
+                }
             }
             Err(teeter_integrator::RunError::Observer(error)) => match error.downcast::<ResultsError>() {
                 Ok(error) if error.is_disk_full() => {
@@ -178,10 +188,11 @@ fn write(
     layout: &Layout,
     state: &State,
     scene_as_run: &str,
+    report: bool,
 ) -> Result<Summary, RunError> {
     let RecordedRun { record, page, ended, seconds, .. } = recorded;
     let summary = Summary::new(scene, layout, state, &record, ended, seconds);
-    let written = write_files(results, &record, layout, &page, &summary, scene_as_run);
+    let written = write_files(results, &record, scene, layout, &page, &summary, report.then_some(scene_as_run));
     match written {
         // There is no room for these either; the summary still has the reason.
         Err(RunError::Write(error)) if ended == EndedWord::DiskFull && error.is_disk_full() => {}
@@ -196,18 +207,22 @@ fn write(
 fn write_files(
     results: &Results,
     record: &Record,
+    scene: &Scene,
     layout: &Layout,
     page: &PageRecorder,
     summary: &Summary,
-    scene_as_run: &str,
+    scene_of_report: Option<&str>,
 ) -> Result<(), RunError> {
     let file = |name: &str, text: &str| results.write(name, text).map_err(RunError::Write);
     if let Some(text) = envelopes(layout, &record.beams) {
         file("envelopes.csv", &text)?;
     }
-    file("report.html", &render(page, summary, scene_as_run))?;
-    for (name, svg) in figures(page) {
-        file(&format!("figures/{name}"), &svg)?;
+    file("columns.json", &columns(scene, layout).map_err(RunError::Summary)?)?;
+    if let Some(scene_as_run) = scene_of_report {
+        file("report.html", &render(page, summary, scene_as_run))?;
+        for (name, svg) in figures(page) {
+            file(&format!("figures/{name}"), &svg)?;
+        }
     }
     file("summary.json", &summary.to_json().map_err(RunError::Summary)?)
 }

@@ -66,6 +66,27 @@ pub struct Time {
     pub gap_tolerance: f64,
     /// ρ∞ of `generalized-alpha`.
     pub spectral_radius: f64,
+    /// What ends the run before its end.
+    pub stop: StopScene,
+}
+
+/// What ends a run before its end; by default nothing (`docs/verdict.md`).
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct StopScene {
+    /// A block has overturned.
+    pub overturned: bool,
+    /// All blocks rest, and nothing is prescribed to change any more.
+    pub rest: bool,
+    /// A block is below everything that could hold it.
+    pub sunk: bool,
+}
+
+impl StopScene {
+    /// Whether anything does.
+    #[must_use]
+    pub fn is_given(self) -> bool {
+        self.overturned || self.rest || self.sunk
+    }
 }
 
 impl Scene {
@@ -84,6 +105,26 @@ impl Scene {
             History::Record(record) => Some(record),
             History::Formula(_) | History::Table(_) => None,
         })
+    }
+
+    /// From which time on nothing prescribed changes any more, s: motions, forces and loads. Infinite
+    /// if something never stops, such as a harmonic.
+    #[must_use]
+    pub fn settles_at(&self) -> f64 {
+        let motions: Vec<f64> = self
+            .motions()
+            .flat_map(|(_, motion)| motion.0.iter().flatten())
+            .map(|axis| axis.history.settles_at())
+            .collect();
+        let forces = self.forces.iter().map(|force| force.history.settles_at());
+        let loads = self.loads.iter().map(|load| match load.kind {
+            LoadKind::Moving { at, speed, .. } if speed != 0.0 => {
+                let left = if speed > 0.0 { self.beams[load.beam].spec.span - at } else { -at };
+                load.history.settles_at().max(left / speed)
+            }
+            _ => load.history.settles_at(),
+        });
+        motions.into_iter().chain(forces).chain(loads).fold(0.0, f64::max)
     }
 
     /// Whether any bodies can touch, listed or in a crowd.

@@ -34,6 +34,8 @@ macro_rules! words {
 }
 
 words! {
+    /// What ends a run before its time.
+    StopWord { Overturned = "overturned", Rest = "rest", Sunk = "sunk" }
     /// Law along the normal of a contact.
     Law {
         Newton = "newton",

@@ -128,11 +128,31 @@ pub fn parse(text: &str, wanted: Dimension) -> Result<f64, QuantityError> {
 /// ```
 /// use teeter_text::{dimension::Dimension, quantity};
 /// assert_eq!(quantity::format_si(0.36, Dimension::LENGTH), "0.36 m");
-/// assert_eq!(quantity::format_si(69e9, Dimension::PRESSURE), "69000000000.0 Pa");
+/// assert_eq!(quantity::format_si(69e9, Dimension::PRESSURE), "69 GPa");
 /// ```
 pub fn format_si(value: f64, dimension: Dimension) -> String {
     let unit = dimension.unit();
-    if unit.is_empty() { format!("{value:?}") } else { format!("{value:?} {unit}") }
+    if unit.is_empty() {
+        return format!("{value:?}");
+    }
+    let plain = |value: f64| {
+        let text = format!("{value:?}");
+        text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
+    };
+    let own = format!("{} {unit}", plain(value));
+    // Within these sizes people read the SI unit as it is.
+    if value == 0.0 || !value.is_finite() || (1e-2..1e4).contains(&value.abs()) {
+        return own;
+    }
+    let others = dimension.usual_units().iter().filter_map(|other| {
+        let factor = parse(&format!("1 {other}"), dimension).ok()?;
+        let text = format!("{} {other}", plain(value / factor));
+        // A quotient that was rounded may read back to another double.
+        let same = parse(&text, dimension).is_ok_and(|read| read.to_bits() == value.to_bits());
+        same.then_some(text)
+    });
+    // Of texts of the same length the first, which is in the SI unit.
+    std::iter::once(own.clone()).chain(others).min_by_key(|text| text.chars().count()).unwrap_or(own)
 }
 
 /// A number with its unit, before its dimension is checked.

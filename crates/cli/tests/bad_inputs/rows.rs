@@ -318,6 +318,9 @@ fn beams() -> Vec<Row> {
         refused(8, "face misspelt", Set(&["contact.feet.face=below"]), &["contact.feet.face", "upper", "lower"]),
         refused(8, "unknown points", Set(&["contact.feet.points=sides"]), &["contact.feet.points", "all", "corners"]),
         refused(8, "face of the ground", Edit(&[("[contact.feet]", "[ground]\n[contact.floor]\nbetween = [\"rocker\", \"ground\"]\nfriction = 0.5\nface = \"upper\"\n[contact.feet]")]), &["contact.floor.face", "for contacts with beams"]),
+        refused(8, "stop misspelt", Set(&["time.stop=['overturn']"]), &["time.stop", "overturned", "rest", "sunk"]),
+        refused(8, "stop without brackets", Set(&["time.stop=overturned"]), &["time.stop", "array"]),
+        refused(8, "stop twice", Set(&["time.stop=['rest', 'rest']"]), &["time.stop"]),
         warned(38, "thick beam without shear", Set(&["beam.table.thickness=4 cm"]), &["warning: beam.table.theory", "0.11 of the span", "timoshenko"]),
     ]
 }

@@ -125,6 +125,17 @@ impl Formula {
         self.swings().map_or(self.start >= end, |(_, [from, until])| from >= end || until <= 0.0)
     }
 
+    /// From which time on it no longer changes, s: infinite for a harmonic.
+    #[must_use]
+    pub fn settles_at(&self) -> f64 {
+        match self.shape {
+            Shape::Constant => self.start,
+            Shape::Ramp { duration } => self.start + duration,
+            Shape::Sine { end, .. } => self.start + end,
+            Shape::Ricker { rate } => self.start + BELL / rate,
+        }
+    }
+
     fn new(start: f64, shape: Shape) -> Result<Self, SignalError> {
         Ok(Self { start: finite("the start", start)?, shape })
     }

@@ -22,7 +22,7 @@ pub enum Found {
 }
 
 /// Ends after which there is nothing to go on with: the run is complete, or would end the same way again.
-const FINAL: [EndedWord; 3] = [EndedWord::Complete, EndedWord::Diverged, EndedWord::Unconverged];
+const FINAL: [EndedWord; 4] = [EndedWord::Complete, EndedWord::Stopped, EndedWord::Diverged, EndedWord::Unconverged];
 
 impl Found {
     /// Looks into the folder of a run; `scene_as_run` is what its `scene.toml` holds.

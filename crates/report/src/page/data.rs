@@ -1,6 +1,6 @@
 //! The data of the page: what its script draws.
 
-use super::recorder::{BLOCK_COLUMNS, BLOCK_FRAME, ENERGIES, PageRecorder};
+use super::recorder::{BLOCK_COLUMNS, BLOCK_FRAME, ENERGIES, MANY_IMPACTS, PageRecorder};
 use super::scenery::Scenery;
 use super::{DIGITS, TIME_DIGITS, rounded};
 use crate::Summary;
@@ -17,7 +17,29 @@ struct Data<'a> {
     forces: ForceData,
     impacts: Vec<ImpactData>,
     impact_count: u64,
+    /// Where they are many: how many in each part of the run up to `end`, of all contacts and of each.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    density: Option<DensityData>,
     sections: Vec<SectionData>,
+}
+
+#[derive(Serialize)]
+struct DensityData {
+    end: f64,
+    all: Vec<u32>,
+    contacts: std::collections::BTreeMap<usize, Vec<u32>>,
+}
+
+/// Contacts whose own density is on the page.
+const OWN_DENSITY: usize = 20;
+
+fn density(recorder: &PageRecorder) -> Option<DensityData> {
+    let kept = &recorder.kept;
+    (kept.impact_count > MANY_IMPACTS).then(|| DensityData {
+        end: time(recorder.end),
+        all: recorder.impacts_about(None).into_iter().map(|(_, count)| count).collect(),
+        contacts: kept.density.iter().take(OWN_DENSITY).map(|(pair, counts)| (*pair, counts.clone())).collect(),
+    })
 }
 
 /// What a beam bears over time, at the times of the curves.
@@ -130,6 +152,7 @@ pub(crate) fn json(recorder: &PageRecorder, summary: &Summary) -> String {
             })
             .collect(),
         impact_count: recorder.kept.impact_count,
+        density: density(recorder),
         sections: sections(recorder),
     };
     // Strings, vectors and numbers (null where not finite) always serialise.

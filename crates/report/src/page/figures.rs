@@ -1,7 +1,7 @@
 //! The plots of the page as figures for a paper.
 
 use super::accelerograms;
-use super::recorder::{BLOCK_COLUMNS, ENERGIES, ImpactMark, PageRecorder};
+use super::recorder::{BLOCK_COLUMNS, ENERGIES, MANY_IMPACTS, PageRecorder};
 use super::rounded;
 use crate::sections::Kind;
 use teeter_beam::Envelope;
@@ -65,8 +65,19 @@ impl<'a> Plots<'a> {
 
     /// A panel of lines over time, with the impacts marked.
     fn panel(&self, y: Axis, lines: Vec<Series>) -> Panel {
-        let impacts = self.recorder.kept.impacts.iter().map(|impact| impact.t);
-        Panel::new(y).with(lines).ticks_at(impacts.collect())
+        self.marked(Panel::new(y).with(lines), None)
+    }
+
+    /// A panel with the impacts marked, of one contact or of all: one by one, or how many about each time where they are many.
+    fn marked(&self, panel: Panel, contact: Option<usize>) -> Panel {
+        let about = self.recorder.impacts_about(contact);
+        if about.iter().map(|(_, count)| u64::from(*count)).sum::<u64>() > MANY_IMPACTS {
+            return panel.counts_at(about);
+        }
+        // So few are among the first that are kept, unless others were before them.
+        let mine =
+            self.recorder.kept.impacts.iter().filter(|impact| contact.is_none_or(|asked| impact.contact == asked));
+        panel.ticks_at(mine.map(|impact| impact.t).collect())
     }
 
     fn curve(&self, column: usize, factor: f64) -> impl Iterator<Item = f64> {
@@ -185,15 +196,13 @@ impl<'a> Plots<'a> {
             if normal.is_empty() {
                 continue;
             }
-            let mine = |impact: &&ImpactMark| impact.contact == pair;
-            let marks: Vec<f64> = self.recorder.kept.impacts.iter().filter(mine).map(|impact| impact.t).collect();
             for (what, lines) in [("Normal", normal), ("Tangential", tangential)] {
                 let (range, cut) = cut(&lines, least, "N");
                 let name = (scenery.contacts.len() > 1).then(|| contact.name.clone());
                 let note = [name, cut].into_iter().flatten().collect::<Vec<_>>().join(": ");
                 let y = cut_axis(&format!("{what} force (N)"), range, &lines, least);
                 let note = Some(note).filter(|note| !note.is_empty());
-                panels.push(Panel::new(y).with(lines).ticks_at(marks.clone()).note(note));
+                panels.push(self.marked(Panel::new(y).with(lines), Some(pair)).note(note));
             }
             panels.push(Panel::bands(bands, [(STICK, "stick"), (SLIP, "slip"), (Colour::Paper, "open")]));
         }

@@ -35,6 +35,7 @@ pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> S
         ("style", STYLE.to_owned()),
         ("script", script),
         ("data", data::json(recorder, summary)),
+        ("verdict", verdict(summary)),
         ("subtitle", subtitle(summary)),
         ("warnings", warnings(summary)),
         ("tiles", tiles(&values, summary)),
@@ -100,9 +101,14 @@ impl Numbers {
     }
 }
 
-/// What users want to know first.
-const TILES: [&str; 7] = [
+/// What users want to know first: the numbers of the mechanics, then from [`NUMERIC`] on those of the computation.
+const TILES: [&str; 12] = [
+    "max_phi_over_alpha",
+    "overturned_at",
+    "rests_from",
+    "energy.lost",
     "impact_count",
+    "horizon",
     "reclosure_count",
     "max_penetration",
     "energy.largest_residual",
@@ -111,22 +117,50 @@ const TILES: [&str; 7] = [
     "contact.max_iterations",
 ];
 
+/// The first tile that is of the computation.
+const NUMERIC: usize = 6;
+
+/// The sentence at the head of the page.
+fn verdict(summary: &Summary) -> String {
+    let mut html = String::new();
+    for (number, part) in summary.headline.split('`').enumerate() {
+        // A number stays with its name and its unit.
+        let part = escaped(part).replace(" = ", "\u{a0}=\u{a0}").replace(" ms", "\u{a0}ms");
+        if number % 2 == 1 { _ = write!(html, "<span class=\"name\">{part}</span>") } else { html.push_str(&part) }
+    }
+    if let Some(reason) = summary.stopped_by {
+        _ = write!(html, "; the run stopped there ({})", reason.word());
+    }
+    html
+}
+
 fn tiles(values: &Numbers, summary: &Summary) -> String {
     let mut html = String::new();
-    for path in TILES {
+    let seconds = |t: Option<f64>| t.map(|t| with_prefix(t, "s"));
+    for (number, path) in TILES.into_iter().enumerate() {
         let (label, shown) = match path {
-            "impact_count" => ("Impacts", summary.impact_count.to_string()),
-            "reclosure_count" => ("Contacts lost and found again", summary.reclosure_count.to_string()),
-            "max_penetration" => ("Deepest penetration of a corner", with_prefix(summary.max_penetration, "m")),
-            "energy.largest_residual" => ("Energy residual", scientific(summary.energy.largest_residual)),
-            "contact.unconverged_steps" => ("Steps not solved", summary.contact.unconverged_steps.to_string()),
-            "contact.max_residual" => ("Contact residual", scientific(summary.contact.max_residual)),
-            _ => ("Most iterations", summary.contact.max_iterations.to_string()),
+            "max_phi_over_alpha" => {
+                ("Largest φ/α", summary.max_phi_over_alpha.map(|part| rounded(part, 3).to_string()))
+            }
+            "overturned_at" => ("First overturned at", seconds(summary.overturned_at)),
+            "rests_from" => ("All at rest from", seconds(summary.rests_from)),
+            "energy.lost" => ("Energy lost", Some(with_prefix(summary.energy.lost, "J"))),
+            "impact_count" => ("Impacts", Some(summary.impact_count.to_string())),
+            "horizon" => ("Predictable up to", seconds(summary.horizon)),
+            "reclosure_count" => ("Contacts lost and found again", Some(summary.reclosure_count.to_string())),
+            "max_penetration" => ("Deepest penetration of a corner", Some(with_prefix(summary.max_penetration, "m"))),
+            "energy.largest_residual" => ("Energy residual", Some(scientific(summary.energy.largest_residual))),
+            "contact.unconverged_steps" => ("Steps not solved", Some(summary.contact.unconverged_steps.to_string())),
+            "contact.max_residual" => ("Contact residual", Some(scientific(summary.contact.max_residual))),
+            _ => ("Most iterations", Some(summary.contact.max_iterations.to_string())),
         };
+        // What has no meaning for this scene, or wasn't measured.
+        let Some(shown) = shown else { continue };
         let bad = path == "contact.unconverged_steps" && summary.contact.unconverged_steps > 0;
         let _ = writeln!(
             html,
-            "<div class=\"tile{}\"><dt>{label}</dt><dd data-summary=\"{path}\" data-value=\"{}\">{shown}</dd></div>",
+            "<div class=\"tile{}{}\"><dt>{label}</dt><dd data-summary=\"{path}\" data-value=\"{}\">{shown}</dd></div>",
+            if number >= NUMERIC { " numeric" } else { "" },
             if bad { " bad" } else { "" },
             escaped(&values.text(path))
         );
@@ -149,7 +183,7 @@ fn numbers(values: &Numbers) -> String {
 fn subtitle(summary: &Summary) -> String {
     let ended = serde_json::to_value(summary.ended).unwrap_or_default();
     let ended = ended.as_str().unwrap_or_default().to_owned();
-    let class = if ended == "complete" { "" } else { " class=\"bad\"" };
+    let class = if ["complete", "stopped"].contains(&ended.as_str()) { "" } else { " class=\"bad\"" };
     format!(
         "{} · {} steps of {} · t = {} s · <span{class}>{ended}</span> · teeter {}",
         escaped(summary.scheme),
@@ -183,18 +217,23 @@ fn warnings(summary: &Summary) -> String {
 /// Rows of the table; the rest is in `summary.json`.
 const ROWS: usize = 300;
 
+/// Rows that are seen without unfolding the others.
+const UNFOLDED: usize = 20;
+
 fn rocking(cycles: &[HalfCycle]) -> String {
     if cycles.is_empty() {
         return String::new();
     }
     let mut html = "<section id=\"rocking\" class=\"panel\" aria-labelledby=\"rocking-title\">\n\
-        <h3 id=\"rocking-title\">Rocking, half cycle by half cycle</h3>\n<div class=\"scroll\" tabindex=\"0\" \
-        role=\"region\" aria-labelledby=\"rocking-title\"><table>\n<thead><tr>"
+        <h3 id=\"rocking-title\">Rocking, half cycle by half cycle</h3>\n"
         .to_owned();
     // With one block its name would be a column of repetitions.
     let several = cycles.iter().any(|cycle| cycle.body != cycles[0].body);
-    html.push_str(if several { "<th scope=\"col\">Block</th>" } else { "" });
-    html.push_str(
+    let mut head =
+        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"rocking-title\"><table>\n<thead><tr>"
+            .to_owned();
+    head.push_str(if several { "<th scope=\"col\">Block</th>" } else { "" });
+    head.push_str(
         "<th scope=\"col\">φ = 0 at<br><small>s</small></th><th scope=\"col\">φ̇⁻<br><small>rad/s</small></th>\
         <th scope=\"col\">φ̇⁺<br><small>rad/s</small></th><th scope=\"col\">φ̇⁺/φ̇⁻</th>\
         <th scope=\"col\">Housner</th><th scope=\"col\">Next peak<br><small>°</small></th>\
@@ -203,24 +242,31 @@ fn rocking(cycles: &[HalfCycle]) -> String {
     let fixed = |x: Option<f64>, digits: usize| {
         x.map_or("–".to_owned(), |x| format!("{x:.digits$}").replace('-', "\u{2212}"))
     };
-    for cycle in cycles.iter().take(ROWS) {
+    html.push_str(&head);
+    for (number, cycle) in cycles.iter().take(ROWS).enumerate() {
+        if number == UNFOLDED {
+            let more = cycles.len().min(ROWS) - UNFOLDED;
+            let rows = if more == 1 { "row" } else { "rows" };
+            let _ = write!(html, "</tbody></table></div>\n<details><summary>{more} more {rows}</summary>\n{head}");
+        }
         let name = escaped(&cycle.body);
-        let head = if several { format!("<th scope=\"row\">{name}</th>") } else { String::new() };
+        let row_head = if several { format!("<th scope=\"row\">{name}</th>") } else { String::new() };
         let _ = writeln!(
             html,
-            "<tr data-body=\"{name}\" data-t=\"{}\">{head}<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>\
+            "<tr data-body=\"{name}\" data-t=\"{}\">{row_head}<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>\
              <td>{}</td><td>{}</td></tr>",
             cycle.t,
             fixed(Some(cycle.t), 5),
             fixed(cycle.omega.map(|omega| omega[0]), 4),
             fixed(cycle.omega.map(|omega| omega[1]), 4),
             fixed(cycle.ratio(), 4),
-            fixed(Some(cycle.housner), 4),
+            fixed(cycle.housner, 4),
             fixed(cycle.peak_after.map(f64::to_degrees), 3),
             fixed(cycle.decay(), 4),
         );
     }
     html.push_str("</tbody></table></div>\n");
+    html.push_str(if cycles.len() > UNFOLDED { "</details>\n" } else { "" });
     if cycles.len() > ROWS {
         let _ = writeln!(html, "<p>… and {} more; all are in summary.json.</p>", cycles.len() - ROWS);
     }
@@ -390,7 +436,8 @@ mod tests {
     fn the_template_asks_for_nothing_unknown() {
         for piece in TEMPLATE.split("{{").skip(1) {
             let name = piece.split_once("}}").unwrap().0;
-            let known = ["title", "style", "script", "data", "subtitle", "warnings", "tiles", "residual", "rocking"];
+            let known =
+                ["title", "style", "script", "data", "verdict", "subtitle", "warnings", "tiles", "residual", "rocking"];
             assert!(
                 known.contains(&name) || ["borne", "model", "numbers", "records", "settings"].contains(&name),
                 "{name}"

@@ -7,6 +7,7 @@ use super::scenery::Scenery;
 use crate::closed::Closed;
 use crate::sections::{BeamRecord, Column, Kind, columns_of};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::ops::{ControlFlow, Range};
 use teeter_integrator::{
     Closing, ClosingMonitor, Contact, ContactState, Model, Observer, ObserverError, State, StepReport,
@@ -73,7 +74,15 @@ pub(crate) struct Kept {
     pub(crate) impacts: Vec<ImpactMark>,
     /// All impacts, marked or not.
     pub(crate) impact_count: u64,
+    /// How many there were in each part of the run, of each contact.
+    pub(crate) density: BTreeMap<usize, Vec<u32>>,
 }
+
+/// Parts of the run in which impacts are counted.
+pub(crate) const PARTS: usize = 400;
+
+/// More impacts than this are drawn as a density, not one by one.
+pub(crate) const MANY_IMPACTS: u64 = 60;
 
 /// Watches a run for [`render`](super::render) and [`figures`](super::figures); its memory doesn't grow with the run.
 ///
@@ -100,6 +109,8 @@ pub struct PageRecorder {
     pub(crate) kept: Kept,
     pub(crate) layout: Layout,
     bucket_capacity: usize,
+    /// The scene's end, s.
+    pub(crate) end: f64,
     /// What beams bear, after all other columns of the curves.
     pub(crate) sections: Vec<Column>,
     /// What beams bore in the whole run; nothing before its end.
@@ -134,9 +145,11 @@ impl PageRecorder {
                 curves: Curves::new(bucket_capacity, 0.0, vec![0.0; columns], points),
                 impacts: Vec::new(),
                 impact_count: 0,
+                density: BTreeMap::new(),
             },
             layout: layout.clone(),
             bucket_capacity,
+            end: scene.time.steps() as f64 * scene.time.step,
             sections,
             beams: Vec::new(),
             row: vec![f64::NAN; columns],
@@ -227,6 +240,8 @@ impl PageRecorder {
         for Closed { t, contact, .. } in closed.iter().filter(|closed| closed.closing == Closing::Impact) {
             self.kept.impact_count += 1;
             let Some((pair, point)) = place(&self.layout, contact) else { continue };
+            let part = ((t / self.end * PARTS as f64) as usize).min(PARTS - 1);
+            self.kept.density.entry(pair).or_insert_with(|| vec![0; PARTS])[part] += 1;
             if self.kept.impacts.len() >= MARKED_IMPACTS {
                 continue;
             }
@@ -241,6 +256,16 @@ impl PageRecorder {
                 omega: [before, &state.v].map(|v| self.layout.tilt_rate(block, v)),
             });
         }
+    }
+
+    /// How many impacts there were about each time, s; of one contact, or of all.
+    pub(crate) fn impacts_about(&self, contact: Option<usize>) -> Vec<(f64, u32)> {
+        let mut counts = vec![0; PARTS];
+        for (_, density) in self.kept.density.iter().filter(|(pair, _)| contact.is_none_or(|asked| asked == **pair)) {
+            counts.iter_mut().zip(density).for_each(|(sum, count)| *sum += count);
+        }
+        let middle = |part: usize| (part as f64 + 0.5) * self.end / PARTS as f64;
+        counts.into_iter().enumerate().map(|(part, count)| (middle(part), count)).collect()
     }
 
     /// Takes a step in, with the contacts that closed in it.

@@ -2,6 +2,7 @@
 
 use super::PageRecorder;
 use crate::Summary;
+use crate::summary::PeakRow;
 
 /// A passage of a block through φ = 0, between two peaks of its swing.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,12 +18,15 @@ pub struct HalfCycle {
     /// is between them but for the impact. A beam that gives way spreads the block's loss over the half cycle, so the
     /// ratio of the two is then near 1, and the peaks tell what is lost.
     pub omega: Option<[f64; 2]>,
-    /// Housner's ratio for this block on rigid ground, 1 − (3/2) sin²α.
-    pub housner: f64,
+    /// Housner's ratio for this block on rigid ground, 1 − (3/2) sin²α; none for a block so wide that it would be negative: it doesn't rock on, but
+    /// stays on its base.
+    pub housner: Option<f64>,
     /// The peak before, rad.
     pub peak_before: Option<f64>,
     /// The peak after, rad; none where the run ends before it is complete.
     pub peak_after: Option<f64>,
+    /// The block's critical angle, rad.
+    pub alpha: f64,
 }
 
 impl HalfCycle {
@@ -32,12 +36,19 @@ impl HalfCycle {
         self.omega.filter(|omega| omega[0] != 0.0).map(|omega| omega[1] / omega[0])
     }
 
-    /// The peak after in parts of the peak before.
+    /// The peak after in parts of the peak before; none after a peak so small that the ratio says nothing.
     #[must_use]
     pub fn decay(&self) -> Option<f64> {
-        Some((self.peak_after? / self.peak_before?).abs())
+        let before = self.peak_before.filter(|peak| peak.abs() >= TELLING * self.alpha)?;
+        Some((self.peak_after? / before).abs())
     }
 }
+
+/// A peak below this part of the critical angle is no rocking: a passage between two such is left out.
+const LEAST: f64 = 1e-3;
+
+/// A peak below this part of the critical angle is no measure for the next one.
+const TELLING: f64 = 1e-2;
 
 /// An impact belongs to a passage if it is no further from it than this part of the swing from the peak to the passage.
 const NEAR: f64 = 0.25;
@@ -56,6 +67,10 @@ pub fn half_cycles(recorder: &PageRecorder, summary: &Summary) -> Vec<HalfCycle>
         let mut peaks = summary.peaks.iter().filter(|peak| peak.body == block.name).peekable();
         for crossing in summary.crossings.iter().filter(|crossing| crossing.body == block.name) {
             let before = peaks.next();
+            let size = |peak: Option<&&PeakRow>| peak.map_or(0.0, |peak| peak.phi.abs());
+            if size(before.as_ref()).max(size(peaks.peek())) < LEAST * alpha {
+                continue;
+            }
             let omega = before.and_then(|peak| {
                 let landing = if peak.phi > 0.0 { RIGHT } else { LEFT };
                 let distance = |t: f64| (t - crossing.t).abs();
@@ -67,7 +82,8 @@ pub fn half_cycles(recorder: &PageRecorder, summary: &Summary) -> Vec<HalfCycle>
                 body: block.name.clone(),
                 t: crossing.t,
                 omega,
-                housner: 1.0 - 1.5 * alpha.sin().powi(2),
+                housner: Some(1.0 - 1.5 * alpha.sin().powi(2)).filter(|ratio| *ratio > 0.0),
+                alpha,
                 peak_before: before.map(|peak| peak.phi),
                 peak_after: peaks.peek().map(|peak| peak.phi),
             });

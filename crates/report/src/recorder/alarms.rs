@@ -2,6 +2,7 @@
 
 use super::{Kept, Recorder};
 use crate::bounces::{CONTESTED, Contested};
+use crate::readable::{with_digits, with_unit};
 use crate::resolution::{Of, raise};
 use teeter_integrator::{Model, State, StepReport};
 use teeter_scenario::simulation::Layout;
@@ -188,7 +189,8 @@ impl Recorder<'_> {
         let layout = self.layout;
         if let Some(coarse) = self.kept.resolution.coarse(&self.bodies, state.dt) {
             let name = layout.blocks.get(coarse.block).map_or("a block", |place| &place.name);
-            let (part, limit, step) = (100.0 * coarse.part, 100.0 * coarse.of.limit(), coarse.step);
+            let (part, limit, step) =
+                (100.0 * coarse.part, 100.0 * coarse.of.limit(), with_digits(coarse.step, "s", 1));
             let what = match coarse.of {
                 Of::Impacts => "its contacts close up to a step late, all together by",
                 Of::Impact => "its contacts close up to a step late, at one of them by",
@@ -196,9 +198,9 @@ impl Recorder<'_> {
             };
             self.warn("under-resolved", None, || {
                 format!(
-                    "steps of {:e} s are too long for the impacts of `{name}`: {what} {part:.1} % of its motion, and from {limit:.1} % on motions are \
-                     likely off by more than 10 %; take a step of at most {step:.0e} s, and let `teeter tradeoff` measure what accuracy it gives",
-                    state.dt,
+                    "steps of {} are too long for the impacts of `{name}`: {what} {part:.1} % of its motion, and from {limit:.1} % on motions are \
+                     likely off by more than 10 %; take a step of at most {step}, and let `teeter tradeoff` measure what accuracy it gives",
+                    with_unit(state.dt, "s"),
                 )
             });
         }
@@ -216,12 +218,12 @@ impl Recorder<'_> {
             let rest = if self.watch.damps() { ", or theta = 0.5, which damps nothing" } else { "" };
             self.warn("under-resolved-swings", None, || {
                 format!(
-                    "steps of {:e} s are too long for the swings of `{name}`: at {:.4} Hz they come late or die out by as much as {:.0} % of its largest \
-                     deflection; take a step of at most {:.0e} s{rest}",
-                    state.dt,
+                    "steps of {} are too long for the swings of `{name}`: at {:.4} Hz they come late or die out by as much as {:.0} % of its largest \
+                     deflection; take a step of at most {}{rest}",
+                    with_unit(state.dt, "s"),
                     lost.frequency,
                     100.0 * lost.part,
-                    lost.step
+                    with_digits(lost.step, "s", 1)
                 )
             });
         }

@@ -2,9 +2,9 @@
 
 use super::Resolver;
 use crate::output_size::OutputSize;
-use crate::scene::{BeamScene, BlockScene, ContactScene, Crowd, Scene, SchemeName, SupportingBody, Time};
+use crate::scene::{BeamScene, BlockScene, ContactScene, Crowd, Scene, SchemeName, StopScene, SupportingBody, Time};
 use crate::wording;
-use crate::words::SchemeChoice;
+use crate::words::{SchemeChoice, StopWord, Word};
 use teeter_integrator::{GeneralizedAlphaSettings, ImpactLaw, PairLaw};
 
 /// Most steps of a run.
@@ -69,6 +69,7 @@ impl Resolver<'_, '_> {
             activation_gamma: activation_gamma?,
             gap_tolerance,
             spectral_radius,
+            stop: self.stop(),
         };
         let steps = time.steps() as f64;
         if (steps * step - end).abs() > (1e-9 * end).min(1e-3 * step) {
@@ -77,6 +78,20 @@ impl Resolver<'_, '_> {
                 .push(self.doc.error("time.end", rule, "choose an end that is a multiple of the step").as_warning());
         }
         Some(time)
+    }
+
+    /// What ends the run before its end.
+    fn stop(&self) -> StopScene {
+        let mut stop = StopScene::default();
+        for word in self.doc.words("time.stop").unwrap_or_default() {
+            match StopWord::of(word) {
+                Some(StopWord::Overturned) => stop.overturned = true,
+                Some(StopWord::Rest) => stop.rest = true,
+                Some(StopWord::Sunk) => stop.sunk = true,
+                None => {}
+            }
+        }
+        stop
     }
 
     /// The scheme, checked against θ and the beams.
@@ -145,7 +160,11 @@ impl Resolver<'_, '_> {
                 self.error("time.accuracy", rule, "use 1e-3 or 1e-6, or give a step");
                 None
             }
-            None if !self.doc.has("time.step") && !self.doc.is_refused("time.step") && self.doc.has("time.end") => {
+            None if !self.doc.has("time.step")
+                && !self.doc.is_refused("time.step")
+                && !self.doc.is_refused("time.accuracy")
+                && self.doc.has("time.end") =>
+            {
                 let rule = "auto needs an accuracy";
                 self.error("time.step", rule, "add accuracy = 1e-3, or give a step, such as \"100 us\"");
                 None

@@ -26,6 +26,16 @@ impl History {
         }
     }
 
+    /// From which time on it no longer changes, s; infinite if it never stops.
+    #[must_use]
+    pub fn settles_at(&self) -> f64 {
+        match self {
+            Self::Formula(formula) => formula.settles_at(),
+            Self::Table(table) => table.ends()[1].0,
+            Self::Record(record) => record.table.ends()[1].0,
+        }
+    }
+
     /// Its rows, if it has any.
     #[must_use]
     pub fn table(&self) -> Option<&Table> {

@@ -1,0 +1,381 @@
+//! What became of a scene, as the summary says it, is what `trajectory.csv` says: recomputed here from the rows alone, with the sizes of blocks and the
+//! ground's slope and motion from the scene.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use teeter_scenario::scene::{BlockScene, Placement, Scene, SupportingBody};
+
+/// `docs/verdict.md`: still below this part of √(gR), fallen past this part of the way to the next side.
+const STILL: f64 = 1e-3;
+
+fn folder(test: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// A run's columns, summary and scene.
+struct Ran {
+    names: Vec<String>,
+    rows: Vec<Vec<f64>>,
+    summary: Value,
+    scene: Scene,
+    stderr: String,
+}
+
+impl Ran {
+    fn of(file: &Path, out: &Path, sets: &[&str]) -> Self {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_teeter"));
+        command.args(["run", "--no-report", "--out"]).arg(out).arg(file);
+        sets.iter().for_each(|set| _ = command.args(["--set", set]));
+        let output = command.output().unwrap();
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success(), "{}: {stderr}", file.display());
+        assert!(!out.join("report.html").exists() && !out.join("figures").exists(), "--no-report writes no page");
+        let text = std::fs::read_to_string(out.join("trajectory.csv")).unwrap();
+        let mut lines = text.lines();
+        let names = lines.next().unwrap().split(',').map(str::to_owned).collect();
+        let rows = lines.map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect()).collect();
+        let summary = serde_json::from_str(&std::fs::read_to_string(out.join("summary.json")).unwrap()).unwrap();
+        let toml = out.join("scene.toml");
+        let scene = teeter_run::SceneSource::file(&toml).load(&[]).unwrap().scene;
+        Self { names, rows, summary, scene, stderr }
+    }
+
+    fn column(&self, name: &str) -> Vec<f64> {
+        let at = self.names.iter().position(|column| column == name).unwrap_or_else(|| panic!("no column {name}"));
+        self.rows.iter().map(|row| row[at]).collect()
+    }
+
+    fn verdict(&self, block: &str) -> &Value {
+        let all = self.summary["verdict"].as_array().unwrap();
+        all.iter().find(|of| of["body"] == block).unwrap_or_else(|| panic!("no verdict of {block}"))
+    }
+}
+
+/// The number of the beam that a block stands on, directly or by others; `None` if that is the ground, or nothing.
+fn beam_under(scene: &Scene, mut block: usize) -> Option<usize> {
+    loop {
+        match scene.blocks[block].placement {
+            Placement::On { support: SupportingBody::Beam(beam), .. } => return Some(beam),
+            Placement::On { support: SupportingBody::Block(below), .. } => block = below,
+            Placement::On { .. } => return None,
+            Placement::Free { .. } => {
+                let contact = scene.contacts.iter().find(|contact| contact.block == block)?;
+                let SupportingBody::Beam(beam) = contact.surface else { return None };
+                return Some(beam);
+            }
+        }
+    }
+}
+
+/// Checks the verdict of a sharp rectangle that stands upright at the start against its rows.
+fn check(ran: &Ran, number: usize, what: &str) {
+    let block: &BlockScene = &ran.scene.blocks[number];
+    let (scene, name) = (&ran.scene, block.name.as_str());
+    let said = ran.verdict(name);
+    let t = &ran.column("t")[..];
+    let of = |column: &str| ran.column(&format!("{name}.{column}"));
+    let (x, y, phi, omega) = (of("x"), of("y"), of("phi"), of("omega"));
+    let alpha = (block.width / block.height).atan();
+    let on_ground = matches!(block.placement, Placement::On { support: SupportingBody::Ground, .. });
+    let slope = if on_ground { scene.ground.as_ref().map_or(0.0, |ground| ground.incline) } else { 0.0 };
+    let last = t.len() - 1;
+    let what = format!("{what}, {name}: {said}");
+
+    // The largest |φ|/α: at least that of every row, and not much more, as rows come often.
+    let part = |phi: f64| {
+        let turned = phi - slope;
+        turned / if turned > 0.0 { alpha - slope } else { -alpha - slope }
+    };
+    let largest = phi.iter().map(|phi| part(*phi)).fold(0.0, f64::max);
+    let told = said["max_phi_over_alpha"].as_f64().unwrap();
+    assert!(told >= largest - 1e-6 && told <= 1.02 * largest + 0.01, "{largest} {what}");
+
+    // Overturned: past ±α at the end, without the energy to come back; since the row before which it was within.
+    let (gravity, radius) = (scene.gravity[0].hypot(scene.gravity[1]), 0.5 * block.width.hypot(block.height));
+    let past = phi[last].abs() > alpha;
+    let turning_back = omega[last] * phi[last] < 0.0 && {
+        // About its corner, of a homogeneous rectangle: I = 4/3 m R².
+        let spin = omega[last] * radius;
+        0.5 * 4.0 / 3.0 * spin * spin > gravity * radius * (1.0 - (phi[last].abs() - alpha).cos())
+    };
+    let overturned = past && !turning_back;
+    assert_eq!(said["what"] == "overturned", overturned, "{what}");
+    if overturned {
+        let within = (0..=last).rev().find(|k| phi[*k].abs() <= alpha || phi[*k] * phi[last] < 0.0).unwrap();
+        let when = said["overturned_at"].as_f64().unwrap();
+        assert!(
+            t[within] <= when && when <= t[within + 1],
+            "{when} between {} and {}, {what}",
+            t[within],
+            t[within + 1]
+        );
+        assert_eq!(said["way"], if phi[last] > 0.0 { "left" } else { "right" }, "{what}");
+        assert_eq!(said["t"], said["overturned_at"], "{what}");
+    } else {
+        assert!(said["overturned_at"].is_null(), "{what}");
+    }
+
+    // At rest: below the speed in every row from then on, and not in one before, unless rows come too seldom to see it.
+    let moving = scene.ground.as_ref().map(|ground| ground.motion.motions());
+    let beam = beam_under(scene, number);
+    let beam = beam.map(|beam| (ran.column(&format!("{}.v_mid", scene.beams[beam].name)), beam));
+    let (vx, vy) = (of("vx"), of("vy"));
+    let speed = |k: usize| {
+        let ground = moving.as_ref().map_or([0.0; 2], |axes| [axes[0].velocity(t[k]), axes[1].velocity(t[k])]);
+        let carrier = beam.as_ref().map_or(ground, |(rate, _)| [0.0, rate[k]]);
+        (vx[k] - carrier[0]).hypot(vy[k] - carrier[1]) + radius * omega[k].abs()
+    };
+    let still = STILL * (gravity * radius).sqrt();
+    let least = (radius / gravity).sqrt();
+    let in_the_middle = beam.as_ref().is_none_or(|(_, beam)| {
+        let beam = &scene.beams[*beam];
+        (x[last] - beam.position[0] - 0.5 * beam.spec.span).abs() < 1e-3
+    });
+    if in_the_middle {
+        let late = |from: f64| (0..=last).filter(move |k| t[*k] >= from);
+        match said["rests_from"].as_f64() {
+            Some(from) => {
+                assert!(late(from).all(|k| speed(k) <= 1.001 * still + 1e-12), "it moves after its rest, {what}");
+                assert!(t[last] - from >= least * (1.0 - 1e-9), "{what}");
+            }
+            None => {
+                let fastest = late(t[last] - least).map(speed).fold(0.0, f64::max);
+                assert!(fastest > 0.1 * still, "it rests by its rows: {fastest} of {still}, {what}");
+            }
+        }
+    }
+
+    // Slid: the foot on which it leans, at the start and at the end.
+    if on_ground && !overturned && scene.ground.as_ref().is_some_and(|ground| !ground.motion.is_given()) {
+        let foot = |k: usize| {
+            let side = if phi[k] >= slope { -1.0 } else { 1.0 };
+            let (dx, dy) = (side * 0.5 * block.width, -0.5 * block.height);
+            let (sin, cos) = phi[k].sin_cos();
+            let [fx, fy] = [x[k] + cos * dx - sin * dy, y[k] + sin * dx + cos * dy];
+            slope.cos() * fx + slope.sin() * fy - side * 0.5 * block.width
+        };
+        let (slid, wanted) = (said["slid"].as_f64().unwrap(), foot(last) - foot(0));
+        assert!((slid - wanted).abs() < 1e-9, "{slid} {wanted}, {what}");
+    }
+
+    // Left: its mass centre is past an end of the beam on which it was placed.
+    if let Placement::On { support: SupportingBody::Beam(beam), .. } = block.placement {
+        let beam = &scene.beams[beam];
+        let at = x[last] - beam.position[0];
+        let left = at < 0.0 || at > beam.spec.span;
+        assert!(overturned || (said["what"] == "left") == left, "{what}");
+    }
+}
+
+fn check_all(ran: &Ran, what: &str) -> usize {
+    let scene = &ran.scene;
+    let free: Vec<usize> = (0..scene.blocks.len()).filter(|k| !scene.blocks[*k].motion.is_given()).collect();
+    assert_eq!(ran.summary["verdict"].as_array().unwrap().len(), free.len(), "{what}");
+    let mut checked = 0;
+    for number in free {
+        let block = &scene.blocks[number];
+        let upright = match block.placement {
+            Placement::Free { angle, .. } => angle.abs() < 0.5,
+            Placement::On { .. } => true,
+        };
+        let flat = scene.ground.as_ref().is_none_or(|ground| ground.profile.is_none() && ground.motion.0[2].is_none());
+        if block.critical_angle().is_some() && upright && flat {
+            check(ran, number, what);
+            checked += 1;
+        }
+    }
+    // The numbers of the whole scene are those of its blocks, and the sentence is on the terminal.
+    let all = ran.summary["verdict"].as_array().unwrap();
+    let values = |key: &str| all.iter().filter_map(|of| of[key].as_f64()).collect::<Vec<_>>();
+    assert_eq!(ran.summary["max_phi_over_alpha"].as_f64(), values("max_phi_over_alpha").into_iter().reduce(f64::max));
+    assert_eq!(ran.summary["overturned_at"].as_f64(), values("overturned_at").into_iter().reduce(f64::min));
+    assert!(ran.stderr.contains(ran.summary["headline"].as_str().unwrap()), "{what}: {}", ran.stderr);
+    checked
+}
+
+#[test]
+fn the_verdict_of_every_scenario_is_what_its_trajectory_says() {
+    let out = folder("verdict-scenarios");
+    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
+    let mut checked = 0;
+    for entry in std::fs::read_dir(scenarios).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|extension| extension == "toml") {
+            let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+            checked += check_all(&Ran::of(&path, &out.join(&name), &[]), &name);
+        }
+    }
+    assert!(checked > 50, "{checked} blocks were checked");
+}
+
+const HEAD: &str =
+    "[world]\ngravity = '9.81 m/s^2'\n[material.a]\ndensity = '2700 kg/m^3'\nyoungs_modulus = '69 GPa'\n";
+
+/// Blocks of 3 cm × 13.5 cm on ground: α is 12.53°.
+const ROCKER: &str =
+    "[block.b]\nmaterial = 'a'\nwidth = '3 cm'\nheight = '13.5 cm'\ndepth = '3 cm'\non = 'ground'\nat = '0 m'\n";
+const FLOOR: &str = "[contact.f]\nbetween = ['b', 'ground']\nfriction = 0.5\n";
+
+fn scene(name: &str, text: &str) -> Ran {
+    scene_beside(name, text, "")
+}
+
+/// A scene beside a file `quake.csv` with these rows.
+fn scene_beside(name: &str, text: &str, rows: &str) -> Ran {
+    let folder = folder(&format!("verdict-{name}"));
+    std::fs::write(folder.join("quake.csv"), rows).unwrap();
+    let file = folder.join("scene.toml");
+    std::fs::write(&file, format!("{HEAD}{text}")).unwrap();
+    Ran::of(&file, &folder.join("out"), &[])
+}
+
+fn what(ran: &Ran) -> (&str, Option<&str>) {
+    let of = ran.verdict("b");
+    (of["what"].as_str().unwrap(), of["way"].as_str())
+}
+
+const TIME: &str = "[time]\nend = '1.5 s'\nstep = '200 us'\n";
+
+#[test]
+fn a_block_overturns_to_the_side_to_which_it_is_tilted_past_alpha() {
+    for (tilt, wanted) in
+        [(13, ("overturned", Some("left"))), (-13, ("overturned", Some("right"))), (12, ("rocks", None))]
+    {
+        let name = format!("tilt-{tilt}");
+        let ran = scene(&name, &format!("{TIME}[ground]\n{ROCKER}tilt = '{tilt} deg'\n{FLOOR}"));
+        assert_eq!(what(&ran), wanted, "{}", ran.summary["headline"]);
+        if tilt == 12 {
+            check_all(&ran, &name);
+        } else {
+            // It began past the point of no return.
+            assert_eq!(ran.summary["overturned_at"].as_f64(), Some(0.0));
+        }
+    }
+}
+
+#[test]
+fn on_an_incline_it_overturns_downhill_sooner_than_uphill() {
+    // Uphill to the right by 5°: 7.5° are left downhill, to the left, and 17.5° uphill.
+    for (tilt, wanted) in [(8, "overturned"), (7, "rocks"), (-15, "other"), (-18, "overturned")] {
+        let name = format!("incline-{tilt}");
+        let text = format!("{TIME}[ground]\nincline = '5 deg'\n{ROCKER}tilt = '{tilt} deg'\n{FLOOR}");
+        let ran = scene(&name, &text);
+        let found = what(&ran);
+        if tilt == -18 {
+            assert_eq!(found, (wanted, Some("right")));
+        } else if tilt == 8 {
+            assert_eq!(found, (wanted, Some("left")));
+        } else {
+            check_all(&ran, &name);
+            let part = ran.summary["max_phi_over_alpha"].as_f64().unwrap();
+            // It begins within its point of no return, and comes back through upright.
+            assert!(ran.column("b.phi").iter().any(|phi| (phi.to_degrees() - 5.0) * f64::from(tilt) < 0.0), "{tilt}");
+            assert!(part > 0.8, "{part}");
+        }
+    }
+}
+
+#[test]
+fn a_disc_that_rolls_does_not_overturn() {
+    let text = format!(
+        "{TIME}[ground]\n[block.b]\nmaterial = 'a'\nradius = '5 cm'\ndepth = '3 cm'\nposition = ['0 m', '5 cm']\n\
+         velocity = ['1 m/s', '0 m/s']\nspin = '-20 rad/s'\n{FLOOR}"
+    );
+    let ran = scene("disc", &text);
+    assert!(ran.column("b.phi").last().unwrap().abs() > std::f64::consts::TAU);
+    assert_eq!(what(&ran), ("moves", None));
+    assert!(ran.verdict("b")["max_phi_over_alpha"].is_null() && ran.summary["overturned_at"].is_null());
+}
+
+#[test]
+fn shaken_past_alpha_and_back_is_not_overturned() {
+    // A push past α, and one back while it still hangs there: the ground goes the other way.
+    let text = format!(
+        "{TIME}[ground]\nmotion = {{ acceleration = ['4.6 m/s^2', '0 m/s^2'], signal = 'shake' }}\n\
+         [signal.shake]\nshape = 'table'\nfile = 'quake.csv'\n{ROCKER}{FLOOR}"
+    );
+    let text = text.replace("friction = 0.5", "friction = 1.5");
+    let rows = "0,1\n0.13,1\n0.1301,-1.8\n0.21,-1.8\n0.2101,0\n1.5,0\n";
+    let ran = scene_beside("shaken", &text, rows);
+    let past = ran.summary["max_phi_over_alpha"].as_f64().unwrap();
+    let phi = ran.column("b.phi");
+    let alpha = (3.0_f64 / 13.5).atan();
+    let came_back = phi
+        .iter()
+        .position(|phi| phi.abs() > alpha)
+        .is_some_and(|k| phi[k..].iter().any(|phi| phi.abs() < 0.5 * alpha));
+    assert!(past > 1.0 && came_back, "the scene must pass α and come back: {past}");
+    check_all(&ran, "shaken");
+    assert_eq!(what(&ran).0, "rocks", "{}", ran.summary["headline"]);
+}
+
+#[test]
+fn a_block_that_slides_past_the_end_of_its_beam_has_left_it() {
+    let text = format!(
+        "[time]\nend = '0.5 s'\nstep = '200 us'\n\
+         [beam.t]\nmaterial = 'a'\nspan = '36 cm'\nwidth = '3 cm'\nthickness = '1 cm'\nelements = 10\n\
+         [block.b]\nmaterial = 'a'\nwidth = '4 cm'\nheight = '1 cm'\ndepth = '3 cm'\non = 't'\nat = '30 cm'\nvelocity = ['1 m/s', '0 m/s']\n\
+         [contact.f]\nbetween = ['b', 't']\nfriction = 0.05\n"
+    );
+    let ran = scene("left", &text);
+    let at = ran.column("b.x");
+    let gone = at.iter().position(|x| *x > 0.36).unwrap();
+    let (kind, way) = what(&ran);
+    assert!(kind == "left" || kind == "overturned", "{kind}");
+    if kind == "left" {
+        let when = ran.verdict("b")["t"].as_f64().unwrap();
+        let t = ran.column("t");
+        assert!(t[gone - 1] <= when && when <= t[gone] && way == Some("right"), "{when}");
+    }
+}
+
+#[test]
+fn a_run_stops_where_the_scene_says_and_tells() {
+    let stop = |name: &str, words: &str, text: &str| {
+        scene(name, &format!("[time]\nend = '3 s'\nstep = '200 us'\nstop = {words}\n{text}"))
+    };
+    let fall = format!("[ground]\n{ROCKER}tilt = '13 deg'\n{FLOOR}");
+    let ran = stop("stop-overturned", "['overturned', 'rest']", &fall);
+    assert_eq!(
+        (ran.summary["ended"].as_str(), ran.summary["stopped_by"].as_str()),
+        (Some("stopped"), Some("overturned"))
+    );
+    let end = *ran.column("t").last().unwrap();
+    assert!(
+        end < 3.0 && ran.summary["t"].as_f64() == Some(end) && ran.stderr.contains("stopped at t = "),
+        "{}",
+        ran.stderr
+    );
+    assert!(*ran.column("b.phi").last().unwrap() > 1.2, "it lies nearly on its side");
+    // The rows up to there are those of the run that goes on.
+    let on = scene("stop-not", &format!("[time]\nend = '3 s'\nstep = '200 us'\n{fall}"));
+    assert_eq!(ran.rows[..ran.rows.len() - 1], on.rows[..ran.rows.len() - 1]);
+    assert_eq!(on.summary["ended"], "complete");
+
+    let slide = format!("[ground]\n{ROCKER}velocity = ['0.2 m/s', '0 m/s']\n{FLOOR}").replace("0.5", "0.1");
+    let ran = stop("stop-rest", "['rest']", &slide);
+    assert_eq!(ran.summary["stopped_by"], "rest");
+    assert!(ran.verdict("b")["rests_from"].as_f64().unwrap() < ran.summary["t"].as_f64().unwrap());
+
+    let through = ROCKER.replace("on = 'ground'\nat = '0 m'", "position = ['9 m', '1 m']");
+    let beam = "[beam.t]\nmaterial = 'a'\nspan = '36 cm'\nwidth = '3 cm'\nthickness = '1 cm'\nelements = 4\n";
+    let ran =
+        stop("stop-sunk", "['sunk']", &format!("{beam}{through}[contact.f]\nbetween = ['b', 't']\nfriction = 0.5\n"));
+    assert_eq!((ran.summary["stopped_by"].as_str(), what(&ran).0), (Some("sunk"), "sunk"));
+}
+
+#[test]
+fn rest_does_not_stop_a_run_before_the_shaking_begins() {
+    let text = format!(
+        "[time]\nend = '3 s'\nstep = '200 us'\nstop = ['rest']\n\
+         [ground]\nmotion = {{ acceleration = ['4 m/s^2', '0 m/s^2'], signal = 'shake' }}\n\
+         [signal.shake]\nshape = 'one-sine'\nstart = '1 s'\nperiod = '0.2 s'\n{ROCKER}{FLOOR}"
+    );
+    let ran = scene("rest-later", &text);
+    assert!(ran.summary["t"].as_f64().unwrap() > 1.2, "{}", ran.summary["t"]);
+}

@@ -1,0 +1,390 @@
+//! What became of the blocks of a run: which overturned, came to rest, slid, left their beam or rock on (`docs/verdict.md`).
+//!
+//! [`Fates`] watches every step; [`Fates::verdict`] says at the end what became of whom, and [`Fates::stop`] meanwhile whether the run is to end. All of
+//! it follows from positions and velocities of blocks and what carries them: from what `trajectory.csv` has.
+
+mod carrier;
+mod headline;
+mod stance;
+
+use carrier::Carrier;
+pub(crate) use headline::headline;
+use serde::{Deserialize, Serialize};
+pub use stance::Way;
+use stance::{Edge, Outline, Stance};
+use teeter_integrator::{RockingMonitor, State};
+use teeter_scenario::scene::{BlockScene, Placement, Scene, StopScene};
+use teeter_scenario::simulation::Layout;
+
+/// A block is still below this part of √(gR): then no point of it rises by more than half a millionth of R by its speed alone.
+pub(crate) const STILL: f64 = 1e-3;
+
+/// A block has fallen when it is past the point of no return by this part of the way to lying on the next side: a bent beam or a slope may be in the way
+/// of the rest.
+pub(crate) const FALLEN: f64 = 0.9;
+
+/// A block slid, in a word, if it did by this part of its base.
+const SLID: f64 = 0.01;
+
+/// A block rocks, in a word, if it got to this part of its critical angle.
+const ROCKED: f64 = 0.01;
+
+/// What ended a run before its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum StopReason {
+    /// A block has overturned.
+    Overturned,
+    /// All blocks rest.
+    Rest,
+    /// A block is below everything that could hold it.
+    Sunk,
+}
+
+impl StopReason {
+    /// Its word in a scene.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Overturned => "overturned",
+            Self::Rest => "rest",
+            Self::Sunk => "sunk",
+        }
+    }
+}
+
+/// What became of a block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Fate {
+    /// It lies on another side, or falls to it.
+    Overturned,
+    /// Its mass centre went past an end of the beam that carried it.
+    Left,
+    /// It is below everything that could hold it.
+    Sunk,
+    /// It came to rest where it stood.
+    Rests,
+    /// It slid, and may have come to rest.
+    Slid,
+    /// It rocks on.
+    Rocks,
+    /// It moves in another way, such as a bouncing or a rolling block.
+    Moves,
+}
+
+/// What became of a block, with its numbers; those that have no meaning for it are null.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BodyVerdict {
+    /// The block.
+    pub body: String,
+    /// What became of it.
+    pub what: Fate,
+    /// When, s: overturned, left or sunk, came to rest; of a block that rocks on the last peak; null for others.
+    pub t: Option<f64>,
+    /// To which side it overturned or left its beam.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub way: Option<Way>,
+    /// When it passed the point of no return for good, s.
+    pub overturned_at: Option<f64>,
+    /// From when on it rests, s.
+    pub rests_from: Option<f64>,
+    /// How far it slid along what carries it, from the start to the end, m; to the right positive.
+    pub slid: Option<f64>,
+    /// The largest |φ|/α.
+    pub max_phi_over_alpha: Option<f64>,
+    /// The last peak of its rocking, rad; of one that did not cross zero yet the largest angle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub last_peak: Option<f64>,
+}
+
+/// What is known of a block so far.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Seen {
+    /// The angle that its stance is about, and its angle at the end of the last step, rad.
+    began: f64,
+    angle: f64,
+    /// The largest |φ|/α.
+    part: Option<f64>,
+    /// Since when it is past a point of no return, s, and to which side.
+    beyond: Option<(f64, Way)>,
+    /// Whether it has fallen to the next side since.
+    fallen: bool,
+    /// Since when it is still, s.
+    still: Option<f64>,
+    /// Whether its mass centre has been over its beam, and since when it is past an end, s, and which.
+    over: bool,
+    out: Option<(f64, Way)>,
+    /// Since when it is below everything, s.
+    sunk: Option<f64>,
+    /// Where it stood at the start along what carries it, m.
+    stood: Option<f64>,
+}
+
+/// What is known of the blocks so far.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Fates {
+    blocks: Vec<Seen>,
+    /// The time and stop that ended the run.
+    stopped: Option<(f64, StopReason)>,
+}
+
+/// What of the scene it goes by.
+#[derive(Debug)]
+pub(crate) struct Watch {
+    blocks: Vec<Watched>,
+    stop: StopScene,
+    /// Before it nothing ends the run by rest, s.
+    settles_at: f64,
+}
+
+/// What of a block it goes by.
+#[derive(Debug)]
+struct Watched {
+    carrier: Carrier,
+    outline: Option<Outline>,
+    /// How it stood at the start.
+    stance: Option<Stance>,
+    /// Largest distance of a point of it from the mass centre, m.
+    reach: f64,
+    /// m/s.
+    still_speed: f64,
+    /// How long it has to be still to rest, s.
+    still_time: f64,
+    mass: f64,
+    inertia: f64,
+    gravity: f64,
+    /// Whether it was placed on something.
+    placed: bool,
+    /// Whether its motion is prescribed: nothing becomes of it.
+    driven: bool,
+    /// Its feet, left and right, in its own frame, m; none without a base.
+    feet: Option<[[f64; 2]; 2]>,
+}
+
+impl Watch {
+    pub(crate) fn of(scene: &Scene, layout: &Layout) -> Self {
+        let gravity = scene.gravity[0].hypot(scene.gravity[1]);
+        let watched = |(number, block): (usize, &BlockScene)| {
+            let of = block.mass_properties().ok();
+            let reach = block.radius();
+            let (corners, feet) = (block.corners(), block.feet());
+            Watched {
+                carrier: Carrier::of(scene, layout, number),
+                outline: Outline::of(block, scene.gravity),
+                stance: None,
+                reach,
+                still_speed: STILL * (gravity * reach).sqrt(),
+                still_time: (reach / gravity).sqrt(),
+                mass: of.map_or(0.0, |of| of.mass),
+                inertia: of.map_or(0.0, |of| of.inertia),
+                gravity,
+                placed: matches!(block.placement, Placement::On { .. }),
+                driven: block.motion.is_given(),
+                feet: (block.base() > 0.0).then(|| feet.map(|foot| [corners[foot].x, corners[foot].y])),
+            }
+        };
+        Self {
+            blocks: scene.blocks.iter().enumerate().map(watched).collect(),
+            stop: scene.time.stop,
+            settles_at: scene.settles_at(),
+        }
+    }
+
+    /// The same for blocks that began as these did.
+    pub(crate) fn since(mut self, fates: &Fates) -> Self {
+        self.stand(fates);
+        self
+    }
+
+    fn stand(&mut self, fates: &Fates) {
+        for (watched, seen) in self.blocks.iter_mut().zip(&fates.blocks) {
+            watched.stance = watched.outline.as_ref().and_then(|outline| outline.stance(seen.began));
+        }
+    }
+}
+
+impl Watched {
+    /// Where its base stands along what carries it, m: put flat about the foot on which it is tilted.
+    fn place(&self, layout: &Layout, number: usize, state: &State) -> Option<f64> {
+        let [left, right] = self.feet?;
+        let q = &state.q[layout.blocks[number].range.clone()];
+        let ahead = layout.tilt(number, &state.q) >= 0.0;
+        let [x, y] = if ahead { left } else { right };
+        let (sin, cos) = q[2].sin_cos();
+        let half = 0.5 * (right[0] - left[0]);
+        let foot = self.carrier.along([q[0] + cos * x - sin * y, q[1] + sin * x + cos * y], layout, &state.q);
+        Some(foot + if ahead { half } else { -half })
+    }
+
+    /// Whether a block that is past an edge has the energy to come back over it, as it moves now.
+    fn comes_back(&self, edge: Edge, way: Way, angle: f64, spin: f64) -> bool {
+        let inwards = -way.sign() * spin;
+        let lift = self.mass * self.gravity * edge.arm * (1.0 - (angle - edge.top).cos());
+        inwards > 0.0 && 0.5 * (self.inertia + self.mass * edge.arm * edge.arm) * inwards * inwards > lift
+    }
+}
+
+impl Fates {
+    /// Before the first step.
+    pub(crate) fn start(&mut self, watch: &mut Watch, layout: &Layout, state: &State) {
+        self.blocks.clear();
+        for (number, watched) in watch.blocks.iter().enumerate() {
+            let angle = state.q[layout.blocks[number].range.start + 2];
+            let stood = watched.place(layout, number, state);
+            // What was placed on something stands there, however far it is tilted.
+            let tilt = if watched.placed { layout.tilt(number, &state.q) } else { 0.0 };
+            self.blocks.push(Seen { began: angle - tilt, angle, stood, ..Seen::default() });
+        }
+        watch.stand(self);
+        self.look(watch, layout, state.t, state);
+    }
+
+    /// Takes a step in that began at `before` (s).
+    pub(crate) fn observe(&mut self, watch: &Watch, layout: &Layout, before: f64, state: &State) {
+        self.look(watch, layout, before, state);
+        if self.stopped.is_none() {
+            self.stopped = self.stop(watch, state.t).map(|reason| (state.t, reason));
+        }
+    }
+
+    fn look(&mut self, watch: &Watch, layout: &Layout, before: f64, state: &State) {
+        for (number, (seen, watched)) in self.blocks.iter_mut().zip(&watch.blocks).enumerate() {
+            if watched.driven {
+                continue;
+            }
+            let place = &layout.blocks[number];
+            let (q, v) = (&state.q[place.range.clone()], &state.v[place.range.clone()]);
+            let t = state.t;
+            if let Some(stance) = &watched.stance {
+                let slope = watched.carrier.slope(&state.q);
+                if let Some(part) = stance.part(q[2], slope) {
+                    seen.part = Some(seen.part.map_or(part, |most| most.max(part)));
+                }
+                let way = if q[2] > stance.flat { Way::Left } else { Way::Right };
+                let edge = stance.edge(way);
+                let past = |angle: f64| way.sign() * (angle - edge.top);
+                if past(q[2]) <= 0.0 {
+                    (seen.beyond, seen.fallen) = (None, false);
+                } else {
+                    if seen.beyond.is_none_or(|(_, earlier)| earlier != way) {
+                        let (from, to) = (past(seen.angle), past(q[2]));
+                        let share = if from < 0.0 { from / (from - to) } else { 1.0 };
+                        seen.beyond = Some((before + share * (t - before), way));
+                    }
+                    let way_down = way.sign() * (edge.lies + slope - edge.top);
+                    seen.fallen |= past(q[2]) >= FALLEN * way_down;
+                }
+            }
+            seen.angle = q[2];
+            let [vx, vy, spin] = watched.carrier.velocity([q[0], q[1]], layout, state);
+            let speed = (v[0] - vx).hypot(v[1] - vy) + watched.reach * (v[2] - spin).abs();
+            seen.still = if speed <= watched.still_speed { seen.still.or(Some(t)) } else { None };
+            if let Some(past) = watched.carrier.past_end([q[0], q[1]], layout, &state.q) {
+                seen.out = match past {
+                    None => {
+                        seen.over = true;
+                        None
+                    }
+                    Some(way) if seen.over => seen.out.filter(|(_, earlier)| *earlier == way).or(Some((t, way))),
+                    Some(_) => None,
+                };
+            }
+            let sunk = watched.carrier.is_below([q[0], q[1]], watched.reach, layout, &state.q);
+            seen.sunk = if sunk { seen.sunk.or(Some(t)) } else { None };
+        }
+    }
+
+    fn rests(seen: &Seen, watched: &Watched, t: f64) -> Option<f64> {
+        seen.still.filter(|since| t - since >= watched.still_time)
+    }
+
+    /// What ends the run at the time `t` (s).
+    fn stop(&self, watch: &Watch, t: f64) -> Option<StopReason> {
+        if !watch.stop.is_given() {
+            return None;
+        }
+        let free = || self.blocks.iter().zip(&watch.blocks).filter(|(_, watched)| !watched.driven);
+        free().next()?;
+        let rests = |(seen, watched): (&Seen, &Watched)| Self::rests(seen, watched, t).is_some();
+        let down = |of: (&Seen, &Watched)| of.0.beyond.is_some() && (of.0.fallen || rests(of));
+        if watch.stop.overturned && free().any(down) {
+            return Some(StopReason::Overturned);
+        }
+        if watch.stop.sunk && free().any(|(seen, _)| seen.sunk.is_some()) {
+            return Some(StopReason::Sunk);
+        }
+        (watch.stop.rest && t > watch.settles_at && free().all(rests)).then_some(StopReason::Rest)
+    }
+
+    /// What ended the run before its end, and when, s.
+    #[must_use]
+    pub fn stopped(&self) -> Option<(f64, StopReason)> {
+        self.stopped
+    }
+
+    /// What became of each block whose motion isn't prescribed.
+    pub(crate) fn verdict(
+        &self,
+        scene: &Scene,
+        layout: &Layout,
+        state: &State,
+        rocking: &[RockingMonitor],
+    ) -> Vec<BodyVerdict> {
+        let watch = Watch::of(scene, layout).since(self);
+        let of = |(number, (seen, watched)): (usize, (&Seen, &Watched))| {
+            (!watched.driven).then(|| seen.verdict(watched, number, layout, state, rocking.get(number)))
+        };
+        self.blocks.iter().zip(&watch.blocks).enumerate().filter_map(of).collect()
+    }
+}
+
+impl Seen {
+    fn verdict(
+        &self,
+        watched: &Watched,
+        number: usize,
+        layout: &Layout,
+        state: &State,
+        rocking: Option<&RockingMonitor>,
+    ) -> BodyVerdict {
+        let rests = Fates::rests(self, watched, state.t);
+        let spin = state.v[layout.blocks[number].range.start + 2];
+        let overturned = self.beyond.filter(|(_, way)| {
+            let comes_back = || {
+                let edge = watched.stance.as_ref().map(|stance| stance.edge(*way));
+                edge.is_some_and(|edge| watched.comes_back(edge, *way, self.angle, spin))
+            };
+            self.fallen || rests.is_some() || !comes_back()
+        });
+        let place = watched.place(layout, number, state);
+        let slid = self.stood.zip(place).map(|(from, to)| to - from).filter(|_| overturned.is_none());
+        let base = watched.feet.map_or(f64::INFINITY, |[left, right]| right[0] - left[0]);
+        let has_slid = slid.is_some_and(|slid| slid.abs() >= SLID * base);
+        let rocked = self.part.is_some_and(|part| part >= ROCKED);
+        let peak = rocking.and_then(|monitor| {
+            monitor.peaks().last().copied().or_else(|| Some(monitor.extreme()).filter(|peak| peak.phi != 0.0))
+        });
+        let (what, t, way) = match (overturned, self.out, self.sunk, rests) {
+            (Some((t, way)), ..) => (Fate::Overturned, Some(t), Some(way)),
+            (None, Some((t, way)), ..) => (Fate::Left, Some(t), Some(way)),
+            (None, None, Some(t), _) => (Fate::Sunk, Some(t), None),
+            (None, None, None, Some(t)) if has_slid => (Fate::Slid, Some(t), None),
+            (None, None, None, Some(t)) => (Fate::Rests, Some(t), None),
+            _ if rocked => (Fate::Rocks, peak.map(|peak| peak.t), None),
+            _ if has_slid => (Fate::Slid, None, None),
+            _ => (Fate::Moves, None, None),
+        };
+        BodyVerdict {
+            body: layout.blocks[number].name.clone(),
+            what,
+            t,
+            way,
+            overturned_at: overturned.map(|(t, _)| t),
+            rests_from: rests,
+            slid,
+            max_phi_over_alpha: self.part,
+            last_peak: peak.filter(|_| what == Fate::Rocks).map(|peak| peak.phi),
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! What carries a block: how it moves under the block, where along it the block is, whether the block is still over it.
+
+use super::Way;
+use std::ops::Range;
+use teeter_integrator::State;
+use teeter_scenario::scene::{Placement, Scene, SupportingBody};
+use teeter_scenario::simulation::Layout;
+
+/// Beams bend down by less than this part of their span: what is below that has left them.
+const BENT: f64 = 0.5;
+
+/// What carries a block.
+#[derive(Debug)]
+pub(super) struct Carrier {
+    /// What it stands on, or is joined to by its first contact.
+    on: On,
+    /// What that stands on, and so on down: what moves under the block.
+    root: On,
+    /// The slope of fixed ground, or of a profile under the block relative to moving ground, rad.
+    incline: f64,
+    /// The lowest that anything is at which could hold a block: none without beams or ground.
+    floor: Floor,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum On {
+    /// Nothing, or fixed ground.
+    Fixed,
+    /// Moving ground, by the indices of its coordinates.
+    Ground(Range<usize>),
+    /// A beam, by its number, and where its left end is while its supports don't move, m.
+    Beam(usize, [f64; 2]),
+    /// A block, by the indices of its coordinates.
+    Block(Range<usize>),
+}
+
+#[derive(Debug)]
+enum Floor {
+    None,
+    /// Ground: its lowest point from its origin, m, and its slope while it doesn't move, rad.
+    Ground {
+        lowest: f64,
+        slope: f64,
+    },
+    /// Beams: as low as they may bend, m.
+    Beams {
+        lowest: f64,
+    },
+}
+
+impl Carrier {
+    pub(super) fn of(scene: &Scene, layout: &Layout, number: usize) -> Self {
+        let support = |block: usize| match scene.blocks[block].placement {
+            Placement::On { support, .. } => Some(support),
+            Placement::Free { .. } => {
+                scene.contacts.iter().find(|contact| contact.block == block).map(|contact| contact.surface)
+            }
+        };
+        let of = |support: Option<SupportingBody>| match support {
+            Some(SupportingBody::Beam(beam)) => On::Beam(beam, scene.beams[beam].position),
+            Some(SupportingBody::Block(block)) => On::Block(layout.blocks[block].range.clone()),
+            Some(SupportingBody::Ground) => layout.ground.clone().map_or(On::Fixed, On::Ground),
+            // In a crowd, or alone: moving ground moves all.
+            None => layout.ground.clone().map_or(On::Fixed, On::Ground),
+        };
+        let mut root = support(number);
+        // At most as many storeys as there are blocks.
+        for _ in 0..scene.blocks.len() {
+            let Some(SupportingBody::Block(below)) = root else { break };
+            root = support(below);
+        }
+        if matches!(root, Some(SupportingBody::Block(_))) {
+            root = None;
+        }
+        // The tilt is measured from what carries the block: the rest of the angle is its slope.
+        let incline = if matches!(support(number), Some(SupportingBody::Ground)) {
+            let own = layout.blocks[number].range.end;
+            let q = vec![0.0; layout.ground.as_ref().map_or(own, |ground| own.max(ground.end))];
+            -layout.tilt(number, &q)
+        } else {
+            0.0
+        };
+        let floor = match &scene.ground {
+            Some(ground) => {
+                let lowest = ground
+                    .profile
+                    .as_ref()
+                    .map_or(0.0, |profile| profile.points().map(|point| point.y).fold(f64::INFINITY, f64::min));
+                Floor::Ground { lowest, slope: ground.incline }
+            }
+            None if scene.beams.is_empty() => Floor::None,
+            None => Floor::Beams {
+                lowest: scene
+                    .beams
+                    .iter()
+                    .map(|beam| beam.position[1] - BENT * beam.spec.span)
+                    .fold(f64::INFINITY, f64::min),
+            },
+        };
+        Self { on: of(support(number)), root: of(root), incline, floor }
+    }
+
+    /// The slope of the ground that carries the block, rad; 0 of other carriers.
+    pub(super) fn slope(&self, q: &[f64]) -> f64 {
+        match &self.on {
+            On::Ground(range) => q[range.start + 2] + self.incline,
+            On::Fixed => self.incline,
+            On::Beam(..) | On::Block(_) => 0.0,
+        }
+    }
+
+    /// Velocity and angular velocity of what carries the block, where the block is.
+    pub(super) fn velocity(&self, at: [f64; 2], layout: &Layout, state: &State) -> [f64; 3] {
+        match &self.root {
+            On::Ground(range) => {
+                let (q, v) = (&state.q[range.clone()], &state.v[range.clone()]);
+                [v[0] - v[2] * (at[1] - q[1]), v[1] + v[2] * (at[0] - q[0]), v[2]]
+            }
+            On::Beam(beam, position) => {
+                let place = &layout.beams[*beam];
+                let [x, _] = beam_origin(*beam, *position, layout, &state.q);
+                let [vx, vy] =
+                    place.supports.clone().map_or([0.0; 2], |range| [state.v[range.start], state.v[range.start + 1]]);
+                let shape = place.beam.shape_clamped(at[0] - x);
+                let rate = place.deflection(&shape, &state.v[place.range.clone()]);
+                [vx, vy + rate.w, rate.slope]
+            }
+            On::Fixed | On::Block(_) => [0.0; 3],
+        }
+    }
+
+    /// Where a point is along what carries the block, m.
+    pub(super) fn along(&self, at: [f64; 2], layout: &Layout, q: &[f64]) -> f64 {
+        let (origin, slope) = match &self.on {
+            On::Ground(range) | On::Block(range) => ([q[range.start], q[range.start + 1]], q[range.start + 2]),
+            On::Beam(beam, position) => (beam_origin(*beam, *position, layout, q), 0.0),
+            On::Fixed => ([0.0; 2], 0.0),
+        };
+        let (sin, cos) = (slope + self.incline).sin_cos();
+        cos * (at[0] - origin[0]) + sin * (at[1] - origin[1])
+    }
+
+    /// Past which end of its beam a point is; `None` for a block that no beam carries.
+    pub(super) fn past_end(&self, at: [f64; 2], layout: &Layout, q: &[f64]) -> Option<Option<Way>> {
+        let On::Beam(beam, position) = self.on else { return None };
+        let x = at[0] - beam_origin(beam, position, layout, q)[0];
+        let span = layout.beams[beam].beam.spec().span;
+        Some(match x {
+            x if x < 0.0 => Some(Way::Left),
+            x if x > span => Some(Way::Right),
+            _ => None,
+        })
+    }
+
+    /// Whether a block with its mass centre at a point is below everything that could hold it.
+    pub(super) fn is_below(&self, at: [f64; 2], reach: f64, layout: &Layout, q: &[f64]) -> bool {
+        match self.floor {
+            Floor::None => false,
+            Floor::Beams { lowest } => at[1] + reach < lowest,
+            Floor::Ground { lowest, slope } => {
+                let (origin, slope) = layout
+                    .ground
+                    .as_ref()
+                    .map_or(([0.0; 2], slope), |range| ([q[range.start], q[range.start + 1]], q[range.start + 2]));
+                let (sin, cos) = slope.sin_cos();
+                cos * (at[1] - origin[1]) - sin * (at[0] - origin[0]) < lowest
+            }
+        }
+    }
+}
+
+/// The left end of a beam's axis, which moves with its supports, m.
+fn beam_origin(beam: usize, [x, y]: [f64; 2], layout: &Layout, q: &[f64]) -> [f64; 2] {
+    layout.beams[beam].supports.clone().map_or([x, y], |range| [x + q[range.start], y + q[range.start + 1]])
+}

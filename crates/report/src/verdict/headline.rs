@@ -1,0 +1,133 @@
+//! What became of a scene, in a sentence.
+
+use super::{BodyVerdict, Fate};
+use crate::readable::with_unit;
+use crate::summary::BorneSummary;
+use teeter_integrator::State;
+use teeter_scenario::scene::{Placement, Scene, SupportingBody};
+
+/// Blocks up to this many are told one by one.
+const FEW: usize = 2;
+
+/// What became of the scene.
+pub(crate) fn headline(scene: &Scene, state: &State, verdict: &[BodyVerdict], beams: &[BorneSummary]) -> String {
+    let mut text = match verdict {
+        [] => format!("the motion up to t = {}", with_unit(state.t, "s")),
+        few if few.len() <= FEW => {
+            few.iter().map(|of| format!("`{}` {}", of.body, one(scene, of))).collect::<Vec<_>>().join("; ")
+        }
+        many => all(many),
+    };
+    let borne = beams.iter().filter_map(|beam| Some((beam.part_of_yield_strength?, beam)));
+    if let Some((part, beam)) = borne.max_by(|a, b| a.0.total_cmp(&b.0)) {
+        text.push_str(&format!("; `{}` was stressed to {} % of its yield strength", beam.beam, digits(100.0 * part)));
+    }
+    text
+}
+
+/// A number with three digits, for prose.
+fn digits(x: f64) -> String {
+    crate::readable::shortest(x, 3)
+}
+
+fn time(t: f64) -> String {
+    format!("t = {}", with_unit(t, "s"))
+}
+
+/// What became of a block, after its name.
+fn one(scene: &Scene, of: &BodyVerdict) -> String {
+    let at = of.t.map_or_else(String::new, |t| format!(" at {}", time(t)));
+    let way = of.way.map_or("", |way| way.word());
+    let largest = of.max_phi_over_alpha.filter(|part| *part >= super::ROCKED);
+    let largest = largest.map_or_else(String::new, |part| format!("largest φ/α {}", digits(part)));
+    let slid = of.slid.map_or_else(String::new, |slid| {
+        format!("slid by {} to the {}", with_unit(slid.abs(), "m"), if slid < 0.0 { "left" } else { "right" })
+    });
+    let beside = |text: String| if largest.is_empty() { text } else { format!("{text} ({largest})") };
+    match of.what {
+        Fate::Overturned => format!("overturned to the {way}{at}"),
+        Fate::Left => {
+            let block = scene.blocks.iter().find(|block| block.name == of.body);
+            let beam = block.and_then(|block| match block.placement {
+                Placement::On { support: SupportingBody::Beam(beam), .. } => Some(scene.beams[beam].name.as_str()),
+                _ => None,
+            });
+            let beam = beam.map_or_else(|| "its beam".to_owned(), |name| format!("`{name}`"));
+            beside(format!("left {beam} at its {way} end{at}"))
+        }
+        Fate::Sunk => format!("fell below everything that could hold it{at}"),
+        Fate::Rests if of.t == Some(0.0) => beside("stood still throughout".to_owned()),
+        Fate::Rests => beside(format!("came to rest{at}")),
+        Fate::Slid if of.rests_from.is_some() => beside(format!("{slid} and came to rest{at}")),
+        Fate::Slid => beside(format!("slides on, {slid} so far")),
+        Fate::Rocks => {
+            let peak = of.last_peak.map_or_else(String::new, |peak| {
+                format!(", last peak {}°{at}", digits(peak.to_degrees()).replace('-', "\u{2212}"))
+            });
+            let drift = of.slid.is_some_and(|_| has_slid(scene, of));
+            let drift = if drift { format!(", {slid}") } else { String::new() };
+            beside(format!("rocks on{peak}{drift}"))
+        }
+        Fate::Moves => beside("still moves".to_owned()),
+    }
+}
+
+fn has_slid(scene: &Scene, of: &BodyVerdict) -> bool {
+    let block = scene.blocks.iter().find(|block| block.name == of.body);
+    block.zip(of.slid).is_some_and(|(block, slid)| slid.abs() >= super::SLID * block.base())
+}
+
+/// What became of many blocks.
+fn all(verdict: &[BodyVerdict]) -> String {
+    let of = |fates: &[Fate]| verdict.iter().filter(|of| fates.contains(&of.what)).collect::<Vec<_>>();
+    let by_time =
+        |a: &&&BodyVerdict, b: &&&BodyVerdict| a.t.unwrap_or(f64::INFINITY).total_cmp(&b.t.unwrap_or(f64::INFINITY));
+    let mut parts = Vec::new();
+    let total = verdict.len();
+    let mut tell = |found: &[&BodyVerdict], what: &str, first: &str| {
+        let Some(earliest) = found.iter().min_by(by_time) else { return };
+        let count = if found.len() == total { format!("all {total}") } else { found.len().to_string() };
+        let of_all = if parts.is_empty() && found.len() < total { format!(" of {total}") } else { String::new() };
+        let blocks = if parts.is_empty() { " blocks" } else { "" };
+        let way = earliest.way.map_or_else(String::new, |way| format!(" to the {}", way.word()));
+        let when = earliest.t.map_or_else(String::new, |t| format!(" at {}", time(t)));
+        let which = if first.is_empty() { String::new() } else { format!(", {first} `{}`{way}{when}", earliest.body) };
+        parts.push(format!("{count}{of_all}{blocks} {what}{which}"));
+    };
+    tell(&of(&[Fate::Overturned]), "overturned", "first");
+    tell(&of(&[Fate::Left]), "left their beam", "first");
+    tell(&of(&[Fate::Sunk]), "fell below everything", "first");
+    let resting: Vec<_> =
+        verdict.iter().filter(|of| matches!(of.what, Fate::Rests | Fate::Slid) && of.rests_from.is_some()).collect();
+    if let Some(last) = resting.iter().filter_map(|of| of.rests_from).reduce(f64::max) {
+        let slid = resting.iter().filter(|of| of.what == Fate::Slid).count();
+        let slid = if slid > 0 { format!(" ({slid} after sliding)") } else { String::new() };
+        let what = if last == 0.0 {
+            "stood still throughout".to_owned()
+        } else {
+            format!("came to rest{slid}, last at {}", time(last))
+        };
+        tell(&resting, &what, "");
+    }
+    let rocking = of(&[Fate::Rocks]);
+    tell(&rocking, if rocking.len() == 1 { "rocks on" } else { "rock on" }, "");
+    let moving: Vec<_> = verdict
+        .iter()
+        .filter(|of| of.what == Fate::Moves || (of.what == Fate::Slid && of.rests_from.is_none()))
+        .collect();
+    tell(&moving, if moving.len() == 1 { "still moves" } else { "still move" }, "");
+    let largest = verdict
+        .iter()
+        .filter(|of| of.what != Fate::Overturned)
+        .filter_map(|of| of.max_phi_over_alpha)
+        .fold(0.0, f64::max);
+    let mut text = parts.join("; ");
+    if largest >= super::ROCKED {
+        text.push_str(&format!(
+            "; largest φ/α of {} {}",
+            if parts.len() > 1 { "those that stand" } else { "all" },
+            digits(largest)
+        ));
+    }
+    text
+}

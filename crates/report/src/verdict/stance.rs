@@ -1,0 +1,220 @@
+//! How a block stands: between which turns its weight brings it back, and where it lies beyond (`docs/verdict.md`).
+//!
+//! Held by a corner that doesn't slide, a block is lifted as it turns until its mass centre is over that corner, against gravity; past this it falls
+//! to the next side. The height of the mass centre over whatever carries it is h(φ) = max over corners of the way down to the corner; its maxima are the
+//! points of no return, between two of them there is one minimum: a side on which it lies.
+
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+use teeter_scenario::scene::BlockScene;
+
+/// The sides to which a block can go: the right (φ falls) and the left (φ rises).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Way {
+    /// To the left: counter-clockwise.
+    Left,
+    /// To the right: clockwise.
+    Right,
+}
+
+impl Way {
+    /// +1 for a turn to the left, −1 for one to the right.
+    pub(crate) fn sign(self) -> f64 {
+        if self == Self::Left { 1.0 } else { -1.0 }
+    }
+
+    /// The word for it.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        if self == Self::Left { "left" } else { "right" }
+    }
+}
+
+/// One way out of a stance. Angles are absolute, in rad.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Edge {
+    /// Where the mass centre is over the corner: the point of no return.
+    pub(crate) top: f64,
+    /// Where it lies flat on the next side, on level ground.
+    pub(crate) lies: f64,
+    /// Distance from the mass centre to the corner, m.
+    pub(crate) arm: f64,
+}
+
+/// How a block stands at the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Stance {
+    /// Where it stands flat on level ground, rad.
+    pub(crate) flat: f64,
+    pub(crate) left: Edge,
+    pub(crate) right: Edge,
+}
+
+/// A corner at a distance from the mass centre, m, in a direction, rad, with a rounding, m.
+#[derive(Clone, Copy, Debug)]
+struct Corner {
+    arm: f64,
+    direction: f64,
+    rounding: f64,
+}
+
+/// A corner that is no higher than this part of the block's size counts as a summit.
+const ROUNDING: f64 = 1e-9;
+
+/// What decides how a block stands.
+#[derive(Clone, Debug)]
+pub(crate) struct Outline {
+    corners: Vec<Corner>,
+    /// Largest distance of a point of it from the mass centre, m.
+    size: f64,
+    /// Direction of gravity, rad.
+    gamma: f64,
+}
+
+impl Outline {
+    /// `None` for a block without a base, as a disc: what rolls does not overturn. Without gravity nothing does.
+    pub(crate) fn of(block: &BlockScene, gravity: [f64; 2]) -> Option<Self> {
+        if !(block.base() > 0.0) || gravity == [0.0; 2] {
+            return None;
+        }
+        let corners = block.corners().into_iter().enumerate().map(|(number, at)| Corner {
+            arm: at.norm(),
+            direction: at.y.atan2(at.x),
+            rounding: block.corner_radius(number),
+        });
+        let corners = corners.collect();
+        Some(Self { corners, size: block.radius(), gamma: gravity[1].atan2(gravity[0]) })
+    }
+
+    /// How far down the block reaches from its mass centre where this direction of it points down, m.
+    fn down(&self, direction: f64) -> f64 {
+        let reach = |corner: &Corner| corner.arm * (direction - corner.direction).cos() + corner.rounding;
+        self.corners.iter().map(reach).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// How it stands at `angle` (rad).
+    pub(crate) fn stance(&self, angle: f64) -> Option<Stance> {
+        let least = ROUNDING * self.size;
+        let tops: Vec<Edge> = self
+            .corners
+            .iter()
+            .filter(|corner| corner.arm > least)
+            .filter(|corner| corner.arm + corner.rounding >= self.down(corner.direction) - least)
+            // Turned by γ − direction the block has this direction pointing down.
+            .map(|corner| Edge { top: self.gamma - corner.direction, lies: f64::NAN, arm: corner.arm })
+            .collect();
+        let next = |from: f64, sign: f64| {
+            // The least turn, beyond rounding, that leads from there to a top.
+            let turn = |top: f64| (sign * (top - from) - ROUNDING).rem_euclid(TAU) + ROUNDING;
+            let edge = tops.iter().min_by(|a, b| turn(a.top).total_cmp(&turn(b.top)))?;
+            Some(Edge { top: from + sign * turn(edge.top), ..*edge })
+        };
+        let lowest = |from: f64, to: f64| lowest(|angle| self.down(self.gamma - angle), from, to);
+        let edge = |sign: f64| {
+            let edge = next(angle, sign)?;
+            let beyond = next(edge.top, sign)?;
+            Some(Edge { lies: lowest(edge.top, beyond.top), ..edge })
+        };
+        let (left, right) = (edge(1.0)?, edge(-1.0)?);
+        // A single top: it rolls about as a drum with an eccentric mass.
+        let stands = left.top - right.top < TAU - ROUNDING;
+        stands.then(|| Stance { flat: lowest(right.top, left.top), left, right })
+    }
+}
+
+impl Stance {
+    pub(crate) fn edge(&self, way: Way) -> Edge {
+        match way {
+            Way::Left => self.left,
+            Way::Right => self.right,
+        }
+    }
+
+    /// |φ|/α at an angle (rad) on ground with a slope (rad): the way from standing flat there to the point of no return, in parts; `None` where the
+    /// slope alone is past it.
+    pub(crate) fn part(&self, angle: f64, slope: f64) -> Option<f64> {
+        let turned = angle - self.flat - slope;
+        let edge = if turned > 0.0 { self.left } else { self.right };
+        let room = (edge.top - self.flat - slope) * if turned > 0.0 { 1.0 } else { -1.0 };
+        (room > ROUNDING).then(|| turned.abs() / room)
+    }
+}
+
+/// Where a function that falls and then rises is least: by thirds.
+fn lowest(height: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
+    let (mut from, mut to) = (from.min(to), from.max(to));
+    for _ in 0..80 {
+        let third = (to - from) / 3.0;
+        let (a, b) = (from + third, to - third);
+        if height(a) < height(b) { to = b } else { from = a }
+    }
+    0.5 * (from + to)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn stance(block: &str, gravity: [f64; 2]) -> Option<Stance> {
+        let scene = format!(
+            "[time]\nend = '1 s'\nstep = '1 ms'\n[ground]\n[material.a]\ndensity = '1000 kg/m^3'\n[block.r]\nmaterial = 'a'\ndepth = '1 m'\n\
+             position = ['0 m', '9 m']\n{block}\n"
+        );
+        let scene = teeter_scenario::load(scene.as_bytes(), "f", "f", &[]).unwrap().scene;
+        let teeter_scenario::scene::Placement::Free { angle, .. } = scene.blocks[0].placement else { panic!("placed") };
+        Outline::of(&scene.blocks[0], gravity)?.stance(angle)
+    }
+
+    const DOWN: [f64; 2] = [0.0, -9.81];
+
+    #[test]
+    fn a_rectangle_stands_between_plus_and_minus_alpha_and_then_lies_on_its_side() {
+        let of = stance("width = '1 m'\nheight = '3 m'", DOWN).unwrap();
+        let alpha = (1.0_f64 / 3.0).atan();
+        for (found, wanted) in [
+            (of.left.top, alpha),
+            (of.right.top, -alpha),
+            (of.flat, 0.0),
+            (of.left.lies, 0.25 * TAU),
+            (of.right.lies, -0.25 * TAU),
+            (of.left.arm, 0.5 * 10_f64.sqrt()),
+            (of.part(0.5 * alpha, 0.0).unwrap(), 0.5),
+            // On a slope, standing flat leaves less room downhill, to the left of one that rises to the right.
+            (of.part(0.1 + 0.5 * (alpha - 0.1), 0.1).unwrap(), 0.5),
+            (of.part(0.1 - 0.5 * (alpha + 0.1), 0.1).unwrap(), 0.5),
+        ] {
+            assert!((found - wanted).abs() < 1e-7, "{found} {wanted}");
+        }
+        assert_eq!(of.part(0.41, 0.4), None, "it can't stand on so steep a slope");
+    }
+
+    #[test]
+    fn what_starts_on_its_side_stands_there() {
+        let of = stance("width = '1 m'\nheight = '3 m'\nangle = '80 deg'", DOWN).unwrap();
+        let beta = 3_f64.atan();
+        assert!((of.flat - 0.25 * TAU).abs() < 1e-7, "{of:?}");
+        assert!((of.left.top - 0.25 * TAU - beta).abs() < 1e-7 && (of.right.top - 0.25 * TAU + beta).abs() < 1e-7);
+    }
+
+    #[test]
+    fn gravity_that_leans_moves_the_points_of_no_return() {
+        let of = stance("width = '1 m'\nheight = '3 m'", [9.81 * 0.1_f64.sin(), -9.81 * 0.1_f64.cos()]).unwrap();
+        let alpha = (1.0_f64 / 3.0).atan();
+        // It pulls to the right, so the block leans 0.1 rad to the left before it is upright.
+        assert!((of.left.top - alpha - 0.1).abs() < 1e-7 && (of.right.top + alpha - 0.1).abs() < 1e-7, "{of:?}");
+    }
+
+    #[test]
+    fn a_hexagon_goes_to_its_neighbouring_sides() {
+        let of = stance("shape = { kind = 'regular', sides = 6, radius = '1 m' }", DOWN).unwrap();
+        assert!((of.left.top - of.right.top - TAU / 6.0).abs() < 1e-7, "{of:?}");
+        assert!((of.left.lies - of.flat - TAU / 6.0).abs() < 1e-7, "{of:?}");
+    }
+
+    #[test]
+    fn what_rolls_or_weighs_nothing_does_not_overturn() {
+        assert_eq!(stance("radius = '1 m'", DOWN), None);
+        assert_eq!(stance("width = '1 m'\nheight = '3 m'", [0.0; 2]), None);
+    }
+}
