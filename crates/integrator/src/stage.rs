@@ -29,6 +29,9 @@ pub enum ContactError {
     /// What was given doesn't belong to them.
     #[error(transparent)]
     Mismatch(#[from] Mismatch),
+    /// The step was abandoned by [`Workspace::cancel`].
+    #[error("the step was abandoned, as its caller wanted")]
+    Cancelled,
     /// A law that has no meaning over such a time.
     #[error("pair {pair} has {law}, which has no meaning {over}: leave its contacts out of this stage")]
     Law {

@@ -12,6 +12,8 @@ use crate::{
     StateError, StepError, StepReport, StepSpan, Vector, Weights,
 };
 use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, Stop};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use teeter_detect::{Candidates, ContactId, DetectorMemory};
 
 /// When the contact solver of a run stops.
@@ -107,6 +109,9 @@ pub struct Workspace<const D: usize> {
     pub solver: Box<dyn ContactSolver<D>>,
     /// When it stops.
     pub settings: SolverSettings,
+    /// A flag that abandons the step being taken when it is set: the step fails with [`ContactError::Cancelled`], which leaves the
+    /// state as it was. It reaches into the iterations of the contact solver.
+    pub cancel: Option<Arc<AtomicBool>>,
     /// Whether steps keep the account of energies.
     pub account: Account,
     /// What detection found last.
@@ -152,6 +157,7 @@ impl<const D: usize> Workspace<D> {
         Self {
             solver,
             settings,
+            cancel: None,
             account: Account::Kept,
             candidates: Vec::with_capacity(contacts),
             scratch: vec![0.0; model.size().v],
@@ -318,14 +324,20 @@ impl<const D: usize> Workspace<D> {
     #[inline]
     pub(crate) fn solve_problem(&mut self, problem: &mut Problem<D>, weight: f64) -> Result<Outcome, ContactError> {
         let SolverSettings { tolerance, max_iterations } = self.settings;
+        let cancel = self.cancel.clone();
         let stop = Stop::new(tolerance, max_iterations);
-        if problem.is_standard() {
+        let stop = cancel.as_deref().map_or(stop, |flag| stop.with_cancel(flag));
+        let outcome = if problem.is_standard() {
             let (posed, p) = problem.pose()?;
             let outcome = self.solver.solve(&posed, &stop, p);
             self.counts.solved(p.len(), &outcome);
-            return Ok(outcome);
-        }
-        self.solve_by_rules(problem, weight, &stop)
+            outcome
+        } else {
+            self.solve_by_rules(problem, weight, &stop)?
+        };
+        // Even where it converged: a refinement may have been cut short, so that the step would
+        // depend on the moment of the flag.
+        if stop.cancelled() { Err(ContactError::Cancelled) } else { Ok(outcome) }
     }
 
     /// The same for rules that are more than a shift.

@@ -12,6 +12,7 @@ use crate::tilt_reference::{TiltReference, tilt_references};
 use nalgebra::Vector2;
 use std::collections::BTreeSet;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use teeter_beam::{BeamError, ModalError};
 use teeter_contact::ContactSolver;
 use teeter_detect::{
@@ -295,6 +296,13 @@ impl Simulation {
             *started = true;
         }
         scheme.advance(model, state, f64::INFINITY, work)
+    }
+
+    /// Abandons the step being taken when `flag` is set, even within the iterations of the contact
+    /// solver: a run then ends as [`Ended::Interrupted`] with the state of the last whole step, and
+    /// [`Simulation::step`] fails. Cleared, the flag lets it go on to the same bytes.
+    pub fn cancelled_by(&mut self, flag: Arc<AtomicBool>) {
+        self.work.cancel = Some(flag);
     }
 
     /// Sets whether steps keep the energy account (default: yes). Without it they are faster, and
