@@ -196,6 +196,7 @@ impl Simulation {
             }
         }
 
+        layout.possible_contacts = possible_contacts(&model, &layout);
         let state = State::new(&model, &q, &v, scene.time.step)?;
         let solver = teeter_solvers::plane_solver(&scene.solver.method)
             .ok_or_else(|| BuildError::Solver(scene.solver.method.clone()))?;
@@ -396,7 +397,7 @@ fn lay_out(scene: &Scene, beams: &[BeamModel], assembled: &Assembled, required: 
         on_sides: contact.sides,
     });
     let (crowd, openings) = (CrowdPlace::of(scene), openings(scene));
-    Layout { blocks, beams: beams.collect(), pairs: pairs.collect(), crowd, ground, openings, required }
+    Layout { blocks, beams: beams.collect(), pairs: pairs.collect(), crowd, ground, openings, required, possible_contacts: 0 }
 }
 
 /// The model of the required parts of a scene.
@@ -463,6 +464,18 @@ fn assemble(
     let on_profile = profile.map(|profile| (profile, on_profile));
     let model = parts.build(detector(pairs, on_profile, (0..blocks.len()).map(shapes))?)?;
     Ok(Assembled { model, blocks: all_blocks, beams: surfaces, ground })
+}
+
+/// See [`Layout::possible_contacts`].
+fn possible_contacts(model: &Model<2>, layout: &Layout) -> usize {
+    let beams = layout.beams.iter();
+    let fibres: Vec<u32> = beams
+        .flat_map(|place| [BeamFace::Upper, BeamFace::Lower].map(|face| place.body.0 + face.fibre()))
+        .collect();
+    let detector = model.detector();
+    let wiring = detector.wiring();
+    let sides = wiring.iter().filter(|pair| fibres.contains(&pair.bodies[1].0));
+    detector.capacity() - sides.map(|pair| pair.contacts).sum::<usize>()
 }
 
 /// The blocks of a crowd, with the laws of its contacts.
