@@ -40,8 +40,8 @@ pub(crate) fn check(options: &Options) -> Exit {
     };
     let preview = Preview::new(&resolved, &simulation);
     let scene = &resolved.scene;
-    let measured = (has_many_contacts(scene) && scene.time.accuracy.is_none())
-        .then(|| FirstSteps::measured(&mut simulation));
+    let measured =
+        (has_many_contacts(scene) && scene.time.accuracy.is_none()).then(|| FirstSteps::measured(&mut simulation));
     let text = format_preview(&resolved, &preview, measured.as_ref());
     let exit = print_all(&text);
     for finding in resolved.warnings.iter().chain(&resolved.foreseen).chain(&resolved.notes) {
@@ -305,7 +305,7 @@ fn time_of_run(scene: &Scene, preview: &Preview, measured: Option<&FirstSteps>) 
         );
     };
     let free = scene.blocks.iter().filter(|block| !block.motion.0.iter().all(Option::is_some)).count();
-    let writing = writing_seconds(scene);
+    let writing = writing_seconds(scene, measured.contacts);
     if measured.steps == 0 {
         return format!(
             "time: {} (estimated {}; the first step alone takes longer than this check measures)",
@@ -314,6 +314,9 @@ fn time_of_run(scene: &Scene, preview: &Preview, measured: Option<&FirstSteps>) 
         );
     }
     let whole = measured.seconds() + writing;
+    if measured.is_whole() {
+        return format!("time: {} (measured here, without its tables, which are estimated)", wording::duration(whole));
+    }
     let others = match measured.steps - 1 {
         0 => "its first step".to_owned(),
         n => format!("{} for its first step, {} for each of the next {n}", spent(measured.first), spent(measured.each)),

@@ -11,9 +11,9 @@ use crate::{
     Compliance, Contact, ContactError, ContactStage, Keep, Mismatch, Model, Part, PhaseEnd, PhaseKind, State,
     StateError, StepError, StepReport, StepSpan, Vector, Weights,
 };
-use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, Stop};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, Stop};
 use teeter_detect::{Candidates, ContactId, DetectorMemory};
 
 /// When the contact solver of a run stops.
@@ -268,6 +268,24 @@ impl<const D: usize> Workspace<D> {
             model.check_candidates(&self.candidates)?;
         }
         Ok(())
+    }
+
+    /// As [`Workspace::detect`], and the contacts `ids`, which rise, are among the candidates however large their gaps, as with an
+    /// infinite margin; `found` is memory. An infinite margin would find all pairs of a scene of many bodies.
+    pub(crate) fn detect_with(
+        &mut self,
+        model: &Model<D>,
+        q: &[f64],
+        margin: f64,
+        ids: &[ContactId],
+        found: &mut Candidates<D>,
+    ) -> Result<(), Mismatch> {
+        found.clear();
+        if !ids.is_empty() {
+            self.locate(model, q, ids, found)?;
+        }
+        let margin = found.iter().map(|candidate| candidate.gap).fold(margin, f64::max);
+        self.detect(model, q, margin)
     }
 
     /// Puts those of the contacts `ids`, which rise, into `out`, however large their gaps at coordinates `q`.

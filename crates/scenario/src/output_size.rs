@@ -40,6 +40,16 @@ impl OutputSize {
     /// with one corner in every row.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
+        let acting = match scene.crowd {
+            // Most blocks of a crowd don't touch the ground.
+            Some(_) => CONTACTS_OF_BLOCK * scene.blocks.len(),
+            None => scene.contacts.len(),
+        };
+        Self::with_contacts(scene, acting)
+    }
+
+    /// The same with so many contacts in every row.
+    fn with_contacts(scene: &Scene, acting: usize) -> Self {
         let steps = scene.time.steps() as f64;
         let rows = match scene.every {
             Some(every) => steps.min((scene.time.end / every).ceil()),
@@ -48,11 +58,6 @@ impl OutputSize {
         let rows = rows + 1.0;
         let probes: usize = scene.beams.iter().map(|beam| beam.probes.len()).sum();
         let trajectory = 1 + 6 * scene.blocks.len() + 2 * scene.beams.len() + probes;
-        let acting = match scene.crowd {
-            // Most blocks of a crowd don't touch the ground.
-            Some(_) => CONTACTS_OF_BLOCK * scene.blocks.len(),
-            None => scene.contacts.len(),
-        };
         let (energy, contacts) = (11, 11 * acting);
         Self { rows, bytes: rows * (trajectory + energy + contacts) as f64 * BYTES_A_NUMBER }
     }
@@ -121,10 +126,10 @@ pub fn has_many_contacts(scene: &Scene) -> bool {
     usual_contacts(scene) > FEW_CONTACTS
 }
 
-/// Estimated time of writing the tables of a run, s.
+/// Estimated time of writing the tables of a run with so many contacts in every row, s.
 #[must_use]
-pub fn writing_seconds(scene: &Scene) -> f64 {
-    1e-6 * cost::NUMBER * OutputSize::of(scene).bytes / BYTES_A_NUMBER
+pub fn writing_seconds(scene: &Scene, contacts: usize) -> f64 {
+    1e-6 * cost::NUMBER * OutputSize::with_contacts(scene, contacts).bytes / BYTES_A_NUMBER
 }
 
 /// The accuracy of [`expected_seconds`], in words.
@@ -154,7 +159,8 @@ pub fn expected_seconds(scene: &Scene, beam_dofs: usize) -> f64 {
         + cost::BEAM * scene.beams.len() as f64
         + cost::DOF * beam_dofs as f64 * (1.0 + substitutions)
         + if few { 0.0 } else { cost::PAIR_OF_CONTACTS * contacts * contacts };
-    (step * 1e-6 + of_crowd) * scene.time.steps() as f64 + writing_seconds(scene)
+    let writing = cost::NUMBER * OutputSize::of(scene).bytes / BYTES_A_NUMBER;
+    (step * scene.time.steps() as f64 + writing) * 1e-6 + of_crowd * scene.time.steps() as f64
 }
 
 #[cfg(test)]

@@ -397,7 +397,16 @@ fn lay_out(scene: &Scene, beams: &[BeamModel], assembled: &Assembled, required: 
         on_sides: contact.sides,
     });
     let (crowd, openings) = (CrowdPlace::of(scene), openings(scene));
-    Layout { blocks, beams: beams.collect(), pairs: pairs.collect(), crowd, ground, openings, required, possible_contacts: 0 }
+    Layout {
+        blocks,
+        beams: beams.collect(),
+        pairs: pairs.collect(),
+        crowd,
+        ground,
+        openings,
+        required,
+        possible_contacts: 0,
+    }
 }
 
 /// The model of the required parts of a scene.
@@ -469,9 +478,8 @@ fn assemble(
 /// See [`Layout::possible_contacts`].
 fn possible_contacts(model: &Model<2>, layout: &Layout) -> usize {
     let beams = layout.beams.iter();
-    let fibres: Vec<u32> = beams
-        .flat_map(|place| [BeamFace::Upper, BeamFace::Lower].map(|face| place.body.0 + face.fibre()))
-        .collect();
+    let fibres: Vec<u32> =
+        beams.flat_map(|place| [BeamFace::Upper, BeamFace::Lower].map(|face| place.body.0 + face.fibre())).collect();
     let detector = model.detector();
     let wiring = detector.wiring();
     let sides = wiring.iter().filter(|pair| fibres.contains(&pair.bodies[1].0));

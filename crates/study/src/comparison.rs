@@ -39,7 +39,11 @@ impl<'a> ReferenceComparison<'a> {
     ///
     /// # Errors
     /// If the scene can't be run with it, or the run ends before its time.
-    pub fn errors(&self, setting: &Setting, cancel: &Arc<AtomicBool>) -> Result<(Errors, Vec<SettingWarning>), Failure> {
+    pub fn errors(
+        &self,
+        setting: &Setting,
+        cancel: &Arc<AtomicBool>,
+    ) -> Result<(Errors, Vec<SettingWarning>), Failure> {
         let ran = simulate(self.source, setting, 0.0, self.sampling, cancel)?;
         Ok((self.reference.norms.errors(&ran.motion, &self.reference.motion), ran.warned))
     }

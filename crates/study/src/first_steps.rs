@@ -16,7 +16,7 @@ const BUDGET: f64 = 0.3;
 
 /// Time after which all is abandoned, a step within its contact problems too, s: often the first
 /// step is by far the longest.
-const MOST: f64 = 6.0;
+const MOST: f64 = 10.0;
 
 /// The first steps of a run, measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,6 +84,12 @@ impl FirstSteps {
         Self { steps: ends.len() as u64, first, each, contacts, of, taken }
     }
 
+    /// Whether these are all steps of the run.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.steps == self.of
+    }
+
     /// CPU time of the whole run if its other steps are like these, s.
     #[must_use]
     pub fn seconds(&self) -> f64 {
@@ -107,6 +113,7 @@ mod tests {
         assert_eq!((steps.steps, steps.first, steps.each, steps.contacts), (5, 2.0, 0.25, 7));
         assert_eq!((steps.seconds(), steps.seconds_with(1.0), steps.seconds_with(0.1)), (28.25, 103.25, 28.25));
         let whole = FirstSteps::of(&[2.0, 2.5], 7, 2);
+        assert!(whole.is_whole() && !steps.is_whole());
         assert_eq!((whole.seconds(), whole.seconds_with(9.0)), (2.5, 2.5));
         let one = FirstSteps::of(&[2.0], 7, 10);
         assert_eq!((one.each, one.seconds()), (2.0, 20.0));

@@ -307,7 +307,12 @@ impl Tradeoff {
         timed
     }
 
-    fn time(&mut self, source: &StudyScene, cancel: &Arc<AtomicBool>, tell: &mut ReportProgress<'_>) -> Result<(), Failure> {
+    fn time(
+        &mut self,
+        source: &StudyScene,
+        cancel: &Arc<AtomicBool>,
+        tell: &mut ReportProgress<'_>,
+    ) -> Result<(), Failure> {
         let timed = self.to_time();
         let settings: Vec<(&Setting, f64)> =
             timed.iter().map(|&row| (&self.rows[row].setting, self.rows[row].modelled().unwrap_or(0.0))).collect();

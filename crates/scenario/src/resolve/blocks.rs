@@ -220,7 +220,11 @@ impl Resolver<'_, '_> {
         // A stacked block lies flat on the one before.
         let stacked = block.stands_on.is_some();
         let along_side = self.jitter(block).0[0];
-        let (at, tilt) = if stacked { ((shift[0] - along_side) / block.copy as f64 + along_side, 0.0) } else { (x? + shift[0], tilt?) };
+        let (at, tilt) = if stacked {
+            ((shift[0] - along_side) / block.copy as f64 + along_side, 0.0)
+        } else {
+            (x? + shift[0], tilt?)
+        };
         Some(Placement::On { support, at, stacked, tilt, contact: contact? })
     }
 

@@ -270,7 +270,8 @@ fn a_contact_by_a_pattern_that_is_not_resolved_is_told_once() {
 
 /// Stones at random places.
 fn jittered(more: &str) -> Result<Resolved, String> {
-    let rows = format!("repeat = {{ count = 6, shift = ['13 cm', '0 cm'], rows = 5, row_shift = ['0 cm', '13 cm']{more} }}");
+    let rows =
+        format!("repeat = {{ count = 6, shift = ['13 cm', '0 cm'], rows = 5, row_shift = ['0 cm', '13 cm']{more} }}");
     let text = tower(6, ALL)
         .replace("repeat = { count = 6, stacked = true }", &rows)
         .replace("on = 'ground'\nat = '0 m'", "position = ['0 m', '10 cm']");
@@ -296,7 +297,10 @@ fn the_same_seed_gives_the_same_places_within_their_bounds() {
     let on_ground = "repeat = { count = 6, shift = ['13 cm', '0 cm'], jitter = ['9 mm', '0 mm'] }";
     let resolved = loaded(&tower(6, ALL).replace("repeat = { count = 6, stacked = true }", on_ground));
     let q = Simulation::new(&resolved.scene).unwrap().state.q;
-    assert!((0..6).all(|k| q[3 * k] != 0.13 * k as f64 && (q[3 * k] - 0.13 * k as f64).abs() < 9e-3 && q[3 * k + 1] == 0.05));
+    assert!(
+        (0..6)
+            .all(|k| q[3 * k] != 0.13 * k as f64 && (q[3 * k] - 0.13 * k as f64).abs() < 9e-3 && q[3 * k + 1] == 0.05)
+    );
     // Those of a stack lie off the ones below.
     let stacked = "repeat = { count = 6, stacked = true, jitter = ['9 mm', '0 mm'] }";
     let resolved = loaded(&tower(6, ALL).replace("repeat = { count = 6, stacked = true }", stacked));

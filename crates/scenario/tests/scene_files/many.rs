@@ -150,7 +150,13 @@ fn a_step_that_is_abandoned_leaves_the_last_whole_one_and_is_taken_again_to_the_
         let cut = |solver| Box::new(CutShort { solver, left: solves, flag: Arc::clone(&flag) }) as _;
         let mut parts = Simulation::with_solver(&scene, cut).unwrap();
         parts.cancelled_by(Arc::clone(&flag));
-        assert_eq!(parts.run(&mut []).unwrap(), teeter_integrator::Ended::Interrupted, "{scheme}");
+        let ended = parts.run(&mut []).unwrap();
+        if solves > 1 && !flag.load(Ordering::Relaxed) {
+            // Blocks at rest need no more of them.
+            assert_eq!((ended, scheme), (teeter_integrator::Ended::Complete, "event-driven"));
+            continue;
+        }
+        assert_eq!(ended, teeter_integrator::Ended::Interrupted, "{scheme}");
         assert!(flag.swap(false, Ordering::Relaxed) && parts.state.step < alone.state.step, "{scheme}");
         let mut whole = Simulation::new(&scene).unwrap();
         while whole.state.step < parts.state.step {
