@@ -1,16 +1,17 @@
 //! Ctrl-C, and the signals with which batch systems and closed terminals end a program: the run
-//! ends after the current step, with complete rows; a second signal ends the program at once.
+//! ends with its last whole step, with complete rows; a second signal ends the program at once.
 
 use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, LazyLock};
 
 /// Exit code of a program ended by its user.
 pub(crate) const INTERRUPTED: u8 = 130;
 
-static WANTED: AtomicBool = AtomicBool::new(false);
+static WANTED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 
 /// Starts to listen; the flag is set by a signal. If listening is impossible a signal ends the
 /// program at once.
-pub(crate) fn listen() -> &'static AtomicBool {
+pub(crate) fn listen() -> &'static Arc<AtomicBool> {
     static ONCE: std::sync::Once = std::sync::Once::new();
     ONCE.call_once(system::listen);
     &WANTED

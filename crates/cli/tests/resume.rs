@@ -270,6 +270,29 @@ fn an_interrupted_run_goes_on_to_the_same_bytes() {
     assert_same(&wanted, &place.out(), "after two interrupts");
 }
 
+/// A tower whose first step takes hundreds of contact problems, one after another.
+const TOWER: &str = "[time]\nend = '20 ms'\nstep = '1 ms'\n[ground]\n[material.m]\ndensity = '700 kg/m^3'\n[block.box]\n\
+    material = 'm'\nwidth = '10 cm'\nheight = '10 cm'\ndepth = '10 cm'\non = 'ground'\nat = '0 m'\n\
+    repeat = { count = 300, stacked = true }\n[contact.floor]\nbetween = ['*', 'ground']\nfriction = 0.5\n\
+    [contact.joints]\nbetween = ['*', '*']\nfriction = 0.5\n";
+
+#[test]
+fn a_run_interrupted_within_a_long_step_goes_on_to_the_same_bytes() {
+    let place = Place::new("long-step");
+    std::fs::write(place.at.join("tower.toml"), TOWER).unwrap();
+    let tower = ["tower.toml"];
+    let (wanted, _) = alone(&place, &tower, &[]);
+    let child = place.command(&tower, &["--checkpoint-every", "1 h", "--resume"]).spawn().unwrap();
+    wait_for(&place.out().join("energy.csv"));
+    assert!(Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
+    let summary = std::fs::read_to_string(place.out().join("summary.json")).unwrap();
+    assert!(summary.contains("\"ended\": \"interrupted\"") && summary.contains("\"steps\": 0"), "{summary}");
+    place.done(&tower, &["--resume"]);
+    assert_same(&wanted, &place.out(), "after an interrupt in the first step");
+}
+
 #[test]
 fn where_nothing_was_begun_or_no_checkpoint_written_a_run_starts_at_its_beginning() {
     let place = Place::new("beginning");

@@ -10,7 +10,9 @@ pub struct Residual {
     /// `‖p − Π(p − ρû)‖ / max(‖p‖, ρ‖q‖)` over all contacts together, ρ = 1/mean(diag H).
     pub global: f64,
     /// The largest residual of a single contact, each in its own scale, so that a light contact
-    /// can't hide beside a heavy one.
+    /// can't hide beside a heavy one: `max(‖p_c‖, ρ_c‖q_c‖, ρ_c‖u_c − q_c‖)`, with what the impulses
+    /// of all contacts change in its velocity. It is at most 3 + 2μ, however small the contact's
+    /// impulse and free velocity are.
     pub worst: f64,
     /// The contact with that residual (0 if there is none).
     pub worst_contact: usize,
@@ -97,7 +99,10 @@ fn judge_several<const D: usize>(
 
         let rho_i = D as f64 / problem.diagonal(i).trace();
         // Squared norms: one division a contact, and no root.
-        let scale = p[i].norm_squared().max(rho_i * rho_i * q.norm_squared()).max(SCALE_FLOOR);
+        // The velocity that impulses change belongs to it: a contact whose own impulse and free
+        // velocity are nearly 0, as of a block at rest between others, has no other scale.
+        let speed = q.norm_squared().max((u - q).norm_squared());
+        let scale = p[i].norm_squared().max(rho_i * rho_i * speed).max(SCALE_FLOOR);
         // With a single contact both scales are the same.
         let own = if rho_i == rho { squared } else { map(rho_i).norm_squared() } / scale;
         // NaN counts as worst: `!(own <= worst)` is true for it.
@@ -198,6 +203,18 @@ mod tests {
         let p = [Vector2::new(1e6, 0.0), Vector2::zeros()];
         let r = judge(&ContactProblem::new(Delassus::Dense(&h), &q, &[0.3, 0.3]).unwrap(), &p);
         assert!(r.global < 1e-9 && r.worst > 0.9 && r.worst_contact == 1);
+    }
+
+    #[test]
+    fn a_contact_without_a_scale_of_its_own_is_judged_by_what_others_do_to_it() {
+        // The first impulse moves the second contact by rounding only; it has hardly any impulse.
+        let off = Matrix2::new(-1e-12, 0.0, 0.0, 0.0);
+        let h = [Matrix2::identity(), off, off, Matrix2::identity()];
+        let q = [Vector2::new(-1.0, 0.0), Vector2::new(1e-200, 0.0)];
+        let p = [Vector2::new(1.0, 0.0), Vector2::new(1e-150, 0.0)];
+        let r = judge(&ContactProblem::new(Delassus::Dense(&h), &q, &[0.3, 0.3]).unwrap(), &p);
+        assert!(r.global < 1e-11, "{r:?}");
+        assert!(r.worst > 0.5 && r.worst <= 3.6 && r.worst_contact == 1, "{r:?}");
     }
 
     #[test]

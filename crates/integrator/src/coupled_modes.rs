@@ -173,12 +173,14 @@ struct Touching {
 }
 
 fn touching(model: &Model<2>, q: &[f64], forces: &[(ContactId, Vector<2>)]) -> Result<Vec<Touching>, Mismatch> {
+    let pressing = || forces.iter().filter(|(_, force)| force[0] > 0.0);
+    let mut ids: Vec<ContactId> = pressing().map(|(id, _)| *id).collect();
+    ids.sort_unstable();
     let mut candidates = Vec::new();
-    model.candidates(q, f64::INFINITY, &mut candidates)?;
-    let pressing = forces.iter().filter(|(_, force)| force[0] > 0.0);
-    pressing
+    model.detector().locate(&model.placed_at(q), &ids, &mut candidates);
+    pressing()
         .map(|(id, force)| {
-            let found = candidates.iter().find(|candidate| candidate.id == *id);
+            let found = candidates.binary_search_by_key(id, |candidate| candidate.id).ok().map(|at| &candidates[at]);
             let candidate = found.ok_or(Mismatch::NotThere { id: *id })?;
             let friction = model.law(candidate.law)?.friction;
             let force = if friction > 0.0 { *force } else { *force - tangential(force) };

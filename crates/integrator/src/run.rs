@@ -1,6 +1,6 @@
 //! The loop over steps, each reported to observers.
 
-use crate::{Model, STEP_ROUNDING, Scheme, State, StepError, StepReport, Workspace};
+use crate::{ContactError, Model, STEP_ROUNDING, Scheme, State, StepError, StepReport, Workspace};
 use std::error::Error;
 use std::ops::ControlFlow;
 
@@ -125,12 +125,22 @@ impl Plan {
 pub enum Ended {
     /// All steps were taken.
     Complete,
-    /// An observer wanted it to end.
+    /// An observer wanted it to end, or a step was abandoned by [`Workspace::cancel`].
     Interrupted,
     /// A step was not solved to tolerance, and the plan ends the run there.
     Unconverged,
     /// A step could not be taken.
     Failed(StepError),
+}
+
+impl StepError {
+    /// How a run ends whose step failed by this.
+    fn ends(self) -> Ended {
+        match self {
+            Self::Problem { source: ContactError::Cancelled, .. } => Ended::Interrupted,
+            error => Ended::Failed(error),
+        }
+    }
 }
 
 /// Why a run could not go on for reasons outside the mechanics.
@@ -165,7 +175,7 @@ pub fn run<const D: usize>(
     }
     let ended = match scheme.start(model, state, work) {
         Ok(()) => take_steps(model, scheme, state, work, plan, observers)?,
-        Err(error) => Ended::Failed(error),
+        Err(error) => error.ends(),
     };
     for observer in observers.iter_mut() {
         observer.finish(model, state).map_err(RunError::Observer)?;
@@ -184,7 +194,7 @@ fn take_steps<const D: usize>(
     while !plan.is_done(state) {
         let step = match scheme.advance(model, state, plan.end(), work) {
             Ok(step) => step,
-            Err(error) => return Ok(Ended::Failed(error)),
+            Err(error) => return Ok(error.ends()),
         };
         let mut goes_on = true;
         for observer in observers.iter_mut() {

@@ -19,7 +19,7 @@
 //! side of compression converges.
 
 use crate::{ImpactLaw, Memory, Mismatch, Model, Workspace};
-use teeter_detect::{Candidate, ContactId};
+use teeter_detect::{Candidate, Candidates, ContactId};
 
 /// A contact's spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -150,15 +150,20 @@ impl SpringStep {
 
 /// The contacts with duration that a step may touch.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Springs {
+pub(crate) struct Springs<const D: usize> {
     /// Those that the free motion brings into contact, with their gaps at the start of the step, in order of identity.
     touched: Vec<(ContactId, f64)>,
+    /// Memory for contacts to look for.
+    ids: Vec<ContactId>,
+    located: Candidates<D>,
 }
 
-impl Springs {
+impl<const D: usize> Springs<D> {
     /// Makes room for so many contacts.
     pub(crate) fn reserve(&mut self, contacts: usize) {
         self.touched.reserve(contacts);
+        self.ids.reserve(contacts);
+        self.located.reserve(contacts);
     }
 
     /// Forgets what was found.
@@ -167,7 +172,7 @@ impl Springs {
     }
 
     /// Finds the contacts that the free motion from `q` to `q_free` brings into contact.
-    pub(crate) fn look<const D: usize>(
+    pub(crate) fn look(
         &mut self,
         model: &Model<D>,
         q: &[f64],
@@ -182,7 +187,9 @@ impl Springs {
         if self.touched.is_empty() {
             return Ok(());
         }
-        work.detect(model, q, f64::INFINITY)?;
+        self.ids.clear();
+        self.ids.extend(self.touched.iter().map(|(id, _)| *id));
+        work.detect_with(model, q, 0.0, &self.ids, &mut self.located)?;
         for (id, gap) in &mut self.touched {
             if let Ok(at) = work.candidates.binary_search_by_key(id, |candidate| candidate.id) {
                 *gap = work.candidates[at].gap;
@@ -191,14 +198,25 @@ impl Springs {
         Ok(())
     }
 
-    /// Whether a candidate at the predicted position is a contact of the step.
-    pub(crate) fn admit<const D: usize>(
-        &self,
-        spring: bool,
-        candidate: &Candidate<D>,
+    /// Finds the candidates at the predicted coordinates `q` that may be contacts of the step: all within a gap of `within` (m), and all
+    /// that were active or are touched.
+    pub(crate) fn detect(
+        &mut self,
+        model: &Model<D>,
+        q: &[f64],
         memory: &Memory,
-        gap_tolerance: f64,
-    ) -> bool {
+        within: f64,
+        work: &mut Workspace<D>,
+    ) -> Result<(), Mismatch> {
+        self.ids.clear();
+        self.ids.extend(self.touched.iter().map(|(id, _)| *id).chain(memory.active().iter().copied()));
+        self.ids.sort_unstable();
+        self.ids.dedup();
+        work.detect_with(model, q, within, &self.ids, &mut self.located)
+    }
+
+    /// Whether a candidate at the predicted position is a contact of the step.
+    pub(crate) fn admit(&self, spring: bool, candidate: &Candidate<D>, memory: &Memory, gap_tolerance: f64) -> bool {
         if spring {
             memory.spring_gap(candidate.id).is_some_and(|gap| gap < 0.0) || self.touches(candidate.id).is_some()
         } else {

@@ -29,6 +29,9 @@ pub enum ContactError {
     /// What was given doesn't belong to them.
     #[error(transparent)]
     Mismatch(#[from] Mismatch),
+    /// The step was abandoned by [`Workspace::cancel`].
+    #[error("the step was abandoned, as its caller wanted")]
+    Cancelled,
     /// A law that has no meaning over such a time.
     #[error("pair {pair} has {law}, which has no meaning {over}: leave its contacts out of this stage")]
     Law {
@@ -159,7 +162,7 @@ pub struct ContactStage<const D: usize> {
     pub(crate) problem: Problem<D>,
     /// Compliance beside J W Jᵀ of some contacts.
     extra: Vec<(usize, Block<D>)>,
-    springs: Springs,
+    springs: Springs<D>,
     islands: Islands<D>,
     /// Whether the last solve was by islands.
     apart: bool,
@@ -309,7 +312,7 @@ impl<const D: usize> ContactStage<D> {
         work: &mut Workspace<D>,
     ) -> Result<(), Mismatch> {
         self.springs.look(model, &state.q, look.free.unwrap_or(look.at), work)?;
-        work.detect(model, look.at, f64::INFINITY)?;
+        self.springs.detect(model, look.at, &state.memory, look.within, work)?;
         self.belong_to(model);
         for candidate in &work.candidates {
             let spring = model.law_of(candidate.law)?.impact.spring().is_some();

@@ -11,6 +11,8 @@ use crate::{
     Compliance, Contact, ContactError, ContactStage, Keep, Mismatch, Model, Part, PhaseEnd, PhaseKind, State,
     StateError, StepError, StepReport, StepSpan, Vector, Weights,
 };
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, Stop};
 use teeter_detect::{Candidates, ContactId, DetectorMemory};
 
@@ -107,6 +109,9 @@ pub struct Workspace<const D: usize> {
     pub solver: Box<dyn ContactSolver<D>>,
     /// When it stops.
     pub settings: SolverSettings,
+    /// A flag that abandons the step being taken when it is set: the step fails with [`ContactError::Cancelled`], which leaves the
+    /// state as it was. It reaches into the iterations of the contact solver.
+    pub cancel: Option<Arc<AtomicBool>>,
     /// Whether steps keep the account of energies.
     pub account: Account,
     /// What detection found last.
@@ -152,6 +157,7 @@ impl<const D: usize> Workspace<D> {
         Self {
             solver,
             settings,
+            cancel: None,
             account: Account::Kept,
             candidates: Vec::with_capacity(contacts),
             scratch: vec![0.0; model.size().v],
@@ -264,6 +270,24 @@ impl<const D: usize> Workspace<D> {
         Ok(())
     }
 
+    /// As [`Workspace::detect`], and the contacts `ids`, which rise, are among the candidates however large their gaps, as with an
+    /// infinite margin; `found` is memory. An infinite margin would find all pairs of a scene of many bodies.
+    pub(crate) fn detect_with(
+        &mut self,
+        model: &Model<D>,
+        q: &[f64],
+        margin: f64,
+        ids: &[ContactId],
+        found: &mut Candidates<D>,
+    ) -> Result<(), Mismatch> {
+        found.clear();
+        if !ids.is_empty() {
+            self.locate(model, q, ids, found)?;
+        }
+        let margin = found.iter().map(|candidate| candidate.gap).fold(margin, f64::max);
+        self.detect(model, q, margin)
+    }
+
     /// Puts those of the contacts `ids`, which rise, into `out`, however large their gaps at coordinates `q`.
     ///
     /// # Errors
@@ -318,14 +342,20 @@ impl<const D: usize> Workspace<D> {
     #[inline]
     pub(crate) fn solve_problem(&mut self, problem: &mut Problem<D>, weight: f64) -> Result<Outcome, ContactError> {
         let SolverSettings { tolerance, max_iterations } = self.settings;
+        let cancel = self.cancel.clone();
         let stop = Stop::new(tolerance, max_iterations);
-        if problem.is_standard() {
+        let stop = cancel.as_deref().map_or(stop, |flag| stop.with_cancel(flag));
+        let outcome = if problem.is_standard() {
             let (posed, p) = problem.pose()?;
             let outcome = self.solver.solve(&posed, &stop, p);
             self.counts.solved(p.len(), &outcome);
-            return Ok(outcome);
-        }
-        self.solve_by_rules(problem, weight, &stop)
+            outcome
+        } else {
+            self.solve_by_rules(problem, weight, &stop)?
+        };
+        // Even where it converged: a refinement may have been cut short, so that the step would
+        // depend on the moment of the flag.
+        if stop.cancelled() { Err(ContactError::Cancelled) } else { Ok(outcome) }
     }
 
     /// The same for rules that are more than a shift.

@@ -6,6 +6,7 @@ use crate::{Exporter, PageRecorder, Record, Recorder, Results, ResultsError, Sch
 use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 use teeter_integrator::{Model, Observer, ObserverError, State, StepReport};
@@ -29,6 +30,8 @@ struct Checkpoints<'a> {
     origin: Origin<'a>,
     every: f64,
     schedule: Schedule,
+    /// Whether the last step is one to go on from.
+    may_go_on: bool,
     /// Memory of the last one.
     file: Vec<u8>,
 }
@@ -51,7 +54,7 @@ pub struct RunRecorder<'a> {
     exporter: Option<Exporter>,
     checkpoints: Option<Checkpoints<'a>>,
     dump: Option<Dump<'a>>,
-    end: Option<&'a AtomicBool>,
+    end: Option<Arc<AtomicBool>>,
     require_convergence: bool,
     resumed: bool,
     begin: Instant,
@@ -108,12 +111,12 @@ impl<'a> RunRecorder<'a> {
         }
     }
 
-    /// Writes a checkpoint at the first step at or past each multiple of `every` (s), and at the step after which the run is
+    /// Writes a checkpoint at the first step at or past each multiple of `every` (s), and at the last step of a run that is
     /// ended by [`until`](Self::until).
     #[must_use]
     pub fn with_checkpoints(mut self, results: &'a Results, origin: Origin<'a>, every: f64) -> Self {
         let schedule = Schedule::new(Some(every), u64::MAX, 0.0);
-        self.checkpoints = Some(Checkpoints { results, origin, every, schedule, file: Vec::new() });
+        self.checkpoints = Some(Checkpoints { results, origin, every, schedule, may_go_on: true, file: Vec::new() });
         self
     }
 
@@ -124,9 +127,10 @@ impl<'a> RunRecorder<'a> {
         self
     }
 
-    /// Ends the run after the step in which `end` is set.
+    /// Ends the run after the step in which `end` is set, or at the step before it where that
+    /// abandons the step ([`Simulation::cancelled_by`](teeter_scenario::simulation::Simulation::cancelled_by)).
     #[must_use]
-    pub fn until(mut self, end: &'a AtomicBool) -> Self {
+    pub fn until(mut self, end: Arc<AtomicBool>) -> Self {
         self.end = Some(end);
         self
     }
@@ -143,6 +147,11 @@ impl<'a> RunRecorder<'a> {
         let (record, mut page) = (self.recorder.into_record(), self.page);
         page.beams.clone_from(&record.beams);
         (record, page, self.exporter)
+    }
+
+    /// Whether the run is to end.
+    fn ends(&self) -> bool {
+        self.end.as_ref().is_some_and(|end| end.load(Ordering::Relaxed))
     }
 
     fn write_checkpoint(&mut self, state: &State) -> Result<(), ObserverError> {
@@ -214,11 +223,12 @@ impl Observer<2> for RunRecorder<'_> {
         if let Some(dump) = &mut self.dump {
             dump.see(self.layout, state, step.is_solved())?;
         }
-        let ends = self.end.is_some_and(|end| end.load(Ordering::Relaxed));
+        let ends = self.ends();
         if let Some(checkpoints) = &mut self.checkpoints {
-            let due = checkpoints.schedule.takes(state.step, state.t) || ends;
+            let due = checkpoints.schedule.takes(state.step, state.t);
             // A run that ends here for good must not go on from here.
-            if due && !stops && (step.is_solved() || !self.require_convergence) {
+            checkpoints.may_go_on = !stops && (step.is_solved() || !self.require_convergence);
+            if due && checkpoints.may_go_on {
                 self.write_checkpoint(state)?;
             }
         }
@@ -226,6 +236,10 @@ impl Observer<2> for RunRecorder<'_> {
     }
 
     fn finish(&mut self, model: &Model<2>, state: &State) -> Result<(), ObserverError> {
+        // Before the tables are ended, as they go on from it.
+        if self.ends() && self.checkpoints.as_ref().is_some_and(|checkpoints| checkpoints.may_go_on) {
+            self.write_checkpoint(state)?;
+        }
         self.recorder.finish(model, state)?;
         self.page.finish(model, state)
     }

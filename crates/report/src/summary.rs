@@ -282,7 +282,8 @@ pub struct ModelSummary {
     pub ground: bool,
     /// Names of the contacts; one by patterns comes once.
     pub contacts: Vec<String>,
-    /// Points that contacts are looked for at.
+    /// The most contacts that there can be at once, but for those of beams with sides of blocks:
+    /// the same number as in `teeter check`.
     pub possible_contacts: usize,
     /// Velocities of blocks and beams together.
     pub dofs: usize,
@@ -467,7 +468,7 @@ impl ModelSummary {
             beams,
             ground: scene.ground.is_some(),
             contacts: names_once(layout.contact_names()),
-            possible_contacts: possible_contacts(scene, layout),
+            possible_contacts: layout.possible_contacts,
             left_out: teeter_scenario::left_out(scene),
             extent: required.extent.word(),
             removed: required
@@ -488,12 +489,6 @@ impl ModelSummary {
 fn names_once<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut seen = BTreeSet::new();
     names.filter(|name| seen.insert(*name)).map(str::to_owned).collect()
-}
-
-/// The points of listed contacts, and two for each pair of a crowd.
-fn possible_contacts(scene: &Scene, layout: &Layout) -> usize {
-    let listed: usize = (0..scene.contacts.len()).map(|contact| layout.required.points(contact)).sum();
-    listed + scene.crowd.as_ref().map_or(0, |crowd| 2 * crowd.pair_count())
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use std::fmt;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use teeter_integrator::{Model, Observer, ObserverError, State, StepReport};
 
@@ -31,7 +32,7 @@ pub struct Hooks<'a> {
     pub(crate) start: Option<OnStart<'a>>,
     pub(crate) progress: Option<OnProgress<'a>>,
     pub(crate) warning: Option<OnWarning<'a>>,
-    pub(crate) cancel: Option<&'a AtomicBool>,
+    pub(crate) cancel: Option<Arc<AtomicBool>>,
 }
 
 impl<'a> Hooks<'a> {
@@ -65,12 +66,13 @@ impl<'a> Hooks<'a> {
         self
     }
 
-    /// Ends the run after the step in which `flag` is set, with its rows complete, a summary that
-    /// says so, and a checkpoint if checkpoints are written. Any thread or signal handler may set
-    /// it.
+    /// Ends the run when `flag` is set, with the rows of all whole steps, a summary that says so,
+    /// and a checkpoint if checkpoints are written. A step whose contact problems are being solved
+    /// is abandoned, however long it would take: the run ends with the step before it. Any thread or
+    /// signal handler may set the flag.
     #[must_use]
-    pub fn cancelled_by(mut self, flag: &'a AtomicBool) -> Self {
-        self.cancel = Some(flag);
+    pub fn cancelled_by(mut self, flag: &Arc<AtomicBool>) -> Self {
+        self.cancel = Some(Arc::clone(flag));
         self
     }
 }

@@ -1,5 +1,6 @@
 //! The horizon of a run, up to which its motion is predictable, and its warning.
 
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use teeter_report::{HORIZON, Record};
 use teeter_scenario::scene::Scene;
@@ -7,9 +8,8 @@ use teeter_study::{DIVERGED, Divergence, Failure, PERTURBATION};
 
 /// Enters the horizon into the record, with a warning if it is before the end of the run. Returns
 /// false if interrupted.
-pub(crate) fn find(scene: &Scene, cancel: Option<&AtomicBool>, record: &mut Record) -> bool {
-    let never = AtomicBool::new(false);
-    match teeter_study::divergence(scene, cancel.unwrap_or(&never)) {
+pub(crate) fn find(scene: &Scene, cancel: &Arc<AtomicBool>, record: &mut Record) -> bool {
+    match teeter_study::divergence(scene, cancel) {
         Ok(divergence) => {
             record.horizon = Some(divergence.horizon());
             if !divergence.is_whole() {

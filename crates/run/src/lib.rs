@@ -29,6 +29,7 @@
 //! that the steps took):
 //!
 //! ```
+//! use std::sync::Arc;
 //! use std::sync::atomic::{AtomicBool, Ordering};
 //! use teeter_run::{EndedWord, ExistingResults, Hooks, RunJob, SceneSource, RunStart};
 //!
@@ -44,7 +45,7 @@
 //!     .folder(&folder)
 //!     .checkpoint_every(0.1)
 //!     .existing(ExistingResults::Resume);
-//! let cancel = AtomicBool::new(false);
+//! let cancel = Arc::new(AtomicBool::new(false));
 //! let hooks = Hooks::new().cancelled_by(&cancel).on_progress(|progress| cancel.store(progress.step > 0, Ordering::Relaxed));
 //! assert_eq!(job.clone().prepare()?.run(hooks)?.ended(), EndedWord::Interrupted);
 //!

@@ -3,7 +3,7 @@
 use crate::start::{self, RunStart};
 use crate::{LoadError, PrepareError, RunJob};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
+use std::sync::Arc;
 use teeter_integrator::State;
 use teeter_report::{Checkpoint, FILES, Former, Identity, Moment, Results, Watch};
 use teeter_scenario::diagnostic::Diagnostic;
@@ -103,7 +103,7 @@ impl RunJob {
 /// A scene with an accuracy, with the step that reaches it.
 fn with_step(resolved: Resolved) -> Result<(Resolved, Option<ChosenStep>), PrepareError> {
     let Some(accuracy) = resolved.scene.time.accuracy else { return Ok((resolved, None)) };
-    let chosen = teeter_study::step_for(&resolved.scene, accuracy, &AtomicBool::new(false))?;
+    let chosen = teeter_study::step_for(&resolved.scene, accuracy, &Arc::default())?;
     let text = resolved.document.source().to_owned();
     match resolved.with_step(chosen.step) {
         Ok(resolved) => Ok((resolved, Some(chosen))),

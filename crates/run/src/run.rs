@@ -3,6 +3,7 @@
 use crate::hooks::ProgressObserver;
 use crate::{Hooks, Prepared, RunError, start};
 use std::path::PathBuf;
+use std::sync::Arc;
 use teeter_integrator::{Ended, State};
 use teeter_report::{
     CHECKPOINT, EndedWord, Exporter, Former, Origin, PageRecorder, Record, Results, ResultsError, RunRecorder, Summary,
@@ -79,7 +80,7 @@ impl Prepared {
         // From here on the folder exists: paths in the scene are relative to it.
         let scene_as_run = self.job.scene_as_run(&self.folder, &self.resolved);
         let layout = self.simulation.layout.clone();
-        let cancel = hooks.cancel;
+        let cancel = hooks.cancel.clone().unwrap_or_default();
         let mut recorded = self.simulate(&results, &scene_as_run, exporter, &layout, hooks)?;
         recorded.record.horizon = self.chosen.map(|chosen| chosen.horizon);
         let wanted = self.job.horizon && self.chosen.is_none() && self.job.from.is_none();
@@ -90,7 +91,7 @@ impl Prepared {
         }
         if wanted
             && matches!(recorded.ended, EndedWord::Complete | EndedWord::Stopped)
-            && !crate::horizon::find(&watched, cancel, &mut recorded.record)
+            && !crate::horizon::find(&watched, &cancel, &mut recorded.record)
         {
             // The horizon is missing: a resumed run repeats the end, and finds it.
             recorded.ended = EndedWord::Interrupted;
@@ -149,7 +150,8 @@ impl Prepared {
             }
         }
         if let Some(cancel) = cancel {
-            recorder = recorder.until(cancel);
+            recorder = recorder.until(Arc::clone(&cancel));
+            self.simulation.cancelled_by(cancel);
         }
         let ran = self.simulation.run(&mut [&mut recorder, &mut teller]);
         teller.tell(&self.simulation.state);

@@ -294,6 +294,9 @@ pub struct Layout {
     pub openings: Openings,
     /// What is left out of the model.
     pub required: Required,
+    /// The most contacts that the model's detector can find at once, but for those of ends and
+    /// humps of beams with sides of blocks, for which it makes room for more than there can be.
+    pub possible_contacts: usize,
 }
 
 impl Layout {

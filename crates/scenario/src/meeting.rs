@@ -158,10 +158,36 @@ impl Shapes {
             let at = layout.blocks[*k].range.start;
             dt * v[at].hypot(v[at + 1]) > 0.5 * self.shortest
         };
-        let all = 0..layout.blocks.len();
-        let fast = all.clone().filter(is_fast);
-        let mut pairs = fast.flat_map(|a| all.clone().map(move |b| (a.min(b), a.max(b))));
-        pairs.find_map(|(a, b)| passes(a, b).filter(|_| crowd.contact_of(a, b).is_some()))
+        let is_fast: Vec<bool> = (0..layout.blocks.len()).map(|k| is_fast(&k)).collect();
+        if !is_fast.contains(&true) {
+            return None;
+        }
+        // From where each was at the start of the step to where it is, along x: only those whose
+        // reaches overlap there can have passed each other.
+        let mut spans: Vec<(f64, f64, usize)> = Vec::with_capacity(is_fast.len());
+        for (k, place) in layout.blocks.iter().enumerate() {
+            let (now, back) = (q[place.range.start], dt * v[place.range.start]);
+            let (low, high) = (now.min(now - back) - place.reach, now.max(now - back) + place.reach);
+            if low.is_nan() || high.is_nan() {
+                return None;
+            }
+            spans.push((low, high, k));
+        }
+        spans.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        // Of several the one is told that comes first by a fast block's number.
+        let mut first: Option<([usize; 2], (usize, usize, f64))> = None;
+        for (at, &(_, high, a)) in spans.iter().enumerate() {
+            for &(_, _, b) in spans[at + 1..].iter().take_while(|(low, ..)| *low <= high) {
+                let orders = [[a, b], [b, a]];
+                let order = orders.into_iter().filter(|[fast, _]| is_fast[*fast]).min();
+                let Some(order) = order.filter(|order| first.is_none_or(|(least, _)| *order < least)) else { continue };
+                let (low, high) = (a.min(b), a.max(b));
+                if let Some(found) = passes(low, high).filter(|_| crowd.contact_of(low, high).is_some()) {
+                    first = Some((order, found));
+                }
+            }
+        }
+        first.map(|(_, found)| found)
     }
 
     /// Passes each overlap at coordinates `q` of the whole model to `each`, with its depth, m.

@@ -40,6 +40,16 @@ impl OutputSize {
     /// with one corner in every row.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
+        let acting = match scene.crowd {
+            // Most blocks of a crowd don't touch the ground.
+            Some(_) => CONTACTS_OF_BLOCK * scene.blocks.len(),
+            None => scene.contacts.len(),
+        };
+        Self::with_contacts(scene, acting)
+    }
+
+    /// The same with so many contacts in every row.
+    fn with_contacts(scene: &Scene, acting: usize) -> Self {
         let steps = scene.time.steps() as f64;
         let rows = match scene.every {
             Some(every) => steps.min((scene.time.end / every).ceil()),
@@ -48,11 +58,6 @@ impl OutputSize {
         let rows = rows + 1.0;
         let probes: usize = scene.beams.iter().map(|beam| beam.probes.len()).sum();
         let trajectory = 1 + 6 * scene.blocks.len() + 2 * scene.beams.len() + probes;
-        let acting = match scene.crowd {
-            // Most blocks of a crowd don't touch the ground.
-            Some(_) => CONTACTS_OF_BLOCK * scene.blocks.len(),
-            None => scene.contacts.len(),
-        };
         let (energy, contacts) = (11, 11 * acting);
         Self { rows, bytes: rows * (trajectory + energy + contacts) as f64 * BYTES_A_NUMBER }
     }
@@ -92,12 +97,14 @@ pub fn expected_memory(scene: &Scene) -> Option<f64> {
     scene.crowd.as_ref().map(|_| 20e6 + 22e3 * scene.blocks.len() as f64)
 }
 
-/// Time of a step of a crowd, s. Nearly all of it is the solver's, whose iterations grow with the
-/// number of blocks that push on each other: measured are 4 to 14 ms in a tower of 1000, 90 to 200
-/// in a pile, and 50 to 150 in a wall of 500.
-fn step_of_crowd(blocks: usize) -> f64 {
+/// Time of a step in which so many blocks lie on each other and move, s, to an order of magnitude.
+/// Nearly all of it is the solver's, whose iterations grow with the number of blocks that push on
+/// each other: measured are 40 to 780 ms (mean 170) while 1000 stones fall into a pile, and 50 to 150
+/// in a wall of 500.
+#[must_use]
+pub fn step_of_pile(blocks: usize) -> f64 {
     let blocks = blocks as f64;
-    30e-6 * blocks * (blocks / 300.0).powf(0.7)
+    60e-6 * blocks * (blocks / 300.0).powf(0.7)
 }
 
 /// Largest size of the dense operator of all contacts, bytes: some 11 000 contacts.
@@ -113,10 +120,22 @@ pub fn operator_bytes(contacts: usize) -> f64 {
 /// on their coupling and on the solver, and only its order of magnitude is known.
 const FEW_CONTACTS: usize = 8;
 
+/// Whether the scene has so many contacts that [`expected_seconds`] is only an order of magnitude.
+#[must_use]
+pub fn has_many_contacts(scene: &Scene) -> bool {
+    usual_contacts(scene) > FEW_CONTACTS
+}
+
+/// Estimated time of writing the tables of a run with so many contacts in every row, s.
+#[must_use]
+pub fn writing_seconds(scene: &Scene, contacts: usize) -> f64 {
+    1e-6 * cost::NUMBER * OutputSize::with_contacts(scene, contacts).bytes / BYTES_A_NUMBER
+}
+
 /// The accuracy of [`expected_seconds`], in words.
 #[must_use]
 pub fn accuracy_of_seconds(scene: &Scene) -> &'static str {
-    if usual_contacts(scene) > FEW_CONTACTS {
+    if has_many_contacts(scene) {
         "to an order of magnitude, because of the many contacts"
     } else {
         "to a factor of three"
@@ -127,7 +146,7 @@ pub fn accuracy_of_seconds(scene: &Scene) -> &'static str {
 /// few contacts are closed at once; `beam_dofs` are those of all beams together.
 #[must_use]
 pub fn expected_seconds(scene: &Scene, beam_dofs: usize) -> f64 {
-    let of_crowd = scene.crowd.as_ref().map_or(0.0, |_| step_of_crowd(scene.blocks.len()));
+    let of_crowd = scene.crowd.as_ref().map_or(0.0, |_| step_of_pile(scene.blocks.len()));
     let bodies = scene.contacts.len().max(scene.blocks.len()) as f64;
     let few = scene.contacts.len() <= 1;
     let on_beams = scene.contacts.iter().filter(|contact| matches!(contact.surface, SupportingBody::Beam(_))).count();

@@ -11,7 +11,7 @@ use crate::{stable_step, wording};
 use std::f64::consts::TAU;
 use teeter_beam::{Axial, Beam, MatrixWeights};
 use teeter_detect::ContactId;
-use teeter_integrator::{BeamFace, coupled_modes};
+use teeter_integrator::coupled_modes;
 
 /// Properties of a block to check.
 #[derive(Debug, Clone, PartialEq)]
@@ -91,7 +91,8 @@ pub struct Preview {
     pub blocks: Vec<BlockPreview>,
     /// The beams, in the order of the file.
     pub beams: Vec<BeamPreview>,
-    /// Number of corners that can touch a surface.
+    /// The most contacts that there can be at once
+    /// ([`Layout::possible_contacts`](crate::simulation::Layout::possible_contacts)).
     pub possible_contacts: usize,
     /// The contacts, by number in the scene, of beams that can also touch sides of their blocks, with
     /// ends and humps; these are not counted above.
@@ -111,19 +112,6 @@ pub struct Preview {
     pub left_out: Vec<&'static str>,
     /// What the model doesn't require of the scene.
     pub removed: Vec<Removed>,
-}
-
-/// How many contacts of ends and humps with sides of blocks the detector provides for: more than
-/// there can be at once.
-fn with_sides(simulation: &Simulation) -> usize {
-    let fibres: Vec<u32> = simulation
-        .layout
-        .beams
-        .iter()
-        .flat_map(|place| [BeamFace::Upper, BeamFace::Lower].map(|face| place.body.0 + face.fibre()))
-        .collect();
-    let wiring = simulation.model.detector().wiring();
-    wiring.iter().filter(|pair| fibres.contains(&pair.bodies[1].0)).map(|pair| pair.contacts).sum()
 }
 
 impl Preview {
@@ -151,7 +139,7 @@ impl Preview {
         };
         Self {
             blocks: scene.blocks.iter().map(block).collect(),
-            possible_contacts: simulation.model.detector().capacity() - with_sides(simulation),
+            possible_contacts: simulation.layout.possible_contacts,
             on_sides: (0..scene.contacts.len()).filter(|k| simulation.layout.required.sides(scene, *k)).collect(),
             dofs: simulation.dofs(),
             seconds: expected_seconds(scene, beams.iter().map(|beam| beam.dofs).sum()),

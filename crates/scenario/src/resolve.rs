@@ -8,6 +8,7 @@ mod contacts;
 mod crowd;
 mod faces;
 mod ground;
+mod jitter;
 mod many;
 mod motions;
 pub(crate) mod names;

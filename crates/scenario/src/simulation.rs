@@ -12,6 +12,7 @@ use crate::tilt_reference::{TiltReference, tilt_references};
 use nalgebra::Vector2;
 use std::collections::BTreeSet;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use teeter_beam::{BeamError, ModalError};
 use teeter_contact::ContactSolver;
 use teeter_detect::{
@@ -195,6 +196,7 @@ impl Simulation {
             }
         }
 
+        layout.possible_contacts = possible_contacts(&model, &layout);
         let state = State::new(&model, &q, &v, scene.time.step)?;
         let solver = teeter_solvers::plane_solver(&scene.solver.method)
             .ok_or_else(|| BuildError::Solver(scene.solver.method.clone()))?;
@@ -297,6 +299,13 @@ impl Simulation {
         scheme.advance(model, state, f64::INFINITY, work)
     }
 
+    /// Abandons the step being taken when `flag` is set, even within the iterations of the contact
+    /// solver: a run then ends as [`Ended::Interrupted`] with the state of the last whole step, and
+    /// [`Simulation::step`] fails. Cleared, the flag lets it go on to the same bytes.
+    pub fn cancelled_by(&mut self, flag: Arc<AtomicBool>) {
+        self.work.cancel = Some(flag);
+    }
+
     /// Sets whether steps keep the energy account (default: yes). Without it they are faster, and
     /// `state.ledger` and the penetration in `state.tally` are not updated.
     pub fn keep_account(&mut self, account: Account) {
@@ -388,7 +397,16 @@ fn lay_out(scene: &Scene, beams: &[BeamModel], assembled: &Assembled, required: 
         on_sides: contact.sides,
     });
     let (crowd, openings) = (CrowdPlace::of(scene), openings(scene));
-    Layout { blocks, beams: beams.collect(), pairs: pairs.collect(), crowd, ground, openings, required }
+    Layout {
+        blocks,
+        beams: beams.collect(),
+        pairs: pairs.collect(),
+        crowd,
+        ground,
+        openings,
+        required,
+        possible_contacts: 0,
+    }
 }
 
 /// The model of the required parts of a scene.
@@ -455,6 +473,17 @@ fn assemble(
     let on_profile = profile.map(|profile| (profile, on_profile));
     let model = parts.build(detector(pairs, on_profile, (0..blocks.len()).map(shapes))?)?;
     Ok(Assembled { model, blocks: all_blocks, beams: surfaces, ground })
+}
+
+/// See [`Layout::possible_contacts`].
+fn possible_contacts(model: &Model<2>, layout: &Layout) -> usize {
+    let beams = layout.beams.iter();
+    let fibres: Vec<u32> =
+        beams.flat_map(|place| [BeamFace::Upper, BeamFace::Lower].map(|face| place.body.0 + face.fibre())).collect();
+    let detector = model.detector();
+    let wiring = detector.wiring();
+    let sides = wiring.iter().filter(|pair| fibres.contains(&pair.bodies[1].0));
+    detector.capacity() - sides.map(|pair| pair.contacts).sum::<usize>()
 }
 
 /// The blocks of a crowd, with the laws of its contacts.

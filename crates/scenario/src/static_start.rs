@@ -435,7 +435,8 @@ impl StaticModel {
         model.candidates(&found.q, f64::INFINITY, &mut candidates)?;
         let on = |body: BodyId, span: f64| {
             let loads = candidates.iter().flat_map(|candidate| {
-                let force = found.forces.iter().find(|(id, _)| *id == candidate.id).map(|(_, force)| *force);
+                let force =
+                    found.forces.binary_search_by_key(&candidate.id, |(id, _)| *id).ok().map(|at| found.forces[at].1);
                 let sides = candidate.sides.iter().zip([1.0, -1.0]).filter(|(side, _)| side.body == body);
                 sides.filter_map(move |(side, sign)| {
                     Some(BeamForces::surface_load(side, &candidate.frame, &(force? * sign), span))

@@ -65,6 +65,16 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
         if document.is_given(&path) && !has_rows {
             idle(&path, "no effect: there is only one row".to_owned(), "give rows = 2 or more, or leave it out");
         }
+        let at = |key: &str| format!("block.{table}.repeat.{key}");
+        let jitters = document.pair(&at("jitter")).is_some_and(|most| most != [0.0; 2])
+            || document.quantity(&at("jitter_angle")).is_some_and(|most| most != 0.0);
+        if document.is_given(&at("seed")) && !jitters {
+            idle(
+                &at("seed"),
+                "no effect: nothing is random".to_owned(),
+                "give jitter or jitter_angle, or leave it out",
+            );
+        }
     }
     let of_crowd = scene.crowd.iter().flat_map(Crowd::contacts).map(|contact| (&contact.name, &contact.law));
     let contacts = scene.contacts.iter().map(|contact| (&contact.name, &contact.law)).chain(of_crowd);

@@ -14,6 +14,7 @@ use crate::reference::PERTURBATION;
 use crate::trial_runs::TrialRuns;
 use crate::{ErrorNorms, Failure, Quantity, SampledMotion, Sampling};
 use std::ops::RangeInclusive;
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use teeter_scenario::scene::Scene;
 
@@ -120,7 +121,7 @@ const LONGER: f64 = 1.15;
 ///
 /// # Errors
 /// If the scene can't be run, no affordable step reaches it, or the user interrupts.
-pub fn step_for(scene: &Scene, accuracy: f64, cancel: &AtomicBool) -> Result<ChosenStep, NoStep> {
+pub fn step_for(scene: &Scene, accuracy: f64, cancel: &Arc<AtomicBool>) -> Result<ChosenStep, NoStep> {
     let mut search = StepSearch::new(scene, accuracy, cancel);
     loop {
         search.run()?;
@@ -152,7 +153,7 @@ struct StepSearch<'a> {
 }
 
 impl<'a> StepSearch<'a> {
-    fn new(scene: &'a Scene, accuracy: f64, cancel: &'a AtomicBool) -> Self {
+    fn new(scene: &'a Scene, accuracy: f64, cancel: &'a Arc<AtomicBool>) -> Self {
         let end = scene.time.end;
         let sampling = Sampling { every: end / SAMPLES as f64, count: SAMPLES + 1 };
         Self {
@@ -376,7 +377,7 @@ mod tests {
 
     /// The step for an accuracy, and how far the run with it is from one with an eighth of it.
     fn tried(scene: &Scene, accuracy: f64) -> (ChosenStep, f64) {
-        let cancel = AtomicBool::new(false);
+        let cancel = Arc::new(AtomicBool::new(false));
         let chosen = step_for(scene, accuracy, &cancel).unwrap();
         let end = scene.time.end;
         let sampling = Sampling { every: end / SAMPLES as f64, count: SAMPLES + 1 };
@@ -431,7 +432,7 @@ mod tests {
              force.push = { on = 'b', force = ['-7.144254350426844 N', '0 N'], couple = '-0.0007310276802040853 N m', signal = 'p' }\n\
              signal.p = { shape = 'half-sine', start = '0 s', duration = '0.0517 s' }\n";
         let scene = teeter_scenario::load(text.as_bytes(), "bounces", "bounces", &[]).unwrap().scene;
-        let chosen = step_for(&scene, 1e-5, &AtomicBool::new(false)).unwrap();
+        let chosen = step_for(&scene, 1e-5, &Arc::default()).unwrap();
         // It lands on the other corner at 0.045852 s.
         assert!(!chosen.whole && chosen.horizon <= 0.0459 && chosen.horizon > 0.045, "{chosen:?}");
     }

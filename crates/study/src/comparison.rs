@@ -4,6 +4,7 @@ use crate::axes::Axes;
 use crate::reference::{self, Reference};
 use crate::simulate::simulate;
 use crate::{Errors, Failure, Sampling, Setting, SettingWarning, StudyScene};
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use teeter_scenario::resolve::Resolved;
 
@@ -25,7 +26,7 @@ impl<'a> ReferenceComparison<'a> {
         source: &'a StudyScene,
         resolved: &Resolved,
         threads: usize,
-        cancel: &AtomicBool,
+        cancel: &Arc<AtomicBool>,
     ) -> Result<Self, Failure> {
         let sampling = Sampling::of(&resolved.scene);
         let axes = Axes::of(resolved);
@@ -38,7 +39,11 @@ impl<'a> ReferenceComparison<'a> {
     ///
     /// # Errors
     /// If the scene can't be run with it, or the run ends before its time.
-    pub fn errors(&self, setting: &Setting, cancel: &AtomicBool) -> Result<(Errors, Vec<SettingWarning>), Failure> {
+    pub fn errors(
+        &self,
+        setting: &Setting,
+        cancel: &Arc<AtomicBool>,
+    ) -> Result<(Errors, Vec<SettingWarning>), Failure> {
         let ran = simulate(self.source, setting, 0.0, self.sampling, cancel)?;
         Ok((self.reference.norms.errors(&ran.motion, &self.reference.motion), ran.warned))
     }

@@ -4,6 +4,7 @@
 use crate::reference::PERTURBATION;
 use crate::trial_runs::TrialRuns;
 use crate::{ErrorNorms, Failure, SampledMotion, Sampling};
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use teeter_scenario::scene::Scene;
 
@@ -45,7 +46,7 @@ impl Divergence {
 ///
 /// # Errors
 /// If a run doesn't come to its end, or the user interrupts.
-pub fn divergence(scene: &Scene, cancel: &AtomicBool) -> Result<Divergence, Failure> {
+pub fn divergence(scene: &Scene, cancel: &Arc<AtomicBool>) -> Result<Divergence, Failure> {
     let end = scene.time.end;
     let sampling = Sampling { every: end / SAMPLES as f64, count: SAMPLES + 1 };
     let mut trials = TrialRuns { scene, sampling, cancel, most_seconds: f64::INFINITY, runs: 0 };

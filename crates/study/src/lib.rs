@@ -4,7 +4,7 @@
 //! kinematics, solver, tolerance), each against a verified [`Reference`], measures their time, and
 //! recommends one for each accuracy. [`runner`] runs jobs on all cores, with results in order.
 //!
-//! [`step_for`] finds the step that reaches an accuracy, for scenes that give an accuracy instead
+//! [`FirstSteps`] measures what a run will cost. [`step_for`] finds the step that reaches an accuracy, for scenes that give an accuracy instead
 //! of a step.
 //!
 //! Candidates and advice are chosen by counted [`Work`], not by the clock, so they are the same in
@@ -16,6 +16,7 @@ mod axes;
 mod comparison;
 mod divergence;
 mod errors;
+mod first_steps;
 mod horizon;
 mod recommend;
 mod reference;
@@ -39,6 +40,7 @@ pub use axes::{Axes, SettingAxis};
 pub use comparison::ReferenceComparison;
 pub use divergence::{DIVERGED, Divergence, divergence};
 pub use errors::{ErrorNorms, Errors, Quantity};
+pub use first_steps::FirstSteps;
 pub use horizon::FirstImpact;
 pub use recommend::{Advice, ConfirmedErrors, TARGETS, advise};
 pub use reference::{PERTURBATION, Reference, SHARES, VerifyingRun};

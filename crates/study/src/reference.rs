@@ -7,6 +7,7 @@ use crate::horizon::{FirstImpact, first_impacts};
 use crate::runner;
 use crate::simulate::{RunResult, expect, simulate};
 use crate::{Failure, SampledMotion, Sampling, Setting, SettingWarning, StudyScene};
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use teeter_scenario::resolve::Resolved;
 
@@ -127,7 +128,7 @@ pub(crate) fn find(
     axes: &Axes,
     sampling: Sampling,
     threads: usize,
-    cancel: &AtomicBool,
+    cancel: &Arc<AtomicBool>,
     done: &mut (dyn FnMut(usize, usize) + Send),
 ) -> Result<Reference, Failure> {
     let settings = ReferenceSettings { resolved, step: affordable_step(source, resolved, axes)? };
@@ -164,7 +165,7 @@ struct ReferenceSearch<'a> {
     source: &'a StudyScene,
     sampling: Sampling,
     threads: usize,
-    cancel: &'a AtomicBool,
+    cancel: &'a Arc<AtomicBool>,
     /// Each scheme with the step of the reference, and with twice that.
     jobs: Vec<Setting>,
     /// Over the whole run.

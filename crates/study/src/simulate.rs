@@ -4,6 +4,7 @@ use crate::sampled_motion::Sampler;
 use crate::{SampledMotion, Sampling, Setting, SettingWarning, StudyScene, Work};
 use cpu_time::ThreadTime;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use teeter_integrator::{Ended, Model, Observer, ObserverError, State, StepReport};
 use teeter_report::{EndedWord, Recorder, Summary};
@@ -88,7 +89,7 @@ pub(crate) fn simulate_within_limit(
     source: &StudyScene,
     setting: &Setting,
     sampling: Sampling,
-    cancel: &AtomicBool,
+    cancel: &Arc<AtomicBool>,
 ) -> Result<RunResult, Failure> {
     run_within(source, setting, 0.0, sampling, cancel, |work| work.most_iterations())
 }
@@ -100,7 +101,7 @@ pub(crate) fn simulate(
     setting: &Setting,
     perturbation: f64,
     sampling: Sampling,
-    cancel: &AtomicBool,
+    cancel: &Arc<AtomicBool>,
 ) -> Result<RunResult, Failure> {
     run_within(source, setting, perturbation, sampling, cancel, |_| u64::MAX)
 }
@@ -110,7 +111,7 @@ fn run_within(
     setting: &Setting,
     perturbation: f64,
     sampling: Sampling,
-    cancel: &AtomicBool,
+    cancel: &Arc<AtomicBool>,
     most_iterations: impl Fn(&Work) -> u64,
 ) -> Result<RunResult, Failure> {
     let (resolved, mut simulation) = ready(source, setting)?;
@@ -120,6 +121,7 @@ fn run_within(
         (None, None) => 0..0,
     };
     simulation.state.q[first].iter_mut().for_each(|q| *q *= 1.0 + perturbation);
+    simulation.cancelled_by(Arc::clone(cancel));
     let layout = simulation.layout.clone();
     let mut sampler = Sampler::new(sampling, &layout, cancel);
     // The warnings of `teeter run` are only known to the observers of a run.
@@ -146,17 +148,19 @@ fn run_within(
 
 /// CPU time of the steps of a run without output, s: of this thread alone, without building the
 /// model.
-pub(crate) fn time(source: &StudyScene, setting: &Setting, cancel: &AtomicBool) -> Result<f64, Failure> {
+pub(crate) fn time(source: &StudyScene, setting: &Setting, cancel: &Arc<AtomicBool>) -> Result<f64, Failure> {
     if cancel.load(Ordering::Relaxed) {
         return Err(Failure::Interrupted);
     }
     let (_, mut simulation) = ready(source, setting)?;
+    simulation.cancelled_by(Arc::clone(cancel));
     let clock = ThreadTime::now();
     let ended = simulation.run(&mut []).map_err(|error| Failure::Ended(error.to_string()))?;
     let seconds = clock.elapsed().as_secs_f64();
     // The time of an incomplete run is meaningless.
     match ended {
         Ended::Complete => Ok(seconds),
+        Ended::Interrupted => Err(Failure::Interrupted),
         Ended::Failed(error) => Err(Failure::Ended(error.to_string())),
         _ => Err(Failure::Ended("the run was incomplete".to_owned())),
     }

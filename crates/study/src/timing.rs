@@ -3,6 +3,7 @@
 
 use crate::simulate::time;
 use crate::{Failure, Setting, StudyScene};
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// The CPU time of the steps of a run, s.
@@ -47,7 +48,7 @@ fn runs(modelled: f64) -> usize {
 pub(crate) fn in_turns(
     source: &StudyScene,
     settings: &[(&Setting, f64)],
-    cancel: &AtomicBool,
+    cancel: &Arc<AtomicBool>,
     done: &mut dyn FnMut(usize, usize),
 ) -> Result<Vec<Option<CpuTime>>, Failure> {
     let most = settings.iter().map(|(_, modelled)| runs(*modelled)).max().unwrap_or(0);

@@ -8,6 +8,7 @@ use crate::search::{self, PlannedSetting, SearchState};
 use crate::simulate::{expect, simulate_within_limit};
 use crate::{Failure, Sampling, Setting, StudyScene, runner, timing};
 use std::collections::BTreeSet;
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use teeter_scenario::resolve::Resolved;
 
@@ -61,7 +62,7 @@ pub type ReportProgress<'a> = dyn FnMut(&str, usize, usize) + Send + 'a;
 struct Run<'a> {
     source: &'a StudyScene,
     threads: usize,
-    cancel: &'a AtomicBool,
+    cancel: &'a Arc<AtomicBool>,
 }
 
 impl Tradeoff {
@@ -73,7 +74,7 @@ impl Tradeoff {
         source: &StudyScene,
         resolved: &Resolved,
         threads: usize,
-        cancel: &AtomicBool,
+        cancel: &Arc<AtomicBool>,
         tell: &mut ReportProgress<'_>,
     ) -> Result<Self, Failure> {
         let scene = &resolved.scene;
@@ -281,7 +282,7 @@ impl Tradeoff {
         settings: Vec<Setting>,
         source: &StudyScene,
         threads: usize,
-        cancel: &AtomicBool,
+        cancel: &Arc<AtomicBool>,
     ) -> Result<Vec<Row>, Failure> {
         self.tried(settings, 0, &Run { source, threads, cancel }, |_| {})
     }
@@ -306,7 +307,12 @@ impl Tradeoff {
         timed
     }
 
-    fn time(&mut self, source: &StudyScene, cancel: &AtomicBool, tell: &mut ReportProgress<'_>) -> Result<(), Failure> {
+    fn time(
+        &mut self,
+        source: &StudyScene,
+        cancel: &Arc<AtomicBool>,
+        tell: &mut ReportProgress<'_>,
+    ) -> Result<(), Failure> {
         let timed = self.to_time();
         let settings: Vec<(&Setting, f64)> =
             timed.iter().map(|&row| (&self.rows[row].setting, self.rows[row].modelled().unwrap_or(0.0))).collect();

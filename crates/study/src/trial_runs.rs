@@ -2,6 +2,7 @@
 
 use crate::sampled_motion::Sampler;
 use crate::{Failure, SampledMotion, Sampling, Work};
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use teeter_report::Record;
 use teeter_scenario::scene::Scene;
@@ -11,7 +12,7 @@ use teeter_scenario::simulation::Simulation;
 pub(crate) struct TrialRuns<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) sampling: Sampling,
-    pub(crate) cancel: &'a AtomicBool,
+    pub(crate) cancel: &'a Arc<AtomicBool>,
     /// Runs that would take longer, by counted work, are not done, s.
     pub(crate) most_seconds: f64,
     /// Number of runs so far.
@@ -29,6 +30,7 @@ impl TrialRuns<'_> {
         if Work::expected(&simulation).seconds() > self.most_seconds {
             return Ok(None);
         }
+        simulation.cancelled_by(Arc::clone(self.cancel));
         self.runs += 1;
         let layout = simulation.layout.clone();
         match (layout.blocks.first(), layout.beams.first()) {

@@ -11,7 +11,7 @@
 mod odd_files;
 mod rows;
 
-use rows::{Input, Row, STACKED, rows};
+use rows::{Input, PILE, Row, STACKED, rows};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -97,6 +97,7 @@ fn run_row(row: &Row, missing: &mut String) -> String {
         Input::Set(sets) => (base(), sets),
         Input::Edit(changes) => (edited(&what, base(), changes), &[]),
         Input::Stack(changes) => (edited(&what, STACKED.to_owned(), changes), &[]),
+        Input::Pile(changes) => (edited(&what, PILE.to_owned(), changes), &[]),
         Input::Text(text) => ((*text).to_owned(), &[]),
         Input::Record(record) => {
             if let Some(record) = record {

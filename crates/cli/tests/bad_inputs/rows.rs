@@ -11,6 +11,8 @@ pub(crate) enum Input {
     Text(&'static str),
     /// A scene of two blocks on each other with pieces replaced.
     Stack(&'static [(&'static str, &'static str)]),
+    /// A scene of 36 stones in rows, with pieces replaced.
+    Pile(&'static [(&'static str, &'static str)]),
     /// The base scene on ground that is shaken by this record; what is absent is a file that isn't
     /// there.
     Record(Option<&'static str>),
@@ -28,7 +30,7 @@ pub(crate) struct Row {
     pub(crate) warns: bool,
 }
 
-use Input::{Edit, Record, Set, Shape, Stack, Text};
+use Input::{Edit, Pile, Record, Set, Shape, Stack, Text};
 
 const fn refused(number: u32, what: &'static str, input: Input, says: &'static [&'static str]) -> Row {
     Row { number, what, input, says, warns: false }
@@ -89,6 +91,26 @@ friction = 0.5
 const RAIL_0: &str = "at = \"0 cm\"\nmotion = { velocity = [\"1 m/s\", \"0 m/s\"], angular_velocity = \"0 rad/s\" }";
 const RAIL_1: &str = "at = \"1 cm\"\nmotion = { velocity = [\"1 m/s\", \"0 m/s\"], angular_velocity = \"0 rad/s\" }";
 
+/// Stones in rows, of which any two can touch.
+pub(crate) const PILE: &str = "\
+[time]
+end = \"1 s\"
+step = \"1 ms\"
+[ground]
+[material.oak]
+density = \"700 kg/m^3\"
+[block.stone]
+material = \"oak\"
+width = \"10 cm\"
+height = \"10 cm\"
+depth = \"10 cm\"
+position = [\"0 m\", \"6 cm\"]
+repeat = { count = 6, shift = [\"12 cm\", \"0 cm\"], rows = 6, row_shift = [\"0 cm\", \"12 cm\"] }
+[contact.all]
+between = [\"*\", \"*\"]
+friction = 0.5
+";
+
 /// A block on a block on the ground.
 pub(crate) const STACKED: &str = "\
 [time]
@@ -128,6 +150,7 @@ pub(crate) fn rows() -> Vec<Row> {
     rows.extend(histories());
     rows.extend(laws());
     rows.extend(beams());
+    rows.extend(crowds());
     rows
 }
 
@@ -322,5 +345,30 @@ fn beams() -> Vec<Row> {
         refused(8, "stop without brackets", Set(&["time.stop=overturned"]), &["time.stop", "array"]),
         refused(8, "stop twice", Set(&["time.stop=['rest', 'rest']"]), &["time.stop"]),
         warned(38, "thick beam without shear", Set(&["beam.table.thickness=4 cm"]), &["warning: beam.table.theory", "0.11 of the span", "timoshenko"]),
+    ]
+}
+
+/// Many blocks whose pairs are not listed one by one, and copies at random places.
+#[rustfmt::skip] // a row a line
+fn crowds() -> Vec<Row> {
+    const REPEAT: &str = "[\"0 cm\", \"12 cm\"] }";
+    const PLACE: &str = "position = [\"0 m\", \"6 cm\"]";
+    const ROWS: &str = "repeat = { count = 6, shift = [\"12 cm\", \"0 cm\"], rows = 6, row_shift = [\"0 cm\", \"12 cm\"] }";
+    vec![
+        refused(52, "two patterns that say as much", Pile(&[("[contact.all]", "[contact.one]\nbetween = [\"stone-*\", \"*\"]\nfriction = 0.3\n[contact.other]\nbetween = [\"*\", \"stone-*\"]\nfriction = 0.4\n[contact.all]")]), &["contact.other.between", "says no more of the bodies than `one`"]),
+        refused(52, "stones that are all prescribed", Pile(&[("[contact.all]", "[block.stone.motion]\nvelocity = [\"1 m/s\", \"0 m/s\"]\nangular_velocity = \"0 rad/s\"\n[contact.all]")]), &["contact.all.between", "can't yield to it", "world.apart"]),
+        refused(52, "contact of a pair that is kept apart", Pile(&[("[contact.all]", "[world]\napart = [[\"stone-*\", \"stone-*\"]]\n[contact.one]\nbetween = [\"stone-1\", \"stone-2\"]\nfriction = 0.9\n[contact.all]")]), &["contact.one.between", "world.apart"]),
+        refused(52, "more stones than pairs can be numbered of", Pile(&[("count = 6", "count = 200"), ("rows = 6", "rows = 165")]), &["block", "33000 blocks of which any two may touch", "32768", "use fewer blocks"]),
+        refused(52, "negative friction of a crowd", Pile(&[("friction = 0.5", "friction = -0.5")]), &["contact.all.friction = -0.5"]),
+        refused(52, "stones that start inside each other", Pile(&[("[\"12 cm\", \"0 cm\"]", "[\"9 cm\", \"0 cm\"]")]), &["stone-2", "overlaps", "stone-1"]),
+        refused(52, "a crowd on a beam in equilibrium", Pile(&[(ROWS, "repeat = { count = 40, stacked = true }"), (PLACE, "on = \"floor\"\nat = \"3 m\""), ("[ground]\n", ""), ("density = \"700 kg/m^3\"", "density = \"700 kg/m^3\"\nyoungs_modulus = \"11 GPa\"\n[beam.floor]\nmaterial = \"oak\"\nspan = \"6 m\"\nwidth = \"20 cm\"\nthickness = \"30 cm\"\nelements = 20\nsupports = [\"pinned\", \"pinned\"]\nstart = \"static\"")]), &["beam.floor.start", "only with up to 400", "start undeformed"]),
+        refused(53, "negative jitter", Pile(&[(REPEAT, "[\"0 cm\", \"12 cm\"], jitter = [\"-1 mm\", \"1 mm\"] }")]), &["block.stone.repeat.jitter", "0 m"]),
+        refused(53, "jitter without y", Pile(&[(REPEAT, "[\"0 cm\", \"12 cm\"], jitter = [\"1 mm\"] }")]), &["block.stone.repeat.jitter", "array of two"]),
+        refused(53, "jitter into each other", Pile(&[(REPEAT, "[\"0 cm\", \"12 cm\"], jitter = [\"6 cm\", \"6 cm\"] }")]), &["block.stone", "overlaps"]),
+        refused(53, "jitter that lifts off the ground", Pile(&[(ROWS, "repeat = { count = 6, shift = [\"12 cm\", \"0 cm\"], jitter = [\"1 mm\", \"1 mm\"] }"), (PLACE, "on = \"ground\"\nat = \"0 m\"")]), &["block.stone.repeat.jitter", "shifted only along x", "set y to 0"]),
+        refused(53, "random angles on the ground", Pile(&[(ROWS, "repeat = { count = 6, shift = [\"12 cm\", \"0 cm\"], jitter_angle = \"5 deg\" }"), (PLACE, "on = \"ground\"\nat = \"0 m\"")]), &["block.stone.repeat.jitter_angle", "only about a position", "leave it out"]),
+        refused(53, "seed that is no whole number", Pile(&[(REPEAT, "[\"0 cm\", \"12 cm\"], jitter = [\"1 mm\", \"1 mm\"], seed = 1.5 }")]), &["block.stone.repeat.seed = 1.5"]),
+        refused(53, "negative seed", Pile(&[(REPEAT, "[\"0 cm\", \"12 cm\"], jitter = [\"1 mm\", \"1 mm\"], seed = -1 }")]), &["block.stone.repeat.seed = -1"]),
+        warned(53, "seed of nothing random", Pile(&[(REPEAT, "[\"0 cm\", \"12 cm\"], seed = 1 }")]), &["warning: block.stone.repeat.seed", "nothing is random"]),
     ]
 }

@@ -9,6 +9,7 @@ use teeter_rigid::{MassProperties, RigidError};
 
 use super::Resolver;
 use super::contacts::Joined;
+use super::jitter;
 use super::names::BlockName;
 use super::outlines::{self, Drawn, Refusal, ShapeKeys, Way};
 use crate::scene::{
@@ -104,12 +105,13 @@ impl Resolver<'_, '_> {
             shift.map(|shift| steps as f64 * shift)
         };
         let (shift, of_row) = (along("repeat.shift", block.place[0]), along("repeat.row_shift", block.place[1]));
-        let shift = [shift[0] + of_row[0], shift[1] + of_row[1]];
+        let (jitter, turned) = self.jitter(block);
+        let shift = [0, 1].map(|axis| shift[axis] + of_row[axis] + jitter[axis]);
         self.check_placement_keys(&path).ok()?;
         let free = |[x, y]: [f64; 2], angle: f64| Placement::Free { position: [x + shift[0], y + shift[1]], angle };
         if self.is_written(&at("position")) {
             let (position, angle) = (self.pair(&at("position")), self.quantity(&at("angle")));
-            return Some(free(position?, angle?));
+            return Some(free(position?, angle? + turned));
         }
         let [x, y] = shape.centre;
         if self.is_written(&at("centre")) {
@@ -124,6 +126,16 @@ impl Resolver<'_, '_> {
             return Some(free([x, y], 0.0));
         }
         self.placement_on(block, shift, contacts, joined)
+    }
+
+    /// By how much a copy is displaced (m) and turned (rad) at random.
+    fn jitter(&self, block: &BlockName) -> ([f64; 2], f64) {
+        let at = |key: &str| format!("block.{}.repeat.{key}", block.table);
+        let most = self.doc.pair(&at("jitter")).unwrap_or_default();
+        let most_angle = self.doc.quantity(&at("jitter_angle")).unwrap_or_default();
+        let seed = self.doc.integer(&at("seed")).unwrap_or_default();
+        let [x, y, angle] = jitter::of_copy(seed, &block.table, block.copy);
+        ([x * most[0], y * most[1]], angle * most_angle)
     }
 
     /// Whether the document has a value at a path, valid or not.
@@ -144,6 +156,11 @@ impl Resolver<'_, '_> {
             Some(key) if centre => {
                 (key, "centre already gives the place of the block", "keep centre, or on, at and tilt")
             }
+            _ if !position && self.doc.quantity(&at("repeat.jitter_angle")).is_some_and(|angle| angle > 0.0) => (
+                "repeat.jitter_angle",
+                "blocks are turned at random only about a position",
+                "leave it out, or give position instead of on, at or centre",
+            ),
             _ if position && centre => ("centre", "position already gives the place of the block", "keep one of them"),
             _ if position && self.doc.flag(&at("repeat.stacked")) == Some(true) => (
                 "repeat.stacked",
@@ -184,7 +201,7 @@ impl Resolver<'_, '_> {
             self.error(&at("at"), "required with on", "give x of the midpoint of its base, such as at = \"18 cm\"");
         }
         // Told at the key that does it, once for all copies.
-        for (key, of) in [("repeat.shift", [1, 0]), ("repeat.row_shift", [0, 1])] {
+        for (key, of) in [("repeat.shift", [1, 0]), ("repeat.row_shift", [0, 1]), ("repeat.jitter", [0, 0])] {
             let lifts = doc.pair(&at(key)).is_some_and(|shift| shift[1] != 0.0);
             if lifts && block.place == of {
                 let rule = "blocks that stand on something can be shifted only along x";
@@ -202,7 +219,12 @@ impl Resolver<'_, '_> {
         }
         // A stacked block lies flat on the one before.
         let stacked = block.stands_on.is_some();
-        let (at, tilt) = if stacked { (shift[0] / block.copy as f64, 0.0) } else { (x? + shift[0], tilt?) };
+        let along_side = self.jitter(block).0[0];
+        let (at, tilt) = if stacked {
+            ((shift[0] - along_side) / block.copy as f64 + along_side, 0.0)
+        } else {
+            (x? + shift[0], tilt?)
+        };
         Some(Placement::On { support, at, stacked, tilt, contact: contact? })
     }
 

@@ -267,3 +267,70 @@ fn a_contact_by_a_pattern_that_is_not_resolved_is_told_once() {
         assert_eq!(told.count(), 1, "{boxes}");
     }
 }
+
+/// Stones at random places.
+fn jittered(more: &str) -> Result<Resolved, String> {
+    let rows =
+        format!("repeat = {{ count = 6, shift = ['13 cm', '0 cm'], rows = 5, row_shift = ['0 cm', '13 cm']{more} }}");
+    let text = tower(6, ALL)
+        .replace("repeat = { count = 6, stacked = true }", &rows)
+        .replace("on = 'ground'\nat = '0 m'", "position = ['0 m', '10 cm']");
+    load(text.as_bytes(), "f", "f", &[]).map_err(|found| found.to_string())
+}
+
+#[test]
+fn the_same_seed_gives_the_same_places_within_their_bounds() {
+    let places = |more: &str| Simulation::new(&jittered(more).unwrap().scene).unwrap().state.q;
+    let even = places("");
+    let one = places(", jitter = ['9 mm', '4 mm'], jitter_angle = '3 deg', seed = 5");
+    assert_eq!(one, places(", jitter = ['9 mm', '4 mm'], jitter_angle = '3 deg', seed = 5"));
+    let other = places(", jitter = ['9 mm', '4 mm'], jitter_angle = '3 deg', seed = 6");
+    let half = places(", jitter = ['4.5 mm', '2 mm'], jitter_angle = '1.5 deg', seed = 5");
+    for (k, most) in [9e-3, 4e-3, 3_f64.to_radians()].into_iter().enumerate() {
+        let off = |q: &[f64]| -> Vec<f64> { (k..q.len()).step_by(3).map(|i| q[i] - even[i]).collect() };
+        let (one, other, half) = (off(&one), off(&other), off(&half));
+        assert!(one.iter().zip(&other).all(|(a, b)| a != b));
+        assert!(one.iter().zip(&half).all(|(a, b)| (a - 2.0 * b).abs() < 1e-12), "the same places, but nearer");
+        let largest = one.iter().fold(0.0_f64, |largest, off| largest.max(off.abs()));
+        assert!(largest <= most && largest > 0.8 * most, "{largest} of {most}");
+    }
+    let on_ground = "repeat = { count = 6, shift = ['13 cm', '0 cm'], jitter = ['9 mm', '0 mm'] }";
+    let resolved = loaded(&tower(6, ALL).replace("repeat = { count = 6, stacked = true }", on_ground));
+    let q = Simulation::new(&resolved.scene).unwrap().state.q;
+    assert!(
+        (0..6)
+            .all(|k| q[3 * k] != 0.13 * k as f64 && (q[3 * k] - 0.13 * k as f64).abs() < 9e-3 && q[3 * k + 1] == 0.05)
+    );
+    // Those of a stack lie off the ones below.
+    let stacked = "repeat = { count = 6, stacked = true, jitter = ['9 mm', '0 mm'] }";
+    let resolved = loaded(&tower(6, ALL).replace("repeat = { count = 6, stacked = true }", stacked));
+    let q = Simulation::new(&resolved.scene).unwrap().state.q;
+    assert!((1..6).all(|k| (q[3 * k] - q[3 * k - 3]).abs() < 9e-3 && q[3 * k] != q[3 * k - 3]));
+}
+
+#[test]
+fn jitter_that_makes_no_sense_is_told() {
+    assert!(jittered(", jitter = ['-1 mm', '0 mm']").unwrap_err().contains("block.box.repeat.jitter"));
+    let warned = jittered(", seed = 3").unwrap().warnings;
+    assert_eq!(warned.iter().map(|found| found.path.as_str()).collect::<Vec<_>>(), ["block.box.repeat.seed"]);
+    let overlaps = Simulation::new(&jittered(", jitter = ['5 cm', '5 cm']").unwrap().scene).unwrap_err();
+    assert!(overlaps.to_string().contains("overlaps"), "{overlaps}");
+}
+
+#[test]
+fn a_crowd_on_a_beam_with_a_static_start_is_refused_with_its_remedy() {
+    let beam = "[beam.floor]\nmaterial = 'm'\nspan = '6 m'\nwidth = '20 cm'\nthickness = '30 cm'\nelements = 20\n\
+                supports = ['pinned', 'pinned']\nstart = 'static'\n";
+    let on_beam = |start: &str| {
+        let text = tower(30, "[contact.all]\nbetween = ['*', '*']\nfriction = 0.5\n")
+            .replace("on = 'ground'\nat = '0 m'", "on = 'floor'\nat = '3 m'")
+            .replace("[ground]\n", "")
+            .replace("density = '700 kg/m^3'", "density = '700 kg/m^3'\nyoungs_modulus = '11 GPa'");
+        load((text + &beam.replace("static", start)).as_bytes(), "f", "f", &[])
+    };
+    let told = on_beam("static").unwrap_err();
+    assert_eq!(told.0.iter().map(|found| found.path.as_str()).collect::<Vec<_>>(), ["beam.floor.start"]);
+    let told = told.to_string();
+    assert!(told.contains("only with up to 400") && told.contains("start undeformed"), "{told}");
+    assert!(on_beam("undeformed").is_ok());
+}

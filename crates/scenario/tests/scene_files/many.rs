@@ -1,7 +1,7 @@
 //! Scenes of many blocks: what they are told to cost, and when they are too many.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, Stop, Vector};
 use teeter_scenario::load;
 use teeter_scenario::output_size::{MOST_OPERATOR_BYTES, accuracy_of_seconds, expected_seconds, operator_bytes};
@@ -103,4 +103,67 @@ fn blocks_that_stand_apart_are_solved_one_by_one_to_the_same_bytes() {
     assert_eq!((few.state.tally.max_contacts, many.state.tally.max_contacts), (40, 140));
     assert_eq!(many.state.tally.unconverged_steps, 0);
     assert!(many.state.tally.max_residual < 1e-14);
+}
+
+/// Sets a flag in its solve of a given number, and then spoils what it has found, as a solver does that is cut short.
+struct CutShort {
+    solver: Box<dyn ContactSolver<2>>,
+    left: u32,
+    flag: Arc<AtomicBool>,
+}
+
+impl ContactSolver<2> for CutShort {
+    fn name(&self) -> &'static str {
+        self.solver.name()
+    }
+    fn law(&self) -> Law {
+        self.solver.law()
+    }
+    fn reserve(&mut self, contacts: usize, blocks: usize) {
+        self.solver.reserve(contacts, blocks);
+    }
+    fn solve(&mut self, problem: &ContactProblem<'_, 2>, stop: &Stop<'_>, p: &mut [Vector<2>]) -> Outcome {
+        self.left = self.left.wrapping_sub(1);
+        self.flag.fetch_or(self.left == 0, Ordering::Relaxed);
+        let outcome = self.solver.solve(problem, stop, p);
+        if stop.cancelled() {
+            p.iter_mut().for_each(|p| *p *= 1.5);
+        }
+        outcome
+    }
+    fn fork(&self) -> Box<dyn ContactSolver<2>> {
+        Box::new(Self { solver: self.solver.fork(), left: self.left, flag: Arc::clone(&self.flag) })
+    }
+}
+
+#[test]
+fn a_step_that_is_abandoned_leaves_the_last_whole_one_and_is_taken_again_to_the_same_bytes() {
+    let schemes = ["moreau-jean", "moreau-jean-closed", "moreau-jean-located", "moreau-jean-projected"];
+    let more = ["generalized-alpha", "event-driven", "resolved"];
+    for (scheme, solves) in schemes.into_iter().chain(more).flat_map(|scheme| [(scheme, 1), (scheme, 3)]) {
+        let sets = [("time.scheme".to_owned(), scheme.to_owned()), ("time.end".to_owned(), "5 ms".to_owned())];
+        let scene = load(row_of_blocks(3, "ground").as_bytes(), "f", "f", &sets).unwrap().scene;
+        let mut alone = Simulation::new(&scene).unwrap();
+        assert_eq!(alone.run(&mut []).unwrap(), teeter_integrator::Ended::Complete, "{scheme}");
+
+        let flag = Arc::new(AtomicBool::new(false));
+        let cut = |solver| Box::new(CutShort { solver, left: solves, flag: Arc::clone(&flag) }) as _;
+        let mut parts = Simulation::with_solver(&scene, cut).unwrap();
+        parts.cancelled_by(Arc::clone(&flag));
+        let ended = parts.run(&mut []).unwrap();
+        if solves > 1 && !flag.load(Ordering::Relaxed) {
+            // Blocks at rest need no more of them.
+            assert_eq!((ended, scheme), (teeter_integrator::Ended::Complete, "event-driven"));
+            continue;
+        }
+        assert_eq!(ended, teeter_integrator::Ended::Interrupted, "{scheme}");
+        assert!(flag.swap(false, Ordering::Relaxed) && parts.state.step < alone.state.step, "{scheme}");
+        let mut whole = Simulation::new(&scene).unwrap();
+        while whole.state.step < parts.state.step {
+            whole.step().unwrap();
+        }
+        assert_eq!(parts.state, whole.state, "{scheme}");
+        assert_eq!(parts.run(&mut []).unwrap(), teeter_integrator::Ended::Complete, "{scheme}");
+        assert_eq!(parts.state, alone.state, "{scheme}");
+    }
 }

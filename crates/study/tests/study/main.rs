@@ -2,23 +2,24 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use teeter_study::{
     Advice, ConfirmedErrors, Failure, Quantity, Row, SettingWarning, StudyScene, TARGETS, Tradeoff, runner, write,
 };
 
 fn study(scenario: &str, sets: &[(&str, &str)]) -> Tradeoff {
-    with(scenario, sets, &AtomicBool::new(false)).expect("a study")
+    with(scenario, sets, &Arc::default()).expect("a study")
 }
 
 /// A study of a scene in a text.
 fn of_text(text: &str) -> Tradeoff {
     let mut read = |_: &str| Err("no other file".to_owned());
     let (source, resolved) = StudyScene::new(text.as_bytes().to_vec(), "s.toml", "s", &[], &mut read).expect("a scene");
-    Tradeoff::of(&source, &resolved, 2, &AtomicBool::new(false), &mut |_, _, _| {}).expect("a study")
+    Tradeoff::of(&source, &resolved, 2, &Arc::default(), &mut |_, _, _| {}).expect("a study")
 }
 
-fn with(scenario: &str, sets: &[(&str, &str)], cancel: &AtomicBool) -> Result<Tradeoff, Failure> {
+fn with(scenario: &str, sets: &[(&str, &str)], cancel: &Arc<AtomicBool>) -> Result<Tradeoff, Failure> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(format!("{scenario}.toml"));
     let sets: Vec<_> = sets.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
     let bytes = std::fs::read(path).unwrap();
@@ -116,7 +117,7 @@ fn a_refused_candidate_is_a_row_with_its_reason() {
 
 #[test]
 fn an_interrupted_study_says_so() {
-    let cancel = AtomicBool::new(true);
+    let cancel = Arc::new(AtomicBool::new(true));
     assert_eq!(with("sliding", &[], &cancel), Err(Failure::Interrupted));
     assert!(cancel.load(Ordering::Relaxed));
 }
@@ -223,7 +224,7 @@ fn what_is_advised_costs_hardly_more_than_the_cheapest_of_the_whole_grid() {
     let mut read = |_: &str| Err("no other file".to_owned());
     let (source, resolved) =
         StudyScene::new(std::fs::read(path).unwrap(), "s.toml", "s", &sets, &mut read).expect("a scene");
-    let cancel = AtomicBool::new(false);
+    let cancel = Arc::new(AtomicBool::new(false));
     let study = Tradeoff::of(&source, &resolved, runner::cores(), &cancel, &mut |_, _, _| {}).expect("a study");
     // The coarser half of the ladder, as what is finer is dearer than what is advised here; and two
     // more, which show what was luck.
