@@ -107,7 +107,7 @@ impl Resolver<'_, '_> {
         let (shift, of_row) = (along("repeat.shift", block.place[0]), along("repeat.row_shift", block.place[1]));
         let (jitter, turned) = self.jitter(block);
         let shift = [0, 1].map(|axis| shift[axis] + of_row[axis] + jitter[axis]);
-        self.check_placement_keys(&path).ok()?;
+        self.check_placement_keys(&path, block.copy == 0).ok()?;
         let free = |[x, y]: [f64; 2], angle: f64| Placement::Free { position: [x + shift[0], y + shift[1]], angle };
         if self.is_written(&at("position")) {
             let (position, angle) = (self.pair(&at("position")), self.quantity(&at("angle")));
@@ -144,7 +144,7 @@ impl Resolver<'_, '_> {
     }
 
     /// Refuses mutually exclusive keys of the placement of a block.
-    fn check_placement_keys(&mut self, path: &str) -> Result<(), AlreadyReported> {
+    fn check_placement_keys(&mut self, path: &str, is_first: bool) -> Result<(), AlreadyReported> {
         let at = |key: &str| format!("{path}.{key}");
         let standing = ["on", "at", "tilt"].into_iter().find(|key| self.is_written(&at(key)));
         let position = self.is_written(&at("position"));
@@ -177,7 +177,10 @@ impl Resolver<'_, '_> {
             }
             _ => return Ok(()),
         };
-        self.error(&at(key), rule, remedy);
+        // Once for all copies.
+        if is_first {
+            self.error(&at(key), rule, remedy);
+        }
         Err(AlreadyReported)
     }
 
