@@ -34,7 +34,9 @@ pub use checkpoint::{
 };
 pub use export::{ExportWhen, Exporter, Former, HARD, Watch};
 pub use made_energy::ENERGY_MADE;
-pub use page::{HalfCycle, PageRecorder, STYLE, escaped, figures, half_cycles, render};
+pub use page::{
+    HalfCycle, Joint, PageRecorder, STYLE, ThrustLine, escaped, figures, half_cycles, render, thrust_lines,
+};
 pub use recorder::{ImpactRow, Record, Recorder};
 pub use results::{FILES, Reserved, Results, ResultsError};
 pub use run_recorder::{Origin, RunRecorder};
