@@ -71,6 +71,13 @@ pub(crate) struct Network {
 const MOST_LINKS: usize = 200_000;
 
 impl Network {
+    /// A network of so many pictures of so many blocks, with memory for what they usually have.
+    pub(crate) fn new(pictures: usize, blocks: usize) -> Self {
+        // A block in a pile touches four others, each of which shares the link.
+        let usual = (3 * blocks * pictures).min(MOST_LINKS);
+        Self { links: Vec::with_capacity(usual), ends: Vec::with_capacity(pictures), pending: Vec::new() }
+    }
+
     /// Takes the contacts of a step, or of a part of it, in.
     #[inline]
     pub(crate) fn add(&mut self, contacts: &[Contact<2>]) {
@@ -114,19 +121,25 @@ impl Network {
 
     /// Follows pictures of which every second has gone.
     pub(crate) fn halve(&mut self) {
-        let (mut links, mut ends) = (Vec::with_capacity(self.links.len()), Vec::with_capacity(self.ends.len()));
-        for picture in (0..self.ends.len()).step_by(2) {
-            let mut joined = picture.checked_sub(1).map_or(Vec::new(), |gone| self.before(gone).to_vec());
-            join(&mut joined, self.before(picture));
-            links.append(&mut joined);
-            ends.push(links.len());
+        let (mut joined, mut written, mut start) = (Vec::new(), 0, 0);
+        let pictures = self.ends.len();
+        // What is written never reaches what is still to be read: joined, there are no more of them.
+        for picture in 0..pictures {
+            let end = self.ends[picture];
+            join(&mut joined, &self.links[start..end]);
+            start = end;
+            if picture.is_multiple_of(2) {
+                self.links[written..written + joined.len()].copy_from_slice(&joined);
+                written += joined.len();
+                self.ends[picture / 2] = written;
+                joined.clear();
+            }
         }
-        if self.ends.len().is_multiple_of(2) && !self.ends.is_empty() {
-            let mut joined = self.before(self.ends.len() - 1).to_vec();
-            join(&mut joined, &self.pending);
-            self.pending = joined;
-        }
-        (self.links, self.ends) = (links, ends);
+        self.links.truncate(written);
+        self.ends.truncate(pictures.div_ceil(2));
+        // Those of a last picture that has gone belong to the next one.
+        join(&mut joined, &self.pending);
+        std::mem::swap(&mut self.pending, &mut joined);
     }
 
     /// The links before each of `pictures`, the last of which may be the end of the run.

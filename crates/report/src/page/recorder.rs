@@ -147,7 +147,7 @@ impl PageRecorder {
         Self {
             kept: Kept {
                 frames: Frames::new(pictures, frame),
-                network: Network::default(),
+                network: if scenery.has_network() { Network::new(pictures, scenery.blocks.len()) } else { Network::default() },
                 curves: Curves::new(bucket_capacity, 0.0, vec![0.0; columns], points),
                 impacts: Vec::new(),
                 impact_count: 0,
