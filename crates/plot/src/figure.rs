@@ -33,7 +33,7 @@ pub struct Figure {
 /// 4 units are a millimetre: a width of 480 is a page column of 12 cm, and a font size of 11 is
 /// 2.75 mm or 7.8 pt.
 pub(crate) const WIDTH: f64 = 480.0;
-const UNITS_PER_MM: f64 = 4.0;
+pub(crate) const UNITS_PER_MM: f64 = 4.0;
 pub(crate) const LEFT: f64 = 64.0;
 pub(crate) const RIGHT: f64 = 12.0;
 const HEADING: f64 = 18.0;

@@ -58,6 +58,7 @@ pub(crate) enum Symbol {
     Line(usize),
     Marks { mark: Mark, hollow: bool, number: usize },
     Swatch(Colour),
+    Area(usize),
 }
 
 impl<'a> Entry<'a> {
@@ -66,6 +67,7 @@ impl<'a> Entry<'a> {
         let symbol = match series.drawn {
             Drawn::Line => Symbol::Line(number),
             Drawn::Marks { mark, hollow } => Symbol::Marks { mark, hollow, number },
+            Drawn::Area => Symbol::Area(number),
         };
         (!series.label().is_empty()).then_some(Self { symbol, name: series.label() })
     }
@@ -79,6 +81,12 @@ impl<'a> Entry<'a> {
                 let place = mark_path(mark, x + 7.0, y - 3.5);
                 write!(svg, "<path d=\"{place}\" {}/>", mark_style(number, hollow, theme))
             }
+            Symbol::Area(number) => write!(
+                svg,
+                "<rect x=\"{x:.2}\" y=\"{:.2}\" width=\"14\" height=\"8\" {}/>",
+                y - 8.0,
+                area_style(number, theme)
+            ),
             Symbol::Swatch(colour) => write!(
                 svg,
                 "<rect x=\"{x:.2}\" y=\"{:.2}\" width=\"14\" height=\"8\" fill=\"{}\" stroke=\"{}\" stroke-width=\".4\"/>",
@@ -161,6 +169,11 @@ const DASHES: [&str; 3] = ["none", "5 2.5", "1.5 2"];
 pub(crate) fn stroke(number: usize, theme: Theme) -> String {
     let (colour, dash) = (Colour::Series(number), DASHES[number / crate::theme::SERIES_COLOURS % DASHES.len()]);
     format!("stroke=\"{}\" stroke-dasharray=\"{dash}\"", colour.value(theme))
+}
+
+/// The style of an area: light, so that several can be told apart where they overlap.
+pub(crate) fn area_style(number: usize, theme: Theme) -> String {
+    format!("fill=\"{}\" fill-opacity=\".22\" stroke=\"none\"", Colour::Series(number).value(theme))
 }
 
 /// Colours of marks: hollow ones are open, filled ones have a thin edge in the background colour,

@@ -3,7 +3,7 @@
 //!
 //! A [`Figure`] is one or more stacked [`Panel`]s that share an x [`Axis`]. A panel has a y axis
 //! with [`Series`] (lines, staircases, marks), or rows of [`Band`]s such as the states of a
-//! contact. A figure is 120 mm wide, without scripts or external resources. Output is
+//! contact. A [`Drawing`] shows outlines and lines to scale. Both are 120 mm wide, without scripts or external resources. Output is
 //! deterministic.
 //!
 //! Axes are created first, from the values to be shown: [`Axis::linear`] and [`Axis::logarithmic`]
@@ -31,6 +31,7 @@
 //! ```
 
 mod axis;
+mod drawing;
 mod error;
 mod escape;
 mod figure;
@@ -41,6 +42,7 @@ mod theme;
 mod ticks;
 
 pub use axis::Axis;
+pub use drawing::Drawing;
 pub use error::AxisError;
 pub use escape::escaped;
 pub use figure::Figure;

@@ -1,7 +1,7 @@
 //! A panel: series on axes, or rows of bands.
 
 use crate::figure::{Frame, LEFT};
-use crate::legend::{Entry, Legend, Symbol, mark_path, mark_style, stroke};
+use crate::legend::{Entry, Legend, Symbol, area_style, mark_path, mark_style, stroke};
 use crate::series::Drawn;
 use crate::theme::{Colour, Theme};
 use crate::{Axis, Series, escaped};
@@ -188,6 +188,10 @@ impl Panel {
                 frame.px(x),
                 Colour::Guide.value(theme)
             );
+        }
+        for (k, area) in series.iter().enumerate().filter(|(_, series)| series.drawn == Drawn::Area) {
+            let path = line_path(area.points(), |x| frame.px(x), py);
+            let _ = writeln!(svg, "<path d=\"{path}\" {}/>", area_style(area.number_at(k), theme));
         }
         for (k, line) in series.iter().enumerate().filter(|(_, series)| series.drawn == Drawn::Line) {
             let path = line_path(line.points(), |x| frame.px(x), py);

@@ -18,6 +18,7 @@ pub struct Series {
 pub(crate) enum Drawn {
     Line,
     Marks { mark: Mark, hollow: bool },
+    Area,
 }
 
 /// The marker shape of a series.
@@ -57,6 +58,16 @@ impl Series {
         Self::line(label, steps.collect::<Vec<_>>())
     }
 
+    /// The area between a lower and an upper line, as (x, lower, upper), lightly filled and drawn below
+    /// all lines.
+    #[must_use]
+    pub fn area(label: impl Into<String>, points: impl IntoIterator<Item = (f64, f64, f64)>) -> Self {
+        let points: Vec<(f64, f64, f64)> = points.into_iter().collect();
+        let back = points.iter().rev().map(|&(x, _, upper)| (x, upper));
+        let outline: Vec<(f64, f64)> = points.iter().map(|&(x, lower, _)| (x, lower)).chain(back).collect();
+        Self { drawn: Drawn::Area, ..Self::line(label, outline) }
+    }
+
     /// Filled marks at points. Without a label they aren't in the legend.
     #[must_use]
     pub fn marks(label: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>, mark: Mark) -> Self {
@@ -87,7 +98,7 @@ impl Series {
         &self.label
     }
 
-    /// The points; for a staircase, its corners.
+    /// The points; for a staircase, its corners, for an area, its outline.
     #[must_use]
     pub fn points(&self) -> &[(f64, f64)] {
         &self.points

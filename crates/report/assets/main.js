@@ -6,7 +6,8 @@
   const ofBlocks = (pick) => scenery.blocks.map((block, index) =>
     ({ label: several ? block.name : "", index, t: curves.t, y: pick(curves.blocks[index]) }));
 
-  if (scenery.blocks.length) {
+  if (crowd) addCrowd();
+  if (scenery.blocks.length && !crowd) {
     const series = ofBlocks(({ phi }) => phi.map((x) => x * degrees));
     const reached = Math.max(...series.map(({ y }) => y.reduce((most, x) => Math.max(most, Math.abs(x)), 0)));
     // The critical angle is drawn where the motion comes near it; elsewhere it would only squeeze the curve.
@@ -14,6 +15,36 @@
     plots.add({ id: "phi", title: "Angle φ", unit: "°", series, guides, least: 2e-3, height: 190 });
     const speeds = ofBlocks(({ omega }) => omega);
     plots.add({ id: "omega", title: "Angular velocity φ̇", unit: "rad/s", series: speeds, least: 2e-3, height: 190 });
+  }
+  /** Bands of many bodies, and those that go and turn furthest. */
+  function addCrowd() {
+    const numbers = new Map();
+    [...crowd.distances.chosen, ...crowd.turns.chosen].forEach((k) => numbers.has(k) || numbers.set(k, numbers.size + 1));
+    const bands = (t, all, factor) => {
+      const [least, low, median, high, most] = all.map((values) => values.map((x) => x * factor));
+      return [
+        { label: "all bodies", index: 0, t, y: least, upper: most }, { label: "8 of 10", index: 0, t, y: low, upper: high },
+        { label: "median", index: 0, t, y: median },
+      ];
+    };
+    const chosen = ({ chosen: blocks, values }, factor) => blocks.map((k, i) =>
+      ({ label: scenery.blocks[k].name, index: numbers.get(k), t: times, y: values[i].map((x) => x * factor) }));
+    const say = (id, text) => htmlElement("p", "note", text, byId(`panel-${id}`));
+    const rule = (what) => `Of ${scenery.blocks.length} bodies at each time: least to largest, the middle 8 of 10, the median; by name the `
+      + `${Math.min(3, scenery.blocks.length)} that ${what} furthest.`;
+    const far = Math.max(...crowd.distances.bands[4]);
+    const [prefix, factor] = [["", 1], ["m", 1e3], ["µ", 1e6], ["n", 1e9]].find(([, f]) => far * f >= 0.5) ?? ["n", 1e9];
+    plots.add({
+      id: "distance", title: "Distance from the start", unit: `${prefix}m`, least: 1e-9 * factor, height: 190,
+      series: [...bands(times, crowd.distances.bands, factor), ...chosen(crowd.distances, factor)],
+    });
+    say("distance", rule("go"));
+    plots.add({
+      id: "phi", title: "Turn since the start", unit: "°", least: 2e-3, height: 190,
+      series: [...bands(times, crowd.turns.bands, degrees), ...chosen(crowd.turns, degrees)],
+    });
+    say("phi", rule("turn"));
+    plots.add({ id: "omega", title: "Angular velocity φ̇", unit: "rad/s", least: 2e-3, height: 160, series: bands(curves.t, crowd.omega, 1) });
   }
   if (scenery.beams.length) {
     const series = scenery.beams.map((beam, index) =>
@@ -61,6 +92,13 @@
   });
   if (active.length > 3) plots.choose(active[0]);
 
+  if (scenery.hidden_points > 0 || scenery.unlisted) {
+    const many = scenery.hidden_points > 0 ? `${scenery.hidden_points} points can touch, more than 2000`
+      : "blocks can touch any others";
+    const where = network ? " The network in the picture shows their forces, and the table" : "";
+    htmlElement("p", "note", `Contact by contact there are no plots here: ${many}.${where || " The table"} contacts.csv has their impulses.`, byId("plots")).id = "hidden-contacts";
+  }
+
   for (const [kind, title, unit, factor] of [
     ["moment", "Bending moment", "N m", 1], ["shear", "Transverse force", "N", 1], ["stress", "Largest stress", "MPa", 1e-6],
     ["axial_force", "Axial force", "N", 1], ["reaction", "Reactions of the supports", "N", 1], ["reaction_couple", "Couples of the supports", "N m", 1],
@@ -96,7 +134,7 @@
   note.append("Of the energy identity, the worst step leaves ");
   note.append(byId("residual").content.cloneNode(true), " of the scene's energy unexplained.");
 
-  if (scenery.blocks.length) {
+  if (scenery.blocks.length && !crowd) {
     const series = scenery.blocks.map((block, index) => ({
       label: several ? block.name : "", index, t: curves.t,
       x: curves.blocks[index].phi.map((phi) => phi * degrees), y: curves.blocks[index].omega,
@@ -114,25 +152,28 @@
   const rows = [...document.querySelectorAll("#rocking tbody tr")];
   const decimals = Math.min(9, Math.max(3, Math.ceil(-Math.log10(data.dt))));
   let frame = 0;
+  /** Where between the pictures the clock is. */
+  let position = 0;
   let clock = null;
 
   slider.max = times.length - 1;
 
-  function show(index) {
+  function show(index, between = index) {
     frame = Math.min(times.length - 1, Math.max(0, index));
+    position = Math.min(times.length - 1, Math.max(0, between));
     const t = times[frame];
     const text = `t = ${t.toFixed(decimals)} s`;
     slider.value = frame;
     slider.setAttribute("aria-valuetext", text);
     byId("time-readout").textContent = text;
     byId("time-readout").dataset.t = t;
-    byId("scene-readout").textContent = scenery.blocks.slice(0, 4)
+    byId("scene-readout").textContent = (crowd ? [] : scenery.blocks.slice(0, 4))
       .map(({ name }, k) => `${several ? `${name}: ` : ""}φ = ${fixed(frames.blocks[k].phi[frame] * degrees, 0.01)}°`)
       .join(" · ");
     // In motion an impact is ringed for a moment, at rest only in the frame that it led to.
-    scene.draw(frame, clock ? 0.25 * factor() : 0);
+    scene.draw(position, clock ? 0.25 * factor() : 0);
     plots.showTime(t);
-    for (const block of scenery.blocks) {
+    for (const block of rows.length ? scenery.blocks : []) {
       const past = rows.filter((row) => row.dataset.body === block.name && Number(row.dataset.t) <= t);
       rows.forEach((row) => row.dataset.body === block.name && row.classList.toggle("now", row === past[past.length - 1]));
     }
@@ -164,9 +205,15 @@
     if (!clock) return;
     clock.t += (Math.max(0, wall - clock.wall) / 1e3) * factor();
     clock.wall = wall;
-    show(frameAt(clock.t));
+    show(frameAt(clock.t), positionAt(clock.t));
     if (clock.t >= times[times.length - 1]) setPlaying(false);
     else requestAnimationFrame(tick);
+  }
+
+  /** The pictures before and after a time, as one number. */
+  function positionAt(t) {
+    const i = indexAt(times, t);
+    return i + 1 < times.length ? i + Math.min(1, Math.max(0, (t - times[i]) / (times[i + 1] - times[i]))) : i;
   }
 
   function seek(t) {
@@ -184,13 +231,85 @@
     if (clock) clock.t = times[Number(slider.value)];
     show(Number(slider.value));
   });
-  exaggeration.addEventListener("input", () => {
-    const value = Number(exaggeration.value);
-    byId("exaggeration-readout").textContent = value === 1 ? "true scale" : `${value} ×`;
+  const factors = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
+  function exaggerate(value) {
+    const slot = factors.reduce((best, one, k) => (Math.abs(one - value) < Math.abs(factors[best] - value) ? k : best), 0);
+    exaggeration.value = slot;
+    const text = value === 1 ? "true scale" : `${value} × too large`;
+    byId("exaggeration-readout").textContent = text;
+    exaggeration.setAttribute("aria-valuetext", text);
+    byId("true-scale").disabled = value === 1;
     scene.exaggerate(value);
+    sayKey(value);
     show(frame);
+  }
+  exaggeration.addEventListener("input", () => exaggerate(factors[Number(exaggeration.value)]));
+  byId("true-scale").addEventListener("click", () => exaggerate(1));
+  byId("exaggeration-label").hidden = byId("true-scale").hidden = scenery.beams.length === 0;
+  const how = byId("network");
+  for (const [value, name, there] of [["network", "network", network], ["arrows", "arrows", forces.points.length], ["none", "hidden", true]]) {
+    if (there) how.append(new Option(name, value));
+  }
+  byId("network-label").hidden = how.options.length < 2;
+  // Of few blocks the arrows show more, of many they would hide each other.
+  how.value = network && (scenery.blocks.length > 4 || !forces.points.length) ? "network" : how.options[forces.points.length && network ? 1 : 0].value;
+  how.addEventListener("change", () => {
+    scene.forces(how.value);
+    sayKey();
   });
-  byId("exaggeration-label").hidden = scenery.beams.length === 0;
+
+  const followBox = byId("follow");
+  followBox.parentElement.hidden = scenery.blocks.length === 0;
+  byId("view-in").addEventListener("click", () => scene.zoomBy(1.5));
+  byId("view-out").addEventListener("click", () => scene.zoomBy(1 / 1.5));
+  byId("view-all").addEventListener("click", () => scene.showAll());
+  followBox.addEventListener("change", () => scene.follow(followBox.checked));
+  scene.onView((all) => {
+    byId("view-all").disabled = all;
+    followBox.checked = scene.isFollowing();
+    scene.root.classList.toggle("zoomed", !all);
+  });
+  byId("view-all").disabled = true;
+  byId("save-picture").addEventListener("click", () =>
+    savePicture(scene.root, `${document.title.replace(/[^\p{L}\p{N}]+/gu, "-")}-${times[frame].toFixed(decimals)}s.svg`));
+
+  /** A place of the pointer in the picture's own units. */
+  const inPicture = (event) => {
+    const box = scene.root.getBoundingClientRect();
+    const size = scene.root.viewBox.baseVal;
+    return [((event.clientX - box.left) * size.width) / box.width, ((event.clientY - box.top) * size.height) / box.height];
+  };
+  scene.root.addEventListener("wheel", (event) => {
+    // Further out than all there is nothing: the page scrolls.
+    if (event.deltaY > 0 && scene.isWhole()) return;
+    event.preventDefault();
+    scene.zoomBy(Math.exp(-Math.max(-120, Math.min(120, event.deltaY)) / 300), inPicture(event));
+  }, { passive: false });
+  let held = null;
+  scene.root.addEventListener("pointerdown", (event) => {
+    if (event.button !== 0 || scene.isWhole()) return;
+    held = inPicture(event);
+    scene.root.setPointerCapture(event.pointerId);
+  });
+  scene.root.addEventListener("pointermove", (event) => {
+    if (!held) return;
+    const now = inPicture(event);
+    scene.panBy(now[0] - held[0], now[1] - held[1]);
+    held = now;
+  });
+  for (const end of ["pointerup", "pointercancel"]) scene.root.addEventListener(end, () => { held = null; });
+  const picture = {
+    "+": () => scene.zoomBy(1.5), "=": () => scene.zoomBy(1.5), "-": () => scene.zoomBy(1 / 1.5), 0: () => scene.showAll(),
+    ArrowLeft: () => scene.panBy(40, 0), ArrowRight: () => scene.panBy(-40, 0), ArrowUp: () => scene.panBy(0, 40), ArrowDown: () => scene.panBy(0, -40),
+  };
+  scene.root.addEventListener("keydown", (event) => {
+    const action = picture[event.key];
+    // Where all is shown the arrows step through time, as everywhere else.
+    if (!action || event.ctrlKey || event.metaKey || event.altKey || (event.key.startsWith("Arrow") && scene.isWhole())) return;
+    event.preventDefault();
+    event.stopPropagation();
+    action();
+  });
   byId("zoom-reset").addEventListener("click", () => plots.zoom(start, end));
   plots.onSeek(seek);
   plots.onZoom((zoomed) => {
@@ -218,16 +337,20 @@
     action();
   });
 
-  const parts = [];
-  if (forces.points.length) parts.push("Green arrows: the contact's force on the block, mean since the sample before.");
-  if (data.impacts.length) {
-    parts.push(data.density
-      ? `Rings: impacts. Ticks on the plots: how many of the ${data.impact_count} impacts are about a time, by their length; zoomed in, each one.`
-      : "Rings, and ticks on the plots: impacts.");
+  function sayKey(exaggerated = factors[Number(exaggeration.value)]) {
+    const parts = [];
+    if (how.value === "arrows" && forces.points.length) parts.push("Green arrows: the contact's force on the block, mean since the sample before.");
+    if (how.value === "network") {
+      parts.push(`Green lines: contact forces, from centre to centre through the centre of pressure, means since the picture before; widest: ${number(chains.usual, 3)} N or more.`);
+    }
+    if (data.loads.length) parts.push("Arrows of another colour: loads.");
+    if (data.impacts.length) parts.push("Rings, and ticks on the plots: impacts.");
+    if (crowd) parts.push(`${times.length} pictures; between them the motion is interpolated.`);
+    else if (scenery.blocks.length) parts.push("Dotted: the start.");
+    if (scenery.beams.length && exaggerated !== 1) parts.push(`Deflections are drawn ${exaggerated} times too large.`);
+    if (data.impact_count > data.impacts.length) parts.push(`Only the first ${data.impacts.length} are ringed.`);
+    byId("scene-key").textContent = parts.join(" ");
   }
-  if (scenery.blocks.length) parts.push("Dotted: the start.");
-  if (data.impact_count > data.impacts.length) parts.push(`Only the first ${data.impacts.length} are ringed.`);
-  byId("scene-key").textContent = parts.join(" ");
 
   function relayout() {
     scene.layout();
@@ -239,8 +362,8 @@
   function fromAddress() {
     const wanted = new URLSearchParams(location.hash.slice(1));
     if (wanted.has("x")) {
-      exaggeration.value = wanted.get("x");
-      exaggeration.dispatchEvent(new Event("input"));
+      const value = Number(wanted.get("x"));
+      exaggerate(value >= 1 ? value : 1);
     }
     const span = (wanted.get("zoom") ?? "").split(",").map(Number);
     if (span.length === 2 && span[0] < span[1]) plots.zoom(span[0], span[1]);
@@ -248,6 +371,8 @@
   }
 
   relayout();
+  scene.forces(how.value);
+  exaggerate(scene.suitable(factors));
   fromAddress();
   window.addEventListener("hashchange", fromAddress);
   let lastWidth = document.documentElement.clientWidth;

@@ -1,11 +1,60 @@
 // The data of the run, and how its numbers are read and written.
 
 const data = JSON.parse(document.getElementById("data").textContent);
-const { scenery, frames, curves, forces } = data;
+const { scenery, frames, curves, forces, network, crowd } = data;
 const times = frames.t;
 const start = times[0];
 const end = Math.max(times[times.length - 1], start + 1e-12);
 const degrees = 180 / Math.PI;
+
+/** Reads whole numbers from text: base64 of seven bits a byte, lowest first. */
+function unpacked(text) {
+  const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  let at = 0;
+  const next = () => {
+    let [x, factor, byte] = [0, 1, 0];
+    do {
+      byte = bytes[at++];
+      x += (byte & 127) * factor;
+      factor *= 128;
+    } while (byte > 127);
+    return x;
+  };
+  const signed = () => {
+    const x = next();
+    return x % 2 ? -(x + 1) / 2 : x / 2;
+  };
+  return { next, signed, more: () => at < bytes.length };
+}
+
+if (frames.packed) {
+  const { length, angle } = frames.packed;
+  frames.blocks = frames.packed.blocks.map((text) => {
+    const numbers = unpacked(text);
+    const column = (unit) => {
+      let now = 0;
+      return Float64Array.from(times, () => {
+        now += numbers.signed();
+        return now * unit;
+      });
+    };
+    return { x: column(length), y: column(length), phi: column(angle) };
+  });
+}
+
+/** The links of the network in a picture: number of the pair, force, and place in the first body's coordinates. */
+function linksOf(picture) {
+  const numbers = unpacked(network.links[picture]);
+  const links = [];
+  let pair = 0;
+  while (numbers.more()) {
+    pair += numbers.next();
+    const force = (numbers.next() / 4095) * network.largest[picture];
+    const reach = scenery.blocks[network.pairs[pair][0]].reach / 1000;
+    links.push({ pair, force, x: numbers.signed() * reach, y: numbers.signed() * reach });
+  }
+  return links;
+}
 
 const byId = (id) => document.getElementById(id);
 

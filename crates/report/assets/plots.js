@@ -26,7 +26,8 @@ const plots = (() => {
     for (const series of panel.portrait && panel.series.length === 1 ? [] : panel.series) {
       const key = htmlElement("span", series.label ? "key" : "key bare", undefined, legend);
       const swatch = svgElement("svg", { viewBox: "0 0 18 8", "aria-hidden": "true" }, key);
-      svgElement("path", { d: "M0 4h18", style: stroke(series), "stroke-width": 2 }, swatch);
+      if (series.upper) svgElement("path", { d: "M0 0h18v8h-18z", class: "area", style: `fill: ${colour(series.index)}` }, swatch);
+      else svgElement("path", { d: "M0 4h18", style: stroke(series), "stroke-width": 2 }, swatch);
       if (series.label) key.append(series.label);
       series.readout = htmlElement("b", "", "", key);
     }
@@ -81,7 +82,10 @@ const plots = (() => {
     };
     for (const series of panel.series) {
       const from = indexAt(series.t, view[0]);
-      for (let i = from; i < series.y.length && (i === from || series.t[i] <= view[1]); i++) see(series.y[i]);
+      for (let i = from; i < series.y.length && (i === from || series.t[i] <= view[1]); i++) {
+        see(series.y[i]);
+        if (series.upper) see(series.upper[i]);
+      }
     }
     if (panel.floor !== undefined) see(panel.floor);
     if (panel.cut && !panel.whole) [low, high] = [Math.max(low, -panel.cut.limit), Math.min(high, panel.cut.limit)];
@@ -111,6 +115,18 @@ const plots = (() => {
       if (series.t[i] > view[1]) break;
     }
     return d;
+  }
+
+  /** The area between two lines. */
+  function area(series, x, y) {
+    const [from, to] = [Math.max(0, indexAt(series.t, view[0]) - 1), Math.min(series.t.length, indexAt(series.t, view[1]) + 2)];
+    const points = (values) => values.slice(from, to).map((value, k) => `${x(series.t[from + k]).toFixed(1)} ${y(value).toFixed(1)}`);
+    return `M${points(series.y).concat(points(series.upper).reverse()).join("L")}Z`;
+  }
+
+  function curve(series, x, y) {
+    if (series.upper) return `<path class="area" style="fill: ${colour(series.index)}" d="${area(series, x, y)}"/>`;
+    return `<path class="curve" style="${stroke(series)}" d="${path(series, x, y)}"/>`;
   }
 
   function axes(svg, size, xTicks, yTicks, x, y) {
@@ -173,7 +189,7 @@ const plots = (() => {
       body = axes(panel.svg, size, timeTicks(), ticks(low, high, Math.floor((bottom - margin.top) / 28)), px, y)
         + `<g clip-path="url(#${clip})">`
         + (panel.guides ?? []).map((at) => `<path class="guide" d="M${margin.left} ${y(at).toFixed(1)}H${size.width}"/>`).join("")
-        + panel.series.map((series) => `<path class="curve" style="${stroke(series)}" d="${path(series, px, y)}"/>`).join("")
+        + panel.series.map((series) => curve(series, px, y)).join("")
         + `<path class="impacts" d="${impacts}"/></g>`;
     }
     panel.svg.innerHTML = `${inside}${body}<path class="hover"/><path class="cursor"/><rect class="selection"/>`;
@@ -256,8 +272,9 @@ const plots = (() => {
   function readOut(t) {
     for (const panel of panels.filter((one) => !one.portrait)) {
       for (const series of panel.series) {
-        const value = valueAt(series, t);
-        series.readout.textContent = number(Math.abs(value) < 1e-2 * panel.least ? 0 : value, 4);
+        const shown = (value) => number(Math.abs(value) < 1e-2 * panel.least ? 0 : value, series.upper ? 3 : 4);
+        const value = shown(valueAt(series, t));
+        series.readout.textContent = series.upper ? `${value} … ${shown(valueAt({ t: series.t, y: series.upper }, t))}` : value;
       }
     }
   }

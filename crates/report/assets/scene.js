@@ -10,6 +10,18 @@ const scene = (() => {
   let exaggeration = 1;
   let view = { x: 0, y: 0, scale: 1 };
   let frame = 0;
+  let onView = () => {};
+  let remembered = 0;
+  const crowded = crowd !== undefined;
+  /** How contact forces are drawn: not at all, by arrows or as a network. */
+  let drawn = "arrows";
+
+  /** The blocks that the plots name, with the numbers of their colours. */
+  function colouredBlocks() {
+    const named = new Map();
+    [...crowd.distances.chosen, ...crowd.turns.chosen].forEach((k) => named.has(k) || named.set(k, named.size + 1));
+    return named;
+  }
 
   /** The beam that a block may stand on: of several, the one below it. */
   const beamsOf = scenery.blocks.map((_, block) =>
@@ -69,7 +81,12 @@ const scene = (() => {
 
   function truePose(block, at) {
     const { x, y, phi } = frames.blocks[block];
-    return { x: x[at], y: y[at], phi: phi[at] };
+    if (Number.isInteger(at)) return { x: x[at], y: y[at], phi: phi[at] };
+    // Between the pictures of many bodies, which are few.
+    const before = Math.floor(at);
+    const part = at - before;
+    const between = (values) => values[before] + part * (values[before + 1] - values[before]);
+    return { x: between(x), y: between(y), phi: between(phi) };
   }
 
   /** Where a block is drawn: the corners of the side that is below ride on the exaggerated beam. */
@@ -90,59 +107,56 @@ const scene = (() => {
     };
   }
 
-  /** The box around everything at all times; a body that flies off leaves it. */
+  /** The box around everything at all times. */
   function bounds() {
-    const around = (points) => points.reduce(
-      (box, [x, y]) => [Math.min(box[0], x), Math.min(box[1], y), Math.max(box[2], x), Math.max(box[3], y)],
-      [Infinity, Infinity, -Infinity, -Infinity]);
-    const fixedPoints = scenery.beams.flatMap(({ x, y, span }) => [[x, y], [x + span, y]]);
-    const moving = (at) => {
-      const points = scenery.blocks.flatMap((block, k) =>
-        partsOf(k, corners(drawnPose(k, at), block)).flatMap(({ core, radius }) =>
-          core.flatMap(([x, y]) => [[x - radius, y - radius], [x + radius, y + radius]])));
-      scenery.beams.forEach((beam, k) => {
+    const box = [Infinity, Infinity, -Infinity, -Infinity];
+    const see = (x, y, radius = 0) => {
+      if (!Number.isFinite(x) || !Number.isFinite(y)) return;
+      box[0] = Math.min(box[0], x - radius);
+      box[1] = Math.min(box[1], y - radius);
+      box[2] = Math.max(box[2], x + radius);
+      box[3] = Math.max(box[3], y + radius);
+    };
+    scenery.blocks.forEach((block, k) => {
+      const radii = block.parts.flatMap(([count, radius]) => Array(count).fill(radius));
+      const rides = exaggeration !== 1 && beamsOf[k].length > 0;
+      for (let at = 0; at < times.length; at++) {
+        const pose = rides ? drawnPose(k, at) : truePose(k, at);
+        const [sin, cos] = [Math.sin(pose.phi), Math.cos(pose.phi)];
+        block.corners.forEach(([x, y], i) => see(pose.x + cos * x - sin * y, pose.y + sin * x + cos * y, radii[i]));
+      }
+    });
+    scenery.beams.forEach((beam, k) => {
+      for (let at = 0; at < times.length; at++) {
         const [across, up] = moved(k, at);
         for (let i = 0; i <= 8; i++) {
           const x = (i / 8) * beam.span;
-          points.push([beam.x + across + x, beam.y + up + exaggeration * deflection(k, at, x)]);
+          see(beam.x + across + x, beam.y + up + exaggeration * deflection(k, at, x));
         }
-      });
-      return points.filter(([x, y]) => Number.isFinite(x) && Number.isFinite(y));
-    };
-    const home = around([...fixedPoints, ...moving(0)]);
-    if (!(home[2] >= home[0])) return [-1, -1, 1, 1];
+      }
+    });
+    if (!(box[2] >= box[0])) return [-1, -1, 1, 1];
     if (scenery.ground) {
+      const [left, right] = [box[0], box[2]];
       const { x, y, slope } = groundAt(0);
-      const at = (place) => y + (place - x) * Math.tan(slope);
       if (scenery.profile.length > 0) {
-        const near = scenery.profile.filter((point) => point[0] > home[0] - x && point[0] < home[2] - x);
-        const ends = [home[0] - x, home[2] - x].map((place) => [place, profileAt(place).y]);
-        const heights = [...near, ...ends].map((point) => onGround(point, 0)[1]);
-        heights.forEach((height) => {
-          home[1] = Math.min(home[1], height);
-          home[3] = Math.max(home[3], height);
-        });
+        const near = scenery.profile.filter((point) => point[0] > left - x && point[0] < right - x);
+        const ends = [left - x, right - x].map((place) => [place, profileAt(place).y]);
+        [...near, ...ends].forEach((point) => see(left, onGround(point, 0)[1]));
       } else {
-        home[1] = Math.min(home[1], at(home[0]), at(home[2]));
+        [left, right].forEach((place) => see(place, y + (place - x) * Math.tan(slope)));
       }
     }
-    const size = Math.max(home[2] - home[0], home[3] - home[1], 1e-9);
-    const every = Math.max(1, Math.floor(times.length / 250));
-    let whole = home;
-    for (let at = 0; at < times.length; at += every) {
-      const now = around(moving(at));
-      whole = [0, 1, 2, 3].map((k) => (k < 2 ? Math.min : Math.max)(whole[k], now[k]));
-    }
-    // All of the motion, unless it goes so far that nothing could be seen any more.
-    const far = Math.max(home[0] - whole[0], home[1] - whole[1], whole[2] - home[2], whole[3] - home[3]);
-    const reach = far <= 20 * size ? far : 1.5 * size;
-    const box = [0, 1, 2, 3].map((k) => (k < 2 ? Math.max(home[k] - reach, whole[k]) : Math.min(home[k] + reach, whole[k])));
     return box;
   }
 
   const px = (x) => width / 2 + (x - view.x) * view.scale;
   const py = (y) => height - padding.bottom - (y - view.y) * view.scale;
   const place = (x, y) => `${px(x).toFixed(2)} ${py(y).toFixed(2)}`;
+
+  /** The view that shows everything at all times. */
+  let whole = view;
+  let followed = null;
 
   function layout() {
     width = root.parentElement.clientWidth;
@@ -151,9 +165,51 @@ const scene = (() => {
     const [inner, tallest] = [width - padding.left - padding.right, Math.min(420, 0.62 * window.innerHeight + 60)];
     const scale = Math.min(inner / across, (Math.max(260, tallest) - padding.top - padding.bottom) / up);
     height = Math.max(230, Math.ceil(padding.top + padding.bottom + up * scale));
-    view = { x: (box[0] + box[2]) / 2, y: box[1], scale };
+    whole = { x: (box[0] + box[2]) / 2, y: box[1], scale };
+    view = { ...whole };
     setAll(root, { viewBox: `0 0 ${width} ${height}`, width, height });
     build();
+  }
+
+  const isWhole = () => view.scale === whole.scale && view.x === whole.x && view.y === whole.y;
+
+  function look(x, y, scale) {
+    view = { x, y, scale };
+    build();
+    onView(isWhole());
+  }
+
+  /** Zooms about a point of the picture, by default its middle; never further out than all. */
+  function zoomBy(factor, at = [width / 2, height / 2]) {
+    const scale = Math.max(whole.scale, Math.min(1e4 * whole.scale, view.scale * factor));
+    if (scale === whole.scale && !followed) return look(whole.x, whole.y, whole.scale);
+    const [x, y] = [view.x + (at[0] - width / 2) / view.scale, view.y + (height - padding.bottom - at[1]) / view.scale];
+    return look(x - (at[0] - width / 2) / scale, y - (height - padding.bottom - at[1]) / scale, scale);
+  }
+
+  const panBy = (across, down) => look(view.x - across / view.scale, view.y + down / view.scale, view.scale);
+
+  /** The mean place of the bodies. */
+  function middleOf(at) {
+    const poses = scenery.blocks.map((_, k) => truePose(k, at)).filter(({ x, y }) => Number.isFinite(x + y));
+    const sum = poses.reduce(([x, y], pose) => [x + pose.x, y + pose.y], [0, 0]);
+    return sum.map((s) => s / Math.max(1, poses.length));
+  }
+
+  /** Keeps the bodies where they are in the picture, or lets them move through it. */
+  function follow(on) {
+    followed = on ? middleOf(frame) : null;
+    if (!on) return look(whole.x, whole.y, whole.scale);
+    // As large as they are, with as much around them again.
+    const box = [Infinity, Infinity, -Infinity, -Infinity];
+    scenery.blocks.forEach(({ reach }, k) => {
+      const { x, y } = truePose(k, frame);
+      [x - reach, y - reach].forEach((low, i) => { box[i] = Math.min(box[i], low); });
+      [x + reach, y + reach].forEach((high, i) => { box[2 + i] = Math.max(box[2 + i], high); });
+    });
+    const [inner, tall] = [width - padding.left - padding.right, height - padding.top - padding.bottom];
+    const scale = Math.max(whole.scale, Math.min(inner / (2 * (box[2] - box[0])), tall / (1.4 * (box[3] - box[1]))));
+    return look((box[0] + box[2]) / 2, box[1] - 0.05 * (box[3] - box[1]), scale);
   }
 
   function hatch(x, y, length, step, down) {
@@ -210,6 +266,10 @@ const scene = (() => {
       id: "head", viewBox: "0 0 10 10", refX: 9, refY: 5, markerWidth: 5, markerHeight: 5, orient: "auto",
     }, svgElement("defs", {}, root));
     svgElement("path", { d: "M0 0L10 5L0 10z", style: "fill: var(--force)" }, marker);
+    const ofLoad = marker.cloneNode(true);
+    ofLoad.id = "load-head";
+    ofLoad.firstChild.setAttribute("style", "fill: var(--load)");
+    marker.after(ofLoad);
     if (scenery.ground) {
       // Long enough to cross the picture wherever it moves and turns.
       const reach = 8 * Math.ceil((width + height) / 4);
@@ -235,7 +295,20 @@ const scene = (() => {
       for (const [x, kind] of beam.inner) drawSupport(group, kind, px(beam.x + x), low, true, true);
       return { group, line, thickness, edge };
     });
-    layers.blocks = scenery.blocks.map((block, k) => {
+    layers.crowd = [];
+    if (crowded) {
+      // One path for all, as an element for each would be too slow; those that the plots name have the plots' colours.
+      const named = colouredBlocks();
+      const groups = [scenery.blocks.map((_, k) => k).filter((k) => !named.has(k)), ...[...named.keys()].map((k) => [k])];
+      layers.crowd = groups.map((blocks, k) => {
+        const group = svgElement("g", k > 0 ? { "data-body": scenery.blocks[blocks[0]].name } : {}, root);
+        if (k > 0) svgElement("title", {}, group).textContent = scenery.blocks[blocks[0]].name;
+        const paint = k > 0 ? colour(named.get(blocks[0])) : "var(--muted)";
+        const path = svgElement("path", { class: k > 0 ? "body named" : "body crowd", style: `stroke: ${paint}; fill: ${paint}` }, group);
+        return { blocks, path };
+      });
+    }
+    layers.blocks = (crowded ? [] : scenery.blocks).map((block, k) => {
       svgElement("path", { d: outline(k, 0), class: "ghost" }, root);
       const group = svgElement("g", { "data-body": block.name }, root);
       svgElement("title", {}, group).textContent = block.name;
@@ -243,9 +316,11 @@ const scene = (() => {
       const centre = svgElement("circle", { r: 2.5, style: `fill: ${colour(k)}` }, group);
       return { group, body, centre };
     });
+    layers.network = chains?.build(root) ?? [];
+    layers.loads = svgElement("g", {}, root);
     layers.arrows = svgElement("g", {}, root);
     scaleBar();
-    draw(frame);
+    draw(frame, remembered);
   }
 
   /** The outlines of a block's parts; a disc with a radius, by which it is seen to roll. */
@@ -412,12 +487,75 @@ const scene = (() => {
     }, layers.arrows);
   }
 
-  /** Shows a frame; impacts within `memory` seconds before it are ringed. */
-  function draw(at, memory = 0) {
+  /** The outline of a block of many: as `outline`, without what costs time. */
+  function crowdOutline(k, at) {
+    const { x, y, phi } = truePose(k, at);
+    const block = scenery.blocks[k];
+    if (block.parts.length > 1 || block.parts[0][1] > 0) return outline(k, at);
+    const [sin, cos] = [Math.sin(phi), Math.cos(phi)];
+    let d = "";
+    for (const [a, b] of block.corners) {
+      d += `${d ? "L" : "M"}${Math.round(10 * px(x + cos * a - sin * b)) / 10} ${Math.round(10 * py(y + sin * a + cos * b)) / 10}`;
+    }
+    return `${d}Z`;
+  }
+
+  const heaviest = data.loads.reduce((most, { force, factor }) =>
+    factor.reduce((largest, x) => Math.max(largest, Math.abs(x) * Math.hypot(...force)), most), 0);
+
+  /** The forces on blocks and beams: arrows that end where they act, as long as they are large. */
+  function drawLoads(at) {
+    layers.loads.replaceChildren();
+    const picture = Math.round(at);
+    for (const load of data.loads) {
+      const force = load.force.map((f) => f * load.factor[picture]);
+      const size = Math.hypot(...force);
+      if (!(size > 0)) continue;
+      const ends = [];
+      if (load.block !== undefined) {
+        const { x, y } = drawnPose(load.block, at);
+        ends.push([x, y]);
+      } else {
+        const beam = scenery.beams[load.beam];
+        const [across, up] = moved(load.beam, picture);
+        const [from, to] = load.span.map((x) => x + load.speed * times[picture]);
+        const count = to > from ? 6 : 0;
+        for (let k = 0; k <= count; k++) {
+          const x = from + (count ? k / count : 0) * (to - from);
+          if (x >= 0 && x <= beam.span) ends.push([beam.x + across + x, beam.y + up + exaggeration * deflection(load.beam, picture, x)]);
+        }
+      }
+      const length = Math.max(8, (46 * size) / heaviest);
+      const [dx, dy] = [force[0] / size, -force[1] / size];
+      for (const [x, y] of ends) {
+        const [a, b] = [px(x), py(y)];
+        const d = `M${(a - dx * length).toFixed(2)} ${(b - dy * length).toFixed(2)}L${a.toFixed(2)} ${b.toFixed(2)}`;
+        const arrow = svgElement("path", { d, class: "load", "data-load": load.name, "marker-end": "url(#load-head)" }, layers.loads);
+        svgElement("title", {}, arrow).textContent = `${load.name}: ${number(size, 3)} N`;
+      }
+    }
+  }
+
+  /** Shows a picture; impacts within `memory` seconds before it are ringed. Pictures of many bodies have some in between. */
+  function draw(position, memory = 0) {
+    const at = crowded ? position : Math.round(position);
     frame = at;
-    const t = times[at];
+    if (followed) {
+      const now = middleOf(at);
+      const by = [now[0] - followed[0], now[1] - followed[1]];
+      // Less than a tenth of a pixel is not seen to move.
+      if (Math.hypot(...by) * view.scale > 0.1) {
+        followed = now;
+        view = { ...view, x: view.x + by[0], y: view.y + by[1] };
+        build();
+        return;
+      }
+    }
+    const t = times[Math.ceil(at)];
+    remembered = memory;
+    const picture = Math.round(at);
     if (scenery.ground) {
-      const { x, y, slope } = groundAt(at);
+      const { x, y, slope } = groundAt(picture);
       // Drawn around what is nearest to the middle of the picture, by whole hatches from the point that moves.
       const [cos, sin] = [Math.cos(slope), Math.sin(slope)];
       const along = (view.x - x) * cos + (view.y - y) * sin;
@@ -428,19 +566,20 @@ const scene = (() => {
     }
     scenery.beams.forEach((beam, k) => {
       const { group, line, thickness, edge } = layers.beams[k];
-      const [across, up] = moved(k, at);
+      const [across, up] = moved(k, picture);
       group.setAttribute("transform", `translate(${(across * view.scale).toFixed(2)} ${(-up * view.scale).toFixed(2)})`);
       const top = [];
       const bottom = [];
       for (let i = 0; i < beam.points; i++) {
         const x = (i / (beam.points - 1)) * beam.span;
-        const y = py(beam.y + exaggeration * deflection(k, at, x)) - edge;
+        const y = py(beam.y + exaggeration * deflection(k, picture, x)) - edge;
         top.push(`${px(beam.x + x).toFixed(2)} ${y.toFixed(2)}`);
         bottom.unshift(`${px(beam.x + x).toFixed(2)} ${(y + thickness).toFixed(2)}`);
       }
       line.setAttribute("d", `M${top.concat(bottom).join("L")}Z`);
     });
-    scenery.blocks.forEach((_, k) => {
+    for (const { blocks, path } of layers.crowd) path.setAttribute("d", blocks.map((k) => crowdOutline(k, at)).join(""));
+    (crowded ? [] : scenery.blocks).forEach((_, k) => {
       const { group, body, centre } = layers.blocks[k];
       const pose = truePose(k, at);
       const drawn = drawnPose(k, at);
@@ -448,30 +587,63 @@ const scene = (() => {
       body.setAttribute("d", outline(k, at));
       setAll(centre, { cx: px(drawn.x).toFixed(2), cy: py(drawn.y).toFixed(2) });
     });
+    // What led to the picture: between two, what leads to the next.
+    if (chains && drawn === "network") chains.draw(layers.network, Math.ceil(at), (k) => drawnPose(k, at), place, view.scale);
+    else if (chains) chains.clear(layers.network);
+    drawLoads(at);
     layers.arrows.replaceChildren();
-    if (at > 0) {
+    if (at > 0 && drawn === "arrows") {
       for (const point of forces.points) {
         const [n, s] = [point.normal, point.tangential].map((y) => valueAt({ t: forces.borders, y, stepped: true }, t));
         if (n > 0) {
           const length = Math.min(padding.bottom - 22, (34 * Math.hypot(n, s)) / usual);
-          arrow(contactPoint(point.contact, point.point, at), [n, s], length, "force");
+          arrow(contactPoint(point.contact, point.point, Math.round(at)), [n, s], length, "force");
         }
       }
     }
-    const since = t - Math.max(memory, 1.01 * (t - times[Math.max(0, at - 1)]));
+    const since = t - Math.max(memory, 1.01 * (t - times[Math.max(0, Math.ceil(at) - 1)]));
     for (const impact of data.impacts.filter((one) => one.t > since && one.t <= t * (1 + 1e-12))) {
-      const { x, y } = contactPoint(impact.contact, impact.point, at);
+      const { x, y } = contactPoint(impact.contact, impact.point, Math.round(at));
       const r = 5 + 9 * Math.sqrt(Math.hypot(...impact.impulse) / hardest);
       svgElement("circle", { cx: x.toFixed(2), cy: y.toFixed(2), r: r.toFixed(1), class: "impact" }, layers.arrows);
     }
   }
 
+  /** The exaggeration by which the largest deflection is seen: a round one, none where it is seen anyway. */
+  function suitable(factors) {
+    const largest = scenery.beams.reduce((most, _, k) => {
+      const { unit, w } = frames.beams[k];
+      return w.reduce((deepest, x) => Math.max(deepest, Math.abs(x) * unit), most);
+    }, 0);
+    const wanted = 14 / (largest * whole.scale);
+    if (!(wanted > 3.5) || !Number.isFinite(wanted)) return 1;
+    return factors.reduce((best, one) => (one <= wanted ? one : best), 1);
+  }
+
   return {
     draw,
     layout,
+    zoomBy,
+    panBy,
+    follow,
+    suitable,
+    root,
+    showAll: () => {
+      followed = null;
+      look(whole.x, whole.y, whole.scale);
+    },
+    isWhole,
+    isFollowing: () => followed !== null,
+    onView(f) { onView = f; },
+    forces(how) {
+      drawn = how;
+      draw(frame, remembered);
+    },
     exaggerate(factor) {
       exaggeration = factor;
+      followed = null;
       layout();
+      onView(true);
     },
   };
 })();

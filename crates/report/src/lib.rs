@@ -38,7 +38,9 @@ pub use checkpoint::{
 pub use columns::columns;
 pub use export::{ExportWhen, Exporter, Former, HARD, Watch};
 pub use made_energy::ENERGY_MADE;
-pub use page::{HalfCycle, PageRecorder, STYLE, escaped, figures, half_cycles, render};
+pub use page::{
+    HalfCycle, Joint, PageRecorder, STYLE, ThrustLine, escaped, figures, half_cycles, render, thrust_lines,
+};
 pub use readable::{shortest, with_digits, with_unit};
 pub use recorder::{ImpactRow, Record, Recorder};
 pub use results::{FILES, Reserved, Results, ResultsError};

@@ -4,15 +4,23 @@
 //! [`render`] makes the page, one file that loads nothing; [`figures`] makes the plots as SVG.
 
 mod accelerograms;
+mod bands;
+mod chain;
+mod crowd;
 mod curves;
 mod data;
+mod drawings;
 mod figures;
 mod frames;
 mod html;
+mod network;
+mod outline;
+mod packed;
 mod recorder;
 mod rocking;
 mod scenery;
 
+pub use chain::{Joint, ThrustLine, thrust_lines};
 pub use figures::figures;
 pub use html::{STYLE, render};
 pub(crate) use recorder::Kept;

@@ -1,5 +1,9 @@
 //! The data of the page: what its script draws.
 
+use super::bands::{BAND_COLUMNS, BAND_NAMES};
+use super::crowd::CrowdCurve;
+use super::network::Link;
+use super::packed::Packed;
 use super::recorder::{BLOCK_COLUMNS, BLOCK_FRAME, ENERGIES, MANY_IMPACTS, PageRecorder};
 use super::scenery::Scenery;
 use super::{DIGITS, TIME_DIGITS, rounded};
@@ -7,6 +11,7 @@ use crate::Summary;
 use crate::sections::Kind;
 use serde::Serialize;
 use teeter_integrator::ContactState;
+use teeter_scenario::scene::{History, LoadKind, SupportingBody};
 
 #[derive(Serialize)]
 struct Data<'a> {
@@ -14,6 +19,11 @@ struct Data<'a> {
     scenery: &'a Scenery,
     frames: FrameData,
     curves: CurveData,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    crowd: Option<CrowdData>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    network: Option<NetworkData>,
+    loads: Vec<LoadData>,
     forces: ForceData,
     impacts: Vec<ImpactData>,
     impact_count: u64,
@@ -50,14 +60,79 @@ struct SectionData {
     values: Vec<f64>,
 }
 
-/// The pictures: `blocks[k].x[i]` at `t[i]`; `beams[k].w` row by row in units of `beams[k].unit`. Displacements of supports
+/// The pictures: `blocks[k].x[i]` at `t[i]`, of many blocks packed; `beams[k].w` row by row in units of `beams[k].unit`. Displacements of supports
 /// and ground where they move.
 #[derive(Serialize)]
 struct FrameData {
     t: Vec<f64>,
     blocks: Vec<BlockFrames>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    packed: Option<PackedFrames>,
     beams: Vec<BeamFrames>,
     ground: Option<GroundFrames>,
+}
+
+/// Poses of many blocks, block by block: x in all pictures, then y, then φ, each as differences from the picture
+/// before, in these units.
+#[derive(Serialize)]
+struct PackedFrames {
+    length: f64,
+    angle: f64,
+    blocks: Vec<String>,
+}
+
+/// The network of contact forces: for each picture the links since the one before, each as the difference of its pair's
+/// number in `pairs` from that of the link before, its force in 4095ths of `largest` and the centre of pressure in the
+/// first body's own coordinates, in 1000ths of its reach.
+#[derive(Serialize)]
+struct NetworkData {
+    /// The bodies of each pair: block and block, or −1 for ground, −2 for the first beam and so on.
+    pairs: Vec<(usize, i64)>,
+    /// The largest force of each picture, N.
+    largest: Vec<f64>,
+    links: Vec<String>,
+}
+
+/// Steps of a force, and of a place within a body.
+const FORCE_STEPS: f64 = 4095.0;
+const PLACE_STEPS: f64 = 1000.0;
+
+/// Many bodies over time: bands, and a few bodies one by one.
+#[derive(Serialize)]
+struct CrowdData {
+    names: [&'static str; BAND_COLUMNS],
+    /// Of φ and φ̇, at the times of the curves.
+    phi: Vec<Vec<f64>>,
+    omega: Vec<Vec<f64>>,
+    /// At the times of the pictures, with the bodies that turned and moved furthest.
+    turns: ChosenData,
+    distances: ChosenData,
+}
+
+#[derive(Serialize)]
+struct ChosenData {
+    bands: Vec<Vec<f64>>,
+    /// Numbers of blocks.
+    chosen: Vec<usize>,
+    values: Vec<Vec<f64>>,
+}
+
+/// A force on a block or a beam at the times of the pictures: N and N·m, and where.
+#[derive(Serialize)]
+struct LoadData {
+    name: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    block: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    beam: Option<usize>,
+    /// Force along x and y at full size, N; the couple, N·m.
+    force: [f64; 2],
+    couple: f64,
+    /// Places along the beam where it begins and ends, m, and how fast they move, m/s.
+    span: [f64; 2],
+    speed: f64,
+    /// By what force and couple are multiplied.
+    factor: Vec<f64>,
 }
 
 #[derive(Serialize)]
@@ -138,6 +213,9 @@ pub(crate) fn json(recorder: &PageRecorder, summary: &Summary) -> String {
         scenery: &recorder.scenery,
         frames: frames(recorder),
         curves: curves(recorder),
+        crowd: recorder.scenery.is_crowded().then(|| crowd(recorder)),
+        network: recorder.scenery.has_network().then(|| network(recorder)).filter(|network| !network.pairs.is_empty()),
+        loads: loads(recorder),
         forces: forces(recorder),
         impacts: recorder
             .kept
@@ -191,18 +269,147 @@ fn frames(recorder: &PageRecorder) -> FrameData {
         y: column(moved + 1),
         slope: column(moved + 2),
     });
+    let packed = scenery.is_crowded().then(|| packed(recorder));
+    let blocks = blocks.filter(|_| packed.is_none());
     FrameData {
         t: recorder.kept.frames.rows().map(|(t, _)| time(t)).collect(),
         blocks: blocks.map(|k| BlockFrames { x: column(k), y: column(k + 1), phi: column(k + 2) }).collect(),
+        packed,
         beams,
         ground,
     }
 }
 
+/// Lengths are sent in this part of the scene's size, angles in this part of a radian: finer than a picture shows.
+const LENGTH_UNIT: f64 = 2e-5;
+const ANGLE_UNIT: f64 = 1e-3;
+
+fn packed(recorder: &PageRecorder) -> PackedFrames {
+    let blocks = recorder.scenery.blocks.len();
+    // Where the bodies began: one that flies off doesn't make all others coarse.
+    let first = recorder.kept.frames.rows().next().map_or(&[][..], |(_, row)| row);
+    let extent = |k: usize| {
+        let places = first.chunks_exact(BLOCK_FRAME).take(blocks).map(|pose| pose[k]).filter(|x| x.is_finite());
+        let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+        high - low
+    };
+    let reach = recorder.scenery.blocks.iter().fold(0.0, |most: f64, block| most.max(block.reach));
+    let length = rounded(LENGTH_UNIT * (extent(0).max(extent(1)) + 2.0 * reach), 3);
+    let of_block = |block: usize| {
+        let mut packed = Packed::default();
+        for (k, unit) in [(0, length), (1, length), (2, ANGLE_UNIT)] {
+            let mut before = 0;
+            for (_, row) in recorder.kept.frames.rows() {
+                // Far away it stays at the largest number; what isn't finite becomes 0.
+                let now = (row[BLOCK_FRAME * block + k] / unit).round().clamp(-1e15, 1e15) as i64;
+                packed.push_signed(now - before);
+                before = now;
+            }
+        }
+        packed.text()
+    };
+    PackedFrames { length, angle: ANGLE_UNIT, blocks: (0..blocks).map(of_block).collect() }
+}
+
+fn network(recorder: &PageRecorder) -> NetworkData {
+    let scenery = &recorder.scenery;
+    let times: Vec<f64> = recorder.kept.frames.rows().map(|(t, _)| t).collect();
+    let pictures = || recorder.kept.network.pictures(times.len());
+    let mut numbers: Vec<u32> = pictures().flatten().map(|link| link.pair).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    numbers.retain(|pair| scenery.bodies_of(*pair).is_some());
+    let bodies = numbers.iter().filter_map(|pair| {
+        let (block, other) = scenery.bodies_of(*pair)?;
+        let other = match other {
+            SupportingBody::Block(other) => other as i64,
+            SupportingBody::Ground => -1,
+            SupportingBody::Beam(beam) => -2 - beam as i64,
+        };
+        Some((block, other))
+    });
+    let mut data = NetworkData { pairs: bodies.collect(), largest: Vec::new(), links: Vec::new() };
+    for (picture, links) in pictures().enumerate() {
+        let duration = picture.checked_sub(1).map_or(1.0, |before| times[picture] - times[before]);
+        let size = |link: &Link| link.impulse[0].hypot(link.impulse[1]) / duration;
+        let largest = links.iter().map(size).fold(0.0, f64::max);
+        let (mut packed, mut before) = (Packed::default(), 0);
+        for link in links {
+            let (Ok(number), Some(place)) = (numbers.binary_search(&link.pair), link.place()) else { continue };
+            let force = (size(link) / largest * FORCE_STEPS).round() as u64;
+            if force == 0 {
+                continue;
+            }
+            packed.push((number - before) as u64);
+            before = number;
+            packed.push(force);
+            let reach = scenery.blocks[data.pairs[number].0].reach;
+            place.into_iter().for_each(|x| packed.push_signed((x / reach * PLACE_STEPS).round() as i64));
+        }
+        data.largest.push(digits(largest));
+        data.links.push(packed.text());
+    }
+    data
+}
+
+fn crowd(recorder: &PageRecorder) -> CrowdData {
+    // A picture doesn't show more.
+    let short = |values: Vec<f64>| values.into_iter().map(|x| rounded(x, 4)).collect::<Vec<f64>>();
+    let band = |first: usize| (first..first + BAND_COLUMNS).map(|k| short(recorder.kept.curves.curve(k))).collect();
+    let chosen = |curve: CrowdCurve| {
+        let (chosen, values): (Vec<usize>, Vec<_>) = curve.chosen.into_iter().unzip();
+        let values = values.into_iter().map(short).collect();
+        ChosenData { bands: curve.bands.into_iter().map(short).collect(), chosen, values }
+    };
+    CrowdData {
+        names: BAND_NAMES,
+        phi: band(0),
+        omega: band(BAND_COLUMNS),
+        turns: chosen(CrowdCurve::turns(recorder)),
+        distances: chosen(CrowdCurve::distances(recorder)),
+    }
+}
+
+fn loads(recorder: &PageRecorder) -> Vec<LoadData> {
+    let factor = |history: &History| {
+        let signal = history.signal();
+        recorder.kept.frames.rows().map(|(t, _)| rounded(signal.value(t), 4)).collect()
+    };
+    let on_blocks = recorder.scenery.forces.iter().map(|force| LoadData {
+        name: force.name.clone(),
+        block: Some(force.block),
+        beam: None,
+        force: force.force,
+        couple: force.couple,
+        span: [0.0; 2],
+        speed: 0.0,
+        factor: factor(&force.history),
+    });
+    let on_beams = recorder.scenery.loads.iter().map(|load| {
+        let (up, couple, span, speed) = match load.kind {
+            LoadKind::Point { at, force, couple } => (force, couple, [at; 2], 0.0),
+            LoadKind::Distributed { load, from, to } => (load * (to - from), 0.0, [from, to], 0.0),
+            LoadKind::Moving { force, at, speed } => (force, 0.0, [at; 2], speed),
+        };
+        LoadData {
+            name: load.name.clone(),
+            block: None,
+            beam: Some(load.beam),
+            force: [0.0, up],
+            couple,
+            span,
+            speed,
+            factor: factor(&load.history),
+        }
+    });
+    on_blocks.chain(on_beams).collect()
+}
+
 fn curves(recorder: &PageRecorder) -> CurveData {
     let (blocks, beams) = (recorder.scenery.blocks.len(), recorder.scenery.beams.len());
     let column = |k: usize| recorder.kept.curves.curve(k).into_iter().map(digits).collect::<Vec<_>>();
-    let beam = BLOCK_COLUMNS * blocks;
+    let beam = recorder.scenery.block_columns();
+    let blocks = if recorder.scenery.is_crowded() { 0 } else { blocks };
     CurveData {
         t: recorder.kept.curves.times().into_iter().map(time).collect(),
         blocks: (0..blocks)

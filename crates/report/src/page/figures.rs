@@ -1,6 +1,9 @@
 //! The plots of the page as figures for a paper.
 
 use super::accelerograms;
+use super::bands::BAND_COLUMNS;
+use super::crowd::CrowdCurve;
+use super::drawings;
 use super::recorder::{BLOCK_COLUMNS, ENERGIES, MANY_IMPACTS, PageRecorder};
 use super::rounded;
 use crate::sections::Kind;
@@ -10,14 +13,20 @@ use teeter_plot::{Axis, Band, Colour, Figure, LEGEND_WIDTH, Panel, Series, legen
 
 /// File names and SVG text of the figures that the scene has: `phi.svg`, `omega.svg` and `phase.svg` with blocks,
 /// `w_mid.svg` with beams, `section_forces.svg` and `envelopes.svg` where the scene asks for what beams bear, `contact_forces.svg` where contacts carried something, `energy.svg` always, `records.svg` and
-/// `spectra.svg` where records prescribe motions.
+/// `spectra.svg` where records prescribe motions, `force_chains.svg` where two blocks or more touch something,
+/// `thrust_line.svg` and `eccentricity.svg` where blocks form a [chain](super::thrust_lines). Of many blocks `phi.svg`,
+/// `omega.svg` and `displacement.svg` show bands, and there is no `phase.svg`.
 #[must_use]
 pub fn figures(recorder: &PageRecorder) -> Vec<(String, String)> {
     let plots = Plots { recorder, t: recorder.kept.curves.times() };
     let scenery = &recorder.scenery;
     let mut figures = Vec::new();
     let mut add = |name: &str, figure: Figure| figures.push((name.to_owned(), figure.to_svg()));
-    if !scenery.blocks.is_empty() {
+    if scenery.is_crowded() {
+        add("phi.svg", plots.crowd_phi());
+        add("omega.svg", plots.crowd_omega());
+        add("displacement.svg", plots.crowd_displacement());
+    } else if !scenery.blocks.is_empty() {
         add("phi.svg", plots.phi());
         add("omega.svg", plots.omega());
         add("phase.svg", plots.phase());
@@ -40,6 +49,16 @@ pub fn figures(recorder: &PageRecorder) -> Vec<(String, String)> {
     }
     if let Some(figure) = accelerograms::spectra(&scenery.records) {
         add("spectra.svg", figure);
+    }
+    if let Some(drawing) = drawings::force_chains(recorder) {
+        figures.push(("force_chains.svg".to_owned(), drawing.to_svg()));
+    }
+    let lines = drawings::lines_of(recorder);
+    if let Some(drawing) = drawings::thrust(recorder, &lines) {
+        figures.push(("thrust_line.svg".to_owned(), drawing.to_svg()));
+    }
+    if let Some(figure) = drawings::eccentricities(&lines) {
+        figures.push(("eccentricity.svg".to_owned(), figure.to_svg()));
     }
     figures
 }
@@ -132,8 +151,56 @@ impl<'a> Plots<'a> {
         Figure::new("phase", "Phase portrait of the blocks", x).panel(Panel::new(y).with(lines).guides(guides))
     }
 
+    /// Bands of many bodies, from those of [`BAND_NAMES`](super::bands::BAND_NAMES), over time.
+    fn bands(t: &[f64], bands: &[Vec<f64>], factor: f64) -> Vec<Series> {
+        let area = |label: &str, low: usize, high: usize| {
+            let ends = bands[low].iter().zip(&bands[high]).map(|(a, b)| (factor * a, factor * b));
+            Series::area(label, t.iter().zip(ends).map(|(&t, (a, b))| (t, a, b))).number(0)
+        };
+        let median = t.iter().copied().zip(bands[2].iter().map(|y| factor * y));
+        vec![area("all bodies", 0, 4), area("8 of 10", 1, 3), Series::line("median", median).number(0)]
+    }
+
+    fn crowd_figure(&self, id: &str, title: &str, y_label: &str, lines: Vec<Series>) -> Figure {
+        let y = Axis::around(y_label, values(&lines), STILL);
+        self.over_time(id, title, vec![Panel::new(y).with(lines)])
+    }
+
+    /// Bands at the times of the pictures, and the bodies in which the quantity becomes largest.
+    fn crowd_chosen(&self, curve: CrowdCurve, factor: f64) -> Vec<Series> {
+        let t: Vec<f64> = self.recorder.kept.frames.rows().map(|(t, _)| t).collect();
+        let mut lines = Self::bands(&t, &curve.bands, factor);
+        lines.extend(curve.chosen.iter().enumerate().map(|(k, (block, values))| {
+            let points = t.iter().copied().zip(values.iter().map(|y| factor * y));
+            Series::line(&self.recorder.scenery.blocks[*block].name, points).number(k + 1)
+        }));
+        lines
+    }
+
+    fn crowd_phi(&self) -> Figure {
+        let lines = self.crowd_chosen(CrowdCurve::turns(self.recorder), 1f64.to_degrees());
+        let label = "Turn since the start (°)";
+        self.crowd_figure("phi", "Turn of the bodies over time, with those that turn furthest", label, lines)
+    }
+
+    fn crowd_displacement(&self) -> Figure {
+        let curve = CrowdCurve::distances(self.recorder);
+        let largest = curve.bands[BAND_COLUMNS - 1].iter().fold(0.0, |most: f64, x| most.max(*x));
+        let (prefix, factor) = prefix(largest);
+        let lines = self.crowd_chosen(curve, factor);
+        let y = Axis::around(format!("Distance from the start ({prefix}m)"), values(&lines), 1e-6 * factor);
+        let title = "Distance of the bodies from their start over time, with those that go furthest";
+        self.over_time("displacement", title, vec![Panel::new(y).with(lines)])
+    }
+
+    fn crowd_omega(&self) -> Figure {
+        let bands: Vec<Vec<f64>> = (BAND_COLUMNS..2 * BAND_COLUMNS).map(|k| self.curve(k, 1.0).collect()).collect();
+        let lines = Self::bands(&self.t, &bands, 1.0);
+        self.crowd_figure("omega", "Angular velocity of the bodies over time", "Angular velocity φ̇ (rad/s)", lines)
+    }
+
     fn w_mid(&self) -> Figure {
-        let first = BLOCK_COLUMNS * self.recorder.scenery.blocks.len();
+        let first = self.recorder.scenery.block_columns();
         let beams = &self.recorder.scenery.beams;
         let label = |name: &'a str| if beams.len() > 1 { name } else { "" };
         let line = |(k, name): (usize, &'a str)| self.line(label(name), k, first + k, 1e3);
@@ -211,7 +278,7 @@ impl<'a> Plots<'a> {
 
     fn energy(&self) -> Figure {
         let scenery = &self.recorder.scenery;
-        let first = BLOCK_COLUMNS * scenery.blocks.len() + scenery.beams.len();
+        let first = scenery.block_columns() + scenery.beams.len();
         let column = |name: &str| first + ENERGIES.iter().position(|known| *known == name).unwrap_or(0);
         let line =
             |&(name, label, number): &(&str, &str, usize), factor: f64| self.line(label, number, column(name), factor);

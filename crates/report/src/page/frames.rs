@@ -15,6 +15,15 @@ pub(crate) struct Frames {
     last: Option<(f64, Vec<f64>)>,
 }
 
+/// What became of a state.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) struct Entered {
+    /// Every second picture has gone.
+    pub(crate) halved: bool,
+    /// This one is kept.
+    pub(crate) kept: bool,
+}
+
 impl Frames {
     /// Room for `capacity` states of `width` numbers each.
     pub(crate) fn new(capacity: usize, width: usize) -> Self {
@@ -23,26 +32,28 @@ impl Frames {
 
     /// Enters a state; `fill` writes its numbers, if it is to be kept.
     #[inline]
-    pub(crate) fn enter(&mut self, t: f64, fill: impl FnOnce(&mut [f64])) {
-        if self.seen.is_multiple_of(self.stride) {
-            self.keep(t, fill);
-        }
+    pub(crate) fn enter(&mut self, t: f64, fill: impl FnOnce(&mut [f64])) -> Entered {
+        let due = self.seen.is_multiple_of(self.stride);
+        let entered = if due { self.keep(t, fill) } else { Entered::default() };
         self.seen += 1;
+        entered
     }
 
     #[inline(never)]
-    fn keep(&mut self, t: f64, fill: impl FnOnce(&mut [f64])) {
-        if self.t.len() == self.capacity {
+    fn keep(&mut self, t: f64, fill: impl FnOnce(&mut [f64])) -> Entered {
+        let halved = self.t.len() == self.capacity;
+        if halved {
             self.halve();
             // The stride need no longer meet this step.
             if !self.seen.is_multiple_of(self.stride) {
-                return;
+                return Entered { halved, kept: false };
             }
         }
         let start = self.values.len();
         self.t.push(t);
         self.values.resize(start + self.width, 0.0);
         fill(&mut self.values[start..]);
+        Entered { halved, kept: true }
     }
 
     /// Enters the last state again, to be kept in any case, so that the picture ends where the run does.
@@ -52,7 +63,8 @@ impl Frames {
         self.last = Some((t, row));
     }
 
-    fn halve(&mut self) {
+    /// Removes every second picture.
+    pub(crate) fn halve(&mut self) {
         let kept = self.t.len().div_ceil(2);
         for i in 1..kept {
             self.t[i] = self.t[2 * i];

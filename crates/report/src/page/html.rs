@@ -15,8 +15,10 @@ use teeter_plot::escaped;
 const TEMPLATE: &str = include_str!("../../assets/report.html");
 /// The style of the pages.
 pub const STYLE: &str = include_str!("../../assets/report.css");
-const SCRIPTS: [&str; 4] = [
+const SCRIPTS: [&str; 6] = [
     include_str!("../../assets/model.js"),
+    include_str!("../../assets/network.js"),
+    include_str!("../../assets/export.js"),
     include_str!("../../assets/scene.js"),
     include_str!("../../assets/plots.js"),
     include_str!("../../assets/main.js"),

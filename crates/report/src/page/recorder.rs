@@ -1,7 +1,9 @@
 //! The observer that keeps what the page shows.
 
 use super::curves::Curves;
+use super::bands::{BAND_COLUMNS, Bands};
 use super::frames::Frames;
+use super::network::Network;
 use super::rounded;
 use super::scenery::Scenery;
 use crate::closed::Closed;
@@ -47,8 +49,12 @@ pub(crate) const ENERGIES: [&str; 11] = [
     "residual",
 ];
 
-/// Columns of a block in [`Curves`]: φ and φ̇.
+/// Columns of a block in [`Curves`]: φ and φ̇. Of many blocks there are bands instead.
 pub(crate) const BLOCK_COLUMNS: usize = 2;
+
+/// Most blocks whose curves are kept one by one: there are as many colours and dashes to tell them
+/// apart.
+pub(super) const MOST_CURVES: usize = 21;
 
 /// Numbers of a block in [`Frames`]: x, y and φ.
 pub(crate) const BLOCK_FRAME: usize = 3;
@@ -59,9 +65,12 @@ const FRAMES: usize = 2000;
 /// Most buckets of the curves, each two points.
 const BUCKETS: usize = 2000;
 
-/// Most numbers on the page for pictures, and as many again for curves: at some 10 bytes each the page stays below 5 MB
-/// with as many bodies as one likes.
+/// Most numbers on the page for curves, and as many again for pictures of few bodies: at some 10 bytes each the page stays
+/// below 5 MB.
 const NUMBERS: usize = 180_000;
+
+/// Most numbers for pictures of many bodies: [packed](super::packed), one takes 1.3 to 2.7 bytes.
+const PACKED_NUMBERS: usize = 750_000;
 
 /// Impacts that the page marks; `impacts.csv` has all.
 const MARKED_IMPACTS: usize = 1000;
@@ -70,6 +79,7 @@ const MARKED_IMPACTS: usize = 1000;
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct Kept {
     pub(crate) frames: Frames,
+    pub(crate) network: Network,
     pub(crate) curves: Curves,
     pub(crate) impacts: Vec<ImpactMark>,
     /// All impacts, marked or not.
@@ -117,6 +127,7 @@ pub struct PageRecorder {
     pub(crate) beams: Vec<BeamRecord>,
     /// Values of the curves at the end of the step.
     row: Vec<f64>,
+    bands: Bands,
     /// Tells impacts, where nobody else does.
     closings: ClosingMonitor<2>,
     /// The contacts that closed in the step.
@@ -134,14 +145,20 @@ impl PageRecorder {
         let beams = scene.beams.iter().zip(&layout.beams).enumerate();
         let sections = beams.flat_map(|(number, (of, place))| columns_of(number, of, place));
         let sections: Vec<Column> = sections.filter(|column| column.kind != Kind::Deflection).collect();
-        let columns = BLOCK_COLUMNS * scenery.blocks.len() + scenery.beams.len() + ENERGIES.len() + sections.len();
+        let columns = scenery.block_columns() + scenery.beams.len() + ENERGIES.len() + sections.len();
         let points = scenery.points;
         let even = |n: usize| n - n % 2;
         let capacity = |most: usize, width: usize| even((NUMBERS / width).clamp(10, most));
         let bucket_capacity = capacity(BUCKETS, 2 * columns + 2 * points + 3);
+        let pictures = if scenery.is_crowded() {
+            even((PACKED_NUMBERS / (frame + 1)).clamp(10, FRAMES))
+        } else {
+            capacity(FRAMES, frame + 1)
+        };
         Self {
             kept: Kept {
-                frames: Frames::new(capacity(FRAMES, frame + 1), frame),
+                frames: Frames::new(pictures, frame),
+                network: if scenery.has_network() { Network::new(pictures, scenery.blocks.len()) } else { Network::default() },
                 curves: Curves::new(bucket_capacity, 0.0, vec![0.0; columns], points),
                 impacts: Vec::new(),
                 impact_count: 0,
@@ -153,6 +170,7 @@ impl PageRecorder {
             sections,
             beams: Vec::new(),
             row: vec![f64::NAN; columns],
+            bands: Bands::default(),
             closings: ClosingMonitor::default(),
             closed: Vec::new(),
             scenery,
@@ -169,7 +187,7 @@ impl PageRecorder {
 
     /// The number of the first column of the curves that is of what beams bear.
     pub(crate) fn first_section(&self) -> usize {
-        BLOCK_COLUMNS * self.scenery.blocks.len() + self.scenery.beams.len() + ENERGIES.len()
+        self.scenery.block_columns() + self.scenery.beams.len() + ENERGIES.len()
     }
 
     /// What tells a curve of what beams bear from others of its kind: the place, and the beam where there are several.
@@ -189,15 +207,26 @@ impl PageRecorder {
     }
 
     fn take_frame(&mut self, state: &State) {
-        self.kept.frames.enter(state.t, |row| fill_frame(&self.layout, &self.scenery, state, row));
+        let Kept { frames, network, .. } = &mut self.kept;
+        let entered = frames.enter(state.t, |row| fill_frame(&self.layout, &self.scenery, state, row));
+        network.follow(entered);
+        if network.is_full() {
+            frames.halve();
+            network.halve();
+        }
     }
 
     fn take_row(&mut self, state: &State) {
-        let blocks = BLOCK_COLUMNS * self.layout.blocks.len();
-        let (of_blocks, rest) = self.row.split_at_mut(blocks);
-        for (out, block) in of_blocks.chunks_exact_mut(BLOCK_COLUMNS).zip(&self.layout.blocks) {
-            let phi = block.range.start + 2;
-            out.copy_from_slice(&[state.q[phi], state.v[phi]]);
+        let (of_blocks, rest) = self.row.split_at_mut(self.scenery.block_columns());
+        let places = self.layout.blocks.iter().map(|block| block.range.start + 2);
+        if self.scenery.is_crowded() {
+            let (angles, rates) = of_blocks.split_at_mut(BAND_COLUMNS);
+            self.bands.fill(places.clone().map(|phi| state.q[phi]), angles);
+            self.bands.fill(places.map(|phi| state.v[phi]), rates);
+        } else {
+            for (out, phi) in of_blocks.chunks_exact_mut(BLOCK_COLUMNS).zip(places) {
+                out.copy_from_slice(&[state.q[phi], state.v[phi]]);
+            }
         }
         let (of_beams, rest) = rest.split_at_mut(self.layout.beams.len());
         for ((out, place), drawn) in of_beams.iter_mut().zip(&self.layout.beams).zip(&self.scenery.beams) {
@@ -223,6 +252,9 @@ impl PageRecorder {
 
     fn take_contacts(&mut self, step: &StepReport<'_, 2>) {
         for part in step.active() {
+            if self.scenery.has_network() {
+                self.kept.network.add(part.contacts);
+            }
             for contact in part.contacts {
                 let Some((pair, point)) = place(&self.layout, contact) else { continue };
                 // Impulses are those of the whole step; what a contact does in it is what it does
@@ -270,10 +302,11 @@ impl PageRecorder {
 
     /// Takes a step in, with the contacts that closed in it.
     pub(crate) fn see_step(&mut self, step: &StepReport<'_, 2>, state: &State, closed: &[Closed]) {
-        self.take_frame(state);
         self.take_row(state);
         self.kept.curves.enter(state.t, &self.row);
         self.take_contacts(step);
+        // After the contacts: what they did belongs to the picture at the step's end.
+        self.take_frame(state);
         self.mark(step, state, closed);
     }
 }

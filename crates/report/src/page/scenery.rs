@@ -1,12 +1,15 @@
 //! What stands in the picture: sizes and places that don't change.
 
+use super::bands::BAND_COLUMNS;
+use super::recorder::{BLOCK_COLUMNS, MOST_CURVES};
+use super::{DIGITS, rounded};
 use crate::probe::Probe;
 use serde::Serialize;
 use std::sync::Arc;
 use teeter_beam::Axial;
 use teeter_detect::OnSide;
-use teeter_integrator::BeamFace;
-use teeter_scenario::scene::{self, RecordScene, Scene};
+use teeter_integrator::{BeamFace, Vector};
+use teeter_scenario::scene::{self, Crowd, ForceScene, LoadScene, RecordScene, Scene, SupportingBody};
 use teeter_scenario::simulation::Layout;
 use teeter_scenario::wording;
 
@@ -22,6 +25,11 @@ pub(crate) struct BlockDrawn {
     pub(crate) upright: bool,
     /// Critical angle of a rectangle, rad.
     pub(crate) alpha: Option<f64>,
+    /// Largest distance from its mass centre to its outline, m.
+    pub(crate) reach: f64,
+    /// Whether all of its motion is prescribed.
+    #[serde(skip)]
+    pub(crate) driven: bool,
 }
 
 /// A beam as drawn.
@@ -111,6 +119,20 @@ pub(crate) struct Scenery {
     /// Points of all contacts.
     #[serde(skip)]
     pub(crate) points: usize,
+    /// Points that can touch where there are too many to draw them one by one; 0 otherwise.
+    pub(crate) hidden_points: usize,
+    /// Whether pairs of blocks aren't even listed.
+    pub(crate) unlisted: bool,
+    /// The bodies of each pair of the model: a block, and what it touches.
+    #[serde(skip)]
+    listed: Vec<(usize, SupportingBody)>,
+    #[serde(skip)]
+    crowd: Option<Arc<Crowd>>,
+    /// The forces on blocks, and the loads on beams.
+    #[serde(skip)]
+    pub(crate) forces: Vec<ForceScene>,
+    #[serde(skip)]
+    pub(crate) loads: Vec<LoadScene>,
     /// The records that prescribe motions.
     #[serde(skip)]
     pub(crate) records: Vec<Arc<RecordScene>>,
@@ -150,6 +172,8 @@ impl Scenery {
             },
             upright: block.parts.is_none(),
             alpha: block.critical_angle(),
+            reach: rounded(reach(block), DIGITS),
+            driven: block.motion.0.iter().all(Option::is_some),
         });
         let beams = scene.beams.iter().zip(&layout.beams).map(|(drawn, place)| {
             let (elements, span) = (place.beam.elements(), drawn.spec.span);
@@ -225,7 +249,46 @@ impl Scenery {
             beams: beams.collect(),
             contacts,
             points,
+            hidden_points: if all > MOST_POINTS { all } else { 0 },
+            unlisted: scene.crowd.is_some(),
+            listed: scene.contacts.iter().map(|contact| (contact.block, contact.surface)).collect(),
+            crowd: layout.crowd.as_ref().map(|place| Arc::clone(&place.crowd)),
+            forces: scene.forces.clone(),
+            loads: scene.loads.clone(),
             records: scene.records().cloned().collect(),
         }
+    }
+
+    /// Whether there are too many blocks for a curve each.
+    pub(crate) fn is_crowded(&self) -> bool {
+        self.blocks.len() > MOST_CURVES
+    }
+
+    /// Columns of all blocks in the curves.
+    pub(crate) fn block_columns(&self) -> usize {
+        if self.is_crowded() { 2 * BAND_COLUMNS } else { BLOCK_COLUMNS * self.blocks.len() }
+    }
+
+    /// Whether contact forces are drawn as a network: of a single block it would be a star.
+    pub(crate) fn has_network(&self) -> bool {
+        self.blocks.len() > 1
+    }
+
+    /// The bodies of a pair, by its number in the model.
+    pub(crate) fn bodies_of(&self, pair: u32) -> Option<(usize, SupportingBody)> {
+        if let Some(bodies) = self.listed.get(pair as usize) {
+            return Some(*bodies);
+        }
+        let [block, other] = self.crowd.as_ref()?.blocks_of(self.listed.len(), pair)?;
+        Some((block, SupportingBody::Block(other)))
+    }
+}
+
+/// Largest distance from a block's mass centre to its outline, m.
+fn reach(block: &scene::BlockScene) -> f64 {
+    let far = |corners: &[Vector<2>], radius: f64| corners.iter().fold(0.0, |most: f64, at| most.max(at.norm() + radius));
+    match &block.parts {
+        None => far(&block.corners(), 0.0),
+        Some(parts) => parts.iter().fold(0.0, |most, part| most.max(far(part.shape.core(), part.shape.radius()))),
     }
 }

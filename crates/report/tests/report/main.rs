@@ -5,6 +5,7 @@ mod energy;
 mod impacts;
 mod meetings;
 mod memory;
+mod network;
 mod page;
 mod records;
 mod sections;

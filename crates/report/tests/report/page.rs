@@ -9,15 +9,15 @@ use teeter_integrator::Observer;
 use teeter_report::{EndedWord, PageRecorder, Recorder, Results, Summary, figures, half_cycles, render};
 use teeter_scenario::simulation::Simulation;
 
-struct Run {
-    page: PageRecorder,
+pub(crate) struct Run {
+    pub(crate) page: PageRecorder,
     summary: Summary,
-    html: String,
-    folder: std::path::PathBuf,
+    pub(crate) html: String,
+    pub(crate) folder: std::path::PathBuf,
 }
 
 /// Runs a scene, and leaves its page and figures where they can be looked at.
-fn run(name: &str, text: &str) -> Run {
+pub(crate) fn run(name: &str, text: &str) -> Run {
     let resolved = teeter_scenario::load(text.as_bytes(), name, name, &[]).unwrap();
     let mut simulation = Simulation::new(&resolved.scene).unwrap();
     let layout = simulation.layout.clone();
@@ -54,13 +54,13 @@ fn scenario(name: &str) -> &'static Run {
 const SCENARIOS: [&str; 5] =
     ["free-rocking-on-beam", "free-rocking-on-beam-undeformed-start", "free-rocking-on-ground", "drop", "sliding"];
 
-fn data(html: &str) -> Value {
+pub(crate) fn data(html: &str) -> Value {
     let start = html.find("id=\"data\">").unwrap() + "id=\"data\">".len();
     let text = &html[start..start + html[start..].find("</script>").unwrap()];
     serde_json::from_str(text).unwrap()
 }
 
-fn numbers(value: &Value) -> Vec<f64> {
+pub(crate) fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
 }
 
@@ -72,7 +72,7 @@ fn shown<'a>(html: &'a str, path: &str) -> &'a str {
 }
 
 /// Tags that open and close in order, attributes in quotes: all that XML asks of files like ours.
-fn assert_well_formed(name: &str, svg: &str) {
+pub(crate) fn assert_well_formed(name: &str, svg: &str) {
     let mut open: Vec<&str> = Vec::new();
     for piece in svg.split('<').skip(1) {
         let (tag, text) = piece.split_once('>').unwrap_or_else(|| panic!("{name}: no end of <{piece}"));

@@ -154,6 +154,8 @@ fn run_case(sweep: &Sweep, source: &StudyScene, number: u64, cancel: &AtomicBool
     };
     let (word, error) = match ended {
         Ended::Interrupted if cancel.load(Ordering::Relaxed) => return None,
+        // By `time.stop`.
+        Ended::Interrupted => (EndedWord::Stopped, String::new()),
         Ended::Failed(error) => (EndedWord::Diverged, error.to_string()),
         Ended::Unconverged => {
             let t = simulation.state.t;

@@ -1,0 +1,51 @@
+// The network of contact forces: between two blocks a line from one centre to the other through the centre of pressure,
+// between a block and anything else from its centre to there. As wide as the force is large.
+
+const chains = (() => {
+  if (!network) return null;
+  const classes = 12;
+
+  /** The force that has the widest line: the median over the pictures of their largest. */
+  const usual = (() => {
+    const sizes = network.largest.filter((force) => force > 0).sort((a, b) => a - b);
+    return sizes[Math.floor(sizes.length / 2)] || 1;
+  })();
+
+  const sizes = scenery.blocks.map(({ reach }) => reach).sort((a, b) => a - b);
+  const typical = sizes[Math.floor(sizes.length / 2)];
+  let shown = { picture: -1, links: [] };
+
+  function linksAt(picture) {
+    if (shown.picture !== picture) shown = { picture, links: linksOf(picture) };
+    return shown.links;
+  }
+
+  function build(parent) {
+    const group = svgElement("g", { class: "network" }, parent);
+    return Array.from({ length: classes }, () => svgElement("path", {}, group));
+  }
+
+  /** Draws the links of a picture, with the poses of the blocks and where a place (m) is in the picture. */
+  function draw(paths, picture, poseOf, place, scale) {
+    const lines = paths.map(() => "");
+    const widest = Math.min(9, Math.max(1.5, 0.5 * typical * scale));
+    for (const link of linksAt(picture)) {
+      const number = Math.min(classes, Math.round((link.force / usual) * classes));
+      if (number === 0) continue;
+      const [block, other] = network.pairs[link.pair];
+      const pose = poseOf(block);
+      const [sin, cos] = [Math.sin(pose.phi), Math.cos(pose.phi)];
+      let line = `M${place(pose.x, pose.y)}L${place(pose.x + cos * link.x - sin * link.y, pose.y + sin * link.x + cos * link.y)}`;
+      if (other >= 0) {
+        const beyond = poseOf(other);
+        line += `L${place(beyond.x, beyond.y)}`;
+      }
+      lines[number - 1] += line;
+    }
+    paths.forEach((path, k) => setAll(path, { d: lines[k], "stroke-width": ((widest * (k + 1)) / classes).toFixed(2) }));
+  }
+
+  const clear = (paths) => paths.forEach((path) => path.setAttribute("d", ""));
+
+  return { build, draw, clear, usual, linksAt };
+})();

@@ -1,0 +1,158 @@
+//! The scene at its end as drawings to scale: the network of contact forces, and lines of thrust.
+
+use super::chain::{LastPicture, Thrust, ThrustLine, thrust_lines};
+use super::outline::Outline;
+use super::recorder::{BLOCK_FRAME, PageRecorder};
+use super::rounded;
+use teeter_plot::{Axis, Colour, Drawing, Figure, Panel, Series};
+use teeter_scenario::scene::SupportingBody;
+
+/// Widths of the lines of a network, in parts of the widest; forces below half of the first are left out.
+const CLASSES: usize = 12;
+
+/// Width of the line of the largest force, mm: as the bodies are large, up to this.
+const WIDEST: f64 = 2.4;
+
+/// Width of a drawing within its margins, mm.
+const DRAWING: f64 = 113.0;
+
+/// The scene where it is in the last picture.
+fn scene(recorder: &PageRecorder, last: &LastPicture<'_>, title: &str) -> Drawing {
+    let scenery = &recorder.scenery;
+    let mut moved_at = BLOCK_FRAME * scenery.blocks.len() + scenery.beams.iter().map(|beam| beam.points).sum::<usize>();
+    let mut drawing = Drawing::new(title);
+    let (mut first, mut beams) = (BLOCK_FRAME * scenery.blocks.len(), Vec::new());
+    for (beam, place) in scenery.beams.iter().zip(&recorder.layout.beams) {
+        let shift = place.supports.as_ref().map_or([0.0; 2], |range| {
+            let shift = [last.row[moved_at], last.row[moved_at + 1]];
+            moved_at += range.len();
+            shift
+        });
+        let w = &last.row[first..first + beam.points];
+        first += beam.points;
+        // As in the moving picture: the line that is touched, the axis or the top fibre, is the upper edge.
+        let x = |k: usize| beam.x + shift[0] + beam.span * k as f64 / (beam.points - 1) as f64;
+        let top = if beam.top { 0.5 * beam.thickness } else { 0.0 };
+        let y = |k: usize| beam.y + shift[1] + w[k] + top;
+        let above = (0..beam.points).map(|k| (x(k), y(k)));
+        let below = (0..beam.points).rev().map(|k| (x(k), y(k) - beam.thickness));
+        beams.push(above.chain(below).collect());
+    }
+    let outlines: Vec<Vec<(f64, f64)>> =
+        scenery.blocks.iter().zip(&last.poses).flat_map(|(block, pose)| Outline::of(block, *pose).lines()).collect();
+    if scenery.ground {
+        let ends = outlines.iter().flatten().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), at| (a.min(at.0), b.max(at.0)));
+        let room = 0.03 * (ends.1 - ends.0);
+        let [x, y, slope] = recorder.layout.ground.as_ref().map_or([0.0, 0.0, scenery.incline], |range| {
+            let start = last.row.len() - range.len();
+            [last.row[start], last.row[start + 1], last.row[start + 2]]
+        });
+        let (sin, cos) = slope.sin_cos();
+        // Along the surface, in its own coordinates, as far as the blocks are.
+        let own = |at: f64| (at - x) / cos.abs().max(1e-3);
+        let (left, right) = (own(ends.0 - room), own(ends.1 + room));
+        let profile = &scenery.profile;
+        let height = |at: f64| match profile.iter().position(|point| point[0] > at) {
+            None => profile.last().map_or(0.0, |point| point[1]),
+            Some(0) => profile[0][1],
+            Some(next) => {
+                let ([x0, y0], [x1, y1]) = (profile[next - 1], profile[next]);
+                y0 + (at - x0) / (x1 - x0) * (y1 - y0)
+            }
+        };
+        let within = profile.iter().copied().filter(|point| point[0] > left && point[0] < right);
+        let surface = std::iter::once([left, height(left)]).chain(within).chain([[right, height(right)]]);
+        drawing = drawing.ground(surface.map(|[a, b]| (x + cos * a - sin * b, y + sin * a + cos * b)));
+    }
+    drawing.outlines(beams, Colour::Grid).outlines(outlines, Colour::Shade)
+}
+
+/// When, and over how long the forces are means.
+fn time_note([from, to]: [f64; 2]) -> String {
+    format!("At t = {} s; forces are means over the {} s before", rounded(to, 6), rounded(to - from, 3))
+}
+
+/// The network of contact forces at the end: between two blocks a line from one centre to the other through the centre of
+/// pressure, between a block and anything else from its centre to that.
+pub(super) fn force_chains(recorder: &PageRecorder) -> Option<Drawing> {
+    let scenery = &recorder.scenery;
+    let last = LastPicture::of(recorder).filter(|last| scenery.has_network() && !last.thrusts.is_empty())?;
+    let largest = last.thrusts.iter().map(Thrust::size).fold(0.0, f64::max);
+    let mut drawing = scene(recorder, &last, "Contact forces as a network at the end of the run");
+    let mut reaches: Vec<f64> = scenery.blocks.iter().map(|block| block.reach).collect();
+    reaches.sort_by(f64::total_cmp);
+    let poses = || last.poses.iter();
+    let ends = |k: usize| poses().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(p[k]), b.max(p[k])));
+    let size = (ends(0).1 - ends(0).0).max(0.8 * (ends(1).1 - ends(1).0)) + 2.0 * reaches[reaches.len() - 1];
+    let widest = WIDEST.min(0.9 * reaches[reaches.len() / 2] / size * DRAWING);
+    let mut classes: Vec<Vec<Vec<(f64, f64)>>> = vec![Vec::new(); CLASSES + 1];
+    for thrust in &last.thrusts {
+        let class = (thrust.size() / largest * CLASSES as f64).round() as usize;
+        let centre = |block: usize| (last.poses[block][0], last.poses[block][1]);
+        let mut line = vec![centre(thrust.block), (thrust.at[0], thrust.at[1])];
+        if let SupportingBody::Block(other) = thrust.other {
+            line.push(centre(other));
+        }
+        classes[class.min(CLASSES)].push(line);
+    }
+    for (class, lines) in classes.into_iter().enumerate().skip(1).filter(|(_, lines)| !lines.is_empty()) {
+        drawing = drawing.lines(lines, widest * class as f64 / CLASSES as f64, Colour::Series(1));
+    }
+    let least = rounded(0.5 / CLASSES as f64 * largest, 2);
+    Some(
+        drawing
+            .key(Colour::Series(1), widest, format!("{} N, the largest force", rounded(largest, 3)))
+            .note(format!("{}; those below {least} N are left out", time_note(last.interval))),
+    )
+}
+
+/// The lines of thrust at the end.
+pub(super) fn thrust(recorder: &PageRecorder, lines: &[ThrustLine]) -> Option<Drawing> {
+    let last = LastPicture::of(recorder).filter(|_| !lines.is_empty())?;
+    let mut drawing = scene(recorder, &last, "Line of thrust at the end of the run");
+    for line in lines {
+        let points: Vec<(f64, f64)> = line.joints.iter().map(|joint| (joint.at[0], joint.at[1])).collect();
+        drawing = drawing.lines([points.clone()], 0.45, Colour::Series(1));
+        // Of many joints the dots would hide the line.
+        if points.len() <= 40 {
+            drawing = points.into_iter().fold(drawing, |drawing, at| drawing.dot(at, Colour::Series(1)));
+        }
+    }
+    let part = |joint: &super::Joint| Some((joint.eccentricity? / joint.depth?, joint.between.clone()));
+    let most = lines.iter().flat_map(|line| &line.joints).filter_map(part).max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
+    drawing = drawing.key(Colour::Series(1), 0.45, "line of thrust, through the centre of pressure of each joint");
+    if let Some((most, [one, other])) = most {
+        drawing = drawing.note(format!(
+            "Largest eccentricity {} of the depth, between {one} and {other}",
+            format!("{most:.3}").replace('-', "\u{2212}")
+        ));
+    }
+    Some(drawing.note(time_note(last.interval)))
+}
+
+/// The eccentricities of the joints, in parts of their depth.
+pub(super) fn eccentricities(lines: &[ThrustLine]) -> Option<Figure> {
+    let most = lines.iter().map(|line| line.joints.len()).max()?;
+    let several = lines.len() > 1;
+    let series = lines.iter().enumerate().map(|(k, line)| {
+        let label = if several { format!("{} to {}", line.blocks[0], line.blocks[line.blocks.len() - 1]) } else { String::new() };
+        let points = line.joints.iter().enumerate();
+        let value = |joint: &super::Joint| joint.eccentricity.zip(joint.depth).map_or(f64::NAN, |(e, depth)| e / depth);
+        Series::line(label, points.map(|(number, joint)| ((number + 1) as f64, value(joint)))).number(k)
+    });
+    let series: Vec<Series> = series.collect();
+    let limits = [("edge of the joint", 0.5, 6), ("middle third", 1.0 / 6.0, 4)];
+    let limits = limits.into_iter().flat_map(|(label, at, number)| {
+        let line = move |label: &str, y: f64| Series::line(label, [(1.0, y), (most as f64, y)]).number(number);
+        [line(label, at), line("", -at)]
+    });
+    let x = Axis::between("Joint, from the first support on", 1.0, (most as f64).max(2.0));
+    let y = Axis::between("Eccentricity e / depth", -0.55, 0.55);
+    let panel = Panel::new(y).with(limits.collect::<Vec<_>>()).with(series);
+    Some(Figure::new("eccentricity", "Eccentricity of the line of thrust in each joint", x).panel(panel))
+}
+
+/// The lines of thrust, for figures and page.
+pub(super) fn lines_of(recorder: &PageRecorder) -> Vec<ThrustLine> {
+    if recorder.scenery.has_network() { thrust_lines(recorder) } else { Vec::new() }
+}

@@ -1,0 +1,62 @@
+//! Whole numbers as text: seven bits a byte with the lowest first, then base64. Differences of neighbours
+//! are small, so most take one byte.
+
+/// Whole numbers in a row.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(crate) struct Packed(Vec<u8>);
+
+impl Packed {
+    /// Appends a number that is not negative.
+    pub(crate) fn push(&mut self, mut x: u64) {
+        while x >= 0x80 {
+            self.0.push((x as u8 & 0x7f) | 0x80);
+            x >>= 7;
+        }
+        self.0.push(x as u8);
+    }
+
+    /// Appends a number of either sign: 0, −1, 1, −2 as 0, 1, 2, 3.
+    pub(crate) fn push_signed(&mut self, x: i64) {
+        self.push(((x << 1) ^ (x >> 63)) as u64);
+    }
+
+    /// The text.
+    pub(crate) fn text(&self) -> String {
+        const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+        let mut text = String::with_capacity(4 * self.0.len().div_ceil(3));
+        for three in self.0.chunks(3) {
+            let byte = |k: usize| u32::from(three.get(k).copied().unwrap_or(0));
+            let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
+            for digit in 0..4 {
+                let known = digit <= three.len();
+                text.push(if known { char::from(DIGITS[(bits >> (18 - 6 * digit)) as usize & 63]) } else { '=' });
+            }
+        }
+        text
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    #[test]
+    fn the_text_is_that_of_the_standard() {
+        // RFC 4648, section 10.
+        for (bytes, text) in [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")] {
+            assert_eq!(Packed(bytes.as_bytes().to_vec()).text(), text);
+        }
+    }
+
+    #[test]
+    fn small_numbers_are_short() {
+        let mut packed = Packed::default();
+        [0, -1, 1, 63, -64].into_iter().for_each(|x| packed.push_signed(x));
+        assert_eq!(packed.0, [0, 1, 2, 126, 127]);
+        packed.push_signed(64);
+        packed.push(300);
+        assert_eq!(packed.0[5..], [0x80, 1, 0xac, 2]);
+        packed.push_signed(i64::MIN);
+        assert_eq!(packed.0.len(), 9 + 10);
+    }
+}
