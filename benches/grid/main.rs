@@ -10,6 +10,7 @@ use cpu_time::ThreadTime;
 use std::error::Error;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 use teeter_scenario::resolve::Resolved;
@@ -54,7 +55,8 @@ fn scenario(path: &Path, stem: &str, folder: &Path) -> Result<String> {
     let mut read = |file: &str| std::fs::read(parent.join(file)).map_err(|error| error.to_string());
     let (source, resolved) = StudyScene::new(std::fs::read(path)?, stem, stem, &[], &mut read)?;
     let begin = Instant::now();
-    let study = Tradeoff::of(&source, &resolved, runner::cores(), &AtomicBool::new(false), &mut |_, _, _| {})?;
+    let study =
+        Tradeoff::of(&source, &resolved, runner::cores(), &Arc::new(AtomicBool::new(false)), &mut |_, _, _| {})?;
     let seconds = begin.elapsed().as_secs_f64();
     let rows = full_grid(&source, &resolved, &study)?;
     std::fs::write(folder.join(format!("{stem}.csv")), table(&rows))?;
@@ -100,7 +102,7 @@ fn scenario(path: &Path, stem: &str, folder: &Path) -> Result<String> {
 
 /// Every setting of the grid that is a scene, as far as its steps are needed.
 fn full_grid(source: &StudyScene, resolved: &Resolved, study: &Tradeoff) -> Result<Vec<Row>> {
-    let cancel = AtomicBool::new(false);
+    let cancel = Arc::new(AtomicBool::new(false));
     let mut open = combinations(&study.axes, resolved.scene.beams.is_empty());
     let mut rows: Vec<Row> = Vec::new();
     let mut within: Vec<u32> = vec![0; open.len()];

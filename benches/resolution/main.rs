@@ -6,6 +6,7 @@ use std::error::Error;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use teeter_study::{Quantity, ReferenceComparison, Setting, StudyScene, runner};
 
@@ -122,7 +123,7 @@ fn swept(path: &Path, stem: &str) -> Result<Vec<Row>> {
     let folder = path.parent().map(Path::to_owned).unwrap_or_default();
     let mut read = |file: &str| std::fs::read(folder.join(file)).map_err(|error| error.to_string());
     let (source, resolved) = StudyScene::new(std::fs::read(path)?, stem, stem, &[], &mut read)?;
-    let cancel = AtomicBool::new(false);
+    let cancel = Arc::new(AtomicBool::new(false));
     let against = ReferenceComparison::new(&source, &resolved, runner::cores(), &cancel)?;
     let mut base = Setting::none();
     if against.horizon() < 0.99 * resolved.scene.time.end {

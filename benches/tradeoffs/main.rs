@@ -5,6 +5,7 @@ use std::error::Error;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use teeter_study::{Advice, Quantity, StudyScene, TARGETS, Tradeoff, runner, write};
 
@@ -42,7 +43,7 @@ fn studied(path: &Path, stem: &str) -> Result<Tradeoff> {
     let folder = path.parent().map(Path::to_owned).unwrap_or_default();
     let mut read = |file: &str| std::fs::read(folder.join(file)).map_err(|error| error.to_string());
     let (source, resolved) = StudyScene::new(std::fs::read(path)?, stem, stem, &[], &mut read)?;
-    Ok(Tradeoff::of(&source, &resolved, runner::cores(), &AtomicBool::new(false), &mut |_, _, _| {})?)
+    Ok(Tradeoff::of(&source, &resolved, runner::cores(), &Arc::new(AtomicBool::new(false)), &mut |_, _, _| {})?)
 }
 
 /// Marks around what is generated for a scenario.

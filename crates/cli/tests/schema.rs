@@ -6,7 +6,7 @@
 mod rows;
 
 use regex::Regex;
-use rows::{Input, STACKED, rows};
+use rows::{Input, PILE, STACKED, rows};
 use serde_json::Value;
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -304,6 +304,9 @@ fn bad_inputs_are_refused_but_those_beyond_a_schema() {
             Input::Text(own) => text = (*own).to_owned(),
             Input::Stack(changes) => {
                 text = changes.iter().fold(STACKED.to_owned(), |text, (from, to)| text.replacen(from, to, 1));
+            }
+            Input::Pile(changes) => {
+                text = changes.iter().fold(PILE.to_owned(), |text, (from, to)| text.replacen(from, to, 1));
             }
             // What is in another file no schema of this one tells.
             Input::Record(_) | Input::Shape(_) => continue,

@@ -316,13 +316,11 @@ fn shaken_past_alpha_and_back_is_not_overturned() {
 
 #[test]
 fn a_block_that_slides_past_the_end_of_its_beam_has_left_it() {
-    let text = format!(
-        "[time]\nend = '0.5 s'\nstep = '200 us'\n\
+    let text = "[time]\nend = '0.5 s'\nstep = '200 us'\n\
          [beam.t]\nmaterial = 'a'\nspan = '36 cm'\nwidth = '3 cm'\nthickness = '1 cm'\nelements = 10\n\
          [block.b]\nmaterial = 'a'\nwidth = '4 cm'\nheight = '1 cm'\ndepth = '3 cm'\non = 't'\nat = '30 cm'\nvelocity = ['1 m/s', '0 m/s']\n\
-         [contact.f]\nbetween = ['b', 't']\nfriction = 0.05\n"
-    );
-    let ran = scene("left", &text);
+         [contact.f]\nbetween = ['b', 't']\nfriction = 0.05\n";
+    let ran = scene("left", text);
     let at = ran.column("b.x");
     let gone = at.iter().position(|x| *x > 0.36).unwrap();
     let (kind, way) = what(&ran);

@@ -1,8 +1,8 @@
 //! A drawing to scale: outlines, lines and points in the plane.
 
+use crate::escaped;
 use crate::figure::{UNITS_PER_MM, WIDTH};
 use crate::theme::{Colour, Theme};
-use crate::escaped;
 use std::fmt::Write;
 
 /// Points in a row, m.
@@ -268,7 +268,9 @@ mod tests {
 
     #[test]
     fn the_scale_is_a_round_length() {
-        for (most, text) in [(1.3, "1 m"), (0.72, "50 cm"), (0.051, "5 cm"), (0.009, "5 mm"), (4e-5, "0.02 mm"), (70.0, "50 m")] {
+        for (most, text) in
+            [(1.3, "1 m"), (0.72, "50 cm"), (0.051, "5 cm"), (0.009, "5 mm"), (4e-5, "0.02 mm"), (70.0, "50 m")]
+        {
             let (length, label) = bar(most);
             assert!(length <= most && length > 0.3 * most, "{length}");
             assert_eq!(label, text);

@@ -22,11 +22,12 @@ impl CrowdCurve {
         let pose = |row: &[f64], k: usize| [0, 1, 2].map(|i| row[BLOCK_FRAME * k + i]);
         let rows: Vec<&[f64]> = recorder.kept.frames.rows().map(|(_, row)| row).collect();
         let first = rows.first().copied().unwrap_or_default();
-        let values = |k: usize| rows.iter().map(move |row| (k, row)).map(|(k, row)| value(&pose(first, k), &pose(row, k)));
+        let values =
+            |k: usize| rows.iter().map(move |row| (k, row)).map(|(k, row)| value(&pose(first, k), &pose(row, k)));
         let mut largest: Vec<(usize, f64)> =
             (0..blocks).map(|k| (k, values(k).fold(0.0, |most: f64, x| most.max(x.abs())))).collect();
         largest.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let (mut sorter, mut bands) = (Bands::default(), vec![Vec::with_capacity(rows.len()); BAND_COLUMNS]);
+        let (mut sorter, mut bands) = (Bands::default(), vec![Vec::new(); BAND_COLUMNS]);
         for row in &rows {
             let mut of_picture = [0.0; BAND_COLUMNS];
             sorter.fill((0..blocks).map(|k| value(&pose(first, k), &pose(row, k))), &mut of_picture);

@@ -41,7 +41,8 @@ fn scene(recorder: &PageRecorder, last: &LastPicture<'_>, title: &str) -> Drawin
     let outlines: Vec<Vec<(f64, f64)>> =
         scenery.blocks.iter().zip(&last.poses).flat_map(|(block, pose)| Outline::of(block, *pose).lines()).collect();
     if scenery.ground {
-        let ends = outlines.iter().flatten().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), at| (a.min(at.0), b.max(at.0)));
+        let ends =
+            outlines.iter().flatten().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), at| (a.min(at.0), b.max(at.0)));
         let room = 0.03 * (ends.1 - ends.0);
         let [x, y, slope] = recorder.layout.ground.as_ref().map_or([0.0, 0.0, scenery.incline], |range| {
             let start = last.row.len() - range.len();
@@ -119,7 +120,8 @@ pub(super) fn thrust(recorder: &PageRecorder, lines: &[ThrustLine]) -> Option<Dr
         }
     }
     let part = |joint: &super::Joint| Some((joint.eccentricity? / joint.depth?, joint.between.clone()));
-    let most = lines.iter().flat_map(|line| &line.joints).filter_map(part).max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
+    let most =
+        lines.iter().flat_map(|line| &line.joints).filter_map(part).max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
     drawing = drawing.key(Colour::Series(1), 0.45, "line of thrust, through the centre of pressure of each joint");
     if let Some((most, [one, other])) = most {
         drawing = drawing.note(format!(
@@ -135,7 +137,11 @@ pub(super) fn eccentricities(lines: &[ThrustLine]) -> Option<Figure> {
     let most = lines.iter().map(|line| line.joints.len()).max()?;
     let several = lines.len() > 1;
     let series = lines.iter().enumerate().map(|(k, line)| {
-        let label = if several { format!("{} to {}", line.blocks[0], line.blocks[line.blocks.len() - 1]) } else { String::new() };
+        let label = if several {
+            format!("{} to {}", line.blocks[0], line.blocks[line.blocks.len() - 1])
+        } else {
+            String::new()
+        };
         let points = line.joints.iter().enumerate();
         let value = |joint: &super::Joint| joint.eccentricity.zip(joint.depth).map_or(f64::NAN, |(e, depth)| e / depth);
         Series::line(label, points.map(|(number, joint)| ((number + 1) as f64, value(joint)))).number(k)

@@ -64,7 +64,7 @@ pub(crate) struct Network {
     /// Where those of each picture end.
     ends: Vec<usize>,
     /// Those since the last picture, by their pairs.
-    pending: Vec<Link>
+    pending: Vec<Link>,
 }
 
 /// Most links in all pictures: at some eight bytes each they are below 2 MB of a page.
@@ -189,7 +189,8 @@ mod tests {
                 assert_eq!(constant.place().unwrap()[0], 0.5 * (ends[0] + 1.0 + ends[1]));
                 assert!(links.windows(2).all(|two| two[0].pair < two[1].pair));
             }
-            let rare: f64 = pictures.iter().flat_map(|links| links.iter()).filter(|l| l.pair == 1).map(|l| l.weight).sum();
+            let rare: f64 =
+                pictures.iter().flat_map(|links| links.iter()).filter(|l| l.pair == 1).map(|l| l.weight).sum();
             assert_eq!(rare, f64::from(steps / 3));
         }
     }

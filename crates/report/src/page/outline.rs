@@ -72,7 +72,8 @@ impl Outline {
     /// Closed lines around the parts, corners rounded by short pieces.
     pub(super) fn lines(&self) -> Vec<Vec<(f64, f64)>> {
         let round = |[x, y]: [f64; 2], radius: f64, from: f64, turn: f64| {
-            let pieces = if radius > 0.0 { ((turn / std::f64::consts::TAU * CIRCLE as f64).ceil() as usize).max(1) } else { 0 };
+            let pieces =
+                if radius > 0.0 { ((turn / std::f64::consts::TAU * CIRCLE as f64).ceil() as usize).max(1) } else { 0 };
             (0..=pieces).map(move |k| {
                 let angle = from + turn * k as f64 / pieces.max(1) as f64;
                 (x + radius * angle.cos(), y + radius * angle.sin())
@@ -140,7 +141,8 @@ mod tests {
 
     #[test]
     fn the_joint_is_where_both_sides_are() {
-        let (below, above) = (Outline::of(&block(&SQUARE, 0.0), [0.0; 3]), Outline::of(&block(&SQUARE, 0.0), [0.5, 2.0, 0.0]));
+        let (below, above) =
+            (Outline::of(&block(&SQUARE, 0.0), [0.0; 3]), Outline::of(&block(&SQUARE, 0.0), [0.5, 2.0, 0.0]));
         let joint = above.joint(Some(&below), [0.3, 1.0], [0.1, 5.0]).unwrap();
         assert_eq!((joint.from, joint.to), ([-0.5, 1.0], [1.0, 1.0]));
         // At a corner of both, the sides that face each other count, not those that go on.

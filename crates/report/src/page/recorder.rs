@@ -1,7 +1,7 @@
 //! The observer that keeps what the page shows.
 
-use super::curves::Curves;
 use super::bands::{BAND_COLUMNS, Bands};
+use super::curves::Curves;
 use super::frames::Frames;
 use super::network::Network;
 use super::rounded;
@@ -158,7 +158,11 @@ impl PageRecorder {
         Self {
             kept: Kept {
                 frames: Frames::new(pictures, frame),
-                network: if scenery.has_network() { Network::new(pictures, scenery.blocks.len()) } else { Network::default() },
+                network: if scenery.has_network() {
+                    Network::new(pictures, scenery.blocks.len())
+                } else {
+                    Network::default()
+                },
                 curves: Curves::new(bucket_capacity, 0.0, vec![0.0; columns], points),
                 impacts: Vec::new(),
                 impact_count: 0,

@@ -286,7 +286,8 @@ impl Scenery {
 
 /// Largest distance from a block's mass centre to its outline, m.
 fn reach(block: &scene::BlockScene) -> f64 {
-    let far = |corners: &[Vector<2>], radius: f64| corners.iter().fold(0.0, |most: f64, at| most.max(at.norm() + radius));
+    let far =
+        |corners: &[Vector<2>], radius: f64| corners.iter().fold(0.0, |most: f64, at| most.max(at.norm() + radius));
     match &block.parts {
         None => far(&block.corners(), 0.0),
         Some(parts) => parts.iter().fold(0.0, |most, part| most.max(far(part.shape.core(), part.shape.radius()))),

@@ -214,7 +214,10 @@ fn many_bodies_have_bands_and_the_few_that_go_furthest() {
     let end = 0.55 - fallen[fallen.len() - 1];
     assert!((y as f64 * length - end).abs() < length, "{} m against {end} m", y as f64 * length);
     let names: Vec<String> = figures(&run.page).into_iter().map(|(file, _)| file).collect();
-    assert!(names.iter().any(|file| file == "displacement.svg") && names.iter().all(|file| file != "phase.svg"), "{names:?}");
+    assert!(
+        names.iter().any(|file| file == "displacement.svg") && names.iter().all(|file| file != "phase.svg"),
+        "{names:?}"
+    );
 }
 
 #[test]
@@ -235,6 +238,9 @@ fn loads_are_on_the_page_as_they_act() {
     let resolved = teeter_scenario::load(text.as_bytes(), "loads", "loads", &[]);
     let Ok(_) = resolved else { panic!("{:?}", resolved.err()) };
     let load = data(&run("loads", text).html)["loads"][0].clone();
-    assert_eq!((load["force"][1].as_f64(), load["speed"].as_f64(), load["span"][0].as_f64()), (Some(-5.0), Some(2.0), Some(0.1)));
+    assert_eq!(
+        (load["force"][1].as_f64(), load["speed"].as_f64(), load["span"][0].as_f64()),
+        (Some(-5.0), Some(2.0), Some(0.1))
+    );
     assert!(numbers(&load["factor"]).iter().all(|x| *x == 1.0));
 }
