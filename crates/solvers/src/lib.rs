@@ -58,13 +58,17 @@ pub mod admm;
 mod anderson;
 pub mod apgd;
 pub mod auto;
+mod basis;
 mod block_lu;
 mod catalogue;
+mod cells;
 mod chain;
 #[cfg(feature = "clarabel")]
 mod cone_program;
 #[cfg(test)]
 mod conforming;
+#[allow(missing_docs)]
+pub mod crossover;
 mod ending;
 pub mod enumeration;
 mod least_norm;
