@@ -222,6 +222,24 @@ impl Basis {
         self.upper_start.push(self.upper.len());
     }
 
+    /// Whether the determinant of the factorised matrix is positive.
+    pub(crate) fn determinant_is_positive(&mut self) -> bool {
+        let n = self.row.len();
+        let mut positive = self.pivot.iter().filter(|&&x| x < 0.0).count() % 2 == 0;
+        // The permutation takes rows to positions; each cycle of even length changes the sign.
+        refill(&mut self.met, n, NONE);
+        for first in 0..n as u32 {
+            let (mut at, mut length) = (first, 0);
+            while self.met[at as usize] == NONE {
+                self.met[at as usize] = 0;
+                at = self.position[self.step[at as usize] as usize];
+                length += 1;
+            }
+            positive ^= length > 0 && length % 2 == 0;
+        }
+        positive
+    }
+
     /// Positions of the columns that were replaced by unit columns.
     pub(crate) fn dependent(&self) -> &[u32] {
         &self.dependent

@@ -54,6 +54,8 @@ pub struct Crossover {
     values: Vec<[f64; 4]>,
     /// q̃ − q.
     shift: Vec<f64>,
+    base: Vec<f64>,
+    at_z: f64,
     /// The variable at each position of the basis, and the position of each.
     variable: Vec<u32>,
     place: Vec<u32>,
@@ -68,7 +70,7 @@ pub struct Crossover {
 }
 
 #[derive(Debug, PartialEq)]
-enum End { Solved, Ray, Cap }
+enum End { Solved, Escaped, Ray, Cap }
 
 impl Crossover {
     pub const NAME: &'static str = "crossover";
@@ -297,21 +299,28 @@ impl Crossover {
         self.scaled.q.iter().map(Vector2::amax).fold(f64::MIN_POSITIVE, f64::max)
     }
 
-    fn follow(&mut self, most: u32, pivots: &mut u32) -> End {
+    /// Follows the solution of `base + z shift` from z = `start` with z growing or not.
+    fn follow(&mut self, start: f64, most_z: f64, most: u32, pivots: &mut u32) -> End {
         let n = self.contacts();
         let z = 4 * n as u32;
         self.set_basis();
         self.factorise();
-        let mut entering = (z, -1.0, 1.0);
-        let mut unit_q = self.unit();
+        if !self.basis.dependent().is_empty() { self.log += " start dependent"; return End::Cap }
+        for r in 0..2 * n { self.right[r] = -self.base[r] - start * self.shift[r]; }
+        self.basis.solve(&mut self.right, &mut self.x);
+        let slides = self.cells.iter().filter(|&&c| c == Cell::Forward || c == Cell::Backward).count();
+        let positive = self.basis.determinant_is_positive() == (slides % 2 == 0);
+        let mut entering = (z, if positive { -1.0 } else { 1.0 }, start);
+        if start == 0.0 && positive { return End::Solved }
         loop {
-            let (v, sense, start) = entering;
+            let (v, sense, from) = entering;
             self.direction_of(v);
             // x changes by −sense w θ
             let largest = self.direction.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-            let mut bound = if v == z { start } else { f64::INFINITY };
+            let mut bound = if v != z { f64::INFINITY } else if sense < 0.0 { start } else { most_z - start };
+            let own_bound = bound;
             let mut least = 1e-10 * largest;
-            let mut leaving = None;
+            let mut z_escapes = false;
             for s in 0..2 * n {
                 let sign = self.sign(s);
                 let w = sign * sense * self.direction[s];
@@ -319,31 +328,40 @@ impl Crossover {
                     bound = bound.min(((sign * self.x[s]).max(0.0) + 1e-13) / w);
                 }
             }
-            if bound == f64::INFINITY { return End::Ray }
-            if v == z && bound >= start {
-                for s in 0..2 * n { self.x[s] -= sense * start * self.direction[s]; }
-                return End::Solved;
+            let zs = self.place[z as usize];
+            if zs != NONE {
+                let rate = -sense * self.direction[zs as usize];
+                if rate > 0.0 && (most_z - self.x[zs as usize]) / rate <= bound { bound = (most_z - self.x[zs as usize]).max(0.0) / rate; z_escapes = true; }
             }
-            for s in 0..2 * n {
-                let sign = self.sign(s);
-                let w = sign * sense * self.direction[s];
-                if sign != 0.0 && w > least && (sign * self.x[s]).max(0.0) / w <= bound {
-                    if self.variable[s] == z { leaving = Some(s); break }
-                    least = w;
-                    leaving = Some(s);
+            if bound == f64::INFINITY { return End::Ray }
+            if v == z && bound >= own_bound {
+                for s in 0..2 * n { self.x[s] -= sense * own_bound * self.direction[s]; }
+                self.at_z = start + sense * own_bound;
+                return if sense < 0.0 { End::Solved } else { End::Escaped };
+            }
+            let mut leaving = None;
+            if z_escapes { leaving = Some(zs as usize); } else {
+                for s in 0..2 * n {
+                    let sign = self.sign(s);
+                    let w = sign * sense * self.direction[s];
+                    if sign != 0.0 && w > least && (sign * self.x[s]).max(0.0) / w <= bound {
+                        leaving = Some(s);
+                        if self.variable[s] == z { break }
+                        least = w;
+                    }
                 }
             }
             let Some(s) = leaving else { return End::Ray };
             let sign = self.sign(s);
-            let theta = (sign * self.x[s]).max(0.0) / (sign * sense * self.direction[s]);
+            let theta = if z_escapes { bound } else { (sign * self.x[s]).max(0.0) / (sign * sense * self.direction[s]) };
             let left = self.variable[s];
             for r in 0..2 * n { self.x[r] -= sense * theta * self.direction[r]; }
-            self.x[s] = start + sense * theta;
+            self.x[s] = from + sense * theta;
             self.place[left as usize] = NONE;
             self.variable[s] = v;
             self.place[v as usize] = s as u32;
             *pivots += 1;
-            if left == z { return End::Solved }
+            if left == z { self.at_z = if z_escapes { most_z } else { 0.0 }; return if z_escapes { End::Escaped } else { End::Solved } }
             self.basis.exchange(s, &self.direction);
             if *pivots >= most { return End::Cap }
             if std::env::var("VERBOSE").is_ok() {
@@ -352,7 +370,7 @@ impl Crossover {
             if self.basis.is_worn() {
                 self.factorise();
                 if !self.basis.dependent().is_empty() { self.log += &format!(" worn: dependent {}", self.basis.dependent().len()); return End::Cap }
-                for i in 0..n { for k in 0..2 { self.right[2 * i + k] = -self.scaled.q[i][k] / unit_q; } }
+                for r in 0..2 * n { self.right[r] = -self.base[r]; }
                 self.basis.solve(&mut self.right, &mut self.x);
             }
             let i = left as usize / 4;
@@ -363,8 +381,41 @@ impl Crossover {
             self.cells[i] = cell;
             let sense = if cell.sign(next, rubs) < 0.0 { -1.0 } else { 1.0 };
             entering = (4 * i as u32 + next as u32, sense, 0.0);
-            unit_q = unit_q;
         }
+    }
+
+    fn keep_values(&mut self) {
+        for i in 0..self.contacts() { for c in 0..4 { self.values[i][c] = match self.place[4 * i + c] { NONE => 0.0, s => self.x[s as usize] } } }
+    }
+
+    /// From the solution of q + d to that of q.
+    fn track(&mut self, size: f64, most: u32, pivots: &mut u32) -> End {
+        let n = self.contacts();
+        let unit = self.unit();
+        let env = |name: &str, or: f64| std::env::var(name).ok().and_then(|s| s.parse::<f64>().ok()).unwrap_or(or);
+        let zmax = env("ZMAX", 2.0);
+        let mut straight = self.shift.clone();
+        let mut scale = 1.0;
+        let random = |i: usize| ((i + 1) as f64 * 0.618_033_988_749_894_9).fract() + 0.5;
+        for leg in 0..20 {
+            let before = *pivots;
+            // excursion
+            for i in 0..n { for k in 0..2 { self.base[2 * i + k] = self.scaled.q[i][k] / unit + scale * straight[2 * i + k]; } }
+            for i in 0..n { self.shift[2 * i] = size * random(i); self.shift[2 * i + 1] = 0.0; }
+            let end = self.follow(0.0, f64::INFINITY, most, pivots);
+            self.log += &format!(" e{}", *pivots - before);
+            if end != End::Solved { return end }
+            self.keep_values();
+            let before = *pivots;
+            for i in 0..n { for k in 0..2 { self.base[2 * i + k] = self.scaled.q[i][k] / unit; } }
+            self.shift.copy_from_slice(&straight);
+            let end = self.follow(scale, zmax * scale, most, pivots);
+            self.log += &format!(" s{}", *pivots - before);
+            if end != End::Escaped { return end }
+            self.keep_values();
+            scale = self.at_z;
+        }
+        End::Cap
     }
 
     fn sign(&self, s: usize) -> f64 {
@@ -453,7 +504,8 @@ impl ContactSolver<2> for Crossover {
             self.log += &format!(" crossed {crossed} dq {size:.1e}");
             if crossed {
                 let before = pivots;
-                let end = self.follow(pivots + cap, &mut pivots);
+                refill(&mut self.base, 2 * p.len(), 0.0);
+                let end = self.track(size, pivots + cap, &mut pivots);
                 self.impulses(end == End::Solved);
                 self.scaled.velocities(&self.found, &mut self.u);
                 let after = self.scaled.residual(&self.found, &self.u);
