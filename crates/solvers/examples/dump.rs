@@ -32,7 +32,7 @@ fn main() {
         let o = solver.solve(&problem, &stop, &mut p);
         let s = clock.elapsed().as_secs_f64();
         solved += o.converged() as usize; count += 1; total += s;
-        println!("{k} n {n} had {had:.1e} {:?} {} res {:.1e} {:.1} ms {}", o.status, o.iterations, o.residual.global, 1e3 * s, solver.log);
+        println!("{k} n {n} had {had:.1e} {:?} {} res {:.1e} {:.1} ms {}", o.status, o.iterations, o.residual.global, 1e3 * s, "");
     }
     println!("solved {solved} of {count}, {:.1} ms each", 1e3 * total / count as f64);
 }

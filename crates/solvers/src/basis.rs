@@ -3,9 +3,9 @@
 //! The factorisation is left-looking, column by column, each with a search for its pattern (Gilbert
 //! and Peierls 1988, doi 10.1137/0909058). The caller gives an order of the columns that fills in
 //! little with pivots on the diagonal; of the rows, one of the column's own contact is taken unless
-//! it is too small. Columns that depend on earlier ones up to [`DEPENDENT`] are replaced by unit
-//! columns of the rows that are left over, and listed: this is how the null space of a singular
-//! basis is found.
+//! it is too small. Columns that depend on earlier ones, up to a given part of their largest number, are
+//! replaced by unit columns of the rows that are left over, and listed: this is how the null space of
+//! a singular basis is found.
 //!
 //! An exchange of a column multiplies the basis by an elementary matrix from the right; its inverse
 //! is applied after the factors (the product form of the inverse, Dantzig and Orchard-Hays 1954,
@@ -13,8 +13,6 @@
 
 use crate::memory::{refill, reserve};
 
-/// A column depends on others if elimination leaves at most this part of its largest number.
-const DEPENDENT: f64 = 1e-9;
 /// A row of the column's own contact is taken if its number is at least this part of the largest.
 const PREFERRED: f64 = 0.1;
 /// Largest number of exchanges between factorisations.
@@ -83,10 +81,12 @@ impl Basis {
 
     /// Factorises the matrix whose column at position `s` is appended by `column(s, …)` as (row,
     /// number). `order` lists the positions; the rows 2i and 2i + 1 are column s's own, i =
-    /// `owner(s)`. Dependent columns are replaced.
+    /// `owner(s)`. A column of which elimination leaves at most the part `dependent` of its largest
+    /// number is replaced.
     pub(crate) fn factorise(
         &mut self,
         order: &[u32],
+        dependent: f64,
         owner: impl Fn(u32) -> u32,
         mut column: impl FnMut(u32, &mut Vec<(u32, f64)>),
     ) {
@@ -110,7 +110,7 @@ impl Basis {
             self.column.clear();
             column(at, &mut self.column);
             let scale = self.eliminate(k as u32);
-            self.take_pivot(at, owner(at), DEPENDENT * scale);
+            self.take_pivot(at, owner(at), dependent * scale);
         }
         // Each dependent column gives its place to a row that is left over.
         let mut free = 0;
@@ -248,10 +248,6 @@ impl Basis {
     /// Whether the columns have been exchanged so often that it is time to factorise again.
     pub(crate) fn is_worn(&self) -> bool {
         self.exchanges.len() >= EXCHANGES
-    }
-
-    pub(crate) fn exchanged(&self) -> bool {
-        !self.exchanges.is_empty()
     }
 
     /// Solves `B x = b`; `b`, by rows, is spoilt, and `x` is by positions.

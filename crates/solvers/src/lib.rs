@@ -67,7 +67,7 @@ mod chain;
 mod cone_program;
 #[cfg(test)]
 mod conforming;
-#[allow(missing_docs)]
+#[doc(hidden)]
 pub mod crossover;
 mod ending;
 pub mod enumeration;
@@ -83,6 +83,7 @@ mod one_contact_space;
 mod operator;
 mod ordering;
 mod pairs;
+mod parametric;
 pub mod pgs;
 pub mod prox;
 mod rows;
