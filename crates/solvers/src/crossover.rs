@@ -46,17 +46,18 @@ use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, Stop, de_saxce
 /// largest |q| scaled to 1.
 const PRESSES: f64 = 1e-14;
 const STICKS: f64 = 1e-12;
-/// Values nearer to their bounds than this part of |d| are lifted off them; at least `LEAST_LIFT`.
-const LIFT: f64 = 0.1;
-const LEAST_LIFT: f64 = 1e-14;
+/// Values nearer to their bounds than this part of |d|, in each try, are lifted off them; |d| is taken as
+/// at least `LEAST`. The larger it is, the further the start is from the solution, and the clearer the
+/// pivots are: after small ones near-null directions may lead round in a circle, by rounding.
+const LIFTS: [f64; 3] = [0.1, 10.0, 100.0];
+const LEAST: f64 = 1e-14;
+/// The factors of the lifts are others in each try.
+const TURN: usize = 1013;
 /// Contacts are pushed apart where z has grown by this factor, and at most `LEGS` times.
 const GROWN: f64 = 10.0;
 const LEGS: u32 = 20;
 /// Pivots after which a try is given up.
 const MOST: u32 = 400;
-/// Tries, each from the result of the last one, as long as they make the residual smaller by this factor.
-const TRIES: u32 = 3;
-const PROGRESS: f64 = 0.7;
 
 /// The solver. Memory grows with the problems.
 #[derive(Debug, Default)]
@@ -71,6 +72,8 @@ pub struct Crossover {
     unpolished: Vec<Vector2<f64>>,
     best: Vec<Vector2<f64>>,
     u: Vec<Vector2<f64>>,
+    /// Tries done.
+    tries: usize,
 }
 
 impl Crossover {
@@ -135,7 +138,7 @@ impl Crossover {
             for coordinate in cell.coordinates() {
                 let sign = cell.sign(coordinate, self.scaled.mu[i] > 0.0);
                 let value = &mut self.tracker.values[i][coordinate as usize];
-                let least = lift * varied(4 * i + coordinate as usize);
+                let least = lift * varied(4 * i + coordinate as usize + TURN * self.tries);
                 if sign != 0.0 && sign * *value < least {
                     *value = sign * least;
                 }
@@ -148,21 +151,28 @@ impl Crossover {
         let n = self.found.len();
         let most = self.tracker.pivots.saturating_add(most);
         let mut scale = 1.0;
+        let mut grown = GROWN;
         for _ in 0..LEGS {
             // Apart and back at q + scale d, unless z falls there already.
             for r in 0..2 * n {
                 self.tracker.base[r] = self.q[r] + scale * self.distance[r];
-                self.tracker.shift[r] = if r % 2 == 0 { size * varied(r / 2) } else { 0.0 };
+                self.tracker.shift[r] = if r % 2 == 0 { size * varied(r / 2 + TURN * self.tries) } else { 0.0 };
             }
             if self.tracker.follow(0.0, f64::INFINITY, most, stop) != End::Arrived {
                 return false;
             }
             self.tracker.base.copy_from_slice(&self.q);
             self.tracker.shift.copy_from_slice(&self.distance);
-            match self.tracker.follow(scale, GROWN * scale, most, stop) {
+            let mut end = self.tracker.follow(scale, grown * scale, most, stop);
+            if end == End::Looped {
+                // The curve is left where z first comes back to `scale`, and so are later ones.
+                grown = 1.0;
+                end = self.tracker.follow(scale, scale, most, stop);
+            }
+            match end {
                 End::Arrived => return true,
-                End::Escaped => scale *= GROWN,
-                End::Lost => return false,
+                End::Escaped => scale *= grown,
+                End::Looped | End::Lost => return false,
             }
         }
         false
@@ -174,9 +184,9 @@ impl Crossover {
         if !self.tracker.cross() {
             return None;
         }
-        let size = self.measure().max(LEAST_LIFT);
-        self.lift(LIFT * size);
-        let size = self.measure().max(LEAST_LIFT);
+        let size = self.measure().max(LEAST);
+        self.lift(LIFTS[self.tries] * size);
+        let size = self.measure().max(LEAST);
         if !self.track(size, most, stop) {
             return None;
         }
@@ -237,21 +247,17 @@ impl ContactSolver<2> for Crossover {
         self.best.extend_from_slice(p);
         self.scaled.velocities(p, &mut self.u);
         let mut best = self.scaled.residual(p, &self.u);
-        for _ in 0..TRIES {
+        for tries in 0..LIFTS.len() {
+            self.tries = tries;
             let left = stop.max_iterations.saturating_sub(self.tracker.pivots);
             if best <= stop.tolerance || left == 0 || stop.cancelled() {
                 break;
             }
-            let before = best;
-            match self.attempt(unit, left.min(MOST), stop) {
-                Some(residual) if residual < best => {
-                    best = residual;
-                    self.best.copy_from_slice(&self.found);
-                }
-                _ => break,
-            }
-            if best > PROGRESS * before {
-                break;
+            if let Some(residual) = self.attempt(unit, left.min(MOST), stop)
+                && residual < best
+            {
+                best = residual;
+                self.best.copy_from_slice(&self.found);
             }
         }
         p.copy_from_slice(&self.best);

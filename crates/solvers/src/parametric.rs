@@ -32,7 +32,7 @@ const NONE: u32 = u32::MAX;
 /// Least pivot relative to the largest number of its direction; smaller ones are rounding.
 const PIVOT: f64 = 1e-10;
 /// A value may pass its bound by this, with the largest |q| scaled to 1.
-const SLACK: f64 = 1e-13;
+const SLACK: f64 = 1e-12;
 /// The part of a column's largest number up to which it counts as dependent on others in the crossover,
 /// and in a basis that pivots have led to.
 const DEPENDENT: f64 = 1e-9;
@@ -47,6 +47,8 @@ pub(crate) enum End {
     Arrived,
     /// z has reached its limit, which is given.
     Escaped,
+    /// The solution has come back to where it started: a closed curve.
+    Looped,
     /// z would grow without limit, the basis is singular, or too many pivots.
     Lost,
 }
@@ -64,6 +66,8 @@ pub(crate) struct Tracker {
     rank: Vec<usize>,
     basis: Basis,
     pub(crate) cells: Vec<Cell>,
+    /// The cells where following started.
+    home: Vec<Cell>,
     /// The coordinates of each contact in the order of [`Coordinate`]; zero if they aren't its
     /// cell's.
     pub(crate) values: Vec<[f64; 4]>,
@@ -312,6 +316,9 @@ impl Tracker {
         if falls && start == 0.0 {
             return End::Arrived;
         }
+        self.home.clear();
+        self.home.extend_from_slice(&self.cells);
+        let mut last_z = start;
         let (mut entering, mut sense, mut from) = (self.z(), if falls { -1.0 } else { 1.0 }, start);
         while self.pivots < most && !stop.cancelled() {
             self.set_direction(entering);
@@ -334,6 +341,11 @@ impl Tracker {
                 self.keep();
                 return end;
             }
+            let z = self.x[self.position[self.z() as usize] as usize];
+            if z < start && start <= last_z && self.cells == self.home && entering != self.z() {
+                return End::Looped;
+            }
+            last_z = z;
             self.basis.exchange(at, &self.direction);
             if self.basis.is_worn() {
                 if !self.factorise(SINGULAR) {
