@@ -63,6 +63,9 @@ const LONG_PATH: u32 = 400;
 /// and again when the residual is `NEARER` times that.
 const NEAR: f64 = 1e-4;
 const NEARER: f64 = 0.1;
+/// Most pivots of these tries, and of the last one.
+const TRIED: u32 = 400;
+const LAST_TRIED: u32 = 3000;
 /// At a tolerance of `LOOSE` or more, plane islands of more than `LARGE` contacts are given to
 /// `GRADIENTS` accelerated gradients first: in a wall of 500 bricks that is shaken they reach 1e-6
 /// four times sooner than Newton's method. Towards 1e-10 they converge too slowly.
@@ -249,6 +252,11 @@ impl<const D: usize> Chain<D> {
             let outcome = self.smoothing.solve(problem, &within(progress.left(stop), u32::MAX), p);
             progress.add(outcome);
         }
+        // Pivots that haven't reached a small tolerance from nearby are followed by nothing that does.
+        let near = progress.best.residual.global < NEAR;
+        if crowded && near && p.len() > MOST_PIVOTED && stop.tolerance < LOOSE {
+            return progress.end(problem, stop, p);
+        }
         if !progress.over(stop) {
             let outcome = self.prox.solve(problem, &within(progress.left(stop), u32::MAX), p);
             progress.add(outcome);
@@ -257,9 +265,8 @@ impl<const D: usize> Chain<D> {
             let outcome = self.newton.solve(problem, &within(progress.left(stop), u32::MAX), p);
             progress.add(outcome);
         }
-        // A crowd had pivots instead, unless it is too large for them.
-        let had_pivots = crowded && p.len() <= MOST_PIVOTED;
-        if !progress.over(stop) && !had_pivots {
+        // A crowd had pivots instead.
+        if !progress.over(stop) && !crowded {
             let outcome = self.pgs.solve(problem, &within(progress.left(stop), u32::MAX), p);
             progress.add(outcome);
         }
@@ -283,7 +290,7 @@ impl<const D: usize> Chain<D> {
         let mut cross = |p: &mut [Vector<D>], progress: &mut Progress| {
             if !progress.over(stop) && progress.best.residual.global < near {
                 near = NEARER * progress.best.residual.global;
-                progress.add(crossover.solve(problem, &within(progress.left(stop), u32::MAX), p));
+                progress.add(crossover.solve(problem, &within(progress.left(stop), TRIED), p));
             }
         };
         cross(p, progress);
@@ -304,7 +311,9 @@ impl<const D: usize> Chain<D> {
         }
         if !progress.over(stop) {
             progress.add(self.smoothing.solve(problem, &within(progress.left(stop), LONG_PATH), p));
-            cross(p, progress);
+        }
+        if !progress.over(stop) && progress.best.residual.global < NEAR {
+            progress.add(crossover.solve(problem, &within(progress.left(stop), LAST_TRIED), p));
         }
     }
 

@@ -57,7 +57,7 @@ const TURN: usize = 1013;
 const GROWN: f64 = 10.0;
 const LEGS: u32 = 20;
 /// Pivots after which a try is given up.
-const MOST: u32 = 400;
+const MOST: u32 = 1000;
 
 /// The solver. Memory grows with the problems.
 #[derive(Debug, Default)]

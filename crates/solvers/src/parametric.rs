@@ -35,8 +35,10 @@ const PIVOT: f64 = 1e-10;
 const SLACK: f64 = 1e-12;
 /// The part of a column's largest number up to which it counts as dependent on others in the crossover,
 /// and in a basis that pivots have led to.
-const DEPENDENT: f64 = 1e-9;
+const DEPENDENT: f64 = 1e-7;
 const SINGULAR: f64 = 1e-14;
+/// The difference of z, relative to it, up to which a point in the same cells is one that was met before.
+const SAME: f64 = 1e-6;
 /// Most times that the basis is searched for dependent columns.
 const CROSSINGS: u32 = 10;
 
@@ -47,7 +49,7 @@ pub(crate) enum End {
     Arrived,
     /// z has reached its limit, which is given.
     Escaped,
-    /// The solution has come back to where it started: a closed curve.
+    /// The curve is closed, or rounding has led back to it. The cells are those of the start.
     Looped,
     /// z would grow without limit, the basis is singular, or too many pivots.
     Lost,
@@ -66,8 +68,9 @@ pub(crate) struct Tracker {
     rank: Vec<usize>,
     basis: Basis,
     pub(crate) cells: Vec<Cell>,
-    /// The cells where following started.
+    /// The cells where following started, and some on its way.
     home: Vec<Cell>,
+    met: Vec<Cell>,
     /// The coordinates of each contact in the order of [`Coordinate`]; zero if they aren't its
     /// cell's.
     pub(crate) values: Vec<[f64; 4]>,
@@ -98,7 +101,9 @@ impl Tracker {
         for x in [&mut self.order, &mut self.rank] {
             reserve(x, contacts);
         }
-        reserve(&mut self.cells, contacts);
+        for x in [&mut self.cells, &mut self.home, &mut self.met] {
+            reserve(x, contacts);
+        }
         reserve(&mut self.values, contacts);
         for x in [&mut self.base, &mut self.shift, &mut self.x, &mut self.right, &mut self.direction] {
             reserve(x, 2 * contacts);
@@ -316,9 +321,10 @@ impl Tracker {
         if falls && start == 0.0 {
             return End::Arrived;
         }
-        self.home.clear();
-        self.home.extend_from_slice(&self.cells);
-        let mut last_z = start;
+        self.home.clone_from(&self.cells);
+        // Cells met before, after 1, 2, 4, … pivots (Brent's search for a cycle), and z there.
+        self.met.clone_from(&self.cells);
+        let (mut met_z, mut next, mut count) = (f64::NAN, 1, 0);
         let (mut entering, mut sense, mut from) = (self.z(), if falls { -1.0 } else { 1.0 }, start);
         while self.pivots < most && !stop.cancelled() {
             self.set_direction(entering);
@@ -342,10 +348,15 @@ impl Tracker {
                 return end;
             }
             let z = self.x[self.position[self.z() as usize] as usize];
-            if z < start && start <= last_z && self.cells == self.home && entering != self.z() {
+            count += 1;
+            if (z - met_z).abs() <= SAME * z && self.cells == self.met {
+                self.cells.clone_from(&self.home);
                 return End::Looped;
             }
-            last_z = z;
+            if count == next {
+                (met_z, next) = (z, 2 * next);
+                self.met.clone_from(&self.cells);
+            }
             self.basis.exchange(at, &self.direction);
             if self.basis.is_worn() {
                 if !self.factorise(SINGULAR) {
