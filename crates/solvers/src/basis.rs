@@ -289,3 +289,74 @@ impl Basis {
         self.direction_start.push(self.directions.len());
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{DMatrix, DVector};
+
+    /// A sparse matrix, by columns.
+    fn matrix(n: usize) -> DMatrix<f64> {
+        let value = |i: usize, j: usize| ((i * 31 + j * 17 + 5) as f64).sin();
+        DMatrix::from_fn(n, n, |i, j| if i / 2 == j / 2 || (i * 7 + j * 3) % 11 == 4 { value(i, j) } else { 0.0 })
+    }
+
+    fn factorise(basis: &mut Basis, a: &DMatrix<f64>) {
+        let order: Vec<u32> = (0..a.ncols() as u32).rev().collect();
+        basis.factorise(
+            &order,
+            1e-9,
+            |at| at / 2,
+            |at, column| {
+                let numbers = a.column(at as usize);
+                column.extend(numbers.iter().enumerate().filter(|(_, x)| **x != 0.0).map(|(r, &x)| (r as u32, x)));
+            },
+        );
+    }
+
+    fn solve(basis: &Basis, b: &DVector<f64>) -> DVector<f64> {
+        let mut x = DVector::zeros(b.len());
+        basis.solve(b.clone().as_mut_slice(), x.as_mut_slice());
+        x
+    }
+
+    #[test]
+    fn solutions_and_signs_match_a_dense_factorisation() {
+        for n in [2, 6, 40] {
+            let mut a = matrix(n);
+            let mut basis = Basis::default();
+            factorise(&mut basis, &a);
+            assert!(basis.dependent().is_empty());
+            assert_eq!(basis.determinant_is_positive(), a.determinant() > 0.0, "{n}");
+            let b = DVector::from_fn(n, |i, _| 1.0 + i as f64);
+            assert!((&a * solve(&basis, &b) - &b).norm() < 1e-9 * b.norm());
+            // Two columns are exchanged, one of them twice.
+            for (k, at) in [0, n - 1, 0].into_iter().enumerate() {
+                let column = DVector::from_fn(n, |i, _| ((3 * i + k) as f64).cos());
+                let w = solve(&basis, &column);
+                basis.exchange(at, w.as_slice());
+                a.set_column(at, &column);
+                assert!((&a * solve(&basis, &b) - &b).norm() < 1e-8 * b.norm(), "{n} {k}");
+            }
+        }
+    }
+
+    #[test]
+    fn dependent_columns_give_null_vectors() {
+        let n = 20;
+        let mut a = matrix(n);
+        let sum = a.column(19) * 2.0 - a.column(12);
+        a.set_column(3, &sum);
+        let mut basis = Basis::default();
+        factorise(&mut basis, &a);
+        // Columns are eliminated from the last to the first.
+        assert_eq!(basis.dependent(), [3]);
+        let w = solve(&basis, &sum);
+        let expected = DVector::from_fn(n, |i, _| match i {
+            19 => 2.0,
+            12 => -1.0,
+            _ => 0.0,
+        });
+        assert!((w - expected).norm() < 1e-9);
+    }
+}

@@ -65,7 +65,7 @@ const NEAR: f64 = 1e-4;
 const NEARER: f64 = 0.1;
 /// Most pivots of these tries, and of the last one.
 const TRIED: u32 = 400;
-const LAST_TRIED: u32 = 3000;
+const LAST_TRIED: u32 = 1500;
 /// At a tolerance of `LOOSE` or more, plane islands of more than `LARGE` contacts are given to
 /// `GRADIENTS` accelerated gradients first: in a wall of 500 bricks that is shaken they reach 1e-6
 /// four times sooner than Newton's method. Towards 1e-10 they converge too slowly.
