@@ -67,8 +67,7 @@ mod chain;
 mod cone_program;
 #[cfg(test)]
 mod conforming;
-#[doc(hidden)]
-pub mod crossover;
+mod crossover;
 mod ending;
 pub mod enumeration;
 mod least_norm;

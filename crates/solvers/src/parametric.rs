@@ -315,7 +315,7 @@ impl Tracker {
             return End::Lost;
         }
         self.evaluate(start);
-        // The two coordinates of a sliding contact are in the other order, so to speak.
+        // The determinant of a single contact's basis is negative where it slides, else positive.
         let slides = self.cells.iter().filter(|cell| matches!(cell, Cell::Forward | Cell::Backward)).count();
         let falls = self.basis.determinant_is_positive() == (slides % 2 == 0);
         if falls && start == 0.0 {
