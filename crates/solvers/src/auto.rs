@@ -10,6 +10,7 @@
 //! of contacts. A matrix-free operator isn't split, as its blocks are unknown.
 
 use crate::chain::{Chain, Pivots};
+use crate::crossover::Crossover;
 use crate::ending::ended;
 use crate::enumeration::{MAX_CONTACTS, TREE_CONTACTS};
 use crate::memory::reserve;
@@ -64,6 +65,8 @@ pub struct Auto<const D: usize> {
     start: Vec<Vector<D>>,
     /// Lemke's method, in the plane.
     lemke: Lemke,
+    /// Pivots from a near-solution, in the plane.
+    crossover: Crossover,
 }
 
 impl<const D: usize> Auto<D> {
@@ -82,7 +85,7 @@ impl<const D: usize> Auto<D> {
         problem: &ContactProblem<'_, D>,
         island: usize,
         exact: Exact<D>,
-        pivots: Pivots<'_, D>,
+        pivots: Option<Pivots<'_, D>>,
         stop: &Stop<'_>,
         all: &mut [Vector<D>],
     ) -> Option<Outcome> {
@@ -108,7 +111,7 @@ impl<const D: usize> Auto<D> {
         &mut self,
         problem: &ContactProblem<'_, D>,
         exact: Exact<D>,
-        mut pivots: Pivots<'_, D>,
+        mut pivots: Option<Pivots<'_, D>>,
         stop: &Stop<'_>,
         p: &mut [Vector<D>],
     ) -> Outcome {
@@ -120,7 +123,7 @@ impl<const D: usize> Auto<D> {
         self.start.extend_from_slice(p);
         let (mut used, mut iterations) = (Enumeration::NAME, 0);
         for island in 0..self.islands.len() {
-            let pivots = pivots.as_mut().map(|pivots| &mut **pivots as &mut dyn ContactSolver<D>);
+            let pivots = pivots.as_mut().map(Pivots::borrow);
             let Some(outcome) = self.solve_island(problem, island, exact, pivots, stop, p) else { continue };
             iterations = iterations.max(outcome.iterations);
             if outcome.used != Enumeration::NAME {
@@ -142,7 +145,7 @@ impl<const D: usize> Auto<D> {
         &mut self,
         problem: &ContactProblem<'_, D>,
         exact: Exact<D>,
-        pivots: Pivots<'_, D>,
+        pivots: Option<Pivots<'_, D>>,
         stop: &Stop<'_>,
         by_islands: Outcome,
         p: &mut [Vector<D>],
@@ -175,7 +178,7 @@ impl<const D: usize> Auto<D> {
 fn along<const D: usize>(
     chain: &mut Chain<D>,
     exact: Exact<D>,
-    pivots: Pivots<'_, D>,
+    pivots: Option<Pivots<'_, D>>,
     problem: &ContactProblem<'_, D>,
     stop: &Stop<'_>,
     p: &mut [Vector<D>],
@@ -237,9 +240,10 @@ impl ContactSolver<2> for Auto<2> {
             (p.len() <= TREE_CONTACTS).then(|| Enumeration.solve(problem, stop, p)).filter(Outcome::converged)
         };
         let last: Small<2> = |problem, stop, p| enumerate(TREE_CONTACTS + 1..=MAX_CONTACTS, problem, stop, p);
-        let mut lemke = std::mem::take(&mut self.lemke);
-        let outcome = self.solve_beyond(problem, Exact { first, last }, Some(&mut lemke), stop, p);
-        self.lemke = lemke;
+        let (mut lemke, mut crossover) = (std::mem::take(&mut self.lemke), std::mem::take(&mut self.crossover));
+        let pivots = Pivots { lemke: &mut lemke, crossover: &mut crossover };
+        let outcome = self.solve_beyond(problem, Exact { first, last }, Some(pivots), stop, p);
+        (self.lemke, self.crossover) = (lemke, crossover);
         outcome
     }
 

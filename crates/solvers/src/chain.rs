@@ -9,8 +9,10 @@
 //!    that factors fill in: this needs one or two factorisations where Newton needs ten.
 //! 5. **Semi-smooth Newton** ([`Newton`]): a round of steps; if they fail, more sweeps of about the
 //!    same work and another round, a few times.
-//! 6. **A short central path and alternating directions**, with Newton steps from where they end, if
-//!    there are many contacts in the plane: a crowd.
+//! 6. **Pivots from a near-solution** (`crossover.rs`), if there are many contacts in the plane: a
+//!    crowd. If they fail, **a short central path, alternating directions** with Newton steps from
+//!    where they end, **and a longer path**, with pivots again from where one of these has come nearer.
+//!    A large crowd with a small tolerance ends here.
 //! 7. **Pivots** ([`Lemke`](crate::Lemke)), in the plane for up to some hundred contacts. If blocks
 //!    lean on each other, the contact forces may be nearly undetermined, and methods that follow
 //!    the residual stop at about 1e-10; pivoting is exact.
@@ -59,6 +61,14 @@ const SHORT_PATH: u32 = 100;
 #[cfg(feature = "sparse")]
 const CROWD_DIRECTIONS: u32 = 200;
 const LONG_PATH: u32 = 400;
+/// From a residual of `NEAR` on, a crowd is given to pivots from there (`crossover.rs`),
+/// and again when the residual is `NEARER` times that.
+const NEAR: f64 = 1e-4;
+const NEARER: f64 = 0.1;
+/// Most pivots of these tries, and of the last one. From the hardest problems of a pile of 300 stones,
+/// 1500 solve as many as 3000 do.
+const TRIED: u32 = 400;
+const LAST_TRIED: u32 = 1500;
 /// At a tolerance of `LOOSE` or more, plane islands of more than `LARGE` contacts are given to
 /// `GRADIENTS` accelerated gradients first: in a wall of 500 bricks that is shaken they reach 1e-6
 /// four times sooner than Newton's method. Towards 1e-10 they converge too slowly.
@@ -77,8 +87,18 @@ const SWEEP_CONTACT: f64 = 5.0;
 /// Largest number of contacts for which Lemke's tableau is worth its work.
 const MOST_PIVOTED: usize = 200;
 
-/// Lemke's method, in the plane.
-pub(crate) type Pivots<'a, const D: usize> = Option<&'a mut dyn ContactSolver<D>>;
+/// The pivoting methods, which are for the plane.
+pub(crate) struct Pivots<'a, const D: usize> {
+    pub(crate) lemke: &'a mut dyn ContactSolver<D>,
+    pub(crate) crossover: &'a mut dyn ContactSolver<D>,
+}
+
+impl<const D: usize> Pivots<'_, D> {
+    /// A shorter borrow.
+    pub(crate) fn borrow(&mut self) -> Pivots<'_, D> {
+        Pivots { lemke: self.lemke, crossover: self.crossover }
+    }
+}
 
 /// From `MANY` contacts with `LONG_ROW` blocks per row on, alternating directions come before
 /// Newton, with `DIRECTIONS` iterations.
@@ -155,7 +175,7 @@ impl<const D: usize> Chain<D> {
         &mut self,
         problem: &ContactProblem<'_, D>,
         small: Small<D>,
-        pivots: Pivots<'_, D>,
+        pivots: Option<Pivots<'_, D>>,
         stop: &Stop<'_>,
         p: &mut [Vector<D>],
     ) -> Outcome {
@@ -188,7 +208,7 @@ impl<const D: usize> Chain<D> {
         &mut self,
         problem: &ContactProblem<'_, D>,
         small: Small<D>,
-        pivots: Pivots<'_, D>,
+        mut pivots: Option<Pivots<'_, D>>,
         stop: &Stop<'_>,
         p: &mut [Vector<D>],
     ) -> Outcome {
@@ -209,12 +229,14 @@ impl<const D: usize> Chain<D> {
             let outcome = self.admm.solve(problem, &within(progress.left(stop), DIRECTIONS), p);
             progress.add(outcome);
         }
-        let crowd = pivots.is_some() && p.len() > CROWD;
+        let mut crowd = pivots.as_mut().map(Pivots::borrow).filter(|_| p.len() > CROWD);
         if !progress.over(stop) {
-            self.sweeps_and_steps(problem, if crowd { CROWD_ROUNDS } else { ALL_ROUNDS }, stop, p, &mut progress);
+            let rounds = if crowd.is_some() { CROWD_ROUNDS } else { ALL_ROUNDS };
+            self.sweeps_and_steps(problem, rounds, stop, p, &mut progress);
         }
-        if !progress.over(stop) && crowd {
-            self.path_and_directions(problem, stop, p, &mut progress);
+        let crowded = crowd.is_some();
+        if let Some(pivots) = &mut crowd {
+            self.crowd(problem, pivots.crossover, stop, p, &mut progress);
         }
         if !progress.over(stop)
             && p.len() <= MOST_PIVOTED
@@ -222,16 +244,21 @@ impl<const D: usize> Chain<D> {
         {
             self.best.clear();
             self.best.extend_from_slice(p);
-            let outcome = pivots.solve(problem, &within(progress.left(stop), u32::MAX), p);
+            let outcome = pivots.lemke.solve(problem, &within(progress.left(stop), u32::MAX), p);
             if !(outcome.residual.global < progress.best.residual.global) {
                 p.copy_from_slice(&self.best);
             }
             progress.add(outcome);
         }
         // The path of a crowd has been followed.
-        if !progress.over(stop) && !crowd {
+        if !progress.over(stop) && !crowded {
             let outcome = self.smoothing.solve(problem, &within(progress.left(stop), u32::MAX), p);
             progress.add(outcome);
+        }
+        // Pivots that haven't reached a small tolerance from nearby are followed by nothing that does.
+        let near = progress.best.residual.global < NEAR;
+        if crowded && near && p.len() > MOST_PIVOTED && stop.tolerance < LOOSE {
+            return progress.end(problem, stop, p);
         }
         if !progress.over(stop) {
             let outcome = self.prox.solve(problem, &within(progress.left(stop), u32::MAX), p);
@@ -241,9 +268,8 @@ impl<const D: usize> Chain<D> {
             let outcome = self.newton.solve(problem, &within(progress.left(stop), u32::MAX), p);
             progress.add(outcome);
         }
-        // A crowd had pivots instead, unless it is too large for them.
-        let had_pivots = crowd && p.len() <= MOST_PIVOTED;
-        if !progress.over(stop) && !had_pivots {
+        // A crowd had pivots instead.
+        if !progress.over(stop) && !crowded {
             let outcome = self.pgs.solve(problem, &within(progress.left(stop), u32::MAX), p);
             progress.add(outcome);
         }
@@ -251,17 +277,31 @@ impl<const D: usize> Chain<D> {
     }
 
     /// A short central path; alternating directions, with Newton steps from where they end, as they
-    /// find which contacts slide and open; and a longer path, with other regularisations.
-    fn path_and_directions(
+    /// find which contacts slide and open; and a longer path, with other regularisations. In between, pivots
+    /// from the best point so far.
+    fn crowd(
         &mut self,
         problem: &ContactProblem<'_, D>,
+        crossover: &mut dyn ContactSolver<D>,
         stop: &Stop<'_>,
         p: &mut [Vector<D>],
         progress: &mut Progress,
     ) {
         let within = |left: u32, most: u32| stop.with_max_iterations(left.min(most));
-        // Both return the best point that they meet, the start among them.
-        progress.add(self.smoothing.solve(problem, &within(progress.left(stop), SHORT_PATH), p));
+        // The residual from which pivots are worth a try.
+        let mut near = NEAR;
+        let mut cross = |p: &mut [Vector<D>], progress: &mut Progress| {
+            if !progress.over(stop) && progress.best.residual.global < near {
+                near = NEARER * progress.best.residual.global;
+                progress.add(crossover.solve(problem, &within(progress.left(stop), TRIED), p));
+            }
+        };
+        cross(p, progress);
+        // All return the best point that they meet, the start among them.
+        if !progress.over(stop) {
+            progress.add(self.smoothing.solve(problem, &within(progress.left(stop), SHORT_PATH), p));
+            cross(p, progress);
+        }
         #[cfg(feature = "sparse")]
         if !progress.over(stop) {
             progress.add(self.admm.solve(problem, &within(progress.left(stop), CROWD_DIRECTIONS), p));
@@ -270,9 +310,13 @@ impl<const D: usize> Chain<D> {
             }
             self.newton.prepare(problem);
             progress.add(self.newton.round(problem, &within(progress.left(stop), u32::MAX), p));
+            cross(p, progress);
         }
         if !progress.over(stop) {
             progress.add(self.smoothing.solve(problem, &within(progress.left(stop), LONG_PATH), p));
+        }
+        if !progress.over(stop) && progress.best.residual.global < NEAR {
+            progress.add(crossover.solve(problem, &within(progress.left(stop), LAST_TRIED), p));
         }
     }
 

@@ -58,13 +58,16 @@ pub mod admm;
 mod anderson;
 pub mod apgd;
 pub mod auto;
+mod basis;
 mod block_lu;
 mod catalogue;
+mod cells;
 mod chain;
 #[cfg(feature = "clarabel")]
 mod cone_program;
 #[cfg(test)]
 mod conforming;
+mod crossover;
 mod ending;
 pub mod enumeration;
 mod least_norm;
@@ -79,6 +82,7 @@ mod one_contact_space;
 mod operator;
 mod ordering;
 mod pairs;
+mod parametric;
 pub mod pgs;
 pub mod prox;
 mod rows;

@@ -3,6 +3,7 @@
 
 mod allocations;
 mod islands;
+mod jammed;
 mod kept;
 mod laws;
 mod many;
