@@ -288,6 +288,15 @@ const BEYOND: &[&str] = &[
     "points on one line",
     "lower face of a block above",
     "face of the ground",
+    "two patterns that say as much",
+    "stones that are all prescribed",
+    "contact of a pair that is kept apart",
+    "more stones than pairs can be numbered of",
+    "stones that start inside each other",
+    "a crowd on a beam in equilibrium",
+    "jitter into each other",
+    "jitter that lifts off the ground",
+    "random angles on the ground",
 ];
 
 #[test]

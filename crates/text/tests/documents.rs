@@ -95,7 +95,7 @@ fn what_is_written_out_reads_back_to_the_same() {
     let plant = read(TEXT).unwrap();
     let once = plant.to_toml();
     assert_eq!(read(&once).unwrap().to_toml(), once);
-    assert!(once.contains("\n[pipe.main]\nfluid = \"water\"\nwall = \"rough\"\ngrain = \"0.001 m\"\n"), "{once}");
+    assert!(once.contains("\n[pipe.main]\nfluid = \"water\"\nwall = \"rough\"\ngrain = \"1 mm\"\n"), "{once}");
 }
 
 #[test]

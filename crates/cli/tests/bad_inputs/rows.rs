@@ -355,7 +355,7 @@ fn crowds() -> Vec<Row> {
     const PLACE: &str = "position = [\"0 m\", \"6 cm\"]";
     const ROWS: &str = "repeat = { count = 6, shift = [\"12 cm\", \"0 cm\"], rows = 6, row_shift = [\"0 cm\", \"12 cm\"] }";
     vec![
-        refused(52, "two patterns that say as much", Pile(&[("[contact.all]", "[contact.one]\nbetween = [\"stone-*\", \"*\"]\nfriction = 0.3\n[contact.other]\nbetween = [\"*\", \"stone-*\"]\nfriction = 0.4\n[contact.all]")]), &["contact.other.between", "says no more of the bodies than `one`"]),
+        refused(52, "two patterns that say as much", Pile(&[("[contact.all]", "[contact.one]\nbetween = [\"stone-*\", \"*\"]\nfriction = 0.3\n[contact.other]\nbetween = [\"*\", \"stone-*\"]\nfriction = 0.4\n[contact.all]")]), &["contact.other", "says no more of the bodies than `one`"]),
         refused(52, "stones that are all prescribed", Pile(&[("[contact.all]", "[block.stone.motion]\nvelocity = [\"1 m/s\", \"0 m/s\"]\nangular_velocity = \"0 rad/s\"\n[contact.all]")]), &["contact.all.between", "can't yield to it", "world.apart"]),
         refused(52, "contact of a pair that is kept apart", Pile(&[("[contact.all]", "[world]\napart = [[\"stone-*\", \"stone-*\"]]\n[contact.one]\nbetween = [\"stone-1\", \"stone-2\"]\nfriction = 0.9\n[contact.all]")]), &["contact.one.between", "world.apart"]),
         refused(52, "more stones than pairs can be numbered of", Pile(&[("count = 6", "count = 200"), ("rows = 6", "rows = 165")]), &["block", "33000 blocks of which any two may touch", "32768", "use fewer blocks"]),

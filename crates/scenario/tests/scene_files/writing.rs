@@ -37,7 +37,7 @@ fn the_scene_as_run_reads_back_to_the_same_values_and_bytes() {
     };
     assert_eq!(values(&again), values(&scene));
     assert!(written.contains("\n[ground]\n"));
-    assert!(written.contains("rayleigh = { a0 = \"0.3 1/s\", a1 = \"0.0 s\" }"));
+    assert!(written.contains("rayleigh = { a0 = \"0.3 1/s\", a1 = \"0 s\" }"));
 }
 
 #[test]
