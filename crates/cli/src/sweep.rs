@@ -108,10 +108,12 @@ fn run(console: Console, study: &Study, results: &Results, mut journal: Journal,
         return Exit::Failed;
     }
     if incomplete > 0 {
-        console.note(&format!("{incomplete} cases have no result: see the columns `status` and `error`"));
+        let have = if incomplete == 1 { "case has" } else { "cases have" };
+        console.note(&format!("{incomplete} {have} no result: see the columns `status` and `error`"));
     }
     if unsolved > 0 {
-        console.note(&format!("{unsolved} cases have steps that were not solved to tolerance: see `unsolved_steps`"));
+        let have = if unsolved == 1 { "case has" } else { "cases have" };
+        console.note(&format!("{unsolved} {have} steps that were not solved to tolerance: see `unsolved_steps`"));
     }
     let ran = journal.done() - before > incomplete;
     for (output, _) in study.sweep.outputs().iter().zip(&empty).filter(|(_, empty)| **empty && ran) {

@@ -1,0 +1,250 @@
+//! `teeter sweep`: its table, its shards, and what is left after a kill.
+
+#![allow(clippy::unwrap_used)] // a test
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// A folder with Housner's block and a sweep file.
+fn study(name: &str, sweep: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("sweep-{name}"));
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/free-rocking-on-ground.toml");
+    let scene = std::fs::read_to_string(scene).unwrap().replace("end  = \"1 s\"", "end = \"0.2 s\"");
+    std::fs::write(folder.join("rocking.toml"), scene).unwrap();
+    std::fs::write(folder.join("sweep.toml"), sweep).unwrap();
+    folder
+}
+
+fn teeter(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_teeter")).current_dir(folder).args(arguments).output().unwrap()
+}
+
+fn done(folder: &Path, arguments: &[&str]) -> String {
+    let output = teeter(folder, arguments);
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{arguments:?}: {told}");
+    told
+}
+
+/// The rows of a table, each as its cells; the first is the header.
+fn table(path: &Path) -> Vec<Vec<String>> {
+    let text = std::fs::read_to_string(path).unwrap();
+    text.lines().map(|line| line.split(',').map(str::to_owned).collect()).collect()
+}
+
+const SWEEP: &str = "scene = \"rocking.toml\"\n\
+    [grid]\ncontact.feet.friction = [0.4, 0.6]\nblock.rocker.tilt = { from = \"2 deg\", to = \"6 deg\", count = 3 }\n\
+    [random]\ncount = 2\nseed = 5\nmethod = \"latin-hypercube\"\nblock.rocker.height = { uniform = [\"12 cm\", \"15 cm\"] }\n\
+    [outputs]\nlargest = { max_abs = \"rocker.phi\" }\nlast = { final = \"rocker.omega\" }\n\
+    early = { at = \"50 ms\", of = \"rocker.phi\" }\nimpacts = \"impact_count\"\n";
+
+#[test]
+fn a_case_has_the_numbers_of_a_run_with_its_values() {
+    let folder = study("values", SWEEP);
+    done(&folder, &["sweep", "sweep.toml", "--out", "all"]);
+    let rows = table(&folder.join("all/results.csv"));
+    let header = "case,contact.feet.friction,block.rocker.tilt,block.rocker.height,largest,last,early,impacts,status,\
+        unsolved_steps,error";
+    assert_eq!(rows[0].join(","), header);
+    assert_eq!(rows.len(), 1 + 2 * 3 * 2);
+    let numbers: Vec<&str> = rows[1..].iter().map(|row| row[0].as_str()).collect();
+    assert_eq!(numbers, (0..12).map(|k| k.to_string()).collect::<Vec<_>>());
+    for row in [&rows[1], &rows[8], &rows[12]] {
+        let sets = [
+            format!("contact.feet.friction={}", row[1]),
+            format!("block.rocker.tilt={} rad", row[2]),
+            format!("block.rocker.height={} m", row[3]),
+        ];
+        let out = format!("case-{}", row[0]);
+        let mut arguments = vec!["run", "rocking.toml", "--out", &out, "--quiet"];
+        sets.iter().for_each(|set| arguments.extend(["--set", set]));
+        done(&folder, &arguments);
+        let motion = table(&folder.join(&out).join("trajectory.csv"));
+        let column = |name: &str| {
+            let place = motion[0].iter().position(|column| column == name).unwrap();
+            motion[1..].iter().map(|cells| cells[place].parse::<f64>().unwrap()).collect::<Vec<_>>()
+        };
+        let cell = |place: usize| row[place].parse::<f64>().unwrap();
+        // The values of the keys in the table are converted, so the last digit may differ.
+        let close = |a: f64, b: f64| assert!((a - b).abs() <= 1e-9 * b.abs(), "case {}: {a} {b}", row[0]);
+        close(cell(4), column("rocker.phi").iter().fold(0.0, |most: f64, x| most.max(x.abs())));
+        close(cell(5), *column("rocker.omega").last().unwrap());
+        let at = column("t").iter().position(|t| (t - 0.05).abs() < 1e-9).unwrap();
+        close(cell(6), column("rocker.phi")[at]);
+        let summary: serde_json::Value =
+            serde_json::from_slice(&std::fs::read(folder.join(&out).join("summary.json")).unwrap()).unwrap();
+        assert_eq!(row[7], summary["impact_count"].to_string());
+        assert_eq!(row[8..], ["complete", "0", ""]);
+    }
+    let heights: Vec<f64> = rows[1..3].iter().map(|row| row[3].parse().unwrap()).collect();
+    assert!(heights.iter().any(|h| *h < 0.135) && heights.iter().any(|h| *h > 0.135), "one in each half: {heights:?}");
+}
+
+#[test]
+fn shards_merge_to_the_bytes_of_one_run_on_any_number_of_threads() {
+    let folder = study("shards", SWEEP);
+    done(&folder, &["sweep", "sweep.toml", "--out", "all", "--jobs", "1"]);
+    for shard in ["1", "2", "3"] {
+        let (part, number) = (format!("part-{shard}"), format!("{shard}/3"));
+        done(&folder, &["sweep", "sweep.toml", "--out", &part, "--shard", &number, "--jobs", "2"]);
+    }
+    let missing = teeter(&folder, &["sweep", "--merge", "part-1", "part-3", "--out", "merged"]);
+    assert_eq!(String::from_utf8(missing.stderr).unwrap(), "error: shards are missing: 2/3\n");
+    let twice = teeter(&folder, &["sweep", "--merge", "part-1", "part-1", "part-2", "part-3", "--out", "merged"]);
+    assert_eq!(String::from_utf8(twice.stderr).unwrap(), "error: shard 1/3 is in part-1 and in part-1\n");
+    done(&folder, &["sweep", "--merge", "part-3", "part-1", "part-2", "--out", "merged"]);
+    for file in ["results.csv", "sweep.json"] {
+        let bytes = |name: &str| std::fs::read(folder.join(name).join(file)).unwrap();
+        assert_eq!(bytes("merged"), bytes("all"), "{file}");
+    }
+}
+
+#[test]
+fn a_study_continues_after_a_kill_to_the_same_bytes() {
+    let folder = study("resume", SWEEP);
+    done(&folder, &["sweep", "sweep.toml", "--out", "all"]);
+    let whole = std::fs::read_to_string(folder.join("all/results.csv")).unwrap();
+    // What a kill leaves: rows in any order, the last one cut, and no results.
+    let lines: Vec<&str> = whole.split_inclusive('\n').collect();
+    for kept in [0, 1, 5, 12] {
+        let left = folder.join(format!("left-{kept}"));
+        std::fs::create_dir_all(&left).unwrap();
+        std::fs::copy(folder.join("all/sweep.json"), left.join("sweep.json")).unwrap();
+        let mut journal = lines[0].to_owned();
+        (0..kept).for_each(|k| journal.push_str(lines[1 + (5 * k) % 12]));
+        journal.push_str(&lines[1 + (5 * kept) % 12][..9]);
+        std::fs::write(left.join("journal.csv"), journal).unwrap();
+        let out = format!("left-{kept}");
+        let told = done(&folder, &["sweep", "sweep.toml", "--out", &out, "--resume"]);
+        assert!(kept == 0 || told.contains(&format!("{kept} of 12 cases are done")), "{told}");
+        assert_eq!(std::fs::read_to_string(left.join("results.csv")).unwrap(), whole);
+        assert!(!left.join("journal.csv").exists());
+    }
+    // A study that has ended is continued by doing nothing; another one isn't.
+    done(&folder, &["sweep", "sweep.toml", "--out", "all", "--resume"]);
+    assert_eq!(std::fs::read_to_string(folder.join("all/results.csv")).unwrap(), whole);
+    std::fs::write(folder.join("sweep.toml"), SWEEP.replace("seed = 5", "seed = 6")).unwrap();
+    let other = teeter(&folder, &["sweep", "sweep.toml", "--out", "all", "--resume"]);
+    assert_eq!(String::from_utf8(other.stderr).unwrap(), "error: all: the sweep file has changed since\n");
+    let again = teeter(&folder, &["sweep", "sweep.toml", "--out", "all"]);
+    assert_eq!(again.status.code(), Some(2));
+    assert_eq!(std::fs::read_to_string(folder.join("all/results.csv")).unwrap(), whole);
+}
+
+#[test]
+fn a_case_that_is_refused_is_a_row() {
+    let sweep = "scene = \"rocking.toml\"\n[grid]\nblock.rocker.tilt = [\"2 deg\", \"100 deg\"]\n";
+    let folder = study("refused", sweep);
+    let told = done(&folder, &["sweep", "sweep.toml", "--out", "out"]);
+    assert!(told.contains("1 case has no result"), "{told}");
+    let rows = table(&folder.join("out/results.csv"));
+    let last = rows[0].len();
+    assert_eq!(rows[1][last - 3..], ["complete", "0", ""]);
+    assert_eq!(rows[2][last - 3], "refused");
+    let line = std::fs::read_to_string(folder.join("out/results.csv")).unwrap();
+    assert!(line.contains("block.rocker.tilt"), "with the reason: {line}");
+}
+
+#[test]
+fn what_is_wrong_in_a_sweep_file_is_told_with_its_place_and_a_remedy() {
+    for (name, text, says) in [
+        ("nothing", "", &["scene: missing: which scene varies?"][..]),
+        ("scene", "scene = \"none.toml\"\n[grid]\nblock.rocker.tilt = [\"2 deg\"]\n", &["none.toml", "no such file"]),
+        ("varies", "scene = \"rocking.toml\"\n", &["nothing varies", "[grid]"]),
+        ("table", "scene = \"rocking.toml\"\n[gird]\na = [1]\n", &["sweep.toml:2", "did you mean `grid`?"]),
+        ("toml", "scene = \n", &["not valid TOML", "sweep.toml:1"]),
+        (
+            "key",
+            "scene = \"rocking.toml\"\n[grid]\ncontact.feet.frictoin = [1]\n",
+            &["contact.feet.frictoin", "did you mean `contact.feet.friction`?"],
+        ),
+        (
+            "units",
+            "scene = \"rocking.toml\"\n[grid]\nblock.rocker.tilt = { from = \"1 deg\", to = \"1 rad\", count = 3 }\n",
+            &["the units differ: `deg` and `rad`", "in one unit"],
+        ),
+        (
+            "range",
+            "scene = \"rocking.toml\"\n[grid]\nblock.rocker.tilt = { from = \"1 deg\", count = 3 }\n",
+            &["from, to and count belong together"],
+        ),
+        (
+            "zip",
+            "scene = \"rocking.toml\"\n[zip]\nblock.rocker.width = [\"1 cm\"]\nblock.rocker.height = [\"1 cm\", \"2 cm\"]\n",
+            &["lists of one length", "block.rocker.width has 1", "move a key to [grid]"],
+        ),
+        (
+            "files",
+            "scene = \"rocking.toml\"\n[grid]\nblock.rocker.tilt = { files = \"*.AT2\" }\n",
+            &["no file matches", "relative to the sweep file"],
+        ),
+        (
+            "random",
+            "scene = \"rocking.toml\"\n[random]\nblock.rocker.tilt = { uniform = [\"2 deg\", \"1 deg\"] }\n",
+            &["random.count", "the lower end comes first"],
+        ),
+        (
+            "output",
+            "scene = \"rocking.toml\"\n[grid]\nblock.rocker.tilt = [\"2 deg\"]\n[outputs]\nx = { mx = \"rocker.phi\" }\n",
+            &["outputs.x.mx", "did you mean `max`?"],
+        ),
+        (
+            "twice",
+            "scene = \"rocking.toml\"\n[grid]\nblock.rocker.tilt = [\"2 deg\"]\n[zip]\nblock.rocker.tilt = [\"1 deg\"]\n",
+            &["varies twice"],
+        ),
+    ] {
+        let folder = study(name, text);
+        let output = teeter(&folder, &["sweep", "sweep.toml", "--out", "out"]);
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{name}: {told}");
+        says.iter().for_each(|part| assert!(told.contains(part), "{name}: «{part}» is missing in\n{told}"));
+        assert!(!folder.join("out").exists(), "{name}: nothing is written");
+    }
+    let folder = study("shard", SWEEP);
+    for (shard, says) in [("0/3", "there is no shard 0 of 3"), ("two", "write I/N"), ("1/0", "at least one shard")] {
+        let output = teeter(&folder, &["sweep", "sweep.toml", "--shard", shard]);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(String::from_utf8(output.stderr).unwrap().contains(says), "{shard}");
+    }
+}
+
+#[test]
+fn an_output_that_no_case_has_is_told() {
+    let sweep = format!("{SWEEP}nothing = \"no.such.key\"\nnowhere = {{ max = \"rocker.psi\" }}\n");
+    let folder = study("empty", &sweep);
+    let told = done(&folder, &["sweep", "sweep.toml", "--out", "out"]);
+    assert!(told.contains("`nothing` is empty in all cases: summary.json has no value at no.such.key"), "{told}");
+    assert!(told.contains("`nowhere` is empty in all cases: trajectory.csv has no column rocker.psi"), "{told}");
+}
+
+/// Two records as the values of one key, listed by a pattern relative to the sweep file.
+#[test]
+fn files_are_an_axis() {
+    let sweep = "scene = \"scenes/shaken.toml\"\n[grid]\nground.motion.x.record = { files = \"records/*.csv\" }\n\
+        [outputs]\nlargest = { max_abs = \"b.x\" }\n";
+    let folder = study("files", sweep);
+    std::fs::create_dir_all(folder.join("records")).unwrap();
+    std::fs::create_dir_all(folder.join("scenes")).unwrap();
+    for (name, size) in [("a.csv", 1.0), ("b.csv", 2.0)] {
+        let rows: String = (0..=20)
+            .map(|k| format!("{},{}\n", 0.01 * f64::from(k), size * (std::f64::consts::PI * 0.1 * f64::from(k)).sin()))
+            .collect();
+        std::fs::write(folder.join("records").join(name), rows).unwrap();
+    }
+    let scene = "[time]\nend = '0.2 s'\nstep = '1 ms'\n[material.m]\ndensity = '1000 kg/m^3'\n[ground]\n\
+        [ground.motion.x]\nrecord = '../records/a.csv'\nunit = 'm/s^2'\n\
+        [block.b]\nmaterial = 'm'\nwidth = '20 cm'\nheight = '5 cm'\ndepth = '5 cm'\non = 'ground'\nat = '0 m'\n\
+        [contact.f]\nbetween = ['b', 'ground']\nfriction = 0.9\n";
+    std::fs::write(folder.join("scenes/shaken.toml"), scene).unwrap();
+    let output = teeter(&folder, &["sweep", "sweep.toml", "--out", "out"]);
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{told}");
+    let rows = table(&folder.join("out/results.csv"));
+    assert_eq!(rows.len(), 3, "{told}");
+    assert!(rows[1][1].ends_with("records/a.csv") && rows[2][1].ends_with("records/b.csv"), "{rows:?}");
+    let moved = |row: &[String]| row[2].parse::<f64>().unwrap();
+    assert!((moved(&rows[2]) / moved(&rows[1]) - 2.0).abs() < 1e-6, "it moves with the ground: {rows:?}");
+}
