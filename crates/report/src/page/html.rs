@@ -141,9 +141,7 @@ fn tiles(values: &Numbers, summary: &Summary) -> String {
     let seconds = |t: Option<f64>| t.map(|t| with_prefix(t, "s"));
     for (number, path) in TILES.into_iter().enumerate() {
         let (label, shown) = match path {
-            "max_phi_over_alpha" => {
-                ("Largest φ/α", summary.max_phi_over_alpha.map(|part| rounded(part, 3).to_string()))
-            }
+            "max_phi_over_alpha" => ("Largest φ/α", summary.max_phi_over_alpha.map(share_of_critical_angle)),
             "overturned_at" => ("First overturned at", seconds(summary.overturned_at)),
             "rests_from" => ("All at rest from", seconds(summary.rests_from)),
             "energy.lost" => ("Energy lost", Some(with_prefix(summary.energy.lost, "J"))),
@@ -422,6 +420,11 @@ fn scientific(x: f64) -> String {
         Some((digits, power)) => format!("{digits} × 10<sup>{}</sup>", power.replace('-', "\u{2212}")),
         None => text,
     }
+}
+
+/// φ/α for people: what is below a thousandth is rounding or hardly seen.
+fn share_of_critical_angle(share: f64) -> String {
+    if share < 1e-3 { "< 0.001".to_owned() } else { rounded(share, 3).to_string() }
 }
 
 #[cfg(test)]
