@@ -94,7 +94,7 @@ mod tests {
     fn the_unit_tells_what_it_is() {
         let read = |text, units| Measure::read(text, units).map(|m| (m.value, m.power, m.to_string()));
         assert_eq!(read("2 kN/m", STIFFNESS), Ok((2e3, None, "2000 N/m".to_owned())));
-        assert_eq!(read("1e8 N/m^1.5", STIFFNESS), Ok((1e8, Some(1.5), "100000000 N/m^1.5".to_owned())));
+        assert_eq!(read("1e8 N/m^1.5", STIFFNESS), Ok((1e8, Some(1.5), "100000 kN/m^1.5".to_owned())));
         assert_eq!(read("3 kN s/m^2.5", DAMPING), Ok((3e3, Some(2.5), "3000 N s/m^2.5".to_owned())));
         assert_eq!(read("0.5 s/m", DAMPING), Ok((0.5, None, "0.5 s/m".to_owned())));
         for text in ["2 kN/m", "1e8 N/m^1.5"] {

@@ -160,7 +160,7 @@ fn moments_of_modes_are_those_of_the_elements_to_the_root_of_the_tolerance() {
 fn what_is_asked_of_modes_is_written_out_and_read_back() {
     let scene = resolved(&[MODES, ("beam.table.modes", "{ to = '26 cm' }")]);
     let written = scene.document.to_toml();
-    assert!(written.contains("modes = { tolerance = 0.0001, from = \"0 m\", to = \"26 cm\" }"), "{written}");
+    assert!(written.contains("modes = { tolerance = 0.0001, from = \"0 m\", to = \"0.26 m\" }"), "{written}");
     let again = load(written.as_bytes(), "scene", "scene", &[]).unwrap();
     assert_eq!((again.scene, again.document.to_toml()), (scene.scene, written));
 }
