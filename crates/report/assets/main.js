@@ -23,7 +23,7 @@
     const bands = (t, all, factor) => {
       const [least, low, median, high, most] = all.map((values) => values.map((x) => x * factor));
       return [
-        { label: "all bodies", index: 0, t, y: least, upper: most }, { label: "8 of 10", index: 0, t, y: low, upper: high },
+        { label: "all bodies", index: 0, t, y: least, upper: most }, { label: "8 of 10", index: 0, t, y: low, upper: high, inner: true },
         { label: "median", index: 0, t, y: median },
       ];
     };
@@ -93,10 +93,10 @@
   if (active.length > 3) plots.choose(active[0]);
 
   if (scenery.hidden_points > 0 || scenery.unlisted) {
-    const many = scenery.hidden_points > 0 ? `${scenery.hidden_points} points can touch, more than 2000`
-      : "blocks can touch any others";
-    const where = network ? " The network in the picture shows their forces, and the table" : "";
-    htmlElement("p", "note", `Contact by contact there are no plots here: ${many}.${where || " The table"} contacts.csv has their impulses.`, byId("plots")).id = "hidden-contacts";
+    const many = scenery.hidden_points > 0 ? `No contact has plots of its own: ${scenery.hidden_points} points can touch, more than 2000.`
+      : "Contacts between blocks that no contact lists have no plots of their own.";
+    const where = network ? "The network in the picture shows their forces, and contacts.csv" : "contacts.csv";
+    htmlElement("p", "note", `${many} ${where} has their impulses.`, byId("plots")).id = "hidden-contacts";
   }
 
   for (const [kind, title, unit, factor] of [
@@ -149,7 +149,15 @@
 
   const [slider, play, speed] = ["time-slider", "play", "speed"].map(byId);
   const exaggeration = byId("exaggeration");
-  const rows = [...document.querySelectorAll("#rocking tbody tr")];
+  /** The rows of each block in the table of half cycles, with their times. */
+  const rowsOf = (() => {
+    const byBody = new Map();
+    for (const row of document.querySelectorAll("#rocking tbody tr")) {
+      const { body } = row.dataset;
+      byBody.set(body, [...(byBody.get(body) ?? []), row]);
+    }
+    return [...byBody.values()].map((own) => [own.map((row) => Number(row.dataset.t)), own]);
+  })();
   const decimals = Math.min(9, Math.max(3, Math.ceil(-Math.log10(data.dt))));
   let frame = 0;
   /** Where between the pictures the clock is. */
@@ -173,9 +181,9 @@
     // In motion an impact is ringed for a moment, at rest only in the frame that it led to.
     scene.draw(position, clock ? 0.25 * factor() : 0);
     plots.showTime(t);
-    for (const block of rows.length ? scenery.blocks : []) {
-      const past = rows.filter((row) => row.dataset.body === block.name && Number(row.dataset.t) <= t);
-      rows.forEach((row) => row.dataset.body === block.name && row.classList.toggle("now", row === past[past.length - 1]));
+    for (const [past, own] of rowsOf) {
+      const now = own[indexAt(past, t)];
+      own.forEach((row) => row.classList.toggle("now", row === now && past[0] <= t));
     }
   }
 
@@ -343,7 +351,7 @@
     if (how.value === "network") {
       parts.push(`Green lines: contact forces, from centre to centre through the centre of pressure, means since the picture before; widest: ${number(chains.usual, 3)} N or more.`);
     }
-    if (data.loads.length) parts.push("Arrows of another colour: loads.");
+    if (data.loads.length) parts.push("Purple arrows: loads.");
     if (data.impacts.length) parts.push("Rings, and ticks on the plots: impacts.");
     if (crowd) parts.push(`${times.length} pictures; between them the motion is interpolated.`);
     else if (scenery.blocks.length) parts.push("Dotted: the start.");

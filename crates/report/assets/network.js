@@ -1,5 +1,6 @@
 // The network of contact forces: between two blocks a line from one centre to the other through the centre of pressure,
-// between a block and anything else from its centre to there. As wide as the force is large.
+// between a block and anything else (ground, a beam, a block whose motion is prescribed) from its centre to there. As wide as
+// the force is large.
 
 const chains = (() => {
   if (!network) return null;
@@ -35,11 +36,9 @@ const chains = (() => {
       const [block, other] = network.pairs[link.pair];
       const pose = poseOf(block);
       const [sin, cos] = [Math.sin(pose.phi), Math.cos(pose.phi)];
-      let line = `M${place(pose.x, pose.y)}L${place(pose.x + cos * link.x - sin * link.y, pose.y + sin * link.x + cos * link.y)}`;
-      if (other >= 0) {
-        const beyond = poseOf(other);
-        line += `L${place(beyond.x, beyond.y)}`;
-      }
+      const centres = [block, other].filter((k) => k >= 0 && !scenery.blocks[k].driven).map(poseOf).map(({ x, y }) => place(x, y));
+      const middle = place(pose.x + cos * link.x - sin * link.y, pose.y + sin * link.x + cos * link.y);
+      const line = centres.length ? `M${centres[0]}L${middle}${centres.length > 1 ? `L${centres[1]}` : ""}` : "";
       lines[number - 1] += line;
     }
     paths.forEach((path, k) => setAll(path, { d: lines[k], "stroke-width": ((widest * (k + 1)) / classes).toFixed(2) }));

@@ -26,7 +26,7 @@ const plots = (() => {
     for (const series of panel.portrait && panel.series.length === 1 ? [] : panel.series) {
       const key = htmlElement("span", series.label ? "key" : "key bare", undefined, legend);
       const swatch = svgElement("svg", { viewBox: "0 0 18 8", "aria-hidden": "true" }, key);
-      if (series.upper) svgElement("path", { d: "M0 0h18v8h-18z", class: "area", style: `fill: ${colour(series.index)}` }, swatch);
+      if (series.upper) svgElement("path", { d: "M0 0h18v8h-18z", class: "area", style: `fill: ${colour(series.index)}; fill-opacity: ${series.inner ? 0.45 : 0.2}` }, swatch);
       else svgElement("path", { d: "M0 4h18", style: stroke(series), "stroke-width": 2 }, swatch);
       if (series.label) key.append(series.label);
       series.readout = htmlElement("b", "", "", key);
@@ -64,7 +64,9 @@ const plots = (() => {
   }
 
   let paper = null;
-  const width = () => paper ?? Math.max(200, host.clientWidth);
+  // Measured when all is drawn anew: to ask for it at each picture would cost a layout each time.
+  let measured = 0;
+  const width = () => paper ?? measured;
   const px = (t) => margin.left + ((t - view[0]) / (view[1] - view[0])) * (width() - margin.left - margin.right);
   const timeAt = (panel, event) => {
     const box = panel.svg.getBoundingClientRect();
@@ -333,6 +335,7 @@ const plots = (() => {
   }
 
   function redraw() {
+    measured = Math.max(200, host.clientWidth);
     panels.forEach(drawPanel);
     readOut(now);
   }

@@ -19,6 +19,7 @@ mod packed;
 mod recorder;
 mod rocking;
 mod scenery;
+mod thrust;
 
 pub use chain::{Joint, ThrustLine, thrust_lines};
 pub use figures::figures;

@@ -74,7 +74,7 @@ fn time_note([from, to]: [f64; 2]) -> String {
 }
 
 /// The network of contact forces at the end: between two blocks a line from one centre to the other through the centre of
-/// pressure, between a block and anything else from its centre to that.
+/// pressure, between a block and anything else, as a block whose motion is prescribed, from its centre to that.
 pub(super) fn force_chains(recorder: &PageRecorder) -> Option<Drawing> {
     let scenery = &recorder.scenery;
     let last = LastPicture::of(recorder).filter(|last| scenery.has_network() && !last.thrusts.is_empty())?;
@@ -89,11 +89,16 @@ pub(super) fn force_chains(recorder: &PageRecorder) -> Option<Drawing> {
     let mut classes: Vec<Vec<Vec<(f64, f64)>>> = vec![Vec::new(); CLASSES + 1];
     for thrust in &last.thrusts {
         let class = (thrust.size() / largest * CLASSES as f64).round() as usize;
-        let centre = |block: usize| (last.poses[block][0], last.poses[block][1]);
-        let mut line = vec![centre(thrust.block), (thrust.at[0], thrust.at[1])];
-        if let SupportingBody::Block(other) = thrust.other {
-            line.push(centre(other));
-        }
+        let centre = |block: usize| {
+            let free = !scenery.blocks[block].driven;
+            free.then(|| (last.poses[block][0], last.poses[block][1]))
+        };
+        let other = match thrust.other {
+            SupportingBody::Block(other) => centre(other),
+            SupportingBody::Ground | SupportingBody::Beam(_) => None,
+        };
+        let at = Some((thrust.at[0], thrust.at[1]));
+        let line = [centre(thrust.block), at, other].into_iter().flatten().collect();
         classes[class.min(CLASSES)].push(line);
     }
     for (class, lines) in classes.into_iter().enumerate().skip(1).filter(|(_, lines)| !lines.is_empty()) {

@@ -4,7 +4,7 @@ use super::accelerograms;
 use super::figures::envelopes;
 use super::recorder::PageRecorder;
 use super::rocking::{HalfCycle, half_cycles};
-use super::{data, rounded};
+use super::{data, rounded, thrust};
 use crate::Summary;
 use crate::summary::{BeamSummary, RemovedSummary};
 use serde_json::Value;
@@ -44,6 +44,7 @@ pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> S
         ("residual", scientific(summary.energy.largest_residual)),
         ("records", accelerograms::section(&recorder.scenery.records, &summary.records)),
         ("borne", borne(recorder, summary)),
+        ("thrust", thrust::section(recorder)),
         ("rocking", rocking(&half_cycles(recorder, summary))),
         ("model", model(summary)),
         ("numbers", numbers(&values)),
@@ -444,7 +445,7 @@ mod tests {
             let known =
                 ["title", "style", "script", "data", "verdict", "subtitle", "warnings", "tiles", "residual", "rocking"];
             assert!(
-                known.contains(&name) || ["borne", "model", "numbers", "records", "settings"].contains(&name),
+                known.contains(&name) || ["borne", "model", "numbers", "records", "settings", "thrust"].contains(&name),
                 "{name}"
             );
         }

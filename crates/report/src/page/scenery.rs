@@ -27,8 +27,7 @@ pub(crate) struct BlockDrawn {
     pub(crate) alpha: Option<f64>,
     /// Largest distance from its mass centre to its outline, m.
     pub(crate) reach: f64,
-    /// Whether all of its motion is prescribed.
-    #[serde(skip)]
+    /// Whether all of its motion is prescribed, as of a fixed wall.
     pub(crate) driven: bool,
 }
 

@@ -1,0 +1,42 @@
+//! The lines of thrust on the page: the drawing, and the joints as a table.
+
+use super::drawings;
+use super::recorder::PageRecorder;
+use super::{Joint, rounded};
+use std::fmt::Write;
+use teeter_plot::{Theme, escaped};
+
+/// The section; empty without a chain of blocks.
+pub(super) fn section(recorder: &PageRecorder) -> String {
+    let lines = drawings::lines_of(recorder);
+    let Some(drawing) = drawings::thrust(recorder, &lines) else { return String::new() };
+    let joints: usize = lines.iter().map(|line| line.joints.len()).sum();
+    let mut html = format!(
+        "<section id=\"thrust\" class=\"panel\" aria-labelledby=\"thrust-title\">\n<h3 id=\"thrust-title\">Line of \
+         thrust at the end</h3>\n<div class=\"page-drawing\">{}</div>\n<details><summary>Eccentricity of the {joints} \
+         joints</summary><div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"thrust-title\"><table>\n\
+         <thead><tr><th scope=\"col\">Joint</th><th scope=\"col\">e<br><small>mm</small></th><th scope=\"col\">e / depth\
+         </th><th scope=\"col\">Normal<br><small>N</small></th><th scope=\"col\">Shear<br><small>N</small></th></tr></thead>\n\
+         <tbody>\n",
+        drawing.theme(Theme::Page).to_svg()
+    );
+    for joint in lines.iter().flat_map(|line| &line.joints) {
+        let Joint { between: [one, other], .. } = joint;
+        let [normal, shear] = joint.normal_and_shear.map_or([None; 2], |forces| forces.map(Some));
+        let part = joint.eccentricity.zip(joint.depth).map(|(e, depth)| e / depth);
+        let cells = [joint.eccentricity.map(|e| 1e3 * e), part, normal, shear].map(|x| cell(x));
+        let _ =
+            writeln!(html, "<tr><th scope=\"row\">{} – {}</th>{}</tr>", escaped(one), escaped(other), cells.concat());
+    }
+    html.push_str(
+        "</tbody></table></div></details>\n<p class=\"note\">e: distance of the centre of pressure from the middle of the joint, \
+         positive to the left as one goes along the chain, in an arch from the left towards the extrados. ± 1/2 of the depth \
+         are its edges, beyond ± 1/6 a joint of elastic stone would open.</p>\n</section>",
+    );
+    html
+}
+
+fn cell(x: Option<f64>) -> String {
+    let text = x.map_or("–".to_owned(), |x| rounded(x, 4).to_string().replace('-', "\u{2212}"));
+    format!("<td>{text}</td>")
+}
