@@ -24,7 +24,7 @@ pub(super) fn section(recorder: &PageRecorder) -> String {
         let Joint { between: [one, other], .. } = joint;
         let [normal, shear] = joint.normal_and_shear.map_or([None; 2], |forces| forces.map(Some));
         let part = joint.eccentricity.zip(joint.depth).map(|(e, depth)| e / depth);
-        let cells = [joint.eccentricity.map(|e| 1e3 * e), part, normal, shear].map(|x| cell(x));
+        let cells = [joint.eccentricity.map(|e| 1e3 * e), part, normal, shear].map(cell);
         let _ =
             writeln!(html, "<tr><th scope=\"row\">{} – {}</th>{}</tr>", escaped(one), escaped(other), cells.concat());
     }
