@@ -243,7 +243,7 @@
   function exaggerate(value) {
     const slot = factors.reduce((best, one, k) => (Math.abs(one - value) < Math.abs(factors[best] - value) ? k : best), 0);
     exaggeration.value = slot;
-    const text = value === 1 ? "true scale" : `${value} × too large`;
+    const text = value === 1 ? "true scale" : `exaggerated ${value} ×`;
     byId("exaggeration-readout").textContent = text;
     exaggeration.setAttribute("aria-valuetext", text);
     byId("true-scale").disabled = value === 1;
@@ -355,7 +355,7 @@
     if (data.impacts.length) parts.push("Rings, and ticks on the plots: impacts.");
     if (crowd) parts.push(`${times.length} pictures; between them the motion is interpolated.`);
     else if (scenery.blocks.length) parts.push("Dotted: the start.");
-    if (scenery.beams.length && exaggerated !== 1) parts.push(`Deflections are drawn ${exaggerated} times too large.`);
+    if (scenery.beams.length && exaggerated !== 1) parts.push(`Deflections are drawn ${exaggerated} times as large as they are.`);
     if (data.impact_count > data.impacts.length) parts.push(`Only the first ${data.impacts.length} are ringed.`);
     byId("scene-key").textContent = parts.join(" ");
   }

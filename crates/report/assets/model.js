@@ -96,7 +96,8 @@ function fixed(x, step) {
     return x.toExponential(Math.max(0, Math.floor(Math.log10(Math.abs(x) / step) + 1e-9))).replace("e+", "e").replace(/-/g, "−");
   }
   const decimals = Math.min(12, Math.max(0, -Math.floor(Math.log10(step) + 1e-9)));
-  return x.toFixed(decimals).replace("-", "−");
+  const text = x.toFixed(decimals);
+  return Number(text) === 0 ? (0).toFixed(decimals) : text.replace("-", "−");
 }
 
 /** Multiples of 1, 2 or 5 · 10ⁿ in a range, about `count` of them, with their labels. */

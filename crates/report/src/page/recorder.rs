@@ -65,9 +65,9 @@ const FRAMES: usize = 2000;
 /// Most buckets of the curves, each two points.
 const BUCKETS: usize = 2000;
 
-/// Most numbers on the page for curves, and as many again for pictures of few bodies: at some 10 bytes each the page stays
-/// below 5 MB.
-const NUMBERS: usize = 180_000;
+/// Most numbers on the page for curves, and as many again for pictures of few bodies: at some 10 bytes each the page of
+/// ten bodies stays below 1.2 MB.
+const NUMBERS: usize = 120_000;
 
 /// Most numbers for pictures of many bodies: [packed](super::packed), one takes 1.3 to 2.7 bytes.
 const PACKED_NUMBERS: usize = 750_000;
