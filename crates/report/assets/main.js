@@ -352,7 +352,11 @@
       parts.push(`Green lines: contact forces, from centre to centre through the centre of pressure, means since the picture before; widest: ${number(chains.usual, 3)} N or more.`);
     }
     if (data.loads.length) parts.push("Purple arrows: loads.");
-    if (data.impacts.length) parts.push("Rings, and ticks on the plots: impacts.");
+    if (data.impacts.length) {
+      parts.push(data.density
+        ? `Rings: impacts. Ticks on the plots: how many of the ${data.impact_count} impacts are about a time, by their length; zoomed in, each one.`
+        : "Rings, and ticks on the plots: impacts.");
+    }
     if (crowd) parts.push(`${times.length} pictures; between them the motion is interpolated.`);
     else if (scenery.blocks.length) parts.push("Dotted: the start.");
     if (scenery.beams.length && exaggerated !== 1) parts.push(`Deflections are drawn ${exaggerated} times as large as they are.`);
