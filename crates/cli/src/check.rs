@@ -307,7 +307,7 @@ fn time_of_run(scene: &Scene, preview: &Preview, measured: Option<&FirstSteps>) 
             accuracy_of_seconds(scene)
         );
     };
-    let free = scene.blocks.iter().filter(|block| !block.motion.0.iter().all(Option::is_some)).count();
+    let free = scene.blocks.iter().filter(|block| !block.motion.is_whole()).count();
     let writing = writing_seconds(scene, measured.contacts);
     if measured.steps == 0 {
         return format!(

@@ -5,6 +5,7 @@ use crate::interrupt;
 use crate::progress::CaseBar;
 use crate::render::{Presenter, refusal};
 use crate::run::Exit;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use teeter_report::Results;
 use teeter_run::SceneSource;
@@ -72,10 +73,9 @@ fn open(study: &Study, folder: &Path, options: &Options) -> Result<(Results, Jou
 
 fn run(console: Console, study: &Study, results: &Results, mut journal: Journal, jobs: Option<usize>) -> Exit {
     let cancel = interrupt::listen();
-    let cases = study.identity.shard().cases(study.sweep.cases());
-    let before = journal.done();
-    let total = study.identity.shard().cases(study.sweep.cases()).count() as u64;
-    let missing = journal.missing(cases);
+    let shard = study.identity.shard();
+    let (before, total) = (journal.done(), shard.count(study.sweep.cases()));
+    let missing = journal.missing(shard.cases(study.sweep.cases()));
     if before > 0 {
         console.note(&format!("{before} of {total} cases are done"));
     }
@@ -89,10 +89,10 @@ fn run(console: Console, study: &Study, results: &Results, mut journal: Journal,
         empty.iter_mut().zip(&row.outputs).for_each(|(empty, cell)| *empty &= cell.is_empty());
         if let Err(error) = journal.add(row.number, &row.line(&study.sweep)) {
             failure = Some(error);
-            return false;
+            return ControlFlow::Break(());
         }
         bar.step();
-        true
+        ControlFlow::Continue(())
     });
     drop(bar);
     if let Some(error) = failure {
@@ -157,16 +157,12 @@ fn prepare(path: &Path, shard: Shard) -> Result<Study, String> {
     let name = path.display().to_string();
     let text = std::fs::read_to_string(path).map_err(|error| format!("error: {name}: {error}"))?;
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    // The scene's folder is needed to list files, and it is named in the file.
-    let listed = |scene: &str| {
-        let scene_folder = folder.join(scene).parent().map(Path::to_owned).unwrap_or_default();
-        let base = if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder.clone() };
-        let scene_folder = if scene_folder.as_os_str().is_empty() { PathBuf::from(".") } else { scene_folder };
-        move |pattern: &str| matching_files(&base, &scene_folder, pattern)
+    let listed = |scene: &str, pattern: &str| {
+        let scene = folder.join(scene);
+        matching_files(&folder, scene.parent().unwrap_or(&folder), pattern)
     };
     let present = |found: &Diagnostics| Presenter::new(&text).all(found);
-    let scene_name = Sweep::scene_of(&text).unwrap_or_default();
-    let sweep = Sweep::read(&text, &name, &listed(&scene_name)).map_err(|found| present(&found))?;
+    let sweep = Sweep::read(&text, &name, &listed).map_err(|found| present(&found))?;
     let scene = SceneSource::file(folder.join(sweep.scene()));
     let bytes = scene.read().map_err(|error| refusal(&error))?.into_owned();
     let mut companions = scene.companions();

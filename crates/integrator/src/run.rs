@@ -125,7 +125,7 @@ impl Plan {
 pub enum Ended {
     /// All steps were taken.
     Complete,
-    /// An observer wanted it to end, or a step was abandoned by [`Workspace::cancel`].
+    /// An observer wanted it to end, or [`Workspace::cancel`] was set.
     Interrupted,
     /// A step was not solved to tolerance, and the plan ends the run there.
     Unconverged,
@@ -192,6 +192,10 @@ fn take_steps<const D: usize>(
     observers: &mut [&mut dyn Observer<D>],
 ) -> Result<Ended, RunError> {
     while !plan.is_done(state) {
+        // A step without contacts solves no problem in which the flag is looked at.
+        if work.is_cancelled() {
+            return Ok(Ended::Interrupted);
+        }
         let step = match scheme.advance(model, state, plan.end(), work) {
             Ok(step) => step,
             Err(error) => return Ok(error.ends()),

@@ -12,7 +12,7 @@ use crate::{
     StateError, StepError, StepReport, StepSpan, Vector, Weights,
 };
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use teeter_contact::{ContactProblem, ContactSolver, Law, Outcome, Stop};
 use teeter_detect::{Candidates, ContactId, DetectorMemory};
 
@@ -268,6 +268,11 @@ impl<const D: usize> Workspace<D> {
             model.check_candidates(&self.candidates)?;
         }
         Ok(())
+    }
+
+    /// Whether [`Workspace::cancel`] is set.
+    pub(crate) fn is_cancelled(&self) -> bool {
+        self.cancel.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
 
     /// As [`Workspace::detect`], and the contacts `ids`, which rise, are among the candidates however large their gaps, as with an

@@ -10,12 +10,12 @@ use crate::sections::{BeamRecord, Sections, Values};
 use crate::swings::{Swings, Watch};
 use crate::table::Table;
 use crate::verdict::{self, Fates};
-use crate::{Results, ResultsError, Schedule, WarningLog};
+use crate::{EndedWord, Results, ResultsError, Schedule, WarningLog};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::ops::ControlFlow;
 use teeter_integrator::{
-    Closing, ClosingMonitor, Model, Observer, ObserverError, PhaseKind, RockingMonitor, State, StepReport,
+    Closing, ClosingMonitor, Ended, Model, Observer, ObserverError, PhaseKind, RockingMonitor, State, StepReport,
 };
 use teeter_scenario::Shapes;
 use teeter_scenario::diagnostic::Diagnostic;
@@ -63,6 +63,18 @@ pub struct Record {
     pub fates: Fates,
     /// What the run warned of.
     pub warnings: WarningLog,
+}
+
+impl Record {
+    /// The word for the end of the run that this is the record of.
+    #[must_use]
+    pub fn ended(&self, ended: &Ended) -> EndedWord {
+        match ended {
+            // By `time.stop`, not by the user.
+            Ended::Interrupted if self.fates.stopped().is_some() => EndedWord::Stopped,
+            ended => EndedWord::from(ended),
+        }
+    }
 }
 
 /// The tables, in the order in which a checkpoint has their lengths.

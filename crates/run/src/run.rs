@@ -162,11 +162,7 @@ impl Prepared {
                 if let Ended::Failed(error) = &ended {
                     record.warnings.enter("ended", error.t(), || error.to_string());
                 }
-                match ended {
-                    // Not by the user.
-                    Ended::Interrupted if record.fates.stopped().is_some() => EndedWord::Stopped,
-                    ended => EndedWord::from(&ended),
-                }
+                record.ended(&ended)
             }
             Err(teeter_integrator::RunError::Observer(error)) => match error.downcast::<ResultsError>() {
                 Ok(error) if error.is_disk_full() => {

@@ -74,6 +74,7 @@ pub use meeting::{Meeting, Shapes};
 pub use opening::OPEN_GAP;
 pub use placement::{InstabilityMode, PlacementError};
 pub use required::{Extent, Limits, Removed, Required};
+pub use resolve::matches_pattern;
 pub use signal_resolution::FAR_TURN;
 pub use static_start::{ContactForce, StaticStart};
 pub use tilt_reference::TiltReference;

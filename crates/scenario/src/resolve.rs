@@ -12,6 +12,7 @@ mod jitter;
 mod many;
 mod motions;
 pub(crate) mod names;
+pub use names::matches_pattern;
 mod outlines;
 mod records;
 mod sections;

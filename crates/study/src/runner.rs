@@ -1,6 +1,7 @@
-//! Runs jobs on all cores, with their results in order.
+//! Runs jobs on all cores.
 
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// Number of hardware threads.
@@ -26,25 +27,48 @@ pub fn in_order<J: Sync, R: Send>(
     work: impl Fn(&J) -> R + Sync,
     done: impl FnMut(usize) + Send,
 ) -> Vec<Option<R>> {
-    let next = AtomicUsize::new(0);
-    let results: Mutex<Vec<Option<R>>> = Mutex::new(jobs.iter().map(|_| None).collect());
-    let done = Mutex::new(done);
+    let mut results: Vec<Option<R>> = jobs.iter().map(|_| None).collect();
+    let mut done = done;
+    as_they_end(
+        jobs.iter().enumerate(),
+        threads.min(jobs.len()),
+        cancel,
+        |(_, job)| work(job),
+        |(number, _), result| {
+            results[number] = Some(result);
+            done(number);
+            ControlFlow::Continue(())
+        },
+    );
+    results
+}
+
+/// Does `work` for every job, on up to `threads` threads, and hands on each result as it comes, one
+/// at a time. Jobs are started in order; none once `cancel` is set or `done` breaks off.
+pub fn as_they_end<J: Send, R: Send>(
+    jobs: impl Iterator<Item = J> + Send,
+    threads: usize,
+    cancel: &AtomicBool,
+    work: impl Fn(&J) -> R + Sync,
+    done: impl FnMut(J, R) -> ControlFlow<()> + Send,
+) {
+    let (jobs, done, broken) = (Mutex::new(jobs), Mutex::new(done), AtomicBool::new(false));
+    let next = || {
+        let ended = cancel.load(Ordering::Relaxed) || broken.load(Ordering::Relaxed);
+        if ended { None } else { jobs.lock().unwrap_or_else(PoisonError::into_inner).next() }
+    };
     std::thread::scope(|scope| {
-        for _ in 0..threads.clamp(1, jobs.len().max(1)) {
+        for _ in 0..threads.max(1) {
             scope.spawn(|| {
-                while !cancel.load(Ordering::Relaxed) {
-                    let number = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(job) = jobs.get(number) else { break };
-                    let result = work(job);
-                    if let Some(place) = results.lock().unwrap_or_else(PoisonError::into_inner).get_mut(number) {
-                        *place = Some(result);
+                while let Some(job) = next() {
+                    let result = work(&job);
+                    if (done.lock().unwrap_or_else(PoisonError::into_inner))(job, result).is_break() {
+                        broken.store(true, Ordering::Relaxed);
                     }
-                    (done.lock().unwrap_or_else(PoisonError::into_inner))(number);
                 }
             });
         }
     });
-    results.into_inner().unwrap_or_else(PoisonError::into_inner)
 }
 
 #[cfg(test)]

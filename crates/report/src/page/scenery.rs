@@ -8,7 +8,7 @@ use serde::Serialize;
 use std::sync::Arc;
 use teeter_beam::Axial;
 use teeter_detect::OnSide;
-use teeter_integrator::{BeamFace, Vector};
+use teeter_integrator::BeamFace;
 use teeter_scenario::scene::{self, Crowd, ForceScene, LoadScene, RecordScene, Scene, SupportingBody};
 use teeter_scenario::simulation::Layout;
 use teeter_scenario::wording;
@@ -171,8 +171,8 @@ impl Scenery {
             },
             upright: block.parts.is_none(),
             alpha: block.critical_angle(),
-            reach: rounded(reach(block), DIGITS),
-            driven: block.motion.0.iter().all(Option::is_some),
+            reach: rounded(block.radius(), DIGITS),
+            driven: block.motion.is_whole(),
         });
         let beams = scene.beams.iter().zip(&layout.beams).map(|(drawn, place)| {
             let (elements, span) = (place.beam.elements(), drawn.spec.span);
@@ -280,15 +280,5 @@ impl Scenery {
         }
         let [block, other] = self.crowd.as_ref()?.blocks_of(self.listed.len(), pair)?;
         Some((block, SupportingBody::Block(other)))
-    }
-}
-
-/// Largest distance from a block's mass centre to its outline, m.
-fn reach(block: &scene::BlockScene) -> f64 {
-    let far =
-        |corners: &[Vector<2>], radius: f64| corners.iter().fold(0.0, |most: f64, at| most.max(at.norm() + radius));
-    match &block.parts {
-        None => far(&block.corners(), 0.0),
-        Some(parts) => parts.iter().fold(0.0, |most, part| most.max(far(part.shape.core(), part.shape.radius()))),
     }
 }

@@ -177,7 +177,7 @@ impl Resolver<'_, '_> {
             return Some(vec![(pattern.to_owned(), support?)]);
         }
         let mut found = self.bodies();
-        found.retain(|(name, _)| names::matches(pattern, name));
+        found.retain(|(name, _)| names::matches_pattern(pattern, name));
         if found.is_empty() {
             let remedy = self.known_bodies();
             self.error(key, format!("no body matches `{pattern}`"), remedy);

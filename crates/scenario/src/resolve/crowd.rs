@@ -221,7 +221,7 @@ impl Resolver<'_, '_> {
         beams: &[Option<BeamScene>],
     ) {
         let Some(crowd) = crowd else { return };
-        let is_prescribed = |block: &&(usize, &BlockScene)| block.1.motion.0.iter().all(Option::is_some);
+        let is_prescribed = |block: &&(usize, &BlockScene)| block.1.motion.is_whole();
         let known: Vec<(usize, &BlockScene)> =
             blocks.iter().enumerate().filter_map(|(number, block)| Some((number, block.as_ref()?))).collect();
         let prescribed: Vec<&(usize, &BlockScene)> = known.iter().filter(is_prescribed).collect();

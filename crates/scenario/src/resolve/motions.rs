@@ -165,7 +165,7 @@ impl Resolver<'_, '_> {
 
     /// Reports contacts between two bodies that are both fully prescribed.
     pub(super) fn check_contacts_can_move(&mut self, blocks: &[Option<BlockScene>], contacts: &[Option<ContactScene>]) {
-        let is_prescribed = |block: &BlockScene| block.motion.0.iter().all(Option::is_some);
+        let is_prescribed = |block: &BlockScene| block.motion.is_whole();
         for contact in contacts.iter().flatten() {
             let Some(Some(block)) = blocks.get(contact.block) else { continue };
             let other = match contact.surface {

@@ -59,19 +59,20 @@ pub(crate) fn table_of<'a>(doc: &Document, block: &'a str) -> &'a str {
 }
 
 /// Whether a name matches a pattern, in which `*` stands for any characters and `?` for one.
-pub(super) fn matches(pattern: &str, name: &str) -> bool {
-    let (pattern, name) = (pattern.as_bytes(), name.as_bytes());
+#[must_use]
+pub fn matches_pattern(pattern: &str, name: &str) -> bool {
+    let (pattern, name): (Vec<char>, Vec<char>) = (pattern.chars().collect(), name.chars().collect());
     let (mut at, mut place) = (0, 0);
     // Where to go on if the rest doesn't match: behind the last star, which then stands for one
     // character more.
     let mut back: Option<(usize, usize)> = None;
     while place < name.len() {
         match pattern.get(at) {
-            Some(b'*') => {
+            Some('*') => {
                 at += 1;
                 back = Some((at, place));
             }
-            Some(letter) if *letter == b'?' || *letter == name[place] => {
+            Some(letter) if *letter == '?' || *letter == name[place] => {
                 at += 1;
                 place += 1;
             }
@@ -85,7 +86,7 @@ pub(super) fn matches(pattern: &str, name: &str) -> bool {
             },
         }
     }
-    pattern[at..].iter().all(|letter| *letter == b'*')
+    pattern[at..].iter().all(|letter| *letter == '*')
 }
 
 /// Blocks by their names; a duplicate is passed to `twice`.
@@ -101,7 +102,7 @@ pub(super) fn numbered(names: &[BlockName], mut twice: impl FnMut(&BlockName)) -
 
 #[cfg(test)]
 mod tests {
-    use super::matches;
+    use super::matches_pattern;
 
     #[test]
     fn a_star_stands_for_any_letters() {
@@ -121,7 +122,7 @@ mod tests {
             ("?a*?", "bab", true),
             ("?a*?", "ba", false),
         ] {
-            assert_eq!(matches(pattern, name), does, "{pattern} {name}");
+            assert_eq!(matches_pattern(pattern, name), does, "{pattern} {name}");
         }
     }
 }

@@ -115,6 +115,12 @@ impl MotionScene {
         self.0.iter().any(Option::is_some)
     }
 
+    /// Whether all of x, y and rotation are prescribed.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.0.iter().all(Option::is_some)
+    }
+
     /// The motions of x, y and rotation; those not prescribed are zero.
     #[must_use]
     pub fn motions(&self) -> [Motion; 3] {

@@ -3,10 +3,10 @@
 use super::Sweep;
 use super::number::in_table;
 use super::output::{Columns, Output, quoted};
-use crate::StudyScene;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError};
-use teeter_integrator::{Ended, Model, Observer, ObserverError, State, StepReport};
+use crate::{Failure, StudyScene, runner};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use teeter_report::{EndedWord, Recorder, Summary};
 use teeter_scenario::simulation::Simulation;
 
@@ -87,55 +87,26 @@ pub fn run_cases(
     source: &StudyScene,
     cases: impl Iterator<Item = u64> + Send,
     threads: usize,
-    cancel: &AtomicBool,
-    done: impl FnMut(CaseRow) -> bool + Send,
+    cancel: &Arc<AtomicBool>,
+    mut done: impl FnMut(CaseRow) -> ControlFlow<()> + Send,
 ) {
-    let (cases, done) = (Mutex::new(cases), Mutex::new(done));
-    let broken = AtomicBool::new(false);
-    let ended = || cancel.load(Ordering::Relaxed) || broken.load(Ordering::Relaxed);
-    std::thread::scope(|scope| {
-        for _ in 0..threads.max(1) {
-            scope.spawn(|| {
-                while !ended() {
-                    let next = cases.lock().unwrap_or_else(PoisonError::into_inner).next();
-                    let Some(number) = next else { break };
-                    let Some(row) = run_case(sweep, source, number, cancel) else { break };
-                    if !(done.lock().unwrap_or_else(PoisonError::into_inner))(row) {
-                        broken.store(true, Ordering::Relaxed);
-                    }
-                }
-            });
-        }
-    });
-}
-
-/// Ends a run when the user wants to.
-struct Cancelled<'a>(&'a AtomicBool);
-
-impl Observer<2> for Cancelled<'_> {
-    fn observe(
-        &mut self,
-        _: &Model<2>,
-        _: &StepReport<'_, 2>,
-        _: &State,
-    ) -> Result<std::ops::ControlFlow<()>, ObserverError> {
-        let ended = self.0.load(Ordering::Relaxed);
-        Ok(if ended { std::ops::ControlFlow::Break(()) } else { std::ops::ControlFlow::Continue(()) })
-    }
+    let work = |number: &u64| run_case(sweep, source, *number, cancel);
+    runner::as_they_end(cases, threads, cancel, work, |_, row| row.map_or(ControlFlow::Continue(()), &mut done));
 }
 
 /// The row of a case; `None` if it was cancelled.
-fn run_case(sweep: &Sweep, source: &StudyScene, number: u64, cancel: &AtomicBool) -> Option<CaseRow> {
+fn run_case(sweep: &Sweep, source: &StudyScene, number: u64, cancel: &Arc<AtomicBool>) -> Option<CaseRow> {
     let refused = |why: String| Some(CaseRow::without_outputs(number, sweep, CaseStatus::Refused, why));
     let failed = |why: String| Some(CaseRow::without_outputs(number, sweep, CaseStatus::Failed, why));
     let resolved = match source.load(&sweep.setting(number)) {
         Ok(resolved) => resolved,
-        Err(found) => return refused(crate::Failure::from(found).to_string()),
+        Err(found) => return refused(Failure::from(found).to_string()),
     };
     let mut simulation = match Simulation::new(&resolved.scene) {
         Ok(simulation) => simulation,
         Err(error) => return refused(error.to_string()),
     };
+    simulation.cancelled_by(Arc::clone(cancel));
     let layout = simulation.layout.clone();
     let wanted: Vec<&str> = sweep.outputs().iter().filter_map(Output::column).collect();
     let mut tell = |_: &str| {};
@@ -148,25 +119,20 @@ fn run_case(sweep: &Sweep, source: &StudyScene, number: u64, cancel: &AtomicBool
         Ok(recorder) => recorder,
         Err(error) => return failed(error.to_string()),
     };
-    let ended = match simulation.run(&mut [&mut Cancelled(cancel), &mut recorder]) {
+    let ended = match simulation.run(&mut [&mut recorder]) {
         Ok(ended) => ended,
         Err(error) => return failed(error.to_string()),
-    };
-    let (word, error) = match ended {
-        Ended::Interrupted if cancel.load(Ordering::Relaxed) => return None,
-        // By `time.stop`.
-        Ended::Interrupted => (EndedWord::Stopped, String::new()),
-        Ended::Failed(error) => (EndedWord::Diverged, error.to_string()),
-        Ended::Unconverged => {
-            let t = simulation.state.t;
-            (EndedWord::Unconverged, format!("a step was not solved to tolerance at t = {t} s"))
-        }
-        _ => (EndedWord::Complete, String::new()),
     };
     let (header, rows) = recorder.trajectory();
     let columns = Columns::read(&header, rows, &wanted);
     let record = recorder.into_record();
     let state = &simulation.state;
+    let word = record.ended(&ended);
+    let error = match word {
+        EndedWord::Interrupted => return None,
+        EndedWord::Complete | EndedWord::Stopped => String::new(),
+        _ => Failure::unless_complete(ended, state.t).err().map_or_else(String::new, |error| error.to_string()),
+    };
     let summary = Summary::new(&resolved.scene, &layout, state, &record, word, 0.0);
     let summary = match serde_json::to_value(&summary) {
         Ok(summary) => summary,

@@ -9,9 +9,12 @@ use teeter_scenario::diagnostic::{Diagnostic, Diagnostics};
 use teeter_scenario::keys::{self, PathTarget};
 use toml::de::DeTable;
 
-/// Lists the files that match a pattern, relative to the sweep file, as a scene names them; or says
-/// why not.
-pub type FilesOf<'a> = dyn Fn(&str) -> Result<Vec<String>, String> + 'a;
+/// Lists the files that match a pattern (its second argument), relative to the sweep file, as the
+/// scene (its first argument, relative to the sweep file) names them; or says why not.
+pub type FilesOf<'a> = dyn Fn(&str, &str) -> Result<Vec<String>, String> + 'a;
+
+/// The same for the scene of the file.
+type ListFiles<'a> = dyn Fn(&str) -> Result<Vec<String>, String> + 'a;
 
 /// Largest number of cases.
 const MOST_CASES: u64 = 100_000_000;
@@ -85,7 +88,11 @@ impl Sweep {
             }
         };
         let mut sweep = Self { scene: String::new(), axes: Vec::new(), samples: None, outputs: Vec::new() };
-        for (name, node) in entries(root.get_ref()) {
+        let tables = entries(root.get_ref());
+        // Files are listed as the scene names them, wherever in the file it is named.
+        let scene = tables.iter().find(|(name, _)| *name == "scene").and_then(|(_, node)| node.text());
+        let files = &|pattern: &str| files(scene.unwrap_or_default(), pattern);
+        for (name, node) in tables {
             match (name, node.table()) {
                 ("scene", _) => match node.text() {
                     Some(scene) if !scene.trim().is_empty() => sweep.scene = scene.to_owned(),
@@ -117,14 +124,6 @@ impl Sweep {
             sweep.outputs.extend(DEFAULT_OUTPUTS.map(Output::summary));
         }
         if reader.found.has_errors() { Err(reader.into_findings()) } else { Ok(sweep) }
-    }
-
-    /// The path of the scene in a sweep file, which may have errors elsewhere.
-    #[must_use]
-    pub fn scene_of(text: &str) -> Option<String> {
-        let root = DeTable::parse(text).ok()?;
-        let (_, node) = entries(root.get_ref()).into_iter().find(|(name, _)| *name == "scene")?;
-        node.text().map(str::to_owned)
     }
 
     /// The first case, and changes of it that take each key through all values that are not numbers:
@@ -299,7 +298,7 @@ fn is_range(table: &DeTable<'_>, words: &[&str]) -> bool {
     table.is_empty() || entries(table).iter().any(|(name, node)| words.contains(name) && node.table().is_none())
 }
 
-fn grid(reader: &mut Reader<'_>, table: &DeTable<'_>, name: &str, files: &FilesOf<'_>) -> Vec<Axis> {
+fn grid(reader: &mut Reader<'_>, table: &DeTable<'_>, name: &str, files: &ListFiles<'_>) -> Vec<Axis> {
     let keys = leaves(table, &RANGE, "");
     let read = |(key, node): (String, Node<'_, '_>)| {
         let values = values(reader, &format!("{name}.{key}"), &node, files)?;
@@ -309,7 +308,7 @@ fn grid(reader: &mut Reader<'_>, table: &DeTable<'_>, name: &str, files: &FilesO
 }
 
 /// Keys whose first values belong together, and so on.
-fn together(reader: &mut Reader<'_>, table: &DeTable<'_>, node: &Node<'_, '_>, files: &FilesOf<'_>) -> Option<Axis> {
+fn together(reader: &mut Reader<'_>, table: &DeTable<'_>, node: &Node<'_, '_>, files: &ListFiles<'_>) -> Option<Axis> {
     let axes = grid(reader, table, "zip", files);
     let lengths: Vec<u64> = axes.iter().map(Axis::len).collect();
     if lengths.windows(2).any(|pair| pair[0] != pair[1]) {
@@ -331,7 +330,7 @@ fn together(reader: &mut Reader<'_>, table: &DeTable<'_>, node: &Node<'_, '_>, f
 }
 
 /// The values of a key: listed, a range, or files.
-fn values(reader: &mut Reader<'_>, path: &str, node: &Node<'_, '_>, files: &FilesOf<'_>) -> Option<Vec<String>> {
+fn values(reader: &mut Reader<'_>, path: &str, node: &Node<'_, '_>, files: &ListFiles<'_>) -> Option<Vec<String>> {
     if let Some(items) = node.array() {
         if items.is_empty() {
             reader.wrong(path, Some(node), "no values", EXAMPLE);
@@ -422,7 +421,12 @@ fn same_unit(reader: &mut Reader<'_>, path: &str, node: &Node<'_, '_>, a: &Writt
     false
 }
 
-fn listed_files(reader: &mut Reader<'_>, path: &str, node: &Node<'_, '_>, files: &FilesOf<'_>) -> Option<Vec<String>> {
+fn listed_files(
+    reader: &mut Reader<'_>,
+    path: &str,
+    node: &Node<'_, '_>,
+    files: &ListFiles<'_>,
+) -> Option<Vec<String>> {
     let patterns: Option<Vec<&str>> = match (node.text(), node.array()) {
         (Some(text), _) => Some(vec![text]),
         (None, Some(items)) => items.iter().map(Node::text).collect(),

@@ -241,9 +241,9 @@ pub fn merge(folders: &[PathBuf]) -> Result<(String, String), JournalError> {
         let (ended, running) = (folder.join(RESULTS), folder.join(JOURNAL));
         let place = if ended.exists() { ended } else { running };
         let rows = fs::read_to_string(&place).map_err(io_error(&place))?;
-        let (expected, there) = (shard.cases(identity.cases()).count(), sorted(std::iter::once(rows.as_str())).len());
+        let (expected, there) = (shard.count(identity.cases()), sorted(std::iter::once(rows.as_str())).len() as u64);
         if there < expected {
-            return Err(JournalError::Unfinished { folder: folder.clone(), missing: (expected - there) as u64 });
+            return Err(JournalError::Unfinished { folder: folder.clone(), missing: expected - there });
         }
         texts.push(rows);
         study.get_or_insert(identity);

@@ -1,6 +1,7 @@
 //! Files that a sweep names by patterns.
 
 use std::path::{Component, Path, PathBuf};
+use teeter_scenario::matches_pattern;
 
 /// Lists the files below `folder` that match `pattern`, sorted by name, as paths relative to
 /// `scene_folder`. In the last part of the pattern a `*` stands for any characters and a `?` for
@@ -19,11 +20,12 @@ pub fn matching_files(folder: &Path, scene_folder: &Path, pattern: &str) -> Resu
     if !name.contains(['*', '?']) {
         return if path.is_file() { Ok(vec![seen(&path)]) } else { Err("there is no such file".to_owned()) };
     }
-    let entries = std::fs::read_dir(&parent).map_err(|error| format!("{} can't be read: {error}", parent.display()))?;
+    let entries =
+        std::fs::read_dir(here(&parent)).map_err(|error| format!("{} can't be read: {error}", parent.display()))?;
     let mut found: Vec<PathBuf> = entries
         .filter_map(|entry| Some(entry.ok()?.path()))
         .filter(|path| path.is_file())
-        .filter(|path| path.file_name().is_some_and(|file| matches(&name, &file.to_string_lossy())))
+        .filter(|path| path.file_name().is_some_and(|file| matches_pattern(&name, &file.to_string_lossy())))
         .collect();
     found.sort();
     if found.is_empty() {
@@ -32,37 +34,14 @@ pub fn matching_files(folder: &Path, scene_folder: &Path, pattern: &str) -> Resu
     Ok(found.iter().map(|path| seen(path)).collect())
 }
 
-/// Whether a name matches a pattern with `*` and `?`.
-fn matches(pattern: &str, name: &str) -> bool {
-    let (pattern, name): (Vec<char>, Vec<char>) = (pattern.chars().collect(), name.chars().collect());
-    let (mut p, mut n, mut star) = (0, 0, None);
-    while n < name.len() {
-        match pattern.get(p) {
-            Some('*') => {
-                star = Some((p, n));
-                p += 1;
-            }
-            Some(&c) if c == '?' || c == name[n] => {
-                p += 1;
-                n += 1;
-            }
-            // The last star takes one character more.
-            _ => match star {
-                Some((place, from)) => {
-                    star = Some((place, from + 1));
-                    p = place + 1;
-                    n = from + 1;
-                }
-                None => return false,
-            },
-        }
-    }
-    pattern[p..].iter().all(|&c| c == '*')
+/// A folder; the working directory for an empty path.
+fn here(folder: &Path) -> &Path {
+    if folder.as_os_str().is_empty() { Path::new(".") } else { folder }
 }
 
 /// A path relative to a folder, with `/` between its parts; as it is if there is none.
 fn seen_from(folder: &Path, path: &Path) -> String {
-    let (Ok(from), Ok(to)) = (folder.canonicalize(), path.canonicalize()) else {
+    let (Ok(from), Ok(to)) = (here(folder).canonicalize(), path.canonicalize()) else {
         return path.to_string_lossy().into_owned();
     };
     let (from, to): (Vec<Component<'_>>, Vec<Component<'_>>) = (from.components().collect(), to.components().collect());
@@ -75,20 +54,6 @@ fn seen_from(folder: &Path, path: &Path) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn patterns_match_names() {
-        for (pattern, name, matched) in [
-            ("*.AT2", "a.AT2", true),
-            ("*.AT2", "a.csv", false),
-            ("a?c*", "abcd", true),
-            ("a?c*", "ac", false),
-            ("*a*b", "xaxxab", true),
-            ("*", "", true),
-        ] {
-            assert_eq!(matches(pattern, name), matched, "{pattern} {name}");
-        }
-    }
 
     #[test]
     fn files_are_seen_from_the_scene() {

@@ -59,6 +59,12 @@ impl Shard {
         self.of
     }
 
+    /// How many cases of a study of so many are in it.
+    #[must_use]
+    pub fn count(self, total: u64) -> u64 {
+        total.saturating_sub(self.number - 1).div_ceil(self.of)
+    }
+
     /// The cases of a study of so many, in ascending order.
     pub fn cases(self, total: u64) -> impl Iterator<Item = u64> {
         let step = usize::try_from(self.of).unwrap_or(usize::MAX);
@@ -92,6 +98,9 @@ mod tests {
             let mut all: Vec<u64> = (1..=of).flat_map(|k| Shard::new(k, of).unwrap().cases(17)).collect();
             all.sort_unstable();
             assert_eq!(all, (0..17).collect::<Vec<_>>());
+            let shards = (1..=of).map(|k| Shard::new(k, of).unwrap());
+            assert!(shards.clone().all(|shard| shard.count(17) == shard.cases(17).count() as u64));
+            assert_eq!(Shard::new(of, of).unwrap().count(0), 0);
         }
     }
 
