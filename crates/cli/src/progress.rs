@@ -7,6 +7,13 @@ use std::time::{Duration, Instant};
 /// A run shorter than this shows no bar.
 const PATIENCE: Duration = Duration::from_secs(1);
 
+/// Shows a bar on a terminal, once its task has taken that long.
+fn appear(console: Console, begin: Instant, bar: &ProgressBar) {
+    if console.is_watched() && bar.is_hidden() && begin.elapsed() > PATIENCE {
+        bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(10));
+    }
+}
+
 /// Draws a bar with rate and time left, only on a terminal.
 pub(crate) struct StepBar {
     console: Console,
@@ -30,9 +37,7 @@ impl StepBar {
     /// Sets the current step.
     pub(crate) fn at(&self, step: u64) {
         if self.console.is_watched() {
-            if self.bar.is_hidden() && self.begin.elapsed() > PATIENCE {
-                self.bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(10));
-            }
+            appear(self.console, self.begin, &self.bar);
             self.bar.set_position(step);
         }
     }
@@ -81,9 +86,7 @@ impl SolveBar {
 
     pub(crate) fn step(&self) {
         self.bar.inc(1);
-        if self.console.is_watched() && self.bar.is_hidden() && self.begin.elapsed() > PATIENCE {
-            self.bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(10));
-        }
+        appear(self.console, self.begin, &self.bar);
     }
 }
 
@@ -126,9 +129,7 @@ impl CaseBar {
         // would swing with the axes.
         let left = elapsed.as_secs_f64() * (all.saturating_sub(done)) as f64 / done.max(1) as f64;
         self.bar.set_message(format!("{} left", indicatif::HumanDuration(Duration::from_secs_f64(left))));
-        if self.bar.is_hidden() && elapsed > PATIENCE {
-            self.bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(10));
-        }
+        appear(self.console, self.begin, &self.bar);
     }
 }
 
@@ -156,9 +157,7 @@ impl PhaseBar {
 
     /// Sets the progress of a phase.
     pub(crate) fn at(&self, phase: &str, done: usize, of: usize) {
-        if self.console.is_watched() && self.bar.is_hidden() && self.begin.elapsed() > PATIENCE {
-            self.bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(10));
-        }
+        appear(self.console, self.begin, &self.bar);
         if self.bar.message() != phase {
             self.bar.set_message(phase.to_owned());
         }

@@ -23,7 +23,7 @@ mod moment;
 pub use error::CheckpointError;
 pub use file::{Checkpoint, VERSION};
 pub use find::Found;
-pub use identity::{Identity, program_hash};
+pub use identity::{Identity, content_hash, program_hash};
 pub use moment::Moment;
 
 pub(crate) use file::{Head, Rest, sealed};

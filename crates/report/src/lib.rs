@@ -33,7 +33,8 @@ mod warnings;
 
 pub use bounces::{Bounces, CONTESTED, Contested};
 pub use checkpoint::{
-    CHECKPOINT, Checkpoint, CheckpointError, Found, Identity, Moment, VERSION as CHECKPOINT_VERSION, program_hash,
+    CHECKPOINT, Checkpoint, CheckpointError, Found, Identity, Moment, VERSION as CHECKPOINT_VERSION, content_hash,
+    program_hash,
 };
 pub use columns::columns;
 pub use export::{ExportWhen, Exporter, Former, HARD, Watch};

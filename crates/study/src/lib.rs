@@ -4,8 +4,8 @@
 //! kinematics, solver, tolerance), each against a verified [`Reference`], measures their time, and
 //! recommends one for each accuracy. [`runner`] runs jobs on all cores, with results in order.
 //!
-//! [`FirstSteps`] measures what a run will cost. [`step_for`] finds the step that reaches an accuracy, for scenes that give an accuracy instead
-//! of a step.
+//! [`FirstSteps`] measures what a run will cost. [`step_for`] finds the step that reaches an
+//! accuracy, for scenes that give an accuracy instead of a step. [`sweep`] runs parameter studies.
 //!
 //! Candidates and advice are chosen by counted [`Work`], not by the clock, so they are the same in
 //! every run. Settings with warnings of `check` or `run` are not advised, and nothing is advised

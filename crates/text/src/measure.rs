@@ -70,7 +70,7 @@ impl Measure {
 /// In the syntax that can be read.
 impl fmt::Display for Measure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&quantity::format_si(self.value, self.dimension))?;
+        f.write_str(&quantity::format(self.value, self.dimension))?;
         match self.power {
             Some(power) => write!(f, "/m^{power:?}"),
             None => Ok(()),

@@ -121,16 +121,16 @@ pub fn parse(text: &str, wanted: Dimension) -> Result<f64, QuantityError> {
     Ok(quantity.value)
 }
 
-/// Writes a value in SI units so that [`parse`] returns the same double, bit for bit: with the
-/// fewest digits and the usual unit. The value should be finite; NaN and infinities are written by
+/// Writes a value, given in SI units, so that [`parse`] returns the same double, bit for bit: in the
+/// SI unit if its size is usual, else in the usual unit that gives the shortest text. The value should be finite; NaN and infinities are written by
 /// name and refused when read.
 ///
 /// ```
 /// use teeter_text::{dimension::Dimension, quantity};
-/// assert_eq!(quantity::format_si(0.36, Dimension::LENGTH), "0.36 m");
-/// assert_eq!(quantity::format_si(69e9, Dimension::PRESSURE), "69 GPa");
+/// assert_eq!(quantity::format(0.36, Dimension::LENGTH), "0.36 m");
+/// assert_eq!(quantity::format(69e9, Dimension::PRESSURE), "69 GPa");
 /// ```
-pub fn format_si(value: f64, dimension: Dimension) -> String {
+pub fn format(value: f64, dimension: Dimension) -> String {
     let unit = dimension.unit();
     if unit.is_empty() {
         return format!("{value:?}");
@@ -278,7 +278,7 @@ fn decimal_exponent(text: &str) -> Option<(i64, usize)> {
 
 #[cfg(test)]
 mod tests {
-    use super::{QuantityError, format_si, parse};
+    use super::{QuantityError, format, parse};
     use crate::dimension::Dimension;
 
     const AREA: Dimension = Dimension::new(0, 2, 0, 0, 0);
@@ -403,7 +403,7 @@ mod tests {
             let value = f64::from_bits(bits);
             if value.is_normal() {
                 let dimension = dimensions[tried % dimensions.len()];
-                let text = format_si(value, dimension);
+                let text = format(value, dimension);
                 let read = parse(&text, dimension).map(f64::to_bits);
                 assert_eq!(read, Ok(bits), "{text}");
                 tried += 1;

@@ -150,7 +150,7 @@ impl Value {
 
     /// As a TOML value that decodes to the same value, quantities in SI units.
     pub(crate) fn to_toml(&self, kind: Kind) -> String {
-        let quoted = |value: &f64| format!("\"{}\"", quantity::format_si(*value, dimension_of(kind)));
+        let quoted = |value: &f64| format!("\"{}\"", quantity::format(*value, dimension_of(kind)));
         match self {
             Self::Text(text) => quote(text),
             Self::Flag(flag) => flag.to_string(),

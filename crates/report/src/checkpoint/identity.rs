@@ -21,13 +21,8 @@ impl Identity {
     /// contents of the files that it refers to, in an order that depends on the scene alone; `options` are those that decide results, as text.
     #[must_use]
     pub fn new(program: [u8; 32], text: &str, files: &[&[u8]], options: &str) -> Self {
-        let mut hash = Sha256::new();
-        for piece in std::iter::once(text.as_bytes()).chain(files.iter().copied()) {
-            // With its length, so that no two lists of pieces are one row of bytes.
-            hash.update((piece.len() as u64).to_le_bytes());
-            hash.update(piece);
-        }
-        Self { program, scene: hash.finalize().into(), text: text.to_owned(), options: options.to_owned() }
+        let scene = content_hash(std::iter::once(text.as_bytes()).chain(files.iter().copied()));
+        Self { program, scene, text: text.to_owned(), options: options.to_owned() }
     }
 
     /// Refuses a checkpoint of identity `then`, from the file `path`, that isn't this run's.
@@ -53,6 +48,18 @@ impl Identity {
         }
         Ok(())
     }
+}
+
+/// SHA-256 of the contents of a list of files.
+#[must_use]
+pub fn content_hash<'a>(files: impl IntoIterator<Item = &'a [u8]>) -> [u8; 32] {
+    let mut hash = Sha256::new();
+    for file in files {
+        // With its length, so that no two lists of files have the same bytes.
+        hash.update((file.len() as u64).to_le_bytes());
+        hash.update(file);
+    }
+    hash.finalize().into()
 }
 
 /// SHA-256 of the file of the running program.

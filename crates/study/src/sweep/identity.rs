@@ -2,7 +2,7 @@
 
 use super::Shard;
 use serde_json::{Value, json};
-use sha2::{Digest, Sha256};
+use teeter_report::content_hash;
 
 /// The file of a folder of results that holds it.
 pub const IDENTITY: &str = "sweep.json";
@@ -52,13 +52,7 @@ impl SweepIdentity {
     /// The identity of a study of so many cases by the sweep file `sweep`; `inputs` are the bytes of
     /// the scene and of the files that it reads.
     pub fn new<'a>(sweep: &str, inputs: impl IntoIterator<Item = &'a [u8]>, cases: u64, shard: Shard) -> Self {
-        let mut hash = Sha256::new();
-        for piece in inputs {
-            // With its length, so that no two lists of files have the same bytes.
-            hash.update((piece.len() as u64).to_le_bytes());
-            hash.update(piece);
-        }
-        let inputs = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+        let inputs = content_hash(inputs).iter().map(|byte| format!("{byte:02x}")).collect();
         Self { program: env!("CARGO_PKG_VERSION").to_owned(), sweep: sweep.to_owned(), inputs, cases, shard }
     }
 

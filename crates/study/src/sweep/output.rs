@@ -168,7 +168,7 @@ fn text_of(value: std::borrow::Cow<'_, Value>) -> String {
 /// A text as a cell of a table, in one line.
 pub(crate) fn quoted(text: &str) -> String {
     let line: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-    if line.contains([',', '"']) { format!("\"{}\"", line.replace('"', "\"\"")) } else { line }
+    crate::write::quoted(&line)
 }
 
 /// Columns of a trajectory, by the names that are wanted.

@@ -54,7 +54,7 @@ pub fn csv(study: &Tradeoff) -> String {
 }
 
 /// Quotes a field for any text.
-fn quoted(field: &str) -> String {
+pub(crate) fn quoted(field: &str) -> String {
     if field.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", field.replace('"', "\"\""))
     } else {

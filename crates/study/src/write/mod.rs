@@ -7,6 +7,7 @@ mod page;
 mod sentences;
 
 pub use csv::csv;
+pub(crate) use csv::quoted;
 pub use figure::figures;
 pub use json::json;
 pub use page::page;
