@@ -6,7 +6,8 @@
 //! cargo bench -p teeter-benches --bench pile -- 100 300 1000 tower 20 1000
 //! ```
 //!
-//! `SECONDS_RUN`, `TOLERANCE` and `METHOD` (a solver) change the run. `COMPARE`, a list of solvers or
+//! `SECONDS_RUN`, `TOLERANCE`, `METHOD` (a solver) and `SCHEME` change the run. `WRITE`, a folder, writes
+//! each pile there before it falls, for other programs (`benches/peers/piles.py`). `COMPARE`, a list of solvers or
 //! nothing, adds what each method was given to solve: those of the list solve every problem of more
 //! than three contacts beside it, from the same start.
 #![allow(clippy::expect_used, clippy::print_stdout)] // a measurement that can't be set up has nothing to go on with
@@ -34,6 +35,18 @@ impl Random {
     }
 }
 
+/// A pile as text: half the width of the trough, then a line for each stone: its mass centre and its
+/// corners, seen from there, in m.
+fn written(half: f64, outlines: &[Vec<Vector2<f64>>], q: &[f64]) -> String {
+    let mut text = format!("{half:?}\n");
+    for (place, outline) in q.chunks(3).zip(outlines) {
+        text.push_str(&format!("{:?} {:?}", place[0], place[1]));
+        outline.iter().for_each(|x| text.push_str(&format!(" {:?} {:?}", x.x, x.y)));
+        text.push('\n');
+    }
+    text
+}
+
 /// A model of so many stones, and where they start: in rows above a trough.
 fn pile(n: usize) -> (Model<2>, Vec<f64>) {
     let mut random = Random(n as u64);
@@ -57,6 +70,11 @@ fn pile(n: usize) -> (Model<2>, Vec<f64>) {
         let x = (column as f64 + 0.5 + 0.1 * random.next()) * 1.25 * SIZE - 0.5 * width;
         q.extend([x, (row as f64 + 1.0) * 1.25 * SIZE, 0.0]);
     }
+    let half = 0.5 * width + 0.5 * SIZE;
+    if let Ok(folder) = std::env::var("WRITE") {
+        let file = std::path::Path::new(&folder).join(format!("pile-{n}.txt"));
+        std::fs::write(file, written(half, &outlines, &q)).expect("a folder to write to");
+    }
     let blocks = parts.add(Blocks::new(bodies, Vector2::new(0.0, -9.81)));
     let ground = parts.add(Ground::flat(0.0)).body();
     let law = parts.law(PairLaw::new(0.5, 0.0));
@@ -66,7 +84,6 @@ fn pile(n: usize) -> (Model<2>, Vec<f64>) {
     let pairs = (0..n as u32).map(|k| ProfilePair { pair: k, law, body: blocks.nth_body(k), ground }).collect();
     let groups =
         Groups::new((0..n as u32).map(|k| (blocks.nth_body(k), 0)).collect(), vec![vec![Some(law)]]).expect("groups");
-    let half = 0.5 * width + 0.5 * SIZE;
     let walls = [[-half - 10.0, 100.0], [-half, 0.0], [half, 0.0], [half + 10.0, 100.0]].map(Vector2::from).to_vec();
     let detector = ShapeDetector::new(shapes, Vec::new()).expect("shapes");
     let detector = detector.with_profile(Profile::new(walls).expect("a trough"), pairs).expect("pairs");
@@ -155,6 +172,18 @@ fn tower(n: usize) -> (Model<2>, Vec<f64>) {
     (parts.build(Box::new(detector.with_groups(groups, n as u32).expect("groups"))).expect("a model"), q)
 }
 
+/// The scheme of the environment, `moreau-jean-closed` unless it says otherwise.
+fn scheme() -> Box<dyn Scheme<2>> {
+    let name = std::env::var("SCHEME").unwrap_or("moreau-jean-closed".into());
+    match name.as_str() {
+        "moreau-jean" => Box::new(MoreauJean::new(MoreauJeanSettings::default()).expect("a scheme")),
+        "moreau-jean-projected" => {
+            Box::new(MoreauJeanProjected::new(MoreauJeanProjectedSettings::default()).expect("a scheme"))
+        }
+        _ => Box::new(MoreauJeanClosed::new(MoreauJeanClosedSettings::default()).expect("a scheme")),
+    }
+}
+
 fn main() {
     let mut stands = false;
     let mut counts: Vec<(usize, bool)> = Vec::new();
@@ -180,15 +209,15 @@ fn main() {
             chosen = Box::new(Comparing { chosen, others, sums: std::sync::Arc::clone(&sums) });
         }
         let mut work = Workspace::new(&model, chosen, settings);
-        let mut scheme = MoreauJeanClosed::new(MoreauJeanClosedSettings::default()).expect("a scheme");
+        let mut scheme = scheme();
         let steps = (seconds / H).round() as u64;
         let part = steps / 10;
         for k in 0..10 {
             let counts = work.counts;
             let clock = Instant::now();
             let before = spent(&clock);
-            let ended =
-                run(&model, &mut scheme, &mut state, &mut work, &Plan::steps((k + 1) * part), &mut []).expect("a run");
+            let ended = run(&model, scheme.as_mut(), &mut state, &mut work, &Plan::steps((k + 1) * part), &mut [])
+                .expect("a run");
             let spent = spent(&clock) - before;
             let now = work.counts;
             let most = state.v.iter().fold(0.0_f64, |most, v| most.max(v.abs()));

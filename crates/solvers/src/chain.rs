@@ -1,7 +1,7 @@
 //! The sequence of methods that `auto` tries, cheap ones first, until one converges.
 //!
 //! 1. **Gauss–Seidel** ([`Pgs`]): some sweeps, and more as long as their convergence rate predicts
-//!    less work than Newton's method.
+//!    less work than Newton's method; many for a crowd of plane contacts and a loose tolerance.
 //! 2. **Accelerated gradients** ([`Apgd`]) for hundreds of plane contacts and a loose tolerance.
 //! 3. **Pairs** (`pairs.rs`): if the residual is small but some bodies are constrained twice
 //!    (hyperstatic), sweeps over pairs of contacts.
@@ -75,6 +75,17 @@ const LAST_TRIED: u32 = 1500;
 const LARGE: usize = 200;
 const LOOSE: f64 = 1e-8;
 const GRADIENTS: u32 = 400;
+/// At a tolerance of `ROUGH` or more a crowd is given to `ROUGH_SWEEPS` sweeps first. Of 1953 problems of
+/// more than 40 contacts of a pile of 300 stones they solve all to 1e-4, in a third to a half of the time
+/// that other methods take, and 95 of 100 to 1e-5, as quickly as these.
+const ROUGH: f64 = 1e-5;
+const ROUGH_SWEEPS: u32 = 3000;
+/// A crowd that the last step's impulses nearly solve, as at rest, is given `SWEEPS_AT_REST` more sweeps
+/// towards `AT_REST` times the tolerance. Each step starts where the one before ended, so that the residual of
+/// a heap of stones falls to that within some steps, and the stones lie still: what the
+/// tolerance leaves to each step would shake them for ever, and open and close contacts.
+const AT_REST: f64 = 1e-6;
+const SWEEPS_AT_REST: u32 = 20;
 /// Sweeps over pairs are tried if the first sweeps reach this residual.
 const NEARLY: f64 = 1e-4;
 /// StepWork of a Newton step and of a sweep in units of a block product: per block and per contact.
@@ -184,6 +195,16 @@ impl<const D: usize> Chain<D> {
         let goal = if few { REFINED } else { REFINED.max(REFINED_PART * stop.tolerance) };
         // There a refinement pays only at rest, where the last step's impulses nearly solve the problem.
         let moves = suits_gradients(problem, stop) && outcome.iterations > FIRST_SWEEPS;
+        if is_rough(problem, stop) {
+            if outcome.converged() && outcome.iterations <= FIRST_SWEEPS {
+                let further = stop.with_tolerance(AT_REST * stop.tolerance).with_max_iterations(SWEEPS_AT_REST);
+                // It returns the best impulses that it meets, the start among them.
+                let refined = self.pgs.solve(problem, &further, p);
+                outcome.iterations = outcome.iterations.saturating_add(refined.iterations);
+                outcome.residual = refined.residual;
+            }
+            return outcome;
+        }
         if outcome.converged() && outcome.residual.global > goal && !moves {
             let work = self.newton.prepare(problem);
             if !few && work.filled > FILL * work.blocks {
@@ -213,7 +234,8 @@ impl<const D: usize> Chain<D> {
         p: &mut [Vector<D>],
     ) -> Outcome {
         let within = |left: u32, most: u32| stop.with_max_iterations(left.min(most));
-        let first = self.pgs.solve(problem, &within(stop.max_iterations, FIRST_SWEEPS), p);
+        let sweeps = if is_rough(problem, stop) { ROUGH_SWEEPS } else { FIRST_SWEEPS };
+        let first = self.pgs.solve(problem, &within(stop.max_iterations, sweeps), p);
         let mut progress = Progress { best: first, iterations: first.iterations };
         if !progress.over(stop) && suits_gradients(problem, stop) {
             progress.add(self.apgd.solve(problem, &within(progress.left(stop), GRADIENTS), p));
@@ -368,6 +390,11 @@ impl<const D: usize> Chain<D> {
 /// Whether accelerated gradients are worth trying: see [`LARGE`].
 fn suits_gradients<const D: usize>(problem: &ContactProblem<'_, D>, stop: &Stop<'_>) -> bool {
     D == 2 && problem.contacts() > LARGE && stop.tolerance >= LOOSE
+}
+
+/// Whether a crowd is to be solved roughly: see [`ROUGH`].
+fn is_rough<const D: usize>(problem: &ContactProblem<'_, D>, stop: &Stop<'_>) -> bool {
+    D == 2 && problem.contacts() > CROWD && stop.tolerance >= ROUGH
 }
 
 /// Whether the rows of H have so many blocks that its factors would fill in.
