@@ -221,10 +221,15 @@ fn slides(block: &BlockScene, incline: f64, scene: &Scene, document: &Document) 
 /// Warns of a block tilted so far that it may overturn.
 fn tilt(block: &BlockScene, incline: f64, touches: bool, document: &Document) -> Option<Diagnostic> {
     let alpha = block.critical_angle()?;
+    let table = table_of(document, &block.name);
     let (key, angle) = match block.placement {
         Placement::On { tilt, .. } => ("tilt", incline + tilt),
-        // In flight any angle is fine.
-        Placement::Free { angle, .. } if touches && angle.abs() >= alpha => ("angle", angle),
+        // In flight any angle is fine, and so is one at random.
+        Placement::Free { angle, .. }
+            if touches && angle.abs() >= alpha && document.is_given(&format!("block.{table}.angle")) =>
+        {
+            ("angle", angle)
+        }
         Placement::Free { .. } => return None,
     };
     let critical = format!("the critical angle atan(width/height) = {:.2} deg of this block", alpha.to_degrees());
@@ -235,12 +240,7 @@ fn tilt(block: &BlockScene, incline: f64, touches: bool, document: &Document) ->
     } else {
         return None;
     };
-    let found = document.error(
-        &format!("block.{}.{key}", table_of(document, &block.name)),
-        rule,
-        "check the angle and its unit",
-    );
-    Some(found.as_warning())
+    Some(document.error(&format!("block.{table}.{key}"), rule, "check the angle and its unit").as_warning())
 }
 
 /// A solver tolerance over this gives visibly wrong impulses.

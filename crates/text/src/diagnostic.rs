@@ -135,9 +135,18 @@ pub(crate) const MOST_FINDINGS: usize = 200;
 
 impl Diagnostics {
     /// Sorts by position: findings about the whole file, then by position in it, then those about
-    /// `--set` in the order given.
+    /// `--set` in the order given. What is said twice, as of blocks that a table repeats, stays once.
     pub fn sort(&mut self) {
-        self.0.sort_by_key(|found| (found.set.is_some(), found.span.as_ref().map(|s| s.start)));
+        let place = |found: &Diagnostic| (found.set.is_some(), found.span.as_ref().map(|s| s.start));
+        self.0.sort_by_key(place);
+        let mut once: Vec<Diagnostic> = Vec::with_capacity(self.0.len());
+        for found in self.0.drain(..) {
+            let here = |other: &&Diagnostic| place(other) == place(&found);
+            if !once.iter().rev().take_while(here).any(|other| *other == found) {
+                once.push(found);
+            }
+        }
+        self.0 = once;
     }
 
     /// Whether one of them is an error.
@@ -218,6 +227,20 @@ fn escaped(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::{Diagnostic, Diagnostics, MOST_FINDINGS, printable};
+
+    #[test]
+    fn what_is_found_of_each_copy_is_said_once() {
+        let found = |start: usize, rule: &str| {
+            let mut found = Diagnostic::error("scene.toml", rule);
+            found.span = Some(start..start + 1);
+            found
+        };
+        // Two findings about a table, for each of two copies of it; one of them about another table, too.
+        let mut all =
+            Diagnostics(vec![found(7, "tall"), found(7, "old"), found(7, "tall"), found(7, "old"), found(3, "tall")]);
+        all.sort();
+        assert_eq!(all.0, [found(3, "tall"), found(7, "tall"), found(7, "old")]);
+    }
 
     #[test]
     fn a_diagnostic_prints_place_path_value_rule_and_help() {
