@@ -214,6 +214,8 @@ fn main() {
         let part = steps / 10;
         for k in 0..10 {
             let counts = work.counts;
+            state.tally.max_residual = 0.0;
+            let from = state.q.clone();
             let clock = Instant::now();
             let before = spent(&clock);
             let ended = run(&model, scheme.as_mut(), &mut state, &mut work, &Plan::steps((k + 1) * part), &mut [])
@@ -221,10 +223,11 @@ fn main() {
             let spent = spent(&clock) - before;
             let now = work.counts;
             let most = state.v.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
-            let moved = state.q.iter().zip(&q).fold(0.0_f64, |most, (now, start)| most.max((now - start).abs()));
-            let moved = if stands { format!(", moved {moved:.1e} m") } else { String::new() };
+            // A tower from where it stood, a pile within this part of the run.
+            let from = if stands { &q } else { &from };
+            let moved = state.q.iter().zip(from).fold(0.0_f64, |most, (now, start)| most.max((now - start).abs()));
             println!(
-                "{n} t {:.2} {:.1} us/step, contacts {:.0}, problems/step {:.2}, iterations/step {:.1}, detections {:.1}, unsolved {}, v {most:.1e}, kinetic {:.2e}, penetration {:.1e}{moved} {ended:?}",
+                "{n} t {:.2} {:.1} us/step, contacts {:.0}, problems/step {:.2}, iterations/step {:.1}, detections {:.1}, unsolved {}, v {most:.1e}, residual {:.1e}, penetration {:.1e}, kinetic {:.2e}, moved {moved:.1e} {ended:?}",
                 state.t,
                 1e6 * spent / part as f64,
                 (now.contacts - counts.contacts) as f64 / (now.problems - counts.problems).max(1) as f64,
@@ -232,8 +235,9 @@ fn main() {
                 (now.iterations - counts.iterations) as f64 / part as f64,
                 (now.detections - counts.detections) as f64 / part as f64,
                 state.tally.unconverged_steps,
-                state.ledger.current.kinetic,
+                state.tally.max_residual,
                 state.tally.max_penetration,
+                state.ledger.current.kinetic,
             );
         }
         let classes = ["1-3", "4-12", "13-40", "41-100", "101-200", "201-400", "401-"];
