@@ -84,7 +84,7 @@ const ROUGH_SWEEPS: u32 = 3000;
 /// towards `AT_REST` times the tolerance. Each step starts where the one before ended, so that the residual of
 /// a heap of stones falls to that within some steps, and the stones lie still: what the
 /// tolerance leaves to each step would shake them for ever, and open and close contacts.
-const AT_REST: f64 = 1e-6;
+const AT_REST: f64 = 1e-8;
 const SWEEPS_AT_REST: u32 = 20;
 /// Sweeps over pairs are tried if the first sweeps reach this residual.
 const NEARLY: f64 = 1e-4;
