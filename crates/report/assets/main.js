@@ -11,7 +11,7 @@
       const series = panel.series.map(({ label, index, y, at_borders: atBorders }) =>
         ({ label, index, y, t: atBorders ? forces.borders : curves.t }));
       plots.add({
-        id: panel.id, title: panel.title, unit: panel.unit, series, guides: panel.guides, least: panel.least,
+        id: panel.id, contact: panel.contact, title: panel.title, unit: panel.unit, series, guides: panel.guides, least: panel.least,
         cut: panel.cut ? cutOf(series, panel.least) : undefined, height: late ? 160 : 170,
       });
     }
@@ -92,7 +92,6 @@
       height: plots.margin.top + plots.margin.bottom + plots.rowHeight * points.length,
     });
   });
-  if (active.length > 3) plots.choose(active[0]);
 
   if (scenery.hidden_points > 0 || scenery.unlisted) {
     const many = scenery.hidden_points > 0 ? `No contact has plots of its own: ${scenery.hidden_points} points can touch, more than 2000.`
@@ -102,6 +101,7 @@
   }
 
   addPanels(true);
+  if (active.length > 3) plots.choose(active[0]);
   const note = htmlElement("p", "note", undefined, byId("panel-works") ?? byId("panel-energy") ?? byId("plots"));
   note.append("Of the energy identity, the worst step leaves ");
   note.append(byId("residual").content.cloneNode(true), " of the scene's energy unexplained.");

@@ -39,11 +39,30 @@ pub(crate) fn travel(values: &[f64]) -> f64 {
 /// A quantity that isn't drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct LeftOut {
-    /// What it is, as its axis would say, and of what.
-    pub(crate) what: String,
+    /// What it is, with the word before what has it: `φ of`.
+    pub(crate) what: &'static str,
+    /// What has it, and what these are called together; empty for a quantity of the whole scene.
+    pub(crate) of: Vec<String>,
+    pub(crate) together: &'static str,
     /// How large it becomes, in this unit.
     pub(crate) largest: f64,
-    pub(crate) unit: String,
+    pub(crate) unit: &'static str,
+}
+
+/// More of one kind than this are counted, not named.
+const NAMED: usize = 3;
+
+impl LeftOut {
+    fn told(&self) -> String {
+        let of = match self.of.len() {
+            0 => String::new(),
+            few if few <= NAMED => format!(" {}", self.of.join(", ")),
+            many => format!(" {many} {}", self.together),
+        };
+        let bound = if self.of.len() > 1 && self.largest > 0.0 { "at most " } else { "" };
+        let size = if self.largest == 0.0 { "0".to_owned() } else { format!("{:.0e} {}", self.largest, self.unit) };
+        format!("{}{of} ({bound}{size})", self.what)
+    }
 }
 
 /// A sentence on what isn't drawn; empty if all is.
@@ -51,15 +70,8 @@ pub(crate) fn told(left_out: &[LeftOut]) -> String {
     if left_out.is_empty() {
         return String::new();
     }
-    let one = |of: &LeftOut| {
-        if of.largest == 0.0 {
-            format!("{} (0)", of.what)
-        } else {
-            format!("{} ({:.0e} {})", of.what, of.largest, of.unit)
-        }
-    };
-    let list: Vec<String> = left_out.iter().map(one).collect();
-    format!("Not drawn, as it stays below {ROUNDING:e} of its scale, which is rounding: {}.", list.join(", "))
+    let list: Vec<String> = left_out.iter().map(LeftOut::told).collect();
+    format!("Not drawn, as it stays below {ROUNDING:e} of its scale, which is rounding: {}.", list.join("; "))
 }
 
 #[cfg(test)]
@@ -89,8 +101,16 @@ mod tests {
     #[test]
     fn what_is_left_out_is_told() {
         assert_eq!(told(&[]), "");
-        let left_out = |what: &str, largest| LeftOut { what: what.to_owned(), largest, unit: "rad".to_owned() };
-        let text = told(&[left_out("angle φ of box", 3e-12), left_out("slip", 0.0)]);
-        assert!(text.ends_with("rounding: angle φ of box (3e-12 rad), slip (0)."), "{text}");
+        let left_out = |what, of: usize, largest| LeftOut {
+            what,
+            of: (0..of).map(|k| format!("b{k}")).collect(),
+            together: "blocks",
+            largest,
+            unit: "rad",
+        };
+        let text = told(&[left_out("φ of", 1, 3e-12), left_out("slip", 0, 0.0)]);
+        assert!(text.ends_with("rounding: φ of b0 (3e-12 rad); slip (0)."), "{text}");
+        let text = told(&[left_out("φ of", 2, 3e-12), left_out("x of", 15, 4e-12)]);
+        assert!(text.ends_with("φ of b0, b1 (at most 3e-12 rad); x of 15 blocks (at most 4e-12 rad)."), "{text}");
     }
 }

@@ -64,6 +64,9 @@ struct PanelData {
     guides: Vec<f64>,
     /// Whether the peaks of impacts are cut.
     cut: bool,
+    /// The contact whose it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    contact: Option<usize>,
     /// Whether it stands after the contacts.
     late: bool,
     series: Vec<SeriesData>,
@@ -439,7 +442,11 @@ fn loads(recorder: &PageRecorder) -> Vec<LoadData> {
 fn time_panels(panels: &Panels) -> Vec<PanelData> {
     let panel = |panel: &super::panels::TimePanel| PanelData {
         id: panel.id.clone(),
-        title: panel.title.clone(),
+        title: match &panel.of_contact {
+            Some((_, name)) if !name.is_empty() => format!("{}, {name}", panel.title),
+            _ => panel.title.clone(),
+        },
+        contact: panel.of_contact.as_ref().map(|(pair, _)| *pair),
         unit: panel.unit.clone(),
         least: digits(panel.least),
         guides: panel.guides.iter().copied().map(digits).collect(),

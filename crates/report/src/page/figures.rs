@@ -123,7 +123,9 @@ impl Plots<'_> {
         let label = format!("{} ({})", panel.title, panel.unit);
         let (range, note) = if panel.cut { cut(&lines, panel.least, &panel.unit) } else { (None, None) };
         let y = cut_axis(&label, range, &lines, panel.least);
-        self.marked(Panel::new(y).with(lines).telling_apart().note(note), None)
+        let contact = panel.of_contact.as_ref();
+        let name = contact.map(|(_, name)| name.clone()).filter(|name| !name.is_empty());
+        self.marked(Panel::new(y).with(lines).telling_apart().note(note.or(name)), contact.map(|(pair, _)| *pair))
     }
 
     fn portrait(&self, portrait: &Portrait) -> Figure {

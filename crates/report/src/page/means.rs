@@ -9,6 +9,9 @@ const PART: f64 = 1.0 / 40.0;
 /// Where raw values stray from the mean by less than this part of the largest mean, the mean would only cover them.
 const STRAY: f64 = 0.02;
 
+/// It has to do so for more than this part of the time in which the contact presses.
+const LEAST: f64 = 0.25;
+
 /// The window for a run of these curves, s.
 pub(super) fn window(curves: &Curves) -> f64 {
     let borders = curves.borders();
@@ -44,9 +47,10 @@ pub(super) fn normal(curves: &Curves, forces: &ForceCurve, window: f64) -> Optio
     };
     let means: Vec<f64> = borders.iter().map(mean).collect();
     let largest = means.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    let strays = means.iter().zip(&forces.normal).filter(|(mean, raw)| (*mean - *raw).abs() > STRAY * largest).count();
-    // Where a few impacts are all that strays, their ticks tell it.
-    (strays * 20 > means.len()).then_some(means)
+    // Of the time in which it presses: of one that only strikes now and then, a mean would make blocks as wide as the window.
+    let pressing = || means.iter().zip(&forces.normal).filter(|(_, raw)| **raw > 0.0);
+    let strays = pressing().filter(|(mean, raw)| (*mean - *raw).abs() > STRAY * largest).count();
+    (strays as f64 > LEAST * pressing().count() as f64 && pressing().count() * 10 > means.len()).then_some(means)
 }
 
 #[cfg(test)]
@@ -74,6 +78,17 @@ mod tests {
         let means = normal(&curves, &forces, window).unwrap();
         assert!(means.iter().skip(20).rev().skip(20).all(|mean| (mean - 3.1).abs() < 0.1));
         assert_eq!(means.len(), curves.borders().len());
+    }
+
+    #[test]
+    fn strikes_are_not_smeared() {
+        // It rests in the end, after 20 strikes.
+        let (curves, forces) = run(|t| match (t * 1e3).round() as u64 {
+            k if k > 700 => 3.0,
+            k if k % 35 == 0 => 500.0,
+            _ => 0.0,
+        });
+        assert_eq!(normal(&curves, &forces, window(&curves)), None);
     }
 
     #[test]

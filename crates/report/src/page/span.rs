@@ -97,11 +97,9 @@ pub(super) fn shapes(recorder: &PageRecorder, id: &str) -> Option<Figure> {
             chosen(&rows.iter().map(|row| row.0).collect::<Vec<_>>(), &sizes, run).into_iter().map(|(k, word)| {
                 let (t, row) = rows[k];
                 let word = if word.is_empty() { String::new() } else { format!("{word}, ") };
-                let points = row[own.clone()]
-                    .iter()
-                    .enumerate()
-                    .map(|(i, w)| (beam.span * unit.per_metre() * i as f64 / (beam.points - 1) as f64, factor * w));
-                Series::line(format!("{word}t = {} s", rounded(t, 4)), points.collect::<Vec<_>>())
+                let length = beam.span * unit.per_metre();
+                let points = smooth(&row[own.clone()]).into_iter().map(|(part, w)| (length * part, factor * w));
+                Series::line(format!("{word}t = {} s", rounded(t, 4)), points)
             });
         let lines: Vec<Series> = lines.collect();
         let y = lines.iter().flat_map(Series::points).map(|point| point.1).chain([0.0]);
@@ -113,6 +111,31 @@ pub(super) fn shapes(recorder: &PageRecorder, id: &str) -> Option<Figure> {
     let x = Axis::between(format!("Place along the beam x ({})", unit.word()), 0.0, span * unit.per_metre());
     let title = "Deflected shape of the beams at chosen times";
     (!panels.is_empty()).then(|| panels.into_iter().fold(Figure::new(id, title, x), Figure::panel))
+}
+
+/// Points between two that are known.
+const BETWEEN: usize = 4;
+
+/// A curve through values at evenly spread places, with those in parts of the length: cubic between them, with the slope of a
+/// parabola through three, so that a beam looks as smooth as it is.
+fn smooth(w: &[f64]) -> Vec<(f64, f64)> {
+    let last = w.len() - 1;
+    let slope = |k: usize| match k {
+        _ if last < 2 => w[last] - w[0],
+        0 => -1.5 * w[0] + 2.0 * w[1] - 0.5 * w[2],
+        k if k == last => 1.5 * w[k] - 2.0 * w[k - 1] + 0.5 * w[k - 2],
+        k => 0.5 * (w[k + 1] - w[k - 1]),
+    };
+    let mut points = vec![(0.0, w[0])];
+    for k in 0..last {
+        let ([a, b], [s, t]) = ([w[k], w[k + 1]], [slope(k), slope(k + 1)]);
+        for i in 1..=BETWEEN {
+            let x = i as f64 / BETWEEN as f64;
+            let bent = x * (1.0 - x) * ((s - (b - a)) * (1.0 - x) - (t - (b - a)) * x);
+            points.push(((k as f64 + x) / last as f64, a + (b - a) * x + bent));
+        }
+    }
+    points
 }
 
 /// Pictures that are worth a shape, in order of time, with what they are: the start, the largest deflection, further peaks, the
@@ -146,6 +169,16 @@ fn chosen(times: &[f64], sizes: &[f64], run: f64) -> Vec<(usize, &'static str)> 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_shape_is_exact_at_its_points_and_smooth_between() {
+        let of = |x: f64| 3.0 - 2.0 * x + 5.0 * x * x;
+        let values: Vec<f64> = (0..=8).map(|k| of(f64::from(k) / 8.0)).collect();
+        let points = smooth(&values);
+        assert_eq!(points.len(), 8 * BETWEEN + 1);
+        assert!(points.iter().all(|(x, w)| (w - of(*x)).abs() < 1e-12), "{points:?}");
+        assert_eq!(smooth(&[1.0, 2.0])[BETWEEN / 2], (0.5, 1.5));
+    }
 
     #[test]
     fn shapes_are_those_of_start_peaks_and_end() {

@@ -59,7 +59,7 @@ fn a_block_at_rest_on_an_incline_has_no_plot_of_rounding() {
     assert!(page["portraits"].as_array().unwrap().is_empty());
     let start = run.html.find("id=\"not-drawn\"").unwrap();
     let told = &run.html[start..start + run.html[start..].find("</p>").unwrap()];
-    for what in ["φ of cube", "x of cube", "kinetic energy", "slip"] {
+    for what in ["φ of cube", "x of cube", "energy: kinetic, gravity, total", "slip"] {
         assert!(told.contains(what), "{what}: {told}");
     }
     // What carries the block is there.
@@ -146,7 +146,7 @@ fn every_probe_has_its_curve_unless_it_is_rounding() {
         deflections["series"].as_array().unwrap().iter().map(|series| series["label"].as_str().unwrap()).collect();
     // The right end is a support: it doesn't move.
     assert_eq!(labels, ["midspan, 300 mm", "150 mm", "450 mm"]);
-    assert!(run.html.contains("w at 600 mm, a probe (0)"));
+    assert!(run.html.contains("w at the probe 600 mm (0)"));
     assert!(run.html.contains("id=\"shapes\""));
     let names: Vec<String> = figures(&run.page).into_iter().map(|(file, _)| file).collect();
     assert!(names.iter().any(|file| file == "shapes.svg"), "{names:?}");
