@@ -41,7 +41,8 @@ pub(crate) fn travel(values: &[f64]) -> f64 {
 pub(crate) struct LeftOut {
     /// What it is, with the word before what has it: `φ of`.
     pub(crate) what: &'static str,
-    /// What has it, and what these are called together; empty for a quantity of the whole scene.
+    /// What has it, empty for a quantity of the whole scene, and what these are called together: without a word for that each is
+    /// named.
     pub(crate) of: Vec<String>,
     pub(crate) together: &'static str,
     /// How large it becomes, in this unit.
@@ -56,7 +57,7 @@ impl LeftOut {
     fn told(&self) -> String {
         let of = match self.of.len() {
             0 => String::new(),
-            few if few <= NAMED => format!(" {}", self.of.join(", ")),
+            few if few <= NAMED || self.together.is_empty() => format!(" {}", self.of.join(", ")),
             many => format!(" {many} {}", self.together),
         };
         let bound = if self.of.len() > 1 && self.largest > 0.0 { "at most " } else { "" };
