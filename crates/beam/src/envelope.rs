@@ -12,6 +12,12 @@ pub struct Envelope {
     pub moment: Vec<[f64; 2]>,
     /// By nodes: least and largest transverse force on either side, N.
     pub shear: Vec<[f64; 2]>,
+    /// By elements: least and largest bending moment just right of the left node and just left of the
+    /// right one, N m. Where a couple acts at a node, the two sides of it differ.
+    pub moment_ends: Vec<[[f64; 2]; 2]>,
+    /// By elements, alike: least and largest transverse force, N. At a support or a load the two sides
+    /// of a node differ by what it brings in, which [`shear`](Self::shear) has no room for.
+    pub shear_ends: Vec<[[f64; 2]; 2]>,
     /// By nodes: largest normal stress, Pa; NaN where the section doesn't know its modulus.
     pub stress: Vec<f64>,
 }
@@ -20,8 +26,17 @@ impl Envelope {
     /// Of nothing yet.
     #[must_use]
     pub fn new(beam: &Beam) -> Self {
-        let none = vec![[f64::INFINITY, f64::NEG_INFINITY]; beam.nodes()];
-        Self { deflection: none.clone(), moment: none.clone(), shear: none, stress: vec![f64::NAN; beam.nodes()] }
+        const NONE: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
+        let by_nodes = vec![NONE; beam.nodes()];
+        let by_ends = vec![[NONE; 2]; beam.elements()];
+        Self {
+            deflection: by_nodes.clone(),
+            moment: by_nodes.clone(),
+            shear: by_nodes,
+            moment_ends: by_ends.clone(),
+            shear_ends: by_ends,
+            stress: vec![f64::NAN; beam.nodes()],
+        }
     }
 
     /// Takes a state in.
@@ -38,6 +53,8 @@ impl Envelope {
             for (side, SectionForce { moment, shear }) in forces.ends(e).into_iter().enumerate() {
                 widen(&mut self.moment[e + side], moment);
                 widen(&mut self.shear[e + side], shear);
+                widen(&mut self.moment_ends[e][side], moment);
+                widen(&mut self.shear_ends[e][side], shear);
                 if let Some(stress) = forces.stress(beam, middle, moment) {
                     self.stress[e + side] = self.stress[e + side].max(stress);
                 }
@@ -71,6 +88,29 @@ mod tests {
         assert!(
             close(envelope.shear[0][1], 6.0) && close(envelope.shear[2][0], -4.0) && close(envelope.shear[2][1], 4.0)
         );
+        // Each end of an element on its own: the load beside the first element leaves its shear at 6 or less.
+        assert!(close(envelope.shear_ends[0][1][1], 6.0) && close(envelope.shear_ends[1][0][0], -2.0));
+        assert!(close(envelope.moment_ends[1][1][1], envelope.moment_ends[2][0][1]));
         assert!((envelope.stress[2] / (6.0 * 2.0 / 1e-3) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn at_a_pier_the_shear_jumps_by_its_reaction() {
+        let mut spec =
+            crate::BeamSpec { section: crate::Section::rectangle(0.1, 0.1, 1e9, 1e3).unwrap(), ..spec(4, [Pinned; 2]) };
+        spec.inner_supports = vec![crate::InnerSupport { x: 0.5 * spec.span, support: Pinned }];
+        let beam = Beam::new(spec).unwrap();
+        let load = SpanLoad::Uniform { from: 0.0, to: beam.spec().span, load: -8.0 };
+        let mut q = vec![0.0; beam.dofs()];
+        beam.add_uniform_load(-8.0, &mut q).unwrap();
+        beam.solve_static(&mut q).unwrap();
+        let forces = beam.section_forces(&Actions::at(&q).with_loads(&[load])).unwrap();
+        let mut envelope = Envelope::new(&beam);
+        envelope.take(&beam, &q, &forces);
+        // Two spans under a uniform load f: the pier bears 5/8 of all of it, half from each side.
+        let (left, right) = (envelope.shear_ends[1][1][1], envelope.shear_ends[2][0][0]);
+        let part = 8.0 * beam.spec().span * 5.0 / 16.0;
+        assert!((left + part).abs() < 1e-9 && (right - part).abs() < 1e-9, "{left} {right} {part}");
+        assert!((forces.reactions()[1].force - (right - left)).abs() < 1e-9);
     }
 }

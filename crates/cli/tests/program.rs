@@ -79,7 +79,7 @@ fn a_run_writes_its_files_with_the_columns_of_the_contract() {
         header("trajectory.csv"),
         "t,rocker.x,rocker.y,rocker.phi,rocker.vx,rocker.vy,rocker.omega,table.w_mid,table.v_mid,table.w@0.09"
     );
-    assert_eq!(header("contacts.csv"), "t,contact,a,b,point,gap,p_n,p_t,u_n,u_t,state");
+    assert_eq!(header("contacts.csv"), "t,contact,a,b,point,gap,p_n,p_t,u_n,u_t,state,slip");
     assert_eq!(header("impacts.csv"), "t,contact,a,b,point,impulse_n,impulse_t,u_n_before,u_n_after");
     assert_eq!(
         header("energy.csv"),

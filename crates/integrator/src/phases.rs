@@ -165,6 +165,13 @@ struct Kept<const D: usize> {
 }
 
 impl<const D: usize> Kept<D> {
+    /// How long it took in a step of this span, s.
+    #[inline]
+    fn duration(&self, span: &StepSpan) -> f64 {
+        let whole = self.start == span.start && self.end == span.end;
+        self.duration.unwrap_or(if whole { span.h } else { self.end - self.start })
+    }
+
     fn new() -> Self {
         Self {
             kind: PhaseKind::Step,
@@ -394,12 +401,11 @@ impl<const D: usize> Phases<D> {
             None => (q.as_slice(), v.as_slice()),
         };
         let own = &kept[k];
-        let whole = own.start == span.start && own.end == span.end;
         Phase {
             kind: own.kind,
             start: own.start,
             end: own.end,
-            duration: own.duration.unwrap_or(if whole { span.h } else { own.end - own.start }),
+            duration: own.duration(span),
             balance: own.balance,
             contacts: &own.contacts,
             outcome: own.outcome,
@@ -457,6 +463,10 @@ pub struct Active<'w, const D: usize> {
     pub start: f64,
     /// Its end, s.
     pub end: f64,
+    /// How long it took, s: of a step's only phase the size of the step, without the rounding of times.
+    pub duration: f64,
+    /// By which means it satisfies the balance of momentum.
+    pub balance: Balance,
     /// Whether it is the [last that takes time](StepReport::last_lasting).
     pub is_last_lasting: bool,
     /// The contacts, in order of identity.
@@ -499,10 +509,10 @@ impl<'w, const D: usize> StepReport<'w, D> {
     /// When its contacts were active, phase by phase, without the rest of these.
     #[inline]
     pub fn active(&self) -> impl Iterator<Item = Active<'w, D>> + use<'w, D> {
-        let Phases { kept, used, .. } = self.phases;
-        kept[..*used].iter().map(|kept| {
-            let Kept { kind, start, end, is_last_lasting, ref contacts, .. } = *kept;
-            Active { kind, start, end, is_last_lasting, contacts }
+        let Phases { kept, used, span, .. } = self.phases;
+        kept[..*used].iter().map(move |kept| {
+            let Kept { kind, start, end, is_last_lasting, balance, ref contacts, .. } = *kept;
+            Active { kind, start, end, duration: kept.duration(span), balance, is_last_lasting, contacts }
         })
     }
 

@@ -1,8 +1,8 @@
 //! A drawing to scale: outlines, lines and points in the plane.
 
-use crate::escaped;
-use crate::figure::{UNITS_PER_MM, WIDTH};
+use crate::figure::{UNITS_PER_MM, WIDTH, units};
 use crate::theme::{Colour, Theme};
+use crate::{escaped, text_width};
 use std::fmt::Write;
 
 /// Points in a row, m.
@@ -47,6 +47,7 @@ pub struct Drawing {
     notes: Vec<String>,
     key: Vec<(Colour, f64, String)>,
     theme: Theme,
+    width: f64,
 }
 
 /// Margin around what is drawn, and most of its height.
@@ -61,7 +62,21 @@ impl Drawing {
     /// An empty drawing; the title is the text for screen readers.
     #[must_use]
     pub fn new(title: impl Into<String>) -> Self {
-        Self { title: title.into(), items: Vec::new(), notes: Vec::new(), key: Vec::new(), theme: Theme::default() }
+        Self {
+            title: title.into(),
+            items: Vec::new(),
+            notes: Vec::new(),
+            key: Vec::new(),
+            theme: Theme::default(),
+            width: WIDTH,
+        }
+    }
+
+    /// Sets the width, mm, from 60 to 300, at which type keeps its size. Default: 120 mm.
+    #[must_use]
+    pub fn width_mm(mut self, width: f64) -> Self {
+        self.width = units(width);
+        self
     }
 
     /// Closed outlines, each through its points, filled with a light shade.
@@ -118,6 +133,7 @@ impl Drawing {
     /// The drawing as an SVG document, 120 mm wide, which can also be embedded in an HTML page.
     #[must_use]
     pub fn to_svg(&self) -> String {
+        let width = self.width;
         let all = || self.items.iter().flat_map(Item::points);
         let ends = |pick: &dyn Fn(&(f64, f64)) -> f64| {
             all().map(pick).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
@@ -126,20 +142,21 @@ impl Drawing {
         let (left, right, low, high) = if left <= right { (left, right, low, high) } else { (0.0, 1.0, 0.0, 1.0) };
         let least = f64::MIN_POSITIVE.max(1e-12 * (left.abs() + low.abs()));
         let (across, up) = ((right - left).max(least), (high - low).max(least));
-        let scale = ((WIDTH - 2.0 * MARGIN) / across).min((TALLEST - 2.0 * MARGIN) / up);
+        let scale = ((width - 2.0 * MARGIN) / across).min((TALLEST - 2.0 * MARGIN) / up);
         let height = 2.0 * MARGIN + scale * up;
         let (middle, top) = (0.5 * (left + right), MARGIN);
-        let px = |x: f64| 0.5 * WIDTH + scale * (x - middle);
+        let px = |x: f64| 0.5 * width + scale * (x - middle);
         let py = |y: f64| top + scale * (high - y);
-        let total = height + SCALE + ROW * (self.key.len() + self.notes.len()) as f64 + 4.0;
+        let notes: Vec<String> = self.notes.iter().flat_map(|note| wrapped(note, width - 2.0 * MARGIN)).collect();
+        let total = height + SCALE + ROW * (self.key.len() + notes.len()) as f64 + 4.0;
         let colour = |colour: Colour| colour.value(self.theme);
         let mut svg = String::new();
         let _ = writeln!(
             svg,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{:.2}mm\" viewBox=\"0 0 {WIDTH} {total:.2}\" \
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{:.2}mm\" viewBox=\"0 0 {width} {total:.2}\" \
              font-family=\"Helvetica, Arial, sans-serif\" font-size=\"11\" fill=\"{}\" role=\"img\">\n<title>{}</title>\n\
-             <rect width=\"{WIDTH}\" height=\"{total:.2}\" fill=\"{}\"/>",
-            WIDTH / UNITS_PER_MM,
+             <rect width=\"{width}\" height=\"{total:.2}\" fill=\"{}\"/>",
+            width / UNITS_PER_MM,
             total / UNITS_PER_MM,
             colour(Colour::Ink),
             escaped(&self.title),
@@ -187,7 +204,7 @@ impl Drawing {
                 ),
             };
         }
-        let (length, label) = bar(0.25 * (WIDTH - 2.0 * MARGIN) / scale);
+        let (length, label) = bar(0.25 * (width - 2.0 * MARGIN) / scale);
         let y = height + 12.0;
         let _ = writeln!(
             svg,
@@ -212,7 +229,7 @@ impl Drawing {
                 escaped(text)
             );
         }
-        for text in &self.notes {
+        for text in &notes {
             y += ROW;
             let _ = writeln!(
                 svg,
@@ -224,6 +241,21 @@ impl Drawing {
         svg.push_str("</svg>\n");
         svg
     }
+}
+
+/// A text in lines of this width.
+fn wrapped(text: &str, width: f64) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split(' ') {
+        let line =
+            lines.last_mut().filter(|line| line.is_empty() || text_width(line) + text_width(word) + 6.0 <= width);
+        match line {
+            Some(line) if line.is_empty() => line.push_str(word),
+            Some(line) => _ = write!(line, " {word}"),
+            None => lines.push(word.to_owned()),
+        }
+    }
+    lines
 }
 
 /// Those whose places are all finite: others can't be drawn.
@@ -283,6 +315,20 @@ mod tests {
             .lines([vec![(0.0, 0.0), (2.0, 0.0)], vec![(1.0, -0.5), (1.0, 0.5)]], 0.5, Colour::Ink)
             .to_svg();
         assert!(svg.contains("M14.00 127.00L466.00 127.00M240.00 240.00L240.00 14.00"), "{svg}");
+    }
+
+    #[test]
+    fn a_note_is_wrapped_to_the_width() {
+        let lines = |width_mm: f64| {
+            let drawing = Drawing::new("t").dot((0.0, 0.0), Colour::Ink).note("a word and another ".repeat(4).trim());
+            drawing.width_mm(width_mm).to_svg().matches("another").count() == 4
+                && drawing_rows(&Drawing::new("t").note("a word and another ".repeat(4).trim()).width_mm(width_mm)) > 1
+        };
+        assert!(lines(84.0) && !lines(174.0));
+    }
+
+    fn drawing_rows(drawing: &Drawing) -> usize {
+        drawing.to_svg().matches("<text").count() - 1
     }
 
     #[test]

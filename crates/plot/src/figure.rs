@@ -28,11 +28,22 @@ pub struct Figure {
     legend: Legend,
     theme: Theme,
     headed: bool,
+    /// In the units of the drawing.
+    width: f64,
 }
 
 /// 4 units are a millimetre: a width of 480 is a page column of 12 cm, and a font size of 11 is
-/// 2.75 mm or 7.8 pt.
+/// 2.75 mm or 7.8 pt, whatever the width.
 pub(crate) const WIDTH: f64 = 480.0;
+
+/// Widths that a figure can have, mm: in a narrower one the labels of the axes would meet.
+pub(crate) const WIDTHS_MM: [f64; 2] = [60.0, 300.0];
+
+/// A width in the units of the drawing.
+pub(crate) fn units(width_mm: f64) -> f64 {
+    if width_mm.is_finite() { UNITS_PER_MM * width_mm.clamp(WIDTHS_MM[0], WIDTHS_MM[1]) } else { WIDTH }
+}
+
 pub(crate) const UNITS_PER_MM: f64 = 4.0;
 pub(crate) const LEFT: f64 = 64.0;
 pub(crate) const RIGHT: f64 = 12.0;
@@ -48,12 +59,14 @@ const HEIGHTS: [f64; 2] = [210.0, 140.0];
 pub(crate) struct Frame<'a> {
     pub(crate) top: f64,
     pub(crate) height: f64,
+    /// Width of the figure without a legend beside it.
+    pub(crate) across: f64,
     pub(crate) x: &'a Axis,
 }
 
 impl Frame<'_> {
     pub(crate) fn width(&self) -> f64 {
-        WIDTH - LEFT - RIGHT
+        self.across - LEFT - RIGHT
     }
 
     pub(crate) fn px(&self, x: f64) -> f64 {
@@ -61,7 +74,7 @@ impl Frame<'_> {
     }
 
     pub(crate) fn x_ticks(&self) -> Ticks {
-        self.x.ticks(6)
+        self.x.ticks((6.0 * self.across / WIDTH).round() as usize)
     }
 }
 
@@ -72,7 +85,7 @@ impl Figure {
     pub fn new(id: &str, title: impl Into<String>, x: Axis) -> Self {
         let id = id.chars().map(|c| if c.is_ascii_alphanumeric() || c == '_' { c } else { '-' }).collect();
         let (legend, theme) = (Legend::default(), Theme::default());
-        Self { id, title: title.into(), x, panels: Vec::new(), legend, theme, headed: false }
+        Self { id, title: title.into(), x, panels: Vec::new(), legend, theme, headed: false, width: WIDTH }
     }
 
     /// Adds a panel below the others.
@@ -103,6 +116,14 @@ impl Figure {
         self
     }
 
+    /// Sets the width, mm, from 60 to 300: type and lines keep their size, so that a figure fits the
+    /// column of a journal as it is. Default: 120 mm.
+    #[must_use]
+    pub fn width_mm(mut self, width: f64) -> Self {
+        self.width = units(width);
+        self
+    }
+
     /// The figure as an SVG document, which can also be embedded in an HTML page.
     #[must_use]
     pub fn to_svg(&self) -> String {
@@ -110,7 +131,7 @@ impl Figure {
         let above = if self.headed { HEADING } else { 0.0 };
         let total = above + heights.iter().map(|(header, inner)| header + inner).sum::<f64>() + FOOTER;
         let beside = self.panels.iter().map(|panel| self.legend.beside(&panel.entries()).0).fold(0.0, f64::max);
-        let width = WIDTH + beside;
+        let width = self.width + beside;
         let mut svg = String::new();
         let _ = writeln!(
             svg,
@@ -130,7 +151,7 @@ impl Figure {
         let mut top = above;
         for (number, (panel, (header, height))) in self.panels.iter().zip(heights).enumerate() {
             top += header;
-            let frame = Frame { top, height, x: &self.x };
+            let frame = Frame { top, height, across: self.width, x: &self.x };
             panel.draw(&mut svg, &frame, &format!("{}-{number}", self.id), self.legend, self.theme);
             top += height;
         }
@@ -144,7 +165,7 @@ impl Figure {
         let (entries, note) = (panel.entries(), panel.note_text());
         let named = self.legend != Legend::Beside && (!entries.is_empty() || !self.headed);
         let bare = !named && note.is_none();
-        let header = if bare { BARE_HEADER } else { HEADER + self.legend.more_height(&entries, note) };
+        let header = if bare { BARE_HEADER } else { HEADER + self.legend.more_height(&entries, note, self.width) };
         let several = self.panels.iter().filter(|panel| panel.is_plot()).count() > 1;
         let own = panel.own_height_mm().map_or(HEIGHTS[usize::from(several)], |height| UNITS_PER_MM * height);
         let inner = panel.bands_height().unwrap_or(own);
@@ -152,7 +173,7 @@ impl Figure {
     }
 
     fn draw_x_axis(&self, svg: &mut String, y: f64) {
-        let frame = Frame { top: y, height: 0.0, x: &self.x };
+        let frame = Frame { top: y, height: 0.0, across: self.width, x: &self.x };
         for (x, label) in frame.x_ticks().major {
             let px = frame.px(x);
             let _ = writeln!(
@@ -166,9 +187,29 @@ impl Figure {
         let _ = writeln!(
             svg,
             "<text x=\"{:.2}\" y=\"{:.2}\" text-anchor=\"middle\">{}</text>",
-            0.5 * (LEFT + WIDTH - RIGHT),
+            0.5 * (LEFT + self.width - RIGHT),
             y + 31.0,
             escaped(&self.x.label)
         );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Series;
+
+    #[test]
+    fn at_any_width_type_keeps_its_size() {
+        for (asked, width) in [(84.0, 84.0), (174.0, 174.0), (1.0, 60.0), (f64::NAN, 120.0)] {
+            let panel = Panel::new(Axis::between("y", 0.0, 1.0)).with([Series::line("", [(0.0, 0.0), (1.0, 1.0)])]);
+            let svg = Figure::new("f", "t", Axis::between("x", 0.0, 1.0)).panel(panel).width_mm(asked).to_svg();
+            // Four units a millimetre, so that type of 11 units is 7.8 pt.
+            let start = format!("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}mm\"");
+            assert!(svg.starts_with(&start) && svg.contains(&format!("viewBox=\"0 0 {} ", 4.0 * width)), "{svg}");
+            assert!(svg.contains("font-size=\"11\""));
+            // The curve ends at the right end of the frame.
+            assert!(svg.contains(&format!("L{:.2} ", 4.0 * width - RIGHT)), "{svg}");
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! The legend and its position.
 
-use crate::figure::{LEFT, RIGHT, WIDTH};
-use crate::series::{Drawn, Mark};
+use crate::figure::{Frame, LEFT, RIGHT, WIDTH};
+use crate::series::{Dash, Drawn, Mark};
 use crate::theme::{Colour, Theme};
 use crate::{Series, escaped};
 use std::fmt::Write;
@@ -55,7 +55,7 @@ pub(crate) struct Entry<'a> {
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Symbol {
-    Line(usize),
+    Line { number: usize, dash: Dash },
     Marks { mark: Mark, hollow: bool, number: usize },
     Swatch(Colour),
     Area(usize),
@@ -65,7 +65,7 @@ impl<'a> Entry<'a> {
     /// The entry of a series; none without a name.
     pub(crate) fn of(series: &'a Series, number: usize) -> Option<Self> {
         let symbol = match series.drawn {
-            Drawn::Line => Symbol::Line(number),
+            Drawn::Line => Symbol::Line { number, dash: series.dash },
             Drawn::Marks { mark, hollow } => Symbol::Marks { mark, hollow, number },
             Drawn::Area => Symbol::Area(number),
         };
@@ -74,9 +74,12 @@ impl<'a> Entry<'a> {
 
     fn draw(&self, svg: &mut String, theme: Theme, x: f64, y: f64) {
         let _ = match self.symbol {
-            Symbol::Line(number) => {
-                write!(svg, "<path d=\"M{x:.2} {:.2}h14\" {} stroke-width=\"1.6\"/>", y - 3.5, stroke(number, theme))
-            }
+            Symbol::Line { number, dash } => write!(
+                svg,
+                "<path d=\"M{x:.2} {:.2}h14\" {} stroke-width=\"1.6\"/>",
+                y - 3.5,
+                stroke(number, dash, theme)
+            ),
             Symbol::Marks { mark, hollow, number } => {
                 let place = mark_path(mark, x + 7.0, y - 3.5);
                 write!(svg, "<path d=\"{place}\" {}/>", mark_style(number, hollow, theme))
@@ -101,11 +104,11 @@ impl<'a> Entry<'a> {
 
 impl Legend {
     /// Row and left end of each entry above a panel; a note takes up the right of the first row.
-    fn rows(self, entries: &[Entry], note: Option<&str>) -> Vec<(usize, f64)> {
+    fn rows(self, entries: &[Entry], note: Option<&str>, across: f64) -> Vec<(usize, f64)> {
         let (mut row, mut x) = (0, LEFT);
         let noted = note.map_or(0.0, |note| text_width(note) + GAP);
         let place = |entry: &Entry| {
-            let right = LEFT + LEGEND_WIDTH - if row == 0 { noted } else { 0.0 };
+            let right = across - RIGHT - if row == 0 { noted } else { 0.0 };
             let full = x + SYMBOL + text_width(entry.name) > right;
             if self == Self::Rows && full && (x > LEFT || noted > 0.0) {
                 (row, x) = (row + 1, LEFT);
@@ -118,14 +121,14 @@ impl Legend {
     }
 
     /// Height of the legend above a panel beyond the first row.
-    pub(crate) fn more_height(self, entries: &[Entry], note: Option<&str>) -> f64 {
-        ROW * self.last_row(entries, note) as f64
+    pub(crate) fn more_height(self, entries: &[Entry], note: Option<&str>, across: f64) -> f64 {
+        ROW * self.last_row(entries, note, across) as f64
     }
 
-    fn last_row(self, entries: &[Entry], note: Option<&str>) -> usize {
+    fn last_row(self, entries: &[Entry], note: Option<&str>, across: f64) -> usize {
         match self {
             Self::Row | Self::Beside => 0,
-            Self::Rows => self.rows(entries, note).last().map_or(0, |last| last.0),
+            Self::Rows => self.rows(entries, note, across).last().map_or(0, |last| last.0),
         }
     }
 
@@ -138,36 +141,42 @@ impl Legend {
         (SYMBOL + widest + RIGHT, ROW_BESIDE * entries.len() as f64)
     }
 
-    /// Draws the entries and a note for the panel whose frame starts at `top`.
-    pub(crate) fn draw(self, svg: &mut String, theme: Theme, top: f64, entries: &[Entry], note: Option<&str>) {
-        let first = top - ABOVE - self.more_height(entries, note);
+    /// Draws the entries and a note for the panel with this frame.
+    pub(crate) fn draw(self, svg: &mut String, theme: Theme, frame: &Frame, entries: &[Entry], note: Option<&str>) {
+        let (top, across) = (frame.top, frame.across);
+        let first = top - ABOVE - self.more_height(entries, note, across);
         if let Some(note) = note {
             let _ = writeln!(
                 svg,
                 "<text x=\"{}\" y=\"{first:.2}\" text-anchor=\"end\" fill=\"{}\">{}</text>",
-                WIDTH - RIGHT,
+                across - RIGHT,
                 Colour::Muted.value(theme),
                 escaped(note)
             );
         }
         if self == Self::Beside {
             for (k, entry) in entries.iter().enumerate() {
-                entry.draw(svg, theme, WIDTH, top + 9.0 + ROW_BESIDE * k as f64);
+                entry.draw(svg, theme, across, top + 9.0 + ROW_BESIDE * k as f64);
             }
             return;
         }
-        for (entry, (row, x)) in entries.iter().zip(self.rows(entries, note)) {
+        for (entry, (row, x)) in entries.iter().zip(self.rows(entries, note, across)) {
             entry.draw(svg, theme, x, first + ROW * row as f64);
         }
     }
 }
 
+/// The pattern of a line that lies on another one, which shows in its gaps.
+const OVER: &str = "4 4";
+
 /// Dash patterns that distinguish lines of the same colour.
 const DASHES: [&str; 3] = ["none", "5 2.5", "1.5 2"];
 
 /// Colour and dash of a line.
-pub(crate) fn stroke(number: usize, theme: Theme) -> String {
-    let (colour, dash) = (Colour::Series(number), DASHES[number / crate::theme::SERIES_COLOURS % DASHES.len()]);
+pub(crate) fn stroke(number: usize, dash: Dash, theme: Theme) -> String {
+    let by_number = DASHES[number / crate::theme::SERIES_COLOURS % DASHES.len()];
+    let dash = if dash == Dash::Over { OVER } else { by_number };
+    let colour = Colour::Series(number);
     format!("stroke=\"{}\" stroke-dasharray=\"{dash}\"", colour.value(theme))
 }
 
@@ -202,24 +211,28 @@ mod tests {
     use super::*;
 
     fn entries<'a>(names: &[&'a str]) -> Vec<Entry<'a>> {
-        names.iter().map(|name| Entry { symbol: Symbol::Line(0), name }).collect()
+        names.iter().map(|name| Entry { symbol: Symbol::Line { number: 0, dash: Dash::ByNumber }, name }).collect()
     }
 
     #[test]
     fn names_wrap_to_the_next_row() {
         let long = "n".repeat(30);
         let entries = entries(&["a", &long, &long, "b"]);
-        let rows = |legend: Legend, note| legend.rows(&entries, note).iter().map(|place| place.0).collect::<Vec<_>>();
+        let rows =
+            |legend: Legend, note| legend.rows(&entries, note, WIDTH).iter().map(|place| place.0).collect::<Vec<_>>();
         assert_eq!(rows(Legend::Rows, None), [0, 0, 1, 1]);
         assert_eq!(rows(Legend::Rows, Some("a note that takes half of the row")), [0, 1, 1, 2]);
         assert_eq!(rows(Legend::Row, None), [0; 4]);
-        assert!(Legend::Rows.more_height(&entries, None) > 0.0 && Legend::Row.more_height(&entries, None) == 0.0);
+        assert!(
+            Legend::Rows.more_height(&entries, None, WIDTH) > 0.0
+                && Legend::Row.more_height(&entries, None, WIDTH) == 0.0
+        );
     }
 
     #[test]
     fn a_name_too_long_for_a_row_gets_its_own() {
         let endless = "n".repeat(300);
-        let places = Legend::Rows.rows(&entries(&[&endless, &endless]), None);
+        let places = Legend::Rows.rows(&entries(&[&endless, &endless]), None, WIDTH);
         assert_eq!(places, [(0, LEFT), (1, LEFT)]);
     }
 }

@@ -3,7 +3,7 @@
 //!
 //! A [`Figure`] is one or more stacked [`Panel`]s that share an x [`Axis`]. A panel has a y axis
 //! with [`Series`] (lines, staircases, marks), or rows of [`Band`]s such as the states of a
-//! contact. A [`Drawing`] shows outlines and lines to scale. Both are 120 mm wide, without scripts or
+//! contact. A [`Drawing`] shows outlines and lines to scale. Both are 120 mm wide unless set otherwise, without scripts or
 //! external resources. Output is deterministic.
 //!
 //! Axes are created first, from the values to be shown: [`Axis::linear`] and [`Axis::logarithmic`]

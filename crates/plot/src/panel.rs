@@ -74,6 +74,17 @@ impl Panel {
         self
     }
 
+    /// Dashes lines that lie on an earlier one over the whole panel, so that both are seen: within 1 %
+    /// of the axis, a line's width. Of the series added so far.
+    #[must_use]
+    pub fn telling_apart(mut self) -> Self {
+        if let Content::Plot { y, series } = &mut self.content {
+            let (low, high) = y.ends();
+            Series::tell_apart(series, 0.01 * (high - low));
+        }
+        self
+    }
+
     /// Sets or removes a note above the right end.
     #[must_use]
     pub fn note(mut self, note: impl Into<Option<String>>) -> Self {
@@ -156,7 +167,7 @@ impl Panel {
     }
 
     pub(crate) fn draw(&self, svg: &mut String, frame: &Frame, id: &str, legend: Legend, theme: Theme) {
-        legend.draw(svg, theme, frame.top, &self.entries(), self.note_text());
+        legend.draw(svg, theme, frame, &self.entries(), self.note_text());
         match &self.content {
             Content::Plot { y, series } => self.draw_plot(svg, frame, id, theme, y, series),
             Content::Bands { bands, .. } => draw_bands(svg, frame, theme, bands),
@@ -195,7 +206,9 @@ impl Panel {
         }
         for (k, line) in series.iter().enumerate().filter(|(_, series)| series.drawn == Drawn::Line) {
             let path = line_path(line.points(), |x| frame.px(x), py);
-            let _ = writeln!(svg, "<path d=\"{path}\" {} stroke-width=\"1.1\"/>", stroke(line.number_at(k), theme));
+            let stroke = stroke(line.number_at(k), line.dash, theme);
+            let weight = if line.faint { "stroke-width=\".5\" stroke-opacity=\".45\"" } else { "stroke-width=\"1.1\"" };
+            let _ = writeln!(svg, "<path d=\"{path}\" {stroke} {weight}/>");
         }
         svg.push_str("</g>\n");
         for (k, marks) in series.iter().enumerate() {
@@ -262,7 +275,7 @@ fn draw_bands(svg: &mut String, frame: &Frame, theme: Theme, bands: &[Band]) {
         let top = frame.top + ROW * k as f64;
         let _ = writeln!(
             svg,
-            "<text x=\"{:.2}\" y=\"{:.2}\" text-anchor=\"end\" font-size=\"9\">{}</text>",
+            "<text x=\"{:.2}\" y=\"{:.2}\" text-anchor=\"end\" font-size=\"10\">{}</text>",
             LEFT - 5.0,
             top + 11.0,
             escaped(&band.label)

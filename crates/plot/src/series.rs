@@ -11,6 +11,17 @@ pub struct Series {
     number: Option<usize>,
     points: Vec<(f64, f64)>,
     pub(crate) drawn: Drawn,
+    pub(crate) dash: Dash,
+    pub(crate) faint: bool,
+}
+
+/// By what a line is dashed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Dash {
+    /// Its number.
+    ByNumber,
+    /// It lies on another line.
+    Over,
 }
 
 /// How a series is drawn.
@@ -46,7 +57,14 @@ impl Series {
     /// A line through points. Without a label it isn't in the legend.
     #[must_use]
     pub fn line(label: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
-        Self { label: label.into(), number: None, points: points.into_iter().collect(), drawn: Drawn::Line }
+        Self {
+            label: label.into(),
+            number: None,
+            points: points.into_iter().collect(),
+            drawn: Drawn::Line,
+            dash: Dash::ByNumber,
+            faint: false,
+        }
     }
 
     /// A step line: each value is constant up to the x of the next point, the last one up to `end`.
@@ -92,6 +110,32 @@ impl Series {
         self
     }
 
+    /// Draws a line thin and pale, as the raw values behind a mean; no effect on marks and areas.
+    #[must_use]
+    pub fn faint(mut self) -> Self {
+        self.faint = true;
+        self
+    }
+
+    /// Whether a line stays within `tolerance` (in y) of another one at all of its points, which are
+    /// at the same x.
+    fn lies_on(&self, other: &Self, tolerance: f64) -> bool {
+        self.drawn == Drawn::Line
+            && other.drawn == Drawn::Line
+            && self.points.len() == other.points.len()
+            && self.points.iter().zip(&other.points).all(|(a, b)| a.0 == b.0 && (a.1 - b.1).abs() <= tolerance)
+    }
+
+    /// Dashes each line that lies within `tolerance` of an earlier one: that one shows in the gaps.
+    pub(crate) fn tell_apart(lines: &mut [Self], tolerance: f64) {
+        for k in 1..lines.len() {
+            let (before, rest) = lines.split_at_mut(k);
+            if before.iter().any(|earlier| rest[0].lies_on(earlier, tolerance)) {
+                rest[0].dash = Dash::Over;
+            }
+        }
+    }
+
     /// The name in the legend.
     #[must_use]
     pub fn label(&self) -> &str {
@@ -113,6 +157,14 @@ impl Series {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn only_a_line_on_an_earlier_one_is_dashed() {
+        let line = |shift: f64| Series::line("", (0..9).map(|k| (f64::from(k), f64::from(k * k) + shift)));
+        let mut lines = [line(0.0), line(0.2), line(0.4), line(9.0)];
+        Series::tell_apart(&mut lines, 0.3);
+        assert_eq!(lines.each_ref().map(|line| line.dash == Dash::Over), [false, true, true, false]);
+    }
 
     #[test]
     fn a_staircase_keeps_each_value_until_the_next() {

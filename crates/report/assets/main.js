@@ -2,20 +2,21 @@
 
 (() => {
   const several = scenery.blocks.length > 1;
-  const alphas = [...new Set(scenery.blocks.filter(({ alpha }) => alpha !== null).map(({ alpha }) => alpha * degrees))];
-  const ofBlocks = (pick) => scenery.blocks.map((block, index) =>
-    ({ label: several ? block.name : "", index, t: curves.t, y: pick(curves.blocks[index]) }));
-
   if (crowd) addCrowd();
-  if (scenery.blocks.length && !crowd) {
-    const series = ofBlocks(({ phi }) => phi.map((x) => x * degrees));
-    const reached = Math.max(...series.map(({ y }) => y.reduce((most, x) => Math.max(most, Math.abs(x)), 0)));
-    // The critical angle is drawn where the motion comes near it; elsewhere it would only squeeze the curve.
-    const guides = alphas.filter((alpha) => reached > 0.8 * alpha).flatMap((alpha) => [-alpha, alpha]);
-    plots.add({ id: "phi", title: "Angle φ", unit: "°", series, guides, least: 2e-3, height: 190 });
-    const speeds = ofBlocks(({ omega }) => omega);
-    plots.add({ id: "omega", title: "Angular velocity φ̇", unit: "rad/s", series: speeds, least: 2e-3, height: 190 });
+  addPanels(false);
+
+  /** The plots over time that the page has in common with the figures: units, scales and what is left out are decided there. */
+  function addPanels(late) {
+    for (const panel of data.panels.filter((one) => one.late === late)) {
+      const series = panel.series.map(({ label, index, y, at_borders: atBorders }) =>
+        ({ label, index, y, t: atBorders ? forces.borders : curves.t }));
+      plots.add({
+        id: panel.id, contact: panel.contact, title: panel.title, unit: panel.unit, series, guides: panel.guides, least: panel.least,
+        cut: panel.cut ? cutOf(series, panel.least) : undefined, height: late ? 160 : 170,
+      });
+    }
   }
+
   /** Bands of many bodies, and those that go and turn furthest. */
   function addCrowd() {
     const numbers = new Map();
@@ -46,12 +47,6 @@
     say("phi", rule("turn"));
     plots.add({ id: "omega", title: "Angular velocity φ̇", unit: "rad/s", least: 2e-3, height: 160, series: bands(curves.t, crowd.omega, 1) });
   }
-  if (scenery.beams.length) {
-    const series = scenery.beams.map((beam, index) =>
-      ({ label: scenery.beams.length > 1 ? beam.name : "", index, t: curves.t, y: curves.w_mid[index].map((w) => w * 1e3) }));
-    plots.add({ id: "w_mid", title: "Beam deflection at midspan w", unit: "mm", series, least: 1e-6 * Math.max(...scenery.beams.map(({ span }) => span)), height: 150 });
-  }
-
   /** Where the peaks of impacts would dwarf all else: the size to cut them at. */
   function cutOf(series, least) {
     const sizes = series.flatMap(({ y }) => y.map(Math.abs).filter((f) => f > least)).sort((a, b) => a - b);
@@ -78,11 +73,18 @@
     const series = (key) => points.map((point) =>
       ({ label: contact.points[point.point].label, index: point.point, t: forces.borders, y: point[key], stepped: true }));
     for (const [key, title] of [["normal", "Normal force"], ["tangential", "Tangential force"]]) {
+      if (key === "tangential" && forces.frictionless.includes(k)) continue;
       const lines = series(key);
+      const means = key === "normal" ? points.filter(({ mean }) => mean).map((point) =>
+        ({ label: contact.points[point.point].label, index: point.point, t: forces.borders, y: point.mean })) : [];
+      for (const line of lines) line.raw = means.some(({ index }) => index === line.index);
       const least = 1e-6 * strongest;
       plots.add({
-        id: `${key}-${k}`, contact: k, title: title + suffix, unit: "N", series: lines, cut: cutOf(lines, least), floor: 0, least, height: 150,
+        id: `${key}-${k}`, contact: k, title: title + suffix, unit: "N", series: [...lines, ...means], cut: cutOf(lines, least), floor: 0, least, height: 150,
       });
+      if (means.length) {
+        htmlElement("p", "note", `Pale: raw, the mean of each step or of a few. Strong: the mean over ${number(forces.window * 1e3, 2)} ms.`, byId(`panel-${key}-${k}`));
+      }
     }
     plots.add({
       id: `state-${k}`, contact: k, title: `Contact state${suffix}`, series: [],
@@ -90,7 +92,6 @@
       height: plots.margin.top + plots.margin.bottom + plots.rowHeight * points.length,
     });
   });
-  if (active.length > 3) plots.choose(active[0]);
 
   if (scenery.hidden_points > 0 || scenery.unlisted) {
     const many = scenery.hidden_points > 0 ? `No contact has plots of its own: ${scenery.hidden_points} points can touch, more than 2000.`
@@ -99,51 +100,16 @@
     htmlElement("p", "note", `${many} ${where} has their impulses.`, byId("plots")).id = "hidden-contacts";
   }
 
-  for (const [kind, title, unit, factor] of [
-    ["moment", "Bending moment", "N m", 1], ["shear", "Transverse force", "N", 1], ["stress", "Largest stress", "MPa", 1e-6],
-    ["axial_force", "Axial force", "N", 1], ["reaction", "Reactions of the supports", "N", 1], ["reaction_couple", "Couples of the supports", "N m", 1],
-  ]) {
-    const series = data.sections.filter((one) => one.kind === kind)
-      .map(({ label, values }, index) => ({ label, index, t: curves.t, y: values.map((x) => (x === null ? null : x * factor)) }));
-    const largest = Math.max(0, ...series.map(({ y }) => y.reduce((most, x) => Math.max(most, Math.abs(x ?? 0)), 0)));
-    if (!(largest > 0)) continue;
-    const shown = factor === 1 ? plots.scaled(series, unit) : unit;
-    const size = Math.max(...series.map(({ y }) => y.reduce((most, x) => Math.max(most, Math.abs(x ?? 0)), 0)));
-    plots.add({ id: `section-${kind}`, title, unit: shown, series, cut: cutOf(series, 1e-6 * size), least: 1e-6 * size, height: 160 });
-  }
-
-  const energy = (name, label, index) =>
-    ({ label, index, t: curves.t, y: curves.energies.find((curve) => curve.name === name).values });
-  const energies = [
-    energy("kinetic", "kinetic", 0), ...(scenery.beams.length ? [energy("elastic", "elastic", 1)] : []),
-    energy("gravity", "gravity, change", 2), energy("total", "total", 6),
-  ];
-  const largestOf = (series) => series.y.reduce((most, x) => Math.max(most, Math.abs(x ?? 0)), 0);
-  const scale = Math.max(...energies.map(largestOf));
-  const joules = plots.scaled(energies, "J");
-  plots.add({ id: "energy", title: "Energy", unit: joules, series: energies, least: 1e-9 * Math.max(...energies.map(largestOf)) || 1, height: 190 });
-  const works = ["contact", "friction", "viscous", "numerical", "external", "projection"].map((name, k) => energy(name, name, k));
-  const idle = works.filter((series) => largestOf(series) <= 1e-9 * scale);
-  const done = works.filter((series) => !idle.includes(series));
-  if (done.length) {
-    const unit = plots.scaled(done, "J");
-    plots.add({ id: "works", title: "Work since t = 0", unit, series: done, least: 1e-6 * Math.max(...done.map(largestOf)), height: 160 });
-  }
-  const note = htmlElement("p", "note", undefined, byId("panel-works") ?? byId("panel-energy"));
-  if (idle.length) note.append(`No work: ${idle.map((series) => series.label).join(", ")}. `);
+  addPanels(true);
+  if (active.length > 3) plots.choose(active[0]);
+  const note = htmlElement("p", "note", undefined, byId("panel-works") ?? byId("panel-energy") ?? byId("plots"));
   note.append("Of the energy identity, the worst step leaves ");
   note.append(byId("residual").content.cloneNode(true), " of the scene's energy unexplained.");
 
-  if (scenery.blocks.length && !crowd) {
-    const series = scenery.blocks.map((block, index) => ({
-      label: several ? block.name : "", index, t: curves.t,
-      x: curves.blocks[index].phi.map((phi) => phi * degrees), y: curves.blocks[index].omega,
-    }));
-    // A scene in which nothing turns has no phase portrait.
-    const turns = series.some((one) => [one.x, one.y].every((values) => largestOf({ y: values }) > 2e-3));
-    if (turns) plots.add({
-      id: "phase", title: "Phase portrait: φ̇ over φ", unit: "rad/s", series, portrait: true, least: 2e-3, height: 300,
-      guides: alphas.flatMap((alpha) => [-alpha, alpha]),
+  for (const { id, title, x_label: xLabel, unit, least, guides, series } of data.portraits) {
+    plots.add({
+      id, title, xLabel, unit, guides, least: least[1], leastX: least[0], portrait: true, height: 300,
+      series: series.map(({ label, index, x, y }) => ({ label, index, x, y, t: forces.borders })),
     });
   }
 

@@ -23,7 +23,7 @@ const plots = (() => {
     const title = htmlElement("h3", "", `${panel.title} `, row);
     htmlElement("span", "unit", panel.unit ? `(${panel.unit})` : "", title);
     const legend = htmlElement("div", "legend", undefined, row);
-    for (const series of panel.portrait && panel.series.length === 1 ? [] : panel.series) {
+    for (const series of panel.portrait && panel.series.length === 1 ? [] : panel.series.filter(({ raw }) => !raw)) {
       const key = htmlElement("span", series.label ? "key" : "key bare", undefined, legend);
       const swatch = svgElement("svg", { viewBox: "0 0 18 8", "aria-hidden": "true" }, key);
       if (series.upper) svgElement("path", { d: "M0 0h18v8h-18z", class: "area", style: `fill: ${colour(series.index)}; fill-opacity: ${series.inner ? 0.45 : 0.2}` }, swatch);
@@ -51,11 +51,21 @@ const plots = (() => {
     }
   }
 
-  const stroke = (series) => `stroke: ${colour(series.index)}; stroke-dasharray: ${dash(series.index)}; fill: none`;
+  const stroke = (series) => `stroke: ${colour(series.index)}; stroke-dasharray: ${series.over ? "5 5" : dash(series.index)}; fill: none`;
+
+  /** Dashes a line that lies on an earlier one, which then shows in the gaps: within 1 % of what the panel shows. */
+  function tellApart({ series }) {
+    const finite = series.flatMap(({ y }) => y.filter((x) => x !== null && Number.isFinite(x)));
+    const [low, high] = finite.reduce(([a, b], x) => [Math.min(a, x), Math.max(b, x)], [Infinity, -Infinity]);
+    const near = (a, b) => a.t === b.t && !a.upper && !b.upper && a.raw === b.raw && a.y.length === b.y.length
+      && a.y.every((x, i) => Math.abs(x - b.y[i]) <= 0.01 * (high - low));
+    series.forEach((line, k) => { line.over = series.slice(0, k).some((earlier) => near(line, earlier)); });
+  }
 
   function add(panel) {
     panel.element = htmlElement("section", "panel", undefined, host);
     panel.element.id = `panel-${panel.id}`;
+    if (!panel.portrait) tellApart(panel);
     head(panel, panel.element);
     const unit = panel.unit ? ` in ${panel.unit}` : "";
     panel.svg = svgElement("svg", { class: "plot", role: "img", "aria-label": `${panel.title}${unit}` }, panel.element);
@@ -128,7 +138,7 @@ const plots = (() => {
 
   function curve(series, x, y) {
     if (series.upper) return `<path class="area" style="fill: ${colour(series.index)}" d="${area(series, x, y)}"/>`;
-    return `<path class="curve" style="${stroke(series)}" d="${path(series, x, y)}"/>`;
+    return `<path class="curve${series.raw ? " raw" : ""}" style="${stroke(series)}" d="${path(series, x, y)}"/>`;
   }
 
   function axes(svg, size, xTicks, yTicks, x, y) {
@@ -225,14 +235,14 @@ const plots = (() => {
 
   function drawPortrait(panel) {
     const size = { width: width(), height: panel.height };
-    const extent = (values) => {
+    const extent = (values, least) => {
       const finite = values.filter(Number.isFinite);
       const [low, high] = finite.reduce(([a, b], x) => [Math.min(a, x), Math.max(b, x)], [Infinity, -Infinity]);
-      const room = 0.06 * (high - low) + Math.max(0, panel.least - (high - low)) / 2;
+      const room = 0.06 * (high - low) + Math.max(0, least - (high - low)) / 2;
       return low <= high ? [low - room, high + room] : [-1, 1];
     };
-    const [x0, x1] = extent(panel.series.flatMap((series) => series.x));
-    const [y0, y1] = extent(panel.series.flatMap((series) => series.y));
+    const [x0, x1] = extent(panel.series.flatMap((series) => series.x), panel.leastX);
+    const [y0, y1] = extent(panel.series.flatMap((series) => series.y), panel.least);
     const [right, bottom] = [size.width - margin.right, size.height - portraitBottom];
     const x = (value) => margin.left + ((value - x0) / (x1 - x0)) * (right - margin.left);
     const y = (value) => margin.top + ((y1 - value) / (y1 - y0)) * (bottom - margin.top);
@@ -245,7 +255,7 @@ const plots = (() => {
     setAll(panel.svg, { viewBox: `0 0 ${size.width} ${size.height}` });
     const frameless = { width: size.width, height: size.height - portraitBottom + margin.bottom };
     panel.svg.innerHTML = axes(panel.svg, frameless, ticks(x0, x1, Math.max(4, Math.floor(size.width / 90))), ticks(y0, y1, 6), x, y)
-      + `<text x="${(margin.left + right) / 2}" y="${size.height - 5}" text-anchor="middle">φ (°)</text>`
+      + `<text x="${(margin.left + right) / 2}" y="${size.height - 5}" text-anchor="middle">${panel.xLabel}</text>`
       + panel.guides.filter((at) => at > x0 && at < x1)
         .map((at) => `<path class="guide" d="M${x(at).toFixed(1)} ${margin.top}V${bottom}"/>`).join("")
       + panel.series.map((series) => {
@@ -273,7 +283,7 @@ const plots = (() => {
 
   function readOut(t) {
     for (const panel of panels.filter((one) => !one.portrait)) {
-      for (const series of panel.series) {
+      for (const series of panel.series.filter(({ raw }) => !raw)) {
         const shown = (value) => number(Math.abs(value) < 1e-2 * panel.least ? 0 : value, series.upper ? 3 : 4);
         const value = shown(valueAt(series, t));
         series.readout.textContent = series.upper ? `${value} … ${shown(valueAt({ t: series.t, y: series.upper }, t))}` : value;

@@ -1,6 +1,7 @@
 //! `columns.json`: the unit of every column of the tables, whose headers are names only.
 
 use crate::contacts;
+use crate::driven::Driven;
 use crate::recorder::{ENERGY_HEADER, IMPACTS_HEADER, TABLES, trajectory_header};
 use crate::sections::{ENVELOPES_HEADER, Sections};
 use serde_json::{Map, Value};
@@ -8,7 +9,7 @@ use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Layout;
 
 /// Units by what columns are called, without the body before and the place after.
-const UNITS: [(&str, &str); 29] = [
+const UNITS: [(&str, &str); 33] = [
     ("t", "s"),
     ("x", "m"),
     ("y", "m"),
@@ -16,6 +17,9 @@ const UNITS: [(&str, &str); 29] = [
     ("vx", "m/s"),
     ("vy", "m/s"),
     ("omega", "rad/s"),
+    ("ax", "m/s^2"),
+    ("ay", "m/s^2"),
+    ("angular_acceleration", "rad/s^2"),
     ("w_mid", "m"),
     ("v_mid", "m/s"),
     ("w", "m"),
@@ -30,6 +34,7 @@ const UNITS: [(&str, &str); 29] = [
     ("p_t", "N s"),
     ("u_n", "m/s"),
     ("u_t", "m/s"),
+    ("slip", "m"),
     ("impulse_n", "N s"),
     ("impulse_t", "N s"),
     ("u_n_before", "m/s"),
@@ -41,13 +46,15 @@ const UNITS: [(&str, &str); 29] = [
 ];
 
 /// The unit of a column; empty for words, `None` for a column that is not known.
-fn unit(table: &str, column: &str) -> Option<&'static str> {
+fn unit<'n>(table: &str, column: &'n str) -> Option<&'static str> {
     if table == "energy.csv" && column != "t" {
         return Some("J");
     }
     let name = column.split('@').next().unwrap_or(column);
     let name = name.rsplit('.').next().unwrap_or(name);
-    let name = ["_min", "_max"].iter().find_map(|end| name.strip_suffix(end)).unwrap_or(name);
+    let without =
+        |name: &'static [&'static str], of: &'n str| name.iter().find_map(|end| of.strip_suffix(end)).unwrap_or(of);
+    let name = without(&["_left", "_right"], without(&["_min", "_max"], name));
     match name {
         "state" | "beam" => Some(""),
         name => UNITS.iter().find(|(known, _)| *known == name).map(|(_, unit)| *unit),
@@ -59,7 +66,7 @@ fn unit(table: &str, column: &str) -> Option<&'static str> {
 /// # Errors
 /// None today; as serialising.
 pub fn columns(scene: &Scene, layout: &Layout) -> Result<String, serde_json::Error> {
-    let trajectory = trajectory_header(layout, &Sections::new(scene, layout));
+    let trajectory = trajectory_header(layout, &Sections::new(scene, layout), &Driven::of(scene, layout));
     let mut tables = Map::new();
     let headers = [trajectory.as_str(), contacts::HEADER, IMPACTS_HEADER, ENERGY_HEADER];
     let has_envelopes = scene.beams.iter().any(|beam| beam.output.envelope);

@@ -4,16 +4,29 @@ use crate::number::{push, push_next};
 use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
 use teeter_detect::{Candidate, ContactId};
-use teeter_integrator::{Contact, ContactState, Model, State, Vector};
+use teeter_integrator::{Balance, Contact, ContactState, Model, State, Vector};
 use teeter_scenario::simulation::{ContactNames, Layout};
 
-pub(crate) const HEADER: &str = "t,contact,a,b,point,gap,p_n,p_t,u_n,u_t,state\n";
+pub(crate) const HEADER: &str = "t,contact,a,b,point,gap,p_n,p_t,u_n,u_t,state,slip\n";
+
+/// By how much a contact slips in a phase of this duration (s), m: the mean of its tangential velocity, as the phase takes
+/// means, times the duration, while it presses. What sticks slips by nothing but rounding.
+#[inline]
+pub(crate) fn slip(contact: &Contact<2>, duration: f64, balance: Balance) -> f64 {
+    if contact.p[0] <= 0.0 {
+        return 0.0;
+    }
+    let weight = balance.weight();
+    duration * (weight * contact.u_after[1] + (1.0 - weight) * contact.u_before[1])
+}
 
 /// Impulses since the last row, by contact.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Impulses {
     /// In order of identity.
     sums: Vec<(ContactId, Vector<2>)>,
+    /// How far each contact has slipped since the start, m, in order of identity.
+    slips: Vec<(ContactId, f64)>,
     /// Memory of a row.
     #[serde(skip)]
     candidates: Vec<Candidate<2>>,
@@ -41,8 +54,22 @@ impl AtEnd {
 }
 
 impl Impulses {
+    /// Adds the contacts of a phase of this duration, s.
     #[inline]
-    pub(crate) fn add(&mut self, contacts: &[Contact<2>]) {
+    pub(crate) fn add(&mut self, contacts: &[Contact<2>], duration: f64, balance: Balance) {
+        for (number, contact) in contacts.iter().enumerate() {
+            let slip = slip(contact, duration, balance);
+            if let Some((_, sum)) = self.slips.get_mut(number).filter(|(id, _)| *id == contact.id) {
+                *sum += slip;
+                continue;
+            }
+            match self.slips.binary_search_by_key(&contact.id, |(id, _)| *id) {
+                Ok(at) => self.slips[at].1 += slip,
+                // Of the many that only come near there is nothing to keep.
+                Err(at) if slip != 0.0 => self.slips.insert(at, (contact.id, slip)),
+                Err(_) => {}
+            }
+        }
         for (number, contact) in contacts.iter().enumerate() {
             // Usually it has the place that it had in the step before.
             if let Some((_, sum)) = self.sums.get_mut(number).filter(|(id, _)| *id == contact.id) {
@@ -118,6 +145,8 @@ impl Impulses {
             }
             out.push(',');
             out.push_str(active.map_or("open", |contact| contact.does.as_str()));
+            let slipped = self.slips.binary_search_by_key(id, |(id, _)| *id);
+            push_next(out, slipped.map_or(0.0, |at| self.slips[at].1));
             out.push('\n');
         }
         self.sums.clear();

@@ -9,6 +9,7 @@ mod checkpoint;
 mod closed;
 mod columns;
 mod contacts;
+mod driven;
 mod export;
 mod lock;
 mod made_energy;

@@ -6,6 +6,7 @@
 mod accelerograms;
 mod bands;
 mod chain;
+mod content;
 mod crowd;
 mod curves;
 mod data;
@@ -13,12 +14,15 @@ mod drawings;
 mod figures;
 mod frames;
 mod html;
+mod means;
 mod network;
 mod outline;
 mod packed;
+mod panels;
 mod recorder;
 mod rocking;
 mod scenery;
+mod span;
 mod thrust;
 
 pub use chain::{Joint, ThrustLine, thrust_lines};

@@ -3,6 +3,7 @@
 use crate::bounces::Bounces;
 use crate::closed::Closed;
 use crate::contacts::{self, AtEnd, Impulses, push_names};
+use crate::driven::Driven;
 use crate::meetings::Met;
 use crate::number::{push, push_next};
 use crate::resolution::{Bodies, Resolution};
@@ -116,6 +117,7 @@ pub struct Recorder<'a> {
     impacts: Table,
     energy: Table,
     sections: Sections,
+    driven: Vec<Driven>,
     bodies: Bodies,
     watch: Watch,
     fate_watch: verdict::Watch,
@@ -172,7 +174,7 @@ impl<'a> Recorder<'a> {
     /// of a recorder made by [`Self::in_memory`].
     #[must_use]
     pub fn trajectory(&self) -> (String, &str) {
-        let header = trajectory_header(self.layout, &self.sections);
+        let header = trajectory_header(self.layout, &self.sections, &self.driven);
         (header, std::str::from_utf8(self.trajectory.kept()).unwrap_or_default())
     }
 
@@ -184,8 +186,13 @@ impl<'a> Recorder<'a> {
     ) -> Result<Self, ResultsError> {
         let sections = Sections::new(scene, layout);
         let (beams, section_values) = sections.empty(scene, layout);
-        let headers =
-            [&trajectory_header(layout, &sections), contacts::HEADER, IMPACTS_HEADER, ENERGY_HEADER].map(str::to_owned);
+        let headers = [
+            &trajectory_header(layout, &sections, &Driven::of(scene, layout)),
+            contacts::HEADER,
+            IMPACTS_HEADER,
+            ENERGY_HEADER,
+        ]
+        .map(str::to_owned);
         let kept = Kept {
             schedule: Schedule::new(scene.every, scene.time.steps(), scene.time.step),
             closings: ClosingMonitor::default(),
@@ -231,6 +238,7 @@ impl<'a> Recorder<'a> {
             impacts: table(2)?,
             energy: table(3)?,
             sections,
+            driven: Driven::of(scene, layout),
             bodies: Bodies::of(scene),
             watch: Watch::of(scene, layout),
             fate_watch: verdict::Watch::of(scene, layout).since(&kept.record.fates),
@@ -293,6 +301,9 @@ impl<'a> Recorder<'a> {
             push_next(&mut self.line, beam.deflection(&middle, v).w);
             self.sections.push_row(number, beam, q, &mut section_values, &mut self.line);
         }
+        for driven in &self.driven {
+            driven.values(state).into_iter().for_each(|x| push_next(&mut self.line, x));
+        }
         self.line.push('\n');
         self.trajectory.rows(&self.line)?;
 
@@ -332,7 +343,7 @@ impl<'a> Recorder<'a> {
         contacts_now.clear();
         let mut last = None;
         for part in step.active() {
-            impulses.add(part.contacts);
+            impulses.add(part.contacts, part.duration, part.balance);
             // Those of its last part, and of an impact at its very end.
             if part.is_last_lasting {
                 contacts_now.extend(part.contacts.iter().map(AtEnd::of));
@@ -446,7 +457,7 @@ impl Observer<2> for Recorder<'_> {
     }
 }
 
-pub(crate) fn trajectory_header(layout: &Layout, sections: &Sections) -> String {
+pub(crate) fn trajectory_header(layout: &Layout, sections: &Sections, driven: &[Driven]) -> String {
     let mut header = String::from("t");
     for block in &layout.blocks {
         for column in ["x", "y", "phi", "vx", "vy", "omega"] {
@@ -457,6 +468,7 @@ pub(crate) fn trajectory_header(layout: &Layout, sections: &Sections) -> String 
         header.push_str(&format!(",{0}.w_mid,{0}.v_mid", beam.name));
         sections.push_header(number, &mut header);
     }
+    driven.iter().for_each(|driven| driven.push_header(&mut header));
     header.push('\n');
     header
 }

@@ -169,7 +169,14 @@ impl<'a> RunRecorder<'a> {
             export: self.exporter.as_ref().map(|exporter| Cow::Borrowed(exporter.keep())),
         };
         let head = Head { identity: Cow::Borrowed(identity), moment, whole: true };
-        checkpoints.file = sealed(std::mem::take(&mut checkpoints.file), &head, Some(&rest))?;
+        let file = &mut checkpoints.file;
+        let room = file.capacity();
+        *file = sealed(std::mem::take(file), &head, Some(&rest))?;
+        // What a run keeps varies between the most and half of it, as full curves are halved: with room for twice as much
+        // as once was too much, it doesn't grow again.
+        if file.capacity() > room {
+            file.reserve_exact(file.len());
+        }
         Ok(checkpoints.results.write(CHECKPOINT, &checkpoints.file)?)
     }
 }

@@ -127,22 +127,33 @@ mod kept_envelope {
         deflection: Vec<[f64; 2]>,
         moment: Vec<[f64; 2]>,
         shear: Vec<[f64; 2]>,
+        moment_ends: Vec<[[f64; 2]; 2]>,
+        shear_ends: Vec<[[f64; 2]; 2]>,
         stress: Vec<f64>,
     }
 
     pub(super) fn serialize<S: Serializer>(envelope: &Option<Envelope>, to: S) -> Result<S::Ok, S::Error> {
-        let kept = envelope.clone().map(|Envelope { deflection, moment, shear, stress }| Kept {
-            deflection,
-            moment,
-            shear,
-            stress,
+        let kept = envelope.clone().map(|envelope| Kept {
+            deflection: envelope.deflection,
+            moment: envelope.moment,
+            shear: envelope.shear,
+            moment_ends: envelope.moment_ends,
+            shear_ends: envelope.shear_ends,
+            stress: envelope.stress,
         });
         kept.serialize(to)
     }
 
     pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Envelope>, D::Error> {
         let kept = Option::<Kept>::deserialize(from)?;
-        Ok(kept.map(|Kept { deflection, moment, shear, stress }| Envelope { deflection, moment, shear, stress }))
+        Ok(kept.map(|kept| Envelope {
+            deflection: kept.deflection,
+            moment: kept.moment,
+            shear: kept.shear,
+            moment_ends: kept.moment_ends,
+            shear_ends: kept.shear_ends,
+            stress: kept.stress,
+        }))
     }
 }
 
@@ -339,7 +350,9 @@ impl BeamRecord {
     }
 }
 
-pub(crate) const ENVELOPES_HEADER: &str = "beam,x,w_min,w_max,moment_min,moment_max,shear_min,shear_max,stress_max\n";
+pub(crate) const ENVELOPES_HEADER: &str = "beam,x,w_min,w_max,moment_min,moment_max,shear_min,shear_max,stress_max,\
+    moment_left_min,moment_left_max,moment_right_min,moment_right_max,\
+    shear_left_min,shear_left_max,shear_right_min,shear_right_max\n";
 
 /// The text of `envelopes.csv`: the extremes over all steps by nodes, of the beams that ask for it; `None` where none does.
 #[must_use]
@@ -360,6 +373,16 @@ pub fn envelopes(layout: &Layout, records: &[BeamRecord]) -> Option<String> {
                 text.push(',');
             } else {
                 push_next(&mut text, envelope.stress[node]);
+            }
+            for ends in [&envelope.moment_ends, &envelope.shear_ends] {
+                // Just left of the node, in the element that ends there, and just right of it.
+                let sides = [node.checked_sub(1).and_then(|e| ends.get(e)).map(|e| e[1]), ends.get(node).map(|e| e[0])];
+                for side in sides {
+                    match side {
+                        Some(range) => range.into_iter().for_each(|value| push_next(&mut text, value)),
+                        None => text.push_str(",,"),
+                    }
+                }
             }
             text.push('\n');
         }

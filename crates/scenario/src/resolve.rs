@@ -26,7 +26,7 @@ use std::collections::BTreeMap;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::document::Document;
-use crate::scene::{ContactScene, Scene, SolverScene, SupportingBody, Time};
+use crate::scene::{AngleUnit, ContactScene, Display, LengthUnit, Scene, SolverScene, SupportingBody, Time, most_used};
 use crate::scene_checks;
 use crate::value::Value;
 use crate::words::Word;
@@ -71,6 +71,9 @@ pub fn resolve(mut document: Document, stem: &str, read: &mut ReadFile<'_>) -> R
             let derived = [
                 ("title", Value::Text(scene.title.clone())),
                 ("time.gap_tolerance", Value::Number(scene.time.gap_tolerance)),
+                // The written scene is in SI units, which would tell it nothing of the user's.
+                ("output.length_unit", Value::Text(scene.display.length.word().to_owned())),
+                ("output.angle_unit", Value::Text(scene.display.angle.word().to_owned())),
             ];
             for (path, value) in derived {
                 if !document.has(path)
@@ -290,10 +293,31 @@ impl<'a, 'f> Resolver<'a, 'f> {
             loads: loads.into_iter().collect::<Option<_>>()?,
             solver: solver?,
             every,
+            display: self.display(),
         };
         self.faces(&mut scene);
         self.output(&scene);
         Some(scene)
+    }
+
+    /// How the run is shown: in the units that the scene itself uses most, unless it names others.
+    fn display(&self) -> Display {
+        let doc = self.doc;
+        let named = |path: &str| doc.text(path);
+        let default = Display::default();
+        let length = match named("output.length_unit") {
+            Some(word) => LengthUnit::ALL.iter().find(|(known, _)| *known == word).map(|(_, unit)| *unit),
+            None => most_used(doc.source(), &LengthUnit::ALL),
+        };
+        let angle = match named("output.angle_unit") {
+            Some(word) => AngleUnit::ALL.iter().find(|(known, _)| *known == word).map(|(_, unit)| *unit),
+            None => most_used(doc.source(), &AngleUnit::ALL),
+        };
+        Display {
+            figure_width: doc.quantity("output.figure_width").unwrap_or(default.figure_width),
+            length: length.unwrap_or(default.length),
+            angle: angle.unwrap_or(default.angle),
+        }
     }
 
     /// The bytes of a file named by the scene; each file is read once.

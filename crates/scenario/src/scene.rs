@@ -2,12 +2,15 @@
 
 mod beam_output;
 mod crowd;
+mod display;
 mod history;
 mod reduction;
 
 pub use beam_output::{BEAM_QUANTITIES, BeamOutput, BeamQuantity};
 pub(crate) use crowd::pairs_between;
 pub use crowd::{Crowd, CrowdContact};
+pub(crate) use display::most_used;
+pub use display::{AngleUnit, Display, LengthUnit};
 pub use history::{AxisScene, ForceScene, History, LoadKind, LoadScene, MotionScene, RecordScene, SignalScene};
 pub use reduction::Reduction;
 
@@ -45,6 +48,8 @@ pub struct Scene {
     pub solver: SolverScene,
     /// Time between rows, s; `None`: thinned to some 10 000 rows.
     pub every: Option<f64>,
+    /// How the page and the figures show it.
+    pub display: Display,
 }
 
 /// Time stepping of a scene.

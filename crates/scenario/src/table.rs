@@ -43,6 +43,9 @@ const INSTANT: Kind = Kind::Quantity(Dimension::TIME, Range::ANY);
 const ANGLE: Kind = Kind::Quantity(Dimension::ANGLE, Range::ANY);
 const POINT: Kind = Kind::Pair(Dimension::LENGTH, Range::ANY);
 
+/// Narrower, the labels of axes would meet; wider, no page has room.
+const FIGURE_WIDTH: Range = Range::new(Bound::Closed(0.06), Bound::Closed(0.3));
+
 /// Contact laws: instantaneous and compliant.
 const IMPACTS: &[&str] = &["newton", "poisson", "energetic"];
 const COMPLIANT: &[&str] = &["kelvin-voigt", "hunt-crossley"];
@@ -448,6 +451,11 @@ pub static TABLES: &[TableSchema] = &[
         pattern: "output",
         occurrence: Occurrence::Always,
         doc: "Output of results.",
-        keys: &[key("every", TIME, Optional, "\"1 ms\"", "Time between rows; if left out, every step up to 10 000 rows, evenly thinned beyond; with more than 300 blocks up to 200 000 rows divided by their number, but at least 100.")],
+        keys: &[
+            key("every", TIME, Optional, "\"1 ms\"", "Time between rows; if left out, every step up to 10 000 rows, evenly thinned beyond; with more than 300 blocks up to 200 000 rows divided by their number, but at least 100."),
+            key("figure_width", Kind::Quantity(Dimension::LENGTH, FIGURE_WIDTH), Default("\"120 mm\""), "\"84 mm\"", "Width of the figures: 84 mm and 174 mm are one and two columns of most journals. Their type is 7 to 8 pt at any width."),
+            key("length_unit", Kind::Choice(&["mm", "cm", "m"]), Optional, "\"mm\"", "Unit of lengths on the axes of page and figures; if left out, the one that the scene uses most. What is too small to be read in it has a smaller one. Tables are in SI units."),
+            key("angle_unit", Kind::Choice(&["deg", "mrad", "rad"]), Optional, "\"rad\"", "Unit of angles on the axes of page and figures; if left out, the one that the scene uses most, deg if none."),
+        ],
     },
 ];

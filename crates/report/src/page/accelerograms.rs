@@ -4,7 +4,7 @@ use super::rounded;
 use crate::summary::RecordSummary;
 use std::fmt::Write;
 use std::sync::Arc;
-use teeter_plot::{Axis, Figure, Panel, Series, escaped};
+use teeter_plot::{Axis, Figure, Panel, Series, Theme, escaped};
 use teeter_scenario::scene::RecordScene;
 
 /// Damping ratio of the response spectra.
@@ -120,9 +120,9 @@ pub(super) fn section(records: &[Arc<RecordScene>], summaries: &[RecordSummary])
         }
         html.push_str("</tr>\n");
     }
-    let _ = writeln!(html, "</tbody></table></div>\n<div class=\"paper\">{}</div>", histories.to_svg());
-    if let Some(spectra) = spectra(records) {
-        let _ = writeln!(html, "<div class=\"paper\">{}</div>", spectra.to_svg());
+    html.push_str("</tbody></table></div>\n");
+    for figure in [Some(histories), spectra(records)].into_iter().flatten() {
+        let _ = writeln!(html, "<div class=\"themed\">{}</div>", figure.theme(Theme::Page).to_svg());
     }
     html.push_str("</section>\n");
     html

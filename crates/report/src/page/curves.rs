@@ -40,24 +40,32 @@ impl Extremes {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 struct Work {
     impulse: [f64; 2],
+    /// Tangential displacement while it pressed, m, from the start of the run to the end of the bucket.
+    slip: f64,
     /// Steps with each state; the rest it was open.
-    stick: u64,
-    slip: u64,
+    sticking: u64,
+    slipping: u64,
 }
 
 impl Work {
     fn join(self, later: Self) -> Self {
         let impulse = [self.impulse[0] + later.impulse[0], self.impulse[1] + later.impulse[1]];
-        Self { impulse, stick: self.stick + later.stick, slip: self.slip + later.slip }
+        Self {
+            impulse,
+            slip: later.slip,
+            sticking: self.sticking + later.sticking,
+            slipping: self.slipping + later.slipping,
+        }
     }
 
-    fn enter(&mut self, impulse: [f64; 2], state: ContactState) {
+    fn enter(&mut self, impulse: [f64; 2], state: ContactState, slip: f64) {
+        self.slip += slip;
         self.impulse[0] += impulse[0];
         self.impulse[1] += impulse[1];
         match state {
             ContactState::Open => {}
-            ContactState::Stick => self.stick += 1,
-            ContactState::Slip => self.slip += 1,
+            ContactState::Stick => self.sticking += 1,
+            ContactState::Slip => self.slipping += 1,
         }
     }
 }
@@ -84,6 +92,10 @@ pub(crate) struct Curves {
     buckets: Vec<Bucket>,
     /// `start.1.len()` a bucket.
     extremes: Vec<Extremes>,
+    /// Of the first columns, so many as this, `samples` holds the values at the end of each bucket: those belong together,
+    /// as extremes don't.
+    sampled: usize,
+    samples: Vec<f64>,
     contacts: usize,
     /// `contacts` a bucket.
     works: Vec<Work>,
@@ -96,19 +108,24 @@ pub(crate) struct ForceCurve {
     pub(crate) normal: Vec<f64>,
     /// Mean tangential force, N.
     pub(crate) tangential: Vec<f64>,
+    /// Tangential displacement while it pressed, from the start to the end of the bucket, m.
+    pub(crate) slip: Vec<f64>,
     /// The state in most of the steps.
     pub(crate) state: Vec<ContactState>,
 }
 
 impl Curves {
-    /// Curves from values at the start on, in at most `capacity` buckets (an even number), with `contacts` contact points.
-    pub(crate) fn new(capacity: usize, t: f64, start: Vec<f64>, contacts: usize) -> Self {
+    /// Curves from values at the start on, in at most `capacity` buckets (an even number), of the first `sampled` with
+    /// samples, with `contacts` contact points.
+    pub(crate) fn new(capacity: usize, t: f64, start: Vec<f64>, sampled: usize, contacts: usize) -> Self {
         Self {
             capacity,
             stride: 2,
             start: (t, start),
             buckets: Vec::new(),
             extremes: Vec::new(),
+            sampled,
+            samples: Vec::new(),
             contacts,
             works: Vec::new(),
         }
@@ -126,6 +143,8 @@ impl Curves {
             }
             None => self.begin_bucket(t, values),
         }
+        let at = self.samples.len().saturating_sub(self.sampled);
+        self.samples[at..].copy_from_slice(&values[..self.sampled]);
     }
 
     /// Begins a bucket, as all before it are full, with the values at the end of its first step.
@@ -137,20 +156,25 @@ impl Curves {
         let begin = self.buckets.last().map_or(self.start.0, |bucket| bucket.last);
         self.buckets.push(Bucket { begin, first: t, last: t, steps: 1 });
         self.extremes.extend(values.iter().map(|&x| Extremes::of(t, x)));
-        self.works.resize(self.works.len() + self.contacts, Work::default());
+        self.samples.resize(self.samples.len() + self.sampled, 0.0);
+        let before = self.works.len().saturating_sub(self.contacts);
+        for k in 0..self.contacts {
+            let slip = self.works.get(before + k).map_or(0.0, |work| work.slip);
+            self.works.push(Work { slip, ..Work::default() });
+        }
     }
 
-    /// Adds what a contact did in the step entered last.
+    /// Adds what a contact did in the step entered last: impulse, state, and by how much it slipped, m.
     #[inline]
-    pub(crate) fn add(&mut self, contact: usize, impulse: [f64; 2], state: ContactState) {
+    pub(crate) fn add(&mut self, contact: usize, impulse: [f64; 2], state: ContactState, slip: f64) {
         let newest = self.works.len().saturating_sub(self.contacts);
         if let Some(work) = self.works[newest..].get_mut(contact) {
-            work.enter(impulse, state);
+            work.enter(impulse, state, slip);
         }
     }
 
     fn halve(&mut self) {
-        let (columns, pairs) = (self.start.1.len(), self.buckets.len() / 2);
+        let (columns, sampled, pairs) = (self.start.1.len(), self.sampled, self.buckets.len() / 2);
         for i in 0..pairs {
             let (a, b) = (self.buckets[2 * i], self.buckets[2 * i + 1]);
             self.buckets[i] = Bucket { begin: a.begin, first: a.first, last: b.last, steps: a.steps + b.steps };
@@ -160,15 +184,46 @@ impl Curves {
                 joined.take(later);
                 self.extremes[i * columns + k] = joined;
             }
+            self.samples.copy_within((2 * i + 1) * sampled..(2 * i + 2) * sampled, i * sampled);
             for k in 0..self.contacts {
                 let (a, b) = (self.works[2 * i * self.contacts + k], self.works[(2 * i + 1) * self.contacts + k]);
                 self.works[i * self.contacts + k] = a.join(b);
             }
         }
+        // A last one without a partner stays alone: only where the curves are drawn, as a full run has an even number.
+        let odd = self.buckets.len() % 2;
+        if odd == 1 {
+            self.buckets[pairs] = self.buckets[2 * pairs];
+            self.extremes.copy_within(2 * pairs * columns.., pairs * columns);
+            self.samples.copy_within(2 * pairs * sampled.., pairs * sampled);
+            self.works.copy_within(2 * pairs * self.contacts.., pairs * self.contacts);
+        }
+        let pairs = pairs + odd;
         self.buckets.truncate(pairs);
+        self.samples.truncate(pairs * sampled);
         self.extremes.truncate(pairs * columns);
         self.works.truncate(pairs * self.contacts);
         self.stride *= 2;
+    }
+
+    /// How many buckets there are.
+    pub(crate) fn len(&self) -> usize {
+        self.buckets.len()
+    }
+
+    /// The curves in at most so many buckets, or two.
+    pub(crate) fn in_at_most(&self, buckets: usize) -> Self {
+        let mut fewer = self.clone();
+        while fewer.len() > buckets.max(2) {
+            fewer.halve();
+        }
+        fewer
+    }
+
+    /// One of the sampled quantities at the start and at the end of each bucket, at the times of [`Curves::borders`].
+    pub(crate) fn samples(&self, column: usize) -> Vec<f64> {
+        let samples = self.samples.iter().skip(column).step_by(self.sampled.max(1));
+        std::iter::once(self.start.1[column]).chain(samples.copied()).collect()
     }
 
     /// Times of the points of [`Curves::curve`], s.
@@ -198,16 +253,17 @@ impl Curves {
             works().zip(&self.buckets).map(|(work, bucket)| work.impulse[k] / (bucket.last - bucket.begin)).collect()
         };
         let state = works().zip(&self.buckets).map(|(work, bucket)| {
-            let open = bucket.steps.saturating_sub(work.stick + work.slip);
-            if open >= work.stick.max(work.slip).max(1) {
+            let open = bucket.steps.saturating_sub(work.sticking + work.slipping);
+            if open >= work.sticking.max(work.slipping).max(1) {
                 ContactState::Open
-            } else if work.stick >= work.slip {
+            } else if work.sticking >= work.slipping {
                 ContactState::Stick
             } else {
                 ContactState::Slip
             }
         });
-        Some(ForceCurve { normal: mean(0), tangential: mean(1), state: state.collect() })
+        let slip = works().map(|work| work.slip).collect();
+        Some(ForceCurve { normal: mean(0), tangential: mean(1), slip, state: state.collect() })
     }
 }
 
@@ -216,11 +272,11 @@ mod tests {
     use super::*;
 
     fn run(capacity: usize, steps: u32, x: impl Fn(f64) -> f64) -> Curves {
-        let mut curves = Curves::new(capacity, 0.0, vec![x(0.0)], 1);
+        let mut curves = Curves::new(capacity, 0.0, vec![x(0.0)], 1, 1);
         for k in 1..=steps {
             let t = f64::from(k);
             curves.enter(t, &[x(t)]);
-            curves.add(0, [2.0, -1.0], if k % 5 == 0 { ContactState::Slip } else { ContactState::Stick });
+            curves.add(0, [2.0, -1.0], if k % 5 == 0 { ContactState::Slip } else { ContactState::Stick }, 0.5);
         }
         curves
     }
@@ -242,13 +298,38 @@ mod tests {
     }
 
     #[test]
+    fn fewer_buckets_hold_the_same_run() {
+        let curves = run(10, 9, |t| (t * t - 3.0).cos());
+        assert_eq!(curves.len(), 5);
+        let fewer = curves.in_at_most(3);
+        assert_eq!((fewer.len(), fewer.borders().last()), (3, Some(&9.0)));
+        assert_eq!(fewer.forces(0).unwrap().slip, [2.0, 4.0, 4.5]);
+        let extremes = |curves: &Curves| {
+            let values = curves.curve(0);
+            let fold = |f: fn(f64, f64) -> f64| values.iter().copied().reduce(f).unwrap();
+            [fold(f64::min), fold(f64::max)]
+        };
+        assert_eq!(extremes(&fewer), extremes(&curves));
+    }
+
+    #[test]
+    fn samples_belong_to_one_instant() {
+        for (capacity, steps) in [(4, 8), (4, 100), (10, 17)] {
+            let curves = run(capacity, steps, |t| (7.0 * t).sin());
+            let values: Vec<f64> = curves.borders().iter().map(|t| (7.0 * t).sin()).collect();
+            assert_eq!(curves.samples(0), values, "{steps} steps in {capacity}");
+        }
+    }
+
+    #[test]
     fn forces_are_means_and_states_majorities() {
         for steps in [1, 8, 9, 1000] {
             let forces = run(4, steps, |t| t).forces(0).unwrap();
             assert!(forces.normal.iter().all(|f| (f - 2.0).abs() < 1e-12));
             assert!(forces.tangential.iter().all(|f| (f + 1.0).abs() < 1e-12));
             assert_eq!(forces.state[0], ContactState::Stick);
+            assert_eq!(forces.slip.last(), Some(&(0.5 * f64::from(steps))), "what was slipped adds up");
         }
-        assert_eq!(Curves::new(4, 0.0, vec![], 2).forces(1), None);
+        assert_eq!(Curves::new(4, 0.0, vec![], 0, 2).forces(1), None);
     }
 }

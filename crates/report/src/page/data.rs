@@ -4,11 +4,11 @@ use super::bands::{BAND_COLUMNS, BAND_NAMES};
 use super::crowd::CrowdCurve;
 use super::network::Link;
 use super::packed::Packed;
-use super::recorder::{BLOCK_COLUMNS, BLOCK_FRAME, ENERGIES, MANY_IMPACTS, PageRecorder};
+use super::panels::{Panels, Place};
+use super::recorder::{BLOCK_FRAME, MANY_IMPACTS, PageRecorder};
 use super::scenery::Scenery;
-use super::{DIGITS, TIME_DIGITS, rounded};
+use super::{DIGITS, TIME_DIGITS, means, rounded};
 use crate::Summary;
-use crate::sections::Kind;
 use serde::Serialize;
 use teeter_integrator::ContactState;
 use teeter_scenario::scene::{History, LoadKind, SupportingBody};
@@ -30,7 +30,8 @@ struct Data<'a> {
     /// Where they are many: how many in each part of the run up to `end`, of all contacts and of each.
     #[serde(skip_serializing_if = "Option::is_none")]
     density: Option<DensityData>,
-    sections: Vec<SectionData>,
+    panels: Vec<PanelData>,
+    portraits: Vec<PortraitData>,
 }
 
 #[derive(Serialize)]
@@ -52,12 +53,52 @@ fn density(recorder: &PageRecorder) -> Option<DensityData> {
     })
 }
 
-/// What a beam bears over time, at the times of the curves.
+/// A plot over time.
 #[derive(Serialize)]
-struct SectionData {
-    kind: Kind,
+struct PanelData {
+    id: String,
+    title: String,
+    unit: String,
+    least: f64,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    guides: Vec<f64>,
+    /// Whether the peaks of impacts are cut.
+    cut: bool,
+    /// The contact whose it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    contact: Option<usize>,
+    /// Whether it stands after the contacts.
+    late: bool,
+    series: Vec<SeriesData>,
+}
+
+#[derive(Serialize)]
+struct SeriesData {
     label: String,
-    values: Vec<f64>,
+    index: usize,
+    /// Whether its times are the borders of the forces, not those of the curves.
+    at_borders: bool,
+    y: Vec<f64>,
+}
+
+/// A coordinate and its velocity, at the borders of the forces.
+#[derive(Serialize)]
+struct PortraitData {
+    id: &'static str,
+    title: String,
+    x_label: String,
+    unit: String,
+    least: [f64; 2],
+    guides: Vec<f64>,
+    series: Vec<PortraitSeries>,
+}
+
+#[derive(Serialize)]
+struct PortraitSeries {
+    label: String,
+    index: usize,
+    x: Vec<f64>,
+    y: Vec<f64>,
 }
 
 /// The pictures: `blocks[k].x[i]` at `t[i]`, of many blocks packed; `beams[k].w` row by row in units of `beams[k].unit`. Displacements of supports
@@ -160,27 +201,16 @@ struct BeamFrames {
 #[derive(Serialize)]
 struct CurveData {
     t: Vec<f64>,
-    blocks: Vec<BlockCurves>,
-    w_mid: Vec<Vec<f64>>,
-    energies: Vec<EnergyCurve>,
-}
-
-#[derive(Serialize)]
-struct BlockCurves {
-    phi: Vec<f64>,
-    omega: Vec<f64>,
-}
-
-#[derive(Serialize)]
-struct EnergyCurve {
-    name: &'static str,
-    values: Vec<f64>,
 }
 
 /// Means between the times `borders`.
 #[derive(Serialize)]
 struct ForceData {
     borders: Vec<f64>,
+    /// Length of the windows of `mean`, s.
+    window: f64,
+    /// Contacts whose tangential forces are rounding.
+    frictionless: Vec<usize>,
     points: Vec<PointForces>,
 }
 
@@ -189,6 +219,9 @@ struct PointForces {
     contact: usize,
     point: usize,
     normal: Vec<f64>,
+    /// The mean of `normal` over windows about the borders, where it differs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mean: Option<Vec<f64>>,
     tangential: Vec<f64>,
     /// A letter a value: `o` open, `k` stick, `l` slip.
     state: String,
@@ -207,16 +240,16 @@ struct ImpactData {
 const BEAM_UNIT: f64 = 1e-7;
 
 /// The data as JSON that is safe inside a `script` element.
-pub(crate) fn json(recorder: &PageRecorder, summary: &Summary) -> String {
+pub(crate) fn json(recorder: &PageRecorder, panels: &Panels, summary: &Summary) -> String {
     let data = Data {
         dt: summary.dt,
         scenery: &recorder.scenery,
         frames: frames(recorder),
-        curves: curves(recorder),
-        crowd: recorder.scenery.is_crowded().then(|| crowd(recorder)),
+        curves: CurveData { t: panels.curves.times().into_iter().map(time).collect() },
+        crowd: recorder.scenery.is_crowded().then(|| crowd(recorder, panels)),
         network: recorder.scenery.has_network().then(|| network(recorder)).filter(|network| !network.pairs.is_empty()),
         loads: loads(recorder),
-        forces: forces(recorder),
+        forces: forces(recorder, panels),
         impacts: recorder
             .kept
             .impacts
@@ -231,7 +264,8 @@ pub(crate) fn json(recorder: &PageRecorder, summary: &Summary) -> String {
             .collect(),
         impact_count: recorder.kept.impact_count,
         density: density(recorder),
-        sections: sections(recorder),
+        panels: time_panels(panels),
+        portraits: portraits(panels),
     };
     // Strings, vectors and numbers (null where not finite) always serialise.
     serde_json::to_string(&data).unwrap_or_default().replace('<', "\\u003c")
@@ -352,10 +386,10 @@ fn network(recorder: &PageRecorder) -> NetworkData {
     data
 }
 
-fn crowd(recorder: &PageRecorder) -> CrowdData {
+fn crowd(recorder: &PageRecorder, panels: &Panels) -> CrowdData {
     // A picture doesn't show more.
     let short = |values: Vec<f64>| values.into_iter().map(|x| rounded(x, 4)).collect::<Vec<f64>>();
-    let band = |first: usize| (first..first + BAND_COLUMNS).map(|k| short(recorder.kept.curves.curve(k))).collect();
+    let band = |first: usize| (first..first + BAND_COLUMNS).map(|k| short(panels.curves.curve(k))).collect();
     let chosen = |curve: CrowdCurve| {
         let (chosen, values): (Vec<usize>, Vec<_>) = curve.chosen.into_iter().unzip();
         let values = values.into_iter().map(short).collect();
@@ -405,40 +439,59 @@ fn loads(recorder: &PageRecorder) -> Vec<LoadData> {
     on_blocks.chain(on_beams).collect()
 }
 
-fn curves(recorder: &PageRecorder) -> CurveData {
-    let (blocks, beams) = (recorder.scenery.blocks.len(), recorder.scenery.beams.len());
-    let column = |k: usize| recorder.kept.curves.curve(k).into_iter().map(digits).collect::<Vec<_>>();
-    let beam = recorder.scenery.block_columns();
-    let blocks = if recorder.scenery.is_crowded() { 0 } else { blocks };
-    CurveData {
-        t: recorder.kept.curves.times().into_iter().map(time).collect(),
-        blocks: (0..blocks)
-            .map(|k| BlockCurves { phi: column(BLOCK_COLUMNS * k), omega: column(BLOCK_COLUMNS * k + 1) })
-            .collect(),
-        w_mid: (beam..beam + beams).map(column).collect(),
-        energies: ENERGIES
+fn time_panels(panels: &Panels) -> Vec<PanelData> {
+    let panel = |panel: &super::panels::TimePanel| PanelData {
+        id: panel.id.clone(),
+        title: match &panel.of_contact {
+            Some((_, name)) if !name.is_empty() => format!("{}, {name}", panel.title),
+            _ => panel.title.clone(),
+        },
+        contact: panel.of_contact.as_ref().map(|(pair, _)| *pair),
+        unit: panel.unit.clone(),
+        least: digits(panel.least),
+        guides: panel.guides.iter().copied().map(digits).collect(),
+        cut: panel.cut,
+        late: panel.place == Place::Forces,
+        series: panel
+            .lines
             .iter()
-            .enumerate()
-            .map(|(k, name)| EnergyCurve { name, values: column(beam + beams + k) })
+            .map(|line| SeriesData {
+                label: line.label.clone(),
+                index: line.number,
+                at_borders: line.at_borders,
+                y: line.y.iter().copied().map(digits).collect(),
+            })
             .collect(),
-    }
+    };
+    panels.panels.iter().map(panel).collect()
 }
 
-fn sections(recorder: &PageRecorder) -> Vec<SectionData> {
-    let curves = recorder.sections.iter().zip(recorder.first_section()..).map(|(column, k)| SectionData {
-        kind: column.kind,
-        label: recorder.section_label(column),
-        values: recorder.kept.curves.curve(k).into_iter().map(digits).collect(),
-    });
-    // Of a recorder on its own, which has seen no section forces, there is nothing to draw.
-    curves.filter(|curve| curve.values.iter().any(|value| value.is_finite())).collect()
+fn portraits(panels: &Panels) -> Vec<PortraitData> {
+    let portrait = |portrait: &super::panels::Portrait| PortraitData {
+        id: portrait.id,
+        title: portrait.title.clone(),
+        x_label: format!("{} ({})", portrait.x_label, portrait.x_unit),
+        unit: portrait.y_unit.clone(),
+        least: portrait.least.map(digits),
+        guides: portrait.guides.iter().copied().map(digits).collect(),
+        series: portrait
+            .lines
+            .iter()
+            .map(|(label, index, x, y)| {
+                let [x, y] = [x, y].map(|values| values.iter().copied().map(digits).collect());
+                PortraitSeries { label: label.clone(), index: *index, x, y }
+            })
+            .collect(),
+    };
+    panels.portraits.iter().map(portrait).collect()
 }
 
-fn forces(recorder: &PageRecorder) -> ForceData {
+fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
+    let window = means::window(&panels.curves);
     let contacts = recorder.scenery.contacts.iter().enumerate();
     let all = contacts.flat_map(|(contact, drawn)| (0..drawn.points.len()).map(move |point| (contact, drawn, point)));
     let points = all.filter_map(|(contact, drawn, point)| {
-        let forces = recorder.kept.curves.forces(drawn.first + point)?;
+        let forces = panels.forces[drawn.first + point].as_ref()?;
         let state = forces.state.iter().map(|state| match state {
             ContactState::Open => 'o',
             ContactState::Stick => 'k',
@@ -447,10 +500,16 @@ fn forces(recorder: &PageRecorder) -> ForceData {
         Some(PointForces {
             contact,
             point,
-            normal: forces.normal.into_iter().map(digits).collect(),
-            tangential: forces.tangential.into_iter().map(digits).collect(),
+            normal: forces.normal.iter().copied().map(digits).collect(),
+            mean: means::normal(&panels.curves, forces, window).map(|means| means.into_iter().map(digits).collect()),
+            tangential: forces.tangential.iter().copied().map(digits).collect(),
             state: state.collect(),
         })
     });
-    ForceData { borders: recorder.kept.curves.borders().into_iter().map(time).collect(), points: points.collect() }
+    ForceData {
+        borders: panels.curves.borders().into_iter().map(time).collect(),
+        window: digits(window),
+        frictionless: (0..panels.tangential.len()).filter(|pair| !panels.tangential[*pair]).collect(),
+        points: points.collect(),
+    }
 }

@@ -4,61 +4,77 @@ use super::accelerograms;
 use super::bands::BAND_COLUMNS;
 use super::crowd::CrowdCurve;
 use super::drawings;
-use super::recorder::{BLOCK_COLUMNS, ENERGIES, MANY_IMPACTS, PageRecorder};
-use super::rounded;
-use crate::sections::Kind;
-use teeter_beam::Envelope;
+use super::panels::{Panels, Place, Portrait, TimePanel, prefix};
+use super::recorder::{MANY_IMPACTS, PageRecorder};
+use super::{means, rounded, span};
 use teeter_integrator::ContactState;
-use teeter_plot::{Axis, Band, Colour, Figure, LEGEND_WIDTH, Panel, Series, legend_width, text_width};
+use teeter_plot::{Axis, Band, Colour, Figure, Legend, Panel, Series};
 
-/// File names and SVG text of the figures that the scene has: `phi.svg`, `omega.svg` and `phase.svg` with blocks,
-/// `w_mid.svg` with beams, `section_forces.svg` and `envelopes.svg` where the scene asks for what beams bear, `contact_forces.svg` where contacts carried something, `energy.svg` always, `records.svg` and
+/// File names and SVG text of the figures that the scene has, of the width that it asks for. Over time: `x.svg`, `y.svg`, `phi.svg`
+/// of blocks that move in these, their velocities `vx.svg`, `vy.svg` and `omega.svg`; `w_mid.svg`, the deflections of beams at midspan and at
+/// probes; `ground.svg`, `ground_v.svg`, `ground_a.svg` and the same with `_phi` of ground and supports that move; `contact_forces.svg` and
+/// `slip.svg`; `section_forces.svg`; `energy.svg`. Phase portraits `phase.svg` (φ), `phase_x.svg`, `phase_y.svg` of the coordinate in which a block
+/// moves most. Over the span: `shapes.svg` and, where the scene asks for it, `envelopes.svg`. `records.svg` and
 /// `spectra.svg` where records prescribe motions, `force_chains.svg` where two blocks or more touch something,
 /// `thrust_line.svg` and `eccentricity.svg` where blocks form a [chain](super::thrust_lines). Of many blocks `phi.svg`,
-/// `omega.svg` and `displacement.svg` show bands, and there is no `phase.svg`.
+/// `omega.svg` and `displacement.svg` show bands, and there are no portraits. What would show nothing but rounding has no figure.
 #[must_use]
 pub fn figures(recorder: &PageRecorder) -> Vec<(String, String)> {
-    let plots = Plots { recorder, t: recorder.kept.curves.times() };
+    let panels = Panels::of(recorder);
+    let plots = Plots { recorder, panels: &panels, t: panels.curves.times() };
     let scenery = &recorder.scenery;
+    let width = 1e3 * scenery.display.figure_width;
     let mut figures = Vec::new();
-    let mut add = |name: &str, figure: Figure| figures.push((name.to_owned(), figure.to_svg()));
+    let mut add = |name: &str, figure: Figure| {
+        figures.push((format!("{name}.svg"), figure.width_mm(width).legend(Legend::Rows).to_svg()));
+    };
     if scenery.is_crowded() {
-        add("phi.svg", plots.crowd_phi());
-        add("omega.svg", plots.crowd_omega());
-        add("displacement.svg", plots.crowd_displacement());
-    } else if !scenery.blocks.is_empty() {
-        add("phi.svg", plots.phi());
-        add("omega.svg", plots.omega());
-        add("phase.svg", plots.phase());
+        add("phi", plots.crowd_phi());
+        add("omega", plots.crowd_omega());
+        add("displacement", plots.crowd_displacement());
     }
-    if !scenery.beams.is_empty() {
-        add("w_mid.svg", plots.w_mid());
+    for panel in panels.panels.iter().filter(|panel| panel.place == Place::Motion) {
+        add(&panel.id, plots.over_time(&panel.id, &panel.description, vec![plots.time_panel(panel)]));
     }
-    if let Some(figure) = plots.section_forces() {
-        add("section_forces.svg", figure);
-    }
-    if let Some(figure) = envelopes(recorder) {
-        add("envelopes.svg", figure);
+    if let Some(figure) = span::shapes(recorder, "shapes") {
+        add("shapes", figure);
     }
     if let Some(figure) = plots.contact_forces() {
-        add("contact_forces.svg", figure);
+        add("contact_forces", figure);
     }
-    add("energy.svg", plots.energy());
+    for portrait in &panels.portraits {
+        add(portrait.id, plots.portrait(portrait));
+    }
+    if let Some(figure) = span::envelopes(recorder, "envelopes") {
+        add("envelopes", figure);
+    }
+    for (file, ids, title) in [
+        ("slip", ["slip-", "slip-"], "Slip of the contacts over time"),
+        ("section_forces", ["section-", "section-"], "What beams bear over time"),
+        ("energy", ["energy", "works"], "Energies and works over time"),
+    ] {
+        let of_file = panels.panels.iter().filter(|panel| panel.place == Place::Forces);
+        let own = of_file.filter(|panel| ids.iter().any(|id| panel.id.starts_with(id)));
+        let own: Vec<Panel> = own.map(|panel| plots.time_panel(panel)).collect();
+        if !own.is_empty() {
+            add(file, plots.over_time(file, title, own));
+        }
+    }
     if let Some(figure) = accelerograms::histories(&scenery.records) {
-        add("records.svg", figure);
+        add("records", figure);
     }
     if let Some(figure) = accelerograms::spectra(&scenery.records) {
-        add("spectra.svg", figure);
-    }
-    if let Some(drawing) = drawings::force_chains(recorder) {
-        figures.push(("force_chains.svg".to_owned(), drawing.to_svg()));
+        add("spectra", figure);
     }
     let lines = drawings::lines_of(recorder);
-    if let Some(drawing) = drawings::thrust(recorder, &lines) {
-        figures.push(("thrust_line.svg".to_owned(), drawing.to_svg()));
-    }
     if let Some(figure) = drawings::eccentricities(&lines) {
-        figures.push(("eccentricity.svg".to_owned(), figure.to_svg()));
+        add("eccentricity", figure);
+    }
+    if let Some(drawing) = drawings::force_chains(recorder) {
+        figures.push(("force_chains.svg".to_owned(), drawing.width_mm(width).to_svg()));
+    }
+    if let Some(drawing) = drawings::thrust(recorder, &lines) {
+        figures.push(("thrust_line.svg".to_owned(), drawing.width_mm(width).to_svg()));
     }
     figures
 }
@@ -72,19 +88,15 @@ const STILL: f64 = 2e-3;
 
 struct Plots<'a> {
     recorder: &'a PageRecorder,
+    panels: &'a Panels,
     t: Vec<f64>,
 }
 
-impl<'a> Plots<'a> {
+impl Plots<'_> {
     fn over_time(&self, id: &str, title: &str, panels: Vec<Panel>) -> Figure {
         let (start, end) = (self.t[0], self.t[self.t.len() - 1]);
         let x = Axis::between("Time t (s)", start, if end > start { end } else { start + 1.0 });
         panels.into_iter().fold(Figure::new(id, title, x), Figure::panel)
-    }
-
-    /// A panel of lines over time, with the impacts marked.
-    fn panel(&self, y: Axis, lines: Vec<Series>) -> Panel {
-        self.marked(Panel::new(y).with(lines), None)
     }
 
     /// A panel with the impacts marked, of one contact or of all: one by one, or how many about each time where they are many.
@@ -99,56 +111,34 @@ impl<'a> Plots<'a> {
         panel.ticks_at(mine.map(|impact| impact.t).collect())
     }
 
-    fn curve(&self, column: usize, factor: f64) -> impl Iterator<Item = f64> {
-        self.recorder.kept.curves.curve(column).into_iter().map(move |y| factor * y)
+    /// A panel that the page has, too, with the impacts marked.
+    fn time_panel(&self, panel: &TimePanel) -> Panel {
+        let borders = self.panels.curves.borders();
+        let lines = panel.lines.iter().map(|line| {
+            let t = if line.at_borders { &borders } else { &self.t };
+            let points = t.iter().copied().zip(line.y.iter().copied());
+            Series::line(&line.label, points).number(line.number)
+        });
+        let lines: Vec<Series> = lines.collect();
+        let label = format!("{} ({})", panel.title, panel.unit);
+        let (range, note) = if panel.cut { cut(&lines, panel.least, &panel.unit) } else { (None, None) };
+        let y = cut_axis(&label, range, &lines, panel.least);
+        let contact = panel.of_contact.as_ref();
+        let name = contact.map(|(_, name)| name.clone()).filter(|name| !name.is_empty());
+        self.marked(Panel::new(y).with(lines).telling_apart().note(note.or(name)), contact.map(|(pair, _)| *pair))
     }
 
-    fn line(&self, label: &str, number: usize, column: usize, factor: f64) -> Series {
-        Series::line(label, self.t.iter().copied().zip(self.curve(column, factor))).number(number)
-    }
-
-    /// A line for each block, from the column that is `offset` after its first.
-    fn by_block(&self, offset: usize, factor: f64) -> Vec<Series> {
-        let line = |k: usize| self.line(self.block_label(k), k, BLOCK_COLUMNS * k + offset, factor);
-        (0..self.recorder.scenery.blocks.len()).map(line).collect()
-    }
-
-    /// A block's name, if there are others.
-    fn block_label(&self, k: usize) -> &'a str {
-        let blocks = &self.recorder.scenery.blocks;
-        if blocks.len() > 1 { &blocks[k].name } else { "" }
-    }
-
-    fn phi(&self) -> Figure {
-        let lines = self.by_block(0, 1f64.to_degrees());
-        let y = Axis::around("Angle φ (°)", values(&lines), STILL);
-        self.over_time("phi", "Angle of the blocks over time", vec![self.panel(y, lines)])
-    }
-
-    fn omega(&self) -> Figure {
-        let lines = self.by_block(1, 1.0);
-        let y = Axis::around("Angular velocity φ̇ (rad/s)", values(&lines), STILL);
-        self.over_time("omega", "Angular velocity of the blocks over time", vec![self.panel(y, lines)])
-    }
-
-    fn phase(&self) -> Figure {
-        let blocks = &self.recorder.scenery.blocks;
-        let line = |k: usize| {
-            let column = BLOCK_COLUMNS * k;
-            let points = self.curve(column, 1f64.to_degrees()).zip(self.curve(column + 1, 1.0));
-            Series::line(self.block_label(k), points).number(k)
+    fn portrait(&self, portrait: &Portrait) -> Figure {
+        let line = |(label, number, x, y): &(String, usize, Vec<f64>, Vec<f64>)| {
+            Series::line(label, x.iter().copied().zip(y.iter().copied())).number(*number)
         };
-        let lines: Vec<Series> = (0..blocks.len()).map(line).collect();
-        let angles = lines.iter().flat_map(Series::points).map(|point| point.0);
-        let x = Axis::around("Angle φ (°)", angles, STILL);
-        let y = Axis::around("Angular velocity φ̇ (rad/s)", values(&lines), STILL);
+        let lines: Vec<Series> = portrait.lines.iter().map(line).collect();
+        let x = lines.iter().flat_map(Series::points).map(|point| point.0);
+        let x = Axis::around(format!("{} ({})", portrait.x_label, portrait.x_unit), x, portrait.least[0]);
+        let y = Axis::around(format!("{} ({})", portrait.y_label, portrait.y_unit), values(&lines), portrait.least[1]);
         // A block's critical angles, where one of them is reached: beyond, it overturns.
-        let guides = blocks
-            .iter()
-            .filter_map(|block| block.alpha)
-            .flat_map(|alpha| [-alpha.to_degrees(), alpha.to_degrees()])
-            .collect();
-        Figure::new("phase", "Phase portrait of the blocks", x).panel(Panel::new(y).with(lines).guides(guides))
+        let panel = Panel::new(y).with(lines).guides(portrait.guides.clone());
+        Figure::new(portrait.id, &portrait.title, x).panel(panel)
     }
 
     /// Bands of many bodies, from those of [`BAND_NAMES`](super::bands::BAND_NAMES), over time.
@@ -194,179 +184,67 @@ impl<'a> Plots<'a> {
     }
 
     fn crowd_omega(&self) -> Figure {
-        let bands: Vec<Vec<f64>> = (BAND_COLUMNS..2 * BAND_COLUMNS).map(|k| self.curve(k, 1.0).collect()).collect();
+        let bands: Vec<Vec<f64>> = (BAND_COLUMNS..2 * BAND_COLUMNS).map(|k| self.panels.curves.curve(k)).collect();
         let lines = Self::bands(&self.t, &bands, 1.0);
         self.crowd_figure("omega", "Angular velocity of the bodies over time", "Angular velocity φ̇ (rad/s)", lines)
     }
 
-    fn w_mid(&self) -> Figure {
-        let first = self.recorder.scenery.block_columns();
-        let beams = &self.recorder.scenery.beams;
-        let label = |name: &'a str| if beams.len() > 1 { name } else { "" };
-        let line = |(k, name): (usize, &'a str)| self.line(label(name), k, first + k, 1e3);
-        let lines: Vec<Series> = beams.iter().map(|beam| beam.name.as_str()).enumerate().map(line).collect();
-        let span = beams.iter().fold(0.0, |longest, beam| beam.span.max(longest));
-        let y = Axis::around("Midspan deflection w (mm)", values(&lines), 1e-6 * span);
-        self.over_time("w_mid", "Deflection of the beams at midspan over time", vec![self.panel(y, lines)])
-    }
-
-    /// What beams bear at their probes and supports; the largest curves, as many as can be named.
-    fn section_forces(&self) -> Option<Figure> {
-        let mut panels = Vec::new();
-        for (kind, y_label, factor) in [
-            (Kind::Moment, "Bending moment M (N m)", 1.0),
-            (Kind::Shear, "Transverse force V (N)", 1.0),
-            (Kind::Stress, "Normal stress (MPa)", 1e-6),
-            (Kind::AxialForce, "Axial force N (N)", 1.0),
-            (Kind::Reaction, "Reactions (N)", 1.0),
-            (Kind::ReactionCouple, "Couples of supports (N m)", 1.0),
-        ] {
-            let columns = self.recorder.sections.iter().zip(self.recorder.first_section()..);
-            let lines = columns.filter(|(column, _)| column.kind == kind).enumerate();
-            let mut lines: Vec<Series> = lines
-                .map(|(number, (column, k))| self.line(&self.recorder.section_label(column), number, k, factor))
-                .filter(|line| largest([line]) > 0.0)
-                .collect();
-            if lines.is_empty() {
-                continue;
-            }
-            let least = 1e-6 * largest(&lines);
-            let (range, note) = cut(&lines, least, y_label.rsplit(['(', ')']).nth(1).unwrap_or_default());
-            keep_named(&mut lines, LEGEND_WIDTH - note.as_deref().map_or(0.0, text_width));
-            let y = cut_axis(y_label, range, &lines, least);
-            panels.push(self.panel(y, lines).note(note));
-        }
-        (!panels.is_empty()).then(|| self.over_time("section_forces", "What beams bear over time", panels))
-    }
-
     fn contact_forces(&self) -> Option<Figure> {
         let scenery = &self.recorder.scenery;
-        let borders = self.recorder.kept.curves.borders();
-        let points = 0..scenery.points;
-        let curves: Vec<_> = points.map(|point| self.recorder.kept.curves.forces(point)).collect();
+        let borders = self.panels.curves.borders();
+        let window = means::window(&self.panels.curves);
+        let curves = &self.panels.forces;
         let strongest = curves.iter().flatten().flat_map(|forces| &forces.normal).fold(0.0, |most: f64, f| f.max(most));
         let least = 1e-6 * strongest;
         let mut panels = Vec::new();
         for (pair, contact) in scenery.contacts.iter().enumerate() {
-            let (mut normal, mut tangential, mut bands) = (Vec::new(), Vec::new(), Vec::new());
+            let (mut normal, mut means, mut tangential, mut bands) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
             for (point, drawn) in contact.points.iter().enumerate() {
                 let Some(forces) = &curves[contact.first + point] else { continue };
                 let label = &drawn.label;
-                let step = |y: &[f64]| {
+                let step = |y: &[f64], label: &str| {
                     let end = borders.last().copied().unwrap_or_default();
                     Series::staircase(label, borders.iter().copied().zip(y.iter().copied()), end).number(point)
                 };
-                normal.push(step(&forces.normal));
-                tangential.push(step(&forces.tangential));
+                let mean = means::normal(&self.panels.curves, forces, window);
+                // The raw values stay behind their mean, which then has the name.
+                normal.push(if mean.is_some() {
+                    step(&forces.normal, "").faint()
+                } else {
+                    step(&forces.normal, label)
+                });
+                means.extend(mean.map(|mean| Series::line(label, borders.iter().copied().zip(mean)).number(point)));
+                tangential.push(step(&forces.tangential, label));
                 bands.push(Band::new(label, stretches(&borders, &forces.state)));
             }
             if normal.is_empty() {
                 continue;
             }
-            for (what, lines) in [("Normal", normal), ("Tangential", tangential)] {
+            for (what, mut lines) in [("Normal", normal), ("Tangential", tangential)] {
+                if what == "Tangential" && !self.panels.tangential[pair] {
+                    continue;
+                }
                 let (range, cut) = cut(&lines, least, "N");
                 let name = (scenery.contacts.len() > 1).then(|| contact.name.clone());
-                let note = [name, cut].into_iter().flatten().collect::<Vec<_>>().join(": ");
+                let meant = (what == "Normal" && !means.is_empty())
+                    .then(|| format!("pale: raw; mean over {} ms", rounded(1e3 * window, 3)));
+                let note = [name, meant, cut].into_iter().flatten().collect::<Vec<_>>().join("; ");
                 let y = cut_axis(&format!("{what} force (N)"), range, &lines, least);
                 let note = Some(note).filter(|note| !note.is_empty());
-                panels.push(self.marked(Panel::new(y).with(lines), Some(pair)).note(note));
+                if what == "Normal" {
+                    lines.append(&mut means);
+                }
+                panels.push(self.marked(Panel::new(y).with(lines).telling_apart(), Some(pair)).note(note));
             }
             panels.push(Panel::bands(bands, [(STICK, "stick"), (SLIP, "slip"), (Colour::Paper, "open")]));
         }
         (!panels.is_empty()).then(|| self.over_time("contact_forces", "Contact forces on the blocks over time", panels))
     }
-
-    fn energy(&self) -> Figure {
-        let scenery = &self.recorder.scenery;
-        let first = scenery.block_columns() + scenery.beams.len();
-        let column = |name: &str| first + ENERGIES.iter().position(|known| *known == name).unwrap_or(0);
-        let line =
-            |&(name, label, number): &(&str, &str, usize), factor: f64| self.line(label, number, column(name), factor);
-        let mut energies = vec![("kinetic", "kinetic", 0)];
-        if !scenery.beams.is_empty() {
-            energies.push(("elastic", "elastic", 1));
-        }
-        energies.extend([("gravity", "gravity (change)", 2), ("total", "total", 6)]);
-        let scale = largest(&energies.iter().map(|energy| line(energy, 1.0)).collect::<Vec<_>>());
-        let works = ["contact", "friction", "viscous", "numerical", "external", "projection"].into_iter().enumerate();
-        let mut works: Vec<_> = works.map(|(k, name)| (name, name, k)).collect();
-        // A work that is nothing but rounding is a line on the axis: chart junk.
-        works.retain(|work| largest([&line(work, 1.0)]) > 1e-9 * scale);
-        let panel = |what: &str, quantities: &[(&str, &str, usize)]| {
-            let lines = |factor: f64| quantities.iter().map(|of| line(of, factor)).collect::<Vec<_>>();
-            let (prefix, factor) = prefix(largest(&lines(1.0)));
-            let lines = lines(factor);
-            let y = Axis::around(format!("{what} ({prefix}J)"), values(&lines), 1e-6 * largest(&lines));
-            self.panel(y, lines)
-        };
-        let mut panels = vec![panel("Energy", &energies)];
-        if !works.is_empty() {
-            panels.push(panel("Work since t = 0", &works));
-        }
-        self.over_time("energy", "Energies and works over time", panels)
-    }
-}
-
-/// Moment and transverse force over the span: their least and largest in the run.
-pub(super) fn envelopes(recorder: &PageRecorder) -> Option<Figure> {
-    let drawn = || {
-        recorder.beams.iter().filter_map(|record| {
-            let place = recorder.layout.beams.iter().find(|place| place.name == record.beam)?;
-            Some((record, place.beam.node_positions(), record.envelope.as_ref()?))
-        })
-    };
-    let several = recorder.scenery.beams.len() > 1;
-    let panel = |y_label: &str, pick: &dyn Fn(&Envelope) -> Vec<[f64; 2]>| {
-        let mut lines = Vec::new();
-        for (record, x, envelope) in drawn() {
-            for (side, word) in [(1, "largest"), (0, "least")] {
-                let label = if several { format!("{} {word}", record.beam) } else { word.to_owned() };
-                let y = pick(envelope).into_iter().map(|range| range[side]);
-                lines.push(Series::line(label, x.iter().copied().zip(y)).number(lines.len()));
-            }
-        }
-        keep_named(&mut lines, LEGEND_WIDTH);
-        Panel::new(Axis::around(y_label, values(&lines), 1e-6 * largest(&lines))).with(lines)
-    };
-    let span = drawn().filter_map(|(_, x, _)| x.last().copied()).fold(0.0, f64::max);
-    (span > 0.0).then(|| {
-        let title = "Bending moment and transverse force over the span, least and largest of all steps";
-        Figure::new("envelopes", title, Axis::between("Place along the beam x (m)", 0.0, span))
-            .panel(panel("Bending moment M (N m)", &|envelope| envelope.moment.clone()))
-            .panel(panel("Transverse force V (N)", &|envelope| envelope.shear.clone()))
-    })
-}
-
-/// Keeps the lines with the largest values, as many as can be named in this width, and their order.
-fn keep_named(lines: &mut Vec<Series>, width: f64) {
-    let mut by_size: Vec<(usize, f64)> = lines.iter().enumerate().map(|(k, line)| (k, largest([line]))).collect();
-    by_size.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let mut left = width;
-    let named = by_size.iter().take_while(|(k, _)| {
-        left -= legend_width(lines[*k].label());
-        left >= 0.0
-    });
-    let kept: Vec<usize> = named.map(|(k, _)| *k).collect();
-    let mut k = 0;
-    lines.retain(|_| {
-        k += 1;
-        kept.is_empty() || kept.contains(&(k - 1))
-    });
 }
 
 /// The y of all points.
 fn values<'a>(lines: impl IntoIterator<Item = &'a Series>) -> impl Iterator<Item = f64> {
     lines.into_iter().flat_map(Series::points).map(|point| point.1)
-}
-
-fn largest<'a>(lines: impl IntoIterator<Item = &'a Series>) -> f64 {
-    values(lines).fold(0.0, |largest, y| y.abs().max(largest))
-}
-
-/// The prefix of a unit, with its factor, that makes the largest of some values a handy number.
-fn prefix(largest: f64) -> (&'static str, f64) {
-    let prefixes = [("k", 1e-3), ("", 1.0), ("m", 1e3), ("µ", 1e6), ("n", 1e9)];
-    prefixes.into_iter().find(|(_, factor)| largest * factor >= 0.5).unwrap_or(("", 1.0))
 }
 
 /// Neighbours in one state as one stretch; the open ones left out.

@@ -1,10 +1,11 @@
 //! The page itself: text and numbers as HTML here, pictures by the script from the data.
 
 use super::accelerograms;
-use super::figures::envelopes;
+use super::content;
+use super::panels::Panels;
 use super::recorder::PageRecorder;
 use super::rocking::{HalfCycle, half_cycles};
-use super::{data, rounded, thrust};
+use super::{data, rounded, span, thrust};
 use crate::Summary;
 use crate::summary::{BeamSummary, RemovedSummary};
 use serde_json::Value;
@@ -31,17 +32,20 @@ const SCRIPTS: [&str; 6] = [
 pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> String {
     // A summary always serialises: its numbers are finite, or null.
     let values = Numbers(serde_json::to_value(summary).unwrap_or_default());
+    let panels = Panels::of(recorder);
     let script = format!("(() => {{\n\"use strict\";\n{}}})();\n", SCRIPTS.concat());
     let parts = BTreeMap::from([
         ("title", escaped(&summary.title)),
         ("style", STYLE.to_owned()),
         ("script", script),
-        ("data", data::json(recorder, summary)),
+        ("data", data::json(recorder, &panels, summary)),
         ("verdict", verdict(summary)),
         ("subtitle", subtitle(summary)),
         ("warnings", warnings(summary)),
         ("tiles", tiles(&values, summary)),
         ("residual", scientific(summary.energy.largest_residual)),
+        ("notdrawn", not_drawn(&panels)),
+        ("shapes", shapes(recorder)),
         ("records", accelerograms::section(&recorder.scenery.records, &summary.records)),
         ("borne", borne(recorder, summary)),
         ("thrust", thrust::section(recorder)),
@@ -280,6 +284,23 @@ fn rocking(cycles: &[HalfCycle]) -> String {
     html
 }
 
+/// What isn't drawn, and why; empty if all is.
+fn not_drawn(panels: &Panels) -> String {
+    let text = content::told(&panels.left_out);
+    if text.is_empty() { text } else { format!("<p id=\"not-drawn\" class=\"note\">{}</p>", escaped(&text)) }
+}
+
+/// The deflected shapes at chosen times.
+fn shapes(recorder: &PageRecorder) -> String {
+    let figure = span::on_page("shapes", |id| span::shapes(recorder, id));
+    figure.map_or_else(String::new, |figure| {
+        format!(
+            "<section id=\"shapes\" class=\"panel\" aria-labelledby=\"shapes-title\">\n\
+             <h3 id=\"shapes-title\">Deflected shape at chosen times</h3>\n{figure}</section>"
+        )
+    })
+}
+
 /// What beams bore: largest stress, reactions, envelopes.
 fn borne(recorder: &PageRecorder, summary: &Summary) -> String {
     let mut html = String::new();
@@ -309,12 +330,11 @@ fn borne(recorder: &PageRecorder, summary: &Summary) -> String {
              {stresses}</section>"
         );
     }
-    if let Some(figure) = envelopes(recorder) {
+    if let Some(figure) = span::on_page("envelopes", |id| span::envelopes(recorder, id)) {
         let _ = writeln!(
             html,
             "<section id=\"envelopes\" class=\"panel\" aria-labelledby=\"envelopes-title\">\n<h3 id=\"envelopes-title\">Moment \
-             and transverse force over the span, least and largest of all steps</h3>\n<div class=\"paper\">{}</div>\n</section>",
-            figure.to_svg()
+             and transverse force over the span, least and largest of all steps</h3>\n{figure}</section>"
         );
     }
     html.push_str(&reactions(summary));
@@ -445,7 +465,9 @@ mod tests {
             let known =
                 ["title", "style", "script", "data", "verdict", "subtitle", "warnings", "tiles", "residual", "rocking"];
             assert!(
-                known.contains(&name) || ["borne", "model", "numbers", "records", "settings", "thrust"].contains(&name),
+                known.contains(&name)
+                    || ["borne", "model", "notdrawn", "numbers", "records", "settings", "shapes", "thrust"]
+                        .contains(&name),
                 "{name}"
             );
         }

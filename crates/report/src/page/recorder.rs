@@ -7,6 +7,7 @@ use super::network::Network;
 use super::rounded;
 use super::scenery::Scenery;
 use crate::closed::Closed;
+use crate::contacts::slip;
 use crate::sections::{BeamRecord, Column, Kind, columns_of};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -49,8 +50,11 @@ pub(crate) const ENERGIES: [&str; 11] = [
     "residual",
 ];
 
-/// Columns of a block in [`Curves`]: φ and φ̇. Of many blocks there are bands instead.
-pub(crate) const BLOCK_COLUMNS: usize = 2;
+/// Columns of a block in [`Curves`]: x, y, φ and their velocities. Of many blocks there are bands instead.
+pub(crate) const BLOCK_COLUMNS: usize = 6;
+
+/// Columns of a prescribed coordinate: displacement, velocity, acceleration.
+pub(crate) const MOTION_COLUMNS: usize = 3;
 
 /// Most blocks whose curves are kept one by one: there are as many colours and dashes to tell them
 /// apart.
@@ -67,7 +71,10 @@ const BUCKETS: usize = 2000;
 
 /// Most numbers on the page for curves, and as many again for pictures of few bodies: at some 10 bytes each the page of
 /// ten bodies stays below 1.2 MB.
-const NUMBERS: usize = 120_000;
+pub(super) const NUMBERS: usize = 120_000;
+
+/// Most numbers kept for curves during the run.
+const KEPT_NUMBERS: usize = 480_000;
 
 /// Most numbers for pictures of many bodies: [packed](super::packed), one takes 1.3 to 2.7 bytes.
 const PACKED_NUMBERS: usize = 750_000;
@@ -145,11 +152,12 @@ impl PageRecorder {
         let beams = scene.beams.iter().zip(&layout.beams).enumerate();
         let sections = beams.flat_map(|(number, (of, place))| columns_of(number, of, place));
         let sections: Vec<Column> = sections.filter(|column| column.kind != Kind::Deflection).collect();
-        let columns = scenery.block_columns() + scenery.beams.len() + ENERGIES.len() + sections.len();
+        let columns = scenery.driven_column(scenery.driven.len()) + sections.len();
         let points = scenery.points;
         let even = |n: usize| n - n % 2;
         let capacity = |most: usize, width: usize| even((NUMBERS / width).clamp(10, most));
-        let bucket_capacity = capacity(BUCKETS, 2 * columns + 2 * points + 3);
+        // What is drawn of it is known at the end only: then there may be fewer buckets.
+        let bucket_capacity = even((KEPT_NUMBERS / (2 * columns + 3 * points + 3)).clamp(10, BUCKETS));
         let pictures = if scenery.is_crowded() {
             even((PACKED_NUMBERS / (frame + 1)).clamp(10, FRAMES))
         } else {
@@ -163,7 +171,7 @@ impl PageRecorder {
                 } else {
                     Network::default()
                 },
-                curves: Curves::new(bucket_capacity, 0.0, vec![0.0; columns], points),
+                curves: Curves::new(bucket_capacity, 0.0, vec![0.0; columns], scenery.sampled(), points),
                 impacts: Vec::new(),
                 impact_count: 0,
                 density: BTreeMap::new(),
@@ -191,15 +199,21 @@ impl PageRecorder {
 
     /// The number of the first column of the curves that is of what beams bear.
     pub(crate) fn first_section(&self) -> usize {
-        self.scenery.block_columns() + self.scenery.beams.len() + ENERGIES.len()
+        self.scenery.driven_column(self.scenery.driven.len())
     }
 
     /// What tells a curve of what beams bear from others of its kind: the place, and the beam where there are several.
     pub(crate) fn section_label(&self, column: &Column) -> String {
         let beam = &self.scenery.beams[column.beam];
         let name = (self.scenery.beams.len() > 1).then(|| beam.name.clone());
-        let place = column.x.map(|x| format!("{} m", rounded(x, 4)));
+        let place = column.x.map(|x| self.place(x));
         name.into_iter().chain(place).collect::<Vec<_>>().join(" ")
+    }
+
+    /// A place along a beam in the scene's unit.
+    pub(crate) fn place(&self, x: f64) -> String {
+        let unit = self.scenery.display.length;
+        format!("{} {}", rounded(x * unit.per_metre(), 6), unit.word())
     }
 
     /// Takes the values of what beams bear, to be entered with the next step; without them there are no such curves.
@@ -228,13 +242,19 @@ impl PageRecorder {
             self.bands.fill(places.clone().map(|phi| state.q[phi]), angles);
             self.bands.fill(places.map(|phi| state.v[phi]), rates);
         } else {
-            for (out, phi) in of_blocks.chunks_exact_mut(BLOCK_COLUMNS).zip(places) {
-                out.copy_from_slice(&[state.q[phi], state.v[phi]]);
+            for (out, block) in of_blocks.chunks_exact_mut(BLOCK_COLUMNS).zip(&self.layout.blocks) {
+                let (q, v) = out.split_at_mut(3);
+                q.copy_from_slice(&state.q[block.range.clone()]);
+                v.copy_from_slice(&state.v[block.range.clone()]);
             }
         }
-        let (of_beams, rest) = rest.split_at_mut(self.layout.beams.len());
-        for ((out, place), drawn) in of_beams.iter_mut().zip(&self.layout.beams).zip(&self.scenery.beams) {
-            *out = drawn.middle.deflection(&state.q[place.range.clone()]);
+        let (of_beams, rest) = rest.split_at_mut(self.scenery.energy_column() - self.scenery.block_columns());
+        let mut of_beams = of_beams.iter_mut();
+        for (place, drawn) in self.layout.beams.iter().zip(&self.scenery.beams) {
+            let q = &state.q[place.range.clone()];
+            let probes = std::iter::once(&drawn.middle).chain(drawn.probes.iter().map(|(_, probe)| probe));
+            // The other way round a row too many would be taken before it is seen that there is no more probe.
+            probes.zip(&mut of_beams).for_each(|(probe, out)| *out = probe.deflection(q));
         }
         let energies = &mut rest[..ENERGIES.len()];
         let (now, initial, sum) = (&state.ledger.current, &state.ledger.initial, &state.ledger.sum);
@@ -252,6 +272,9 @@ impl PageRecorder {
             sum.projection,
             sum.residual,
         ]);
+        for (out, driven) in rest[ENERGIES.len()..].chunks_exact_mut(MOTION_COLUMNS).zip(&self.scenery.driven) {
+            out.copy_from_slice(&driven.values(state));
+        }
     }
 
     fn take_contacts(&mut self, step: &StepReport<'_, 2>) {
@@ -266,7 +289,8 @@ impl PageRecorder {
                 let does = if part.is_last_lasting { contact.state() } else { ContactState::Open };
                 let Some(drawn) = self.scenery.contacts.get(pair) else { continue };
                 let curve = drawn.first + point;
-                self.kept.curves.add(curve, [contact.p[0], contact.p[1]], does);
+                let slip = slip(contact, part.duration, part.balance);
+                self.kept.curves.add(curve, [contact.p[0], contact.p[1]], does, slip);
             }
         }
     }
@@ -351,7 +375,8 @@ impl Observer<2> for PageRecorder {
         self.take_frame(state);
         self.take_row(state);
         self.closings = ClosingMonitor::new(model, state, &self.layout.openings)?;
-        self.kept.curves = Curves::new(self.bucket_capacity, state.t, self.row.clone(), self.scenery.points);
+        self.kept.curves =
+            Curves::new(self.bucket_capacity, state.t, self.row.clone(), self.scenery.sampled(), self.scenery.points);
         Ok(())
     }
 

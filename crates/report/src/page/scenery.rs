@@ -1,15 +1,16 @@
 //! What stands in the picture: sizes and places that don't change.
 
 use super::bands::BAND_COLUMNS;
-use super::recorder::{BLOCK_COLUMNS, MOST_CURVES};
+use super::recorder::{BLOCK_COLUMNS, ENERGIES, MOST_CURVES, MOTION_COLUMNS};
 use super::{DIGITS, rounded};
+use crate::driven::Driven;
 use crate::probe::Probe;
 use serde::Serialize;
 use std::sync::Arc;
 use teeter_beam::Axial;
 use teeter_detect::OnSide;
 use teeter_integrator::BeamFace;
-use teeter_scenario::scene::{self, Crowd, ForceScene, LoadScene, RecordScene, Scene, SupportingBody};
+use teeter_scenario::scene::{self, Crowd, Display, ForceScene, LoadScene, RecordScene, Scene, SupportingBody};
 use teeter_scenario::simulation::Layout;
 use teeter_scenario::wording;
 
@@ -52,6 +53,12 @@ pub(crate) struct BeamDrawn {
     pub(crate) places: Vec<Probe>,
     #[serde(skip)]
     pub(crate) middle: Probe,
+    /// The probes whose deflection is recorded, but for one at midspan: where, m, and how.
+    #[serde(skip)]
+    pub(crate) probes: Vec<(f64, Probe)>,
+    /// Whether one of them is at midspan.
+    #[serde(skip)]
+    pub(crate) probed_middle: bool,
 }
 
 /// A contact pair as drawn.
@@ -105,7 +112,7 @@ pub(crate) enum OnSideDrawn {
 }
 
 /// All of it.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 pub(crate) struct Scenery {
     pub(crate) ground: bool,
     /// Slope of ground that stands still, rad.
@@ -135,6 +142,15 @@ pub(crate) struct Scenery {
     /// The records that prescribe motions.
     #[serde(skip)]
     pub(crate) records: Vec<Arc<RecordScene>>,
+    /// What else is prescribed of ground and supports: all of it.
+    #[serde(skip)]
+    pub(crate) driven: Vec<Driven>,
+    /// Units of axes, width of figures.
+    #[serde(skip)]
+    pub(crate) display: Display,
+    /// The energy that lifts every block by its own size, J: what energies are measured by.
+    #[serde(skip)]
+    pub(crate) weight_energy: f64,
 }
 
 /// BL of bottom-left, 3 of corner-3, 2 R of part-2.rim.
@@ -159,6 +175,11 @@ const PIECES: usize = 40;
 
 /// Most pieces of a beam's line.
 const MOST_PIECES: usize = 80;
+
+/// Whether a place is midspan, up to rounding.
+fn is_middle(x: f64, span: f64) -> bool {
+    (x - 0.5 * span).abs() <= 1e-9 * span
+}
 
 impl Scenery {
     pub(crate) fn new(scene: &Scene, layout: &Layout) -> Self {
@@ -197,6 +218,12 @@ impl Scenery {
                 points: pieces + 1,
                 places: (0..=pieces).map(|k| at(span * (k as f64 / pieces as f64))).collect(),
                 middle: at(0.5 * span),
+                probes: if drawn.output.quantities.contains(&scene::BeamQuantity::Deflection) {
+                    place.probes.iter().filter(|x| !is_middle(**x, span)).map(|x| (*x, at(*x))).collect()
+                } else {
+                    Vec::new()
+                },
+                probed_middle: place.probes.iter().any(|x| is_middle(*x, span)),
             }
         });
         let profile = scene.ground.as_ref().and_then(|ground| ground.profile.as_ref());
@@ -255,6 +282,12 @@ impl Scenery {
             forces: scene.forces.clone(),
             loads: scene.loads.clone(),
             records: scene.records().cloned().collect(),
+            driven: Driven::of(scene, layout),
+            display: scene.display,
+            weight_energy: {
+                let g = scene.gravity[0].hypot(scene.gravity[1]);
+                scene.blocks.iter().map(|block| block.mass() * g * block.radius()).filter(|e| e.is_finite()).sum()
+            },
         }
     }
 
@@ -266,6 +299,27 @@ impl Scenery {
     /// Columns of all blocks in the curves.
     pub(crate) fn block_columns(&self) -> usize {
         if self.is_crowded() { 2 * BAND_COLUMNS } else { BLOCK_COLUMNS * self.blocks.len() }
+    }
+
+    /// Of how many columns, from the first on, the values at the ends of buckets are kept, too: those of blocks, for phase
+    /// portraits.
+    pub(crate) fn sampled(&self) -> usize {
+        if self.is_crowded() { 0 } else { self.block_columns() }
+    }
+
+    /// The first column of a beam's deflections: at midspan, then at its probes.
+    pub(crate) fn beam_column(&self, beam: usize) -> usize {
+        self.block_columns() + self.beams[..beam].iter().map(|beam| 1 + beam.probes.len()).sum::<usize>()
+    }
+
+    /// The first column of the energies.
+    pub(crate) fn energy_column(&self) -> usize {
+        self.beam_column(self.beams.len())
+    }
+
+    /// The first column of a prescribed coordinate: its displacement, velocity and acceleration.
+    pub(crate) fn driven_column(&self, number: usize) -> usize {
+        self.energy_column() + ENERGIES.len() + MOTION_COLUMNS * number
     }
 
     /// Whether contact forces are drawn as a network: of a single block it would be a star.

@@ -137,9 +137,13 @@ fn a_static_start_is_written_as_statics_has_it() {
 
     let names: Vec<&str> = run.figures.iter().map(|(name, _)| name.as_str()).collect();
     assert!(names.contains(&"section_forces.svg") && names.contains(&"envelopes.svg"), "{names:?}");
-    for part in
-        ["id=\"reactions\"", "id=\"envelopes\"", "id=\"stress\"", "\"kind\":\"moment\"", "\"kind\":\"reaction\""]
-    {
+    for part in [
+        "id=\"reactions\"",
+        "id=\"envelopes\"",
+        "id=\"stress\"",
+        "\"id\":\"section-moment\"",
+        "\"id\":\"section-reaction\"",
+    ] {
         assert!(run.html.contains(part), "{part}");
     }
 }

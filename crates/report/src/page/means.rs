@@ -1,0 +1,99 @@
+//! The mean of a contact force over a window of time, beside its raw values: a beam that rings makes these a band in which the
+//! force that carries is not seen.
+
+use super::curves::{Curves, ForceCurve};
+
+/// A window is this part of the run, rounded to 1, 2 or 5 times a power of ten.
+const PART: f64 = 1.0 / 40.0;
+
+/// Where raw values stray from the mean by less than this part of the largest mean, the mean would only cover them.
+const STRAY: f64 = 0.02;
+
+/// It has to do so for more than this part of the time in which the contact presses.
+const LEAST: f64 = 0.25;
+
+/// The window for a run of these curves, s.
+pub(super) fn window(curves: &Curves) -> f64 {
+    let borders = curves.borders();
+    let run = borders.last().copied().unwrap_or(0.0) - borders.first().copied().unwrap_or(0.0);
+    if !(run > 0.0) {
+        return 0.0;
+    }
+    let power = 10f64.powf((run * PART).log10().floor());
+    let digit = [5.0, 2.0, 1.0].into_iter().find(|digit| digit * power <= run * PART * (1.0 + 1e-9)).unwrap_or(1.0);
+    digit * power
+}
+
+/// The means of the normal force over the window about the borders of the buckets, N: at the ends of the run over what of the
+/// window lies in it. `None` where the raw values are as smooth.
+pub(super) fn normal(curves: &Curves, forces: &ForceCurve, window: f64) -> Option<Vec<f64>> {
+    let borders = curves.borders();
+    let (start, end) = (*borders.first()?, *borders.last()?);
+    // The impulse up to each border; between two, force is constant.
+    let mut impulses = vec![0.0];
+    for (ends, force) in borders.windows(2).zip(&forces.normal) {
+        impulses.push(impulses[impulses.len() - 1] + force * (ends[1] - ends[0]));
+    }
+    let impulse = |t: f64| {
+        let bucket = borders.partition_point(|border| *border <= t).clamp(1, borders.len() - 1) - 1;
+        impulses[bucket] + forces.normal[bucket] * (t - borders[bucket])
+    };
+    if forces.normal.is_empty() || borders.len() * 2 < 40 || window <= 0.0 {
+        return None;
+    }
+    let mean = |t: &f64| {
+        let (from, to) = ((t - 0.5 * window).max(start), (t + 0.5 * window).min(end));
+        (impulse(to) - impulse(from)) / (to - from)
+    };
+    let means: Vec<f64> = borders.iter().map(mean).collect();
+    let largest = means.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    // Of the time in which it presses: of one that only strikes now and then, a mean would make blocks as wide as the window.
+    let pressing = || means.iter().zip(&forces.normal).filter(|(_, raw)| **raw > 0.0);
+    let strays = pressing().filter(|(mean, raw)| (*mean - *raw).abs() > STRAY * largest).count();
+    (strays as f64 > LEAST * pressing().count() as f64 && pressing().count() * 10 > means.len()).then_some(means)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use teeter_integrator::ContactState;
+
+    fn run(force: impl Fn(f64) -> f64) -> (Curves, ForceCurve) {
+        let mut curves = Curves::new(1000, 0.0, vec![], 0, 1);
+        for k in 1..=1000 {
+            let t = 1e-3 * f64::from(k);
+            curves.enter(t, &[]);
+            curves.add(0, [1e-3 * force(t), 0.0], ContactState::Stick, 0.0);
+        }
+        let forces = curves.forces(0).unwrap();
+        (curves, forces)
+    }
+
+    #[test]
+    fn the_mean_is_the_force_that_carries() {
+        // 3.1 N with 1 N of ringing at 400 Hz.
+        let (curves, forces) = run(|t| 3.1 + (2.0 * std::f64::consts::PI * 400.0 * t).sin());
+        let window = window(&curves);
+        assert!((window - 0.02).abs() < 1e-12, "{window}");
+        let means = normal(&curves, &forces, window).unwrap();
+        assert!(means.iter().skip(20).rev().skip(20).all(|mean| (mean - 3.1).abs() < 0.1));
+        assert_eq!(means.len(), curves.borders().len());
+    }
+
+    #[test]
+    fn strikes_are_not_smeared() {
+        // It rests in the end, after 20 strikes.
+        let (curves, forces) = run(|t| match (t * 1e3).round() as u64 {
+            k if k > 700 => 3.0,
+            k if k % 35 == 0 => 500.0,
+            _ => 0.0,
+        });
+        assert_eq!(normal(&curves, &forces, window(&curves)), None);
+    }
+
+    #[test]
+    fn a_smooth_force_has_no_mean_beside_it() {
+        let (curves, forces) = run(|t| 3.0 + t);
+        assert_eq!(normal(&curves, &forces, window(&curves)), None);
+    }
+}

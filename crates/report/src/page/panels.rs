@@ -1,0 +1,165 @@
+//! The plots over time that the page and the figures have in common: which quantities, of which bodies, in which units, by the
+//! rule of [`content`](super::content).
+
+use super::content::LeftOut;
+use super::curves::{Curves, ForceCurve};
+use super::recorder::{NUMBERS, PageRecorder};
+use teeter_scenario::scene::LengthUnit;
+
+mod forces;
+mod motion;
+
+/// Where on the page a panel stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Place {
+    /// Before the contacts.
+    Motion,
+    /// After them.
+    Forces,
+}
+
+/// A plot of quantities over time.
+#[derive(Debug, Clone)]
+pub(crate) struct TimePanel {
+    /// What its file and its place on the page are called.
+    pub(crate) id: String,
+    /// What is plotted.
+    pub(crate) title: String,
+    /// The contact whose it is, and its name where there are several.
+    pub(crate) of_contact: Option<(usize, String)>,
+    /// A sentence for those who can't see the figure.
+    pub(crate) description: String,
+    pub(crate) unit: String,
+    /// Least height of its axis, in its unit.
+    pub(crate) least: f64,
+    /// Lines across it, in its unit.
+    pub(crate) guides: Vec<f64>,
+    /// Whether the peaks of impacts are cut.
+    pub(crate) cut: bool,
+    pub(crate) place: Place,
+    pub(crate) lines: Vec<Line>,
+}
+
+/// A curve.
+#[derive(Debug, Clone)]
+pub(crate) struct Line {
+    /// Empty if it is the only one that there can be.
+    pub(crate) label: String,
+    /// Number of its colour.
+    pub(crate) number: usize,
+    pub(crate) y: Vec<f64>,
+    /// Whether its times are the borders of buckets, not those of the curves.
+    pub(crate) at_borders: bool,
+}
+
+/// A coordinate and its velocity, one over the other.
+#[derive(Debug, Clone)]
+pub(crate) struct Portrait {
+    pub(crate) id: &'static str,
+    pub(crate) title: String,
+    pub(crate) x_label: String,
+    pub(crate) y_label: String,
+    pub(crate) x_unit: String,
+    pub(crate) y_unit: String,
+    pub(crate) least: [f64; 2],
+    pub(crate) guides: Vec<f64>,
+    /// Block by block: label, number, and its values at the borders of the buckets.
+    pub(crate) lines: Vec<(String, usize, Vec<f64>, Vec<f64>)>,
+}
+
+/// All that is drawn over time of a run, but contact forces, and what isn't.
+#[derive(Debug)]
+pub(crate) struct Panels {
+    pub(crate) curves: Curves,
+    pub(crate) forces: Vec<Option<ForceCurve>>,
+    pub(crate) panels: Vec<TimePanel>,
+    pub(crate) portraits: Vec<Portrait>,
+    pub(crate) left_out: Vec<LeftOut>,
+    /// Whether tangential forces are more than rounding, by contacts.
+    pub(crate) tangential: Vec<bool>,
+}
+
+/// The unit of lengths on an axis, with its number to a metre: the scene's, unless it makes numbers too small.
+pub(crate) fn length_unit(of: LengthUnit, largest: f64) -> (&'static str, f64) {
+    let units = [(of.word(), of.per_metre()), ("mm", 1e3), ("µm", 1e6), ("nm", 1e9)];
+    let fits = |(_, factor): &&(&'static str, f64)| largest == 0.0 || largest * factor >= 0.5;
+    units.iter().find(fits).copied().unwrap_or(("nm", 1e9))
+}
+
+/// The prefix of a unit, with its factor, that makes the largest of some values a handy number.
+pub(crate) fn prefix(largest: f64) -> (&'static str, f64) {
+    let prefixes = [("k", 1e-3), ("", 1.0), ("m", 1e3), ("µ", 1e6), ("n", 1e9)];
+    prefixes.into_iter().find(|(_, factor)| largest * factor >= 0.5).unwrap_or(("", 1.0))
+}
+
+impl Panels {
+    pub(crate) fn of(recorder: &PageRecorder) -> Self {
+        let forces = |curves: &Curves| (0..recorder.scenery.points).map(|k| curves.forces(k)).collect::<Vec<_>>();
+        let drawn = |curves: Curves| {
+            let forces = forces(&curves);
+            let mut panels = Self {
+                tangential: vec![true; recorder.scenery.contacts.len()],
+                curves,
+                forces,
+                panels: Vec::new(),
+                portraits: Vec::new(),
+                left_out: Vec::new(),
+            };
+            panels.fill(recorder);
+            panels
+        };
+        let all = drawn(recorder.kept.curves.clone());
+        let (buckets, numbers) = (all.curves.len(), all.numbers());
+        if numbers <= NUMBERS {
+            return all;
+        }
+        drawn(all.curves.in_at_most(buckets * NUMBERS / numbers))
+    }
+
+    fn fill(&mut self, recorder: &PageRecorder) {
+        if !recorder.scenery.is_crowded() {
+            self.motions(recorder);
+        }
+        self.deflections(recorder);
+        self.prescribed(recorder);
+        self.contacts(recorder);
+        self.sections(recorder);
+        self.energies(recorder);
+        if !recorder.scenery.is_crowded() {
+            self.portraits(recorder);
+        }
+    }
+
+    /// How many numbers the curves take on the page.
+    fn numbers(&self) -> usize {
+        let lines = self.panels.iter().flat_map(|panel| &panel.lines).map(|line| line.y.len()).sum::<usize>();
+        let portraits = self.portraits.iter().flat_map(|portrait| &portrait.lines).map(|line| 2 * line.2.len());
+        let forces = self.forces.iter().flatten().map(|forces| 3 * forces.normal.len());
+        lines + portraits.sum::<usize>() + forces.sum::<usize>() + 3 * self.curves.len()
+    }
+
+    /// Notes that `what` isn't drawn: of whom, if it isn't of the whole scene, and what these are called together.
+    fn leave_out(&mut self, what: &'static str, of: Option<(String, &'static str)>, largest: f64, unit: &'static str) {
+        let (of, together) = of.map_or((None, ""), |(of, together)| (Some(of), together));
+        match self.left_out.iter_mut().find(|known| known.what == what) {
+            Some(known) => {
+                known.of.extend(of);
+                known.largest = known.largest.max(largest);
+            }
+            None => self.left_out.push(LeftOut { what, of: of.into_iter().collect(), together, largest, unit }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_are_in_the_unit_of_the_scene_unless_too_small_for_it() {
+        assert_eq!(length_unit(LengthUnit::Centimetre, 0.18), ("cm", 100.0));
+        assert_eq!(length_unit(LengthUnit::Centimetre, 1.2e-3), ("mm", 1e3));
+        assert_eq!(length_unit(LengthUnit::Metre, 3e-7), ("nm", 1e9));
+        assert_eq!(length_unit(LengthUnit::Millimetre, 0.0), ("mm", 1e3));
+    }
+}

@@ -1,0 +1,164 @@
+//! Plots of what bodies bear, of slip, and of energies.
+
+use super::Curves;
+use super::{Line, Panels, Place, TimePanel, length_unit, prefix};
+use crate::page::content::{ROUNDING, holds, largest};
+use crate::page::recorder::{ENERGIES, PageRecorder};
+use crate::sections::Kind;
+
+impl Panels {
+    /// Slip of the contacts; and whether their tangential forces are worth a plot.
+    pub(super) fn contacts(&mut self, recorder: &PageRecorder) {
+        let scenery = &recorder.scenery;
+        let strongest = largest(self.forces.iter().flatten().flat_map(|forces| &forces.normal));
+        let several = scenery.contacts.len() > 1;
+        let mut panels = Vec::new();
+        let mut left_out = Vec::new();
+        for (pair, contact) in scenery.contacts.iter().enumerate() {
+            let points = contact.points.iter().enumerate();
+            let points: Vec<_> =
+                points.filter_map(|(k, point)| Some((k, point, self.forces[contact.first + k].as_ref()?))).collect();
+            if points.is_empty() {
+                continue;
+            }
+            let force = largest(points.iter().flat_map(|(_, _, forces)| &forces.tangential));
+            self.tangential[pair] = holds(force, strongest);
+            let name = format!("{} on {}", scenery.blocks[contact.block].name, contact.surface);
+            let of = || several.then(|| (name.clone(), "contacts"));
+            if !self.tangential[pair] {
+                left_out.push(("tangential force", of(), force, "N"));
+            }
+            let reach = scenery.blocks[contact.block].reach;
+            let slipping: Vec<_> = points.iter().filter(|(_, _, forces)| holds(largest(&forces.slip), reach)).collect();
+            if slipping.is_empty() {
+                let most = largest(points.iter().flat_map(|(_, _, forces)| &forces.slip));
+                left_out.push(("slip", of(), most, "m"));
+                continue;
+            }
+            let most = largest(slipping.iter().flat_map(|(_, _, forces)| &forces.slip));
+            let (unit, factor) = length_unit(scenery.display.length, most);
+            let lines = slipping.iter().map(|(number, point, forces)| Line {
+                label: point.label.clone(),
+                number: *number,
+                y: std::iter::once(0.0).chain(forces.slip.iter().map(|slip| factor * slip)).collect(),
+                at_borders: true,
+            });
+            panels.push(TimePanel {
+                id: format!("slip-{pair}"),
+                title: "Slip".to_owned(),
+                of_contact: Some((pair, if several { name } else { String::new() })),
+                description: "Slip of the contacts over time".to_owned(),
+                unit: unit.to_owned(),
+                least: 10.0 * ROUNDING * reach * factor,
+                guides: Vec::new(),
+                cut: false,
+                place: Place::Forces,
+                lines: lines.collect(),
+            });
+        }
+        self.panels.extend(panels);
+        left_out.into_iter().for_each(|(what, of, most, unit)| self.leave_out(what, of, most, unit));
+    }
+
+    /// What beams bear at their probes and supports.
+    pub(super) fn sections(&mut self, recorder: &PageRecorder) {
+        let columns: Vec<_> = recorder.sections.iter().zip(recorder.first_section()..).collect();
+        let values: Vec<Vec<f64>> = columns.iter().map(|(_, k)| self.curves.curve(*k)).collect();
+        // Of a recorder on its own, which has seen no section forces, there is nothing to draw or to tell.
+        if !values.iter().flatten().any(|value| value.is_finite()) {
+            return;
+        }
+        let most = |kinds: &[Kind]| {
+            let of_kind = columns.iter().zip(&values).filter(|((column, _), _)| kinds.contains(&column.kind));
+            largest(of_kind.flat_map(|(_, values)| values))
+        };
+        let span = recorder.scenery.beams.iter().fold(0.0, |longest: f64, beam| beam.span.max(longest));
+        let moment = most(&[Kind::Moment, Kind::ReactionCouple]);
+        let force = most(&[Kind::Shear, Kind::AxialForce, Kind::Reaction]).max(moment / span);
+        let moment = moment.max(force * span);
+        for (kind, title, of, unit, scale) in [
+            (Kind::Moment, "Bending moment M", "bending moment at", "N m", moment),
+            (Kind::Shear, "Transverse force V", "transverse force at", "N", force),
+            (Kind::Stress, "Largest normal stress", "stress at", "Pa", most(&[Kind::Stress])),
+            (Kind::AxialForce, "Axial force N", "axial force", "N", force),
+            (Kind::Reaction, "Reactions of the supports", "reaction at", "N", force),
+            (Kind::ReactionCouple, "Couples of the supports", "couple of the support at", "N m", moment),
+        ] {
+            let mut lines = Vec::new();
+            let of_kind = columns.iter().zip(&values).filter(|((column, _), _)| column.kind == kind);
+            for (number, ((column, _), values)) in of_kind.enumerate() {
+                let label = recorder.section_label(column);
+                if holds(largest(values), scale) {
+                    lines.push(Line { label, number, y: values.clone(), at_borders: false });
+                } else {
+                    self.leave_out(of, (!label.is_empty()).then_some((label, "places")), largest(values), unit);
+                }
+            }
+            if lines.is_empty() {
+                continue;
+            }
+            let most = largest(lines.iter().flat_map(|line| &line.y));
+            let (prefix, factor) = if kind == Kind::Stress { ("M", 1e-6) } else { prefix(most) };
+            lines.iter_mut().for_each(|line| line.y.iter_mut().for_each(|y| *y *= factor));
+            let id =
+                serde_json::to_value(kind).ok().and_then(|word| word.as_str().map(str::to_owned)).unwrap_or_default();
+            self.panels.push(TimePanel {
+                id: format!("section-{id}"),
+                of_contact: None,
+                title: title.to_owned(),
+                description: format!("{title} over time"),
+                unit: format!("{prefix}{unit}"),
+                least: 1e-6 * most * factor,
+                guides: Vec::new(),
+                cut: true,
+                place: Place::Forces,
+                lines,
+            });
+        }
+    }
+
+    pub(super) fn energies(&mut self, recorder: &PageRecorder) {
+        let first = recorder.scenery.energy_column();
+        let of = |curves: &Curves, name: &str| {
+            let column = ENERGIES.iter().position(|known| *known == name).unwrap_or(0);
+            curves.curve(first + column)
+        };
+        let energies = [("kinetic", 0), ("elastic", 1), ("gravity", 2), ("total", 6)];
+        let energies =
+            energies.into_iter().filter(|(name, _)| *name != "elastic" || !recorder.scenery.beams.is_empty());
+        let energies: Vec<_> = energies.map(|(name, number)| (name, number, of(&self.curves, name))).collect();
+        let scale = largest(energies.iter().flat_map(|(.., values)| values)).max(recorder.scenery.weight_energy);
+        let works = ["contact", "friction", "viscous", "numerical", "external", "projection"];
+        let works: Vec<_> = works.into_iter().enumerate().map(|(k, name)| (name, k, of(&self.curves, name))).collect();
+        for (id, title, all) in [("energy", "Energy", energies), ("works", "Work since t = 0", works)] {
+            let mut lines = Vec::new();
+            for (name, number, values) in all {
+                if holds(largest(&values), scale) {
+                    let label = if name == "gravity" { "gravity, change" } else { name }.to_owned();
+                    lines.push(Line { label, number, y: values, at_borders: false });
+                } else {
+                    let what = if id == "energy" { "energy:" } else { "work:" };
+                    self.leave_out(what, Some((name.to_owned(), "")), largest(&values), "J");
+                }
+            }
+            if lines.is_empty() {
+                continue;
+            }
+            let most = largest(lines.iter().flat_map(|line| &line.y));
+            let (prefix, factor) = prefix(most);
+            lines.iter_mut().for_each(|line| line.y.iter_mut().for_each(|y| *y *= factor));
+            self.panels.push(TimePanel {
+                id: id.to_owned(),
+                of_contact: None,
+                title: title.to_owned(),
+                description: format!("{title} of the scene over time"),
+                unit: format!("{prefix}J"),
+                least: (1e-6 * most).max(ROUNDING * scale) * factor,
+                guides: Vec::new(),
+                cut: false,
+                place: Place::Forces,
+                lines,
+            });
+        }
+    }
+}

@@ -1,0 +1,299 @@
+//! Plots of how blocks, beams, ground and supports move.
+
+use super::{Line, Panels, Place, Portrait, TimePanel, length_unit};
+use crate::page::content::{ROUNDING, holds, largest, travel};
+use crate::page::recorder::{BLOCK_COLUMNS, PageRecorder};
+use std::collections::BTreeSet;
+
+/// A coordinate of a block.
+struct Coordinate {
+    id: &'static str,
+    of: &'static str,
+    velocity_id: &'static str,
+    symbol: &'static str,
+    velocity_symbol: &'static str,
+    name: &'static str,
+    velocity_name: &'static str,
+}
+
+/// In the order of the state.
+const COORDINATES: [Coordinate; 3] = [
+    Coordinate {
+        id: "x",
+        of: "x of",
+        velocity_id: "vx",
+        symbol: "x",
+        velocity_symbol: "ẋ",
+        name: "Position x",
+        velocity_name: "Velocity ẋ",
+    },
+    Coordinate {
+        id: "y",
+        of: "y of",
+        velocity_id: "vy",
+        symbol: "y",
+        velocity_symbol: "ẏ",
+        name: "Height y",
+        velocity_name: "Velocity ẏ",
+    },
+    Coordinate {
+        id: "phi",
+        of: "φ of",
+        velocity_id: "omega",
+        symbol: "φ",
+        velocity_symbol: "φ̇",
+        name: "Angle φ",
+        velocity_name: "Angular velocity φ̇",
+    },
+];
+const PHI: usize = 2;
+
+/// A block that turns by this part of what it moves otherwise has φ in its phase portrait.
+const TURNS: f64 = 0.01;
+
+impl Panels {
+    /// x, y, φ of the blocks and their velocities, of those that move in them.
+    pub(super) fn motions(&mut self, recorder: &PageRecorder) {
+        let display = recorder.scenery.display;
+        // First of all how it rocks.
+        for c in [PHI, 0, 1] {
+            let coordinate = &COORDINATES[c];
+            let mut moving = Vec::new();
+            for (k, block) in recorder.scenery.blocks.iter().enumerate() {
+                let values = self.curves.curve(BLOCK_COLUMNS * k + c);
+                let (scale, unit) = if c == PHI { (1.0, "rad") } else { (block.reach, "m") };
+                if holds(travel(&values), scale) {
+                    moving.push((k, values));
+                } else {
+                    self.leave_out(coordinate.of, Some((block.name.clone(), "blocks")), travel(&values), unit);
+                }
+            }
+            if moving.is_empty() {
+                continue;
+            }
+            let reach = recorder.scenery.blocks.iter().fold(0.0, |most: f64, block| most.max(block.reach));
+            let (unit, factor) = if c == PHI {
+                (display.angle.symbol(), display.angle.per_radian())
+            } else {
+                length_unit(display.length, largest(moving.iter().flat_map(|(_, values)| values)))
+            };
+            // Wide enough that what is at rest looks so, and rounding on top of it isn't seen.
+            let least = if c == PHI { 4e-5 * factor } else { 1e-4 * reach * factor };
+            let line = |k: usize, values: &[f64], factor: f64| Line {
+                label: block_label(recorder, k),
+                number: k,
+                y: values.iter().map(|x| factor * x).collect(),
+                at_borders: false,
+            };
+            let guides = if c == PHI { critical_angles(recorder, &moving, factor) } else { Vec::new() };
+            let panel = |id: &str, title: &str, unit: String, lines, guides, least| TimePanel {
+                id: id.to_owned(),
+                of_contact: None,
+                title: title.to_owned(),
+                description: format!("{title} of the blocks over time"),
+                unit,
+                least,
+                guides,
+                cut: false,
+                place: Place::Motion,
+                lines,
+            };
+            let lines = moving.iter().map(|(k, values)| line(*k, values, factor)).collect();
+            self.panels.push(panel(coordinate.id, coordinate.name, unit.to_owned(), lines, guides, least));
+            let rates: Vec<_> =
+                moving.iter().map(|(k, _)| (*k, self.curves.curve(BLOCK_COLUMNS * k + 3 + c))).collect();
+            let (unit, factor) = if c == PHI {
+                ("rad", 1.0)
+            } else {
+                length_unit(display.length, largest(rates.iter().flat_map(|(_, values)| values)))
+            };
+            let lines = rates.iter().map(|(k, values)| line(*k, values, factor)).collect();
+            let least = if c == PHI { 2e-3 } else { 1e-4 * reach * factor };
+            let unit = format!("{unit}/s");
+            self.panels.push(panel(coordinate.velocity_id, coordinate.velocity_name, unit, lines, Vec::new(), least));
+        }
+    }
+
+    /// The deflections of the beams at midspan and at their probes.
+    pub(super) fn deflections(&mut self, recorder: &PageRecorder) {
+        let scenery = &recorder.scenery;
+        let several = scenery.beams.len() > 1;
+        let mut drawn = Vec::new();
+        for (number, beam) in scenery.beams.iter().enumerate() {
+            let first = scenery.beam_column(number);
+            let middle = if beam.probed_middle {
+                format!("midspan, {}", recorder.place(0.5 * beam.span))
+            } else {
+                "midspan".to_owned()
+            };
+            let places = std::iter::once(middle).chain(beam.probes.iter().map(|(x, _)| recorder.place(*x)));
+            for (k, place) in places.enumerate() {
+                let values = self.curves.curve(first + k);
+                let label = if several { format!("{} {place}", beam.name) } else { place.clone() };
+                let what = if k > 0 || beam.probed_middle { "w at the probe" } else { "w at" };
+                if holds(largest(&values), 1e-3 * beam.span) {
+                    drawn.push((label, values));
+                } else {
+                    self.leave_out(what, Some((label, "places")), largest(&values), "m");
+                }
+            }
+        }
+        if drawn.is_empty() {
+            return;
+        }
+        let (unit, factor) = length_unit(scenery.display.length, largest(drawn.iter().flat_map(|(_, values)| values)));
+        let span = scenery.beams.iter().fold(0.0, |longest: f64, beam| beam.span.max(longest));
+        let only_middle = drawn.len() == 1 && !several && drawn[0].0.starts_with("midspan");
+        let lines = drawn.into_iter().enumerate().map(|(number, (label, values))| Line {
+            label: if only_middle { String::new() } else { label },
+            number,
+            y: values.into_iter().map(|w| factor * w).collect(),
+            at_borders: false,
+        });
+        self.panels.push(TimePanel {
+            id: "w_mid".to_owned(),
+            of_contact: None,
+            title: if only_middle { "Deflection at midspan w" } else { "Deflection w" }.to_owned(),
+            description: "Deflection of the beams over time".to_owned(),
+            unit: unit.to_owned(),
+            least: ROUNDING * 1e-2 * span * factor,
+            guides: Vec::new(),
+            cut: false,
+            place: Place::Motion,
+            lines: lines.collect(),
+        });
+    }
+
+    /// Displacement, velocity and acceleration of ground and supports.
+    pub(super) fn prescribed(&mut self, recorder: &PageRecorder) {
+        let scenery = &recorder.scenery;
+        let display = scenery.display;
+        for turns in [false, true] {
+            let of_kind = || scenery.driven.iter().enumerate().filter(|(_, driven)| (driven.component == PHI) == turns);
+            let several = of_kind().map(|(_, driven)| &driven.name).collect::<BTreeSet<_>>().len() > 1
+                || scenery.driven.iter().any(|driven| driven.name != "ground");
+            for (k, (id, title)) in [("ground", "displacement"), ("ground_v", "velocity"), ("ground_a", "acceleration")]
+                .into_iter()
+                .enumerate()
+            {
+                let mut lines: Vec<Line> = of_kind()
+                    .enumerate()
+                    .map(|(number, (which, driven))| {
+                        let axis = COORDINATES[driven.component].symbol;
+                        let name = driven.name.replace('.', " ");
+                        let label = if several { format!("{name} {axis}") } else { axis.to_owned() };
+                        Line {
+                            label,
+                            number,
+                            y: self.curves.curve(scenery.driven_column(which) + k),
+                            at_borders: false,
+                        }
+                    })
+                    .filter(|line| largest(&line.y) > 0.0)
+                    .collect();
+                if lines.is_empty() {
+                    continue;
+                }
+                let most = largest(lines.iter().flat_map(|line| &line.y));
+                let (unit, factor) = match (turns, k) {
+                    (true, 0) => (display.angle.symbol(), display.angle.per_radian()),
+                    (true, _) => ("rad", 1.0),
+                    (false, 2) => ("m", 1.0),
+                    (false, _) => length_unit(display.length, most),
+                };
+                lines.iter_mut().for_each(|line| line.y.iter_mut().for_each(|y| *y *= factor));
+                let what = if several { "Prescribed" } else { "Ground" };
+                let title = format!("{what} {}{title}", if turns { "angular " } else { "" });
+                let title = title.replace("angular displacement", "angle");
+                self.panels.push(TimePanel {
+                    id: if turns { format!("{id}_phi") } else { id.to_owned() },
+                    description: format!("{title} over time"),
+                    of_contact: None,
+                    title,
+                    unit: format!("{unit}{}", ["", "/s", "/s²"][k]),
+                    least: ROUNDING * most * factor,
+                    guides: Vec::new(),
+                    cut: false,
+                    place: Place::Motion,
+                    lines,
+                });
+            }
+        }
+    }
+
+    /// The coordinate in which each block moves most over its velocity.
+    pub(super) fn portraits(&mut self, recorder: &PageRecorder) {
+        let display = recorder.scenery.display;
+        let moves = |k: usize, c: usize| travel(&self.curves.curve(BLOCK_COLUMNS * k + c));
+        let choice = |k: usize| {
+            let reach = recorder.scenery.blocks[k].reach;
+            let [x, y, turn] = [0, 1, PHI].map(|c| moves(k, c));
+            if holds(turn, 1.0) && turn * reach >= TURNS * x.max(y) {
+                Some(PHI)
+            } else {
+                [(0, x), (1, y)]
+                    .into_iter()
+                    .filter(|(_, far)| holds(*far, reach))
+                    .max_by(|a, b| a.1.total_cmp(&b.1))
+                    .map(|(c, _)| c)
+            }
+        };
+        let chosen: Vec<(usize, usize)> =
+            (0..recorder.scenery.blocks.len()).filter_map(|k| Some((k, choice(k)?))).collect();
+        for c in [PHI, 0, 1] {
+            let blocks = || chosen.iter().filter(|(_, own)| *own == c).map(|(k, _)| *k);
+            if blocks().next().is_none() {
+                continue;
+            }
+            let samples = |k: usize, column: usize| self.curves.samples(BLOCK_COLUMNS * k + column);
+            let (units, factors) = if c == PHI {
+                ([display.angle.symbol(), "rad"], [display.angle.per_radian(), 1.0])
+            } else {
+                let most = |of: usize| blocks().map(|k| largest(&samples(k, of))).fold(0.0, f64::max);
+                let [(x, a), (v, b)] = [c, 3 + c].map(|of| length_unit(display.length, most(of)));
+                ([x, v], [a, b])
+            };
+            let line = |k: usize| {
+                let [x, y] = [c, 3 + c].map(|column| samples(k, column));
+                let scaled = |values: Vec<f64>, factor: f64| values.into_iter().map(|x| x * factor).collect();
+                (block_label(recorder, k), k, scaled(x, factors[0]), scaled(y, factors[1]))
+            };
+            let coordinate = &COORDINATES[c];
+            let reach = blocks().map(|k| recorder.scenery.blocks[k].reach).fold(0.0, f64::max);
+            let alphas = blocks().filter_map(|k| recorder.scenery.blocks[k].alpha).filter(|_| c == PHI);
+            let mut guides: Vec<f64> = alphas.flat_map(|alpha| [-alpha * factors[0], alpha * factors[0]]).collect();
+            guides.sort_by(f64::total_cmp);
+            guides.dedup();
+            let portrait = Portrait {
+                id: ["phase_x", "phase_y", "phase"][c],
+                title: format!("Phase portrait: {} over {}", coordinate.velocity_symbol, coordinate.symbol),
+                x_label: coordinate.name.to_owned(),
+                y_label: coordinate.velocity_name.to_owned(),
+                x_unit: units[0].to_owned(),
+                y_unit: format!("{}/s", units[1]),
+                least: if c == PHI { [4e-5 * factors[0], 2e-3] } else { factors.map(|factor| 1e-4 * reach * factor) },
+                guides,
+                lines: blocks().map(line).collect(),
+            };
+            self.portraits.push(portrait);
+        }
+    }
+}
+
+/// A block's name, if there are others.
+fn block_label(recorder: &PageRecorder, k: usize) -> String {
+    let blocks = &recorder.scenery.blocks;
+    if blocks.len() > 1 { blocks[k].name.clone() } else { String::new() }
+}
+
+/// The critical angles, where the motion comes near them: elsewhere they would only squeeze the curve.
+fn critical_angles(recorder: &PageRecorder, moving: &[(usize, Vec<f64>)], factor: f64) -> Vec<f64> {
+    let near = |(k, values): &(usize, Vec<f64>)| {
+        recorder.scenery.blocks[*k].alpha.filter(|alpha| largest(values) > 0.8 * alpha)
+    };
+    let mut guides: Vec<f64> =
+        moving.iter().filter_map(near).flat_map(|alpha| [-alpha * factor, alpha * factor]).collect();
+    guides.sort_by(f64::total_cmp);
+    guides.dedup();
+    guides
+}

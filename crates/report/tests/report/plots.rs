@@ -1,0 +1,187 @@
+//! What is plotted, against the tables: what moves, what is probed, what slips, what is prescribed; and what isn't.
+
+use crate::page::{SCENARIOS, assert_well_formed, data, numbers, panel, run, scenario};
+use std::fs;
+use std::path::Path;
+use teeter_report::{columns, figures};
+use teeter_scenario::simulation::Simulation;
+
+/// A table's columns by name.
+fn table(path: &Path) -> Vec<(String, Vec<f64>)> {
+    let text = fs::read_to_string(path).unwrap();
+    let mut lines = text.lines();
+    let mut columns: Vec<(String, Vec<f64>)> =
+        lines.next().unwrap().split(',').map(|name| (name.to_owned(), Vec::new())).collect();
+    for line in lines {
+        for (cell, (_, values)) in line.split(',').zip(&mut columns) {
+            values.push(cell.parse().unwrap_or(f64::NAN));
+        }
+    }
+    columns
+}
+
+fn column<'c>(columns: &'c [(String, Vec<f64>)], name: &str) -> &'c [f64] {
+    &columns.iter().find(|(known, _)| known == name).unwrap_or_else(|| panic!("no column {name}")).1
+}
+
+fn scenario_text(name: &str) -> String {
+    fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../scenarios/{name}.toml"))).unwrap()
+}
+
+#[test]
+fn a_coordinate_is_plotted_where_the_trajectory_moves_in_it() {
+    for name in SCENARIOS {
+        let run = scenario(name);
+        let page = data(&run.html);
+        let trajectory = table(&run.folder.join("trajectory.csv"));
+        for (id, rate, scale) in [("x", "vx", 0.05), ("y", "vy", 0.05), ("phi", "omega", 1.0)] {
+            let (_, values) = trajectory.iter().find(|(column, _)| column.ends_with(&format!(".{id}"))).unwrap();
+            let travel = values.iter().map(|x| (x - values[0]).abs()).fold(0.0, f64::max);
+            // Between rounding and a motion there is nothing in these scenes: neither 1e-6 nor 1e-10 of the scale.
+            assert!(travel > 1e-6 * scale || travel < 1e-10 * scale, "{name}: {id} {travel}");
+            assert_eq!(panel(&page, id).is_some(), travel > 1e-6 * scale, "{name}: {id} {travel}");
+            assert_eq!(panel(&page, rate).is_some(), panel(&page, id).is_some(), "{name}: {rate}");
+        }
+        // One block, one portrait, of a coordinate that is plotted.
+        let portraits = page["portraits"].as_array().unwrap();
+        assert_eq!(portraits.len(), 1, "{name}");
+        let of = portraits[0]["id"].as_str().unwrap();
+        assert!(panel(&page, of.strip_prefix("phase_").unwrap_or("phi")).is_some(), "{name}: {of}");
+    }
+}
+
+#[test]
+fn a_block_at_rest_on_an_incline_has_no_plot_of_rounding() {
+    let run = run("resting-on-incline", &scenario_text("incline"));
+    let page = data(&run.html);
+    let ids: Vec<&str> = page["panels"].as_array().unwrap().iter().map(|panel| panel["id"].as_str().unwrap()).collect();
+    assert!(ids.is_empty(), "nothing moves: {ids:?}");
+    assert!(page["portraits"].as_array().unwrap().is_empty());
+    let start = run.html.find("id=\"not-drawn\"").unwrap();
+    let told = &run.html[start..start + run.html[start..].find("</p>").unwrap()];
+    for what in ["φ of cube", "x of cube", "energy: kinetic, gravity, total", "slip"] {
+        assert!(told.contains(what), "{what}: {told}");
+    }
+    // What carries the block is there.
+    assert!(figures(&run.page).iter().any(|(file, _)| file == "contact_forces.svg"));
+}
+
+#[test]
+fn slip_is_the_way_that_a_block_slides() {
+    let run = scenario("sliding");
+    let trajectory = table(&run.folder.join("trajectory.csv"));
+    let x = column(&trajectory, "slider.x");
+    let way = x[x.len() - 1] - x[0];
+    let contacts = table(&run.folder.join("contacts.csv"));
+    let slip = column(&contacts, "slip");
+    // The same at both corners of the base, as it doesn't turn; the last two rows are theirs.
+    for slip in &slip[slip.len() - 2..] {
+        assert!((slip.abs() - way).abs() < 1e-12, "{slip} m against {way} m");
+    }
+    // v²/(2 μ g), to a step at the first speed.
+    assert!((way - 1.0 / (2.0 * 0.3 * 9.81)).abs() < 1e-3);
+    let page = data(&run.html);
+    let drawn = numbers(&panel(&page, "slip-0").unwrap()["series"][0]["y"]);
+    assert!((drawn[drawn.len() - 1].abs() - 100.0 * way).abs() < 1e-4, "in cm, as the scene");
+    assert_eq!(panel(&page, "slip-0").unwrap()["unit"], "cm");
+    // It never goes back.
+    assert!(drawn.windows(2).all(|pair| pair[1].abs() >= pair[0].abs() - 1e-9));
+}
+
+#[test]
+fn the_motion_of_the_ground_is_in_the_table_and_on_the_page() {
+    let run = run("shaken", &scenario_text("shaken-ground"));
+    let trajectory = table(&run.folder.join("trajectory.csv"));
+    let names: Vec<&str> = trajectory.iter().map(|(name, _)| name.as_str()).collect();
+    let ends = ["slab.omega", "ground.x", "ground.vx", "ground.ax", "ground.y", "ground.vy", "ground.ay"];
+    assert!(names.ends_with(&ends), "{names:?}");
+    let [t, x, v, a] = ["t", "ground.x", "ground.vx", "ground.ax"].map(|name| column(&trajectory, name));
+    let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    // Each is the rate of the one before: differences over two rows, but where the acceleration jumps.
+    let rates = |of: &[f64], rate: &[f64]| {
+        let off = |k: usize| (of[k + 1] - of[k - 1]) / (t[k + 1] - t[k - 1]) - rate[k];
+        (1..t.len() - 1).filter(|k| off(*k).abs() > 1e-3 * largest(rate)).count()
+    };
+    assert!(rates(x, v) <= 4 && rates(v, a) <= 4, "{} {}", rates(x, v), rates(v, a));
+    assert!((largest(a) - 3.0059).abs() < 1e-3);
+    let page = data(&run.html);
+    for (id, unit) in [("ground", "cm"), ("ground_v", "cm/s"), ("ground_a", "m/s²")] {
+        assert_eq!(panel(&page, id).unwrap()["unit"], unit, "{id}");
+    }
+    let drawn = numbers(&panel(&page, "ground").unwrap()["series"][0]["y"]);
+    assert!((largest(&drawn) - 100.0 * largest(x)).abs() < 1e-4 * largest(&drawn));
+    // Each column has its unit.
+    let resolved = teeter_scenario::load(scenario_text("shaken-ground").as_bytes(), "s", "s", &[]).unwrap();
+    let simulation = Simulation::new(&resolved.scene).unwrap();
+    let units = columns(&resolved.scene, &simulation.layout).unwrap();
+    let units: serde_json::Value = serde_json::from_str(&units).unwrap();
+    let of = units["trajectory.csv"].as_array().unwrap();
+    assert_eq!(of[of.len() - 1], serde_json::json!(["ground.ay", "m/s^2"]));
+}
+
+const BRIDGE: &str = r#"
+    time = { end = "60 ms", step = "0.2 ms" }
+    output.figure_width = "WIDTH"
+    material.steel = { density = "7850 kg/m^3", youngs_modulus = "210 GPa" }
+    [beam.deck]
+    material = "steel"
+    span = "600 mm"
+    width = "30 mm"
+    thickness = "4 mm"
+    elements = 12
+    self_weight = true
+    probes = ["150 mm", "300 mm", "450 mm", "600 mm"]
+    record = ["w", "moment", "shear"]
+    [beam.deck.support.pier]
+    at = "200 mm"
+    kind = "pinned"
+"#;
+
+#[test]
+fn every_probe_has_its_curve_unless_it_is_rounding() {
+    let run = run("bridge", &BRIDGE.replace("WIDTH", "84 mm"));
+    let page = data(&run.html);
+    let deflections = panel(&page, "w_mid").unwrap();
+    let labels: Vec<&str> =
+        deflections["series"].as_array().unwrap().iter().map(|series| series["label"].as_str().unwrap()).collect();
+    // The right end is a support: it doesn't move.
+    assert_eq!(labels, ["midspan, 300 mm", "150 mm", "450 mm"]);
+    assert!(run.html.contains("w at the probe 600 mm (0)"));
+    assert!(run.html.contains("id=\"shapes\""));
+    let names: Vec<String> = figures(&run.page).into_iter().map(|(file, _)| file).collect();
+    assert!(names.iter().any(|file| file == "shapes.svg"), "{names:?}");
+}
+
+#[test]
+fn figures_have_the_width_of_a_journals_column() {
+    for (width, units) in [("84 mm", 336), ("174 mm", 696)] {
+        let run = run(&format!("bridge-{units}"), &BRIDGE.replace("WIDTH", width));
+        let figures = figures(&run.page);
+        assert!(figures.len() >= 3);
+        for (file, svg) in figures {
+            assert_well_formed(&file, &svg);
+            assert!(svg.contains(&format!("width=\"{}mm\"", units / 4)), "{file}");
+            // 4 units are a millimetre: 7 pt are 9.9, 9 pt are 12.7.
+            for size in svg.split("font-size=\"").skip(1).map(|rest| rest.split('"').next().unwrap()) {
+                assert!((9.9..12.7).contains(&size.parse::<f64>().unwrap()), "{file}: {size}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_portrait_is_as_smooth_as_the_motion() {
+    let run = scenario("free-rocking-on-ground");
+    let page = data(&run.html);
+    let portrait = &page["portraits"][0]["series"][0];
+    let (phi, omega) = (numbers(&portrait["x"]), numbers(&portrait["y"]));
+    let borders = numbers(&page["forces"]["borders"]);
+    assert_eq!((phi.len(), omega.len()), (borders.len(), borders.len()));
+    // Both at one instant: φ changes by the mean of its rate, but in the few stretches in which a corner hits.
+    let off = (1..phi.len()).filter(|&k| {
+        let rate = (phi[k] - phi[k - 1]).to_radians() / (borders[k] - borders[k - 1]);
+        (rate - 0.5 * (omega[k] + omega[k - 1])).abs() > 0.01
+    });
+    let (off, impacts) = (off.count(), run.summary.impacts.len());
+    assert!(off <= 2 * impacts && impacts < 60, "{off} of {} with {impacts} impacts", phi.len());
+}
