@@ -2,7 +2,7 @@
 
 use super::figure::{schemes, themed};
 use super::percent;
-use crate::{Quantity, Tradeoff};
+use crate::Tradeoff;
 use std::fmt::Write;
 use teeter_plot::{AxisError, Theme, escaped};
 
@@ -101,6 +101,6 @@ mod tests {
     fn the_shapes_are_in_the_order_of_the_marks() {
         let order = (0..SHAPES.len()).map(Mark::of);
         assert!(order.eq([Mark::Circle, Mark::Square, Mark::Triangle, Mark::Diamond]));
-        assert!(Quantity::ALL.iter().all(|quantity| !quantity.word().contains(' ')), "words are ids");
+        assert!(crate::Quantity::ALL.iter().all(|quantity| !quantity.word().contains(' ')), "words are ids");
     }
 }
