@@ -56,10 +56,10 @@ pub fn seconds(t: f64, digits: usize) -> String {
     }
 }
 
-/// A part of something, for sentences: "45 % of", and of what is more than the whole "7.1 times".
+/// A part of something, for sentences: "45 % of", and of what is more than twice the whole "7.1 times".
 #[must_use]
 pub fn share_of(part: f64) -> String {
-    if part <= 1.0 { format!("{:.0} % of", 100.0 * part) } else { format!("{} times", whole_or_two_digits(part)) }
+    if part <= 2.0 { format!("{:.0} % of", 100.0 * part) } else { format!("{} times", whole_or_two_digits(part)) }
 }
 
 fn whole_or_two_digits(x: f64) -> f64 {

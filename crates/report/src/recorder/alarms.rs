@@ -191,7 +191,7 @@ impl Recorder<'_> {
             let name = layout.blocks.get(coarse.block).map_or("a block", |place| &place.name);
             let (limit, step) = (100.0 * coarse.of.limit(), with_digits(coarse.step, "s", 1));
             let part = match coarse.part {
-                part if part <= 1.0 => format!("{:.1} % of", 100.0 * part),
+                part if part <= 2.0 => format!("{:.1} % of", 100.0 * part),
                 part => format!("{} times", shortest(part, 2)),
             };
             let what = match coarse.of {
