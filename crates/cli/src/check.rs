@@ -8,7 +8,6 @@ use crate::scene;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::PathBuf;
-use teeter_report::with_digits;
 use teeter_scenario::output_size::{accuracy_of_seconds, has_many_contacts, step_of_pile, writing_seconds};
 use teeter_scenario::preview::{BeamPreview, BlockPreview, FEW_DIGITS, Preview, ShapesPreview};
 use teeter_scenario::resolve::Resolved;
@@ -267,8 +266,8 @@ fn model(scene: &Scene, preview: &Preview) -> Vec<String> {
     // The default is not mentioned.
     if scene.time.gap_tolerance != 1e-12 {
         lines.push(format!(
-            "a gap below {} counts as closed (usually 1e-12 m; derived from the largest block side unless given)",
-            with_digits(scene.time.gap_tolerance, "m", 4)
+            "a gap below {:e} m counts as closed (usually 1e-12 m; derived from the largest block side unless given)",
+            scene.time.gap_tolerance
         ));
     }
     lines

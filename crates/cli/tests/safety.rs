@@ -222,7 +222,7 @@ fn a_scene_from_standard_input_finds_its_files_by_base() {
     std::fs::write(data.join("push.csv"), "0,0\n0.01,1\n1,0\n").unwrap();
     let scenario = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/free-rocking-on-ground.toml");
     let scene = std::fs::read_to_string(scenario).unwrap()
-        + "\n[signal.push]\nfile = \"push.csv\"\n\n[force.push]\non = \"rocker\"\nforce = [\"10 mN\", \"0 N\"]\nsignal = \"push\"\n";
+        + "\n[signal.push]\nshape = \"table\"\nfile = \"push.csv\"\n\n[force.push]\non = \"rocker\"\nforce = [\"10 mN\", \"0 N\"]\nsignal = \"push\"\n";
     let run = |more: &[&str]| {
         let mut command = Command::new(env!("CARGO_BIN_EXE_teeter"));
         command.args(["run", "-", "--set", "time.end=10 ms", "--force"]).args(more).current_dir(&folder);
