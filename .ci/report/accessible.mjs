@@ -55,7 +55,7 @@ export async function playByKeys(page) {
   const problems = [];
   const time = async () => Number(await page.getAttribute("#time-readout", "data-t"));
   const slider = page.getByRole("slider", { name: "Time", exact: true });
-  await slider.focus();
+  if (!(await slider.focus({ timeout: 2000 }).then(() => true, () => false))) return ["there is no slider called Time"];
   await page.keyboard.press("Home");
   const first = await time();
   await page.keyboard.press("ArrowRight");
@@ -70,7 +70,8 @@ export async function playByKeys(page) {
   const picture = await page.getAttribute("#scene", "aria-label");
   if (!picture?.includes(`t = ${Number((await time()).toPrecision(6))} s`)) problems.push(`the picture says «${picture}»`);
   await page.keyboard.press("Home");
-  await page.getByRole("button", { name: "Play", exact: true }).focus();
+  const there = await page.getByRole("button", { name: "Play", exact: true }).focus({ timeout: 2000 }).then(() => true, () => false);
+  if (!there) return [...problems, "there is no button called Play"];
   await page.keyboard.press("Enter");
   const pause = page.getByRole("button", { name: "Pause", exact: true });
   await pause.waitFor({ timeout: 1000 }).catch(() => problems.push("Enter on Play doesn't play"));
