@@ -18,7 +18,8 @@ td:first-child { text-align: left; }\n\
 tbody th.setting { text-align: left; white-space: normal; padding-top: .6rem; }\n\
 th.setting > div { position: sticky; left: 0; width: min(100%, calc(100vw - 2.5rem)); }\n\
 tbody.on th.setting, tbody.on td { font-weight: 600; }\n\
-@media print { th.setting > div { width: auto; } table { font-size: 7pt; } th, td { padding-right: .3rem; } }\n";
+th.setting small { font-weight: 400; }\n\
+@media print { .panel { break-inside: auto; } figure { max-width: 15cm; } th.setting > div { width: auto; } table { font-size: 7pt; } th, td { padding-right: .3rem; } }\n";
 
 /// The page. `scene` are the words that name the scene after `teeter run`, for the commands that
 /// run its settings.
